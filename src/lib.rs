@@ -1,0 +1,31 @@
+//! `impactid`: from a laboratory campaign on an impact oscillator to the coefficient of
+//! restitution R, the natural frequency f0 and the damping ratio β, each with an honest interval.
+//!
+//! Data walks one street, and a room never imports from a room to its right:
+//!
+//! `units` < `signal` < `record` < `event` < `motion` < `model` < `atlas` < `identify` <
+//! `report` < `campaign` < `pipeline` < `cli`.
+
+pub mod units;
+
+pub mod signal;
+
+pub mod record;
+
+pub mod event;
+
+pub mod motion;
+
+pub mod model;
+
+pub mod atlas;
+
+pub mod identify;
+
+pub mod report;
+
+pub mod campaign;
+
+pub mod pipeline;
+
+pub mod cli;

@@ -1,0 +1,7 @@
+//! The `impactid` program: see [`impactid::cli`].
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    impactid::cli::main()
+}

@@ -1,0 +1,193 @@
+//! What was acquired: a record of channels on one time axis, in SI, with its setting and flags.
+//!
+//! [`source`] opens files of any supported format; calibration turns what they hold into
+//! [`Record`]s. A simulated record is the same type, so that one detector and one classifier
+//! judge experiment and simulation alike. This room does not know the model.
+
+pub mod source;
+
+use serde::{Deserialize, Serialize};
+
+use crate::units::Dimension;
+
+/// What a channel measures on the rig.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// The harmonic drive (generator voltage or force).
+    Drive,
+    /// The electric contact (or force) that shows the bodies touching.
+    Contact,
+    /// Velocity of mass x toward mass y (or toward the stop).
+    VelocityX,
+    /// Velocity of mass y toward mass x.
+    VelocityY,
+    /// Displacement of mass x toward mass y (or toward the stop).
+    DisplacementX,
+    /// Displacement of mass y toward mass x.
+    DisplacementY,
+    /// Acceleration of mass x toward mass y (or toward the stop).
+    AccelerationX,
+    /// Acceleration of mass y toward mass x.
+    AccelerationY,
+    /// Motion of the frame that carries mass x.
+    FrameX,
+    /// Motion of the frame that carries mass y.
+    FrameY,
+}
+
+impl Role {
+    /// All roles, in the order of campaign.toml.
+    pub const ALL: [Role; 10] = [
+        Role::Drive,
+        Role::Contact,
+        Role::VelocityX,
+        Role::VelocityY,
+        Role::DisplacementX,
+        Role::DisplacementY,
+        Role::AccelerationX,
+        Role::AccelerationY,
+        Role::FrameX,
+        Role::FrameY,
+    ];
+
+    /// The role's name as campaign.toml spells it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Role::Drive => "drive",
+            Role::Contact => "contact",
+            Role::VelocityX => "velocity_x",
+            Role::VelocityY => "velocity_y",
+            Role::DisplacementX => "displacement_x",
+            Role::DisplacementY => "displacement_y",
+            Role::AccelerationX => "acceleration_x",
+            Role::AccelerationY => "acceleration_y",
+            Role::FrameX => "frame_x",
+            Role::FrameY => "frame_y",
+        }
+    }
+
+    /// The dimension a channel of this role must have once in SI; `None` where several serve
+    /// (a drive in V or N, a contact in V or N, a frame in m, m/s or m/s²).
+    pub fn dimension(self) -> Option<Dimension> {
+        match self {
+            Role::Drive | Role::Contact | Role::FrameX | Role::FrameY => None,
+            Role::VelocityX | Role::VelocityY => Some(Dimension::Velocity),
+            Role::DisplacementX | Role::DisplacementY => Some(Dimension::Length),
+            Role::AccelerationX | Role::AccelerationY => Some(Dimension::Acceleration),
+        }
+    }
+}
+
+/// One channel of a record, calibrated to SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Channel {
+    /// What it measures.
+    pub role: Role,
+    /// Its name in the file.
+    pub name: String,
+    /// Its dimension, hence its SI unit.
+    pub dimension: Dimension,
+    /// The samples, SI.
+    pub values: Vec<f64>,
+    /// Corner of the first-order high-pass that the signal still carries, Hz; `None`: none.
+    pub high_pass_hz: Option<f64>,
+    /// Level between open and closed contact, SI; only for [`Role::Contact`].
+    pub threshold: Option<f64>,
+}
+
+/// Direction in which the drive frequency was stepped when the record was taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sweep {
+    /// Frequency stepped upward.
+    Up,
+    /// Frequency stepped downward.
+    Down,
+    /// Not stated: the record says nothing about hysteresis.
+    Unknown,
+}
+
+impl Sweep {
+    /// The direction's name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Sweep::Up => "up",
+            Sweep::Down => "down",
+            Sweep::Unknown => "unknown",
+        }
+    }
+}
+
+/// The setting at which a record was taken, as the laboratory states it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Setting {
+    /// Drive frequency as written down, Hz (the program measures its own).
+    pub stated_frequency_hz: Option<f64>,
+    /// Half the static gap: r in "gap 2r", m (for a mass against a stop: the whole gap).
+    pub clearance_m: Option<f64>,
+    /// Direction of the frequency sweep.
+    pub sweep: Sweep,
+    /// Drive amplitude relative to the campaign's nominal one.
+    pub drive_amplitude: f64,
+    /// Position in the order of acquisition.
+    pub sequence: usize,
+}
+
+/// Something wrong or noteworthy with a record: what, where, and what to do about it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Flag {
+    /// Stable short name, e.g. `clipped`, `dead_channel`, `dropped_samples`, `not_a_number`,
+    /// `drive_frequency_contradicts`.
+    pub code: String,
+    /// The channel concerned (name in the file), where there is one.
+    pub channel: Option<String>,
+    /// One sentence: what was found and what was expected.
+    pub message: String,
+    /// One sentence: what the user can do.
+    pub remedy: String,
+    /// Whether the record must be left out of the identification for it.
+    pub excludes: bool,
+}
+
+/// A record: channels of one acquisition on one uniform time axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    /// Name, unique in the campaign: the file's name, with the dataset where a file holds many.
+    pub id: String,
+    /// Samples per second, Hz.
+    pub sample_rate_hz: f64,
+    /// The channels that campaign.toml names, all of the same length.
+    pub channels: Vec<Channel>,
+    /// The setting at which it was taken.
+    pub setting: Setting,
+    /// What was found wrong with it while it was read.
+    pub flags: Vec<Flag>,
+}
+
+impl Record {
+    /// The channel of a role, where the record has one.
+    pub fn channel(&self, role: Role) -> Option<&Channel> {
+        self.channels.iter().find(|c| c.role == role)
+    }
+
+    /// The samples of a role, SI.
+    pub fn values(&self, role: Role) -> Option<&[f64]> {
+        self.channel(role).map(|c| c.values.as_slice())
+    }
+
+    /// Number of samples of each channel.
+    pub fn samples(&self) -> usize {
+        self.channels.first().map_or(0, |c| c.values.len())
+    }
+
+    /// Duration, s.
+    pub fn duration_s(&self) -> f64 {
+        self.samples() as f64 / self.sample_rate_hz
+    }
+
+    /// Whether a flag forbids its use in the identification.
+    pub fn excluded(&self) -> bool {
+        self.flags.iter().any(|f| f.excludes)
+    }
+}
