@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::kernel::{Cell, Course, Feed, Outcome, march};
+use super::lanes::Two;
 use crate::model::recurrence::observe;
 use crate::model::{
     Flight, Initial, Machine, ModelError, ModelImpact, Oscillator, Setting, SettledMotion,
@@ -360,14 +361,14 @@ pub fn march_all(course: &Course, cells: &[Cell], kernel: Option<Kernel>) -> Vec
 }
 
 /// Greatest β for which the short polynomial of the decay is exact to rounding.
-const LIGHT_DAMPING: f64 = 0.1;
+const LIGHT_DAMPING: f64 = 0.08;
 
 /// March a feed with a kernel that this processor runs.
 pub fn run(kernel: Kernel, course: &Course, feed: &mut impl Feed) {
     let light = course.damping_ratio <= LIGHT_DAMPING;
     match kernel {
-        Kernel::Scalar if light => march::<f64, 9>(course, feed),
-        Kernel::Scalar => march::<f64, 17>(course, feed),
+        Kernel::Scalar if light => march::<Two<f64>, 8>(course, feed),
+        Kernel::Scalar => march::<Two<f64>, 17>(course, feed),
         // SAFETY: `march_all` and the caller asked the processor for the instruction set.
         #[cfg(target_arch = "x86_64")]
         Kernel::Avx2 => unsafe { x86::march_avx2(light, course, feed) },
@@ -375,30 +376,30 @@ pub fn run(kernel: Kernel, course: &Course, feed: &mut impl Feed) {
         #[cfg(target_arch = "x86_64")]
         Kernel::Avx512 => unsafe { x86::march_avx512(light, course, feed) },
         #[cfg(not(target_arch = "x86_64"))]
-        _ => march::<f64, 17>(course, feed),
+        _ => march::<Two<f64>, 17>(course, feed),
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use super::super::kernel::{Course, Feed, march};
-    use super::super::lanes::{Avx2, Avx512};
+    use super::super::lanes::{Avx2, Avx512, Two};
 
     #[target_feature(enable = "avx2,fma")]
     pub fn march_avx2(light: bool, course: &Course, feed: &mut impl Feed) {
         if light {
-            march::<Avx2, 9>(course, feed)
+            march::<Two<Avx2>, 8>(course, feed)
         } else {
-            march::<Avx2, 17>(course, feed)
+            march::<Two<Avx2>, 17>(course, feed)
         }
     }
 
     #[target_feature(enable = "avx512f,avx2,fma")]
     pub fn march_avx512(light: bool, course: &Course, feed: &mut impl Feed) {
         if light {
-            march::<Avx512, 9>(course, feed)
+            march::<Two<Avx512>, 8>(course, feed)
         } else {
-            march::<Avx512, 17>(course, feed)
+            march::<Two<Avx512>, 17>(course, feed)
         }
     }
 }
