@@ -3,7 +3,7 @@
 //!
 //! Data walks one street, and a room never imports from a room to its right:
 //!
-//! `units` < `signal` < `record` < `event` < `motion` < `model` < `atlas` < `identify` <
+//! `units` < `signal` < `record` < `event` < `motion` < `model` < `atlas` < `synthetic` < `identify` <
 //! `report` < `campaign` < `pipeline` < `cli`.
 
 pub mod units;
@@ -19,6 +19,8 @@ pub mod motion;
 pub mod model;
 
 pub mod atlas;
+
+pub mod synthetic;
 
 pub mod identify;
 

@@ -68,7 +68,7 @@ pub fn detect(record: &Record, rig: Rig, settings: &DetectSettings) -> Detection
     if let Some(flag) = wrong_way(&found, record) {
         flags.push(flag);
     }
-    let speed_width = (2 * width).max(6);
+    let speed_width = (4 * width / 3).max(6);
     let impacts =
         refined(&mut kinematics, &found.candidates, drive.as_ref(), speed_width, rate_hz);
     let closed_samples: usize = closed.iter().map(Closed::samples).sum();
