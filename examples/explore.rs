@@ -13,11 +13,11 @@ fn main() {
     eprintln!("simulated {:?}", t0.elapsed());
     let t0 = std::time::Instant::now();
     let (mut right, mut periodic, mut wrong_sure, mut und) = (0, 0, 0, 0);
-    let mut rs = vec![]; 
+    let mut rs = vec![]; let mut obs = vec![];
     for rec in &raw {
         let record = run::calibrated(rec, &truth, &faults);
         let o = observe(&record, Rig::Double, &DetectSettings::default(), &ClassifySettings::default());
-        let got = o.finding.motion.label();
+        let got = o.finding.motion.label(); let mut o2 = o.clone(); o2.setting.sequence = obs.len(); obs.push(o2);
         let want = rec.motion.label();
         if rec.motion.is_periodic() {
             periodic += 1;
@@ -46,4 +46,25 @@ fn main() {
     let mut te: Vec<f64> = rs.iter().map(|r| r.1.abs()).collect(); te.sort_by(f64::total_cmp);
     let mut se: Vec<f64> = rs.iter().map(|r| (r.3 / r.4).abs()).collect(); se.sort_by(f64::total_cmp);
     println!("time rms z {tz:.2}; median |z| {:.2} q95 {:.2}; time err median {:.2e} q95 {:.2e}; speed |z| median {:.2} q95 {:.2}", ez[m / 2], ez[m * 95 / 100], te[m / 2], te[m * 95 / 100], se[m / 2], se[m * 95 / 100]);
+
+    let t0 = std::time::Instant::now();
+    let brackets = impactid::motion::brackets(&obs);
+    let ev = impactid::identify::methods::Evidence { rig: Rig::Double, observations: &obs, brackets: &brackets, nominal: impactid::identify::methods::Nominal { gain_uncertainty: 0.005, ..Default::default() } };
+    let out = impactid::identify::run::identify(&ev);
+    eprintln!("identified {:?}", t0.elapsed());
+    println!("truth {truth:?}");
+    if std::env::var("BR").is_ok() { for b in &brackets { println!("{:?} n{} r {:.2} {:.2}-{:.2} {:?} {}->{} pred {:?}", b.kind, b.periods_n, b.clearance_m/5e-4, b.frequency_low_hz, b.frequency_high_hz, b.sweep, b.from, b.to, out.fit.as_ref().and_then(|f| impactid::identify::boundary::predicted_hz(b, &f.parameters, Rig::Double))); } }
+    let show = |name: &str, m: &impactid::identify::MethodResult| {
+        println!("-- {name}: n {} rec {} chi {:?} fits {:?}", m.observations, m.records, m.reduced_residual, m.fits);
+        let p = &m.parameters;
+        for (nm, e, t) in [("R", &p.restitution, r), ("f0", &p.natural_frequency_hz, f), ("beta", &p.damping_ratio, b), ("xst", &p.static_deflection_m, 5e-4)] {
+            if let Some(e) = e { if let (Some(v), Some(s)) = (e.value, e.standard_error) { println!("   {nm} {v:.6} se {s:.2e} dev {:.2e} rel {:.3}% z {:.2} {:?}", v - t, 100.0*(v / t - 1.0), (v - t) / s, e.status); } else { println!("   {nm} {:?}", e); } }
+        }
+        if std::env::var("FUR").is_ok() { for (k, e) in &m.further { println!("   {k} {:?} {:?}", e.value, e.standard_error); } }
+        for r in &m.remarks { println!("   {r}"); }
+    };
+    for (k, m) in &out.methods { show(k, m); }
+    show("JOINT", &out.joint);
+    println!("{:?}\n{:?}", out.verdict, out.agreement.summary);
+    for (a, b) in &out.left_out { println!("left out {a}: {b}"); }
 }

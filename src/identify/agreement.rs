@@ -88,7 +88,7 @@ pub fn two_sided(z: f64) -> f64 {
 }
 
 /// Complementary error function by a Chebyshev fit of its logarithm; relative error below 1.2e-7.
-fn erfc(x: f64) -> f64 {
+pub(crate) fn erfc(x: f64) -> f64 {
     let t = 1.0 / (1.0 + 0.5 * x.abs());
     let coefficients = [
         -1.265_512_23, 1.000_023_68, 0.374_091_96, 0.096_784_18, -0.186_288_06, 0.278_868_07,

@@ -8,18 +8,16 @@ use crate::model::boundary::s2_of_branch;
 use crate::model::params::Machine;
 use crate::motion::bracket::{BoundaryKind, Bracket};
 
-/// Brackets that the fit uses.
+/// Brackets that the fit uses, with the likelihood of each.
 #[derive(Debug, Clone)]
 pub struct BoundaryBlock {
     /// One or two masses.
     pub rig: Rig,
     /// The brackets: s2 and grazing.
     pub brackets: Vec<Bracket>,
+    /// Typical distance of an early jump from the boundary, as a fraction of the frequency.
+    pub early_scale: f64,
 }
-
-/// How much weaker a bracket pulls when the motion jumped before the boundary: disturbances make
-/// it jump early, never late.
-const EARLY: f64 = 4.0;
 
 impl BoundaryBlock {
     /// Collect the brackets of boundaries that have a closed form.
@@ -29,13 +27,91 @@ impl BoundaryBlock {
             .filter(|b| matches!(b.kind, BoundaryKind::SaddleNode | BoundaryKind::Grazing))
             .cloned()
             .collect();
-        Self { rig, brackets }
+        Self { rig, brackets, early_scale: 0.01 }
     }
 
     /// Whether any bracket tells R.
     pub fn tells_restitution(&self) -> bool {
         self.brackets.iter().any(|b| b.kind == BoundaryKind::SaddleNode)
     }
+
+    /// Set the scale of early jumps to the one that makes the brackets most likely at given
+    /// parameters.
+    pub fn fit_early_scale(&mut self, parameters: &Parameters) {
+        let places: Vec<(Bracket, f64)> = self
+            .brackets
+            .iter()
+            .filter_map(|b| Some((b.clone(), predicted_hz(b, parameters, self.rig)?)))
+            .collect();
+        let cost = |scale: f64| -> f64 {
+            places.iter().map(|(b, f)| -Jump::of(b, scale).probability(*f).ln()).sum()
+        };
+        let scales = (0..24).map(|i| 1e-3 * 1.25f64.powi(i));
+        if let Some(best) = scales.min_by(|a, b| cost(*a).total_cmp(&cost(*b))) {
+            self.early_scale = best;
+        }
+    }
+}
+
+/// Where a motion jumps as a sweep nears a boundary: disturbances make it jump early, by an
+/// exponentially distributed distance, never late but for a small error of the setting.
+#[derive(Debug, Clone, Copy)]
+struct Jump {
+    low: f64,
+    high: f64,
+    early: f64,
+    setting: f64,
+    rising: bool,
+}
+
+/// Relative error of a frequency setting.
+const SETTING_ERROR: f64 = 2e-4;
+
+impl Jump {
+    fn of(bracket: &Bracket, early_scale: f64) -> Self {
+        let middle = bracket.middle_hz();
+        Self {
+            low: bracket.frequency_low_hz,
+            high: bracket.frequency_high_hz,
+            early: early_scale * middle,
+            setting: (SETTING_ERROR * middle).max(0.02 * bracket.width_hz()),
+            rising: bracket.sweep != crate::record::Sweep::Down,
+        }
+    }
+
+    /// Probability that the jump falls into the bracket when the boundary lies at a frequency.
+    fn probability(&self, boundary: f64) -> f64 {
+        let (near, far) = if self.rising {
+            (self.low - boundary, self.high - boundary)
+        } else {
+            (boundary - self.high, boundary - self.low)
+        };
+        (self.cumulative(far) - self.cumulative(near)).max(1e-280)
+    }
+
+    /// Distribution function of (jump − boundary) for a rising sweep: a normal error less an
+    /// exponential one.
+    fn cumulative(&self, x: f64) -> f64 {
+        let (s, e) = (self.setting, self.early);
+        let tail = x / e + 0.5 * (s / e).powi(2);
+        let mixed = if tail > 600.0 { 0.0 } else { tail.exp() * normal(-x / s - s / e) };
+        normal(x / s) + mixed
+    }
+
+    /// Boundary frequency at which the bracket is most likely, and that probability.
+    fn best(&self) -> (f64, f64) {
+        let count = 60;
+        let span = self.high - self.low + 4.0 * self.setting;
+        (0..=count)
+            .map(|i| self.low - 2.0 * self.setting + span * f64::from(i) / f64::from(count))
+            .map(|f| (f, self.probability(f)))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .unwrap_or((0.5 * (self.low + self.high), 1.0))
+    }
+}
+
+fn normal(x: f64) -> f64 {
+    0.5 * crate::identify::agreement::erfc(-x / std::f64::consts::SQRT_2)
 }
 
 /// Frequency of the boundary of a bracket according to the model, Hz: the crossing nearest to it.
@@ -120,28 +196,14 @@ impl Block for BoundaryBlock {
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let bracket = &self.brackets[item];
         let frequency = predicted_hz(bracket, parameters, self.rig)?;
-        let deviation = bracket.width_hz() / 12f64.sqrt() + 2e-4 * bracket.middle_hz();
-        let residual = (frequency - bracket.middle_hz()) / deviation;
-        let late = residual.abs() <= 3f64.sqrt() || !jumped_early(bracket, residual);
-        let residual = if late {
-            residual
-        } else {
-            let edge = 3f64.sqrt() * residual.signum();
-            edge + (residual - edge) / EARLY
-        };
-        Some(vec![residual])
+        let jump = Jump::of(bracket, self.early_scale);
+        let (best, most) = jump.best();
+        // The signed root of twice the loss of log-likelihood: least squares then maximise it.
+        let loss = (most.ln() - jump.probability(frequency).ln()).max(0.0);
+        Some(vec![(2.0 * loss).sqrt() * (frequency - best).signum()])
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {
         !matches!(coordinate, Coordinate::Gain(_))
-    }
-}
-
-/// Whether the motion changed before the sweep had reached the predicted boundary.
-fn jumped_early(bracket: &Bracket, residual: f64) -> bool {
-    match bracket.sweep {
-        crate::record::Sweep::Up => residual > 0.0,
-        crate::record::Sweep::Down => residual < 0.0,
-        crate::record::Sweep::Unknown => false,
     }
 }

@@ -31,7 +31,7 @@ pub struct Outcome {
 /// Identify from observations and brackets.
 pub fn identify(evidence: &Evidence) -> Outcome {
     let mut work = Work::new(evidence);
-    let resonance = methods::resonance(&work.blocks, &evidence.nominal);
+    let resonance = work.resonance();
     let start = work.start(resonance.as_ref());
     let impacts = methods::impacts(&work.blocks, start);
     let start = with_restitution(start, impacts.as_ref());
@@ -64,6 +64,13 @@ pub fn identify(evidence: &Evidence) -> Outcome {
         factor,
         left_out: work.left_out,
     }
+}
+
+/// How many times the typical mean square of residuals makes a record an outlier.
+const OUTLYING: f64 = 25.0;
+
+fn mean_square(residuals: &[f64]) -> f64 {
+    residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len().max(1) as f64
 }
 
 type Attempt = Option<Result<MethodFit, FitError>>;
@@ -120,6 +127,36 @@ impl<'a> Work<'a> {
         self.evidence.observations[observation].record.clone()
     }
 
+    /// Fit the impactless records; those that fit far worse than the bulk are named and left out.
+    fn resonance(&mut self) -> Attempt {
+        let first = match methods::resonance(&self.blocks, &self.evidence.nominal)? {
+            Ok(first) => first,
+            failed => return Some(failed),
+        };
+        let block = &self.blocks.resonance;
+        let scores: Vec<f64> = (0..block.items())
+            .map(|i| mean_square(&block.residuals(i, &first.fit.parameters).unwrap_or_default()))
+            .collect();
+        let typical = crate::signal::robust::median(&scores).unwrap_or(1.0).max(1.0);
+        if scores.iter().all(|s| *s <= OUTLYING * typical) {
+            return Some(Ok(first));
+        }
+        let points = std::mem::take(&mut self.blocks.resonance.points);
+        for (point, score) in points.into_iter().zip(scores) {
+            if score <= OUTLYING * typical {
+                self.blocks.resonance.points.push(point);
+            } else {
+                let reason = format!(
+                    "its response fits {:.0} times worse than the others (still settling?): left \
+                     out of the resonance curve",
+                    (score / typical).sqrt()
+                );
+                self.left_out.push((self.name(point.observation), reason));
+            }
+        }
+        methods::resonance(&self.blocks, &self.evidence.nominal)
+    }
+
     /// Fit the folded records; those without an orbit at the start are tried again at the end,
     /// and those that fit far worse than the bulk are left out and named.
     fn trajectories(&mut self, start: Parameters) -> Attempt {
@@ -138,7 +175,7 @@ impl<'a> Work<'a> {
         let mut kept = Vec::new();
         for (record, score) in all.iter().zip(&scores) {
             let reason = match score {
-                Some(s) if *s <= 25.0 * typical => {
+                Some(s) if *s <= OUTLYING * typical => {
                     kept.push(record.clone());
                     continue;
                 }
@@ -167,9 +204,7 @@ impl<'a> Work<'a> {
         block.records = records.to_vec();
         (0..records.len())
             .map(|i| {
-                let residuals = block.residuals(i, parameters)?;
-                let count = residuals.len().max(1) as f64;
-                Some(residuals.iter().map(|r| r * r).sum::<f64>() / count)
+                block.residuals(i, parameters).map(|r| mean_square(&r))
             })
             .collect()
     }
@@ -199,6 +234,7 @@ impl<'a> Work<'a> {
             }
         }
         self.blocks.boundary.brackets = kept;
+        self.blocks.boundary.fit_early_scale(&start);
         methods::boundaries(&self.blocks, &self.evidence.nominal, start)
     }
 

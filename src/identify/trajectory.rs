@@ -108,20 +108,13 @@ pub fn channel_value(
     value * parameters.gain(role)
 }
 
-/// The orbit's mean over a folded point: two phases at ± the spread carry the curvature.
-fn model_value(
-    orbit: &Orbit,
-    parameters: &Parameters,
-    record: &TrajectoryRecord,
-    (role, point, impact_phase): (Role, &FoldedPoint, f64),
-) -> f64 {
+/// The orbit's states at the two phases that stand for a folded point: ± its spread, so that
+/// their mean carries the curvature within the bin.
+fn states(orbit: &Orbit, point: &FoldedPoint, impact_phase: f64) -> [State; 2] {
     let eta = orbit.setting.frequency_ratio;
-    let at = |phase: f64| {
-        let state = orbit.at((phase - impact_phase) / eta);
-        channel_value(parameters, record.drive_amplitude, role, &state)
-    };
-    let spread = point.spread_rad;
-    0.5 * (at(point.phase_rad - spread) + at(point.phase_rad + spread))
+    [-1.0, 1.0].map(|sign| {
+        orbit.at((point.phase_rad + sign * point.spread_rad - impact_phase) / eta)
+    })
 }
 
 /// The orbit's impact phase on the fold's axis: whole turns put it next to the measured one.
@@ -141,12 +134,17 @@ impl Block for TrajectoryBlock {
         let orbit = self.orbit(item, parameters)?;
         let phase = phase_on_fold(&orbit, &record.folded);
         let mut out = Vec::new();
+        // Channels of one record share their samples, hence their phases and the orbit's states.
+        let mut shared: (&[FoldedPoint], Vec<[State; 2]>) = (&[], Vec::new());
         for channel in &record.folded.channels {
-            let values: Vec<f64> = channel
-                .points
-                .iter()
-                .map(|p| model_value(&orbit, parameters, record, (channel.role, p, phase)))
-                .collect();
+            if !same_phases(shared.0, &channel.points) {
+                let all = channel.points.iter().map(|p| states(&orbit, p, phase)).collect();
+                shared = (&channel.points, all);
+            }
+            let value =
+                |s: &State| channel_value(parameters, record.drive_amplitude, channel.role, s);
+            let values: Vec<f64> =
+                shared.1.iter().map(|[a, b]| 0.5 * (value(a) + value(b))).collect();
             out.extend(centred_residuals(channel, &values, self.relative_error));
         }
         Some(out)
@@ -155,6 +153,11 @@ impl Block for TrajectoryBlock {
     fn touches(&self, _coordinate: Coordinate) -> bool {
         true
     }
+}
+
+fn same_phases(a: &[FoldedPoint], b: &[FoldedPoint]) -> bool {
+    a.len() == b.len()
+        && a.iter().zip(b).all(|(p, q)| p.phase_rad == q.phase_rad && p.spread_rad == q.spread_rad)
 }
 
 /// Weighted residuals with the channel's offset, a nuisance, projected out.

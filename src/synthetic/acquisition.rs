@@ -9,25 +9,23 @@ use crate::synthetic::truth::Faults;
 /// Full scale of the converter, V (±).
 pub const FULL_SCALE_V: f64 = 5.0;
 
-/// First-order high-pass x → y, y' + ω_c y = x', run at a fine step and read out at a coarse one.
+/// First-order high-pass x → y, y' + ω_c y = x', run at a fine step.
 #[derive(Debug, Clone)]
 pub struct HighPass {
     low: f64,
-    previous: Option<f64>,
     decay: f64,
 }
 
 impl HighPass {
     /// A high-pass of the given corner for samples `step_s` apart.
     pub fn new(corner_hz: f64, step_s: f64) -> Self {
-        let decay = (-std::f64::consts::TAU * corner_hz * step_s).exp();
-        Self { low: 0.0, previous: None, decay }
+        Self { low: 0.0, decay: (-std::f64::consts::TAU * corner_hz * step_s).exp() }
     }
 
-    /// The next sample; the input is taken as linear between samples.
-    pub fn next(&mut self, input: f64) -> f64 {
-        let before = self.previous.replace(input).unwrap_or(input);
-        self.low = self.decay * self.low + (1.0 - self.decay) * 0.5 * (before + input);
+    /// The next sample; `mean` is the input's mean since the last one, which a jump between
+    /// samples makes differ from the mean of both samples.
+    pub fn next(&mut self, input: f64, mean: f64) -> f64 {
+        self.low = self.decay * self.low + (1.0 - self.decay) * mean;
         input - self.low
     }
 }

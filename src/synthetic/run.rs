@@ -216,12 +216,20 @@ impl VirtualRig<'_> {
         let taus = (0..count).map(|i| start_tau + i as f64 * step_s * omega);
         let mut filters = [(); 3].map(|()| self.faults.high_pass_hz.map(|c| HighPass::new(c, step_s)));
         let mut out = [(); 4].map(|()| Vec::with_capacity(SAMPLES));
+        let mut before: Option<[f64; 4]> = None;
         for (i, state) in trajectory.sample(taus).into_iter().enumerate() {
             let raw = [state.vx * speed, state.vy * speed, state.x * x_st, state.y * x_st];
+            let last = before.replace(raw).unwrap_or(raw);
+            // The mean velocity is the displacement's difference, jumps included.
+            let means = [
+                (raw[3] - last[3]) / step_s,
+                0.5 * (raw[2] + last[2]),
+                0.5 * (raw[3] + last[3]),
+            ];
             let mut seen = raw;
-            for (value, filter) in seen[1..].iter_mut().zip(&mut filters) {
+            for ((value, mean), filter) in seen[1..].iter_mut().zip(means).zip(&mut filters) {
                 if let Some(filter) = filter {
-                    *value = filter.next(*value);
+                    *value = filter.next(*value, mean);
                 }
             }
             if i >= pre && (i - pre).is_multiple_of(FINE) {
