@@ -10,6 +10,8 @@ use std::fmt;
 use serde::{Deserialize, Deserializer, Serialize, de};
 use toml::Spanned;
 
+use crate::record::calibrate::ChannelKey;
+
 /// A value with its place in the file.
 pub type Placed<T> = Option<Spanned<T>>;
 
@@ -84,7 +86,7 @@ pub struct Records {
     /// Samples per second, for files that do not tell.
     pub sample_rate: Placed<Quantity>,
     /// Name or index of the channel that holds the time, where the file's reader cannot tell.
-    pub time: Placed<ChannelKey>,
+    pub time: Placed<WrittenKey>,
     /// Clearance of the records that state none: r, half the gap of two masses.
     pub clearance: Placed<Quantity>,
     /// Drive frequency of the records that state none.
@@ -170,7 +172,7 @@ pub struct Channels {
 #[serde(deny_unknown_fields, default)]
 pub struct Channel {
     /// Which channel of the file: its name, or its index counted from 0.
-    pub channel: Placed<ChannelKey>,
+    pub channel: Placed<WrittenKey>,
     /// Unit of the numbers in the file; needed where the file does not tell.
     pub unit: Placed<String>,
     /// A ratio from the file's unit to the quantity's (`"50 mm/s per V"`, or a sensor's
@@ -259,14 +261,9 @@ pub enum Language {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OneOrMany(pub Vec<String>);
 
-/// A channel of a file, by name or by index from 0.
+/// A channel of a file as written: its name or its index.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum ChannelKey {
-    /// By name.
-    Name(String),
-    /// By index.
-    Index(usize),
-}
+pub struct WrittenKey(pub ChannelKey);
 
 /// A quantity as written: text with number and unit, or a bare number.
 #[derive(Debug, Clone, PartialEq)]
@@ -307,13 +304,13 @@ deserialize_with!(QuantityVisitor for Quantity, "a text with number and unit", {
     }
 });
 
-deserialize_with!(ChannelVisitor for ChannelKey, "a channel's name, or its index from 0", {
-    fn visit_str<E: de::Error>(self, v: &str) -> Result<ChannelKey, E> {
-        Ok(ChannelKey::Name(v.to_owned()))
+deserialize_with!(ChannelVisitor for WrittenKey, "a channel's name, or its index from 0", {
+    fn visit_str<E: de::Error>(self, v: &str) -> Result<WrittenKey, E> {
+        Ok(WrittenKey(ChannelKey::Name(v.to_owned())))
     }
-    fn visit_i64<E: de::Error>(self, v: i64) -> Result<ChannelKey, E> {
+    fn visit_i64<E: de::Error>(self, v: i64) -> Result<WrittenKey, E> {
         usize::try_from(v)
-            .map(ChannelKey::Index)
+            .map(|index| WrittenKey(ChannelKey::Index(index)))
             .map_err(|_| E::custom(format!("a channel's index is counted from 0, not {v}")))
     }
 });

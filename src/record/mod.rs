@@ -4,7 +4,10 @@
 //! [`Record`]s. A simulated record is the same type, so that one detector and one classifier
 //! judge experiment and simulation alike. This room does not know the model.
 
+pub mod calibrate;
+mod condition;
 pub mod source;
+pub mod time_axis;
 
 use serde::{Deserialize, Serialize};
 
