@@ -4,7 +4,11 @@
 //! [`Record`]s. A simulated record is the same type, so that one detector and one classifier
 //! judge experiment and simulation alike. This room does not know the model.
 
+pub mod attribute;
+pub mod csv;
+pub mod open;
 pub mod source;
+pub mod text;
 
 use serde::{Deserialize, Serialize};
 
