@@ -149,7 +149,11 @@ pub fn symbol_of(unit: Unit) -> Option<&'static str> {
 
 /// The symbols of all units of a dimension, for messages that name the remedy.
 pub fn symbols_of(dimension: Dimension) -> Vec<&'static str> {
-    UNITS.iter().filter(|(_, d, _)| *d == dimension).map(|(s, _, _)| *s).collect()
+    UNITS
+        .iter()
+        .filter(|(_, d, _)| *d == dimension)
+        .map(|(s, _, _)| *s)
+        .collect()
 }
 
 /// A number with its unit, in SI.

@@ -4,9 +4,13 @@
 //! [`Record`]s. A simulated record is the same type, so that one detector and one classifier
 //! judge experiment and simulation alike. This room does not know the model.
 
+pub mod attribute;
 pub mod calibrate;
 mod condition;
+pub mod csv;
+pub mod open;
 pub mod source;
+pub mod text;
 pub mod time_axis;
 
 use serde::{Deserialize, Serialize};
