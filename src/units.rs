@@ -202,11 +202,16 @@ pub enum QuantityError {
 pub fn parse_quantity(text: &str) -> Result<Quantity, QuantityError> {
     let (number, symbol) = split_number(text)?;
     if symbol.is_empty() {
-        return Ok(Quantity { si: number, dimension: Dimension::Number });
+        return Ok(Quantity {
+            si: number,
+            dimension: Dimension::Number,
+        });
     }
-    let unit =
-        parse_unit(symbol).ok_or_else(|| QuantityError::UnknownUnit(symbol.to_owned()))?;
-    Ok(Quantity { si: number * unit.to_si, dimension: unit.dimension })
+    let unit = parse_unit(symbol).ok_or_else(|| QuantityError::UnknownUnit(symbol.to_owned()))?;
+    Ok(Quantity {
+        si: number * unit.to_si,
+        dimension: unit.dimension,
+    })
 }
 
 /// Read a text as [`parse_quantity`] does and demand its dimension; gives SI.
@@ -233,7 +238,9 @@ fn split_number(text: &str) -> Result<(f64, &str), QuantityError> {
     if rest.starts_with(',') {
         return Err(QuantityError::Comma(text.to_owned()));
     }
-    let value: f64 = number.parse().map_err(|_| QuantityError::NoNumber(text.to_owned()))?;
+    let value: f64 = number
+        .parse()
+        .map_err(|_| QuantityError::NoNumber(text.to_owned()))?;
     if !value.is_finite() {
         return Err(QuantityError::NotFinite(text.to_owned()));
     }
@@ -243,7 +250,10 @@ fn split_number(text: &str) -> Result<(f64, &str), QuantityError> {
 /// Length of the decimal number, with its exponent, at the beginning of a text.
 fn number_end(text: &[u8]) -> usize {
     let digits = |from: usize| {
-        from + text[from..].iter().take_while(|b| b.is_ascii_digit() || **b == b'.').count()
+        from + text[from..]
+            .iter()
+            .take_while(|b| b.is_ascii_digit() || **b == b'.')
+            .count()
     };
     let signed = |at: usize| at + usize::from(matches!(text.get(at), Some(b'+' | b'-')));
     let end = digits(signed(0));
@@ -283,8 +293,14 @@ pub fn parse_scale(text: &str) -> Result<Scale, QuantityError> {
         return Ok(Scale::Factor(number));
     }
     let (above, below) = split_ratio(symbols)?;
-    let numerator = Quantity { si: number * above.to_si, dimension: above.dimension };
-    Ok(Scale::Ratio { numerator, denominator: below })
+    let numerator = Quantity {
+        si: number * above.to_si,
+        dimension: above.dimension,
+    };
+    Ok(Scale::Ratio {
+        numerator,
+        denominator: below,
+    })
 }
 
 fn split_ratio(symbols: &str) -> Result<(Unit, Unit), QuantityError> {
@@ -310,15 +326,27 @@ impl Scale {
     /// the scale does not start from that unit.
     pub fn apply(self, unit: Unit) -> Option<Unit> {
         match self {
-            Self::Factor(factor) => Some(Unit { to_si: unit.to_si * factor, ..unit }),
-            Self::Ratio { numerator, denominator } => {
+            Self::Factor(factor) => Some(Unit {
+                to_si: unit.to_si * factor,
+                ..unit
+            }),
+            Self::Ratio {
+                numerator,
+                denominator,
+            } => {
                 let per_si = numerator.si / denominator.to_si;
                 if denominator.dimension == unit.dimension {
                     let to_si = unit.to_si * per_si;
-                    Some(Unit { dimension: numerator.dimension, to_si })
+                    Some(Unit {
+                        dimension: numerator.dimension,
+                        to_si,
+                    })
                 } else if numerator.dimension == unit.dimension {
                     let to_si = unit.to_si / per_si;
-                    Some(Unit { dimension: denominator.dimension, to_si })
+                    Some(Unit {
+                        dimension: denominator.dimension,
+                        to_si,
+                    })
                 } else {
                     None
                 }
@@ -379,14 +407,38 @@ mod tests {
     #[test]
     fn valid_quantities_are_read_in_si() {
         let read = |text| parse_quantity(text).unwrap();
-        assert_eq!(read("1.5 mm"), Quantity { si: 1.5e-3, dimension: Dimension::Length });
+        assert_eq!(
+            read("1.5 mm"),
+            Quantity {
+                si: 1.5e-3,
+                dimension: Dimension::Length
+            }
+        );
         assert_eq!(read("-2e-3m").si, -2e-3);
-        assert_eq!(read("0.5 %"), Quantity { si: 0.005, dimension: Dimension::Number });
+        assert_eq!(
+            read("0.5 %"),
+            Quantity {
+                si: 0.005,
+                dimension: Dimension::Number
+            }
+        );
         assert_eq!(read("7").dimension, Dimension::Number);
-        assert!(matches!(parse_quantity("1,5 mm"), Err(QuantityError::Comma(_))));
-        assert!(matches!(parse_quantity("mm"), Err(QuantityError::NoNumber(_))));
-        assert!(matches!(parse_quantity("1 mmm"), Err(QuantityError::UnknownUnit(_))));
-        assert!(matches!(parse_quantity("1e999 m"), Err(QuantityError::NotFinite(_))));
+        assert!(matches!(
+            parse_quantity("1,5 mm"),
+            Err(QuantityError::Comma(_))
+        ));
+        assert!(matches!(
+            parse_quantity("mm"),
+            Err(QuantityError::NoNumber(_))
+        ));
+        assert!(matches!(
+            parse_quantity("1 mmm"),
+            Err(QuantityError::UnknownUnit(_))
+        ));
+        assert!(matches!(
+            parse_quantity("1e999 m"),
+            Err(QuantityError::NotFinite(_))
+        ));
         let wrong = parse_quantity_of("3 kg", Dimension::Length);
         assert!(matches!(wrong, Err(QuantityError::Dimension { .. })));
     }
@@ -394,7 +446,13 @@ mod tests {
     #[test]
     fn valid_scales_work_both_ways_round() {
         let volt = parse_unit("V").unwrap();
-        for text in ["50 mm/s per V", "0.05 m/s/V", "20 V/(m/s)", "20 V per m/s", "20 V/m/s"] {
+        for text in [
+            "50 mm/s per V",
+            "0.05 m/s/V",
+            "20 V/(m/s)",
+            "20 V per m/s",
+            "20 V/m/s",
+        ] {
             let unit = parse_scale(text).unwrap().apply(volt).unwrap();
             assert_eq!(unit.dimension, Dimension::Velocity, "{text}");
             assert!((unit.to_si - 0.05).abs() < 1e-15, "{text}");
@@ -402,19 +460,36 @@ mod tests {
         let g = parse_scale("100 mV/g").unwrap().apply(volt).unwrap();
         assert!((g.to_si - 98.0665).abs() < 1e-12);
         assert_eq!(parse_scale("0.5").unwrap(), Scale::Factor(0.5));
-        assert!(matches!(parse_scale("5 mm/s"), Err(QuantityError::NoRatio(_))));
-        assert!(parse_scale("5 mm per V").unwrap().apply(parse_unit("N").unwrap()).is_none());
+        assert!(matches!(
+            parse_scale("5 mm/s"),
+            Err(QuantityError::NoRatio(_))
+        ));
+        assert!(
+            parse_scale("5 mm per V")
+                .unwrap()
+                .apply(parse_unit("N").unwrap())
+                .is_none()
+        );
     }
 
     #[test]
     fn valid_units_are_split_off_names() {
         assert_eq!(split_unit("clearance [mm]"), ("clearance", Some("mm")));
         assert_eq!(split_unit("clearance_mm"), ("clearance", Some("mm")));
-        assert_eq!(split_unit("drive_frequency_hz"), ("drive_frequency", Some("hz")));
+        assert_eq!(
+            split_unit("drive_frequency_hz"),
+            ("drive_frequency", Some("hz"))
+        );
         assert_eq!(split_unit("speed_m_s"), ("speed", Some("m_s")));
         assert_eq!(split_unit("drive_frequency"), ("drive_frequency", None));
-        assert_eq!(parse_split_unit("hz").unwrap().dimension, Dimension::Frequency);
-        assert_eq!(parse_split_unit("m_s").unwrap().dimension, Dimension::Velocity);
+        assert_eq!(
+            parse_split_unit("hz").unwrap().dimension,
+            Dimension::Frequency
+        );
+        assert_eq!(
+            parse_split_unit("m_s").unwrap().dimension,
+            Dimension::Velocity
+        );
     }
 
     proptest::proptest! {

@@ -29,7 +29,9 @@ impl Channels {
 pub fn resolve(channels: &Channels, machine: Machine, desk: &mut Desk<'_>) -> Vec<ChannelSetup> {
     let mut setups = Vec::new();
     for role in Role::ALL {
-        let Some(placed) = channels.of(role) else { continue };
+        let Some(placed) = channels.of(role) else {
+            continue;
+        };
         if machine == Machine::Single && of_mass_y(role) {
             desk.fault(
                 placed,
@@ -68,8 +70,12 @@ fn demand_motion(setups: &[ChannelSetup], desk: &mut Desk<'_>) {
 
 fn refuse_twice(setups: &[ChannelSetup], channels: &Channels, desk: &mut Desk<'_>) {
     for (i, one) in setups.iter().enumerate() {
-        let Some(other) = setups[..i].iter().find(|o| o.source == one.source) else { continue };
-        let Some(placed) = channels.of(one.role) else { continue };
+        let Some(other) = setups[..i].iter().find(|o| o.source == one.source) else {
+            continue;
+        };
+        let Some(placed) = channels.of(one.role) else {
+            continue;
+        };
         desk.fault(
             placed,
             &format!("channels.{}.channel", one.role.name()),
@@ -83,11 +89,7 @@ fn refuse_twice(setups: &[ChannelSetup], channels: &Channels, desk: &mut Desk<'_
     }
 }
 
-fn resolve_one(
-    role: Role,
-    placed: &Spanned<Channel>,
-    desk: &mut Desk<'_>,
-) -> Option<ChannelSetup> {
+fn resolve_one(role: Role, placed: &Spanned<Channel>, desk: &mut Desk<'_>) -> Option<ChannelSetup> {
     let written = placed.get_ref();
     let key = |name: &str| format!("channels.{}.{name}", role.name());
     let unit = unit(&written.unit, &key("unit"), desk);
@@ -100,7 +102,10 @@ fn resolve_one(
         high_pass_hz: desk.positive(&written.high_pass, &key("high_pass"), Dimension::Frequency),
         threshold: threshold(role, &written.threshold, &key("threshold"), desk),
         range: raw_level(&written.range, &key("range"), unit, desk),
-        ignore_file_unit: written.ignore_file_unit.as_ref().is_some_and(|b| *b.get_ref()),
+        ignore_file_unit: written
+            .ignore_file_unit
+            .as_ref()
+            .is_some_and(|b| *b.get_ref()),
         ..ChannelSetup::plain(role, source(role, placed, desk)?)
     };
     Some(setup)
@@ -126,7 +131,12 @@ fn unit(placed: &Placed<String>, key: &str, desk: &mut Desk<'_>) -> Option<Unit>
     let found = units::parse_unit(symbol);
     if found.is_none() {
         let what = format!("the unit '{symbol}' is not known");
-        desk.fault(placed, key, what, "write V, mV, m, mm, m/s, mm/s, m/s2, g, N or another SI unit");
+        desk.fault(
+            placed,
+            key,
+            what,
+            "write V, mV, m, mm, m/s, mm/s, m/s2, g, N or another SI unit",
+        );
     }
     found
 }
@@ -141,7 +151,12 @@ fn scale(placed: &Placed<Quantity>, key: &str, desk: &mut Desk<'_>) -> Option<Sc
         Ok(scale) if size(scale) > 0.0 => Some(scale),
         Ok(_) => {
             let what = "a scale must be positive and finite".to_owned();
-            desk.fault(placed, key, what, "write its magnitude, and the sign as sign = -1");
+            desk.fault(
+                placed,
+                key,
+                what,
+                "write its magnitude, and the sign as sign = -1",
+            );
             None
         }
         Err(error) => {
@@ -193,7 +208,12 @@ fn raw_level(
                 unit.dimension.name()
             );
             if let Some(placed) = placed {
-                desk.fault(placed, key, what, "give it in the unit of the numbers in the file");
+                desk.fault(
+                    placed,
+                    key,
+                    what,
+                    "give it in the unit of the numbers in the file",
+                );
             }
             None
         }
@@ -213,7 +233,12 @@ fn any_quantity(
     };
     found
         .map_err(|what| {
-            desk.fault(placed, key, what, "write number and unit in quotes, such as \"2.5 V\"");
+            desk.fault(
+                placed,
+                key,
+                what,
+                "write number and unit in quotes, such as \"2.5 V\"",
+            );
         })
         .ok()
 }

@@ -36,7 +36,11 @@ impl Fault {
     /// The place as `file:line: key`.
     pub fn place(&self) -> String {
         let line = self.line.map(|l| format!(":{l}")).unwrap_or_default();
-        let key = if self.key.is_empty() { String::new() } else { format!(": {}", self.key) };
+        let key = if self.key.is_empty() {
+            String::new()
+        } else {
+            format!(": {}", self.key)
+        };
         format!("{}{line}{key}", self.file.display())
     }
 }
@@ -93,7 +97,10 @@ pub struct Notebook {
 impl Notebook {
     /// An empty one for a file.
     pub fn new(file: &Path) -> Self {
-        Self { file: file.to_path_buf(), faults: Vec::new() }
+        Self {
+            file: file.to_path_buf(),
+            faults: Vec::new(),
+        }
     }
 
     /// Note a fault that stops the campaign.

@@ -2,7 +2,9 @@
 //! explicit, or every fault at once ([`faults`]).
 
 mod channels;
+pub mod check;
 pub mod faults;
+pub mod guess;
 mod names;
 mod quantity;
 pub mod read;
@@ -10,6 +12,7 @@ mod records;
 mod resolve;
 pub mod resolved;
 mod run_table;
+pub mod template;
 pub mod written;
 
 pub use records::Opener;

@@ -43,7 +43,11 @@ fn tail(path: &Path, depth: usize) -> String {
 }
 
 fn depth_needed(records: &[Known<'_>]) -> usize {
-    let deepest = records.iter().map(|r| r.file.iter().count()).max().unwrap_or(1);
+    let deepest = records
+        .iter()
+        .map(|r| r.file.iter().count())
+        .max()
+        .unwrap_or(1);
     let files: std::collections::BTreeSet<&Path> = records.iter().map(|r| r.file).collect();
     (1..deepest)
         .find(|depth| {
@@ -73,7 +77,11 @@ mod tests {
     use super::*;
 
     fn known<'a>(file: &'a str, dataset: &'a str) -> Known<'a> {
-        Known { file: Path::new(file), dataset, given: None }
+        Known {
+            file: Path::new(file),
+            dataset,
+            given: None,
+        }
     }
 
     #[test]

@@ -87,9 +87,10 @@ fn in_si(quantity: &Quantity, key: &str, dimension: Dimension) -> Result<f64, (S
         Quantity::Text(text) => text,
     };
     units::parse_quantity_of(text, dimension).map_err(|error| match &error {
-        QuantityError::Dimension { found: "plain number", .. } => {
-            without_unit(key, text, dimension)
-        }
+        QuantityError::Dimension {
+            found: "plain number",
+            ..
+        } => without_unit(key, text, dimension),
         _ => (error.to_string(), remedy(&error, dimension)),
     })
 }
@@ -97,12 +98,17 @@ fn in_si(quantity: &Quantity, key: &str, dimension: Dimension) -> Result<f64, (S
 fn finite(value: f64) -> Result<f64, (String, String)> {
     match value.is_finite() {
         true => Ok(value),
-        false => Err((format!("{value} is not a number"), "write a finite number".to_owned())),
+        false => Err((
+            format!("{value} is not a number"),
+            "write a finite number".to_owned(),
+        )),
     }
 }
 
 fn without_unit(key: &str, number: &str, dimension: Dimension) -> (String, String) {
-    let example = units::symbols_of(dimension).into_iter().nth(common(dimension));
+    let example = units::symbols_of(dimension)
+        .into_iter()
+        .nth(common(dimension));
     let symbol = example.unwrap_or(dimension.si_symbol());
     (
         format!("a {} without unit: {number}", words(key)),
@@ -128,7 +134,10 @@ pub fn remedy(error: &QuantityError, dimension: Dimension) -> String {
         }
         _ => {
             let symbols = units::symbols_of(dimension).join(", ");
-            format!("write a number and a unit of {}: {symbols}", dimension.name())
+            format!(
+                "write a number and a unit of {}: {symbols}",
+                dimension.name()
+            )
         }
     }
 }

@@ -25,7 +25,10 @@ impl<'a> Text<'a> {
     /// Line, counted from 1, of a byte offset.
     pub fn line(&self, offset: usize) -> usize {
         let end = offset.min(self.text.len());
-        1 + self.text.as_bytes()[..end].iter().filter(|b| **b == b'\n').count()
+        1 + self.text.as_bytes()[..end]
+            .iter()
+            .filter(|b| **b == b'\n')
+            .count()
     }
 
     /// Line of a placed value.
@@ -48,7 +51,9 @@ pub fn read(text: &str, book: &mut Notebook) -> WrittenCampaign {
         match WrittenCampaign::deserialize(Deserializer::from(document.clone())) {
             Ok(written) => return written,
             Err(fault) => {
-                let path = fault.span().and_then(|span| take_out(document.get_mut(), &span));
+                let path = fault
+                    .span()
+                    .and_then(|span| take_out(document.get_mut(), &span));
                 note_form(&places, &fault, path.as_deref(), book);
                 if path.is_none() {
                     return WrittenCampaign::default();
@@ -61,15 +66,15 @@ pub fn read(text: &str, book: &mut Notebook) -> WrittenCampaign {
 fn note_syntax(places: &Text<'_>, fault: &toml::de::Error, book: &mut Notebook) {
     let line = fault.span().map(|s| places.line(s.start));
     let what = format!("not valid TOML: {}", one_line(fault.message()));
-    book.fault(line, "", what, "mend the line; texts stand in quotes, tables in [brackets]");
+    book.fault(
+        line,
+        "",
+        what,
+        "mend the line; texts stand in quotes, tables in [brackets]",
+    );
 }
 
-fn note_form(
-    places: &Text<'_>,
-    fault: &toml::de::Error,
-    path: Option<&str>,
-    book: &mut Notebook,
-) {
+fn note_form(places: &Text<'_>, fault: &toml::de::Error, path: Option<&str>, book: &mut Notebook) {
     let line = fault.span().map(|s| places.line(s.start));
     let message = one_line(fault.message());
     let remedy = match unknown_name(&message) {
@@ -133,7 +138,11 @@ fn take_out(table: &mut DeTable<'_>, span: &Range<usize>) -> Option<String> {
     let entry = table.iter_mut().find_map(|(key, value)| {
         let name = key.get_ref().to_string();
         let on_key = covers(&key.span(), span);
-        let inner = if on_key { None } else { take_out_of(value.get_mut(), span) };
+        let inner = if on_key {
+            None
+        } else {
+            take_out_of(value.get_mut(), span)
+        };
         (on_key || inner.is_some() || covers(&value.span(), span)).then_some((name, inner))
     });
     match entry? {
@@ -183,7 +192,10 @@ mod tests {
                     [channels.velocityx]\nchannel = \"v\"\n\
                     [channels.drive]\nchannel = \"d\"\nuni = \"V\"\n[rig]\nrestitution = [1]\n";
         let (written, faults) = faults_of(text);
-        let mut lines: Vec<_> = faults.iter().map(|f| (f.line.unwrap(), f.key.as_str())).collect();
+        let mut lines: Vec<_> = faults
+            .iter()
+            .map(|f| (f.line.unwrap(), f.key.as_str()))
+            .collect();
         lines.sort();
         assert_eq!(
             lines,
@@ -196,7 +208,11 @@ mod tests {
                 (11, "rig.restitution"),
             ]
         );
-        let drive = written.channels.drive.expect("the rest is read").into_inner();
+        let drive = written
+            .channels
+            .drive
+            .expect("the rest is read")
+            .into_inner();
         assert!(drive.channel.is_some() && drive.unit.is_none());
     }
 

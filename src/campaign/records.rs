@@ -87,19 +87,28 @@ struct Defaults {
 }
 
 fn defaults(records: &Records, desk: &mut Desk<'_>) -> Defaults {
-    let frequency =
-        desk.positive(&records.drive_frequency, "records.drive_frequency", Dimension::Frequency);
+    let frequency = desk.positive(
+        &records.drive_frequency,
+        "records.drive_frequency",
+        Dimension::Frequency,
+    );
     let clearance = desk.quantity(&records.clearance, "records.clearance", Dimension::Length);
     if clearance.is_some_and(|c| c.abs() > 1.0) {
         let what = "a clearance of more than 1 m".to_owned();
-        desk.book.fault(None, "records.clearance", what, "mend its unit: mm?");
+        desk.book
+            .fault(None, "records.clearance", what, "mend its unit: mm?");
     }
     let amplitude = records.drive_amplitude.as_ref().map(|a| *a.get_ref());
     if let (Some(placed), Some(value)) = (&records.drive_amplitude, amplitude)
         && (!value.is_finite() || value < 0.0)
     {
         let what = format!("a drive amplitude of {value}");
-        desk.fault(placed, "records.drive_amplitude", what, "write it relative to the nominal one: 1");
+        desk.fault(
+            placed,
+            "records.drive_amplitude",
+            what,
+            "write it relative to the nominal one: 1",
+        );
     }
     Defaults {
         setting: Setting {
@@ -135,14 +144,21 @@ fn list_files(
         let found = expand(shared.folder, pattern);
         if found.is_empty() {
             let what = format!("no file matches '{pattern}' in {}", shared.folder.display());
-            desk.fault(files, "records.files", what, "mend the pattern; it is relative to campaign.toml");
+            desk.fault(
+                files,
+                "records.files",
+                what,
+                "mend the pattern; it is relative to campaign.toml",
+            );
         }
         paths.extend(found);
     }
     paths.sort_by_cached_key(|p| natural_key(&p.to_string_lossy()));
     paths.dedup();
-    let listed: Vec<Vec<Listed>> =
-        paths.par_iter().map(|path| list_file(path, shared, open)).collect();
+    let listed: Vec<Vec<Listed>> = paths
+        .par_iter()
+        .map(|path| list_file(path, shared, open))
+        .collect();
     listed.into_iter().flatten().collect()
 }
 
@@ -152,7 +168,10 @@ fn expand(folder: &Path, pattern: &str) -> Vec<PathBuf> {
     let Ok(paths) = glob::glob(&whole.to_string_lossy()) else {
         return Vec::new();
     };
-    paths.filter_map(Result::ok).filter(|p| p.is_file()).collect()
+    paths
+        .filter_map(Result::ok)
+        .filter(|p| p.is_file())
+        .collect()
 }
 
 /// A key that puts `run2` before `run10`.
@@ -179,7 +198,10 @@ fn list_file(path: &Path, shared: Shared<'_>, open: Opener<'_>) -> Vec<Listed> {
             if sets.is_empty() {
                 return vec![failed(path, None, empty_file(path))];
             }
-            sets.iter().enumerate().map(|(i, set)| listed(path, i, set, None, shared)).collect()
+            sets.iter()
+                .enumerate()
+                .map(|(i, set)| listed(path, i, set, None, shared))
+                .collect()
         }
         Err(error) => vec![failed(path, None, error_flag(&error))],
     }
@@ -196,8 +218,15 @@ fn empty_file(path: &Path) -> Flag {
 }
 
 fn error_flag(error: &ReadError) -> Flag {
-    let place = error.channel.as_ref().map(|c| format!("channel '{c}': ")).unwrap_or_default();
-    let byte = error.byte.map(|b| format!(" (at byte {b})")).unwrap_or_default();
+    let place = error
+        .channel
+        .as_ref()
+        .map(|c| format!("channel '{c}': "))
+        .unwrap_or_default();
+    let byte = error
+        .byte
+        .map(|b| format!(" (at byte {b})"))
+        .unwrap_or_default();
     Flag {
         code: "unreadable".to_owned(),
         channel: error.channel.clone(),
@@ -210,7 +239,10 @@ fn error_flag(error: &ReadError) -> Flag {
 fn failed(path: &Path, row: Option<Row>, flag: Flag) -> Listed {
     Listed {
         file: path.to_path_buf(),
-        dataset_name: row.as_ref().and_then(|r| r.dataset.clone()).unwrap_or_default(),
+        dataset_name: row
+            .as_ref()
+            .and_then(|r| r.dataset.clone())
+            .unwrap_or_default(),
         row,
         dataset: None,
         attributes: std::collections::BTreeMap::new(),
@@ -225,8 +257,11 @@ fn listed(
     row: Option<Row>,
     shared: Shared<'_>,
 ) -> Listed {
-    let mut flags: Vec<Flag> =
-        shared.channels.iter().filter_map(|c| calibrate::bind(c, set).err()).collect();
+    let mut flags: Vec<Flag> = shared
+        .channels
+        .iter()
+        .filter_map(|c| calibrate::bind(c, set).err())
+        .collect();
     flags.extend(crate::record::time_axis::find(shared.time, set).err());
     Listed {
         file: path.to_path_buf(),
@@ -274,17 +309,15 @@ fn refuse_twice(rows: &[Row], book: &mut Notebook) {
     }
 }
 
-fn list_rows_of(
-    path: &Path,
-    rows: &[&Row],
-    shared: Shared<'_>,
-    open: Opener<'_>,
-) -> Vec<Listed> {
+fn list_rows_of(path: &Path, rows: &[&Row], shared: Shared<'_>, open: Opener<'_>) -> Vec<Listed> {
     let source = match open(path) {
         Ok(source) => source,
         Err(error) => {
             let flag = error_flag(&error);
-            return rows.iter().map(|r| failed(path, Some((*r).clone()), flag.clone())).collect();
+            return rows
+                .iter()
+                .map(|r| failed(path, Some((*r).clone()), flag.clone()))
+                .collect();
         }
     };
     let sets = source.datasets();
@@ -348,7 +381,10 @@ fn note_flags(listed: &[Listed], desk: &mut Desk<'_>) {
             (false, true) => Severity::Record,
             (false, false) => Severity::Note,
         };
-        let faults = records.iter().map(|one| record_fault(one, flag, severity)).collect();
+        let faults = records
+            .iter()
+            .map(|one| record_fault(one, flag, severity))
+            .collect();
         desk.book.absorb(faults);
     }
 }
@@ -388,7 +424,10 @@ fn entries(
             id,
             file: one.file.clone(),
             dataset: one.dataset,
-            setting: Setting { sequence, ..setting(one, &wanted, defaults, desk) },
+            setting: Setting {
+                sequence,
+                ..setting(one, &wanted, defaults, desk)
+            },
             excitation: one
                 .row
                 .as_ref()
@@ -417,7 +456,9 @@ struct Attribute {
 
 impl Attribute {
     fn text<'a>(&self, of: &'a Listed) -> Option<&'a String> {
-        of.attributes.get(&self.name).or_else(|| of.attributes.get(&self.bare))
+        of.attributes
+            .get(&self.name)
+            .or_else(|| of.attributes.get(&self.bare))
     }
 }
 
@@ -456,7 +497,10 @@ fn attribute(
         Some(unit) if unit.dimension == dimension => unit.to_si,
         None if dimension == Dimension::Number => 1.0,
         _ => {
-            let what = format!("an attribute '{name}' for a {} without unit", key.replace('_', " "));
+            let what = format!(
+                "an attribute '{name}' for a {} without unit",
+                key.replace('_', " ")
+            );
             let remedy = format!(
                 "write the unit after it in brackets, such as \"{bare} [{}]\"",
                 units::symbols_of(dimension).first().unwrap_or(&"1")
@@ -465,7 +509,11 @@ fn attribute(
             return None;
         }
     };
-    Some(Attribute { name: name.clone(), bare: bare.to_owned(), to_si })
+    Some(Attribute {
+        name: name.clone(),
+        bare: bare.to_owned(),
+        to_si,
+    })
 }
 
 fn setting(one: &Listed, wanted: &Wanted, defaults: &Defaults, desk: &mut Desk<'_>) -> Setting {
@@ -477,14 +525,20 @@ fn setting(one: &Listed, wanted: &Wanted, defaults: &Defaults, desk: &mut Desk<'
     let frequency = number(&wanted.frequency);
     let clearance = number(&wanted.clearance);
     let amplitude = number(&wanted.amplitude);
-    let sweep = wanted.sweep.as_ref().and_then(|name| attribute_sweep(one, name, desk));
+    let sweep = wanted
+        .sweep
+        .as_ref()
+        .and_then(|name| attribute_sweep(one, name, desk));
     let default = &defaults.setting;
     Setting {
         stated_frequency_hz: row
             .and_then(|r| r.drive_frequency_hz)
             .or(frequency)
             .or(default.stated_frequency_hz),
-        clearance_m: row.and_then(|r| r.clearance_m).or(clearance).or(default.clearance_m),
+        clearance_m: row
+            .and_then(|r| r.clearance_m)
+            .or(clearance)
+            .or(default.clearance_m),
         sweep: row.and_then(|r| r.sweep).or(sweep).unwrap_or(default.sweep),
         drive_amplitude: row
             .and_then(|r| r.drive_amplitude)
@@ -498,14 +552,16 @@ fn attribute_number(one: &Listed, wanted: &Attribute, desk: &mut Desk<'_>) -> Op
     one.dataset?;
     let Some(text) = wanted.text(one) else {
         let what = format!("it has no attribute '{}'", wanted.name);
-        desk.book.absorb(vec![attribute_fault(one, &wanted.name, what)]);
+        desk.book
+            .absorb(vec![attribute_fault(one, &wanted.name, what)]);
         return None;
     };
     match text.trim().parse::<f64>() {
         Ok(value) if value.is_finite() => Some(value * wanted.to_si),
         _ => {
             let what = format!("its attribute '{}' is '{text}', not a number", wanted.name);
-            desk.book.absorb(vec![attribute_fault(one, &wanted.name, what)]);
+            desk.book
+                .absorb(vec![attribute_fault(one, &wanted.name, what)]);
             None
         }
     }
@@ -513,7 +569,9 @@ fn attribute_number(one: &Listed, wanted: &Attribute, desk: &mut Desk<'_>) -> Op
 
 fn attribute_sweep(one: &Listed, name: &str, desk: &mut Desk<'_>) -> Option<Sweep> {
     let text = one.attributes.get(name)?;
-    let found = SWEEPS.iter().find(|(word, _)| word.eq_ignore_ascii_case(text.trim()));
+    let found = SWEEPS
+        .iter()
+        .find(|(word, _)| word.eq_ignore_ascii_case(text.trim()));
     if found.is_none() {
         let what = format!("its attribute '{name}' is '{text}', not up, down or unknown");
         desk.book.absorb(vec![attribute_fault(one, name, what)]);
@@ -550,19 +608,39 @@ fn note_settings(entries: &[RecordEntry], desk: &mut Desk<'_>) {
             }]);
         };
         if let Some(c) = setting.clearance_m.filter(|c| c.abs() > 1.0) {
-            note(Severity::Record, "clearance", format!("a clearance of {c} m"), "mend its unit: mm?");
+            note(
+                Severity::Record,
+                "clearance",
+                format!("a clearance of {c} m"),
+                "mend its unit: mm?",
+            );
         }
         if let Some(c) = setting.clearance_m.filter(|c| *c <= 0.0) {
             let what = format!("a clearance of {c} m: a preload, or a slip");
-            note(Severity::Note, "clearance", what, "nothing, where the rig was so preloaded");
+            note(
+                Severity::Note,
+                "clearance",
+                what,
+                "nothing, where the rig was so preloaded",
+            );
         }
         if let Some(f) = setting.stated_frequency_hz.filter(|f| *f <= 0.0) {
             let what = format!("a drive frequency of {f} Hz");
-            note(Severity::Record, "drive_frequency", what, "mend the run table");
+            note(
+                Severity::Record,
+                "drive_frequency",
+                what,
+                "mend the run table",
+            );
         }
         if setting.drive_amplitude <= 0.0 {
             let what = format!("a drive amplitude of {}", setting.drive_amplitude);
-            note(Severity::Record, "drive_amplitude", what, "write it relative to the nominal one: 1");
+            note(
+                Severity::Record,
+                "drive_amplitude",
+                what,
+                "write it relative to the nominal one: 1",
+            );
         }
     }
 }

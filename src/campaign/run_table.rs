@@ -71,7 +71,12 @@ pub fn read(path: &Path, book: &mut Notebook) -> Vec<Row> {
         Ok(names) if names.iter().any(|n| !n.is_empty()) => read_header(&names.clone(), book),
         _ => {
             let what = "the run table is empty".to_owned();
-            book.fault(Some(1), "", what, "write a header line and one line a record");
+            book.fault(
+                Some(1),
+                "",
+                what,
+                "write a header line and one line a record",
+            );
             return Vec::new();
         }
     };
@@ -103,11 +108,18 @@ fn decode(bytes: &[u8]) -> String {
 fn delimiter(text: &str) -> u8 {
     let line = text.lines().find(|l| !l.starts_with('#')).unwrap_or("");
     let count = |b: &u8| line.bytes().filter(|c| c == b).count();
-    [b',', b';', b'\t'].into_iter().rev().max_by_key(count).unwrap_or(b',')
+    [b',', b';', b'\t']
+        .into_iter()
+        .rev()
+        .max_by_key(count)
+        .unwrap_or(b',')
 }
 
 fn read_header(names: &csv::StringRecord, book: &mut Notebook) -> Header {
-    let mut header = Header { factor: [1.0; COLUMNS.len()], ..Header::default() };
+    let mut header = Header {
+        factor: [1.0; COLUMNS.len()],
+        ..Header::default()
+    };
     for (index, name) in names.iter().enumerate() {
         let (bare, symbol) = match COLUMNS.contains(&name) {
             true => (name, None),
@@ -128,7 +140,12 @@ fn read_header(names: &csv::StringRecord, book: &mut Notebook) -> Header {
     }
     if header.at[0].is_none() {
         let what = "the run table has no column 'file'".to_owned();
-        book.fault(Some(1), "file", what, "add it: the files' names, one a record");
+        book.fault(
+            Some(1),
+            "file",
+            what,
+            "add it: the files' names, one a record",
+        );
     }
     header
 }
@@ -136,10 +153,18 @@ fn read_header(names: &csv::StringRecord, book: &mut Notebook) -> Header {
 fn note_unknown(name: &str, bare: &str, book: &mut Notebook) {
     let remedy = match nearest(bare, &COLUMNS) {
         Some(near) => format!("did you mean '{near}'? Otherwise begin its name with 'note'"),
-        None => format!("the columns are {}; begin a remark's name with 'note'", COLUMNS.join(", ")),
+        None => format!(
+            "the columns are {}; begin a remark's name with 'note'",
+            COLUMNS.join(", ")
+        ),
     };
     if !bare.starts_with("note") {
-        book.fault(Some(1), name, format!("the column '{name}' is not known"), &remedy);
+        book.fault(
+            Some(1),
+            name,
+            format!("the column '{name}' is not known"),
+            &remedy,
+        );
     }
 }
 
@@ -157,7 +182,10 @@ fn factor(column: usize, symbol: Option<&str>) -> Result<f64, (String, String)> 
     };
     let unit = symbol.map(|s| (s, units::parse_split_unit(s)));
     match unit {
-        None => Err((format!("a {} without unit", name.replace('_', " ")), remedy.to_owned())),
+        None => Err((
+            format!("a {} without unit", name.replace('_', " ")),
+            remedy.to_owned(),
+        )),
         Some((_, Some(unit))) if unit.dimension == expected => Ok(unit.to_si),
         Some((symbol, _)) => Err((
             format!("'{symbol}' is no unit of {}", expected.name()),
@@ -176,7 +204,12 @@ fn read_row(
         Ok(record) => record,
         Err(error) => {
             let line = error.position().map(|p| p.line() as usize);
-            book.fault(line, "", format!("the row cannot be read: {error}"), "mend the row");
+            book.fault(
+                line,
+                "",
+                format!("the row cannot be read: {error}"),
+                "mend the row",
+            );
             return None;
         }
     };
@@ -186,9 +219,18 @@ fn read_row(
         book.fault(Some(line), "", what, "mend the row");
         return None;
     }
-    let cells = Cells { record: &record, header, line };
+    let cells = Cells {
+        record: &record,
+        header,
+        line,
+    };
     let Some(file) = cells.text(0) else {
-        book.fault(Some(line), "file", "no file is named".to_owned(), "name it or remove the row");
+        book.fault(
+            Some(line),
+            "file",
+            "no file is named".to_owned(),
+            "name it or remove the row",
+        );
         return None;
     };
     Some(Row {
@@ -205,11 +247,16 @@ fn read_row(
 }
 
 /// Words for the sweep direction.
-pub const SWEEPS: [(&str, Sweep); 3] =
-    [("up", Sweep::Up), ("down", Sweep::Down), ("unknown", Sweep::Unknown)];
+pub const SWEEPS: [(&str, Sweep); 3] = [
+    ("up", Sweep::Up),
+    ("down", Sweep::Down),
+    ("unknown", Sweep::Unknown),
+];
 
-const EXCITATIONS: [(&str, Excitation); 2] =
-    [("harmonic", Excitation::Harmonic), ("free_decay", Excitation::FreeDecay)];
+const EXCITATIONS: [(&str, Excitation); 2] = [
+    ("harmonic", Excitation::Harmonic),
+    ("free_decay", Excitation::FreeDecay),
+];
 
 struct Cells<'a> {
     record: &'a csv::StringRecord,
@@ -239,18 +286,20 @@ impl Cells<'_> {
         }
     }
 
-    fn word<T: Copy>(
-        &self,
-        column: usize,
-        words: &[(&str, T)],
-        book: &mut Notebook,
-    ) -> Option<T> {
+    fn word<T: Copy>(&self, column: usize, words: &[(&str, T)], book: &mut Notebook) -> Option<T> {
         let cell = self.text(column)?;
-        let found = words.iter().find(|(word, _)| word.eq_ignore_ascii_case(&cell));
+        let found = words
+            .iter()
+            .find(|(word, _)| word.eq_ignore_ascii_case(&cell));
         if found.is_none() {
             let names: Vec<&str> = words.iter().map(|(w, _)| *w).collect();
             let what = format!("'{cell}' is not one of {}", names.join(", "));
-            book.fault(Some(self.line), COLUMNS[column], what, "write one of these words");
+            book.fault(
+                Some(self.line),
+                COLUMNS[column],
+                what,
+                "write one of these words",
+            );
         }
         found.map(|(_, value)| *value)
     }

@@ -39,13 +39,21 @@ impl ChannelKey {
 
 fn find_name(name: &str, dataset: &DatasetInfo) -> Option<usize> {
     let exact = dataset.channels.iter().position(|c| c.name == name);
-    exact.or_else(|| only_one(dataset, |c| c.rsplit('/').next() == Some(name))).or_else(|| {
-        only_one(dataset, |c| units::split_unit(c).0 == name && !name.is_empty())
-    })
+    exact
+        .or_else(|| only_one(dataset, |c| c.rsplit('/').next() == Some(name)))
+        .or_else(|| {
+            only_one(dataset, |c| {
+                units::split_unit(c).0 == name && !name.is_empty()
+            })
+        })
 }
 
 fn only_one(dataset: &DatasetInfo, fits: impl Fn(&str) -> bool) -> Option<usize> {
-    let mut all = dataset.channels.iter().enumerate().filter(|(_, c)| fits(&c.name));
+    let mut all = dataset
+        .channels
+        .iter()
+        .enumerate()
+        .filter(|(_, c)| fits(&c.name));
     let first = all.next()?.0;
     all.next().is_none().then_some(first)
 }
@@ -132,15 +140,24 @@ pub struct Bound {
 /// # Errors
 /// The [`Flag`] that says why the channel cannot be used.
 pub fn bind(setup: &ChannelSetup, dataset: &DatasetInfo) -> Result<Bound, Flag> {
-    let index = setup.source.find(dataset).ok_or_else(|| missing(setup, dataset))?;
+    let index = setup
+        .source
+        .find(dataset)
+        .ok_or_else(|| missing(setup, dataset))?;
     let info = &dataset.channels[index];
     let unit = settle_unit(setup, info)?;
-    let scaled = setup.scale.apply(unit).ok_or_else(|| unfit_scale(setup, info, unit))?;
+    let scaled = setup
+        .scale
+        .apply(unit)
+        .ok_or_else(|| unfit_scale(setup, info, unit))?;
     check_dimension(setup, info, scaled.dimension)?;
     let after_scale = scaled.to_si / unit.to_si;
     Ok(Bound {
         index,
-        to_si: Unit { to_si: scaled.to_si * setup.sign, ..scaled },
+        to_si: Unit {
+            to_si: scaled.to_si * setup.sign,
+            ..scaled
+        },
         offset_si: setup.offset * after_scale * setup.sign,
         range_si: setup.range.map(|r| (r * after_scale).abs()),
     })
@@ -158,7 +175,12 @@ fn flag(setup: &ChannelSetup, channel: &str, code: &str, message: String, remedy
 
 fn missing(setup: &ChannelSetup, dataset: &DatasetInfo) -> Flag {
     let names: Vec<&str> = dataset.channels.iter().map(|c| c.name.as_str()).collect();
-    let shown = names.iter().take(16).copied().collect::<Vec<_>>().join(", ");
+    let shown = names
+        .iter()
+        .take(16)
+        .copied()
+        .collect::<Vec<_>>()
+        .join(", ");
     let key = setup.source.text();
     let role = setup.role.name();
     flag(
@@ -232,15 +254,13 @@ fn unfit_scale(setup: &ChannelSetup, info: &ChannelInfo, unit: Unit) -> Flag {
             info.name,
             unit.dimension.name()
         ),
-        &format!("mend scale or unit in [channels.{role}]: scale = \"50 mm/s per V\", unit = \"V\""),
+        &format!(
+            "mend scale or unit in [channels.{role}]: scale = \"50 mm/s per V\", unit = \"V\""
+        ),
     )
 }
 
-fn check_dimension(
-    setup: &ChannelSetup,
-    info: &ChannelInfo,
-    found: Dimension,
-) -> Result<(), Flag> {
+fn check_dimension(setup: &ChannelSetup, info: &ChannelInfo, found: Dimension) -> Result<(), Flag> {
     let role = setup.role;
     let wrong = |expected: &str| {
         let what = format!(
@@ -258,9 +278,10 @@ fn check_dimension(
         _ => {}
     }
     match setup.threshold {
-        Some(level) if level.dimension != found => {
-            wrong(&format!("a {} as its threshold does", level.dimension.name()))
-        }
+        Some(level) if level.dimension != found => wrong(&format!(
+            "a {} as its threshold does",
+            level.dimension.name()
+        )),
         _ => Ok(()),
     }
 }
@@ -439,8 +460,10 @@ fn settle_rate(
     bound: &[BoundRole<'_>],
     times: Option<&[f64]>,
 ) {
-    let TimeAxis { sample_rate_hz, flags } =
-        times.map(time_axis::inspect).unwrap_or_default();
+    let TimeAxis {
+        sample_rate_hz,
+        flags,
+    } = times.map(time_axis::inspect).unwrap_or_default();
     record.flags.extend(flags);
     let stated = stated_rate(record, dataset, bound);
     let rate = sample_rate_hz.or(stated).or(setup.sample_rate_hz);
@@ -458,11 +481,7 @@ fn settle_rate(
 }
 
 /// The rate that the file states for the channels; a flag where they differ.
-fn stated_rate(
-    record: &mut Record,
-    dataset: &DatasetInfo,
-    bound: &[BoundRole<'_>],
-) -> Option<f64> {
+fn stated_rate(record: &mut Record, dataset: &DatasetInfo, bound: &[BoundRole<'_>]) -> Option<f64> {
     let rates = bound.iter().filter_map(|(_, b)| {
         let info = &dataset.channels[b.index];
         info.sample_rate_hz.map(|rate| (rate, &info.name))

@@ -22,7 +22,13 @@ fn flag(code: &str, channel: Option<&str>, message: String, remedy: &str) -> Fla
 /// Cut all channels and the time axis to the shortest.
 pub fn equal_lengths(record: &mut Record, times: Option<&mut Vec<f64>>) {
     let of_time = times.as_ref().map(|t| t.len());
-    let lengths = || record.channels.iter().map(|c| c.values.len()).chain(of_time);
+    let lengths = || {
+        record
+            .channels
+            .iter()
+            .map(|c| c.values.len())
+            .chain(of_time)
+    };
     let (Some(shortest), Some(longest)) = (lengths().min(), lengths().max()) else {
         return;
     };
@@ -64,7 +70,10 @@ pub fn trim_missing(record: &mut Record, mut times: Option<&mut Vec<f64>>) {
         return;
     }
     let lacking = record.channels.iter().find(|c| {
-        c.values[..first].iter().chain(&c.values[last + 1..]).any(|v| !v.is_finite())
+        c.values[..first]
+            .iter()
+            .chain(&c.values[last + 1..])
+            .any(|v| !v.is_finite())
     });
     let name = lacking.map(|c| c.name.clone());
     for channel in &mut record.channels {
@@ -137,7 +146,12 @@ fn no_samples(record: &Record) -> Flag {
         true => "none of the channels that campaign.toml names can be used",
         false => "the record is empty: it holds no samples",
     };
-    flag("empty", None, message.to_owned(), "remove the file, or record again")
+    flag(
+        "empty",
+        None,
+        message.to_owned(),
+        "remove the file, or record again",
+    )
 }
 
 fn not_numbers(channel: &Channel) -> Option<Flag> {
@@ -159,7 +173,9 @@ fn not_numbers(channel: &Channel) -> Option<Flag> {
 fn span(values: &[f64]) -> (f64, f64, f64) {
     let (low, high) = values
         .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+            (l.min(*v), h.max(*v))
+        });
     let step = values
         .windows(2)
         .map(|w| (w[1] - w[0]).abs())
@@ -194,10 +210,14 @@ fn clipped(channel: &Channel, range: Option<f64>) -> Option<Flag> {
     }
     let (low, high, step) = span(&channel.values);
     let at_range = range.map_or(0, |r| {
-        channel.values.iter().filter(|v| v.abs() >= r * (1.0 - 1e-9)).count()
+        channel
+            .values
+            .iter()
+            .filter(|v| v.abs() >= r * (1.0 - 1e-9))
+            .count()
     });
-    let count = at_range
-        .max(at_rail(&channel.values, high, step) + at_rail(&channel.values, low, step));
+    let count =
+        at_range.max(at_rail(&channel.values, high, step) + at_rail(&channel.values, low, step));
     if count == 0 {
         return None;
     }
@@ -230,7 +250,8 @@ fn at_rail(values: &[f64], rail: f64, step: f64) -> usize {
         let length = values[start..].iter().take_while(|v| **v == rail).count();
         let end = start + length;
         let steep = |i: Option<usize>| {
-            i.and_then(|i| values.get(i)).is_none_or(|v| (v - rail).abs() > 3.0 * step)
+            i.and_then(|i| values.get(i))
+                .is_none_or(|v| (v - rail).abs() > 3.0 * step)
         };
         if length >= 3 && steep(start.checked_sub(1)) && steep(Some(end)) {
             count += length;
@@ -246,7 +267,12 @@ fn held(record: &Record) -> Option<Flag> {
     if record.channels.len() < 2 {
         return None;
     }
-    let still = |i: usize| record.channels.iter().all(|c| c.values[i] == c.values[i - 1]);
+    let still = |i: usize| {
+        record
+            .channels
+            .iter()
+            .all(|c| c.values[i] == c.values[i - 1])
+    };
     let (mut longest, mut run, mut at, mut all) = (0, 0, 0, 0);
     for i in 1..record.samples() {
         run = if still(i) { run + 1 } else { 0 };

@@ -1,7 +1,7 @@
 //! The time axis of a record: which channel holds it, its step, and what is wrong with it.
 
-use super::calibrate::ChannelKey;
 use super::Flag;
+use super::calibrate::ChannelKey;
 use super::source::DatasetInfo;
 use crate::units;
 
@@ -45,7 +45,9 @@ fn fault(code: &str, message: String, remedy: &str) -> Flag {
 /// Factor to seconds of a time axis from its unit or its name (`time_ms`); 1 where neither says.
 pub fn seconds_per_unit(dataset: &DatasetInfo, index: usize) -> f64 {
     let info = &dataset.channels[index];
-    let of_name = units::split_unit(&info.name).1.and_then(units::parse_split_unit);
+    let of_name = units::split_unit(&info.name)
+        .1
+        .and_then(units::parse_split_unit);
     info.unit
         .as_deref()
         .and_then(units::parse_unit)
@@ -87,7 +89,10 @@ fn unreadable(times: &[f64]) -> TimeAxis {
             "name the right channel in time of [records], or give sample_rate",
         )],
     };
-    TimeAxis { sample_rate_hz: None, flags }
+    TimeAxis {
+        sample_rate_hz: None,
+        flags,
+    }
 }
 
 fn backward_at(times: &[f64], at: usize) -> TimeAxis {
@@ -96,8 +101,15 @@ fn backward_at(times: &[f64], at: usize) -> TimeAxis {
         times[at],
         times[at + 1]
     );
-    let flag = fault("time_backward", what, "sort or re-export the record; it is left out");
-    TimeAxis { sample_rate_hz: None, flags: vec![flag] }
+    let flag = fault(
+        "time_backward",
+        what,
+        "sort or re-export the record; it is left out",
+    );
+    TimeAxis {
+        sample_rate_hz: None,
+        flags: vec![flag],
+    }
 }
 
 /// An axis whose steps scatter: rounded stamps of a uniform axis, or no uniform axis.
@@ -117,17 +129,27 @@ fn coarse(times: &[f64], mean: f64, spread: f64) -> TimeAxis {
             "resample the record to a uniform rate before, or export it with its true rate",
         ));
     }
-    TimeAxis { sample_rate_hz: Some(1.0 / mean), flags }
+    TimeAxis {
+        sample_rate_hz: Some(1.0 / mean),
+        flags,
+    }
 }
 
 /// An axis of equal steps but for gaps and repetitions.
 fn regular(times: &[f64], steps: &[f64], step: f64) -> TimeAxis {
     let mut flags = Vec::new();
-    let lost: f64 = steps.iter().filter(|s| **s > 1.5 * step).map(|s| (s / step).round() - 1.0).sum();
+    let lost: f64 = steps
+        .iter()
+        .filter(|s| **s > 1.5 * step)
+        .map(|s| (s / step).round() - 1.0)
+        .sum();
     if let Some(at) = steps.iter().position(|s| *s > 1.5 * step) {
         flags.push(fault(
             "dropped_samples",
-            format!("{lost} samples are missing in the time axis, the first after {} s", times[at]),
+            format!(
+                "{lost} samples are missing in the time axis, the first after {} s",
+                times[at]
+            ),
             "record again with a larger buffer; the record is left out",
         ));
     }
@@ -139,10 +161,16 @@ fn regular(times: &[f64], steps: &[f64], step: f64) -> TimeAxis {
             "remove the repetitions where the record was exported; it is left out",
         ));
     }
-    let good: Vec<f64> =
-        steps.iter().copied().filter(|s| (s / step - 1.0).abs() <= 0.5).collect();
+    let good: Vec<f64> = steps
+        .iter()
+        .copied()
+        .filter(|s| (s / step - 1.0).abs() <= 0.5)
+        .collect();
     let mean = good.iter().sum::<f64>() / good.len().max(1) as f64;
-    TimeAxis { sample_rate_hz: (mean > 0.0).then(|| 1.0 / mean), flags }
+    TimeAxis {
+        sample_rate_hz: (mean > 0.0).then(|| 1.0 / mean),
+        flags,
+    }
 }
 
 #[cfg(test)]
@@ -167,8 +195,10 @@ mod tests {
     #[test]
     fn valid_rounded_stamps_are_still_uniform() {
         for digits in [1e3, 1e4, 1e6] {
-            let t: Vec<f64> =
-                uniform(2000, 0.000_605_5).iter().map(|t| (t * digits).round() / digits).collect();
+            let t: Vec<f64> = uniform(2000, 0.000_605_5)
+                .iter()
+                .map(|t| (t * digits).round() / digits)
+                .collect();
             let axis = inspect(&t);
             assert!(axis.flags.is_empty(), "{digits}: {:?}", axis.flags);
             assert!((axis.sample_rate_hz.unwrap() * 0.000_605_5 - 1.0).abs() < 1e-3);
