@@ -6,7 +6,9 @@
 
 pub mod attribute;
 pub mod csv;
+pub mod hdf5;
 pub mod open;
+pub mod rate;
 pub mod source;
 pub mod text;
 
