@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::record::source::{ChannelInfo, StoredType};
 use crate::units::{Dimension, parse_unit};
 
 /// Attribute names that give samples per second, lower case.
@@ -108,6 +109,35 @@ pub fn number_and_unit(text: &str) -> Option<(f64, &str)> {
         .filter(|&(_, n)| text.as_bytes().get(n) != Some(&b','))
         .or_else(|| crate::record::text::number::parse_prefix(text.as_bytes(), b','))?;
     Some((number, text[taken..].trim()))
+}
+
+/// Names of time axes, lower case; `time…` counts as well.
+const TIME_NAMES: [&str; 11] = [
+    "t",
+    "zeit",
+    "temps",
+    "tempo",
+    "tiempo",
+    "čas",
+    "cas",
+    "x_value",
+    "timestamp",
+    "elapsed",
+    "date",
+];
+
+/// Whether a channel's name says that it is a time axis.
+pub fn says_time(name: &str) -> bool {
+    let lower = name.trim().to_lowercase();
+    let word = lower.split([' ', '_', ':']).next().unwrap_or_default();
+    word == "time" || TIME_NAMES.contains(&word) || TIME_NAMES.contains(&lower.as_str())
+}
+
+/// Whether a channel is a time axis by its name, with a unit of time or none.
+pub fn is_time_axis(channel: &ChannelInfo) -> bool {
+    let unit = channel.unit.as_deref();
+    let time = unit.is_none_or(|u| parse_unit(u).is_some_and(|u| u.dimension == Dimension::Time));
+    time && says_time(&channel.name) && channel.stored != StoredType::Text
 }
 
 /// The parts of `a, b, c`, `a; b` or `["a", "b"]`.

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::path::Path;
 
 use crate::record::csv;
+use crate::record::hdf5;
 use crate::record::source::{ReadError, Source};
 use crate::record::text::read_exact_at;
 
@@ -16,7 +17,7 @@ type Reader = fn(&Path) -> Result<Box<dyn Source>, ReadError>;
 type Test = fn(&[u8]) -> bool;
 
 /// Formats with a mark of their own: how it is known and who reads it, one line each.
-const BY_BYTES: &[(Test, Reader)] = &[];
+const BY_BYTES: &[(Test, Reader)] = &[(is_hdf5, hdf5::open)];
 
 /// Formats told by the file's extension where its bytes bear no mark, one line each.
 const BY_EXTENSION: &[(&[&str], Reader)] =
@@ -52,6 +53,15 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         None if looks_like_text(&front) => csv::open(path),
         None => Err(unknown(path, &front)),
     }
+}
+
+/// HDF5's mark stands at the front, or behind a user block of 512, 1024, 2048 … bytes.
+fn is_hdf5(front: &[u8]) -> bool {
+    [0usize, 512, 1024, 2048].iter().any(|&at| {
+        front
+            .get(at..)
+            .is_some_and(|b| b.starts_with(&hdf5::SIGNATURE))
+    })
 }
 
 /// The first bytes of a file.

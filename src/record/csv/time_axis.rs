@@ -1,25 +1,12 @@
 //! Which column of a table is its time axis, and at which rate its rows follow.
 
+use crate::record::attribute::says_time;
 use crate::record::csv::HeadRows;
 use crate::record::csv::header::Header;
+use crate::record::rate;
 use crate::record::text::table::{Kind, Layout};
 use crate::record::text::{clock, decode, number};
 use crate::units::{Dimension, parse_unit};
-
-/// Names of time axes, lower case; `time…` counts as well.
-const NAMES: [&str; 11] = [
-    "t",
-    "zeit",
-    "temps",
-    "tempo",
-    "tiempo",
-    "čas",
-    "cas",
-    "x_value",
-    "timestamp",
-    "elapsed",
-    "date",
-];
 
 /// The time axis of a table.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,7 +43,7 @@ pub fn find(
         .as_deref()
         .and_then(parse_unit)
         .map_or(1.0, |u| u.to_si);
-    let rate_hz = rate(&head, end, count).map(|r| r / factor);
+    let rate_hz = rate::from_axis(&head, end, count).map(|r| r / factor);
     let start = (layout.kinds[column] == Kind::Time)
         .then(|| stamp(layout, rows.first()?.get(column)?).map(clock::Stamp::iso))
         .flatten();
@@ -97,12 +84,6 @@ fn candidate(
     }
 }
 
-fn says_time(name: &str) -> bool {
-    let lower = name.trim().to_lowercase();
-    let word = lower.split([' ', '_', ':']).next().unwrap_or_default();
-    word == "time" || NAMES.contains(&word) || NAMES.contains(&lower.as_str())
-}
-
 /// The unit that a name such as `time_ms` ends in.
 fn unit_in_name(name: &str) -> Option<String> {
     let (word, unit) = name.rsplit_once('_')?;
@@ -124,7 +105,7 @@ fn unnamed(
         return None;
     }
     let head = column(layout, rows, 0);
-    let step = median_step(&head)?;
+    let step = rate::median_step(&head)?;
     let even = head
         .windows(2)
         .all(|w| (w[1] - w[0] - step).abs() < 0.5 * step);
@@ -162,50 +143,9 @@ fn climbs(values: &[f64]) -> bool {
         && values.first() != values.last()
 }
 
-fn median_step(values: &[f64]) -> Option<f64> {
-    let mut steps: Vec<f64> = values
-        .windows(2)
-        .map(|w| w[1] - w[0])
-        .filter(|s| *s > 0.0)
-        .collect();
-    steps.sort_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied()
-}
-
-/// Rows per unit of the axis: from its ends where the rows between them are complete, else
-/// from the usual steps of its head, so that dropped rows do not bend it.
-fn rate(head: &[f64], end: Option<f64>, count: u64) -> Option<f64> {
-    let median = median_step(head)?;
-    let usual: Vec<f64> = head
-        .windows(2)
-        .map(|w| w[1] - w[0])
-        .filter(|s| (s - median).abs() <= 0.5 * median)
-        .collect();
-    let step = usual.iter().sum::<f64>() / usual.len() as f64;
-    let between = count.checked_sub(1).filter(|n| *n > 0)? as f64;
-    let whole = end.map(|e| (e - head[0]) / between).filter(|s| {
-        // Ends and head must agree within half a row, or within the head's own uncertainty.
-        (s - step).abs() * between < 0.5 * step + 1e-3 * between * step
-    });
-    let rate = 1.0 / whole.unwrap_or(step);
-    rate.is_finite().then_some(rate)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn valid_rate_survives_rounding_and_dropped_rows() {
-        let printed: Vec<f64> = (0..300)
-            .map(|i| (f64::from(i) / 1652.9 * 1e6).round() / 1e6)
-            .collect();
-        let end = (9_999.0 / 1652.9f64 * 1e6).round() / 1e6;
-        assert!((rate(&printed, Some(end), 10_000).unwrap() - 1652.9).abs() < 1e-3);
-        let gap = rate(&printed, Some(end + 3.0), 10_000).unwrap();
-        assert!((gap - 1652.9).abs() < 0.5, "{gap}");
-        assert_eq!(rate(&[0.0, 0.0], None, 2), None);
-    }
 
     #[test]
     fn valid_names_of_time() {
