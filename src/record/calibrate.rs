@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::condition;
+use super::{condition, consistency};
 use super::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
 use super::time_axis::{self, TimeAxis};
 use super::{Channel, Flag, Record, Role, Setting};
@@ -421,6 +421,10 @@ fn fill(
     condition::trim_missing(record, times.as_mut());
     settle_rate(record, setup, dataset, bound, times.as_deref());
     condition::inspect(record, &ranges, setup.driven);
+    if !record.excluded() {
+        let flags = consistency::inspect(record);
+        record.flags.extend(flags);
+    }
     skip(record, setup.skip_s);
 }
 

@@ -7,6 +7,7 @@
 pub mod attribute;
 pub mod calibrate;
 mod condition;
+mod consistency;
 pub mod csv;
 pub mod hdf5;
 pub mod open;
