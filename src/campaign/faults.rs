@@ -1,11 +1,12 @@
 //! What is wrong with a campaign's description: every fault at once, each with its place and its
 //! remedy.
 
+use std::collections::HashMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// How much a fault stops.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
     /// Worth saying; nothing is left out for it.
     Note,
@@ -64,6 +65,20 @@ impl Faults {
     /// The faults of one severity.
     pub fn of(&self, severity: Severity) -> impl Iterator<Item = &Fault> {
         self.0.iter().filter(move |f| f.severity == severity)
+    }
+
+    /// Groups of the same words at different places, in the order of their first.
+    pub fn alike(&self) -> Vec<Vec<&Fault>> {
+        let mut groups: Vec<Vec<&Fault>> = Vec::new();
+        let mut index: HashMap<(&str, Severity), usize> = HashMap::new();
+        for fault in &self.0 {
+            let at = *index.entry((&fault.what, fault.severity)).or_insert_with(|| {
+                groups.push(Vec::new());
+                groups.len() - 1
+            });
+            groups[at].push(fault);
+        }
+        groups
     }
 
     /// Sort by severity (the gravest first), file and line, and drop repetitions.

@@ -10,6 +10,8 @@ use std::fmt;
 use serde::{Deserialize, Deserializer, Serialize, de};
 use toml::Spanned;
 
+/// Which oscillator was measured, as the detection of impacts has to know it.
+pub use crate::event::Rig as Machine;
 use crate::record::calibrate::ChannelKey;
 
 /// A value with its place in the file.
@@ -43,16 +45,6 @@ pub struct About {
     pub machine: Placed<Machine>,
     /// What acts on the masses between impacts.
     pub flight: Placed<Flight>,
-}
-
-/// Which oscillator was measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Machine {
-    /// Two masses driven toward each other, gap 2r.
-    Double,
-    /// One mass against a stop, gap r.
-    Single,
 }
 
 /// What acts on the masses between impacts.

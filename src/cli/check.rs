@@ -7,7 +7,7 @@ use clap::Args;
 use super::fail::rendered_fault;
 use super::{Exit, Failure, Progress, Voice};
 use crate::campaign::check::{self, Checked};
-use crate::campaign::faults::{Faults, Severity};
+use crate::campaign::faults::{Fault, Faults, Severity};
 use crate::campaign::load;
 use crate::record::open::open;
 
@@ -33,7 +33,7 @@ impl Check {
         if let Some(campaign) = &outcome.campaign {
             let total = campaign.records.len() as u64;
             let progress = Progress::new(voice, "reading", total);
-            let Checked { faults, usable: count } =
+            let Checked { faults, usable: count, .. } =
                 check::read_all(campaign, &open, &|done| progress.set(done, total));
             outcome.faults.0.extend(faults);
             outcome.faults.tidy();
@@ -45,10 +45,16 @@ impl Check {
     }
 }
 
+/// Faults alike in several records are printed once from this many on.
+const MANY: usize = 4;
+
 fn tell(faults: &Faults, usable: Option<(usize, usize)>, voice: Voice) {
-    for fault in &faults.0 {
-        if !(voice.is_quiet() && fault.severity == Severity::Note) {
-            eprint!("{}", rendered_fault(fault));
+    for group in faults.alike() {
+        let loud = !(voice.is_quiet() && group[0].severity == Severity::Note);
+        match (loud, group.len() < MANY || voice.wants_detail()) {
+            (false, _) => {}
+            (true, true) => group.iter().for_each(|f| eprint!("{}", rendered_fault(f))),
+            (true, false) => eprint!("{}", rendered_fault(&gathered(&group))),
         }
     }
     let count = |severity| faults.of(severity).count();
@@ -61,6 +67,17 @@ fn tell(faults: &Faults, usable: Option<(usize, usize)>, voice: Voice) {
         count(Severity::Record),
         count(Severity::Note)
     ));
+}
+
+/// One fault for many of the same words; all their places in it.
+fn gathered(group: &[&Fault]) -> Fault {
+    let keys: Vec<&str> = group.iter().map(|f| f.key.as_str()).collect();
+    let first = group[0];
+    Fault {
+        what: format!("{} (in {} records: {})", first.what, keys.len(), keys.join(", ")),
+        key: String::new(),
+        ..first.clone()
+    }
 }
 
 fn faults_in_words(count: usize) -> String {

@@ -15,6 +15,11 @@ impl Voice {
         self.0 < 0
     }
 
+    /// Whether more than the usual is asked for.
+    pub fn wants_detail(self) -> bool {
+        self.0 >= 1
+    }
+
     /// Say something that every user wants to know.
     pub fn say(self, text: &str) {
         if self.0 >= 0 {
