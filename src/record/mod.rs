@@ -4,7 +4,17 @@
 //! [`Record`]s. A simulated record is the same type, so that one detector and one classifier
 //! judge experiment and simulation alike. This room does not know the model.
 
+pub mod attribute;
+pub mod calibrate;
+mod condition;
+mod consistency;
+pub mod csv;
+pub mod hdf5;
+pub mod open;
+pub mod rate;
 pub mod source;
+pub mod text;
+pub mod time_axis;
 
 use serde::{Deserialize, Serialize};
 

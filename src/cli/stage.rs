@@ -1,0 +1,153 @@
+//! The stages alone: `ingest`, `classify`, `identify`, `report`, each from what the one before
+//! wrote.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::fail::rendered_fault;
+use super::{Exit, Failure, Voice, interrupt};
+use crate::campaign::faults::Severity;
+use crate::campaign::load;
+use crate::campaign::resolved::ResolvedCampaign;
+use crate::output::Lock;
+use crate::record::open::open;
+
+/// Arguments of `impactid ingest`.
+#[derive(Debug, Args)]
+#[command(after_help = INGEST)]
+pub struct Ingest {
+    /// The campaign's description
+    #[arg(value_name = "CAMPAIGN.TOML")]
+    campaign: PathBuf,
+    /// Folder for the results; it is made where it does not exist
+    #[arg(long, short, value_name = "DIR")]
+    out: PathBuf,
+}
+
+const INGEST: &str = "\
+Example:
+  impactid ingest   campaign.toml --out results/
+  impactid classify results/
+  impactid identify results/
+  impactid report   results/";
+
+/// The folder that the stage before wrote into.
+#[derive(Debug, Args)]
+pub struct Folder {
+    /// Folder that the stage before wrote into (or campaign.toml, with the folder as --out)
+    #[arg(value_name = "DIR")]
+    given: PathBuf,
+    /// Folder that the stage before wrote into, where DIR names campaign.toml
+    #[arg(long, short, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+impl Folder {
+    /// The results' folder, locked for this run.
+    fn take(&self) -> Result<(PathBuf, Lock), Failure> {
+        let folder = self.out.as_ref().unwrap_or(&self.given);
+        if !folder.is_dir() {
+            return Err(Failure::new(
+                format!("{} is no folder with results", folder.display()),
+                "name the folder that the stage before wrote into; the first stage is \
+                 `impactid ingest campaign.toml --out DIR`",
+            ));
+        }
+        let lock = Lock::take(folder)?;
+        interrupt::watch(folder.clone());
+        Ok((folder.clone(), lock))
+    }
+}
+
+/// Arguments of `impactid classify`.
+#[derive(Debug, Args)]
+#[command(after_help = CLASSIFY)]
+pub struct Classify {
+    #[command(flatten)]
+    folder: Folder,
+}
+
+const CLASSIFY: &str = "\
+Example:
+  impactid classify results/
+
+It reads what `impactid ingest` left there and writes records.parquet and boundaries.csv.";
+
+/// Arguments of `impactid identify`.
+#[derive(Debug, Args)]
+#[command(after_help = IDENTIFY)]
+pub struct Identify {
+    #[command(flatten)]
+    folder: Folder,
+}
+
+const IDENTIFY: &str = "\
+Example:
+  impactid identify results/
+
+It reads what `impactid classify` left there and writes identification.json.
+Exit codes: 0 done; 1 done, but the answer is \"does not fit\" or \"not identifiable\"; 2 bad input.";
+
+/// Arguments of `impactid report`.
+#[derive(Debug, Args)]
+#[command(after_help = REPORT)]
+pub struct Report {
+    #[command(flatten)]
+    folder: Folder,
+}
+
+const REPORT: &str = "\
+Example:
+  impactid report results/
+
+It reads what `impactid identify` left there and writes report.pdf.";
+
+impl Ingest {
+    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+        let _campaign = load_campaign(&self.campaign, voice)?;
+        let _lock = Lock::take(&self.out)?;
+        interrupt::watch(self.out);
+        Err(not_yet("ingest"))
+    }
+}
+
+impl Classify {
+    pub(super) fn go(self, _voice: Voice) -> Result<Exit, Failure> {
+        let (_folder, _lock) = self.folder.take()?;
+        Err(not_yet("classify"))
+    }
+}
+
+impl Identify {
+    pub(super) fn go(self, _voice: Voice) -> Result<Exit, Failure> {
+        let (_folder, _lock) = self.folder.take()?;
+        Err(not_yet("identify"))
+    }
+}
+
+impl Report {
+    pub(super) fn go(self, _voice: Voice) -> Result<Exit, Failure> {
+        let (_folder, _lock) = self.folder.take()?;
+        Err(not_yet("report"))
+    }
+}
+
+/// The resolved campaign; faults that stop it are an error, the others are said.
+pub fn load_campaign(path: &Path, voice: Voice) -> Result<ResolvedCampaign, Failure> {
+    let outcome = load(path, &open);
+    let Some(campaign) = outcome.campaign else {
+        return Err(outcome.faults.into());
+    };
+    for fault in &outcome.faults.0 {
+        if fault.severity == Severity::Record && !voice.is_quiet() {
+            eprint!("{}", rendered_fault(fault));
+        }
+    }
+    Ok(campaign)
+}
+
+/// Marks the single place where a verb calls the pipeline.
+pub fn not_yet(verb: &str) -> Failure {
+    Failure::new(format!("`impactid {verb}` is not built yet"), "wait for the pipeline")
+}
