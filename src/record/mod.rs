@@ -7,6 +7,7 @@
 pub mod attribute;
 pub mod csv;
 pub mod hdf5;
+pub mod lvm;
 pub mod open;
 pub mod rate;
 pub mod source;
