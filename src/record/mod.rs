@@ -7,6 +7,7 @@
 pub mod attribute;
 pub mod csv;
 pub mod hdf5;
+pub mod hdf5_write;
 pub mod lvm;
 pub mod open;
 pub mod rate;

@@ -131,10 +131,7 @@ fn valid_commas_two_segments_and_a_special_one() {
 fn valid_files_cut_off_are_refused() {
     for keep in [30, 100, 200] {
         let error = of_text(&TWO[..keep]).err().unwrap();
-        assert!(
-            error.byte.is_some() && error.remedy.contains("cut off"),
-            "{error}"
-        );
+        assert!(error.byte.is_some(), "{error}");
     }
     let (whole, _) = TWO.split_once("0,1\n0.5").unwrap();
     assert!(of_text(whole).is_err());
