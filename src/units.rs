@@ -120,7 +120,11 @@ pub fn parse_unit(symbol: &str) -> Option<Unit> {
 
 /// The symbols of all units of a dimension, for messages that name the remedy.
 pub fn symbols_of(dimension: Dimension) -> Vec<&'static str> {
-    UNITS.iter().filter(|(_, d, _)| *d == dimension).map(|(s, _, _)| *s).collect()
+    UNITS
+        .iter()
+        .filter(|(_, d, _)| *d == dimension)
+        .map(|(s, _, _)| *s)
+        .collect()
 }
 
 #[cfg(test)]
