@@ -21,6 +21,8 @@ fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>) -> Option<Tabl
         rows,
         size: 8.5,
         side_by_side: 1,
+        dense: false,
+        columns_text: Vec::new(),
     })
 }
 
@@ -175,10 +177,11 @@ pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     } else {
         "All records: sweep, measured drive frequency, clearance, motion and confidence."
     };
-    table(caption, &columns, rows).map(|t| Table {
-        size: if many { 6.2 } else { 7.5 },
-        side_by_side: if many { 2 } else { 1 },
-        ..t
+    let table = table(caption, &columns, rows)?;
+    Some(if many {
+        Table { size: 6.2, side_by_side: 2, ..table }.densely()
+    } else {
+        Table { size: 7.5, ..table }
     })
 }
 

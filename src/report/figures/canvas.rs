@@ -176,7 +176,9 @@ impl Canvas {
             let at = if look.upward { (x + down, y - along) } else { (x + along, y + down) };
             along += super::fonts::width(&run.text, face, size);
             let (colour, upward) = (look.colour, look.upward);
-            self.push(Shape::Text { at, text: run.text, size, face, colour, upward });
+            // SVG drops spaces at either end of a text, but not those that do not break.
+            let text = run.text.replace(' ', "\u{a0}");
+            self.push(Shape::Text { at, text, size, face, colour, upward });
         }
     }
 
