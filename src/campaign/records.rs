@@ -117,6 +117,7 @@ fn defaults(records: &Records, desk: &mut Desk<'_>) -> Defaults {
             sweep: sweep(&records.sweep),
             drive_amplitude: amplitude.unwrap_or(1.0),
             sequence: 0,
+            specimen: None,
         },
         excitation: records
             .excitation
@@ -545,6 +546,7 @@ fn setting(one: &Listed, wanted: &Wanted, defaults: &Defaults, desk: &mut Desk<'
             .or(amplitude)
             .unwrap_or(default.drive_amplitude),
         sequence: 0,
+        specimen: row.and_then(|r| r.specimen.clone()),
     }
 }
 
