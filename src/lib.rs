@@ -3,7 +3,8 @@
 //!
 //! Data walks one street, and a room never imports from a room to its right:
 //!
-//! `units` < `output` < `signal` < `record` < `event` < `motion` < `model` < `atlas` < `identify` <
+//! `units` < `output` < `signal` < `record` < `event` < `motion` < `model` < `atlas` <
+//! `synthetic` < `identify` <
 //! `report` < `campaign` < `pipeline` < `cli`.
 
 pub mod units;
@@ -21,6 +22,8 @@ pub mod motion;
 pub mod model;
 
 pub mod atlas;
+
+pub mod synthetic;
 
 pub mod identify;
 

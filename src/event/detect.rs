@@ -68,9 +68,9 @@ pub fn detect(record: &Record, rig: Rig, settings: &DetectSettings) -> Detection
     if let Some(flag) = wrong_way(&found, record) {
         flags.push(flag);
     }
-    let speed_width = (2 * width).max(6);
+    let speed_width = (4 * width / 3).max(6);
     let impacts =
-        refined(&mut kinematics, &found.candidates, drive.as_ref(), speed_width, rate_hz);
+        refined(&mut kinematics, &found.candidates, drive.as_ref(), (rig, speed_width));
     let closed_samples: usize = closed.iter().map(Closed::samples).sum();
     Detection {
         drive,
@@ -95,16 +95,21 @@ fn window_samples(drive: Option<&DriveTone>, rate_hz: f64, periods: f64) -> usiz
     }
 }
 
-/// Refine times, remove the drift they tell, refine again, and extrapolate the speeds.
+/// Refine times, correct and remove the drift they tell, refine again, extrapolate the speeds.
 fn refined(
     kinematics: &mut Kinematics,
     candidates: &[Candidate],
     drive: Option<&DriveTone>,
-    width: usize,
-    rate_hz: f64,
+    (rig, width): (Rig, usize),
 ) -> Vec<Impact> {
+    if kinematics.closing.velocity.is_none() {
+        return without_speeds(candidates, drive, kinematics.rate_hz);
+    }
     let first = refine::instants(kinematics, candidates, width);
+    refine::correct_jumps(kinematics, candidates, &first, width);
+    kinematics.close_again(rig);
     let times: Vec<f64> = first.iter().map(|i| i.time).collect();
+    let rate_hz = kinematics.rate_hz;
     for series in [&mut kinematics.closing, &mut kinematics.x, &mut kinematics.y]
         .into_iter()
         .filter_map(|b| b.velocity.as_mut())
@@ -112,12 +117,7 @@ fn refined(
         drift::settle(series, &times, drive, rate_hz);
     }
     let instants = refine::instants(kinematics, candidates, width);
-    let has_speed = kinematics.closing.velocity.is_some();
-    if has_speed {
-        refine::impacts(kinematics, candidates, &instants, drive, width)
-    } else {
-        without_speeds(candidates, drive, rate_hz)
-    }
+    refine::impacts(kinematics, candidates, &instants, drive, width)
 }
 
 struct Fused {

@@ -14,7 +14,7 @@ pub fn settle(velocity: &mut Series, times: &[f64], drive: Option<&DriveTone>, r
     let line = if arcs.is_empty() {
         period_line(velocity, drive, rate_hz)
     } else {
-        weighted_line(&arcs, velocity.high_passed && arcs.len() >= 4)
+        weighted_line(&arcs, velocity.high_pass_hz.is_some() && arcs.len() >= 4)
     };
     if let Some((offset, slope)) = line {
         drift::remove_line(&mut velocity.values, offset, slope);
@@ -75,7 +75,7 @@ fn period_line(
     let Some(period) = period else {
         return Some((robust::mean(values), 0.0));
     };
-    let slope = if velocity.high_passed { strobed_slope(values, period) } else { 0.0 };
+    let slope = if velocity.high_pass_hz.is_some() { strobed_slope(values, period) } else { 0.0 };
     let level: Vec<f64> = values.iter().enumerate().map(|(i, v)| v - slope * i as f64).collect();
     let whole = (level.len() as f64 / period - 1e-9).floor() * period;
     let offset = integral(&level, 0.0, whole.min(level.len() as f64 - 2.0))? / whole;

@@ -166,9 +166,13 @@ impl<'a> JumpSearch<'a> {
             None => 0,
         };
         let high = accepted.get(after).map_or(self.velocity.values.len(), |j| j.left + 1);
-        // Two samples on each side are the least that tells a jump from a slope.
+        // Two samples between impacts are the least that tells a jump from a slope; at the
+        // record's edges, where no other impact vouches for them, five.
+        let end = self.velocity.values.len();
+        let before = if low == 0 { 5 } else { 2 };
+        let behind = if high == end { 5 } else { 2 };
         let best = (left.saturating_sub(1)..=left + 1)
-            .filter(|&k| k + 1 >= low + 2 && k + self.gap + 2 <= high)
+            .filter(|&k| k + 1 >= low + before && k + self.gap + behind <= high)
             .filter_map(|k| self.measure_between(k, low, high))
             .min_by(|a, b| a.1.total_cmp(&b.1))?
             .0;

@@ -12,8 +12,25 @@ pub struct Series {
     pub values: Vec<f64>,
     /// Standard deviation of the white noise, SI; at least the converter's step over √12.
     pub noise: f64,
-    /// Whether a high-pass was undone, so that a constant and a ramp remain unknown.
-    pub high_passed: bool,
+    /// Corner of the high-pass that was undone, Hz, so that a constant and a ramp remain unknown;
+    /// `None`: the signal had none.
+    pub high_pass_hz: Option<f64>,
+}
+
+impl Series {
+    /// Correct the undoing of the high-pass for a jump between two samples.
+    ///
+    /// The integral ω_c ∫ y dt was taken by trapezoids, as if the jump stood in the middle of its
+    /// interval; at a fraction u of it the area differs by (before − after)(u − ½) of a step.
+    pub fn correct_jump(&mut self, time_steps: f64, before: f64, after: f64, rate_hz: f64) {
+        let Some(corner_hz) = self.high_pass_hz else { return };
+        let left = time_steps.floor();
+        let area = (before - after) * (time_steps - left - 0.5) / rate_hz;
+        let step = std::f64::consts::TAU * corner_hz * area;
+        for value in self.values.iter_mut().skip(left as usize + 1) {
+            *value += step;
+        }
+    }
 }
 
 /// Velocity and displacement of one body (or of the closing motion) toward the other.
@@ -66,17 +83,27 @@ impl Kinematics {
             ),
             Rig::Single => Body::default(),
         };
-        let (velocity, closing_from) = closing(&x.velocity, &y.velocity, rig);
-        let (displacement, displacement_from) = closing(&x.displacement, &y.displacement, rig);
-        // A closing displacement of another making than the velocity would not fit to it.
-        let displacement = displacement.filter(|_| displacement_from == closing_from);
-        Self { rate_hz, x, y, closing: Body { velocity, displacement }, closing_from }
+        let (closing, closing_from) = closing_motion(&x, &y, rig);
+        Self { rate_hz, x, y, closing, closing_from }
+    }
+
+    /// Build the closing motion anew after the bodies' signals were corrected.
+    pub fn close_again(&mut self, rig: Rig) {
+        (self.closing, self.closing_from) = closing_motion(&self.x, &self.y, rig);
     }
 
     /// The measured bodies with a velocity, x first.
     pub fn bodies(&self) -> impl Iterator<Item = &Body> {
         [&self.x, &self.y].into_iter().filter(|b| b.velocity.is_some())
     }
+}
+
+fn closing_motion(x: &Body, y: &Body, rig: Rig) -> (Body, Option<ClosingFrom>) {
+    let (velocity, closing_from) = closing(&x.velocity, &y.velocity, rig);
+    let (displacement, displacement_from) = closing(&x.displacement, &y.displacement, rig);
+    // A closing displacement of another making than the velocity would not fit to it.
+    let displacement = displacement.filter(|_| displacement_from == closing_from);
+    (Body { velocity, displacement }, closing_from)
 }
 
 fn body(record: &Record, [velocity, displacement, acceleration]: [Role; 3]) -> Body {
@@ -102,7 +129,7 @@ fn series(record: &Record, role: Role) -> Option<Series> {
         }
         None => channel.values.clone(),
     };
-    let mut series = Series { values, noise, high_passed: channel.high_pass_hz.is_some() };
+    let mut series = Series { values, noise, high_pass_hz: channel.high_pass_hz };
     remove_mean(&mut series.values);
     Some(series)
 }
@@ -138,7 +165,7 @@ fn differentiated(displacement: &Series, rate_hz: f64) -> Series {
     Series {
         values,
         noise: displacement.noise * rate_hz / 2f64.sqrt(),
-        high_passed: displacement.high_passed,
+        high_pass_hz: displacement.high_pass_hz,
     }
 }
 
@@ -155,7 +182,8 @@ fn integrated(acceleration: &Series, rate_hz: f64) -> Series {
         })
         .collect();
     remove_mean(&mut values);
-    Series { noise: acceleration.noise / rate_hz, values, high_passed: true }
+    let high_pass_hz = Some(acceleration.high_pass_hz.unwrap_or(0.0));
+    Series { noise: acceleration.noise / rate_hz, values, high_pass_hz }
 }
 
 fn closing(
@@ -168,12 +196,12 @@ fn closing(
         (Some(x), Some(y), Rig::Double) => {
             let values = x.values.iter().zip(&y.values).map(|(a, b)| a + b).collect();
             let noise = x.noise.hypot(y.noise);
-            let high_passed = x.high_passed || y.high_passed;
-            (Some(Series { values, noise, high_passed }), Some(ClosingFrom::Both))
+            let high_pass_hz = x.high_pass_hz.or(y.high_pass_hz);
+            (Some(Series { values, noise, high_pass_hz }), Some(ClosingFrom::Both))
         }
         (Some(one), None, Rig::Double) | (None, Some(one), Rig::Double) => {
             let values = one.values.iter().map(|v| 2.0 * v).collect();
-            let series = Series { values, noise: 2.0 * one.noise, high_passed: one.high_passed };
+            let series = Series { values, noise: 2.0 * one.noise, high_pass_hz: one.high_pass_hz };
             (Some(series), Some(ClosingFrom::Doubled))
         }
         _ => (None, None),

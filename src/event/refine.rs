@@ -161,6 +161,30 @@ fn speeds(
     Some((speeds, error))
 }
 
+/// Correct the undone high-pass of each body's velocity for every jump, now that the jumps' times
+/// within their sample intervals are known.
+pub fn correct_jumps(
+    kinematics: &mut Kinematics,
+    candidates: &[Candidate],
+    instants: &[Instant],
+    width: usize,
+) {
+    let rate_hz = kinematics.rate_hz;
+    for body in [&mut kinematics.x, &mut kinematics.y] {
+        let Some(velocity) = body.velocity.as_mut().filter(|v| v.high_pass_hz.is_some()) else {
+            continue;
+        };
+        let known: Vec<Option<MassSpeeds>> = (0..candidates.len())
+            .map(|i| speeds(velocity, candidates, i, instants[i].time, width).map(|s| s.0))
+            .collect();
+        for (instant, speeds) in instants.iter().zip(known) {
+            if let Some(s) = speeds {
+                velocity.correct_jump(instant.time, s.before_m_s, s.after_m_s, rate_hz);
+            }
+        }
+    }
+}
+
 /// Everything known of each impact, from refined times.
 pub fn impacts(
     kinematics: &Kinematics,

@@ -45,6 +45,8 @@ pub fn waveform(
             let centre = robust::mean(&differences);
             let square: f64 = differences.iter().map(|d| (d - centre).powi(2)).sum();
             let samples = differences.len();
+            // Interpolation smooths the noise of one of the two: make lags comparable.
+            let square = square * 2.0 / (1.0 + drift::interpolation_noise(lag.fract()));
             (samples >= 16 && scale > 0.0).then(|| WaveformClosure {
                 periods_n: n,
                 ratio: (0.5 * square / samples as f64).sqrt() / scale,
@@ -103,9 +105,10 @@ pub fn count(times: &[f64], period: f64, duration: f64, periods_n: u32) -> Optio
 /// How well impacts close after p impacts in n drive periods.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ImpactClosure {
-    /// Root mean square of the phase difference, rad.
+    /// Typical phase difference, rad (robust: 1.4826 times the median magnitude).
     pub phase_rad: f64,
-    /// Root mean square of the difference of closing speeds over their mean; `None` without speeds.
+    /// Typical difference of closing speeds over their mean (robust likewise); `None` without
+    /// speeds.
     pub speed_ratio: Option<f64>,
     /// Pairs compared.
     pub pairs: usize,
@@ -130,10 +133,19 @@ pub fn impacts(impacts: &[Impact], period_s: f64, p: u32, n: u32) -> Option<Impa
     let level: Vec<f64> = impacts.iter().filter_map(|i| i.closing_speed_before_m_s).collect();
     let level = robust::mean(&level).abs().max(f64::MIN_POSITIVE);
     Some(ImpactClosure {
-        phase_rad: robust::rms(&phases),
-        speed_ratio: speeds.map(|s| robust::rms(&s) / level),
+        phase_rad: typical(&phases),
+        speed_ratio: speeds.map(|s| typical(&s) / level),
         pairs: pairs.len(),
     })
+}
+
+/// 1.4826 times the median magnitude; of three or fewer, the greatest.
+fn typical(differences: &[f64]) -> f64 {
+    let sizes: Vec<f64> = differences.iter().map(|d| d.abs()).collect();
+    if sizes.len() <= 3 {
+        return sizes.iter().copied().fold(0.0, f64::max);
+    }
+    robust::median(&sizes).map_or(0.0, |m| 1.4826 * m)
 }
 
 #[cfg(test)]

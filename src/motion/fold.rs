@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::event::{Detection, DriveTone};
 use crate::record::Role;
+use crate::signal::drift;
 
 /// Bins in one drive period.
 const BINS_PER_PERIOD: usize = 64;
@@ -63,17 +64,18 @@ pub fn fold(detection: &Detection, drive: &DriveTone, periods_n: u32) -> Folded 
         (total - start).rem_euclid(span)
     };
     let guard_s = (detection.jump_samples as f64 + 1.0) / rate_hz;
-    let axis = Axis {
+    let impact_phase_rad = mean_impact_phase(detection, phase, span);
+    let mut axis = Axis {
         phases: (0..sample_count(detection)).map(|i| phase(i as f64 / rate_hz)).collect(),
         blocked: blocked(detection, guard_s),
         span,
         bins: BINS_PER_PERIOD * periods_n as usize,
     };
-    Folded {
-        periods_n,
-        impact_phase_rad: mean_impact_phase(detection, phase, span),
-        channels: channels(detection, &axis),
+    if let Some(impact) = impact_phase_rad {
+        // Also those at the record's very edges, where no impact could be detected.
+        axis.block_phase(impact, guard_s * std::f64::consts::TAU * drive.frequency_hz);
     }
+    Folded { periods_n, impact_phase_rad, channels: channels(detection, &axis) }
 }
 
 fn sample_count(detection: &Detection) -> usize {
@@ -124,6 +126,36 @@ struct Axis {
     bins: usize,
 }
 
+impl Axis {
+    /// Ramp per sample that an undone high-pass left: what a periodic signal gains in one period.
+    fn ramp(&self, values: &[f64]) -> f64 {
+        let step = if self.phases.len() < 2 {
+            return 0.0;
+        } else {
+            (self.phases[1] - self.phases[0]).rem_euclid(self.span)
+        };
+        let lag = self.span / step;
+        let (mut sum, mut count) = (0.0, 0.0);
+        for i in 0..values.len() {
+            let partner = i as f64 + lag;
+            let Some(later) = drift::interpolate(values, partner) else { break };
+            if !self.blocked[i] && !self.blocked[partner.round() as usize] {
+                sum += later - values[i];
+                count += 1.0;
+            }
+        }
+        if count > 0.0 { sum / (count * lag) } else { 0.0 }
+    }
+
+    /// Leave out all samples within a guard of a phase.
+    fn block_phase(&mut self, phase_rad: f64, guard_rad: f64) {
+        for (phase, blocked) in self.phases.iter().zip(&mut self.blocked) {
+            let apart = (phase - phase_rad).rem_euclid(self.span);
+            *blocked |= apart.min(self.span - apart) < guard_rad;
+        }
+    }
+}
+
 fn channels(detection: &Detection, axis: &Axis) -> Vec<FoldedChannel> {
     let k = &detection.kinematics;
     [
@@ -135,7 +167,12 @@ fn channels(detection: &Detection, axis: &Axis) -> Vec<FoldedChannel> {
     .into_iter()
     .filter_map(|(role, series)| {
         let series = series.as_ref()?;
-        Some(FoldedChannel { role, noise: series.noise, points: points(&series.values, axis) })
+        let mut values = series.values.clone();
+        if series.high_pass_hz.is_some() {
+            let slope = axis.ramp(&values);
+            drift::remove_line(&mut values, 0.0, slope);
+        }
+        Some(FoldedChannel { role, noise: series.noise, points: points(&values, axis) })
     })
     .collect()
 }

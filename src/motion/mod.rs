@@ -2,12 +2,14 @@
 //! sees no parameter of the model.
 
 pub mod aperiodic;
+pub mod bracket;
 pub mod classify;
 pub mod closure;
 pub mod fold;
 pub mod observation;
 pub mod response;
 
+pub use bracket::{BoundaryKind, Bracket, brackets};
 pub use classify::{ClassifySettings, Evidence, Finding, classify};
 pub use observation::{Observation, observe};
 

@@ -10,6 +10,7 @@ use crate::motion::fold::{Folded, fold};
 use crate::motion::response::{Response, responses};
 use crate::motion::Motion;
 use crate::record::{Flag, Record, Role, Setting};
+use crate::signal::decay::{self, Decay};
 
 /// Greatest and least value of a motion channel, SI, about its mean.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -51,6 +52,8 @@ pub struct Observation {
     pub response: Vec<Response>,
     /// The folded waveform; only of periodic records with one impact in n drive periods.
     pub folded: Option<Folded>,
+    /// The free decay; only of records without drive and impacts.
+    pub decay: Option<Decay>,
     /// What was noticed.
     pub flags: Vec<Flag>,
 }
@@ -100,9 +103,13 @@ pub fn observe(
         amplitudes: amplitudes(record),
         response: Vec::new(),
         folded: None,
+        decay: None,
         flags,
         finding,
     };
+    if observation.drive.is_none() && observation.impacts.is_empty() {
+        observation.decay = free_decay(record);
+    }
     if let Some(drive) = &observation.drive {
         if observation.finding.motion == Motion::Impactless {
             observation.response = responses(record, drive);
@@ -111,6 +118,19 @@ pub fn observe(
         }
     }
     observation
+}
+
+/// Free decay of the first motion channel that shows one.
+fn free_decay(record: &Record) -> Option<Decay> {
+    let motion = |role: &Role| {
+        !matches!(role, Role::Drive | Role::Contact | Role::FrameX | Role::FrameY)
+    };
+    Role::ALL
+        .into_iter()
+        .filter(motion)
+        .filter_map(|role| record.values(role))
+        .filter(|values| values.iter().all(|v| v.is_finite()))
+        .find_map(|values| decay::fit(values, record.sample_rate_hz))
 }
 
 fn contact_flag(record: &Record, impacts: &[Impact], unsupported: usize) -> Option<Flag> {

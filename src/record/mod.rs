@@ -142,6 +142,10 @@ pub struct Setting {
     pub drive_amplitude: f64,
     /// Position in the order of acquisition.
     pub sequence: usize,
+    /// Which rig, mass or bumper it was taken on, where a campaign holds several (column
+    /// `specimen` of the run table); parameters are identified for each.
+    #[serde(default)]
+    pub specimen: Option<String>,
 }
 
 /// Something wrong or noteworthy with a record: what, where, and what to do about it.

@@ -50,6 +50,17 @@ pub fn interpolate(samples: &[f64], position: f64) -> Option<f64> {
     )
 }
 
+/// Variance of [`interpolate`]'s value per variance of white noise on the samples, at a fraction
+/// of the step beyond a sample.
+pub fn interpolation_noise(fraction: f64) -> f64 {
+    let impulse = |k: usize| {
+        let mut samples = [0.0; 4];
+        samples[k] = 1.0;
+        interpolate(&samples, 1.0 + fraction).unwrap_or(0.0).powi(2)
+    };
+    (0..4).map(impulse).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

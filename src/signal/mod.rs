@@ -2,6 +2,7 @@
 //!
 //! Nothing here knows what a record is: every function takes samples at a uniform step.
 
+pub mod decay;
 pub mod drift;
 pub mod local_fit;
 pub mod robust;
