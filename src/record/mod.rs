@@ -10,6 +10,8 @@ mod condition;
 mod consistency;
 pub mod csv;
 pub mod hdf5;
+pub mod hdf5_write;
+pub mod lvm;
 pub mod open;
 pub mod rate;
 pub mod source;

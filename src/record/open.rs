@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::record::csv;
 use crate::record::hdf5;
+use crate::record::lvm;
 use crate::record::source::{ReadError, Source};
 use crate::record::text::read_exact_at;
 
@@ -17,7 +18,7 @@ type Reader = fn(&Path) -> Result<Box<dyn Source>, ReadError>;
 type Test = fn(&[u8]) -> bool;
 
 /// Formats with a mark of their own: how it is known and who reads it, one line each.
-const BY_BYTES: &[(Test, Reader)] = &[(is_hdf5, hdf5::open)];
+const BY_BYTES: &[(Test, Reader)] = &[(is_hdf5, hdf5::open), (is_lvm, lvm::open)];
 
 /// Formats told by the file's extension where its bytes bear no mark, one line each.
 const BY_EXTENSION: &[(&[&str], Reader)] =
@@ -62,6 +63,12 @@ fn is_hdf5(front: &[u8]) -> bool {
             .get(at..)
             .is_some_and(|b| b.starts_with(&hdf5::SIGNATURE))
     })
+}
+
+/// A LabVIEW measurement says so in its first words.
+fn is_lvm(front: &[u8]) -> bool {
+    let text = front.strip_prefix(&[0xEF, 0xBB, 0xBF]).unwrap_or(front);
+    text.starts_with(lvm::scan::FIRST_WORDS.as_bytes())
 }
 
 /// The first bytes of a file.
