@@ -9,7 +9,7 @@ use crate::record::Sweep;
 use crate::units::{self, Dimension};
 
 /// The columns that a run table may have.
-const COLUMNS: [&str; 8] = [
+const COLUMNS: [&str; 9] = [
     "file",
     "dataset",
     "record",
@@ -18,6 +18,7 @@ const COLUMNS: [&str; 8] = [
     "sweep",
     "drive_amplitude",
     "excitation",
+    "specimen",
 ];
 
 /// One row; `None` where the cell is empty or the column missing.
@@ -41,6 +42,8 @@ pub struct Row {
     pub drive_amplitude: Option<f64>,
     /// How the record was excited.
     pub excitation: Option<Excitation>,
+    /// Which rig, mass or bumper it was taken on.
+    pub specimen: Option<String>,
 }
 
 /// Index and unit factor of each column found.
@@ -243,6 +246,7 @@ fn read_row(
         sweep: cells.word(5, &SWEEPS, book),
         drive_amplitude: cells.number(6, book),
         excitation: cells.word(7, &EXCITATIONS, book),
+        specimen: cells.text(8),
     })
 }
 
