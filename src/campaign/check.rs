@@ -27,8 +27,15 @@ pub struct Checked {
     prints: Vec<Print>,
 }
 
-/// Fingerprint, name and file of a record.
-type Print = (Option<[u8; 32]>, String, PathBuf);
+/// What tells a record from others.
+#[derive(Debug)]
+struct Print {
+    /// Hash of the samples; `None` where there are none.
+    hash: Option<[u8; 32]>,
+    samples: usize,
+    id: String,
+    file: PathBuf,
+}
 
 /// Records of one file, in their order: a file is opened once for all of them.
 pub fn by_file(records: &[RecordEntry]) -> Vec<&[RecordEntry]> {
@@ -58,6 +65,7 @@ pub fn read_all(
         all.prints.extend(one.prints);
     }
     all.faults.extend(duplicates(&all.prints));
+    all.faults.extend(cut_short(&all.prints));
     all
 }
 
@@ -94,7 +102,13 @@ fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Sourc
         .map(|f| fault_of(f, &record, &entry.file))
         .collect();
     let usable = usize::from(!record.excluded());
-    Checked { faults, usable, prints: vec![(fingerprint(&record), record.id, entry.file.clone())] }
+    let print = Print {
+        hash: fingerprint(&record),
+        samples: record.samples(),
+        id: record.id,
+        file: entry.file.clone(),
+    };
+    Checked { faults, usable, prints: vec![print] }
 }
 
 /// A contact that closes again and again while no velocity changes is no contact of the masses.
@@ -132,14 +146,14 @@ fn fingerprint(record: &Record) -> Option<[u8; 32]> {
 fn duplicates(prints: &[Print]) -> Vec<Fault> {
     let mut first: HashMap<[u8; 32], &str> = HashMap::new();
     let mut faults = Vec::new();
-    for (print, id, file) in prints {
-        let Some(print) = print else { continue };
-        match first.get(print) {
-            None => drop(first.insert(*print, id)),
+    for print in prints {
+        let Some(hash) = print.hash else { continue };
+        match first.get(&hash) {
+            None => drop(first.insert(hash, &print.id)),
             Some(other) => faults.push(Fault {
-                file: file.clone(),
+                file: print.file.clone(),
                 line: None,
-                key: id.clone(),
+                key: print.id.clone(),
                 what: format!("its samples are those of the record '{other}'"),
                 remedy: "remove one of the two: a record counted twice makes intervals too narrow"
                     .to_owned(),
@@ -148,6 +162,28 @@ fn duplicates(prints: &[Print]) -> Vec<Fault> {
         }
     }
     faults
+}
+
+/// Records much shorter than the usual one of the campaign.
+fn cut_short(prints: &[Print]) -> Vec<Fault> {
+    let mut lengths: Vec<usize> = prints.iter().map(|p| p.samples).filter(|n| *n > 0).collect();
+    lengths.sort_unstable();
+    let Some(usual) = lengths.get(lengths.len() / 2).copied().filter(|_| lengths.len() >= 3) else {
+        return Vec::new();
+    };
+    let short = |p: &&Print| p.samples > 0 && 10 * p.samples < 8 * usual;
+    prints
+        .iter()
+        .filter(short)
+        .map(|p| Fault {
+            file: p.file.clone(),
+            line: None,
+            key: p.id.clone(),
+            what: format!("it holds {} samples, the usual record {usual}", p.samples),
+            remedy: "copy the file anew, where it was cut off".to_owned(),
+            severity: Severity::Note,
+        })
+        .collect()
 }
 
 /// Codes that the listing of the records tells already.

@@ -446,6 +446,7 @@ struct Wanted {
     frequency: Option<Attribute>,
     amplitude: Option<Attribute>,
     sweep: Option<String>,
+    specimen: Option<String>,
 }
 
 #[derive(Debug)]
@@ -480,6 +481,7 @@ impl Wanted {
                 desk,
             ),
             sweep: written.sweep.as_ref().map(|s| s.get_ref().clone()),
+            specimen: written.specimen.as_ref().map(|s| s.get_ref().clone()),
         }
     }
 }
@@ -530,6 +532,10 @@ fn setting(one: &Listed, wanted: &Wanted, defaults: &Defaults, desk: &mut Desk<'
         .sweep
         .as_ref()
         .and_then(|name| attribute_sweep(one, name, desk));
+    let specimen = wanted
+        .specimen
+        .as_ref()
+        .and_then(|name| one.attributes.get(name).cloned());
     let default = &defaults.setting;
     Setting {
         stated_frequency_hz: row
@@ -546,7 +552,7 @@ fn setting(one: &Listed, wanted: &Wanted, defaults: &Defaults, desk: &mut Desk<'
             .or(amplitude)
             .unwrap_or(default.drive_amplitude),
         sequence: 0,
-        specimen: row.and_then(|r| r.specimen.clone()),
+        specimen: row.and_then(|r| r.specimen.clone()).or(specimen),
     }
 }
 

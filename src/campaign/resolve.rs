@@ -71,10 +71,7 @@ fn resolve(
     let machine = machine.unwrap_or(Machine::Double);
     let channels = channels::resolve(&written.channels, machine, desk);
     let time = written.records.time.as_ref().map(|t| t.get_ref().0.clone());
-    let folder = path
-        .parent()
-        .filter(|p| !p.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
+    let folder = path.parent().unwrap_or(Path::new(""));
     let shared = Shared {
         folder,
         channels: &channels,
@@ -132,7 +129,7 @@ fn demand_one_mass(machine: Machine, flight: Flight, placed: &Placed<Flight>, de
 
 fn name(placed: &Placed<String>, folder: &Path) -> String {
     let folder_name = || {
-        let whole = std::path::absolute(folder).unwrap_or_else(|_| folder.to_path_buf());
+        let whole = std::path::absolute(Path::new(".").join(folder)).ok()?;
         whole.file_name().map(|n| n.to_string_lossy().into_owned())
     };
     placed

@@ -106,6 +106,8 @@ pub struct Attributes {
     pub drive_amplitude: Placed<String>,
     /// Attribute with the sweep direction: up, down or unknown.
     pub sweep: Placed<String>,
+    /// Attribute that names the rig, mass or bumper, where the campaign holds several.
+    pub specimen: Placed<String>,
 }
 
 /// Sweep direction as written.

@@ -126,6 +126,7 @@ struct Fused {
     unsupported: usize,
     missed: usize,
     upward: usize,
+    downward: usize,
 }
 
 /// Fuse jumps and contact pulses: a pulse belongs to the strongest jump inside it; a pulse without
@@ -133,6 +134,8 @@ struct Fused {
 fn fuse(velocity: &Series, closed: &[Closed], width: usize, dead_from: usize) -> Fused {
     let search = JumpSearch::new(velocity, width);
     let mut jumps = search.find();
+    // judged before contact pulses lend support: beside a jump upward noise looks like one downward
+    let (upward, downward) = (search.upward(&jumps), jumps.len());
     let mut unsupported = 0;
     for pulse in closed {
         let (first, last) = reach(pulse, search.gap);
@@ -148,10 +151,9 @@ fn fuse(velocity: &Series, closed: &[Closed], width: usize, dead_from: usize) ->
             None => unsupported += 1,
         }
     }
-    let upward = search.upward(&jumps);
     let candidates = candidates(&jumps, closed, search.gap, dead_from, velocity);
     let missed = candidates.iter().filter(|c| c.seen == Seen::Velocity).count();
-    Fused { candidates, jump_samples: search.gap, unsupported, missed, upward }
+    Fused { candidates, jump_samples: search.gap, unsupported, missed, upward, downward }
 }
 
 /// Samples at which a jump that belongs to a pulse may begin.
@@ -213,7 +215,7 @@ fn from_contact_alone(closed: &[Closed], dead_from: usize) -> Fused {
             dead_samples: if pulse.samples() >= dead_from { pulse.samples() as f64 } else { 0.0 },
         })
         .collect();
-    Fused { candidates, jump_samples: 1, unsupported: 0, missed: 0, upward: 0 }
+    Fused { candidates, jump_samples: 1, unsupported: 0, missed: 0, upward: 0, downward: 0 }
 }
 
 fn without_speeds(
@@ -243,7 +245,7 @@ fn without_speeds(
 
 /// Upward jumps where impacts should jump down: a sign is wrong somewhere.
 fn wrong_way(found: &Fused, record: &Record) -> Option<Flag> {
-    (found.upward >= 3 && found.upward > 2 * found.candidates.len()).then(|| {
+    (found.upward >= 3 && found.upward > 2 * found.downward).then(|| {
         let channel = record
             .channel(Role::VelocityX)
             .or_else(|| record.channel(Role::DisplacementX))
@@ -253,8 +255,7 @@ fn wrong_way(found: &Fused, record: &Record) -> Option<Flag> {
             channel,
             message: format!(
                 "{} jumps of the closing velocity go up, {} down; an impact jumps down",
-                found.upward,
-                found.candidates.len()
+                found.upward, found.downward
             ),
             remedy: "turn the `sign` of the velocity or displacement channels: positive is toward \
                      the other mass"

@@ -509,10 +509,23 @@ fn stated_rate(record: &mut Record, dataset: &DatasetInfo, bound: &[BoundRole<'_
 /// Leave out the start of the record.
 fn skip(record: &mut Record, skip_s: f64) {
     let count = (skip_s * record.sample_rate_hz).round() as usize;
-    if count == 0 {
+    if count == 0 || record.samples() == 0 {
         return;
+    }
+    if count >= record.samples() {
+        record.flags.push(all_skipped(record.duration_s(), skip_s));
     }
     for channel in &mut record.channels {
         channel.values.drain(..count.min(channel.values.len()));
+    }
+}
+
+fn all_skipped(duration_s: f64, skip_s: f64) -> Flag {
+    Flag {
+        code: "empty".to_owned(),
+        channel: None,
+        message: format!("the record lasts {duration_s} s, and {skip_s} s of it are skipped"),
+        remedy: "lower skip in [analysis]".to_owned(),
+        excludes: true,
     }
 }

@@ -156,6 +156,7 @@ mod tests {
                 sweep: Sweep::Unknown,
                 drive_amplitude: 1.0,
                 sequence: 0,
+                specimen: None,
             },
             flags: Vec::new(),
         }

@@ -20,7 +20,7 @@ pub struct TimeAxis {
 /// The flag for a channel that campaign.toml names and the dataset lacks.
 pub fn find(key: Option<&ChannelKey>, dataset: &DatasetInfo) -> Result<Option<usize>, Flag> {
     let Some(key) = key else {
-        return Ok(dataset.time_axis);
+        return Ok(dataset.time_axis.or_else(|| by_name(dataset)));
     };
     let found = key.find(dataset);
     found.map(Some).ok_or_else(|| {
@@ -29,6 +29,21 @@ pub fn find(key: Option<&ChannelKey>, dataset: &DatasetInfo) -> Result<Option<us
             format!("no channel '{}' for the time axis", key.text()),
             "mend time in [records], or leave it out where a sample rate is stated",
         )
+    })
+}
+
+/// A channel in units of time by name and unit, which a reader did not take for a time axis,
+/// perhaps since it runs backward; only where no rate tells when the samples were taken.
+fn by_name(dataset: &DatasetInfo) -> Option<usize> {
+    if dataset.channels.iter().any(|c| c.sample_rate_hz.is_some()) {
+        return None;
+    }
+    dataset.channels.iter().position(|c| {
+        let (bare, symbol) = units::split_unit(&c.name);
+        let symbol = c.unit.as_deref().or(symbol);
+        let unit = symbol.and_then(units::parse_split_unit);
+        let named = matches!(bare.to_lowercase().as_str(), "t" | "time" | "zeit");
+        named && unit.is_none_or(|u| u.dimension == units::Dimension::Time)
     })
 }
 

@@ -74,7 +74,7 @@ fn valid_init_writes_a_campaign_that_check_understands() {
         "[channels.drive]",
         "[channels.velocity_x]",
         "[channels.velocity_y]",
-        "[channels.contact]\nchannel = \"contact [V]\"",
+        "[channels.contact]\nchannel = \"contact\"",
         "threshold = \"2.5",
     ] {
         assert!(text.contains(words), "{words} is not in {text}");

@@ -151,7 +151,7 @@ fn channels() -> Vec<Case> {
         refused(
             "a scale from another unit than the channel's",
             |lab| lab.mend("scale = \"50 mm/s per V\"\nhigh", "scale = \"50 mm/s per N\"\nhigh"),
-            &["the scale of channel 'vx [V]' does not start from its unit", "[channels.velocity_x]"],
+            &["the scale of channel 'vx' does not start from its unit", "[channels.velocity_x]"],
         ),
         refused(
             "a velocity channel left in V",
@@ -256,7 +256,7 @@ fn records() -> Vec<Case> {
         refused(
             "more is skipped than a record holds",
             |lab| lab.mend("seed = 1", "skip = \"2 s\""),
-            &["the record is empty", "skip"],
+            &["the record lasts 1 s, and 2 s of it are skipped", "lower skip in [analysis]"],
         ),
     ]
 }

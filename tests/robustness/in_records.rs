@@ -27,7 +27,7 @@ fn files() -> Vec<Case> {
         refused(
             "a file of random bytes",
             |lab| {
-                let bytes: Vec<u8> = (0..4096_u32).map(|i| (i * 2_654_435 >> 7) as u8).collect();
+                let bytes: Vec<u8> = (0..4096_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
                 lab.write_bytes("r2.bin", &bytes);
                 lab.replace("runs.csv", "r2.csv", "r2.bin");
             },
@@ -51,13 +51,13 @@ fn files() -> Vec<Case> {
             },
             &["r2.h5", "2 of 3 records can be used"],
         ),
-        refused(
+        noted(
             "a file cut off in the middle of a row",
             |lab| {
                 let text = lab.read("r2.csv");
                 lab.write("r2.csv", &text[..text.len() / 2 - 7]);
             },
-            &["r2.csv", "2 of 3 records can be used"],
+            &["r2.csv: r2: it holds 99", "the usual record 2000", "copy the file anew"],
         ),
     ]
 }
@@ -69,7 +69,7 @@ fn channels() -> Vec<Case> {
             |lab| lab.replace("r2.csv", "vy [V]", "vz [V]"),
             &[
                 "r2.csv: vy: no channel 'vy' for the role velocity_y",
-                "the channels are: time [s], drive [V], contact [V], vx [V], vz [V]",
+                "the channels are: time, drive, contact, vx, vz",
                 "name one of them in [channels.velocity_y]",
                 "2 of 3 records can be used",
             ],
