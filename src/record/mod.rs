@@ -4,6 +4,11 @@
 //! [`Record`]s. A simulated record is the same type, so that one detector and one classifier
 //! judge experiment and simulation alike. This room does not know the model.
 
+pub mod bytes;
+#[cfg(test)]
+pub mod conformance;
+pub mod mat;
+pub mod numbers;
 pub mod source;
 
 use serde::{Deserialize, Serialize};
