@@ -252,7 +252,8 @@ pub fn mutate(random: &mut Random, bytes: &mut Vec<u8>) {
     }
 }
 
-fn put_extreme(random: &mut Random, bytes: &mut [u8], at: usize) {
+/// Write an extreme number of any width and order at an offset.
+pub fn put_extreme(random: &mut Random, bytes: &mut [u8], at: usize) {
     let value = match random.below(3) {
         0 => (bytes.len() as u64)
             .wrapping_add(random.below(17) as u64)

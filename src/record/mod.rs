@@ -10,6 +10,7 @@ pub mod conformance;
 pub mod mat;
 pub mod numbers;
 pub mod source;
+pub mod tdms;
 
 use serde::{Deserialize, Serialize};
 
