@@ -209,15 +209,15 @@ fn clipped(channel: &Channel, range: Option<f64>) -> Option<Flag> {
         return None;
     }
     let (low, high, step) = span(&channel.values);
-    let at_range = range.map_or(0, |r| {
-        channel
-            .values
-            .iter()
-            .filter(|v| v.abs() >= r * (1.0 - 1e-9))
-            .count()
-    });
-    let count =
-        at_range.max(at_rail(&channel.values, high, step) + at_rail(&channel.values, low, step));
+    let count = match range {
+        // Where the converter's range is stated, only samples at its end are clipped: a coarse
+        // converter rests on one code at the top of any slow wave.
+        Some(r) => {
+            let end = (r - 1.5 * step).max(r * (1.0 - 1e-9) - 2.0 * step);
+            channel.values.iter().filter(|v| v.abs() >= end).count()
+        }
+        None => at_rail(&channel.values, high, step) + at_rail(&channel.values, low, step),
+    };
     if count == 0 {
         return None;
     }
