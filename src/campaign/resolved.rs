@@ -20,6 +20,9 @@ pub struct ResolvedCampaign {
     pub flight: Flight,
     /// campaign.toml itself.
     pub file: PathBuf,
+    /// The run table, where there is one.
+    #[serde(default)]
+    pub run_table: Option<PathBuf>,
     /// Nominal values of the rig.
     pub rig: Rig,
     /// The channels by role, in the order of the roles.

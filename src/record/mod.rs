@@ -4,17 +4,23 @@
 //! [`Record`]s. A simulated record is the same type, so that one detector and one classifier
 //! judge experiment and simulation alike. This room does not know the model.
 
-pub mod attribute;
-pub mod calibrate;
+#[cfg(test)]
 mod condition;
 mod consistency;
+pub mod attribute;
+pub mod bytes;
+pub mod calibrate;
+pub mod conformance;
 pub mod csv;
 pub mod hdf5;
 pub mod hdf5_write;
 pub mod lvm;
+pub mod mat;
+pub mod numbers;
 pub mod open;
 pub mod rate;
 pub mod source;
+pub mod tdms;
 pub mod text;
 pub mod time_axis;
 

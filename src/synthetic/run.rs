@@ -61,8 +61,10 @@ pub struct Sensitivity {
 /// The channels of the virtual rig with their nominal sensitivities, for a rig of this truth:
 /// round numbers that put the largest motions well within the converter's range.
 pub fn sensitivities(truth: &Truth) -> [Sensitivity; 7] {
-    let length = round_up(truth.static_deflection_m * 2.0);
-    let speed = round_up(truth.static_deflection_m * truth.natural_rate() * 2.0);
+    // The resonance amplitude x_st/(2β) must stay below four fifths of full scale.
+    let reach = (0.5 / truth.damping_ratio / (0.8 * acquisition::FULL_SCALE_V)).max(2.0);
+    let length = round_up(truth.static_deflection_m * reach);
+    let speed = round_up(truth.static_deflection_m * truth.natural_rate() * reach);
     [
         Sensitivity { name: "generator", si_per_volt: 1.0 },
         Sensitivity { name: "contact", si_per_volt: 1.0 },
