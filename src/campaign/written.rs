@@ -226,7 +226,7 @@ pub enum Paper {
     A4,
     /// 8.5 in × 11 in.
     #[serde(rename = "us-letter")]
-    UsLetter,
+    Letter,
 }
 
 impl Paper {
@@ -234,7 +234,7 @@ impl Paper {
     pub fn name(self) -> &'static str {
         match self {
             Self::A4 => "a4",
-            Self::UsLetter => "us-letter",
+            Self::Letter => "us-letter",
         }
     }
 }
