@@ -2,6 +2,8 @@
 
 use std::process::ExitCode;
 
+use crate::identify::VerdictKind;
+
 /// How the program ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Exit {
@@ -14,6 +16,14 @@ pub enum Exit {
 }
 
 impl Exit {
+    /// What a verdict means for the shell.
+    pub fn of(verdict: VerdictKind) -> Self {
+        match verdict {
+            VerdictKind::Identified | VerdictKind::Weak => Self::Done,
+            VerdictKind::NotIdentifiable | VerdictKind::DoesNotFit => Self::AnswerIsNo,
+        }
+    }
+
     /// The number that the shell sees.
     pub fn code(self) -> u8 {
         match self {

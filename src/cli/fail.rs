@@ -6,6 +6,7 @@ use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 
 use crate::campaign::faults::{Fault, Faults, Severity};
 use crate::output::OutputError;
+use crate::pipeline::PipelineError;
 use crate::record::source::ReadError;
 
 /// Why a verb could not do its work.
@@ -83,6 +84,12 @@ impl From<OutputError> for Failure {
 impl From<ReadError> for Failure {
     fn from(error: ReadError) -> Self {
         Self::new(error.to_string(), error.remedy)
+    }
+}
+
+impl From<PipelineError> for Failure {
+    fn from(error: PipelineError) -> Self {
+        Self::new(error.to_string(), error.remedy())
     }
 }
 

@@ -4,8 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::progress::Progress;
 use super::{Exit, Failure, Voice, interrupt};
 use crate::output::Lock;
+use crate::pipeline;
 
 /// Arguments of `impactid run`.
 #[derive(Debug, Args)]
@@ -17,9 +19,6 @@ pub struct Run {
     /// Folder for the results; it is made where it does not exist
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
-    /// Go on where a run that was broken off ended
-    #[arg(long)]
-    resume: bool,
 }
 
 const EXAMPLE: &str = "\
@@ -34,8 +33,24 @@ impl Run {
         let campaign = super::stage::load_campaign(&self.campaign, voice)?;
         let _lock = Lock::take(&self.out)?;
         interrupt::watch(self.out.clone());
-        voice.detail(&format!("{} records, resume: {}", campaign.records.len(), self.resume));
-        // the pipeline is called here
-        Err(super::stage::not_yet("run"))
+        voice.detail(&format!("{} records", campaign.records.len()));
+        let progress = Progress::new(voice, "observe", campaign.records.len() as u64);
+        let told = |stage: &'static str, done: u64, total: u64| {
+            progress.stage(stage);
+            progress.set(done, total);
+        };
+        let command = format!(
+            "impactid run {} --out {}",
+            self.campaign.display(),
+            self.out.display()
+        );
+        let found = pipeline::run(&campaign, &self.out, &command, &told)?;
+        drop(progress);
+        voice.say(&found.summary);
+        for finding in &found.findings {
+            voice.say(&format!("  - {finding}"));
+        }
+        voice.say(&format!("Report: {}", self.out.join(pipeline::report::FILE).display()));
+        Ok(Exit::of(found.kind))
     }
 }

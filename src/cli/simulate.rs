@@ -6,6 +6,9 @@ use clap::{Args, Subcommand};
 
 use super::{Exit, Failure, Voice, interrupt};
 use crate::output::Lock;
+use crate::pipeline::synthesise::{Recipe, write_campaign};
+use crate::synthetic::truth::draw_asymmetry;
+use crate::synthetic::{Faults, Truth};
 
 /// Arguments of `impactid simulate`.
 #[derive(Debug, Args)]
@@ -51,10 +54,16 @@ pub struct Campaign {
     /// Folder for the campaign
     #[arg(long, short, value_name = "DIR")]
     pub out: PathBuf,
+    /// A rig without faults: no noise, no rounding, no filter, no asymmetry
+    #[arg(long)]
+    pub ideal: bool,
     /// Write over a campaign that is there
     #[arg(long)]
     pub force: bool,
 }
+
+/// Records of a campaign where the number is not given.
+const DEFAULT_RECORDS: usize = 200;
 
 fn restitution(text: &str) -> Result<f64, String> {
     number_within(text, 0.0, 1.0)
@@ -89,7 +98,7 @@ impl Simulate {
 }
 
 impl Campaign {
-    fn go(self, _voice: Voice) -> Result<Exit, Failure> {
+    fn go(self, voice: Voice) -> Result<Exit, Failure> {
         let _lock = Lock::take(&self.out)?;
         if self.out.join("campaign.toml").exists() && !self.force {
             return Err(Failure::new(
@@ -98,6 +107,26 @@ impl Campaign {
             ));
         }
         interrupt::watch(self.out.clone());
-        Err(super::stage::not_yet("simulate campaign"))
+        let faults = if self.ideal { Faults::none() } else { Faults::default() };
+        let (drive_asymmetry, stiffness_asymmetry) = draw_asymmetry(&faults, self.seed);
+        let recipe = Recipe {
+            truth: Truth {
+                restitution: self.restitution,
+                natural_frequency_hz: self.natural_frequency_hz,
+                damping_ratio: self.damping_ratio,
+                static_deflection_m: self.static_deflection_m,
+                drive_asymmetry,
+                stiffness_asymmetry,
+            },
+            faults,
+            records: self.records.map_or(DEFAULT_RECORDS, std::num::NonZeroUsize::get),
+            seed: self.seed,
+        };
+        let count = write_campaign(&recipe, &self.out)?;
+        voice.say(&format!(
+            "{count} synthetic records in {0}; next: impactid run {0}/campaign.toml --out results/",
+            self.out.display()
+        ));
+        Ok(Exit::Done)
     }
 }

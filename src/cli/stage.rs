@@ -1,16 +1,19 @@
 //! The stages alone: `ingest`, `classify`, `identify`, `report`, each from what the one before
 //! wrote.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::fail::rendered_fault;
+use super::progress::Progress;
 use super::{Exit, Failure, Voice, interrupt};
 use crate::campaign::faults::Severity;
 use crate::campaign::load;
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::output::Lock;
+use crate::output::{Lock, write_bytes};
+use crate::pipeline::{self, store};
 use crate::record::open::open;
 
 /// Arguments of `impactid ingest`.
@@ -105,31 +108,60 @@ It reads what `impactid identify` left there and writes report.pdf.";
 
 impl Ingest {
     pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
-        let _campaign = load_campaign(&self.campaign, voice)?;
+        let campaign = load_campaign(&self.campaign, voice)?;
         let _lock = Lock::take(&self.out)?;
-        interrupt::watch(self.out);
-        Err(not_yet("ingest"))
+        interrupt::watch(self.out.clone());
+        let bar = Progress::new(voice, "ingest", campaign.records.len() as u64);
+        let usable = store::ingest(&campaign, &self.out, &|_, done, total| bar.set(done, total))?;
+        drop(bar);
+        voice.say(&format!("{usable} of {} records are usable.", campaign.records.len()));
+        Ok(Exit::Done)
     }
 }
 
 impl Classify {
-    pub(super) fn go(self, _voice: Voice) -> Result<Exit, Failure> {
-        let (_folder, _lock) = self.folder.take()?;
-        Err(not_yet("classify"))
+    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+        let (folder, _lock) = self.folder.take()?;
+        let bar = Progress::new(voice, "classify", 0);
+        let observed = store::classify(&folder, &|_, done, total| bar.set(done, total))?;
+        drop(bar);
+        let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+        for observation in &observed.observations {
+            *counts.entry(observation.finding.motion.label()).or_default() += 1;
+        }
+        for (motion, count) in counts {
+            voice.say(&format!("{count:6}  {motion}"));
+        }
+        Ok(Exit::Done)
     }
 }
 
 impl Identify {
-    pub(super) fn go(self, _voice: Voice) -> Result<Exit, Failure> {
-        let (_folder, _lock) = self.folder.take()?;
-        Err(not_yet("identify"))
+    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+        let (folder, _lock) = self.folder.take()?;
+        let campaign = store::read_resolved(&folder)?;
+        let observed = store::read_observed(&folder)?;
+        let found = pipeline::identify::identify(&campaign, &observed)?;
+        pipeline::identify::write(&found.identification, &folder)?;
+        store::write_fit(&found.outcome, &folder)?;
+        let verdict = &found.identification.verdict;
+        voice.say(&verdict.summary);
+        Ok(Exit::of(verdict.kind))
     }
 }
 
 impl Report {
-    pub(super) fn go(self, _voice: Voice) -> Result<Exit, Failure> {
-        let (_folder, _lock) = self.folder.take()?;
-        Err(not_yet("report"))
+    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+        let (folder, _lock) = self.folder.take()?;
+        let campaign = store::read_resolved(&folder)?;
+        let observed = store::read_observed(&folder)?;
+        let found = store::read_found(&folder)?;
+        let command = format!("impactid report {}", folder.display());
+        let pdf = pipeline::report::pdf(&campaign, &observed, &found, &command)?;
+        let path = folder.join(pipeline::report::FILE);
+        write_bytes(&path, &pdf)?;
+        voice.say(&format!("Report: {}", path.display()));
+        Ok(Exit::Done)
     }
 }
 
@@ -145,9 +177,4 @@ pub fn load_campaign(path: &Path, voice: Voice) -> Result<ResolvedCampaign, Fail
         }
     }
     Ok(campaign)
-}
-
-/// Marks the single place where a verb calls the pipeline.
-pub fn not_yet(verb: &str) -> Failure {
-    Failure::new(format!("`impactid {verb}` is not built yet"), "wait for the pipeline")
 }

@@ -129,7 +129,8 @@ pub fn gain_index(role: Role) -> Option<usize> {
 
 /// One coordinate of the fit: R itself, the logarithms of f0, β, x_st and the gains, the
 /// asymmetries themselves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Coordinate {
     /// R
     Restitution,

@@ -6,6 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::identify::parameters::{Coordinate, Parameters};
 
@@ -44,7 +45,8 @@ pub struct Problem<'a> {
 }
 
 /// How a fit ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Ending {
     /// The step became negligible.
     Converged,
@@ -55,13 +57,14 @@ pub enum Ending {
 }
 
 /// A finished fit.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Fit {
     /// Best parameters.
     pub parameters: Parameters,
     /// Free coordinates, in the order of the covariance.
     pub free: Vec<Coordinate>,
     /// Covariance of the free coordinates for unit variance of the weighted residuals.
+    #[serde(with = "rows")]
     pub covariance: DMatrix<f64>,
     /// Sum of squared weighted residuals, priors included.
     pub cost: f64,
@@ -84,6 +87,27 @@ impl Fit {
         let k = self.free.iter().position(|c| *c == b)?;
         let scale = (self.covariance[(i, i)] * self.covariance[(k, k)]).sqrt();
         (scale > 0.0).then(|| self.covariance[(i, k)] / scale)
+    }
+}
+
+/// A square matrix as a list of rows.
+mod rows {
+    use nalgebra::DMatrix;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(matrix: &DMatrix<f64>, to: S) -> Result<S::Ok, S::Error> {
+        let rows: Vec<Vec<f64>> =
+            matrix.row_iter().map(|row| row.iter().copied().collect()).collect();
+        rows.serialize(to)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<DMatrix<f64>, D::Error> {
+        let rows: Vec<Vec<f64>> = Deserialize::deserialize(from)?;
+        let width = rows.first().map_or(0, Vec::len);
+        if rows.iter().any(|row| row.len() != width) {
+            return Err(serde::de::Error::custom("the rows of a matrix differ in length"));
+        }
+        Ok(DMatrix::from_fn(rows.len(), width, |i, k| rows[i][k]))
     }
 }
 

@@ -11,12 +11,14 @@ pub mod flight;
 pub mod orbit;
 pub mod params;
 pub mod path;
+pub mod recurrence;
 pub mod simulate;
 
 pub use boundary::{BoundaryPoint, eta_s2, rho_grazing, rho_s1, rho_s2};
 pub use contact::{ImpactKind, ModelImpact};
 pub use orbit::{Existence, Orbit};
 pub use params::{Contact, Flight, Initial, Machine, ModelError, Oscillator, Restitution, Setting};
+pub use recurrence::{SettledMotion, Watch, settle};
 pub use simulate::{Simulator, Trajectory, simulate};
 
 #[cfg(test)]

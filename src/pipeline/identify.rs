@@ -3,9 +3,11 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use serde::{Deserialize, Serialize};
+
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::methods::{Evidence, Nominal};
-use crate::identify::run::Outcome;
+use crate::identify::solver::Fit;
 use crate::identify::specimens::identify_campaign;
 use crate::identify::Identification;
 use crate::output::write_bytes;
@@ -20,7 +22,18 @@ pub struct Found {
     /// What is written.
     pub identification: Identification,
     /// Fit and records left out.
-    pub outcome: Outcome,
+    pub outcome: Kept,
+}
+
+/// What of an outcome the report needs beside identification.json.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Kept {
+    /// The joint fit.
+    pub fit: Option<Fit>,
+    /// Factor on its covariance.
+    pub factor: f64,
+    /// What a fit left out, and why.
+    pub left_out: Vec<(String, String)>,
 }
 
 /// What the campaign states about its rig.
@@ -46,15 +59,16 @@ pub fn identify(campaign: &ResolvedCampaign, observed: &Observed) -> Result<Foun
         nominal: nominal(campaign),
     });
     let identification = Identification {
-        verdict: outcome.verdict.clone(),
-        joint: outcome.joint.clone(),
-        methods: outcome.methods.clone(),
-        agreement: outcome.agreement.clone(),
+        verdict: outcome.verdict,
+        joint: outcome.joint,
+        methods: outcome.methods,
+        agreement: outcome.agreement,
         specimens,
         settings: settings(campaign)?,
         versions: versions(),
         inputs_sha256: inputs::hashes(campaign),
     };
+    let outcome = Kept { fit: outcome.fit, factor: outcome.factor, left_out: outcome.left_out };
     Ok(Found { identification, outcome })
 }
 

@@ -14,7 +14,7 @@ pub mod tables;
 use std::path::Path;
 
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::identify::{Identification, VerdictKind};
+use crate::identify::Verdict;
 use crate::motion::{Bracket, Observation, brackets};
 use crate::output::OutputError;
 use crate::record::source::ReadError;
@@ -114,7 +114,7 @@ pub fn run(
     out: &Path,
     command_line: &str,
     progress: Progress,
-) -> Result<VerdictKind, PipelineError> {
+) -> Result<Verdict, PipelineError> {
     let observed = Observed::of(campaign, progress)?;
     progress("identify", 0, 1);
     let found = identify::identify(campaign, &observed)?;
@@ -125,10 +125,5 @@ pub fn run(
     tables::write_all(&observed, out)?;
     identify::write(&found.identification, out)?;
     crate::output::write_bytes(&out.join(report::FILE), &pdf)?;
-    Ok(found.identification.verdict.kind)
-}
-
-/// Exit code's meaning: whether the answer is an answer.
-pub fn answers(identification: &Identification) -> bool {
-    matches!(identification.verdict.kind, VerdictKind::Identified | VerdictKind::Weak)
+    Ok(found.identification.verdict)
 }

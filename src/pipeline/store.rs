@@ -8,6 +8,7 @@ use crate::campaign::check::by_file;
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
 use crate::motion::{Observation, brackets};
 use crate::output::{write_bytes, write_whole};
+use crate::pipeline::identify::{Found, Kept};
 use crate::pipeline::observe::each_record;
 use crate::pipeline::{Observed, PipelineError, Progress};
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
@@ -18,6 +19,7 @@ use crate::units::{Quantity, Unit};
 const RESOLVED: &str = "campaign.resolved.json";
 const INGESTED: &str = "ingested.h5";
 const INGESTED_CAMPAIGN: &str = "ingested.json";
+const FIT: &str = "fit.json";
 const OBSERVATIONS: &str = "observations.json.gz";
 
 fn store_error(path: &Path, reason: impl std::fmt::Display) -> PipelineError {
@@ -168,6 +170,25 @@ fn write_observations(observations: &[Observation], out: &Path) -> Result<(), Pi
         serde_json::to_writer(&mut gzip, observations)?;
         gzip.finish()?.flush()
     })?)
+}
+
+/// Keep what the report needs of stage three beside identification.json.
+///
+/// # Errors
+/// Where it cannot be written.
+pub fn write_fit(kept: &Kept, out: &Path) -> Result<(), PipelineError> {
+    write_json(&out.join(FIT), kept)
+}
+
+/// What stage three left.
+///
+/// # Errors
+/// Where it is missing or unreadable.
+pub fn read_found(out: &Path) -> Result<Found, PipelineError> {
+    Ok(Found {
+        identification: read_json(&out.join(super::identify::FILE))?,
+        outcome: read_json(&out.join(FIT))?,
+    })
 }
 
 /// What stage two kept.

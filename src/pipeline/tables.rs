@@ -4,7 +4,6 @@
 use std::path::Path;
 
 use polars::prelude::{Column, DataFrame};
-use polars_io::SerWriter;
 use polars_io::parquet::write::ParquetWriter;
 
 use crate::event::{Impact, MassSpeeds};
@@ -96,7 +95,7 @@ const RECORDS: &[(&str, Get<Observation>)] = &[
 ];
 
 /// An impact with its record's name.
-type ImpactRow<'a> = (&'a str, &'a Impact);
+type ImpactRow = (String, Impact);
 
 fn before(speeds: Option<MassSpeeds>) -> Option<f64> {
     speeds.map(|s| s.before_m_s)
@@ -108,7 +107,7 @@ fn after(speeds: Option<MassSpeeds>) -> Option<f64> {
 
 /// Columns of impacts.parquet.
 const IMPACTS: &[(&str, Get<ImpactRow>)] = &[
-    ("record", Get::Text(|r| Some(r.0.to_owned()))),
+    ("record", Get::Text(|r| Some(r.0.clone()))),
     ("time_s", Get::Number(|r| Some(r.1.time_s))),
     ("time_error_s", Get::Number(|r| Some(r.1.time_error_s))),
     ("drive_phase_rad", Get::Number(|r| r.1.drive_phase_rad)),
@@ -152,7 +151,7 @@ pub fn write_all(observed: &Observed, out: &Path) -> Result<(), PipelineError> {
     let rows: Vec<ImpactRow> = observed
         .observations
         .iter()
-        .flat_map(|o| o.impacts.iter().map(|i| (o.record.as_str(), i)))
+        .flat_map(|o| o.impacts.iter().map(|i| (o.record.clone(), i.clone())))
         .collect();
     write_parquet(out, "impacts.parquet", frame("impacts.parquet", &rows, IMPACTS)?)?;
     Ok(write_bytes(&out.join("boundaries.csv"), &boundaries(&observed.brackets)?)?)

@@ -4,13 +4,13 @@
 //! [`Record`]s. A simulated record is the same type, so that one detector and one classifier
 //! judge experiment and simulation alike. This room does not know the model.
 
-#[cfg(test)]
-mod condition;
-mod consistency;
 pub mod attribute;
 pub mod bytes;
 pub mod calibrate;
+mod condition;
+#[cfg(test)]
 pub mod conformance;
+mod consistency;
 pub mod csv;
 pub mod hdf5;
 pub mod hdf5_write;
