@@ -226,7 +226,7 @@ pub enum Paper {
     A4,
     /// 8.5 in × 11 in.
     #[serde(rename = "us-letter")]
-    Letter,
+    UsLetter,
 }
 
 impl Paper {
@@ -234,7 +234,7 @@ impl Paper {
     pub fn name(self) -> &'static str {
         match self {
             Self::A4 => "a4",
-            Self::Letter => "us-letter",
+            Self::UsLetter => "us-letter",
         }
     }
 }
