@@ -1,6 +1,7 @@
 //! The command line: one file per verb; the only room that prints or exits.
 
 mod check;
+mod completions;
 mod exit;
 mod fail;
 mod init;
@@ -73,6 +74,10 @@ enum Verb {
     Report(stage::Report),
     /// Simulate a campaign with known truth
     Simulate(simulate::Simulate),
+    /// Print the completions of a shell
+    Completions(completions::Completions),
+    /// Write the manual's pages
+    Man(completions::Man),
 }
 
 impl Verb {
@@ -86,6 +91,8 @@ impl Verb {
             Self::Identify(verb) => verb.go(voice),
             Self::Report(verb) => verb.go(voice),
             Self::Simulate(verb) => verb.go(voice),
+            Self::Completions(verb) => verb.go(voice),
+            Self::Man(verb) => verb.go(voice),
         }
     }
 }

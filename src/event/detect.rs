@@ -134,8 +134,7 @@ struct Fused {
 fn fuse(velocity: &Series, closed: &[Closed], width: usize, dead_from: usize) -> Fused {
     let search = JumpSearch::new(velocity, width);
     let mut jumps = search.find();
-    // judged before contact pulses lend support: beside a jump upward noise looks like one downward
-    let (upward, downward) = (search.upward(&jumps), jumps.len());
+    let (upward, downward) = search.directions();
     let mut unsupported = 0;
     for pulse in closed {
         let (first, last) = reach(pulse, search.gap);

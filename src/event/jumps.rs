@@ -137,12 +137,20 @@ impl<'a> JumpSearch<'a> {
         self.remeasured(accepted)
     }
 
-    /// Number and summed height of significant upward jumps beyond the accepted downward ones.
-    pub fn upward(&self, accepted: &[Jump]) -> usize {
-        self.candidates(SIGNIFICANT, 1.0)
-            .into_iter()
-            .filter(|&i| accepted.iter().all(|j| j.left.abs_diff(i) > self.window + self.gap))
-            .count()
+    /// Numbers of significant jumps upward and downward; of neighbours the strongest counts alone,
+    /// for the scan swings back beside a jump.
+    pub fn directions(&self) -> (usize, usize) {
+        let mut all = self.candidates(SIGNIFICANT, 1.0);
+        all.extend(self.candidates(SIGNIFICANT, -1.0));
+        all.sort_by(|&a, &b| self.scan[b].abs().total_cmp(&self.scan[a].abs()).then(a.cmp(&b)));
+        let mut kept: Vec<usize> = Vec::new();
+        for i in all {
+            if kept.iter().all(|k| k.abs_diff(i) > 2 * self.window + self.gap) {
+                kept.push(i);
+            }
+        }
+        let upward = kept.iter().filter(|i| self.scan[**i] > 0.0).count();
+        (upward, kept.len() - upward)
     }
 
     /// A jump near a sample that need reach only `significance`, beside the accepted ones.

@@ -103,3 +103,16 @@ fn valid_check_works_from_another_folder() {
     let ran = lab.run(&["check", path.to_str().expect("a name in UTF-8")]);
     assert_eq!(ran.code, 0, "{}", ran.said);
 }
+
+#[test]
+fn valid_completions_and_man_pages_name_the_verbs() {
+    let lab = Lab::new();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let ran = lab.run(&["completions", shell]);
+        assert_eq!(ran.code, 0, "{shell}");
+        assert!(ran.said.contains("simulate"), "{shell}");
+    }
+    assert_eq!(lab.run(&["man", "--out", "man1"]).code, 0);
+    let page = lab.read("man1/impactid-run.1");
+    assert!(page.contains("resume") && page.contains("Example"), "{page}");
+}
