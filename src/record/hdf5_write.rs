@@ -246,7 +246,6 @@ impl CampaignWriter {
             let group = builder.create_group(&name);
             builder.add_group(fill(group, folder, self.single_precision));
         }
-        let parent = self.path.parent().filter(|p| !p.as_os_str().is_empty());
         let file = temporary_beside(&self.path).map_err(io)?;
         builder
             .finish_to(std::io::BufWriter::new(file.as_file()))

@@ -10,6 +10,7 @@ pub mod hdf5;
 pub mod hdf5_write;
 pub mod lvm;
 pub mod open;
+pub mod parquet;
 pub mod rate;
 pub mod source;
 pub mod text;
