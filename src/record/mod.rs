@@ -5,14 +5,20 @@
 //! judge experiment and simulation alike. This room does not know the model.
 
 pub mod attribute;
+pub mod bytes;
+#[cfg(test)]
+pub mod conformance;
 pub mod csv;
 pub mod hdf5;
 pub mod hdf5_write;
 pub mod lvm;
+pub mod mat;
+pub mod numbers;
 pub mod open;
 pub mod parquet;
 pub mod rate;
 pub mod source;
+pub mod tdms;
 pub mod text;
 
 use serde::{Deserialize, Serialize};

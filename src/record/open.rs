@@ -6,8 +6,10 @@ use std::path::Path;
 use crate::record::csv;
 use crate::record::hdf5;
 use crate::record::lvm;
+use crate::record::mat;
 use crate::record::parquet;
 use crate::record::source::{ReadError, Source};
+use crate::record::tdms;
 use crate::record::text::read_exact_at;
 
 /// Bytes at the front of a file by which formats are told apart.
@@ -24,6 +26,8 @@ const BY_BYTES: &[(Test, Reader)] = &[
     (is_hdf5, hdf5::open),
     (is_lvm, lvm::open),
     (is_parquet, parquet::open),
+    (tdms::recognises, tdms::open),
+    (mat::recognises, mat::open),
 ];
 
 /// Formats told by the file's extension where its bytes bear no mark, one line each.
