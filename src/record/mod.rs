@@ -6,8 +6,11 @@
 
 pub mod attribute;
 pub mod bytes;
+pub mod calibrate;
+mod condition;
 #[cfg(test)]
 pub mod conformance;
+mod consistency;
 pub mod csv;
 pub mod hdf5;
 pub mod hdf5_write;
@@ -20,6 +23,7 @@ pub mod rate;
 pub mod source;
 pub mod tdms;
 pub mod text;
+pub mod time_axis;
 
 use serde::{Deserialize, Serialize};
 
@@ -147,6 +151,10 @@ pub struct Setting {
     pub drive_amplitude: f64,
     /// Position in the order of acquisition.
     pub sequence: usize,
+    /// Which rig, mass or bumper it was taken on, where a campaign holds several (column
+    /// `specimen` of the run table); parameters are identified for each.
+    #[serde(default)]
+    pub specimen: Option<String>,
 }
 
 /// Something wrong or noteworthy with a record: what, where, and what to do about it.
