@@ -18,6 +18,7 @@ pub mod lvm;
 pub mod mat;
 pub mod numbers;
 pub mod open;
+pub mod parquet;
 pub mod rate;
 pub mod source;
 pub mod tdms;
