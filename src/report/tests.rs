@@ -23,5 +23,7 @@ fn regress_examples_can_be_looked_at() {
             pdf.len()
         );
         std::fs::write(format!("{folder}/{name}.pdf"), pdf).expect("written");
+        let html = report.html().expect("a page");
+        std::fs::write(format!("{folder}/{name}.html"), html).expect("written");
     }
 }
