@@ -52,8 +52,13 @@ pub enum Format {
 
 impl Format {
     /// All formats.
-    pub const ALL: [Format; 5] =
-        [Format::Pdf, Format::Html, Format::Svg, Format::Png, Format::Csv];
+    pub const ALL: [Format; 5] = [
+        Format::Pdf,
+        Format::Html,
+        Format::Svg,
+        Format::Png,
+        Format::Csv,
+    ];
 
     /// The format's name on the command line.
     pub fn name(self) -> &'static str {
@@ -170,7 +175,10 @@ impl Report {
     pub fn files(&self, format: Format) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
         let each = |ending: &str, of: &(dyn Fn(&Figure) -> Result<Vec<u8>, ReportError> + Sync)| {
             let path = |f: &Figure| format!("figures/{}.{ending}", f.name);
-            self.figures.par_iter().map(|f| Ok((path(f), of(f)?))).collect()
+            self.figures
+                .par_iter()
+                .map(|f| Ok((path(f), of(f)?)))
+                .collect()
         };
         match format {
             Format::Pdf => Ok(vec![("report.pdf".into(), self.pdf()?)]),

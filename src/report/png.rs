@@ -15,16 +15,29 @@ const UNITS_PER_INCH: f32 = 96.0;
 
 /// A figure as PNG on white.
 pub fn png(figure: &Figure) -> Result<Vec<u8>, ReportError> {
-    let failed = |why: String| ReportError::Picture { name: figure.name.clone(), why };
-    let options = Options { fontdb: fonts_of_figures(), ..Options::default() };
+    let failed = |why: String| ReportError::Picture {
+        name: figure.name.clone(),
+        why,
+    };
+    let options = Options {
+        fontdb: fonts_of_figures(),
+        ..Options::default()
+    };
     let tree = Tree::from_str(&figure.svg, &options).map_err(|e| failed(e.to_string()))?;
     let scale = RESOLUTION_DPI / UNITS_PER_INCH;
     let size = tree.size();
-    let (width, height) = ((size.width() * scale).ceil(), (size.height() * scale).ceil());
+    let (width, height) = (
+        (size.width() * scale).ceil(),
+        (size.height() * scale).ceil(),
+    );
     let mut pixels = Pixmap::new(width as u32, height as u32)
         .ok_or_else(|| failed("the picture has no size".into()))?;
     pixels.fill(Color::WHITE);
-    resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
+    resvg::render(
+        &tree,
+        Transform::from_scale(scale, scale),
+        &mut pixels.as_mut(),
+    );
     pixels.encode_png().map_err(|e| failed(e.to_string()))
 }
 

@@ -14,7 +14,7 @@ pub fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
         methods(content, drawn),
         left_out(content),
         records(content, drawn),
-        conventions(),
+        conventions(content),
         provenance(content),
     ]
     .into_iter()
@@ -134,62 +134,75 @@ fn records(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     )
 }
 
-fn conventions() -> Option<Section> {
-    let entry = |formula, plain, meaning: &str| Definition {
-        formula,
-        plain,
-        meaning: Rich::from(meaning),
-    };
-    let entries = vec![
-        entry(
-            "tau = Omega t",
-            "τ = Ωt",
-            "time counted in natural angle, Ω = √($k$/$m$) = 2π$f_0$",
-        ),
-        entry(
-            "beta = b / (2 sqrt(k m))",
-            "β = b/(2√(km))",
-            "damping ratio of one mass on its spring",
-        ),
-        entry(
-            "eta = omega / Omega = f / f_0",
-            "η = ω/Ω = f/f0",
-            "frequency ratio of the drive",
-        ),
-        entry(
-            "x_\"st\" = F_0 / k",
-            "x_st = F0/k",
-            "static deflection under the drive's amplitude",
-        ),
-        entry(
-            "rho = r / x_\"st\" = r k / F_0",
-            "ρ = r/x_st = rk/F0",
-            "clearance ratio; the gap between the masses is 2$r$",
-        ),
-        entry(
-            "z = p / n",
-            "z = p/n",
-            "$p$ impacts in $n$ drive periods; 1j: a dead zone follows the impact",
-        ),
-        entry(
-            "R = - (X'_+ + Y'_+) / (X'_- + Y'_-)",
-            "R = −(X′₊ + Y′₊)/(X′₋ + Y′₋)",
-            "coefficient of restitution: speed of parting over speed of closing",
-        ),
-        entry(
-            "X'' + 2 beta X' + X = cos(eta tau + phi)",
-            "X″ + 2βX′ + X = cos(ητ + φ)",
-            "motion of each mass between impacts, $X$ = $x$/$x_{st}$; impact where $X$ + $Y$ ≥ 2$ρ$",
-        ),
-    ];
-    let intervals = "Intervals are at 95 % confidence; a number after ± is half of that interval. \
-                     All quantities are in SI units; frequencies are as measured from the drive \
-                     channel.";
-    section(
-        "Appendix B. Conventions",
+/// Formula as typst maths, as plain text, what it means, and whether it takes a drive.
+type Convention = (&'static str, &'static str, &'static str, bool);
+
+const CONVENTIONS: [Convention; 8] = [
+    (
+        "R = - (X'_+ + Y'_+) / (X'_- + Y'_-)",
+        "R = −(X′₊ + Y′₊)/(X′₋ + Y′₋)",
+        "coefficient of restitution: speed of parting over speed of closing",
         false,
-        vec![Block::Definitions { entries }, paragraph(intervals)],
-    )
+    ),
+    (
+        "beta = b / (2 sqrt(k m))",
+        "β = b/(2√(km))",
+        "damping ratio of a mass $m$ on a spring $k$ with viscous damping $b$",
+        false,
+    ),
+    (
+        "tau = Omega t",
+        "τ = Ωt",
+        "time counted in natural angle, Ω = √($k$/$m$) = 2π$f_0$",
+        false,
+    ),
+    (
+        "eta = omega / Omega = f / f_0",
+        "η = ω/Ω = f/f0",
+        "frequency ratio of the drive",
+        true,
+    ),
+    (
+        "x_\"st\" = F_0 / k",
+        "x_st = F0/k",
+        "static deflection under the drive's amplitude $F_0$",
+        true,
+    ),
+    (
+        "rho = r / x_\"st\" = r k / F_0",
+        "ρ = r/x_st = rk/F0",
+        "clearance ratio; the gap between the masses is 2$r$",
+        true,
+    ),
+    (
+        "z = p / n",
+        "z = p/n",
+        "$p$ impacts in $n$ drive periods; 1j: a dead zone follows the impact",
+        true,
+    ),
+    (
+        "X'' + 2 beta X' + X = cos(eta tau + phi)",
+        "X″ + 2βX′ + X = cos(ητ + φ)",
+        "motion of each mass between impacts, $X$ = $x$/$x_st$; impact where $X$ + $Y$ ≥ 2$ρ$",
+        true,
+    ),
+];
+
+fn conventions(content: &ReportContent) -> Option<Section> {
+    let driven = content.records.iter().any(|r| r.frequency_hz.is_some());
+    let entries = CONVENTIONS
+        .into_iter()
+        .filter(|c| driven || !c.3)
+        .map(|c| Definition {
+            formula: c.0,
+            plain: c.1,
+            meaning: Rich::from(c.2),
+        });
+    let entries = entries.collect();
+    let intervals = "Intervals are at 95 % confidence; a number after ± is half of that interval. \
+                     All quantities are in SI units.";
+    let blocks = vec![Block::Definitions { entries }, paragraph(intervals)];
+    section("Appendix B. Conventions", false, blocks)
 }
 
 fn provenance(content: &ReportContent) -> Option<Section> {

@@ -18,7 +18,7 @@ const MANY_BRACKETS: usize = 14;
 type Column = (&'static str, &'static str, u16);
 
 fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>) -> Option<Table> {
-    (!rows.is_empty()).then(|| Table {
+    let table = (!rows.is_empty()).then(|| Table {
         caption: Rich::from(caption),
         heads: columns.iter().map(|c| Rich::from(c.0)).collect(),
         align: columns.iter().map(|c| c.1).collect(),
@@ -28,7 +28,32 @@ fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>) -> Option<Tabl
         side_by_side: 1,
         dense: false,
         columns_text: Vec::new(),
-    })
+    });
+    table.map(without_empty_columns)
+}
+
+/// Without the columns in which no row says anything; the first column stays.
+fn without_empty_columns(table: Table) -> Table {
+    let says = |i: usize| {
+        table
+            .rows
+            .iter()
+            .any(|row| !matches!(row[i].plain().as_str(), "" | "–"))
+    };
+    let kept: Vec<usize> = (0..table.heads.len())
+        .filter(|&i| i == 0 || says(i))
+        .collect();
+    let rows = table.rows.iter();
+    let rows = rows
+        .map(|row| kept.iter().map(|&i| row[i].clone()).collect())
+        .collect();
+    Table {
+        heads: kept.iter().map(|&i| table.heads[i].clone()).collect(),
+        align: kept.iter().map(|&i| table.align[i]).collect(),
+        widths: kept.iter().map(|&i| table.widths[i]).collect(),
+        rows,
+        ..table
+    }
 }
 
 /// What each method found, and the joint estimate.
@@ -45,7 +70,12 @@ pub fn methods(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
                 numbers,
             ))
         }));
-        row.push(Rich::from(method.observations.to_string()));
+        let observations = method.observations;
+        row.push(Rich::from(if observations == 0 {
+            "–".into()
+        } else {
+            observations.to_string()
+        }));
         row.push(Rich::from(
             method
                 .reduced_residual
@@ -318,6 +348,7 @@ fn record_row(r: &RecordRow, planar: bool, many: bool, numbers: NumberLook) -> V
 
 fn motion_label(r: &RecordRow, many: bool) -> String {
     match &r.motion {
+        Motion::Undetermined { .. } if r.frequency_hz.is_none() => "–".into(),
         Motion::Undetermined { .. } if many => "?".into(),
         motion => motion.label(),
     }

@@ -2,6 +2,7 @@
 
 mod evidence;
 pub mod oscillator;
+pub mod others;
 
 use std::collections::BTreeMap;
 

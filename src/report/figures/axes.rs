@@ -16,7 +16,7 @@ pub struct Axis {
     pub title: String,
     /// Whether it counts in powers of ten.
     pub log: bool,
-    /// Wanted number of ticks.
+    /// Wanted number of ticks; none at all for 0.
     pub ticks: usize,
 }
 
@@ -294,6 +294,9 @@ impl Panel {
     }
 
     fn ticks_left(&self, canvas: &mut Canvas, labels: bool, numbers: NumberLook) {
+        if self.y.ticks == 0 {
+            return;
+        }
         let (ticks, decimals) = self.y.major();
         let left = self.rect.left;
         for v in ticks {

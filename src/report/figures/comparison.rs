@@ -13,7 +13,8 @@ use crate::record::Role;
 use crate::report::content::{Comparison, Portrait, Signal, Trace};
 
 const LEFT: f64 = 40.0;
-const COLUMN: f64 = 136.0;
+/// Width of a column of panels beside phase portraits, and without them.
+const COLUMNS: [f64; 2] = [136.0, 201.0];
 const COLUMN_GAP: f64 = 35.0;
 const PORTRAIT_LEFT: f64 = 387.0;
 /// Distance of the titles of upward axes from their frames.
@@ -50,6 +51,7 @@ pub fn draw(comparison: &Comparison, numbers: NumberLook) -> Option<Figure> {
         numbers,
         canvas: Canvas::new(look::FULL_WIDTH, TOP + stack + BOTTOM),
         time: time_axis(comparison, &rows),
+        column: COLUMNS[usize::from(comparison.portraits.is_empty())],
     };
     sheet.heading();
     sheet.columns(&rows);
@@ -234,9 +236,18 @@ struct Sheet<'a> {
     numbers: NumberLook,
     canvas: Canvas,
     time: TimeAxis,
+    column: f64,
 }
 
 impl Sheet<'_> {
+    /// Left edge of a column of panels.
+    fn left(&self, side: Side) -> f64 {
+        match side {
+            Side::Simulated => LEFT,
+            Side::Measured => LEFT + self.column + COLUMN_GAP,
+        }
+    }
+
     fn heading(&mut self) {
         let c = self.comparison;
         marks::draw(
@@ -252,7 +263,12 @@ impl Sheet<'_> {
         let x = LEFT + 10.0;
         self.canvas.text((x, 8.5), &letter, bold);
         let x = x + richtext::width(&letter, Face::Bold, 9.0) + 6.0;
-        let mut text = format!("$z$ = {}", c.motion.label());
+        let driven = c.drive_period_s.is_some();
+        let mut text = if driven {
+            format!("$z$ = {}", c.motion.label())
+        } else {
+            String::new()
+        };
         if let (Some(eta), Some(rho)) = (c.eta, c.rho) {
             let (eta, rho) = (self.numbers.fixed(eta, 3), self.numbers.fixed(rho, 3));
             text.push_str(&format!(",   $η$ = {eta},   $ρ$ = {rho}"));
@@ -269,12 +285,15 @@ impl Sheet<'_> {
 
     fn columns(&mut self, rows: &[Row<'_>]) {
         let title = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::QUIET);
-        let middle = |side: Side| column_left(side) + 0.5 * COLUMN;
+        let middle = |sheet: &Self, side: Side| sheet.left(side) + 0.5 * sheet.column;
         if !rows.is_empty() {
+            self.canvas.text(
+                (middle(self, Side::Simulated), TOP - 4.0),
+                "simulated",
+                title,
+            );
             self.canvas
-                .text((middle(Side::Simulated), TOP - 4.0), "simulated", title);
-            self.canvas
-                .text((middle(Side::Measured), TOP - 4.0), "measured", title);
+                .text((middle(self, Side::Measured), TOP - 4.0), "measured", title);
         }
         let last_plain = rows.iter().rposition(|r| !r.residual);
         let mut top = TOP;
@@ -292,7 +311,7 @@ impl Sheet<'_> {
     }
 
     fn panel(&mut self, row: &Row<'_>, side: Side, top: f64, below: bool) {
-        let rect = Rect::new(column_left(side), top, COLUMN, row.height);
+        let rect = Rect::new(self.left(side), top, self.column, row.height);
         let values = row
             .traces
             .iter()
@@ -466,13 +485,6 @@ impl Sheet<'_> {
         }
         self.canvas.layer(2);
         panel.frame(&mut self.canvas, Sides::BOTH, self.numbers);
-    }
-}
-
-fn column_left(side: Side) -> f64 {
-    match side {
-        Side::Simulated => LEFT,
-        Side::Measured => LEFT + COLUMN + COLUMN_GAP,
     }
 }
 

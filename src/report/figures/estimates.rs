@@ -37,7 +37,7 @@ pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
     let left = names.fold(0.0, f64::max) + 6.0;
     let columns = if shown.len() > 1 { 2 } else { 1 };
     let gap = 12.0;
-    let width = (WIDTH - left - 4.0 - gap * (columns - 1) as f64) / columns as f64;
+    let width = (WIDTH - left - 9.0 - gap * (columns - 1) as f64) / columns as f64;
     let height = ROW * lines.len() as f64 + 4.0;
     let rows = shown.len().div_ceil(columns);
     let mut canvas = Canvas::new(WIDTH, rows as f64 * (height + 27.0) + 1.0);
@@ -104,7 +104,11 @@ fn parameter(
         shown.unit
     };
     let x = Axis::around(view(&ends), 0.08, format!("{} ({unit})", shown.symbol)).with_ticks(3);
-    let panel = Panel::new(rect, x, Axis::new(0.0, lines.len() as f64, ""));
+    let panel = Panel::new(
+        rect,
+        x,
+        Axis::new(0.0, lines.len() as f64, "").with_ticks(0),
+    );
     if let Some((low, high)) = lines
         .iter()
         .filter(|l| l.joint)

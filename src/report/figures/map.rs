@@ -36,6 +36,8 @@ pub fn draw(content: &ReportContent, size: MapSize, numbers: NumberLook) -> Opti
         small_keys(content)
     };
     let mut map = Map::new(content, plane, size, &keys);
+    // Labels go where records and curves leave room.
+    map.take_records_and_curves();
     map.regions();
     map.curves();
     map.brackets();
@@ -60,10 +62,12 @@ struct Map<'a> {
 impl<'a> Map<'a> {
     fn new(content: &'a ReportContent, plane: Plane, size: MapSize, keys: &[Key]) -> Self {
         let full = size == MapSize::Full;
-        let (width, height) = if full {
-            (look::FULL_WIDTH, 370.0)
-        } else {
-            (236.0, 205.0)
+        let flat = content.region_map.is_none() && heights(content, plane) <= 3;
+        let (width, height) = match (full, flat) {
+            (true, false) => (look::FULL_WIDTH, 370.0),
+            (true, true) => (look::FULL_WIDTH, 200.0),
+            (false, false) => (236.0, 205.0),
+            (false, true) => (236.0, 130.0),
         };
         let keys_height = legend::height(keys, width) + if keys.is_empty() { 0.0 } else { 3.0 };
         let (left, right) = (
@@ -119,8 +123,6 @@ impl<'a> Map<'a> {
         };
         self.canvas.layer(0);
         regions.draw(&mut self.canvas);
-        // Labels go where records, curves and brackets leave room.
-        self.take_records_and_curves();
         let size = if self.full() { 10.0 } else { 8.0 };
         self.canvas.layer(6);
         for label in regions.labels(&mut self.occupancy, size) {
@@ -397,6 +399,17 @@ impl<'a> Map<'a> {
         };
         Figure::new(name, title, self.canvas, csv).with_spots(self.spots)
     }
+}
+
+/// How many clearances the records have.
+fn heights(content: &ReportContent, plane: Plane) -> usize {
+    let mut seen: Vec<f64> = Vec::new();
+    for (_, y) in content.records.iter().filter_map(|r| plane.record(r)) {
+        if !seen.iter().any(|s| (s - y).abs() <= 1e-6 * y.abs()) {
+            seen.push(y);
+        }
+    }
+    seen.len()
 }
 
 /// How a boundary is drawn.

@@ -48,6 +48,8 @@ pub struct Figure {
     pub csv: String,
     /// Points that tell something when hovered over.
     pub spots: Vec<Spot>,
+    /// Texts that reach beyond the drawing's edges.
+    pub overfull: Vec<String>,
 }
 
 /// A point of a figure that tells something.
@@ -65,6 +67,7 @@ impl Figure {
     /// A figure from its drawing.
     pub fn new(name: impl Into<String>, title: &str, canvas: Canvas, csv: String) -> Self {
         let (width, height) = (canvas.width, canvas.height);
+        let overfull = canvas.overfull();
         let svg = canvas.into_svg(title);
         let (name, title) = (name.into(), title.to_owned());
         Self {
@@ -75,6 +78,7 @@ impl Figure {
             height,
             csv,
             spots: Vec::new(),
+            overfull,
         }
     }
 

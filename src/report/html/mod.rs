@@ -19,9 +19,13 @@ pub fn html(
     figures: &[Figure],
     options: &RenderOptions,
 ) -> Result<String, ReportError> {
-    let mut page = String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+    let mut page =
+        String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
     page.push_str("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
-    page.push_str(&format!("<title>{}</title>\n<style>\n", escape(&document.title)));
+    page.push_str(&format!(
+        "<title>{}</title>\n<style>\n",
+        escape(&document.title)
+    ));
     for (face, style, weight) in FACES {
         page.push_str(&font_face(face, style, weight));
     }
@@ -43,7 +47,9 @@ const FACES: [(Face, &str, &str); 3] = [
 ];
 
 fn font_face(face: Face, style: &str, weight: &str) -> String {
-    let Some(bytes) = fonts::face_bytes(face) else { return String::new() };
+    let Some(bytes) = fonts::face_bytes(face) else {
+        return String::new();
+    };
     format!(
         "@font-face {{ font-family: \"{FAMILY}\"; font-style: {style}; font-weight: {weight}; \
          src: url(data:font/otf;base64,{}) format(\"opentype\"); }}\n",
@@ -52,7 +58,9 @@ fn font_face(face: Face, style: &str, weight: &str) -> String {
 }
 
 fn logo(options: &RenderOptions) -> String {
-    let Some(logo) = &options.logo else { return String::new() };
+    let Some(logo) = &options.logo else {
+        return String::new();
+    };
     let kind = match logo.extension.as_str() {
         "svg" => "image/svg+xml",
         "jpg" | "jpeg" => "image/jpeg",
@@ -62,5 +70,7 @@ fn logo(options: &RenderOptions) -> String {
         _ => "image/png",
     };
     let data = base64::encode(&logo.bytes);
-    format!("<img alt=\"logo\" style=\"float:right;height:3.4rem\" src=\"data:{kind};base64,{data}\">\n")
+    format!(
+        "<img alt=\"logo\" style=\"float:right;height:3.4rem\" src=\"data:{kind};base64,{data}\">\n"
+    )
 }

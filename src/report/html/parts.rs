@@ -15,7 +15,10 @@ pub struct Parts<'a> {
 impl<'a> Parts<'a> {
     /// With the figures that may be referred to.
     pub fn new(figures: &'a [Figure]) -> Self {
-        Self { figures, numbered: 0 }
+        Self {
+            figures,
+            numbered: 0,
+        }
     }
 
     /// The whole body.
@@ -50,18 +53,27 @@ impl<'a> Parts<'a> {
         ));
         let answers: String = front.answers.iter().map(answer).collect();
         text.push_str(&format!("<div class=\"answers\">\n{answers}</div>\n"));
-        let pair: Vec<FigureRef> =
-            [&front.map, &front.estimates].into_iter().flatten().cloned().collect();
+        let pair: Vec<FigureRef> = [&front.map, &front.estimates]
+            .into_iter()
+            .flatten()
+            .cloned()
+            .collect();
         text.push_str(&self.figures(&pair)?);
         text.push_str(&agreement(front));
-        let findings: String =
-            front.findings.iter().map(|f| format!("<li>{}</li>\n", rich(f))).collect();
+        let findings: String = front
+            .findings
+            .iter()
+            .map(|f| format!("<li>{}</li>\n", rich(f)))
+            .collect();
         if !findings.is_empty() {
             text.push_str(&format!("<ul>\n{findings}</ul>\n"));
         }
         if !front.facts.is_empty() {
             text.push_str("<h2>What was measured</h2>\n");
-            text.push_str(&pairs("facts", front.facts.iter().map(|(a, b)| (rich(a), rich(b)))));
+            text.push_str(&pairs(
+                "facts",
+                front.facts.iter().map(|(a, b)| (rich(a), rich(b))),
+            ));
         }
         Ok(text)
     }
@@ -72,9 +84,10 @@ impl<'a> Parts<'a> {
             Block::Figures { figures } => self.figures(figures)?,
             Block::Table(table) => self::table(table),
             Block::Verbatim { text } => format!("<pre>{}</pre>\n", escape(text)),
-            Block::Definitions { entries } => {
-                pairs("definitions", entries.iter().map(|e| (escape(e.plain), rich(&e.meaning))))
-            }
+            Block::Definitions { entries } => pairs(
+                "definitions",
+                entries.iter().map(|e| (escape(e.plain), rich(&e.meaning))),
+            ),
         })
     }
 
@@ -85,11 +98,19 @@ impl<'a> Parts<'a> {
                 text.push_str(&self.figure(reference, figure)?);
             }
         }
-        Ok(if text.is_empty() { text } else { format!("<div class=\"figures\">\n{text}</div>\n") })
+        Ok(if text.is_empty() {
+            text
+        } else {
+            format!("<div class=\"figures\">\n{text}</div>\n")
+        })
     }
 
     fn figure(&mut self, reference: &FigureRef, figure: &Figure) -> Result<String, ReportError> {
-        let class = if figure.width > 300.0 { " class=\"wide\"" } else { "" };
+        let class = if figure.width > 300.0 {
+            " class=\"wide\""
+        } else {
+            ""
+        };
         let mut text = format!(
             "<figure{class}>\n<div class=\"drawing\" data-name=\"{}\" data-width=\"{}\">\n{}",
             escape(&figure.name),
@@ -99,14 +120,18 @@ impl<'a> Parts<'a> {
         if !figure.spots.is_empty() {
             let spots = serde_json::to_string(&figure.spots).map_err(ReportError::Data)?;
             let safe = spots.replace("</", "<\\/");
-            text.push_str(&format!("<script type=\"application/json\">{safe}</script>\n"));
+            text.push_str(&format!(
+                "<script type=\"application/json\">{safe}</script>\n"
+            ));
         }
         text.push_str("</div>\n");
         let caption = rich(&reference.caption);
         if !caption.is_empty() {
             self.numbered += 1;
             let number = self.numbered;
-            text.push_str(&format!("<figcaption><b>Figure {number}.</b> {caption}</figcaption>\n"));
+            text.push_str(&format!(
+                "<figcaption><b>Figure {number}.</b> {caption}</figcaption>\n"
+            ));
         }
         text.push_str("</figure>\n");
         Ok(text)
@@ -117,7 +142,11 @@ impl<'a> Parts<'a> {
 fn rich(text: &Rich) -> String {
     let run = |r: &crate::report::figures::richtext::Run| {
         let body = escape(&r.text);
-        let body = if r.italic { format!("<i>{body}</i>") } else { body };
+        let body = if r.italic {
+            format!("<i>{body}</i>")
+        } else {
+            body
+        };
         match r.level {
             Level::Base => body,
             Level::Sub => format!("<sub>{body}</sub>"),
@@ -128,22 +157,34 @@ fn rich(text: &Rich) -> String {
 }
 
 fn answer(a: &Answer) -> String {
-    let mut text = format!("<div class=\"answer\"><div class=\"label\">{}</div>", rich(&a.name));
+    let mut text = format!(
+        "<div class=\"answer\"><div class=\"label\">{}</div>",
+        rich(&a.name)
+    );
     match &a.value {
         Some(value) => {
-            text.push_str(&format!("<div class=\"value\">{} = {value}</div>", rich(&a.symbol)));
+            text.push_str(&format!(
+                "<div class=\"value\">{} = {value}</div>",
+                rich(&a.symbol)
+            ));
             if let Some(half) = &a.plus_minus {
                 text.push_str(&format!("<div>± {half} {}</div>", a.unit));
             }
             if let Some(interval) = &a.interval {
-                text.push_str(&format!("<div class=\"interval\">95 %: {interval} {}</div>", a.unit));
+                text.push_str(&format!(
+                    "<div class=\"interval\">95 %: {interval} {}</div>",
+                    a.unit
+                ));
             }
             if a.status == "weak" {
                 text.push_str("<div class=\"warn\">weakly identified</div>");
             }
         }
         None => {
-            text.push_str(&format!("<div class=\"value label\">{}</div>", rich(&a.symbol)));
+            text.push_str(&format!(
+                "<div class=\"value label\">{}</div>",
+                rich(&a.symbol)
+            ));
             text.push_str(if a.status == "not_identifiable" {
                 "<div class=\"bad\">not identifiable</div>"
             } else {
@@ -172,8 +213,9 @@ fn agreement(front: &Front) -> String {
 }
 
 fn pairs(class: &str, entries: impl Iterator<Item = (String, String)>) -> String {
-    let entries: String =
-        entries.map(|(term, text)| format!("<dt>{term}</dt><dd>{text}</dd>\n")).collect();
+    let entries: String = entries
+        .map(|(term, text)| format!("<dt>{term}</dt><dd>{text}</dd>\n"))
+        .collect();
     format!("<dl class=\"{class}\">\n{entries}</dl>\n")
 }
 
@@ -186,26 +228,49 @@ fn table(table: &Table) -> String {
     let heads = table.heads.iter().enumerate();
     let heads: String = heads.map(|(i, h)| cell("th", i, &rich(h))).collect();
     let caption = rich(&table.caption);
-    let caption =
-        if caption.is_empty() { caption } else { format!("<caption>{caption}</caption>\n") };
+    let caption = if caption.is_empty() {
+        caption
+    } else {
+        format!("<caption>{caption}</caption>\n")
+    };
     let mut text = format!("<table>\n{caption}<thead><tr>{heads}</tr></thead>\n<tbody>\n");
     for row in &rows {
-        let cells: String = row.iter().enumerate().map(|(i, t)| cell("td", i, t)).collect();
+        let cells: String = row
+            .iter()
+            .enumerate()
+            .map(|(i, t)| cell("td", i, t))
+            .collect();
         text.push_str(&format!("<tr>{cells}</tr>\n"));
     }
     text.push_str("</tbody>\n</table>\n");
-    if rows.len() > 40 { format!("<div class=\"scroll\">\n{text}</div>\n") } else { text }
+    if rows.len() > 40 {
+        format!("<div class=\"scroll\">\n{text}</div>\n")
+    } else {
+        text
+    }
 }
 
 /// The rows as HTML; those of a dense table are found again in its columns.
 fn html_rows(table: &Table) -> Vec<Vec<String>> {
     if !table.dense {
-        return table.rows.iter().map(|row| row.iter().map(rich).collect()).collect();
+        return table
+            .rows
+            .iter()
+            .map(|row| row.iter().map(rich).collect())
+            .collect();
     }
-    let columns: Vec<Vec<&str>> =
-        table.columns_text.iter().map(|c| c.split('\n').collect()).collect();
+    let columns: Vec<Vec<&str>> = table
+        .columns_text
+        .iter()
+        .map(|c| c.split('\n').collect())
+        .collect();
     let count = columns.first().map_or(0, Vec::len);
     (0..count)
-        .map(|i| columns.iter().map(|c| escape(c.get(i).copied().unwrap_or(""))).collect())
+        .map(|i| {
+            columns
+                .iter()
+                .map(|c| escape(c.get(i).copied().unwrap_or("")))
+                .collect()
+        })
         .collect()
 }
