@@ -11,6 +11,8 @@ pub mod mat;
 pub mod numbers;
 pub mod source;
 pub mod tdms;
+pub mod uff;
+pub mod wav;
 
 use serde::{Deserialize, Serialize};
 
