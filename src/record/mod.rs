@@ -24,6 +24,8 @@ pub mod source;
 pub mod tdms;
 pub mod text;
 pub mod time_axis;
+pub mod uff;
+pub mod wav;
 
 use serde::{Deserialize, Serialize};
 
