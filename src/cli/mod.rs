@@ -1,11 +1,14 @@
 //! The command line: one file per verb; the only room that prints or exits.
 
+mod atlas;
+mod boundary;
 mod check;
 mod completions;
 mod exit;
 mod fail;
 mod init;
 mod interrupt;
+mod machine;
 mod progress;
 mod run;
 mod simulate;
@@ -72,6 +75,10 @@ enum Verb {
     Identify(stage::Identify),
     /// Fourth stage: write the report
     Report(stage::Report),
+    /// Regions and boundaries of all motions in the (η, ρ) plane
+    Atlas(atlas::Atlas),
+    /// A single point of a boundary
+    Boundary(boundary::Boundary),
     /// Simulate a campaign with known truth
     Simulate(simulate::Simulate),
     /// Print the completions of a shell
@@ -90,6 +97,8 @@ impl Verb {
             Self::Classify(verb) => verb.go(voice),
             Self::Identify(verb) => verb.go(voice),
             Self::Report(verb) => verb.go(voice),
+            Self::Atlas(verb) => verb.go(voice),
+            Self::Boundary(verb) => verb.go(voice),
             Self::Simulate(verb) => verb.go(voice),
             Self::Completions(verb) => verb.go(voice),
             Self::Man(verb) => verb.go(voice),
