@@ -268,7 +268,8 @@ fn step<V: Lanes, const DEGREE: usize>(c: &Constants<V>, s: &mut Group<V>) -> Ev
     s.fr = ce.mul_add(fr, zero.sub(se.mul(fi)));
     s.fi = ce.mul_add(fi, se.mul(fr));
     s.t = t.add(h);
-    s.hm = h.mul(V::splat(1.5)).min(s.longest);
+    let least = s.longest.mul(V::splat(1e-3));
+    s.hm = h.mul(V::splat(1.5)).min(s.longest).max(least);
     let (due, never) = (s.t_next.le(s.t), s.zm.add(s.forced).lt(s.exit_rho));
     Events {
         due,

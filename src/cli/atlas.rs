@@ -147,14 +147,14 @@ fn read_part(path: &Path) -> Result<MapPart, Failure> {
     })
 }
 
-fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<Exit, Failure> {
+pub(super) fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<Exit, Failure> {
     let told = |e: OutputError| Failure::new(e.to_string(), e.remedy());
     write_bytes(&folder.join(name), bytes).map_err(told)?;
     Ok(Exit::Done)
 }
 
 /// How curves and maps agree, as every run prints it.
-fn say(voice: Voice, regions: &Regions) {
+pub(super) fn say(voice: Voice, regions: &Regions) {
     let a = &regions.agreement;
     voice.say(&format!(
         "{} curves; brute force: {} cells compared, {} differ from the curves, {} aperiodic, {} \
@@ -173,11 +173,11 @@ fn say(voice: Voice, regions: &Regions) {
     }
 }
 
-fn label(motion: CellMotion) -> String {
+pub(super) fn label(motion: CellMotion) -> String {
     Motion::from(motion).label()
 }
 
-fn curves_csv(regions: &Regions) -> String {
+pub(super) fn curves_csv(regions: &Regions) -> String {
     let mut text = String::from("curve,kind,motion,side,eta,rho,closing_speed\n");
     for (number, c) in regions.curves.iter().enumerate() {
         let j = if c.dead_zone { "j" } else { "" };
@@ -193,7 +193,7 @@ fn curves_csv(regions: &Regions) -> String {
     text
 }
 
-fn maps_csv(grid: &MapGrid, regions: &Regions) -> String {
+pub(super) fn maps_csv(grid: &MapGrid, regions: &Regions) -> String {
     let mut text = String::from("eta,rho,from_start,rising,falling\n");
     for i in 0..grid.len() {
         let (eta, rho) = grid.at(i);

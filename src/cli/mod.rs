@@ -13,6 +13,7 @@ mod progress;
 mod run;
 mod simulate;
 mod stage;
+mod study;
 mod voice;
 
 use std::process::ExitCode;
@@ -79,6 +80,8 @@ enum Verb {
     Atlas(atlas::Atlas),
     /// A single point of a boundary
     Boundary(boundary::Boundary),
+    /// Studies of the theory from TOML files: time series, sweeps, basins, regions
+    Study(study::Study),
     /// Simulate a campaign with known truth
     Simulate(simulate::Simulate),
     /// Print the completions of a shell
@@ -99,6 +102,7 @@ impl Verb {
             Self::Report(verb) => verb.go(voice),
             Self::Atlas(verb) => verb.go(voice),
             Self::Boundary(verb) => verb.go(voice),
+            Self::Study(verb) => verb.go(voice),
             Self::Simulate(verb) => verb.go(voice),
             Self::Completions(verb) => verb.go(voice),
             Self::Man(verb) => verb.go(voice),

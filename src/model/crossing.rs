@@ -32,7 +32,7 @@ pub fn first_zero(path: &Path, t_max: f64) -> Option<Crossing> {
         let near = g <= tolerance.max(1e-13 * v);
         let h = if near && leaves(&jet, tolerance) {
             leaving_step(&jet, hm)
-        } else if near && v > 0.0 {
+        } else if near && v >= -STILL * tolerance {
             let zero = accept(before, t, &jet);
             return (zero.time <= t_max).then_some(zero);
         } else {
@@ -43,7 +43,7 @@ pub fn first_zero(path: &Path, t_max: f64) -> Option<Crossing> {
         }
         before = t;
         t = if t + h > t { t + h } else { t.next_up() };
-        hm = (1.5 * h).min(longest);
+        hm = (1.5 * h).clamp(1e-3 * longest, longest);
     }
 }
 
@@ -52,9 +52,12 @@ fn never_again(path: &Path, jet: &Jet) -> bool {
     path.is_bounded() && path.polynomial[0] > jet.amplitude
 }
 
+/// Speeds and curvatures below this many tolerances are rounding.
+const STILL: f64 = 25.0;
+
 /// Whether a path at zero stands still or only grazes, within rounding, and does not fall.
 fn leaves(jet: &Jet, tolerance: f64) -> bool {
-    let still = 25.0 * tolerance;
+    let still = STILL * tolerance;
     let slow = jet.d1.abs() <= still || jet.d1 * jet.d1 <= 2.0 * tolerance * jet.d2.abs();
     slow && jet.d2 >= -still
 }
@@ -64,7 +67,7 @@ fn leaves(jet: &Jet, tolerance: f64) -> bool {
 fn accept(before: f64, t: f64, jet: &Jet) -> Crossing {
     let (g, v, a) = (jet.value, -jet.d1, -jet.d2);
     let root = v * v + 2.0 * a * g;
-    let dt = if root > 0.0 {
+    let dt = if root > 0.0 && v > 0.0 {
         2.0 * g / (v + root.sqrt())
     } else {
         0.0
@@ -72,7 +75,7 @@ fn accept(before: f64, t: f64, jet: &Jet) -> Crossing {
     let dt = dt.max(0.5 * (before - t));
     Crossing {
         time: t + dt,
-        speed: v + a * dt,
+        speed: (v + a * dt).max(0.0),
     }
 }
 

@@ -232,7 +232,7 @@ impl Simulator {
             vx_after: self.state.vx,
             vy_before: before.vy,
             vy_after: self.state.vy,
-            closing_before: before.vx + before.vy,
+            closing_before: (before.vx + before.vy).max(0.0),
             closing_after: self.state.vx + self.state.vy,
             kind,
             dead_zone,
