@@ -14,6 +14,7 @@ pub mod path;
 pub mod periodic;
 pub mod recurrence;
 pub mod simulate;
+pub mod soft;
 
 pub use boundary::{BoundaryPoint, eta_s2, rho_grazing, rho_s1, rho_s2};
 pub use contact::{ImpactKind, ModelImpact};
