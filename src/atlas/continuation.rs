@@ -178,7 +178,7 @@ impl Follower<'_> {
                 let orbit = self.orbit(&from.orbit, &z);
                 return orbit.is_ordered().then_some(orbit);
             }
-            if !(change.amax() < 1.0) {
+            if change.amax().is_nan() || change.amax() >= 1.0 {
                 return None;
             }
         }

@@ -56,7 +56,7 @@ impl<'a> Lyapunov<'a> {
     }
 
     /// Into a dead zone: the impact's map with R = 0, relative motion gone.
-    fn into_rest(&self, impact: &ModelImpact, after: &State) -> Matrix4<f64> {
+    fn rest_map(&self, impact: &ModelImpact, after: &State) -> Matrix4<f64> {
         let plastic = self
             .machine
             .clone()
@@ -110,7 +110,7 @@ impl Sink for Lyapunov<'_> {
         };
         (after.ax, after.ay) = free_accelerations(self.machine, drive, &after);
         let map = match impact.kind {
-            ImpactKind::Stick | ImpactKind::ChatterEnd => self.into_rest(impact, &after),
+            ImpactKind::Stick | ImpactKind::ChatterEnd => self.rest_map(impact, &after),
             ImpactKind::Bounce | ImpactKind::Plastic => {
                 saltation(self.machine, &self.before, &after)
             }

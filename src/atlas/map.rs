@@ -459,18 +459,18 @@ mod x86 {
     #[target_feature(enable = "avx2,fma")]
     pub fn march_avx2(light: bool, course: &Course, feed: &mut impl Feed) {
         if light {
-            march::<Two<Avx2>, 8>(course, feed)
+            march::<Two<Avx2>, 8>(course, feed);
         } else {
-            march::<Two<Avx2>, 17>(course, feed)
+            march::<Two<Avx2>, 17>(course, feed);
         }
     }
 
     #[target_feature(enable = "avx512f,avx2,fma")]
     pub fn march_avx512(light: bool, course: &Course, feed: &mut impl Feed) {
         if light {
-            march::<Two<Avx512>, 8>(course, feed)
+            march::<Two<Avx512>, 8>(course, feed);
         } else {
-            march::<Two<Avx512>, 17>(course, feed)
+            march::<Two<Avx512>, 17>(course, feed);
         }
     }
 }

@@ -274,7 +274,7 @@ fn orbit_of_cell(
     let mut impacts: Vec<ModelImpact> = Vec::new();
     let periods = f64::from(2 * n + 1);
     simulator.advance(periods * setting.period(), &mut |i: &ModelImpact| {
-        impacts.push(*i)
+        impacts.push(*i);
     });
     let last = impacts.len().checked_sub(p as usize)?;
     let orbit = PeriodicOrbit::from_impacts(&impacts[last..], setting, n)?
@@ -435,7 +435,7 @@ fn chains(columns: Vec<Vec<Mark>>) -> Vec<Curve> {
         open = next;
     }
     done.extend(open.into_values().flatten().map(|(_, curve)| curve));
-    done.sort_by(|a, b| (a.n, a.p, a.dead_zone, a.upper).cmp(&(b.n, b.p, b.dead_zone, b.upper)));
+    done.sort_by_key(|a| (a.n, a.p, a.dead_zone, a.upper));
     done
 }
 

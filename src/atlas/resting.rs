@@ -156,9 +156,9 @@ fn edge(same: &impl Fn(f64) -> bool, mut inside: f64, mut outside: f64) -> f64 {
     while (outside - inside).abs() > 1e-7 {
         let middle = 0.5 * (inside + outside);
         if same(middle) {
-            inside = middle
+            inside = middle;
         } else {
-            outside = middle
+            outside = middle;
         }
     }
     inside

@@ -273,9 +273,9 @@ pub(super) fn bisect(f: impl Fn(f64) -> f64, mut lo: f64, mut hi: f64) -> f64 {
             break;
         }
         if f(mid).signum() == sign {
-            lo = mid
+            lo = mid;
         } else {
-            hi = mid
+            hi = mid;
         }
     }
     0.5 * (lo + hi)

@@ -128,9 +128,9 @@ impl Simulator {
         let end = self.tau + duration;
         while self.tau < end {
             if self.joined {
-                self.stay(end, sink)
+                self.stay(end, sink);
             } else {
-                self.fly(end, sink)
+                self.fly(end, sink);
             }
         }
     }
@@ -169,14 +169,14 @@ impl Simulator {
     }
 
     /// Move along an arc of a given length and tell it; the last arc ends exactly at `end`.
-    fn move_on(&mut self, paths: FlightPaths, length: f64, end: f64, sink: &mut impl Sink) {
+    fn move_on(&mut self, paths: &FlightPaths, length: f64, end: f64, sink: &mut impl Sink) {
         let (tau, joined, phase) = (self.tau, self.joined, self.phase);
         sink.arc(&Arc {
             tau,
             duration: length,
             joined,
             phase,
-            paths,
+            paths: *paths,
         });
         self.state = paths.at(length);
         self.phase = (self.phase + self.eta * length).rem_euclid(TAU);
@@ -196,11 +196,11 @@ impl Simulator {
         let limit = (end - self.tau).min(paths.valid_for);
         match first_zero(&gap, limit) {
             Some(hit) => {
-                self.move_on(paths, hit.time, end, sink);
+                self.move_on(&paths, hit.time, end, sink);
                 self.impact(sink);
             }
             None => {
-                self.move_on(paths, limit, end, sink);
+                self.move_on(&paths, limit, end, sink);
                 if limit == paths.valid_for {
                     self.state.vx = 0.0;
                 }
@@ -249,10 +249,10 @@ impl Simulator {
         let limit = end - self.tau;
         match first_zero(&press, limit) {
             Some(release) => {
-                self.move_on(paths, release.time, end, sink);
+                self.move_on(&paths, release.time, end, sink);
                 self.joined = false;
             }
-            None => self.move_on(paths, limit, end, sink),
+            None => self.move_on(&paths, limit, end, sink),
         }
     }
 }

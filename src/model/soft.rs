@@ -69,9 +69,9 @@ impl SoftContact {
         for _ in 0..200 {
             let middle = 0.5 * (low + high);
             if restitution_of(middle) > r {
-                low = middle
+                low = middle;
             } else {
-                high = middle
+                high = middle;
             }
         }
         let ratio = if r == 1.0 { 0.0 } else { 0.5 * (low + high) };
