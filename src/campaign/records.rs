@@ -118,6 +118,7 @@ fn defaults(records: &Records, desk: &mut Desk<'_>) -> Defaults {
             drive_amplitude: amplitude.unwrap_or(1.0),
             sequence: 0,
             specimen: None,
+            excitation: Excitation::default(),
         },
         excitation: records
             .excitation
@@ -427,13 +428,13 @@ fn entries(
             dataset: one.dataset,
             setting: Setting {
                 sequence,
+                excitation: one
+                    .row
+                    .as_ref()
+                    .and_then(|r| r.excitation)
+                    .unwrap_or(defaults.excitation),
                 ..setting(one, &wanted, defaults, desk)
             },
-            excitation: one
-                .row
-                .as_ref()
-                .and_then(|r| r.excitation)
-                .unwrap_or(defaults.excitation),
             excluded: false,
         })
         .collect()
@@ -553,6 +554,7 @@ fn setting(one: &Listed, wanted: &Wanted, defaults: &Defaults, desk: &mut Desk<'
             .unwrap_or(default.drive_amplitude),
         sequence: 0,
         specimen: row.and_then(|r| r.specimen.clone()).or(specimen),
+        excitation: Excitation::default(),
     }
 }
 

@@ -3,9 +3,21 @@
 use crate::event::contact::{Closed, closed_intervals};
 use crate::event::jumps::{Jump, JumpSearch, SUPPORTED};
 use crate::event::kinematics::{Kinematics, Series};
-use crate::event::refine::{self, Candidate};
-use crate::event::{DriveTone, Impact, Rig, Seen, drift, drive};
+use crate::event::refine::{self, ArcFit, Candidate};
+use crate::event::{DriveTone, Impact, Rig, Seen, bounce, drift, drive};
 use crate::record::{Flag, Record, Role};
+use crate::signal::robust;
+
+/// What acts on a body between impacts, as far as the detection has to know.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FlightKind {
+    /// Springs and a harmonic drive: arcs are smooth curves.
+    #[default]
+    Harmonic,
+    /// A constant force toward the stop, and friction: arcs are straight in velocity.
+    ConstantForce,
+}
 
 /// Settings of the detection. All times in s.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -19,11 +31,19 @@ pub struct DetectSettings {
     pub window_periods: f64,
     /// Relative difference from which the measured drive frequency contradicts the stated one.
     pub drive_tolerance: f64,
+    /// What acts between impacts.
+    pub flight: FlightKind,
 }
 
 impl Default for DetectSettings {
     fn default() -> Self {
-        Self { bounce_s: 3e-3, dead_zone_s: 4e-3, window_periods: 0.1, drive_tolerance: 5e-3 }
+        Self {
+            bounce_s: 3e-3,
+            dead_zone_s: 4e-3,
+            window_periods: 0.1,
+            drive_tolerance: 5e-3,
+            flight: FlightKind::Harmonic,
+        }
     }
 }
 
@@ -62,15 +82,23 @@ pub fn detect(record: &Record, rig: Rig, settings: &DetectSettings) -> Detection
     let dead_from = samples_of(settings.dead_zone_s, rate_hz).max(4);
     let width = window_samples(drive.as_ref(), rate_hz, settings.window_periods);
     let found = match &kinematics.closing.velocity {
+        Some(velocity) if settings.flight == FlightKind::ConstantForce => bounces(velocity),
         Some(velocity) => fuse(velocity, &closed, width, dead_from),
         None => from_contact_alone(&closed, dead_from),
     };
     if let Some(flag) = wrong_way(&found, record) {
         flags.push(flag);
     }
-    let speed_width = (4 * width / 3).max(6);
+    let arc = match settings.flight {
+        FlightKind::Harmonic => {
+            ArcFit { degree: 3, displacement_degree: 3, width: (4 * width / 3).max(6), same_way: false }
+        }
+        FlightKind::ConstantForce => {
+            ArcFit { degree: 1, displacement_degree: 2, width: 24, same_way: true }
+        }
+    };
     let impacts =
-        refined(&mut kinematics, &found.candidates, drive.as_ref(), (rig, speed_width));
+        refined(&mut kinematics, &found.candidates, drive.as_ref(), (rig, arc));
     let closed_samples: usize = closed.iter().map(Closed::samples).sum();
     Detection {
         drive,
@@ -100,13 +128,18 @@ fn refined(
     kinematics: &mut Kinematics,
     candidates: &[Candidate],
     drive: Option<&DriveTone>,
-    (rig, width): (Rig, usize),
+    (rig, arc): (Rig, ArcFit),
 ) -> Vec<Impact> {
     if kinematics.closing.velocity.is_none() {
         return without_speeds(candidates, drive, kinematics.rate_hz);
     }
-    let first = refine::instants(kinematics, candidates, width);
-    refine::correct_jumps(kinematics, candidates, &first, width);
+    if arc.same_way {
+        // Straight arcs are drawn from few samples: no drift is to be told from them.
+        let instants = refine::instants(kinematics, candidates, arc);
+        return refine::impacts(kinematics, candidates, &instants, drive, arc);
+    }
+    let first = refine::instants(kinematics, candidates, arc);
+    refine::correct_jumps(kinematics, candidates, &first, arc);
     kinematics.close_again(rig);
     let times: Vec<f64> = first.iter().map(|i| i.time).collect();
     let rate_hz = kinematics.rate_hz;
@@ -116,8 +149,8 @@ fn refined(
     {
         drift::settle(series, &times, drive, rate_hz);
     }
-    let instants = refine::instants(kinematics, candidates, width);
-    refine::impacts(kinematics, candidates, &instants, drive, width)
+    let instants = refine::instants(kinematics, candidates, arc);
+    refine::impacts(kinematics, candidates, &instants, drive, arc)
 }
 
 struct Fused {
@@ -127,6 +160,14 @@ struct Fused {
     missed: usize,
     upward: usize,
     downward: usize,
+}
+
+/// Bounces under a constant force, from the velocity alone.
+fn bounces(velocity: &Series) -> Fused {
+    let candidates = bounce::find(velocity);
+    let gaps: Vec<f64> = candidates.iter().map(|c| c.jump.gap as f64).collect();
+    let jump_samples = robust::median(&gaps).map_or(1, |g| g.round() as usize);
+    Fused { candidates, jump_samples, unsupported: 0, missed: 0, upward: 0, downward: 0 }
 }
 
 /// Fuse jumps and contact pulses: a pulse belongs to the strongest jump inside it; a pulse without

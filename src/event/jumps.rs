@@ -73,7 +73,7 @@ impl<'a> JumpSearch<'a> {
             scan[left] = height;
         }
         let theory = velocity.noise * factor * 2f64.sqrt();
-        let seen = robust::robust_deviation(&scan).unwrap_or(0.0);
+        let seen = quiet_deviation(&scan);
         Self { velocity, window, gap, scan_deviation: seen.max(theory), scan }
     }
 
@@ -218,6 +218,18 @@ impl<'a> JumpSearch<'a> {
             })
             .collect()
     }
+}
+
+/// Deviation of the scan where nothing jumps, from the quarter of its values nearest to zero:
+/// impacts may follow each other so closely that half the scan is under their influence.
+fn quiet_deviation(scan: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = scan.iter().map(|v| v.abs()).filter(|v| *v > 0.0).collect();
+    let quarter = sizes.len() / 4;
+    if sizes.is_empty() {
+        return 0.0;
+    }
+    // A quarter of a normal distribution lies within 0.3186 deviations of its centre.
+    *sizes.select_nth_unstable_by(quarter, f64::total_cmp).1 / 0.3186
 }
 
 /// Weights that extrapolate a parabola from `count` samples by `ahead` steps beyond the first of

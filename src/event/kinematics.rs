@@ -66,6 +66,9 @@ pub struct Kinematics {
     pub closing: Body,
     /// From what the closing velocity was built; `None` without any velocity.
     pub closing_from: Option<ClosingFrom>,
+    /// The closing motion as it was measured (velocity, else displacement, else acceleration):
+    /// what is compared with itself a period later, free of any drift of integration.
+    pub waveform: Option<Series>,
 }
 
 impl Kinematics {
@@ -84,7 +87,17 @@ impl Kinematics {
             Rig::Single => Body::default(),
         };
         let (closing, closing_from) = closing_motion(&x, &y, rig);
-        Self { rate_hz, x, y, closing, closing_from }
+        let waveform = [
+            [Role::VelocityX, Role::VelocityY],
+            [Role::DisplacementX, Role::DisplacementY],
+            [Role::AccelerationX, Role::AccelerationY],
+        ]
+        .into_iter()
+        .find_map(|[of_x, of_y]| {
+            let of_y = if rig == Rig::Double { series(record, of_y) } else { None };
+            self::closing(&series(record, of_x), &of_y, rig).0
+        });
+        Self { rate_hz, x, y, closing, closing_from, waveform }
     }
 
     /// Build the closing motion anew after the bodies' signals were corrected.

@@ -27,7 +27,7 @@ pub struct ImpactBlock {
 }
 
 impl ImpactBlock {
-    /// Collect impacts without dead zone, faster than four standard errors.
+    /// Collect impacts without dead zone, faster than six standard errors.
     pub fn new(observations: &[Observation], relative_error: f64) -> Self {
         let pairs = observations
             .iter()
@@ -43,7 +43,7 @@ impl ImpactBlock {
                     error_m_s: impact.speed_error_m_s?,
                 })
             })
-            .filter(|p| p.before_m_s > 4.0 * p.error_m_s && p.after_m_s > -4.0 * p.error_m_s)
+            .filter(|p| p.before_m_s > 6.0 * p.error_m_s && p.after_m_s > -4.0 * p.error_m_s)
             .collect();
         Self { pairs, relative_error }
     }

@@ -87,7 +87,7 @@ fn bracket(before: &Observation, after: &Observation) -> Option<Bracket> {
     let rising = b > a;
     let one_run = before.setting.clearance_m == after.setting.clearance_m
         && before.setting.sweep == after.setting.sweep
-        && before.setting.drive_amplitude == after.setting.drive_amplitude
+        && (before.setting.drive_amplitude / after.setting.drive_amplitude - 1.0).abs() < 0.02
         && rising == (before.setting.sweep == Sweep::Up);
     if !one_run || before.finding.motion == after.finding.motion {
         return None;
@@ -97,7 +97,7 @@ fn bracket(before: &Observation, after: &Observation) -> Option<Bracket> {
         kind,
         periods_n,
         clearance_m: before.setting.clearance_m?,
-        drive_amplitude: before.setting.drive_amplitude,
+        drive_amplitude: 0.5 * (before.setting.drive_amplitude + after.setting.drive_amplitude),
         frequency_low_hz: a.min(b),
         frequency_high_hz: a.max(b),
         sweep: before.setting.sweep,

@@ -111,7 +111,7 @@ struct View {
 
 impl View {
     fn of(detection: &Detection, period_s: f64, settings: &ClassifySettings) -> Self {
-        let Some(velocity) = &detection.kinematics.closing.velocity else {
+        let Some(velocity) = &detection.kinematics.waveform else {
             return Self { closures: Vec::new(), noise_ratio: None, rest: false };
         };
         let rate_hz = detection.kinematics.rate_hz;

@@ -16,7 +16,7 @@ use std::path::Path;
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::Verdict;
-use crate::motion::{Bracket, Observation, brackets};
+use crate::motion::{Bracket, Observation, brackets, scale_drives};
 use crate::output::OutputError;
 use crate::pipeline::checkpoint::Checkpoint;
 use crate::record::source::ReadError;
@@ -119,7 +119,8 @@ impl Observed {
         Self::from_observations(observations)
     }
 
-    fn from_observations(observations: Vec<Observation>) -> Result<Self, PipelineError> {
+    fn from_observations(mut observations: Vec<Observation>) -> Result<Self, PipelineError> {
+        scale_drives(&mut observations);
         if observations.iter().all(Observation::excluded) {
             return Err(PipelineError::NothingUsable(observations.len()));
         }

@@ -16,6 +16,11 @@ use crate::record::open::open;
 use crate::record::source::Source;
 use crate::record::{Flag, Record};
 
+/// Settings of the detection as the campaign has them.
+fn detect_settings(campaign: &ResolvedCampaign) -> DetectSettings {
+    DetectSettings { flight: campaign.flight, ..DetectSettings::default() }
+}
+
 /// Settings of the classification as the campaign has them.
 fn classify_settings(campaign: &ResolvedCampaign) -> ClassifySettings {
     ClassifySettings {
@@ -74,7 +79,7 @@ fn observe_some(
         .into_par_iter()
         .map(|entries| {
             each_record(campaign, entries, |record| {
-                let detect = DetectSettings::default();
+                let detect = detect_settings(campaign);
                 let observation = observe(&record, campaign.machine, &detect, &settings);
                 each();
                 observation
