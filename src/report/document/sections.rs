@@ -4,6 +4,7 @@ use super::model::{Block, Definition, Rich, Section};
 use super::tables;
 use super::{Drawn, captions};
 use crate::report::content::ReportContent;
+use crate::report::figures::comparison;
 use crate::report::parameters::method_name;
 
 /// All sections in their order.
@@ -77,8 +78,9 @@ fn map_caption(content: &ReportContent) -> String {
 fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
     for comparison in &content.comparisons {
-        let name = crate::report::figures::comparison::name(comparison);
-        blocks.extend(drawn.figures_block(&[(&name, &comparison.note)]));
+        let name = comparison::name(comparison);
+        let caption = comparison::caption(comparison, drawn.numbers);
+        blocks.extend(drawn.figures_block(&[(&name, &caption)]));
     }
     if !blocks.is_empty() {
         let keys = "Each point as simulated with the fitted parameters (left) and as measured \

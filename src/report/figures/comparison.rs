@@ -21,7 +21,7 @@ const PORTRAIT_LEFT: f64 = 387.0;
 const TITLE_REACH: f64 = 22.0;
 const PORTRAIT_WIDTH: f64 = look::FULL_WIDTH - PORTRAIT_LEFT - 2.0;
 const ROW_GAP: f64 = 5.0;
-const TOP: f64 = 27.0;
+const TOP: f64 = 13.0;
 const BOTTOM: f64 = 22.0;
 const BACK_WIDTH: f64 = 1.7;
 
@@ -61,6 +61,27 @@ pub fn draw(comparison: &Comparison, numbers: NumberLook) -> Option<Figure> {
     Some(Figure::new(name, &title, sheet.canvas, csv(comparison)))
 }
 
+/// What stands under a comparison, with markup.
+pub fn caption(comparison: &Comparison, numbers: NumberLook) -> String {
+    let mut text = format!("Point ({})", comparison.letter);
+    if comparison.drive_period_s.is_some() {
+        text.push_str(&format!(", $z$ = {}", comparison.motion.label()));
+    }
+    if let (Some(eta), Some(rho)) = (comparison.eta, comparison.rho) {
+        let (eta, rho) = (numbers.fixed(eta, 3), numbers.fixed(rho, 3));
+        text.push_str(&format!(", at $η$ = {eta}, $ρ$ = {rho}"));
+    }
+    text.push_str(&format!("; record {}.", comparison.record));
+    let simulated = comparison.simulated_motion.as_ref();
+    if let Some(other) = simulated.filter(|m| **m != comparison.motion) {
+        text.push_str(&format!(" The simulated motion is {}.", other.label()));
+    }
+    if !comparison.note.is_empty() {
+        text.push_str(&format!(" {}", comparison.note));
+    }
+    text
+}
+
 /// Name of a comparison's figure.
 pub fn name(comparison: &Comparison) -> String {
     let letter = comparison.letter.chars();
@@ -72,13 +93,9 @@ pub fn name(comparison: &Comparison) -> String {
 
 fn rows(comparison: &Comparison) -> Vec<Row<'_>> {
     let pairs = [
-        ([Role::DisplacementX, Role::DisplacementY], "$x$, $y$", 38.0),
-        ([Role::VelocityX, Role::VelocityY], "$v_x$, $v_y$", 38.0),
-        (
-            [Role::AccelerationX, Role::AccelerationY],
-            "$a_x$, $a_y$",
-            38.0,
-        ),
+        ([Role::DisplacementX, Role::DisplacementY], "", 38.0),
+        ([Role::VelocityX, Role::VelocityY], "", 38.0),
+        ([Role::AccelerationX, Role::AccelerationY], "", 38.0),
         ([Role::Drive, Role::Drive], "drive", 22.0),
         ([Role::Contact, Role::Contact], "contact", 21.0),
         ([Role::FrameX, Role::FrameY], "frame", 21.0),
@@ -109,6 +126,12 @@ fn row<'a>(
         .fold(0.0, f64::max);
     let unit = print_unit(dimension, peak);
     let between = if height < 30.0 { "\n" } else { " " };
+    let symbols: Vec<&str> = traces.iter().map(|(t, _)| symbol(t.role)).collect();
+    let name = if symbols.iter().all(|s| s.starts_with('$')) {
+        symbols.join(", ")
+    } else {
+        name.into()
+    };
     let title = format!("{name}{between}({})", unit.symbol);
     Some(Row {
         traces,
@@ -248,39 +271,21 @@ impl Sheet<'_> {
         }
     }
 
+    /// The point's letter and mark, before the titles of the columns.
     fn heading(&mut self) {
         let c = self.comparison;
-        marks::draw(
-            &mut self.canvas,
-            (LEFT + 3.5, 5.5),
-            3.0,
-            marks::of(&c.motion),
-        );
         let letter = format!("({})", c.letter);
         let bold = TextLook::new(9.0, Anchor::Left)
             .face(Face::Bold)
             .colour(look::INK);
-        let x = LEFT + 10.0;
-        self.canvas.text((x, 8.5), &letter, bold);
-        let x = x + richtext::width(&letter, Face::Bold, 9.0) + 6.0;
-        let driven = c.drive_period_s.is_some();
-        let mut text = if driven {
-            format!("$z$ = {}", c.motion.label())
-        } else {
-            String::new()
-        };
-        if let (Some(eta), Some(rho)) = (c.eta, c.rho) {
-            let (eta, rho) = (self.numbers.fixed(eta, 3), self.numbers.fixed(rho, 3));
-            text.push_str(&format!(",   $η$ = {eta},   $ρ$ = {rho}"));
-        }
-        self.canvas.text((x, 8.5), &text, bold.face(Face::Regular));
-        let after = x + richtext::width(&text, Face::Regular, 9.0) + 12.0;
-        let quiet = TextLook::new(8.0, Anchor::Left).colour(look::QUIET);
-        let mut note = format!("record {}", c.record);
-        if let Some(simulated) = c.simulated_motion.as_ref().filter(|m| **m != c.motion) {
-            note.push_str(&format!("; simulated motion: {}", simulated.label()));
-        }
-        self.canvas.text((after, 8.5), &note, quiet);
+        self.canvas.text((1.0, TOP - 4.0), &letter, bold);
+        let after = 1.0 + richtext::width(&letter, Face::Bold, 9.0) + 6.0;
+        marks::draw(
+            &mut self.canvas,
+            (after, TOP - 7.0),
+            2.9,
+            marks::of(&c.motion),
+        );
     }
 
     fn columns(&mut self, rows: &[Row<'_>]) {
@@ -334,8 +339,11 @@ impl Sheet<'_> {
                 (false, Side::Measured) => &trace.measured,
             };
             if let Some(signal) = signal {
-                let width = if i == 0 { 0.65 } else { 1.25 };
-                let stroke = Stroke::solid(*colour, width);
+                let stroke = match (row.residual, i) {
+                    (true, _) => Stroke::solid(*colour, 0.45),
+                    (false, 0) => Stroke::solid(*colour, 0.6),
+                    (false, _) => Stroke::solid(marks::mix(*colour, 0.75), 1.6),
+                };
                 self.signal(&panel, signal, row.unit.factor, stroke);
             }
         }
