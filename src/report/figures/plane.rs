@@ -4,6 +4,9 @@ use super::axes::{Axis, range};
 use crate::identify::Estimate;
 use crate::report::content::{BracketRow, RecordRow, ReportContent};
 
+/// Least and greatest value, where there is any.
+type Range = Option<(f64, f64)>;
+
 /// Which coordinates the map has, and how they turn into laboratory units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plane {
@@ -87,12 +90,7 @@ impl Plane {
         )
     }
 
-    fn with_map(
-        &self,
-        content: &ReportContent,
-        x: Option<(f64, f64)>,
-        y: Option<(f64, f64)>,
-    ) -> (Option<(f64, f64)>, Option<(f64, f64)>) {
+    fn with_map(&self, content: &ReportContent, x: Range, y: Range) -> (Range, Range) {
         match &content.region_map {
             Some(map) => (union(x, edges(&map.eta)), union(y, edges(&map.rho))),
             None => (x, y),
@@ -100,7 +98,7 @@ impl Plane {
     }
 }
 
-fn pad(seen: Option<(f64, f64)>, share: f64) -> Option<(f64, f64)> {
+fn pad(seen: Range, share: f64) -> Range {
     let (low, high) = seen?;
     let pad = if high > low {
         share * (high - low)
@@ -110,7 +108,7 @@ fn pad(seen: Option<(f64, f64)>, share: f64) -> Option<(f64, f64)> {
     Some((low - pad, high + pad))
 }
 
-fn union(a: Option<(f64, f64)>, b: Option<(f64, f64)>) -> Option<(f64, f64)> {
+fn union(a: Range, b: Range) -> Range {
     match (a, b) {
         (Some(a), Some(b)) => Some((a.0.min(b.0), a.1.max(b.1))),
         (a, b) => a.or(b),
@@ -118,7 +116,7 @@ fn union(a: Option<(f64, f64)>, b: Option<(f64, f64)>) -> Option<(f64, f64)> {
 }
 
 /// Outer edges of evenly spaced cells.
-fn edges(centres: &[f64]) -> Option<(f64, f64)> {
+fn edges(centres: &[f64]) -> Range {
     let n = centres.len();
     if n < 2 {
         return None;
