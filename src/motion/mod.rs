@@ -1,6 +1,18 @@
 //! Types of motion z = p/n (p impacts in n drive periods), each with its evidence. This room
 //! sees no parameter of the model.
 
+pub mod aperiodic;
+pub mod bracket;
+pub mod classify;
+pub mod closure;
+pub mod fold;
+pub mod observation;
+pub mod response;
+
+pub use bracket::{BoundaryKind, Bracket, brackets};
+pub use classify::{ClassifySettings, Evidence, Finding, classify};
+pub use observation::{Observation, observe};
+
 use serde::{Deserialize, Serialize};
 
 /// The type of motion that a record shows.

@@ -2,6 +2,7 @@
 //!
 //! No result is computed here; what is drawn was found in the rooms to the left.
 
+pub mod assemble;
 pub mod content;
 pub mod document;
 pub mod figures;

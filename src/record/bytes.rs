@@ -1,0 +1,256 @@
+//! The bytes of an open instrument file: mapped, bounds-checked, in either byte order.
+//!
+//! Every reader of a binary format takes its bytes from here, so that no length a file claims
+//! is believed before the file is seen to hold it.
+
+use std::borrow::Cow;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use memmap2::Mmap;
+
+use super::numbers::ByteOrder;
+use super::source::ReadError;
+
+const DAMAGED: &str = "The file is damaged or was cut short: copy or export it again.";
+
+/// A file mapped into memory for reading.
+#[derive(Debug)]
+pub struct FileBytes {
+    path: PathBuf,
+    map: Option<Mmap>,
+}
+
+impl FileBytes {
+    /// Map a file. An empty file is a valid, empty sequence of bytes.
+    pub fn open(path: &Path) -> Result<Self, ReadError> {
+        let fault = |error: std::io::Error| ReadError {
+            path: path.to_path_buf(),
+            channel: None,
+            expected: "a readable file".into(),
+            found: error.to_string(),
+            byte: None,
+            remedy: "Check the path and the permission to read it.".into(),
+        };
+        let file = File::open(path).map_err(fault)?;
+        let length = file.metadata().map_err(fault)?.len();
+        let map = match length {
+            0 => None,
+            // SAFETY: the map is only read; a file that another program cuts short meanwhile
+            // ends this program with a bus error, as with every mapped reader.
+            _ => Some(unsafe { Mmap::map(&file) }.map_err(fault)?),
+        };
+        Ok(Self {
+            path: path.to_path_buf(),
+            map,
+        })
+    }
+
+    /// The file's path.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// All bytes.
+    pub fn all(&self) -> &[u8] {
+        self.map.as_deref().unwrap_or(&[])
+    }
+
+    /// Number of bytes.
+    pub fn len(&self) -> u64 {
+        self.all().len() as u64
+    }
+
+    /// The bytes `at..at + length`, which are called `what` where the file does not hold them.
+    pub fn slice(&self, at: u64, length: u64, what: &str) -> Result<&[u8], ReadError> {
+        let end = at.checked_add(length).filter(|&end| end <= self.len());
+        match end {
+            Some(end) => Ok(&self.all()[at as usize..end as usize]),
+            None => Err(self.refuse(
+                at,
+                format!("{length} bytes of {what}"),
+                format!("only {} bytes left", self.len().saturating_sub(at)),
+            )),
+        }
+    }
+
+    /// An error at a byte: what was expected and what was found.
+    pub fn refuse(
+        &self,
+        at: u64,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+    ) -> ReadError {
+        ReadError {
+            path: self.path.clone(),
+            channel: None,
+            expected: expected.into(),
+            found: found.into(),
+            byte: Some(at),
+            remedy: DAMAGED.into(),
+        }
+    }
+
+    /// An error for something valid that this program does not read, with the remedy.
+    pub fn unsupported(
+        &self,
+        at: u64,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> ReadError {
+        ReadError {
+            remedy: remedy.into(),
+            ..self.refuse(at, expected, found)
+        }
+    }
+
+    /// A cursor over the whole file.
+    pub fn cursor(&self, order: ByteOrder) -> Cursor<'_> {
+        Cursor {
+            file: self,
+            at: 0,
+            end: self.len(),
+            order,
+        }
+    }
+}
+
+/// A position in a file that moves forward by checked reads.
+#[derive(Debug, Clone)]
+pub struct Cursor<'a> {
+    file: &'a FileBytes,
+    at: u64,
+    end: u64,
+    order: ByteOrder,
+}
+
+impl<'a> Cursor<'a> {
+    /// Offset of the next byte in the file.
+    pub fn at(&self) -> u64 {
+        self.at
+    }
+
+    /// Bytes left before the cursor's end.
+    pub fn left(&self) -> u64 {
+        self.end.saturating_sub(self.at)
+    }
+
+    /// The byte order of the numbers that follow.
+    pub fn set_order(&mut self, order: ByteOrder) {
+        self.order = order;
+    }
+
+    /// Move to an offset of the file.
+    pub fn seek(&mut self, at: u64) {
+        self.at = at;
+    }
+
+    /// A cursor over `at..end` of the same file.
+    pub fn part(&self, at: u64, end: u64) -> Cursor<'a> {
+        Cursor {
+            file: self.file,
+            at,
+            end: end.min(self.file.len()),
+            order: self.order,
+        }
+    }
+
+    /// The next bytes, called `what` in an error.
+    pub fn take(&mut self, length: u64, what: &str) -> Result<&'a [u8], ReadError> {
+        if length > self.left() {
+            let found = format!("only {} bytes left", self.left());
+            return Err(self
+                .file
+                .refuse(self.at, format!("{length} bytes of {what}"), found));
+        }
+        let bytes = self.file.slice(self.at, length, what)?;
+        self.at += length;
+        Ok(bytes)
+    }
+
+    fn array<const N: usize>(&mut self, what: &str) -> Result<[u8; N], ReadError> {
+        let mut array = [0; N];
+        array.copy_from_slice(self.take(N as u64, what)?);
+        if self.order == ByteOrder::Big {
+            array.reverse();
+        }
+        Ok(array)
+    }
+
+    /// The next unsigned byte.
+    pub fn u8(&mut self, what: &str) -> Result<u8, ReadError> {
+        Ok(self.array::<1>(what)?[0])
+    }
+
+    /// The next 16-bit unsigned integer.
+    pub fn u16(&mut self, what: &str) -> Result<u16, ReadError> {
+        Ok(u16::from_le_bytes(self.array(what)?))
+    }
+
+    /// The next 32-bit unsigned integer.
+    pub fn u32(&mut self, what: &str) -> Result<u32, ReadError> {
+        Ok(u32::from_le_bytes(self.array(what)?))
+    }
+
+    /// The next 64-bit unsigned integer.
+    pub fn u64(&mut self, what: &str) -> Result<u64, ReadError> {
+        Ok(u64::from_le_bytes(self.array(what)?))
+    }
+
+    /// An error at the cursor's position.
+    pub fn refuse(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
+        self.file.refuse(self.at, expected, found)
+    }
+}
+
+/// Text of unknown encoding: UTF-8 where it is valid, else Windows-1252 (of which every byte
+/// sequence is valid), so that `m/s²` of an older instrument survives.
+pub fn decode_text(bytes: &[u8]) -> Cow<'_, str> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Cow::Borrowed(text),
+        Err(_) => {
+            encoding_rs::WINDOWS_1252
+                .decode_without_bom_handling(bytes)
+                .0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(content: &[u8]) -> (tempfile::NamedTempFile, FileBytes) {
+        let temp = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(temp.path(), content).unwrap();
+        let bytes = FileBytes::open(temp.path()).unwrap();
+        (temp, bytes)
+    }
+
+    #[test]
+    fn valid_cursor_reads_both_orders_and_refuses_the_end() {
+        let (_keep, bytes) = file(&[1, 0, 0, 0, 0, 0, 0, 1, 9]);
+        let mut cursor = bytes.cursor(ByteOrder::Little);
+        assert_eq!(cursor.u32("a number").unwrap(), 1);
+        cursor.set_order(ByteOrder::Big);
+        assert_eq!(cursor.u32("a number").unwrap(), 1);
+        let error = cursor.u16("a length").unwrap_err();
+        assert_eq!(error.byte, Some(8));
+        assert!(error.to_string().contains("2 bytes of a length"), "{error}");
+        assert!(bytes.slice(u64::MAX, 2, "data").is_err());
+    }
+
+    #[test]
+    fn valid_empty_and_missing_files() {
+        let (_keep, bytes) = file(&[]);
+        assert_eq!(bytes.len(), 0);
+        assert!(FileBytes::open(Path::new("/nonexistent/x.tdms")).is_err());
+    }
+
+    #[test]
+    fn valid_text_in_old_code_page() {
+        assert_eq!(decode_text(b"m/s\xb2"), "m/s²");
+        assert_eq!(decode_text("m/s²".as_bytes()), "m/s²");
+    }
+}

@@ -1,0 +1,309 @@
+//! NI TDMS files of versions 4712 and 4713.
+//!
+//! How a file maps to datasets and channels:
+//!
+//! - Each group that has channels is a dataset, named as the group; its channels carry their own
+//!   names, so that records kept as groups of one file have channels of the same names. The
+//!   properties of the file and of the group are the dataset's attributes.
+//! - `unit_string` (else `NI_UnitDescription`) is the unit, 1/`wf_increment` the sample rate
+//!   unless `wf_xunit_string` names another unit than seconds, `wf_start_time` the start. All
+//!   properties are kept as text.
+//! - `NI_Scale` chains of linear, polynomial and table scales are applied, also to DAQmx raw
+//!   data; a channel with another scaling is listed, and reading it is refused by the scaling's
+//!   name. A scaled channel is told as 64-bit floating point, with the raw type as a property.
+//! - A channel of time stamps gives seconds since its first stamp (no precision is lost that
+//!   way); the first stamp is its start time, and it is the dataset's time axis.
+//! - A last segment that was cut short is read as far as it goes, with a note.
+
+mod layout;
+mod samples;
+mod scale;
+mod segment;
+#[cfg(test)]
+mod tests;
+mod value;
+
+use std::collections::{BTreeMap, HashMap};
+use std::path::Path;
+use std::sync::Arc;
+
+use samples::Reader;
+use scale::Scaling;
+use segment::{Content, Object};
+use value::{Kind, Value};
+
+use super::bytes::FileBytes;
+use super::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType};
+
+/// The scaling of a channel, or what of it is not done; shared by channels that inherit it.
+type Scale = Arc<Result<Scaling, String>>;
+
+/// Whether a file's first bytes are those of a TDMS file.
+pub fn recognises(head: &[u8]) -> bool {
+    head.starts_with(b"TDSm")
+}
+
+/// Open a TDMS file: the metadata of all segments is read, no samples are.
+pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
+    let file = FileBytes::open(path)?;
+    if file.all().starts_with(b"TDSh") {
+        let remedy = "Open the .tdms file itself.";
+        return Err(file.unsupported(0, "a TDMS index (.tdms_index)", "a TDMS file", remedy));
+    }
+    let content = segment::scan(&file)?;
+    let mut builder = Builder::new(&file, &content);
+    builder.build()?;
+    let Builder {
+        datasets, channels, ..
+    } = builder;
+    Ok(Box::new(TdmsFile {
+        file,
+        content,
+        datasets,
+        channels,
+    }))
+}
+
+struct TdmsFile {
+    file: FileBytes,
+    content: Content,
+    datasets: Vec<DatasetInfo>,
+    /// For each dataset its channels: the object and its scaling.
+    channels: Vec<Vec<(usize, Scale)>>,
+}
+
+impl TdmsFile {
+    fn channel(&self, dataset: usize, channel: usize) -> Result<Samples, ReadError> {
+        let Some((object, scale)) = self.channels.get(dataset).and_then(|all| all.get(channel))
+        else {
+            let found = format!("a request for channel {channel} of dataset {dataset}");
+            return Err(ReadError {
+                byte: None,
+                remedy: "Ask for channels that the file lists.".into(),
+                ..self.file.refuse(0, "a channel of the file", found)
+            });
+        };
+        let object = &self.content.objects[*object];
+        let name = || Some(object.path.join("/"));
+        let scaling = scale.as_ref().as_ref().map_err(|found| ReadError {
+            channel: name(),
+            byte: None,
+            ..self.file.unsupported(
+                0,
+                found.clone(),
+                "linear, polynomial or table scaling",
+                "Save the channel scaled, or scale it in campaign.toml from its raw values.",
+            )
+        })?;
+        let reader = Reader {
+            file: &self.file,
+            content: &self.content,
+        };
+        reader.samples(object, scaling).map_err(|e| ReadError {
+            channel: name(),
+            ..e
+        })
+    }
+}
+
+impl Source for TdmsFile {
+    fn format(&self) -> &'static str {
+        "tdms"
+    }
+
+    fn path(&self) -> &Path {
+        self.file.path()
+    }
+
+    fn datasets(&self) -> &[DatasetInfo] {
+        &self.datasets
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.content.notes
+    }
+
+    fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
+        channels
+            .iter()
+            .map(|&channel| self.channel(dataset, channel))
+            .collect()
+    }
+}
+
+/// Builds datasets from groups.
+struct Builder<'a> {
+    file: &'a FileBytes,
+    content: &'a Content,
+    datasets: Vec<DatasetInfo>,
+    channels: Vec<Vec<(usize, Scale)>>,
+    groups: HashMap<&'a str, usize>,
+    /// Objects of groups by name, and the scaling each describes for its channels.
+    inherited: HashMap<&'a str, (usize, Option<Scale>)>,
+    root: Option<&'a Object>,
+    root_scale: Option<Scale>,
+}
+
+impl<'a> Builder<'a> {
+    fn new(file: &'a FileBytes, content: &'a Content) -> Self {
+        let own = |object: &Object| Scaling::of(&object.properties).map(Arc::new);
+        let root = content.objects.iter().find(|object| object.path.is_empty());
+        let groups = content
+            .objects
+            .iter()
+            .enumerate()
+            .filter(|(_, o)| o.path.len() == 1);
+        Self {
+            file,
+            content,
+            datasets: Vec::new(),
+            channels: Vec::new(),
+            groups: HashMap::new(),
+            inherited: groups
+                .map(|(i, o)| (o.path[0].as_str(), (i, own(o))))
+                .collect(),
+            root,
+            root_scale: root.and_then(own),
+        }
+    }
+
+    fn build(&mut self) -> Result<(), ReadError> {
+        for (index, object) in self.content.objects.iter().enumerate() {
+            let [group, name] = object.path.as_slice() else {
+                continue;
+            };
+            let dataset = self.dataset(group);
+            let scale = self.scale(group, object);
+            let info = self.info(object, name, &scale)?;
+            let target = &mut self.datasets[dataset];
+            if info.stored == StoredType::Time && target.time_axis.is_none() {
+                target.time_axis = Some(target.channels.len());
+            }
+            target.channels.push(info);
+            self.channels[dataset].push((index, scale));
+        }
+        self.share_root();
+        Ok(())
+    }
+
+    fn dataset(&mut self, group: &'a str) -> usize {
+        if let Some(&index) = self.groups.get(group) {
+            return index;
+        }
+        let index = self.datasets.len();
+        self.groups.insert(group, index);
+        let own = self
+            .inherited
+            .get(group)
+            .map(|&(object, _)| &self.content.objects[object]);
+        let attributes = own
+            .map(|object| texts(&object.properties))
+            .unwrap_or_default();
+        let name = group.to_owned();
+        self.datasets.push(DatasetInfo {
+            name,
+            channels: Vec::new(),
+            time_axis: None,
+            attributes,
+        });
+        self.channels.push(Vec::new());
+        index
+    }
+
+    /// Repeat the file's properties with every group, or with the first only where that would
+    /// take more memory than the file.
+    fn share_root(&mut self) {
+        let Some(root) = self.root else { return };
+        let all = texts(&root.properties);
+        let size: usize = all
+            .iter()
+            .map(|(name, value)| name.len() + value.len() + 64)
+            .sum();
+        let affordable = (size * self.datasets.len()) as u64 <= self.file.len().max(1 << 16);
+        let reach = if affordable { self.datasets.len() } else { 1 };
+        for dataset in self.datasets.iter_mut().take(reach) {
+            for (name, value) in &all {
+                dataset
+                    .attributes
+                    .entry(name.clone())
+                    .or_insert_with(|| value.clone());
+            }
+        }
+    }
+
+    /// The scaling of a channel: its own, else its group's, else the file's, else none.
+    fn scale(&self, group: &str, object: &Object) -> Scale {
+        let own = Scaling::of(&object.properties).map(Arc::new);
+        let group = || {
+            self.inherited
+                .get(group)
+                .and_then(|(_, scale)| scale.clone())
+        };
+        own.or_else(group)
+            .or_else(|| self.root_scale.clone())
+            .unwrap_or_else(|| Arc::new(Ok(Scaling::default())))
+    }
+
+    fn info(&self, object: &Object, name: &str, scale: &Scale) -> Result<ChannelInfo, ReadError> {
+        let reader = Reader {
+            file: self.file,
+            content: self.content,
+        };
+        let kind = object
+            .kind
+            .unwrap_or(Kind::Number(super::numbers::Number::F64));
+        let mut properties = texts(&object.properties);
+        let raw = match reader.first_device(object) {
+            Some(device) => device.scalers[0].number.stored(),
+            None => kind.stored(),
+        };
+        use StoredType::{Bool, Complex, Text, Time};
+        let number = !matches!(raw, Text | Time | Bool | Complex(_));
+        let scaled = number && scale.as_ref().as_ref().map_or(true, Scaling::changes);
+        if scaled {
+            properties.insert("raw_type".into(), format!("{raw:?}"));
+        }
+        let is_time = kind == Kind::Time;
+        let first = if is_time {
+            reader.first_stamp(object)?
+        } else {
+            None
+        };
+        let property = |key: &str| object.properties.get(key);
+        let stated = ["unit_string", "NI_UnitDescription"]
+            .into_iter()
+            .filter_map(property);
+        let unit = stated.map(Value::text).find(|unit| !unit.is_empty());
+        let start = match property("wf_start_time") {
+            Some(Value::Time(stamp)) => stamp.iso8601(),
+            _ => None,
+        };
+        Ok(ChannelInfo {
+            name: name.to_owned(),
+            unit: if is_time { Some("s".into()) } else { unit },
+            stored: if scaled { StoredType::Float(64) } else { raw },
+            samples: object.samples,
+            sample_rate_hz: sample_rate(&object.properties),
+            start_time: first.and_then(value::Stamp::iso8601).or(start),
+            properties,
+        })
+    }
+}
+
+fn texts(properties: &BTreeMap<String, Value>) -> BTreeMap<String, String> {
+    properties
+        .iter()
+        .map(|(name, value)| (name.clone(), value.text()))
+        .collect()
+}
+
+/// 1/`wf_increment` where the abscissa is time.
+fn sample_rate(properties: &BTreeMap<String, Value>) -> Option<f64> {
+    let abscissa = properties
+        .get("wf_xunit_string")
+        .map(Value::text)
+        .unwrap_or_default();
+    let increment = properties.get("wf_increment").and_then(Value::number)?;
+    let rate = increment.recip();
+    (matches!(abscissa.as_str(), "" | "s") && rate.is_finite() && rate > 0.0).then_some(rate)
+}

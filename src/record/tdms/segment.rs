@@ -1,0 +1,561 @@
+//! The segments of a TDMS file: lead-in, metadata, and where their raw data lie.
+
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
+
+use super::layout::{Device, Layout, Scaler, Share};
+use super::value::{self, Kind, Value};
+use crate::record::bytes::{Cursor, FileBytes};
+use crate::record::numbers::{ByteOrder, Number};
+use crate::record::source::ReadError;
+
+const META_DATA: u32 = 1 << 1;
+const NEW_LIST: u32 = 1 << 2;
+const RAW_DATA: u32 = 1 << 3;
+const INTERLEAVED: u32 = 1 << 5;
+const BIG_ENDIAN: u32 = 1 << 6;
+
+/// Bytes of a segment's lead-in.
+const LEAD_IN: u64 = 28;
+const NO_DATA: u32 = u32::MAX;
+const AS_BEFORE: u32 = 0;
+const DEVICE: u32 = 0x1269;
+const DIGITAL: [u32; 2] = [0x126a, 0x1369];
+
+/// A file, group or channel.
+#[derive(Debug, Default)]
+pub struct Object {
+    /// Empty for the file, one part for a group, two for a channel.
+    pub path: Vec<String>,
+    /// Its properties, of which later segments may change some.
+    pub properties: BTreeMap<String, Value>,
+    /// Kind of its samples, once it has some.
+    pub kind: Option<Kind>,
+    /// Number of its samples.
+    pub samples: u64,
+    /// Layouts in which it has samples, and its entry in each.
+    pub places: Vec<(u32, u32)>,
+    share: Option<Share>,
+    listed: bool,
+    active: bool,
+}
+
+/// Chunks of one layout that follow each other in the file.
+#[derive(Debug, Clone, Copy)]
+pub struct Piece {
+    /// Offset of the first chunk.
+    pub at: u64,
+    /// Number of chunks.
+    pub chunks: u64,
+    /// Their layout.
+    pub layout: u32,
+    /// Byte order of the numbers.
+    pub order: ByteOrder,
+    /// Whether the channels are interleaved row by row.
+    pub interleaved: bool,
+}
+
+/// All that opening a file finds.
+#[derive(Debug, Default)]
+pub struct Content {
+    /// File, groups and channels in order of appearance.
+    pub objects: Vec<Object>,
+    /// The layouts of the chunks.
+    pub layouts: Vec<Layout>,
+    /// The raw data in file order.
+    pub pieces: Vec<Piece>,
+    /// For each layout its pieces.
+    pub pieces_of: Vec<Vec<u32>>,
+    /// What was skipped or assumed.
+    pub notes: Vec<String>,
+}
+
+struct LeadIn {
+    at: u64,
+    flags: u32,
+    data: u64,
+    end: u64,
+    cut_short: bool,
+}
+
+impl LeadIn {
+    fn order(&self) -> ByteOrder {
+        if self.flags & BIG_ENDIAN != 0 {
+            ByteOrder::Big
+        } else {
+            ByteOrder::Little
+        }
+    }
+}
+
+/// Find all segments of a file.
+pub fn scan(file: &FileBytes) -> Result<Content, ReadError> {
+    let mut scanner = Scanner {
+        file,
+        content: Content::default(),
+        by_path: HashMap::new(),
+        list: Vec::new(),
+        current: None,
+        built: 0,
+    };
+    let mut at = 0;
+    while at < file.len() {
+        let Some(lead) = scanner.lead_in(at)? else {
+            break;
+        };
+        scanner.segment(&lead)?;
+        at = lead.end;
+    }
+    scanner.count();
+    Ok(scanner.content)
+}
+
+struct Scanner<'a> {
+    file: &'a FileBytes,
+    content: Content,
+    by_path: HashMap<String, usize>,
+    /// The objects of the present segment, in the order of their data.
+    list: Vec<usize>,
+    /// The present layout.
+    current: Option<u32>,
+    /// Entries of all layouts built so far.
+    built: u64,
+}
+
+impl Scanner<'_> {
+    fn lead_in(&mut self, at: u64) -> Result<Option<LeadIn>, ReadError> {
+        let left = self.file.len() - at;
+        if left < LEAD_IN && at > 0 {
+            self.content.notes.push(format!(
+                "{left} bytes at byte {at} are no segment: not read"
+            ));
+            return Ok(None);
+        }
+        let mut cursor = self.file.cursor(ByteOrder::Little);
+        cursor.seek(at);
+        let tag = cursor.take(4, "a segment's tag")?;
+        if tag != b"TDSm" {
+            let found = String::from_utf8_lossy(tag).into_owned();
+            return Err(self
+                .file
+                .refuse(at, "the tag TDSm of a segment", format!("{found:?}")));
+        }
+        let flags = cursor.u32("a segment's flags")?;
+        let order = if flags & BIG_ENDIAN != 0 {
+            ByteOrder::Big
+        } else {
+            ByteOrder::Little
+        };
+        cursor.set_order(order);
+        let version = cursor.u32("a version")?;
+        if !matches!(version, 4712 | 4713) {
+            return Err(self
+                .file
+                .refuse(at + 8, "version 4712 or 4713", version.to_string()));
+        }
+        let next = cursor.u64("the length of a segment")?;
+        let raw = cursor.u64("the length of the metadata")?;
+        let start = cursor.at();
+        let end = start
+            .checked_add(next)
+            .filter(|&end| end <= self.file.len());
+        let cut_short = end.is_none();
+        let end = end.unwrap_or(self.file.len());
+        let data = start.checked_add(raw).filter(|&data| data <= end);
+        if cut_short {
+            self.content.notes.push(format!(
+                "the last segment (byte {at}) was cut short: read as far as it goes"
+            ));
+        }
+        match data {
+            Some(data) => Ok(Some(LeadIn {
+                at,
+                flags,
+                data,
+                end,
+                cut_short,
+            })),
+            None if cut_short && at > 0 => Ok(None),
+            None => Err(self.file.refuse(
+                at + 20,
+                format!("metadata within {} bytes", end - start),
+                raw.to_string(),
+            )),
+        }
+    }
+
+    fn segment(&mut self, lead: &LeadIn) -> Result<(), ReadError> {
+        if lead.flags & META_DATA != 0 {
+            self.metadata(lead)?;
+        } else if self.current.is_none() && lead.flags & RAW_DATA != 0 && lead.data < lead.end {
+            return Err(self.file.refuse(
+                lead.at,
+                "metadata in the first segment with data",
+                "none",
+            ));
+        }
+        if lead.flags & RAW_DATA != 0 {
+            self.raw_data(lead)?;
+        }
+        Ok(())
+    }
+
+    fn metadata(&mut self, lead: &LeadIn) -> Result<(), ReadError> {
+        let fresh = lead.flags & NEW_LIST != 0 || self.current.is_none();
+        if fresh {
+            for object in std::mem::take(&mut self.list) {
+                let object = &mut self.content.objects[object];
+                (object.listed, object.active) = (false, false);
+            }
+        }
+        let mut cursor = self
+            .file
+            .cursor(lead.order())
+            .part(lead.at + LEAD_IN, lead.data);
+        let count = cursor.u32("the number of objects")?;
+        let mut changed = fresh;
+        for _ in 0..count {
+            changed |= self.object(&mut cursor, lead)?;
+        }
+        if changed {
+            self.lay_out(lead, fresh)?;
+        }
+        Ok(())
+    }
+
+    /// Read one object's metadata; tells whether the layout of the data changes with it.
+    fn object(&mut self, cursor: &mut Cursor<'_>, lead: &LeadIn) -> Result<bool, ReadError> {
+        let at = cursor.at();
+        let path = value::text(cursor, "an object's path")?;
+        let index = match self.by_path.get(&path) {
+            Some(&index) => index,
+            None => {
+                let parts = split_path(&path).ok_or_else(|| {
+                    self.file
+                        .refuse(at, "a path such as /'group'/'channel'", format!("{path:?}"))
+                })?;
+                let index = self.content.objects.len();
+                self.content.objects.push(Object {
+                    path: parts,
+                    ..Object::default()
+                });
+                self.by_path.insert(path, index);
+                index
+            }
+        };
+        let changed = self.raw_index(cursor, index)?;
+        let properties = cursor.u32("the number of properties")?;
+        let big = lead.order() == ByteOrder::Big;
+        for _ in 0..properties {
+            let name = value::text(cursor, "a property's name")?;
+            let code = cursor.u32("a property's type")?;
+            let value = Value::read(cursor, code, big)?;
+            self.content.objects[index].properties.insert(name, value);
+        }
+        Ok(changed)
+    }
+
+    fn raw_index(&mut self, cursor: &mut Cursor<'_>, index: usize) -> Result<bool, ReadError> {
+        let at = cursor.at();
+        let header = cursor.u32("a raw data index")?;
+        let object = &mut self.content.objects[index];
+        if !object.listed {
+            object.listed = true;
+            self.list.push(index);
+        }
+        let was_active = object.active;
+        object.active = header != NO_DATA;
+        match header {
+            NO_DATA => return Ok(was_active),
+            AS_BEFORE if object.share.is_some() => return Ok(!was_active),
+            AS_BEFORE => {
+                return Err(self
+                    .file
+                    .refuse(at, "a raw data index", "a reference to none before"));
+            }
+            _ => {}
+        }
+        if object.path.len() != 2 {
+            return Err(self
+                .file
+                .refuse(at, "raw data of a channel", "raw data of a group"));
+        }
+        let share = self.share(cursor, header)?;
+        let object = &mut self.content.objects[index];
+        if share.count > 0 && *object.kind.get_or_insert(share.kind) != share.kind {
+            let found = format!("channel {:?} that changes its type", object.path);
+            return Err(self.file.refuse(at, "one type per channel", found));
+        }
+        object.share = Some(share);
+        Ok(true)
+    }
+
+    fn share(&self, cursor: &mut Cursor<'_>, header: u32) -> Result<Share, ReadError> {
+        let at = cursor.at() - 4;
+        let digital = DIGITAL.contains(&header);
+        let device = digital || header == DEVICE;
+        if !device && !(20..=28).contains(&header) {
+            let expected = "a raw data index of 20 or 28 bytes, or one of DAQmx";
+            return Err(self.file.refuse(at, expected, format!("{header:#x}")));
+        }
+        let code = cursor.u32("a data type")?;
+        let kind = Kind::of(code).map_err(|found| {
+            let remedy = "Save the channel as double precision numbers.";
+            self.file
+                .unsupported(at + 4, found, "a data type that is read", remedy)
+        })?;
+        let dimension = cursor.u32("a dimension")?;
+        if dimension != 1 {
+            return Err(self
+                .file
+                .refuse(at + 8, "dimension 1", dimension.to_string()));
+        }
+        let count = cursor.u64("the number of samples")?;
+        if device {
+            let device = Some(Arc::new(self.device(cursor, digital)?));
+            return Ok(Share {
+                kind,
+                count,
+                bytes: 0,
+                device,
+            });
+        }
+        let bytes = match kind.bytes() {
+            Some(size) => count.checked_mul(size),
+            None if kind == Kind::Text => {
+                Some(cursor.u64("the bytes of texts")?).filter(|&bytes| bytes / 4 >= count)
+            }
+            None => None,
+        };
+        match bytes {
+            Some(bytes) => Ok(Share {
+                kind,
+                count,
+                bytes,
+                device: None,
+            }),
+            None => Err(self.file.refuse(
+                at,
+                "a length that fits the type",
+                format!("{count} samples"),
+            )),
+        }
+    }
+
+    fn device(&self, cursor: &mut Cursor<'_>, digital: bool) -> Result<Device, ReadError> {
+        let at = cursor.at();
+        let count = cursor.u32("the number of DAQmx scalers")?;
+        let scalers: Result<Vec<_>, _> = (0..count).map(|_| scaler(cursor, digital)).collect();
+        let scalers = scalers?;
+        let widths = cursor.u32("the number of raw data widths")?;
+        let widths: Result<Vec<_>, _> = (0..widths)
+            .map(|_| cursor.u32("a raw data width").map(u64::from))
+            .collect();
+        if scalers.is_empty() {
+            return Err(self.file.refuse(at, "at least one DAQmx scaler", "none"));
+        }
+        Ok(Device {
+            scalers,
+            widths: widths?,
+        })
+    }
+
+    /// Build the layout of the listed objects that have data.
+    fn lay_out(&mut self, lead: &LeadIn, fresh: bool) -> Result<(), ReadError> {
+        let objects = &self.content.objects;
+        let active = self.list.iter().filter(|&&index| objects[index].active);
+        let shares: Vec<_> = active
+            .filter_map(|&index| Some((index, objects[index].share.clone()?)))
+            .collect();
+        if !fresh {
+            self.spend(lead.at, shares.len())?;
+        }
+        let layout = Layout::new(shares).map_err(|found| self.layout_fault(lead, found))?;
+        let same = self
+            .current
+            .is_some_and(|c| self.content.layouts[c as usize] == layout);
+        if !same {
+            self.add(layout);
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, layout: Layout) {
+        self.current = Some(self.content.layouts.len() as u32);
+        self.content.layouts.push(layout);
+        self.content.pieces_of.push(Vec::new());
+    }
+
+    fn layout_fault(&self, lead: &LeadIn, found: String) -> ReadError {
+        self.file
+            .refuse(lead.at, "channels whose data fit together", found)
+    }
+
+    /// Count entries of layouts that a few bytes of metadata can call forth.
+    fn spend(&mut self, at: u64, entries: usize) -> Result<(), ReadError> {
+        self.built += entries as u64;
+        match self.built <= self.file.len() / 4 + 4096 {
+            true => Ok(()),
+            false => Err(self
+                .file
+                .refuse(at, "layouts in proportion to the file", "far too many")),
+        }
+    }
+
+    fn raw_data(&mut self, lead: &LeadIn) -> Result<(), ReadError> {
+        let total = lead.end - lead.data;
+        let Some(current) = self.current.filter(|_| total > 0) else {
+            return Ok(());
+        };
+        let layout = &self.content.layouts[current as usize];
+        if layout.chunk == 0 {
+            let found = format!("{total} bytes of data");
+            return Err(self
+                .file
+                .refuse(lead.data, "no data, as no channel has any", found));
+        }
+        let device = layout
+            .entries
+            .iter()
+            .any(|entry| entry.share.device.is_some());
+        let interleaved = lead.flags & INTERLEAVED != 0 && !device;
+        if interleaved && !layout.can_interleave() {
+            let expected = "interleaved channels of equal lengths and fixed types";
+            return Err(self.file.refuse(lead.at, expected, "others"));
+        }
+        let (chunks, rest) = (total / layout.chunk, total % layout.chunk);
+        let cut = layout.cut(rest, lead.cut_short, interleaved);
+        let order = lead.order();
+        let piece = Piece {
+            at: lead.data,
+            chunks,
+            layout: current,
+            order,
+            interleaved,
+        };
+        let rest_at = lead.data + chunks * layout.chunk;
+        if chunks > 0 {
+            self.piece(piece);
+        }
+        if rest > 0 {
+            self.spend(lead.at, cut.entries.len())?;
+            self.content.notes.push(format!(
+                "the chunk at byte {rest_at} is incomplete: read as far as it goes"
+            ));
+            self.add(cut);
+            let layout = self.content.layouts.len() as u32 - 1;
+            self.piece(Piece {
+                at: rest_at,
+                chunks: 1,
+                layout,
+                ..piece
+            });
+            self.current = Some(current);
+        }
+        Ok(())
+    }
+
+    fn piece(&mut self, piece: Piece) {
+        self.content.pieces_of[piece.layout as usize].push(self.content.pieces.len() as u32);
+        self.content.pieces.push(piece);
+    }
+
+    /// Count each channel's samples and note where they are.
+    fn count(&mut self) {
+        let content = &mut self.content;
+        for (index, layout) in content.layouts.iter().enumerate() {
+            let pieces = content.pieces_of[index].iter();
+            let chunks: u64 = pieces
+                .map(|&piece| content.pieces[piece as usize].chunks)
+                .sum();
+            if chunks == 0 {
+                continue;
+            }
+            let with_data = layout
+                .entries
+                .iter()
+                .enumerate()
+                .filter(|(_, e)| e.share.count > 0);
+            for (position, entry) in with_data {
+                let object = &mut content.objects[entry.object];
+                object.samples += chunks * entry.share.count;
+                object.places.push((index as u32, position as u32));
+            }
+        }
+    }
+}
+
+fn scaler(cursor: &mut Cursor<'_>, digital: bool) -> Result<Scaler, ReadError> {
+    let code = cursor.u32("a DAQmx type")?;
+    let number = match code {
+        0 => Number::U8,
+        1 => Number::I8,
+        2 => Number::U16,
+        3 => Number::I16,
+        4 => Number::U32,
+        5 => Number::I32,
+        6 => Number::U64,
+        7 => Number::I64,
+        other => return Err(cursor.refuse("a DAQmx type from 0 to 7", other.to_string())),
+    };
+    let buffer = cursor.u32("a DAQmx buffer")?;
+    let offset = u64::from(cursor.u32("a DAQmx offset")?);
+    match digital {
+        true => drop(cursor.u8("a DAQmx bitmap")?),
+        false => drop(cursor.u32("a DAQmx bitmap")?),
+    }
+    let scale = cursor.u32("a DAQmx scale")?;
+    let (byte, bit) = match digital {
+        true => (offset / 8, Some((offset % 8) as u32)),
+        false => (offset, None),
+    };
+    Ok(Scaler {
+        scale,
+        number,
+        buffer,
+        byte,
+        bit,
+    })
+}
+
+/// The parts of `/'group'/'channel'`; a quote in a name stands doubled.
+fn split_path(path: &str) -> Option<Vec<String>> {
+    if path == "/" {
+        return Some(Vec::new());
+    }
+    let mut parts = Vec::new();
+    let mut rest = path;
+    while !rest.is_empty() {
+        let mut name = String::new();
+        let mut characters = rest.strip_prefix("/'")?.char_indices().peekable();
+        let end = loop {
+            match characters.next()? {
+                (_, '\'') if characters.next_if(|&(_, c)| c == '\'').is_some() => name.push('\''),
+                (at, '\'') => break at,
+                (_, other) => name.push(other),
+            }
+        };
+        parts.push(name);
+        rest = &rest[2 + end + 1..];
+    }
+    (parts.len() <= 2).then_some(parts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::split_path;
+
+    #[test]
+    fn valid_paths_with_quotes_and_slashes() {
+        let parts = |path| split_path(path);
+        assert_eq!(parts("/"), Some(vec![]));
+        assert_eq!(parts("/'a'"), Some(vec!["a".into()]));
+        assert_eq!(
+            parts("/'it''s'/'x/y'"),
+            Some(vec!["it's".into(), "x/y".into()])
+        );
+        assert_eq!(parts("/'a"), None);
+        assert_eq!(parts("a"), None);
+        assert_eq!(parts("/'a'/'b'/'c'"), None);
+    }
+}
