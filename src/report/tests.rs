@@ -119,7 +119,7 @@ fn text_of(document: &document::model::Document) -> String {
                     lines.push(format!("[table] {}", row(&t.heads)));
                     lines.extend(t.rows.iter().map(row));
                 }
-                Block::Verbatim { text } => lines.push(format!("[verbatim] {text}")),
+                Block::Verbatim { text, .. } => lines.push(format!("[verbatim] {text}")),
                 Block::Definitions { entries } => {
                     lines.extend(
                         entries

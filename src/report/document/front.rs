@@ -1,7 +1,8 @@
 //! The first page's data: the answer, the agreement, what was measured.
 
-use super::Drawn;
 use super::model::{Answer, Front, Rich};
+use super::prose::prose;
+use super::{Drawn, captions};
 use crate::identify::{Estimate, VerdictKind};
 use crate::report::content::{CampaignSummary, ReportContent};
 use crate::report::figures::look::NumberLook;
@@ -16,8 +17,13 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
         synthetic: content.summary.synthetic,
         verdict,
         headline,
-        summary: Rich::from(&id.verdict.summary),
-        findings: id.verdict.findings.iter().map(Rich::from).collect(),
+        summary: prose(&id.verdict.summary),
+        findings: id
+            .verdict
+            .findings
+            .iter()
+            .map(|f| prose(&captions::sentence(f)))
+            .collect(),
         answers: PARAMETERS
             .iter()
             .map(|look| answer(look, (look.pick)(joint), drawn.numbers))
@@ -27,11 +33,21 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
             Some(false) => "no",
             None => "unknown",
         },
-        agreement: Rich::from(&id.agreement.summary),
+        agreement: prose(&agreement(&id.agreement.summary)),
         facts: facts(&content.summary, drawn.numbers),
         map: drawn.figure("map_small", ""),
         estimates: drawn.figure("estimates", ""),
     }
+}
+
+/// The words on agreement without the headline that stands before them.
+fn agreement(summary: &str) -> String {
+    if let Some(rest) = summary.strip_prefix("The methods do not agree on ") {
+        return captions::sentence(&format!("This concerns {rest}"));
+    }
+    let rest = summary.strip_prefix("The methods agree");
+    let rest = rest.map_or(summary, |r| r.trim_start_matches([':', '.', ';', ',', ' ']));
+    captions::sentence(rest)
 }
 
 /// A parameter ready to print.
@@ -55,7 +71,7 @@ fn answer(look: &ParameterLook, estimate: Option<&Estimate>, numbers: NumberLook
         unit: look.unit.into(),
         interval: interval.map(|[low, high]| format!("{} to {}", print(low), print(high))),
         status: estimate.map_or("not_asked", |e| parameters::status_name(e.status)),
-        note: estimate.and_then(|e| e.note.as_ref()).map(Rich::from),
+        note: estimate.and_then(|e| e.note.as_ref()).map(|n| prose(n)),
     }
 }
 

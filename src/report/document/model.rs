@@ -144,6 +144,8 @@ pub enum Block {
     Verbatim {
         /// The text.
         text: String,
+        /// In how many columns.
+        columns: u8,
     },
     /// Terms and what they mean; formulas are typst maths.
     Definitions {

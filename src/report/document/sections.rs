@@ -1,10 +1,13 @@
 //! The sections after the first page, each only where there is something to show.
 
 use super::model::{Block, Definition, Rich, Section};
+use super::prose::prose;
+use super::settings::settings;
 use super::tables;
 use super::{Drawn, captions};
 use crate::report::content::ReportContent;
 use crate::report::figures::comparison;
+use crate::report::figures::plane::Plane;
 use crate::report::parameters::method_name;
 
 /// All sections in their order.
@@ -38,6 +41,11 @@ fn paragraph(text: impl AsRef<str>) -> Block {
     }
 }
 
+/// A paragraph of words that carry no markup.
+fn remark(text: &str) -> Block {
+    Block::Paragraph { text: prose(text) }
+}
+
 fn regions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
     blocks.extend(drawn.figures_block(&[("map", &map_caption(content))]));
@@ -51,6 +59,10 @@ fn map_caption(content: &ReportContent) -> String {
          an upward sweep stand a little above their clearance, those of a downward sweep a little \
          below.",
     );
+    let strips = Plane::of(content).map(|p| p.view(content).strips);
+    if strips.is_some_and(|s| !s.is_empty()) {
+        text.push_str(" Clearances far above all impacts stand in a strip of their own.");
+    }
     if let Some(map) = &content.region_map {
         text.push_str(
             " Tinted regions: simulated with the fitted parameters, labelled by $z$ = $p$/$n$",
@@ -62,8 +74,7 @@ fn map_caption(content: &ReportContent) -> String {
         }
         text.push('.');
         if !map.note.is_empty() {
-            text.push(' ');
-            text.push_str(&map.note);
+            text.push_str(&format!(" {}", captions::sentence(&map.note)));
         }
     }
     if content.curves.iter().any(|c| !c.band95.is_empty()) {
@@ -105,7 +116,7 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
             method
                 .remarks
                 .iter()
-                .map(move |r| paragraph(format!("{name}: {r}")))
+                .map(move |r| remark(&format!("{name}: {}", captions::sentence(r))))
         });
     blocks.extend(remarks);
     for group in captions::method_figures(content) {
@@ -123,7 +134,7 @@ fn left_out(content: &ReportContent) -> Option<Section> {
         .map(Block::Table)
         .into_iter()
         .collect();
-    blocks.extend(content.remarks.iter().map(paragraph));
+    blocks.extend(content.remarks.iter().map(|r| remark(r)));
     section("What was left out, and why", false, blocks)
 }
 
@@ -213,15 +224,14 @@ fn provenance(content: &ReportContent) -> Option<Section> {
         blocks.push(paragraph("The command that makes this report again:"));
         blocks.push(Block::Verbatim {
             text: content.command_line.clone(),
+            columns: 1,
         });
     }
     blocks.extend(tables::versions(content).map(Block::Table));
     blocks.extend(tables::hashes(content).map(Block::Table));
     if !content.settings_text.is_empty() {
         blocks.push(paragraph("Settings, as resolved:"));
-        blocks.push(Block::Verbatim {
-            text: content.settings_text.clone(),
-        });
+        blocks.push(settings(&content.settings_text));
     }
     section("Appendix C. Settings, versions, inputs", false, blocks)
 }

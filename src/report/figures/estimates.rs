@@ -13,7 +13,7 @@ use crate::report::content::ReportContent;
 use crate::report::parameters::{PARAMETERS, ParameterLook, method_name};
 
 const WIDTH: f64 = 236.0;
-const ROW: f64 = 12.5;
+const ROW: f64 = 14.5;
 
 /// One method's estimates by their names.
 struct Line<'a> {

@@ -83,7 +83,7 @@ impl<'a> Parts<'a> {
             Block::Paragraph { text } => format!("<p>{}</p>\n", rich(text)),
             Block::Figures { figures } => self.figures(figures)?,
             Block::Table(table) => self::table(table),
-            Block::Verbatim { text } => format!("<pre>{}</pre>\n", escape(text)),
+            Block::Verbatim { text, .. } => format!("<pre>{}</pre>\n", escape(text)),
             Block::Definitions { entries } => pairs(
                 "definitions",
                 entries.iter().map(|e| (escape(e.plain), rich(&e.meaning))),

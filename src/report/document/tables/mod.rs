@@ -9,6 +9,7 @@ pub use records::records;
 use crate::record::Sweep;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
+use crate::report::document::prose::prose;
 use crate::report::figures::look::NumberLook;
 use crate::report::parameters::{self, PARAMETERS, method_name};
 
@@ -146,7 +147,7 @@ fn arrow(sweep: Sweep) -> &'static str {
 pub fn left_out(content: &ReportContent) -> Option<Table> {
     let rows = content.left_out.iter().map(|l| {
         let count = l.count.map_or(String::new(), |c| c.to_string());
-        vec![Rich::from(&l.what), Rich::from(count), Rich::from(&l.why)]
+        vec![verbatim(l.what.clone()), Rich::from(count), prose(&l.why)]
     });
     let columns: [Column; 3] = [
         ("left out", "left", 2),

@@ -187,7 +187,10 @@ impl Sheet<'_> {
             .iter()
             .flat_map(|(t, _)| shown(t, row.residual))
             .flat_map(|s| &s.values);
-        let y = Axis::around(values.map(|v| v * row.unit.factor), 0.08, row.title.clone());
+        let contact = row.traces.iter().any(|(t, _)| t.role == Role::Contact);
+        let least: &[f64] = if contact { &[0.0, 1.0] } else { &[] };
+        let values = values.chain(least).map(|v| v * row.unit.factor);
+        let y = Axis::around(values, 0.08, row.title.clone());
         let y = y.with_ticks(if row.height > 35.0 { 3 } else { 2 });
         let panel = Panel::new(rect, self.time.axis(), y).with_title_reach(TITLE_REACH);
         self.canvas.layer(0);

@@ -47,12 +47,14 @@ fn row<'a>(
         t.measured.is_some() || t.simulated.is_some()
     });
     let dimension = traces.first()?.0.dimension;
+    // An open contact's noise is not to be blown up.
+    let least = if roles[0] == Role::Contact { 1.0 } else { 0.0 };
     let peak = traces
         .iter()
         .flat_map(|(t, _)| [&t.measured, &t.simulated])
         .flatten()
         .map(peak)
-        .fold(0.0, f64::max);
+        .fold(least, f64::max);
     let unit = print_unit(dimension, peak);
     let between = if height < 30.0 { "\n" } else { " " };
     let symbols: Vec<&str> = traces.iter().map(|(t, _)| symbol(t.role)).collect();

@@ -1,7 +1,7 @@
 //! What the map says in words and numbers: names of curves, letters of points, axes in laboratory
 //! units.
 
-use super::Map;
+use super::{Map, STRIP_STEP};
 use crate::report::content::BoundaryCurve;
 use crate::report::figures::axes::Axis;
 use crate::report::figures::canvas::{Anchor, Point, Stroke, TextLook};
@@ -27,15 +27,11 @@ impl Map<'_> {
         let text = curve_name(curve);
         let width = richtext::width(&text, Face::Regular, 8.5) + 2.0;
         let bounds = self.panel.rect;
-        let anchors = [0.5, 0.35, 0.65, 0.2, 0.8].map(|share| along(piece, share * length(piece)));
-        let best = anchors
-            .into_iter()
-            .filter_map(|a| self.occupancy.near(a, (width, 9.0), &bounds))
-            .min_by_key(|&(x, y)| {
-                self.occupancy
-                    .taken(&Rect::new(x - 0.5 * width, y - 4.5, width, 9.0))
-            });
-        if let Some((x, y)) = best {
+        let best = (1..20)
+            .map(|i| along(piece, 0.05 * f64::from(i) * length(piece)))
+            .filter_map(|anchor| self.occupancy.near(anchor, (width, 9.0), &bounds))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((_, (x, y))) = best {
             self.occupancy
                 .take_rect(&Rect::new(x - 0.5 * width, y - 4.5, width, 9.0));
             self.canvas.layer(6);
@@ -60,12 +56,12 @@ impl Map<'_> {
             };
             let text = format!("({})", comparison.letter);
             let size = (fonts::width(&text, Face::Bold, 8.5) + 2.0, 9.0);
-            let Some(place) = self.occupancy.near(at, size, &bounds) else {
+            let Some((_, place)) = self.occupancy.near(at, size, &bounds) else {
                 continue;
             };
             self.canvas.layer(5);
             self.canvas
-                .ring(at, self.radius() + 2.0, Stroke::solid(look::INK, 0.7));
+                .ring(at, self.radius + 2.0, Stroke::solid(look::INK, 0.7));
             self.leader(at, place, size);
             self.canvas.layer(6);
             let text_look = TextLook::new(8.5, Anchor::Middle)
@@ -82,7 +78,7 @@ impl Map<'_> {
         let (dx, dy) = (place.0 - at.0, place.1 - at.1);
         let distance = dx.hypot(dy);
         let stop = (0.5 * size.0 / dx.abs().max(1e-9)).min(0.5 * size.1 / dy.abs().max(1e-9));
-        let start = (self.radius() + 2.0) / distance;
+        let start = (self.radius + 2.0) / distance;
         if 1.0 - stop - start > 2.0 / distance {
             let point = |t: f64| (at.0 + t * dx, at.1 + t * dy);
             let stroke = Stroke::solid(look::INK, 0.5);
@@ -90,9 +86,41 @@ impl Map<'_> {
         }
     }
 
+    /// Frames and values of the strips above the panel.
+    pub(super) fn strip_frames(&mut self, numbers: NumberLook) {
+        let r = self.panel.rect;
+        for (i, value) in self.strips.clone().into_iter().enumerate() {
+            let middle = self.strip_middle(i);
+            let (top, bottom) = (middle - 5.5, middle + 5.5);
+            let corners = [
+                (r.left, top),
+                (r.right, top),
+                (r.right, bottom),
+                (r.left, bottom),
+                (r.left, top),
+                (r.right, top),
+            ];
+            self.canvas.line(&corners, look::FRAME_STROKE);
+            let text_look = TextLook::new(look::TICK_SIZE, Anchor::Right).colour(look::INK);
+            self.canvas.text(
+                (r.left - 3.0, middle + 2.3),
+                &numbers.fixed(value, 1),
+                text_look,
+            );
+            let x_st = self.plane.static_deflection_m.filter(|_| self.full());
+            if let Some(x_st) = x_st.filter(|_| self.plane.dimensionless) {
+                let millimetres = numbers.fixed(1e3 * x_st * value, 1);
+                let text_look = TextLook::new(look::TICK_SIZE, Anchor::Left).colour(look::QUIET);
+                self.canvas
+                    .text((r.right + 3.0, middle + 2.3), &millimetres, text_look);
+            }
+        }
+    }
+
     /// Frequency in Hz above and clearance in mm on the right.
     pub(super) fn laboratory_axes(&mut self, numbers: NumberLook) {
         let r = self.panel.rect;
+        let top = r.top - STRIP_STEP * self.strips.len() as f64;
         let small = TextLook::new(look::TICK_SIZE, Anchor::Middle).colour(look::QUIET);
         let title = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::QUIET);
         if let Some(f0) = self.plane.natural_frequency_hz {
@@ -101,11 +129,11 @@ impl Map<'_> {
             for v in ticks {
                 let (x, _) = self.panel.at(v / f0, 0.0);
                 self.canvas
-                    .segment((x, r.top), (x, r.top + 2.5), look::FRAME_STROKE);
+                    .segment((x, top), (x, top + 2.5), look::FRAME_STROKE);
                 self.canvas
-                    .text((x, r.top - 3.0), &numbers.fixed(v, decimals), small);
+                    .text((x, top - 3.0), &numbers.fixed(v, decimals), small);
             }
-            let at = (0.5 * (r.left + r.right), r.top - 14.0);
+            let at = (0.5 * (r.left + r.right), top - 14.0);
             self.canvas.text(at, "drive frequency $f$ (Hz)", title);
         }
         if let Some(x_st) = self.plane.static_deflection_m.map(|x| 1e3 * x) {

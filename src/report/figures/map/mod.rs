@@ -14,7 +14,7 @@ use crate::report::figures::look::{self, NumberLook};
 use crate::report::figures::marks;
 use crate::report::figures::path::{self, Rect};
 use crate::report::figures::placing::Occupancy;
-use crate::report::figures::plane::Plane;
+use crate::report::figures::plane::{Plane, View, same};
 use crate::report::figures::regions::Regions;
 use crate::report::figures::{Figure, Spot};
 
@@ -28,6 +28,8 @@ pub enum MapSize {
 }
 
 const BAND: plotters::style::RGBColor = plotters::style::RGBColor(0xbd, 0xc3, 0xca);
+/// Height of a strip with its gap, points.
+const STRIP_STEP: f64 = 15.0;
 const UNUSED: plotters::style::RGBColor = plotters::style::RGBColor(0x9a, 0x9f, 0xa5);
 
 /// Draws the map; `None` where the records have no place in a plane.
@@ -58,6 +60,10 @@ struct Map<'a> {
     size: MapSize,
     canvas: Canvas,
     panel: Panel,
+    /// Clearances above the panel, each in a strip of its own.
+    strips: Vec<f64>,
+    /// Radius of the marks, points.
+    radius: f64,
     occupancy: Occupancy,
     spots: Vec<Spot>,
 }
@@ -69,42 +75,35 @@ impl<'a> Map<'a> {
         let (width, height) = match (full, flat) {
             (true, false) => (look::FULL_WIDTH, 370.0),
             (true, true) => (look::FULL_WIDTH, 200.0),
-            (false, false) => (236.0, 205.0),
+            (false, false) => (236.0, 235.0),
             (false, true) => (236.0, 130.0),
         };
         let keys_height = legend::height(keys, width) + if keys.is_empty() { 0.0 } else { 3.0 };
-        let (left, right) = (
-            33.0,
-            if full && plane.dimensionless {
-                30.0
-            } else {
-                4.0
-            },
-        );
-        let top = keys_height
-            + if full && plane.dimensionless {
-                26.0
-            } else {
-                3.0
-            };
+        let both_units = full && plane.dimensionless;
+        let (left, right) = (33.0, if both_units { 30.0 } else { 4.0 });
+        let View { x, y, strips } = plane.view(content);
+        let strips_height = STRIP_STEP * strips.len() as f64;
+        let top = keys_height + strips_height + if both_units { 26.0 } else { 3.0 };
         let rect = Rect::new(left, top, width - left - right, height - 24.0);
         let total = top + height;
-        let (x, y) = plane.axes(content);
         let (x, y) = if full {
             (x, y)
         } else {
             (x.with_ticks(5), y.with_ticks(4))
         };
-        let panel = Panel::new(rect, x, y);
-        Self {
+        let mut map = Self {
             content,
             plane,
             size,
             canvas: Canvas::new(width, total),
-            panel,
+            panel: Panel::new(rect, x, y),
+            strips,
+            radius: 0.0,
             occupancy: Occupancy::new(width, total),
             spots: Vec::new(),
-        }
+        };
+        map.radius = map.fitting_radius();
+        map
     }
 
     fn full(&self) -> bool {
@@ -138,7 +137,7 @@ impl<'a> Map<'a> {
     }
 
     fn take_records_and_curves(&mut self) {
-        let radius = self.radius();
+        let radius = self.radius;
         for record in &self.content.records {
             if let Some(at) = self.place(record) {
                 self.occupancy.take_spot(at, radius + 0.5);
@@ -208,29 +207,44 @@ impl<'a> Map<'a> {
         }
     }
 
-    /// Radius of the marks: smaller where there are many.
-    fn radius(&self) -> f64 {
+    /// Radius of the marks: smaller where there are many, or where they follow closely.
+    fn fitting_radius(&self) -> f64 {
         let area = self.panel.rect.width() * self.panel.rect.height();
-        let count = self.content.records.len().max(1) as f64;
-        let most = if self.full() { 2.9 } else { 1.8 };
-        (0.13 * (area / count).sqrt()).clamp(if self.full() { 1.5 } else { 0.7 }, most)
+        let records = &self.content.records;
+        let (least, most) = if self.full() { (1.2, 2.9) } else { (0.6, 1.8) };
+        let mut steps: Vec<f64> = records
+            .windows(2)
+            .filter_map(|pair| Some((self.plane.record(&pair[0])?, self.plane.record(&pair[1])?)))
+            .filter(|(a, b)| same(a.1, b.1) && a.0 != b.0)
+            .map(|(a, b)| (self.panel.at(a.0, a.1).0 - self.panel.at(b.0, b.1).0).abs())
+            .collect();
+        steps.sort_by(f64::total_cmp);
+        let usual = steps.get(steps.len() / 4).copied().unwrap_or(f64::INFINITY);
+        let by_area = 0.13 * (area / records.len().max(1) as f64).sqrt();
+        by_area.min(0.44 * usual).clamp(least, most)
     }
 
     /// Up-sweep records stand a little above their clearance, down-sweep ones below.
     fn lift(&self) -> f64 {
-        0.95 * self.radius()
+        0.95 * self.radius
     }
 
     fn place(&self, record: &RecordRow) -> Option<Point> {
         let (x, y) = self.plane.record(record)?;
+        let lift = self.lift() * direction(record.sweep);
+        if let Some(strip) = self.strips.iter().position(|s| same(*s, y)) {
+            return Some((self.panel.at(x, 0.0).0, self.strip_middle(strip) - lift));
+        }
         let at = self.panel.at(x, y);
-        self.panel
-            .shows(x, y)
-            .then(|| (at.0, at.1 - self.lift() * direction(record.sweep)))
+        self.panel.shows(x, y).then_some((at.0, at.1 - lift))
+    }
+
+    fn strip_middle(&self, index: usize) -> f64 {
+        self.panel.rect.top - STRIP_STEP * (index as f64 + 0.5) - 1.0
     }
 
     fn records(&mut self, numbers: NumberLook) {
-        let radius = self.radius();
+        let radius = self.radius;
         let mut drawn: Vec<(Point, String)> = Vec::new();
         self.canvas.layer(4);
         for record in &self.content.records {
@@ -262,12 +276,9 @@ impl<'a> Map<'a> {
         if self.full() && self.plane.dimensionless {
             self.laboratory_axes(numbers);
         }
-        legend::draw(
-            &mut self.canvas,
-            (self.panel.rect.left, 0.0),
-            self.panel.rect.width(),
-            keys,
-        );
+        self.strip_frames(numbers);
+        let width = self.canvas.width;
+        legend::draw(&mut self.canvas, (0.0, 0.0), width, keys);
     }
 
     fn finish(self) -> Figure {
