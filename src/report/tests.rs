@@ -196,6 +196,7 @@ fn valid_no_word_leaves_the_page_s_margins() {
             ..RenderOptions::default()
         };
         let pdf = render_pdf(content, &options).expect("a PDF");
+        assert!(pdf.len() < 5_000_000, "{name}: {} bytes", pdf.len());
         let path = written(folder.path(), "report.pdf", &pdf);
         let Some(boxes) = output("pdftotext", &["-bbox", &path, "-"]) else {
             return;

@@ -106,3 +106,16 @@ fn residuals(content: &ReportContent) -> Vec<Captioned> {
     })
     .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::sentence;
+
+    #[test]
+    fn valid_remarks_become_sentences() {
+        assert_eq!(sentence("the responses follow"), "The responses follow.");
+        assert_eq!(sentence("x is clipped."), "x is clipped.");
+        assert_eq!(sentence("r0012 was left out"), "r0012 was left out.");
+        assert_eq!(sentence(""), "");
+    }
+}

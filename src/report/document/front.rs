@@ -2,7 +2,7 @@
 
 use super::model::{Answer, Front, Rich};
 use super::prose::prose;
-use super::{Drawn, captions};
+use super::{Drawn, captions, tables};
 use crate::identify::{Estimate, VerdictKind};
 use crate::report::content::{CampaignSummary, ReportContent};
 use crate::report::figures::look::NumberLook;
@@ -11,7 +11,6 @@ use crate::report::parameters::{self, PARAMETERS, ParameterLook};
 /// Builds the first page.
 pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
     let id = &content.identification;
-    let joint = &id.joint.parameters;
     let (verdict, headline) = headline(id.verdict.kind);
     Front {
         synthetic: content.summary.synthetic,
@@ -24,10 +23,8 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
             .iter()
             .map(|f| prose(&captions::sentence(f)))
             .collect(),
-        answers: PARAMETERS
-            .iter()
-            .map(|look| answer(look, (look.pick)(joint), drawn.numbers))
-            .collect(),
+        answers: answers(content, drawn.numbers),
+        specimens: tables::specimens(content, drawn.numbers),
         agree: match id.agreement.agree {
             Some(true) => "yes",
             Some(false) => "no",
@@ -38,6 +35,23 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
         map: drawn.figure("map_small", ""),
         estimates: drawn.figure("estimates", ""),
     }
+}
+
+/// The parameters' cards; none where only each specimen alone has an answer.
+fn answers(content: &ReportContent, numbers: NumberLook) -> Vec<Answer> {
+    let id = &content.identification;
+    let estimates = PARAMETERS
+        .iter()
+        .map(|look| (look, (look.pick)(&id.joint.parameters)));
+    let told = estimates
+        .clone()
+        .any(|(_, e)| e.is_some_and(|e| e.value.is_some()));
+    if !told && !id.specimens.is_empty() {
+        return Vec::new();
+    }
+    estimates
+        .map(|(look, e)| answer(look, e, numbers))
+        .collect()
 }
 
 /// The words on agreement without the headline that stands before them.
@@ -75,7 +89,8 @@ fn answer(look: &ParameterLook, estimate: Option<&Estimate>, numbers: NumberLook
     }
 }
 
-fn headline(kind: VerdictKind) -> (&'static str, &'static str) {
+/// Name of a verdict in the document, and its headline.
+pub fn headline(kind: VerdictKind) -> (&'static str, &'static str) {
     match kind {
         VerdictKind::Identified => ("identified", "Identified: the model fits the rig"),
         VerdictKind::Weak => ("weak", "Identified in part"),

@@ -61,8 +61,10 @@ pub struct Front {
     pub summary: Rich,
     /// Reasons and findings.
     pub findings: Vec<Rich>,
-    /// The parameters.
+    /// The parameters; empty where only each specimen alone has an answer.
     pub answers: Vec<Answer>,
+    /// The answer for each specimen, where the campaign holds several.
+    pub specimens: Option<Table>,
     /// Whether the methods agree: `yes`, `no` or `unknown`.
     pub agree: &'static str,
     /// The same in words.

@@ -15,6 +15,7 @@ pub fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
     [
         regions(content, drawn),
         comparisons(content, drawn),
+        specimens(content, drawn),
         methods(content, drawn),
         left_out(content),
         records(content, drawn),
@@ -101,6 +102,21 @@ fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
         blocks.insert(0, paragraph(keys));
     }
     section("Simulated and measured motions", false, blocks)
+}
+
+/// What was found of each specimen, in words and by method.
+fn specimens(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let table = tables::specimen_methods(content, drawn.numbers).map(Block::Table);
+    let mut blocks: Vec<Block> = table.into_iter().collect();
+    for (specimen, result) in &content.identification.specimens {
+        let verdict = &result.verdict;
+        let mut words = format!("{specimen}: {}", captions::sentence(&verdict.summary));
+        for finding in &verdict.findings {
+            words.push_str(&format!(" {}", captions::sentence(finding)));
+        }
+        blocks.push(remark(&words));
+    }
+    section("Specimen by specimen", false, blocks)
 }
 
 fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {

@@ -6,7 +6,7 @@ use super::look::{self, NumberLook};
 use super::path::{self, Rect};
 
 /// How far in points a number below may reach beyond the panel's sides.
-const MOST_OVERHANG: f64 = 7.0;
+const MOST_OVERHANG: f64 = 5.5;
 
 /// One axis: its range in data and its title with unit, in the report's markup.
 #[derive(Debug, Clone, PartialEq)]

@@ -175,3 +175,17 @@ fn edges(centres: &[f64]) -> Range {
     let half = 0.5 * (centres[1] - centres[0]);
     Some((centres[0] - half, centres[n - 1] + half))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_clearances_far_above_all_impacts_stand_in_strips() {
+        let all = [0.6, 1.4, 4.4, 8.9, 8.93];
+        assert_eq!(strips(&all, Some((0.6, 4.4))), [8.9]);
+        assert!(strips(&all, None).is_empty());
+        let many: Vec<f64> = (1..20).map(f64::from).collect();
+        assert!(strips(&many, Some((1.0, 2.0))).is_empty());
+    }
+}

@@ -52,7 +52,12 @@ impl<'a> Parts<'a> {
             rich(&front.summary)
         ));
         let answers: String = front.answers.iter().map(answer).collect();
-        text.push_str(&format!("<div class=\"answers\">\n{answers}</div>\n"));
+        if !answers.is_empty() {
+            text.push_str(&format!("<div class=\"answers\">\n{answers}</div>\n"));
+        }
+        if let Some(specimens) = &front.specimens {
+            text.push_str(&table(specimens));
+        }
         let pair: Vec<FigureRef> = [&front.map, &front.estimates]
             .into_iter()
             .flatten()

@@ -6,6 +6,9 @@ mod records;
 pub use brackets::brackets;
 pub use records::records;
 
+use std::collections::BTreeMap;
+
+use crate::identify::{MethodResult, ParameterSet};
 use crate::record::Sweep;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
@@ -55,52 +58,111 @@ fn without_empty_columns(table: Table) -> Table {
     }
 }
 
+const METHOD_COLUMNS: [Column; 8] = [
+    ("method", "left", 0),
+    ("$R$", "left", 1),
+    ("$f_0$", "left", 1),
+    ("$β$", "left", 1),
+    ("$x_st$", "left", 1),
+    ("obs.", "right", 0),
+    ("residual", "right", 0),
+    ("fits", "center", 0),
+];
+
+const METHODS_CAPTION: &str = "Estimates with half their 95 % interval, number of observations, \
+     root mean square of the weighted residuals (1: as the stated noise), and whether the model \
+     fits.";
+
 /// What each method found, and the joint estimate.
 pub fn methods(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     let id = &content.identification;
-    let all = id.methods.iter().map(|(k, m)| (method_name(k), m));
-    let all = all.chain([(method_name("joint"), &id.joint)]);
-    let rows = all.map(|(name, method)| {
-        let mut row = vec![Rich::from(name)];
-        row.extend(PARAMETERS.iter().map(|look| {
-            Rich::from(parameters::short(
-                look,
-                (look.pick)(&method.parameters),
-                numbers,
-            ))
-        }));
-        let observations = method.observations;
-        row.push(Rich::from(if observations == 0 {
-            "–".into()
-        } else {
-            observations.to_string()
-        }));
-        row.push(Rich::from(
-            method
-                .reduced_residual
-                .map_or("–".into(), |r| numbers.significant(r, 2)),
-        ));
-        row.push(Rich::from(match method.fits {
-            Some(true) => "yes",
-            Some(false) => "no",
-            None => "–",
-        }));
-        row
+    let rows = method_rows(&id.methods, &id.joint, numbers);
+    table(METHODS_CAPTION, &METHOD_COLUMNS, rows).map(|t| Table { size: 7.5, ..t })
+}
+
+/// The same for each specimen of a campaign that holds several.
+pub fn specimen_methods(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
+    let specimens = content.identification.specimens.iter();
+    let rows = specimens.flat_map(|(specimen, result)| {
+        let rows = method_rows(&result.methods, &result.joint, numbers);
+        rows.into_iter().enumerate().map(move |(i, row)| {
+            let name = if i == 0 {
+                verbatim(specimen.clone())
+            } else {
+                Rich::default()
+            };
+            std::iter::once(name).chain(row).collect()
+        })
     });
-    let columns: [Column; 8] = [
-        ("method", "left", 0),
+    let mut columns: Vec<Column> = vec![("specimen", "left", 0)];
+    columns.extend(METHOD_COLUMNS);
+    table(METHODS_CAPTION, &columns, rows.collect()).map(|t| Table { size: 7.5, ..t })
+}
+
+/// The answer for each specimen of a campaign that holds several.
+pub fn specimens(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
+    let rows = content
+        .identification
+        .specimens
+        .iter()
+        .map(|(specimen, result)| {
+            let mut row = vec![verbatim(specimen.clone())];
+            row.extend(estimate_cells(&result.joint.parameters, numbers));
+            row.push(Rich::from(super::front::headline(result.verdict.kind).1));
+            row
+        });
+    let columns: [Column; 6] = [
+        ("specimen", "left", 0),
         ("$R$", "left", 1),
         ("$f_0$", "left", 1),
         ("$β$", "left", 1),
-        ("$x_{st}$", "left", 1),
-        ("obs.", "right", 0),
-        ("residual", "right", 0),
-        ("fits", "center", 0),
+        ("$x_st$", "left", 1),
+        ("verdict", "left", 2),
     ];
-    let caption = "Estimates with half their 95 % interval, number of observations, root mean \
-                   square of the weighted residuals (1: as the stated noise), and whether the \
-                   model fits.";
-    table(caption, &columns, rows.collect()).map(|t| Table { size: 7.5, ..t })
+    table("", &columns, rows.collect()).map(|t| Table { size: 8.5, ..t })
+}
+
+fn estimate_cells(set: &ParameterSet, numbers: NumberLook) -> impl Iterator<Item = Rich> + use<'_> {
+    let cell = move |look| Rich::from(parameters::short(look, (look.pick)(set), numbers));
+    PARAMETERS.iter().map(cell)
+}
+
+/// Rows of the methods that say anything, the joint estimate last.
+fn method_rows(
+    methods: &BTreeMap<String, MethodResult>,
+    joint: &MethodResult,
+    numbers: NumberLook,
+) -> Vec<Vec<Rich>> {
+    let all = methods.iter().map(|(k, m)| (method_name(k), m));
+    let all = all.chain([(method_name("joint"), joint)]);
+    let says = |m: &MethodResult| PARAMETERS.iter().any(|p| (p.pick)(&m.parameters).is_some());
+    all.filter(|(_, m)| says(m))
+        .map(|(name, m)| method_row(name, m, numbers))
+        .collect()
+}
+
+fn method_row(name: String, method: &MethodResult, numbers: NumberLook) -> Vec<Rich> {
+    let mut row = vec![Rich::from(name)];
+    row.extend(estimate_cells(&method.parameters, numbers));
+    let observations = method.observations;
+    let observations = if observations == 0 {
+        "–".into()
+    } else {
+        observations.to_string()
+    };
+    let residual = method.reduced_residual;
+    let residual = residual.map_or("–".into(), |r| numbers.significant(r, 2));
+    let fits = match method.fits {
+        Some(true) => "yes",
+        Some(false) => "no",
+        None => "–",
+    };
+    row.extend([
+        Rich::from(observations),
+        Rich::from(residual),
+        Rich::from(fits),
+    ]);
+    row
 }
 
 /// Whether the methods agree, pair by pair.
