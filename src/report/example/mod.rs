@@ -386,9 +386,9 @@ fn region_map((columns, rows): (usize, usize)) -> RegionMap {
                     map.motions.len() - 1
                 });
                 if map.cells.len() < columns * rows {
-                    map.cells.push(index as u16)
+                    map.cells.push(index as u16);
                 } else {
-                    map.second.push(index as u16)
+                    map.second.push(index as u16);
                 }
             }
         }
