@@ -125,7 +125,10 @@ impl Observed {
             return Err(PipelineError::NothingUsable(observations.len()));
         }
         let brackets = brackets(&observations);
-        Ok(Self { observations, brackets })
+        Ok(Self {
+            observations,
+            brackets,
+        })
     }
 }
 
@@ -150,7 +153,11 @@ pub fn run(
     destination: &Destination<'_>,
     progress: Progress,
 ) -> Result<Verdict, PipelineError> {
-    let Destination { out, resume, command_line } = *destination;
+    let Destination {
+        out,
+        resume,
+        command_line,
+    } = *destination;
     let observed = Observed::resumable(campaign, out, resume, progress)?;
     progress("identify", 0, 1);
     let found = identify::identify(campaign, &observed)?;

@@ -55,7 +55,11 @@ pub fn observe_in_chunks(
     for (number, entries) in campaign.records.chunks(chunk.max(1)).enumerate() {
         if let Some(kept) = checkpoint.load(number, entries.len()) {
             let count = entries.len() as u64;
-            progress("observe", done.fetch_add(count, Ordering::Relaxed) + count, total);
+            progress(
+                "observe",
+                done.fetch_add(count, Ordering::Relaxed) + count,
+                total,
+            );
             all.extend(kept);
             continue;
         }
