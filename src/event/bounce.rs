@@ -34,7 +34,9 @@ pub fn find(velocity: &Series) -> Vec<Candidate> {
             before > 0.0 && after < 0.0 && before - after > least
         })
         .collect();
-    (0..falls.len()).filter_map(|i| candidate(velocity, &falls, i)).collect()
+    (0..falls.len())
+        .filter_map(|i| candidate(velocity, &falls, i))
+        .collect()
 }
 
 /// Runs of falling samples: (last sample before, first sample after).
@@ -67,14 +69,25 @@ fn candidate(velocity: &Series, falls: &[(usize, usize)], index: usize) -> Optio
         return None;
     }
     let middle = 0.5 * (left + right) as f64;
-    let before = LocalFit::new(&velocity.values, low.max(left.saturating_sub(5)), left + 1, 1)?;
+    let before = LocalFit::new(
+        &velocity.values,
+        low.max(left.saturating_sub(5)),
+        left + 1,
+        1,
+    )?;
     let after = LocalFit::new(&velocity.values, right, high.min(right + 6), 1)?;
-    let spread = before.error_factor(middle).hypot(after.error_factor(middle));
+    let spread = before
+        .error_factor(middle)
+        .hypot(after.error_factor(middle));
     let jump = Jump {
         left,
         gap: right - left,
         height: after.value(middle) - before.value(middle),
         error: (velocity.noise * spread).max(f64::MIN_POSITIVE),
     };
-    Some(Candidate { jump, seen: Seen::Velocity, dead_samples: 0.0 })
+    Some(Candidate {
+        jump,
+        seen: Seen::Velocity,
+        dead_samples: 0.0,
+    })
 }

@@ -56,19 +56,33 @@ fn windows(velocity: &Series, candidates: &[Candidate], index: usize, arc: ArcFi
         Some(c) => c.jump.left + c.jump.gap + c.dead_samples.ceil() as usize,
         None => 0,
     };
-    let high = candidates.get(index + 1).map_or(samples, |c| c.jump.left + 1);
+    let high = candidates
+        .get(index + 1)
+        .map_or(samples, |c| c.jump.left + 1);
     let begin = jump.left + jump.gap;
     let dead = candidates[index].dead_samples as usize;
     // Within a dead zone the bodies move together: only samples inside it belong to "after".
-    let end = if dead > 3 { begin + dead } else { begin + width };
+    let end = if dead > 3 {
+        begin + dead
+    } else {
+        begin + width
+    };
     let mut found = Windows {
-        before: (low.max((jump.left + 1).saturating_sub(width)).min(jump.left), jump.left + 1),
+        before: (
+            low.max((jump.left + 1).saturating_sub(width))
+                .min(jump.left),
+            jump.left + 1,
+        ),
         after: (begin, end.min(high).min(begin + width).max(begin + 1)),
     };
     if arc.same_way {
         let values = &velocity.values;
         let (first, last) = found.before;
-        let toward = values[first..last].iter().rev().take_while(|v| **v > 0.0).count();
+        let toward = values[first..last]
+            .iter()
+            .rev()
+            .take_while(|v| **v > 0.0)
+            .count();
         found.before.0 = (last - toward.max(1)).max(first);
         let (first, last) = found.after;
         let away = values[first..last].iter().take_while(|v| **v < 0.0).count();
@@ -83,19 +97,32 @@ fn windows(velocity: &Series, candidates: &[Candidate], index: usize, arc: ArcFi
 pub fn instants(kinematics: &Kinematics, candidates: &[Candidate], arc: ArcFit) -> Vec<Instant> {
     let middle = |c: &Candidate| Instant {
         time: c.jump.middle(),
-        error: if arc.same_way { 0.5 } else { c.jump.gap as f64 / 12f64.sqrt() },
+        error: if arc.same_way {
+            0.5
+        } else {
+            c.jump.gap as f64 / 12f64.sqrt()
+        },
     };
     let plain: Vec<Instant> = candidates.iter().map(middle).collect();
     if arc.same_way {
         // A contact of several samples: its middle stands for the instantaneous impact.
         return plain;
     }
-    match (&kinematics.closing.displacement, &kinematics.closing.velocity) {
+    match (
+        &kinematics.closing.displacement,
+        &kinematics.closing.velocity,
+    ) {
         (Some(displacement), Some(velocity)) => (0..candidates.len())
             .map(|i| {
-                kink((displacement, velocity), candidates, i, arc, kinematics.rate_hz)
-                    .filter(|k| k.error < plain[i].error)
-                    .unwrap_or(plain[i])
+                kink(
+                    (displacement, velocity),
+                    candidates,
+                    i,
+                    arc,
+                    kinematics.rate_hz,
+                )
+                .filter(|k| k.error < plain[i].error)
+                .unwrap_or(plain[i])
             })
             .collect(),
         (None, Some(velocity)) => closed_arcs(velocity, candidates, &plain, arc),
@@ -112,12 +139,25 @@ fn kink(
 ) -> Option<Instant> {
     let jump = candidates[index].jump;
     let w = windows(velocity, candidates, index, arc);
-    let before = LocalFit::new(&displacement.values, w.before.0, w.before.1, arc.displacement_degree)?;
-    let after = LocalFit::new(&displacement.values, w.after.0, w.after.1, arc.displacement_degree)?;
+    let before = LocalFit::new(
+        &displacement.values,
+        w.before.0,
+        w.before.1,
+        arc.displacement_degree,
+    )?;
+    let after = LocalFit::new(
+        &displacement.values,
+        w.after.0,
+        w.after.1,
+        arc.displacement_degree,
+    )?;
     let (low, high) = (jump.left as f64, (jump.left + jump.gap) as f64);
     let time = crossing(&before, &after, low, high)?;
     let spread = before.error_factor(time).hypot(after.error_factor(time)) * displacement.noise;
-    Some(Instant { time, error: spread * rate_hz / jump.height.abs() })
+    Some(Instant {
+        time,
+        error: spread * rate_hz / jump.height.abs(),
+    })
 }
 
 /// Least squares for the shifts δ of all impact times within their sample intervals and the
@@ -143,11 +183,19 @@ fn closed_arcs(
     normal[(count, count)] = 1e-12;
     for i in 0..count - 1 {
         let (from, to) = (plain[i].time, plain[i + 1].time);
-        let (Some(start), Some(end)) = (speeds[i], speeds[i + 1]) else { continue };
-        let Some(area) = integral(&velocity.values, from, to) else { continue };
+        let (Some(start), Some(end)) = (speeds[i], speeds[i + 1]) else {
+            continue;
+        };
+        let Some(area) = integral(&velocity.values, from, to) else {
+            continue;
+        };
         // The trapezoid's own error scales with the speeds; noise adds up over the arc.
         let error = velocity.noise * (to - from).sqrt() + 1e-3 * end.before_m_s.abs();
-        let row = [(i, -start.after_m_s), (i + 1, end.before_m_s), (count, from - to)];
+        let row = [
+            (i, -start.after_m_s),
+            (i + 1, end.before_m_s),
+            (count, from - to),
+        ];
         for (a, ra) in row {
             right[a] -= ra * area / error.powi(2);
             for (b, rb) in row {
@@ -165,7 +213,7 @@ fn closed_arcs(
             Instant {
                 time: plain[i].time + shifts[i].clamp(-half, half),
                 error: inverse[(i, i)].max(0.0).sqrt().min(plain[i].error),
-                    }
+            }
         })
         .collect()
 }
@@ -188,7 +236,10 @@ fn speeds(
         let slope = before.slope(time).abs().max(after.slope(time).abs());
         error = error.hypot(slope * instant.error);
     }
-    let speeds = MassSpeeds { before_m_s: before.value(time), after_m_s: after.value(time) };
+    let speeds = MassSpeeds {
+        before_m_s: before.value(time),
+        after_m_s: after.value(time),
+    };
     Some((speeds, error))
 }
 

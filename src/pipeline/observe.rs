@@ -18,7 +18,10 @@ use crate::record::{Flag, Record};
 
 /// Settings of the detection as the campaign has them.
 fn detect_settings(campaign: &ResolvedCampaign) -> DetectSettings {
-    DetectSettings { flight: campaign.flight, ..DetectSettings::default() }
+    DetectSettings {
+        flight: campaign.flight,
+        ..DetectSettings::default()
+    }
 }
 
 /// Settings of the classification as the campaign has them.

@@ -63,8 +63,7 @@ pub fn fit(samples: &[f64], rate_hz: f64) -> Option<Decay> {
         count += 1.0;
     }
     let spread = |squares: f64| (squares / f64::max(count, 1.0)).sqrt();
-    decay.natural_frequency_error_hz =
-        decay.natural_frequency_error_hz.hypot(spread(of_frequency));
+    decay.natural_frequency_error_hz = decay.natural_frequency_error_hz.hypot(spread(of_frequency));
     decay.damping_ratio_error = decay.damping_ratio_error.hypot(spread(of_damping));
     decay.first = first;
     Some(decay)
@@ -105,9 +104,16 @@ fn project(tail: &[f64], rates: Vector2<f64>) -> Option<Point> {
         right += row * *v;
     }
     let linear = normal.cholesky()?.solve(&right);
-    let squares =
-        tail.iter().enumerate().map(|(i, v)| (v - linear.dot(&basis(rates, i))).powi(2)).sum();
-    Some(Point { rates, linear, squares })
+    let squares = tail
+        .iter()
+        .enumerate()
+        .map(|(i, v)| (v - linear.dot(&basis(rates, i))).powi(2))
+        .sum();
+    Some(Point {
+        rates,
+        linear,
+        squares,
+    })
 }
 
 impl Point {
@@ -179,7 +185,11 @@ fn correlation_factor(residuals: &[f64]) -> f64 {
     let total: f64 = residuals.iter().map(|r| r * r).sum();
     let mut factor = 1.0;
     for lag in 1..residuals.len() / 4 {
-        let product: f64 = residuals.iter().zip(&residuals[lag..]).map(|(a, b)| a * b).sum();
+        let product: f64 = residuals
+            .iter()
+            .zip(&residuals[lag..])
+            .map(|(a, b)| a * b)
+            .sum();
         if product <= 0.0 {
             break;
         }
@@ -222,7 +232,13 @@ mod tests {
         let damped = natural * f64::sqrt(1.0 - beta * beta);
         let samples: Vec<f64> = (0..2048)
             .map(|i| (f64::from(i) - 10.0) / rate)
-            .map(|t| if t < 0.0 { 0.2 } else { 0.2 + 3.0 * (-beta * natural * t).exp() * (damped * t).cos() })
+            .map(|t| {
+                if t < 0.0 {
+                    0.2
+                } else {
+                    0.2 + 3.0 * (-beta * natural * t).exp() * (damped * t).cos()
+                }
+            })
             .collect();
         let decay = fit(&samples, rate).unwrap();
         assert!((decay.natural_frequency_hz / f0 - 1.0).abs() < 1e-8);

@@ -373,7 +373,7 @@ pub fn calibrated(raw: &RawRecord, truth: &Truth, faults: &Faults) -> Record {
             drive_amplitude: 1.0,
             sequence: 0,
             specimen: None,
-                excitation: Default::default(),
+            excitation: Default::default(),
         },
         flags: Vec::new(),
     }
