@@ -7,6 +7,9 @@ mod support;
 /// table.
 mod robustness;
 
+/// Runs killed, run twice, without room on the disk; determinism.
+mod broken_runs;
+
 /// The verbs: help, exit codes, quiet and verbose, what they write and what they leave alone.
 mod command_line;
 
