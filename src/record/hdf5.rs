@@ -4,6 +4,9 @@
 
 pub mod element;
 pub mod fallback;
+pub mod legacy;
+pub mod matlab;
+pub mod matlab_file;
 pub mod plan;
 pub mod pure;
 pub mod store;
@@ -40,6 +43,9 @@ struct Hdf5Source {
 /// Where neither library can read its structure, or it holds no numbers.
 pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let (store, tree, note) = open_store(path)?;
+    if matlab::is_matlab(&tree) {
+        return matlab_file::open(path, store, &tree, note);
+    }
     let mut plans = plan::plan(&*store, &tree);
     plans.notes.extend(note);
     if plans.datasets.is_empty() {
@@ -96,6 +102,22 @@ fn byte_of(message: &str, length: u64) -> u64 {
     }
 }
 
+/// Refuse an array whose shape claims far more than its stored bytes can hold.
+fn check_claim(store: &dyn Store, array: &Array) -> Result<(), String> {
+    let claimed = array
+        .count()
+        .and_then(|n| n.checked_mul(array.element.bytes() as u64));
+    let stored = || store.stored_bytes(array).unwrap_or(0);
+    match claimed {
+        Some(bytes) if bytes <= HARMLESS_BYTES || bytes / GREATEST_RATIO <= stored() => Ok(()),
+        _ => Err(format!(
+            "a shape of {:?} that only {} bytes stand for",
+            array.shape,
+            stored()
+        )),
+    }
+}
+
 impl Hdf5Source {
     fn error(&self, array: &Array, found: impl Into<String>) -> ReadError {
         ReadError::new(
@@ -109,18 +131,7 @@ impl Hdf5Source {
 
     /// The bytes of an array, once its size is known to be earnest.
     fn bytes(&self, plan: &Plan, array: &Array) -> Result<Vec<u8>, ReadError> {
-        let claimed = array
-            .count()
-            .and_then(|n| n.checked_mul(array.element.bytes() as u64));
-        let stored = || self.store.stored_bytes(array).unwrap_or(0);
-        match claimed {
-            Some(bytes) if bytes <= HARMLESS_BYTES || bytes / GREATEST_RATIO <= stored() => {}
-            _ => {
-                let shape = format!("{:?}", array.shape);
-                let found = format!("a shape of {shape} that only {} bytes stand for", stored());
-                return Err(self.error(array, found));
-            }
-        }
+        check_claim(&*self.store, array).map_err(|found| self.error(array, found))?;
         match plan.slab {
             Some(slab) => self.store.rows(array, slab, 1),
             None => self.store.raw(array),

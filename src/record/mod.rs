@@ -19,11 +19,14 @@ pub mod lvm;
 pub mod mat;
 pub mod numbers;
 pub mod open;
+pub mod parquet;
 pub mod rate;
 pub mod source;
 pub mod tdms;
 pub mod text;
 pub mod time_axis;
+pub mod uff;
+pub mod wav;
 
 use serde::{Deserialize, Serialize};
 

@@ -6,7 +6,10 @@ use std::path::Path;
 use crate::record::csv;
 use crate::record::hdf5;
 use crate::record::lvm;
+use crate::record::mat;
+use crate::record::parquet;
 use crate::record::source::{ReadError, Source};
+use crate::record::tdms;
 use crate::record::text::read_exact_at;
 
 /// Bytes at the front of a file by which formats are told apart.
@@ -18,11 +21,20 @@ type Reader = fn(&Path) -> Result<Box<dyn Source>, ReadError>;
 type Test = fn(&[u8]) -> bool;
 
 /// Formats with a mark of their own: how it is known and who reads it, one line each.
-const BY_BYTES: &[(Test, Reader)] = &[(is_hdf5, hdf5::open), (is_lvm, lvm::open)];
+#[rustfmt::skip]
+const BY_BYTES: &[(Test, Reader)] = &[
+    (is_hdf5, hdf5::open),
+    (is_lvm, lvm::open),
+    (is_parquet, parquet::open),
+    (tdms::recognises, tdms::open),
+    (mat::recognises, mat::open),
+];
 
 /// Formats told by the file's extension where its bytes bear no mark, one line each.
-const BY_EXTENSION: &[(&[&str], Reader)] =
-    &[(&["csv", "tsv", "txt", "dat", "asc", "prn"], csv::open)];
+#[rustfmt::skip]
+const BY_EXTENSION: &[(&[&str], Reader)] = &[
+    (&["csv", "tsv", "txt", "dat", "asc", "prn"], csv::open),
+];
 
 /// Open a record file of any supported format, reading its metadata only.
 ///
@@ -63,6 +75,10 @@ fn is_hdf5(front: &[u8]) -> bool {
             .get(at..)
             .is_some_and(|b| b.starts_with(&hdf5::SIGNATURE))
     })
+}
+
+fn is_parquet(front: &[u8]) -> bool {
+    front.starts_with(&parquet::SIGNATURE)
 }
 
 /// A LabVIEW measurement says so in its first words.

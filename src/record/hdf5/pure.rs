@@ -9,6 +9,7 @@ use ::hdf5::{
 };
 
 use crate::record::hdf5::element::Element;
+use crate::record::hdf5::legacy::{self, Patch};
 use crate::record::hdf5::store::{
     Array, Attr, Attrs, DEEPEST, MOST_OBJECTS, Store, Target, Tree, join,
 };
@@ -21,6 +22,7 @@ const METADATA_CACHE_BYTES: usize = 4 << 20;
 struct Positional {
     file: File,
     length: u64,
+    patches: Vec<Patch>,
 }
 
 impl ::hdf5::Source for Positional {
@@ -40,7 +42,9 @@ impl ::hdf5::Source for Positional {
                 available: usize::try_from(self.length).unwrap_or(usize::MAX),
             });
         }
-        read_exact_at(&self.file, into, offset).map_err(|e| FormatError::Source(e.to_string()))
+        read_exact_at(&self.file, into, offset).map_err(|e| FormatError::Source(e.to_string()))?;
+        legacy::apply(&self.patches, offset, into);
+        Ok(())
     }
 }
 
@@ -50,23 +54,56 @@ pub struct PureStore {
 }
 
 /// Open a file and walk its tree.
+///
+/// # Errors
+/// The library's words where it cannot read the structure.
 pub fn open(file: File, length: u64) -> Result<(PureStore, Tree), String> {
+    let again = file.try_clone().map_err(|e| e.to_string())?;
+    let (store, tree, old) = walk(Positional {
+        file,
+        length,
+        patches: Vec::new(),
+    })?;
+    if !old {
+        return Ok((store, tree));
+    }
+    let patches = legacy::patches(&again, length).map_err(|e| e.to_string())?;
+    let (store, tree, _) = walk(Positional {
+        file: again,
+        length,
+        patches,
+    })?;
+    Ok((store, tree))
+}
+
+/// Walk a file; tells also whether it has data layouts older than the library reads.
+fn walk(source: Positional) -> Result<(PureStore, Tree, bool), String> {
     let access = FileAccessProperties::new()
         .with_metadata_cache(MetadataCacheConfig::new(METADATA_CACHE_BYTES))
         .with_chunk_cache(ChunkCacheConfig::disabled());
-    let source = Positional { file, length };
     let file = ::hdf5::File::from_source_with_options(source, access).map_err(|e| e.to_string())?;
     let mut walk = Walk {
         datasets: Vec::new(),
         objects: 0,
     };
     let tree = walk.group(&file.root(), String::new(), 0)?;
+    let old = walk.datasets.iter().any(has_old_layout);
     Ok((
         PureStore {
             datasets: Mutex::new(walk.datasets),
         },
         tree,
+        old,
     ))
+}
+
+fn has_old_layout(dataset: &Dataset) -> bool {
+    matches!(
+        dataset.layout(),
+        Err(::hdf5::Error::Format(FormatError::InvalidLayoutVersion(
+            1 | 2
+        )))
+    )
 }
 
 struct Walk {

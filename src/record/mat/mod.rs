@@ -19,13 +19,13 @@
 //! - Sparse matrices and opaque objects are left out by name; a file that holds nothing else is
 //!   refused.
 
-mod arrange;
+pub(crate) mod arrange;
 mod inflate;
 mod samples;
 #[cfg(test)]
 mod tests;
-mod text;
-mod tree;
+pub(crate) mod text;
+pub(crate) mod tree;
 mod v4;
 mod v5;
 

@@ -1,11 +1,11 @@
 //! The first page's data: the answer, the agreement, what was measured.
 
 use super::Drawn;
-use super::model::{Front, Rich};
-use super::numbers::{self, PARAMETERS};
-use crate::identify::VerdictKind;
+use super::model::{Answer, Front, Rich};
+use crate::identify::{Estimate, VerdictKind};
 use crate::report::content::{CampaignSummary, ReportContent};
 use crate::report::figures::look::NumberLook;
+use crate::report::parameters::{self, PARAMETERS, ParameterLook};
 
 /// Builds the first page.
 pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
@@ -20,7 +20,7 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
         findings: id.verdict.findings.iter().map(Rich::from).collect(),
         answers: PARAMETERS
             .iter()
-            .map(|look| numbers::answer(look, (look.pick)(joint), drawn.numbers))
+            .map(|look| answer(look, (look.pick)(joint), drawn.numbers))
             .collect(),
         agree: match id.agreement.agree {
             Some(true) => "yes",
@@ -31,6 +31,31 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
         facts: facts(&content.summary, drawn.numbers),
         map: drawn.figure("map_small", ""),
         estimates: drawn.figure("estimates", ""),
+    }
+}
+
+/// A parameter ready to print.
+fn answer(look: &ParameterLook, estimate: Option<&Estimate>, numbers: NumberLook) -> Answer {
+    let half = estimate
+        .and_then(parameters::half_width)
+        .map(|h| h * look.factor);
+    let decimals = parameters::decimals_for(half.unwrap_or(0.0));
+    let print = |v: f64| numbers.fixed(v * look.factor, decimals);
+    let value = estimate.and_then(|e| e.value);
+    let interval = estimate
+        .and_then(|e| e.interval95)
+        .filter(|_| value.is_some());
+    Answer {
+        symbol: Rich::from(look.symbol),
+        name: Rich::from(look.name),
+        value: value.map(print),
+        plus_minus: half
+            .filter(|_| value.is_some())
+            .map(|h| numbers.fixed(h, decimals)),
+        unit: look.unit.into(),
+        interval: interval.map(|[low, high]| format!("{} to {}", print(low), print(high))),
+        status: estimate.map_or("not_asked", |e| parameters::status_name(e.status)),
+        note: estimate.and_then(|e| e.note.as_ref()).map(Rich::from),
     }
 }
 
@@ -63,7 +88,10 @@ fn facts(summary: &CampaignSummary, numbers: NumberLook) -> Vec<(Rich, Rich)> {
     for note in &summary.notes {
         add("note", note.clone());
     }
-    facts.into_iter().map(|(l, v)| (Rich::from(l), Rich::from(v))).collect()
+    facts
+        .into_iter()
+        .map(|(l, v)| (Rich::from(l), Rich::from(v)))
+        .collect()
 }
 
 fn dates(summary: &CampaignSummary) -> String {
@@ -78,9 +106,16 @@ fn records(summary: &CampaignSummary) -> String {
     if summary.records_total == 0 {
         return String::new();
     }
-    let mut text = format!("{} read, {} used", summary.records_total, summary.records_used);
+    let mut text = format!(
+        "{} read, {} used",
+        summary.records_total, summary.records_used
+    );
     if summary.files_total > 0 {
-        let plural = if summary.files_total == 1 { "file" } else { "files" };
+        let plural = if summary.files_total == 1 {
+            "file"
+        } else {
+            "files"
+        };
         text.push_str(&format!(", from {} {plural}", summary.files_total));
     }
     if summary.impacts_total > 0 {
@@ -92,32 +127,52 @@ fn records(summary: &CampaignSummary) -> String {
 fn sampling(summary: &CampaignSummary, numbers: NumberLook) -> String {
     let rate = summary.sample_rate_hz.map(|r| {
         if r >= 1e3 {
-            format!("{}\u{2009}kHz", numbers.significant(r / 1e3, 4).trim_end_matches('0').trim_end_matches(['.', ',']))
+            format!(
+                "{}\u{2009}kHz",
+                numbers
+                    .significant(r / 1e3, 4)
+                    .trim_end_matches('0')
+                    .trim_end_matches(['.', ','])
+            )
         } else {
             format!("{}\u{2009}Hz", numbers.significant(r, 4))
         }
     });
-    let length = summary.record_length_s.map(|l| format!("{}\u{2009}s a record", numbers.significant(l, 3)));
-    [rate, length].into_iter().flatten().collect::<Vec<_>>().join(", ")
+    let length = summary
+        .record_length_s
+        .map(|l| format!("{}\u{2009}s a record", numbers.significant(l, 3)));
+    [rate, length]
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 fn drive(summary: &CampaignSummary, numbers: NumberLook) -> String {
-    summary.frequency_range_hz.map_or(String::new(), |[low, high]| {
-        let (low, high) = (numbers.fixed(low, 2), numbers.fixed(high, 2));
-        format!("{low} to {high}\u{2009}Hz, as measured")
-    })
+    summary
+        .frequency_range_hz
+        .map_or(String::new(), |[low, high]| {
+            let (low, high) = (numbers.fixed(low, 2), numbers.fixed(high, 2));
+            format!("{low} to {high}\u{2009}Hz, as measured")
+        })
 }
 
 fn clearances(summary: &CampaignSummary, numbers: NumberLook) -> String {
-    let all: Vec<String> =
-        summary.clearances_m.iter().map(|r| numbers.significant(1e3 * r, 3)).collect();
+    let all: Vec<String> = summary
+        .clearances_m
+        .iter()
+        .map(|r| numbers.significant(1e3 * r, 3))
+        .collect();
     match all.as_slice() {
         [] => String::new(),
         [one] => format!("$r$ = {one}\u{2009}mm"),
         few if few.len() <= 8 => format!("$r$ = {}\u{2009}mm", few.join("; ")),
         many => {
             let (first, last) = (&many[0], &many[many.len() - 1]);
-            format!("{} values of $r$ from {first} to {last}\u{2009}mm", many.len())
+            format!(
+                "{} values of $r$ from {first} to {last}\u{2009}mm",
+                many.len()
+            )
         }
     }
 }
@@ -138,7 +193,10 @@ fn nominal(summary: &CampaignSummary, numbers: NumberLook) -> String {
 /// Without zeros at the end that a nominal value does not mean.
 fn trimmed(number: &str) -> String {
     if number.contains(['.', ',']) && !number.contains('·') {
-        number.trim_end_matches('0').trim_end_matches(['.', ',']).to_owned()
+        number
+            .trim_end_matches('0')
+            .trim_end_matches(['.', ','])
+            .to_owned()
     } else {
         number.to_owned()
     }
@@ -147,8 +205,36 @@ fn trimmed(number: &str) -> String {
 fn channels(summary: &CampaignSummary) -> String {
     let each = summary.channels.iter().map(|c| {
         let role = c.role.name().replace('_', " ");
-        let unit = if c.unit.is_empty() { String::new() } else { format!(" ({})", c.unit) };
-        if c.note.is_empty() { format!("{role}{unit}") } else { format!("{role}{unit}, {}", c.note) }
+        let unit = if c.unit.is_empty() {
+            String::new()
+        } else {
+            format!(" ({})", c.unit)
+        };
+        if c.note.is_empty() {
+            format!("{role}{unit}")
+        } else {
+            format!("{role}{unit}, {}", c.note)
+        }
     });
     each.collect::<Vec<_>>().join("; ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::Status;
+
+    #[test]
+    fn valid_what_is_not_identifiable_has_no_number() {
+        let none = Estimate {
+            value: None,
+            standard_error: None,
+            interval95: None,
+            status: Status::NotIdentifiable,
+            note: Some("no bracket".into()),
+        };
+        let answer = super::answer(&PARAMETERS[0], Some(&none), NumberLook::default());
+        assert_eq!((answer.value, answer.interval), (None, None));
+        assert_eq!(answer.status, "not_identifiable");
+    }
 }

@@ -1,8 +1,8 @@
 //! The document: from content and figures to plain document data, and from there to PDF.
 
-pub mod front;
+mod captions;
+mod front;
 pub mod model;
-pub mod numbers;
 mod pdf;
 mod sections;
 mod tables;
@@ -14,7 +14,7 @@ use model::{Block, Document, FigureRef, Rich};
 
 use crate::report::content::ReportContent;
 use crate::report::figures::look::NumberLook;
-use crate::report::figures::{self, Figure, richtext};
+use crate::report::figures::{Figure, richtext};
 
 /// The figures as drawn, to be referred to by name.
 pub struct Drawn<'a> {
@@ -38,14 +38,11 @@ impl Drawn<'_> {
 
     /// A block of those of the named figures that were drawn.
     fn figures_block(&self, named: &[(&str, &str)]) -> Option<Block> {
-        let figures: Vec<FigureRef> =
-            named.iter().filter_map(|(name, caption)| self.figure(name, caption)).collect();
+        let figures: Vec<FigureRef> = named
+            .iter()
+            .filter_map(|(name, caption)| self.figure(name, caption))
+            .collect();
         (!figures.is_empty()).then_some(Block::Figures { figures })
-    }
-
-    /// Names and captions of the figures of the methods.
-    fn method_figures(&self, content: &ReportContent) -> Vec<(String, String)> {
-        figures::method_captions(content)
     }
 }
 
@@ -64,10 +61,22 @@ pub fn document(content: &ReportContent, figures: &[Figure], numbers: NumberLook
 fn subtitle(content: &ReportContent) -> String {
     let summary = &content.summary;
     let dates = summary.dates.as_ref().map(|[first, last]| {
-        if first == last { first.clone() } else { format!("{first} to {last}") }
+        if first == last {
+            first.clone()
+        } else {
+            format!("{first} to {last}")
+        }
     });
-    let parts = [Some(summary.name.clone()), summary.laboratory.clone(), dates];
-    let parts: Vec<String> = parts.into_iter().flatten().filter(|p| !p.is_empty()).collect();
+    let parts = [
+        Some(summary.name.clone()),
+        summary.laboratory.clone(),
+        dates,
+    ];
+    let parts: Vec<String> = parts
+        .into_iter()
+        .flatten()
+        .filter(|p| !p.is_empty())
+        .collect();
     parts.join(" · ")
 }
 

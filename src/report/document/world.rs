@@ -30,6 +30,18 @@ impl MemoryWorld {
     }
 }
 
+impl MemoryWorld {
+    /// Number of line feeds in the template before a byte.
+    pub fn lines_before(&self, byte: usize) -> usize {
+        self.main
+            .text()
+            .bytes()
+            .take(byte)
+            .filter(|b| *b == b'\n')
+            .count()
+    }
+}
+
 fn id(path: &str) -> Option<FileId> {
     let path = VirtualPath::new(path).ok()?;
     Some(FileId::new(RootedPath::new(VirtualRoot::Project, path)))
@@ -38,7 +50,9 @@ fn id(path: &str) -> Option<FileId> {
 fn book() -> &'static LazyHash<FontBook> {
     static BOOK: OnceLock<LazyHash<FontBook>> = OnceLock::new();
     BOOK.get_or_init(|| {
-        LazyHash::new(FontBook::from_infos(fonts::embedded().iter().map(|(_, info)| info.clone())))
+        LazyHash::new(FontBook::from_infos(
+            fonts::embedded().iter().map(|(_, info)| info.clone()),
+        ))
     })
 }
 
@@ -61,7 +75,11 @@ impl World for MemoryWorld {
     }
 
     fn source(&self, id: FileId) -> FileResult<Source> {
-        if id == self.main.id() { Ok(self.main.clone()) } else { Err(FileError::NotSource) }
+        if id == self.main.id() {
+            Ok(self.main.clone())
+        } else {
+            Err(FileError::NotSource)
+        }
     }
 
     fn file(&self, id: FileId) -> FileResult<Bytes> {

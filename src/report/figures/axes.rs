@@ -16,21 +16,40 @@ pub struct Axis {
     pub title: String,
     /// Whether it counts in powers of ten.
     pub log: bool,
-    /// Wanted number of ticks.
+    /// Wanted number of ticks; none at all for 0.
     pub ticks: usize,
 }
 
 impl Axis {
     /// A linear axis.
     pub fn new(low: f64, high: f64, title: impl Into<String>) -> Self {
-        let (low, high) = if high > low { (low, high) } else { (low - 0.5, low + 0.5) };
-        Self { low, high, title: title.into(), log: false, ticks: 5 }
+        let (low, high) = if high > low {
+            (low, high)
+        } else {
+            (low - 0.5, low + 0.5)
+        };
+        Self {
+            low,
+            high,
+            title: title.into(),
+            log: false,
+            ticks: 5,
+        }
     }
 
     /// An axis that shows all values with a margin (a share of their range) at either end.
-    pub fn around(values: impl IntoIterator<Item = f64>, margin: f64, title: impl Into<String>) -> Self {
+    pub fn around(
+        values: impl IntoIterator<Item = f64>,
+        margin: f64,
+        title: impl Into<String>,
+    ) -> Self {
         let (low, high) = range(values).unwrap_or((0.0, 1.0));
-        let pad = if high > low { margin * (high - low) } else { (0.05 * high.abs()).max(1e-12) };
+        let alone = if high == 0.0 { 1.0 } else { 0.05 * high.abs() };
+        let pad = if high > low {
+            margin * (high - low)
+        } else {
+            alone
+        };
         Self::new(low - pad, high + pad, title)
     }
 
@@ -59,8 +78,19 @@ impl Axis {
         if self.log {
             return (self.decades(), 0);
         }
-        let step = nice_step((self.high - self.low) / self.ticks.max(1) as f64);
-        (multiples(self.low, self.high, step), decimals_of(step))
+        let span = self.high - self.low;
+        let wanted = self.ticks.max(1);
+        let tries = (wanted..=wanted + 4).map(|ticks| nice_step(span / ticks as f64));
+        let ticks = tries.map(|step| (multiples(self.low, self.high, step), decimals_of(step)));
+        // One number alone does not tell a scale.
+        let mut best = (Vec::new(), 0);
+        for found in ticks {
+            best = found;
+            if best.0.len() >= 2 {
+                break;
+            }
+        }
+        best
     }
 
     fn decades(&self) -> Vec<f64> {
@@ -82,23 +112,33 @@ impl Axis {
 
     /// Label of a tick.
     pub fn label(&self, value: f64, decimals: usize, numbers: NumberLook) -> String {
-        if self.log { numbers.significant(value, 1) } else { numbers.fixed(value, decimals) }
+        if self.log {
+            numbers.significant(value, 1)
+        } else {
+            numbers.fixed(value, decimals)
+        }
     }
 }
 
 /// Least and greatest of the finite values.
 pub fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
-    values.into_iter().filter(|v| v.is_finite()).fold(None, |seen, v| match seen {
-        None => Some((v, v)),
-        Some((low, high)) => Some((low.min(v), high.max(v))),
-    })
+    values
+        .into_iter()
+        .filter(|v| v.is_finite())
+        .fold(None, |seen, v| match seen {
+            None => Some((v, v)),
+            Some((low, high)) => Some((low.min(v), high.max(v))),
+        })
 }
 
 /// The next of 1, 2, 5 times a power of ten.
 fn nice_step(rough: f64) -> f64 {
     let power = 10f64.powf(rough.log10().floor());
     let multiple = rough / power;
-    let nice = [1.0, 2.0, 5.0].into_iter().find(|m| multiple <= m * 1.000_001).unwrap_or(10.0);
+    let nice = [1.0, 2.0, 5.0]
+        .into_iter()
+        .find(|m| multiple <= m * 1.000_001)
+        .unwrap_or(10.0);
     nice * power
 }
 
@@ -124,7 +164,10 @@ pub struct Sides {
 
 impl Sides {
     /// Both.
-    pub const BOTH: Self = Self { below: true, left: true };
+    pub const BOTH: Self = Self {
+        below: true,
+        left: true,
+    };
 }
 
 /// A rectangle on paper with two axes.
@@ -136,12 +179,27 @@ pub struct Panel {
     pub x: Axis,
     /// Upward.
     pub y: Axis,
+    /// How far left of the frame the title of the upward axis stands; `None`: beside its numbers.
+    pub title_reach: Option<f64>,
 }
 
 impl Panel {
     /// A panel.
     pub fn new(rect: Rect, x: Axis, y: Axis) -> Self {
-        Self { rect, x, y }
+        Self {
+            rect,
+            x,
+            y,
+            title_reach: None,
+        }
+    }
+
+    /// With the title of the upward axis at a distance, in line with other panels' titles.
+    pub fn with_title_reach(self, reach: f64) -> Self {
+        Self {
+            title_reach: Some(reach),
+            ..self
+        }
     }
 
     /// Where a pair of values lies on paper.
@@ -165,8 +223,10 @@ impl Panel {
         stroke: Stroke,
     ) -> Vec<Vec<Point>> {
         let points: Vec<Point> = data.into_iter().map(|(x, y)| self.at(x, y)).collect();
-        let pieces: Vec<_> =
-            path::clip(&points, &self.rect).iter().map(|p| path::thin(p)).collect();
+        let pieces: Vec<_> = path::clip(&points, &self.rect)
+            .iter()
+            .map(|p| path::thin(p))
+            .collect();
         for piece in &pieces {
             canvas.line(piece, stroke);
         }
@@ -234,6 +294,9 @@ impl Panel {
     }
 
     fn ticks_left(&self, canvas: &mut Canvas, labels: bool, numbers: NumberLook) {
+        if self.y.ticks == 0 {
+            return;
+        }
         let (ticks, decimals) = self.y.major();
         let left = self.rect.left;
         for v in ticks {
@@ -250,11 +313,19 @@ impl Panel {
         }
     }
 
+    /// The title of the upward axis; line feeds part it into lines.
     fn title_left(&self, canvas: &mut Canvas, numbers: NumberLook) {
-        let x = self.rect.left - 7.0 - self.widest_label(numbers);
+        let reach = self.title_reach.unwrap_or(7.0 + self.widest_label(numbers));
         let middle = 0.5 * (self.rect.top + self.rect.bottom);
-        let title_look = TextLook { upward: true, ..TextLook::new(look::TITLE_SIZE, Anchor::Middle) };
-        canvas.text((x, middle), &self.y.title, title_look.colour(look::INK));
+        let title_look = TextLook {
+            upward: true,
+            ..TextLook::new(look::TITLE_SIZE, Anchor::Middle)
+        };
+        let lines: Vec<&str> = self.y.title.lines().collect();
+        for (i, line) in lines.iter().enumerate() {
+            let x = self.rect.left - reach - 8.5 * (lines.len() - 1 - i) as f64;
+            canvas.text((x, middle), line, title_look.colour(look::INK));
+        }
     }
 
     /// Width of the widest number on the left.
@@ -263,7 +334,11 @@ impl Panel {
         ticks
             .iter()
             .map(|&v| {
-                fonts::width(&self.y.label(v, decimals, numbers), Face::Regular, look::TICK_SIZE)
+                fonts::width(
+                    &self.y.label(v, decimals, numbers),
+                    Face::Regular,
+                    look::TICK_SIZE,
+                )
             })
             .fold(0.0, f64::max)
     }

@@ -1,5 +1,5 @@
-//! Short texts with symbols: between dollars letters are slanted, `_` lowers and `^` raises, as
-//! in `$f$/$f_0$ (1)`.
+//! Short texts with symbols: between dollars letters are slanted, `_` lowers and `^` raises
+//! what follows, as in `$f$/$f_0$ (1)` or `$x_st$`.
 
 use super::fonts::{self, Face};
 
@@ -43,24 +43,21 @@ pub fn parse(markup: &str) -> Vec<Run> {
 
 fn parse_symbols(part: &str, runs: &mut Vec<Run>) {
     let mut chars = part.chars().peekable();
-    let mut level = Level::Base;
     while let Some(c) = chars.next() {
-        match c {
-            '_' | '^' => {
-                level = if c == '_' { Level::Sub } else { Level::Super };
-                if chars.peek() == Some(&'{') {
-                    chars.next();
-                    let inner: String = chars.by_ref().take_while(|&c| c != '}').collect();
-                    push(runs, inner, false, level);
-                    level = Level::Base;
-                }
-            }
+        let level = match c {
+            '_' => Level::Sub,
+            '^' => Level::Super,
             c => {
-                let italic = c.is_alphabetic() && level == Level::Base;
-                push(runs, c.to_string(), italic, level);
-                level = Level::Base;
+                push(runs, c.to_string(), c.is_alphabetic(), Level::Base);
+                continue;
             }
-        }
+        };
+        let index: String = if chars.next_if_eq(&'{').is_some() {
+            chars.by_ref().take_while(|&c| c != '}').collect()
+        } else {
+            std::iter::from_fn(|| chars.next_if(|c| c.is_alphanumeric())).collect()
+        };
+        push(runs, index, false, level);
     }
 }
 
@@ -70,19 +67,31 @@ fn push(runs: &mut Vec<Run>, text: String, italic: bool, level: Level) {
     }
     match runs.last_mut() {
         Some(last) if last.italic == italic && last.level == level => last.text.push_str(&text),
-        _ => runs.push(Run { text, italic, level }),
+        _ => runs.push(Run {
+            text,
+            italic,
+            level,
+        }),
     }
 }
 
 impl Run {
     /// Face of the run inside a text of the given face.
     pub fn face(&self, around: Face) -> Face {
-        if self.italic && around != Face::Bold { Face::Italic } else { around }
+        if self.italic && around != Face::Bold {
+            Face::Italic
+        } else {
+            around
+        }
     }
 
     /// Size of the run inside a text of the given size.
     pub fn size(&self, around: f64) -> f64 {
-        if self.level == Level::Base { around } else { around * SCRIPT_SIZE }
+        if self.level == Level::Base {
+            around
+        } else {
+            around * SCRIPT_SIZE
+        }
     }
 
     /// How far its baseline lies below the text's.
@@ -97,7 +106,10 @@ impl Run {
 
 /// Width of a marked-up text.
 pub fn width(markup: &str, face: Face, size: f64) -> f64 {
-    parse(markup).iter().map(|r| fonts::width(&r.text, r.face(face), r.size(size))).sum()
+    parse(markup)
+        .iter()
+        .map(|r| fonts::width(&r.text, r.face(face), r.size(size)))
+        .sum()
 }
 
 /// The text without its markup.
@@ -112,7 +124,10 @@ mod tests {
     #[test]
     fn valid_symbols_are_slanted_and_indices_lowered() {
         let runs = parse("$f_0$ (Hz), $x_{st}$");
-        let seen: Vec<_> = runs.iter().map(|r| (r.text.as_str(), r.italic, r.level)).collect();
+        let seen: Vec<_> = runs
+            .iter()
+            .map(|r| (r.text.as_str(), r.italic, r.level))
+            .collect();
         assert_eq!(
             seen,
             [
