@@ -80,7 +80,9 @@ fn records(text: &mut String, found: &Found) -> std::fmt::Result {
 
 /// Which attributes may hold the setting; where the name bears no unit, the usual one.
 fn attributes(found: &Found) -> Vec<(&'static str, String)> {
-    const KEYS: [(&str, &[&str], Option<(Dimension, &str)>); 4] = [
+    /// Key, stems of attribute names, dimension and usual unit.
+    type Key = (&'static str, &'static [&'static str], Option<(Dimension, &'static str)>);
+    const KEYS: [Key; 4] = [
         ("clearance", &["clearance", "gap"], Some((Dimension::Length, "mm"))),
         ("drive_frequency", &["freq"], Some((Dimension::Frequency, "Hz"))),
         ("drive_amplitude", &["amplitude"], None),

@@ -30,7 +30,7 @@ pub fn peak_frequency(samples: &[f64]) -> Option<f64> {
     let first = 2.min(amplitudes.len());
     let (top, &height) =
         amplitudes.iter().enumerate().skip(first).max_by(|a, b| a.1.total_cmp(b.1))?;
-    if !(height > 0.0) || top + 1 >= amplitudes.len() {
+    if height.is_nan() || height <= 0.0 || top + 1 >= amplitudes.len() {
         return None;
     }
     let [left, centre, right] = [top - 1, top, top + 1].map(|i| amplitudes[i].max(1e-300).ln());

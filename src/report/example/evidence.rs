@@ -41,6 +41,7 @@ fn comparisons(content: &ReportContent) -> Vec<Comparison> {
         .collect()
 }
 
+#[allow(clippy::too_many_lines)] // a table of numbers
 fn comparison(record: &RecordRow, letter: char) -> Comparison {
     let (eta, rho) = (record.eta.unwrap_or(1.0), record.rho.unwrap_or(1.0));
     let start = if record.motion == crate::motion::Motion::Impactless {
