@@ -110,7 +110,7 @@ fn list_file(path: &Path, shared: Shared<'_>, open: Opener<'_>) -> Vec<Listed> {
                 .map(|(i, set)| listed(path, i, set, None, shared))
                 .collect()
         }
-        Err(error) => vec![failed(path, None, error_flag(&error))],
+        Err(error) => vec![failed(path, None, calibrate::read_flag(&error))],
     }
 }
 
@@ -120,25 +120,6 @@ fn empty_file(path: &Path) -> Flag {
         channel: None,
         message: format!("{} holds no dataset", path.display()),
         remedy: "remove the file, or record again".to_owned(),
-        excludes: true,
-    }
-}
-
-fn error_flag(error: &ReadError) -> Flag {
-    let place = error
-        .channel
-        .as_ref()
-        .map(|c| format!("channel '{c}': "))
-        .unwrap_or_default();
-    let byte = error
-        .byte
-        .map(|b| format!(" (at byte {b})"))
-        .unwrap_or_default();
-    Flag {
-        code: "unreadable".to_owned(),
-        channel: error.channel.clone(),
-        message: format!("{place}{}; expected {}{byte}", error.found, error.expected),
-        remedy: error.remedy.clone(),
         excludes: true,
     }
 }
@@ -220,7 +201,7 @@ fn list_rows_of(path: &Path, rows: &[&Row], shared: Shared<'_>, open: Opener<'_>
     let source = match open(path) {
         Ok(source) => source,
         Err(error) => {
-            let flag = error_flag(&error);
+            let flag = calibrate::read_flag(&error);
             return rows
                 .iter()
                 .map(|r| failed(path, Some((*r).clone()), flag.clone()))

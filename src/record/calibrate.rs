@@ -36,11 +36,17 @@ pub fn unreadable(id: &str, setting: &Setting, error: &ReadError) -> Record {
     record
 }
 
-fn read_flag(error: &ReadError) -> Flag {
+/// What a reader says, as a flag of the record; the file is named beside it.
+pub fn read_flag(error: &ReadError) -> Flag {
+    let place = match &error.channel {
+        Some(channel) => format!("channel '{channel}': "),
+        None => String::new(),
+    };
+    let byte = error.byte.map(|b| format!(" (at byte {b})")).unwrap_or_default();
     Flag {
         code: "unreadable".to_owned(),
         channel: error.channel.clone(),
-        message: error.to_string(),
+        message: format!("{place}{}; expected {}{byte}", error.found, error.expected),
         remedy: error.remedy.clone(),
         excludes: true,
     }
