@@ -320,8 +320,8 @@ pub fn march<V: Lanes, const DEGREE: usize>(course: &Course, feed: &mut impl Fee
     let mut lanes = [[IDLE; MAX_WIDTH]; GROUPS];
     let mut live = [0u32; GROUPS];
     for k in 0..GROUPS {
-        for lane in 0..V::WIDTH {
-            live[k] |= refill(course, feed, &mut groups[k], &mut lanes[k][lane], lane);
+        for (lane, state) in lanes[k].iter_mut().enumerate().take(V::WIDTH) {
+            live[k] |= refill(course, feed, &mut groups[k], state, lane);
         }
     }
     while live.iter().any(|l| *l != 0) {

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
 use super::faults::{Fault, Severity};
-use super::records::Opener;
+use super::listing::Opener;
 use super::resolved::{RecordEntry, ResolvedCampaign};
 use crate::event::Seen;
 use crate::event::detect::{DetectSettings, Detection, detect};

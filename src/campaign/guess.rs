@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::records::Opener;
+use super::listing::Opener;
 use crate::record::Role;
 use crate::record::source::{ChannelInfo, DatasetInfo, Samples, Source};
 use crate::units::{self, Dimension};

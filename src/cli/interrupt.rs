@@ -29,6 +29,7 @@ pub fn watch(folder: PathBuf) {
              --resume goes on.",
             folder.display()
         );
+        #[allow(clippy::exit)] // the working threads need not be waited for: outputs are whole
         std::process::exit(BROKEN_OFF);
     });
 }

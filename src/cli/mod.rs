@@ -8,6 +8,7 @@ mod init;
 mod interrupt;
 mod progress;
 mod run;
+mod selftest;
 mod simulate;
 mod stage;
 mod voice;
@@ -74,6 +75,8 @@ enum Verb {
     Report(stage::Report),
     /// Simulate a campaign with known truth
     Simulate(simulate::Simulate),
+    /// Compute the paper's published numbers on this machine
+    Selftest(selftest::SelfTest),
     /// Print the completions of a shell
     Completions(completions::Completions),
     /// Write the manual's pages
@@ -91,6 +94,7 @@ impl Verb {
             Self::Identify(verb) => verb.go(voice),
             Self::Report(verb) => verb.go(voice),
             Self::Simulate(verb) => verb.go(voice),
+            Self::Selftest(verb) => verb.go(voice),
             Self::Completions(verb) => verb.go(voice),
             Self::Man(verb) => verb.go(voice),
         }

@@ -66,7 +66,8 @@ fn closed_test(channel: &Channel) -> Option<Box<dyn Fn(f64) -> bool>> {
         .copied()
         .fold(f64::NEG_INFINITY, f64::max);
     let noise = crate::signal::robust::noise_deviation(&channel.values);
-    if !(high - low > 8.0 * noise.max(1e-9)) {
+    let swing = high - low;
+    if swing.is_nan() || swing <= 8.0 * noise.max(1e-9) {
         return None;
     }
     let middle = 0.5 * (low + high);

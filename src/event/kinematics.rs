@@ -175,7 +175,10 @@ fn series(record: &Record, role: Role) -> Option<Series> {
         noise,
         high_pass_hz: channel.high_pass_hz,
     };
-    remove_mean(&mut series.values);
+    if series.high_pass_hz.is_some() {
+        // The constant part is lost anyway; a measured one is kept until drift is told from arcs.
+        remove_mean(&mut series.values);
+    }
     Some(series)
 }
 

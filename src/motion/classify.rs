@@ -161,7 +161,9 @@ impl View {
         // At least three drive periods, or as many again, must overlap.
         let reach = (periods - 3.0).max(0.5 * periods).floor().max(1.0) as u32;
         let most = settings.most_periods.min(reach);
-        let level = crate::signal::robust::rms(&velocity.values);
+        let mean = crate::signal::robust::mean(&velocity.values);
+        let centred: Vec<f64> = velocity.values.iter().map(|v| v - mean).collect();
+        let level = crate::signal::robust::rms(&centred);
         Self {
             closures: closure::waveform(&velocity.values, period, &times, guard, most),
             noise_ratio: (level > 0.0).then(|| velocity.noise / level),

@@ -8,6 +8,7 @@ pub mod identify;
 pub mod inputs;
 pub mod observe;
 pub mod report;
+pub mod selftest;
 pub mod store;
 pub mod synthesise;
 pub mod tables;

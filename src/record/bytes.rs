@@ -56,6 +56,11 @@ impl FileBytes {
         self.map.as_deref().unwrap_or(&[])
     }
 
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.all().is_empty()
+    }
+
     /// Number of bytes.
     pub fn len(&self) -> u64 {
         self.all().len() as u64

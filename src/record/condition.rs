@@ -54,7 +54,7 @@ pub fn equal_lengths(record: &mut Record, times: Option<&mut Vec<f64>>) {
 }
 
 /// Cut samples off both ends where a channel has no value there (exports often pad so).
-pub fn trim_missing(record: &mut Record, mut times: Option<&mut Vec<f64>>) {
+pub fn trim_missing(record: &mut Record, times: Option<&mut Vec<f64>>) {
     let samples = record.samples();
     if samples == 0 {
         return;
@@ -79,7 +79,7 @@ pub fn trim_missing(record: &mut Record, mut times: Option<&mut Vec<f64>>) {
     for channel in &mut record.channels {
         keep(&mut channel.values, first, last);
     }
-    if let Some(times) = times.as_deref_mut() {
+    if let Some(times) = times {
         keep(times, first, last);
     }
     record.flags.push(trimmed(name, cut));

@@ -5,6 +5,7 @@
 //! judge experiment and simulation alike. This room does not know the model.
 
 pub mod attribute;
+pub mod bind;
 pub mod bytes;
 pub mod calibrate;
 mod condition;

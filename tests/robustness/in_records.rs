@@ -9,7 +9,78 @@ pub fn cases() -> Vec<Case> {
     all.extend(channels());
     all.extend(values());
     all.extend(times());
+    all.extend(bombs());
     all
+}
+
+/// The second record is this file instead.
+fn instead(lab: &Lab, name: &str, bytes: &[u8]) {
+    lab.write_bytes(name, bytes);
+    lab.replace("runs.csv", "r2.csv", name);
+}
+
+/// Files that claim or unfold to more than a machine holds.
+pub fn bombs() -> Vec<Case> {
+    vec![
+        refused(
+            "HDF5 that claims more samples than its bytes can hold",
+            |lab| {
+                let bytes = include_bytes!("../data/formats/claims_too_much.h5");
+                instead(lab, "r2.h5", bytes);
+            },
+            &["r2.h5", "2 of 3 records can be used"],
+        ),
+        refused(
+            "MATLAB v5 that unfolds to a gigabyte",
+            |lab| instead(lab, "r2.mat", &matlab_bomb()),
+            &["r2.mat", "compressed bytes that claim to hold", "2 of 3 records can be used"],
+        ),
+        refused(
+            "TDMS with 100 GB of metadata",
+            |lab| {
+                let mut bytes = b"TDSm".to_vec();
+                bytes.extend(0x0e_u32.to_le_bytes());
+                bytes.extend(4713_u32.to_le_bytes());
+                bytes.extend(1_000_000_000_000_u64.to_le_bytes());
+                bytes.extend(100_000_000_000_u64.to_le_bytes());
+                bytes.extend([0xff; 100]);
+                instead(lab, "r2.tdms", &bytes);
+            },
+            &["r2.tdms", "copy or export it again", "2 of 3 records can be used"],
+        ),
+        refused(
+            "CSV of one endless line",
+            |lab| instead(lab, "r2.csv", &[b'a'; 20_000_000]),
+            &["r2.csv", "no column of numbers", "2 of 3 records can be used"],
+        ),
+        refused(
+            "CSV of half a million columns",
+            |lab| {
+                let names: Vec<String> = (0..500_000).map(|i| format!("c{i}")).collect();
+                instead(lab, "r2.csv", (names.join(",") + "\n1\n").as_bytes());
+            },
+            &["r2.csv", "2 of 3 records can be used"],
+        ),
+    ]
+}
+
+/// A header and one compressed element that claims a gigabyte of zeros.
+fn matlab_bomb() -> Vec<u8> {
+    let mut packed = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
+    let mut put = |bytes: &[u8]| std::io::Write::write_all(&mut packed, bytes).expect("memory");
+    put(&14_u32.to_le_bytes());
+    put(&(1_u32 << 30).to_le_bytes());
+    for _ in 0..64 {
+        put(&[0; 1 << 16]);
+    }
+    let packed = packed.finish().expect("memory");
+    let mut bytes = b"MATLAB 5.0 MAT-file".to_vec();
+    bytes.resize(124, b' ');
+    bytes.extend([0, 1, b'I', b'M']);
+    bytes.extend(15_u32.to_le_bytes());
+    bytes.extend((packed.len() as u32).to_le_bytes());
+    bytes.extend(packed);
+    bytes
 }
 
 fn files() -> Vec<Case> {

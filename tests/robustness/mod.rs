@@ -95,6 +95,32 @@ fn valid_faults_in_campaign_toml() {
     test_all(&in_campaign_toml::cases());
 }
 
+/// Bombs end in an error soon, under a limit of memory that a quarter of a gigabyte of data and
+/// the program's own mappings fit into.
+#[cfg(target_os = "linux")]
+#[test]
+fn valid_bombs_end_soon_and_in_little_memory() {
+    for case in in_records::bombs() {
+        let lab = Lab::new();
+        (case.spoil)(&lab);
+        let begin = std::time::Instant::now();
+        let script = format!(
+            "ulimit -v 900000; exec {} --threads 2 check campaign.toml",
+            env!("CARGO_BIN_EXE_impactid")
+        );
+        let output = std::process::Command::new("sh")
+            .args(["-c", &script])
+            .current_dir(lab.folder())
+            .output()
+            .expect("a shell");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{}: {said}", case.input);
+        assert!(said.contains("2 of 3 records can be used"), "{}: {said}", case.input);
+        // a second on an idle machine; tests share theirs
+        assert!(begin.elapsed().as_secs_f64() < 15.0, "{} takes too long", case.input);
+    }
+}
+
 #[test]
 fn valid_faults_in_the_run_table() {
     test_all(&in_run_table::cases());

@@ -257,7 +257,7 @@ impl Scanner<'_> {
         let digits = |text: &[u8], separator: usize| {
             text.iter()
                 .enumerate()
-                .all(|(k, b)| (k % 3 == separator) == !b.is_ascii_digit())
+                .all(|(k, b)| (k % 3 == separator) != b.is_ascii_digit())
         };
         if digits(&date[2..], 2) && date[..2].iter().all(u8::is_ascii_digit) && digits(time, 2) {
             let [year, month, day] = [&date[..4], &date[5..7], &date[8..]].map(decode_text);
