@@ -1,13 +1,16 @@
 //! The command line: one file per verb; the only room that prints or exits.
 
 mod check;
+mod convert;
 mod exit;
 mod fail;
 mod init;
+mod inspect;
 mod interrupt;
 mod progress;
 mod run;
 mod simulate;
+mod sketch;
 mod stage;
 mod voice;
 
@@ -71,6 +74,10 @@ enum Verb {
     Identify(stage::Identify),
     /// Fourth stage: write the report
     Report(stage::Report),
+    /// What record files hold: channels, units, rates, ranges
+    Inspect(inspect::Inspect),
+    /// Write records of any format as HDF5, Parquet or CSV
+    Convert(convert::Convert),
     /// Simulate a campaign with known truth
     Simulate(simulate::Simulate),
 }
@@ -85,6 +92,8 @@ impl Verb {
             Self::Classify(verb) => verb.go(voice),
             Self::Identify(verb) => verb.go(voice),
             Self::Report(verb) => verb.go(voice),
+            Self::Inspect(verb) => verb.go(voice),
+            Self::Convert(verb) => verb.go(voice),
             Self::Simulate(verb) => verb.go(voice),
         }
     }
@@ -96,12 +105,19 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => {
             let _ = error.print();
-            return if error.use_stderr() { Exit::BadInput } else { Exit::Done }.into();
+            return if error.use_stderr() {
+                Exit::BadInput
+            } else {
+                Exit::Done
+            }
+            .into();
         }
     };
     let voice = Voice::new(cli.common.quiet, cli.common.verbose);
     if let Some(threads) = cli.common.threads {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.get())
+            .build_global();
         if let Err(error) = pool {
             voice.detail(&format!("the number of threads stays as it is: {error}"));
         }
@@ -126,9 +142,20 @@ mod tests {
         let command = Cli::command();
         command.clone().debug_assert();
         for verb in command.get_subcommands() {
-            let help = verb.get_after_help().map(ToString::to_string).unwrap_or_default();
-            assert!(help.contains("Example:"), "{} shows no example", verb.get_name());
-            assert!(verb.get_about().is_some(), "{} says nothing", verb.get_name());
+            let help = verb
+                .get_after_help()
+                .map(ToString::to_string)
+                .unwrap_or_default();
+            assert!(
+                help.contains("Example:"),
+                "{} shows no example",
+                verb.get_name()
+            );
+            assert!(
+                verb.get_about().is_some(),
+                "{} says nothing",
+                verb.get_name()
+            );
         }
     }
 }

@@ -100,7 +100,10 @@ impl Observed {
             return Err(PipelineError::NothingUsable(observations.len()));
         }
         let brackets = brackets(&observations);
-        Ok(Self { observations, brackets })
+        Ok(Self {
+            observations,
+            brackets,
+        })
     }
 }
 

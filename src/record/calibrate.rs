@@ -3,10 +3,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{condition, consistency};
 use super::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
 use super::time_axis::{self, TimeAxis};
 use super::{Channel, Flag, Record, Role, Setting};
+use super::{condition, consistency};
 use crate::units::{self, Dimension, Quantity, Scale, Unit};
 
 /// A channel of a file, by name or by index.

@@ -56,7 +56,9 @@ pub struct RenderOptions {
 
 impl RenderOptions {
     fn numbers(&self) -> NumberLook {
-        NumberLook { decimal_comma: self.decimal_comma }
+        NumberLook {
+            decimal_comma: self.decimal_comma,
+        }
     }
 }
 
@@ -64,7 +66,9 @@ impl RenderOptions {
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
     /// The template is wrong, or an image could not be read.
-    #[error("the report's template cannot be set: {0}. Check the file given as template, or leave it out to use the built-in one")]
+    #[error(
+        "the report's template cannot be set: {0}. Check the file given as template, or leave it out to use the built-in one"
+    )]
     Template(String),
     /// The PDF could not be written.
     #[error("the report cannot be exported as PDF: {0}. A logo in another format may help")]
@@ -92,7 +96,11 @@ impl Report {
         let numbers = options.numbers();
         let figures = figures::draw_all(content, numbers);
         let document = document::document(content, &figures, numbers);
-        Self { document, figures, options: options.clone() }
+        Self {
+            document,
+            figures,
+            options: options.clone(),
+        }
     }
 
     /// The report as PDF. The same content gives the same bytes.
@@ -102,7 +110,10 @@ impl Report {
 }
 
 /// Draws a content and gives its PDF.
-pub fn render_pdf(content: &ReportContent, options: &RenderOptions) -> Result<Vec<u8>, ReportError> {
+pub fn render_pdf(
+    content: &ReportContent,
+    options: &RenderOptions,
+) -> Result<Vec<u8>, ReportError> {
     Report::new(content, options).pdf()
 }
 

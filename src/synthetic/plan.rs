@@ -68,7 +68,9 @@ impl Plan {
 fn chosen_gaps(sweeps: usize) -> Vec<f64> {
     let wanted = (sweeps / 30).clamp(1, GAPS.len());
     // Spread over the list, the middle of the hysteresis region first.
-    (0..wanted).map(|i| GAPS[((2 * i + 1) * GAPS.len()) / (2 * wanted)]).collect()
+    (0..wanted)
+        .map(|i| GAPS[((2 * i + 1) * GAPS.len()) / (2 * wanted)])
+        .collect()
 }
 
 fn frequencies(natural_frequency_hz: f64, from: f64, to: f64, count: usize) -> Vec<f64> {
@@ -88,7 +90,12 @@ fn round_to(value: f64, step: f64) -> f64 {
 fn push_sweep(steps: &mut Vec<Step>, grid: &[f64], clearance_m: f64, sweep: Sweep) {
     for (i, frequency_hz) in grid.iter().enumerate() {
         let from_rest = i == 0 && sweep == Sweep::Up;
-        steps.push(Step { frequency_hz: *frequency_hz, clearance_m, sweep, from_rest });
+        steps.push(Step {
+            frequency_hz: *frequency_hz,
+            clearance_m,
+            sweep,
+            from_rest,
+        });
     }
 }
 

@@ -63,7 +63,10 @@ fn facts(summary: &CampaignSummary, numbers: NumberLook) -> Vec<(Rich, Rich)> {
     for note in &summary.notes {
         add("note", note.clone());
     }
-    facts.into_iter().map(|(l, v)| (Rich::from(l), Rich::from(v))).collect()
+    facts
+        .into_iter()
+        .map(|(l, v)| (Rich::from(l), Rich::from(v)))
+        .collect()
 }
 
 fn dates(summary: &CampaignSummary) -> String {
@@ -78,9 +81,16 @@ fn records(summary: &CampaignSummary) -> String {
     if summary.records_total == 0 {
         return String::new();
     }
-    let mut text = format!("{} read, {} used", summary.records_total, summary.records_used);
+    let mut text = format!(
+        "{} read, {} used",
+        summary.records_total, summary.records_used
+    );
     if summary.files_total > 0 {
-        let plural = if summary.files_total == 1 { "file" } else { "files" };
+        let plural = if summary.files_total == 1 {
+            "file"
+        } else {
+            "files"
+        };
         text.push_str(&format!(", from {} {plural}", summary.files_total));
     }
     if summary.impacts_total > 0 {
@@ -92,32 +102,52 @@ fn records(summary: &CampaignSummary) -> String {
 fn sampling(summary: &CampaignSummary, numbers: NumberLook) -> String {
     let rate = summary.sample_rate_hz.map(|r| {
         if r >= 1e3 {
-            format!("{}\u{2009}kHz", numbers.significant(r / 1e3, 4).trim_end_matches('0').trim_end_matches(['.', ',']))
+            format!(
+                "{}\u{2009}kHz",
+                numbers
+                    .significant(r / 1e3, 4)
+                    .trim_end_matches('0')
+                    .trim_end_matches(['.', ','])
+            )
         } else {
             format!("{}\u{2009}Hz", numbers.significant(r, 4))
         }
     });
-    let length = summary.record_length_s.map(|l| format!("{}\u{2009}s a record", numbers.significant(l, 3)));
-    [rate, length].into_iter().flatten().collect::<Vec<_>>().join(", ")
+    let length = summary
+        .record_length_s
+        .map(|l| format!("{}\u{2009}s a record", numbers.significant(l, 3)));
+    [rate, length]
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 fn drive(summary: &CampaignSummary, numbers: NumberLook) -> String {
-    summary.frequency_range_hz.map_or(String::new(), |[low, high]| {
-        let (low, high) = (numbers.fixed(low, 2), numbers.fixed(high, 2));
-        format!("{low} to {high}\u{2009}Hz, as measured")
-    })
+    summary
+        .frequency_range_hz
+        .map_or(String::new(), |[low, high]| {
+            let (low, high) = (numbers.fixed(low, 2), numbers.fixed(high, 2));
+            format!("{low} to {high}\u{2009}Hz, as measured")
+        })
 }
 
 fn clearances(summary: &CampaignSummary, numbers: NumberLook) -> String {
-    let all: Vec<String> =
-        summary.clearances_m.iter().map(|r| numbers.significant(1e3 * r, 3)).collect();
+    let all: Vec<String> = summary
+        .clearances_m
+        .iter()
+        .map(|r| numbers.significant(1e3 * r, 3))
+        .collect();
     match all.as_slice() {
         [] => String::new(),
         [one] => format!("$r$ = {one}\u{2009}mm"),
         few if few.len() <= 8 => format!("$r$ = {}\u{2009}mm", few.join("; ")),
         many => {
             let (first, last) = (&many[0], &many[many.len() - 1]);
-            format!("{} values of $r$ from {first} to {last}\u{2009}mm", many.len())
+            format!(
+                "{} values of $r$ from {first} to {last}\u{2009}mm",
+                many.len()
+            )
         }
     }
 }
@@ -138,7 +168,10 @@ fn nominal(summary: &CampaignSummary, numbers: NumberLook) -> String {
 /// Without zeros at the end that a nominal value does not mean.
 fn trimmed(number: &str) -> String {
     if number.contains(['.', ',']) && !number.contains('·') {
-        number.trim_end_matches('0').trim_end_matches(['.', ',']).to_owned()
+        number
+            .trim_end_matches('0')
+            .trim_end_matches(['.', ','])
+            .to_owned()
     } else {
         number.to_owned()
     }
@@ -147,8 +180,16 @@ fn trimmed(number: &str) -> String {
 fn channels(summary: &CampaignSummary) -> String {
     let each = summary.channels.iter().map(|c| {
         let role = c.role.name().replace('_', " ");
-        let unit = if c.unit.is_empty() { String::new() } else { format!(" ({})", c.unit) };
-        if c.note.is_empty() { format!("{role}{unit}") } else { format!("{role}{unit}, {}", c.note) }
+        let unit = if c.unit.is_empty() {
+            String::new()
+        } else {
+            format!(" ({})", c.unit)
+        };
+        if c.note.is_empty() {
+            format!("{role}{unit}")
+        } else {
+            format!("{role}{unit}, {}", c.note)
+        }
     });
     each.collect::<Vec<_>>().join("; ")
 }

@@ -38,8 +38,10 @@ impl Drawn<'_> {
 
     /// A block of those of the named figures that were drawn.
     fn figures_block(&self, named: &[(&str, &str)]) -> Option<Block> {
-        let figures: Vec<FigureRef> =
-            named.iter().filter_map(|(name, caption)| self.figure(name, caption)).collect();
+        let figures: Vec<FigureRef> = named
+            .iter()
+            .filter_map(|(name, caption)| self.figure(name, caption))
+            .collect();
         (!figures.is_empty()).then_some(Block::Figures { figures })
     }
 
@@ -64,10 +66,22 @@ pub fn document(content: &ReportContent, figures: &[Figure], numbers: NumberLook
 fn subtitle(content: &ReportContent) -> String {
     let summary = &content.summary;
     let dates = summary.dates.as_ref().map(|[first, last]| {
-        if first == last { first.clone() } else { format!("{first} to {last}") }
+        if first == last {
+            first.clone()
+        } else {
+            format!("{first} to {last}")
+        }
     });
-    let parts = [Some(summary.name.clone()), summary.laboratory.clone(), dates];
-    let parts: Vec<String> = parts.into_iter().flatten().filter(|p| !p.is_empty()).collect();
+    let parts = [
+        Some(summary.name.clone()),
+        summary.laboratory.clone(),
+        dates,
+    ];
+    let parts: Vec<String> = parts
+        .into_iter()
+        .flatten()
+        .filter(|p| !p.is_empty())
+        .collect();
     parts.join(" · ")
 }
 

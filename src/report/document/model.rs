@@ -194,6 +194,11 @@ impl Table {
             cells.join("\n")
         };
         let columns_text = (0..self.heads.len()).map(column).collect();
-        Self { dense: true, columns_text, rows: Vec::new(), ..self }
+        Self {
+            dense: true,
+            columns_text,
+            rows: Vec::new(),
+            ..self
+        }
     }
 }

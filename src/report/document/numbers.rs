@@ -91,8 +91,12 @@ pub fn half_width(estimate: &Estimate) -> Option<f64> {
 /// `value ± half width` with unit, `not identifiable` where there is no value, `–` where the
 /// parameter was not asked for.
 pub fn short(look: &ParameterLook, estimate: Option<&Estimate>, numbers: NumberLook) -> String {
-    let Some(estimate) = estimate else { return "–".into() };
-    let Some(value) = estimate.value else { return "not identifiable".into() };
+    let Some(estimate) = estimate else {
+        return "–".into();
+    };
+    let Some(value) = estimate.value else {
+        return "not identifiable".into();
+    };
     let half = half_width(estimate).map(|h| h * look.factor);
     let decimals = decimals_for(half.unwrap_or(0.0));
     let mut text = numbers.fixed(value * look.factor, decimals);
@@ -111,12 +115,16 @@ pub fn answer(look: &ParameterLook, estimate: Option<&Estimate>, numbers: Number
     let decimals = decimals_for(half.unwrap_or(0.0));
     let print = |v: f64| numbers.fixed(v * look.factor, decimals);
     let value = estimate.and_then(|e| e.value);
-    let interval = estimate.and_then(|e| e.interval95).filter(|_| value.is_some());
+    let interval = estimate
+        .and_then(|e| e.interval95)
+        .filter(|_| value.is_some());
     Answer {
         symbol: Rich::from(look.symbol),
         name: Rich::from(look.name),
         value: value.map(print),
-        plus_minus: half.filter(|_| value.is_some()).map(|h| numbers.fixed(h, decimals)),
+        plus_minus: half
+            .filter(|_| value.is_some())
+            .map(|h| numbers.fixed(h, decimals)),
         unit: look.unit.into(),
         interval: interval.map(|[low, high]| format!("{} to {}", print(low), print(high))),
         status: estimate.map_or("not_asked", |e| status_name(e.status)),
@@ -144,8 +152,13 @@ mod tests {
         let r = estimate(0.901_34, 0.002_41);
         assert_eq!(short(&PARAMETERS[0], Some(&r), numbers), "0.9013 ± 0.0024");
         let x = estimate(0.001_234_5, 0.000_009_96);
-        assert_eq!(short(&PARAMETERS[3], Some(&x), numbers), "1.234 ± 0.010\u{2009}mm");
-        let comma = NumberLook { decimal_comma: true };
+        assert_eq!(
+            short(&PARAMETERS[3], Some(&x), numbers),
+            "1.234 ± 0.010\u{2009}mm"
+        );
+        let comma = NumberLook {
+            decimal_comma: true,
+        };
         assert_eq!(short(&PARAMETERS[0], Some(&r), comma), "0,9013 ± 0,0024");
     }
 

@@ -20,15 +20,16 @@ pub fn pdf(
     let template = options.template.as_deref().unwrap_or(TEMPLATE);
     let files = files(document, figures, options)?;
     let world = MemoryWorld::new(template, files).ok_or(ReportError::FileName)?;
-    let paged: PagedDocument =
-        typst::compile(&world).output.map_err(|e| ReportError::Template(first(&e, template)))?;
+    let paged: PagedDocument = typst::compile(&world)
+        .output
+        .map_err(|e| ReportError::Template(first(&e, template)))?;
     let pdf_options = PdfOptions {
         ident: typst::foundations::Smart::Custom(document.title.clone()),
         creator: typst::foundations::Smart::Custom(Some("impactid".into())),
         ..PdfOptions::default()
     };
-    let bytes = typst_pdf::pdf(&paged, &pdf_options)
-        .map_err(|e| ReportError::Pdf(first(&e, template)))?;
+    let bytes =
+        typst_pdf::pdf(&paged, &pdf_options).map_err(|e| ReportError::Pdf(first(&e, template)))?;
     typst::comemo::evict(0);
     Ok(bytes)
 }
@@ -40,13 +41,21 @@ fn files(
 ) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
     let mut data = serde_json::to_value(document).map_err(ReportError::Data)?;
     data["paper"] = options.paper.name().into();
-    data["logo"] = options.logo.as_ref().map(|l| format!("logo.{}", l.extension)).into();
+    data["logo"] = options
+        .logo
+        .as_ref()
+        .map(|l| format!("logo.{}", l.extension))
+        .into();
     let data = serde_json::to_vec(&data).map_err(ReportError::Data)?;
     let mut files = vec![("report.json".to_owned(), data)];
     if let Some(logo) = &options.logo {
         files.push((format!("logo.{}", logo.extension), logo.bytes.clone()));
     }
-    files.extend(figures.iter().map(|f| (format!("{}.svg", f.name), f.svg.clone().into_bytes())));
+    files.extend(
+        figures
+            .iter()
+            .map(|f| (format!("{}.svg", f.name), f.svg.clone().into_bytes())),
+    );
     Ok(files)
 }
 
@@ -55,6 +64,10 @@ fn first(errors: &[SourceDiagnostic], template: &str) -> String {
     let _ = template;
     errors.first().map_or_else(String::new, |e| {
         let hints: Vec<String> = e.hints.iter().map(|h| h.v.to_string()).collect();
-        if hints.is_empty() { e.message.to_string() } else { format!("{} ({})", e.message, hints.join("; ")) }
+        if hints.is_empty() {
+            e.message.to_string()
+        } else {
+            format!("{} ({})", e.message, hints.join("; "))
+        }
     })
 }

@@ -22,11 +22,18 @@ pub fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
 }
 
 fn section(title: &str, new_page: bool, blocks: Vec<Block>) -> Option<Section> {
-    (!blocks.is_empty()).then(|| Section { title: Rich::from(title), level: 1, new_page, blocks })
+    (!blocks.is_empty()).then(|| Section {
+        title: Rich::from(title),
+        level: 1,
+        new_page,
+        blocks,
+    })
 }
 
 fn paragraph(text: impl AsRef<str>) -> Block {
-    Block::Paragraph { text: Rich::from(text) }
+    Block::Paragraph {
+        text: Rich::from(text),
+    }
 }
 
 fn regions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
@@ -43,9 +50,13 @@ fn map_caption(content: &ReportContent) -> String {
          below.",
     );
     if let Some(map) = &content.region_map {
-        text.push_str(" Tinted regions: simulated with the fitted parameters, labelled by $z$ = $p$/$n$");
+        text.push_str(
+            " Tinted regions: simulated with the fitted parameters, labelled by $z$ = $p$/$n$",
+        );
         if !map.second.is_empty() {
-            text.push_str("; hatched, with two labels, where two motions are possible (hysteresis)");
+            text.push_str(
+                "; hatched, with two labels, where two motions are possible (hysteresis)",
+            );
         }
         text.push('.');
         if !map.note.is_empty() {
@@ -82,10 +93,17 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
     blocks.extend(tables::methods(content, drawn.numbers).map(Block::Table));
     blocks.extend(tables::agreement(content, drawn.numbers).map(Block::Table));
-    let remarks = content.identification.methods.iter().flat_map(|(name, method)| {
-        let name = tables::method_name(name);
-        method.remarks.iter().map(move |r| paragraph(format!("{name}: {r}")))
-    });
+    let remarks = content
+        .identification
+        .methods
+        .iter()
+        .flat_map(|(name, method)| {
+            let name = tables::method_name(name);
+            method
+                .remarks
+                .iter()
+                .map(move |r| paragraph(format!("{name}: {r}")))
+        });
     blocks.extend(remarks);
     for (name, caption) in drawn.method_figures(content) {
         blocks.extend(drawn.figures_block(&[(&name, &caption)]));
@@ -94,7 +112,10 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
 }
 
 fn left_out(content: &ReportContent) -> Option<Section> {
-    let mut blocks: Vec<Block> = tables::left_out(content).map(Block::Table).into_iter().collect();
+    let mut blocks: Vec<Block> = tables::left_out(content)
+        .map(Block::Table)
+        .into_iter()
+        .collect();
     blocks.extend(content.remarks.iter().map(paragraph));
     section("What was left out, and why", false, blocks)
 }
@@ -105,14 +126,42 @@ fn records(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
 }
 
 fn conventions() -> Option<Section> {
-    let entry = |formula, plain, meaning: &str| Definition { formula, plain, meaning: Rich::from(meaning) };
+    let entry = |formula, plain, meaning: &str| Definition {
+        formula,
+        plain,
+        meaning: Rich::from(meaning),
+    };
     let entries = vec![
-        entry("tau = Omega t", "τ = Ωt", "time counted in natural angle, Ω = √($k$/$m$) = 2π$f_0$"),
-        entry("beta = b / (2 sqrt(k m))", "β = b/(2√(km))", "damping ratio of one mass on its spring"),
-        entry("eta = omega / Omega = f / f_0", "η = ω/Ω = f/f0", "frequency ratio of the drive"),
-        entry("x_\"st\" = F_0 / k", "x_st = F0/k", "static deflection under the drive's amplitude"),
-        entry("rho = r / x_\"st\" = r k / F_0", "ρ = r/x_st = rk/F0", "clearance ratio; the gap between the masses is 2$r$"),
-        entry("z = p / n", "z = p/n", "$p$ impacts in $n$ drive periods; 1j: a dead zone follows the impact"),
+        entry(
+            "tau = Omega t",
+            "τ = Ωt",
+            "time counted in natural angle, Ω = √($k$/$m$) = 2π$f_0$",
+        ),
+        entry(
+            "beta = b / (2 sqrt(k m))",
+            "β = b/(2√(km))",
+            "damping ratio of one mass on its spring",
+        ),
+        entry(
+            "eta = omega / Omega = f / f_0",
+            "η = ω/Ω = f/f0",
+            "frequency ratio of the drive",
+        ),
+        entry(
+            "x_\"st\" = F_0 / k",
+            "x_st = F0/k",
+            "static deflection under the drive's amplitude",
+        ),
+        entry(
+            "rho = r / x_\"st\" = r k / F_0",
+            "ρ = r/x_st = rk/F0",
+            "clearance ratio; the gap between the masses is 2$r$",
+        ),
+        entry(
+            "z = p / n",
+            "z = p/n",
+            "$p$ impacts in $n$ drive periods; 1j: a dead zone follows the impact",
+        ),
         entry(
             "R = - (X'_+ + Y'_+) / (X'_- + Y'_-)",
             "R = −(X′₊ + Y′₊)/(X′₋ + Y′₋)",
@@ -138,13 +187,17 @@ fn provenance(content: &ReportContent) -> Option<Section> {
     let mut blocks = Vec::new();
     if !content.command_line.is_empty() {
         blocks.push(paragraph("The command that makes this report again:"));
-        blocks.push(Block::Verbatim { text: content.command_line.clone() });
+        blocks.push(Block::Verbatim {
+            text: content.command_line.clone(),
+        });
     }
     blocks.extend(tables::versions(content).map(Block::Table));
     blocks.extend(tables::hashes(content).map(Block::Table));
     if !content.settings_text.is_empty() {
         blocks.push(paragraph("Settings, as resolved:"));
-        blocks.push(Block::Verbatim { text: content.settings_text.clone() });
+        blocks.push(Block::Verbatim {
+            text: content.settings_text.clone(),
+        });
     }
     section("Appendix C. Settings, versions, inputs", false, blocks)
 }

@@ -38,7 +38,9 @@ pub fn method_name(key: &str) -> String {
         other => {
             let text = other.replace('_', " ");
             let mut chars = text.chars();
-            chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
+            chars
+                .next()
+                .map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
         }
     }
 }
@@ -51,10 +53,18 @@ pub fn methods(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     let rows = all.map(|(name, method)| {
         let mut row = vec![Rich::from(name)];
         row.extend(PARAMETERS.iter().map(|look| {
-            Rich::from(numbers::short(look, (look.pick)(&method.parameters), numbers))
+            Rich::from(numbers::short(
+                look,
+                (look.pick)(&method.parameters),
+                numbers,
+            ))
         }));
         row.push(Rich::from(method.observations.to_string()));
-        row.push(Rich::from(method.reduced_residual.map_or("–".into(), |r| numbers.significant(r, 2))));
+        row.push(Rich::from(
+            method
+                .reduced_residual
+                .map_or("–".into(), |r| numbers.significant(r, 2)),
+        ));
         row.push(Rich::from(match method.fits {
             Some(true) => "yes",
             Some(false) => "no",
@@ -81,8 +91,13 @@ pub fn methods(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
 /// Whether the methods agree, pair by pair.
 pub fn agreement(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     let rows = content.identification.agreement.pairs.iter().map(|pair| {
-        let symbol = numbers::parameter(&pair.parameter).map_or(pair.parameter.as_str(), |p| p.symbol);
-        let p = if pair.p_value < 1e-3 { format!("< {}", numbers.fixed(1e-3, 3)) } else { numbers.fixed(pair.p_value, 3) };
+        let symbol =
+            numbers::parameter(&pair.parameter).map_or(pair.parameter.as_str(), |p| p.symbol);
+        let p = if pair.p_value < 1e-3 {
+            format!("< {}", numbers.fixed(1e-3, 3))
+        } else {
+            numbers.fixed(pair.p_value, 3)
+        };
         vec![
             Rich::from(symbol),
             Rich::from(method_name(&pair.methods[0])),
@@ -98,7 +113,11 @@ pub fn agreement(content: &ReportContent, numbers: NumberLook) -> Option<Table> 
         ("difference / its error", "right", 0),
         ("p-value", "right", 0),
     ];
-    table("Agreement of the methods, pair by pair.", &columns, rows.collect())
+    table(
+        "Agreement of the methods, pair by pair.",
+        &columns,
+        rows.collect(),
+    )
 }
 
 /// The measured brackets beside the simulated boundary.
@@ -116,7 +135,10 @@ pub fn brackets(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     ];
     let caption = "Measured brackets of the boundaries, and the boundary of the fitted model.";
     let few = content.brackets.len() <= 16;
-    table(caption, &columns, rows.collect()).map(|t| Table { size: if few { 8.0 } else { 7.0 }, ..t })
+    table(caption, &columns, rows.collect()).map(|t| Table {
+        size: if few { 8.0 } else { 7.0 },
+        ..t
+    })
 }
 
 fn bracket_row(b: &BracketRow, numbers: NumberLook) -> Vec<Rich> {
@@ -134,7 +156,11 @@ fn bracket_row(b: &BracketRow, numbers: NumberLook) -> Vec<Rich> {
         Rich::from(numbers.significant(1e3 * b.clearance_m, 3)),
         Rich::from(b.rho.map_or("–".into(), |r| numbers.fixed(r, 3))),
         Rich::from(arrow(b.direction)),
-        Rich::from(format!("{} … {}", numbers.fixed(low, 3), numbers.fixed(high, 3))),
+        Rich::from(format!(
+            "{} … {}",
+            numbers.fixed(low, 3),
+            numbers.fixed(high, 3)
+        )),
         Rich::from(b.simulated_hz.map_or("–".into(), |f| numbers.fixed(f, 3))),
         Rich::from(remark),
     ]
@@ -154,21 +180,36 @@ pub fn left_out(content: &ReportContent) -> Option<Table> {
         let count = l.count.map_or(String::new(), |c| c.to_string());
         vec![Rich::from(&l.what), Rich::from(count), Rich::from(&l.why)]
     });
-    let columns: [Column; 3] = [("left out", "left", 2), ("count", "right", 0), ("why", "left", 5)];
+    let columns: [Column; 3] = [
+        ("left out", "left", 2),
+        ("count", "right", 0),
+        ("why", "left", 5),
+    ];
     table("", &columns, rows.collect())
 }
 
 /// All records; many of them small and in two columns.
 pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     let many = content.records.len() > MANY_RECORDS;
-    let planar = content.records.iter().any(|r| r.eta.is_some() && r.rho.is_some());
+    let planar = content
+        .records
+        .iter()
+        .any(|r| r.eta.is_some() && r.rho.is_some());
     let mut columns: Vec<Column> = vec![("record", "left", if many { 1 } else { 0 })];
-    columns.extend([("", "center", 0), ("$f$ (Hz)", "right", 0), ("$r$ (mm)", "right", 0)]);
+    columns.extend([
+        ("", "center", 0),
+        ("$f$ (Hz)", "right", 0),
+        ("$r$ (mm)", "right", 0),
+    ]);
     if planar {
         columns.extend([("$η$", "right", 0), ("$ρ$", "right", 0)]);
     }
     columns.extend([("$z$", "center", 0), ("conf.", "right", 0)]);
-    columns.push(if many { ("", "left", 0) } else { ("used by; flags", "left", 1) });
+    columns.push(if many {
+        ("", "left", 0)
+    } else {
+        ("used by; flags", "left", 1)
+    });
     let row = |r: &RecordRow| record_row(r, planar, many, numbers);
     let rows = content.records.iter().map(row).collect();
     let caption = if many {
@@ -179,7 +220,12 @@ pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     };
     let table = table(caption, &columns, rows)?;
     Some(if many {
-        Table { size: 6.2, side_by_side: 2, ..table }.densely()
+        Table {
+            size: 6.2,
+            side_by_side: 2,
+            ..table
+        }
+        .densely()
     } else {
         Table { size: 7.5, ..table }
     })
@@ -191,20 +237,33 @@ fn record_row(r: &RecordRow, planar: bool, many: bool, numbers: NumberLook) -> V
         r.id.clone(),
         arrow(r.sweep).into(),
         number(r.frequency_hz, 3),
-        r.clearance_m.map_or("–".into(), |c| numbers.fixed(1e3 * c, 3)),
+        r.clearance_m
+            .map_or("–".into(), |c| numbers.fixed(1e3 * c, 3)),
     ];
     if planar {
         row.extend([number(r.eta, 4), number(r.rho, 3)]);
     }
     row.extend([r.motion.label(), number(r.confidence, 2)]);
-    row.push(if many { short_remark(r) } else { long_remark(r) });
+    row.push(if many {
+        short_remark(r)
+    } else {
+        long_remark(r)
+    });
     row.into_iter().map(verbatim).collect()
 }
 
 /// A cell whose text has no markup, whatever signs it holds.
 fn verbatim(text: String) -> Rich {
     use crate::report::figures::richtext::{Level, Run};
-    if text.is_empty() { Rich::default() } else { Rich(vec![Run { text, italic: false, level: Level::Base }]) }
+    if text.is_empty() {
+        Rich::default()
+    } else {
+        Rich(vec![Run {
+            text,
+            italic: false,
+            level: Level::Base,
+        }])
+    }
 }
 
 fn short_remark(r: &RecordRow) -> String {
@@ -217,24 +276,47 @@ fn long_remark(r: &RecordRow) -> String {
     let used = if r.used_by.is_empty() {
         r.left_out.as_ref().map(|why| format!("not used: {why}"))
     } else {
-        Some(r.used_by.iter().map(|m| method_name(m).to_lowercase()).collect::<Vec<_>>().join(", "))
+        Some(
+            r.used_by
+                .iter()
+                .map(|m| method_name(m).to_lowercase())
+                .collect::<Vec<_>>()
+                .join(", "),
+        )
     };
     let flags = (!r.flags.is_empty()).then(|| r.flags.join(", "));
-    [used, flags].into_iter().flatten().collect::<Vec<_>>().join("; ")
+    [used, flags]
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>()
+        .join("; ")
 }
 
 /// Versions of program and formats.
 pub fn versions(content: &ReportContent) -> Option<Table> {
     let rows = content.identification.versions.iter();
-    let rows = rows.map(|(k, v)| vec![verbatim(k.clone()), verbatim(v.clone())]).collect();
-    table("Versions.", &[("what", "left", 1), ("version", "left", 3)], rows)
+    let rows = rows
+        .map(|(k, v)| vec![verbatim(k.clone()), verbatim(v.clone())])
+        .collect();
+    table(
+        "Versions.",
+        &[("what", "left", 1), ("version", "left", 3)],
+        rows,
+    )
 }
 
 /// SHA-256 of the inputs.
 pub fn hashes(content: &ReportContent) -> Option<Table> {
     let inputs = &content.identification.inputs_sha256;
-    let rows = inputs.iter().map(|(k, v)| vec![verbatim(k.clone()), verbatim(v.clone())]).collect();
+    let rows = inputs
+        .iter()
+        .map(|(k, v)| vec![verbatim(k.clone()), verbatim(v.clone())])
+        .collect();
     let caption = "SHA-256 of every input.";
-    table(caption, &[("input", "left", 2), ("SHA-256", "left", 0)], rows)
-        .map(|t| Table { size: 6.2, ..t })
+    table(
+        caption,
+        &[("input", "left", 2), ("SHA-256", "left", 0)],
+        rows,
+    )
+    .map(|t| Table { size: 6.2, ..t })
 }

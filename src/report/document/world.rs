@@ -38,7 +38,9 @@ fn id(path: &str) -> Option<FileId> {
 fn book() -> &'static LazyHash<FontBook> {
     static BOOK: OnceLock<LazyHash<FontBook>> = OnceLock::new();
     BOOK.get_or_init(|| {
-        LazyHash::new(FontBook::from_infos(fonts::embedded().iter().map(|(_, info)| info.clone())))
+        LazyHash::new(FontBook::from_infos(
+            fonts::embedded().iter().map(|(_, info)| info.clone()),
+        ))
     })
 }
 
@@ -61,7 +63,11 @@ impl World for MemoryWorld {
     }
 
     fn source(&self, id: FileId) -> FileResult<Source> {
-        if id == self.main.id() { Ok(self.main.clone()) } else { Err(FileError::NotSource) }
+        if id == self.main.id() {
+            Ok(self.main.clone())
+        } else {
+            Err(FileError::NotSource)
+        }
     }
 
     fn file(&self, id: FileId) -> FileResult<Bytes> {

@@ -27,21 +27,42 @@ pub fn fill(content: &mut ReportContent) {
 
 fn comparisons(content: &ReportContent) -> Vec<Comparison> {
     let met = marks::met(content.records.iter().map(|r| &r.motion));
-    let shown = met.into_iter().filter(|m| !matches!(m, crate::motion::Motion::Undetermined { .. }));
+    let shown = met
+        .into_iter()
+        .filter(|m| !matches!(m, crate::motion::Motion::Undetermined { .. }));
     let chosen = shown.filter_map(|m| {
         let all: Vec<_> = content.records.iter().filter(|r| r.motion == *m).collect();
         all.get(all.len() / 2).copied()
     });
-    chosen.take(8).zip('A'..).map(|(r, letter)| comparison(r, letter)).collect()
+    chosen
+        .take(8)
+        .zip('A'..)
+        .map(|(r, letter)| comparison(r, letter))
+        .collect()
 }
 
 fn comparison(record: &RecordRow, letter: char) -> Comparison {
     let (eta, rho) = (record.eta.unwrap_or(1.0), record.rho.unwrap_or(1.0));
-    let start = if record.motion == crate::motion::Motion::Impactless { State::default() } else { State { x: 0.0, v: -6.0, phase: 3.0 } };
+    let start = if record.motion == crate::motion::Motion::Impactless {
+        State::default()
+    } else {
+        State {
+            x: 0.0,
+            v: -6.0,
+            phase: 3.0,
+        }
+    };
     let (settled, _, _) = oscillator::march(&TRUTH, (eta, rho), start, 120, 40);
-    let aligned = State { phase: settled.phase.rem_euclid(TAU), ..settled };
+    let aligned = State {
+        phase: settled.phase.rem_euclid(TAU),
+        ..settled
+    };
     let aligned = oscillator::flight(&TRUTH, eta, aligned, (TAU - aligned.phase) / eta);
-    let aligned = State { phase: 0.0, x: aligned.x.min(rho), ..aligned };
+    let aligned = State {
+        phase: 0.0,
+        x: aligned.x.min(rho),
+        ..aligned
+    };
     let (_, hits, samples) = oscillator::march(&TRUTH, (eta, rho), aligned, 4, 160);
     let omega = TAU * F0;
     let times: Vec<f64> = samples.iter().map(|s| s.phase / (eta * omega)).collect();
@@ -50,26 +71,65 @@ fn comparison(record: &RecordRow, letter: char) -> Comparison {
     let v: Vec<f64> = samples.iter().map(|s| s.v * X_ST * omega).collect();
     let mut noise = Noise::new(letter as u64);
     let mut noisy = |values: &[f64], gain: f64, sigma: f64| -> Vec<f64> {
-        values.iter().map(|v| gain * v + sigma * noise.gauss()).collect()
+        values
+            .iter()
+            .map(|v| gain * v + sigma * noise.gauss())
+            .collect()
     };
     let mut traces = vec![
-        trace(Role::DisplacementX, Dimension::Length, &times, &x, noisy(&x, 1.004, 6e-6)),
-        trace(Role::DisplacementY, Dimension::Length, &times, &x, noisy(&x, 0.97, 6e-6)),
-        trace(Role::VelocityX, Dimension::Velocity, &times, &v, noisy(&v, 1.003, 1.2e-3)),
-        trace(Role::VelocityY, Dimension::Velocity, &times, &v, noisy(&v, 0.98, 1.2e-3)),
+        trace(
+            Role::DisplacementX,
+            Dimension::Length,
+            &times,
+            &x,
+            noisy(&x, 1.004, 6e-6),
+        ),
+        trace(
+            Role::DisplacementY,
+            Dimension::Length,
+            &times,
+            &x,
+            noisy(&x, 0.97, 6e-6),
+        ),
+        trace(
+            Role::VelocityX,
+            Dimension::Velocity,
+            &times,
+            &v,
+            noisy(&v, 1.003, 1.2e-3),
+        ),
+        trace(
+            Role::VelocityY,
+            Dimension::Velocity,
+            &times,
+            &v,
+            noisy(&v, 0.98, 1.2e-3),
+        ),
     ];
-    let closed = times.iter().map(|t| if hit_times.iter().any(|h| (t - h).abs() < 6e-4) { 5.0 } else { 0.0 });
+    let closed = times.iter().map(|t| {
+        if hit_times.iter().any(|h| (t - h).abs() < 6e-4) {
+            5.0
+        } else {
+            0.0
+        }
+    });
     traces.push(Trace {
         role: Role::Contact,
         dimension: Dimension::Voltage,
-        measured: Some(Signal { time_s: times.clone(), values: closed.collect() }),
+        measured: Some(Signal {
+            time_s: times.clone(),
+            values: closed.collect(),
+        }),
         simulated: None,
         residual: None,
     });
     traces.push(Trace {
         role: Role::FrameX,
         dimension: Dimension::Length,
-        measured: Some(Signal { time_s: times.clone(), values: noisy(&x, 1.2e-3, 2e-7) }),
+        measured: Some(Signal {
+            time_s: times.clone(),
+            values: noisy(&x, 1.2e-3, 2e-7),
+        }),
         simulated: None,
         residual: None,
     });
@@ -97,15 +157,37 @@ fn comparison(record: &RecordRow, letter: char) -> Comparison {
 
 fn paired(x: &Option<Signal>, v: &Option<Signal>) -> Vec<[f64; 2]> {
     match (x, v) {
-        (Some(x), Some(v)) => x.values.iter().zip(&v.values).map(|(x, v)| [*x, *v]).collect(),
+        (Some(x), Some(v)) => x
+            .values
+            .iter()
+            .zip(&v.values)
+            .map(|(x, v)| [*x, *v])
+            .collect(),
         _ => Vec::new(),
     }
 }
 
-fn trace(role: Role, dimension: Dimension, times: &[f64], simulated: &[f64], measured: Vec<f64>) -> Trace {
+fn trace(
+    role: Role,
+    dimension: Dimension,
+    times: &[f64],
+    simulated: &[f64],
+    measured: Vec<f64>,
+) -> Trace {
     let residual = measured.iter().zip(simulated).map(|(m, s)| m - s).collect();
-    let signal = |values| Some(Signal { time_s: times.to_vec(), values });
-    Trace { role, dimension, measured: signal(measured), simulated: signal(simulated.to_vec()), residual: signal(residual) }
+    let signal = |values| {
+        Some(Signal {
+            time_s: times.to_vec(),
+            values,
+        })
+    };
+    Trace {
+        role,
+        dimension,
+        measured: signal(measured),
+        simulated: signal(simulated.to_vec()),
+        residual: signal(residual),
+    }
 }
 
 fn resonance(content: &ReportContent) -> ResonanceCurve {
@@ -115,7 +197,10 @@ fn resonance(content: &ReportContent) -> ResonanceCurve {
         let phase = (2.0 * TRUTH.damping * eta).atan2(1.0 - eta * eta);
         [f, X_ST * oscillator::grazing(&TRUTH, eta), phase]
     };
-    let impactless = content.records.iter().filter(|r| r.motion == crate::motion::Motion::Impactless);
+    let impactless = content
+        .records
+        .iter()
+        .filter(|r| r.motion == crate::motion::Motion::Impactless);
     let points = impactless.enumerate().map(|(i, r)| {
         let [f, a, phase] = curve(r.frequency_hz.unwrap_or(F0));
         let error = 0.01 * a + 2e-6;
@@ -134,7 +219,9 @@ fn resonance(content: &ReportContent) -> ResonanceCurve {
         dimension: Dimension::Length,
         unit: None,
         points: points.collect(),
-        fitted: (0..=200).map(|i| curve(9.8 + 28.0 * f64::from(i) / 200.0)).collect(),
+        fitted: (0..=200)
+            .map(|i| curve(9.8 + 28.0 * f64::from(i) / 200.0))
+            .collect(),
         fits: Some(true),
         note: String::new(),
     }
@@ -168,8 +255,17 @@ fn decay(index: u64) -> FreeDecay {
     FreeDecay {
         record: format!("test1-{}", index + 1),
         dimension: Dimension::Acceleration,
-        measured: Signal { values: times.iter().map(|t| at(*t) + 0.03 * noise.gauss()).collect(), time_s: times.clone() },
-        fitted: Some(Signal { values: times.iter().map(|t| at(*t)).collect(), time_s: times }),
+        measured: Signal {
+            values: times
+                .iter()
+                .map(|t| at(*t) + 0.03 * noise.gauss())
+                .collect(),
+            time_s: times.clone(),
+        },
+        fitted: Some(Signal {
+            values: times.iter().map(|t| at(*t)).collect(),
+            time_s: times,
+        }),
         natural_frequency_hz: Some(f),
         natural_frequency_error_hz: Some(0.002),
         damping_ratio: Some(beta),
@@ -181,20 +277,30 @@ fn decay(index: u64) -> FreeDecay {
 fn residuals(content: &ReportContent) -> Vec<ResidualSet> {
     let mut noise = Noise::new(77);
     let mut set = |method: &str, every: usize| {
-        let points = content.records.iter().step_by(every).map(|r| ResidualPoint {
-            record: r.id.clone(),
-            residual: noise.gauss(),
-            frequency_hz: r.frequency_hz,
-            clearance_m: r.clearance_m,
-        });
+        let points = content
+            .records
+            .iter()
+            .step_by(every)
+            .map(|r| ResidualPoint {
+                record: r.id.clone(),
+                residual: noise.gauss(),
+                frequency_hz: r.frequency_hz,
+                clearance_m: r.clearance_m,
+            });
         ResidualSet {
             method: method.into(),
             points: points.collect(),
-            autocorrelation: (0..25).map(|k| if k == 0 { 1.0 } else { 0.05 * noise.next() }).collect(),
+            autocorrelation: (0..25)
+                .map(|k| if k == 0 { 1.0 } else { 0.05 * noise.next() })
+                .collect(),
             note: "No trend with frequency or gap; the scatter is as the stated noise.".into(),
         }
     };
-    vec![set("trajectories", 1), set("resonance", 3), set("boundaries", 25)]
+    vec![
+        set("trajectories", 1),
+        set("resonance", 3),
+        set("boundaries", 25),
+    ]
 }
 
 fn profiles() -> Vec<Profile> {
@@ -205,11 +311,16 @@ fn profiles() -> Vec<Profile> {
         ("static_deflection_m", 1.2503e-3, 2.4e-6),
     ];
     let profile = |(name, best, error): (&str, f64, f64)| {
-        let values: Vec<f64> = (-20..=20).map(|i| best + 0.17 * f64::from(i) * error).collect();
+        let values: Vec<f64> = (-20..=20)
+            .map(|i| best + 0.17 * f64::from(i) * error)
+            .collect();
         Profile {
             parameter: name.into(),
             method: String::new(),
-            delta_chi2: values.iter().map(|v| ((v - best) / error).powi(2) * (1.0 + 0.05 * (v - best) / error)).collect(),
+            delta_chi2: values
+                .iter()
+                .map(|v| ((v - best) / error).powi(2) * (1.0 + 0.05 * (v - best) / error))
+                .collect(),
             values,
             best: Some(best),
             interval95: Some([best - 1.96 * error, best + 1.96 * error]),
@@ -219,7 +330,12 @@ fn profiles() -> Vec<Profile> {
 }
 
 fn correlation() -> Correlation {
-    let names = ["restitution", "natural_frequency_hz", "damping_ratio", "static_deflection_m"];
+    let names = [
+        "restitution",
+        "natural_frequency_hz",
+        "damping_ratio",
+        "static_deflection_m",
+    ];
     Correlation {
         parameters: names.map(String::from).to_vec(),
         matrix: vec![

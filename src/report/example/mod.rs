@@ -12,7 +12,10 @@ use crate::identify::*;
 use crate::motion::Motion;
 use crate::record::{Role, Sweep};
 
-pub const TRUTH: Parameters = Parameters { restitution: 0.9, damping: 0.07 };
+pub const TRUTH: Parameters = Parameters {
+    restitution: 0.9,
+    damping: 0.07,
+};
 pub const F0: f64 = 12.6;
 pub const X_ST: f64 = 1.25e-3;
 const PERIODS: usize = 30;
@@ -27,10 +30,19 @@ pub struct Extent {
 }
 
 /// 846 records: nine clearances, 47 frequencies up and down.
-pub const LARGE: Extent =
-    Extent { clearances: 9, frequencies: 47, both_sweeps: true, map: (96, 64) };
+pub const LARGE: Extent = Extent {
+    clearances: 9,
+    frequencies: 47,
+    both_sweeps: true,
+    map: (96, 64),
+};
 /// 8 records: one clearance, four frequencies up and down.
-pub const SMALL: Extent = Extent { clearances: 1, frequencies: 4, both_sweeps: true, map: (48, 32) };
+pub const SMALL: Extent = Extent {
+    clearances: 1,
+    frequencies: 4,
+    both_sweeps: true,
+    map: (48, 32),
+};
 
 /// Pseudo-random numbers in (−1, 1), the same each time.
 pub struct Noise(u64);
@@ -73,19 +85,47 @@ fn method(parameters: ParameterSet, observations: usize, residual: f64) -> Metho
     }
 }
 
-fn set(r: Option<Estimate>, f0: Option<Estimate>, beta: Option<Estimate>, x: Option<Estimate>) -> ParameterSet {
-    ParameterSet { restitution: r, natural_frequency_hz: f0, damping_ratio: beta, static_deflection_m: x }
+fn set(
+    r: Option<Estimate>,
+    f0: Option<Estimate>,
+    beta: Option<Estimate>,
+    x: Option<Estimate>,
+) -> ParameterSet {
+    ParameterSet {
+        restitution: r,
+        natural_frequency_hz: f0,
+        damping_ratio: beta,
+        static_deflection_m: x,
+    }
 }
 
 /// The example's answer.
 pub fn identification() -> Identification {
     let mut methods = BTreeMap::new();
-    let boundaries = set(estimate(0.897, 0.0052), estimate(12.602, 0.006), estimate(0.0697, 0.0009), estimate(1.254e-3, 6e-6));
+    let boundaries = set(
+        estimate(0.897, 0.0052),
+        estimate(12.602, 0.006),
+        estimate(0.0697, 0.0009),
+        estimate(1.254e-3, 6e-6),
+    );
     methods.insert("boundaries".into(), method(boundaries, 27, 0.93));
-    let trajectories = set(estimate(0.9006, 0.0011), estimate(12.5991, 0.0021), estimate(0.0702, 0.0003), estimate(1.249e-3, 3e-6));
+    let trajectories = set(
+        estimate(0.9006, 0.0011),
+        estimate(12.5991, 0.0021),
+        estimate(0.0702, 0.0003),
+        estimate(1.249e-3, 3e-6),
+    );
     methods.insert("trajectories".into(), method(trajectories, 48_212, 1.04));
-    methods.insert("impacts".into(), method(set(estimate(0.9012, 0.0019), None, None, None), 5_310, 1.01));
-    let resonance = set(None, estimate(12.601, 0.004), estimate(0.0706, 0.0005), estimate(1.252e-3, 5e-6));
+    methods.insert(
+        "impacts".into(),
+        method(set(estimate(0.9012, 0.0019), None, None, None), 5_310, 1.01),
+    );
+    let resonance = set(
+        None,
+        estimate(12.601, 0.004),
+        estimate(0.0706, 0.0005),
+        estimate(1.252e-3, 5e-6),
+    );
     methods.insert("resonance".into(), method(resonance, 204, 0.98));
     let pair = |parameter: &str, a: &str, b: &str, z: f64, p: f64| PairAgreement {
         parameter: parameter.into(),
@@ -93,7 +133,12 @@ pub fn identification() -> Identification {
         z_score: z,
         p_value: p,
     };
-    let joint = set(estimate(0.9005, 0.0009), estimate(12.5996, 0.0018), estimate(0.0702, 0.0003), estimate(1.2503e-3, 2.4e-6));
+    let joint = set(
+        estimate(0.9005, 0.0009),
+        estimate(12.5996, 0.0018),
+        estimate(0.0702, 0.0003),
+        estimate(1.2503e-3, 2.4e-6),
+    );
     Identification {
         verdict: Verdict {
             kind: VerdictKind::Identified,
@@ -147,13 +192,22 @@ fn records(extent: Extent) -> Vec<RecordRow> {
         let mut state = State::default();
         let up = (0..extent.frequencies).map(|i| (i, Sweep::Up));
         let down = (0..extent.frequencies).rev().map(|i| (i, Sweep::Down));
-        let steps: Vec<_> = if extent.both_sweeps { up.chain(down).collect() } else { up.collect() };
+        let steps: Vec<_> = if extent.both_sweeps {
+            up.chain(down).collect()
+        } else {
+            up.collect()
+        };
         for (i, sweep) in steps {
             let eta = 0.82 + 2.1 * i as f64 / (extent.frequencies - 1) as f64;
             state.phase = state.phase.rem_euclid(std::f64::consts::TAU);
             let (end, hits, _) = oscillator::march(&TRUTH, (eta, rho), state, 2 * PERIODS, 40);
             state = end;
-            rows.push(row(rows.len(), (eta, rho), sweep, oscillator::classify(&hits, end.phase, PERIODS)));
+            rows.push(row(
+                rows.len(),
+                (eta, rho),
+                sweep,
+                oscillator::classify(&hits, end.phase, PERIODS),
+            ));
         }
     }
     rows
@@ -162,13 +216,19 @@ fn records(extent: Extent) -> Vec<RecordRow> {
 fn row(index: usize, (eta, rho): (f64, f64), sweep: Sweep, motion: Motion) -> RecordRow {
     let mut noise = Noise::new(index as u64 + 1);
     let motion = if index % 97 == 41 {
-        Motion::Undetermined { reason: "the record ends before the motion settled".into() }
+        Motion::Undetermined {
+            reason: "the record ends before the motion settled".into(),
+        }
     } else {
         motion
     };
     let (impacts_p, periods_n) = match &motion {
         Motion::Impactless => (Some(0), Some(1)),
-        Motion::Periodic { impacts_p, periods_n, .. } => (Some(*impacts_p), Some(*periods_n)),
+        Motion::Periodic {
+            impacts_p,
+            periods_n,
+            ..
+        } => (Some(*impacts_p), Some(*periods_n)),
         _ => (None, None),
     };
     let undetermined = matches!(motion, Motion::Undetermined { .. });
@@ -183,9 +243,21 @@ fn row(index: usize, (eta, rho): (f64, f64), sweep: Sweep, motion: Motion) -> Re
         motion,
         impacts_p,
         periods_n,
-        confidence: Some(if undetermined { 0.31 } else { 0.93 + 0.06 * noise.next() }),
-        flags: if index % 61 == 7 { vec!["dropped samples".into()] } else { vec![] },
-        used_by: if undetermined { vec![] } else { vec!["trajectories".into()] },
+        confidence: Some(if undetermined {
+            0.31
+        } else {
+            0.93 + 0.06 * noise.next()
+        }),
+        flags: if index % 61 == 7 {
+            vec!["dropped samples".into()]
+        } else {
+            vec![]
+        },
+        used_by: if undetermined {
+            vec![]
+        } else {
+            vec!["trajectories".into()]
+        },
         left_out: undetermined.then(|| "motion not settled".into()),
     }
 }
@@ -217,7 +289,9 @@ fn brackets(records: &[RecordRow]) -> Vec<BracketRow> {
             eta_low: low.eta,
             eta_high: high.eta,
             direction: a.sweep,
-            simulated_hz: Some(0.5 * (low.frequency_hz.unwrap_or(0.0) + high.frequency_hz.unwrap_or(0.0))),
+            simulated_hz: Some(
+                0.5 * (low.frequency_hz.unwrap_or(0.0) + high.frequency_hz.unwrap_or(0.0)),
+            ),
             records: Some([low.id.clone(), high.id.clone()]),
             left_out: (found.len() % 9 == 4).then(|| "jumped early".into()),
         });
@@ -226,11 +300,14 @@ fn brackets(records: &[RecordRow]) -> Vec<BracketRow> {
 }
 
 fn curves() -> Vec<BoundaryCurve> {
-    let etas = |low: f64, high: f64| (0..=160).map(move |i| low + (high - low) * f64::from(i) / 160.0);
+    let etas =
+        |low: f64, high: f64| (0..=160).map(move |i| low + (high - low) * f64::from(i) / 160.0);
     let mut curves = vec![BoundaryCurve {
         kind: BoundaryKind::Grazing,
         periods_n: 1,
-        points: etas(0.75, 3.05).map(|e| [e, oscillator::grazing(&TRUTH, e)]).collect(),
+        points: etas(0.75, 3.05)
+            .map(|e| [e, oscillator::grazing(&TRUTH, e)])
+            .collect(),
         band95: etas(0.75, 3.05)
             .map(|e| {
                 let rho = oscillator::grazing(&TRUTH, e);
@@ -240,13 +317,21 @@ fn curves() -> Vec<BoundaryCurve> {
     }];
     for (n, low, high) in [(1, 1.02, 1.995), (2, 2.02, 3.05)] {
         let s2 = |p: &Parameters, e: f64| oscillator::boundaries(p, e, n).0;
-        let more = Parameters { restitution: 0.915, ..TRUTH };
-        let less = Parameters { restitution: 0.885, ..TRUTH };
+        let more = Parameters {
+            restitution: 0.915,
+            ..TRUTH
+        };
+        let less = Parameters {
+            restitution: 0.885,
+            ..TRUTH
+        };
         curves.push(BoundaryCurve {
             kind: BoundaryKind::S2,
             periods_n: n,
             points: etas(low, high).map(|e| [e, s2(&TRUTH, e)]).collect(),
-            band95: etas(low, high).map(|e| [e, s2(&less, e), s2(&more, e)]).collect(),
+            band95: etas(low, high)
+                .map(|e| [e, s2(&less, e), s2(&more, e)])
+                .collect(),
         });
     }
     curves.push(BoundaryCurve {
@@ -262,10 +347,25 @@ fn curves() -> Vec<BoundaryCurve> {
 }
 
 fn region_map((columns, rows): (usize, usize)) -> RegionMap {
-    let eta: Vec<f64> = (0..columns).map(|i| 0.76 + 2.24 * (i as f64 + 0.5) / columns as f64).collect();
-    let rho: Vec<f64> = (0..rows).map(|j| 0.05 + 3.3 * (j as f64 + 0.5) / rows as f64).collect();
-    let mut map = RegionMap { eta, rho, motions: Vec::new(), cells: Vec::new(), second: Vec::new(), note: "From rest and from the z = 1/n motions; 120 drive periods.".into() };
-    let kick = State { x: 0.0, v: -6.0, phase: 3.0 };
+    let eta: Vec<f64> = (0..columns)
+        .map(|i| 0.76 + 2.24 * (i as f64 + 0.5) / columns as f64)
+        .collect();
+    let rho: Vec<f64> = (0..rows)
+        .map(|j| 0.05 + 3.3 * (j as f64 + 0.5) / rows as f64)
+        .collect();
+    let mut map = RegionMap {
+        eta,
+        rho,
+        motions: Vec::new(),
+        cells: Vec::new(),
+        second: Vec::new(),
+        note: "From rest and from the z = 1/n motions; 120 drive periods.".into(),
+    };
+    let kick = State {
+        x: 0.0,
+        v: -6.0,
+        phase: 3.0,
+    };
     for start in [State::default(), kick] {
         for j in 0..rows {
             for i in 0..columns {
@@ -277,7 +377,11 @@ fn region_map((columns, rows): (usize, usize)) -> RegionMap {
                     map.motions.push(motion);
                     map.motions.len() - 1
                 });
-                if map.cells.len() < columns * rows { map.cells.push(index as u16) } else { map.second.push(index as u16) }
+                if map.cells.len() < columns * rows {
+                    map.cells.push(index as u16)
+                } else {
+                    map.second.push(index as u16)
+                }
             }
         }
     }
@@ -285,17 +389,34 @@ fn region_map((columns, rows): (usize, usize)) -> RegionMap {
 }
 
 fn summary(content: &ReportContent) -> CampaignSummary {
-    let mut clearances: Vec<f64> = content.records.iter().filter_map(|r| r.clearance_m).collect();
+    let mut clearances: Vec<f64> = content
+        .records
+        .iter()
+        .filter_map(|r| r.clearance_m)
+        .collect();
     clearances.dedup();
-    let nominal = |name: &str, value, unit: &str| NominalValue { name: name.into(), value, unit: unit.into() };
-    let channel = |role, name: &str, unit: &str, note: &str| ChannelRow { role, name: name.into(), unit: unit.into(), note: note.into() };
+    let nominal = |name: &str, value, unit: &str| NominalValue {
+        name: name.into(),
+        value,
+        unit: unit.into(),
+    };
+    let channel = |role, name: &str, unit: &str, note: &str| ChannelRow {
+        role,
+        name: name.into(),
+        unit: unit.into(),
+        note: note.into(),
+    };
     CampaignSummary {
         name: "peterka-like, seed 20240611".into(),
         rig: "two masses on blade springs, driven toward each other by two shakers".into(),
         laboratory: Some("Laboratory of Impact Dynamics".into()),
         dates: Some(["2024-06-11".into(), "2024-06-13".into()]),
         records_total: content.records.len(),
-        records_used: content.records.iter().filter(|r| !r.used_by.is_empty()).count(),
+        records_used: content
+            .records
+            .iter()
+            .filter(|r| !r.used_by.is_empty())
+            .count(),
         impacts_total: content.records.iter().map(|r| r.impacts).sum(),
         files_total: 3,
         record_length_s: Some(1.0),
@@ -310,7 +431,12 @@ fn summary(content: &ReportContent) -> CampaignSummary {
             channel(Role::Drive, "gen", "V", ""),
             channel(Role::Contact, "contact", "V", "threshold 2.5 V"),
             channel(Role::VelocityX, "vib", "m/s", "laser vibrometer"),
-            channel(Role::DisplacementX, "int_x", "mm", "integrated twice, high-pass 0.5 Hz"),
+            channel(
+                Role::DisplacementX,
+                "int_x",
+                "mm",
+                "integrated twice, high-pass 0.5 Hz",
+            ),
         ],
         synthetic: true,
         notes: vec![],

@@ -47,7 +47,11 @@ pub fn flight(p: &Parameters, eta: f64, from: State, time: f64) -> State {
     let phase = from.phase + eta * time;
     let x = decay * (a * cos + b * sin);
     let v = decay * ((b * omega - p.damping * a) * cos - (a * omega + p.damping * b) * sin);
-    State { x: x + force(phase), v: v + force_v(phase), phase }
+    State {
+        x: x + force(phase),
+        v: v + force_v(phase),
+        phase,
+    }
 }
 
 /// Marches some drive periods; gives the last state, the impacts, and samples if asked for.
@@ -67,7 +71,13 @@ pub fn march(
     (state, hits, samples)
 }
 
-fn one_step(p: &Parameters, (eta, rho): (f64, f64), from: State, step: f64, hits: &mut Vec<Hit>) -> State {
+fn one_step(
+    p: &Parameters,
+    (eta, rho): (f64, f64),
+    from: State,
+    step: f64,
+    hits: &mut Vec<Hit>,
+) -> State {
     let (mut state, mut left) = (from, step);
     for _ in 0..6 {
         let next = flight(p, eta, state, left);
@@ -77,19 +87,37 @@ fn one_step(p: &Parameters, (eta, rho): (f64, f64), from: State, step: f64, hits
         let (mut low, mut high) = (0.0, left);
         for _ in 0..30 {
             let middle = 0.5 * (low + high);
-            if flight(p, eta, state, middle).x > rho { high = middle } else { low = middle }
+            if flight(p, eta, state, middle).x > rho {
+                high = middle
+            } else {
+                low = middle
+            }
         }
         let hit = flight(p, eta, state, low);
-        hits.push(Hit { phase: hit.phase, speed: hit.v });
-        state = State { x: rho, v: -p.restitution * hit.v.abs(), phase: hit.phase };
+        hits.push(Hit {
+            phase: hit.phase,
+            speed: hit.v,
+        });
+        state = State {
+            x: rho,
+            v: -p.restitution * hit.v.abs(),
+            phase: hit.phase,
+        };
         left -= low;
     }
-    State { x: rho.min(state.x), v: 0.0, phase: from.phase + eta * step }
+    State {
+        x: rho.min(state.x),
+        v: 0.0,
+        phase: from.phase + eta * step,
+    }
 }
 
 /// Type of motion of a settled stretch of some periods.
 pub fn classify(hits: &[Hit], end_phase: f64, periods: usize) -> Motion {
-    let recent: Vec<&Hit> = hits.iter().filter(|h| h.phase > end_phase - TAU * periods as f64).collect();
+    let recent: Vec<&Hit> = hits
+        .iter()
+        .filter(|h| h.phase > end_phase - TAU * periods as f64)
+        .collect();
     if recent.is_empty() {
         return Motion::Impactless;
     }
@@ -101,14 +129,22 @@ pub fn classify(hits: &[Hit], end_phase: f64, periods: usize) -> Motion {
         }
         let closes = recent.windows(count + 1).all(|w| {
             let (a, b) = (w[0], w[count]);
-            (b.phase - a.phase - TAU * n as f64).abs() < 2e-2 && (b.speed - a.speed).abs() < 2e-2 * (1.0 + a.speed)
+            (b.phase - a.phase - TAU * n as f64).abs() < 2e-2
+                && (b.speed - a.speed).abs() < 2e-2 * (1.0 + a.speed)
         });
         if closes {
             return Motion::periodic(count as u32, n as u32);
         }
     }
-    let gap = recent.windows(2).map(|w| w[1].phase - w[0].phase).fold(0.0, f64::max);
-    if gap > 2.6 * TAU { Motion::Beat } else { Motion::Chaotic }
+    let gap = recent
+        .windows(2)
+        .map(|w| w[1].phase - w[0].phase)
+        .fold(0.0, f64::max);
+    if gap > 2.6 * TAU {
+        Motion::Beat
+    } else {
+        Motion::Chaotic
+    }
 }
 
 /// ρ' = A(η), the amplitude of the impactless motion.
@@ -145,7 +181,10 @@ mod tests {
 
     #[test]
     fn valid_closed_forms_meet_the_published_numbers() {
-        let p = Parameters { restitution: 0.9, damping: 0.07 };
+        let p = Parameters {
+            restitution: 0.9,
+            damping: 0.07,
+        };
         assert!((boundaries(&p, 1.1, 1).0 - 6.351_142).abs() < 1e-6);
         assert!((boundaries(&p, 1.6, 1).0 - 1.812_702).abs() < 1e-6);
         assert!((boundaries(&p, 0.9, 1).1 - 1.760_461).abs() < 1e-6);

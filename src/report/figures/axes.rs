@@ -23,14 +23,32 @@ pub struct Axis {
 impl Axis {
     /// A linear axis.
     pub fn new(low: f64, high: f64, title: impl Into<String>) -> Self {
-        let (low, high) = if high > low { (low, high) } else { (low - 0.5, low + 0.5) };
-        Self { low, high, title: title.into(), log: false, ticks: 5 }
+        let (low, high) = if high > low {
+            (low, high)
+        } else {
+            (low - 0.5, low + 0.5)
+        };
+        Self {
+            low,
+            high,
+            title: title.into(),
+            log: false,
+            ticks: 5,
+        }
     }
 
     /// An axis that shows all values with a margin (a share of their range) at either end.
-    pub fn around(values: impl IntoIterator<Item = f64>, margin: f64, title: impl Into<String>) -> Self {
+    pub fn around(
+        values: impl IntoIterator<Item = f64>,
+        margin: f64,
+        title: impl Into<String>,
+    ) -> Self {
         let (low, high) = range(values).unwrap_or((0.0, 1.0));
-        let pad = if high > low { margin * (high - low) } else { (0.05 * high.abs()).max(1e-12) };
+        let pad = if high > low {
+            margin * (high - low)
+        } else {
+            (0.05 * high.abs()).max(1e-12)
+        };
         Self::new(low - pad, high + pad, title)
     }
 
@@ -82,23 +100,33 @@ impl Axis {
 
     /// Label of a tick.
     pub fn label(&self, value: f64, decimals: usize, numbers: NumberLook) -> String {
-        if self.log { numbers.significant(value, 1) } else { numbers.fixed(value, decimals) }
+        if self.log {
+            numbers.significant(value, 1)
+        } else {
+            numbers.fixed(value, decimals)
+        }
     }
 }
 
 /// Least and greatest of the finite values.
 pub fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
-    values.into_iter().filter(|v| v.is_finite()).fold(None, |seen, v| match seen {
-        None => Some((v, v)),
-        Some((low, high)) => Some((low.min(v), high.max(v))),
-    })
+    values
+        .into_iter()
+        .filter(|v| v.is_finite())
+        .fold(None, |seen, v| match seen {
+            None => Some((v, v)),
+            Some((low, high)) => Some((low.min(v), high.max(v))),
+        })
 }
 
 /// The next of 1, 2, 5 times a power of ten.
 fn nice_step(rough: f64) -> f64 {
     let power = 10f64.powf(rough.log10().floor());
     let multiple = rough / power;
-    let nice = [1.0, 2.0, 5.0].into_iter().find(|m| multiple <= m * 1.000_001).unwrap_or(10.0);
+    let nice = [1.0, 2.0, 5.0]
+        .into_iter()
+        .find(|m| multiple <= m * 1.000_001)
+        .unwrap_or(10.0);
     nice * power
 }
 
@@ -124,7 +152,10 @@ pub struct Sides {
 
 impl Sides {
     /// Both.
-    pub const BOTH: Self = Self { below: true, left: true };
+    pub const BOTH: Self = Self {
+        below: true,
+        left: true,
+    };
 }
 
 /// A rectangle on paper with two axes.
@@ -165,8 +196,10 @@ impl Panel {
         stroke: Stroke,
     ) -> Vec<Vec<Point>> {
         let points: Vec<Point> = data.into_iter().map(|(x, y)| self.at(x, y)).collect();
-        let pieces: Vec<_> =
-            path::clip(&points, &self.rect).iter().map(|p| path::thin(p)).collect();
+        let pieces: Vec<_> = path::clip(&points, &self.rect)
+            .iter()
+            .map(|p| path::thin(p))
+            .collect();
         for piece in &pieces {
             canvas.line(piece, stroke);
         }
@@ -253,7 +286,10 @@ impl Panel {
     fn title_left(&self, canvas: &mut Canvas, numbers: NumberLook) {
         let x = self.rect.left - 7.0 - self.widest_label(numbers);
         let middle = 0.5 * (self.rect.top + self.rect.bottom);
-        let title_look = TextLook { upward: true, ..TextLook::new(look::TITLE_SIZE, Anchor::Middle) };
+        let title_look = TextLook {
+            upward: true,
+            ..TextLook::new(look::TITLE_SIZE, Anchor::Middle)
+        };
         canvas.text((x, middle), &self.y.title, title_look.colour(look::INK));
     }
 
@@ -263,7 +299,11 @@ impl Panel {
         ticks
             .iter()
             .map(|&v| {
-                fonts::width(&self.y.label(v, decimals, numbers), Face::Regular, look::TICK_SIZE)
+                fonts::width(
+                    &self.y.label(v, decimals, numbers),
+                    Face::Regular,
+                    look::TICK_SIZE,
+                )
             })
             .fold(0.0, f64::max)
     }

@@ -30,12 +30,20 @@ pub struct Stroke {
 impl Stroke {
     /// A solid line.
     pub const fn solid(colour: Colour, width: f64) -> Self {
-        Self { colour, width, dash: &[] }
+        Self {
+            colour,
+            width,
+            dash: &[],
+        }
     }
 
     /// A dashed line.
     pub const fn dashed(colour: Colour, width: f64, dash: &'static [f64]) -> Self {
-        Self { colour, width, dash }
+        Self {
+            colour,
+            width,
+            dash,
+        }
     }
 }
 
@@ -68,7 +76,13 @@ pub struct TextLook {
 impl TextLook {
     /// Upright text of a size.
     pub const fn new(size: f64, anchor: Anchor) -> Self {
-        Self { size, face: Face::Regular, colour: BLACK, anchor, upward: false }
+        Self {
+            size,
+            face: Face::Regular,
+            colour: BLACK,
+            anchor,
+            upward: false,
+        }
     }
 
     /// In another colour.
@@ -87,7 +101,14 @@ enum Shape {
     Fill(Vec<Point>, Colour),
     Disc(Point, f64, Colour),
     Ring(Point, f64, Stroke),
-    Text { at: Point, text: String, size: f64, face: Face, colour: Colour, upward: bool },
+    Text {
+        at: Point,
+        text: String,
+        size: f64,
+        face: Face,
+        colour: Colour,
+        upward: bool,
+    },
 }
 
 /// A drawing of a given size in points.
@@ -103,7 +124,12 @@ pub struct Canvas {
 impl Canvas {
     /// An empty drawing.
     pub fn new(width: f64, height: f64) -> Self {
-        Self { width, height, layer: 0, shapes: Vec::new() }
+        Self {
+            width,
+            height,
+            layer: 0,
+            shapes: Vec::new(),
+        }
     }
 
     /// What follows lies in this layer; higher layers cover lower ones.
@@ -173,12 +199,23 @@ impl Canvas {
         for run in richtext::parse(markup) {
             let (size, face) = (run.size(look.size), run.face(look.face));
             let down = run.shift(look.size);
-            let at = if look.upward { (x + down, y - along) } else { (x + along, y + down) };
+            let at = if look.upward {
+                (x + down, y - along)
+            } else {
+                (x + along, y + down)
+            };
             along += super::fonts::width(&run.text, face, size);
             let (colour, upward) = (look.colour, look.upward);
             // SVG drops spaces at either end of a text, but not those that do not break.
             let text = run.text.replace(' ', "\u{a0}");
-            self.push(Shape::Text { at, text, size, face, colour, upward });
+            self.push(Shape::Text {
+                at,
+                text,
+                size,
+                face,
+                colour,
+                upward,
+            });
         }
     }
 
@@ -218,7 +255,10 @@ impl Canvas {
 
 /// Text made safe for XML.
 pub fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
 }
 
 fn units(points: f64) -> i32 {
@@ -231,7 +271,11 @@ fn at((x, y): Point) -> (i32, i32) {
 
 fn line_style(stroke: &Stroke) -> ShapeStyle {
     let width = (stroke.width * UNITS_PER_POINT).round().max(1.0) as u32;
-    ShapeStyle { color: stroke.colour.to_rgba(), filled: false, stroke_width: width }
+    ShapeStyle {
+        color: stroke.colour.to_rgba(),
+        filled: false,
+        stroke_width: width,
+    }
 }
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -239,19 +283,35 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// Draws one shape; a string buffer cannot fail to be written, so there is no error to pass on.
 fn draw(root: &Area<'_>, shape: &Shape) {
     let _ = match shape {
-        Shape::Line(points, stroke) => root
-            .draw(&PathElement::new(points.iter().map(|&p| at(p)).collect::<Vec<_>>(), line_style(stroke))),
-        Shape::Fill(points, colour) => root
-            .draw(&Polygon::new(points.iter().map(|&p| at(p)).collect::<Vec<_>>(), colour.filled())),
+        Shape::Line(points, stroke) => root.draw(&PathElement::new(
+            points.iter().map(|&p| at(p)).collect::<Vec<_>>(),
+            line_style(stroke),
+        )),
+        Shape::Fill(points, colour) => root.draw(&Polygon::new(
+            points.iter().map(|&p| at(p)).collect::<Vec<_>>(),
+            colour.filled(),
+        )),
         Shape::Disc(centre, radius, colour) => {
             root.draw(&Circle::new(at(*centre), units(*radius), colour.filled()))
         }
-        Shape::Ring(centre, radius, stroke) => {
-            root.draw(&Circle::new(at(*centre), units(*radius), line_style(stroke)))
-        }
-        Shape::Text { at: position, text, size, face, colour, upward } => {
-            root.draw(&text_element(*position, text, (*size, *face), (*colour, *upward)))
-        }
+        Shape::Ring(centre, radius, stroke) => root.draw(&Circle::new(
+            at(*centre),
+            units(*radius),
+            line_style(stroke),
+        )),
+        Shape::Text {
+            at: position,
+            text,
+            size,
+            face,
+            colour,
+            upward,
+        } => root.draw(&text_element(
+            *position,
+            text,
+            (*size, *face),
+            (*colour, *upward),
+        )),
     };
 }
 
@@ -267,7 +327,9 @@ fn text_element(
         Face::Italic => FontStyle::Italic,
         Face::Bold => FontStyle::Bold,
     };
-    let font = (FAMILY, size * UNITS_PER_POINT * 1.24).into_font().style(style);
+    let font = (FAMILY, size * UNITS_PER_POINT * 1.24)
+        .into_font()
+        .style(style);
     let rise = 0.76 * size;
     let (font, position) = if upward {
         (font.transform(FontTransform::Rotate270), (x - rise, y))

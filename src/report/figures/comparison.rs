@@ -38,7 +38,11 @@ pub fn draw(comparison: &Comparison, numbers: NumberLook) -> Option<Figure> {
         return None;
     }
     let stack: f64 = rows.iter().map(|r| r.height + ROW_GAP).sum::<f64>() - ROW_GAP;
-    let stack = stack.max(if comparison.portraits.is_empty() { 0.0 } else { 100.0 });
+    let stack = stack.max(if comparison.portraits.is_empty() {
+        0.0
+    } else {
+        100.0
+    });
     let mut sheet = Sheet {
         comparison,
         numbers,
@@ -56,7 +60,9 @@ pub fn draw(comparison: &Comparison, numbers: NumberLook) -> Option<Figure> {
 /// Name of a comparison's figure.
 pub fn name(comparison: &Comparison) -> String {
     let letter = comparison.letter.chars();
-    let letter: String = letter.map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    let letter: String = letter
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })
+        .collect();
     format!("comparison_{letter}")
 }
 
@@ -64,7 +70,11 @@ fn rows(comparison: &Comparison) -> Vec<Row<'_>> {
     let pairs = [
         ([Role::DisplacementX, Role::DisplacementY], "$x$, $y$", 44.0),
         ([Role::VelocityX, Role::VelocityY], "$v_x$, $v_y$", 44.0),
-        ([Role::AccelerationX, Role::AccelerationY], "$a_x$, $a_y$", 40.0),
+        (
+            [Role::AccelerationX, Role::AccelerationY],
+            "$a_x$, $a_y$",
+            40.0,
+        ),
         ([Role::Drive, Role::Drive], "drive", 22.0),
         ([Role::Contact, Role::Contact], "contact", 20.0),
         ([Role::FrameX, Role::FrameY], "frame", 26.0),
@@ -77,8 +87,15 @@ fn rows(comparison: &Comparison) -> Vec<Row<'_>> {
     rows
 }
 
-fn row<'a>(comparison: &'a Comparison, roles: &[Role; 2], name: &str, height: f64) -> Option<Row<'a>> {
-    let traces = pick(comparison, roles, |t| t.measured.is_some() || t.simulated.is_some());
+fn row<'a>(
+    comparison: &'a Comparison,
+    roles: &[Role; 2],
+    name: &str,
+    height: f64,
+) -> Option<Row<'a>> {
+    let traces = pick(comparison, roles, |t| {
+        t.measured.is_some() || t.simulated.is_some()
+    });
     let dimension = traces.first()?.0.dimension;
     let peak = traces
         .iter()
@@ -87,7 +104,13 @@ fn row<'a>(comparison: &'a Comparison, roles: &[Role; 2], name: &str, height: f6
         .map(peak)
         .fold(0.0, f64::max);
     let unit = print_unit(dimension, peak);
-    Some(Row { traces, height, title: format!("{name} ({})", unit.symbol), unit, residual: false })
+    Some(Row {
+        traces,
+        height,
+        title: format!("{name} ({})", unit.symbol),
+        unit,
+        residual: false,
+    })
 }
 
 /// The residual of the best channel that has one: velocity first.
@@ -100,10 +123,20 @@ fn residual_row(comparison: &Comparison) -> Option<Row<'_>> {
     families.iter().find_map(|roles| {
         let traces = pick(comparison, roles, |t| t.residual.is_some());
         let dimension = traces.first()?.0.dimension;
-        let peak = traces.iter().filter_map(|(t, _)| t.residual.as_ref()).map(peak).fold(0.0, f64::max);
+        let peak = traces
+            .iter()
+            .filter_map(|(t, _)| t.residual.as_ref())
+            .map(peak)
+            .fold(0.0, f64::max);
         let unit = print_unit(dimension, peak);
         let title = format!("residual ({})", unit.symbol);
-        Some(Row { traces, height: 34.0, title, unit, residual: true })
+        Some(Row {
+            traces,
+            height: 34.0,
+            title,
+            unit,
+            residual: true,
+        })
     })
 }
 
@@ -112,7 +145,13 @@ fn pick<'a>(
     roles: &[Role; 2],
     wanted: impl Fn(&Trace) -> bool,
 ) -> Vec<(&'a Trace, Colour)> {
-    let colour = |role: Role| if role == roles[0] { look::BLUE } else { look::VERMILION };
+    let colour = |role: Role| {
+        if role == roles[0] {
+            look::BLUE
+        } else {
+            look::VERMILION
+        }
+    };
     comparison
         .traces
         .iter()
@@ -122,23 +161,44 @@ fn pick<'a>(
 }
 
 fn peak(signal: &Signal) -> f64 {
-    signal.values.iter().filter(|v| v.is_finite()).fold(0.0, |m, v| m.max(v.abs()))
+    signal
+        .values
+        .iter()
+        .filter(|v| v.is_finite())
+        .fold(0.0, |m, v| m.max(v.abs()))
 }
 
 /// Time axis in drive periods from the first whole period, in seconds without a drive.
 fn time_axis(comparison: &Comparison, rows: &[Row<'_>]) -> TimeAxis {
     let signals = rows.iter().flat_map(|r| &r.traces).flat_map(|(t, _)| {
-        [&t.measured, &t.simulated].into_iter().flatten().chain(t.residual.as_ref())
+        [&t.measured, &t.simulated]
+            .into_iter()
+            .flatten()
+            .chain(t.residual.as_ref())
     });
-    let span = range(signals.flat_map(|s| s.time_s.first().into_iter().chain(s.time_s.last())).copied());
+    let span = range(
+        signals
+            .flat_map(|s| s.time_s.first().into_iter().chain(s.time_s.last()))
+            .copied(),
+    );
     let (first, last) = span.unwrap_or((0.0, 1.0));
     match comparison.drive_period_s.filter(|t| *t > 0.0) {
         Some(period) => {
             let start = (first / period + 1e-6).floor() * period;
             let shown = ((first - start) / period, (last - start) / period);
-            TimeAxis { start, unit: period, shown, title: "$t$/$T$ (drive periods)" }
+            TimeAxis {
+                start,
+                unit: period,
+                shown,
+                title: "$t$/$T$ (drive periods)",
+            }
         }
-        None => TimeAxis { start: 0.0, unit: 1.0, shown: (first, last), title: "$t$ (s)" },
+        None => TimeAxis {
+            start: 0.0,
+            unit: 1.0,
+            shown: (first, last),
+            title: "$t$ (s)",
+        },
     }
 }
 
@@ -175,13 +235,20 @@ struct Sheet<'a> {
 impl Sheet<'_> {
     fn heading(&mut self) {
         let c = self.comparison;
-        marks::draw(&mut self.canvas, (LEFT + 3.5, 5.5), 3.0, marks::of(&c.motion));
+        marks::draw(
+            &mut self.canvas,
+            (LEFT + 3.5, 5.5),
+            3.0,
+            marks::of(&c.motion),
+        );
         let mut text = format!("({})  $z$ = {}", c.letter, c.motion.label());
         if let (Some(eta), Some(rho)) = (c.eta, c.rho) {
             let (eta, rho) = (self.numbers.fixed(eta, 3), self.numbers.fixed(rho, 3));
             text.push_str(&format!("   $η$ = {eta},  $ρ$ = {rho}"));
         }
-        let bold = TextLook::new(9.0, Anchor::Left).face(Face::Bold).colour(look::INK);
+        let bold = TextLook::new(9.0, Anchor::Left)
+            .face(Face::Bold)
+            .colour(look::INK);
         let x = LEFT + 10.0;
         self.canvas.text((x, 8.5), &text, bold);
         let after = x + richtext::width(&text, Face::Bold, 9.0) + 10.0;
@@ -197,8 +264,10 @@ impl Sheet<'_> {
         let title = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::QUIET);
         let middle = |side: Side| column_left(side) + 0.5 * COLUMN;
         if !rows.is_empty() {
-            self.canvas.text((middle(Side::Simulated), TOP - 4.0), "simulated", title);
-            self.canvas.text((middle(Side::Measured), TOP - 4.0), "measured", title);
+            self.canvas
+                .text((middle(Side::Simulated), TOP - 4.0), "simulated", title);
+            self.canvas
+                .text((middle(Side::Measured), TOP - 4.0), "measured", title);
         }
         let last_plain = rows.iter().rposition(|r| !r.residual);
         let mut top = TOP;
@@ -217,9 +286,17 @@ impl Sheet<'_> {
 
     fn panel(&mut self, row: &Row<'_>, side: Side, top: f64, below: bool) {
         let rect = Rect::new(column_left(side), top, COLUMN, row.height);
-        let values = row.traces.iter().flat_map(|(t, _)| shown(t, row.residual)).flat_map(|s| &s.values);
+        let values = row
+            .traces
+            .iter()
+            .flat_map(|(t, _)| shown(t, row.residual))
+            .flat_map(|s| &s.values);
         let y = Axis::around(values.map(|v| v * row.unit.factor), 0.08, row.title.clone());
-        let panel = Panel::new(rect, self.time.axis(), y.with_ticks(if row.height > 35.0 { 4 } else { 2 }));
+        let panel = Panel::new(
+            rect,
+            self.time.axis(),
+            y.with_ticks(if row.height > 35.0 { 4 } else { 2 }),
+        );
         self.canvas.layer(0);
         if panel.y.low < 0.0 && panel.y.high > 0.0 {
             panel.level(&mut self.canvas, 0.0, look::ZERO_STROKE);
@@ -255,7 +332,11 @@ impl Sheet<'_> {
             Side::Simulated => &self.comparison.simulated_impacts_s,
         };
         for t in times.iter().map(|t| self.time.of(*t)) {
-            panel.upright(&mut self.canvas, t, Stroke::dashed(look::ZERO_STROKE.colour, 0.4, &[1.0, 1.5]));
+            panel.upright(
+                &mut self.canvas,
+                t,
+                Stroke::dashed(look::ZERO_STROKE.colour, 0.4, &[1.0, 1.5]),
+            );
         }
     }
 
@@ -267,7 +348,11 @@ impl Sheet<'_> {
             Side::Measured => t.measured.is_none(),
         });
         if nothing {
-            let text = if side == Side::Simulated { "not modelled" } else { "not measured" };
+            let text = if side == Side::Simulated {
+                "not modelled"
+            } else {
+                "not measured"
+            };
             let r = panel.rect;
             let at = (0.5 * (r.left + r.right), 0.5 * (r.top + r.bottom) + 2.5);
             let quiet = TextLook::new(look::NOTE_SIZE, Anchor::Middle).colour(look::QUIET);
@@ -284,7 +369,10 @@ impl Sheet<'_> {
             let value = self.numbers.significant(rms * row.unit.factor, 2);
             let share = self.numbers.significant(100.0 * rms / whole, 2);
             let name = symbol(trace.role);
-            Some(format!("{name}: rms residual {value} {} = {share} % of rms", row.unit.symbol))
+            Some(format!(
+                "{name}: rms residual {value} {} = {share} % of rms",
+                row.unit.symbol
+            ))
         });
         for (i, line) in lines.collect::<Vec<_>>().iter().enumerate() {
             let y = top + 27.0 + 9.5 * i as f64;
@@ -299,12 +387,16 @@ impl Sheet<'_> {
         }
         let title = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::QUIET);
         let middle = PORTRAIT_LEFT + 0.5 * PORTRAIT_WIDTH;
-        self.canvas.text((middle, TOP - 4.0), "phase portraits", title);
+        self.canvas
+            .text((middle, TOP - 4.0), "phase portraits", title);
         let count = shown.len() as f64;
         let height = ((stack - (count - 1.0) * 24.0) / count).min(PORTRAIT_WIDTH);
         for (i, portrait) in shown.into_iter().enumerate() {
             let top = TOP + i as f64 * (height + 24.0);
-            self.portrait(portrait, Rect::new(PORTRAIT_LEFT, top, PORTRAIT_WIDTH, height));
+            self.portrait(
+                portrait,
+                Rect::new(PORTRAIT_LEFT, top, PORTRAIT_WIDTH, height),
+            );
         }
     }
 
@@ -316,18 +408,35 @@ impl Sheet<'_> {
             print_unit(crate::units::Dimension::Velocity, peak(1)),
         );
         let mass = &portrait.mass;
-        let x = Axis::around(all().map(|p| p[0] * length.factor), 0.06, format!("${mass}$ ({})", length.symbol));
-        let y = Axis::around(all().map(|p| p[1] * speed.factor), 0.06, format!("$v_{mass}$ ({})", speed.symbol));
+        let x = Axis::around(
+            all().map(|p| p[0] * length.factor),
+            0.06,
+            format!("${mass}$ ({})", length.symbol),
+        );
+        let y = Axis::around(
+            all().map(|p| p[1] * speed.factor),
+            0.06,
+            format!("$v_{mass}$ ({})", speed.symbol),
+        );
         let panel = Panel::new(rect, x.with_ticks(4), y.with_ticks(4));
-        let colour = if mass == "y" { look::VERMILION } else { look::BLUE };
+        let colour = if mass == "y" {
+            look::VERMILION
+        } else {
+            look::BLUE
+        };
         let strokes = [
-            (&portrait.simulated, Stroke::solid(marks::mix(colour, 0.40), BACK_WIDTH)),
+            (
+                &portrait.simulated,
+                Stroke::solid(marks::mix(colour, 0.40), BACK_WIDTH),
+            ),
             (&portrait.measured, Stroke::solid(look::INK, 0.45)),
         ];
         self.canvas.layer(1);
         for (points, stroke) in strokes {
-            let data: Vec<_> =
-                points.iter().map(|p| (p[0] * length.factor, p[1] * speed.factor)).collect();
+            let data: Vec<_> = points
+                .iter()
+                .map(|p| (p[0] * length.factor, p[1] * speed.factor))
+                .collect();
             panel.curve(&mut self.canvas, data, stroke);
         }
         self.canvas.layer(2);
@@ -379,7 +488,9 @@ fn csv(comparison: &Comparison) -> String {
         for (source, signal) in sources {
             let Some(signal) = signal else { continue };
             for (t, v) in signal.time_s.iter().zip(&signal.values) {
-                csv.row().texts(&[trace.role.name(), source]).numbers(&[Some(*t), Some(*v)]);
+                csv.row()
+                    .texts(&[trace.role.name(), source])
+                    .numbers(&[Some(*t), Some(*v)]);
             }
         }
     }

@@ -10,7 +10,11 @@ pub struct Csv {
 impl Csv {
     /// A table with these columns.
     pub fn new(header: &[&str]) -> Self {
-        let mut csv = Self { text: String::new(), columns: header.len(), filled: 0 };
+        let mut csv = Self {
+            text: String::new(),
+            columns: header.len(),
+            filled: 0,
+        };
         csv.texts(header);
         csv
     }
@@ -38,7 +42,9 @@ impl Csv {
     /// Number fields; missing ones stay empty.
     pub fn numbers(&mut self, fields: &[Option<f64>]) -> &mut Self {
         for field in fields {
-            let text = field.filter(|v| v.is_finite()).map_or(String::new(), |v| format!("{v}"));
+            let text = field
+                .filter(|v| v.is_finite())
+                .map_or(String::new(), |v| format!("{v}"));
             self.field(&text);
         }
         self

@@ -38,8 +38,12 @@ pub fn width(text: &str, face: Face, size: f64) -> f64 {
 /// Advance of a character in its face, in em; half an em where the face lacks it.
 fn advance_em(c: char, face: Face) -> f64 {
     const UNKNOWN: f64 = 0.5;
-    let Some(font) = instance(face) else { return UNKNOWN };
-    let Some(glyph) = font.ttf().glyph_index(c) else { return UNKNOWN };
+    let Some(font) = instance(face) else {
+        return UNKNOWN;
+    };
+    let Some(glyph) = font.ttf().glyph_index(c) else {
+        return UNKNOWN;
+    };
     font.x_advance(glyph.0).map_or(UNKNOWN, |em| em.get())
 }
 
@@ -51,7 +55,10 @@ fn instance(face: Face) -> Option<&'static FontInstance> {
 
 fn instantiate(face: Face) -> Option<FontInstance> {
     let (font, info) = find(face)?;
-    Some(font.clone().instantiate(info.variant, Abs::pt(10.0), &FontVariations::default()))
+    Some(
+        font.clone()
+            .instantiate(info.variant, Abs::pt(10.0), &FontVariations::default()),
+    )
 }
 
 fn find(face: Face) -> Option<&'static (Font, FontInfo)> {
@@ -60,7 +67,7 @@ fn find(face: Face) -> Option<&'static (Font, FontInfo)> {
         Face::Italic => (FontStyle::Italic, FontWeight::REGULAR),
         Face::Bold => (FontStyle::Normal, FontWeight::BOLD),
     };
-    embedded().iter().find(|(_, i)| {
-        i.family == FAMILY && i.variant.style == style && i.variant.weight == weight
-    })
+    embedded()
+        .iter()
+        .find(|(_, i)| i.family == FAMILY && i.variant.style == style && i.variant.weight == weight)
 }

@@ -45,7 +45,10 @@ pub struct Key {
 impl Key {
     /// A key.
     pub fn new(sign: Sign, text: impl Into<String>) -> Self {
-        Self { sign, text: text.into() }
+        Self {
+            sign,
+            text: text.into(),
+        }
     }
 
     fn width(&self) -> f64 {
@@ -74,7 +77,9 @@ fn flow(keys: &[Key], width: f64) -> Vec<(&Key, f64, usize)> {
 
 /// Height that the keys need at a width.
 pub fn height(keys: &[Key], width: f64) -> f64 {
-    flow(keys, width).last().map_or(0.0, |(_, _, line)| (*line + 1) as f64 * LINE_HEIGHT)
+    flow(keys, width)
+        .last()
+        .map_or(0.0, |(_, _, line)| (*line + 1) as f64 * LINE_HEIGHT)
 }
 
 /// Draws the keys from an upper left corner.
@@ -82,7 +87,10 @@ pub fn draw(canvas: &mut Canvas, (left, top): (f64, f64), width: f64, keys: &[Ke
     for (key, x, line) in flow(keys, width) {
         let y = top + (line as f64 + 0.5) * LINE_HEIGHT;
         sign(canvas, (left + x, y), key.sign);
-        let at = (left + x + key.sign.width() + 3.0, y + 0.33 * look::NOTE_SIZE);
+        let at = (
+            left + x + key.sign.width() + 3.0,
+            y + 0.33 * look::NOTE_SIZE,
+        );
         let text_look = TextLook::new(look::NOTE_SIZE, Anchor::Left).colour(look::INK);
         canvas.text(at, &key.text, text_look);
     }

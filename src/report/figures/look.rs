@@ -59,14 +59,22 @@ impl NumberLook {
     pub fn fixed(self, value: f64, decimals: usize) -> String {
         let text = format!("{value:.decimals$}");
         let is_zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
-        let text = if is_zero { text.replace('-', "") } else { text.replace('-', "\u{2212}") };
+        let text = if is_zero {
+            text.replace('-', "")
+        } else {
+            text.replace('-', "\u{2212}")
+        };
         self.sign(&text)
     }
 
     /// A number with a count of significant digits; powers of ten where it is very large or small.
     pub fn significant(self, value: f64, digits: usize) -> String {
         if value == 0.0 || !value.is_finite() {
-            return if value == 0.0 { "0".into() } else { "–".into() };
+            return if value == 0.0 {
+                "0".into()
+            } else {
+                "–".into()
+            };
         }
         let exponent = decimal_exponent(value, digits);
         if (-4..6).contains(&exponent) {
@@ -80,7 +88,11 @@ impl NumberLook {
 
     /// Puts the chosen decimal sign.
     pub fn sign(self, text: &str) -> String {
-        if self.decimal_comma { text.replace('.', ",") } else { text.to_owned() }
+        if self.decimal_comma {
+            text.replace('.', ",")
+        } else {
+            text.to_owned()
+        }
     }
 }
 
@@ -113,6 +125,12 @@ mod tests {
         assert_eq!(point.significant(0.999_96, 4), "1.000");
         assert_eq!(point.significant(12.3456, 3), "12.3");
         assert_eq!(point.significant(1.5e-7, 2), "1.5\u{2009}·\u{2009}10⁻⁷");
-        assert_eq!(NumberLook { decimal_comma: true }.fixed(1.5, 1), "1,5");
+        assert_eq!(
+            NumberLook {
+                decimal_comma: true
+            }
+            .fixed(1.5, 1),
+            "1,5"
+        );
     }
 }

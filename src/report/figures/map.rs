@@ -30,7 +30,11 @@ const UNUSED: plotters::style::RGBColor = plotters::style::RGBColor(0x9a, 0x9f, 
 /// Draws the map; `None` where the records have no place in a plane.
 pub fn draw(content: &ReportContent, size: MapSize, numbers: NumberLook) -> Option<Figure> {
     let plane = Plane::of(content)?;
-    let keys = if size == MapSize::Full { keys(content, plane) } else { small_keys(content) };
+    let keys = if size == MapSize::Full {
+        keys(content, plane)
+    } else {
+        small_keys(content)
+    };
     let mut map = Map::new(content, plane, size, &keys);
     map.regions();
     map.curves();
@@ -57,14 +61,34 @@ struct Map<'a> {
 impl<'a> Map<'a> {
     fn new(content: &'a ReportContent, plane: Plane, size: MapSize, keys: &[Key]) -> Self {
         let full = size == MapSize::Full;
-        let (width, height) = if full { (look::FULL_WIDTH, 370.0) } else { (236.0, 172.0) };
+        let (width, height) = if full {
+            (look::FULL_WIDTH, 370.0)
+        } else {
+            (236.0, 172.0)
+        };
         let keys_height = legend::height(keys, width) + if keys.is_empty() { 0.0 } else { 3.0 };
-        let (left, right) = (33.0, if full && plane.dimensionless { 36.0 } else { 4.0 });
-        let top = keys_height + if full && plane.dimensionless { 26.0 } else { 3.0 };
+        let (left, right) = (
+            33.0,
+            if full && plane.dimensionless {
+                36.0
+            } else {
+                4.0
+            },
+        );
+        let top = keys_height
+            + if full && plane.dimensionless {
+                26.0
+            } else {
+                3.0
+            };
         let rect = Rect::new(left, top, width - left - right, height - 24.0);
         let total = top + height;
         let (x, y) = plane.axes(content);
-        let (x, y) = if full { (x, y) } else { (x.with_ticks(5), y.with_ticks(4)) };
+        let (x, y) = if full {
+            (x, y)
+        } else {
+            (x.with_ticks(5), y.with_ticks(4))
+        };
         let panel = Panel::new(rect, x, y);
         Self {
             content,
@@ -83,12 +107,18 @@ impl<'a> Map<'a> {
     }
 
     fn regions(&mut self) {
-        let Some(map) = self.content.region_map.as_ref().filter(|_| self.plane.dimensionless)
+        let Some(map) = self
+            .content
+            .region_map
+            .as_ref()
+            .filter(|_| self.plane.dimensionless)
         else {
             return;
         };
         let panel = self.panel.clone();
-        let Some(regions) = Regions::new(map, &panel) else { return };
+        let Some(regions) = Regions::new(map, &panel) else {
+            return;
+        };
         self.canvas.layer(0);
         regions.draw(&mut self.canvas);
         // Labels go where records, curves and brackets leave room.
@@ -96,9 +126,12 @@ impl<'a> Map<'a> {
         let size = if self.full() { 10.0 } else { 8.0 };
         self.canvas.layer(6);
         for label in regions.labels(&mut self.occupancy, size) {
-            let text_look = TextLook::new(size, Anchor::Middle).face(Face::Bold).colour(look::INK);
+            let text_look = TextLook::new(size, Anchor::Middle)
+                .face(Face::Bold)
+                .colour(look::INK);
             let (x, y) = label.at;
-            self.canvas.text((x, y + 0.33 * size), &label.text, text_look);
+            self.canvas
+                .text((x, y + 0.33 * size), &label.text, text_look);
         }
     }
 
@@ -110,8 +143,11 @@ impl<'a> Map<'a> {
             }
         }
         for curve in &self.content.curves {
-            let points: Vec<Point> =
-                curve.points.iter().map(|p| self.panel.at(p[0], p[1])).collect();
+            let points: Vec<Point> = curve
+                .points
+                .iter()
+                .map(|p| self.panel.at(p[0], p[1]))
+                .collect();
             for piece in path::clip(&points, &self.panel.rect) {
                 self.occupancy.take_line(&piece);
             }
@@ -150,7 +186,9 @@ impl<'a> Map<'a> {
     /// Names a curve beside the middle of its longest visible piece.
     fn curve_label(&mut self, curve: &BoundaryCurve, pieces: &[Vec<Point>]) {
         let length = |p: &[Point]| -> f64 {
-            p.windows(2).map(|s| (s[1].0 - s[0].0).hypot(s[1].1 - s[0].1)).sum()
+            p.windows(2)
+                .map(|s| (s[1].0 - s[0].0).hypot(s[1].1 - s[0].1))
+                .sum()
         };
         let Some(piece) = pieces.iter().max_by(|a, b| length(a).total_cmp(&length(b))) else {
             return;
@@ -166,10 +204,12 @@ impl<'a> Map<'a> {
             .into_iter()
             .filter_map(|a| self.occupancy.near(a, (width, 9.0), &bounds))
             .min_by_key(|&(x, y)| {
-                self.occupancy.taken(&Rect::new(x - 0.5 * width, y - 4.5, width, 9.0))
+                self.occupancy
+                    .taken(&Rect::new(x - 0.5 * width, y - 4.5, width, 9.0))
             });
         if let Some((x, y)) = best {
-            self.occupancy.take_rect(&Rect::new(x - 0.5 * width, y - 4.5, width, 9.0));
+            self.occupancy
+                .take_rect(&Rect::new(x - 0.5 * width, y - 4.5, width, 9.0));
             self.canvas.layer(6);
             let text_look = TextLook::new(8.5, Anchor::Middle).colour(look::INK);
             self.canvas.text((x, y + 2.8), &text, text_look);
@@ -179,16 +219,23 @@ impl<'a> Map<'a> {
     fn brackets(&mut self) {
         let lift = self.lift();
         for bracket in &self.content.brackets {
-            let Some(((low, high), height)) = self.plane.bracket(bracket) else { continue };
+            let Some(((low, high), height)) = self.plane.bracket(bracket) else {
+                continue;
+            };
             if !self.panel.shows(low, height) || !self.panel.shows(high, height) {
                 continue;
             }
             let (from, to) = (self.panel.at(low, height), self.panel.at(high, height));
             let y = from.1 - lift * direction(bracket.direction);
-            let colour = if bracket.left_out.is_none() { look::INK } else { UNUSED };
+            let colour = if bracket.left_out.is_none() {
+                look::INK
+            } else {
+                UNUSED
+            };
             self.canvas.layer(3);
             legend::bracket(&mut self.canvas, (from.0, to.0), y, colour);
-            self.occupancy.take_rect(&Rect::new(from.0, y - 2.5, to.0 - from.0, 5.0));
+            self.occupancy
+                .take_rect(&Rect::new(from.0, y - 2.5, to.0 - from.0, 5.0));
         }
     }
 
@@ -208,7 +255,9 @@ impl<'a> Map<'a> {
     fn place(&self, record: &RecordRow) -> Option<Point> {
         let (x, y) = self.plane.record(record)?;
         let at = self.panel.at(x, y);
-        self.panel.shows(x, y).then(|| (at.0, at.1 - self.lift() * direction(record.sweep)))
+        self.panel
+            .shows(x, y)
+            .then(|| (at.0, at.1 - self.lift() * direction(record.sweep)))
     }
 
     fn records(&mut self, numbers: NumberLook) {
@@ -216,12 +265,20 @@ impl<'a> Map<'a> {
         let mut drawn: Vec<(Point, String)> = Vec::new();
         self.canvas.layer(4);
         for record in &self.content.records {
-            let Some(at) = self.place(record) else { continue };
+            let Some(at) = self.place(record) else {
+                continue;
+            };
             let text = describe(record, numbers);
-            self.spots.push(Spot { x: at.0, y: at.1, text });
+            self.spots.push(Spot {
+                x: at.0,
+                y: at.1,
+                text,
+            });
             let label = record.motion.label();
             let hidden = drawn.iter().any(|(p, l)| {
-                (p.0 - at.0).abs() < 0.35 * radius && (p.1 - at.1).abs() < 0.35 * radius && *l == label
+                (p.0 - at.0).abs() < 0.35 * radius
+                    && (p.1 - at.1).abs() < 0.35 * radius
+                    && *l == label
             });
             if !hidden {
                 marks::draw(&mut self.canvas, at, radius, marks::of(&record.motion));
@@ -233,19 +290,30 @@ impl<'a> Map<'a> {
     fn letters(&mut self) {
         let bounds = self.panel.rect;
         for comparison in &self.content.comparisons {
-            let Some(record) = self.content.records.iter().find(|r| r.id == comparison.record)
+            let Some(record) = self
+                .content
+                .records
+                .iter()
+                .find(|r| r.id == comparison.record)
             else {
                 continue;
             };
-            let Some(at) = self.place(record) else { continue };
+            let Some(at) = self.place(record) else {
+                continue;
+            };
             let text = format!("({})", comparison.letter);
             let size = (super::fonts::width(&text, Face::Bold, 8.5) + 2.0, 9.0);
-            let Some(place) = self.occupancy.near(at, size, &bounds) else { continue };
+            let Some(place) = self.occupancy.near(at, size, &bounds) else {
+                continue;
+            };
             self.canvas.layer(5);
-            self.canvas.ring(at, self.radius() + 2.0, Stroke::solid(look::INK, 0.7));
+            self.canvas
+                .ring(at, self.radius() + 2.0, Stroke::solid(look::INK, 0.7));
             self.leader(at, place, size);
             self.canvas.layer(6);
-            let text_look = TextLook::new(8.5, Anchor::Middle).face(Face::Bold).colour(look::INK);
+            let text_look = TextLook::new(8.5, Anchor::Middle)
+                .face(Face::Bold)
+                .colour(look::INK);
             self.canvas.text((place.0, place.1 + 2.8), &text, text_look);
             let rect = Rect::new(place.0 - 0.5 * size.0, place.1 - 4.5, size.0, size.1);
             self.occupancy.take_rect(&rect);
@@ -271,7 +339,12 @@ impl<'a> Map<'a> {
         if self.full() && self.plane.dimensionless {
             self.laboratory_axes(numbers);
         }
-        legend::draw(&mut self.canvas, (self.panel.rect.left, 0.0), self.panel.rect.width(), keys);
+        legend::draw(
+            &mut self.canvas,
+            (self.panel.rect.left, 0.0),
+            self.panel.rect.width(),
+            keys,
+        );
     }
 
     /// Frequency in Hz above and clearance in mm on the right.
@@ -284,23 +357,38 @@ impl<'a> Map<'a> {
             let (ticks, decimals) = axis.major();
             for v in ticks {
                 let (x, _) = self.panel.at(v / f0, 0.0);
-                self.canvas.segment((x, r.top), (x, r.top + 2.5), look::FRAME_STROKE);
-                self.canvas.text((x, r.top - 3.0), &numbers.fixed(v, decimals), small);
+                self.canvas
+                    .segment((x, r.top), (x, r.top + 2.5), look::FRAME_STROKE);
+                self.canvas
+                    .text((x, r.top - 3.0), &numbers.fixed(v, decimals), small);
             }
             let at = (0.5 * (r.left + r.right), r.top - 14.0);
             self.canvas.text(at, "drive frequency $f$ (Hz)", title);
         }
         if let Some(x_st) = self.plane.static_deflection_m.map(|x| 1e3 * x) {
-            let axis = Axis::new(self.panel.y.low * x_st, self.panel.y.high * x_st, "").with_ticks(7);
+            let axis =
+                Axis::new(self.panel.y.low * x_st, self.panel.y.high * x_st, "").with_ticks(7);
             let (ticks, decimals) = axis.major();
-            let left = TextLook { anchor: Anchor::Left, ..small };
+            let left = TextLook {
+                anchor: Anchor::Left,
+                ..small
+            };
             for v in ticks {
                 let (_, y) = self.panel.at(0.0, v / x_st);
-                self.canvas.segment((r.right, y), (r.right - 2.5, y), look::FRAME_STROKE);
-                self.canvas.text((r.right + 3.0, y + 2.3), &numbers.fixed(v, decimals), left);
+                self.canvas
+                    .segment((r.right, y), (r.right - 2.5, y), look::FRAME_STROKE);
+                self.canvas
+                    .text((r.right + 3.0, y + 2.3), &numbers.fixed(v, decimals), left);
             }
             let at = (self.canvas.width - 2.5, 0.5 * (r.top + r.bottom));
-            self.canvas.text(at, "clearance $r$ (mm)", TextLook { upward: true, ..title });
+            self.canvas.text(
+                at,
+                "clearance $r$ (mm)",
+                TextLook {
+                    upward: true,
+                    ..title
+                },
+            );
         }
     }
 
@@ -367,7 +455,11 @@ pub fn describe(record: &RecordRow, numbers: NumberLook) -> String {
         parts.push(format!("r = {} mm", numbers.significant(1e3 * r, 4)));
     }
     if let (Some(eta), Some(rho)) = (record.eta, record.rho) {
-        parts.push(format!("η = {}, ρ = {}", numbers.fixed(eta, 4), numbers.fixed(rho, 3)));
+        parts.push(format!(
+            "η = {}, ρ = {}",
+            numbers.fixed(eta, 4),
+            numbers.fixed(rho, 3)
+        ));
     }
     parts.push(format!("sweep {}", record.sweep.name()));
     if let Some(c) = record.confidence {
@@ -378,7 +470,9 @@ pub fn describe(record: &RecordRow, numbers: NumberLook) -> String {
 
 fn small_keys(content: &ReportContent) -> Vec<Key> {
     let met = marks::met(content.records.iter().map(|r| &r.motion));
-    met.into_iter().map(|m| Key::new(Sign::Mark(marks::of(m)), m.label())).collect()
+    met.into_iter()
+        .map(|m| Key::new(Sign::Mark(marks::of(m)), m.label()))
+        .collect()
 }
 
 fn keys(content: &ReportContent, plane: Plane) -> Vec<Key> {
@@ -415,7 +509,19 @@ fn curve_keys(content: &ReportContent) -> Vec<Key> {
 }
 
 fn csv(content: &ReportContent) -> String {
-    let mut csv = Csv::new(&["layer", "name", "motion", "sweep", "eta", "rho", "frequency_hz", "clearance_m", "eta_high", "rho_high", "frequency_high_hz"]);
+    let mut csv = Csv::new(&[
+        "layer",
+        "name",
+        "motion",
+        "sweep",
+        "eta",
+        "rho",
+        "frequency_hz",
+        "clearance_m",
+        "eta_high",
+        "rho_high",
+        "frequency_high_hz",
+    ]);
     for r in &content.records {
         csv.row()
             .texts(&["record", &r.id, &r.motion.label(), r.sweep.name()])
@@ -423,15 +529,27 @@ fn csv(content: &ReportContent) -> String {
     }
     for b in &content.brackets {
         csv.row()
-            .texts(&["bracket", b.kind.name(), &b.motion.label(), b.direction.name()])
-            .numbers(&[b.eta_low, b.rho, Some(b.frequency_low_hz), Some(b.clearance_m)])
+            .texts(&[
+                "bracket",
+                b.kind.name(),
+                &b.motion.label(),
+                b.direction.name(),
+            ])
+            .numbers(&[
+                b.eta_low,
+                b.rho,
+                Some(b.frequency_low_hz),
+                Some(b.clearance_m),
+            ])
             .numbers(&[b.eta_high, b.rho, Some(b.frequency_high_hz)]);
     }
     for c in &content.curves {
         let name = c.kind.name();
         let motion = format!("1/{}", c.periods_n);
         for p in &c.points {
-            csv.row().texts(&["curve", name, &motion, ""]).numbers(&[Some(p[0]), Some(p[1])]);
+            csv.row()
+                .texts(&["curve", name, &motion, ""])
+                .numbers(&[Some(p[0]), Some(p[1])]);
         }
         for b in &c.band95 {
             let row = csv.row().texts(&["band95", name, &motion, ""]);

@@ -67,9 +67,11 @@ const GREY: Colour = RGBColor(0x77, 0x77, 0x77);
 pub fn of(motion: &Motion) -> MotionLook {
     match motion {
         Motion::Impactless => look(Shape::Circle, RGBColor(0x44, 0x4a, 0x50), 0.0),
-        Motion::Periodic { impacts_p, periods_n, dead_zone } => {
-            periodic(*impacts_p, *periods_n, *dead_zone)
-        }
+        Motion::Periodic {
+            impacts_p,
+            periods_n,
+            dead_zone,
+        } => periodic(*impacts_p, *periods_n, *dead_zone),
         Motion::Beat => look(Shape::Plus, BROWN, 0.16),
         Motion::Chaotic => look(Shape::Cross, RGBColor(0x8c, 0x1d, 0x1d), 0.16),
         Motion::Joined => look(Shape::Bar, GREY, 0.22),
@@ -97,11 +99,19 @@ fn other(p: u32, n: u32) -> MotionLook {
     const SHAPES: [Shape; 4] = [Shape::Lozenge, Shape::Delta, Shape::Star, Shape::Wedge];
     const COLOURS: [Colour; 5] = [PLUM, ORANGE, BROWN, SKY, GREEN];
     let shape = SHAPES[(p as usize + 2 * n as usize) % SHAPES.len()];
-    look(shape, COLOURS[(2 * p as usize + n as usize) % COLOURS.len()], 0.12)
+    look(
+        shape,
+        COLOURS[(2 * p as usize + n as usize) % COLOURS.len()],
+        0.12,
+    )
 }
 
 fn look(shape: Shape, colour: Colour, depth: f64) -> MotionLook {
-    MotionLook { shape, colour, tint: mix(colour, depth) }
+    MotionLook {
+        shape,
+        colour,
+        tint: mix(colour, depth),
+    }
 }
 
 /// A colour thinned with white.
@@ -114,9 +124,11 @@ pub fn mix(colour: Colour, depth: f64) -> Colour {
 pub fn order(motion: &Motion) -> (u32, u32, u32, bool) {
     match motion {
         Motion::Impactless => (0, 0, 0, false),
-        Motion::Periodic { impacts_p, periods_n, dead_zone } => {
-            (1, *periods_n, *impacts_p, *dead_zone)
-        }
+        Motion::Periodic {
+            impacts_p,
+            periods_n,
+            dead_zone,
+        } => (1, *periods_n, *impacts_p, *dead_zone),
         Motion::Beat => (2, 0, 0, false),
         Motion::Chaotic => (3, 0, 0, false),
         Motion::Joined => (4, 0, 0, false),
@@ -157,7 +169,11 @@ pub fn draw(canvas: &mut Canvas, (x, y): Point, radius: f64, mark: MotionLook) {
         Shape::Box => canvas.outlined(&regular(x, y, 1.1 * r, 4, 45.0), look::PAPER, outline),
         Shape::Triangle => canvas.outlined(&regular(x, y + 0.15 * r, 1.3 * r, 3, 90.0), c, rim),
         Shape::Delta => {
-            canvas.outlined(&regular(x, y + 0.15 * r, 1.2 * r, 3, 90.0), look::PAPER, outline);
+            canvas.outlined(
+                &regular(x, y + 0.15 * r, 1.2 * r, 3, 90.0),
+                look::PAPER,
+                outline,
+            );
         }
         Shape::Wedge => canvas.outlined(&regular(x, y - 0.15 * r, 1.3 * r, 3, -90.0), c, rim),
         Shape::Diamond => canvas.outlined(&regular(x, y, 1.3 * r, 4, 0.0), c, rim),
@@ -192,7 +208,11 @@ fn crossed(canvas: &mut Canvas, (x, y): Point, arm: f64, turn_degrees: f64, colo
     for quarter in [0.0, 90.0] {
         let a = f64::to_radians(turn_degrees + quarter);
         let (dx, dy) = (arm * a.cos(), arm * a.sin());
-        canvas.segment((x - dx, y - dy), (x + dx, y + dy), Stroke::solid(colour, 0.42 * arm));
+        canvas.segment(
+            (x - dx, y - dy),
+            (x + dx, y + dy),
+            Stroke::solid(colour, 0.42 * arm),
+        );
     }
 }
 
@@ -205,7 +225,11 @@ mod tests {
         let common: Vec<Motion> = vec![
             Motion::Impactless,
             Motion::periodic(1, 1),
-            Motion::Periodic { impacts_p: 1, periods_n: 1, dead_zone: true },
+            Motion::Periodic {
+                impacts_p: 1,
+                periods_n: 1,
+                dead_zone: true,
+            },
             Motion::periodic(1, 2),
             Motion::periodic(2, 2),
             Motion::periodic(2, 1),
@@ -224,8 +248,12 @@ mod tests {
 
     #[test]
     fn valid_legends_name_each_motion_once_in_order() {
-        let motions =
-            [Motion::Chaotic, Motion::periodic(1, 2), Motion::Impactless, Motion::periodic(1, 2)];
+        let motions = [
+            Motion::Chaotic,
+            Motion::periodic(1, 2),
+            Motion::Impactless,
+            Motion::periodic(1, 2),
+        ];
         let labels: Vec<_> = met(&motions).iter().map(|m| m.label()).collect();
         assert_eq!(labels, ["0", "1/2", "chaotic"]);
     }

@@ -58,7 +58,15 @@ impl Figure {
         let (width, height) = (canvas.width, canvas.height);
         let svg = canvas.into_svg(title);
         let (name, title) = (name.into(), title.to_owned());
-        Self { name, title, svg, width, height, csv, spots: Vec::new() }
+        Self {
+            name,
+            title,
+            svg,
+            width,
+            height,
+            csv,
+            spots: Vec::new(),
+        }
     }
 
     /// With points that tell something.
@@ -72,7 +80,10 @@ type Job<'a> = Box<dyn Fn() -> Option<Figure> + Send + Sync + 'a>;
 
 /// Draws all figures that the content allows, side by side on all cores, in a fixed order.
 pub fn draw_all(content: &ReportContent, numbers: NumberLook) -> Vec<Figure> {
-    jobs(content, numbers).par_iter().filter_map(|job| job()).collect()
+    jobs(content, numbers)
+        .par_iter()
+        .filter_map(|job| job())
+        .collect()
 }
 
 fn jobs<'a>(content: &'a ReportContent, numbers: NumberLook) -> Vec<Job<'a>> {

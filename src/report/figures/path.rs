@@ -21,7 +21,12 @@ pub struct Rect {
 impl Rect {
     /// A rectangle from its upper left corner and its size.
     pub fn new(left: f64, top: f64, width: f64, height: f64) -> Self {
-        Self { left, top, right: left + width, bottom: top + height }
+        Self {
+            left,
+            top,
+            right: left + width,
+            bottom: top + height,
+        }
     }
 
     /// Width.
@@ -98,7 +103,9 @@ pub fn clip_polygon(points: &[Point], rect: &Rect) -> Vec<Point> {
         &|p: Point| p.1 - rect.top,
         &|p: Point| rect.bottom - p.1,
     ];
-    inside.iter().fold(points.to_vec(), |polygon, edge| clip_half_plane(&polygon, edge))
+    inside.iter().fold(points.to_vec(), |polygon, edge| {
+        clip_half_plane(&polygon, edge)
+    })
 }
 
 fn clip_half_plane(points: &[Point], distance: &dyn Fn(Point) -> f64) -> Vec<Point> {
@@ -133,13 +140,20 @@ pub fn thin(points: &[Point]) -> Vec<Point> {
             open.push((far, to));
         }
     }
-    points.iter().zip(keep).filter_map(|(&p, k)| k.then_some(p)).collect()
+    points
+        .iter()
+        .zip(keep)
+        .filter_map(|(&p, k)| k.then_some(p))
+        .collect()
 }
 
 fn farthest(points: &[Point], from: usize, to: usize) -> Option<usize> {
     let (far, most) = (from + 1..to)
         .map(|i| (i, distance_to_segment(points[i], points[from], points[to])))
-        .fold((0, 0.0), |best, next| if next.1 > best.1 { next } else { best });
+        .fold(
+            (0, 0.0),
+            |best, next| if next.1 > best.1 { next } else { best },
+        );
     (most > THINNING_TOLERANCE).then_some(far)
 }
 
@@ -147,7 +161,11 @@ fn farthest(points: &[Point], from: usize, to: usize) -> Option<usize> {
 pub fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     let square = dx * dx + dy * dy;
-    let t = if square > 0.0 { ((p.0 - a.0) * dx + (p.1 - a.1) * dy) / square } else { 0.0 };
+    let t = if square > 0.0 {
+        ((p.0 - a.0) * dx + (p.1 - a.1) * dy) / square
+    } else {
+        0.0
+    };
     let t = t.clamp(0.0, 1.0);
     (p.0 - a.0 - t * dx).hypot(p.1 - a.1 - t * dy)
 }
@@ -227,7 +245,9 @@ mod tests {
 
     #[test]
     fn valid_a_straight_line_keeps_its_two_ends() {
-        let line: Vec<Point> = (0..100).map(|i| (f64::from(i), 2.0 * f64::from(i))).collect();
+        let line: Vec<Point> = (0..100)
+            .map(|i| (f64::from(i), 2.0 * f64::from(i)))
+            .collect();
         assert_eq!(thin(&line).len(), 2);
     }
 }

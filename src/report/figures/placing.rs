@@ -14,7 +14,11 @@ impl Occupancy {
     /// An empty drawing of a size in points.
     pub fn new(width: f64, height: f64) -> Self {
         let (columns, rows) = (width.ceil() as usize + 1, height.ceil() as usize + 1);
-        Self { columns, rows, taken: vec![0; columns * rows] }
+        Self {
+            columns,
+            rows,
+            taken: vec![0; columns * rows],
+        }
     }
 
     /// Takes a rectangle.
@@ -26,7 +30,12 @@ impl Occupancy {
 
     /// Takes a disc's square.
     pub fn take_spot(&mut self, (x, y): Point, radius: f64) {
-        self.take_rect(&Rect::new(x - radius, y - radius, 2.0 * radius, 2.0 * radius));
+        self.take_rect(&Rect::new(
+            x - radius,
+            y - radius,
+            2.0 * radius,
+            2.0 * radius,
+        ));
     }
 
     /// Takes what a line covers.
@@ -90,7 +99,9 @@ mod tests {
         let mut occupancy = Occupancy::new(200.0, 200.0);
         occupancy.take_rect(&Rect::new(100.0, 0.0, 100.0, 200.0));
         let bounds = Rect::new(0.0, 0.0, 200.0, 200.0);
-        let (x, _) = occupancy.near((98.0, 100.0), (20.0, 8.0), &bounds).expect("a place");
+        let (x, _) = occupancy
+            .near((98.0, 100.0), (20.0, 8.0), &bounds)
+            .expect("a place");
         assert!(x + 10.0 <= 101.0, "{x}");
     }
 }

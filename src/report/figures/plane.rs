@@ -67,10 +67,17 @@ impl Plane {
         }
         let x = pad(range(xs), 0.03);
         let y = pad(range(ys), 0.06);
-        let (x, y) = if self.dimensionless { self.with_map(content, x, y) } else { (x, y) };
+        let (x, y) = if self.dimensionless {
+            self.with_map(content, x, y)
+        } else {
+            (x, y)
+        };
         let (x, y) = (x.unwrap_or((0.5, 3.0)), y.unwrap_or((0.0, 3.0)));
         let titles = if self.dimensionless {
-            ("frequency ratio $η$ = $f$/$f_0$ (1)", "clearance ratio $ρ$ = $r$/$x_{st}$ (1)")
+            (
+                "frequency ratio $η$ = $f$/$f_0$ (1)",
+                "clearance ratio $ρ$ = $r$/$x_{st}$ (1)",
+            )
         } else {
             ("drive frequency $f$ (Hz)", "clearance $r$ (mm)")
         };
@@ -95,7 +102,11 @@ impl Plane {
 
 fn pad(seen: Option<(f64, f64)>, share: f64) -> Option<(f64, f64)> {
     let (low, high) = seen?;
-    let pad = if high > low { share * (high - low) } else { 0.1 * high.abs().max(1e-3) };
+    let pad = if high > low {
+        share * (high - low)
+    } else {
+        0.1 * high.abs().max(1e-3)
+    };
     Some((low - pad, high + pad))
 }
 

@@ -33,11 +33,19 @@ impl<'a> Regions<'a> {
     /// Lays a map on a panel. `None` where its axes and cells contradict each other.
     pub fn new(map: &'a RegionMap, panel: &'a Panel) -> Option<Self> {
         let cells = map.eta.len() * map.rho.len();
-        let in_range = map.cells.iter().all(|&c| usize::from(c) < map.motions.len());
+        let in_range = map
+            .cells
+            .iter()
+            .all(|&c| usize::from(c) < map.motions.len());
         if map.eta.len() < 2 || map.rho.len() < 2 || map.cells.len() != cells || !in_range {
             return None;
         }
-        let mut regions = Self { map, panel, region: vec![usize::MAX; cells], areas: Vec::new() };
+        let mut regions = Self {
+            map,
+            panel,
+            region: vec![usize::MAX; cells],
+            areas: Vec::new(),
+        };
         for start in 0..cells {
             if regions.region[start] == usize::MAX {
                 let area = regions.flood(start);
@@ -68,7 +76,10 @@ impl<'a> Regions<'a> {
             area += 1;
             let (i, j) = (index % columns, index / columns);
             let next = [(i > 0, -1), (i + 1 < columns, 1)];
-            let beside = next.iter().filter(|n| n.0).map(|n| index.wrapping_add_signed(n.1));
+            let beside = next
+                .iter()
+                .filter(|n| n.0)
+                .map(|n| index.wrapping_add_signed(n.1));
             open.extend(beside);
             if j > 0 {
                 open.push(index - columns);
@@ -108,7 +119,8 @@ impl<'a> Regions<'a> {
 
     /// Centre of a cell on paper; beyond the grid its outer edge.
     fn centre(&self, i: isize, j: isize) -> Point {
-        self.panel.at(along(&self.map.eta, i), along(&self.map.rho, j))
+        self.panel
+            .at(along(&self.map.eta, i), along(&self.map.rho, j))
     }
 
     fn corners(&self, i: isize, j: isize) -> [(usize, Point); 4] {
@@ -117,7 +129,9 @@ impl<'a> Regions<'a> {
     }
 
     fn same_motion(&self, corners: &[(usize, Point); 4]) -> bool {
-        corners.iter().all(|c| self.map.cells[c.0] == self.map.cells[corners[0].0])
+        corners
+            .iter()
+            .all(|c| self.map.cells[c.0] == self.map.cells[corners[0].0])
     }
 
     /// Squares between four centres of one motion, run by run along a row.
@@ -164,7 +178,9 @@ impl<'a> Regions<'a> {
         let saddle = kinds[0] == kinds[2] && kinds[1] == kinds[3];
         let centre = (saddle || distinct(kinds) > 2).then(|| middle(corners[0].1, corners[2].1));
         for start in (0..4).filter(|&s| kinds[s] != kinds[(s + 3) % 4]) {
-            let run = (0..4).take_while(|k| kinds[(start + k) % 4] == kinds[start]).count();
+            let run = (0..4)
+                .take_while(|k| kinds[(start + k) % 4] == kinds[start])
+                .count();
             let (last, after) = ((start + run - 1) % 4, (start + run) % 4);
             let mut polygon: Vec<Point> = (0..run).map(|k| corners[(start + k) % 4].1).collect();
             let edge = [
@@ -176,7 +192,10 @@ impl<'a> Regions<'a> {
             polygon.extend(&edge);
             let polygon = path::clip_polygon(&polygon, &self.panel.rect);
             canvas.fill(&polygon, self.tint(corners[start].0));
-            if kinds[start] > kinds[after] && self.is_large(corners[start].0) && self.is_large(corners[after].0) {
+            if kinds[start] > kinds[after]
+                && self.is_large(corners[start].0)
+                && self.is_large(corners[after].0)
+            {
                 self.outline(canvas, &edge);
             }
         }
@@ -219,8 +238,13 @@ impl<'a> Regions<'a> {
                 k += 1;
                 continue;
             };
-            let end = (k..=steps).find(|&e| second_at(e) != Some(second)).unwrap_or(steps);
-            let colour = marks::mix(marks::of(&self.map.motions[usize::from(second)]).colour, 0.45);
+            let end = (k..=steps)
+                .find(|&e| second_at(e) != Some(second))
+                .unwrap_or(steps);
+            let colour = marks::mix(
+                marks::of(&self.map.motions[usize::from(second)]).colour,
+                0.45,
+            );
             let point = |k: usize| (x0 + k as f64, y0 - k as f64);
             canvas.segment(point(k), point(end), Stroke::solid(colour, 0.35));
             k = end.max(k + 1);
@@ -232,10 +256,10 @@ impl<'a> Regions<'a> {
         if !r.contains((x, y)) {
             return None;
         }
-        let across = self.panel.x.low
-            + (x - r.left) / r.width() * (self.panel.x.high - self.panel.x.low);
-        let up = self.panel.y.low
-            + (r.bottom - y) / r.height() * (self.panel.y.high - self.panel.y.low);
+        let across =
+            self.panel.x.low + (x - r.left) / r.width() * (self.panel.x.high - self.panel.x.low);
+        let up =
+            self.panel.y.low + (r.bottom - y) / r.height() * (self.panel.y.high - self.panel.y.low);
         let i = nearest(&self.map.eta, across)?;
         let j = nearest(&self.map.rho, up)?;
         Some(self.cell(i, j))
@@ -246,14 +270,21 @@ impl<'a> Regions<'a> {
         let mut order: Vec<usize> = (0..self.areas.len()).collect();
         order.sort_by_key(|&r| std::cmp::Reverse(self.areas[r]));
         let least = LEAST_SHARE * self.region.len() as f64;
-        let large = order.into_iter().take_while(|&r| self.areas[r] as f64 >= least);
-        large.filter_map(|r| self.label(r, occupancy, size)).collect()
+        let large = order
+            .into_iter()
+            .take_while(|&r| self.areas[r] as f64 >= least);
+        large
+            .filter_map(|r| self.label(r, occupancy, size))
+            .collect()
     }
 
     fn label(&self, region: usize, occupancy: &mut Occupancy, size: f64) -> Option<RegionLabel> {
         let first_cell = self.region.iter().position(|&r| r == region)?;
         let text = self.name(first_cell);
-        let half = (0.5 * super::fonts::width(&text, super::fonts::Face::Bold, size) + 1.5, 0.5 * size);
+        let half = (
+            0.5 * super::fonts::width(&text, super::fonts::Face::Bold, size) + 1.5,
+            0.5 * size,
+        );
         let columns = self.map.eta.len();
         let best = self
             .region
@@ -266,30 +297,52 @@ impl<'a> Regions<'a> {
             })
             .max_by(|a, b| a.0.total_cmp(&b.0))?;
         let (x, y) = best.1;
-        occupancy.take_rect(&Rect::new(x - half.0, y - half.1, 2.0 * half.0, 2.0 * half.1));
+        occupancy.take_rect(&Rect::new(
+            x - half.0,
+            y - half.1,
+            2.0 * half.0,
+            2.0 * half.1,
+        ));
         Some(RegionLabel { text, at: best.1 })
     }
 
     fn name(&self, cell: usize) -> String {
         let (first, second) = self.kind(cell);
         let label = |k: u16| self.map.motions[usize::from(k)].label();
-        if first == second { label(first) } else { format!("{}, {}", label(first), label(second)) }
+        if first == second {
+            label(first)
+        } else {
+            format!("{}, {}", label(first), label(second))
+        }
     }
 
     /// How well a text of a half size stands at a place: `None` where it leaves the region.
     fn room(&self, region: usize, at: Point, half: Point, taken: &Occupancy) -> Option<f64> {
         let inside = |grow: f64| {
             let (w, h) = (half.0 + grow, half.1 + grow);
-            [(-w, -h), (0.0, -h), (w, -h), (-w, 0.0), (w, 0.0), (-w, h), (0.0, h), (w, h)]
-                .into_iter()
-                .all(|(dx, dy)| {
-                    self.cell_at((at.0 + dx, at.1 + dy)).is_some_and(|c| self.region[c] == region)
-                })
+            [
+                (-w, -h),
+                (0.0, -h),
+                (w, -h),
+                (-w, 0.0),
+                (w, 0.0),
+                (-w, h),
+                (0.0, h),
+                (w, h),
+            ]
+            .into_iter()
+            .all(|(dx, dy)| {
+                self.cell_at((at.0 + dx, at.1 + dy))
+                    .is_some_and(|c| self.region[c] == region)
+            })
         };
         if !inside(0.0) {
             return None;
         }
-        let free = [3.0, 6.0, 10.0, 15.0, 22.0].into_iter().take_while(|g| inside(*g)).count();
+        let free = [3.0, 6.0, 10.0, 15.0, 22.0]
+            .into_iter()
+            .take_while(|g| inside(*g))
+            .count();
         let rect = Rect::new(at.0 - half.0, at.1 - half.1, 2.0 * half.0, 2.0 * half.1);
         Some(free as f64 - 0.5 * taken.taken(&rect) as f64)
     }

@@ -70,19 +70,31 @@ fn push(runs: &mut Vec<Run>, text: String, italic: bool, level: Level) {
     }
     match runs.last_mut() {
         Some(last) if last.italic == italic && last.level == level => last.text.push_str(&text),
-        _ => runs.push(Run { text, italic, level }),
+        _ => runs.push(Run {
+            text,
+            italic,
+            level,
+        }),
     }
 }
 
 impl Run {
     /// Face of the run inside a text of the given face.
     pub fn face(&self, around: Face) -> Face {
-        if self.italic && around != Face::Bold { Face::Italic } else { around }
+        if self.italic && around != Face::Bold {
+            Face::Italic
+        } else {
+            around
+        }
     }
 
     /// Size of the run inside a text of the given size.
     pub fn size(&self, around: f64) -> f64 {
-        if self.level == Level::Base { around } else { around * SCRIPT_SIZE }
+        if self.level == Level::Base {
+            around
+        } else {
+            around * SCRIPT_SIZE
+        }
     }
 
     /// How far its baseline lies below the text's.
@@ -97,7 +109,10 @@ impl Run {
 
 /// Width of a marked-up text.
 pub fn width(markup: &str, face: Face, size: f64) -> f64 {
-    parse(markup).iter().map(|r| fonts::width(&r.text, r.face(face), r.size(size))).sum()
+    parse(markup)
+        .iter()
+        .map(|r| fonts::width(&r.text, r.face(face), r.size(size)))
+        .sum()
 }
 
 /// The text without its markup.
@@ -112,7 +127,10 @@ mod tests {
     #[test]
     fn valid_symbols_are_slanted_and_indices_lowered() {
         let runs = parse("$f_0$ (Hz), $x_{st}$");
-        let seen: Vec<_> = runs.iter().map(|r| (r.text.as_str(), r.italic, r.level)).collect();
+        let seen: Vec<_> = runs
+            .iter()
+            .map(|r| (r.text.as_str(), r.italic, r.level))
+            .collect();
         assert_eq!(
             seen,
             [
