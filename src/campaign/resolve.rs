@@ -86,11 +86,7 @@ fn resolve(
         .as_ref()
         .map_or(Flight::Harmonic, |f| *f.get_ref());
     demand_one_mass(machine, flight, &written.campaign.flight, desk);
-    let run_table = written
-        .records
-        .run_table
-        .as_ref()
-        .map(|t| folder.join(t.get_ref()));
+    let run_table = written.records.run_table.as_ref().map(|t| folder.join(t.get_ref()));
     ResolvedCampaign {
         run_table,
         machine,

@@ -1,6 +1,7 @@
 //! The command line: one file per verb; the only room that prints or exits.
 
 mod check;
+mod completions;
 mod convert;
 mod exit;
 mod fail;
@@ -80,6 +81,10 @@ enum Verb {
     Convert(convert::Convert),
     /// Simulate a campaign with known truth
     Simulate(simulate::Simulate),
+    /// Print the completions of a shell
+    Completions(completions::Completions),
+    /// Write the manual's pages
+    Man(completions::Man),
 }
 
 impl Verb {
@@ -95,6 +100,8 @@ impl Verb {
             Self::Inspect(verb) => verb.go(voice),
             Self::Convert(verb) => verb.go(voice),
             Self::Simulate(verb) => verb.go(voice),
+            Self::Completions(verb) => verb.go(voice),
+            Self::Man(verb) => verb.go(voice),
         }
     }
 }
@@ -105,19 +112,12 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => {
             let _ = error.print();
-            return if error.use_stderr() {
-                Exit::BadInput
-            } else {
-                Exit::Done
-            }
-            .into();
+            return if error.use_stderr() { Exit::BadInput } else { Exit::Done }.into();
         }
     };
     let voice = Voice::new(cli.common.quiet, cli.common.verbose);
     if let Some(threads) = cli.common.threads {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads.get())
-            .build_global();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global();
         if let Err(error) = pool {
             voice.detail(&format!("the number of threads stays as it is: {error}"));
         }
@@ -142,20 +142,9 @@ mod tests {
         let command = Cli::command();
         command.clone().debug_assert();
         for verb in command.get_subcommands() {
-            let help = verb
-                .get_after_help()
-                .map(ToString::to_string)
-                .unwrap_or_default();
-            assert!(
-                help.contains("Example:"),
-                "{} shows no example",
-                verb.get_name()
-            );
-            assert!(
-                verb.get_about().is_some(),
-                "{} says nothing",
-                verb.get_name()
-            );
+            let help = verb.get_after_help().map(ToString::to_string).unwrap_or_default();
+            assert!(help.contains("Example:"), "{} shows no example", verb.get_name());
+            assert!(verb.get_about().is_some(), "{} says nothing", verb.get_name());
         }
     }
 }

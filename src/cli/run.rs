@@ -7,7 +7,7 @@ use clap::Args;
 use super::progress::Progress;
 use super::{Exit, Failure, Voice, interrupt};
 use crate::output::Lock;
-use crate::pipeline;
+use crate::pipeline::{self, Destination};
 
 /// Arguments of `impactid run`.
 #[derive(Debug, Args)]
@@ -19,6 +19,9 @@ pub struct Run {
     /// Folder for the results; it is made where it does not exist
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
+    /// Take over what a run that was broken off left in DIR
+    #[arg(long)]
+    resume: bool,
 }
 
 const EXAMPLE: &str = "\
@@ -44,16 +47,18 @@ impl Run {
             self.campaign.display(),
             self.out.display()
         );
-        let found = pipeline::run(&campaign, &self.out, &command, &told)?;
+        let destination = Destination {
+            out: &self.out,
+            resume: self.resume,
+            command_line: &command,
+        };
+        let found = pipeline::run(&campaign, &destination, &told)?;
         drop(progress);
         voice.say(&found.summary);
         for finding in &found.findings {
             voice.say(&format!("  - {finding}"));
         }
-        voice.say(&format!(
-            "Report: {}",
-            self.out.join(pipeline::report::FILE).display()
-        ));
+        voice.say(&format!("Report: {}", self.out.join(pipeline::report::FILE).display()));
         Ok(Exit::of(found.kind))
     }
 }

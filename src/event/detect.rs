@@ -23,12 +23,7 @@ pub struct DetectSettings {
 
 impl Default for DetectSettings {
     fn default() -> Self {
-        Self {
-            bounce_s: 3e-3,
-            dead_zone_s: 4e-3,
-            window_periods: 0.1,
-            drive_tolerance: 5e-3,
-        }
+        Self { bounce_s: 3e-3, dead_zone_s: 4e-3, window_periods: 0.1, drive_tolerance: 5e-3 }
     }
 }
 
@@ -61,11 +56,9 @@ pub fn detect(record: &Record, rig: Rig, settings: &DetectSettings) -> Detection
     let (drive, mut flags) = drive::measure(record, settings.drive_tolerance);
     let mut kinematics = Kinematics::of(record, rig);
     let rate_hz = record.sample_rate_hz;
-    let closed = record
-        .channel(Role::Contact)
-        .map_or_else(Vec::new, |channel| {
-            closed_intervals(channel, samples_of(settings.bounce_s, rate_hz))
-        });
+    let closed = record.channel(Role::Contact).map_or_else(Vec::new, |channel| {
+        closed_intervals(channel, samples_of(settings.bounce_s, rate_hz))
+    });
     let dead_from = samples_of(settings.dead_zone_s, rate_hz).max(4);
     let width = window_samples(drive.as_ref(), rate_hz, settings.window_periods);
     let found = match &kinematics.closing.velocity {
@@ -76,23 +69,15 @@ pub fn detect(record: &Record, rig: Rig, settings: &DetectSettings) -> Detection
         flags.push(flag);
     }
     let speed_width = (4 * width / 3).max(6);
-    let impacts = refined(
-        &mut kinematics,
-        &found.candidates,
-        drive.as_ref(),
-        (rig, speed_width),
-    );
+    let impacts =
+        refined(&mut kinematics, &found.candidates, drive.as_ref(), (rig, speed_width));
     let closed_samples: usize = closed.iter().map(Closed::samples).sum();
     Detection {
         drive,
         impacts,
         jump_samples: found.jump_samples,
         unsupported_pulses: found.unsupported,
-        missed_pulses: if record.channel(Role::Contact).is_some() {
-            found.missed
-        } else {
-            0
-        },
+        missed_pulses: if record.channel(Role::Contact).is_some() { found.missed } else { 0 },
         closed_fraction: closed_samples as f64 / record.samples().max(1) as f64,
         kinematics,
         flags,
@@ -125,13 +110,9 @@ fn refined(
     kinematics.close_again(rig);
     let times: Vec<f64> = first.iter().map(|i| i.time).collect();
     let rate_hz = kinematics.rate_hz;
-    for series in [
-        &mut kinematics.closing,
-        &mut kinematics.x,
-        &mut kinematics.y,
-    ]
-    .into_iter()
-    .filter_map(|b| b.velocity.as_mut())
+    for series in [&mut kinematics.closing, &mut kinematics.x, &mut kinematics.y]
+        .into_iter()
+        .filter_map(|b| b.velocity.as_mut())
     {
         drift::settle(series, &times, drive, rate_hz);
     }
@@ -153,8 +134,7 @@ struct Fused {
 fn fuse(velocity: &Series, closed: &[Closed], width: usize, dead_from: usize) -> Fused {
     let search = JumpSearch::new(velocity, width);
     let mut jumps = search.find();
-    // judged before contact pulses lend support: beside a jump upward noise looks like one downward
-    let (upward, downward) = (search.upward(&jumps), jumps.len());
+    let (upward, downward) = search.directions();
     let mut unsupported = 0;
     for pulse in closed {
         let (first, last) = reach(pulse, search.gap);
@@ -171,18 +151,8 @@ fn fuse(velocity: &Series, closed: &[Closed], width: usize, dead_from: usize) ->
         }
     }
     let candidates = candidates(&jumps, closed, search.gap, dead_from, velocity);
-    let missed = candidates
-        .iter()
-        .filter(|c| c.seen == Seen::Velocity)
-        .count();
-    Fused {
-        candidates,
-        jump_samples: search.gap,
-        unsupported,
-        missed,
-        upward,
-        downward,
-    }
+    let missed = candidates.iter().filter(|c| c.seen == Seen::Velocity).count();
+    Fused { candidates, jump_samples: search.gap, unsupported, missed, upward, downward }
 }
 
 /// Samples at which a jump that belongs to a pulse may begin.
@@ -213,16 +183,8 @@ fn candidates(
             (None, true) => resting_samples(velocity, jump, next, dead_from),
             (None, false) => 0.0,
         };
-        let seen = if pulse.is_some() {
-            Seen::Both
-        } else {
-            Seen::Velocity
-        };
-        out.push(Candidate {
-            jump: *jump,
-            seen,
-            dead_samples,
-        });
+        let seen = if pulse.is_some() { Seen::Both } else { Seen::Velocity };
+        out.push(Candidate { jump: *jump, seen, dead_samples });
     }
     out
 }
@@ -235,11 +197,7 @@ fn resting_samples(velocity: &Series, jump: &Jump, next: usize, dead_from: usize
         .iter()
         .take_while(|v| v.abs() <= rest_below)
         .count();
-    if resting >= dead_from {
-        resting as f64
-    } else {
-        0.0
-    }
+    if resting >= dead_from { resting as f64 } else { 0.0 }
 }
 
 fn from_contact_alone(closed: &[Closed], dead_from: usize) -> Fused {
@@ -253,21 +211,10 @@ fn from_contact_alone(closed: &[Closed], dead_from: usize) -> Fused {
                 error: f64::NAN,
             },
             seen: Seen::Contact,
-            dead_samples: if pulse.samples() >= dead_from {
-                pulse.samples() as f64
-            } else {
-                0.0
-            },
+            dead_samples: if pulse.samples() >= dead_from { pulse.samples() as f64 } else { 0.0 },
         })
         .collect();
-    Fused {
-        candidates,
-        jump_samples: 1,
-        unsupported: 0,
-        missed: 0,
-        upward: 0,
-        downward: 0,
-    }
+    Fused { candidates, jump_samples: 1, unsupported: 0, missed: 0, upward: 0, downward: 0 }
 }
 
 fn without_speeds(

@@ -74,13 +74,7 @@ impl<'a> JumpSearch<'a> {
         }
         let theory = velocity.noise * factor * 2f64.sqrt();
         let seen = robust::robust_deviation(&scan).unwrap_or(0.0);
-        Self {
-            velocity,
-            window,
-            gap,
-            scan_deviation: seen.max(theory),
-            scan,
-        }
+        Self { velocity, window, gap, scan_deviation: seen.max(theory), scan }
     }
 
     /// How many samples the strongest jumps take from branch to branch (median over up to ten).
@@ -143,16 +137,20 @@ impl<'a> JumpSearch<'a> {
         self.remeasured(accepted)
     }
 
-    /// Number and summed height of significant upward jumps beyond the accepted downward ones.
-    pub fn upward(&self, accepted: &[Jump]) -> usize {
-        self.candidates(SIGNIFICANT, 1.0)
-            .into_iter()
-            .filter(|&i| {
-                accepted
-                    .iter()
-                    .all(|j| j.left.abs_diff(i) > self.window + self.gap)
-            })
-            .count()
+    /// Numbers of significant jumps upward and downward; of neighbours the strongest counts alone,
+    /// for the scan swings back beside a jump.
+    pub fn directions(&self) -> (usize, usize) {
+        let mut all = self.candidates(SIGNIFICANT, 1.0);
+        all.extend(self.candidates(SIGNIFICANT, -1.0));
+        all.sort_by(|&a, &b| self.scan[b].abs().total_cmp(&self.scan[a].abs()).then(a.cmp(&b)));
+        let mut kept: Vec<usize> = Vec::new();
+        for i in all {
+            if kept.iter().all(|k| k.abs_diff(i) > 2 * self.window + self.gap) {
+                kept.push(i);
+            }
+        }
+        let upward = kept.iter().filter(|i| self.scan[**i] > 0.0).count();
+        (upward, kept.len() - upward)
     }
 
     /// A jump near a sample that need reach only `significance`, beside the accepted ones.
@@ -175,9 +173,7 @@ impl<'a> JumpSearch<'a> {
             Some(j) => j.left + j.gap,
             None => 0,
         };
-        let high = accepted
-            .get(after)
-            .map_or(self.velocity.values.len(), |j| j.left + 1);
+        let high = accepted.get(after).map_or(self.velocity.values.len(), |j| j.left + 1);
         // Two samples between impacts are the least that tells a jump from a slope; at the
         // record's edges, where no other impact vouches for them, five.
         let end = self.velocity.values.len();
@@ -199,16 +195,10 @@ impl<'a> JumpSearch<'a> {
         let before = LocalFit::new(values, first, left + 1, 2)?;
         let after = LocalFit::new(values, begin, last, 2)?;
         let middle = left as f64 + 0.5 * self.gap as f64;
-        let factor = before
-            .error_factor(middle)
-            .hypot(after.error_factor(middle));
+        let factor = before.error_factor(middle).hypot(after.error_factor(middle));
         let full = before.samples == self.window && after.samples == self.window;
         let noise = self.velocity.noise * factor;
-        let error = if full {
-            noise.max(self.scan_deviation)
-        } else {
-            1.5 * noise
-        };
+        let error = if full { noise.max(self.scan_deviation) } else { 1.5 * noise };
         let jump = Jump {
             left,
             gap: self.gap,
@@ -222,12 +212,8 @@ impl<'a> JumpSearch<'a> {
     fn remeasured(&self, accepted: Vec<Jump>) -> Vec<Jump> {
         (0..accepted.len())
             .filter_map(|i| {
-                let others: Vec<Jump> = accepted
-                    .iter()
-                    .enumerate()
-                    .filter(|(k, _)| *k != i)
-                    .map(|(_, j)| *j)
-                    .collect();
+                let others: Vec<Jump> =
+                    accepted.iter().enumerate().filter(|(k, _)| *k != i).map(|(_, j)| *j).collect();
                 self.measure(accepted[i].left, &others, 0.8 * SIGNIFICANT)
             })
             .collect()

@@ -44,23 +44,13 @@ fn windows(candidates: &[Candidate], index: usize, width: usize, samples: usize)
         Some(c) => c.jump.left + c.jump.gap + c.dead_samples.ceil() as usize,
         None => 0,
     };
-    let high = candidates
-        .get(index + 1)
-        .map_or(samples, |c| c.jump.left + 1);
+    let high = candidates.get(index + 1).map_or(samples, |c| c.jump.left + 1);
     let begin = jump.left + jump.gap;
     let dead = candidates[index].dead_samples as usize;
     // Within a dead zone the bodies move together: only samples inside it belong to "after".
-    let end = if dead > 3 {
-        begin + dead
-    } else {
-        begin + width
-    };
+    let end = if dead > 3 { begin + dead } else { begin + width };
     Windows {
-        before: (
-            low.max((jump.left + 1).saturating_sub(width))
-                .min(jump.left),
-            jump.left + 1,
-        ),
+        before: (low.max((jump.left + 1).saturating_sub(width)).min(jump.left), jump.left + 1),
         after: (begin, end.min(high).min(begin + width).max(begin + 1)),
     }
 }
@@ -74,22 +64,12 @@ pub fn instants(kinematics: &Kinematics, candidates: &[Candidate], width: usize)
         error: c.jump.gap as f64 / 12f64.sqrt(),
     };
     let plain: Vec<Instant> = candidates.iter().map(middle).collect();
-    match (
-        &kinematics.closing.displacement,
-        &kinematics.closing.velocity,
-    ) {
+    match (&kinematics.closing.displacement, &kinematics.closing.velocity) {
         (Some(displacement), Some(velocity)) => (0..candidates.len())
             .map(|i| {
-                kink(
-                    displacement,
-                    velocity,
-                    candidates,
-                    i,
-                    width,
-                    kinematics.rate_hz,
-                )
-                .filter(|k| k.error < plain[i].error)
-                .unwrap_or(plain[i])
+                kink(displacement, velocity, candidates, i, width, kinematics.rate_hz)
+                    .filter(|k| k.error < plain[i].error)
+                    .unwrap_or(plain[i])
             })
             .collect(),
         (None, Some(velocity)) => closed_arcs(velocity, candidates, &plain, width),
@@ -112,10 +92,7 @@ fn kink(
     let (low, high) = (jump.left as f64, (jump.left + jump.gap) as f64);
     let time = crossing(&before, &after, low, high)?;
     let spread = before.error_factor(time).hypot(after.error_factor(time)) * displacement.noise;
-    Some(Instant {
-        time,
-        error: spread * rate_hz / jump.height.abs(),
-    })
+    Some(Instant { time, error: spread * rate_hz / jump.height.abs() })
 }
 
 /// Least squares for the shifts δ of all impact times within their sample intervals and the
@@ -141,19 +118,11 @@ fn closed_arcs(
     normal[(count, count)] = 1e-12;
     for i in 0..count - 1 {
         let (from, to) = (plain[i].time, plain[i + 1].time);
-        let (Some(start), Some(end)) = (speeds[i], speeds[i + 1]) else {
-            continue;
-        };
-        let Some(area) = integral(&velocity.values, from, to) else {
-            continue;
-        };
+        let (Some(start), Some(end)) = (speeds[i], speeds[i + 1]) else { continue };
+        let Some(area) = integral(&velocity.values, from, to) else { continue };
         // The trapezoid's own error scales with the speeds; noise adds up over the arc.
         let error = velocity.noise * (to - from).sqrt() + 1e-3 * end.before_m_s.abs();
-        let row = [
-            (i, -start.after_m_s),
-            (i + 1, end.before_m_s),
-            (count, from - to),
-        ];
+        let row = [(i, -start.after_m_s), (i + 1, end.before_m_s), (count, from - to)];
         for (a, ra) in row {
             right[a] -= ra * area / error.powi(2);
             for (b, rb) in row {
@@ -188,10 +157,7 @@ fn speeds(
     let before = LocalFit::new(&velocity.values, w.before.0, w.before.1, DEGREE)?;
     let after = LocalFit::new(&velocity.values, w.after.0, w.after.1, DEGREE)?;
     let error = velocity.noise * before.error_factor(time).max(after.error_factor(time));
-    let speeds = MassSpeeds {
-        before_m_s: before.value(time),
-        after_m_s: after.value(time),
-    };
+    let speeds = MassSpeeds { before_m_s: before.value(time), after_m_s: after.value(time) };
     Some((speeds, error))
 }
 

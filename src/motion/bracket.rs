@@ -79,10 +79,7 @@ pub fn brackets(observations: &[Observation]) -> Vec<Bracket> {
         .filter(|o| o.frequency_hz().is_some() && o.setting.clearance_m.is_some())
         .collect();
     usable.sort_by_key(|o| o.setting.sequence);
-    usable
-        .windows(2)
-        .filter_map(|pair| bracket(pair[0], pair[1]))
-        .collect()
+    usable.windows(2).filter_map(|pair| bracket(pair[0], pair[1])).collect()
 }
 
 fn bracket(before: &Observation, after: &Observation) -> Option<Bracket> {
@@ -130,16 +127,8 @@ fn kind(before: &Observation, after: &Observation) -> (BoundaryKind, u32) {
 fn doubled(one: &Motion, two: &Motion) -> Option<u32> {
     match (one, two) {
         (
-            Motion::Periodic {
-                impacts_p: 1,
-                periods_n: n,
-                ..
-            },
-            Motion::Periodic {
-                impacts_p: 2,
-                periods_n: m,
-                ..
-            },
+            Motion::Periodic { impacts_p: 1, periods_n: n, .. },
+            Motion::Periodic { impacts_p: 2, periods_n: m, .. },
         ) if *m == 2 * n => Some(*n),
         _ => None,
     }

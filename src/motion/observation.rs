@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::event::detect::DetectSettings;
 use crate::event::{DriveTone, Impact, Rig, detect};
-use crate::motion::Motion;
 use crate::motion::classify::{ClassifySettings, Finding, classify};
 use crate::motion::fold::{Folded, fold};
 use crate::motion::response::{Response, responses};
+use crate::motion::Motion;
 use crate::record::{Flag, Record, Role, Setting};
 use crate::signal::decay::{self, Decay};
 
@@ -61,9 +61,7 @@ pub struct Observation {
 impl Observation {
     /// Measured drive frequency, Hz; the stated one where the drive was not recorded.
     pub fn frequency_hz(&self) -> Option<f64> {
-        self.drive
-            .map(|d| d.frequency_hz)
-            .or(self.setting.stated_frequency_hz)
+        self.drive.map(|d| d.frequency_hz).or(self.setting.stated_frequency_hz)
     }
 
     /// Whether the record must stay out of the identification.
@@ -74,11 +72,7 @@ impl Observation {
     /// Whether the motion is z = 1/n without a dead zone; gives n.
     pub fn one_impact_in(&self) -> Option<u32> {
         match self.finding.motion {
-            Motion::Periodic {
-                impacts_p: 1,
-                periods_n,
-                dead_zone: false,
-            } => Some(periods_n),
+            Motion::Periodic { impacts_p: 1, periods_n, dead_zone: false } => Some(periods_n),
             _ => None,
         }
     }
@@ -95,11 +89,7 @@ pub fn observe(
     let finding = classify(&detection, record.duration_s(), classifying);
     let mut flags = record.flags.clone();
     flags.append(&mut detection.flags);
-    flags.extend(contact_flag(
-        record,
-        &detection.impacts,
-        detection.unsupported_pulses,
-    ));
+    flags.extend(contact_flag(record, &detection.impacts, detection.unsupported_pulses));
     let mut observation = Observation {
         record: record.id.clone(),
         setting: record.setting.clone(),
@@ -133,10 +123,7 @@ pub fn observe(
 /// Free decay of the first motion channel that shows one.
 fn free_decay(record: &Record) -> Option<Decay> {
     let motion = |role: &Role| {
-        !matches!(
-            role,
-            Role::Drive | Role::Contact | Role::FrameX | Role::FrameY
-        )
+        !matches!(role, Role::Drive | Role::Contact | Role::FrameX | Role::FrameY)
     };
     Role::ALL
         .into_iter()

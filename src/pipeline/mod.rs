@@ -3,6 +3,7 @@
 //! `run` = [`observe`] every record → brackets → [`identify`] → [`report`]; the stages alone
 //! go through [`store`].
 
+pub mod checkpoint;
 pub mod identify;
 pub mod inputs;
 pub mod observe;
@@ -17,6 +18,7 @@ use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::Verdict;
 use crate::motion::{Bracket, Observation, brackets};
 use crate::output::OutputError;
+use crate::pipeline::checkpoint::Checkpoint;
 use crate::record::source::ReadError;
 
 /// Told the stage, the steps done and the steps in all.
@@ -95,16 +97,46 @@ impl Observed {
     /// # Errors
     /// [`PipelineError::NothingUsable`] where no record can be used.
     pub fn of(campaign: &ResolvedCampaign, progress: Progress) -> Result<Self, PipelineError> {
-        let observations = observe::observe_all(campaign, progress);
+        Self::from_observations(observe::observe_all(campaign, progress))
+    }
+
+    /// Observe all records of a campaign, keeping what is done in `out` where they are many.
+    ///
+    /// # Errors
+    /// As [`Observed::of`], and where a checkpoint cannot be written.
+    fn resumable(
+        campaign: &ResolvedCampaign,
+        out: &Path,
+        resume: bool,
+        progress: Progress,
+    ) -> Result<Self, PipelineError> {
+        if campaign.records.len() < checkpoint::FEWEST {
+            return Self::of(campaign, progress);
+        }
+        let kept = Checkpoint::open(campaign, out, resume)?;
+        let observations =
+            observe::observe_in_chunks(campaign, &kept, checkpoint::CHUNK, progress)?;
+        Self::from_observations(observations)
+    }
+
+    fn from_observations(observations: Vec<Observation>) -> Result<Self, PipelineError> {
         if observations.iter().all(Observation::excluded) {
             return Err(PipelineError::NothingUsable(observations.len()));
         }
         let brackets = brackets(&observations);
-        Ok(Self {
-            observations,
-            brackets,
-        })
+        Ok(Self { observations, brackets })
     }
+}
+
+/// Where a run's results go.
+#[derive(Debug, Clone, Copy)]
+pub struct Destination<'a> {
+    /// The output folder.
+    pub out: &'a Path,
+    /// Whether to take over what a run that was broken off left there.
+    pub resume: bool,
+    /// The command as the report states it.
+    pub command_line: &'a str,
 }
 
 /// Run everything: campaign to report, all results into a folder.
@@ -114,11 +146,11 @@ impl Observed {
 /// only flag themselves.
 pub fn run(
     campaign: &ResolvedCampaign,
-    out: &Path,
-    command_line: &str,
+    destination: &Destination<'_>,
     progress: Progress,
 ) -> Result<Verdict, PipelineError> {
-    let observed = Observed::of(campaign, progress)?;
+    let Destination { out, resume, command_line } = *destination;
+    let observed = Observed::resumable(campaign, out, resume, progress)?;
     progress("identify", 0, 1);
     let found = identify::identify(campaign, &observed)?;
     progress("report", 0, 1);
@@ -128,5 +160,6 @@ pub fn run(
     tables::write_all(&observed, out)?;
     identify::write(&found.identification, out)?;
     crate::output::write_bytes(&out.join(report::FILE), &pdf)?;
+    checkpoint::remove(out);
     Ok(found.identification.verdict)
 }

@@ -8,7 +8,9 @@ use crate::campaign::check::by_file;
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
 use crate::event::detect::DetectSettings;
 use crate::motion::{ClassifySettings, Observation, observe};
+use crate::output::OutputError;
 use crate::pipeline::Progress;
+use crate::pipeline::checkpoint::Checkpoint;
 use crate::record::calibrate::{calibrate, unreadable};
 use crate::record::open::open;
 use crate::record::source::Source;
@@ -26,17 +28,55 @@ fn classify_settings(campaign: &ResolvedCampaign) -> ClassifySettings {
 pub fn observe_all(campaign: &ResolvedCampaign, progress: Progress) -> Vec<Observation> {
     let total = campaign.records.len() as u64;
     let done = AtomicU64::new(0);
-    let parts: Vec<Vec<Observation>> = by_file(&campaign.records)
+    observe_some(campaign, &campaign.records, &|| {
+        progress("observe", done.fetch_add(1, Ordering::Relaxed) + 1, total);
+    })
+}
+
+/// Observe every record in chunks of so many; a chunk that an earlier run kept is taken over,
+/// another is kept when it is done.
+///
+/// # Errors
+/// Where a chunk cannot be written.
+pub fn observe_in_chunks(
+    campaign: &ResolvedCampaign,
+    checkpoint: &Checkpoint,
+    chunk: usize,
+    progress: Progress,
+) -> Result<Vec<Observation>, OutputError> {
+    let total = campaign.records.len() as u64;
+    let done = AtomicU64::new(0);
+    let mut all = Vec::with_capacity(campaign.records.len());
+    for (number, entries) in campaign.records.chunks(chunk.max(1)).enumerate() {
+        if let Some(kept) = checkpoint.load(number, entries.len()) {
+            let count = entries.len() as u64;
+            progress("observe", done.fetch_add(count, Ordering::Relaxed) + count, total);
+            all.extend(kept);
+            continue;
+        }
+        let observed = observe_some(campaign, entries, &|| {
+            progress("observe", done.fetch_add(1, Ordering::Relaxed) + 1, total);
+        });
+        checkpoint.save(number, &observed)?;
+        all.extend(observed);
+    }
+    Ok(all)
+}
+
+/// Observe some records, file by file; `each` is called after each.
+fn observe_some(
+    campaign: &ResolvedCampaign,
+    entries: &[RecordEntry],
+    each: &(dyn Fn() + Sync),
+) -> Vec<Observation> {
+    let settings = classify_settings(campaign);
+    let parts: Vec<Vec<Observation>> = by_file(entries)
         .into_par_iter()
         .map(|entries| {
             each_record(campaign, entries, |record| {
-                let observation = observe(
-                    &record,
-                    campaign.machine,
-                    &DetectSettings::default(),
-                    &classify_settings(campaign),
-                );
-                progress("observe", done.fetch_add(1, Ordering::Relaxed) + 1, total);
+                let detect = DetectSettings::default();
+                let observation = observe(&record, campaign.machine, &detect, &settings);
+                each();
                 observation
             })
         })

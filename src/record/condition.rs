@@ -209,15 +209,15 @@ fn clipped(channel: &Channel, range: Option<f64>) -> Option<Flag> {
         return None;
     }
     let (low, high, step) = span(&channel.values);
-    let at_range = range.map_or(0, |r| {
-        channel
-            .values
-            .iter()
-            .filter(|v| v.abs() >= r * (1.0 - 1e-9))
-            .count()
-    });
-    let count =
-        at_range.max(at_rail(&channel.values, high, step) + at_rail(&channel.values, low, step));
+    let count = match range {
+        // Where the converter's range is stated, only samples at its end are clipped: a coarse
+        // converter rests on one code at the top of any slow wave.
+        Some(r) => {
+            let end = (r - 1.5 * step).max(r * (1.0 - 1e-9) - 2.0 * step);
+            channel.values.iter().filter(|v| v.abs() >= end).count()
+        }
+        None => at_rails(channel, low, high, step),
+    };
     if count == 0 {
         return None;
     }
@@ -236,6 +236,14 @@ fn clipped(channel: &Channel, range: Option<f64>) -> Option<Flag> {
     );
     found.excludes = part > CLIPPED_PART && channel.role != Role::Drive;
     Some(found)
+}
+
+/// Number of samples at both rails. A mass that rests at its stop shows a plateau of displacement
+/// at one side, which is no rail.
+fn at_rails(channel: &Channel, low: f64, high: f64, step: f64) -> usize {
+    let rails = [low, high].map(|rail| at_rail(&channel.values, rail, step));
+    let displacement = matches!(channel.role, Role::DisplacementX | Role::DisplacementY);
+    if displacement && rails.contains(&0) { 0 } else { rails[0] + rails[1] }
 }
 
 /// Number of samples in runs at a rail that were entered and left by more than a crest's steps.

@@ -275,7 +275,7 @@ pub fn mutations() -> usize {
     std::env::var("IMPACTID_MUTATIONS")
         .ok()
         .and_then(|v| v.parse().ok())
-        .unwrap_or(3000)
+        .unwrap_or(2000)
 }
 
 /// Conformance files of at most `largest` bytes, as seeds of mutations.
@@ -296,7 +296,7 @@ pub fn seeds(folder_name: &str, largest: u64) -> Vec<Vec<u8>> {
         .collect()
 }
 
-/// Open mutated files and read all they hold: no panic, no run over two seconds, no memory
+/// Open mutated files and read all they hold: no panic, no run over ten seconds, no memory
 /// beyond `factor` times the file plus 1 MiB.
 pub fn survive(
     seeds: &[Vec<u8>],
@@ -323,7 +323,7 @@ pub fn survive(
                 std::env::temp_dir().display()
             );
         };
-        if begin.elapsed() > Duration::from_secs(2) || peak > factor * bytes.len() + (1 << 20) {
+        if begin.elapsed() > Duration::from_secs(10) || peak > factor * bytes.len() + (1 << 20) {
             keep().unwrap();
             panic!(
                 "case {case}: {:?}, {peak} bytes of memory for {} of file",

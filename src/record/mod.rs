@@ -26,6 +26,8 @@ pub mod summary;
 pub mod tdms;
 pub mod text;
 pub mod time_axis;
+pub mod uff;
+pub mod wav;
 
 use serde::{Deserialize, Serialize};
 

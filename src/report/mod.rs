@@ -6,11 +6,15 @@ pub mod assemble;
 pub mod content;
 pub mod document;
 pub mod figures;
+mod html;
+pub mod parameters;
+mod png;
 
 pub use content::ReportContent;
 
 use figures::Figure;
 use figures::look::NumberLook;
+use rayon::prelude::*;
 
 /// Paper of the document.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -29,6 +33,52 @@ impl Paper {
             Self::A4 => "a4",
             Self::Letter => "us-letter",
         }
+    }
+}
+
+/// What a report can be written as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// The document as PDF.
+    Pdf,
+    /// The document as one self-contained HTML page.
+    Html,
+    /// Each figure as SVG.
+    Svg,
+    /// Each figure as PNG.
+    Png,
+    /// Each figure's data as CSV.
+    Csv,
+}
+
+impl Format {
+    /// All formats.
+    pub const ALL: [Format; 5] = [
+        Format::Pdf,
+        Format::Html,
+        Format::Svg,
+        Format::Png,
+        Format::Csv,
+    ];
+
+    /// The format's name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pdf => "pdf",
+            Self::Html => "html",
+            Self::Svg => "svg",
+            Self::Png => "png",
+            Self::Csv => "csv",
+        }
+    }
+}
+
+impl std::str::FromStr for Format {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|f| f.name() == name);
+        found.ok_or_else(|| format!("unknown format '{name}'; known are pdf, html, svg, png, csv"))
     }
 }
 
@@ -76,6 +126,14 @@ pub enum ReportError {
     /// The content cannot be written as JSON.
     #[error("the report's content cannot be written as JSON: {0}")]
     Data(#[source] serde_json::Error),
+    /// A figure could not be turned into a picture.
+    #[error("figure '{name}' cannot be turned into a PNG: {why}. Ask for svg instead")]
+    Picture {
+        /// The figure.
+        name: String,
+        /// What the renderer said.
+        why: String,
+    },
     /// A file name is not fit for the document.
     #[error("the logo's file extension is not fit for the document; use svg, png or jpg")]
     FileName,
@@ -106,6 +164,30 @@ impl Report {
     /// The report as PDF. The same content gives the same bytes.
     pub fn pdf(&self) -> Result<Vec<u8>, ReportError> {
         document::pdf(&self.document, &self.figures, &self.options)
+    }
+
+    /// The report as one self-contained HTML page.
+    pub fn html(&self) -> Result<String, ReportError> {
+        html::html(&self.document, &self.figures, &self.options)
+    }
+
+    /// The files of a format, by their paths relative to the report's folder: the document itself,
+    /// or each figure under `figures/`.
+    pub fn files(&self, format: Format) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
+        let each = |ending: &str, of: &(dyn Fn(&Figure) -> Result<Vec<u8>, ReportError> + Sync)| {
+            let path = |f: &Figure| format!("figures/{}.{ending}", f.name);
+            self.figures
+                .par_iter()
+                .map(|f| Ok((path(f), of(f)?)))
+                .collect()
+        };
+        match format {
+            Format::Pdf => Ok(vec![("report.pdf".into(), self.pdf()?)]),
+            Format::Html => Ok(vec![("report.html".into(), self.html()?.into_bytes())]),
+            Format::Svg => each("svg", &|f| Ok(f.svg.clone().into_bytes())),
+            Format::Png => each("png", &png::png),
+            Format::Csv => each("csv", &|f| Ok(f.csv.clone().into_bytes())),
+        }
     }
 }
 

@@ -66,15 +66,9 @@ fn audible(tail: &[f64], period: f64) -> usize {
         super::robust::rms(&chunk.iter().map(|v| v - mean).collect::<Vec<_>>())
     };
     let levels: Vec<f64> = tail.chunks_exact(length).map(level).collect();
-    let Some(first) = levels.first() else {
-        return 0;
-    };
+    let Some(first) = levels.first() else { return 0 };
     let heard = levels.iter().take_while(|l| **l > first / 40.0).count();
-    if heard == levels.len() {
-        tail.len()
-    } else {
-        heard * length
-    }
+    if heard == levels.len() { tail.len() } else { heard * length }
 }
 
 /// State of the search: ω_d and σ per sample with the best linear part.
@@ -100,16 +94,9 @@ fn project(tail: &[f64], rates: Vector2<f64>) -> Option<Point> {
         right += row * *v;
     }
     let linear = normal.cholesky()?.solve(&right);
-    let squares = tail
-        .iter()
-        .enumerate()
-        .map(|(i, v)| (v - linear.dot(&basis(rates, i))).powi(2))
-        .sum();
-    Some(Point {
-        rates,
-        linear,
-        squares,
-    })
+    let squares =
+        tail.iter().enumerate().map(|(i, v)| (v - linear.dot(&basis(rates, i))).powi(2)).sum();
+    Some(Point { rates, linear, squares })
 }
 
 impl Point {
@@ -181,11 +168,7 @@ fn correlation_factor(residuals: &[f64]) -> f64 {
     let total: f64 = residuals.iter().map(|r| r * r).sum();
     let mut factor = 1.0;
     for lag in 1..residuals.len() / 4 {
-        let product: f64 = residuals
-            .iter()
-            .zip(&residuals[lag..])
-            .map(|(a, b)| a * b)
-            .sum();
+        let product: f64 = residuals.iter().zip(&residuals[lag..]).map(|(a, b)| a * b).sum();
         if product <= 0.0 {
             break;
         }
@@ -228,13 +211,7 @@ mod tests {
         let damped = natural * f64::sqrt(1.0 - beta * beta);
         let samples: Vec<f64> = (0..2048)
             .map(|i| (f64::from(i) - 10.0) / rate)
-            .map(|t| {
-                if t < 0.0 {
-                    0.2
-                } else {
-                    0.2 + 3.0 * (-beta * natural * t).exp() * (damped * t).cos()
-                }
-            })
+            .map(|t| if t < 0.0 { 0.2 } else { 0.2 + 3.0 * (-beta * natural * t).exp() * (damped * t).cos() })
             .collect();
         let decay = fit(&samples, rate).unwrap();
         assert!((decay.natural_frequency_hz / f0 - 1.0).abs() < 1e-8);

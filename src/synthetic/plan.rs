@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::model::boundary::eta_s2;
+use crate::model::params::Machine;
 use crate::record::Sweep;
 
 /// One setting: a record is taken there once the motion has settled.
@@ -35,8 +37,8 @@ impl Plan {
     /// A plan of about `records` records for a rig of roughly these parameters.
     ///
     /// One gap is wide open and gives the resonance curve; at every other gap the frequency is
-    /// stepped up and then down again over the whole range η = 0.75 … 2.05 (z = 1/2 and more
-    /// appear at the small gaps above). Fewer records mean fewer gaps first, then coarser steps.
+    /// stepped up and then down again, from η = 0.75 to beyond the end of z = 1 (z = 1/2 and more
+    /// appear above it at small gaps). Fewer records mean fewer gaps.
     pub fn for_rig(
         natural_frequency_hz: f64,
         damping_ratio: f64,
@@ -48,16 +50,17 @@ impl Plan {
         let gaps = chosen_gaps(sweeps);
         let mut steps = Vec::with_capacity(records);
         let open = OPEN_GAP * 0.5 / damping_ratio * static_deflection_m;
-        let grid = frequencies(natural_frequency_hz, 0.7, 1.5, resonance_steps);
+        let grid = frequencies(natural_frequency_hz, (0.7, 1.5), resonance_steps);
         push_sweep(&mut steps, &grid, open, Sweep::Up);
         for (i, rho) in gaps.iter().enumerate() {
             // Shares of what is left, so that the total comes out exactly.
             let (from, to) = (sweeps * i / gaps.len(), sweeps * (i + 1) / gaps.len());
             let (up, down) = ((to - from).div_ceil(2), (to - from) / 2);
             let clearance_m = round_to(rho * static_deflection_m, 1e-5);
-            let grid = frequencies(natural_frequency_hz, 0.75, 2.05, up.max(2));
+            let range = (0.75, highest(damping_ratio, *rho));
+            let grid = frequencies(natural_frequency_hz, range, up.max(2));
             push_sweep(&mut steps, &grid, clearance_m, Sweep::Up);
-            let mut grid = frequencies(natural_frequency_hz, 0.75, 2.05, down.max(2));
+            let mut grid = frequencies(natural_frequency_hz, range, down.max(2));
             grid.reverse();
             push_sweep(&mut steps, &grid, clearance_m, Sweep::Down);
         }
@@ -66,14 +69,23 @@ impl Plan {
 }
 
 fn chosen_gaps(sweeps: usize) -> Vec<f64> {
-    let wanted = (sweeps / 30).clamp(1, GAPS.len());
+    let wanted = (sweeps / 40).clamp(1, GAPS.len());
     // Spread over the list, the middle of the hysteresis region first.
-    (0..wanted)
-        .map(|i| GAPS[((2 * i + 1) * GAPS.len()) / (2 * wanted)])
-        .collect()
+    (0..wanted).map(|i| GAPS[((2 * i + 1) * GAPS.len()) / (2 * wanted)]).collect()
 }
 
-fn frequencies(natural_frequency_hz: f64, from: f64, to: f64, count: usize) -> Vec<f64> {
+/// Highest η of the sweeps at a gap: beyond the end of z = 1 for elastic impacts, and at small
+/// gaps on to the regions of z = 1/2 and 1/3.
+fn highest(damping_ratio: f64, rho: f64) -> f64 {
+    if rho < 0.7 {
+        return 3.2;
+    }
+    let elastic = Machine::symmetric(damping_ratio, 0.95);
+    let end = eta_s2(&elastic, rho, 1).map_or(2.0, |point| point.eta);
+    (end + 0.2).clamp(1.3, 2.3)
+}
+
+fn frequencies(natural_frequency_hz: f64, (from, to): (f64, f64), count: usize) -> Vec<f64> {
     (0..count)
         .map(|i| {
             let eta = from + (to - from) * i as f64 / (count - 1).max(1) as f64;
@@ -90,12 +102,7 @@ fn round_to(value: f64, step: f64) -> f64 {
 fn push_sweep(steps: &mut Vec<Step>, grid: &[f64], clearance_m: f64, sweep: Sweep) {
     for (i, frequency_hz) in grid.iter().enumerate() {
         let from_rest = i == 0 && sweep == Sweep::Up;
-        steps.push(Step {
-            frequency_hz: *frequency_hz,
-            clearance_m,
-            sweep,
-            from_rest,
-        });
+        steps.push(Step { frequency_hz: *frequency_hz, clearance_m, sweep, from_rest });
     }
 }
 

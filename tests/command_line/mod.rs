@@ -7,9 +7,7 @@ use crate::support::Lab;
 #[test]
 fn valid_help_of_each_verb_shows_an_example_and_ends_with_0() {
     let lab = Lab::new();
-    for verb in [
-        "init", "check", "run", "ingest", "classify", "identify", "report", "simulate",
-    ] {
+    for verb in ["init", "check", "run", "ingest", "classify", "identify", "report", "simulate"] {
         let ran = lab.run(&[verb, "--help"]);
         assert_eq!(ran.code, 0, "{verb}");
         assert!(ran.said.contains("Example:"), "{verb}: {}", ran.said);
@@ -24,12 +22,7 @@ fn valid_check_changes_nothing() {
         let mut names: Vec<_> = fs::read_dir(lab.folder())
             .expect("the folder")
             .map(|e| e.expect("an entry"))
-            .map(|e| {
-                (
-                    e.file_name(),
-                    e.metadata().expect("its metadata").modified().ok(),
-                )
-            })
+            .map(|e| (e.file_name(), e.metadata().expect("its metadata").modified().ok()))
             .collect();
         names.sort();
         names
@@ -50,11 +43,7 @@ fn valid_output_in_a_pipe_has_no_colour_and_no_bar() {
     let lab = Lab::new();
     lab.mend("\"double\"", "\"triple\"");
     let ran = lab.run(&["check", "campaign.toml"]);
-    assert!(
-        !ran.said.contains('\u{1b}') && !ran.said.contains('\r'),
-        "{:?}",
-        ran.said
-    );
+    assert!(!ran.said.contains('\u{1b}') && !ran.said.contains('\r'), "{:?}", ran.said);
 }
 
 #[test]
@@ -65,12 +54,8 @@ fn valid_all_faults_are_told_in_one_run() {
     lab.mend("\"50 mm/s per V\"\nhigh", "\"50 mm/s\"\nhigh");
     lab.replace("runs.csv", "clearance_mm", "clearance");
     let said = lab.run(&["check", "campaign.toml"]).said;
-    for words in [
-        "triple",
-        "rig.restitution",
-        "channels.velocity_x.scale",
-        "clearance without unit",
-    ] {
+    for words in ["triple", "rig.restitution", "channels.velocity_x.scale", "clearance without unit"]
+    {
         assert!(said.contains(words), "{words} is not in {said}");
     }
 }
@@ -107,10 +92,7 @@ fn valid_init_finds_a_run_table() {
     let lab = Lab::new();
     let ran = lab.run(&["init", ".", "--force"]);
     assert_eq!(ran.code, 0, "{}", ran.said);
-    assert!(
-        lab.read("campaign.toml")
-            .contains("run_table = \"runs.csv\"")
-    );
+    assert!(lab.read("campaign.toml").contains("run_table = \"runs.csv\""));
 }
 
 #[test]
@@ -120,4 +102,17 @@ fn valid_check_works_from_another_folder() {
     let path = lab.path("campaign.toml");
     let ran = lab.run(&["check", path.to_str().expect("a name in UTF-8")]);
     assert_eq!(ran.code, 0, "{}", ran.said);
+}
+
+#[test]
+fn valid_completions_and_man_pages_name_the_verbs() {
+    let lab = Lab::new();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let ran = lab.run(&["completions", shell]);
+        assert_eq!(ran.code, 0, "{shell}");
+        assert!(ran.said.contains("simulate"), "{shell}");
+    }
+    assert_eq!(lab.run(&["man", "--out", "man1"]).code, 0);
+    let page = lab.read("man1/impactid-run.1");
+    assert!(page.contains("resume") && page.contains("Example"), "{page}");
 }

@@ -5,27 +5,12 @@ use std::path::{Path, PathBuf};
 
 /// The rooms from left to right.
 const ROOMS: [&str; 14] = [
-    "units",
-    "output",
-    "signal",
-    "record",
-    "event",
-    "motion",
-    "model",
-    "atlas",
-    "synthetic",
-    "identify",
-    "report",
-    "campaign",
-    "pipeline",
-    "cli",
+    "units", "output", "signal", "record", "event", "motion", "model", "atlas", "synthetic",
+    "identify", "report", "campaign", "pipeline", "cli",
 ];
 
 fn sources(folder: &Path, all: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder)
-        .expect("src can be read")
-        .map(|e| e.expect("an entry"))
-    {
+    for entry in fs::read_dir(folder).expect("src can be read").map(|e| e.expect("an entry")) {
         let path = entry.path();
         if path.is_dir() {
             sources(&path, all);
@@ -42,11 +27,7 @@ fn all_sources() -> Vec<(String, String)> {
     paths
         .iter()
         .map(|p| {
-            let name = p
-                .strip_prefix(&root)
-                .expect("below src")
-                .to_string_lossy()
-                .into_owned();
+            let name = p.strip_prefix(&root).expect("below src").to_string_lossy().into_owned();
             (name, fs::read_to_string(p).expect("a source is text"))
         })
         .collect()
@@ -67,10 +48,7 @@ fn imports(text: &str) -> Vec<&str> {
             Some(list) => list.split(',').map(str::trim).collect(),
             None => vec![after],
         })
-        .filter_map(|path| {
-            path.split(|c: char| !c.is_alphanumeric() && c != '_')
-                .next()
-        })
+        .filter_map(|path| path.split(|c: char| !c.is_alphanumeric() && c != '_').next())
         .collect()
 }
 
@@ -94,10 +72,7 @@ fn valid_every_room_is_known_and_in_architecture_md() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let page = fs::read_to_string(root.join("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
     for room in ROOMS {
-        assert!(
-            page.contains(&format!("`{room}`")),
-            "ARCHITECTURE.md does not name {room}"
-        );
+        assert!(page.contains(&format!("`{room}`")), "ARCHITECTURE.md does not name {room}");
     }
     for (name, _) in all_sources() {
         let known = room(&name).is_some() || ["lib.rs", "main.rs"].contains(&name.as_str());
@@ -107,14 +82,7 @@ fn valid_every_room_is_known_and_in_architecture_md() {
 
 #[test]
 fn valid_only_the_command_line_prints_or_exits() {
-    let printing = [
-        "println!",
-        "eprintln!",
-        "print!(",
-        "eprint!(",
-        "process::exit",
-        "dbg!",
-    ];
+    let printing = ["println!", "eprintln!", "print!(", "eprint!(", "process::exit", "dbg!"];
     for (name, text) in all_sources() {
         if name.starts_with("cli/") || name.ends_with("tests.rs") {
             continue;
@@ -123,11 +91,7 @@ fn valid_only_the_command_line_prints_or_exits() {
         for (number, line) in code.lines().enumerate() {
             let comment = line.trim_start().starts_with("//");
             let found = printing.iter().find(|p| line.contains(**p));
-            assert!(
-                comment || found.is_none(),
-                "src/{name}:{} prints or exits: {line}",
-                number + 1
-            );
+            assert!(comment || found.is_none(), "src/{name}:{} prints or exits: {line}", number + 1);
         }
     }
 }
@@ -145,14 +109,9 @@ fn valid_a_library_user_of_a_foreign_crate_stays_in_its_room() {
     ];
     for (name, text) in all_sources() {
         for (foreign, rooms) in homes {
-            let uses = text
-                .lines()
-                .any(|l| l.trim_start().starts_with(&format!("use {foreign}::")));
+            let uses = text.lines().any(|l| l.trim_start().starts_with(&format!("use {foreign}::")));
             let home = rooms.iter().any(|r| name.starts_with(r));
-            assert!(
-                !uses || home,
-                "src/{name} uses {foreign}, which belongs to {rooms:?}"
-            );
+            assert!(!uses || home, "src/{name} uses {foreign}, which belongs to {rooms:?}");
         }
     }
 }

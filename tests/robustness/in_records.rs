@@ -27,9 +27,7 @@ fn files() -> Vec<Case> {
         refused(
             "a file of random bytes",
             |lab| {
-                let bytes: Vec<u8> = (0..4096_u32)
-                    .map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8)
-                    .collect();
+                let bytes: Vec<u8> = (0..4096_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
                 lab.write_bytes("r2.bin", &bytes);
                 lab.replace("runs.csv", "r2.csv", "r2.bin");
             },
@@ -59,11 +57,7 @@ fn files() -> Vec<Case> {
                 let text = lab.read("r2.csv");
                 lab.write("r2.csv", &text[..text.len() / 2 - 7]);
             },
-            &[
-                "r2.csv: r2: it holds 99",
-                "the usual record 2000",
-                "copy the file anew",
-            ],
+            &["r2.csv: r2: it holds 99", "the usual record 2000", "copy the file anew"],
         ),
     ]
 }
@@ -106,22 +100,13 @@ fn channels() -> Vec<Case> {
                 lab.replace("r2.csv", "vx [V]", "vx");
                 lab.mend("channel = \"vx\"\nunit = \"V\"", "channel = \"vx\"");
             },
-            &[
-                "the file states no unit for channel 'vx'",
-                "[channels.velocity_x]",
-            ],
+            &["the file states no unit for channel 'vx'", "[channels.velocity_x]"],
         ),
     ]
 }
 
 fn spoil(lab: &Lab, column: usize, text: &'static str) {
-    lab.column("r2.csv", column, |i, v| {
-        if i == 700 {
-            text.into()
-        } else {
-            format!("{v:.6}")
-        }
-    });
+    lab.column("r2.csv", column, |i, v| if i == 700 { text.into() } else { format!("{v:.6}") });
 }
 
 fn values() -> Vec<Case> {
@@ -138,70 +123,39 @@ fn values() -> Vec<Case> {
         refused(
             "an infinite value",
             |lab| spoil(lab, 4, "inf"),
-            &[
-                "r2.csv: r2: vy",
-                "not numbers (NaN or infinite)",
-                "2 of 3 records can be used",
-            ],
+            &["r2.csv: r2: vy", "not numbers (NaN or infinite)", "2 of 3 records can be used"],
         ),
         refused(
             "a gap in a channel",
             |lab| spoil(lab, 3, ""),
-            &[
-                "r2.csv: r2: vx",
-                "not numbers",
-                "2 of 3 records can be used",
-            ],
+            &["r2.csv: r2: vx", "not numbers", "2 of 3 records can be used"],
         ),
         noted(
             "no values at a channel's beginning",
             |lab| {
-                lab.column("r2.csv", 3, |i, v| {
-                    if i < 5 { String::new() } else { format!("{v}") }
-                });
+                lab.column("r2.csv", 3, |i, v| if i < 5 { String::new() } else { format!("{v}") });
             },
-            &[
-                "5 samples without a value at the ends are cut off",
-                "3 of 3 records",
-            ],
+            &["5 samples without a value at the ends are cut off", "3 of 3 records"],
         ),
         refused(
             "a constant velocity",
             |lab| lab.column("r2.csv", 3, |_, _| "0.125".into()),
-            &[
-                "r2.csv: r2: vx",
-                "is constant at",
-                "loose cable",
-                "2 of 3 records can be used",
-            ],
+            &["r2.csv: r2: vx", "is constant at", "loose cable", "2 of 3 records can be used"],
         ),
         refused(
             "a constant drive",
             |lab| lab.column("r2.csv", 1, |_, _| "0".into()),
-            &[
-                "r2.csv: r2: drive",
-                "is constant",
-                "2 of 3 records can be used",
-            ],
+            &["r2.csv: r2: drive", "is constant", "2 of 3 records can be used"],
         ),
         refused(
             "a saturated velocity",
             |lab| lab.column("r2.csv", 3, |_, v| format!("{:.6}", v.clamp(-1.0, 1.0))),
-            &[
-                "r2.csv: r2: vx",
-                "is clipped",
-                "larger range",
-                "2 of 3 records can be used",
-            ],
+            &["r2.csv: r2: vx", "is clipped", "larger range", "2 of 3 records can be used"],
         ),
         noted(
             "a saturated drive",
             |lab| lab.column("r2.csv", 1, |_, v| format!("{:.6}", v.clamp(-0.7, 0.7))),
-            &[
-                "r2.csv: r2: drive",
-                "is clipped",
-                "3 of 3 records can be used",
-            ],
+            &["r2.csv: r2: drive", "is clipped", "3 of 3 records can be used"],
         ),
         refused(
             "samples held by the converter",
@@ -215,10 +169,7 @@ fn values() -> Vec<Case> {
                     Some(format!("{time},{rest}"))
                 });
             },
-            &[
-                "all channels hold their value for 24 samples",
-                "2 of 3 records can be used",
-            ],
+            &["all channels hold their value for 24 samples", "2 of 3 records can be used"],
         ),
     ]
 }
@@ -232,32 +183,17 @@ fn times() -> Vec<Case> {
                     format!("{:.6}", if i > 1200 { 1.2 - t } else { t })
                 });
             },
-            &[
-                "r2.csv",
-                "the time runs backward",
-                "2 of 3 records can be used",
-            ],
+            &["r2.csv", "the time runs backward", "2 of 3 records can be used"],
         ),
         refused(
             "time running backward from the first sample on",
             |lab| lab.column("r2.csv", 0, |_, t| format!("{:.6}", 1.0 - t)),
-            &[
-                "r2.csv",
-                "the time runs backward",
-                "2 of 3 records can be used",
-            ],
+            &["r2.csv", "the time runs backward", "2 of 3 records can be used"],
         ),
         refused(
             "dropped samples",
-            |lab| {
-                lab.lines("r2.csv", |i, l| {
-                    (!(800..817).contains(&i)).then(|| l.to_owned())
-                })
-            },
-            &[
-                "17 samples are missing in the time axis",
-                "2 of 3 records can be used",
-            ],
+            |lab| lab.lines("r2.csv", |i, l| (!(800..817).contains(&i)).then(|| l.to_owned())),
+            &["17 samples are missing in the time axis", "2 of 3 records can be used"],
         ),
         refused(
             "a repeated time stamp",
@@ -282,10 +218,7 @@ fn times() -> Vec<Case> {
                     Some(rest.to_owned())
                 });
             },
-            &[
-                "neither a time axis nor a sample rate",
-                "sample_rate = \"2 kHz\"",
-            ],
+            &["neither a time axis nor a sample rate", "sample_rate = \"2 kHz\""],
         ),
     ]
 }

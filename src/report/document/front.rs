@@ -1,11 +1,11 @@
 //! The first page's data: the answer, the agreement, what was measured.
 
 use super::Drawn;
-use super::model::{Front, Rich};
-use super::numbers::{self, PARAMETERS};
-use crate::identify::VerdictKind;
+use super::model::{Answer, Front, Rich};
+use crate::identify::{Estimate, VerdictKind};
 use crate::report::content::{CampaignSummary, ReportContent};
 use crate::report::figures::look::NumberLook;
+use crate::report::parameters::{self, PARAMETERS, ParameterLook};
 
 /// Builds the first page.
 pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
@@ -20,7 +20,7 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
         findings: id.verdict.findings.iter().map(Rich::from).collect(),
         answers: PARAMETERS
             .iter()
-            .map(|look| numbers::answer(look, (look.pick)(joint), drawn.numbers))
+            .map(|look| answer(look, (look.pick)(joint), drawn.numbers))
             .collect(),
         agree: match id.agreement.agree {
             Some(true) => "yes",
@@ -31,6 +31,31 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
         facts: facts(&content.summary, drawn.numbers),
         map: drawn.figure("map_small", ""),
         estimates: drawn.figure("estimates", ""),
+    }
+}
+
+/// A parameter ready to print.
+fn answer(look: &ParameterLook, estimate: Option<&Estimate>, numbers: NumberLook) -> Answer {
+    let half = estimate
+        .and_then(parameters::half_width)
+        .map(|h| h * look.factor);
+    let decimals = parameters::decimals_for(half.unwrap_or(0.0));
+    let print = |v: f64| numbers.fixed(v * look.factor, decimals);
+    let value = estimate.and_then(|e| e.value);
+    let interval = estimate
+        .and_then(|e| e.interval95)
+        .filter(|_| value.is_some());
+    Answer {
+        symbol: Rich::from(look.symbol),
+        name: Rich::from(look.name),
+        value: value.map(print),
+        plus_minus: half
+            .filter(|_| value.is_some())
+            .map(|h| numbers.fixed(h, decimals)),
+        unit: look.unit.into(),
+        interval: interval.map(|[low, high]| format!("{} to {}", print(low), print(high))),
+        status: estimate.map_or("not_asked", |e| parameters::status_name(e.status)),
+        note: estimate.and_then(|e| e.note.as_ref()).map(Rich::from),
     }
 }
 
@@ -192,4 +217,24 @@ fn channels(summary: &CampaignSummary) -> String {
         }
     });
     each.collect::<Vec<_>>().join("; ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::Status;
+
+    #[test]
+    fn valid_what_is_not_identifiable_has_no_number() {
+        let none = Estimate {
+            value: None,
+            standard_error: None,
+            interval95: None,
+            status: Status::NotIdentifiable,
+            note: Some("no bracket".into()),
+        };
+        let answer = super::answer(&PARAMETERS[0], Some(&none), NumberLook::default());
+        assert_eq!((answer.value, answer.interval), (None, None));
+        assert_eq!(answer.status, "not_identifiable");
+    }
 }

@@ -1,8 +1,8 @@
 //! The document: from content and figures to plain document data, and from there to PDF.
 
-pub mod front;
+mod captions;
+mod front;
 pub mod model;
-pub mod numbers;
 mod pdf;
 mod sections;
 mod tables;
@@ -14,7 +14,7 @@ use model::{Block, Document, FigureRef, Rich};
 
 use crate::report::content::ReportContent;
 use crate::report::figures::look::NumberLook;
-use crate::report::figures::{self, Figure, richtext};
+use crate::report::figures::{Figure, richtext};
 
 /// The figures as drawn, to be referred to by name.
 pub struct Drawn<'a> {
@@ -43,11 +43,6 @@ impl Drawn<'_> {
             .filter_map(|(name, caption)| self.figure(name, caption))
             .collect();
         (!figures.is_empty()).then_some(Block::Figures { figures })
-    }
-
-    /// Names and captions of the figures of the methods.
-    fn method_figures(&self, content: &ReportContent) -> Vec<(String, String)> {
-        figures::method_captions(content)
     }
 }
 

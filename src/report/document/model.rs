@@ -173,7 +173,7 @@ pub struct Table {
     /// `left`, `right` or `center` of each column.
     pub align: Vec<&'static str>,
     /// Relative width of each column; 0: as wide as its content.
-    pub widths: Vec<u8>,
+    pub widths: Vec<u16>,
     /// The cells, row by row.
     pub rows: Vec<Vec<Rich>>,
     /// Size of the type, points.

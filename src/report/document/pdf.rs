@@ -1,5 +1,6 @@
 //! The PDF: the template set with the document's data and figures.
 
+use typst::WorldExt;
 use typst::diag::SourceDiagnostic;
 use typst_layout::PagedDocument;
 use typst_pdf::PdfOptions;
@@ -22,14 +23,14 @@ pub fn pdf(
     let world = MemoryWorld::new(template, files).ok_or(ReportError::FileName)?;
     let paged: PagedDocument = typst::compile(&world)
         .output
-        .map_err(|e| ReportError::Template(first(&e, template)))?;
+        .map_err(|e| ReportError::Template(first(&e, &world)))?;
     let pdf_options = PdfOptions {
         ident: typst::foundations::Smart::Custom(document.title.clone()),
         creator: typst::foundations::Smart::Custom(Some("impactid".into())),
         ..PdfOptions::default()
     };
     let bytes =
-        typst_pdf::pdf(&paged, &pdf_options).map_err(|e| ReportError::Pdf(first(&e, template)))?;
+        typst_pdf::pdf(&paged, &pdf_options).map_err(|e| ReportError::Pdf(first(&e, &world)))?;
     typst::comemo::evict(0);
     Ok(bytes)
 }
@@ -59,15 +60,18 @@ fn files(
     Ok(files)
 }
 
-/// The first complaint with its line in the template and its hint.
-fn first(errors: &[SourceDiagnostic], template: &str) -> String {
-    let _ = template;
-    errors.first().map_or_else(String::new, |e| {
-        let hints: Vec<String> = e.hints.iter().map(|h| h.v.to_string()).collect();
-        if hints.is_empty() {
-            e.message.to_string()
-        } else {
-            format!("{} ({})", e.message, hints.join("; "))
-        }
-    })
+/// The first complaint with its line in the template and its hints.
+fn first(errors: &[SourceDiagnostic], world: &MemoryWorld) -> String {
+    let Some(error) = errors.first() else {
+        return String::new();
+    };
+    let mut text = error.message.to_string();
+    if let Some(range) = world.range(error.span) {
+        let line = world.lines_before(range.start) + 1;
+        text.push_str(&format!(", line {line}"));
+    }
+    for hint in &error.hints {
+        text.push_str(&format!("; {}", hint.v));
+    }
+    text
 }

@@ -1,9 +1,10 @@
 //! The sections after the first page, each only where there is something to show.
 
-use super::Drawn;
 use super::model::{Block, Definition, Rich, Section};
 use super::tables;
+use super::{Drawn, captions};
 use crate::report::content::ReportContent;
+use crate::report::parameters::method_name;
 
 /// All sections in their order.
 pub fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
@@ -13,7 +14,7 @@ pub fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
         methods(content, drawn),
         left_out(content),
         records(content, drawn),
-        conventions(),
+        conventions(content),
         provenance(content),
     ]
     .into_iter()
@@ -86,7 +87,7 @@ fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
                     $x$ is blue, mass $y$ vermilion; dotted lines are impacts.";
         blocks.insert(0, paragraph(keys));
     }
-    section("Simulated and measured motions", true, blocks)
+    section("Simulated and measured motions", false, blocks)
 }
 
 fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
@@ -98,17 +99,21 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
         .methods
         .iter()
         .flat_map(|(name, method)| {
-            let name = tables::method_name(name);
+            let name = method_name(name);
             method
                 .remarks
                 .iter()
                 .map(move |r| paragraph(format!("{name}: {r}")))
         });
     blocks.extend(remarks);
-    for (name, caption) in drawn.method_figures(content) {
-        blocks.extend(drawn.figures_block(&[(&name, &caption)]));
+    for group in captions::method_figures(content) {
+        let named: Vec<(&str, &str)> = group
+            .iter()
+            .map(|(n, c)| (n.as_str(), c.as_str()))
+            .collect();
+        blocks.extend(drawn.figures_block(&named));
     }
-    section("Method by method", true, blocks)
+    section("Method by method", false, blocks)
 }
 
 fn left_out(content: &ReportContent) -> Option<Section> {
@@ -122,65 +127,82 @@ fn left_out(content: &ReportContent) -> Option<Section> {
 
 fn records(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let table = tables::records(content, drawn.numbers).map(Block::Table);
-    section("Appendix A. All records", true, table.into_iter().collect())
+    section(
+        "Appendix A. All records",
+        false,
+        table.into_iter().collect(),
+    )
 }
 
-fn conventions() -> Option<Section> {
-    let entry = |formula, plain, meaning: &str| Definition {
-        formula,
-        plain,
-        meaning: Rich::from(meaning),
-    };
-    let entries = vec![
-        entry(
-            "tau = Omega t",
-            "τ = Ωt",
-            "time counted in natural angle, Ω = √($k$/$m$) = 2π$f_0$",
-        ),
-        entry(
-            "beta = b / (2 sqrt(k m))",
-            "β = b/(2√(km))",
-            "damping ratio of one mass on its spring",
-        ),
-        entry(
-            "eta = omega / Omega = f / f_0",
-            "η = ω/Ω = f/f0",
-            "frequency ratio of the drive",
-        ),
-        entry(
-            "x_\"st\" = F_0 / k",
-            "x_st = F0/k",
-            "static deflection under the drive's amplitude",
-        ),
-        entry(
-            "rho = r / x_\"st\" = r k / F_0",
-            "ρ = r/x_st = rk/F0",
-            "clearance ratio; the gap between the masses is 2$r$",
-        ),
-        entry(
-            "z = p / n",
-            "z = p/n",
-            "$p$ impacts in $n$ drive periods; 1j: a dead zone follows the impact",
-        ),
-        entry(
-            "R = - (X'_+ + Y'_+) / (X'_- + Y'_-)",
-            "R = −(X′₊ + Y′₊)/(X′₋ + Y′₋)",
-            "coefficient of restitution: speed of parting over speed of closing",
-        ),
-        entry(
-            "X'' + 2 beta X' + X = cos(eta tau + phi)",
-            "X″ + 2βX′ + X = cos(ητ + φ)",
-            "motion of each mass between impacts, $X$ = $x$/$x_{st}$; impact where $X$ + $Y$ ≥ 2$ρ$",
-        ),
-    ];
-    let intervals = "Intervals are at 95 % confidence; a number after ± is half of that interval. \
-                     All quantities are in SI units; frequencies are as measured from the drive \
-                     channel.";
-    section(
-        "Appendix B. Conventions",
+/// Formula as typst maths, as plain text, what it means, and whether it takes a drive.
+type Convention = (&'static str, &'static str, &'static str, bool);
+
+const CONVENTIONS: [Convention; 8] = [
+    (
+        "R = - (X'_+ + Y'_+) / (X'_- + Y'_-)",
+        "R = −(X′₊ + Y′₊)/(X′₋ + Y′₋)",
+        "coefficient of restitution: speed of parting over speed of closing",
+        false,
+    ),
+    (
+        "beta = b / (2 sqrt(k m))",
+        "β = b/(2√(km))",
+        "damping ratio of a mass $m$ on a spring $k$ with viscous damping $b$",
+        false,
+    ),
+    (
+        "tau = Omega t",
+        "τ = Ωt",
+        "time counted in natural angle, Ω = √($k$/$m$) = 2π$f_0$",
+        false,
+    ),
+    (
+        "eta = omega / Omega = f / f_0",
+        "η = ω/Ω = f/f0",
+        "frequency ratio of the drive",
         true,
-        vec![Block::Definitions { entries }, paragraph(intervals)],
-    )
+    ),
+    (
+        "x_\"st\" = F_0 / k",
+        "x_st = F0/k",
+        "static deflection under the drive's amplitude $F_0$",
+        true,
+    ),
+    (
+        "rho = r / x_\"st\" = r k / F_0",
+        "ρ = r/x_st = rk/F0",
+        "clearance ratio; the gap between the masses is 2$r$",
+        true,
+    ),
+    (
+        "z = p / n",
+        "z = p/n",
+        "$p$ impacts in $n$ drive periods; 1j: a dead zone follows the impact",
+        true,
+    ),
+    (
+        "X'' + 2 beta X' + X = cos(eta tau + phi)",
+        "X″ + 2βX′ + X = cos(ητ + φ)",
+        "motion of each mass between impacts, $X$ = $x$/$x_st$; impact where $X$ + $Y$ ≥ 2$ρ$",
+        true,
+    ),
+];
+
+fn conventions(content: &ReportContent) -> Option<Section> {
+    let driven = content.records.iter().any(|r| r.frequency_hz.is_some());
+    let entries = CONVENTIONS
+        .into_iter()
+        .filter(|c| driven || !c.3)
+        .map(|c| Definition {
+            formula: c.0,
+            plain: c.1,
+            meaning: Rich::from(c.2),
+        });
+    let entries = entries.collect();
+    let intervals = "Intervals are at 95 % confidence; a number after ± is half of that interval. \
+                     All quantities are in SI units.";
+    let blocks = vec![Block::Definitions { entries }, paragraph(intervals)];
+    section("Appendix B. Conventions", false, blocks)
 }
 
 fn provenance(content: &ReportContent) -> Option<Section> {

@@ -1,19 +1,24 @@
 //! The tables of the document.
 
 use super::model::{Rich, Table};
-use super::numbers::{self, PARAMETERS};
+use crate::motion::Motion;
 use crate::record::Sweep;
 use crate::report::content::{BracketRow, RecordRow, ReportContent};
-use crate::report::figures::look::NumberLook;
+use crate::report::figures::fonts::{self, Face};
+use crate::report::figures::look::{self, NumberLook};
+use crate::report::parameters::{self, PARAMETERS, method_name};
 
 /// From how many records on the table is set small and in two columns.
 const MANY_RECORDS: usize = 45;
 
+/// From how many brackets on their table is set small and in two columns.
+const MANY_BRACKETS: usize = 14;
+
 /// A column: head, alignment, relative width (0: as wide as its content).
-type Column = (&'static str, &'static str, u8);
+type Column = (&'static str, &'static str, u16);
 
 fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>) -> Option<Table> {
-    (!rows.is_empty()).then(|| Table {
+    let table = (!rows.is_empty()).then(|| Table {
         caption: Rich::from(caption),
         heads: columns.iter().map(|c| Rich::from(c.0)).collect(),
         align: columns.iter().map(|c| c.1).collect(),
@@ -23,25 +28,31 @@ fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>) -> Option<Tabl
         side_by_side: 1,
         dense: false,
         columns_text: Vec::new(),
-    })
+    });
+    table.map(without_empty_columns)
 }
 
-/// Name of a method in words.
-pub fn method_name(key: &str) -> String {
-    match key {
-        "boundaries" => "Boundaries".into(),
-        "trajectories" => "Trajectories".into(),
-        "impacts" => "Speeds at impact".into(),
-        "resonance" => "Resonance curve".into(),
-        "free_decay" => "Free decay".into(),
-        "joint" => "Joint".into(),
-        other => {
-            let text = other.replace('_', " ");
-            let mut chars = text.chars();
-            chars
-                .next()
-                .map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
-        }
+/// Without the columns in which no row says anything; the first column stays.
+fn without_empty_columns(table: Table) -> Table {
+    let says = |i: usize| {
+        table
+            .rows
+            .iter()
+            .any(|row| !matches!(row[i].plain().as_str(), "" | "–"))
+    };
+    let kept: Vec<usize> = (0..table.heads.len())
+        .filter(|&i| i == 0 || says(i))
+        .collect();
+    let rows = table.rows.iter();
+    let rows = rows
+        .map(|row| kept.iter().map(|&i| row[i].clone()).collect())
+        .collect();
+    Table {
+        heads: kept.iter().map(|&i| table.heads[i].clone()).collect(),
+        align: kept.iter().map(|&i| table.align[i]).collect(),
+        widths: kept.iter().map(|&i| table.widths[i]).collect(),
+        rows,
+        ..table
     }
 }
 
@@ -53,13 +64,18 @@ pub fn methods(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     let rows = all.map(|(name, method)| {
         let mut row = vec![Rich::from(name)];
         row.extend(PARAMETERS.iter().map(|look| {
-            Rich::from(numbers::short(
+            Rich::from(parameters::short(
                 look,
                 (look.pick)(&method.parameters),
                 numbers,
             ))
         }));
-        row.push(Rich::from(method.observations.to_string()));
+        let observations = method.observations;
+        row.push(Rich::from(if observations == 0 {
+            "–".into()
+        } else {
+            observations.to_string()
+        }));
         row.push(Rich::from(
             method
                 .reduced_residual
@@ -92,7 +108,7 @@ pub fn methods(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
 pub fn agreement(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     let rows = content.identification.agreement.pairs.iter().map(|pair| {
         let symbol =
-            numbers::parameter(&pair.parameter).map_or(pair.parameter.as_str(), |p| p.symbol);
+            parameters::parameter(&pair.parameter).map_or(pair.parameter.as_str(), |p| p.symbol);
         let p = if pair.p_value < 1e-3 {
             format!("< {}", numbers.fixed(1e-3, 3))
         } else {
@@ -120,36 +136,44 @@ pub fn agreement(content: &ReportContent, numbers: NumberLook) -> Option<Table> 
     )
 }
 
-/// The measured brackets beside the simulated boundary.
+/// The measured brackets beside the simulated boundary; many of them small and in two columns.
 pub fn brackets(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
-    let rows = content.brackets.iter().map(|b| bracket_row(b, numbers));
+    let many = content.brackets.len() > MANY_BRACKETS;
+    let rows = content
+        .brackets
+        .iter()
+        .map(|b| bracket_row(b, many, numbers))
+        .collect();
     let columns: [Column; 8] = [
-        ("boundary", "left", 0),
-        ("of $z$", "left", 0),
+        (if many { "" } else { "boundary" }, "left", 0),
+        ("$z$", "left", 0),
         ("$r$ (mm)", "right", 0),
         ("$ρ$", "right", 0),
-        ("sweep", "center", 0),
+        (if many { "" } else { "sweep" }, "center", 0),
         ("measured between (Hz)", "center", 0),
         ("simulated (Hz)", "right", 0),
-        ("remark", "left", 1),
+        (if many { "" } else { "remark" }, "left", 1),
     ];
-    let caption = "Measured brackets of the boundaries, and the boundary of the fitted model.";
-    let few = content.brackets.len() <= 16;
-    table(caption, &columns, rows.collect()).map(|t| Table {
-        size: if few { 8.0 } else { 7.0 },
-        ..t
+    let caption = if many {
+        "Measured brackets of the boundaries, and the boundary of the fitted model: = within the \
+         bracket, < below, > above it; × not used in the fit."
+    } else {
+        "Measured brackets of the boundaries, and the boundary of the fitted model."
+    };
+    let table = table(caption, &columns, rows)?;
+    Some(if many {
+        Table {
+            size: 6.8,
+            side_by_side: 2,
+            ..table
+        }
+    } else {
+        Table { size: 8.0, ..table }
     })
 }
 
-fn bracket_row(b: &BracketRow, numbers: NumberLook) -> Vec<Rich> {
+fn bracket_row(b: &BracketRow, many: bool, numbers: NumberLook) -> Vec<Rich> {
     let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
-    let remark = match (&b.left_out, b.simulated_hz) {
-        (Some(why), _) => format!("not used: {why}"),
-        (None, Some(f)) if f < low => format!("below by {} Hz", numbers.fixed(low - f, 3)),
-        (None, Some(f)) if f > high => format!("above by {} Hz", numbers.fixed(f - high, 3)),
-        (None, Some(_)) => "within".into(),
-        (None, None) => String::new(),
-    };
     vec![
         Rich::from(b.kind.symbol()),
         Rich::from(b.motion.label()),
@@ -162,8 +186,33 @@ fn bracket_row(b: &BracketRow, numbers: NumberLook) -> Vec<Rich> {
             numbers.fixed(high, 3)
         )),
         Rich::from(b.simulated_hz.map_or("–".into(), |f| numbers.fixed(f, 3))),
-        Rich::from(remark),
+        Rich::from(if many {
+            bracket_sign(b).into()
+        } else {
+            bracket_remark(b, numbers)
+        }),
     ]
+}
+
+fn bracket_sign(b: &BracketRow) -> &'static str {
+    match (&b.left_out, b.simulated_hz) {
+        (Some(_), _) => "×",
+        (None, Some(f)) if f < b.frequency_low_hz => "<",
+        (None, Some(f)) if f > b.frequency_high_hz => ">",
+        (None, Some(_)) => "=",
+        (None, None) => "",
+    }
+}
+
+fn bracket_remark(b: &BracketRow, numbers: NumberLook) -> String {
+    let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
+    match (&b.left_out, b.simulated_hz) {
+        (Some(why), _) => format!("not used: {why}"),
+        (None, Some(f)) if f < low => format!("below by {} Hz", numbers.fixed(low - f, 3)),
+        (None, Some(f)) if f > high => format!("above by {} Hz", numbers.fixed(f - high, 3)),
+        (None, Some(_)) => "within".into(),
+        (None, None) => String::new(),
+    }
 }
 
 fn arrow(sweep: Sweep) -> &'static str {
@@ -195,7 +244,7 @@ pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
         .records
         .iter()
         .any(|r| r.eta.is_some() && r.rho.is_some());
-    let mut columns: Vec<Column> = vec![("record", "left", if many { 1 } else { 0 })];
+    let mut columns: Vec<Column> = vec![("record", "left", 0)];
     columns.extend([
         ("", "center", 0),
         ("$f$ (Hz)", "right", 0),
@@ -214,21 +263,66 @@ pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     let rows = content.records.iter().map(row).collect();
     let caption = if many {
         "All records: sweep, measured drive frequency, clearance, motion, confidence. \
-         • used in the identification; ! flagged. Reasons and flags in full are in records.parquet."
+         ? undetermined; • used in the identification; ! flagged. Reasons and flags in full are in \
+         records.parquet."
     } else {
         "All records: sweep, measured drive frequency, clearance, motion and confidence."
     };
     let table = table(caption, &columns, rows)?;
     Some(if many {
-        Table {
-            size: 6.2,
-            side_by_side: 2,
-            ..table
-        }
-        .densely()
+        crowded(table)
     } else {
         Table { size: 7.5, ..table }
     })
+}
+
+/// Many rows: small type, whole columns at once, two tables beside each other where they fit.
+fn crowded(table: Table) -> Table {
+    const SIZE: f64 = 6.2;
+    const PADDING: f64 = 0.9 * SIZE;
+    const GUTTER: f64 = 14.0;
+    let mut table = table;
+    let width = |cell: &Rich| fonts::width(&cell.plain(), Face::Bold, SIZE);
+    let need = |table: &Table, i: usize| {
+        let cells = table.rows.iter().map(|row| width(&row[i]));
+        (cells.fold(width(&table.heads[i]), f64::max) + PADDING).ceil()
+    };
+    let rest: f64 = (1..table.heads.len()).map(|i| need(&table, i)).sum();
+    let half = 0.5 * (look::FULL_WIDTH - GUTTER);
+    let side_by_side = if need(&table, 0) + rest <= half { 2 } else { 1 };
+    let room = if side_by_side == 2 {
+        half
+    } else {
+        look::FULL_WIDTH
+    } - rest
+        - PADDING;
+    for row in &mut table.rows {
+        row[0] = shortened(&row[0], room, SIZE);
+    }
+    let widths = (0..table.heads.len())
+        .map(|i| need(&table, i) as u16)
+        .collect();
+    Table {
+        size: SIZE,
+        side_by_side,
+        widths,
+        ..table
+    }
+    .densely()
+}
+
+/// A name cut at its front where it is wider than the room: a wrapped line would shift the rows.
+fn shortened(name: &Rich, room: f64, size: f64) -> Rich {
+    let plain = name.plain();
+    let wide = |text: &str| fonts::width(text, Face::Bold, size) > room;
+    if !wide(&plain) {
+        return name.clone();
+    }
+    let starts = plain.char_indices().map(|(i, _)| i).skip(1);
+    let fitting = starts
+        .map(|i| format!("…{}", &plain[i..]))
+        .find(|text| !wide(text));
+    verbatim(fitting.unwrap_or_else(|| "…".into()))
 }
 
 fn record_row(r: &RecordRow, planar: bool, many: bool, numbers: NumberLook) -> Vec<Rich> {
@@ -243,13 +337,21 @@ fn record_row(r: &RecordRow, planar: bool, many: bool, numbers: NumberLook) -> V
     if planar {
         row.extend([number(r.eta, 4), number(r.rho, 3)]);
     }
-    row.extend([r.motion.label(), number(r.confidence, 2)]);
+    row.extend([motion_label(r, many), number(r.confidence, 2)]);
     row.push(if many {
         short_remark(r)
     } else {
         long_remark(r)
     });
     row.into_iter().map(verbatim).collect()
+}
+
+fn motion_label(r: &RecordRow, many: bool) -> String {
+    match &r.motion {
+        Motion::Undetermined { .. } if r.frequency_hz.is_none() => "–".into(),
+        Motion::Undetermined { .. } if many => "?".into(),
+        motion => motion.label(),
+    }
 }
 
 /// A cell whose text has no markup, whatever signs it holds.

@@ -30,6 +30,18 @@ impl MemoryWorld {
     }
 }
 
+impl MemoryWorld {
+    /// Number of line feeds in the template before a byte.
+    pub fn lines_before(&self, byte: usize) -> usize {
+        self.main
+            .text()
+            .bytes()
+            .take(byte)
+            .filter(|b| *b == b'\n')
+            .count()
+    }
+}
+
 fn id(path: &str) -> Option<FileId> {
     let path = VirtualPath::new(path).ok()?;
     Some(FileId::new(RootedPath::new(VirtualRoot::Project, path)))

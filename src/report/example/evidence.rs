@@ -247,7 +247,7 @@ fn impacts() -> ImpactScatter {
     }
 }
 
-fn decay(index: u64) -> FreeDecay {
+pub fn decay(index: u64) -> FreeDecay {
     let mut noise = Noise::new(31 + index);
     let (f, beta) = (F0 * (1.0 + 0.1 * index as f64), 0.02 + 0.002 * index as f64);
     let at = |t: f64| 3.0 * (-beta * TAU * f * t).exp() * (TAU * f * t).cos();

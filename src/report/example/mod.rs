@@ -2,6 +2,7 @@
 
 mod evidence;
 pub mod oscillator;
+pub mod others;
 
 use std::collections::BTreeMap;
 
@@ -267,7 +268,13 @@ fn brackets(records: &[RecordRow]) -> Vec<BracketRow> {
     let mut found = Vec::new();
     for pair in records.windows(2) {
         let (a, b) = (&pair[0], &pair[1]);
-        if a.rho != b.rho || a.sweep != b.sweep || impactless(a) == impactless(b) {
+        let told = |r: &RecordRow| !matches!(r.motion, Motion::Undetermined { .. });
+        if a.rho != b.rho
+            || a.sweep != b.sweep
+            || impactless(a) == impactless(b)
+            || !told(a)
+            || !told(b)
+        {
             continue;
         }
         let (low, high) = if a.eta < b.eta { (a, b) } else { (b, a) };

@@ -16,7 +16,7 @@ pub struct Axis {
     pub title: String,
     /// Whether it counts in powers of ten.
     pub log: bool,
-    /// Wanted number of ticks.
+    /// Wanted number of ticks; none at all for 0.
     pub ticks: usize,
 }
 
@@ -44,10 +44,11 @@ impl Axis {
         title: impl Into<String>,
     ) -> Self {
         let (low, high) = range(values).unwrap_or((0.0, 1.0));
+        let alone = if high == 0.0 { 1.0 } else { 0.05 * high.abs() };
         let pad = if high > low {
             margin * (high - low)
         } else {
-            (0.05 * high.abs()).max(1e-12)
+            alone
         };
         Self::new(low - pad, high + pad, title)
     }
@@ -77,8 +78,19 @@ impl Axis {
         if self.log {
             return (self.decades(), 0);
         }
-        let step = nice_step((self.high - self.low) / self.ticks.max(1) as f64);
-        (multiples(self.low, self.high, step), decimals_of(step))
+        let span = self.high - self.low;
+        let wanted = self.ticks.max(1);
+        let tries = (wanted..=wanted + 4).map(|ticks| nice_step(span / ticks as f64));
+        let ticks = tries.map(|step| (multiples(self.low, self.high, step), decimals_of(step)));
+        // One number alone does not tell a scale.
+        let mut best = (Vec::new(), 0);
+        for found in ticks {
+            best = found;
+            if best.0.len() >= 2 {
+                break;
+            }
+        }
+        best
     }
 
     fn decades(&self) -> Vec<f64> {
@@ -167,12 +179,27 @@ pub struct Panel {
     pub x: Axis,
     /// Upward.
     pub y: Axis,
+    /// How far left of the frame the title of the upward axis stands; `None`: beside its numbers.
+    pub title_reach: Option<f64>,
 }
 
 impl Panel {
     /// A panel.
     pub fn new(rect: Rect, x: Axis, y: Axis) -> Self {
-        Self { rect, x, y }
+        Self {
+            rect,
+            x,
+            y,
+            title_reach: None,
+        }
+    }
+
+    /// With the title of the upward axis at a distance, in line with other panels' titles.
+    pub fn with_title_reach(self, reach: f64) -> Self {
+        Self {
+            title_reach: Some(reach),
+            ..self
+        }
     }
 
     /// Where a pair of values lies on paper.
@@ -267,6 +294,9 @@ impl Panel {
     }
 
     fn ticks_left(&self, canvas: &mut Canvas, labels: bool, numbers: NumberLook) {
+        if self.y.ticks == 0 {
+            return;
+        }
         let (ticks, decimals) = self.y.major();
         let left = self.rect.left;
         for v in ticks {
@@ -283,14 +313,19 @@ impl Panel {
         }
     }
 
+    /// The title of the upward axis; line feeds part it into lines.
     fn title_left(&self, canvas: &mut Canvas, numbers: NumberLook) {
-        let x = self.rect.left - 7.0 - self.widest_label(numbers);
+        let reach = self.title_reach.unwrap_or(7.0 + self.widest_label(numbers));
         let middle = 0.5 * (self.rect.top + self.rect.bottom);
         let title_look = TextLook {
             upward: true,
             ..TextLook::new(look::TITLE_SIZE, Anchor::Middle)
         };
-        canvas.text((x, middle), &self.y.title, title_look.colour(look::INK));
+        let lines: Vec<&str> = self.y.title.lines().collect();
+        for (i, line) in lines.iter().enumerate() {
+            let x = self.rect.left - reach - 8.5 * (lines.len() - 1 - i) as f64;
+            canvas.text((x, middle), line, title_look.colour(look::INK));
+        }
     }
 
     /// Width of the widest number on the left.

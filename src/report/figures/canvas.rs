@@ -223,6 +223,35 @@ impl Canvas {
         self.shapes.push((self.layer, shape));
     }
 
+    /// Texts that reach beyond the drawing's edges: there should be none.
+    pub fn overfull(&self) -> Vec<String> {
+        let inside = |x: f64, y: f64| {
+            (-0.5..=self.width + 0.5).contains(&x) && (-0.5..=self.height + 0.5).contains(&y)
+        };
+        let texts = self.shapes.iter().filter_map(|(_, shape)| match shape {
+            Shape::Text {
+                at,
+                text,
+                size,
+                face,
+                upward,
+                ..
+            } => {
+                let along = super::fonts::width(text, *face, *size);
+                let (rise, drop) = (0.72 * size, 0.22 * size);
+                let (x, y) = *at;
+                let corners = if *upward {
+                    [(x - rise, y), (x + drop, y - along)]
+                } else {
+                    [(x, y - rise), (x + along, y + drop)]
+                };
+                (!corners.iter().all(|c| inside(c.0, c.1))).then(|| text.clone())
+            }
+            _ => None,
+        });
+        texts.collect()
+    }
+
     /// The drawing as SVG text: its width and height in points, its fonts by name.
     pub fn into_svg(mut self, title: &str) -> String {
         self.shapes.sort_by_key(|(layer, _)| *layer);

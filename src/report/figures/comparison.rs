@@ -12,10 +12,13 @@ use super::{Figure, richtext};
 use crate::record::Role;
 use crate::report::content::{Comparison, Portrait, Signal, Trace};
 
-const LEFT: f64 = 34.0;
-const COLUMN: f64 = 148.0;
-const COLUMN_GAP: f64 = 9.0;
-const PORTRAIT_LEFT: f64 = 379.0;
+const LEFT: f64 = 40.0;
+/// Width of a column of panels beside phase portraits, and without them.
+const COLUMNS: [f64; 2] = [136.0, 201.0];
+const COLUMN_GAP: f64 = 35.0;
+const PORTRAIT_LEFT: f64 = 387.0;
+/// Distance of the titles of upward axes from their frames.
+const TITLE_REACH: f64 = 22.0;
 const PORTRAIT_WIDTH: f64 = look::FULL_WIDTH - PORTRAIT_LEFT - 2.0;
 const ROW_GAP: f64 = 5.0;
 const TOP: f64 = 27.0;
@@ -48,6 +51,7 @@ pub fn draw(comparison: &Comparison, numbers: NumberLook) -> Option<Figure> {
         numbers,
         canvas: Canvas::new(look::FULL_WIDTH, TOP + stack + BOTTOM),
         time: time_axis(comparison, &rows),
+        column: COLUMNS[usize::from(comparison.portraits.is_empty())],
     };
     sheet.heading();
     sheet.columns(&rows);
@@ -68,16 +72,16 @@ pub fn name(comparison: &Comparison) -> String {
 
 fn rows(comparison: &Comparison) -> Vec<Row<'_>> {
     let pairs = [
-        ([Role::DisplacementX, Role::DisplacementY], "$x$, $y$", 44.0),
-        ([Role::VelocityX, Role::VelocityY], "$v_x$, $v_y$", 44.0),
+        ([Role::DisplacementX, Role::DisplacementY], "$x$, $y$", 38.0),
+        ([Role::VelocityX, Role::VelocityY], "$v_x$, $v_y$", 38.0),
         (
             [Role::AccelerationX, Role::AccelerationY],
             "$a_x$, $a_y$",
-            40.0,
+            38.0,
         ),
         ([Role::Drive, Role::Drive], "drive", 22.0),
-        ([Role::Contact, Role::Contact], "contact", 20.0),
-        ([Role::FrameX, Role::FrameY], "frame", 26.0),
+        ([Role::Contact, Role::Contact], "contact", 21.0),
+        ([Role::FrameX, Role::FrameY], "frame", 21.0),
     ];
     let mut rows: Vec<Row<'_>> = pairs
         .iter()
@@ -104,10 +108,12 @@ fn row<'a>(
         .map(peak)
         .fold(0.0, f64::max);
     let unit = print_unit(dimension, peak);
+    let between = if height < 30.0 { "\n" } else { " " };
+    let title = format!("{name}{between}({})", unit.symbol);
     Some(Row {
         traces,
         height,
-        title: format!("{name} ({})", unit.symbol),
+        title,
         unit,
         residual: false,
     })
@@ -129,10 +135,10 @@ fn residual_row(comparison: &Comparison) -> Option<Row<'_>> {
             .map(peak)
             .fold(0.0, f64::max);
         let unit = print_unit(dimension, peak);
-        let title = format!("residual ({})", unit.symbol);
+        let title = format!("residual\n({})", unit.symbol);
         Some(Row {
             traces,
-            height: 34.0,
+            height: 30.0,
             title,
             unit,
             residual: true,
@@ -230,9 +236,18 @@ struct Sheet<'a> {
     numbers: NumberLook,
     canvas: Canvas,
     time: TimeAxis,
+    column: f64,
 }
 
 impl Sheet<'_> {
+    /// Left edge of a column of panels.
+    fn left(&self, side: Side) -> f64 {
+        match side {
+            Side::Simulated => LEFT,
+            Side::Measured => LEFT + self.column + COLUMN_GAP,
+        }
+    }
+
     fn heading(&mut self) {
         let c = self.comparison;
         marks::draw(
@@ -241,17 +256,25 @@ impl Sheet<'_> {
             3.0,
             marks::of(&c.motion),
         );
-        let mut text = format!("({})  $z$ = {}", c.letter, c.motion.label());
-        if let (Some(eta), Some(rho)) = (c.eta, c.rho) {
-            let (eta, rho) = (self.numbers.fixed(eta, 3), self.numbers.fixed(rho, 3));
-            text.push_str(&format!("   $η$ = {eta},  $ρ$ = {rho}"));
-        }
+        let letter = format!("({})", c.letter);
         let bold = TextLook::new(9.0, Anchor::Left)
             .face(Face::Bold)
             .colour(look::INK);
         let x = LEFT + 10.0;
-        self.canvas.text((x, 8.5), &text, bold);
-        let after = x + richtext::width(&text, Face::Bold, 9.0) + 10.0;
+        self.canvas.text((x, 8.5), &letter, bold);
+        let x = x + richtext::width(&letter, Face::Bold, 9.0) + 6.0;
+        let driven = c.drive_period_s.is_some();
+        let mut text = if driven {
+            format!("$z$ = {}", c.motion.label())
+        } else {
+            String::new()
+        };
+        if let (Some(eta), Some(rho)) = (c.eta, c.rho) {
+            let (eta, rho) = (self.numbers.fixed(eta, 3), self.numbers.fixed(rho, 3));
+            text.push_str(&format!(",   $η$ = {eta},   $ρ$ = {rho}"));
+        }
+        self.canvas.text((x, 8.5), &text, bold.face(Face::Regular));
+        let after = x + richtext::width(&text, Face::Regular, 9.0) + 12.0;
         let quiet = TextLook::new(8.0, Anchor::Left).colour(look::QUIET);
         let mut note = format!("record {}", c.record);
         if let Some(simulated) = c.simulated_motion.as_ref().filter(|m| **m != c.motion) {
@@ -262,12 +285,15 @@ impl Sheet<'_> {
 
     fn columns(&mut self, rows: &[Row<'_>]) {
         let title = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::QUIET);
-        let middle = |side: Side| column_left(side) + 0.5 * COLUMN;
+        let middle = |sheet: &Self, side: Side| sheet.left(side) + 0.5 * sheet.column;
         if !rows.is_empty() {
+            self.canvas.text(
+                (middle(self, Side::Simulated), TOP - 4.0),
+                "simulated",
+                title,
+            );
             self.canvas
-                .text((middle(Side::Simulated), TOP - 4.0), "simulated", title);
-            self.canvas
-                .text((middle(Side::Measured), TOP - 4.0), "measured", title);
+                .text((middle(self, Side::Measured), TOP - 4.0), "measured", title);
         }
         let last_plain = rows.iter().rposition(|r| !r.residual);
         let mut top = TOP;
@@ -285,32 +311,32 @@ impl Sheet<'_> {
     }
 
     fn panel(&mut self, row: &Row<'_>, side: Side, top: f64, below: bool) {
-        let rect = Rect::new(column_left(side), top, COLUMN, row.height);
+        let rect = Rect::new(self.left(side), top, self.column, row.height);
         let values = row
             .traces
             .iter()
             .flat_map(|(t, _)| shown(t, row.residual))
             .flat_map(|s| &s.values);
         let y = Axis::around(values.map(|v| v * row.unit.factor), 0.08, row.title.clone());
-        let panel = Panel::new(
-            rect,
-            self.time.axis(),
-            y.with_ticks(if row.height > 35.0 { 4 } else { 2 }),
-        );
+        let y = y.with_ticks(if row.height > 35.0 { 3 } else { 2 });
+        let panel = Panel::new(rect, self.time.axis(), y).with_title_reach(TITLE_REACH);
         self.canvas.layer(0);
-        if panel.y.low < 0.0 && panel.y.high > 0.0 {
+        if !self.is_empty(row, side) && panel.y.low < 0.0 && panel.y.high > 0.0 {
             panel.level(&mut self.canvas, 0.0, look::ZERO_STROKE);
         }
         self.impacts(&panel, side);
         self.canvas.layer(1);
-        for (trace, colour) in &row.traces {
+        // The first mass last and thinner, so that both are seen where they move alike.
+        for (i, (trace, colour)) in row.traces.iter().enumerate().rev() {
             let signal = match (row.residual, side) {
                 (true, _) => &trace.residual,
                 (false, Side::Simulated) => &trace.simulated,
                 (false, Side::Measured) => &trace.measured,
             };
             if let Some(signal) = signal {
-                self.signal(&panel, signal, row.unit.factor, *colour);
+                let width = if i == 0 { 0.65 } else { 1.25 };
+                let stroke = Stroke::solid(*colour, width);
+                self.signal(&panel, signal, row.unit.factor, stroke);
             }
         }
         self.canvas.layer(2);
@@ -319,10 +345,10 @@ impl Sheet<'_> {
         self.empty_note(row, side, &panel);
     }
 
-    fn signal(&mut self, panel: &Panel, signal: &Signal, factor: f64, colour: Colour) {
+    fn signal(&mut self, panel: &Panel, signal: &Signal, factor: f64, stroke: Stroke) {
         let data = signal.time_s.iter().zip(&signal.values);
         let data: Vec<_> = data.map(|(t, v)| (self.time.of(*t), v * factor)).collect();
-        panel.curve(&mut self.canvas, data, Stroke::solid(colour, 0.75));
+        panel.curve(&mut self.canvas, data, stroke);
     }
 
     /// Pale upright lines at the impacts.
@@ -340,23 +366,41 @@ impl Sheet<'_> {
         }
     }
 
-    /// Says where a side has nothing to show.
+    fn is_empty(&self, row: &Row<'_>, side: Side) -> bool {
+        !row.residual
+            && row.traces.iter().all(|(t, _)| match side {
+                Side::Simulated => t.simulated.is_none(),
+                Side::Measured => t.measured.is_none(),
+            })
+    }
+
+    /// Where a side has nothing to show: the simulated contact as its impacts, else a word.
     fn empty_note(&mut self, row: &Row<'_>, side: Side, panel: &Panel) {
-        let nothing = row.traces.iter().all(|(t, _)| match side {
-            _ if row.residual => false,
-            Side::Simulated => t.simulated.is_none(),
-            Side::Measured => t.measured.is_none(),
-        });
-        if nothing {
-            let text = if side == Side::Simulated {
-                "not modelled"
-            } else {
-                "not measured"
-            };
-            let r = panel.rect;
-            let at = (0.5 * (r.left + r.right), 0.5 * (r.top + r.bottom) + 2.5);
-            let quiet = TextLook::new(look::NOTE_SIZE, Anchor::Middle).colour(look::QUIET);
-            self.canvas.text(at, text, quiet);
+        if !self.is_empty(row, side) {
+            return;
+        }
+        let contact = row.traces.iter().any(|(t, _)| t.role == Role::Contact);
+        if contact && side == Side::Simulated {
+            return self.contact_stems(panel);
+        }
+        let text = if side == Side::Simulated {
+            "not modelled"
+        } else {
+            "not measured"
+        };
+        let r = panel.rect;
+        let at = (0.5 * (r.left + r.right), 0.5 * (r.top + r.bottom) + 2.5);
+        let quiet = TextLook::new(look::NOTE_SIZE, Anchor::Middle).colour(look::QUIET);
+        self.canvas.text(at, text, quiet);
+    }
+
+    /// The impacts of the simulation as stems on a level line.
+    fn contact_stems(&mut self, panel: &Panel) {
+        let (low, high) = (panel.y.low.max(0.0), 0.93 * panel.y.high);
+        let stroke = Stroke::solid(look::BLUE, 0.65);
+        panel.level(&mut self.canvas, low, stroke);
+        for time in &self.comparison.simulated_impacts_s {
+            panel.error_bar(&mut self.canvas, self.time.of(*time), (low, high), stroke);
         }
     }
 
@@ -375,7 +419,7 @@ impl Sheet<'_> {
             ))
         });
         for (i, line) in lines.collect::<Vec<_>>().iter().enumerate() {
-            let y = top + 27.0 + 9.5 * i as f64;
+            let y = top + 24.0 + 9.5 * i as f64;
             self.canvas.text((LEFT, y), line, quiet);
         }
     }
@@ -441,13 +485,6 @@ impl Sheet<'_> {
         }
         self.canvas.layer(2);
         panel.frame(&mut self.canvas, Sides::BOTH, self.numbers);
-    }
-}
-
-fn column_left(side: Side) -> f64 {
-    match side {
-        Side::Simulated => LEFT,
-        Side::Measured => LEFT + COLUMN + COLUMN_GAP,
     }
 }
 

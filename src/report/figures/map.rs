@@ -36,6 +36,8 @@ pub fn draw(content: &ReportContent, size: MapSize, numbers: NumberLook) -> Opti
         small_keys(content)
     };
     let mut map = Map::new(content, plane, size, &keys);
+    // Labels go where records and curves leave room.
+    map.take_records_and_curves();
     map.regions();
     map.curves();
     map.brackets();
@@ -55,22 +57,23 @@ struct Map<'a> {
     panel: Panel,
     occupancy: Occupancy,
     spots: Vec<Spot>,
-    keys_height: f64,
 }
 
 impl<'a> Map<'a> {
     fn new(content: &'a ReportContent, plane: Plane, size: MapSize, keys: &[Key]) -> Self {
         let full = size == MapSize::Full;
-        let (width, height) = if full {
-            (look::FULL_WIDTH, 370.0)
-        } else {
-            (236.0, 172.0)
+        let flat = content.region_map.is_none() && heights(content, plane) <= 3;
+        let (width, height) = match (full, flat) {
+            (true, false) => (look::FULL_WIDTH, 370.0),
+            (true, true) => (look::FULL_WIDTH, 200.0),
+            (false, false) => (236.0, 205.0),
+            (false, true) => (236.0, 130.0),
         };
         let keys_height = legend::height(keys, width) + if keys.is_empty() { 0.0 } else { 3.0 };
         let (left, right) = (
             33.0,
             if full && plane.dimensionless {
-                36.0
+                30.0
             } else {
                 4.0
             },
@@ -98,7 +101,6 @@ impl<'a> Map<'a> {
             panel,
             occupancy: Occupancy::new(width, total),
             spots: Vec::new(),
-            keys_height,
         }
     }
 
@@ -121,17 +123,14 @@ impl<'a> Map<'a> {
         };
         self.canvas.layer(0);
         regions.draw(&mut self.canvas);
-        // Labels go where records, curves and brackets leave room.
-        self.take_records_and_curves();
         let size = if self.full() { 10.0 } else { 8.0 };
         self.canvas.layer(6);
         for label in regions.labels(&mut self.occupancy, size) {
-            let text_look = TextLook::new(size, Anchor::Middle)
-                .face(Face::Bold)
-                .colour(look::INK);
+            let text_look = TextLook::new(label.size, Anchor::Middle).face(Face::Bold);
             let (x, y) = label.at;
+            let baseline = (x, y + 0.33 * label.size);
             self.canvas
-                .text((x, y + 0.33 * size), &label.text, text_look);
+                .text(baseline, &label.text, text_look.colour(look::INK));
         }
     }
 
@@ -380,7 +379,7 @@ impl<'a> Map<'a> {
                 self.canvas
                     .text((r.right + 3.0, y + 2.3), &numbers.fixed(v, decimals), left);
             }
-            let at = (self.canvas.width - 2.5, 0.5 * (r.top + r.bottom));
+            let at = (r.right + 24.0, 0.5 * (r.top + r.bottom));
             self.canvas.text(
                 at,
                 "clearance $r$ (mm)",
@@ -398,9 +397,19 @@ impl<'a> Map<'a> {
             MapSize::Full => ("map", "Regions of motion, simulated and measured"),
             MapSize::Small => ("map_small", "Measured motions and boundaries"),
         };
-        debug_assert!(self.keys_height >= 0.0);
         Figure::new(name, title, self.canvas, csv).with_spots(self.spots)
     }
+}
+
+/// How many clearances the records have.
+fn heights(content: &ReportContent, plane: Plane) -> usize {
+    let mut seen: Vec<f64> = Vec::new();
+    for (_, y) in content.records.iter().filter_map(|r| plane.record(r)) {
+        if !seen.iter().any(|s| (s - y).abs() <= 1e-6 * y.abs()) {
+            seen.push(y);
+        }
+    }
+    seen.len()
 }
 
 /// How a boundary is drawn.

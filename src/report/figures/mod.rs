@@ -1,10 +1,16 @@
 //! The figures, one file each: from content to SVG, its data as CSV, its points for hovering.
 
 pub mod axes;
+pub mod boundary_fit;
 pub mod canvas;
 pub mod comparison;
+pub mod correlation;
 pub mod csv;
+pub mod decays;
+pub mod dots;
+pub mod estimates;
 pub mod fonts;
+pub mod impacts;
 pub mod legend;
 pub mod look;
 pub mod map;
@@ -12,7 +18,10 @@ pub mod marks;
 pub mod path;
 pub mod placing;
 pub mod plane;
+pub mod profiles;
 pub mod regions;
+pub mod residuals;
+pub mod resonance;
 pub mod richtext;
 pub mod units;
 
@@ -39,6 +48,8 @@ pub struct Figure {
     pub csv: String,
     /// Points that tell something when hovered over.
     pub spots: Vec<Spot>,
+    /// Texts that reach beyond the drawing's edges.
+    pub overfull: Vec<String>,
 }
 
 /// A point of a figure that tells something.
@@ -56,6 +67,7 @@ impl Figure {
     /// A figure from its drawing.
     pub fn new(name: impl Into<String>, title: &str, canvas: Canvas, csv: String) -> Self {
         let (width, height) = (canvas.width, canvas.height);
+        let overfull = canvas.overfull();
         let svg = canvas.into_svg(title);
         let (name, title) = (name.into(), title.to_owned());
         Self {
@@ -66,6 +78,7 @@ impl Figure {
             height,
             csv,
             spots: Vec::new(),
+            overfull,
         }
     }
 
@@ -94,10 +107,41 @@ fn jobs<'a>(content: &'a ReportContent, numbers: NumberLook) -> Vec<Job<'a>> {
     for comparison in &content.comparisons {
         jobs.push(Box::new(move || comparison::draw(comparison, numbers)));
     }
+    jobs.push(Box::new(move || estimates::draw(content, numbers)));
+    jobs.push(Box::new(move || boundary_fit::draw(content, numbers)));
+    jobs.push(Box::new(move || profiles::draw(&content.profiles, numbers)));
+    if let Some(correlation) = &content.correlation {
+        jobs.push(Box::new(move || correlation::draw(correlation, numbers)));
+    }
+    method_jobs(content, numbers, &mut jobs);
     jobs
 }
 
-/// Names and captions of the figures of the methods, in the order of the document.
-pub fn method_captions(_content: &ReportContent) -> Vec<(String, String)> {
-    Vec::new()
+/// Figures of which there may be several.
+fn method_jobs<'a>(content: &'a ReportContent, numbers: NumberLook, jobs: &mut Vec<Job<'a>>) {
+    for (i, scatter) in content.impacts.iter().enumerate() {
+        jobs.push(Box::new(move || {
+            impacts::draw(scatter, &numbered("impacts", i), numbers)
+        }));
+    }
+    for (i, curve) in content.resonance.iter().enumerate() {
+        jobs.push(Box::new(move || {
+            resonance::draw(curve, &numbered("resonance", i), numbers)
+        }));
+    }
+    for (i, few) in content.free_decays.chunks(decays::PER_FIGURE).enumerate() {
+        jobs.push(Box::new(move || {
+            decays::draw(few, &numbered("free_decays", i), numbers)
+        }));
+    }
+    for (i, set) in content.residuals.iter().enumerate() {
+        jobs.push(Box::new(move || {
+            residuals::draw(set, &numbered("residuals", i), numbers)
+        }));
+    }
+}
+
+/// Name of the i-th figure of a kind.
+pub fn numbered(kind: &str, index: usize) -> String {
+    format!("{kind}_{}", index + 1)
 }

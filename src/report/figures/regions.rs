@@ -27,6 +27,8 @@ pub struct RegionLabel {
     pub text: String,
     /// Middle of the text, points.
     pub at: Point,
+    /// Size of the text, points.
+    pub size: f64,
 }
 
 impl<'a> Regions<'a> {
@@ -273,17 +275,20 @@ impl<'a> Regions<'a> {
         let large = order
             .into_iter()
             .take_while(|&r| self.areas[r] as f64 >= least);
-        large
-            .filter_map(|r| self.label(r, occupancy, size))
-            .collect()
+        let place = |r| {
+            [size, 0.8 * size]
+                .into_iter()
+                .find_map(|s| self.label(r, occupancy, s))
+        };
+        large.filter_map(place).collect()
     }
 
     fn label(&self, region: usize, occupancy: &mut Occupancy, size: f64) -> Option<RegionLabel> {
         let first_cell = self.region.iter().position(|&r| r == region)?;
         let text = self.name(first_cell);
         let half = (
-            0.5 * super::fonts::width(&text, super::fonts::Face::Bold, size) + 1.5,
-            0.5 * size,
+            0.5 * super::fonts::width(&text, super::fonts::Face::Bold, size) + 3.0,
+            0.5 * size + 1.5,
         );
         let columns = self.map.eta.len();
         let best = self
@@ -303,7 +308,11 @@ impl<'a> Regions<'a> {
             2.0 * half.0,
             2.0 * half.1,
         ));
-        Some(RegionLabel { text, at: best.1 })
+        Some(RegionLabel {
+            text,
+            at: best.1,
+            size,
+        })
     }
 
     fn name(&self, cell: usize) -> String {
@@ -344,7 +353,8 @@ impl<'a> Regions<'a> {
             .take_while(|g| inside(*g))
             .count();
         let rect = Rect::new(at.0 - half.0, at.1 - half.1, 2.0 * half.0, 2.0 * half.1);
-        Some(free as f64 - 0.5 * taken.taken(&rect) as f64)
+        let covered = taken.taken(&rect) as f64;
+        (covered <= 0.08 * rect.width() * rect.height()).then_some(free as f64 - 0.5 * covered)
     }
 }
 

@@ -1,5 +1,5 @@
-//! Short texts with symbols: between dollars letters are slanted, `_` lowers and `^` raises, as
-//! in `$f$/$f_0$ (1)`.
+//! Short texts with symbols: between dollars letters are slanted, `_` lowers and `^` raises
+//! what follows, as in `$f$/$f_0$ (1)` or `$x_st$`.
 
 use super::fonts::{self, Face};
 
@@ -43,24 +43,21 @@ pub fn parse(markup: &str) -> Vec<Run> {
 
 fn parse_symbols(part: &str, runs: &mut Vec<Run>) {
     let mut chars = part.chars().peekable();
-    let mut level = Level::Base;
     while let Some(c) = chars.next() {
-        match c {
-            '_' | '^' => {
-                level = if c == '_' { Level::Sub } else { Level::Super };
-                if chars.peek() == Some(&'{') {
-                    chars.next();
-                    let inner: String = chars.by_ref().take_while(|&c| c != '}').collect();
-                    push(runs, inner, false, level);
-                    level = Level::Base;
-                }
-            }
+        let level = match c {
+            '_' => Level::Sub,
+            '^' => Level::Super,
             c => {
-                let italic = c.is_alphabetic() && level == Level::Base;
-                push(runs, c.to_string(), italic, level);
-                level = Level::Base;
+                push(runs, c.to_string(), c.is_alphabetic(), Level::Base);
+                continue;
             }
-        }
+        };
+        let index: String = if chars.next_if_eq(&'{').is_some() {
+            chars.by_ref().take_while(|&c| c != '}').collect()
+        } else {
+            std::iter::from_fn(|| chars.next_if(|c| c.is_alphanumeric())).collect()
+        };
+        push(runs, index, false, level);
     }
 }
 

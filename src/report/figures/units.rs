@@ -18,6 +18,7 @@ const fn unit(factor: f64, symbol: &'static str) -> PrintUnit {
 /// The unit for a quantity whose greatest magnitude is known (SI).
 pub fn print_unit(dimension: Dimension, peak: f64) -> PrintUnit {
     match dimension {
+        _ if peak == 0.0 => unit(1.0, dimension.si_symbol()),
         Dimension::Length if peak < 2e-4 => unit(1e6, "µm"),
         Dimension::Length if peak < 1.0 => unit(1e3, "mm"),
         Dimension::Velocity if peak < 0.5 => unit(1e3, "mm/s"),

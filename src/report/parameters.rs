@@ -1,8 +1,7 @@
-//! Estimates as printed: as many digits as their uncertainty deserves.
+//! Parameters and methods as printed: names, symbols, units, digits.
 
-use super::model::{Answer, Rich};
+use super::figures::look::{NumberLook, decimal_exponent};
 use crate::identify::{Estimate, ParameterSet, Status};
-use crate::report::figures::look::{NumberLook, decimal_exponent};
 
 /// How a parameter is named and printed.
 #[derive(Debug, Clone, Copy)]
@@ -62,6 +61,25 @@ pub fn parameter(key: &str) -> Option<&'static ParameterLook> {
     PARAMETERS.iter().find(|p| p.key == key)
 }
 
+/// Name of a method in words.
+pub fn method_name(key: &str) -> String {
+    match key {
+        "boundaries" => "Boundaries".into(),
+        "trajectories" => "Trajectories".into(),
+        "impacts" => "Speeds at impact".into(),
+        "resonance" => "Resonance curve".into(),
+        "free_decay" => "Free decay".into(),
+        "joint" => "Joint".into(),
+        other => {
+            let text = other.replace('_', " ");
+            let mut chars = text.chars();
+            chars
+                .next()
+                .map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
+        }
+    }
+}
+
 /// Name of a status in the document.
 pub fn status_name(status: Status) -> &'static str {
     match status {
@@ -109,29 +127,6 @@ pub fn short(look: &ParameterLook, estimate: Option<&Estimate>, numbers: NumberL
     text
 }
 
-/// A parameter ready for the first page.
-pub fn answer(look: &ParameterLook, estimate: Option<&Estimate>, numbers: NumberLook) -> Answer {
-    let half = estimate.and_then(half_width).map(|h| h * look.factor);
-    let decimals = decimals_for(half.unwrap_or(0.0));
-    let print = |v: f64| numbers.fixed(v * look.factor, decimals);
-    let value = estimate.and_then(|e| e.value);
-    let interval = estimate
-        .and_then(|e| e.interval95)
-        .filter(|_| value.is_some());
-    Answer {
-        symbol: Rich::from(look.symbol),
-        name: Rich::from(look.name),
-        value: value.map(print),
-        plus_minus: half
-            .filter(|_| value.is_some())
-            .map(|h| numbers.fixed(h, decimals)),
-        unit: look.unit.into(),
-        interval: interval.map(|[low, high]| format!("{} to {}", print(low), print(high))),
-        status: estimate.map_or("not_asked", |e| status_name(e.status)),
-        note: estimate.and_then(|e| e.note.as_ref()).map(Rich::from),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -160,19 +155,5 @@ mod tests {
             decimal_comma: true,
         };
         assert_eq!(short(&PARAMETERS[0], Some(&r), comma), "0,9013 ± 0,0024");
-    }
-
-    #[test]
-    fn valid_what_is_not_identifiable_has_no_number() {
-        let none = Estimate {
-            value: None,
-            standard_error: None,
-            interval95: None,
-            status: Status::NotIdentifiable,
-            note: Some("no bracket".into()),
-        };
-        let answer = answer(&PARAMETERS[0], Some(&none), NumberLook::default());
-        assert_eq!((answer.value, answer.interval), (None, None));
-        assert_eq!(answer.status, "not_identifiable");
     }
 }

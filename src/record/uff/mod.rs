@@ -1,0 +1,112 @@
+//! Universal files: functions of set 58, as text and binary (58b).
+//!
+//! How a file maps to datasets and channels:
+//!
+//! - Every function is a channel. Functions that follow each other with the same even abscissa
+//!   form one dataset; a channel that comes again with the same names, or at another time (third
+//!   line) or load case, begins the next. A file of one record has a dataset without a name,
+//!   else datasets are numbered from 1. A function of uneven abscissa is a dataset of its own.
+//! - A channel is named by the response's entity name, else node and direction (`3:+Z`), else the
+//!   first line, else the ordinate's label: the first of these that tells the channels of the
+//!   dataset apart. All header fields are properties.
+//! - An even abscissa of time gives the sample rate. Any other abscissa (frequency, or uneven
+//!   time) is the dataset's first channel.
+//! - The unit is that of the ordinate (`(numerator)/(denominator)` of a frequency response);
+//!   where it is missing and a set 164 names the unit system, it follows from the data type.
+//! - Sets 151 and 164 give attributes. All other sets are skipped with a note.
+//! - A function that holds fewer points than its header states is read as far as it goes, with a
+//!   note: long throughputs are often cut.
+
+mod arrange;
+mod ascii;
+mod header;
+mod samples;
+mod sets;
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+
+use arrange::Origin;
+use sets::Sets;
+
+use super::bytes::FileBytes;
+use super::source::{DatasetInfo, ReadError, Samples, Source};
+
+/// Whether a file's first line is the mark that begins a set: `    -1`.
+pub fn recognises(head: &[u8]) -> bool {
+    let line = head.split(|&b| b == b'\n').next().unwrap_or(&[]);
+    sets::is_mark(line)
+}
+
+/// Open a universal file: headers are read and the ends of sets found, no samples are read.
+pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
+    let file = FileBytes::open(path)?;
+    if !recognises(file.all()) {
+        let found = format!("{:?}", sets::snippet(file.all(), 0));
+        return Err(file.refuse(0, "the line '    -1' that begins a set", found));
+    }
+    let sets = sets::scan(&file)?;
+    let (datasets, origins) = arrange::arrange(&sets);
+    let mut notes = sets.notes.clone();
+    if !sets.skipped.is_empty() {
+        let each = sets
+            .skipped
+            .iter()
+            .map(|(name, count)| format!("{name} ({count})"));
+        notes.push(format!(
+            "sets not read: {}",
+            each.collect::<Vec<_>>().join(", ")
+        ));
+    }
+    Ok(Box::new(UniversalFile {
+        file,
+        sets,
+        datasets,
+        origins,
+        notes,
+    }))
+}
+
+struct UniversalFile {
+    file: FileBytes,
+    sets: Sets,
+    datasets: Vec<DatasetInfo>,
+    origins: Vec<Vec<Origin>>,
+    notes: Vec<String>,
+}
+
+impl Source for UniversalFile {
+    fn format(&self) -> &'static str {
+        "uff"
+    }
+
+    fn path(&self) -> &Path {
+        self.file.path()
+    }
+
+    fn datasets(&self) -> &[DatasetInfo] {
+        &self.datasets
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
+        let origins = self.origins.get(dataset).map_or(&[][..], Vec::as_slice);
+        let wanted: Option<Vec<_>> = channels.iter().map(|&c| origins.get(c).copied()).collect();
+        match wanted {
+            Some(wanted) => samples::read(&self.file, &self.sets.functions, &wanted),
+            None => Err(ReadError {
+                byte: None,
+                remedy: "Ask for channels that the file lists.".into(),
+                ..self.file.refuse(
+                    0,
+                    format!("channels of dataset {dataset} (it has {})", origins.len()),
+                    format!("a request for channels {channels:?}"),
+                )
+            }),
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! WAV files: PCM of 1 to 64 bits, floating point, extensible, RF64, RIFX.
+//!
+//! How a file maps to datasets and channels: the file is one dataset without a name, its channels
+//! are `channel 1`, `channel 2`, …
+//!
+//! WAV has no units: PCM numbers are told as the file holds them, left-justified in the next
+//! native integer, as the format has them within a sample's own bytes: 9 to 16 bits as 16-bit,
+//! up to 32 as 32-bit, up to 64 as 64-bit numbers, so that full scale is the same for every width
+//! of a class (property `full_scale`); up to 8 bits as unsigned 8-bit numbers around 128
+//! (property `zero_level`). Texts (LIST INFO) are attributes; a broadcast chunk gives the start.
+//! A file that was cut short within its samples is read as far as it goes, with a note.
+
+mod chunks;
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use chunks::{Format, Wave};
+
+use super::bytes::FileBytes;
+use super::numbers::{self, ByteOrder, Number, Spacing};
+use super::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType};
+
+/// Whether a file's first bytes are those of a WAV file.
+pub fn recognises(head: &[u8]) -> bool {
+    chunks::byte_order(head).is_some()
+}
+
+/// Open a WAV file: its chunks are found, no samples are read.
+pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
+    let file = FileBytes::open(path)?;
+    let wave = chunks::scan(&file)?;
+    let channels = (1..=wave.format.channels)
+        .map(|k| channel(&wave, k))
+        .collect();
+    let attributes = wave.attributes.clone();
+    let dataset = DatasetInfo {
+        name: String::new(),
+        channels,
+        time_axis: None,
+        attributes,
+    };
+    Ok(Box::new(WaveFile {
+        file,
+        wave,
+        datasets: [dataset],
+    }))
+}
+
+fn channel(wave: &Wave, number: u16) -> ChannelInfo {
+    let format = &wave.format;
+    let stored = match (format.float, format.bytes) {
+        (true, bytes) => StoredType::Float(bytes as u8 * 8),
+        (false, 1) => StoredType::UInt(8),
+        (false, _) => StoredType::Int(native_bits(format)),
+    };
+    let mut properties = BTreeMap::new();
+    properties.insert("bits_per_sample".to_owned(), format.bits.to_string());
+    let full_scale = match (format.float, format.bytes) {
+        (true, _) => 1.0,
+        (false, 1) => 128.0,
+        (false, _) => 2f64.powi(i32::from(native_bits(format)) - 1),
+    };
+    properties.insert("full_scale".to_owned(), full_scale.to_string());
+    if !format.float && format.bytes == 1 {
+        properties.insert("zero_level".to_owned(), "128".to_owned());
+    }
+    ChannelInfo {
+        name: format!("channel {number}"),
+        unit: None,
+        stored,
+        samples: wave.samples,
+        sample_rate_hz: Some(f64::from(format.rate)),
+        start_time: wave.start_time.clone(),
+        properties,
+    }
+}
+
+/// Bits of the native integer that holds a sample of PCM.
+fn native_bits(format: &Format) -> u8 {
+    match format.bytes {
+        1 => 8,
+        2 => 16,
+        3 | 4 => 32,
+        _ => 64,
+    }
+}
+
+struct WaveFile {
+    file: FileBytes,
+    wave: Wave,
+    datasets: [DatasetInfo; 1],
+}
+
+impl WaveFile {
+    fn channel(&self, channel: usize) -> Result<Samples, ReadError> {
+        let Wave {
+            format,
+            at,
+            samples,
+            order,
+            ..
+        } = &self.wave;
+        let bytes = usize::from(format.bytes);
+        let stride = bytes * usize::from(format.channels);
+        let data = self.file.slice(*at, samples * stride as u64, "samples")?;
+        let count = *samples as usize;
+        let spacing = Spacing {
+            offset: channel * bytes,
+            stride,
+        };
+        let number = match (format.float, bytes) {
+            (true, 4) => Number::F32,
+            (true, _) => Number::F64,
+            (false, 1) => Number::U8,
+            (false, 2) => Number::I16,
+            (false, 4) => Number::I32,
+            (false, 8) => Number::I64,
+            _ => return Ok(Samples::Real(odd(data, spacing, bytes, *order))),
+        };
+        let mut out = Vec::with_capacity(count);
+        numbers::decode_spaced(number, *order, data, spacing, count, &mut out);
+        Ok(Samples::Real(out))
+    }
+}
+
+/// Integers of 3, 5, 6 or 7 bytes, left-justified in 32 or 64 bits.
+fn odd(data: &[u8], spacing: Spacing, bytes: usize, order: ByteOrder) -> Vec<f64> {
+    let unused = if bytes == 3 { 4 } else { 8 } - bytes;
+    let sample = |row: &[u8]| {
+        let mut word = [0; 8];
+        let (low, field) = (8 - bytes, &row[spacing.offset..spacing.offset + bytes]);
+        word[low..].copy_from_slice(field);
+        if order == ByteOrder::Big {
+            word[low..].reverse();
+        }
+        // The sample's sign is the word's; what lies beyond the native integer is shifted out.
+        let shift = 8 * (8 - bytes - unused);
+        (i64::from_le_bytes(word) >> shift) as f64
+    };
+    data.chunks_exact(spacing.stride).map(sample).collect()
+}
+
+impl Source for WaveFile {
+    fn format(&self) -> &'static str {
+        "wav"
+    }
+
+    fn path(&self) -> &Path {
+        self.file.path()
+    }
+
+    fn datasets(&self) -> &[DatasetInfo] {
+        &self.datasets
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.wave.notes
+    }
+
+    fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
+        let held = self.datasets.get(dataset).map_or(0, |d| d.channels.len());
+        if let Some(channel) = channels.iter().find(|&&channel| channel >= held) {
+            let found = format!("a request for channel {channel} of dataset {dataset}");
+            return Err(ReadError {
+                byte: None,
+                remedy: "Ask for channels that the file lists.".into(),
+                ..self.file.refuse(0, "a channel of the file", found)
+            });
+        }
+        channels
+            .iter()
+            .map(|&channel| self.channel(channel))
+            .collect()
+    }
+}
