@@ -64,6 +64,10 @@ impl Store for WithFallback {
         self.first.targets(array)
     }
 
+    fn file_bytes(&self) -> u64 {
+        self.first.file_bytes()
+    }
+
     fn stored_bytes(&self, array: &Array) -> Option<u64> {
         self.first
             .stored_bytes(array)
@@ -250,10 +254,13 @@ impl Store for SecondStore {
         ))
     }
 
+    fn file_bytes(&self) -> u64 {
+        std::fs::metadata(&self.path).map_or(0, |m| m.len())
+    }
+
     fn stored_bytes(&self, array: &Array) -> Option<u64> {
-        let claimed = array.count()?.checked_mul(array.element.bytes() as u64)?;
-        let length = std::fs::metadata(&self.path).ok()?.len();
         // The library does not tell; the file's length bounds it.
-        Some(claimed.min(length))
+        let claimed = array.count()?.checked_mul(array.element.bytes() as u64)?;
+        Some(claimed.min(self.file_bytes()))
     }
 }

@@ -51,6 +51,7 @@ impl ::hdf5::Source for Positional {
 /// An open file.
 pub struct PureStore {
     datasets: Mutex<Vec<Dataset>>,
+    length: u64,
 }
 
 /// Open a file and walk its tree.
@@ -81,6 +82,7 @@ fn walk(source: Positional) -> Result<(PureStore, Tree, bool), String> {
     let access = FileAccessProperties::new()
         .with_metadata_cache(MetadataCacheConfig::new(METADATA_CACHE_BYTES))
         .with_chunk_cache(ChunkCacheConfig::disabled());
+    let length = source.length;
     let file = ::hdf5::File::from_source_with_options(source, access).map_err(|e| e.to_string())?;
     let mut walk = Walk {
         datasets: Vec::new(),
@@ -91,6 +93,7 @@ fn walk(source: Positional) -> Result<(PureStore, Tree, bool), String> {
     Ok((
         PureStore {
             datasets: Mutex::new(walk.datasets),
+            length,
         },
         tree,
         old,
@@ -367,6 +370,10 @@ impl Store for PureStore {
             });
         }
         Ok(targets)
+    }
+
+    fn file_bytes(&self) -> u64 {
+        self.length
     }
 
     fn stored_bytes(&self, array: &Array) -> Option<u64> {

@@ -106,6 +106,9 @@ pub trait Store: Send + Sync {
 
     /// Bytes that an array takes in the file, where the library tells.
     fn stored_bytes(&self, array: &Array) -> Option<u64>;
+
+    /// Length of the file.
+    fn file_bytes(&self) -> u64;
 }
 
 /// What a reference points at.
