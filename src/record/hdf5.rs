@@ -4,6 +4,7 @@
 
 pub mod element;
 pub mod fallback;
+pub mod guard;
 pub mod legacy;
 pub mod matlab;
 pub mod matlab_file;
@@ -15,6 +16,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use crate::record::hdf5::element::{Element, Stride};
+use crate::record::hdf5::guard::Guarded;
 use crate::record::hdf5::plan::{Locator, Part, Plan, Plans};
 use crate::record::hdf5::store::{Array, Store, Tree};
 use rayon::prelude::*;
@@ -25,12 +27,6 @@ use crate::units::parse_unit;
 
 /// The first bytes of an HDF5 file.
 pub const SIGNATURE: [u8; 8] = [0x89, b'H', b'D', b'F', b'\r', b'\n', 0x1A, b'\n'];
-/// How many times larger than its whole file an unpacked array may be: signals pack a few times,
-/// constant channels beside them far more.
-const GREATEST_RATIO: u64 = 128;
-/// Arrays up to this size are read whatever their packing.
-const HARMLESS_BYTES: u64 = 1 << 16;
-
 struct Hdf5Source {
     path: PathBuf,
     store: Box<dyn Store>,
@@ -72,7 +68,7 @@ fn open_store(path: &Path) -> Result<(Box<dyn Store>, Tree, Option<String>), Rea
     let length = file.metadata().map_err(io)?.len();
     match pure::open(file, length) {
         Ok((store, tree)) => Ok((
-            Box::new(fallback::WithFallback::new(store, path)),
+            Box::new(Guarded(fallback::WithFallback::new(store, path))),
             tree,
             None,
         )),
@@ -80,7 +76,7 @@ fn open_store(path: &Path) -> Result<(Box<dyn Store>, Tree, Option<String>), Rea
             Ok((store, tree)) => {
                 let note =
                     format!("read by the second HDF5 library, because the first says: {first}");
-                Ok((Box::new(store), tree, Some(note)))
+                Ok((Box::new(Guarded(store)), tree, Some(note)))
             }
             Err(second) => Err(ReadError::new(
                 path,
@@ -102,25 +98,6 @@ fn byte_of(message: &str, length: u64) -> u64 {
     }
 }
 
-/// Refuse an array whose shape claims far more than the file can hold, or of which nothing is
-/// stored.
-fn check_claim(store: &dyn Store, array: &Array) -> Result<(), String> {
-    let claimed = array.count().and_then(|n| n.checked_mul(array.element.bytes() as u64));
-    let stored = || store.stored_bytes(array).unwrap_or(0);
-    let believed = match claimed {
-        Some(bytes) if bytes <= HARMLESS_BYTES => true,
-        Some(bytes) => bytes / GREATEST_RATIO <= store.file_bytes() && stored() > 0,
-        None => false,
-    };
-    match believed {
-        true => Ok(()),
-        false => {
-            let shape = &array.shape;
-            Err(format!("a shape of {shape:?} for which the file stores {} bytes", stored()))
-        }
-    }
-}
-
 impl Hdf5Source {
     fn error(&self, array: &Array, found: impl Into<String>) -> ReadError {
         ReadError::new(
@@ -134,7 +111,6 @@ impl Hdf5Source {
 
     /// The bytes of an array, once its size is known to be earnest.
     fn bytes(&self, plan: &Plan, array: &Array) -> Result<Vec<u8>, ReadError> {
-        check_claim(&*self.store, array).map_err(|found| self.error(array, found))?;
         match plan.slab {
             Some(slab) => self.store.rows(array, slab, 1),
             None => self.store.raw(array),

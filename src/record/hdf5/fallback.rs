@@ -68,6 +68,10 @@ impl Store for WithFallback {
         self.first.file_bytes()
     }
 
+    fn chunk_bytes(&self, array: &Array) -> u64 {
+        self.first.chunk_bytes(array)
+    }
+
     fn stored_bytes(&self, array: &Array) -> Option<u64> {
         self.first
             .stored_bytes(array)
@@ -252,6 +256,22 @@ impl Store for SecondStore {
             "references of '{}' are not followed by the second library",
             array.path
         ))
+    }
+
+    fn chunk_bytes(&self, array: &Array) -> u64 {
+        let chunk = self
+            .with(array, |d| Ok(d.chunk_dims()))
+            .ok()
+            .flatten()
+            .unwrap_or_default();
+        if chunk.is_empty() {
+            return 0;
+        }
+        let bytes = array.element.bytes().max(1) as u64;
+        chunk
+            .iter()
+            .try_fold(bytes, |n, &d| n.checked_mul(d as u64))
+            .unwrap_or(u64::MAX)
     }
 
     fn file_bytes(&self) -> u64 {

@@ -18,6 +18,9 @@ use crate::record::text::read_exact_at;
 /// Bytes of metadata that the library may keep.
 const METADATA_CACHE_BYTES: usize = 4 << 20;
 
+/// The registered number of h5py's LZF filter.
+const FILTER_LZF: u16 = 32000;
+
 /// A file read at offsets, shared by threads.
 struct Positional {
     file: File,
@@ -374,6 +377,28 @@ impl Store for PureStore {
 
     fn file_bytes(&self) -> u64 {
         self.length
+    }
+
+    fn chunk_bytes(&self, array: &Array) -> u64 {
+        let Ok(dataset) = self.dataset(array) else {
+            return 0;
+        };
+        let shape = dataset.chunk_shape().ok().flatten().unwrap_or_default();
+        if shape.is_empty() {
+            return 0;
+        }
+        let bytes = array.element.bytes().max(1) as u64;
+        let by_shape = shape
+            .iter()
+            .try_fold(bytes, |n, &d| n.checked_mul(d))
+            .unwrap_or(u64::MAX);
+        // LZF states the size of an unpacked chunk in its own parameters.
+        let pipeline = dataset.filter_pipeline();
+        let lzf = pipeline
+            .iter()
+            .filter(|f| f.id == FILTER_LZF)
+            .flat_map(|f| f.client_data.get(2));
+        by_shape.max(lzf.map(|&n| u64::from(n)).max().unwrap_or(0))
     }
 
     fn stored_bytes(&self, array: &Array) -> Option<u64> {
