@@ -72,21 +72,30 @@ fn open_store(path: &Path) -> Result<(Box<dyn Store>, Tree, Option<String>), Rea
             tree,
             None,
         )),
-        Err(first) => match fallback::open(path) {
+        Err(first) => match second(path, &first) {
             Ok((store, tree)) => {
                 let note =
                     format!("read by the second HDF5 library, because the first says: {first}");
                 Ok((Box::new(Guarded(store)), tree, Some(note)))
             }
-            Err(second) => Err(ReadError::new(
+            Err(both) => Err(ReadError::new(
                 path,
                 "a complete HDF5 file",
-                format!("{first}; the second library says: {second}"),
+                both,
                 "Copy the file anew from the instrument, or write it with an older file layout.",
             )
             .at(byte_of(&first, length))),
         },
     }
+}
+
+/// Open a file with the second library, where the first does not know its layout; else, and where
+/// both refuse, their words.
+fn second(path: &Path, first: &str) -> Result<(fallback::SecondStore, Tree), String> {
+    if !fallback::is_unsupported(first) {
+        return Err(first.to_owned());
+    }
+    fallback::open(path).map_err(|e| format!("{first}; the second library says: {e}"))
 }
 
 /// Where a library's message points: behind the end for a file cut off, else its beginning.

@@ -17,6 +17,22 @@ pub struct SecondStore {
     path: PathBuf,
 }
 
+/// Whether the first library's words mean that it does not know a layout, rather than that the
+/// file is damaged: only then the second one may do better.
+pub fn is_unsupported(message: &str) -> bool {
+    const WORDS: [&str; 7] = [
+        "unsupported",
+        "not supported",
+        "version",
+        "index type",
+        "layout class",
+        "datatype class",
+        "filter",
+    ];
+    let message = message.to_lowercase();
+    WORDS.iter().any(|w| message.contains(w))
+}
+
 /// The first library, and the second for arrays that it refuses.
 pub struct WithFallback {
     first: PureStore,
@@ -39,8 +55,9 @@ impl WithFallback {
         first: Result<T, String>,
         second: impl FnOnce(&SecondStore) -> Result<T, String>,
     ) -> Result<T, String> {
-        first.or_else(|e| {
-            second(&self.second).map_err(|f| format!("{e}; the second library says: {f}"))
+        first.or_else(|e| match is_unsupported(&e) {
+            true => second(&self.second).map_err(|f| format!("{e}; the second library says: {f}")),
+            false => Err(e),
         })
     }
 }
