@@ -12,6 +12,7 @@ mod condition;
 #[cfg(test)]
 pub mod conformance;
 mod consistency;
+pub mod convert;
 pub mod csv;
 pub mod hdf5;
 pub mod hdf5_write;
@@ -22,6 +23,7 @@ pub mod open;
 pub mod parquet;
 pub mod rate;
 pub mod source;
+pub mod summary;
 pub mod tdms;
 pub mod text;
 pub mod time_axis;
