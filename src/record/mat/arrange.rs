@@ -8,8 +8,6 @@ use crate::record::source::{ChannelInfo, DatasetInfo};
 
 /// Matrices with more columns than this are one channel, not one per column.
 const MOST_COLUMNS: u64 = 4096;
-/// Most attributes of the file that are repeated with each of its records.
-const MOST_SHARED: usize = 64;
 /// A matrix this many times wider than tall is read by rows.
 const WIDE: u64 = 16;
 
@@ -46,7 +44,10 @@ pub struct Arranged {
 
 /// Arrange the arrays: a struct or cell array of records gives one dataset per element; all
 /// other variables are one dataset without a name.
-pub fn arrange(tree: &Tree) -> Arranged {
+///
+/// Single values of the file are repeated as attributes of every record as far as that takes no
+/// more than `budget` bytes.
+pub fn arrange(tree: &Tree, budget: u64) -> Arranged {
     let mut by_variable: Vec<Vec<usize>> = vec![Vec::new(); tree.variables.len()];
     for (index, leaf) in tree.leaves.iter().enumerate() {
         by_variable[leaf.variable].push(index);
@@ -55,7 +56,7 @@ pub fn arrange(tree: &Tree) -> Arranged {
         .iter()
         .map(|leaves| holds_records(tree, leaves))
         .collect();
-    let mut builder = Builder::new(tree, &records);
+    let mut builder = Builder::new(tree, &records, budget);
     let common: Vec<usize> = (0..tree.leaves.len())
         .filter(|&leaf| !records[tree.leaves[leaf].variable])
         .collect();
@@ -160,14 +161,21 @@ struct Builder<'t> {
 }
 
 impl<'t> Builder<'t> {
-    fn new(tree: &'t Tree, records: &[bool]) -> Self {
+    fn new(tree: &'t Tree, records: &[bool], budget: u64) -> Self {
         let common = || tree.leaves.iter().filter(|leaf| !records[leaf.variable]);
         let texts = tree.leaves.iter().filter(|leaf| !leaf.is_numeric());
         let texts = texts
             .filter_map(|l| Some((l.name.as_str(), l.value.as_deref()?)))
             .collect();
         let shared = common().filter_map(|l| Some((l.name.clone(), l.value.clone()?)));
-        let shared = shared.take(MOST_SHARED).collect();
+        let mut left = budget / tree.leaves.len().max(1) as u64;
+        let affordable = |(name, value): &(String, String)| {
+            let size = (name.len() + value.len() + 64) as u64;
+            let fits = size <= left;
+            left = left.saturating_sub(size);
+            fits
+        };
+        let shared = shared.take_while(affordable).collect();
         let is_time = |(_, leaf): &(usize, &Leaf)| {
             let open = !records[leaf.variable] && is_vector(leaf) && leaf.count() > 1;
             open && matches!(leaf.content, Content::Real(_)) && is_time_name(&leaf.name)

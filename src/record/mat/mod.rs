@@ -20,7 +20,10 @@
 //!   refused.
 
 mod arrange;
+mod contents;
+mod element;
 mod inflate;
+mod names;
 mod samples;
 #[cfg(test)]
 mod tests;
@@ -52,7 +55,7 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         datasets,
         origins,
         notes,
-    } = arrange::arrange(&tree);
+    } = arrange::arrange(&tree, file.len().saturating_mul(2));
     let left_out = tree
         .refused
         .iter()

@@ -15,6 +15,8 @@
 //!   way); the first stamp is its start time, and it is the dataset's time axis.
 //! - A last segment that was cut short is read as far as it goes, with a note.
 
+mod content;
+mod index;
 mod layout;
 mod samples;
 mod scale;
@@ -27,9 +29,9 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 use std::sync::Arc;
 
+use content::{Content, Object};
 use samples::Reader;
 use scale::Scaling;
-use segment::{Content, Object};
 use value::{Kind, Value};
 
 use super::bytes::FileBytes;

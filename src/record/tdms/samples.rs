@@ -1,8 +1,8 @@
 //! Samples of a channel, gathered from the chunks of all segments.
 
+use super::content::{Content, Object, Piece};
 use super::layout::Entry;
 use super::scale::Scaling;
-use super::segment::{Content, Object, Piece};
 use super::value::{Kind, Stamp};
 use crate::record::bytes::FileBytes;
 use crate::record::numbers::{self, ByteOrder, Number, Spacing};
