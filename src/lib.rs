@@ -3,10 +3,12 @@
 //!
 //! Data walks one street, and a room never imports from a room to its right:
 //!
-//! `units` < `signal` < `record` < `event` < `motion` < `model` < `atlas` < `identify` <
-//! `report` < `campaign` < `pipeline` < `cli`.
+//! `units` < `output` < `signal` < `record` < `event` < `motion` < `model` < `atlas` <
+//! `synthetic` < `identify` < `report` < `campaign` < `pipeline` < `cli`.
 
 pub mod units;
+
+pub mod output;
 
 pub mod signal;
 
@@ -19,6 +21,8 @@ pub mod motion;
 pub mod model;
 
 pub mod atlas;
+
+pub mod synthetic;
 
 pub mod identify;
 

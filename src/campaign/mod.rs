@@ -1,1 +1,19 @@
-//! (to be filled)
+//! campaign.toml: as written ([`written`]), then resolved ([`resolved`]) with every default made
+//! explicit, or every fault at once ([`faults`]).
+
+mod channels;
+pub mod check;
+pub mod faults;
+pub mod guess;
+mod names;
+mod quantity;
+pub mod read;
+mod records;
+mod resolve;
+pub mod resolved;
+mod run_table;
+pub mod template;
+pub mod written;
+
+pub use records::Opener;
+pub use resolve::{Outcome, load};

@@ -1,7 +1,27 @@
 //! Impacts seen in a record, from the contact channel and from velocity jumps, and the drive's
 //! tone that strobes them. This room sees no parameter of the model.
 
+pub mod contact;
+pub mod detect;
+pub mod drift;
+pub mod drive;
+pub mod jumps;
+pub mod kinematics;
+pub mod refine;
+
+pub use detect::{Detection, detect};
+
 use serde::{Deserialize, Serialize};
+
+/// How the rig is built, as far as the detection of impacts has to know.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Rig {
+    /// Two masses that hit each other; closing speed x' + y'.
+    Double,
+    /// One mass that hits a fixed stop; closing speed x'.
+    Single,
+}
 
 /// Through which channel an impact was seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]

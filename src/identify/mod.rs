@@ -2,6 +2,20 @@
 //!
 //! The result is plain data ([`Identification`]), written as `identification.json`.
 
+pub mod agreement;
+pub mod boundary;
+pub mod decay;
+pub mod estimate;
+pub mod impacts;
+pub mod methods;
+pub mod parameters;
+pub mod resonance;
+pub mod run;
+pub mod solver;
+pub mod specimens;
+pub mod trajectory;
+pub mod verdict;
+
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
@@ -124,6 +138,19 @@ pub struct Verdict {
     pub findings: Vec<String>,
 }
 
+/// Result for one specimen of a campaign that holds several.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SpecimenResult {
+    /// The verdict on it.
+    pub verdict: Verdict,
+    /// Its joint estimate.
+    pub joint: MethodResult,
+    /// Each method alone.
+    pub methods: BTreeMap<String, MethodResult>,
+    /// Whether the methods agree.
+    pub agreement: Agreement,
+}
+
 /// The whole identification, `identification.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Identification {
@@ -135,6 +162,9 @@ pub struct Identification {
     pub methods: BTreeMap<String, MethodResult>,
     /// Whether the methods agree.
     pub agreement: Agreement,
+    /// Results for each specimen, where the campaign holds several.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
+    pub specimens: BTreeMap<String, SpecimenResult>,
     /// The resolved settings.
     pub settings: serde_json::Value,
     /// Versions of program and formats.

@@ -1,6 +1,18 @@
 //! Types of motion z = p/n (p impacts in n drive periods), each with its evidence. This room
 //! sees no parameter of the model.
 
+pub mod aperiodic;
+pub mod bracket;
+pub mod classify;
+pub mod closure;
+pub mod fold;
+pub mod observation;
+pub mod response;
+
+pub use bracket::{BoundaryKind, Bracket, brackets};
+pub use classify::{ClassifySettings, Evidence, Finding, classify};
+pub use observation::{Observation, observe};
+
 use serde::{Deserialize, Serialize};
 
 /// The type of motion that a record shows.
@@ -35,7 +47,11 @@ pub enum Motion {
 impl Motion {
     /// Periodic motion z = p/n without dead zone.
     pub fn periodic(impacts_p: u32, periods_n: u32) -> Self {
-        Self::Periodic { impacts_p, periods_n, dead_zone: false }
+        Self::Periodic {
+            impacts_p,
+            periods_n,
+            dead_zone: false,
+        }
     }
 
     /// The paper's label: `0`, `1`, `1j`, `1/2`, `2/2`, `2/1`, `beat`, `chaotic`, `joined`,
@@ -43,7 +59,11 @@ impl Motion {
     pub fn label(&self) -> String {
         match self {
             Self::Impactless => "0".into(),
-            Self::Periodic { impacts_p, periods_n, dead_zone } => {
+            Self::Periodic {
+                impacts_p,
+                periods_n,
+                dead_zone,
+            } => {
                 let j = if *dead_zone { "j" } else { "" };
                 match (impacts_p, periods_n) {
                     (1, 1) => format!("1{j}"),
@@ -60,7 +80,10 @@ impl Motion {
 
     /// Whether the motion repeats itself after a whole number of drive periods.
     pub fn is_periodic(&self) -> bool {
-        matches!(self, Self::Impactless | Self::Periodic { .. } | Self::Joined)
+        matches!(
+            self,
+            Self::Impactless | Self::Periodic { .. } | Self::Joined
+        )
     }
 }
 

@@ -4,13 +4,26 @@
 //! [`Record`]s. A simulated record is the same type, so that one detector and one classifier
 //! judge experiment and simulation alike. This room does not know the model.
 
+pub mod attribute;
 pub mod bytes;
+pub mod calibrate;
+mod condition;
 #[cfg(test)]
 pub mod conformance;
+mod consistency;
+pub mod csv;
+pub mod hdf5;
+pub mod hdf5_write;
+pub mod lvm;
 pub mod mat;
 pub mod numbers;
+pub mod open;
+pub mod parquet;
+pub mod rate;
 pub mod source;
 pub mod tdms;
+pub mod text;
+pub mod time_axis;
 pub mod uff;
 pub mod wav;
 
@@ -140,6 +153,10 @@ pub struct Setting {
     pub drive_amplitude: f64,
     /// Position in the order of acquisition.
     pub sequence: usize,
+    /// Which rig, mass or bumper it was taken on, where a campaign holds several (column
+    /// `specimen` of the run table); parameters are identified for each.
+    #[serde(default)]
+    pub specimen: Option<String>,
 }
 
 /// Something wrong or noteworthy with a record: what, where, and what to do about it.

@@ -110,3 +110,115 @@ pub trait Source: Send + Sync {
     /// the channel's info states.
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError>;
 }
+
+impl ReadError {
+    /// An error about a file as a whole; see [`ReadError::at`] and [`ReadError::channel`].
+    pub fn new(
+        path: &Path,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self {
+            path: path.to_path_buf(),
+            channel: None,
+            expected: expected.into(),
+            found: found.into(),
+            byte: None,
+            remedy: remedy.into(),
+        }
+    }
+
+    /// The same error with the offset in the file at which it was found.
+    #[must_use]
+    pub fn at(mut self, byte: u64) -> Self {
+        self.byte = Some(byte);
+        self
+    }
+
+    /// The same error with the channel or dataset concerned.
+    #[must_use]
+    pub fn channel(mut self, name: impl Into<String>) -> Self {
+        self.channel = Some(name.into());
+        self
+    }
+
+    /// A file that the operating system would not open or read.
+    pub fn io(path: &Path, error: &std::io::Error) -> Self {
+        let remedy = match error.kind() {
+            std::io::ErrorKind::NotFound => {
+                "Check the path; a glob that matches nothing ends here too."
+            }
+            std::io::ErrorKind::PermissionDenied => "Allow reading the file.",
+            _ => "Check the disk and copy the file anew.",
+        };
+        Self::new(path, "a readable file", error.to_string(), remedy)
+    }
+}
+
+impl DatasetInfo {
+    /// Index of the channel of that name; where names repeat, the first.
+    pub fn channel_index(&self, name: &str) -> Option<usize> {
+        self.channels.iter().position(|c| c.name == name)
+    }
+
+    /// The rate that the channels share, Hz; `None` where the file tells none or several.
+    pub fn sample_rate_hz(&self) -> Option<f64> {
+        let mut rates = self.channels.iter().filter_map(|c| c.sample_rate_hz);
+        let first = rates.next()?;
+        rates
+            .all(|r| (r - first).abs() <= 1e-9 * first.abs())
+            .then_some(first)
+    }
+}
+
+impl Samples {
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Real(v) => v.len(),
+            Self::Complex(v) => v.len(),
+            Self::Text(v) => v.len(),
+        }
+    }
+
+    /// Whether there is no sample.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The real numbers; `None` for complex numbers and text.
+    pub fn into_real(self) -> Option<Vec<f64>> {
+        match self {
+            Self::Real(v) => Some(v),
+            _ => None,
+        }
+    }
+}
+
+/// The dataset that a read asks for, once its channels are known to exist.
+///
+/// # Errors
+/// Where the dataset or a channel does not exist.
+pub fn requested<'a>(
+    source: &'a dyn Source,
+    dataset: usize,
+    channels: &[usize],
+) -> Result<&'a DatasetInfo, ReadError> {
+    let missing = |what: String, of: usize| {
+        ReadError::new(
+            source.path(),
+            format!("an index below {of}"),
+            format!("{what}, which the file does not have"),
+            "Ask for what the file lists.",
+        )
+    };
+    let datasets = source.datasets();
+    let info = datasets
+        .get(dataset)
+        .ok_or_else(|| missing(format!("dataset {dataset}"), datasets.len()))?;
+    match channels.iter().find(|&&c| c >= info.channels.len()) {
+        Some(c) => Err(missing(format!("channel {c}"), info.channels.len()).channel(&info.name)),
+        None => Ok(info),
+    }
+}

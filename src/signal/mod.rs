@@ -1,1 +1,10 @@
-//! (to be filled)
+//! Filters, spectra, tones and local polynomials on plain slices; the only user of rustfft.
+//!
+//! Nothing here knows what a record is: every function takes samples at a uniform step.
+
+pub mod decay;
+pub mod drift;
+pub mod local_fit;
+pub mod robust;
+pub mod spectrum;
+pub mod tone;

@@ -46,8 +46,8 @@ pub struct Arranged {
 /// other variables are one dataset without a name.
 ///
 /// Single values of the file are repeated as attributes of every record as far as that takes no
-/// more than `budget` bytes.
-pub fn arrange(tree: &Tree, budget: u64) -> Arranged {
+/// more memory than the arrays themselves.
+pub fn arrange(tree: &Tree) -> Arranged {
     let mut by_variable: Vec<Vec<usize>> = vec![Vec::new(); tree.variables.len()];
     for (index, leaf) in tree.leaves.iter().enumerate() {
         by_variable[leaf.variable].push(index);
@@ -56,7 +56,7 @@ pub fn arrange(tree: &Tree, budget: u64) -> Arranged {
         .iter()
         .map(|leaves| holds_records(tree, leaves))
         .collect();
-    let mut builder = Builder::new(tree, &records, budget);
+    let mut builder = Builder::new(tree, &records);
     let common: Vec<usize> = (0..tree.leaves.len())
         .filter(|&leaf| !records[tree.leaves[leaf].variable])
         .collect();
@@ -161,14 +161,15 @@ struct Builder<'t> {
 }
 
 impl<'t> Builder<'t> {
-    fn new(tree: &'t Tree, records: &[bool], budget: u64) -> Self {
+    fn new(tree: &'t Tree, records: &[bool]) -> Self {
         let common = || tree.leaves.iter().filter(|leaf| !records[leaf.variable]);
         let texts = tree.leaves.iter().filter(|leaf| !leaf.is_numeric());
         let texts = texts
             .filter_map(|l| Some((l.name.as_str(), l.value.as_deref()?)))
             .collect();
         let shared = common().filter_map(|l| Some((l.name.clone(), l.value.clone()?)));
-        let mut left = budget / tree.leaves.len().max(1) as u64;
+        let sizes = tree.leaves.iter().map(|leaf| leaf.part().bytes + 128);
+        let mut left = sizes.sum::<u64>() / tree.leaves.len().max(1) as u64;
         let affordable = |(name, value): &(String, String)| {
             let size = (name.len() + value.len() + 64) as u64;
             let fits = size <= left;

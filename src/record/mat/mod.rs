@@ -19,7 +19,7 @@
 //! - Sparse matrices and opaque objects are left out by name; a file that holds nothing else is
 //!   refused.
 
-mod arrange;
+pub(crate) mod arrange;
 mod contents;
 mod element;
 mod inflate;
@@ -27,8 +27,8 @@ mod names;
 mod samples;
 #[cfg(test)]
 mod tests;
-mod text;
-mod tree;
+pub(crate) mod text;
+pub(crate) mod tree;
 mod v4;
 mod v5;
 
@@ -55,7 +55,7 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         datasets,
         origins,
         notes,
-    } = arrange::arrange(&tree, file.len().saturating_mul(2));
+    } = arrange::arrange(&tree);
     let left_out = tree
         .refused
         .iter()

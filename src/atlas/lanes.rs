@@ -1,0 +1,348 @@
+//! Vectors of f64 of several widths behind one trait, so that the marching kernel is written
+//! once: AVX-512, AVX2 with FMA, and one lane of plain arithmetic for every other machine.
+//!
+//! The methods are inlined into functions that enable the instruction set; they must only be
+//! called where the processor has it, which `map` asks at run time.
+
+/// A vector of lanes.
+pub trait Lanes: Copy {
+    /// Number of lanes.
+    const WIDTH: usize;
+    /// One truth value per lane.
+    type Mask: Copy;
+    /// The same number in every lane.
+    fn splat(a: f64) -> Self;
+    /// self + b
+    fn add(self, b: Self) -> Self;
+    /// self − b
+    fn sub(self, b: Self) -> Self;
+    /// self · b
+    fn mul(self, b: Self) -> Self;
+    /// self / b
+    fn div(self, b: Self) -> Self;
+    /// self · b + c
+    fn mul_add(self, b: Self, c: Self) -> Self;
+    /// c − self · b
+    fn neg_mul_add(self, b: Self, c: Self) -> Self;
+    /// Smaller of both.
+    fn min(self, b: Self) -> Self;
+    /// Greater of both.
+    fn max(self, b: Self) -> Self;
+    /// |self|
+    fn abs(self) -> Self;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// self / b to seven digits.
+    fn div_rough(self, b: Self) -> Self;
+    /// Upper bound of the square root, at most 1e-6 too great.
+    fn sqrt_above(self) -> Self;
+    /// self < b
+    fn lt(self, b: Self) -> Self::Mask;
+    /// self ≤ b
+    fn le(self, b: Self) -> Self::Mask;
+    /// Both.
+    fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// The first without the second.
+    fn and_not(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// Either.
+    fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// Where the mask holds `self`, elsewhere `other`.
+    fn or_else(self, mask: Self::Mask, other: Self) -> Self;
+    /// One bit per lane, lane 0 lowest.
+    fn bits(mask: Self::Mask) -> u32;
+    /// The value in one lane.
+    fn get(&self, lane: usize) -> f64 {
+        assert!(lane < Self::WIDTH);
+        // SAFETY: every implementor is WIDTH f64 in memory without padding.
+        unsafe { *std::ptr::from_ref(self).cast::<f64>().add(lane) }
+    }
+    /// Set the value in one lane.
+    fn set(&mut self, lane: usize, value: f64) {
+        assert!(lane < Self::WIDTH);
+        // SAFETY: as in `get`.
+        unsafe { *std::ptr::from_mut(self).cast::<f64>().add(lane) = value }
+    }
+}
+
+impl Lanes for f64 {
+    const WIDTH: usize = 1;
+    type Mask = bool;
+    #[inline(always)]
+    fn splat(a: f64) -> Self {
+        a
+    }
+    #[inline(always)]
+    fn add(self, b: Self) -> Self {
+        self + b
+    }
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        self - b
+    }
+    #[inline(always)]
+    fn mul(self, b: Self) -> Self {
+        self * b
+    }
+    #[inline(always)]
+    fn div(self, b: Self) -> Self {
+        self / b
+    }
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        self * b + c
+    }
+    #[inline(always)]
+    fn neg_mul_add(self, b: Self, c: Self) -> Self {
+        c - self * b
+    }
+    #[inline(always)]
+    fn min(self, b: Self) -> Self {
+        if self < b { self } else { b }
+    }
+    #[inline(always)]
+    fn max(self, b: Self) -> Self {
+        if self > b { self } else { b }
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn div_rough(self, b: Self) -> Self {
+        self / b
+    }
+    #[inline(always)]
+    fn sqrt_above(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn lt(self, b: Self) -> bool {
+        self < b
+    }
+    #[inline(always)]
+    fn le(self, b: Self) -> bool {
+        self <= b
+    }
+    #[inline(always)]
+    fn and(a: bool, b: bool) -> bool {
+        a & b
+    }
+    #[inline(always)]
+    fn and_not(a: bool, b: bool) -> bool {
+        a & !b
+    }
+    #[inline(always)]
+    fn or(a: bool, b: bool) -> bool {
+        a | b
+    }
+    #[inline(always)]
+    fn or_else(self, mask: bool, other: Self) -> Self {
+        if mask { self } else { other }
+    }
+    #[inline(always)]
+    fn bits(mask: bool) -> u32 {
+        u32::from(mask)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+pub use x86::{Avx2, Avx512};
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use std::arch::x86_64::*;
+
+    use super::Lanes;
+
+    /// Four lanes, AVX2 and FMA.
+    #[derive(Clone, Copy)]
+    #[repr(transparent)]
+    pub struct Avx2(__m256d);
+
+    /// Eight lanes, AVX-512 F.
+    #[derive(Clone, Copy)]
+    #[repr(transparent)]
+    pub struct Avx512(__m512d);
+
+    // SAFETY of all blocks below: the caller of a kernel over these types has asked the
+    // processor for the instruction set (see `map::kernel_of_this_machine`).
+    impl Lanes for Avx2 {
+        const WIDTH: usize = 4;
+        type Mask = __m256d;
+        #[inline(always)]
+        fn splat(a: f64) -> Self {
+            Self(unsafe { _mm256_set1_pd(a) })
+        }
+        #[inline(always)]
+        fn add(self, b: Self) -> Self {
+            Self(unsafe { _mm256_add_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn sub(self, b: Self) -> Self {
+            Self(unsafe { _mm256_sub_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn mul(self, b: Self) -> Self {
+            Self(unsafe { _mm256_mul_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn div(self, b: Self) -> Self {
+            Self(unsafe { _mm256_div_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn mul_add(self, b: Self, c: Self) -> Self {
+            Self(unsafe { _mm256_fmadd_pd(self.0, b.0, c.0) })
+        }
+        #[inline(always)]
+        fn neg_mul_add(self, b: Self, c: Self) -> Self {
+            Self(unsafe { _mm256_fnmadd_pd(self.0, b.0, c.0) })
+        }
+        #[inline(always)]
+        fn min(self, b: Self) -> Self {
+            Self(unsafe { _mm256_min_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn max(self, b: Self) -> Self {
+            Self(unsafe { _mm256_max_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn abs(self) -> Self {
+            Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
+        }
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            Self(unsafe { _mm256_sqrt_pd(self.0) })
+        }
+        #[inline(always)]
+        fn div_rough(self, b: Self) -> Self {
+            Self(unsafe {
+                _mm256_cvtps_pd(_mm_div_ps(_mm256_cvtpd_ps(self.0), _mm256_cvtpd_ps(b.0)))
+            })
+        }
+        #[inline(always)]
+        fn sqrt_above(self) -> Self {
+            let rough = unsafe { _mm256_cvtps_pd(_mm_sqrt_ps(_mm256_cvtpd_ps(self.0))) };
+            Self(rough).mul(Self::splat(1.0 + 4e-7))
+        }
+        #[inline(always)]
+        fn lt(self, b: Self) -> __m256d {
+            unsafe { _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, b.0) }
+        }
+        #[inline(always)]
+        fn le(self, b: Self) -> __m256d {
+            unsafe { _mm256_cmp_pd::<_CMP_LE_OQ>(self.0, b.0) }
+        }
+        #[inline(always)]
+        fn and(a: __m256d, b: __m256d) -> __m256d {
+            unsafe { _mm256_and_pd(a, b) }
+        }
+        #[inline(always)]
+        fn and_not(a: __m256d, b: __m256d) -> __m256d {
+            unsafe { _mm256_andnot_pd(b, a) }
+        }
+        #[inline(always)]
+        fn or(a: __m256d, b: __m256d) -> __m256d {
+            unsafe { _mm256_or_pd(a, b) }
+        }
+        #[inline(always)]
+        fn or_else(self, mask: __m256d, other: Self) -> Self {
+            Self(unsafe { _mm256_blendv_pd(other.0, self.0, mask) })
+        }
+        #[inline(always)]
+        fn bits(mask: __m256d) -> u32 {
+            unsafe { _mm256_movemask_pd(mask) as u32 }
+        }
+    }
+
+    impl Lanes for Avx512 {
+        const WIDTH: usize = 8;
+        type Mask = __mmask8;
+        #[inline(always)]
+        fn splat(a: f64) -> Self {
+            Self(unsafe { _mm512_set1_pd(a) })
+        }
+        #[inline(always)]
+        fn add(self, b: Self) -> Self {
+            Self(unsafe { _mm512_add_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn sub(self, b: Self) -> Self {
+            Self(unsafe { _mm512_sub_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn mul(self, b: Self) -> Self {
+            Self(unsafe { _mm512_mul_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn div(self, b: Self) -> Self {
+            Self(unsafe { _mm512_div_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn mul_add(self, b: Self, c: Self) -> Self {
+            Self(unsafe { _mm512_fmadd_pd(self.0, b.0, c.0) })
+        }
+        #[inline(always)]
+        fn neg_mul_add(self, b: Self, c: Self) -> Self {
+            Self(unsafe { _mm512_fnmadd_pd(self.0, b.0, c.0) })
+        }
+        #[inline(always)]
+        fn min(self, b: Self) -> Self {
+            Self(unsafe { _mm512_min_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn max(self, b: Self) -> Self {
+            Self(unsafe { _mm512_max_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        fn abs(self) -> Self {
+            Self(unsafe { _mm512_abs_pd(self.0) })
+        }
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            Self(unsafe { _mm512_sqrt_pd(self.0) })
+        }
+        #[inline(always)]
+        fn div_rough(self, b: Self) -> Self {
+            Self(unsafe {
+                _mm512_cvtps_pd(_mm256_div_ps(_mm512_cvtpd_ps(self.0), _mm512_cvtpd_ps(b.0)))
+            })
+        }
+        #[inline(always)]
+        fn sqrt_above(self) -> Self {
+            let rough = unsafe { _mm512_cvtps_pd(_mm256_sqrt_ps(_mm512_cvtpd_ps(self.0))) };
+            Self(rough).mul(Self::splat(1.0 + 4e-7))
+        }
+        #[inline(always)]
+        fn lt(self, b: Self) -> __mmask8 {
+            unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, b.0) }
+        }
+        #[inline(always)]
+        fn le(self, b: Self) -> __mmask8 {
+            unsafe { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(self.0, b.0) }
+        }
+        #[inline(always)]
+        fn and(a: __mmask8, b: __mmask8) -> __mmask8 {
+            a & b
+        }
+        #[inline(always)]
+        fn and_not(a: __mmask8, b: __mmask8) -> __mmask8 {
+            a & !b
+        }
+        #[inline(always)]
+        fn or(a: __mmask8, b: __mmask8) -> __mmask8 {
+            a | b
+        }
+        #[inline(always)]
+        fn or_else(self, mask: __mmask8, other: Self) -> Self {
+            Self(unsafe { _mm512_mask_blend_pd(mask, other.0, self.0) })
+        }
+        #[inline(always)]
+        fn bits(mask: __mmask8) -> u32 {
+            u32::from(mask)
+        }
+    }
+}

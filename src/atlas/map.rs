@@ -1,0 +1,404 @@
+//! Region map: the motion that each cell of an (η, ρ) grid settles on, marched in parallel.
+//!
+//! Machines that reduce to one mass of constant R (a single mass, the symmetric double
+//! oscillator) march in the vector kernel; all others in the exact simulator, cell by cell.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::kernel::{Cell, Course, Feed, Outcome, march};
+use crate::model::recurrence::observe;
+use crate::model::{
+    Flight, Initial, Machine, ModelError, ModelImpact, Oscillator, Setting, SettledMotion,
+    Simulator, Watch,
+};
+
+/// What a cell shows.
+pub type CellMotion = SettledMotion;
+
+/// The grid: cell (i, k) lies at (`eta[i]`, `rho[k]`).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MapGrid {
+    /// η of the columns.
+    pub eta: Vec<f64>,
+    /// ρ of the rows.
+    pub rho: Vec<f64>,
+}
+
+impl MapGrid {
+    /// Evenly spaced, both ends included: (first, last, count) of η and of ρ.
+    pub fn even(eta: (f64, f64, usize), rho: (f64, f64, usize)) -> Self {
+        Self {
+            eta: even(eta),
+            rho: even(rho),
+        }
+    }
+
+    /// Number of cells.
+    pub fn len(&self) -> usize {
+        self.eta.len() * self.rho.len()
+    }
+
+    /// Whether there is no cell.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// (η, ρ) of a cell by its number, row by row.
+    pub fn at(&self, index: usize) -> (f64, f64) {
+        (
+            self.eta[index % self.eta.len()],
+            self.rho[index / self.eta.len()],
+        )
+    }
+}
+
+/// Evenly spaced numbers (first, last, count).
+pub fn even((first, last, count): (f64, f64, usize)) -> Vec<f64> {
+    let steps = count.saturating_sub(1).max(1) as f64;
+    (0..count)
+        .map(|i| first + (last - first) * (i as f64 / steps))
+        .collect()
+}
+
+/// Instruction sets that the kernel is compiled for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kernel {
+    /// One lane, any processor.
+    Scalar,
+    /// Four lanes.
+    Avx2,
+    /// Eight lanes.
+    Avx512,
+}
+
+impl Kernel {
+    /// The widest kernel that this processor runs.
+    pub fn of_this_machine() -> Self {
+        [Self::Avx512, Self::Avx2]
+            .into_iter()
+            .find(|k| k.is_available())
+            .unwrap_or(Self::Scalar)
+    }
+
+    /// Whether this processor runs it.
+    pub fn is_available(self) -> bool {
+        match self {
+            Self::Scalar => true,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => {
+                is_x86_feature_detected!("avx512f")
+                    && is_x86_feature_detected!("avx2")
+                    && is_x86_feature_detected!("fma")
+            }
+            #[cfg(not(target_arch = "x86_64"))]
+            _ => false,
+        }
+    }
+}
+
+/// How a map is marched.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MapSettings {
+    /// Settling and watch, in drive periods.
+    pub watch: Watch,
+    /// Leave a cell when no impact can come again, or when its orbit recurs.
+    pub leave_early: bool,
+    /// Start of every cell; a start beyond the contact is moved to it.
+    pub start: Initial,
+    /// Kernel to use; `None`: the widest this processor runs.
+    pub kernel: Option<Kernel>,
+}
+
+impl Default for MapSettings {
+    fn default() -> Self {
+        Self {
+            watch: Watch::default(),
+            leave_early: true,
+            start: Initial::rest(),
+            kernel: None,
+        }
+    }
+}
+
+/// A region map.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RegionMap {
+    /// η of the columns.
+    pub eta: Vec<f64>,
+    /// ρ of the rows.
+    pub rho: Vec<f64>,
+    /// The motions, row by row: cell (i, k) is `cells[k * eta.len() + i]`.
+    pub cells: Vec<CellMotion>,
+}
+
+impl RegionMap {
+    /// The motion at column i (η) and row k (ρ).
+    pub fn at(&self, i: usize, k: usize) -> CellMotion {
+        self.cells[k * self.eta.len() + i]
+    }
+}
+
+/// The map of a machine over a grid. Cells do not depend on each other, nor on the number of
+/// threads.
+///
+/// # Errors
+/// [`ModelError`] where a parameter or a grid value is out of range.
+pub fn region_map(
+    machine: &Machine,
+    grid: &MapGrid,
+    settings: &MapSettings,
+) -> Result<RegionMap, ModelError> {
+    let all: Vec<usize> = (0..grid.len()).collect();
+    let cells = map_cells(machine, grid, settings, &all)?;
+    Ok(RegionMap {
+        eta: grid.eta.clone(),
+        rho: grid.rho.clone(),
+        cells,
+    })
+}
+
+/// The motions of chosen cells of a grid, by their numbers.
+///
+/// # Errors
+/// As [`region_map`].
+pub fn map_cells(
+    machine: &Machine,
+    grid: &MapGrid,
+    settings: &MapSettings,
+    chosen: &[usize],
+) -> Result<Vec<CellMotion>, ModelError> {
+    check(machine, grid, settings)?;
+    if let Some(unit) = UnitMass::of(machine)
+        && settings.start.x == settings.start.y_or_x(machine)
+        && settings.start.vx == settings.start.vy_or_vx(machine)
+    {
+        let cells: Vec<Cell> = chosen
+            .iter()
+            .map(|&i| unit.cell(grid.at(i), &settings.start))
+            .collect();
+        let outcomes = march_all(&unit.course(settings), &cells, settings.kernel);
+        let chosen = outcomes
+            .par_iter()
+            .map(|o| unit.judge(o, &settings.watch))
+            .collect();
+        return Ok(chosen);
+    }
+    chosen
+        .par_iter()
+        .map(|&i| exact_cell(machine, grid.at(i), settings))
+        .collect()
+}
+
+fn check(machine: &Machine, grid: &MapGrid, settings: &MapSettings) -> Result<(), ModelError> {
+    machine.check()?;
+    settings.start.check()?;
+    if machine.flight != Flight::Harmonic {
+        return Err(ModelError::Unsupported(
+            "a region map needs the harmonic flight",
+        ));
+    }
+    grid.eta
+        .iter()
+        .try_for_each(|&eta| Setting::new(eta, 0.0).check())?;
+    grid.rho
+        .iter()
+        .try_for_each(|&rho| Setting::new(1.0, rho).check())
+}
+
+impl Initial {
+    fn y_or_x(&self, machine: &Machine) -> f64 {
+        if machine.y.is_some() { self.y } else { self.x }
+    }
+    fn vy_or_vx(&self, machine: &Machine) -> f64 {
+        if machine.y.is_some() {
+            self.vy
+        } else {
+            self.vx
+        }
+    }
+}
+
+/// One cell in the exact simulator.
+fn exact_cell(
+    machine: &Machine,
+    (eta, rho): (f64, f64),
+    settings: &MapSettings,
+) -> Result<CellMotion, ModelError> {
+    let setting = Setting::new(eta, rho);
+    let mut start = settings.start;
+    let (mx, my) = machine.mobility();
+    let depth = (start.x + start.y_or_x(machine) * my.signum() - machine.gap(rho)).max(0.0);
+    (start.x, start.y) = (start.x - mx * depth, start.y - my * depth);
+    let mut simulator = Simulator::new(machine, setting, start)?;
+    let settle = settings.watch.settle_periods * setting.period();
+    simulator.advance(settle, &mut |_: &ModelImpact| {});
+    Ok(observe(&mut simulator, setting, &settings.watch).0)
+}
+
+/// A machine that is one mass of unit frequency, mass and drive in scaled quantities:
+/// η' = η/Ω, lengths in units of (drive per mass)/Ω².
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UnitMass {
+    oscillator: Oscillator,
+    restitution: f64,
+}
+
+impl UnitMass {
+    /// `None` where the machine does not reduce to one mass with constant R.
+    pub fn of(machine: &Machine) -> Option<Self> {
+        let reduces = machine.y.is_none() || machine.is_symmetric();
+        let restitution = machine.restitution().constant()?;
+        let driven = machine.x.drive_amplitude > 0.0;
+        (reduces && driven && machine.flight == Flight::Harmonic).then_some(Self {
+            oscillator: machine.x,
+            restitution,
+        })
+    }
+
+    /// A cell in the scaled quantities.
+    pub fn cell(&self, (eta, rho): (f64, f64), start: &Initial) -> Cell {
+        let rate = self.oscillator.natural_frequency_ratio;
+        let length = self.oscillator.drive_per_mass() / self.oscillator.stiffness_per_mass();
+        Cell {
+            eta: eta / rate,
+            rho: rho / length,
+            x: start.x / length,
+            v: start.vx / (length * rate),
+            phase: 0.0,
+        }
+    }
+
+    /// The motion of an outcome. One without recurrence in the kernel is watched once more by
+    /// the exact simulator: it may converge slowly, or beat.
+    pub fn judge(&self, outcome: &Outcome, watch: &Watch) -> CellMotion {
+        if outcome.motion != SettledMotion::Chaotic {
+            return outcome.motion;
+        }
+        let end = outcome.end;
+        let machine = Machine::single(self.oscillator.damping_ratio, self.restitution);
+        let setting = Setting {
+            phase: end.phase,
+            ..Setting::new(end.eta, end.rho)
+        };
+        let start = Initial {
+            x: end.x.min(end.rho),
+            vx: end.v,
+            ..Initial::rest()
+        };
+        Simulator::new(&machine, setting, start)
+            .map_or(outcome.motion, |mut s| observe(&mut s, setting, watch).0)
+    }
+
+    /// The course of a map.
+    pub fn course(&self, settings: &MapSettings) -> Course {
+        Course {
+            damping_ratio: self.oscillator.damping_ratio,
+            restitution: self.restitution,
+            settle_periods: settings.watch.settle_periods,
+            watch_periods: settings.watch.watch_periods,
+            leave_early: settings.leave_early,
+            tight: 1e-11,
+            loose: settings.watch.tolerance,
+        }
+    }
+}
+
+/// Cells shared by the threads, each of which takes the next.
+struct Shared<'a> {
+    cells: &'a [Cell],
+    next: &'a AtomicUsize,
+    block: std::ops::Range<usize>,
+    done: Vec<(usize, Outcome)>,
+}
+
+/// Cells a thread takes at a time.
+const BLOCK: usize = 8;
+
+impl Feed for Shared<'_> {
+    fn next(&mut self) -> Option<(usize, Cell)> {
+        if self.block.is_empty() {
+            let first = self.next.fetch_add(BLOCK, Ordering::Relaxed);
+            self.block = first..(first + BLOCK).min(self.cells.len());
+        }
+        self.block.next().map(|i| (i, self.cells[i]))
+    }
+    fn done(&mut self, index: usize, outcome: Outcome) {
+        self.done.push((index, outcome));
+    }
+}
+
+/// March cells on all threads of the pool; outcomes in the cells' order.
+pub fn march_all(course: &Course, cells: &[Cell], kernel: Option<Kernel>) -> Vec<Outcome> {
+    let kernel = kernel
+        .filter(|k| k.is_available())
+        .unwrap_or_else(Kernel::of_this_machine);
+    let next = AtomicUsize::new(0);
+    let parts: Vec<Vec<(usize, Outcome)>> = (0..rayon::current_num_threads())
+        .into_par_iter()
+        .map(|_| {
+            let mut shared = Shared {
+                cells,
+                next: &next,
+                block: 0..0,
+                done: Vec::new(),
+            };
+            run(kernel, course, &mut shared);
+            shared.done
+        })
+        .collect();
+    let mut all: Vec<(usize, Outcome)> = parts.into_iter().flatten().collect();
+    all.sort_unstable_by_key(|p| p.0);
+    all.into_iter().map(|p| p.1).collect()
+}
+
+/// Greatest β for which the short polynomial of the decay is exact to rounding.
+const LIGHT_DAMPING: f64 = 0.1;
+
+/// March a feed with a kernel that this processor runs.
+pub fn run(kernel: Kernel, course: &Course, feed: &mut impl Feed) {
+    let light = course.damping_ratio <= LIGHT_DAMPING;
+    match kernel {
+        Kernel::Scalar if light => march::<f64, 9>(course, feed),
+        Kernel::Scalar => march::<f64, 17>(course, feed),
+        // SAFETY: `march_all` and the caller asked the processor for the instruction set.
+        #[cfg(target_arch = "x86_64")]
+        Kernel::Avx2 => unsafe { x86::march_avx2(light, course, feed) },
+        // SAFETY: as above.
+        #[cfg(target_arch = "x86_64")]
+        Kernel::Avx512 => unsafe { x86::march_avx512(light, course, feed) },
+        #[cfg(not(target_arch = "x86_64"))]
+        _ => march::<f64, 17>(course, feed),
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use super::super::kernel::{Course, Feed, march};
+    use super::super::lanes::{Avx2, Avx512};
+
+    #[target_feature(enable = "avx2,fma")]
+    pub fn march_avx2(light: bool, course: &Course, feed: &mut impl Feed) {
+        if light {
+            march::<Avx2, 9>(course, feed)
+        } else {
+            march::<Avx2, 17>(course, feed)
+        }
+    }
+
+    #[target_feature(enable = "avx512f,avx2,fma")]
+    pub fn march_avx512(light: bool, course: &Course, feed: &mut impl Feed) {
+        if light {
+            march::<Avx512, 9>(course, feed)
+        } else {
+            march::<Avx512, 17>(course, feed)
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! `[channels]` as written to channel set-ups.
+
+use toml::Spanned;
+
+use super::quantity::{Desk, remedy};
+use super::written::{Channel, Channels, Machine, Placed, Quantity};
+use crate::record::Role;
+use crate::record::calibrate::{ChannelKey, ChannelSetup};
+use crate::units::{self, Dimension, Scale, Unit};
+
+impl Channels {
+    fn of(&self, role: Role) -> &Placed<Channel> {
+        match role {
+            Role::Drive => &self.drive,
+            Role::Contact => &self.contact,
+            Role::VelocityX => &self.velocity_x,
+            Role::VelocityY => &self.velocity_y,
+            Role::DisplacementX => &self.displacement_x,
+            Role::DisplacementY => &self.displacement_y,
+            Role::AccelerationX => &self.acceleration_x,
+            Role::AccelerationY => &self.acceleration_y,
+            Role::FrameX => &self.frame_x,
+            Role::FrameY => &self.frame_y,
+        }
+    }
+}
+
+/// All channels that campaign.toml names, in the order of the roles.
+pub fn resolve(channels: &Channels, machine: Machine, desk: &mut Desk<'_>) -> Vec<ChannelSetup> {
+    let mut setups = Vec::new();
+    for role in Role::ALL {
+        let Some(placed) = channels.of(role) else {
+            continue;
+        };
+        if machine == Machine::Single && of_mass_y(role) {
+            desk.fault(
+                placed,
+                &format!("channels.{}", role.name()),
+                "one mass against a stop has no mass y".to_owned(),
+                "remove the table, or set machine = \"double\"",
+            );
+            continue;
+        }
+        setups.extend(resolve_one(role, placed, desk));
+    }
+    demand_motion(&setups, desk);
+    refuse_twice(&setups, channels, desk);
+    setups
+}
+
+fn of_mass_y(role: Role) -> bool {
+    matches!(
+        role,
+        Role::VelocityY | Role::DisplacementY | Role::AccelerationY | Role::FrameY
+    )
+}
+
+fn demand_motion(setups: &[ChannelSetup], desk: &mut Desk<'_>) {
+    if setups.iter().any(|s| s.role.dimension().is_some()) {
+        return;
+    }
+    desk.book.fault(
+        None,
+        "channels",
+        "no channel of motion is named".to_owned(),
+        "add at least one of [channels.velocity_x], [channels.displacement_x] and \
+         [channels.acceleration_x]",
+    );
+}
+
+fn refuse_twice(setups: &[ChannelSetup], channels: &Channels, desk: &mut Desk<'_>) {
+    for (i, one) in setups.iter().enumerate() {
+        let Some(other) = setups[..i].iter().find(|o| o.source == one.source) else {
+            continue;
+        };
+        let Some(placed) = channels.of(one.role) else {
+            continue;
+        };
+        desk.fault(
+            placed,
+            &format!("channels.{}.channel", one.role.name()),
+            format!(
+                "channel '{}' already serves as {}",
+                one.source.text(),
+                other.role.name()
+            ),
+            "name a channel of its own for each role",
+        );
+    }
+}
+
+fn resolve_one(role: Role, placed: &Spanned<Channel>, desk: &mut Desk<'_>) -> Option<ChannelSetup> {
+    let written = placed.get_ref();
+    let key = |name: &str| format!("channels.{}.{name}", role.name());
+    let unit = unit(&written.unit, &key("unit"), desk);
+    let scale = scale(&written.scale, &key("scale"), desk);
+    let setup = ChannelSetup {
+        unit,
+        scale: scale.unwrap_or(Scale::Factor(1.0)),
+        offset: raw_level(&written.offset, &key("offset"), unit, desk).unwrap_or(0.0),
+        sign: sign(&written.sign, &key("sign"), desk),
+        high_pass_hz: desk.positive(&written.high_pass, &key("high_pass"), Dimension::Frequency),
+        threshold: threshold(role, &written.threshold, &key("threshold"), desk),
+        range: raw_level(&written.range, &key("range"), unit, desk),
+        ignore_file_unit: written
+            .ignore_file_unit
+            .as_ref()
+            .is_some_and(|b| *b.get_ref()),
+        ..ChannelSetup::plain(role, source(role, placed, desk)?)
+    };
+    Some(setup)
+}
+
+fn source(role: Role, placed: &Spanned<Channel>, desk: &mut Desk<'_>) -> Option<ChannelKey> {
+    let key = format!("channels.{}.channel", role.name());
+    let Some(channel) = &placed.get_ref().channel else {
+        desk.fault(
+            placed,
+            &key,
+            "which channel of the file is not said".to_owned(),
+            "write channel = \"name\" or its index from 0",
+        );
+        return None;
+    };
+    Some(channel.get_ref().0.clone())
+}
+
+fn unit(placed: &Placed<String>, key: &str, desk: &mut Desk<'_>) -> Option<Unit> {
+    let placed = placed.as_ref()?;
+    let symbol = placed.get_ref();
+    let found = units::parse_unit(symbol);
+    if found.is_none() {
+        let what = format!("the unit '{symbol}' is not known");
+        desk.fault(
+            placed,
+            key,
+            what,
+            "write V, mV, m, mm, m/s, mm/s, m/s2, g, N or another SI unit",
+        );
+    }
+    found
+}
+
+fn scale(placed: &Placed<Quantity>, key: &str, desk: &mut Desk<'_>) -> Option<Scale> {
+    let placed = placed.as_ref()?;
+    let scale = match placed.get_ref() {
+        Quantity::Bare(factor) => Ok(Scale::Factor(*factor)),
+        Quantity::Text(text) => units::parse_scale(text),
+    };
+    match scale {
+        Ok(scale) if size(scale) > 0.0 => Some(scale),
+        Ok(_) => {
+            let what = "a scale must be positive and finite".to_owned();
+            desk.fault(
+                placed,
+                key,
+                what,
+                "write its magnitude, and the sign as sign = -1",
+            );
+            None
+        }
+        Err(error) => {
+            let remedy = match error {
+                units::QuantityError::UnknownUnit(_) => {
+                    "write one unit per another, such as \"50 mm/s per V\"".to_owned()
+                }
+                _ => remedy(&error, Dimension::Number),
+            };
+            desk.fault(placed, key, error.to_string(), &remedy);
+            None
+        }
+    }
+}
+
+fn size(scale: Scale) -> f64 {
+    let value = match scale {
+        Scale::Factor(factor) => factor,
+        Scale::Ratio { numerator, .. } => numerator.si,
+    };
+    if value.is_finite() { value } else { 0.0 }
+}
+
+fn sign(placed: &Placed<f64>, key: &str, desk: &mut Desk<'_>) -> f64 {
+    match placed {
+        Some(placed) if placed.get_ref().abs() == 1.0 => *placed.get_ref(),
+        Some(placed) => {
+            let what = format!("a sign is 1 or -1, not {}", placed.get_ref());
+            desk.fault(placed, key, what, "put a factor into scale");
+            1.0
+        }
+        None => 1.0,
+    }
+}
+
+/// A level in the file's unit, SI.
+fn raw_level(
+    placed: &Placed<Quantity>,
+    key: &str,
+    unit: Option<Unit>,
+    desk: &mut Desk<'_>,
+) -> Option<f64> {
+    let found = any_quantity(placed, key, desk)?;
+    match unit {
+        Some(unit) if unit.dimension != found.dimension => {
+            let what = format!(
+                "it is a {}, the channel's unit a {}",
+                found.dimension.name(),
+                unit.dimension.name()
+            );
+            if let Some(placed) = placed {
+                desk.fault(
+                    placed,
+                    key,
+                    what,
+                    "give it in the unit of the numbers in the file",
+                );
+            }
+            None
+        }
+        _ => Some(found.si),
+    }
+}
+
+fn any_quantity(
+    placed: &Placed<Quantity>,
+    key: &str,
+    desk: &mut Desk<'_>,
+) -> Option<units::Quantity> {
+    let placed = placed.as_ref()?;
+    let found = match placed.get_ref() {
+        Quantity::Bare(value) => Err(format!("a level without unit: {value}")),
+        Quantity::Text(text) => units::parse_quantity(text).map_err(|e| e.to_string()),
+    };
+    found
+        .map_err(|what| {
+            desk.fault(
+                placed,
+                key,
+                what,
+                "write number and unit in quotes, such as \"2.5 V\"",
+            );
+        })
+        .ok()
+}
+
+fn threshold(
+    role: Role,
+    placed: &Placed<Quantity>,
+    key: &str,
+    desk: &mut Desk<'_>,
+) -> Option<units::Quantity> {
+    let found = any_quantity(placed, key, desk)?;
+    if role == Role::Contact {
+        return Some(found);
+    }
+    if let Some(placed) = placed {
+        let what = format!("a threshold means nothing for {}", role.name());
+        desk.fault(placed, key, what, "move it to [channels.contact]");
+    }
+    None
+}

@@ -1,0 +1,204 @@
+//! Reading all records for their faults alone, a record at a time.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::prelude::*;
+use sha2::{Digest, Sha256};
+
+use super::faults::{Fault, Severity};
+use super::records::Opener;
+use super::resolved::{RecordEntry, ResolvedCampaign};
+use crate::event::Seen;
+use crate::event::detect::{DetectSettings, Detection, detect};
+use crate::record::calibrate;
+use crate::record::source::Source;
+use crate::record::{Flag, Record, Role};
+
+/// What reading all records found.
+#[derive(Debug, Default)]
+pub struct Checked {
+    /// One fault a flag.
+    pub faults: Vec<Fault>,
+    /// Records that can be used.
+    pub usable: usize,
+    /// What tells each record from others.
+    prints: Vec<Print>,
+}
+
+/// What tells a record from others.
+#[derive(Debug)]
+struct Print {
+    /// Hash of the samples; `None` where there are none.
+    hash: Option<[u8; 32]>,
+    samples: usize,
+    id: String,
+    file: PathBuf,
+}
+
+/// Records of one file, in their order: a file is opened once for all of them.
+pub fn by_file(records: &[RecordEntry]) -> Vec<&[RecordEntry]> {
+    records.chunk_by(|a, b| a.file == b.file).collect()
+}
+
+/// Read every record of the campaign and list what is wrong with it. `done` is told the number
+/// of records read so far.
+pub fn read_all(
+    campaign: &ResolvedCampaign,
+    open: Opener<'_>,
+    done: &(dyn Fn(u64) + Sync),
+) -> Checked {
+    let count = AtomicU64::new(0);
+    let found: Vec<Checked> = by_file(&campaign.records)
+        .into_par_iter()
+        .map(|entries| {
+            let checked = read_file(campaign, entries, open);
+            done(count.fetch_add(entries.len() as u64, Ordering::Relaxed) + entries.len() as u64);
+            checked
+        })
+        .collect();
+    let mut all = Checked::default();
+    for one in found {
+        all.faults.extend(one.faults);
+        all.usable += one.usable;
+        all.prints.extend(one.prints);
+    }
+    all.faults.extend(duplicates(&all.prints));
+    all.faults.extend(cut_short(&all.prints));
+    all
+}
+
+fn read_file(campaign: &ResolvedCampaign, entries: &[RecordEntry], open: Opener<'_>) -> Checked {
+    // a file that cannot be opened was told when the records were listed
+    let Ok(source) = open(&entries[0].file) else {
+        return Checked::default();
+    };
+    let parts: Vec<Checked> = entries
+        .par_iter()
+        .filter(|e| e.dataset.is_some() && !e.excluded)
+        .map(|entry| read_one(campaign, entry, source.as_ref()))
+        .collect();
+    let mut all = Checked::default();
+    for part in parts {
+        all.faults.extend(part.faults);
+        all.usable += part.usable;
+        all.prints.extend(part.prints);
+    }
+    all
+}
+
+fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Source) -> Checked {
+    let mut record = calibrate::calibrate(source, &campaign.setup_of(entry));
+    if !record.excluded() && campaign.driven(entry) {
+        let found = detect(&record, campaign.machine, &DetectSettings::default());
+        record.flags.extend(contact_without_jump(&record, &found));
+        record.flags.extend(found.flags);
+    }
+    let faults = record
+        .flags
+        .iter()
+        .filter(|f| !LISTED.contains(&f.code.as_str()))
+        .map(|f| fault_of(f, &record, &entry.file))
+        .collect();
+    let usable = usize::from(!record.excluded());
+    let print = Print {
+        hash: fingerprint(&record),
+        samples: record.samples(),
+        id: record.id,
+        file: entry.file.clone(),
+    };
+    Checked { faults, usable, prints: vec![print] }
+}
+
+/// A contact that closes again and again while no velocity changes is no contact of the masses.
+fn contact_without_jump(record: &Record, found: &Detection) -> Option<Flag> {
+    let supported = found.impacts.iter().filter(|i| i.seen == Seen::Both).count();
+    let channel = record.channel(Role::Contact)?;
+    (found.unsupported_pulses >= 3 && found.unsupported_pulses > 2 * supported).then(|| Flag {
+        code: "contact_without_jump".to_owned(),
+        channel: Some(channel.name.clone()),
+        message: format!(
+            "the contact closes {} times without a jump of the velocity, {supported} times with one",
+            found.unsupported_pulses
+        ),
+        remedy: "mend threshold or channel in [channels.contact], or look whether the velocity \
+                 channels belong to this record"
+            .to_owned(),
+        excludes: false,
+    })
+}
+
+/// The samples in a number; records that share it are the same.
+fn fingerprint(record: &Record) -> Option<[u8; 32]> {
+    if record.samples() == 0 {
+        return None;
+    }
+    let mut hash = Sha256::new();
+    for channel in &record.channels {
+        hash.update(channel.role.name().as_bytes());
+        channel.values.iter().for_each(|v| hash.update(v.to_le_bytes()));
+    }
+    Some(hash.finalize().into())
+}
+
+/// Records whose samples stand in the campaign twice.
+fn duplicates(prints: &[Print]) -> Vec<Fault> {
+    let mut first: HashMap<[u8; 32], &str> = HashMap::new();
+    let mut faults = Vec::new();
+    for print in prints {
+        let Some(hash) = print.hash else { continue };
+        match first.get(&hash) {
+            None => drop(first.insert(hash, &print.id)),
+            Some(other) => faults.push(Fault {
+                file: print.file.clone(),
+                line: None,
+                key: print.id.clone(),
+                what: format!("its samples are those of the record '{other}'"),
+                remedy: "remove one of the two: a record counted twice makes intervals too narrow"
+                    .to_owned(),
+                severity: Severity::Record,
+            }),
+        }
+    }
+    faults
+}
+
+/// Records much shorter than the usual one of the campaign.
+fn cut_short(prints: &[Print]) -> Vec<Fault> {
+    let mut lengths: Vec<usize> = prints.iter().map(|p| p.samples).filter(|n| *n > 0).collect();
+    lengths.sort_unstable();
+    let Some(usual) = lengths.get(lengths.len() / 2).copied().filter(|_| lengths.len() >= 3) else {
+        return Vec::new();
+    };
+    let short = |p: &&Print| p.samples > 0 && 10 * p.samples < 8 * usual;
+    prints
+        .iter()
+        .filter(short)
+        .map(|p| Fault {
+            file: p.file.clone(),
+            line: None,
+            key: p.id.clone(),
+            what: format!("it holds {} samples, the usual record {usual}", p.samples),
+            remedy: "copy the file anew, where it was cut off".to_owned(),
+            severity: Severity::Note,
+        })
+        .collect()
+}
+
+/// Codes that the listing of the records tells already.
+const LISTED: [&str; 4] = ["missing_channel", "wrong_unit", "unit_missing", "unreadable_file"];
+
+fn fault_of(flag: &Flag, record: &Record, file: &Path) -> Fault {
+    Fault {
+        file: file.to_path_buf(),
+        line: None,
+        key: match &flag.channel {
+            Some(channel) => format!("{}: {channel}", record.id),
+            None => record.id.clone(),
+        },
+        what: flag.message.clone(),
+        remedy: flag.remedy.clone(),
+        severity: if flag.excludes { Severity::Record } else { Severity::Note },
+    }
+}

@@ -1,0 +1,96 @@
+//! Names of records: short, unique, and the same on every machine.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+/// What a record is known by.
+#[derive(Debug, Clone, Copy)]
+pub struct Known<'a> {
+    /// Its file, whole path.
+    pub file: &'a Path,
+    /// Its dataset; empty where the file is the dataset.
+    pub dataset: &'a str,
+    /// The name that the run table gives.
+    pub given: Option<&'a str>,
+}
+
+/// One name a record: as given, else the file's name without extension, with as many folders
+/// before it as tell the files apart, with the dataset after it where the file holds several.
+pub fn of<'a>(records: impl Iterator<Item = Known<'a>>) -> Vec<String> {
+    let records: Vec<Known<'a>> = records.collect();
+    let depth = depth_needed(&records);
+    let mut names: Vec<String> = records.iter().map(|r| name(r, depth)).collect();
+    number_repeated(&mut names);
+    names
+}
+
+fn name(record: &Known<'_>, depth: usize) -> String {
+    if let Some(given) = record.given {
+        return given.to_owned();
+    }
+    let file = tail(record.file, depth);
+    match record.dataset.trim_matches('/') {
+        "" => file,
+        dataset => format!("{file}/{dataset}"),
+    }
+}
+
+/// Last parts of a path, without the extension.
+fn tail(path: &Path, depth: usize) -> String {
+    let bare = path.with_extension("");
+    let parts: Vec<_> = bare.iter().map(|p| p.to_string_lossy()).collect();
+    parts[parts.len().saturating_sub(depth)..].join("/")
+}
+
+fn depth_needed(records: &[Known<'_>]) -> usize {
+    let deepest = records
+        .iter()
+        .map(|r| r.file.iter().count())
+        .max()
+        .unwrap_or(1);
+    let files: std::collections::BTreeSet<&Path> = records.iter().map(|r| r.file).collect();
+    (1..deepest)
+        .find(|depth| {
+            let tails: std::collections::BTreeSet<String> =
+                files.iter().map(|f| tail(f, *depth)).collect();
+            tails.len() == files.len()
+        })
+        .unwrap_or(1)
+}
+
+/// Append a number to names that stand more than once.
+fn number_repeated(names: &mut [String]) {
+    let mut count: HashMap<String, usize> = HashMap::new();
+    for name in names.iter() {
+        *count.entry(name.clone()).or_default() += 1;
+    }
+    let mut seen: HashMap<String, usize> = HashMap::new();
+    for name in names.iter_mut().filter(|n| count[n.as_str()] > 1) {
+        let number = seen.entry(name.clone()).or_default();
+        *number += 1;
+        *name = format!("{name}#{number}");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn known<'a>(file: &'a str, dataset: &'a str) -> Known<'a> {
+        Known {
+            file: Path::new(file),
+            dataset,
+            given: None,
+        }
+    }
+
+    #[test]
+    fn valid_names_are_as_short_as_tells_the_files_apart() {
+        let short = of([known("/a/b/one.h5", "run1"), known("/a/b/two.csv", "")].into_iter());
+        assert_eq!(short, ["one/run1", "two"]);
+        let deep = of([known("/a/b/tps.txt", ""), known("/a/c/tps.txt", "")].into_iter());
+        assert_eq!(deep, ["b/tps", "c/tps"]);
+        let same = of([known("/a/x.csv", ""), known("/a/x.lvm", "")].into_iter());
+        assert_eq!(same, ["x#1", "x#2"]);
+    }
+}

@@ -1,0 +1,238 @@
+//! From the text of campaign.toml to [`WrittenCampaign`], with every fault of its form at once:
+//! each offending entry is noted and taken out, and what is left is read again.
+
+use std::ops::Range;
+
+use serde::Deserialize;
+use toml::Spanned;
+use toml::de::{DeArray, DeTable, DeValue, Deserializer};
+
+use super::faults::Notebook;
+use super::written::WrittenCampaign;
+
+/// The text of campaign.toml with the lines' places.
+#[derive(Debug)]
+pub struct Text<'a> {
+    text: &'a str,
+}
+
+impl<'a> Text<'a> {
+    /// Wrap a text.
+    pub fn new(text: &'a str) -> Self {
+        Self { text }
+    }
+
+    /// Line, counted from 1, of a byte offset.
+    pub fn line(&self, offset: usize) -> usize {
+        let end = offset.min(self.text.len());
+        1 + self.text.as_bytes()[..end]
+            .iter()
+            .filter(|b| **b == b'\n')
+            .count()
+    }
+
+    /// Line of a placed value.
+    pub fn line_of<T>(&self, placed: &Spanned<T>) -> Option<usize> {
+        Some(self.line(placed.span().start))
+    }
+}
+
+/// Read the text; what cannot be read is noted in `book` and left at its default.
+pub fn read(text: &str, book: &mut Notebook) -> WrittenCampaign {
+    let places = Text::new(text);
+    let (mut document, syntax) = DeTable::parse_recoverable(text);
+    for fault in &syntax {
+        note_syntax(&places, fault, book);
+    }
+    if !syntax.is_empty() {
+        return WrittenCampaign::default();
+    }
+    loop {
+        match WrittenCampaign::deserialize(Deserializer::from(document.clone())) {
+            Ok(written) => return written,
+            Err(fault) => {
+                let path = fault
+                    .span()
+                    .and_then(|span| take_out(document.get_mut(), &span));
+                note_form(&places, &fault, path.as_deref(), book);
+                if path.is_none() {
+                    return WrittenCampaign::default();
+                }
+            }
+        }
+    }
+}
+
+fn note_syntax(places: &Text<'_>, fault: &toml::de::Error, book: &mut Notebook) {
+    let line = fault.span().map(|s| places.line(s.start));
+    let what = format!("not valid TOML: {}", one_line(fault.message()));
+    book.fault(
+        line,
+        "",
+        what,
+        "mend the line; texts stand in quotes, tables in [brackets]",
+    );
+}
+
+fn note_form(places: &Text<'_>, fault: &toml::de::Error, path: Option<&str>, book: &mut Notebook) {
+    let line = fault.span().map(|s| places.line(s.start));
+    let message = one_line(fault.message());
+    let remedy = match unknown_name(&message) {
+        Some((name, expected)) => remedy_for_unknown(name, &expected),
+        None => "see the comments that `impactid init` writes for what the key takes".to_owned(),
+    };
+    book.fault(line, path.unwrap_or(""), message, &remedy);
+}
+
+fn one_line(message: &str) -> String {
+    message.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The unknown name in serde's "unknown field `x`, expected one of `a`, `b`" and the names
+/// expected there.
+fn unknown_name(message: &str) -> Option<(&str, Vec<&str>)> {
+    if !message.starts_with("unknown ") {
+        return None;
+    }
+    let mut quoted = message.split('`').skip(1).step_by(2);
+    let name = quoted.next()?;
+    Some((name, quoted.collect()))
+}
+
+fn remedy_for_unknown(name: &str, expected: &[&str]) -> String {
+    match nearest(name, expected) {
+        Some(near) => format!("did you mean '{near}'? Otherwise remove it"),
+        None => "remove it, or use one of the names listed".to_owned(),
+    }
+}
+
+/// The candidate nearest to a name, where one is near enough to be meant.
+pub fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
+    let limit = 1 + name.chars().count() / 3;
+    candidates
+        .iter()
+        .map(|c| (distance(name, c), *c))
+        .filter(|(d, c)| *d <= limit || c.starts_with(name) || name.starts_with(c))
+        .min_by_key(|(d, _)| *d)
+        .map(|(_, c)| c)
+}
+
+/// Levenshtein distance, letters compared without case.
+fn distance(a: &str, b: &str) -> usize {
+    let (a, b) = (a.to_lowercase(), b.to_lowercase());
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
+        for (j, y) in b.iter().enumerate() {
+            let change = diagonal + usize::from(x != *y);
+            diagonal = row[j + 1];
+            row[j + 1] = change.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+/// Remove the innermost entry whose key or value covers `span`; gives its dotted path.
+fn take_out(table: &mut DeTable<'_>, span: &Range<usize>) -> Option<String> {
+    let entry = table.iter_mut().find_map(|(key, value)| {
+        let name = key.get_ref().to_string();
+        let on_key = covers(&key.span(), span);
+        let inner = if on_key {
+            None
+        } else {
+            take_out_of(value.get_mut(), span)
+        };
+        (on_key || inner.is_some() || covers(&value.span(), span)).then_some((name, inner))
+    });
+    match entry? {
+        (name, Some(inner)) => Some(format!("{name}.{inner}")),
+        (name, None) => {
+            table.remove(name.as_str());
+            Some(name)
+        }
+    }
+}
+
+fn take_out_of(value: &mut DeValue<'_>, span: &Range<usize>) -> Option<String> {
+    match value {
+        DeValue::Table(table) => take_out(table, span),
+        DeValue::Array(array) => take_out_of_array(array, span),
+        _ => None,
+    }
+}
+
+fn take_out_of_array(array: &mut DeArray<'_>, span: &Range<usize>) -> Option<String> {
+    array
+        .iter_mut()
+        .enumerate()
+        .find_map(|(i, v)| take_out_of(v.get_mut(), span).map(|inner| format!("{i}.{inner}")))
+}
+
+fn covers(outer: &Range<usize>, inner: &Range<usize>) -> bool {
+    outer.start <= inner.start && inner.end <= outer.end
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::campaign::faults::Fault;
+
+    fn faults_of(text: &str) -> (WrittenCampaign, Vec<Fault>) {
+        let mut book = Notebook::new(Path::new("campaign.toml"));
+        let written = read(text, &mut book);
+        (written, book.into_faults())
+    }
+
+    #[test]
+    fn valid_every_fault_of_form_is_told_at_once_with_its_line() {
+        let text = "[campaign]\nname = 3\nmachine = \"triple\"\nflite = \"harmonic\"\n\
+                    [channels.velocityx]\nchannel = \"v\"\n\
+                    [channels.drive]\nchannel = \"d\"\nuni = \"V\"\n[rig]\nrestitution = [1]\n";
+        let (written, faults) = faults_of(text);
+        let mut lines: Vec<_> = faults
+            .iter()
+            .map(|f| (f.line.unwrap(), f.key.as_str()))
+            .collect();
+        lines.sort();
+        assert_eq!(
+            lines,
+            [
+                (2, "campaign.name"),
+                (3, "campaign.machine"),
+                (4, "campaign.flite"),
+                (5, "channels.velocityx"),
+                (9, "channels.drive.uni"),
+                (11, "rig.restitution"),
+            ]
+        );
+        let drive = written
+            .channels
+            .drive
+            .expect("the rest is read")
+            .into_inner();
+        assert!(drive.channel.is_some() && drive.unit.is_none());
+    }
+
+    #[test]
+    fn valid_an_unknown_key_names_the_nearest() {
+        let (_, faults) = faults_of("[records]\nclearence = \"1 mm\"\n");
+        assert!(faults[0].remedy.contains("'clearance'"), "{faults:?}");
+    }
+
+    #[test]
+    fn valid_broken_syntax_is_one_fault_with_its_line() {
+        let (_, faults) = faults_of("[campaign]\nname = \"x\n");
+        assert_eq!(faults[0].line, Some(2));
+        assert!(faults[0].what.contains("TOML"));
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn prop_reading_never_panics_and_ends(text in "[\\[\\]a-z_.=\" 0-9\n{},-]{0,200}") {
+            faults_of(&text);
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! From campaign.toml as written to the campaign as resolved, or every fault at once.
+
+use std::path::Path;
+
+use toml::Spanned;
+
+use super::channels;
+use super::faults::{Faults, Notebook, Severity};
+use super::quantity::Desk;
+use super::read::{self, Text};
+use super::records::{self, Opener, Shared};
+use super::resolved::{Analysis, RecordEntry, Report, ResolvedCampaign, Rig};
+use super::written::{self, Flight, Language, Machine, Paper, Placed, WrittenCampaign};
+use crate::units::Dimension;
+
+/// A campaign as far as it could be resolved, and all that is wrong with it.
+#[derive(Debug)]
+pub struct Outcome {
+    /// The campaign; `None` where a fault stops it.
+    pub campaign: Option<ResolvedCampaign>,
+    /// All faults, the gravest first.
+    pub faults: Faults,
+}
+
+/// Read campaign.toml and list its records, opening files by `open`.
+pub fn load(path: &Path, open: Opener<'_>) -> Outcome {
+    let mut book = Notebook::new(path);
+    let text = match std::fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(error) => {
+            let what = format!("campaign.toml cannot be read: {error}");
+            book.fault(
+                None,
+                "",
+                what,
+                "name the right file; `impactid init DIR` writes one",
+            );
+            return Outcome {
+                campaign: None,
+                faults: Faults(book.into_faults()),
+            };
+        }
+    };
+    let written = read::read(&text, &mut book);
+    let mut desk = Desk {
+        text: Text::new(&text),
+        book,
+    };
+    let campaign = resolve(path, &written, open, &mut desk);
+    let blocks = desk.book.blocks();
+    let mut faults = Faults(desk.book.into_faults());
+    faults.tidy();
+    Outcome {
+        campaign: (!blocks).then_some(campaign),
+        faults,
+    }
+}
+
+fn resolve(
+    path: &Path,
+    written: &WrittenCampaign,
+    open: Opener<'_>,
+    desk: &mut Desk<'_>,
+) -> ResolvedCampaign {
+    let machine = required(
+        &written.campaign.machine,
+        "campaign.machine",
+        MACHINES,
+        desk,
+    );
+    let machine = machine.unwrap_or(Machine::Double);
+    let channels = channels::resolve(&written.channels, machine, desk);
+    let time = written.records.time.as_ref().map(|t| t.get_ref().0.clone());
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let shared = Shared {
+        folder,
+        channels: &channels,
+        time: time.as_ref(),
+    };
+    let mut records = records::resolve(&written.records, shared, open, desk);
+    exclude(&mut records, &written.analysis.exclude, desk);
+    let name = name(&written.campaign.name, folder);
+    let flight = written
+        .campaign
+        .flight
+        .as_ref()
+        .map_or(Flight::Harmonic, |f| *f.get_ref());
+    demand_one_mass(machine, flight, &written.campaign.flight, desk);
+    let run_table = written.records.run_table.as_ref().map(|t| folder.join(t.get_ref()));
+    ResolvedCampaign {
+        run_table,
+        machine,
+        flight,
+        rig: rig(&written.rig, desk),
+        sample_rate_hz: desk.positive(
+            &written.records.sample_rate,
+            "records.sample_rate",
+            Dimension::Frequency,
+        ),
+        analysis: analysis(&written.analysis, desk),
+        report: report(&written.report, &name, &records, desk),
+        file: path.to_path_buf(),
+        name,
+        channels,
+        time,
+        records,
+    }
+}
+
+const MACHINES: &str = "write machine = \"double\" (two masses) or \"single\" (one, and a stop)";
+
+fn required<T: Copy>(
+    placed: &Placed<T>,
+    key: &str,
+    remedy: &str,
+    desk: &mut Desk<'_>,
+) -> Option<T> {
+    if placed.is_none() && !desk.book.blocks() {
+        desk.book
+            .fault(None, key, "it is not given".to_owned(), remedy);
+    }
+    placed.as_ref().map(|p| *p.get_ref())
+}
+
+fn demand_one_mass(machine: Machine, flight: Flight, placed: &Placed<Flight>, desk: &mut Desk<'_>) {
+    if let (Machine::Double, Flight::ConstantForce, Some(placed)) = (machine, flight, placed) {
+        let what = "a flight under constant force is for one mass against a stop".to_owned();
+        desk.fault(placed, "campaign.flight", what, "set machine = \"single\"");
+    }
+}
+
+fn name(placed: &Placed<String>, folder: &Path) -> String {
+    let folder_name = || {
+        let whole = std::path::absolute(Path::new(".").join(folder)).ok()?;
+        whole.file_name().map(|n| n.to_string_lossy().into_owned())
+    };
+    placed
+        .as_ref()
+        .map(|n| n.get_ref().clone())
+        .or_else(folder_name)
+        .unwrap_or_else(|| "campaign".to_owned())
+}
+
+fn rig(rig: &written::Rig, desk: &mut Desk<'_>) -> Rig {
+    use Dimension::{Frequency, Length, Mass, Number};
+    let mut positive = |placed, name: &str, d| desk.positive(placed, &format!("rig.{name}"), d);
+    let natural_frequency_hz = positive(&rig.natural_frequency, "natural_frequency", Frequency);
+    let static_deflection_m = positive(&rig.static_deflection, "static_deflection", Length);
+    let mass_x_kg = positive(&rig.mass_x, "mass_x", Mass);
+    let mass_y_kg = positive(&rig.mass_y, "mass_y", Mass);
+    let mut part =
+        |placed, name: &str, range| desk.within(placed, &format!("rig.{name}"), Number, range);
+    let damping_ratio = part(&rig.damping_ratio, "damping_ratio", [0.0, 0.999]);
+    let restitution = part(&rig.restitution, "restitution", [0.0, 1.0]);
+    let gain = part(&rig.gain_uncertainty, "gain_uncertainty", [0.0, 0.5]);
+    let clearance = desk.within(
+        &rig.clearance_uncertainty,
+        "rig.clearance_uncertainty",
+        Length,
+        [0.0, 1.0],
+    );
+    Rig {
+        natural_frequency_hz,
+        damping_ratio,
+        static_deflection_m,
+        restitution,
+        mass_x_kg,
+        mass_y_kg,
+        gain_uncertainty: gain.unwrap_or(0.005),
+        clearance_uncertainty_m: clearance.unwrap_or(1e-5),
+    }
+}
+
+fn analysis(written: &written::Analysis, desk: &mut Desk<'_>) -> Analysis {
+    let skip = desk.within(
+        &written.skip,
+        "analysis.skip",
+        Dimension::Time,
+        [0.0, f64::INFINITY],
+    );
+    let mut count = |placed: &Placed<u32>, key: &str, default: u32| {
+        let Some(placed) = placed else { return default };
+        let value = *placed.get_ref();
+        if !(1..=64).contains(&value) {
+            let what = format!("{value} is outside of what can be told");
+            desk.fault(placed, key, what, "it lies between 1 and 64");
+        }
+        value
+    };
+    Analysis {
+        skip_s: skip.unwrap_or(0.0),
+        longest_period_n: count(&written.longest_period_n, "analysis.longest_period_n", 6),
+        most_impacts_p: count(&written.most_impacts_p, "analysis.most_impacts_p", 12),
+        seed: written.seed.as_ref().map_or(1, |s| *s.get_ref()),
+    }
+}
+
+fn report(
+    written: &written::Report,
+    name: &str,
+    records: &[RecordEntry],
+    desk: &mut Desk<'_>,
+) -> Report {
+    if let Some(points) = &written.points {
+        for point in points.get_ref() {
+            if !records.iter().any(|r| r.id == *point) && !records.is_empty() {
+                unknown_record(points, "report.points", point, records, desk);
+            }
+        }
+    }
+    Report {
+        title: written
+            .title
+            .as_ref()
+            .map_or_else(|| name.to_owned(), |t| t.get_ref().clone()),
+        points: written
+            .points
+            .as_ref()
+            .map(|p| p.get_ref().clone())
+            .unwrap_or_default(),
+        paper: written.paper.as_ref().map_or(Paper::A4, |p| *p.get_ref()),
+        language: written
+            .language
+            .as_ref()
+            .map_or(Language::En, |l| *l.get_ref()),
+        decimal_comma: written.decimal_comma.as_ref().is_some_and(|d| *d.get_ref()),
+    }
+}
+
+fn unknown_record<T>(
+    placed: &Spanned<T>,
+    key: &str,
+    name: &str,
+    records: &[RecordEntry],
+    desk: &mut Desk<'_>,
+) {
+    let names: Vec<&str> = records.iter().map(|r| r.id.as_str()).collect();
+    let what = format!("no record is called '{name}'");
+    let remedy = match read::nearest(name, &names) {
+        Some(near) => format!("did you mean '{near}'?"),
+        None => format!(
+            "the first records are {}",
+            names[..names.len().min(4)].join(", ")
+        ),
+    };
+    desk.book.push(
+        Severity::Campaign,
+        desk.text.line_of(placed),
+        key,
+        what,
+        &remedy,
+    );
+}
+
+fn exclude(records: &mut [RecordEntry], placed: &Placed<Vec<String>>, desk: &mut Desk<'_>) {
+    let Some(placed) = placed else { return };
+    let options = glob::MatchOptions::default();
+    for name in placed.get_ref() {
+        let pattern = glob::Pattern::new(name).ok();
+        let fits = |id: &str| {
+            id == name
+                || pattern
+                    .as_ref()
+                    .is_some_and(|p| p.matches_with(id, options))
+        };
+        let mut found = false;
+        for record in records.iter_mut().filter(|r| fits(&r.id)) {
+            record.excluded = true;
+            found = true;
+        }
+        if !found && !records.is_empty() {
+            unknown_record(placed, "analysis.exclude", name, records, desk);
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! The campaign as resolved: SI, every default explicit, relative paths made whole. It is
+//! written beside the results as `campaign.resolved.json`.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::written::{Excitation, Flight, Language, Machine, Paper};
+use crate::record::Setting;
+use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup};
+
+/// A campaign ready to be computed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ResolvedCampaign {
+    /// Name on the report's first page.
+    pub name: String,
+    /// Two masses, or one against a stop.
+    pub machine: Machine,
+    /// What acts between impacts.
+    pub flight: Flight,
+    /// campaign.toml itself.
+    pub file: PathBuf,
+    /// The run table, where there is one.
+    #[serde(default)]
+    pub run_table: Option<PathBuf>,
+    /// Nominal values of the rig.
+    pub rig: Rig,
+    /// The channels by role, in the order of the roles.
+    pub channels: Vec<ChannelSetup>,
+    /// The channel with the time, where the files' reader cannot tell.
+    pub time: Option<ChannelKey>,
+    /// Samples per second, Hz, for files that do not tell.
+    pub sample_rate_hz: Option<f64>,
+    /// The records in the order of acquisition.
+    pub records: Vec<RecordEntry>,
+    /// How the records are judged.
+    pub analysis: Analysis,
+    /// How the report looks.
+    pub report: Report,
+}
+
+/// Nominal values of the rig; `None`: not stated.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Rig {
+    /// Natural frequency f0, Hz.
+    pub natural_frequency_hz: Option<f64>,
+    /// Damping ratio β.
+    pub damping_ratio: Option<f64>,
+    /// Static deflection x_st, m.
+    pub static_deflection_m: Option<f64>,
+    /// Coefficient of restitution R.
+    pub restitution: Option<f64>,
+    /// Mass x, kg.
+    pub mass_x_kg: Option<f64>,
+    /// Mass y, kg.
+    pub mass_y_kg: Option<f64>,
+    /// Standard uncertainty of the channels' scales, relative.
+    pub gain_uncertainty: f64,
+    /// Standard uncertainty of the clearances, m.
+    pub clearance_uncertainty_m: f64,
+}
+
+/// How the records are judged.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Analysis {
+    /// Part of each record left out at its start, s.
+    pub skip_s: f64,
+    /// Longest motion looked for, in drive periods.
+    pub longest_period_n: u32,
+    /// Most impacts looked for in one period of a motion.
+    pub most_impacts_p: u32,
+    /// Seed of everything random.
+    pub seed: u64,
+}
+
+/// How the report looks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// Title.
+    pub title: String,
+    /// Records whose time series and phase portraits are drawn; empty: chosen by the program.
+    pub points: Vec<String>,
+    /// Paper size.
+    pub paper: Paper,
+    /// Language.
+    pub language: Language,
+    /// Whether numbers are printed with a decimal comma.
+    pub decimal_comma: bool,
+}
+
+/// One record of the campaign.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RecordEntry {
+    /// Name, unique in the campaign.
+    pub id: String,
+    /// The file, whole path.
+    pub file: PathBuf,
+    /// Index of the dataset in the file; `None` where the file could not be opened.
+    pub dataset: Option<usize>,
+    /// The setting as stated.
+    pub setting: Setting,
+    /// How it was excited.
+    pub excitation: Excitation,
+    /// Whether `exclude` names it.
+    pub excluded: bool,
+}
+
+impl ResolvedCampaign {
+    /// The folder that campaign.toml lies in.
+    pub fn folder(&self) -> &Path {
+        self.file.parent().unwrap_or(Path::new("."))
+    }
+
+    /// Whether a harmonic drive must be seen in a record.
+    pub fn driven(&self, entry: &RecordEntry) -> bool {
+        self.flight == Flight::Harmonic && entry.excitation == Excitation::Harmonic
+    }
+
+    /// What [`crate::record::calibrate::calibrate`] needs for one of its records.
+    pub fn setup_of<'a>(&'a self, entry: &'a RecordEntry) -> RecordSetup<'a> {
+        RecordSetup {
+            id: &entry.id,
+            dataset: entry.dataset.unwrap_or(0),
+            channels: &self.channels,
+            time: self.time.as_ref(),
+            sample_rate_hz: self.sample_rate_hz,
+            setting: &entry.setting,
+            driven: self.driven(entry),
+            skip_s: self.analysis.skip_s,
+        }
+    }
+}

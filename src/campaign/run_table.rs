@@ -1,0 +1,310 @@
+//! The run table: a CSV file with one row a record, units in its header.
+
+use std::path::Path;
+
+use super::faults::Notebook;
+use super::read::nearest;
+use super::written::Excitation;
+use crate::record::Sweep;
+use crate::units::{self, Dimension};
+
+/// The columns that a run table may have.
+const COLUMNS: [&str; 9] = [
+    "file",
+    "dataset",
+    "record",
+    "drive_frequency",
+    "clearance",
+    "sweep",
+    "drive_amplitude",
+    "excitation",
+    "specimen",
+];
+
+/// One row; `None` where the cell is empty or the column missing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Line in the table, from 1.
+    pub line: usize,
+    /// The file, as written.
+    pub file: String,
+    /// The dataset in it.
+    pub dataset: Option<String>,
+    /// The record's name.
+    pub record: Option<String>,
+    /// Stated drive frequency, Hz.
+    pub drive_frequency_hz: Option<f64>,
+    /// Clearance r, m.
+    pub clearance_m: Option<f64>,
+    /// Direction of the sweep.
+    pub sweep: Option<Sweep>,
+    /// Drive amplitude, relative.
+    pub drive_amplitude: Option<f64>,
+    /// How the record was excited.
+    pub excitation: Option<Excitation>,
+    /// Which rig, mass or bumper it was taken on.
+    pub specimen: Option<String>,
+}
+
+/// Index and unit factor of each column found.
+#[derive(Debug, Default)]
+struct Header {
+    at: [Option<usize>; COLUMNS.len()],
+    factor: [f64; COLUMNS.len()],
+}
+
+/// Read a run table; rows with a fault are left out, and each fault is noted.
+pub fn read(path: &Path, book: &mut Notebook) -> Vec<Row> {
+    let bytes = match std::fs::read(path) {
+        Ok(bytes) => bytes,
+        Err(error) => {
+            let what = format!("the run table cannot be read: {error}");
+            book.fault(None, "", what, "mend run_table in [records]");
+            return Vec::new();
+        }
+    };
+    let text = decode(&bytes);
+    let mut reader = csv::ReaderBuilder::new()
+        .delimiter(delimiter(&text))
+        .flexible(true)
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    let header = match reader.headers() {
+        Ok(names) if names.iter().any(|n| !n.is_empty()) => read_header(&names.clone(), book),
+        _ => {
+            let what = "the run table is empty".to_owned();
+            book.fault(
+                Some(1),
+                "",
+                what,
+                "write a header line and one line a record",
+            );
+            return Vec::new();
+        }
+    };
+    if book.blocks() {
+        return Vec::new();
+    }
+    let columns = reader.headers().map_or(0, csv::StringRecord::len);
+    let rows: Vec<Row> = reader
+        .records()
+        .filter_map(|record| read_row(record, columns, &header, book))
+        .collect();
+    if rows.is_empty() && !book.blocks() {
+        let what = "the run table has a header and no records".to_owned();
+        book.fault(None, "", what, "write one line a record");
+    }
+    rows
+}
+
+/// UTF-8 with or without mark, else Windows-1252.
+fn decode(bytes: &[u8]) -> String {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => encoding_rs::WINDOWS_1252.decode(bytes).0.into_owned(),
+    }
+}
+
+/// The separator of the header line: the most frequent of comma, semicolon and tab.
+fn delimiter(text: &str) -> u8 {
+    let line = text.lines().find(|l| !l.starts_with('#')).unwrap_or("");
+    let count = |b: &u8| line.bytes().filter(|c| c == b).count();
+    [b',', b';', b'\t']
+        .into_iter()
+        .rev()
+        .max_by_key(count)
+        .unwrap_or(b',')
+}
+
+fn read_header(names: &csv::StringRecord, book: &mut Notebook) -> Header {
+    let mut header = Header {
+        factor: [1.0; COLUMNS.len()],
+        ..Header::default()
+    };
+    for (index, name) in names.iter().enumerate() {
+        let (bare, symbol) = match COLUMNS.contains(&name) {
+            true => (name, None),
+            false => units::split_unit(name),
+        };
+        let Some(column) = COLUMNS.iter().position(|c| *c == bare) else {
+            note_unknown(name, bare, book);
+            continue;
+        };
+        if header.at[column].replace(index).is_some() {
+            let what = format!("the column '{bare}' stands twice");
+            book.fault(Some(1), name, what, "remove one of them");
+        }
+        match factor(column, symbol) {
+            Ok(factor) => header.factor[column] = factor,
+            Err((what, remedy)) => book.fault(Some(1), name, what, &remedy),
+        }
+    }
+    if header.at[0].is_none() {
+        let what = "the run table has no column 'file'".to_owned();
+        book.fault(
+            Some(1),
+            "file",
+            what,
+            "add it: the files' names, one a record",
+        );
+    }
+    header
+}
+
+fn note_unknown(name: &str, bare: &str, book: &mut Notebook) {
+    let remedy = match nearest(bare, &COLUMNS) {
+        Some(near) => format!("did you mean '{near}'? Otherwise begin its name with 'note'"),
+        None => format!(
+            "the columns are {}; begin a remark's name with 'note'",
+            COLUMNS.join(", ")
+        ),
+    };
+    if !bare.starts_with("note") {
+        book.fault(
+            Some(1),
+            name,
+            format!("the column '{name}' is not known"),
+            &remedy,
+        );
+    }
+}
+
+/// Factor to SI of a column, from the unit in its name.
+fn factor(column: usize, symbol: Option<&str>) -> Result<f64, (String, String)> {
+    let name = COLUMNS[column];
+    let expected = match name {
+        "drive_frequency" => Dimension::Frequency,
+        "clearance" => Dimension::Length,
+        _ => return Ok(1.0),
+    };
+    let remedy = match expected {
+        Dimension::Frequency => "call it drive_frequency_hz or \"drive_frequency [Hz]\"",
+        _ => "call it clearance_mm or \"clearance [mm]\"",
+    };
+    let unit = symbol.map(|s| (s, units::parse_split_unit(s)));
+    match unit {
+        None => Err((
+            format!("a {} without unit", name.replace('_', " ")),
+            remedy.to_owned(),
+        )),
+        Some((_, Some(unit))) if unit.dimension == expected => Ok(unit.to_si),
+        Some((symbol, _)) => Err((
+            format!("'{symbol}' is no unit of {}", expected.name()),
+            remedy.to_owned(),
+        )),
+    }
+}
+
+fn read_row(
+    record: csv::Result<csv::StringRecord>,
+    columns: usize,
+    header: &Header,
+    book: &mut Notebook,
+) -> Option<Row> {
+    let record = match record {
+        Ok(record) => record,
+        Err(error) => {
+            let line = error.position().map(|p| p.line() as usize);
+            book.fault(
+                line,
+                "",
+                format!("the row cannot be read: {error}"),
+                "mend the row",
+            );
+            return None;
+        }
+    };
+    let line = record.position().map_or(0, |p| p.line() as usize);
+    if record.len() != columns {
+        let what = format!("the row has {} cells, the header {columns}", record.len());
+        book.fault(Some(line), "", what, "mend the row");
+        return None;
+    }
+    let cells = Cells {
+        record: &record,
+        header,
+        line,
+    };
+    let Some(file) = cells.text(0) else {
+        book.fault(
+            Some(line),
+            "file",
+            "no file is named".to_owned(),
+            "name it or remove the row",
+        );
+        return None;
+    };
+    Some(Row {
+        line,
+        file,
+        dataset: cells.text(1),
+        record: cells.text(2),
+        drive_frequency_hz: cells.number(3, book),
+        clearance_m: cells.number(4, book),
+        sweep: cells.word(5, &SWEEPS, book),
+        drive_amplitude: cells.number(6, book),
+        excitation: cells.word(7, &EXCITATIONS, book),
+        specimen: cells.text(8),
+    })
+}
+
+/// Words for the sweep direction.
+pub const SWEEPS: [(&str, Sweep); 3] = [
+    ("up", Sweep::Up),
+    ("down", Sweep::Down),
+    ("unknown", Sweep::Unknown),
+];
+
+const EXCITATIONS: [(&str, Excitation); 2] = [
+    ("harmonic", Excitation::Harmonic),
+    ("free_decay", Excitation::FreeDecay),
+];
+
+struct Cells<'a> {
+    record: &'a csv::StringRecord,
+    header: &'a Header,
+    line: usize,
+}
+
+impl Cells<'_> {
+    fn text(&self, column: usize) -> Option<String> {
+        let cell = self.record.get(self.header.at[column]?)?;
+        (!cell.is_empty()).then(|| cell.to_owned())
+    }
+
+    fn number(&self, column: usize, book: &mut Notebook) -> Option<f64> {
+        let cell = self.text(column)?;
+        match cell.parse::<f64>() {
+            Ok(value) if value.is_finite() => Some(value * self.header.factor[column]),
+            _ => {
+                let what = format!("'{cell}' is not a number");
+                let remedy = match cell.contains(',') {
+                    true => "write a decimal point",
+                    false => "write a number; the unit stands in the header",
+                };
+                book.fault(Some(self.line), COLUMNS[column], what, remedy);
+                None
+            }
+        }
+    }
+
+    fn word<T: Copy>(&self, column: usize, words: &[(&str, T)], book: &mut Notebook) -> Option<T> {
+        let cell = self.text(column)?;
+        let found = words
+            .iter()
+            .find(|(word, _)| word.eq_ignore_ascii_case(&cell));
+        if found.is_none() {
+            let names: Vec<&str> = words.iter().map(|(w, _)| *w).collect();
+            let what = format!("'{cell}' is not one of {}", names.join(", "));
+            book.fault(
+                Some(self.line),
+                COLUMNS[column],
+                what,
+                "write one of these words",
+            );
+        }
+        found.map(|(_, value)| *value)
+    }
+}

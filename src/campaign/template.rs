@@ -1,0 +1,220 @@
+//! The commented campaign.toml that `impactid init` writes.
+
+use std::fmt::Write;
+
+use super::guess::{Found, Seen};
+use crate::record::Role;
+use crate::units::{self, Dimension};
+
+/// The text of campaign.toml for what was found in a folder named so.
+pub fn campaign_toml(name: &str, found: &Found) -> String {
+    let mut text = String::new();
+    // writing to a String cannot fail
+    let _ = head(&mut text, name, found)
+        .and_then(|()| records(&mut text, found))
+        .and_then(|()| text.write_str(RIG))
+        .and_then(|()| channels(&mut text, found))
+        .and_then(|()| text.write_str(TAIL));
+    text
+}
+
+/// A text in TOML's quotes.
+fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}
+
+fn has_role(found: &Found, role: Role) -> bool {
+    found.channels.iter().any(|c| c.role == Some(role))
+}
+
+fn head(text: &mut String, name: &str, found: &Found) -> std::fmt::Result {
+    let two = [Role::VelocityY, Role::DisplacementY, Role::AccelerationY];
+    let machine = if two.iter().any(|r| has_role(found, *r)) { "double" } else { "single" };
+    writeln!(
+        text,
+        "# A campaign for impactid, guessed from {} files ({}); look through every line.\n\
+         # Every quantity with a dimension is written with its unit in quotes: \"1.0 mm\".\n\
+         # Then: impactid check campaign.toml; impactid run campaign.toml --out results\n\n\
+         [campaign]\n\
+         name = {}\n\
+         machine = \"{machine}\"            # \"double\": two masses; \"single\": one and a stop\n\
+         flight = \"harmonic\"           # or \"constant_force\": no spring, e.g. a cart on a slope\n",
+        found.files,
+        found.format,
+        quoted(name)
+    )
+}
+
+fn records(text: &mut String, found: &Found) -> std::fmt::Result {
+    writeln!(text, "[records]")?;
+    match (&found.run_table, found.globs.as_slice()) {
+        (Some(table), _) => writeln!(text, "run_table = {}", quoted(table))?,
+        (None, [one]) => writeln!(text, "files = {}", quoted(one))?,
+        (None, many) => {
+            let list: Vec<String> = many.iter().map(|g| quoted(g)).collect();
+            writeln!(text, "files = [{}]", list.join(", "))?;
+        }
+    }
+    if found.run_table.is_none() {
+        text.write_str(RUN_TABLE)?;
+    }
+    if !found.timed {
+        writeln!(text, "sample_rate = \"2 kHz\"       # FILL IN: the files do not tell")?;
+    }
+    let attributes = attributes(found);
+    let lacks = |key: &str| !attributes.iter().any(|(k, _)| *k == key);
+    if found.run_table.is_none() && lacks("clearance") {
+        writeln!(text, "# clearance = \"1.0 mm\"      # r, half the gap between two masses; the \
+                        gap to a stop")?;
+    }
+    text.write_str(RECORD_DEFAULTS)?;
+    if !attributes.is_empty() && found.run_table.is_none() {
+        writeln!(text, "\n# Attributes of the files that hold the setting, the unit in brackets")?;
+        writeln!(text, "[records.attributes]")?;
+        for (key, value) in &attributes {
+            writeln!(text, "{key} = {}", quoted(value))?;
+        }
+    }
+    writeln!(text)
+}
+
+/// Which attributes may hold the setting; where the name bears no unit, the usual one.
+fn attributes(found: &Found) -> Vec<(&'static str, String)> {
+    const KEYS: [(&str, &[&str], Option<(Dimension, &str)>); 4] = [
+        ("clearance", &["clearance", "gap"], Some((Dimension::Length, "mm"))),
+        ("drive_frequency", &["freq"], Some((Dimension::Frequency, "Hz"))),
+        ("drive_amplitude", &["amplitude"], None),
+        ("sweep", &["sweep", "direction"], None),
+    ];
+    let find = |stems: &[&str]| {
+        found.attributes.keys().find(|name| {
+            let lower = name.to_lowercase();
+            let sampling = lower.contains("sampl");
+            !sampling && stems.iter().any(|s| lower.contains(s))
+        })
+    };
+    KEYS.iter()
+        .filter_map(|(key, stems, unit)| Some((*key, with_unit(find(stems)?, *unit))))
+        .collect()
+}
+
+fn with_unit(name: &str, unit: Option<(Dimension, &str)>) -> String {
+    let own = units::split_unit(name).1.and_then(units::parse_split_unit);
+    match unit {
+        Some((dimension, usual)) if own.is_none_or(|u| u.dimension != dimension) => {
+            format!("{name} [{usual}]")
+        }
+        _ => name.to_owned(),
+    }
+}
+
+fn channels(text: &mut String, found: &Found) -> std::fmt::Result {
+    writeln!(text, "# The channels of {}:", found.example)?;
+    for (index, channel) in found.channels.iter().enumerate() {
+        writeln!(text, "#   {index:>2}  {}", describe(channel))?;
+    }
+    text.write_str(CHANNELS)?;
+    let mut named = 0;
+    for role in Role::ALL {
+        let Some(channel) = found.channels.iter().find(|c| c.role == Some(role)) else { continue };
+        table(text, role, channel)?;
+        named += 1;
+    }
+    if named == 0 {
+        writeln!(text, "# FILL IN: no channel could be guessed\n# [channels.velocity_x]\n# channel = \"…\"\n")?;
+    }
+    Ok(())
+}
+
+fn describe(channel: &Seen) -> String {
+    let unit = channel.unit.as_deref().unwrap_or("no unit");
+    let time = if channel.is_time { ", the time" } else { "" };
+    let range = match channel.range {
+        Some([low, high]) => format!(", {low:.4} to {high:.4}"),
+        None => ", no numbers".to_owned(),
+    };
+    let name = channel.name.replace(['\n', '\r'], " ");
+    format!("{name} ({unit}, {} samples{range}{time})", channel.samples)
+}
+
+fn table(text: &mut String, role: Role, channel: &Seen) -> std::fmt::Result {
+    writeln!(text, "[channels.{}]", role.name())?;
+    writeln!(text, "channel = {}", quoted(&channel.name))?;
+    let known = channel.unit.as_deref().and_then(units::parse_unit);
+    let of_name = units::split_unit(&channel.name).1.and_then(units::parse_split_unit);
+    let unit = known.or(of_name);
+    match (known, unit.and_then(units::symbol_of)) {
+        (Some(_), _) => writeln!(text, "# unit = as the file states")?,
+        (None, Some(symbol)) => writeln!(text, "unit = \"{symbol}\"                 # from its name")?,
+        (None, None) => writeln!(text, "# unit = \"V\"               # FILL IN: the file states none")?,
+    }
+    let volts = unit.is_none_or(|u| u.dimension == Dimension::Voltage);
+    match (role.dimension(), role) {
+        (Some(dimension), _) if volts => {
+            let symbol = dimension.si_symbol().replace('²', "2");
+            writeln!(text, "# scale = \"0.05 {symbol} per V\"   # FILL IN: what one volt stands for")?;
+        }
+        (None, Role::Contact) => threshold(text, channel, unit)?,
+        _ => {}
+    }
+    if role.dimension().is_some() {
+        writeln!(text, "sign = 1                     # -1 where it counts away from the other mass")?;
+    }
+    if matches!(role, Role::VelocityX | Role::VelocityY) {
+        writeln!(text, "# high_pass = \"0.5 Hz\"       # corner of an integrator's high-pass")?;
+    }
+    writeln!(text)
+}
+
+fn threshold(text: &mut String, channel: &Seen, unit: Option<units::Unit>) -> std::fmt::Result {
+    let symbol = unit.and_then(units::symbol_of).unwrap_or("V");
+    match channel.levels {
+        Some([low, high]) => {
+            let level = 0.5 * (low + high);
+            writeln!(text, "threshold = \"{level:.4} {symbol}\"      # midway between its two levels")
+        }
+        None => writeln!(text, "# threshold = \"2.5 {symbol}\"   # level between open and closed"),
+    }
+}
+
+const RUN_TABLE: &str = "\
+# run_table = \"runs.csv\"      # instead of files: one row a record, with the columns file, dataset,
+#                             # drive_frequency_hz, clearance_mm, sweep (up, down), drive_amplitude
+";
+
+const RECORD_DEFAULTS: &str = "\
+# sweep = \"up\"               # of the records that state none: up, down or unknown
+# drive_frequency = \"12 Hz\"  # measured from the drive channel; a stated one is compared with it
+# excitation = \"free_decay\"  # where the records are decays after a blow
+";
+
+const RIG: &str = "\
+# Nominal values of the rig, all optional: where the fit starts
+[rig]
+# natural_frequency = \"12.6 Hz\"
+# damping_ratio = 0.07
+# static_deflection = \"1.0 mm\"   # x_st = F0/k
+# restitution = 0.9
+gain_uncertainty = \"0.5 %\"       # of the channels' scales
+clearance_uncertainty = \"10 um\"
+
+";
+
+const CHANNELS: &str = "\
+# One table a role: drive, contact, velocity_x, velocity_y, displacement_x, displacement_y,
+# acceleration_x, acceleration_y, frame_x, frame_y. x and y count toward the other mass.
+";
+
+const TAIL: &str = "\
+[analysis]
+# exclude = [\"record_12\"]    # records to leave out, by name; * and ? are wildcards
+# skip = \"0.1 s\"             # part of each record to leave out at its start
+longest_period_n = 6         # longest motion z = p/n looked for
+seed = 1
+
+[report]
+paper = \"a4\"                 # or \"us-letter\"
+language = \"en\"              # en, cs or de
+decimal_comma = false
+# points = [\"record_12\"]     # records to draw; chosen by the program where not given
+";

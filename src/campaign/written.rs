@@ -1,0 +1,323 @@
+//! campaign.toml exactly as written, before anything is checked against anything else.
+//!
+//! Every quantity with a dimension is a string with number and unit (`clearance = "1.0 mm"`,
+//! `natural_frequency = "12.6 Hz"`); a bare number is taken for plain numbers alone
+//! (`damping_ratio = 0.07`). Unknown keys are refused. All keys are optional here: what is
+//! missing is a matter of [`super::resolve`], so that every fault is told at once.
+
+use std::fmt;
+
+use serde::{Deserialize, Deserializer, Serialize, de};
+use toml::Spanned;
+
+/// Which oscillator was measured, as the detection of impacts has to know it.
+pub use crate::event::Rig as Machine;
+use crate::record::calibrate::ChannelKey;
+
+/// A value with its place in the file.
+pub type Placed<T> = Option<Spanned<T>>;
+
+/// The whole of campaign.toml.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct WrittenCampaign {
+    /// What the campaign is.
+    pub campaign: About,
+    /// Where the records are and at which setting each was taken.
+    pub records: Records,
+    /// Nominal values of the rig: where the fit starts.
+    pub rig: Rig,
+    /// The channels by role.
+    pub channels: Channels,
+    /// How the records are judged.
+    pub analysis: Analysis,
+    /// How the report looks.
+    pub report: Report,
+}
+
+/// `[campaign]`.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct About {
+    /// Name on the report's first page.
+    pub name: Placed<String>,
+    /// Two masses against each other, or one against a stop.
+    pub machine: Placed<Machine>,
+    /// What acts on the masses between impacts.
+    pub flight: Placed<Flight>,
+}
+
+/// What acts on the masses between impacts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Flight {
+    /// Springs and a harmonic drive.
+    Harmonic,
+    /// No spring: a constant force toward the stop, such as weight on an inclined track.
+    ConstantForce,
+}
+
+/// How a record was excited.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Excitation {
+    /// A harmonic drive.
+    Harmonic,
+    /// A blow or a release, then nothing.
+    FreeDecay,
+}
+
+/// `[records]`.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Records {
+    /// A glob or a list of globs, relative to campaign.toml's folder.
+    pub files: Placed<OneOrMany>,
+    /// A CSV table with one row a record, relative to campaign.toml's folder.
+    pub run_table: Placed<String>,
+    /// Samples per second, for files that do not tell.
+    pub sample_rate: Placed<Quantity>,
+    /// Name or index of the channel that holds the time, where the file's reader cannot tell.
+    pub time: Placed<WrittenKey>,
+    /// Clearance of the records that state none: r, half the gap of two masses.
+    pub clearance: Placed<Quantity>,
+    /// Drive frequency of the records that state none.
+    pub drive_frequency: Placed<Quantity>,
+    /// Drive amplitude, relative to the nominal one, of the records that state none.
+    pub drive_amplitude: Placed<f64>,
+    /// Sweep direction of the records that state none: up, down or unknown.
+    pub sweep: Placed<WrittenSweep>,
+    /// Excitation of the records that state none.
+    pub excitation: Placed<Excitation>,
+    /// Which attributes of the files hold the setting.
+    pub attributes: Attributes,
+}
+
+/// `[records.attributes]`: names of the files' attributes, with the unit in the name
+/// (`gap_mm`) or after it in brackets (`"gap [mm]"`).
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Attributes {
+    /// Attribute with the clearance r.
+    pub clearance: Placed<String>,
+    /// Attribute with the stated drive frequency.
+    pub drive_frequency: Placed<String>,
+    /// Attribute with the drive amplitude, relative to the nominal one.
+    pub drive_amplitude: Placed<String>,
+    /// Attribute with the sweep direction: up, down or unknown.
+    pub sweep: Placed<String>,
+    /// Attribute that names the rig, mass or bumper, where the campaign holds several.
+    pub specimen: Placed<String>,
+}
+
+/// Sweep direction as written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WrittenSweep {
+    /// Frequency stepped upward.
+    Up,
+    /// Frequency stepped downward.
+    Down,
+    /// Not known.
+    Unknown,
+}
+
+/// `[rig]`: nominal values, all optional.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Rig {
+    /// Natural frequency f0.
+    pub natural_frequency: Placed<Quantity>,
+    /// Damping ratio β.
+    pub damping_ratio: Placed<Quantity>,
+    /// Static deflection x_st = F0/k.
+    pub static_deflection: Placed<Quantity>,
+    /// Coefficient of restitution R.
+    pub restitution: Placed<Quantity>,
+    /// Mass x.
+    pub mass_x: Placed<Quantity>,
+    /// Mass y.
+    pub mass_y: Placed<Quantity>,
+    /// Standard uncertainty of the channels' scales, relative.
+    pub gain_uncertainty: Placed<Quantity>,
+    /// Standard uncertainty of the clearances.
+    pub clearance_uncertainty: Placed<Quantity>,
+}
+
+/// `[channels]`: one table a role.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[allow(missing_docs)] // the roles are documented at `record::Role`
+pub struct Channels {
+    pub drive: Placed<Channel>,
+    pub contact: Placed<Channel>,
+    pub velocity_x: Placed<Channel>,
+    pub velocity_y: Placed<Channel>,
+    pub displacement_x: Placed<Channel>,
+    pub displacement_y: Placed<Channel>,
+    pub acceleration_x: Placed<Channel>,
+    pub acceleration_y: Placed<Channel>,
+    pub frame_x: Placed<Channel>,
+    pub frame_y: Placed<Channel>,
+}
+
+/// `[channels.<role>]`.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Channel {
+    /// Which channel of the file: its name, or its index counted from 0.
+    pub channel: Placed<WrittenKey>,
+    /// Unit of the numbers in the file; needed where the file does not tell.
+    pub unit: Placed<String>,
+    /// A ratio from the file's unit to the quantity's (`"50 mm/s per V"`, or a sensor's
+    /// sensitivity `"100 mV/g"`), or a plain factor.
+    pub scale: Placed<Quantity>,
+    /// What the file shows at rest, in the file's unit; it is subtracted first.
+    pub offset: Placed<Quantity>,
+    /// 1, or -1 where the sensor counts away from the other mass.
+    pub sign: Placed<f64>,
+    /// Corner of the first-order high-pass (of an integrator, of an AC coupling).
+    pub high_pass: Placed<Quantity>,
+    /// Level between open and closed contact, in the unit after the scale.
+    pub threshold: Placed<Quantity>,
+    /// Greatest magnitude the converter can give, in the file's unit.
+    pub range: Placed<Quantity>,
+    /// Believe this table's unit where the file states another.
+    pub ignore_file_unit: Placed<bool>,
+}
+
+/// `[analysis]`.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Analysis {
+    /// Records to leave out, by name; `*` and `?` are wildcards.
+    pub exclude: Placed<Vec<String>>,
+    /// Part of each record to leave out at its start, while the motion settles.
+    pub skip: Placed<Quantity>,
+    /// Longest motion looked for, in drive periods.
+    pub longest_period_n: Placed<u32>,
+    /// Most impacts looked for in one period of a motion.
+    pub most_impacts_p: Placed<u32>,
+    /// Seed of everything random (resampling).
+    pub seed: Placed<u64>,
+}
+
+/// `[report]`.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Report {
+    /// Title; the campaign's name where none is given.
+    pub title: Placed<String>,
+    /// Records whose time series and phase portraits are drawn, by name.
+    pub points: Placed<Vec<String>>,
+    /// Paper size.
+    pub paper: Placed<Paper>,
+    /// Language of dates and hyphenation.
+    pub language: Placed<Language>,
+    /// Whether numbers are printed with a decimal comma.
+    pub decimal_comma: Placed<bool>,
+}
+
+/// Paper size of the report.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Paper {
+    /// 210 mm × 297 mm.
+    #[serde(rename = "a4")]
+    A4,
+    /// 8.5 in × 11 in.
+    #[serde(rename = "us-letter")]
+    UsLetter,
+}
+
+impl Paper {
+    /// The name that campaign.toml and typst use.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::A4 => "a4",
+            Self::UsLetter => "us-letter",
+        }
+    }
+}
+
+/// Language of the report.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Language {
+    /// English.
+    En,
+    /// Czech.
+    Cs,
+    /// German.
+    De,
+}
+
+/// One text or a list of them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OneOrMany(pub Vec<String>);
+
+/// A channel of a file as written: its name or its index.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct WrittenKey(pub ChannelKey);
+
+/// A quantity as written: text with number and unit, or a bare number.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Quantity {
+    /// Number and unit, not yet read.
+    Text(String),
+    /// A number without unit.
+    Bare(f64),
+}
+
+macro_rules! deserialize_with {
+    ($visitor:ident for $target:ty, $what:literal, { $($methods:tt)* }) => {
+        struct $visitor;
+        impl<'de> de::Visitor<'de> for $visitor {
+            type Value = $target;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str($what)
+            }
+            $($methods)*
+        }
+        impl<'de> Deserialize<'de> for $target {
+            fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+                d.deserialize_any($visitor)
+            }
+        }
+    };
+}
+
+deserialize_with!(QuantityVisitor for Quantity, "a text with number and unit", {
+    fn visit_str<E: de::Error>(self, v: &str) -> Result<Quantity, E> {
+        Ok(Quantity::Text(v.to_owned()))
+    }
+    fn visit_f64<E: de::Error>(self, v: f64) -> Result<Quantity, E> {
+        Ok(Quantity::Bare(v))
+    }
+    fn visit_i64<E: de::Error>(self, v: i64) -> Result<Quantity, E> {
+        Ok(Quantity::Bare(v as f64))
+    }
+});
+
+deserialize_with!(ChannelVisitor for WrittenKey, "a channel's name, or its index from 0", {
+    fn visit_str<E: de::Error>(self, v: &str) -> Result<WrittenKey, E> {
+        Ok(WrittenKey(ChannelKey::Name(v.to_owned())))
+    }
+    fn visit_i64<E: de::Error>(self, v: i64) -> Result<WrittenKey, E> {
+        usize::try_from(v)
+            .map(|index| WrittenKey(ChannelKey::Index(index)))
+            .map_err(|_| E::custom(format!("a channel's index is counted from 0, not {v}")))
+    }
+});
+
+deserialize_with!(FilesVisitor for OneOrMany, "a text or a list of texts", {
+    fn visit_str<E: de::Error>(self, v: &str) -> Result<OneOrMany, E> {
+        Ok(OneOrMany(vec![v.to_owned()]))
+    }
+    fn visit_seq<A: de::SeqAccess<'de>>(self, mut a: A) -> Result<OneOrMany, A::Error> {
+        let mut all = Vec::new();
+        while let Some(one) = a.next_element()? {
+            all.push(one);
+        }
+        Ok(OneOrMany(all))
+    }
+});

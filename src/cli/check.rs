@@ -1,0 +1,89 @@
+//! `impactid check`: read everything, list every fault at once, change nothing.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::fail::rendered_fault;
+use super::{Exit, Failure, Progress, Voice};
+use crate::campaign::check::{self, Checked};
+use crate::campaign::faults::{Fault, Faults, Severity};
+use crate::campaign::load;
+use crate::record::open::open;
+
+/// Arguments of `impactid check`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLE)]
+pub struct Check {
+    /// The campaign's description
+    #[arg(value_name = "CAMPAIGN.TOML", default_value = "campaign.toml")]
+    campaign: PathBuf,
+}
+
+const EXAMPLE: &str = "\
+Example:
+  impactid check data-samples/double-oscillator/campaign.toml
+
+Exit codes: 0 no fault; 2 a fault that stops the campaign or leaves records out.";
+
+impl Check {
+    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+        let mut outcome = load(&self.campaign, &open);
+        let mut usable = None;
+        if let Some(campaign) = &outcome.campaign {
+            let total = campaign.records.len() as u64;
+            let progress = Progress::new(voice, "reading", total);
+            let Checked { faults, usable: count, .. } =
+                check::read_all(campaign, &open, &|done| progress.set(done, total));
+            outcome.faults.0.extend(faults);
+            outcome.faults.tidy();
+            usable = Some((count, campaign.records.len()));
+        }
+        tell(&outcome.faults, usable, voice);
+        let harmless = outcome.faults.0.iter().all(|f| f.severity == Severity::Note);
+        Ok(if harmless { Exit::Done } else { Exit::BadInput })
+    }
+}
+
+/// Faults alike in several records are printed once from this many on.
+const MANY: usize = 4;
+
+fn tell(faults: &Faults, usable: Option<(usize, usize)>, voice: Voice) {
+    for group in faults.alike() {
+        let loud = !(voice.is_quiet() && group[0].severity == Severity::Note);
+        match (loud, group.len() < MANY || voice.wants_detail()) {
+            (false, _) => {}
+            (true, true) => group.iter().for_each(|f| eprint!("{}", rendered_fault(f))),
+            (true, false) => eprint!("{}", rendered_fault(&gathered(&group))),
+        }
+    }
+    let count = |severity| faults.of(severity).count();
+    if let Some((usable, all)) = usable {
+        voice.say(&format!("{usable} of {all} records can be used."));
+    }
+    voice.say(&format!(
+        "{} that stop the campaign, {} that leave a record out, {} to know of.",
+        faults_in_words(count(Severity::Campaign)),
+        count(Severity::Record),
+        count(Severity::Note)
+    ));
+}
+
+/// One fault for many of the same words; all their places in it.
+fn gathered(group: &[&Fault]) -> Fault {
+    let keys: Vec<&str> = group.iter().map(|f| f.key.as_str()).collect();
+    let first = group[0];
+    Fault {
+        what: format!("{} (in {} records: {})", first.what, keys.len(), keys.join(", ")),
+        key: String::new(),
+        ..first.clone()
+    }
+}
+
+fn faults_in_words(count: usize) -> String {
+    match count {
+        0 => "No faults".to_owned(),
+        1 => "1 fault".to_owned(),
+        n => format!("{n} faults"),
+    }
+}

@@ -1,0 +1,31 @@
+//! Ctrl-C: a clear message, no half-written file, exit code 130.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// Exit code of a program that the user broke off (128 + SIGINT).
+const BROKEN_OFF: i32 = 130;
+
+/// From now on Ctrl-C clears the half-written files of `folder` away, says so and ends the
+/// program.
+pub fn watch(folder: PathBuf) {
+    let flag = Arc::new(AtomicBool::new(false));
+    let signals = [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM];
+    if signals.iter().any(|s| signal_hook::flag::register(*s, Arc::clone(&flag)).is_err()) {
+        return;
+    }
+    std::thread::spawn(move || {
+        while !flag.load(Ordering::Relaxed) {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        crate::output::clear_parts(&folder);
+        eprintln!(
+            "\nimpactid: broken off. Nothing half-written is left in {}; the same command with \
+             --resume goes on.",
+            folder.display()
+        );
+        std::process::exit(BROKEN_OFF);
+    });
+}

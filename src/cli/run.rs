@@ -1,0 +1,64 @@
+//! `impactid run`: all stages, from campaign.toml to the report.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::progress::Progress;
+use super::{Exit, Failure, Voice, interrupt};
+use crate::output::Lock;
+use crate::pipeline::{self, Destination};
+
+/// Arguments of `impactid run`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLE)]
+pub struct Run {
+    /// The campaign's description
+    #[arg(value_name = "CAMPAIGN.TOML")]
+    campaign: PathBuf,
+    /// Folder for the results; it is made where it does not exist
+    #[arg(long, short, value_name = "DIR")]
+    out: PathBuf,
+    /// Take over what a run that was broken off left in DIR
+    #[arg(long)]
+    resume: bool,
+}
+
+const EXAMPLE: &str = "\
+Example:
+  impactid run data-samples/double-oscillator/campaign.toml --out results/
+
+It leaves report.pdf, identification.json, records.parquet, impacts.parquet and boundaries.csv.
+Exit codes: 0 done; 1 done, but the answer is \"does not fit\" or \"not identifiable\"; 2 bad input.";
+
+impl Run {
+    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+        let campaign = super::stage::load_campaign(&self.campaign, voice)?;
+        let _lock = Lock::take(&self.out)?;
+        interrupt::watch(self.out.clone());
+        voice.detail(&format!("{} records", campaign.records.len()));
+        let progress = Progress::new(voice, "observe", campaign.records.len() as u64);
+        let told = |stage: &'static str, done: u64, total: u64| {
+            progress.stage(stage);
+            progress.set(done, total);
+        };
+        let command = format!(
+            "impactid run {} --out {}",
+            self.campaign.display(),
+            self.out.display()
+        );
+        let destination = Destination {
+            out: &self.out,
+            resume: self.resume,
+            command_line: &command,
+        };
+        let found = pipeline::run(&campaign, &destination, &told)?;
+        drop(progress);
+        voice.say(&found.summary);
+        for finding in &found.findings {
+            voice.say(&format!("  - {finding}"));
+        }
+        voice.say(&format!("Report: {}", self.out.join(pipeline::report::FILE).display()));
+        Ok(Exit::of(found.kind))
+    }
+}

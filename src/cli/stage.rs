@@ -1,0 +1,180 @@
+//! The stages alone: `ingest`, `classify`, `identify`, `report`, each from what the one before
+//! wrote.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::fail::rendered_fault;
+use super::progress::Progress;
+use super::{Exit, Failure, Voice, interrupt};
+use crate::campaign::faults::Severity;
+use crate::campaign::load;
+use crate::campaign::resolved::ResolvedCampaign;
+use crate::output::{Lock, write_bytes};
+use crate::pipeline::{self, store};
+use crate::record::open::open;
+
+/// Arguments of `impactid ingest`.
+#[derive(Debug, Args)]
+#[command(after_help = INGEST)]
+pub struct Ingest {
+    /// The campaign's description
+    #[arg(value_name = "CAMPAIGN.TOML")]
+    campaign: PathBuf,
+    /// Folder for the results; it is made where it does not exist
+    #[arg(long, short, value_name = "DIR")]
+    out: PathBuf,
+}
+
+const INGEST: &str = "\
+Example:
+  impactid ingest   campaign.toml --out results/
+  impactid classify results/
+  impactid identify results/
+  impactid report   results/";
+
+/// The folder that the stage before wrote into.
+#[derive(Debug, Args)]
+pub struct Folder {
+    /// Folder that the stage before wrote into (or campaign.toml, with the folder as --out)
+    #[arg(value_name = "DIR")]
+    given: PathBuf,
+    /// Folder that the stage before wrote into, where DIR names campaign.toml
+    #[arg(long, short, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+impl Folder {
+    /// The results' folder, locked for this run.
+    fn take(&self) -> Result<(PathBuf, Lock), Failure> {
+        let folder = self.out.as_ref().unwrap_or(&self.given);
+        if !folder.is_dir() {
+            return Err(Failure::new(
+                format!("{} is no folder with results", folder.display()),
+                "name the folder that the stage before wrote into; the first stage is \
+                 `impactid ingest campaign.toml --out DIR`",
+            ));
+        }
+        let lock = Lock::take(folder)?;
+        interrupt::watch(folder.clone());
+        Ok((folder.clone(), lock))
+    }
+}
+
+/// Arguments of `impactid classify`.
+#[derive(Debug, Args)]
+#[command(after_help = CLASSIFY)]
+pub struct Classify {
+    #[command(flatten)]
+    folder: Folder,
+}
+
+const CLASSIFY: &str = "\
+Example:
+  impactid classify results/
+
+It reads what `impactid ingest` left there and writes records.parquet and boundaries.csv.";
+
+/// Arguments of `impactid identify`.
+#[derive(Debug, Args)]
+#[command(after_help = IDENTIFY)]
+pub struct Identify {
+    #[command(flatten)]
+    folder: Folder,
+}
+
+const IDENTIFY: &str = "\
+Example:
+  impactid identify results/
+
+It reads what `impactid classify` left there and writes identification.json.
+Exit codes: 0 done; 1 done, but the answer is \"does not fit\" or \"not identifiable\"; 2 bad input.";
+
+/// Arguments of `impactid report`.
+#[derive(Debug, Args)]
+#[command(after_help = REPORT)]
+pub struct Report {
+    #[command(flatten)]
+    folder: Folder,
+}
+
+const REPORT: &str = "\
+Example:
+  impactid report results/
+
+It reads what `impactid identify` left there and writes report.pdf.";
+
+impl Ingest {
+    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+        let campaign = load_campaign(&self.campaign, voice)?;
+        let _lock = Lock::take(&self.out)?;
+        interrupt::watch(self.out.clone());
+        let bar = Progress::new(voice, "ingest", campaign.records.len() as u64);
+        let usable = store::ingest(&campaign, &self.out, &|_, done, total| bar.set(done, total))?;
+        drop(bar);
+        voice.say(&format!("{usable} of {} records are usable.", campaign.records.len()));
+        Ok(Exit::Done)
+    }
+}
+
+impl Classify {
+    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+        let (folder, _lock) = self.folder.take()?;
+        let bar = Progress::new(voice, "classify", 0);
+        let observed = store::classify(&folder, &|_, done, total| bar.set(done, total))?;
+        drop(bar);
+        let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+        for observation in &observed.observations {
+            *counts.entry(observation.finding.motion.label()).or_default() += 1;
+        }
+        for (motion, count) in counts {
+            voice.say(&format!("{count:6}  {motion}"));
+        }
+        Ok(Exit::Done)
+    }
+}
+
+impl Identify {
+    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+        let (folder, _lock) = self.folder.take()?;
+        let campaign = store::read_resolved(&folder)?;
+        let observed = store::read_observed(&folder)?;
+        let found = pipeline::identify::identify(&campaign, &observed)?;
+        pipeline::identify::write(&found.identification, &folder)?;
+        store::write_fit(&found.outcome, &folder)?;
+        let verdict = &found.identification.verdict;
+        voice.say(&verdict.summary);
+        Ok(Exit::of(verdict.kind))
+    }
+}
+
+impl Report {
+    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+        let (folder, _lock) = self.folder.take()?;
+        let campaign = store::read_resolved(&folder)?;
+        let observed = store::read_observed(&folder)?;
+        let found = store::read_found(&folder)?;
+        let command = format!("impactid report {}", folder.display());
+        let pdf = pipeline::report::pdf(&campaign, &observed, &found, &command)?;
+        let path = folder.join(pipeline::report::FILE);
+        write_bytes(&path, &pdf)?;
+        voice.say(&format!("Report: {}", path.display()));
+        Ok(Exit::Done)
+    }
+}
+
+/// The resolved campaign; faults that stop it are an error, the others are said.
+pub fn load_campaign(path: &Path, voice: Voice) -> Result<ResolvedCampaign, Failure> {
+    let outcome = load(path, &open);
+    let Some(campaign) = outcome.campaign else {
+        return Err(outcome.faults.into());
+    };
+    for fault in &outcome.faults.0 {
+        if fault.severity == Severity::Record && !voice.is_quiet() {
+            eprint!("{}", rendered_fault(fault));
+        }
+    }
+    Ok(campaign)
+}

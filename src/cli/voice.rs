@@ -1,0 +1,36 @@
+//! How much the program says.
+
+/// Prints on the standard error stream what `--quiet` and `-v` let through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Voice(i16);
+
+impl Voice {
+    /// From the flags of the command line.
+    pub fn new(quiet: bool, verbose: u8) -> Self {
+        Self(if quiet { -1 } else { i16::from(verbose) })
+    }
+
+    /// Whether nothing but errors is said.
+    pub fn is_quiet(self) -> bool {
+        self.0 < 0
+    }
+
+    /// Whether more than the usual is asked for.
+    pub fn wants_detail(self) -> bool {
+        self.0 >= 1
+    }
+
+    /// Say something that every user wants to know.
+    pub fn say(self, text: &str) {
+        if self.0 >= 0 {
+            eprintln!("{text}");
+        }
+    }
+
+    /// Say something for those who asked for more.
+    pub fn detail(self, text: &str) {
+        if self.0 >= 1 {
+            eprintln!("{text}");
+        }
+    }
+}

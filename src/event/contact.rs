@@ -1,0 +1,107 @@
+//! Closed intervals of the contact channel.
+
+use crate::record::Channel;
+
+/// An interval in which the contact was closed; bounces are merged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Closed {
+    /// First closed sample.
+    pub first: usize,
+    /// Last closed sample.
+    pub last: usize,
+    /// Number of pulses merged into it.
+    pub pulses: usize,
+}
+
+impl Closed {
+    /// Number of samples from first to last closed.
+    pub fn samples(&self) -> usize {
+        self.last - self.first + 1
+    }
+}
+
+/// Intervals in which the contact channel is beyond its threshold.
+///
+/// The threshold is the channel's own, else halfway between its least and greatest sample where
+/// these differ by more than eight noise deviations (else the contact never closed). The side of
+/// the threshold on which the channel rests most of the time is "open" unless a threshold is
+/// stated, in which case closed is above it (below it for a negative threshold). Pulses less
+/// than `bounce_samples` apart are one contact that bounced.
+pub fn closed_intervals(channel: &Channel, bounce_samples: usize) -> Vec<Closed> {
+    let Some(is_closed) = closed_test(channel) else {
+        return Vec::new();
+    };
+    let mut intervals: Vec<Closed> = Vec::new();
+    for (i, value) in channel.values.iter().enumerate() {
+        if !is_closed(*value) {
+            continue;
+        }
+        match intervals.last_mut() {
+            Some(current) if i - current.last <= bounce_samples.max(1) => {
+                current.pulses += usize::from(i - current.last > 1);
+                current.last = i;
+            }
+            _ => intervals.push(Closed { first: i, last: i, pulses: 1 }),
+        }
+    }
+    intervals
+}
+
+fn closed_test(channel: &Channel) -> Option<Box<dyn Fn(f64) -> bool>> {
+    if let Some(threshold) = channel.threshold {
+        return Some(if threshold >= 0.0 {
+            Box::new(move |v| v > threshold)
+        } else {
+            Box::new(move |v| v < threshold)
+        });
+    }
+    let low = channel.values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = channel.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let noise = crate::signal::robust::noise_deviation(&channel.values);
+    if !(high - low > 8.0 * noise.max(1e-9)) {
+        return None;
+    }
+    let middle = 0.5 * (low + high);
+    let above = channel.values.iter().filter(|v| **v > middle).count();
+    Some(if 2 * above > channel.values.len() {
+        Box::new(move |v| v < middle)
+    } else {
+        Box::new(move |v| v > middle)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Role;
+    use crate::units::Dimension;
+
+    fn channel(values: Vec<f64>, threshold: Option<f64>) -> Channel {
+        Channel {
+            role: Role::Contact,
+            name: "contact".into(),
+            dimension: Dimension::Voltage,
+            values,
+            high_pass_hz: None,
+            threshold,
+        }
+    }
+
+    #[test]
+    fn valid_bounces_are_merged_and_pulses_counted() {
+        let mut values = vec![0.0; 100];
+        for i in [20, 22, 60] {
+            values[i] = 5.0;
+        }
+        let found = closed_intervals(&channel(values.clone(), Some(2.5)), 4);
+        assert_eq!(found.len(), 2);
+        assert_eq!((found[0].first, found[0].last, found[0].pulses), (20, 22, 2));
+        assert_eq!(closed_intervals(&channel(values, None), 4).len(), 2);
+    }
+
+    #[test]
+    fn valid_an_idle_contact_has_no_pulse() {
+        let values: Vec<f64> = (0..200).map(|i| 0.01 * f64::from(i * 7919 % 13)).collect();
+        assert!(closed_intervals(&channel(values, None), 4).is_empty());
+    }
+}

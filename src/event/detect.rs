@@ -1,0 +1,265 @@
+//! From a record to its impacts: contact pulses and velocity jumps fused, times refined.
+
+use crate::event::contact::{Closed, closed_intervals};
+use crate::event::jumps::{Jump, JumpSearch, SUPPORTED};
+use crate::event::kinematics::{Kinematics, Series};
+use crate::event::refine::{self, Candidate};
+use crate::event::{DriveTone, Impact, Rig, Seen, drift, drive};
+use crate::record::{Flag, Record, Role};
+
+/// Settings of the detection. All times in s.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct DetectSettings {
+    /// Pulses of the contact closer than this belong to one bouncing contact.
+    pub bounce_s: f64,
+    /// A contact closed for longer than this is a dead zone.
+    pub dead_zone_s: f64,
+    /// One-sided window as a fraction of the drive period.
+    pub window_periods: f64,
+    /// Relative difference from which the measured drive frequency contradicts the stated one.
+    pub drive_tolerance: f64,
+}
+
+impl Default for DetectSettings {
+    fn default() -> Self {
+        Self { bounce_s: 3e-3, dead_zone_s: 4e-3, window_periods: 0.1, drive_tolerance: 5e-3 }
+    }
+}
+
+/// What was found in one record.
+#[derive(Debug, Clone)]
+pub struct Detection {
+    /// The drive as measured.
+    pub drive: Option<DriveTone>,
+    /// The motion with drift removed.
+    pub kinematics: Kinematics,
+    /// The impacts in order of time.
+    pub impacts: Vec<Impact>,
+    /// Samples that a jump takes; more than one: the contact is long against the sample step.
+    pub jump_samples: usize,
+    /// Contact pulses that show no jump of velocity, although velocity is measured.
+    pub unsupported_pulses: usize,
+    /// Impacts that the contact channel missed, although there is one.
+    pub missed_pulses: usize,
+    /// Fraction of the record in which the contact was closed.
+    pub closed_fraction: f64,
+    /// What was noticed.
+    pub flags: Vec<Flag>,
+}
+
+/// Detect the impacts of a record.
+///
+/// Impacts come from the contact channel and from jumps of the closing velocity, fused; a record
+/// without any velocity gives impacts without speeds. No parameter of the model enters.
+pub fn detect(record: &Record, rig: Rig, settings: &DetectSettings) -> Detection {
+    let (drive, mut flags) = drive::measure(record, settings.drive_tolerance);
+    let mut kinematics = Kinematics::of(record, rig);
+    let rate_hz = record.sample_rate_hz;
+    let closed = record.channel(Role::Contact).map_or_else(Vec::new, |channel| {
+        closed_intervals(channel, samples_of(settings.bounce_s, rate_hz))
+    });
+    let dead_from = samples_of(settings.dead_zone_s, rate_hz).max(4);
+    let width = window_samples(drive.as_ref(), rate_hz, settings.window_periods);
+    let found = match &kinematics.closing.velocity {
+        Some(velocity) => fuse(velocity, &closed, width, dead_from),
+        None => from_contact_alone(&closed, dead_from),
+    };
+    if let Some(flag) = wrong_way(&found, record) {
+        flags.push(flag);
+    }
+    let speed_width = (4 * width / 3).max(6);
+    let impacts =
+        refined(&mut kinematics, &found.candidates, drive.as_ref(), (rig, speed_width));
+    let closed_samples: usize = closed.iter().map(Closed::samples).sum();
+    Detection {
+        drive,
+        impacts,
+        jump_samples: found.jump_samples,
+        unsupported_pulses: found.unsupported,
+        missed_pulses: if record.channel(Role::Contact).is_some() { found.missed } else { 0 },
+        closed_fraction: closed_samples as f64 / record.samples().max(1) as f64,
+        kinematics,
+        flags,
+    }
+}
+
+fn samples_of(time_s: f64, rate_hz: f64) -> usize {
+    (time_s * rate_hz).round() as usize
+}
+
+fn window_samples(drive: Option<&DriveTone>, rate_hz: f64, periods: f64) -> usize {
+    match drive {
+        Some(d) => ((periods * rate_hz / d.frequency_hz).round() as usize).clamp(4, 16),
+        None => 5,
+    }
+}
+
+/// Refine times, correct and remove the drift they tell, refine again, extrapolate the speeds.
+fn refined(
+    kinematics: &mut Kinematics,
+    candidates: &[Candidate],
+    drive: Option<&DriveTone>,
+    (rig, width): (Rig, usize),
+) -> Vec<Impact> {
+    if kinematics.closing.velocity.is_none() {
+        return without_speeds(candidates, drive, kinematics.rate_hz);
+    }
+    let first = refine::instants(kinematics, candidates, width);
+    refine::correct_jumps(kinematics, candidates, &first, width);
+    kinematics.close_again(rig);
+    let times: Vec<f64> = first.iter().map(|i| i.time).collect();
+    let rate_hz = kinematics.rate_hz;
+    for series in [&mut kinematics.closing, &mut kinematics.x, &mut kinematics.y]
+        .into_iter()
+        .filter_map(|b| b.velocity.as_mut())
+    {
+        drift::settle(series, &times, drive, rate_hz);
+    }
+    let instants = refine::instants(kinematics, candidates, width);
+    refine::impacts(kinematics, candidates, &instants, drive, width)
+}
+
+struct Fused {
+    candidates: Vec<Candidate>,
+    jump_samples: usize,
+    unsupported: usize,
+    missed: usize,
+    upward: usize,
+    downward: usize,
+}
+
+/// Fuse jumps and contact pulses: a pulse belongs to the strongest jump inside it; a pulse without
+/// a jump lends support to a weaker one; a long pulse is a dead zone.
+fn fuse(velocity: &Series, closed: &[Closed], width: usize, dead_from: usize) -> Fused {
+    let search = JumpSearch::new(velocity, width);
+    let mut jumps = search.find();
+    let (upward, downward) = search.directions();
+    let mut unsupported = 0;
+    for pulse in closed {
+        let (first, last) = reach(pulse, search.gap);
+        if jumps.iter().any(|j| (first..=last).contains(&j.left)) {
+            continue;
+        }
+        let end = last.min(first + 4 + search.gap);
+        match search.near(first, end, &jumps, SUPPORTED) {
+            Some(jump) => {
+                let place = jumps.partition_point(|j| j.left < jump.left);
+                jumps.insert(place, jump);
+            }
+            None => unsupported += 1,
+        }
+    }
+    let candidates = candidates(&jumps, closed, search.gap, dead_from, velocity);
+    let missed = candidates.iter().filter(|c| c.seen == Seen::Velocity).count();
+    Fused { candidates, jump_samples: search.gap, unsupported, missed, upward, downward }
+}
+
+/// Samples at which a jump that belongs to a pulse may begin.
+fn reach(pulse: &Closed, gap: usize) -> (usize, usize) {
+    (pulse.first.saturating_sub(gap + 2), pulse.last + 1)
+}
+
+fn candidates(
+    jumps: &[Jump],
+    closed: &[Closed],
+    gap: usize,
+    dead_from: usize,
+    velocity: &Series,
+) -> Vec<Candidate> {
+    let mut out: Vec<Candidate> = Vec::new();
+    for (i, jump) in jumps.iter().enumerate() {
+        let pulse = closed.iter().find(|p| {
+            let (first, last) = reach(p, gap);
+            (first..=last).contains(&jump.left)
+        });
+        let next = jumps.get(i + 1).map_or(velocity.values.len(), |j| j.left);
+        let contact_dead = pulse
+            .filter(|p| p.samples() >= dead_from)
+            .map(|p| p.last.min(next).saturating_sub(jump.left) as f64)
+            .filter(|d| *d >= dead_from as f64);
+        let dead_samples = match (contact_dead, closed.is_empty()) {
+            (Some(dead), _) => dead,
+            (None, true) => resting_samples(velocity, jump, next, dead_from),
+            (None, false) => 0.0,
+        };
+        let seen = if pulse.is_some() { Seen::Both } else { Seen::Velocity };
+        out.push(Candidate { jump: *jump, seen, dead_samples });
+    }
+    out
+}
+
+/// Without a contact channel: how long the closing velocity stays at zero after a jump.
+fn resting_samples(velocity: &Series, jump: &Jump, next: usize, dead_from: usize) -> f64 {
+    let begin = jump.left + jump.gap;
+    let rest_below = 4.0 * velocity.noise + 5e-3 * jump.height.abs();
+    let resting = velocity.values[begin.min(next)..next]
+        .iter()
+        .take_while(|v| v.abs() <= rest_below)
+        .count();
+    if resting >= dead_from { resting as f64 } else { 0.0 }
+}
+
+fn from_contact_alone(closed: &[Closed], dead_from: usize) -> Fused {
+    let candidates = closed
+        .iter()
+        .map(|pulse| Candidate {
+            jump: Jump {
+                left: pulse.first.saturating_sub(1),
+                gap: 1,
+                height: f64::NAN,
+                error: f64::NAN,
+            },
+            seen: Seen::Contact,
+            dead_samples: if pulse.samples() >= dead_from { pulse.samples() as f64 } else { 0.0 },
+        })
+        .collect();
+    Fused { candidates, jump_samples: 1, unsupported: 0, missed: 0, upward: 0, downward: 0 }
+}
+
+fn without_speeds(
+    candidates: &[Candidate],
+    drive: Option<&DriveTone>,
+    rate_hz: f64,
+) -> Vec<Impact> {
+    candidates
+        .iter()
+        .map(|c| {
+            let time_s = c.jump.middle() / rate_hz;
+            Impact {
+                time_s,
+                time_error_s: 1.0 / (rate_hz * 12f64.sqrt()),
+                drive_phase_rad: drive.map(|d| d.phase_at(time_s)),
+                closing_speed_before_m_s: None,
+                closing_speed_after_m_s: None,
+                speed_error_m_s: None,
+                x: None,
+                y: None,
+                dead_zone_s: c.dead_samples / rate_hz,
+                seen: c.seen,
+            }
+        })
+        .collect()
+}
+
+/// Upward jumps where impacts should jump down: a sign is wrong somewhere.
+fn wrong_way(found: &Fused, record: &Record) -> Option<Flag> {
+    (found.upward >= 3 && found.upward > 2 * found.downward).then(|| {
+        let channel = record
+            .channel(Role::VelocityX)
+            .or_else(|| record.channel(Role::DisplacementX))
+            .map(|c| c.name.clone());
+        Flag {
+            code: "jumps_point_the_wrong_way".into(),
+            channel,
+            message: format!(
+                "{} jumps of the closing velocity go up, {} down; an impact jumps down",
+                found.upward, found.downward
+            ),
+            remedy: "turn the `sign` of the velocity or displacement channels: positive is toward \
+                     the other mass"
+                .into(),
+            excludes: true,
+        }
+    })
+}

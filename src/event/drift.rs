@@ -1,0 +1,90 @@
+//! Offset and ramp of a velocity signal, found from what kinematics demands: at every impact the
+//! bodies are at the same place, so between two impacts the mean closing velocity is zero.
+
+use crate::event::DriveTone;
+use crate::event::kinematics::Series;
+use crate::signal::{drift, robust};
+
+/// Remove offset (and, where a high-pass was undone, ramp) from a closing velocity.
+///
+/// With two impacts or more, from the arcs between them (`times` in samples); else from whole
+/// drive periods.
+pub fn settle(velocity: &mut Series, times: &[f64], drive: Option<&DriveTone>, rate_hz: f64) {
+    let arcs = arc_offsets(&velocity.values, times);
+    let line = if arcs.is_empty() {
+        period_line(velocity, drive, rate_hz)
+    } else {
+        weighted_line(&arcs, velocity.high_pass_hz.is_some() && arcs.len() >= 4)
+    };
+    if let Some((offset, slope)) = line {
+        drift::remove_line(&mut velocity.values, offset, slope);
+    }
+}
+
+/// Mean velocity of each arc: (middle in samples, mean, duration in samples).
+fn arc_offsets(values: &[f64], times: &[f64]) -> Vec<(f64, f64, f64)> {
+    times
+        .windows(2)
+        .filter(|w| w[1] - w[0] > 4.0)
+        .filter_map(|w| {
+            let area = integral(values, w[0], w[1])?;
+            Some((0.5 * (w[0] + w[1]), area / (w[1] - w[0]), w[1] - w[0]))
+        })
+        .collect()
+}
+
+/// Integral of samples (step 1) between two instants, each arc taken with its own samples only:
+/// no sample outside the interval enters, so a jump at its ends does no harm.
+pub fn integral(values: &[f64], from: f64, to: f64) -> Option<f64> {
+    let first = from.ceil().max(0.0) as usize;
+    let last = to.floor() as usize;
+    if last >= values.len() || first + 1 >= last {
+        return None;
+    }
+    let inside = &values[first..=last];
+    let trapezoid = inside.iter().sum::<f64>() - 0.5 * (inside[0] + inside[inside.len() - 1]);
+    let slope_first = values[first + 1] - values[first];
+    let slope_last = values[last] - values[last - 1];
+    let (head, tail) = (first as f64 - from, to - last as f64);
+    let head_area = head * (values[first] - 0.5 * head * slope_first);
+    let tail_area = tail * (values[last] + 0.5 * tail * slope_last);
+    Some(trapezoid + head_area + tail_area)
+}
+
+fn weighted_line(points: &[(f64, f64, f64)], with_slope: bool) -> Option<(f64, f64)> {
+    let weight: f64 = points.iter().map(|p| p.2).sum();
+    let centre = points.iter().map(|p| p.0 * p.2).sum::<f64>() / weight;
+    let mean = points.iter().map(|p| p.1 * p.2).sum::<f64>() / weight;
+    if !with_slope {
+        return Some((mean, 0.0));
+    }
+    let spread: f64 = points.iter().map(|p| p.2 * (p.0 - centre).powi(2)).sum();
+    let shear: f64 = points.iter().map(|p| p.2 * (p.0 - centre) * (p.1 - mean)).sum();
+    let slope = if spread > 0.0 { shear / spread } else { 0.0 };
+    Some((mean - slope * centre, slope))
+}
+
+/// Offset and ramp from samples a whole drive period apart, else the plain mean.
+fn period_line(
+    velocity: &Series,
+    drive: Option<&DriveTone>,
+    rate_hz: f64,
+) -> Option<(f64, f64)> {
+    let values = &velocity.values;
+    let period = drive.map(|d| rate_hz / d.frequency_hz).filter(|p| 2.0 * p < values.len() as f64);
+    let Some(period) = period else {
+        return Some((robust::mean(values), 0.0));
+    };
+    let slope = if velocity.high_pass_hz.is_some() { strobed_slope(values, period) } else { 0.0 };
+    let level: Vec<f64> = values.iter().enumerate().map(|(i, v)| v - slope * i as f64).collect();
+    let whole = (level.len() as f64 / period - 1e-9).floor() * period;
+    let offset = integral(&level, 0.0, whole.min(level.len() as f64 - 2.0))? / whole;
+    Some((offset, slope))
+}
+
+fn strobed_slope(values: &[f64], period: f64) -> f64 {
+    let differences: Vec<f64> = (0..values.len())
+        .map_while(|i| drift::interpolate(values, i as f64 + period).map(|v| v - values[i]))
+        .collect();
+    robust::median(&differences).unwrap_or(0.0) / period
+}

@@ -1,0 +1,235 @@
+//! Jumps of the closing velocity: where one-sided extrapolations from left and right disagree.
+
+use crate::event::kinematics::Series;
+use crate::signal::local_fit::LocalFit;
+use crate::signal::robust;
+
+/// Significance (in standard errors) from which a jump counts by itself.
+const SIGNIFICANT: f64 = 6.0;
+
+/// Significance that suffices where the contact channel shows a pulse.
+pub const SUPPORTED: f64 = 3.0;
+
+/// A jump of velocity between two samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jump {
+    /// Last sample before the jump; the velocity is on the other branch `gap` samples later.
+    pub left: usize,
+    /// Samples from the last one before to the first one after the jump; 1 when instantaneous.
+    pub gap: usize,
+    /// Velocity after minus before, both extrapolated to the middle of the gap.
+    pub height: f64,
+    /// Standard error of the height.
+    pub error: f64,
+}
+
+impl Jump {
+    /// Middle of the gap, in samples.
+    pub fn middle(&self) -> f64 {
+        self.left as f64 + 0.5 * self.gap as f64
+    }
+
+    /// Height over its standard error, positive for a jump down as impacts make it.
+    pub fn significance(&self) -> f64 {
+        -self.height / self.error
+    }
+}
+
+/// A search for jumps in one velocity signal.
+#[derive(Debug, Clone)]
+pub struct JumpSearch<'a> {
+    velocity: &'a Series,
+    /// Samples of each one-sided window.
+    window: usize,
+    /// Samples a jump takes from one branch to the other; 1 when instantaneous.
+    pub gap: usize,
+    scan: Vec<f64>,
+    scan_deviation: f64,
+}
+
+impl<'a> JumpSearch<'a> {
+    /// Scan a velocity with one-sided windows of `window` samples (at least 4).
+    ///
+    /// The samples a jump takes (its gap) are found from the strongest jumps themselves.
+    pub fn new(velocity: &'a Series, window: usize) -> Self {
+        let mut search = Self::with_gap(velocity, window.max(4), 1);
+        let wanted = search.typical_gap();
+        if wanted > 1 {
+            search = Self::with_gap(velocity, window.max(4), wanted);
+        }
+        search
+    }
+
+    fn with_gap(velocity: &'a Series, window: usize, gap: usize) -> Self {
+        let (weights, factor) = one_sided_weights(window, 0.5 * gap as f64);
+        let values = &velocity.values;
+        let count = values.len();
+        let mut scan = vec![0.0; count];
+        for left in window.saturating_sub(1)..count.saturating_sub(gap + window - 1) {
+            let mut height = 0.0;
+            for (j, w) in weights.iter().enumerate() {
+                height += w * (values[left + gap + j] - values[left - j]);
+            }
+            scan[left] = height;
+        }
+        let theory = velocity.noise * factor * 2f64.sqrt();
+        let seen = robust::robust_deviation(&scan).unwrap_or(0.0);
+        Self { velocity, window, gap, scan_deviation: seen.max(theory), scan }
+    }
+
+    /// How many samples the strongest jumps take from branch to branch (median over up to ten).
+    fn typical_gap(&self) -> usize {
+        let strongest = self.candidates(SIGNIFICANT, -1.0);
+        let mut gaps: Vec<f64> = strongest
+            .iter()
+            .take(10)
+            .filter_map(|&left| self.transition_samples(left))
+            .map(|n| n as f64)
+            .collect();
+        gaps.truncate(10);
+        robust::median(&gaps).map_or(1, |g| (g.round() as usize).clamp(1, self.window))
+    }
+
+    /// Samples of the steep stretch around a jump: steps of at least a tenth of the jump.
+    fn transition_samples(&self, left: usize) -> Option<usize> {
+        let values = &self.velocity.values;
+        let height = self.scan[left].abs();
+        let steep = |i: usize| {
+            let step = values.get(i)? - values.get(i + 1)?;
+            Some(step > (0.15 * height).max(4.0 * self.velocity.noise))
+        };
+        let centre = (left.saturating_sub(1)..=left + 1).find(|&i| steep(i) == Some(true))?;
+        let mut first = centre;
+        while first > 0 && steep(first - 1) == Some(true) {
+            first -= 1;
+        }
+        let mut last = centre;
+        while steep(last + 1) == Some(true) {
+            last += 1;
+        }
+        Some(last - first + 1)
+    }
+
+    /// Local extrema of the scan, strongest first; `sign` −1 for downward jumps, +1 for upward.
+    fn candidates(&self, significance: f64, sign: f64) -> Vec<usize> {
+        let limit = significance * self.scan_deviation;
+        let strength = |i: usize| sign * self.scan[i];
+        let mut found: Vec<usize> = (1..self.scan.len().saturating_sub(1))
+            .filter(|&i| {
+                strength(i) > limit
+                    && strength(i) >= strength(i - 1)
+                    && strength(i) > strength(i + 1)
+            })
+            .collect();
+        found.sort_by(|&a, &b| strength(b).total_cmp(&strength(a)).then(a.cmp(&b)));
+        found
+    }
+
+    /// All significant downward jumps, in order of time.
+    pub fn find(&self) -> Vec<Jump> {
+        let mut accepted: Vec<Jump> = Vec::new();
+        for left in self.candidates(SIGNIFICANT, -1.0) {
+            if let Some(jump) = self.measure(left, &accepted, SIGNIFICANT) {
+                let place = accepted.partition_point(|j| j.left < jump.left);
+                accepted.insert(place, jump);
+            }
+        }
+        self.remeasured(accepted)
+    }
+
+    /// Numbers of significant jumps upward and downward; of neighbours the strongest counts alone,
+    /// for the scan swings back beside a jump.
+    pub fn directions(&self) -> (usize, usize) {
+        let mut all = self.candidates(SIGNIFICANT, 1.0);
+        all.extend(self.candidates(SIGNIFICANT, -1.0));
+        all.sort_by(|&a, &b| self.scan[b].abs().total_cmp(&self.scan[a].abs()).then(a.cmp(&b)));
+        let mut kept: Vec<usize> = Vec::new();
+        for i in all {
+            if kept.iter().all(|k| k.abs_diff(i) > 2 * self.window + self.gap) {
+                kept.push(i);
+            }
+        }
+        let upward = kept.iter().filter(|i| self.scan[**i] > 0.0).count();
+        (upward, kept.len() - upward)
+    }
+
+    /// A jump near a sample that need reach only `significance`, beside the accepted ones.
+    pub fn near(
+        &self,
+        first: usize,
+        last: usize,
+        accepted: &[Jump],
+        significance: f64,
+    ) -> Option<Jump> {
+        (first..=last)
+            .filter_map(|left| self.measure(left, accepted, significance))
+            .max_by(|a, b| a.significance().total_cmp(&b.significance()))
+    }
+
+    /// Measure a jump with windows that stop short of the accepted ones.
+    fn measure(&self, left: usize, accepted: &[Jump], significance: f64) -> Option<Jump> {
+        let after = accepted.partition_point(|j| j.left < left);
+        let low = match after.checked_sub(1).map(|i| &accepted[i]) {
+            Some(j) => j.left + j.gap,
+            None => 0,
+        };
+        let high = accepted.get(after).map_or(self.velocity.values.len(), |j| j.left + 1);
+        // Two samples between impacts are the least that tells a jump from a slope; at the
+        // record's edges, where no other impact vouches for them, five.
+        let end = self.velocity.values.len();
+        let before = if low == 0 { 5 } else { 2 };
+        let behind = if high == end { 5 } else { 2 };
+        let best = (left.saturating_sub(1)..=left + 1)
+            .filter(|&k| k + 1 >= low + before && k + self.gap + behind <= high)
+            .filter_map(|k| self.measure_between(k, low, high))
+            .min_by(|a, b| a.1.total_cmp(&b.1))?
+            .0;
+        (best.significance() > significance).then_some(best)
+    }
+
+    fn measure_between(&self, left: usize, low: usize, high: usize) -> Option<(Jump, f64)> {
+        let values = &self.velocity.values;
+        let first = low.max((left + 1).saturating_sub(self.window));
+        let begin = left + self.gap;
+        let last = high.min(begin + self.window);
+        let before = LocalFit::new(values, first, left + 1, 2)?;
+        let after = LocalFit::new(values, begin, last, 2)?;
+        let middle = left as f64 + 0.5 * self.gap as f64;
+        let factor = before.error_factor(middle).hypot(after.error_factor(middle));
+        let full = before.samples == self.window && after.samples == self.window;
+        let noise = self.velocity.noise * factor;
+        let error = if full { noise.max(self.scan_deviation) } else { 1.5 * noise };
+        let jump = Jump {
+            left,
+            gap: self.gap,
+            height: after.value(middle) - before.value(middle),
+            error: error.max(f64::MIN_POSITIVE),
+        };
+        Some((jump, before.residual_squares + after.residual_squares))
+    }
+
+    /// Measure each accepted jump again now that its neighbours are known, dropping what fades.
+    fn remeasured(&self, accepted: Vec<Jump>) -> Vec<Jump> {
+        (0..accepted.len())
+            .filter_map(|i| {
+                let others: Vec<Jump> =
+                    accepted.iter().enumerate().filter(|(k, _)| *k != i).map(|(_, j)| *j).collect();
+                self.measure(accepted[i].left, &others, 0.8 * SIGNIFICANT)
+            })
+            .collect()
+    }
+}
+
+/// Weights that extrapolate a parabola from `count` samples by `ahead` steps beyond the first of
+/// them (index 0 is the nearest sample), and their root sum of squares.
+fn one_sided_weights(count: usize, ahead: f64) -> (Vec<f64>, f64) {
+    let weights: Vec<f64> = (0..count)
+        .map(|i| {
+            let mut unit = vec![0.0; count];
+            unit[i] = 1.0;
+            LocalFit::new(&unit, 0, count, 2).map_or(0.0, |fit| fit.value(-ahead))
+        })
+        .collect();
+    let factor = weights.iter().map(|w| w * w).sum::<f64>().sqrt();
+    (weights, factor)
+}

@@ -1,0 +1,209 @@
+//! What moved: velocity and displacement of each body and of the closing motion, on one time
+//! axis, with the integrators' high-pass undone and the noise known.
+
+use crate::event::Rig;
+use crate::record::{Record, Role};
+use crate::signal::{drift, robust};
+
+/// A signal in SI with its noise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Samples, SI.
+    pub values: Vec<f64>,
+    /// Standard deviation of the white noise, SI; at least the converter's step over √12.
+    pub noise: f64,
+    /// Corner of the high-pass that was undone, Hz, so that a constant and a ramp remain unknown;
+    /// `None`: the signal had none.
+    pub high_pass_hz: Option<f64>,
+}
+
+impl Series {
+    /// Correct the undoing of the high-pass for a jump between two samples.
+    ///
+    /// The integral ω_c ∫ y dt was taken by trapezoids, as if the jump stood in the middle of its
+    /// interval; at a fraction u of it the area differs by (before − after)(u − ½) of a step.
+    pub fn correct_jump(&mut self, time_steps: f64, before: f64, after: f64, rate_hz: f64) {
+        let Some(corner_hz) = self.high_pass_hz else { return };
+        let left = time_steps.floor();
+        let area = (before - after) * (time_steps - left - 0.5) / rate_hz;
+        let step = std::f64::consts::TAU * corner_hz * area;
+        for value in self.values.iter_mut().skip(left as usize + 1) {
+            *value += step;
+        }
+    }
+}
+
+/// Velocity and displacement of one body (or of the closing motion) toward the other.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Body {
+    /// Velocity, m/s: measured, else differentiated displacement, else integrated acceleration.
+    pub velocity: Option<Series>,
+    /// Displacement, m, as measured; its constant part is unknown.
+    pub displacement: Option<Series>,
+}
+
+/// From which channels the closing motion was built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ClosingFrom {
+    /// x + y, both measured.
+    Both,
+    /// x of a single mass against a stop.
+    One,
+    /// Twice the one mass that was measured, taking the machine as symmetric.
+    Doubled,
+}
+
+/// Motion of both bodies in one record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Kinematics {
+    /// Samples per second, Hz.
+    pub rate_hz: f64,
+    /// Mass x.
+    pub x: Body,
+    /// Mass y.
+    pub y: Body,
+    /// The closing motion: displacement u = x + y, velocity u' (for one mass x alone).
+    pub closing: Body,
+    /// From what the closing velocity was built; `None` without any velocity.
+    pub closing_from: Option<ClosingFrom>,
+}
+
+impl Kinematics {
+    /// Build the kinematics of a record from whatever motion channels it has.
+    pub fn of(record: &Record, rig: Rig) -> Self {
+        let rate_hz = record.sample_rate_hz;
+        let x = body(
+            record,
+            [Role::VelocityX, Role::DisplacementX, Role::AccelerationX],
+        );
+        let y = match rig {
+            Rig::Double => body(
+                record,
+                [Role::VelocityY, Role::DisplacementY, Role::AccelerationY],
+            ),
+            Rig::Single => Body::default(),
+        };
+        let (closing, closing_from) = closing_motion(&x, &y, rig);
+        Self { rate_hz, x, y, closing, closing_from }
+    }
+
+    /// Build the closing motion anew after the bodies' signals were corrected.
+    pub fn close_again(&mut self, rig: Rig) {
+        (self.closing, self.closing_from) = closing_motion(&self.x, &self.y, rig);
+    }
+
+    /// The measured bodies with a velocity, x first.
+    pub fn bodies(&self) -> impl Iterator<Item = &Body> {
+        [&self.x, &self.y].into_iter().filter(|b| b.velocity.is_some())
+    }
+}
+
+fn closing_motion(x: &Body, y: &Body, rig: Rig) -> (Body, Option<ClosingFrom>) {
+    let (velocity, closing_from) = closing(&x.velocity, &y.velocity, rig);
+    let (displacement, displacement_from) = closing(&x.displacement, &y.displacement, rig);
+    // A closing displacement of another making than the velocity would not fit to it.
+    let displacement = displacement.filter(|_| displacement_from == closing_from);
+    (Body { velocity, displacement }, closing_from)
+}
+
+fn body(record: &Record, [velocity, displacement, acceleration]: [Role; 3]) -> Body {
+    let displacement = series(record, displacement);
+    let velocity = series(record, velocity)
+        .or_else(|| displacement.as_ref().map(|s| differentiated(s, record.sample_rate_hz)))
+        .or_else(|| series(record, acceleration).map(|s| integrated(&s, record.sample_rate_hz)));
+    Body { velocity, displacement }
+}
+
+fn series(record: &Record, role: Role) -> Option<Series> {
+    let channel = record.channel(role)?;
+    let finite = channel.values.iter().all(|v| v.is_finite());
+    if !finite || channel.values.is_empty() {
+        return None;
+    }
+    let noise = noise_with_converter(&channel.values);
+    let values = match channel.high_pass_hz {
+        Some(corner) => {
+            let mean = robust::mean(&channel.values);
+            let centred: Vec<f64> = channel.values.iter().map(|v| v - mean).collect();
+            drift::undo_high_pass(&centred, record.sample_rate_hz, corner)
+        }
+        None => channel.values.clone(),
+    };
+    let mut series = Series { values, noise, high_pass_hz: channel.high_pass_hz };
+    remove_mean(&mut series.values);
+    Some(series)
+}
+
+fn remove_mean(values: &mut [f64]) {
+    let mean = robust::mean(values);
+    drift::remove_line(values, mean, 0.0);
+}
+
+/// Noise deviation, not below the converter's step over √12.
+fn noise_with_converter(values: &[f64]) -> f64 {
+    let scale = values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let step = values
+        .windows(2)
+        .map(|w| (w[1] - w[0]).abs())
+        .filter(|d| *d > 1e-9 * scale)
+        .fold(f64::INFINITY, f64::min);
+    let converter = if step.is_finite() { step / 12f64.sqrt() } else { 0.0 };
+    // A step as large as the noise itself is noise, not a converter.
+    let noise = robust::noise_deviation(values);
+    noise.max(converter.min(0.05 * scale)).max(1e-12 * scale)
+}
+
+fn differentiated(displacement: &Series, rate_hz: f64) -> Series {
+    let x = &displacement.values;
+    let last = x.len().saturating_sub(1);
+    let values = (0..x.len())
+        .map(|i| {
+            let (low, high) = (i.saturating_sub(1), (i + 1).min(last));
+            (x[high] - x[low]) * rate_hz / (high - low).max(1) as f64
+        })
+        .collect();
+    Series {
+        values,
+        noise: displacement.noise * rate_hz / 2f64.sqrt(),
+        high_pass_hz: displacement.high_pass_hz,
+    }
+}
+
+fn integrated(acceleration: &Series, rate_hz: f64) -> Series {
+    let mut sum = 0.0;
+    let mut previous = acceleration.values[0];
+    let mut values: Vec<f64> = acceleration
+        .values
+        .iter()
+        .map(|&a| {
+            sum += 0.5 * (a + previous) / rate_hz;
+            previous = a;
+            sum
+        })
+        .collect();
+    remove_mean(&mut values);
+    let high_pass_hz = Some(acceleration.high_pass_hz.unwrap_or(0.0));
+    Series { noise: acceleration.noise / rate_hz, values, high_pass_hz }
+}
+
+fn closing(
+    x: &Option<Series>,
+    y: &Option<Series>,
+    rig: Rig,
+) -> (Option<Series>, Option<ClosingFrom>) {
+    match (x, y, rig) {
+        (Some(x), _, Rig::Single) => (Some(x.clone()), Some(ClosingFrom::One)),
+        (Some(x), Some(y), Rig::Double) => {
+            let values = x.values.iter().zip(&y.values).map(|(a, b)| a + b).collect();
+            let noise = x.noise.hypot(y.noise);
+            let high_pass_hz = x.high_pass_hz.or(y.high_pass_hz);
+            (Some(Series { values, noise, high_pass_hz }), Some(ClosingFrom::Both))
+        }
+        (Some(one), None, Rig::Double) | (None, Some(one), Rig::Double) => {
+            let values = one.values.iter().map(|v| 2.0 * v).collect();
+            let series = Series { values, noise: 2.0 * one.noise, high_pass_hz: one.high_pass_hz };
+            (Some(series), Some(ClosingFrom::Doubled))
+        }
+        _ => (None, None),
+    }
+}

@@ -1,0 +1,218 @@
+//! Times of impacts below the sample step, and the speeds extrapolated to them.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::event::drift::integral;
+use crate::event::jumps::Jump;
+use crate::event::kinematics::{Body, Kinematics, Series};
+use crate::event::{DriveTone, Impact, MassSpeeds, Seen};
+use crate::signal::local_fit::{LocalFit, crossing};
+
+/// Degree of the one-sided polynomials that carry speeds to the impact.
+const DEGREE: usize = 3;
+
+/// An impact's time in samples with its standard error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Instant {
+    /// Time, samples from the first.
+    pub time: f64,
+    /// Standard error, samples.
+    pub error: f64,
+}
+
+/// A jump with what was found of it: the unit of refinement.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidate {
+    /// The jump of velocity.
+    pub jump: Jump,
+    /// How it was seen.
+    pub seen: Seen,
+    /// Samples the contact stayed closed beyond an ordinary pulse.
+    pub dead_samples: f64,
+}
+
+/// Windows before and after one candidate: sample ranges that touch no other impact.
+#[derive(Debug, Clone, Copy)]
+struct Windows {
+    before: (usize, usize),
+    after: (usize, usize),
+}
+
+fn windows(candidates: &[Candidate], index: usize, width: usize, samples: usize) -> Windows {
+    let jump = candidates[index].jump;
+    let low = match index.checked_sub(1).map(|i| &candidates[i]) {
+        Some(c) => c.jump.left + c.jump.gap + c.dead_samples.ceil() as usize,
+        None => 0,
+    };
+    let high = candidates.get(index + 1).map_or(samples, |c| c.jump.left + 1);
+    let begin = jump.left + jump.gap;
+    let dead = candidates[index].dead_samples as usize;
+    // Within a dead zone the bodies move together: only samples inside it belong to "after".
+    let end = if dead > 3 { begin + dead } else { begin + width };
+    Windows {
+        before: (low.max((jump.left + 1).saturating_sub(width)).min(jump.left), jump.left + 1),
+        after: (begin, end.min(high).min(begin + width).max(begin + 1)),
+    }
+}
+
+/// Times of all candidates: from the kink of the displacement where it is measured, else from
+/// the condition that the closing motion returns to the same place at every impact, else the
+/// middle of the sample interval.
+pub fn instants(kinematics: &Kinematics, candidates: &[Candidate], width: usize) -> Vec<Instant> {
+    let middle = |c: &Candidate| Instant {
+        time: c.jump.middle(),
+        error: c.jump.gap as f64 / 12f64.sqrt(),
+    };
+    let plain: Vec<Instant> = candidates.iter().map(middle).collect();
+    match (&kinematics.closing.displacement, &kinematics.closing.velocity) {
+        (Some(displacement), Some(velocity)) => (0..candidates.len())
+            .map(|i| {
+                kink(displacement, velocity, candidates, i, width, kinematics.rate_hz)
+                    .filter(|k| k.error < plain[i].error)
+                    .unwrap_or(plain[i])
+            })
+            .collect(),
+        (None, Some(velocity)) => closed_arcs(velocity, candidates, &plain, width),
+        _ => plain,
+    }
+}
+
+fn kink(
+    displacement: &Series,
+    velocity: &Series,
+    candidates: &[Candidate],
+    index: usize,
+    width: usize,
+    rate_hz: f64,
+) -> Option<Instant> {
+    let jump = candidates[index].jump;
+    let w = windows(candidates, index, width, velocity.values.len());
+    let before = LocalFit::new(&displacement.values, w.before.0, w.before.1, DEGREE)?;
+    let after = LocalFit::new(&displacement.values, w.after.0, w.after.1, DEGREE)?;
+    let (low, high) = (jump.left as f64, (jump.left + jump.gap) as f64);
+    let time = crossing(&before, &after, low, high)?;
+    let spread = before.error_factor(time).hypot(after.error_factor(time)) * displacement.noise;
+    Some(Instant { time, error: spread * rate_hz / jump.height.abs() })
+}
+
+/// Least squares for the shifts δ of all impact times within their sample intervals and the
+/// velocity offset b: for each arc, area + v₋δ_end − v₊δ_start = b · duration.
+fn closed_arcs(
+    velocity: &Series,
+    candidates: &[Candidate],
+    plain: &[Instant],
+    width: usize,
+) -> Vec<Instant> {
+    let count = plain.len();
+    if count < 3 {
+        return plain.to_vec();
+    }
+    let speeds: Vec<Option<MassSpeeds>> = (0..count)
+        .map(|i| speeds(velocity, candidates, i, plain[i].time, width).map(|s| s.0))
+        .collect();
+    let mut normal = DMatrix::<f64>::zeros(count + 1, count + 1);
+    let mut right = DVector::<f64>::zeros(count + 1);
+    for (i, instant) in plain.iter().enumerate() {
+        normal[(i, i)] = instant.error.powi(-2);
+    }
+    normal[(count, count)] = 1e-12;
+    for i in 0..count - 1 {
+        let (from, to) = (plain[i].time, plain[i + 1].time);
+        let (Some(start), Some(end)) = (speeds[i], speeds[i + 1]) else { continue };
+        let Some(area) = integral(&velocity.values, from, to) else { continue };
+        // The trapezoid's own error scales with the speeds; noise adds up over the arc.
+        let error = velocity.noise * (to - from).sqrt() + 1e-3 * end.before_m_s.abs();
+        let row = [(i, -start.after_m_s), (i + 1, end.before_m_s), (count, from - to)];
+        for (a, ra) in row {
+            right[a] -= ra * area / error.powi(2);
+            for (b, rb) in row {
+                normal[(a, b)] += ra * rb / error.powi(2);
+            }
+        }
+    }
+    let Some(inverse) = normal.try_inverse() else {
+        return plain.to_vec();
+    };
+    let shifts = &inverse * right;
+    (0..count)
+        .map(|i| {
+            let half = 0.5 * candidates[i].jump.gap as f64;
+            Instant {
+                time: plain[i].time + shifts[i].clamp(-half, half),
+                error: inverse[(i, i)].max(0.0).sqrt().min(plain[i].error),
+            }
+        })
+        .collect()
+}
+
+/// Speeds of one signal before and after a candidate at a time, with their standard error.
+fn speeds(
+    velocity: &Series,
+    candidates: &[Candidate],
+    index: usize,
+    time: f64,
+    width: usize,
+) -> Option<(MassSpeeds, f64)> {
+    let w = windows(candidates, index, width, velocity.values.len());
+    let before = LocalFit::new(&velocity.values, w.before.0, w.before.1, DEGREE)?;
+    let after = LocalFit::new(&velocity.values, w.after.0, w.after.1, DEGREE)?;
+    let error = velocity.noise * before.error_factor(time).max(after.error_factor(time));
+    let speeds = MassSpeeds { before_m_s: before.value(time), after_m_s: after.value(time) };
+    Some((speeds, error))
+}
+
+/// Correct the undone high-pass of each body's velocity for every jump, now that the jumps' times
+/// within their sample intervals are known.
+pub fn correct_jumps(
+    kinematics: &mut Kinematics,
+    candidates: &[Candidate],
+    instants: &[Instant],
+    width: usize,
+) {
+    let rate_hz = kinematics.rate_hz;
+    for body in [&mut kinematics.x, &mut kinematics.y] {
+        let Some(velocity) = body.velocity.as_mut().filter(|v| v.high_pass_hz.is_some()) else {
+            continue;
+        };
+        let known: Vec<Option<MassSpeeds>> = (0..candidates.len())
+            .map(|i| speeds(velocity, candidates, i, instants[i].time, width).map(|s| s.0))
+            .collect();
+        for (instant, speeds) in instants.iter().zip(known) {
+            if let Some(s) = speeds {
+                velocity.correct_jump(instant.time, s.before_m_s, s.after_m_s, rate_hz);
+            }
+        }
+    }
+}
+
+/// Everything known of each impact, from refined times.
+pub fn impacts(
+    kinematics: &Kinematics,
+    candidates: &[Candidate],
+    instants: &[Instant],
+    drive: Option<&DriveTone>,
+    width: usize,
+) -> Vec<Impact> {
+    let of = |body: &Body, i: usize| {
+        let velocity = body.velocity.as_ref()?;
+        speeds(velocity, candidates, i, instants[i].time, width)
+    };
+    (0..candidates.len())
+        .map(|i| {
+            let time_s = instants[i].time / kinematics.rate_hz;
+            let closing = of(&kinematics.closing, i);
+            Impact {
+                time_s,
+                time_error_s: instants[i].error / kinematics.rate_hz,
+                drive_phase_rad: drive.map(|d| d.phase_at(time_s)),
+                closing_speed_before_m_s: closing.map(|c| c.0.before_m_s),
+                closing_speed_after_m_s: closing.map(|c| c.0.after_m_s),
+                speed_error_m_s: closing.map(|c| c.1),
+                x: of(&kinematics.x, i).map(|s| s.0),
+                y: of(&kinematics.y, i).map(|s| s.0),
+                dead_zone_s: candidates[i].dead_samples / kinematics.rate_hz,
+                seen: candidates[i].seen,
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,209 @@
+//! Brackets of boundaries against the closed-form s2 and ρ'.
+
+use crate::event::Rig;
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::Block;
+use crate::model::orbit::Branch;
+use crate::model::boundary::s2_of_branch;
+use crate::model::params::Machine;
+use crate::motion::bracket::{BoundaryKind, Bracket};
+
+/// Brackets that the fit uses, with the likelihood of each.
+#[derive(Debug, Clone)]
+pub struct BoundaryBlock {
+    /// One or two masses.
+    pub rig: Rig,
+    /// The brackets: s2 and grazing.
+    pub brackets: Vec<Bracket>,
+    /// Typical distance of an early jump from the boundary, as a fraction of the frequency.
+    pub early_scale: f64,
+}
+
+impl BoundaryBlock {
+    /// Collect the brackets of boundaries that have a closed form.
+    pub fn new(rig: Rig, brackets: &[Bracket]) -> Self {
+        let brackets = brackets
+            .iter()
+            .filter(|b| matches!(b.kind, BoundaryKind::SaddleNode | BoundaryKind::Grazing))
+            .cloned()
+            .collect();
+        Self { rig, brackets, early_scale: 0.01 }
+    }
+
+    /// Whether any bracket tells R.
+    pub fn tells_restitution(&self) -> bool {
+        self.brackets.iter().any(|b| b.kind == BoundaryKind::SaddleNode)
+    }
+
+    /// Set the scale of early jumps to the one that makes the brackets most likely at given
+    /// parameters.
+    pub fn fit_early_scale(&mut self, parameters: &Parameters) {
+        let places: Vec<(Bracket, f64)> = self
+            .brackets
+            .iter()
+            .filter_map(|b| Some((b.clone(), predicted_hz(b, parameters, self.rig)?)))
+            .collect();
+        let cost = |scale: f64| -> f64 {
+            places.iter().map(|(b, f)| -Jump::of(b, scale).probability(*f).ln()).sum()
+        };
+        let scales = (0..24).map(|i| 1e-3 * 1.25f64.powi(i));
+        if let Some(best) = scales.min_by(|a, b| cost(*a).total_cmp(&cost(*b))) {
+            self.early_scale = best;
+        }
+    }
+}
+
+/// Where a motion jumps as a sweep nears a boundary: disturbances make it jump early, by an
+/// exponentially distributed distance, never late but for a small error of the setting.
+#[derive(Debug, Clone, Copy)]
+struct Jump {
+    low: f64,
+    high: f64,
+    early: f64,
+    setting: f64,
+    rising: bool,
+}
+
+/// Relative error of a frequency setting.
+const SETTING_ERROR: f64 = 2e-4;
+
+impl Jump {
+    fn of(bracket: &Bracket, early_scale: f64) -> Self {
+        let middle = bracket.middle_hz();
+        Self {
+            low: bracket.frequency_low_hz,
+            high: bracket.frequency_high_hz,
+            early: early_scale * middle,
+            setting: (SETTING_ERROR * middle).max(0.02 * bracket.width_hz()),
+            rising: bracket.sweep != crate::record::Sweep::Down,
+        }
+    }
+
+    /// Probability that the jump falls into the bracket when the boundary lies at a frequency.
+    fn probability(&self, boundary: f64) -> f64 {
+        let (near, far) = if self.rising {
+            (self.low - boundary, self.high - boundary)
+        } else {
+            (boundary - self.high, boundary - self.low)
+        };
+        (self.cumulative(far) - self.cumulative(near)).max(1e-280)
+    }
+
+    /// Distribution function of (jump − boundary) for a rising sweep: a normal error less an
+    /// exponential one.
+    fn cumulative(&self, x: f64) -> f64 {
+        let (s, e) = (self.setting, self.early);
+        let tail = x / e + 0.5 * (s / e).powi(2);
+        let mixed = if tail > 600.0 { 0.0 } else { tail.exp() * normal(-x / s - s / e) };
+        normal(x / s) + mixed
+    }
+
+    /// Boundary frequency at which the bracket is most likely, and that probability.
+    fn best(&self) -> (f64, f64) {
+        let count = 60;
+        let span = self.high - self.low + 4.0 * self.setting;
+        (0..=count)
+            .map(|i| self.low - 2.0 * self.setting + span * f64::from(i) / f64::from(count))
+            .map(|f| (f, self.probability(f)))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .unwrap_or((0.5 * (self.low + self.high), 1.0))
+    }
+}
+
+fn normal(x: f64) -> f64 {
+    0.5 * crate::identify::agreement::erfc(-x / std::f64::consts::SQRT_2)
+}
+
+/// Frequency of the boundary of a bracket according to the model, Hz: the crossing nearest to it.
+/// `None` where the boundary does not reach this clearance.
+pub fn predicted_hz(bracket: &Bracket, parameters: &Parameters, rig: Rig) -> Option<f64> {
+    let machine = parameters.machine(rig);
+    let middle =
+        parameters.setting(bracket.middle_hz(), bracket.clearance_m, bracket.drive_amplitude);
+    let rho = |eta: f64| match bracket.kind {
+        BoundaryKind::Grazing => grazing(&machine, eta),
+        _ => saddle_node(&machine, parameters.restitution, eta, bracket.periods_n),
+    };
+    let eta = nearest_crossing(rho, middle.clearance, middle.frequency_ratio)?;
+    Some(eta * parameters.natural_frequency_hz)
+}
+
+/// ρ' in units of half the gap for either rig.
+fn grazing(machine: &Machine, eta: f64) -> f64 {
+    half_gap(machine, Branch::new(machine, eta, 1).forced.norm())
+}
+
+fn saddle_node(machine: &Machine, restitution: f64, eta: f64, n: u32) -> f64 {
+    let branch = Branch::new(machine, eta, n);
+    half_gap(machine, s2_of_branch(&branch, restitution.clamp(0.0, 1.0)).0)
+}
+
+/// Clearance ρ that belongs to a whole gap.
+fn half_gap(machine: &Machine, gap: f64) -> f64 {
+    gap / machine.gap(1.0)
+}
+
+/// Crossing of ρ(η) with a level nearest to η0: scanned outward, then bisected.
+fn nearest_crossing(rho: impl Fn(f64) -> f64, level: f64, eta0: f64) -> Option<f64> {
+    let excess = |eta: f64| rho(eta) - level;
+    let here = excess(eta0);
+    let step = 0.01;
+    let (mut low, mut high) = ((eta0, here), (eta0, here));
+    for _ in 0..60 {
+        let below = low.0 - step;
+        if below > 0.05 {
+            let next = (below, excess(below));
+            if next.1.signum() != low.1.signum() {
+                return Some(bisected(&excess, next.0, low.0));
+            }
+            low = next;
+        }
+        let above = high.0 + step;
+        let next = (above, excess(above));
+        if next.1.signum() != high.1.signum() {
+            return Some(bisected(&excess, high.0, next.0));
+        }
+        high = next;
+    }
+    None
+}
+
+/// Root between two points of opposite sign, by the ITP-like mix of bisection and secant.
+fn bisected(excess: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    let (mut at_low, mut at_high) = (excess(low), excess(high));
+    for k in 0..80 {
+        let secant = (low * at_high - high * at_low) / (at_high - at_low);
+        let inside = secant > low && secant < high;
+        let eta = if k % 3 == 2 || !inside { 0.5 * (low + high) } else { secant };
+        let value = excess(eta);
+        if value == 0.0 || high - low < 1e-13 * high {
+            return eta;
+        }
+        if value.signum() == at_low.signum() {
+            (low, at_low) = (eta, value);
+        } else {
+            (high, at_high) = (eta, value);
+        }
+    }
+    0.5 * (low + high)
+}
+
+impl Block for BoundaryBlock {
+    fn items(&self) -> usize {
+        self.brackets.len()
+    }
+
+    fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
+        let bracket = &self.brackets[item];
+        let frequency = predicted_hz(bracket, parameters, self.rig)?;
+        let jump = Jump::of(bracket, self.early_scale);
+        let (best, most) = jump.best();
+        // The signed root of twice the loss of log-likelihood: least squares then maximise it.
+        let loss = (most.ln() - jump.probability(frequency).ln()).max(0.0);
+        Some(vec![(2.0 * loss).sqrt() * (frequency - best).signum()])
+    }
+
+    fn touches(&self, coordinate: Coordinate) -> bool {
+        !matches!(coordinate, Coordinate::Gain(_))
+    }
+}

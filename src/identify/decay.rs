@@ -1,0 +1,115 @@
+//! Free decays: f0 and β of each record, pooled, and records that are filed under the wrong name.
+
+use std::collections::BTreeMap;
+
+use crate::identify::estimate;
+use crate::identify::parameters::Coordinate;
+use crate::identify::MethodResult;
+use crate::motion::Observation;
+use crate::signal::decay::Decay;
+use crate::signal::robust;
+
+/// Relative spread of f0 from which decays are not of one oscillator.
+const ONE_OSCILLATOR: f64 = 0.02;
+/// Relative difference of f0 from its own group's from which a record is looked at.
+const STRANGE: f64 = 0.05;
+
+/// All free decays of a campaign, pooled; `None` without any.
+pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
+    let decays: Vec<&Decay> =
+        observations.iter().filter(|o| !o.excluded()).filter_map(|o| o.decay.as_ref()).collect();
+    if decays.is_empty() {
+        return None;
+    }
+    let frequencies: Vec<(f64, f64)> = decays
+        .iter()
+        .map(|d| (d.natural_frequency_hz.ln(), d.natural_frequency_error_hz / d.natural_frequency_hz))
+        .collect();
+    let dampings: Vec<(f64, f64)> =
+        decays.iter().map(|d| (d.damping_ratio.ln(), d.damping_ratio_error / d.damping_ratio)).collect();
+    let mut result = MethodResult {
+        observations: decays.iter().map(|d| d.samples).sum(),
+        records: decays.len(),
+        ..MethodResult::default()
+    };
+    let (f, f_error) = weighted_mean(&frequencies);
+    let (b, b_error) = weighted_mean(&dampings);
+    result.parameters.natural_frequency_hz =
+        Some(estimate::estimate(Coordinate::Frequency, f, f_error, None));
+    result.parameters.damping_ratio =
+        Some(estimate::estimate(Coordinate::Damping, b, b_error, None));
+    let residual = robust::median(&decays.iter().map(|d| d.residual_ratio).collect::<Vec<_>>());
+    let spread = frequencies.iter().map(|p| (p.0 - f).abs()).fold(0.0, f64::max);
+    if spread > ONE_OSCILLATOR {
+        result.fits = Some(false);
+        result.remarks.push(format!(
+            "the decays' natural frequencies differ by up to {:.1} %: they are not of one oscillator",
+            100.0 * spread
+        ));
+    } else if let Some(residual) = residual {
+        result.fits = Some(residual < 0.2);
+        result.remarks.push(format!(
+            "the decays leave {:.1} % of the signal unexplained",
+            100.0 * residual
+        ));
+    }
+    Some(result)
+}
+
+/// Weighted mean with the greater of inner and outer standard error.
+fn weighted_mean(values: &[(f64, f64)]) -> (f64, f64) {
+    let weight: f64 = values.iter().map(|(_, e)| e.powi(-2)).sum();
+    let mean = values.iter().map(|(v, e)| v / (e * e)).sum::<f64>() / weight;
+    let inner = weight.recip().sqrt();
+    if values.len() < 2 {
+        return (mean, inner);
+    }
+    let chi: f64 = values.iter().map(|(v, e)| ((v - mean) / e).powi(2)).sum();
+    let outer = inner * (chi / (values.len() - 1) as f64).sqrt();
+    (mean, inner.max(outer))
+}
+
+/// Records whose natural frequency is not that of their specimen but that of another: (record,
+/// sentence).
+pub fn misfiled(observations: &[Observation]) -> Vec<(String, String)> {
+    let mut groups: BTreeMap<&str, Vec<(&str, f64)>> = BTreeMap::new();
+    for o in observations {
+        if let (Some(specimen), Some(decay)) = (&o.setting.specimen, &o.decay) {
+            groups.entry(specimen).or_default().push((&o.record, decay.natural_frequency_hz));
+        }
+    }
+    let centres: BTreeMap<&str, f64> = groups
+        .iter()
+        .filter_map(|(name, members)| {
+            let f: Vec<f64> = members.iter().map(|m| m.1).collect();
+            Some((*name, robust::median(&f)?))
+        })
+        .collect();
+    let mut out = Vec::new();
+    for (name, members) in &groups {
+        for (record, f) in members {
+            let own = centres[name];
+            if members.len() < 3 || (f / own - 1.0).abs() < STRANGE {
+                continue;
+            }
+            let other = centres
+                .iter()
+                .filter(|(other, _)| *other != name)
+                .min_by(|a, b| (a.1 / f - 1.0).abs().total_cmp(&(b.1 / f - 1.0).abs()));
+            let like = match other {
+                Some((other, centre)) if (centre / f - 1.0).abs() < 0.5 * STRANGE => {
+                    format!(": it behaves as {other} ({centre:.2} Hz)")
+                }
+                _ => String::new(),
+            };
+            out.push((
+                (*record).to_owned(),
+                format!(
+                    "filed under {name} ({own:.2} Hz) but its natural frequency is {f:.2} Hz{like}; \
+                     it looks misfiled"
+                ),
+            ));
+        }
+    }
+    out
+}

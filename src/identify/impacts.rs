@@ -1,0 +1,89 @@
+//! R from the speeds after over before each impact.
+
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::Block;
+use crate::motion::Observation;
+
+/// One impact's speeds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpeedPair {
+    /// Index of the record among the observations.
+    pub observation: usize,
+    /// Closing speed before, m/s.
+    pub before_m_s: f64,
+    /// Parting speed after, m/s (positive).
+    pub after_m_s: f64,
+    /// Standard error of either, m/s.
+    pub error_m_s: f64,
+}
+
+/// All impacts with measured speeds.
+#[derive(Debug, Clone)]
+pub struct ImpactBlock {
+    /// The pairs.
+    pub pairs: Vec<SpeedPair>,
+    /// Relative error of each ratio beside the noise: what the extrapolation leaves open.
+    pub relative_error: f64,
+}
+
+impl ImpactBlock {
+    /// Collect impacts without dead zone, faster than four standard errors.
+    pub fn new(observations: &[Observation], relative_error: f64) -> Self {
+        let pairs = observations
+            .iter()
+            .enumerate()
+            .filter(|(_, o)| !o.excluded())
+            .flat_map(|(i, o)| o.impacts.iter().map(move |impact| (i, impact)))
+            .filter(|(_, impact)| impact.dead_zone_s == 0.0)
+            .filter_map(|(i, impact)| {
+                Some(SpeedPair {
+                    observation: i,
+                    before_m_s: impact.closing_speed_before_m_s?,
+                    after_m_s: -impact.closing_speed_after_m_s?,
+                    error_m_s: impact.speed_error_m_s?,
+                })
+            })
+            .filter(|p| p.before_m_s > 4.0 * p.error_m_s && p.after_m_s > -4.0 * p.error_m_s)
+            .collect();
+        Self { pairs, relative_error }
+    }
+
+    /// Keep only pairs that lie within `limit` robust deviations of the bulk; gives the number
+    /// left out.
+    pub fn without_outliers(mut self, limit: f64) -> (Self, usize) {
+        let ratios: Vec<f64> = self.pairs.iter().map(|p| p.after_m_s / p.before_m_s).collect();
+        let Some(centre) = crate::signal::robust::median(&ratios) else {
+            return (self, 0);
+        };
+        let scores: Vec<f64> =
+            self.pairs.iter().map(|p| (p.after_m_s - centre * p.before_m_s) / self.error(p, centre)).collect();
+        let spread = crate::signal::robust::robust_deviation(&scores).unwrap_or(1.0).max(0.5);
+        let before = self.pairs.len();
+        let mut scores = scores.into_iter();
+        self.pairs.retain(|_| scores.next().is_some_and(|s| s.abs() <= limit * spread));
+        let dropped = before - self.pairs.len();
+        (self, dropped)
+    }
+
+    /// Standard error of after − R·before.
+    fn error(&self, pair: &SpeedPair, restitution: f64) -> f64 {
+        let noise = pair.error_m_s * 1f64.hypot(restitution);
+        noise.hypot(self.relative_error * pair.before_m_s)
+    }
+}
+
+impl Block for ImpactBlock {
+    fn items(&self) -> usize {
+        self.pairs.len()
+    }
+
+    fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
+        let pair = &self.pairs[item];
+        let r = parameters.restitution;
+        Some(vec![(pair.after_m_s - r * pair.before_m_s) / self.error(pair, r)])
+    }
+
+    fn touches(&self, coordinate: Coordinate) -> bool {
+        coordinate == Coordinate::Restitution
+    }
+}

@@ -1,0 +1,313 @@
+//! The methods, each alone: boundaries, trajectories, impacts, resonance.
+
+use crate::event::Rig;
+use crate::identify::boundary::BoundaryBlock;
+use crate::identify::estimate;
+use crate::identify::impacts::ImpactBlock;
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::resonance::ResonanceBlock;
+use crate::identify::solver::{Block, Fit, FitError, Prior, Problem};
+use crate::identify::trajectory::TrajectoryBlock;
+use crate::identify::MethodResult;
+use crate::motion::{Bracket, Observation};
+
+/// What the laboratory states about its rig.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Nominal {
+    /// R
+    pub restitution: Option<f64>,
+    /// f0, Hz
+    pub natural_frequency_hz: Option<f64>,
+    /// β
+    pub damping_ratio: Option<f64>,
+    /// x_st, m
+    pub static_deflection_m: Option<f64>,
+    /// Standard uncertainty of the channels' gains, relative.
+    pub gain_uncertainty: f64,
+}
+
+/// Everything an identification starts from.
+#[derive(Debug, Clone, Copy)]
+pub struct Evidence<'a> {
+    /// One or two masses.
+    pub rig: Rig,
+    /// All records as observed.
+    pub observations: &'a [Observation],
+    /// All brackets.
+    pub brackets: &'a [Bracket],
+    /// What is stated.
+    pub nominal: Nominal,
+}
+
+/// Relative error of instruments and model that noise does not show.
+const RELATIVE_ERROR: f64 = 3e-4;
+/// Scatter of single impacts' ratios beside the noise.
+const IMPACT_SCATTER: f64 = 1e-3;
+/// What the extrapolation of speeds to the impact leaves open in R.
+pub const IMPACT_BIAS: f64 = 3e-4;
+/// Asymmetry that a well-made rig may have.
+const ASYMMETRY: f64 = 0.05;
+
+/// The observations sorted by what they tell.
+#[derive(Debug, Clone)]
+pub struct Blocks {
+    /// Impactless records.
+    pub resonance: ResonanceBlock,
+    /// z = 1/n records.
+    pub trajectory: TrajectoryBlock,
+    /// Brackets of s2 and grazing.
+    pub boundary: BoundaryBlock,
+    /// Speeds at impacts.
+    pub impact: ImpactBlock,
+    /// Impacts left out as outliers.
+    pub impact_outliers: usize,
+}
+
+impl Blocks {
+    /// Sort the evidence.
+    pub fn new(evidence: &Evidence) -> Self {
+        let Evidence { rig, observations, brackets, .. } = *evidence;
+        let (impact, impact_outliers) =
+            ImpactBlock::new(observations, IMPACT_SCATTER).without_outliers(5.0);
+        Self {
+            resonance: ResonanceBlock::new(rig, observations, RELATIVE_ERROR),
+            trajectory: TrajectoryBlock::new(rig, observations, RELATIVE_ERROR),
+            boundary: BoundaryBlock::new(rig, brackets),
+            impact,
+            impact_outliers,
+        }
+    }
+
+    /// Gains of which any channel is measured.
+    fn gains(&self) -> Vec<Coordinate> {
+        (0..4)
+            .filter(|i| self.resonance.has_gain(*i) || self.trajectory.has_gain(*i))
+            .map(Coordinate::Gain)
+            .collect()
+    }
+
+    /// Whether both masses are measured, so that asymmetries can be told.
+    fn sees_both(&self) -> bool {
+        let has = |i: usize| self.resonance.has_gain(i) || self.trajectory.has_gain(i);
+        self.resonance.rig == Rig::Double && (has(0) || has(2)) && (has(1) || has(3))
+    }
+
+    /// Nuisance coordinates of gains and asymmetry, with their priors.
+    pub fn nuisances(&self, gain_uncertainty: f64) -> (Vec<Coordinate>, Vec<Prior>) {
+        let mut free = self.gains();
+        let gain = |coordinate| Prior { coordinate, centre: 0.0, deviation: gain_uncertainty.max(1e-6) };
+        let mut priors: Vec<Prior> = free.iter().map(|c| gain(*c)).collect();
+        if self.sees_both() {
+            for coordinate in [Coordinate::DriveAsymmetry, Coordinate::StiffnessAsymmetry] {
+                free.push(coordinate);
+                priors.push(Prior { coordinate, centre: 0.0, deviation: ASYMMETRY });
+            }
+        }
+        (free, priors)
+    }
+}
+
+/// Very wide priors that keep the equations regular where the data say nothing.
+pub fn wide_priors(start: &Parameters, free: &[Coordinate]) -> Vec<Prior> {
+    free.iter()
+        .filter_map(|coordinate| {
+            let deviation = match coordinate {
+                Coordinate::Restitution => 1.0,
+                Coordinate::Frequency => 0.5,
+                Coordinate::Damping | Coordinate::Deflection => 2.0,
+                _ => return None,
+            };
+            Some(Prior { coordinate: *coordinate, centre: start.coordinate(*coordinate), deviation })
+        })
+        .collect()
+}
+
+/// A method's fit with its variance factor and the items left out.
+#[derive(Debug, Clone)]
+pub struct MethodFit {
+    /// The fit.
+    pub fit: Fit,
+    /// Factor on the covariance: the reduced sum of squares, at least 1.
+    pub factor: f64,
+    /// Reduced sum of squares as it came out.
+    pub reduced: f64,
+}
+
+/// Fit blocks over free coordinates and find the variance factor.
+pub fn fit_blocks(
+    blocks: Vec<(&dyn Block, f64)>,
+    free: Vec<Coordinate>,
+    priors: Vec<Prior>,
+    start: Parameters,
+) -> Result<MethodFit, FitError> {
+    let prior_count = priors.len();
+    let problem = Problem { blocks, priors, free };
+    let fit = problem.fit(start)?;
+    let informed = problem.free.len().saturating_sub(prior_count);
+    let freedom = fit.residuals.saturating_sub(informed).max(1) as f64;
+    let reduced = fit.cost / freedom;
+    Ok(MethodFit { factor: reduced.max(1.0), reduced, fit })
+}
+
+/// f0, β and x_st from the impactless records; the gains' uncertainty enters x_st.
+pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<Result<MethodFit, FitError>> {
+    if blocks.resonance.points.len() < 3 {
+        return None;
+    }
+    let mut free =
+        vec![Coordinate::Frequency, Coordinate::Damping, Coordinate::Deflection];
+    let (nuisances, priors) = blocks.nuisances(nominal.gain_uncertainty);
+    free.extend(nuisances);
+    let best = starts(blocks, nominal)
+        .into_iter()
+        .filter_map(|start| {
+            let mut priors = priors.clone();
+            priors.extend(wide_priors(&start, &free));
+            fit_blocks(vec![(&blocks.resonance, 1.0)], free.clone(), priors, start).ok()
+        })
+        .min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
+    Some(best.ok_or(FitError::Singular))
+}
+
+/// Starting values of the resonance curve: the stated ones, and a coarse grid whose deflection
+/// follows from the greatest response.
+fn starts(blocks: &Blocks, nominal: &Nominal) -> Vec<Parameters> {
+    let frequencies: Vec<f64> = blocks.resonance.points.iter().map(|p| p.frequency_hz).collect();
+    let low = frequencies.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = frequencies.iter().copied().fold(0.0, f64::max);
+    let mut out = Vec::new();
+    let mut grid: Vec<f64> = (0..7).map(|i| low * 0.8 * (high * 1.25 / (low * 0.8)).powf(f64::from(i) / 6.0)).collect();
+    grid.extend(nominal.natural_frequency_hz);
+    for f0 in grid {
+        for beta in [0.01, 0.05, 0.2] {
+            let beta = nominal.damping_ratio.unwrap_or(beta);
+            let unit = Parameters::symmetric(0.8, f0, beta, 1.0);
+            out.push(Parameters { static_deflection_m: deflection_guess(blocks, &unit), ..unit });
+        }
+    }
+    out.sort_by(|a, b| {
+        let cost = |p: &Parameters| {
+            (0..blocks.resonance.items())
+                .filter_map(|i| blocks.resonance.residuals(i, p))
+                .flatten()
+                .map(|r| r * r)
+                .sum::<f64>()
+        };
+        cost(a).total_cmp(&cost(b))
+    });
+    out.truncate(3);
+    out
+}
+
+/// Deflection that best scales the unit response to the measured amplitudes.
+fn deflection_guess(blocks: &Blocks, unit: &Parameters) -> f64 {
+    let (mut product, mut square) = (0.0, 0.0);
+    for point in &blocks.resonance.points {
+        for r in &point.responses {
+            let model = crate::identify::resonance::predicted(
+                unit,
+                blocks.resonance.rig,
+                r.role,
+                point.frequency_hz,
+                point.drive_amplitude,
+            );
+            let weight = r.error.hypot(1e-2 * r.amplitude()).powi(-2);
+            product += weight * model.norm() * r.amplitude();
+            square += weight * model.norm_sqr();
+        }
+    }
+    if square > 0.0 { product / square } else { 1e-3 }
+}
+
+/// R alone from the speeds at impacts.
+pub fn impacts(blocks: &Blocks, start: Parameters) -> Option<Result<MethodFit, FitError>> {
+    if blocks.impact.pairs.len() < 3 {
+        return None;
+    }
+    let free = vec![Coordinate::Restitution];
+    Some(fit_blocks(vec![(&blocks.impact, 1.0)], free, Vec::new(), start))
+}
+
+/// s2 and grazing brackets, with f0, β and x_st from the impactless records beside them.
+pub fn boundaries(
+    blocks: &Blocks,
+    nominal: &Nominal,
+    start: Parameters,
+) -> Option<Result<MethodFit, FitError>> {
+    if blocks.boundary.brackets.is_empty() {
+        return None;
+    }
+    let mut free = Coordinate::PHYSICAL.to_vec();
+    if !blocks.boundary.tells_restitution() {
+        free.retain(|c| *c != Coordinate::Restitution);
+    }
+    let mut priors = wide_priors(&start, &free);
+    let mut list: Vec<(&dyn Block, f64)> = vec![(&blocks.boundary, 1.0)];
+    if !blocks.resonance.points.is_empty() {
+        let (nuisances, more) = blocks.nuisances(nominal.gain_uncertainty);
+        free.extend(nuisances);
+        priors.extend(more);
+        list.push((&blocks.resonance, 1.0));
+    }
+    Some(fit_blocks(list, free, priors, start))
+}
+
+/// All four parameters from the folded waveforms.
+pub fn trajectories(
+    blocks: &Blocks,
+    nominal: &Nominal,
+    start: Parameters,
+) -> Option<Result<MethodFit, FitError>> {
+    if blocks.trajectory.records.is_empty() {
+        return None;
+    }
+    let mut free = Coordinate::PHYSICAL.to_vec();
+    let mut priors = wide_priors(&start, &free);
+    let (nuisances, more) = blocks.nuisances(nominal.gain_uncertainty);
+    free.extend(nuisances);
+    priors.extend(more);
+    Some(fit_blocks(vec![(&blocks.trajectory, 1.0)], free, priors, start))
+}
+
+/// A method's result from its fit.
+pub fn result(
+    outcome: &Result<MethodFit, FitError>,
+    tells: &[Coordinate],
+    observations: usize,
+    records: usize,
+) -> MethodResult {
+    match outcome {
+        Ok(found) => {
+            let mut result = MethodResult {
+                parameters: estimate::parameter_set(&found.fit, found.factor, tells),
+                observations,
+                records,
+                reduced_residual: Some(found.reduced.sqrt()),
+                ..MethodResult::default()
+            };
+            for coordinate in &found.fit.free {
+                if Coordinate::PHYSICAL.contains(coordinate) {
+                    continue;
+                }
+                let error = found.fit.error(*coordinate).unwrap_or(f64::INFINITY);
+                let error = error * found.factor.sqrt();
+                let value = found.fit.parameters.coordinate(*coordinate);
+                result.further.insert(
+                    coordinate.name().into(),
+                    estimate::estimate(*coordinate, value, error, None),
+                );
+            }
+            result
+        }
+        Err(error) => {
+            let mut result = MethodResult { observations, records, ..MethodResult::default() };
+            for coordinate in tells {
+                if let Some(slot) = result.parameters.slot(*coordinate) {
+                    *slot = Some(estimate::not_identifiable(error.to_string()));
+                }
+            }
+            result.remarks.push(error.to_string());
+            result
+        }
+    }
+}

@@ -1,0 +1,375 @@
+//! The whole identification: each method alone, all together, and what to make of it.
+
+use std::collections::BTreeMap;
+
+use crate::identify::agreement::agreement;
+use crate::identify::methods::{self, Blocks, Evidence, IMPACT_BIAS, MethodFit};
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::{Block, Fit, FitError, Problem};
+use crate::identify::verdict::{self, Findings};
+use crate::identify::{Agreement, Estimate, MethodResult, Verdict, decay};
+
+/// What an identification leads to; settings, versions and hashes are the caller's to add.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// All methods together.
+    pub joint: MethodResult,
+    /// Each method alone.
+    pub methods: BTreeMap<String, MethodResult>,
+    /// Whether they agree.
+    pub agreement: Agreement,
+    /// The joint fit, for simulation beside the measurement; `None` without one.
+    pub fit: Option<Fit>,
+    /// Factor on the joint fit's covariance.
+    pub factor: f64,
+    /// Records or impacts that were left out of a fit, each with the reason.
+    pub left_out: Vec<(String, String)>,
+}
+
+/// Identify from observations and brackets.
+pub fn identify(evidence: &Evidence) -> Outcome {
+    let mut work = Work::new(evidence);
+    let resonance = work.resonance();
+    let start = work.start(resonance.as_ref());
+    let impacts = methods::impacts(&work.blocks, start);
+    let start = with_restitution(start, impacts.as_ref());
+    let trajectories = work.trajectories(start);
+    let start = best_start(start, trajectories.as_ref());
+    let boundaries = work.boundaries(start);
+    let mut found = BTreeMap::new();
+    work.store_resonance(&mut found, resonance.as_ref());
+    work.store_impacts(&mut found, impacts.as_ref());
+    work.store_trajectories(&mut found, trajectories.as_ref());
+    work.store_boundaries(&mut found, boundaries.as_ref());
+    if let Some(result) = decay::pooled(evidence.observations) {
+        found.insert("free_decay".into(), result);
+    }
+    let fits = [&resonance, &trajectories, &boundaries, &impacts];
+    let joint = work.joint(start, fits);
+    let (joint_result, fit, factor) = work.joint_result(joint, &found);
+    let agreement = agreement(&found);
+    let verdict = verdict::verdict(&Findings {
+        joint: &joint_result,
+        methods: &found,
+        agreement: &agreement,
+    });
+    Outcome {
+        verdict,
+        joint: joint_result,
+        methods: found,
+        agreement,
+        fit,
+        factor,
+        left_out: work.left_out,
+    }
+}
+
+/// How many times the typical mean square of residuals makes a record an outlier.
+const OUTLYING: f64 = 25.0;
+
+fn mean_square(residuals: &[f64]) -> f64 {
+    residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len().max(1) as f64
+}
+
+type Attempt = Option<Result<MethodFit, FitError>>;
+
+fn succeeded(attempt: Option<&Result<MethodFit, FitError>>) -> Option<&MethodFit> {
+    attempt.and_then(|a| a.as_ref().ok())
+}
+
+fn with_restitution(start: Parameters, impacts: Option<&Result<MethodFit, FitError>>) -> Parameters {
+    match succeeded(impacts) {
+        Some(found) => Parameters {
+            restitution: found.fit.parameters.restitution.clamp(0.0, 1.0),
+            ..start
+        },
+        None => start,
+    }
+}
+
+fn best_start(start: Parameters, trajectories: Option<&Result<MethodFit, FitError>>) -> Parameters {
+    succeeded(trajectories).map_or(start, |found| found.fit.parameters)
+}
+
+struct Work<'a> {
+    evidence: &'a Evidence<'a>,
+    blocks: Blocks,
+    left_out: Vec<(String, String)>,
+}
+
+impl<'a> Work<'a> {
+    fn new(evidence: &'a Evidence<'a>) -> Self {
+        Self { evidence, blocks: Blocks::new(evidence), left_out: Vec::new() }
+    }
+
+    /// Starting values: the resonance curve's, else the stated ones, else guesses of scale.
+    fn start(&self, resonance: Option<&Result<MethodFit, FitError>>) -> Parameters {
+        if let Some(found) = succeeded(resonance) {
+            return found.fit.parameters;
+        }
+        let nominal = &self.evidence.nominal;
+        let frequencies: Vec<f64> =
+            self.evidence.observations.iter().filter_map(|o| o.frequency_hz()).collect();
+        let clearances: Vec<f64> =
+            self.evidence.observations.iter().filter_map(|o| o.setting.clearance_m).collect();
+        let median = |v: &[f64], default: f64| crate::signal::robust::median(v).unwrap_or(default);
+        Parameters::symmetric(
+            nominal.restitution.unwrap_or(0.8),
+            nominal.natural_frequency_hz.unwrap_or_else(|| median(&frequencies, 10.0) / 1.2),
+            nominal.damping_ratio.unwrap_or(0.05),
+            nominal.static_deflection_m.unwrap_or_else(|| median(&clearances, 1e-3).abs() / 2.0),
+        )
+    }
+
+    fn name(&self, observation: usize) -> String {
+        self.evidence.observations[observation].record.clone()
+    }
+
+    /// Fit the impactless records; those that fit far worse than the bulk are named and left out.
+    fn resonance(&mut self) -> Attempt {
+        let first = match methods::resonance(&self.blocks, &self.evidence.nominal)? {
+            Ok(first) => first,
+            failed => return Some(failed),
+        };
+        let block = &self.blocks.resonance;
+        let scores: Vec<f64> = (0..block.items())
+            .map(|i| mean_square(&block.residuals(i, &first.fit.parameters).unwrap_or_default()))
+            .collect();
+        let typical = crate::signal::robust::median(&scores).unwrap_or(1.0).max(1.0);
+        if scores.iter().all(|s| *s <= OUTLYING * typical) {
+            return Some(Ok(first));
+        }
+        let points = std::mem::take(&mut self.blocks.resonance.points);
+        for (point, score) in points.into_iter().zip(scores) {
+            if score <= OUTLYING * typical {
+                self.blocks.resonance.points.push(point);
+            } else {
+                let reason = format!(
+                    "its response fits {:.0} times worse than the others (still settling?): left \
+                     out of the resonance curve",
+                    (score / typical).sqrt()
+                );
+                self.left_out.push((self.name(point.observation), reason));
+            }
+        }
+        methods::resonance(&self.blocks, &self.evidence.nominal)
+    }
+
+    /// Fit the folded records; those without an orbit at the start are tried again at the end,
+    /// and those that fit far worse than the bulk are left out and named.
+    fn trajectories(&mut self, start: Parameters) -> Attempt {
+        let all = self.blocks.trajectory.records.clone();
+        let at_start = self.trajectory_scores(&all, &start);
+        self.blocks.trajectory.records =
+            all.iter().zip(at_start).filter(|(_, s)| s.is_some()).map(|(r, _)| r.clone()).collect();
+        let first = match methods::trajectories(&self.blocks, &self.evidence.nominal, start)? {
+            Ok(first) => first,
+            failed => return Some(failed),
+        };
+        let parameters = first.fit.parameters;
+        let scores: Vec<Option<f64>> = self.trajectory_scores(&all, &parameters);
+        let known: Vec<f64> = scores.iter().flatten().copied().collect();
+        let typical = crate::signal::robust::median(&known).unwrap_or(1.0).max(1.0);
+        let mut kept = Vec::new();
+        for (record, score) in all.iter().zip(&scores) {
+            let reason = match score {
+                Some(s) if *s <= OUTLYING * typical => {
+                    kept.push(record.clone());
+                    continue;
+                }
+                Some(s) => format!(
+                    "its waveform fits {:.0} times worse than the others: left out of the \
+                     trajectories",
+                    (s / typical).sqrt()
+                ),
+                None => "the model has no such periodic motion at the fitted parameters: left \
+                         out of the trajectories"
+                    .to_owned(),
+            };
+            self.left_out.push((self.name(record.observation), reason));
+        }
+        self.blocks.trajectory.records = kept;
+        methods::trajectories(&self.blocks, &self.evidence.nominal, parameters)
+    }
+
+    /// Mean squared weighted residual of each record; `None` where there is no orbit.
+    fn trajectory_scores(
+        &self,
+        records: &[crate::identify::trajectory::TrajectoryRecord],
+        parameters: &Parameters,
+    ) -> Vec<Option<f64>> {
+        let mut block = self.blocks.trajectory.clone();
+        block.records = records.to_vec();
+        (0..records.len())
+            .map(|i| {
+                block.residuals(i, parameters).map(|r| mean_square(&r))
+            })
+            .collect()
+    }
+
+    /// Fit the brackets; those that no boundary reaches, or that lie far from it, are named.
+    fn boundaries(&mut self, start: Parameters) -> Attempt {
+        let rig = self.evidence.rig;
+        let mut kept = Vec::new();
+        for bracket in std::mem::take(&mut self.blocks.boundary.brackets) {
+            let predicted = crate::identify::boundary::predicted_hz(&bracket, &start, rig);
+            let near = predicted.is_some_and(|f| {
+                (f - bracket.middle_hz()).abs() <= 3.0 * bracket.width_hz() + 0.02 * f
+            });
+            if near {
+                kept.push(bracket);
+            } else {
+                let place = format!(
+                    "bracket {} {:.2}–{:.2} Hz at {:.3} mm",
+                    bracket.kind.name(),
+                    bracket.frequency_low_hz,
+                    bracket.frequency_high_hz,
+                    bracket.clearance_m * 1e3
+                );
+                let reason = "the motion changed far from the simulated boundary: a disturbance, \
+                              or another boundary";
+                self.left_out.push((place, reason.into()));
+            }
+        }
+        self.blocks.boundary.brackets = kept;
+        self.blocks.boundary.fit_early_scale(&start);
+        methods::boundaries(&self.blocks, &self.evidence.nominal, start)
+    }
+
+    fn joint(&self, start: Parameters, fits: [&Attempt; 4]) -> Attempt {
+        let weight = |attempt: &Attempt| succeeded(attempt.as_ref()).map(|f| 1.0 / f.factor);
+        let [resonance, trajectories, boundaries, impacts] = fits.map(weight);
+        let mut list: Vec<(&dyn Block, f64)> = Vec::new();
+        let candidates: [(&dyn Block, Option<f64>); 4] = [
+            (&self.blocks.resonance, resonance),
+            (&self.blocks.trajectory, trajectories),
+            (&self.blocks.boundary, boundaries),
+            (&self.blocks.impact, impacts),
+        ];
+        for (block, weight) in candidates {
+            if let (Some(weight), true) = (weight, block.items() > 0) {
+                list.push((block, weight));
+            }
+        }
+        if list.is_empty() {
+            return None;
+        }
+        let mut free: Vec<Coordinate> = Coordinate::PHYSICAL
+            .into_iter()
+            .filter(|c| list.iter().any(|(block, _)| block.touches(*c)))
+            .collect();
+        let mut priors = methods::wide_priors(&start, &free);
+        let waveforms = resonance.is_some() || trajectories.is_some();
+        if waveforms {
+            let (nuisances, more) = self.blocks.nuisances(self.evidence.nominal.gain_uncertainty);
+            free.extend(nuisances);
+            priors.extend(more);
+        }
+        let attempt = fit_without_lost(list, free, priors, start);
+        Some(attempt)
+    }
+
+    fn joint_result(
+        &self,
+        attempt: Attempt,
+        methods: &BTreeMap<String, MethodResult>,
+    ) -> (MethodResult, Option<Fit>, f64) {
+        let Some(attempt) = attempt else {
+            // Only decays, or nothing: the joint answer is the decays' own.
+            let only = methods.get("free_decay").cloned().unwrap_or_default();
+            return (only, None, 1.0);
+        };
+        let tells: Vec<Coordinate> = match &attempt {
+            Ok(found) => found.fit.free.clone(),
+            Err(_) => Coordinate::PHYSICAL.to_vec(),
+        };
+        let records = self.evidence.observations.iter().filter(|o| !o.excluded()).count();
+        let observations = attempt.as_ref().map_or(0, |f| f.fit.residuals);
+        let result = methods::result(&attempt, &tells, observations, records);
+        match attempt {
+            Ok(found) => (result, Some(found.fit), found.factor),
+            Err(_) => (result, None, 1.0),
+        }
+    }
+
+    fn store_resonance(&self, found: &mut BTreeMap<String, MethodResult>, attempt: Option<&Result<MethodFit, FitError>>) {
+        let Some(attempt) = attempt else { return };
+        let tells = [Coordinate::Frequency, Coordinate::Damping, Coordinate::Deflection];
+        let block = &self.blocks.resonance;
+        let observations = block.points.iter().map(|p| 2 * p.responses.len()).sum();
+        let mut result = methods::result(attempt, &tells, observations, block.points.len());
+        if let Ok(fit) = attempt {
+            verdict::judge_resonance(&mut result, block, &fit.fit.parameters);
+        }
+        found.insert("resonance".into(), result);
+    }
+
+    fn store_impacts(&self, found: &mut BTreeMap<String, MethodResult>, attempt: Option<&Result<MethodFit, FitError>>) {
+        let Some(attempt) = attempt else { return };
+        let block = &self.blocks.impact;
+        let mut records: Vec<usize> = block.pairs.iter().map(|p| p.observation).collect();
+        records.dedup();
+        let mut result =
+            methods::result(attempt, &[Coordinate::Restitution], block.pairs.len(), records.len());
+        if let Some(estimate) = &mut result.parameters.restitution {
+            widen(estimate, IMPACT_BIAS);
+        }
+        if self.blocks.impact_outliers > 0 {
+            result.remarks.push(format!(
+                "{} impacts lie far from the bulk and were left out",
+                self.blocks.impact_outliers
+            ));
+        }
+        verdict::judge_impacts(&mut result, block, self.evidence);
+        found.insert("impacts".into(), result);
+    }
+
+    fn store_trajectories(&self, found: &mut BTreeMap<String, MethodResult>, attempt: Option<&Result<MethodFit, FitError>>) {
+        let Some(attempt) = attempt else { return };
+        let block = &self.blocks.trajectory;
+        let observations = attempt.as_ref().map_or(0, |f| f.fit.residuals);
+        let mut result =
+            methods::result(attempt, &Coordinate::PHYSICAL, observations, block.records.len());
+        if let Ok(fit) = attempt {
+            verdict::judge_trajectories(&mut result, block, &fit.fit.parameters);
+        }
+        found.insert("trajectories".into(), result);
+    }
+
+    fn store_boundaries(&self, found: &mut BTreeMap<String, MethodResult>, attempt: Option<&Result<MethodFit, FitError>>) {
+        let Some(attempt) = attempt else { return };
+        let brackets = self.blocks.boundary.brackets.len();
+        let tells = match attempt {
+            Ok(found) => found.fit.free.clone(),
+            Err(_) => Coordinate::PHYSICAL.to_vec(),
+        };
+        let result = methods::result(attempt, &tells, brackets, 2 * brackets);
+        found.insert("boundaries".into(), result);
+    }
+}
+
+/// Add a systematic part to an estimate's standard error.
+fn widen(estimate: &mut Estimate, systematic: f64) {
+    if let (Some(value), Some(error)) = (estimate.value, estimate.standard_error) {
+        let error = error.hypot(systematic);
+        let half = crate::identify::estimate::NORMAL_975 * error;
+        estimate.standard_error = Some(error);
+        estimate.interval95 = Some([(value - half).max(0.0), (value + half).min(1.0)]);
+    }
+}
+
+/// Fit all blocks together from a start that each of them accepts.
+fn fit_without_lost(
+    list: Vec<(&dyn Block, f64)>,
+    free: Vec<Coordinate>,
+    priors: Vec<crate::identify::solver::Prior>,
+    start: Parameters,
+) -> Result<MethodFit, FitError> {
+    let problem = Problem { blocks: list, priors, free };
+    let fit = problem.fit(start)?;
+    let freedom = fit.residuals.saturating_sub(4).max(1) as f64;
+    let reduced = fit.cost / freedom;
+    Ok(MethodFit { factor: reduced.max(1.0), reduced, fit })
+}

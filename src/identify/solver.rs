@@ -1,0 +1,345 @@
+//! Levenberg–Marquardt on the normal equations of blocks of residuals.
+//!
+//! A block gives its residuals item by item (a record, a bracket), so that items are evaluated in
+//! parallel and only their normal equations are kept. An item whose model does not exist at a
+//! trial point makes that trial fail; it never becomes a residual number.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::identify::parameters::{Coordinate, Parameters};
+
+/// Weighted residuals of one kind of observation.
+pub trait Block: Sync {
+    /// Number of items.
+    fn items(&self) -> usize;
+
+    /// Weighted residuals of one item at given parameters, always the same number for an item;
+    /// `None` where the model has no such motion there.
+    fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>>;
+
+    /// Which coordinates the block depends on.
+    fn touches(&self, coordinate: Coordinate) -> bool;
+}
+
+/// Gaussian prior on one coordinate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prior {
+    /// The coordinate.
+    pub coordinate: Coordinate,
+    /// Centre.
+    pub centre: f64,
+    /// Standard deviation.
+    pub deviation: f64,
+}
+
+/// A least-squares problem: blocks with weights, priors, and the coordinates that are free.
+pub struct Problem<'a> {
+    /// Blocks, each with a factor on its squared residuals (1 / variance factor).
+    pub blocks: Vec<(&'a dyn Block, f64)>,
+    /// Priors.
+    pub priors: Vec<Prior>,
+    /// Free coordinates.
+    pub free: Vec<Coordinate>,
+}
+
+/// How a fit ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ending {
+    /// The step became negligible.
+    Converged,
+    /// The steps ran out first.
+    TooManySteps,
+    /// No step in any direction lowers the cost further, though the gradient is not yet zero.
+    Stalled,
+}
+
+/// A finished fit.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Fit {
+    /// Best parameters.
+    pub parameters: Parameters,
+    /// Free coordinates, in the order of the covariance.
+    pub free: Vec<Coordinate>,
+    /// Covariance of the free coordinates for unit variance of the weighted residuals.
+    #[serde(with = "rows")]
+    pub covariance: DMatrix<f64>,
+    /// Sum of squared weighted residuals, priors included.
+    pub cost: f64,
+    /// Number of residuals, priors not counted.
+    pub residuals: usize,
+    /// How it ended.
+    pub ending: Ending,
+}
+
+impl Fit {
+    /// Standard error of a coordinate; `None` where it was not free.
+    pub fn error(&self, coordinate: Coordinate) -> Option<f64> {
+        let i = self.free.iter().position(|c| *c == coordinate)?;
+        Some(self.covariance[(i, i)].max(0.0).sqrt())
+    }
+
+    /// Correlation of two free coordinates.
+    pub fn correlation(&self, a: Coordinate, b: Coordinate) -> Option<f64> {
+        let i = self.free.iter().position(|c| *c == a)?;
+        let k = self.free.iter().position(|c| *c == b)?;
+        let scale = (self.covariance[(i, i)] * self.covariance[(k, k)]).sqrt();
+        (scale > 0.0).then(|| self.covariance[(i, k)] / scale)
+    }
+}
+
+/// A square matrix as a list of rows.
+mod rows {
+    use nalgebra::DMatrix;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(matrix: &DMatrix<f64>, to: S) -> Result<S::Ok, S::Error> {
+        let rows: Vec<Vec<f64>> =
+            matrix.row_iter().map(|row| row.iter().copied().collect()).collect();
+        rows.serialize(to)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<DMatrix<f64>, D::Error> {
+        let rows: Vec<Vec<f64>> = Deserialize::deserialize(from)?;
+        let width = rows.first().map_or(0, Vec::len);
+        if rows.iter().any(|row| row.len() != width) {
+            return Err(serde::de::Error::custom("the rows of a matrix differ in length"));
+        }
+        Ok(DMatrix::from_fn(rows.len(), width, |i, k| rows[i][k]))
+    }
+}
+
+/// Why a fit could not be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FitError {
+    /// The model has no such motion at the start, for these items (block, item).
+    #[error("the model has no such motion at the starting values for {} observations", .0.len())]
+    NoModel(Vec<(usize, usize)>),
+    /// Nothing to fit.
+    #[error("there are no observations to fit")]
+    Empty,
+    /// The normal equations are singular: the data do not tell the coordinates.
+    #[error("the data do not tell the parameters apart")]
+    Singular,
+}
+
+#[derive(Clone)]
+struct Normal {
+    matrix: DMatrix<f64>,
+    gradient: DVector<f64>,
+    cost: f64,
+    count: usize,
+}
+
+impl Normal {
+    fn zeros(n: usize) -> Self {
+        Self { matrix: DMatrix::zeros(n, n), gradient: DVector::zeros(n), cost: 0.0, count: 0 }
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.matrix += &other.matrix;
+        self.gradient += &other.gradient;
+        self.cost += other.cost;
+        self.count += other.count;
+    }
+}
+
+/// Relative step of the central differences.
+const DIFFERENCE: f64 = 2e-6;
+const MOST_STEPS: usize = 60;
+
+impl Problem<'_> {
+    /// Fit from a start.
+    ///
+    /// # Errors
+    /// [`FitError`] where there is nothing to fit, where observations have no counterpart in the
+    /// model at the start, or where the data do not determine the coordinates.
+    pub fn fit(&self, start: Parameters) -> Result<Fit, FitError> {
+        let mut parameters = start;
+        let mut normal = self.normal(&parameters).map_err(FitError::NoModel)?;
+        if normal.count == 0 {
+            return Err(FitError::Empty);
+        }
+        let mut damping = 1e-4;
+        let mut ending = Ending::TooManySteps;
+        for _ in 0..MOST_STEPS {
+            match self.step(&parameters, &normal, &mut damping) {
+                Step::Taken { to, negligible } => {
+                    parameters = to;
+                    normal = self.normal(&parameters).map_err(FitError::NoModel)?;
+                    if negligible {
+                        ending = Ending::Converged;
+                        break;
+                    }
+                }
+                Step::Negligible => {
+                    ending = Ending::Converged;
+                    break;
+                }
+                Step::None => {
+                    ending = Ending::Stalled;
+                    break;
+                }
+            }
+        }
+        let covariance = inverse(&normal.matrix).ok_or(FitError::Singular)?;
+        Ok(Fit {
+            parameters,
+            free: self.free.clone(),
+            covariance,
+            cost: normal.cost,
+            residuals: normal.count - self.priors.len(),
+            ending,
+        })
+    }
+
+    /// Sum of squared weighted residuals at given parameters; `None` where an item has no model.
+    pub fn cost(&self, parameters: &Parameters) -> Option<f64> {
+        if !parameters.in_range() {
+            return None;
+        }
+        let mut sum: f64 = self.priors.iter().map(|p| prior_residual(p, parameters).powi(2)).sum();
+        for (block, weight) in &self.blocks {
+            let costs: Vec<Option<f64>> = (0..block.items())
+                .into_par_iter()
+                .map(|i| block.residuals(i, parameters).map(|r| r.iter().map(|x| x * x).sum()))
+                .collect();
+            for cost in costs {
+                sum += weight * cost?;
+            }
+        }
+        sum.is_finite().then_some(sum)
+    }
+
+    fn normal(&self, parameters: &Parameters) -> Result<Normal, Vec<(usize, usize)>> {
+        let mut total = Normal::zeros(self.free.len());
+        let mut missing = Vec::new();
+        for (b, (block, weight)) in self.blocks.iter().enumerate() {
+            let parts: Vec<Option<Normal>> = (0..block.items())
+                .into_par_iter()
+                .map(|i| self.item_normal(*block, i, *weight, parameters))
+                .collect();
+            for (i, part) in parts.iter().enumerate() {
+                match part {
+                    Some(part) => total.add(part),
+                    None => missing.push((b, i)),
+                }
+            }
+        }
+        for prior in &self.priors {
+            total.add(&self.prior_normal(prior, parameters));
+        }
+        if missing.is_empty() { Ok(total) } else { Err(missing) }
+    }
+
+    fn item_normal(
+        &self,
+        block: &dyn Block,
+        item: usize,
+        weight: f64,
+        at: &Parameters,
+    ) -> Option<Normal> {
+        let residuals = DVector::from_vec(block.residuals(item, at)?);
+        let mut jacobian = DMatrix::zeros(residuals.len(), self.free.len());
+        for (column, coordinate) in self.free.iter().enumerate() {
+            if block.touches(*coordinate) {
+                let slope = slope(block, item, at, *coordinate, &residuals)?;
+                jacobian.set_column(column, &slope);
+            }
+        }
+        Some(Normal {
+            matrix: jacobian.tr_mul(&jacobian) * weight,
+            gradient: jacobian.tr_mul(&residuals) * weight,
+            cost: residuals.norm_squared() * weight,
+            count: residuals.len(),
+        })
+    }
+
+    fn prior_normal(&self, prior: &Prior, parameters: &Parameters) -> Normal {
+        let mut part = Normal::zeros(self.free.len());
+        let residual = prior_residual(prior, parameters);
+        part.cost = residual * residual;
+        part.count = 1;
+        if let Some(i) = self.free.iter().position(|c| *c == prior.coordinate) {
+            part.matrix[(i, i)] = prior.deviation.powi(-2);
+            part.gradient[i] = residual / prior.deviation;
+        }
+        part
+    }
+
+    fn step(&self, from: &Parameters, normal: &Normal, damping: &mut f64) -> Step {
+        for _ in 0..16 {
+            let mut matrix = normal.matrix.clone();
+            for i in 0..matrix.nrows() {
+                matrix[(i, i)] += *damping * normal.matrix[(i, i)].max(1e-12);
+            }
+            let Some(step) = matrix.cholesky().map(|c| c.solve(&-&normal.gradient)) else {
+                *damping = (*damping * 10.0).max(1e-6);
+                continue;
+            };
+            let to = self.free.iter().zip(step.iter()).fold(*from, |p, (c, d)| {
+                p.with(*c, p.coordinate(*c) + d)
+            });
+            // Size of the step in standard errors.
+            let size = step.dot(&(&normal.matrix * &step)).max(0.0).sqrt();
+            match self.cost(&to) {
+                Some(cost) if cost < normal.cost => {
+                    *damping = (*damping * 0.2).max(1e-12);
+                    return Step::Taken { to, negligible: size < 1e-4 };
+                }
+                _ if size < 1e-4 => return Step::Negligible,
+                _ => *damping = (*damping * 8.0).max(1e-6),
+            }
+        }
+        Step::None
+    }
+}
+
+enum Step {
+    Taken { to: Parameters, negligible: bool },
+    Negligible,
+    None,
+}
+
+fn prior_residual(prior: &Prior, parameters: &Parameters) -> f64 {
+    (parameters.coordinate(prior.coordinate) - prior.centre) / prior.deviation
+}
+
+/// Slope of an item's residuals by central differences; one-sided where the model ends.
+fn slope(
+    block: &dyn Block,
+    item: usize,
+    at: &Parameters,
+    coordinate: Coordinate,
+    here: &DVector<f64>,
+) -> Option<DVector<f64>> {
+    let centre = at.coordinate(coordinate);
+    let evaluate = |shift: f64| {
+        let shifted = at.with(coordinate, centre + shift);
+        let inside = shifted.in_range();
+        inside.then(|| block.residuals(item, &shifted)).flatten().map(DVector::from_vec)
+    };
+    match (evaluate(DIFFERENCE), evaluate(-DIFFERENCE)) {
+        (Some(above), Some(below)) => Some((above - below) / (2.0 * DIFFERENCE)),
+        (Some(above), None) => Some((above - here) / DIFFERENCE),
+        (None, Some(below)) => Some((here - below) / DIFFERENCE),
+        (None, None) => None,
+    }
+}
+
+/// Inverse through a scaled Cholesky factor; `None` where numerically singular.
+fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let scale = matrix.diagonal().map(|d| if d > 0.0 { d.sqrt().recip() } else { 0.0 });
+    if scale.iter().any(|s| *s == 0.0) {
+        return None;
+    }
+    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, k| {
+        matrix[(i, k)] * scale[i] * scale[k]
+    });
+    let inverse = scaled.cholesky()?.inverse();
+    Some(DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, k| {
+        inverse[(i, k)] * scale[i] * scale[k]
+    }))
+}

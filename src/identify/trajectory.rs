@@ -1,0 +1,177 @@
+//! Periodic records z = 1/n against the closed-form periodic orbit.
+
+use crate::event::Rig;
+use crate::identify::parameters::{Coordinate, Parameters, gain_index};
+use crate::identify::solver::Block;
+use crate::model::flight::State;
+use crate::model::orbit::{Branch, Orbit, orbit_with_speed};
+use crate::motion::Observation;
+use crate::motion::fold::{Folded, FoldedChannel, FoldedPoint};
+use crate::record::Role;
+
+/// One folded record.
+#[derive(Debug, Clone)]
+pub struct TrajectoryRecord {
+    /// Index among the observations.
+    pub observation: usize,
+    /// Drive frequency, Hz.
+    pub frequency_hz: f64,
+    /// Half the gap, m.
+    pub clearance_m: f64,
+    /// Drive amplitude relative to the nominal one.
+    pub drive_amplitude: f64,
+    /// The folded waveform.
+    pub folded: Folded,
+    /// Median closing speed before impacts as measured, m/s.
+    pub closing_speed_m_s: f64,
+}
+
+/// All periodic records with one impact in n drive periods.
+#[derive(Debug, Clone)]
+pub struct TrajectoryBlock {
+    /// One or two masses.
+    pub rig: Rig,
+    /// The records.
+    pub records: Vec<TrajectoryRecord>,
+    /// Relative error added to every point: what instruments and model leave open.
+    pub relative_error: f64,
+}
+
+impl TrajectoryBlock {
+    /// Collect the records that may be used.
+    pub fn new(rig: Rig, observations: &[Observation], relative_error: f64) -> Self {
+        let records = observations
+            .iter()
+            .enumerate()
+            .filter(|(_, o)| !o.excluded() && o.finding.confidence >= 0.7)
+            .filter_map(|(i, o)| trajectory_record(i, o))
+            .collect();
+        Self { rig, records, relative_error }
+    }
+
+    /// Whether any channel of a gain's index is present.
+    pub fn has_gain(&self, index: usize) -> bool {
+        let mut roles = self.records.iter().flat_map(|r| &r.folded.channels).map(|c| c.role);
+        roles.any(|r| gain_index(r) == Some(index))
+    }
+
+    /// The orbit of a record at given parameters: the one whose closing speed is nearer to the
+    /// measured one; `None` beyond the saddle-node.
+    pub fn orbit(&self, item: usize, parameters: &Parameters) -> Option<Orbit> {
+        let record = &self.records[item];
+        let machine = parameters.machine(self.rig);
+        let setting =
+            parameters.setting(record.frequency_hz, record.clearance_m, record.drive_amplitude);
+        let n = record.folded.periods_n;
+        let branch = Branch::new(&machine, setting.frequency_ratio, n);
+        let restitution = parameters.restitution.clamp(0.0, 1.0);
+        let speeds = branch.closing_speeds(restitution, machine.gap(setting.clearance))?;
+        let scale =
+            parameters.static_deflection_m * record.drive_amplitude * parameters.natural_rate();
+        let measured = record.closing_speed_m_s / scale;
+        let speed = speeds
+            .into_iter()
+            .filter(|w| *w > 0.0)
+            .min_by(|a, b| (a - measured).abs().total_cmp(&(b - measured).abs()))?;
+        Some(orbit_with_speed(&machine, setting, n, speed))
+    }
+}
+
+fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> {
+    let speeds: Vec<f64> = o.impacts.iter().filter_map(|i| i.closing_speed_before_m_s).collect();
+    Some(TrajectoryRecord {
+        observation: index,
+        frequency_hz: o.drive?.frequency_hz,
+        clearance_m: o.setting.clearance_m?,
+        drive_amplitude: o.setting.drive_amplitude,
+        folded: o.folded.clone()?,
+        closing_speed_m_s: crate::signal::robust::median(&speeds)?,
+    })
+}
+
+/// Value of a motion channel in a state, SI, gain included.
+pub fn channel_value(
+    parameters: &Parameters,
+    drive_amplitude: f64,
+    role: Role,
+    state: &State,
+) -> f64 {
+    let length = parameters.static_deflection_m * drive_amplitude;
+    let speed = length * parameters.natural_rate();
+    let value = match role {
+        Role::VelocityX => state.vx * speed,
+        Role::VelocityY => state.vy * speed,
+        Role::DisplacementX => state.x * length,
+        Role::DisplacementY => state.y * length,
+        _ => f64::NAN,
+    };
+    value * parameters.gain(role)
+}
+
+/// The orbit's states at the two phases that stand for a folded point: ± its spread, so that
+/// their mean carries the curvature within the bin.
+fn states(orbit: &Orbit, point: &FoldedPoint, impact_phase: f64) -> [State; 2] {
+    let eta = orbit.setting.frequency_ratio;
+    [-1.0, 1.0].map(|sign| {
+        orbit.at((point.phase_rad + sign * point.spread_rad - impact_phase) / eta)
+    })
+}
+
+/// The orbit's impact phase on the fold's axis: whole turns put it next to the measured one.
+pub fn phase_on_fold(orbit: &Orbit, folded: &Folded) -> f64 {
+    let measured = folded.impact_phase_rad.unwrap_or(orbit.phase_at_impact);
+    let turns = ((measured - orbit.phase_at_impact) / std::f64::consts::TAU).round();
+    orbit.phase_at_impact + turns * std::f64::consts::TAU
+}
+
+impl Block for TrajectoryBlock {
+    fn items(&self) -> usize {
+        self.records.len()
+    }
+
+    fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
+        let record = &self.records[item];
+        let orbit = self.orbit(item, parameters)?;
+        let phase = phase_on_fold(&orbit, &record.folded);
+        let mut out = Vec::new();
+        // Channels of one record share their samples, hence their phases and the orbit's states.
+        let mut shared: (&[FoldedPoint], Vec<[State; 2]>) = (&[], Vec::new());
+        for channel in &record.folded.channels {
+            if !same_phases(shared.0, &channel.points) {
+                let all = channel.points.iter().map(|p| states(&orbit, p, phase)).collect();
+                shared = (&channel.points, all);
+            }
+            let value =
+                |s: &State| channel_value(parameters, record.drive_amplitude, channel.role, s);
+            let values: Vec<f64> =
+                shared.1.iter().map(|[a, b]| 0.5 * (value(a) + value(b))).collect();
+            out.extend(centred_residuals(channel, &values, self.relative_error));
+        }
+        Some(out)
+    }
+
+    fn touches(&self, _coordinate: Coordinate) -> bool {
+        true
+    }
+}
+
+fn same_phases(a: &[FoldedPoint], b: &[FoldedPoint]) -> bool {
+    a.len() == b.len()
+        && a.iter().zip(b).all(|(p, q)| p.phase_rad == q.phase_rad && p.spread_rad == q.spread_rad)
+}
+
+/// Weighted residuals with the channel's offset, a nuisance, projected out.
+fn centred_residuals(channel: &FoldedChannel, model: &[f64], relative_error: f64) -> Vec<f64> {
+    let scale = relative_error * crate::signal::robust::rms(model);
+    let weights: Vec<f64> = channel
+        .points
+        .iter()
+        .map(|p| 1.0 / (channel.noise.powi(2) / f64::from(p.samples.max(1)) + scale * scale))
+        .collect();
+    let total: f64 = weights.iter().sum();
+    let differences: Vec<f64> =
+        channel.points.iter().zip(model).map(|(p, m)| p.value - m).collect();
+    let offset =
+        differences.iter().zip(&weights).map(|(d, w)| d * w).sum::<f64>() / total.max(1e-300);
+    differences.iter().zip(&weights).map(|(d, w)| (d - offset) * w.sqrt()).collect()
+}

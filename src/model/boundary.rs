@@ -1,0 +1,223 @@
+//! Boundaries of z = 1/n in the (η, ρ) plane: saddle-node s2 and period doubling s1 in closed
+//! form, grazing ρ', and the inverse η_s2(ρ). Each point says whether its orbit exists.
+
+use serde::Serialize;
+
+use super::flight::{Drive, exponent, forced_amplitude};
+use super::orbit::{Branch, Existence, Orbit, bisect, free_flow, orbit_with_speed, saltation};
+use super::params::{Flight, Machine, Setting};
+
+/// A point of a boundary, with the orbit that is marginal there.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct BoundaryPoint {
+    /// η
+    pub eta: f64,
+    /// ρ
+    pub rho: f64,
+    /// Closing speed of the marginal orbit; 0 at grazing.
+    pub closing_speed: f64,
+    /// Phase of the drive at its impact, rad in [0, 2π).
+    pub phase: f64,
+    /// Whether the marginal orbit is a motion of the machine.
+    pub existence: Existence,
+}
+
+impl BoundaryPoint {
+    /// Whether the marginal orbit exists, so that the boundary is one that a machine shows.
+    pub fn is_valid(&self) -> bool {
+        self.existence == Existence::Exists
+    }
+}
+
+/// ρ from a gap: half of it for two masses.
+fn clearance(machine: &Machine, gap: f64) -> f64 {
+    gap / machine.gap(1.0)
+}
+
+/// ρ'(η): clearance at which the impactless motion X + Y grazes the contact (or the stop).
+pub fn rho_grazing(machine: &Machine, eta: f64) -> f64 {
+    let drive = Drive { eta, phase: 0.0 };
+    let mut forced = forced_amplitude(&machine.x, drive);
+    if let Some(y) = &machine.y {
+        forced += forced_amplitude(y, drive);
+    }
+    clearance(machine, forced.norm())
+}
+
+/// Clearance and closing speed at s2 for constant R, without a check of existence:
+/// G = |F|√(1 + (αη/Q)²), w = Gα/(α² + Q²/η²).
+pub fn s2_of_branch(branch: &Branch, restitution: f64) -> (f64, f64) {
+    let (alpha, q) = (
+        branch.alpha(restitution),
+        branch.q(restitution) / branch.eta,
+    );
+    let gap = branch.forced.norm() * (1.0 + (alpha / q).powi(2)).sqrt();
+    (gap, gap * alpha / (alpha * alpha + q * q))
+}
+
+/// The saddle-node boundary of z = 1/n at η. `None`: no saddle-node at a finite clearance.
+pub fn rho_s2(machine: &Machine, eta: f64, n: u32) -> Option<BoundaryPoint> {
+    let branch = harmonic_branch(machine, eta, n)?;
+    let (gap, w) = match machine.restitution().constant() {
+        Some(r) => s2_of_branch(&branch, r),
+        None => s2_speed_dependent(machine, &branch)?,
+    };
+    point(machine, eta, n, (clearance(machine, gap), w))
+}
+
+fn harmonic_branch(machine: &Machine, eta: f64, n: u32) -> Option<Branch> {
+    let ok = machine.flight == Flight::Harmonic && n > 0 && eta > 0.0 && eta.is_finite();
+    ok.then(|| Branch::new(machine, eta, n))
+}
+
+fn point(machine: &Machine, eta: f64, n: u32, at: (f64, f64)) -> Option<BoundaryPoint> {
+    let (rho, closing_speed) = at;
+    if !rho.is_finite() || !closing_speed.is_finite() {
+        return None;
+    }
+    let mut p = BoundaryPoint {
+        eta,
+        rho,
+        closing_speed,
+        phase: 0.0,
+        existence: Existence::NotClosing,
+    };
+    if closing_speed > 0.0 {
+        let orbit = orbit_with_speed(machine, Setting::new(eta, rho), n, closing_speed);
+        (p.phase, p.existence) = (orbit.phase_at_impact, orbit.existence);
+    }
+    Some(p)
+}
+
+/// Greatest gap along the branch G(w) = α(w)w + √(|F|² − (Q(w)w/η)²) for R(w).
+fn s2_speed_dependent(machine: &Machine, branch: &Branch) -> Option<(f64, f64)> {
+    let law = machine.restitution();
+    let gap = |w: f64| {
+        let (alpha, q) = (branch.alpha(law.at(w)), branch.q(law.at(w)));
+        let rest = branch.forced.norm_sqr() - (q * w / branch.eta).powi(2);
+        (rest >= 0.0).then(|| alpha * w + rest.sqrt())
+    };
+    let top = (0..=20)
+        .map(|i| branch.eta * branch.forced.norm() / branch.q(f64::from(i) / 20.0).abs())
+        .fold(0.0, f64::max);
+    let grid = (1..2000).map(|i| top * f64::from(i) / 2000.0);
+    let best = grid.filter(|w| gap(*w).is_some()).max_by(|a, b| {
+        gap(*a)
+            .unwrap_or(f64::MIN)
+            .total_cmp(&gap(*b).unwrap_or(f64::MIN))
+    })?;
+    let step = top / 2000.0;
+    let w = golden_maximum(|w| gap(w).unwrap_or(f64::MIN), best - step, best + step);
+    Some((gap(w)?, w))
+}
+
+/// Argument of the maximum of a function with one maximum between two arguments.
+fn golden_maximum(f: impl Fn(f64) -> f64, mut lo: f64, mut hi: f64) -> f64 {
+    const SHARE: f64 = 0.618_033_988_749_895;
+    for _ in 0..80 {
+        let (a, b) = (hi - SHARE * (hi - lo), lo + SHARE * (hi - lo));
+        if f(a) < f(b) { lo = a } else { hi = b }
+    }
+    0.5 * (lo + hi)
+}
+
+/// The period-doubling boundary of z = 1/n at η (multiplier −1). With equal masses and constant
+/// R it is a closed form; otherwise the root is found along the branch of orbits. `None`: the
+/// branch has no doubling.
+pub fn rho_s1(machine: &Machine, eta: f64, n: u32) -> Option<BoundaryPoint> {
+    let branch = harmonic_branch(machine, eta, n)?;
+    let equal = machine.y.is_none() || machine.is_symmetric();
+    match machine.restitution().constant() {
+        Some(r) if equal => {
+            let at = marginal(machine, &branch, r, n, -1.0)?;
+            point(machine, eta, n, at)
+        }
+        Some(r) => s1_along_branch(machine, &branch, r, n),
+        None => None,
+    }
+}
+
+/// Clearance and closing speed of one mass (or of equal ones) where a multiplier is `sign`
+/// (±1): trace = sign·(1 + determinant). For +1 it is s2 again.
+fn marginal(machine: &Machine, branch: &Branch, r: f64, n: u32, sign: f64) -> Option<(f64, f64)> {
+    let masses = machine.gap(1.0);
+    let (o, eta) = (&machine.x, branch.eta);
+    let lambda = exponent(o);
+    let period = f64::from(n) * std::f64::consts::TAU / eta;
+    let (s, c) = (lambda.im * period).sin_cos();
+    let e = (lambda.re * period).exp();
+    let g = (2.0 * r * e * c + sign * (1.0 + (r * e).powi(2))) * lambda.im / (e * s);
+    let (f, p) = (branch.forced / masses, o.drive_per_mass());
+    let (alpha, q) = (branch.alpha(r), branch.q(r) / eta);
+    let f2 = f.norm_sqr();
+    let kappa = (g / (1.0 + r) + p * (alpha * f.re + q * f.im) / f2)
+        / (p * f.re / f2 - o.stiffness_per_mass());
+    let v = f.norm() / (kappa - alpha).hypot(q);
+    (v.is_finite() && kappa.is_finite()).then_some((kappa * v, v * masses))
+}
+
+/// Doubling along the branch w = (η|F|/|Q|) sin θ, G = αw + |F| cos θ of an asymmetric machine:
+/// the root of det(M + 1) of largest closing speed whose orbit exists, else of largest speed.
+fn s1_along_branch(machine: &Machine, branch: &Branch, r: f64, n: u32) -> Option<BoundaryPoint> {
+    let (f, eta) = (branch.forced.norm(), branch.eta);
+    let at = |theta: f64| {
+        let w = eta * f / branch.q(r).abs() * theta.sin();
+        (clearance(machine, branch.alpha(r) * w + f * theta.cos()), w)
+    };
+    let determinant = |theta: f64| {
+        let (rho, w) = at(theta);
+        let orbit = orbit_with_speed(machine, Setting::new(eta, rho), n, w);
+        doubling_determinant(machine, &orbit)
+    };
+    let grid: Vec<f64> = (1..400)
+        .map(|i| f64::from(i) * std::f64::consts::PI / 400.0)
+        .collect();
+    let values: Vec<f64> = grid.iter().map(|t| determinant(*t)).collect();
+    let mut found: Vec<BoundaryPoint> = (1..grid.len())
+        .filter(|&i| values[i - 1] * values[i] < 0.0)
+        .filter_map(|i| {
+            point(
+                machine,
+                eta,
+                n,
+                at(bisect(determinant, grid[i - 1], grid[i])),
+            )
+        })
+        .collect();
+    found.sort_by(|a, b| {
+        (b.is_valid(), b.closing_speed)
+            .partial_cmp(&(a.is_valid(), a.closing_speed))
+            .unwrap_or(std::cmp::Ordering::Equal)
+    });
+    found.first().copied()
+}
+
+/// det(M + 1) of an orbit's period map: zero where a multiplier is −1.
+fn doubling_determinant(machine: &Machine, orbit: &Orbit) -> f64 {
+    let flow = free_flow(machine, orbit.period());
+    let map = saltation(machine, &orbit.before, &orbit.after) * flow;
+    (map + nalgebra::Matrix4::identity()).determinant()
+}
+
+/// All η at which the saddle-node boundary of z = 1/n passes a clearance with an orbit that
+/// exists, rising. The search covers 0 < η ≤ 2.5 n.
+pub fn etas_s2(machine: &Machine, rho: f64, n: u32) -> Vec<BoundaryPoint> {
+    let Some(r) = machine.restitution().constant() else {
+        return Vec::new();
+    };
+    let top = 2.5 * f64::from(n);
+    let miss = |eta: f64| s2_of_branch(&Branch::new(machine, eta, n), r).0 - machine.gap(rho);
+    let grid: Vec<f64> = (1..=1000).map(|i| top * f64::from(i) / 1000.0).collect();
+    let values: Vec<f64> = grid.iter().map(|eta| miss(*eta)).collect();
+    (1..grid.len())
+        .filter(|&i| values[i - 1] * values[i] <= 0.0)
+        .filter_map(|i| rho_s2(machine, bisect(miss, grid[i - 1], grid[i]), n))
+        .filter(|p| p.is_valid() && (p.rho - rho).abs() < 1e-9 * (1.0 + rho.abs()))
+        .collect()
+}
+
+/// The greatest η at which z = 1/n ends in a saddle-node at a clearance: where a rising sweep
+/// of the frequency jumps. `None`: the boundary does not pass this clearance with an orbit.
+pub fn eta_s2(machine: &Machine, rho: f64, n: u32) -> Option<BoundaryPoint> {
+    etas_s2(machine, rho, n).pop()
+}

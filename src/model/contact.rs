@@ -1,0 +1,181 @@
+//! What happens at an impact: Newton's law with momentum kept, plastic impacts with a dead zone
+//! (eqs. 4–6 of the paper), and the end of a complete chatter.
+
+use serde::{Deserialize, Serialize};
+
+use super::flight::{Drive, FlightPaths, State, joined_flight, press};
+use super::params::{Flight, Machine};
+
+/// What kind of impact it was.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ImpactKind {
+    /// The masses part again.
+    Bounce,
+    /// Plastic, but nothing presses the masses together: they part without a dead zone (eq. 6).
+    Plastic,
+    /// Plastic, followed by a dead zone.
+    Stick,
+    /// The accumulation point of a complete chatter: infinitely many impacts in finite time,
+    /// then a dead zone. It stands for all impacts of the sequence's unresolved rest.
+    ChatterEnd,
+}
+
+/// One impact of a simulated motion, dimensionless.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ModelImpact {
+    /// τ of the impact.
+    pub tau: f64,
+    /// Phase of the drive there, rad in [0, 2π).
+    pub phase: f64,
+    /// X'₋
+    pub vx_before: f64,
+    /// X'₊
+    pub vx_after: f64,
+    /// Y'₋ (0 against a stop)
+    pub vy_before: f64,
+    /// Y'₊
+    pub vy_after: f64,
+    /// X'₋ + Y'₋, positive.
+    pub closing_before: f64,
+    /// X'₊ + Y'₊ = −R(X'₋ + Y'₋), not positive.
+    pub closing_after: f64,
+    /// What kind of impact.
+    pub kind: ImpactKind,
+    /// Length of the dead zone that follows; 0 without one, infinite where it never ends.
+    pub dead_zone: f64,
+}
+
+/// Displacement resolution, relative to the motion's size, below which a bounce is not told
+/// from rest.
+const RESOLUTION: f64 = 1e-13;
+
+/// What an impact leads to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outcome {
+    /// The state just after.
+    pub after: State,
+    /// Kind of impact.
+    pub kind: ImpactKind,
+    /// Time from this impact until the chatter has come to rest (0 for the other kinds).
+    pub until_rest: f64,
+}
+
+/// Velocities after an impact: X'₊ = X'₋ − μ₁(1+R)w, Y'₊ = Y'₋ − μ₂(1+R)w with the closing
+/// speed w and the mobilities μ of [`Machine::mobility`]; for equal masses eq. (4).
+pub fn newton(machine: &Machine, before: &State) -> State {
+    let w = before.vx + before.vy;
+    let change = (1.0 + machine.restitution().at(w)) * w;
+    let (mx, my) = machine.mobility();
+    State {
+        vx: before.vx - mx * change,
+        vy: before.vy - my * change,
+        ..*before
+    }
+}
+
+/// Free accelerations of both masses in a state.
+pub fn free_accelerations(machine: &Machine, drive: Drive, s: &State) -> (f64, f64) {
+    if let Flight::ConstantForce {
+        acceleration,
+        friction,
+    } = machine.flight
+    {
+        return (
+            super::flight::with_friction(acceleration, friction, s.vx).0,
+            0.0,
+        );
+    }
+    let cos = drive.phase.cos();
+    let of = |o: &super::Oscillator, x: f64, v: f64| {
+        o.drive_per_mass() * cos - 2.0 * o.decay_rate() * v - o.stiffness_per_mass() * x
+    };
+    (
+        of(&machine.x, s.x, s.vx),
+        machine.y.as_ref().map_or(0.0, |o| of(o, s.y, s.vy)),
+    )
+}
+
+/// What the impact of a state at contact leads to. `size` is the motion's displacement scale.
+///
+/// A rebound that would not rise above the resolution while the masses are pressed together is
+/// the end of a chatter: flights last 2v/a, speeds fall by R, so rest comes after
+/// 2v/(a(1−R)), the sum of the geometric sequence.
+pub fn impact(machine: &Machine, drive: Drive, before: &State, size: f64) -> Outcome {
+    let mut after = newton(machine, before);
+    let (ax, ay) = free_accelerations(machine, drive, &after);
+    (after.ax, after.ay) = (ax, ay);
+    let press = ax + ay;
+    let parting = -(after.vx + after.vy);
+    let plastic = parting <= 1e-15 * (before.vx + before.vy);
+    let (kind, until_rest) = if plastic {
+        (
+            if press > 0.0 {
+                ImpactKind::Stick
+            } else {
+                ImpactKind::Plastic
+            },
+            0.0,
+        )
+    } else if press > 0.0 && parting * parting <= 2.0 * press * RESOLUTION * size {
+        (ImpactKind::ChatterEnd, rest_after(machine, parting, press))
+    } else {
+        (ImpactKind::Bounce, 0.0)
+    };
+    Outcome {
+        after,
+        kind,
+        until_rest,
+    }
+}
+
+/// Sum of the flights of a chatter that starts with parting speed v under relative
+/// acceleration a: Σ 2vₖ/a with vₖ₊₁ = R vₖ; on an incline each flight also loses to friction.
+fn rest_after(machine: &Machine, v: f64, a: f64) -> f64 {
+    let r = machine.restitution().at(v);
+    if let Flight::ConstantForce {
+        acceleration,
+        friction,
+    } = machine.flight
+    {
+        let (up, down) = (acceleration + friction, acceleration - friction);
+        let kept = (down / up).sqrt();
+        return v * (1.0 / up + kept / down) / (1.0 - r * kept);
+    }
+    2.0 * v / (a * (1.0 - r))
+}
+
+/// The state with the masses exactly in contact and without relative velocity; momentum and
+/// the centre of mobility are kept.
+pub fn joined_state(machine: &Machine, clearance: f64, s: &State) -> State {
+    let (mx, my) = machine.mobility();
+    let w = s.vx + s.vy;
+    let depth = s.x + s.y - machine.gap(clearance);
+    State {
+        x: s.x - mx * depth,
+        y: s.y - my * depth,
+        vx: s.vx - mx * w,
+        vy: s.vy - my * w,
+        ..*s
+    }
+}
+
+/// Time until the press force vanishes, from the start of a dead zone; infinite if it never
+/// does. Free vibrations of the joined masses have decayed within the search.
+pub fn release_time(machine: &Machine, drive: Drive, clearance: f64, s: &State) -> f64 {
+    let paths: FlightPaths = joined_flight(machine, drive, clearance, s);
+    let path = press(machine, drive, &paths);
+    let slowest = path
+        .modes()
+        .iter()
+        .map(|m| -m.exponent.re)
+        .fold(f64::INFINITY, f64::min);
+    let period = std::f64::consts::TAU / drive.eta;
+    let transient = if path.modes().is_empty() {
+        0.0
+    } else {
+        (40.0 / slowest).min(1e4 * period)
+    };
+    let horizon = transient + 2.0 * period;
+    super::crossing::first_zero(&path, horizon).map_or(f64::INFINITY, |c| c.time)
+}

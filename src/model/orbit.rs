@@ -1,0 +1,423 @@
+//! Periodic orbits z = 1/n in closed form, for one mass, the symmetric and the asymmetric double
+//! oscillator and unequal masses alike.
+//!
+//! With one impact in n drive periods, each mass is its forced response plus the velocity jump
+//! −μᵢφ, φ = (1+R)w, times its periodic Green's function. At the impact the gap closes with the
+//! closing speed w, so with F = F₁+F₂ the complex forced amplitudes, ψ the drive's phase there:
+//!
+//! Re(F e^{iψ}) = G − αw,  −Im(F e^{iψ}) = Qw/η,  hence (G − αw)² + (Qw/η)² = |F|²,
+//!
+//! a quadratic for w. With Pᵢ, Dᵢ the Green's functions' position and velocity just before the
+//! impact, α = −(1+R)Σ μᵢPᵢ and Q = 1 + (1+R)Σ μᵢDᵢ.
+
+use nalgebra::{Matrix4, Vector4};
+
+use super::contact::{ImpactKind, free_accelerations, newton};
+use super::crossing::first_zero;
+use super::flight::{Drive, FlightPaths, State, exponent, forced_amplitude, free_flight};
+use super::params::{Flight, Machine, ModelError, Oscillator, Setting};
+use super::path::C64;
+
+/// Why an orbit that solves the equations is no motion of the machine, or that it is one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Existence {
+    /// It is a motion of the machine.
+    Exists,
+    /// The closing speed is not positive.
+    NotClosing,
+    /// The flight meets the contact before the period is over.
+    FurtherImpact,
+    /// The masses would stay together after the impact.
+    DeadZone,
+}
+
+/// A periodic orbit with one impact in n drive periods.
+#[derive(Debug, Clone)]
+pub struct Orbit {
+    /// Drive periods in one period of the motion.
+    pub n: u32,
+    /// η and ρ; the phase is the drive's at the impact.
+    pub setting: Setting,
+    /// Phase of the drive at the impact, rad in [0, 2π).
+    pub phase_at_impact: f64,
+    /// Closing speed before the impact: X'₋ + Y'₋, against a stop X'₋.
+    pub closing_speed: f64,
+    /// State just before the impact.
+    pub before: State,
+    /// State just after the impact.
+    pub after: State,
+    /// Multipliers of the period map, largest modulus first: four for two masses, two for one.
+    pub multipliers: Vec<C64>,
+    /// Whether it is a motion of the machine.
+    pub existence: Existence,
+    flight: FlightPaths,
+}
+
+impl Orbit {
+    /// The motion at a time since the impact, continued periodically: exact.
+    pub fn at(&self, tau_since_impact: f64) -> State {
+        self.flight.at(tau_since_impact.rem_euclid(self.period()))
+    }
+
+    /// Period 2πn/η.
+    pub fn period(&self) -> f64 {
+        f64::from(self.n) * self.setting.period()
+    }
+
+    /// Whether every multiplier lies inside the unit circle.
+    pub fn is_stable(&self) -> bool {
+        self.multipliers.iter().all(|m| m.norm() < 1.0)
+    }
+
+    /// Whether it is a motion of the machine.
+    pub fn exists(&self) -> bool {
+        self.existence == Existence::Exists
+    }
+
+    /// The motion at a drive phase within the first drive period after the impact; whole
+    /// periods are added by `period_index`.
+    pub fn at_phase(&self, phase: f64, period_index: u32) -> State {
+        let lead = (phase - self.phase_at_impact).rem_euclid(std::f64::consts::TAU);
+        let tau = lead / self.setting.frequency_ratio;
+        self.at(tau + f64::from(period_index) * self.setting.period())
+    }
+}
+
+/// Periodic response of one mass to a unit velocity jump once per period T: the free mode just
+/// after the jump, and displacement and velocity just before it.
+#[derive(Debug, Clone, Copy)]
+pub struct Green {
+    /// Displacement at the jump.
+    pub position: f64,
+    /// Velocity just before the jump (just after: + 1).
+    pub velocity_before: f64,
+}
+
+/// Green's function of a mass for a jump every `period`.
+///
+/// The response to one jump is Im(e^{λt})/ω; all past ones sum up geometrically.
+pub fn green(o: &Oscillator, period: f64) -> Green {
+    let lambda = exponent(o);
+    let (e, angle) = ((lambda.re * period).exp(), lambda.im * period);
+    let (s, c) = angle.sin_cos();
+    // the sum over all past jumps: G(t) = Im(e^{λt}/(1 − e^{λT}))/ω
+    let one_minus = C64::new(1.0 - e * c, -e * s);
+    let z = C64::new(1.0, 0.0) / one_minus;
+    let before = C64::new(e * c, e * s) * lambda * z;
+    Green {
+        position: z.im / lambda.im,
+        velocity_before: before.im / lambda.im,
+    }
+}
+
+/// Everything of a z = 1/n orbit that does not depend on ρ: the forced amplitude F and the
+/// combined Green's functions.
+#[derive(Debug, Clone, Copy)]
+pub struct Branch {
+    /// F, complex amplitude of the impactless motion X + Y for drive phase 0.
+    pub forced: C64,
+    /// Σ μᵢ·position of the Green's functions.
+    pub position: f64,
+    /// Σ μᵢ·velocity before.
+    pub velocity: f64,
+    /// η
+    pub eta: f64,
+}
+
+impl Branch {
+    /// For a machine at η and n.
+    pub fn new(machine: &Machine, eta: f64, n: u32) -> Self {
+        let period = f64::from(n) * std::f64::consts::TAU / eta;
+        let (mx, my) = machine.mobility();
+        let drive = Drive { eta, phase: 0.0 };
+        let gx = green(&machine.x, period);
+        let mut forced = forced_amplitude(&machine.x, drive);
+        let (mut position, mut velocity) = (mx * gx.position, mx * gx.velocity_before);
+        if let Some(y) = &machine.y {
+            let gy = green(y, period);
+            forced += forced_amplitude(y, drive);
+            position += my * gy.position;
+            velocity += my * gy.velocity_before;
+        }
+        Self {
+            forced,
+            position,
+            velocity,
+            eta,
+        }
+    }
+
+    /// α: gap = Re(F e^{iψ}) + αw at the impact.
+    pub fn alpha(&self, restitution: f64) -> f64 {
+        -(1.0 + restitution) * self.position
+    }
+
+    /// Q: −Im(F e^{iψ}) η = Qw.
+    pub fn q(&self, restitution: f64) -> f64 {
+        1.0 + (1.0 + restitution) * self.velocity
+    }
+
+    /// (G − αw)² + (Qw/η)² − |F|²: zero on an orbit.
+    pub fn mismatch(&self, restitution: f64, gap: f64, w: f64) -> f64 {
+        let (a, q) = (
+            gap - self.alpha(restitution) * w,
+            self.q(restitution) * w / self.eta,
+        );
+        a * a + q * q - self.forced.norm_sqr()
+    }
+
+    /// Phase of the drive at the impact of an orbit with closing speed w.
+    pub fn phase(&self, restitution: f64, gap: f64, w: f64) -> f64 {
+        let u = C64::new(
+            gap - self.alpha(restitution) * w,
+            -self.q(restitution) * w / self.eta,
+        );
+        (u.arg() - self.forced.arg()).rem_euclid(std::f64::consts::TAU)
+    }
+
+    /// Both closing speeds for constant R, smaller first; `None` beyond the saddle-node.
+    pub fn closing_speeds(&self, restitution: f64, gap: f64) -> Option<[f64; 2]> {
+        let (alpha, q) = (self.alpha(restitution), self.q(restitution) / self.eta);
+        let a = alpha * alpha + q * q;
+        let c = gap * gap - self.forced.norm_sqr();
+        let disc = gap * gap * alpha * alpha - a * c;
+        if disc < 0.0 || a == 0.0 {
+            return None;
+        }
+        // the stable form of the quadratic's roots
+        let s = gap * alpha;
+        let large = s + s.signum() * disc.sqrt();
+        let roots = if large == 0.0 {
+            [0.0, 0.0]
+        } else {
+            [large / a, c / large]
+        };
+        Some(if roots[0] <= roots[1] {
+            roots
+        } else {
+            [roots[1], roots[0]]
+        })
+    }
+}
+
+/// All z = 1/n orbits of a machine in a setting (its phase is ignored): those that exist and
+/// those that only solve the equations with positive closing speed, smaller speed first.
+///
+/// # Errors
+/// [`ModelError`] where a parameter is out of range or the flight is not harmonic.
+pub fn orbits(machine: &Machine, setting: Setting, n: u32) -> Result<Vec<Orbit>, ModelError> {
+    machine.check()?;
+    setting.check()?;
+    if machine.flight != Flight::Harmonic || n == 0 {
+        return Err(ModelError::Unsupported(
+            "periodic orbits z = 1/n need the harmonic flight and n of at least 1",
+        ));
+    }
+    let branch = Branch::new(machine, setting.frequency_ratio, n);
+    let speeds = closing_speeds(machine, &branch, machine.gap(setting.clearance));
+    Ok(speeds
+        .into_iter()
+        .map(|w| orbit_with_speed(machine, setting, n, w))
+        .collect())
+}
+
+/// The stable, existing z = 1/n orbit, if there is one (at most one of the two roots is).
+///
+/// # Errors
+/// As [`orbits`].
+pub fn stable_orbit(
+    machine: &Machine,
+    setting: Setting,
+    n: u32,
+) -> Result<Option<Orbit>, ModelError> {
+    Ok(orbits(machine, setting, n)?
+        .into_iter()
+        .find(|o| o.exists() && o.is_stable()))
+}
+
+fn closing_speeds(machine: &Machine, branch: &Branch, gap: f64) -> Vec<f64> {
+    match machine.restitution().constant() {
+        Some(r) => {
+            let roots = branch.closing_speeds(r, gap).unwrap_or([-1.0, -1.0]);
+            roots.into_iter().filter(|w| *w > 0.0).collect()
+        }
+        None => speed_dependent(machine, branch, gap),
+    }
+}
+
+/// Roots of the mismatch for R(w): bracketed on a fine grid of speeds, then bisected. Speeds
+/// cannot exceed those of R anywhere between its extremes, which bounds the grid.
+fn speed_dependent(machine: &Machine, branch: &Branch, gap: f64) -> Vec<f64> {
+    let law = machine.restitution();
+    let f = |w: f64| branch.mismatch(law.at(w), gap, w);
+    let top = (0..=20)
+        .filter_map(|i| branch.closing_speeds(f64::from(i) / 20.0, gap))
+        .fold(branch.forced.norm() * branch.eta, |m, r| m.max(r[1]));
+    let grid: Vec<f64> = (0..=2000)
+        .map(|i| 1.5 * top * f64::from(i) / 2000.0)
+        .collect();
+    let crosses = |p: &&[f64]| f(p[0]) * f(p[1]) < 0.0;
+    grid.windows(2)
+        .filter(crosses)
+        .map(|p| bisect(f, p[0], p[1]))
+        .collect()
+}
+
+/// Root of a function between two arguments at which its signs differ.
+pub(super) fn bisect(f: impl Fn(f64) -> f64, mut lo: f64, mut hi: f64) -> f64 {
+    let sign = f(lo).signum();
+    for _ in 0..200 {
+        let mid = 0.5 * (lo + hi);
+        if mid <= lo.min(hi) || mid >= lo.max(hi) {
+            break;
+        }
+        if f(mid).signum() == sign {
+            lo = mid
+        } else {
+            hi = mid
+        }
+    }
+    0.5 * (lo + hi)
+}
+
+/// The orbit that closes with a speed w solving the quadratic.
+pub fn orbit_with_speed(machine: &Machine, setting: Setting, n: u32, w: f64) -> Orbit {
+    let eta = setting.frequency_ratio;
+    let branch = Branch::new(machine, eta, n);
+    let r = machine.restitution().at(w);
+    let phase = branch.phase(r, machine.gap(setting.clearance), w);
+    let drive = Drive { eta, phase };
+    let before = state_before(machine, drive, n, (1.0 + r) * w);
+    let mut after = newton(machine, &before);
+    (after.ax, after.ay) = free_accelerations(machine, drive, &after);
+    let flight = free_flight(machine, drive, &after);
+    let setting = Setting { phase, ..setting };
+    let mut orbit = Orbit {
+        n,
+        setting,
+        phase_at_impact: phase,
+        closing_speed: w,
+        before,
+        after,
+        multipliers: Vec::new(),
+        existence: Existence::Exists,
+        flight,
+    };
+    orbit.multipliers = multipliers(machine, &orbit);
+    orbit.existence = existence(machine, &orbit);
+    orbit
+}
+
+/// State just before the impact: forced response plus Green's functions.
+fn state_before(machine: &Machine, drive: Drive, n: u32, change: f64) -> State {
+    let period = f64::from(n) * std::f64::consts::TAU / drive.eta;
+    let (mx, my) = machine.mobility();
+    let of = |o: &Oscillator, mobility: f64| {
+        let (f, g) = (forced_amplitude(o, drive), green(o, period));
+        let jump = -mobility * change;
+        (
+            f.re + jump * g.position,
+            -drive.eta * f.im + jump * g.velocity_before,
+        )
+    };
+    let (x, vx) = of(&machine.x, mx);
+    let (y, vy) = machine.y.as_ref().map_or((0.0, 0.0), |o| of(o, my));
+    let mut s = State {
+        x,
+        vx,
+        y,
+        vy,
+        ..State::default()
+    };
+    (s.ax, s.ay) = free_accelerations(machine, drive, &s);
+    s
+}
+
+fn existence(machine: &Machine, orbit: &Orbit) -> Existence {
+    if orbit.closing_speed <= 0.0 {
+        return Existence::NotClosing;
+    }
+    let parting = -(orbit.after.vx + orbit.after.vy);
+    if parting <= 1e-15 * orbit.closing_speed && orbit.after.ax + orbit.after.ay > 0.0 {
+        return Existence::DeadZone;
+    }
+    let gap = orbit.flight.gap(machine.gap(orbit.setting.clearance));
+    match first_zero(&gap, orbit.period() * (1.0 - 1e-9)) {
+        Some(_) => Existence::FurtherImpact,
+        None => Existence::Exists,
+    }
+}
+
+/// Flow of the variation over a time: each mass's free vibration, block diagonal.
+pub fn free_flow(machine: &Machine, time: f64) -> Matrix4<f64> {
+    let mut m = Matrix4::identity();
+    fill_flow(&mut m, 0, &machine.x, time);
+    if let Some(y) = &machine.y {
+        fill_flow(&mut m, 2, y, time);
+    }
+    m
+}
+
+fn fill_flow(m: &mut Matrix4<f64>, at: usize, o: &Oscillator, time: f64) {
+    let lambda = exponent(o);
+    let (d, w) = (-lambda.re, lambda.im);
+    let e = (-d * time).exp();
+    let (s, c) = (w * time).sin_cos();
+    m[(at, at)] = e * (c + d * s / w);
+    m[(at, at + 1)] = e * s / w;
+    m[(at + 1, at)] = -e * s * o.stiffness_per_mass() / w;
+    m[(at + 1, at + 1)] = e * (c - d * s / w);
+}
+
+/// Saltation matrix at an impact: how a variation (X, X', Y, Y') just before goes over into one
+/// just after, S = DR + (f₊ − DR f₋)nᵀ/w with n the gap's normal.
+pub fn saltation(machine: &Machine, before: &State, after: &State) -> Matrix4<f64> {
+    let w = before.vx + before.vy;
+    let law = machine.restitution();
+    let slope = 1.0 + law.at(w) + w * law.slope_at(w);
+    let (mx, my) = machine.mobility();
+    let mut jump = Matrix4::identity();
+    for (row, mobility) in [(1, mx), (3, my)] {
+        jump[(row, 1)] -= mobility * slope;
+        jump[(row, 3)] -= mobility * slope;
+    }
+    let rate = |s: &State| Vector4::new(s.vx, s.ax, s.vy, s.ay);
+    let normal = Vector4::new(1.0, 0.0, 1.0, 0.0);
+    jump + (rate(after) - jump * rate(before)) * normal.transpose() / w
+}
+
+/// Eigenvalues of a variation's map, largest modulus first; the stop's own two rows are left
+/// out for a single mass.
+pub fn eigenvalues(machine: &Machine, map: &Matrix4<f64>) -> Vec<C64> {
+    let mut values: Vec<C64> = if machine.y.is_some() {
+        map.complex_eigenvalues().iter().copied().collect()
+    } else {
+        map.fixed_view::<2, 2>(0, 0)
+            .into_owned()
+            .complex_eigenvalues()
+            .iter()
+            .copied()
+            .collect()
+    };
+    values.sort_by(|a, b| b.norm_sqr().total_cmp(&a.norm_sqr()));
+    values
+}
+
+fn multipliers(machine: &Machine, orbit: &Orbit) -> Vec<C64> {
+    let flow = free_flow(machine, orbit.period());
+    eigenvalues(
+        machine,
+        &(saltation(machine, &orbit.before, &orbit.after) * flow),
+    )
+}
+
+/// The kind of impact an orbit has: plastic or a bounce.
+pub fn impact_kind(orbit: &Orbit) -> ImpactKind {
+    let parting = -(orbit.after.vx + orbit.after.vy);
+    if parting <= 1e-15 * orbit.closing_speed {
+        ImpactKind::Plastic
+    } else {
+        ImpactKind::Bounce
+    }
+}

@@ -1,0 +1,497 @@
+//! Dimensionless parameters of the oscillator and their admissible ranges.
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// Why a model cannot be evaluated as asked.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum ModelError {
+    /// A parameter lies outside its admissible range.
+    #[error("{name} = {value} is out of range: {expected}")]
+    OutOfRange {
+        /// The parameter's name.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// What is admissible.
+        expected: &'static str,
+    },
+    /// The masses start overlapping.
+    #[error(
+        "the start lies {depth} beyond the contact X + Y = 2ρ: start at or below it, or lower the displacements"
+    )]
+    StartsInContact {
+        /// How far beyond the contact.
+        depth: f64,
+    },
+    /// The request has no meaning for this machine.
+    #[error("{0}")]
+    Unsupported(&'static str),
+}
+
+/// One mass on its spring, relative to the nominal mass m, spring k and force amplitude F0 by
+/// which the dimensionless quantities are formed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Oscillator {
+    /// Mass over the nominal mass.
+    pub mass: f64,
+    /// Own natural frequency √(k/m) over the nominal one.
+    pub natural_frequency_ratio: f64,
+    /// Own damping ratio b/(2√(km)), with this mass's own k and m; 0 ≤ β < 1.
+    pub damping_ratio: f64,
+    /// Amplitude of the driving force over the nominal one.
+    pub drive_amplitude: f64,
+}
+
+impl Oscillator {
+    /// The nominal mass with damping ratio β: mass, frequency ratio and drive all 1.
+    pub fn nominal(damping_ratio: f64) -> Self {
+        Self {
+            mass: 1.0,
+            natural_frequency_ratio: 1.0,
+            damping_ratio,
+            drive_amplitude: 1.0,
+        }
+    }
+
+    /// A mass whose spring stiffness is `stiffness` times the nominal one while mass and
+    /// dashpot stay: the frequency ratio becomes √stiffness and β = b/(2√(km)) falls to
+    /// β/√stiffness, so that X'' + 2βX' + stiffness·X = … as in eq. (15) of the paper.
+    pub fn with_stiffness(damping_ratio: f64, stiffness: f64, drive_amplitude: f64) -> Self {
+        let ratio = stiffness.sqrt();
+        Self {
+            mass: 1.0,
+            natural_frequency_ratio: ratio,
+            damping_ratio: damping_ratio / ratio,
+            drive_amplitude,
+        }
+    }
+
+    /// Coefficient of X' in X'' + 2δX' + Ω²X = …: δ = β_i Ω_i.
+    pub fn decay_rate(&self) -> f64 {
+        self.damping_ratio * self.natural_frequency_ratio
+    }
+
+    /// Coefficient of X: Ω_i².
+    pub fn stiffness_per_mass(&self) -> f64 {
+        self.natural_frequency_ratio * self.natural_frequency_ratio
+    }
+
+    /// Driving force amplitude over mass.
+    pub fn drive_per_mass(&self) -> f64 {
+        self.drive_amplitude / self.mass
+    }
+
+    fn check(&self) -> Result<(), ModelError> {
+        range("mass", self.mass, self.mass > 0.0, "positive")?;
+        let w = self.natural_frequency_ratio;
+        range("natural_frequency_ratio", w, w > 0.0, "positive")?;
+        let b = self.damping_ratio;
+        range(
+            "damping_ratio",
+            b,
+            (0.0..1.0).contains(&b),
+            "0 ≤ β < 1 (below critical damping)",
+        )?;
+        range("drive_amplitude", self.drive_amplitude, true, "finite")
+    }
+}
+
+fn range(
+    name: &'static str,
+    value: f64,
+    ok: bool,
+    expected: &'static str,
+) -> Result<(), ModelError> {
+    if ok && value.is_finite() {
+        Ok(())
+    } else {
+        Err(ModelError::OutOfRange {
+            name,
+            value,
+            expected,
+        })
+    }
+}
+
+/// The coefficient of restitution R, constant or depending on the closing speed v.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Restitution {
+    /// The same R at every speed.
+    Constant(f64),
+    /// Pairs (closing speed, R) with rising speeds: linear between them, constant beyond.
+    Table(Vec<(f64, f64)>),
+    /// R = max(floor, 1 − coefficient · v^exponent).
+    PowerLaw {
+        /// Factor of the power.
+        coefficient: f64,
+        /// Exponent, positive.
+        exponent: f64,
+        /// Least R.
+        floor: f64,
+    },
+    /// R = fast + (slow − fast) · exp(−v/speed).
+    Exponential {
+        /// R at speed zero.
+        slow: f64,
+        /// R at great speed.
+        fast: f64,
+        /// Speed scale of the decay.
+        speed: f64,
+    },
+}
+
+impl Restitution {
+    /// R at a closing speed v ≥ 0.
+    pub fn at(&self, v: f64) -> f64 {
+        match self {
+            Self::Constant(r) => *r,
+            Self::Table(pairs) => table(pairs, v).0,
+            Self::PowerLaw {
+                coefficient,
+                exponent,
+                floor,
+            } => (1.0 - coefficient * v.max(0.0).powf(*exponent)).max(*floor),
+            Self::Exponential { slow, fast, speed } => fast + (slow - fast) * (-v / speed).exp(),
+        }
+    }
+
+    /// dR/dv at a closing speed v > 0 (one-sided at the kinks of a table).
+    pub fn slope_at(&self, v: f64) -> f64 {
+        match self {
+            Self::Constant(_) => 0.0,
+            Self::Table(pairs) => table(pairs, v).1,
+            Self::PowerLaw {
+                coefficient,
+                exponent,
+                floor,
+            } => {
+                if 1.0 - coefficient * v.powf(*exponent) <= *floor {
+                    0.0
+                } else {
+                    -coefficient * exponent * v.powf(exponent - 1.0)
+                }
+            }
+            Self::Exponential { slow, fast, speed } => -(slow - fast) / speed * (-v / speed).exp(),
+        }
+    }
+
+    /// The constant value, if R does not depend on the speed.
+    pub fn constant(&self) -> Option<f64> {
+        match self {
+            Self::Constant(r) => Some(*r),
+            _ => None,
+        }
+    }
+
+    fn check(&self) -> Result<(), ModelError> {
+        let unit = |name, r: f64| range(name, r, (0.0..=1.0).contains(&r), "0 ≤ R ≤ 1");
+        match self {
+            Self::Constant(r) => unit("restitution", *r),
+            Self::Table(pairs) => {
+                if pairs.is_empty() || pairs.windows(2).any(|w| w[0].0 >= w[1].0) {
+                    return Err(ModelError::Unsupported(
+                        "the table of R(v) needs at least one pair and rising speeds",
+                    ));
+                }
+                pairs
+                    .iter()
+                    .try_for_each(|p| unit("restitution (table)", p.1))
+            }
+            Self::PowerLaw {
+                coefficient,
+                exponent,
+                floor,
+            } => {
+                range(
+                    "coefficient",
+                    *coefficient,
+                    *coefficient >= 0.0,
+                    "not negative",
+                )?;
+                range("exponent", *exponent, *exponent > 0.0, "positive")?;
+                unit("floor", *floor)
+            }
+            Self::Exponential { slow, fast, speed } => {
+                range("speed", *speed, *speed > 0.0, "positive")?;
+                unit("slow", *slow)?;
+                unit("fast", *fast)
+            }
+        }
+    }
+}
+
+/// Value and slope of a piecewise linear table, constant beyond its ends.
+fn table(pairs: &[(f64, f64)], v: f64) -> (f64, f64) {
+    let above = pairs.partition_point(|p| p.0 <= v);
+    match (above.checked_sub(1).map(|i| pairs[i]), pairs.get(above)) {
+        (Some((v0, r0)), Some(&(v1, r1))) => {
+            let slope = (r1 - r0) / (v1 - v0);
+            (r0 + slope * (v - v0), slope)
+        }
+        (Some((_, r)), None) | (None, Some(&(_, r))) => (r, 0.0),
+        (None, None) => (f64::NAN, 0.0),
+    }
+}
+
+/// How the masses act on each other in contact.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Contact {
+    /// Instantaneous impact by Newton's law.
+    Rigid(Restitution),
+}
+
+/// The law of motion between impacts.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Flight {
+    /// Spring, dashpot and harmonic drive: eqs. (1), (2) of the paper.
+    #[default]
+    Harmonic,
+    /// One mass under a constant force toward the stop, with dry (rolling) friction against
+    /// its velocity; spring, dashpot and drive are absent. A cart on an incline against a stop.
+    ConstantForce {
+        /// Acceleration toward the stop.
+        acceleration: f64,
+        /// Deceleration by friction, not negative.
+        friction: f64,
+    },
+}
+
+/// The machine: one mass against a fixed stop, or two against each other.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Machine {
+    /// The first mass.
+    pub x: Oscillator,
+    /// The second mass; `None`: a fixed stop at X = ρ.
+    pub y: Option<Oscillator>,
+    /// How they act on each other.
+    pub contact: Contact,
+    /// How they move between impacts.
+    #[serde(default)]
+    pub flight: Flight,
+}
+
+/// How the second mass differs from the first, as in eqs. (13)–(16) of the paper.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Asymmetry {
+    /// Drive amplitude of Y over that of X (0.95 in eq. 13).
+    pub drive_amplitude: f64,
+    /// Spring stiffness of Y over that of X, dashpot unchanged (0.95 in eq. 15).
+    pub stiffness: f64,
+    /// Mass of Y over that of X, spring and dashpot unchanged.
+    pub mass: f64,
+}
+
+impl Default for Asymmetry {
+    fn default() -> Self {
+        Self {
+            drive_amplitude: 1.0,
+            stiffness: 1.0,
+            mass: 1.0,
+        }
+    }
+}
+
+impl Machine {
+    /// The symmetric double oscillator with damping ratio β and constant R.
+    pub fn symmetric(damping_ratio: f64, restitution: f64) -> Self {
+        let mass = Oscillator::nominal(damping_ratio);
+        Self {
+            y: Some(mass),
+            ..Self::single(damping_ratio, restitution)
+        }
+    }
+
+    /// One mass against a fixed stop at ρ, damping ratio β and constant R.
+    pub fn single(damping_ratio: f64, restitution: f64) -> Self {
+        Self {
+            x: Oscillator::nominal(damping_ratio),
+            y: None,
+            contact: Contact::Rigid(Restitution::Constant(restitution)),
+            flight: Flight::Harmonic,
+        }
+    }
+
+    /// The double oscillator whose second mass differs: X nominal with β, Y with the same
+    /// dashpot b and the given ratios of drive, stiffness and mass.
+    pub fn asymmetric(damping_ratio: f64, restitution: f64, asymmetry: Asymmetry) -> Self {
+        let Asymmetry {
+            drive_amplitude,
+            stiffness,
+            mass,
+        } = asymmetry;
+        let y = Oscillator {
+            mass,
+            natural_frequency_ratio: (stiffness / mass).sqrt(),
+            damping_ratio: damping_ratio / (stiffness * mass).sqrt(),
+            drive_amplitude,
+        };
+        Self {
+            y: Some(y),
+            ..Self::single(damping_ratio, restitution)
+        }
+    }
+
+    /// One mass under a constant force against a stop: see [`Flight::ConstantForce`].
+    pub fn on_incline(acceleration: f64, friction: f64, restitution: f64) -> Self {
+        Self {
+            flight: Flight::ConstantForce {
+                acceleration,
+                friction,
+            },
+            ..Self::single(0.0, restitution)
+        }
+    }
+
+    /// The same machine with another law of restitution.
+    pub fn with_restitution(mut self, restitution: Restitution) -> Self {
+        self.contact = Contact::Rigid(restitution);
+        self
+    }
+
+    /// The gap at X = Y = 0: 2ρ for two masses, ρ for one against a stop.
+    pub fn gap(&self, clearance: f64) -> f64 {
+        if self.y.is_some() {
+            2.0 * clearance
+        } else {
+            clearance
+        }
+    }
+
+    /// Whether both masses are equal in everything.
+    pub fn is_symmetric(&self) -> bool {
+        self.y == Some(self.x)
+    }
+
+    /// Shares of the closing speed's change that each mass takes: (1/m₁, 1/m₂)/(1/m₁ + 1/m₂),
+    /// from the conservation of momentum m₁X' − m₂Y'; (1, 0) against a fixed stop.
+    pub fn mobility(&self) -> (f64, f64) {
+        match self.y {
+            None => (1.0, 0.0),
+            Some(y) => {
+                let sum = self.x.mass + y.mass;
+                (y.mass / sum, self.x.mass / sum)
+            }
+        }
+    }
+
+    /// The law of restitution.
+    pub fn restitution(&self) -> &Restitution {
+        let Contact::Rigid(r) = &self.contact;
+        r
+    }
+
+    /// Check every parameter's range.
+    ///
+    /// # Errors
+    /// [`ModelError::OutOfRange`] with the first parameter outside its range.
+    pub fn check(&self) -> Result<(), ModelError> {
+        self.restitution().check()?;
+        self.x.check()?;
+        if let Some(y) = &self.y {
+            y.check()?;
+        }
+        if let Flight::ConstantForce {
+            acceleration,
+            friction,
+        } = self.flight
+        {
+            range("acceleration", acceleration, true, "finite")?;
+            range("friction", friction, friction >= 0.0, "not negative")?;
+            if self.y.is_some() {
+                return Err(ModelError::Unsupported(
+                    "a flight under constant force has one mass against a stop: leave y out",
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Where the machine is run: the drive's frequency, the clearance, the drive's phase at τ = 0.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Setting {
+    /// η = ω/Ω, positive.
+    pub frequency_ratio: f64,
+    /// ρ = r/x_st; negative: preload.
+    pub clearance: f64,
+    /// φ: the drive is cos(ητ + φ).
+    #[serde(default)]
+    pub phase: f64,
+}
+
+impl Setting {
+    /// η and ρ, with phase 0.
+    pub fn new(frequency_ratio: f64, clearance: f64) -> Self {
+        Self {
+            frequency_ratio,
+            clearance,
+            phase: 0.0,
+        }
+    }
+
+    /// Drive period 2π/η.
+    pub fn period(&self) -> f64 {
+        std::f64::consts::TAU / self.frequency_ratio
+    }
+
+    /// Check the ranges.
+    ///
+    /// # Errors
+    /// [`ModelError::OutOfRange`] where η is not positive or a number is not finite.
+    pub fn check(&self) -> Result<(), ModelError> {
+        let eta = self.frequency_ratio;
+        range("frequency_ratio", eta, eta > 0.0, "positive")?;
+        range("clearance", self.clearance, true, "finite")?;
+        range("phase", self.phase, true, "finite")
+    }
+}
+
+/// Initial displacements and velocities of both masses (y is ignored against a stop).
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Initial {
+    /// X(0)
+    pub x: f64,
+    /// X'(0)
+    pub vx: f64,
+    /// Y(0)
+    pub y: f64,
+    /// Y'(0)
+    pub vy: f64,
+}
+
+impl Initial {
+    /// Both masses at rest at zero displacement.
+    pub fn rest() -> Self {
+        Self::default()
+    }
+
+    /// Both masses with the same displacement and velocity.
+    pub fn both(x: f64, vx: f64) -> Self {
+        Self {
+            x,
+            vx,
+            y: x,
+            vy: vx,
+        }
+    }
+
+    /// Check that all four are finite.
+    ///
+    /// # Errors
+    /// [`ModelError::OutOfRange`] otherwise.
+    pub fn check(&self) -> Result<(), ModelError> {
+        range("X(0)", self.x, true, "finite")?;
+        range("X'(0)", self.vx, true, "finite")?;
+        range("Y(0)", self.y, true, "finite")?;
+        range("Y'(0)", self.vy, true, "finite")
+    }
+}

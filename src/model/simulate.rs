@@ -1,0 +1,327 @@
+//! The motion from a start: flights, impacts, dead zones one after the other, each exact.
+
+use std::f64::consts::TAU;
+
+use super::contact::{self, ImpactKind, ModelImpact, Outcome};
+use super::crossing::first_zero;
+use super::flight::{Drive, FlightPaths, State, free_flight, joined_flight, press};
+use super::params::{Initial, Machine, ModelError, Setting};
+
+/// A piece of the motion between two events.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arc {
+    /// τ at its start.
+    pub tau: f64,
+    /// How long it lasts.
+    pub duration: f64,
+    /// Whether the masses are joined in it (a dead zone).
+    pub joined: bool,
+    /// Phase of the drive at its start, rad.
+    pub phase: f64,
+    /// Displacements in time since its start.
+    pub paths: FlightPaths,
+}
+
+/// Receives what a simulation produces, in the order of time.
+pub trait Sink {
+    /// A finished piece of motion.
+    fn arc(&mut self, _arc: &Arc) {}
+    /// An impact.
+    fn impact(&mut self, _impact: &ModelImpact) {}
+}
+
+impl<F: FnMut(&ModelImpact)> Sink for F {
+    fn impact(&mut self, impact: &ModelImpact) {
+        self(impact);
+    }
+}
+
+/// A motion that can be continued, with η and ρ changed on the way (quasi-stationary sweeps):
+/// the drive's phase stays continuous.
+#[derive(Debug, Clone)]
+pub struct Simulator {
+    machine: Machine,
+    eta: f64,
+    clearance: f64,
+    tau: f64,
+    phase: f64,
+    state: State,
+    joined: bool,
+    size: f64,
+}
+
+impl Simulator {
+    /// Start a motion at τ = 0. Masses that start in contact, at rest and pressed together
+    /// start joined.
+    ///
+    /// # Errors
+    /// [`ModelError`] where a parameter is out of range or the start lies beyond the contact.
+    pub fn new(machine: &Machine, setting: Setting, initial: Initial) -> Result<Self, ModelError> {
+        machine.check()?;
+        setting.check()?;
+        initial.check()?;
+        let (y, vy) = if machine.y.is_some() {
+            (initial.y, initial.vy)
+        } else {
+            (0.0, 0.0)
+        };
+        let state = State {
+            x: initial.x,
+            vx: initial.vx,
+            y,
+            vy,
+            ..State::default()
+        };
+        let mut new = Self {
+            machine: machine.clone(),
+            eta: setting.frequency_ratio,
+            clearance: setting.clearance,
+            tau: 0.0,
+            phase: setting.phase.rem_euclid(TAU),
+            state,
+            joined: false,
+            size: 0.0,
+        };
+        let depth = -new.gap_left();
+        if depth > 1e-12 * (1.0 + state.x.abs() + state.y.abs()) {
+            return Err(ModelError::StartsInContact { depth });
+        }
+        new.settle();
+        Ok(new)
+    }
+
+    /// τ reached.
+    pub fn tau(&self) -> f64 {
+        self.tau
+    }
+
+    /// Phase of the drive now, rad in [0, 2π).
+    pub fn phase(&self) -> f64 {
+        self.phase
+    }
+
+    /// Displacements, velocities and accelerations now.
+    pub fn state(&self) -> State {
+        self.paths().at(0.0)
+    }
+
+    /// Whether the masses are joined now.
+    pub fn is_joined(&self) -> bool {
+        self.joined
+    }
+
+    /// Go on with another frequency ratio and clearance; the drive's phase and the motion stay
+    /// continuous. Where the smaller clearance cuts into the motion, the masses are set back to
+    /// the contact, each by its mobility.
+    pub fn set(&mut self, frequency_ratio: f64, clearance: f64) {
+        (self.eta, self.clearance) = (frequency_ratio, clearance);
+        if self.joined || self.gap_left() < 0.0 {
+            let w = (self.state.vx, self.state.vy);
+            self.state = contact::joined_state(&self.machine, clearance, &self.state);
+            if !self.joined {
+                (self.state.vx, self.state.vy) = w;
+            }
+        }
+        self.settle();
+    }
+
+    /// Go on for a time, telling arcs and impacts.
+    pub fn advance(&mut self, duration: f64, sink: &mut impl Sink) {
+        let end = self.tau + duration;
+        while self.tau < end {
+            if self.joined {
+                self.stay(end, sink)
+            } else {
+                self.fly(end, sink)
+            }
+        }
+    }
+
+    fn drive(&self) -> Drive {
+        Drive {
+            eta: self.eta,
+            phase: self.phase,
+        }
+    }
+
+    fn gap_left(&self) -> f64 {
+        self.machine.gap(self.clearance) - self.state.x - self.state.y
+    }
+
+    fn paths(&self) -> FlightPaths {
+        if self.joined {
+            joined_flight(&self.machine, self.drive(), self.clearance, &self.state)
+        } else {
+            free_flight(&self.machine, self.drive(), &self.state)
+        }
+    }
+
+    /// Join masses that lie in contact without relative velocity and are pressed together.
+    fn settle(&mut self) {
+        let s = &self.state;
+        let still = 1e-12 * (1.0 + s.x.abs() + s.y.abs() + s.vx.abs() + s.vy.abs());
+        if self.joined || self.gap_left() > still || (s.vx + s.vy).abs() > still {
+            return;
+        }
+        let (ax, ay) = contact::free_accelerations(&self.machine, self.drive(), s);
+        if ax + ay > 0.0 {
+            self.joined = true;
+            self.state = contact::joined_state(&self.machine, self.clearance, s);
+        }
+    }
+
+    /// Move along an arc of a given length and tell it; the last arc ends exactly at `end`.
+    fn move_on(&mut self, paths: FlightPaths, length: f64, end: f64, sink: &mut impl Sink) {
+        let (tau, joined, phase) = (self.tau, self.joined, self.phase);
+        sink.arc(&Arc {
+            tau,
+            duration: length,
+            joined,
+            phase,
+            paths,
+        });
+        self.state = paths.at(length);
+        self.phase = (self.phase + self.eta * length).rem_euclid(TAU);
+        self.tau = if length >= end - tau {
+            end
+        } else {
+            tau + length
+        };
+    }
+
+    fn fly(&mut self, end: f64, sink: &mut impl Sink) {
+        let paths = self.paths();
+        let gap = paths.gap(self.machine.gap(self.clearance));
+        // on an incline a chatter's flights shrink without a scale of their own
+        let known = if gap.is_bounded() { 0.0 } else { self.size };
+        self.size = gap.size().max(known);
+        let limit = (end - self.tau).min(paths.valid_for);
+        match first_zero(&gap, limit) {
+            Some(hit) => {
+                self.move_on(paths, hit.time, end, sink);
+                self.impact(sink);
+            }
+            None => {
+                self.move_on(paths, limit, end, sink);
+                if limit == paths.valid_for {
+                    self.state.vx = 0.0;
+                }
+            }
+        }
+    }
+
+    fn impact(&mut self, sink: &mut impl Sink) {
+        let before = self.state;
+        let Outcome {
+            after,
+            kind,
+            until_rest,
+        } = contact::impact(&self.machine, self.drive(), &before, self.size);
+        self.state = after;
+        let sticks = matches!(kind, ImpactKind::Stick | ImpactKind::ChatterEnd);
+        let mut dead_zone = 0.0;
+        if sticks {
+            self.joined = true;
+            self.state = contact::joined_state(&self.machine, self.clearance, &after);
+            let release =
+                contact::release_time(&self.machine, self.drive(), self.clearance, &self.state);
+            dead_zone = (release - until_rest).max(0.0);
+        }
+        sink.impact(&ModelImpact {
+            tau: self.tau + until_rest,
+            phase: (self.phase + self.eta * until_rest).rem_euclid(TAU),
+            vx_before: before.vx,
+            vx_after: self.state.vx,
+            vy_before: before.vy,
+            vy_after: self.state.vy,
+            closing_before: before.vx + before.vy,
+            closing_after: self.state.vx + self.state.vy,
+            kind,
+            dead_zone,
+        });
+    }
+
+    fn stay(&mut self, end: f64, sink: &mut impl Sink) {
+        let paths = self.paths();
+        let press = press(&self.machine, self.drive(), &paths);
+        if press.at(0.0)[0] <= 0.0 {
+            self.joined = false;
+            return;
+        }
+        let limit = end - self.tau;
+        match first_zero(&press, limit) {
+            Some(release) => {
+                self.move_on(paths, release.time, end, sink);
+                self.joined = false;
+            }
+            None => self.move_on(paths, limit, end, sink),
+        }
+    }
+}
+
+/// A simulated motion, exact at every instant.
+#[derive(Debug, Clone, Default)]
+pub struct Trajectory {
+    /// Pieces of motion in the order of time, without a gap between them.
+    pub arcs: Vec<Arc>,
+    /// All impacts in the order of time.
+    pub impacts: Vec<ModelImpact>,
+}
+
+impl Sink for Trajectory {
+    fn arc(&mut self, arc: &Arc) {
+        self.arcs.push(*arc);
+    }
+    fn impact(&mut self, impact: &ModelImpact) {
+        self.impacts.push(*impact);
+    }
+}
+
+impl Trajectory {
+    /// The motion at a time; before the first and after the last arc that arc is continued as
+    /// if no impact came. An instant of impact belongs to the arc that follows.
+    pub fn at(&self, tau: f64) -> State {
+        self.arc_at(tau)
+            .map_or(State::default(), |arc| arc.paths.at(tau - arc.tau))
+    }
+
+    /// The arc that holds a time.
+    pub fn arc_at(&self, tau: f64) -> Option<&Arc> {
+        let after = self.arcs.partition_point(|arc| arc.tau <= tau);
+        self.arcs.get(after.saturating_sub(1))
+    }
+
+    /// τ at the end.
+    pub fn end(&self) -> f64 {
+        self.arcs.last().map_or(0.0, |arc| arc.tau + arc.duration)
+    }
+
+    /// The motion at many times in rising order, faster than one by one.
+    pub fn sample(&self, taus: impl IntoIterator<Item = f64>) -> Vec<State> {
+        let mut k = 0;
+        let at = |tau: f64| {
+            while k + 1 < self.arcs.len() && self.arcs[k + 1].tau <= tau {
+                k += 1;
+            }
+            self.arcs
+                .get(k)
+                .map_or(State::default(), |arc| arc.paths.at(tau - arc.tau))
+        };
+        taus.into_iter().map(at).collect()
+    }
+}
+
+/// Simulate a motion from a start for a time.
+///
+/// # Errors
+/// [`ModelError`] where a parameter is out of range or the start lies beyond the contact.
+pub fn simulate(
+    machine: &Machine,
+    setting: Setting,
+    initial: Initial,
+    duration: f64,
+) -> Result<Trajectory, ModelError> {
+    let mut trajectory = Trajectory::default();
+    Simulator::new(machine, setting, initial)?.advance(duration, &mut trajectory);
+    Ok(trajectory)
+}

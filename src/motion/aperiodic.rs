@@ -1,0 +1,53 @@
+//! Motions that do not close within the record: beats against chaos.
+
+use serde::{Deserialize, Serialize};
+
+use crate::event::Impact;
+
+/// What tells a beat from chaos.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Irregularity {
+    /// Fraction of the drive periods without an impact.
+    pub impactless_periods: f64,
+    /// Von Neumann's ratio of the closing speeds: mean square of successive differences over the
+    /// variance; about 2 for an irregular sequence, small for one that swells and dies away.
+    pub speed_roughness: f64,
+}
+
+/// Roughness below which the speeds swell and die away rather than jump about.
+const SMOOTH: f64 = 0.8;
+
+impl Irregularity {
+    /// Of impacts in a record; `None` with fewer than four impacts.
+    pub fn of(impacts: &[Impact], period_s: f64, duration_s: f64) -> Option<Self> {
+        if impacts.len() < 4 {
+            return None;
+        }
+        let periods = (duration_s / period_s).floor().max(1.0) as usize;
+        let mut hit = vec![false; periods];
+        for impact in impacts {
+            if let Some(slot) = hit.get_mut((impact.time_s / period_s).floor() as usize) {
+                *slot = true;
+            }
+        }
+        let empty = hit.iter().filter(|h| !**h).count();
+        Some(Self {
+            impactless_periods: empty as f64 / periods as f64,
+            speed_roughness: roughness(impacts),
+        })
+    }
+
+    /// Whether the impacts come in bursts that swell and die away, with impactless periods
+    /// between them.
+    pub fn is_beat(&self) -> bool {
+        self.impactless_periods > 0.1 && self.speed_roughness < SMOOTH
+    }
+}
+
+fn roughness(impacts: &[Impact]) -> f64 {
+    let speeds: Vec<f64> = impacts.iter().filter_map(|i| i.closing_speed_before_m_s).collect();
+    let mean = crate::signal::robust::mean(&speeds);
+    let variance: f64 = speeds.iter().map(|v| (v - mean).powi(2)).sum();
+    let steps: f64 = speeds.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
+    if variance > 0.0 { steps / variance } else { 2.0 }
+}

@@ -1,0 +1,299 @@
+//! The type of motion of a record, with its evidence and a confidence.
+
+use serde::{Deserialize, Serialize};
+
+use crate::event::{Detection, Impact};
+use crate::motion::Motion;
+use crate::motion::aperiodic::Irregularity;
+use crate::motion::closure::{self, Count, ImpactClosure, WaveformClosure};
+
+/// Settings of the classification.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ClassifySettings {
+    /// Largest n of z = p/n that is looked for.
+    pub most_periods: u32,
+    /// Waveform closure (relative) up to which a motion counts as periodic, beside its noise.
+    pub closed_ratio: f64,
+    /// Waveform closure from which on a motion counts as not periodic.
+    pub open_ratio: f64,
+}
+
+impl Default for ClassifySettings {
+    fn default() -> Self {
+        Self { most_periods: 8, closed_ratio: 0.02, open_ratio: 0.10 }
+    }
+}
+
+/// What the decision rests on.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Evidence {
+    /// Drive periods in the record.
+    pub periods_observed: f64,
+    /// Periods of the motion in the record.
+    pub cycles_observed: f64,
+    /// Waveform closure at the chosen n (the best one where none was chosen), relative.
+    pub waveform_closure: Option<f64>,
+    /// Waveform closure of the best shorter period, relative.
+    pub shorter_closure: Option<f64>,
+    /// Noise of the closing velocity over its root mean square.
+    pub noise_ratio: Option<f64>,
+    /// Closure of the impacts at the chosen p/n.
+    pub impact_closure: Option<ImpactClosure>,
+    /// Fraction of windows of n periods that hold p impacts.
+    pub count_agreement: Option<f64>,
+    /// Number of impacts in the record.
+    pub impacts: usize,
+    /// What tells a beat from chaos, where the motion does not close.
+    pub irregularity: Option<Irregularity>,
+}
+
+/// A motion type with its evidence.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Finding {
+    /// The motion.
+    pub motion: Motion,
+    /// Between 0 and 1; from 0.9 on the program counts as sure.
+    pub confidence: f64,
+    /// What it rests on.
+    pub evidence: Evidence,
+}
+
+impl Finding {
+    /// p and n of a periodic motion (0/1 for the impactless one).
+    pub fn impacts_and_periods(&self) -> Option<(u32, u32)> {
+        match self.motion {
+            Motion::Impactless => Some((0, 1)),
+            Motion::Periodic { impacts_p, periods_n, .. } => Some((impacts_p, periods_n)),
+            _ => None,
+        }
+    }
+
+    /// Whether the program is sure of it.
+    pub fn is_sure(&self) -> bool {
+        self.confidence >= 0.9
+    }
+}
+
+fn undetermined(reason: impl Into<String>, evidence: Evidence) -> Finding {
+    Finding { motion: Motion::Undetermined { reason: reason.into() }, confidence: 0.0, evidence }
+}
+
+/// Classify the motion of a record from what was detected in it.
+pub fn classify(detection: &Detection, duration_s: f64, settings: &ClassifySettings) -> Finding {
+    let mut evidence = Evidence { impacts: detection.impacts.len(), ..Evidence::default() };
+    let Some(drive) = &detection.drive else {
+        return undetermined("no drive was measured, so no period can be told", evidence);
+    };
+    let period_s = drive.period_s();
+    evidence.periods_observed = duration_s / period_s;
+    if evidence.periods_observed < 2.0 {
+        return undetermined("the record holds fewer than two drive periods", evidence);
+    }
+    let View { closures, noise_ratio, rest } = View::of(detection, period_s, settings);
+    evidence.noise_ratio = noise_ratio;
+    if rest && detection.closed_fraction > 0.9 {
+        return Finding { motion: Motion::Joined, confidence: 0.95, evidence };
+    }
+    let case = Case { detection, period_s, duration_s, noise: noise_ratio.unwrap_or(0.0), settings };
+    match closures.as_slice() {
+        [] => case.by_impacts_alone(evidence),
+        closures => case.by_waveform(closures, evidence),
+    }
+}
+
+/// The waveform's closures as far as the record reaches.
+struct View {
+    closures: Vec<WaveformClosure>,
+    noise_ratio: Option<f64>,
+    rest: bool,
+}
+
+impl View {
+    fn of(detection: &Detection, period_s: f64, settings: &ClassifySettings) -> Self {
+        let Some(velocity) = &detection.kinematics.closing.velocity else {
+            return Self { closures: Vec::new(), noise_ratio: None, rest: false };
+        };
+        let rate_hz = detection.kinematics.rate_hz;
+        let times: Vec<f64> = detection.impacts.iter().map(|i| i.time_s * rate_hz).collect();
+        let guard = detection.jump_samples as f64 + 1.5;
+        let period = period_s * rate_hz;
+        let periods = velocity.values.len() as f64 / period;
+        // At least three drive periods, or as many again, must overlap.
+        let reach = (periods - 3.0).max(0.5 * periods).floor().max(1.0) as u32;
+        let most = settings.most_periods.min(reach);
+        let level = crate::signal::robust::rms(&velocity.values);
+        Self {
+            closures: closure::waveform(&velocity.values, period, &times, guard, most),
+            noise_ratio: (level > 0.0).then(|| velocity.noise / level),
+            rest: level < 3.0 * velocity.noise,
+        }
+    }
+}
+
+/// One record under decision.
+struct Case<'a> {
+    detection: &'a Detection,
+    period_s: f64,
+    duration_s: f64,
+    noise: f64,
+    settings: &'a ClassifySettings,
+}
+
+impl Case<'_> {
+    fn by_waveform(&self, closures: &[WaveformClosure], mut evidence: Evidence) -> Finding {
+        let best = closures.iter().map(|c| c.ratio).fold(f64::INFINITY, f64::min);
+        // The smallest n that closes about as well as any: white noise leaves a few per cent of
+        // scatter between the ratios, and interpolation a little more.
+        let slack = 1.12 * best + 1e-4;
+        let Some(chosen) = closures.iter().find(|c| c.ratio <= slack) else {
+            return undetermined("the waveform could not be compared with itself", evidence);
+        };
+        evidence.waveform_closure = Some(chosen.ratio);
+        evidence.shorter_closure = closures
+            .iter()
+            .filter(|c| c.periods_n < chosen.periods_n)
+            .map(|c| c.ratio)
+            .reduce(f64::min);
+        let closed = (2.5 * self.noise).max(self.settings.closed_ratio);
+        let open = (5.0 * self.noise).max(self.settings.open_ratio);
+        if chosen.ratio > open {
+            return self.aperiodic(evidence);
+        }
+        if chosen.ratio > closed {
+            return undetermined(
+                format!(
+                    "the motion nearly closes after {} drive periods but not within the noise: \
+                     still settling, or of a longer period",
+                    chosen.periods_n
+                ),
+                evidence,
+            );
+        }
+        let quality = 1.0 / (1.0 + (chosen.ratio / closed).powi(6));
+        self.periodic(chosen.periods_n, quality, evidence)
+    }
+
+    /// Without velocity: the smallest n for which the impact times close.
+    fn by_impacts_alone(&self, mut evidence: Evidence) -> Finding {
+        let impacts = &self.detection.impacts;
+        if impacts.is_empty() {
+            return undetermined("neither velocity nor contact shows any motion", evidence);
+        }
+        let limit = 0.05f64.max(3.0 * self.timing_noise_rad());
+        let reach = (0.5 * evidence.periods_observed).floor() as u32;
+        for n in 1..=self.settings.most_periods.min(reach.max(1)) {
+            let Some(count) = self.count(n) else { continue };
+            let closure = closure::impacts(impacts, self.period_s, count.impacts_p, n);
+            if closure.is_some_and(|c| c.phase_rad <= limit && c.pairs >= 2) {
+                return self.periodic(n, 0.9, evidence);
+            }
+        }
+        evidence.irregularity = Irregularity::of(impacts, self.period_s, self.duration_s);
+        undetermined("the impact times alone show no period", evidence)
+    }
+
+    fn timing_noise_rad(&self) -> f64 {
+        let errors: Vec<f64> = self.detection.impacts.iter().map(|i| i.time_error_s).collect();
+        crate::signal::robust::rms(&errors) * 2f64.sqrt() * std::f64::consts::TAU / self.period_s
+    }
+
+    fn count(&self, periods_n: u32) -> Option<Count> {
+        let times: Vec<f64> = self.detection.impacts.iter().map(|i| i.time_s).collect();
+        closure::count(&times, self.period_s, self.duration_s, periods_n)
+    }
+
+    /// The waveform (or the impact times) close after n periods: count the impacts in them.
+    fn periodic(&self, periods_n: u32, quality: f64, mut evidence: Evidence) -> Finding {
+        evidence.cycles_observed = evidence.periods_observed / f64::from(periods_n);
+        let Some(count) = self.count(periods_n) else {
+            return undetermined("no whole period of the motion fits into the record", evidence);
+        };
+        evidence.count_agreement = Some(count.agreement);
+        if count.impacts_p == 0 {
+            return self.impactless(periods_n, count, quality, evidence);
+        }
+        let closure = closure::impacts(
+            &self.detection.impacts,
+            self.period_s,
+            count.impacts_p,
+            periods_n,
+        );
+        evidence.impact_closure = closure;
+        let limit = 0.1f64.max(4.0 * self.timing_noise_rad());
+        let steady = closure.is_none_or(|c| c.phase_rad <= limit);
+        if count.agreement < 0.6 || !steady {
+            let reason = format!(
+                "the waveform closes after {periods_n} drive periods, but the impacts found do \
+                 not repeat with it: some were missed or are too slow to see"
+            );
+            return undetermined(reason, evidence);
+        }
+        let motion = Motion::Periodic {
+            impacts_p: count.impacts_p,
+            periods_n,
+            dead_zone: has_dead_zone(&self.detection.impacts),
+        };
+        let confidence =
+            quality * count.agreement.powi(2) * cycles_factor(evidence.cycles_observed)
+                * shorter_factor(&evidence);
+        Finding { motion, confidence, evidence }
+    }
+
+    fn impactless(
+        &self,
+        periods_n: u32,
+        count: Count,
+        quality: f64,
+        evidence: Evidence,
+    ) -> Finding {
+        if periods_n > 1 && evidence.shorter_closure > evidence.waveform_closure.map(|c| 2.0 * c) {
+            return undetermined(
+                format!("no impact was found, yet the motion repeats only after {periods_n} \
+                         drive periods: impacts too slow to see, or still settling"),
+                evidence,
+            );
+        }
+        let confidence = quality * count.agreement.powi(2);
+        Finding { motion: Motion::Impactless, confidence, evidence }
+    }
+
+    fn aperiodic(&self, mut evidence: Evidence) -> Finding {
+        let impacts = &self.detection.impacts;
+        if impacts.is_empty() {
+            return undetermined(
+                "no impact was found, yet the motion does not repeat: still settling",
+                evidence,
+            );
+        }
+        evidence.irregularity = Irregularity::of(impacts, self.period_s, self.duration_s);
+        let Some(irregularity) = evidence.irregularity else {
+            return undetermined("too few impacts to tell an irregular motion", evidence);
+        };
+        let motion = if irregularity.is_beat() { Motion::Beat } else { Motion::Chaotic };
+        let seen = (evidence.periods_observed / 8.0).min(1.0);
+        let open = evidence.waveform_closure.unwrap_or(0.0) / self.settings.open_ratio;
+        let confidence = 0.9 * seen * (1.0 - (-open).exp());
+        Finding { motion, confidence, evidence }
+    }
+}
+
+fn has_dead_zone(impacts: &[Impact]) -> bool {
+    let with = impacts.iter().filter(|i| i.dead_zone_s > 0.0).count();
+    2 * with >= impacts.len().max(1)
+}
+
+/// One period and a half of the motion must be seen; two are enough.
+fn cycles_factor(cycles: f64) -> f64 {
+    ((cycles - 1.0) / 0.8).clamp(0.0, 1.0)
+}
+
+/// A longer period must close clearly better than every shorter one.
+fn shorter_factor(evidence: &Evidence) -> f64 {
+    match (evidence.shorter_closure, evidence.waveform_closure) {
+        (Some(shorter), Some(chosen)) => {
+            ((shorter / chosen.max(1e-12) - 1.0) / 0.6).clamp(0.3, 1.0)
+        }
+        _ => 1.0,
+    }
+}

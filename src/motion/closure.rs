@@ -1,0 +1,178 @@
+//! Closure of a motion after n drive periods: of its waveform and of its impacts.
+
+use crate::event::Impact;
+use crate::signal::{drift, robust};
+
+/// How well a waveform closes after n drive periods.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WaveformClosure {
+    /// Number of drive periods.
+    pub periods_n: u32,
+    /// Deviation of w(t + nT) − w(t) over √2 and over the waveform's root mean square.
+    pub ratio: f64,
+    /// Number of samples compared.
+    pub samples: usize,
+}
+
+/// Closure of a waveform for n = 1 … `most`, samples near impacts left out.
+///
+/// `period` in samples, `impacts` in samples; a sample is left out when it, or its partner nT
+/// later, lies within `guard` samples of an impact, where no interpolation holds. A constant
+/// difference (drift) does not count.
+pub fn waveform(
+    values: &[f64],
+    period: f64,
+    impacts: &[f64],
+    guard: f64,
+    most: u32,
+) -> Vec<WaveformClosure> {
+    let blocked = blocked_samples(values.len(), impacts, guard);
+    let free: Vec<f64> =
+        values.iter().zip(&blocked).filter(|(_, b)| !**b).map(|(v, _)| *v).collect();
+    let mean = robust::mean(&free);
+    let scale = robust::rms(&free.iter().map(|v| v - mean).collect::<Vec<_>>());
+    (1..=most)
+        .filter_map(|n| {
+            let lag = f64::from(n) * period;
+            let differences: Vec<f64> = (0..values.len())
+                .map_while(|i| {
+                    let partner = i as f64 + lag;
+                    drift::interpolate(values, partner).map(|v| (i, partner, v))
+                })
+                .filter(|(i, partner, _)| !blocked[*i] && !blocked[partner.round() as usize])
+                .map(|(i, _, v)| v - values[i])
+                .collect();
+            let centre = robust::mean(&differences);
+            let square: f64 = differences.iter().map(|d| (d - centre).powi(2)).sum();
+            let samples = differences.len();
+            // Interpolation smooths the noise of one of the two: make lags comparable.
+            let square = square * 2.0 / (1.0 + drift::interpolation_noise(lag.fract()));
+            (samples >= 16 && scale > 0.0).then(|| WaveformClosure {
+                periods_n: n,
+                ratio: (0.5 * square / samples as f64).sqrt() / scale,
+                samples,
+            })
+        })
+        .collect()
+}
+
+fn blocked_samples(count: usize, impacts: &[f64], guard: f64) -> Vec<bool> {
+    let mut blocked = vec![false; count];
+    for time in impacts {
+        let first = (time - guard).ceil().max(0.0) as usize;
+        let last = ((time + guard).floor().max(-1.0) + 1.0) as usize;
+        for slot in blocked.iter_mut().take(last.min(count)).skip(first) {
+            *slot = true;
+        }
+    }
+    blocked
+}
+
+/// How many impacts fall into n drive periods, and how steadily so.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Count {
+    /// Impacts in n drive periods, by majority of all windows within the record.
+    pub impacts_p: u32,
+    /// Fraction of windows that agree.
+    pub agreement: f64,
+    /// Number of windows.
+    pub windows: usize,
+}
+
+/// Count impacts (times and period in one unit) in windows of n periods that lie wholly within
+/// the record and whose edges keep clear of impacts, so that the record's own edges never turn
+/// 1 into 12/13. `None` where no window fits.
+pub fn count(times: &[f64], period: f64, duration: f64, periods_n: u32) -> Option<Count> {
+    let length = f64::from(periods_n) * period;
+    let clear = 0.02 * period;
+    let step = 0.125 * period;
+    let mut votes: std::collections::BTreeMap<u32, usize> = std::collections::BTreeMap::new();
+    let mut start = 0.0;
+    while start + length <= duration {
+        let (low, high) = (start, start + length);
+        let touches = times.iter().any(|t| (t - low).abs() < clear || (t - high).abs() < clear);
+        if !touches {
+            let inside = times.iter().filter(|t| (low..high).contains(*t)).count() as u32;
+            *votes.entry(inside).or_default() += 1;
+        }
+        start += step;
+    }
+    let windows: usize = votes.values().sum();
+    let (&impacts_p, &most) = votes.iter().max_by_key(|(_, v)| **v)?;
+    Some(Count { impacts_p, agreement: most as f64 / windows as f64, windows })
+}
+
+/// How well impacts close after p impacts in n drive periods.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct ImpactClosure {
+    /// Typical phase difference, rad (robust: 1.4826 times the median magnitude).
+    pub phase_rad: f64,
+    /// Typical difference of closing speeds over their mean (robust likewise); `None` without
+    /// speeds.
+    pub speed_ratio: Option<f64>,
+    /// Pairs compared.
+    pub pairs: usize,
+}
+
+/// Closure of (phase, speed) between impacts i and i + p; `None` with fewer than p + 1 impacts.
+pub fn impacts(impacts: &[Impact], period_s: f64, p: u32, n: u32) -> Option<ImpactClosure> {
+    let lag = p as usize;
+    let pairs: Vec<(&Impact, &Impact)> = impacts.iter().zip(impacts.iter().skip(lag)).collect();
+    if pairs.is_empty() || lag == 0 {
+        return None;
+    }
+    let to_phase = std::f64::consts::TAU / period_s;
+    let phases: Vec<f64> = pairs
+        .iter()
+        .map(|(a, b)| (b.time_s - a.time_s - f64::from(n) * period_s) * to_phase)
+        .collect();
+    let speeds: Option<Vec<f64>> = pairs
+        .iter()
+        .map(|(a, b)| Some(b.closing_speed_before_m_s? - a.closing_speed_before_m_s?))
+        .collect();
+    let level: Vec<f64> = impacts.iter().filter_map(|i| i.closing_speed_before_m_s).collect();
+    let level = robust::mean(&level).abs().max(f64::MIN_POSITIVE);
+    Some(ImpactClosure {
+        phase_rad: typical(&phases),
+        speed_ratio: speeds.map(|s| typical(&s) / level),
+        pairs: pairs.len(),
+    })
+}
+
+/// 1.4826 times the median magnitude; of three or fewer, the greatest.
+fn typical(differences: &[f64]) -> f64 {
+    let sizes: Vec<f64> = differences.iter().map(|d| d.abs()).collect();
+    if sizes.len() <= 3 {
+        return sizes.iter().copied().fold(0.0, f64::max);
+    }
+    robust::median(&sizes).map_or(0.0, |m| 1.4826 * m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_edges_do_not_turn_one_into_twelve_thirteenths() {
+        // 12.6 periods of one impact each, at any start phase.
+        for k in 0..20 {
+            let shift = f64::from(k) / 20.0;
+            let times: Vec<f64> =
+                (0..13).map(|i| f64::from(i) + shift).filter(|t| *t < 12.6).collect();
+            let found = count(&times, 1.0, 12.6, 1).unwrap();
+            assert_eq!((found.impacts_p, found.agreement), (1, 1.0), "shift {shift}");
+        }
+    }
+
+    #[test]
+    fn valid_a_subharmonic_closes_only_after_two_periods() {
+        let values: Vec<f64> = (0..2000)
+            .map(|i| f64::from(i) * std::f64::consts::TAU / 157.3)
+            .map(|a| a.cos() + 0.1 * (0.5 * a).sin())
+            .collect();
+        let found = waveform(&values, 157.3, &[], 2.0, 4);
+        assert!(found[0].ratio > 0.05);
+        assert!(found[1].ratio < 1e-5);
+        assert!(found[3].ratio < 1e-5);
+    }
+}

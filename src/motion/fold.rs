@@ -1,0 +1,203 @@
+//! A periodic record folded onto one period of its motion: means over narrow bins of phase, the
+//! few numbers that carry all a periodic waveform can tell.
+
+use serde::{Deserialize, Serialize};
+
+use crate::event::{Detection, DriveTone};
+use crate::record::Role;
+use crate::signal::drift;
+
+/// Bins in one drive period.
+const BINS_PER_PERIOD: usize = 64;
+
+/// Mean of one channel in one bin.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FoldedPoint {
+    /// Mean phase of the samples, rad; 0 … 2πn, where 0 is the drive's zero phase before the
+    /// impact (for an impactless motion, any zero phase of the drive).
+    pub phase_rad: f64,
+    /// Root mean square spread of the phases about it, rad.
+    pub spread_rad: f64,
+    /// Mean value, SI.
+    pub value: f64,
+    /// Number of samples.
+    pub samples: u32,
+}
+
+/// One channel folded.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FoldedChannel {
+    /// Which channel.
+    pub role: Role,
+    /// Noise of a single sample, SI.
+    pub noise: f64,
+    /// Points that keep clear of impacts, by phase.
+    pub points: Vec<FoldedPoint>,
+}
+
+/// A periodic record folded onto n drive periods.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Folded {
+    /// Drive periods in one period of the motion.
+    pub periods_n: u32,
+    /// Mean phase of the impacts, rad in 0 … 2πn; `None` for an impactless motion.
+    pub impact_phase_rad: Option<f64>,
+    /// The channels: velocities and displacements of both masses, as measured.
+    pub channels: Vec<FoldedChannel>,
+}
+
+/// Fold a record with at most one impact in n drive periods.
+///
+/// Bins within two samples of an impact are left out. A constant part of each channel is left
+/// in: an offset is a nuisance that a fit must carry.
+pub fn fold(detection: &Detection, drive: &DriveTone, periods_n: u32) -> Folded {
+    let rate_hz = detection.kinematics.rate_hz;
+    let span = std::f64::consts::TAU * f64::from(periods_n);
+    let first = detection.impacts.first().map(|i| i.time_s);
+    // Whole turns that put the first impact into the first drive period.
+    let start = first.map_or(0.0, |t| {
+        let total = std::f64::consts::TAU * drive.frequency_hz * t + drive.phase_rad;
+        (total / std::f64::consts::TAU).floor() * std::f64::consts::TAU
+    });
+    let phase = |time_s: f64| {
+        let total = std::f64::consts::TAU * drive.frequency_hz * time_s + drive.phase_rad;
+        (total - start).rem_euclid(span)
+    };
+    let guard_s = (detection.jump_samples as f64 + 1.0) / rate_hz;
+    let impact_phase_rad = mean_impact_phase(detection, phase, span);
+    let mut axis = Axis {
+        phases: (0..sample_count(detection)).map(|i| phase(i as f64 / rate_hz)).collect(),
+        blocked: blocked(detection, guard_s),
+        span,
+        bins: BINS_PER_PERIOD * periods_n as usize,
+    };
+    if let Some(impact) = impact_phase_rad {
+        // Also those at the record's very edges, where no impact could be detected.
+        axis.block_phase(impact, guard_s * std::f64::consts::TAU * drive.frequency_hz);
+    }
+    Folded { periods_n, impact_phase_rad, channels: channels(detection, &axis) }
+}
+
+fn sample_count(detection: &Detection) -> usize {
+    let bodies = [&detection.kinematics.x, &detection.kinematics.y];
+    bodies
+        .iter()
+        .flat_map(|b| [&b.velocity, &b.displacement])
+        .flatten()
+        .map(|s| s.values.len())
+        .max()
+        .unwrap_or(0)
+}
+
+fn blocked(detection: &Detection, guard_s: f64) -> Vec<bool> {
+    let rate_hz = detection.kinematics.rate_hz;
+    let mut blocked = vec![false; sample_count(detection)];
+    for impact in &detection.impacts {
+        let first = ((impact.time_s - guard_s) * rate_hz).floor().max(0.0) as usize;
+        let last = ((impact.time_s + guard_s + impact.dead_zone_s) * rate_hz).ceil() as usize;
+        let end = (last + 1).min(blocked.len());
+        if let Some(range) = blocked.get_mut(first.min(end)..end) {
+            range.fill(true);
+        }
+    }
+    blocked
+}
+
+/// Circular mean of the impacts' phases on 0 … span.
+fn mean_impact_phase(
+    detection: &Detection,
+    phase: impl Fn(f64) -> f64,
+    span: f64,
+) -> Option<f64> {
+    let turn = std::f64::consts::TAU / span;
+    let (mut cos, mut sin) = (0.0, 0.0);
+    for impact in &detection.impacts {
+        let (s, c) = (phase(impact.time_s) * turn).sin_cos();
+        cos += c;
+        sin += s;
+    }
+    (!detection.impacts.is_empty()).then(|| sin.atan2(cos).rem_euclid(std::f64::consts::TAU) / turn)
+}
+
+struct Axis {
+    phases: Vec<f64>,
+    blocked: Vec<bool>,
+    span: f64,
+    bins: usize,
+}
+
+impl Axis {
+    /// Ramp per sample that an undone high-pass left: what a periodic signal gains in one period.
+    fn ramp(&self, values: &[f64]) -> f64 {
+        let step = if self.phases.len() < 2 {
+            return 0.0;
+        } else {
+            (self.phases[1] - self.phases[0]).rem_euclid(self.span)
+        };
+        let lag = self.span / step;
+        let (mut sum, mut count) = (0.0, 0.0);
+        for i in 0..values.len() {
+            let partner = i as f64 + lag;
+            let Some(later) = drift::interpolate(values, partner) else { break };
+            if !self.blocked[i] && !self.blocked[partner.round() as usize] {
+                sum += later - values[i];
+                count += 1.0;
+            }
+        }
+        if count > 0.0 { sum / (count * lag) } else { 0.0 }
+    }
+
+    /// Leave out all samples within a guard of a phase.
+    fn block_phase(&mut self, phase_rad: f64, guard_rad: f64) {
+        for (phase, blocked) in self.phases.iter().zip(&mut self.blocked) {
+            let apart = (phase - phase_rad).rem_euclid(self.span);
+            *blocked |= apart.min(self.span - apart) < guard_rad;
+        }
+    }
+}
+
+fn channels(detection: &Detection, axis: &Axis) -> Vec<FoldedChannel> {
+    let k = &detection.kinematics;
+    [
+        (Role::VelocityX, &k.x.velocity),
+        (Role::VelocityY, &k.y.velocity),
+        (Role::DisplacementX, &k.x.displacement),
+        (Role::DisplacementY, &k.y.displacement),
+    ]
+    .into_iter()
+    .filter_map(|(role, series)| {
+        let series = series.as_ref()?;
+        let mut values = series.values.clone();
+        if series.high_pass_hz.is_some() {
+            let slope = axis.ramp(&values);
+            drift::remove_line(&mut values, 0.0, slope);
+        }
+        Some(FoldedChannel { role, noise: series.noise, points: points(&values, axis) })
+    })
+    .collect()
+}
+
+fn points(values: &[f64], axis: &Axis) -> Vec<FoldedPoint> {
+    let mut sums = vec![[0.0; 4]; axis.bins];
+    for (i, value) in values.iter().enumerate() {
+        if axis.blocked[i] {
+            continue;
+        }
+        let phase = axis.phases[i];
+        let bin = ((phase / axis.span * axis.bins as f64) as usize).min(axis.bins - 1);
+        let sum = &mut sums[bin];
+        sum[0] += 1.0;
+        sum[1] += phase;
+        sum[2] += phase * phase;
+        sum[3] += value;
+    }
+    sums.iter()
+        .filter(|s| s[0] > 0.0)
+        .map(|[n, p, pp, v]| FoldedPoint {
+            phase_rad: p / n,
+            spread_rad: (pp / n - (p / n).powi(2)).max(0.0).sqrt(),
+            value: v / n,
+            samples: *n as u32,
+        })
+        .collect()
+}

@@ -1,0 +1,168 @@
+//! All that is kept of a record once it has been looked at: its motion, its impacts, and the few
+//! numbers that the identification needs. The samples themselves are let go.
+
+use serde::{Deserialize, Serialize};
+
+use crate::event::detect::DetectSettings;
+use crate::event::{DriveTone, Impact, Rig, detect};
+use crate::motion::classify::{ClassifySettings, Finding, classify};
+use crate::motion::fold::{Folded, fold};
+use crate::motion::response::{Response, responses};
+use crate::motion::Motion;
+use crate::record::{Flag, Record, Role, Setting};
+use crate::signal::decay::{self, Decay};
+
+/// Greatest and least value of a motion channel, SI, about its mean.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Amplitude {
+    /// Which channel.
+    pub role: Role,
+    /// Half the difference of greatest and least sample, SI.
+    pub half_range: f64,
+    /// Root mean square about the mean, SI.
+    pub rms: f64,
+}
+
+/// A record as observed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Observation {
+    /// The record's name.
+    pub record: String,
+    /// The stated setting.
+    pub setting: Setting,
+    /// Samples per second, Hz.
+    pub sample_rate_hz: f64,
+    /// Duration, s.
+    pub duration_s: f64,
+    /// The drive as measured.
+    pub drive: Option<DriveTone>,
+    /// The motion and its evidence.
+    pub finding: Finding,
+    /// The impacts.
+    pub impacts: Vec<Impact>,
+    /// Contact pulses without a jump of velocity.
+    pub unsupported_pulses: usize,
+    /// Impacts that the contact channel missed.
+    pub missed_pulses: usize,
+    /// Samples that a jump of velocity takes.
+    pub jump_samples: usize,
+    /// Amplitudes of the motion channels.
+    pub amplitudes: Vec<Amplitude>,
+    /// Response at the drive's frequency; only of impactless records.
+    pub response: Vec<Response>,
+    /// The folded waveform; only of periodic records with one impact in n drive periods.
+    pub folded: Option<Folded>,
+    /// The free decay; only of records without drive and impacts.
+    pub decay: Option<Decay>,
+    /// What was noticed.
+    pub flags: Vec<Flag>,
+}
+
+impl Observation {
+    /// Measured drive frequency, Hz; the stated one where the drive was not recorded.
+    pub fn frequency_hz(&self) -> Option<f64> {
+        self.drive.map(|d| d.frequency_hz).or(self.setting.stated_frequency_hz)
+    }
+
+    /// Whether the record must stay out of the identification.
+    pub fn excluded(&self) -> bool {
+        self.flags.iter().any(|f| f.excludes)
+    }
+
+    /// Whether the motion is z = 1/n without a dead zone; gives n.
+    pub fn one_impact_in(&self) -> Option<u32> {
+        match self.finding.motion {
+            Motion::Periodic { impacts_p: 1, periods_n, dead_zone: false } => Some(periods_n),
+            _ => None,
+        }
+    }
+}
+
+/// Observe one record: detect, classify, and keep what the identification needs.
+pub fn observe(
+    record: &Record,
+    rig: Rig,
+    detecting: &DetectSettings,
+    classifying: &ClassifySettings,
+) -> Observation {
+    let mut detection = detect(record, rig, detecting);
+    let finding = classify(&detection, record.duration_s(), classifying);
+    let mut flags = record.flags.clone();
+    flags.append(&mut detection.flags);
+    flags.extend(contact_flag(record, &detection.impacts, detection.unsupported_pulses));
+    let mut observation = Observation {
+        record: record.id.clone(),
+        setting: record.setting.clone(),
+        sample_rate_hz: record.sample_rate_hz,
+        duration_s: record.duration_s(),
+        drive: detection.drive,
+        impacts: detection.impacts.clone(),
+        unsupported_pulses: detection.unsupported_pulses,
+        missed_pulses: detection.missed_pulses,
+        jump_samples: detection.jump_samples,
+        amplitudes: amplitudes(record),
+        response: Vec::new(),
+        folded: None,
+        decay: None,
+        flags,
+        finding,
+    };
+    if observation.drive.is_none() && observation.impacts.is_empty() {
+        observation.decay = free_decay(record);
+    }
+    if let Some(drive) = &observation.drive {
+        if observation.finding.motion == Motion::Impactless {
+            observation.response = responses(record, drive);
+        } else if let Some(n) = observation.one_impact_in() {
+            observation.folded = Some(fold(&detection, drive, n));
+        }
+    }
+    observation
+}
+
+/// Free decay of the first motion channel that shows one.
+fn free_decay(record: &Record) -> Option<Decay> {
+    let motion = |role: &Role| {
+        !matches!(role, Role::Drive | Role::Contact | Role::FrameX | Role::FrameY)
+    };
+    Role::ALL
+        .into_iter()
+        .filter(motion)
+        .filter_map(|role| record.values(role))
+        .filter(|values| values.iter().all(|v| v.is_finite()))
+        .find_map(|values| decay::fit(values, record.sample_rate_hz))
+}
+
+fn contact_flag(record: &Record, impacts: &[Impact], unsupported: usize) -> Option<Flag> {
+    (unsupported > 2 && unsupported > impacts.len()).then(|| Flag {
+        code: "contact_without_velocity_jump".into(),
+        channel: record.channel(Role::Contact).map(|c| c.name.clone()),
+        message: format!(
+            "{unsupported} contact pulses show no jump of velocity, {} impacts do",
+            impacts.len()
+        ),
+        remedy: "check the contact's threshold and wiring, and that the velocity channel belongs \
+                 to this record"
+            .into(),
+        excludes: true,
+    })
+}
+
+fn amplitudes(record: &Record) -> Vec<Amplitude> {
+    record
+        .channels
+        .iter()
+        .filter(|c| !matches!(c.role, Role::Drive | Role::Contact) && !c.values.is_empty())
+        .map(|c| {
+            let low = c.values.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = c.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let mean = crate::signal::robust::mean(&c.values);
+            let centred: Vec<f64> = c.values.iter().map(|v| v - mean).collect();
+            Amplitude {
+                role: c.role,
+                half_range: 0.5 * (high - low),
+                rms: crate::signal::robust::rms(&centred),
+            }
+        })
+        .collect()
+}

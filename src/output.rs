@@ -1,0 +1,263 @@
+//! Files that are either whole or not there: written under a temporary name in the same folder,
+//! flushed to the disk, then renamed. One lock a folder keeps two runs apart.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// Name of the lock in an output folder.
+const LOCK_NAME: &str = ".impactid.lock";
+
+/// Ending of files that are being written.
+const PART_ENDING: &str = ".impactid-part";
+
+/// Why an output could not be written; what was there before is untouched.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    /// The folder could not be made or written into.
+    #[error("the folder {} cannot be written into: {source}", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The file could not be written whole.
+    #[error("{} could not be written: {source}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// Another run writes into the folder.
+    #[error("another run of impactid writes into {}", path.display())]
+    Locked {
+        /// The folder.
+        path: PathBuf,
+    },
+}
+
+impl OutputError {
+    /// What the user can do.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::Locked { .. } => "wait until it has ended, or name another folder with --out",
+            Self::Folder { source, .. } | Self::File { source, .. } => remedy_for(source.kind()),
+        }
+    }
+}
+
+fn remedy_for(kind: io::ErrorKind) -> &'static str {
+    match kind {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            "free space on the disk, then run again; nothing that was there before is lost"
+        }
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+            "name a folder that you may write into with --out"
+        }
+        io::ErrorKind::AlreadyExists | io::ErrorKind::NotADirectory => {
+            "a file stands where the folder should: name another folder with --out"
+        }
+        _ => "look at the disk and the folder's rights, then run again",
+    }
+}
+
+/// A file under its temporary name; removed unless it is put in place.
+struct Part {
+    path: PathBuf,
+    placed: bool,
+}
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        if !self.placed {
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+impl Part {
+    fn of(target: &Path) -> Self {
+        let name = target.file_name().map(|n| n.to_string_lossy()).unwrap_or_default();
+        let path = target.with_file_name(format!(".{name}.{}{PART_ENDING}", std::process::id()));
+        Self { path, placed: false }
+    }
+
+    fn write<E: From<io::Error>>(
+        &self,
+        fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let file = OpenOptions::new().write(true).create(true).truncate(true).open(&self.path)?;
+        let mut writer = BufWriter::with_capacity(1 << 16, file);
+        fill(&mut writer)?;
+        let file = writer.into_inner().map_err(io::IntoInnerError::into_error)?;
+        file.sync_all()?;
+        Ok(())
+    }
+
+    fn place(mut self, target: &Path) -> io::Result<()> {
+        fs::rename(&self.path, target)?;
+        self.placed = true;
+        match target.parent() {
+            Some(folder) => sync_folder(folder),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Have the rename itself on the disk.
+fn sync_folder(folder: &Path) -> io::Result<()> {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    match File::open(folder) {
+        Ok(open) if cfg!(unix) => open.sync_all(),
+        _ => Ok(()),
+    }
+}
+
+/// Write a file as a whole: `fill` writes it, and it appears under its name when all is on the
+/// disk. Where anything fails, nothing appears and what was there before stays.
+///
+/// # Errors
+/// [`OutputError::File`] with what the system said.
+pub fn write_whole(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<(), OutputError> {
+    let part = Part::of(path);
+    part.write(fill)
+        .and_then(|()| part.place(path))
+        .map_err(|source| OutputError::File { path: path.to_path_buf(), source })
+}
+
+/// Write bytes as [`write_whole`] does.
+///
+/// # Errors
+/// As [`write_whole`].
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
+    write_whole(path, |writer| writer.write_all(bytes))
+}
+
+/// Make an output folder with all folders above it.
+///
+/// # Errors
+/// [`OutputError::Folder`] with what the system said.
+pub fn make_folder(path: &Path) -> Result<(), OutputError> {
+    fs::create_dir_all(path)
+        .map_err(|source| OutputError::Folder { path: path.to_path_buf(), source })
+}
+
+/// Sole right to write into a folder, until it is dropped or the process ends.
+#[derive(Debug)]
+pub struct Lock {
+    file: File,
+    path: PathBuf,
+}
+
+impl Lock {
+    /// Make the folder, take the right to write into it, and clear away what a run that was
+    /// broken off left half-written.
+    ///
+    /// # Errors
+    /// [`OutputError::Locked`] where another run has it, [`OutputError::Folder`] where the folder
+    /// cannot be written into.
+    pub fn take(folder: &Path) -> Result<Self, OutputError> {
+        make_folder(folder)?;
+        let path = folder.join(LOCK_NAME);
+        let failed = |source| OutputError::Folder { path: folder.to_path_buf(), source };
+        loop {
+            let file = OpenOptions::new()
+                .write(true)
+                .create(true)
+                .truncate(false)
+                .open(&path)
+                .map_err(failed)?;
+            match file.try_lock() {
+                Ok(()) => {}
+                Err(fs::TryLockError::WouldBlock) => {
+                    return Err(OutputError::Locked { path: folder.to_path_buf() });
+                }
+                Err(fs::TryLockError::Error(source)) => return Err(failed(source)),
+            }
+            if is_still(&file, &path) {
+                clear_parts(folder);
+                return Ok(Self { file, path });
+            }
+        }
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // removed while it is held: who opened it before finds it gone and opens a new one
+        let _ = fs::remove_file(&self.path);
+        let _ = self.file.unlock();
+    }
+}
+
+/// Whether the locked file is still the one under the lock's name.
+#[cfg(unix)]
+fn is_still(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    match (file.metadata(), fs::metadata(path)) {
+        (Ok(held), Ok(named)) => held.ino() == named.ino() && held.dev() == named.dev(),
+        _ => false,
+    }
+}
+
+#[cfg(not(unix))]
+fn is_still(_: &File, path: &Path) -> bool {
+    path.exists()
+}
+
+/// Remove what broken-off runs left in a folder under temporary names.
+pub fn clear_parts(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    for entry in entries.filter_map(Result::ok) {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if name.starts_with('.') && name.ends_with(PART_ENDING) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_a_failed_write_leaves_what_was_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        write_bytes(&path, b"first").unwrap();
+        let failed = write_whole(&path, |w| {
+            w.write_all(b"second")?;
+            Err(io::ErrorKind::StorageFull.into())
+        });
+        let error = failed.unwrap_err();
+        assert!(error.remedy().contains("free space"));
+        assert_eq!(fs::read(&path).unwrap(), b"first");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn valid_a_second_run_into_the_folder_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("out");
+        let held = Lock::take(&out).unwrap();
+        assert!(matches!(Lock::take(&out), Err(OutputError::Locked { .. })));
+        drop(held);
+        assert_eq!(fs::read_dir(&out).unwrap().count(), 0);
+        Lock::take(&out).unwrap();
+    }
+
+    #[test]
+    fn valid_leftovers_are_cleared_when_the_lock_is_taken() {
+        let folder = tempfile::tempdir().unwrap();
+        let left = folder.path().join(format!(".report.pdf.77{PART_ENDING}"));
+        fs::write(&left, b"half").unwrap();
+        let _held = Lock::take(folder.path()).unwrap();
+        assert!(!left.exists());
+    }
+}

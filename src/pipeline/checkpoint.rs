@@ -1,0 +1,171 @@
+//! Observations kept while a long run goes on, so that a run that was broken off can be resumed.
+//!
+//! The records are observed in chunks; each chunk's observations are written as a whole under a
+//! key of everything they depend on: the program's version, the resolved campaign, and length
+//! and time of change of every file. A chunk of another key, or one that cannot be read, is
+//! observed anew, so a resumed run gives the bytes of an undisturbed one.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
+
+use sha2::{Digest, Sha256};
+
+use crate::campaign::resolved::ResolvedCampaign;
+use crate::motion::Observation;
+use crate::output::{self, OutputError};
+
+/// Folder of the chunks in the output folder; it is removed when the run is done.
+const FOLDER: &str = ".impactid-observed";
+
+/// Records a chunk holds.
+pub const CHUNK: usize = 256;
+
+/// Campaigns of fewer records are quicker observed anew than kept.
+pub const FEWEST: usize = 1000;
+
+/// Where the chunks of one run lie.
+#[derive(Debug)]
+pub struct Checkpoint {
+    folder: PathBuf,
+    key: String,
+}
+
+/// A chunk as it is stored.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Chunk<T> {
+    key: String,
+    observations: T,
+}
+
+impl Checkpoint {
+    /// The chunks in an output folder. Without `resume` what an earlier run left is removed.
+    ///
+    /// # Errors
+    /// Where the folder cannot be written into.
+    pub fn open(
+        campaign: &ResolvedCampaign,
+        out: &Path,
+        resume: bool,
+    ) -> Result<Self, OutputError> {
+        let checkpoint = Self { folder: out.join(FOLDER), key: key(campaign) };
+        if !resume {
+            remove(out);
+        }
+        output::make_folder(&checkpoint.folder)?;
+        output::clear_parts(&checkpoint.folder);
+        Ok(checkpoint)
+    }
+
+    fn path(&self, number: usize) -> PathBuf {
+        self.folder.join(format!("{number:06}.json.gz"))
+    }
+
+    /// The observations of a chunk; `None` where it is not there, of another run or unreadable.
+    pub fn load(&self, number: usize, records: usize) -> Option<Vec<Observation>> {
+        let file = std::fs::File::open(self.path(number)).ok()?;
+        let mut text = String::new();
+        flate2::read::GzDecoder::new(file).read_to_string(&mut text).ok()?;
+        let chunk: Chunk<Vec<Observation>> = serde_json::from_str(&text).ok()?;
+        (chunk.key == self.key && chunk.observations.len() == records)
+            .then_some(chunk.observations)
+    }
+
+    /// Keep the observations of a chunk.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn save(&self, number: usize, observations: &[Observation]) -> Result<(), OutputError> {
+        let chunk = Chunk { key: self.key.clone(), observations };
+        output::write_whole(&self.path(number), |writer| {
+            let mut gzip = flate2::write::GzEncoder::new(writer, flate2::Compression::fast());
+            serde_json::to_writer(&mut gzip, &chunk)?;
+            gzip.finish()?;
+            Ok(())
+        })
+    }
+}
+
+/// Remove all chunks in an output folder: the run is done.
+pub fn remove(out: &Path) {
+    // what cannot be removed does no harm: a chunk is taken over by its key alone
+    let _ = std::fs::remove_dir_all(out.join(FOLDER));
+}
+
+/// A number for everything that observations depend on.
+fn key(campaign: &ResolvedCampaign) -> String {
+    let mut hash = Sha256::new();
+    hash.update(env!("CARGO_PKG_VERSION"));
+    hash.update(format!("{campaign:?}"));
+    let mut files: Vec<&PathBuf> = campaign.records.iter().map(|r| &r.file).collect();
+    files.sort();
+    files.dedup();
+    for file in files {
+        hash.update(file.to_string_lossy().as_bytes());
+        hash.update(state(file).as_bytes());
+    }
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Length and time of the last change of a file.
+fn state(file: &Path) -> String {
+    let Ok(metadata) = std::fs::metadata(file) else {
+        return "missing".to_owned();
+    };
+    let changed = metadata.modified().ok().and_then(|t| t.duration_since(UNIX_EPOCH).ok());
+    format!("{} {:?}", metadata.len(), changed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::observe::{observe_all, observe_in_chunks};
+    use crate::pipeline::synthesise::{Recipe, write_campaign};
+    use crate::record::open::open;
+    use crate::synthetic::Truth;
+
+    #[test]
+    fn valid_a_resumed_observation_is_that_of_an_undisturbed_run() {
+        let folder = tempfile::tempdir().unwrap();
+        let recipe = Recipe {
+            truth: Truth {
+                restitution: 0.9,
+                natural_frequency_hz: 12.6,
+                damping_ratio: 0.07,
+                static_deflection_m: 1e-3,
+                drive_asymmetry: 0.0,
+                stiffness_asymmetry: 0.0,
+            },
+            faults: crate::synthetic::Faults::default(),
+            records: 12,
+            seed: 5,
+        };
+        write_campaign(&recipe, folder.path()).unwrap();
+        let toml = folder.path().join("campaign.toml");
+        let campaign = crate::campaign::load(&toml, &open).campaign.unwrap();
+        let quiet = |_: &'static str, _: u64, _: u64| {};
+        let whole = observe_all(&campaign, &quiet);
+
+        let out = folder.path().join("out");
+        let kept = Checkpoint::open(&campaign, &out, false).unwrap();
+        let first = observe_in_chunks(&campaign, &kept, 5, &quiet).unwrap();
+        assert_eq!(json(&whole), json(&first));
+        // broken off: one chunk was not yet written, one is damaged
+        std::fs::remove_file(kept.path(1)).unwrap();
+        std::fs::write(kept.path(2), b"half").unwrap();
+        let kept = Checkpoint::open(&campaign, &out, true).unwrap();
+        assert!(kept.load(0, 5).is_some() && kept.load(2, 2).is_none());
+        let resumed = observe_in_chunks(&campaign, &kept, 5, &quiet).unwrap();
+        assert_eq!(json(&whole), json(&resumed));
+
+        // another campaign takes nothing over
+        let mut other = campaign.clone();
+        other.analysis.skip_s = 0.1;
+        let kept = Checkpoint::open(&other, &out, true).unwrap();
+        assert!(kept.load(0, 5).is_none());
+    }
+
+    fn json(observations: &[Observation]) -> String {
+        serde_json::to_string(observations).unwrap()
+    }
+}

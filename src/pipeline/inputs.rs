@@ -1,0 +1,42 @@
+//! Fingerprints of everything that was read.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+use sha2::{Digest, Sha256};
+
+use crate::campaign::resolved::ResolvedCampaign;
+
+/// SHA-256 of campaign.toml and of every record file, by path relative to campaign.toml's folder
+/// where they lie in it. A file that cannot be read has the hash "unreadable".
+pub fn hashes(campaign: &ResolvedCampaign) -> BTreeMap<String, String> {
+    let mut files: BTreeSet<PathBuf> = campaign.records.iter().map(|r| r.file.clone()).collect();
+    files.insert(campaign.file.clone());
+    files.extend(campaign.run_table.clone());
+    let files: Vec<PathBuf> = files.into_iter().collect();
+    files
+        .par_iter()
+        .map(|path| {
+            let name = path.strip_prefix(campaign.folder()).unwrap_or(path);
+            let hash = hash(path).unwrap_or_else(|_| "unreadable".to_owned());
+            (name.to_string_lossy().into_owned(), hash)
+        })
+        .collect()
+}
+
+/// SHA-256 of a file as lower-case hexadecimal.
+fn hash(path: &Path) -> std::io::Result<String> {
+    let mut file = std::fs::File::open(path)?;
+    let mut hasher = Sha256::new();
+    let mut buffer = vec![0; 1 << 18];
+    loop {
+        let read = file.read(&mut buffer)?;
+        if read == 0 {
+            break;
+        }
+        hasher.update(&buffer[..read]);
+    }
+    Ok(hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+}

@@ -1,0 +1,209 @@
+//! What the stages leave for each other: the resolved campaign, the calibrated records, the
+//! observations.
+
+use std::io::{Read, Write};
+use std::path::Path;
+
+use crate::campaign::check::by_file;
+use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
+use crate::motion::{Observation, brackets};
+use crate::output::{write_bytes, write_whole};
+use crate::pipeline::identify::{Found, Kept};
+use crate::pipeline::observe::each_record;
+use crate::pipeline::{Observed, PipelineError, Progress};
+use crate::record::calibrate::{ChannelKey, ChannelSetup};
+use crate::record::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
+use crate::record::{Flag, Record, Role};
+use crate::units::{Quantity, Unit};
+
+const RESOLVED: &str = "campaign.resolved.json";
+const INGESTED: &str = "ingested.h5";
+const INGESTED_CAMPAIGN: &str = "ingested.json";
+const FIT: &str = "fit.json";
+const OBSERVATIONS: &str = "observations.json.gz";
+
+fn store_error(path: &Path, reason: impl std::fmt::Display) -> PipelineError {
+    PipelineError::Store { path: path.display().to_string(), reason: reason.to_string() }
+}
+
+fn write_json<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), PipelineError> {
+    let mut text = serde_json::to_string_pretty(value).map_err(|e| store_error(path, e))?;
+    text.push('\n');
+    Ok(write_bytes(path, text.as_bytes())?)
+}
+
+fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, PipelineError> {
+    let text = std::fs::read_to_string(path).map_err(|e| store_error(path, e))?;
+    serde_json::from_str(&text).map_err(|e| store_error(path, e))
+}
+
+/// Write the resolved campaign beside the results.
+///
+/// # Errors
+/// Where it cannot be written.
+pub fn write_resolved(campaign: &ResolvedCampaign, out: &Path) -> Result<(), PipelineError> {
+    write_json(&out.join(RESOLVED), campaign)
+}
+
+/// Read the resolved campaign that a stage before wrote.
+///
+/// # Errors
+/// Where it is missing or unreadable.
+pub fn read_resolved(out: &Path) -> Result<ResolvedCampaign, PipelineError> {
+    read_json(&out.join(RESOLVED))
+}
+
+/// The calibrated campaign: records in SI in one file of ours, with the flags that reading gave.
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
+struct Ingested {
+    campaign: ResolvedCampaign,
+    flags: Vec<Vec<Flag>>,
+}
+
+/// Stage one: read and calibrate every record and keep it in SI.
+///
+/// # Errors
+/// Where nothing is usable or the outputs cannot be written.
+pub fn ingest(
+    campaign: &ResolvedCampaign,
+    out: &Path,
+    progress: Progress,
+) -> Result<usize, PipelineError> {
+    let path = out.join(INGESTED);
+    let mut writer = CampaignWriter::create(&path);
+    let mut entries = Vec::new();
+    let mut flags = Vec::new();
+    let mut roles: Vec<ChannelSetup> = Vec::new();
+    let total = campaign.records.len() as u64;
+    for group in by_file(&campaign.records) {
+        for (entry, record) in group.iter().zip(each_record(campaign, group, |record| record)) {
+            let dataset = entries.iter().filter(|e: &&RecordEntry| e.dataset.is_some()).count();
+            let kept = record.samples() > 0;
+            if kept {
+                note_roles(&mut roles, &record);
+                writer.add(table(&record))?;
+            }
+            let dataset = kept.then_some(dataset);
+            entries.push(RecordEntry { file: path.clone(), dataset, ..entry.clone() });
+            flags.push(record.flags);
+            progress("ingest", entries.len() as u64, total);
+        }
+    }
+    if entries.iter().all(|e| e.dataset.is_none()) {
+        return Err(PipelineError::NothingUsable(entries.len()));
+    }
+    writer.finish()?;
+    write_resolved(campaign, out)?;
+    let ingested = Ingested {
+        campaign: ResolvedCampaign {
+            channels: roles,
+            time: None,
+            sample_rate_hz: None,
+            records: entries,
+            ..campaign.clone()
+        },
+        flags,
+    };
+    let usable = ingested.flags.iter().filter(|f| !f.iter().any(|f| f.excludes)).count();
+    write_json(&out.join(INGESTED_CAMPAIGN), &ingested)?;
+    Ok(usable)
+}
+
+fn table(record: &Record) -> RecordTable {
+    RecordTable {
+        name: record.id.clone(),
+        sample_rate_hz: Some(record.sample_rate_hz),
+        channels: record
+            .channels
+            .iter()
+            .map(|c| {
+                ColumnToWrite::numbers(c.role.name(), c.dimension.si_symbol(), c.values.clone())
+            })
+            .collect(),
+        attributes: Vec::new(),
+    }
+}
+
+/// Set-ups that read the calibrated channels as they are.
+fn note_roles(roles: &mut Vec<ChannelSetup>, record: &Record) {
+    for channel in &record.channels {
+        if roles.iter().any(|r| r.role == channel.role) {
+            continue;
+        }
+        let key = ChannelKey::Name(channel.role.name().to_owned());
+        roles.push(ChannelSetup {
+            unit: Some(Unit { dimension: channel.dimension, to_si: 1.0 }),
+            high_pass_hz: channel.high_pass_hz,
+            threshold: channel
+                .threshold
+                .map(|si| Quantity { si, dimension: channel.dimension })
+                .filter(|_| channel.role == Role::Contact),
+            ..ChannelSetup::plain(channel.role, key)
+        });
+    }
+}
+
+/// Stage two: observe the calibrated records and keep what was seen.
+///
+/// # Errors
+/// Where stage one's files are missing or the outputs cannot be written.
+pub fn classify(out: &Path, progress: Progress) -> Result<Observed, PipelineError> {
+    let ingested: Ingested = read_json(&out.join(INGESTED_CAMPAIGN))?;
+    let mut observed = Observed::of(&ingested.campaign, progress)?;
+    for (observation, flags) in observed.observations.iter_mut().zip(ingested.flags) {
+        for flag in flags {
+            if !observation.flags.contains(&flag) {
+                observation.flags.push(flag);
+            }
+        }
+    }
+    observed.brackets = brackets(&observed.observations);
+    super::tables::write_all(&observed, out)?;
+    write_observations(&observed.observations, out)?;
+    Ok(observed)
+}
+
+fn write_observations(observations: &[Observation], out: &Path) -> Result<(), PipelineError> {
+    let path = out.join(OBSERVATIONS);
+    Ok(write_whole(&path, |writer| {
+        let mut gzip = flate2::write::GzEncoder::new(writer, flate2::Compression::fast());
+        serde_json::to_writer(&mut gzip, observations)?;
+        gzip.finish()?.flush()
+    })?)
+}
+
+/// Keep what the report needs of stage three beside identification.json.
+///
+/// # Errors
+/// Where it cannot be written.
+pub fn write_fit(kept: &Kept, out: &Path) -> Result<(), PipelineError> {
+    write_json(&out.join(FIT), kept)
+}
+
+/// What stage three left.
+///
+/// # Errors
+/// Where it is missing or unreadable.
+pub fn read_found(out: &Path) -> Result<Found, PipelineError> {
+    Ok(Found {
+        identification: read_json(&out.join(super::identify::FILE))?,
+        outcome: read_json(&out.join(FIT))?,
+    })
+}
+
+/// What stage two kept.
+///
+/// # Errors
+/// Where it is missing or unreadable.
+pub fn read_observed(out: &Path) -> Result<Observed, PipelineError> {
+    let path = out.join(OBSERVATIONS);
+    let file = std::fs::File::open(&path).map_err(|e| store_error(&path, e))?;
+    let mut text = String::new();
+    flate2::read::GzDecoder::new(file)
+        .read_to_string(&mut text)
+        .map_err(|e| store_error(&path, e))?;
+    let observations: Vec<Observation> =
+        serde_json::from_str(&text).map_err(|e| store_error(&path, e))?;
+    let brackets = brackets(&observations);
+    Ok(Observed { observations, brackets })
+}

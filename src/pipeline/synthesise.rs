@@ -1,0 +1,184 @@
+//! A synthetic campaign on disk: records, run table, campaign.toml and the truth beside it.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::output::write_bytes;
+use crate::pipeline::PipelineError;
+use crate::record::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Stored};
+use crate::synthetic::acquisition::{FULL_SCALE_V, converter_step};
+use crate::synthetic::run::{RATE_HZ, ROLES, sensitivities};
+use crate::synthetic::{Faults, Plan, RawRecord, Truth, records};
+
+/// What a synthetic campaign is made of.
+#[derive(Debug, Clone, Serialize)]
+pub struct Recipe {
+    /// True parameters.
+    pub truth: Truth,
+    /// Faults of the rig.
+    pub faults: Faults,
+    /// Number of records.
+    pub records: usize,
+    /// Seed of everything random.
+    pub seed: u64,
+}
+
+/// One record's truth in truth.json.
+#[derive(Serialize)]
+struct TrueRecord<'a> {
+    record: &'a str,
+    frequency_hz: f64,
+    clearance_m: f64,
+    sweep: &'static str,
+    motion: String,
+    periodic: bool,
+    impacts: usize,
+}
+
+#[derive(Serialize)]
+struct TruthFile<'a> {
+    synthetic: bool,
+    restitution: f64,
+    natural_frequency_hz: f64,
+    damping_ratio: f64,
+    static_deflection_m: f64,
+    recipe: &'a Recipe,
+    records: Vec<TrueRecord<'a>>,
+}
+
+const RECORDS_FILE: &str = "records.h5";
+const RUN_TABLE: &str = "runs.csv";
+
+/// Simulate a campaign and write it: records.h5 (converter counts), runs.csv, campaign.toml and
+/// truth.json.
+///
+/// # Errors
+/// Where the truth lies outside the model's range or a file cannot be written.
+pub fn write_campaign(recipe: &Recipe, out: &Path) -> Result<usize, PipelineError> {
+    let plan = Plan::for_rig(
+        recipe.truth.natural_frequency_hz,
+        recipe.truth.damping_ratio,
+        recipe.truth.static_deflection_m,
+        recipe.records,
+    );
+    let raw = records(&recipe.truth, &recipe.faults, &plan, recipe.seed)?;
+    crate::output::make_folder(out)?;
+    write_records(recipe, &raw, &out.join(RECORDS_FILE))?;
+    write_bytes(&out.join(RUN_TABLE), run_table(&raw).as_bytes())?;
+    write_bytes(&out.join("campaign.toml"), campaign_toml(recipe).as_bytes())?;
+    write_bytes(&out.join("truth.json"), truth_json(recipe, &raw)?.as_bytes())?;
+    Ok(raw.len())
+}
+
+fn write_records(recipe: &Recipe, raw: &[RawRecord], path: &Path) -> Result<(), PipelineError> {
+    let mut writer = CampaignWriter::create(path);
+    writer.attribute("origin", "synthetic: simulated by impactid, not measured");
+    writer.attribute("seed", recipe.seed as f64);
+    for record in raw {
+        writer.add(RecordTable {
+            name: record.id.clone(),
+            sample_rate_hz: Some(RATE_HZ),
+            channels: record
+                .channels
+                .iter()
+                .map(|c| ColumnToWrite {
+                    name: c.name.to_owned(),
+                    unit: "V".to_owned(),
+                    samples: stored(&c.volts, &recipe.faults),
+                })
+                .collect(),
+            attributes: Vec::new(),
+        })?;
+    }
+    Ok(writer.finish()?)
+}
+
+fn stored(volts: &[f64], faults: &Faults) -> Stored {
+    match converter_step(faults) {
+        Some(scale) if FULL_SCALE_V / scale <= f64::from(i16::MAX) => Stored::Counts {
+            counts: volts.iter().map(|v| (v / scale).round() as i16).collect(),
+            scale,
+            offset: 0.0,
+        },
+        _ => Stored::Numbers(volts.to_vec()),
+    }
+}
+
+fn run_table(raw: &[RawRecord]) -> String {
+    let mut text = String::from("file,dataset,drive_frequency_hz,clearance_mm,sweep\n");
+    for r in raw {
+        let clearance_mm = (r.step.clearance_m * 1e6).round() / 1e3;
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "{RECORDS_FILE},{},{},{clearance_mm},{}",
+            r.id,
+            r.step.frequency_hz,
+            r.step.sweep.name()
+        );
+    }
+    text
+}
+
+fn truth_json(recipe: &Recipe, raw: &[RawRecord]) -> Result<String, PipelineError> {
+    let file = TruthFile {
+        synthetic: true,
+        restitution: recipe.truth.restitution,
+        natural_frequency_hz: recipe.truth.natural_frequency_hz,
+        damping_ratio: recipe.truth.damping_ratio,
+        static_deflection_m: recipe.truth.static_deflection_m,
+        recipe,
+        records: raw
+            .iter()
+            .map(|r| TrueRecord {
+                record: &r.id,
+                frequency_hz: r.step.frequency_hz,
+                clearance_m: r.step.clearance_m,
+                sweep: r.step.sweep.name(),
+                motion: r.motion.label(),
+                periodic: r.motion.is_periodic(),
+                impacts: r.impacts.len(),
+            })
+            .collect(),
+    };
+    let mut text = serde_json::to_string_pretty(&file)
+        .map_err(|e| PipelineError::Table { table: "truth.json".into(), reason: e.to_string() })?;
+    text.push('\n');
+    Ok(text)
+}
+
+/// campaign.toml as the virtual laboratory would have filled it in: nominal values only.
+fn campaign_toml(recipe: &Recipe) -> String {
+    let mut text = String::from(
+        "# A SYNTHETIC campaign: simulated by `impactid simulate campaign`, not measured.\n\
+         # The truth behind it is in truth.json; nothing here tells it.\n\n\
+         [campaign]\n\
+         name = \"Synthetic double impact oscillator\"\n\
+         machine = \"double\"\n\
+         flight = \"harmonic\"\n\n\
+         [records]\n\
+         run_table = \"runs.csv\"\n\n\
+         [rig]\n\
+         gain_uncertainty = \"0.5 %\"\n",
+    );
+    for (sensitivity, (role, dimension, filtered)) in
+        sensitivities(&recipe.truth).iter().zip(ROLES)
+    {
+        let _ = write!(text, "\n[channels.{}]\nchannel = \"{}\"\n", role.name(), sensitivity.name);
+        let symbol = dimension.si_symbol();
+        if symbol != "V" {
+            let _ = writeln!(text, "scale = \"{} {symbol}/V\"", sensitivity.si_per_volt);
+        }
+        if let (Some(corner), true) = (recipe.faults.high_pass_hz, filtered) {
+            let _ = writeln!(text, "high_pass = \"{corner} Hz\"");
+        }
+        if role == crate::record::Role::Contact {
+            text.push_str("threshold = \"2.5 V\"\n");
+        } else {
+            let _ = writeln!(text, "range = \"{FULL_SCALE_V} V\"");
+        }
+    }
+    text
+}

@@ -1,0 +1,301 @@
+//! What is wrong with the samples of a record: unequal lengths, missing values, dead, clipped
+//! and held channels.
+
+use super::{Channel, Flag, Record, Role};
+
+/// Part of a channel's samples at the rail above which the record is left out.
+const CLIPPED_PART: f64 = 0.005;
+
+/// Relative difference of lengths above which the record is left out.
+const LENGTH_DIFFERENCE: f64 = 0.01;
+
+fn flag(code: &str, channel: Option<&str>, message: String, remedy: &str) -> Flag {
+    Flag {
+        code: code.to_owned(),
+        channel: channel.map(str::to_owned),
+        message,
+        remedy: remedy.to_owned(),
+        excludes: true,
+    }
+}
+
+/// Cut all channels and the time axis to the shortest.
+pub fn equal_lengths(record: &mut Record, times: Option<&mut Vec<f64>>) {
+    let of_time = times.as_ref().map(|t| t.len());
+    let lengths = || {
+        record
+            .channels
+            .iter()
+            .map(|c| c.values.len())
+            .chain(of_time)
+    };
+    let (Some(shortest), Some(longest)) = (lengths().min(), lengths().max()) else {
+        return;
+    };
+    if shortest == longest {
+        return;
+    }
+    let short = record.channels.iter().find(|c| c.values.len() == shortest);
+    let short = short.map(|c| c.name.clone());
+    for channel in &mut record.channels {
+        channel.values.truncate(shortest);
+    }
+    if let Some(times) = times {
+        times.truncate(shortest);
+    }
+    let mut found = flag(
+        "unequal_lengths",
+        short.as_deref(),
+        format!("the channels differ in length, from {shortest} to {longest} samples"),
+        "record again, or export all channels with the same number of samples",
+    );
+    found.excludes = (longest - shortest) as f64 > LENGTH_DIFFERENCE * longest as f64;
+    record.flags.push(found);
+}
+
+/// Cut samples off both ends where a channel has no value there (exports often pad so).
+pub fn trim_missing(record: &mut Record, mut times: Option<&mut Vec<f64>>) {
+    let samples = record.samples();
+    if samples == 0 {
+        return;
+    }
+    let whole = |i: usize| record.channels.iter().all(|c| c.values[i].is_finite());
+    let Some(first) = (0..samples).find(|i| whole(*i)) else {
+        record.flags.push(never_whole(record));
+        return;
+    };
+    let last = (first..samples).rev().find(|i| whole(*i)).unwrap_or(first);
+    let cut = first + samples - 1 - last;
+    if cut == 0 {
+        return;
+    }
+    let lacking = record.channels.iter().find(|c| {
+        c.values[..first]
+            .iter()
+            .chain(&c.values[last + 1..])
+            .any(|v| !v.is_finite())
+    });
+    let name = lacking.map(|c| c.name.clone());
+    for channel in &mut record.channels {
+        keep(&mut channel.values, first, last);
+    }
+    if let Some(times) = times.as_deref_mut() {
+        keep(times, first, last);
+    }
+    record.flags.push(trimmed(name, cut));
+}
+
+fn never_whole(record: &Record) -> Flag {
+    let worst = record
+        .channels
+        .iter()
+        .max_by_key(|c| c.values.iter().filter(|v| !v.is_finite()).count())
+        .map(|c| c.name.clone());
+    flag(
+        "not_a_number",
+        worst.as_deref(),
+        "at no sample do all channels have a value".to_owned(),
+        "leave the channel without values out of campaign.toml, or record again",
+    )
+}
+
+fn trimmed(channel: Option<String>, cut: usize) -> Flag {
+    Flag {
+        code: "trimmed".to_owned(),
+        channel,
+        message: format!("{cut} samples without a value at the ends are cut off"),
+        remedy: "nothing, where the export pads its ends so".to_owned(),
+        excludes: false,
+    }
+}
+
+fn keep(values: &mut Vec<f64>, first: usize, last: usize) {
+    values.truncate(last + 1);
+    values.drain(..first);
+}
+
+/// Look at every channel: values that are no numbers, dead and clipped channels, held samples.
+/// `ranges`: greatest magnitude the converter gives, SI, per channel. `driven`: whether a drive
+/// must be seen.
+pub fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool) {
+    if record.channels.is_empty() || record.samples() == 0 {
+        record.flags.push(no_samples(record));
+        return;
+    }
+    let mut flags = Vec::new();
+    for (channel, range) in record.channels.iter().zip(ranges) {
+        let found = not_numbers(channel)
+            .or_else(|| dead(channel, driven))
+            .or_else(|| clipped(channel, *range));
+        flags.extend(found.map(|f| lenient(channel.role, f)));
+    }
+    if flags.is_empty() {
+        flags.extend(held(record));
+    }
+    record.flags.extend(flags);
+}
+
+/// What is wrong with a frame's channel leaves no record out.
+fn lenient(role: Role, mut flag: Flag) -> Flag {
+    flag.excludes &= !matches!(role, Role::FrameX | Role::FrameY);
+    flag
+}
+
+fn no_samples(record: &Record) -> Flag {
+    let message = match record.channels.is_empty() {
+        true => "none of the channels that campaign.toml names can be used",
+        false => "the record is empty: it holds no samples",
+    };
+    flag(
+        "empty",
+        None,
+        message.to_owned(),
+        "remove the file, or record again",
+    )
+}
+
+fn not_numbers(channel: &Channel) -> Option<Flag> {
+    let count = channel.values.iter().filter(|v| !v.is_finite()).count();
+    let first = channel.values.iter().position(|v| !v.is_finite())?;
+    Some(flag(
+        "not_a_number",
+        Some(&channel.name),
+        format!(
+            "channel '{}' has {count} values that are not numbers (NaN or infinite), the first \
+             at sample {first}",
+            channel.name
+        ),
+        "record again, or mend the export; the record is left out",
+    ))
+}
+
+/// Least and greatest value and the smallest step between neighbours that is not zero.
+fn span(values: &[f64]) -> (f64, f64, f64) {
+    let (low, high) = values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+            (l.min(*v), h.max(*v))
+        });
+    let step = values
+        .windows(2)
+        .map(|w| (w[1] - w[0]).abs())
+        .filter(|d| *d > 1e-12 * (high - low))
+        .fold(f64::INFINITY, f64::min);
+    (low, high, step)
+}
+
+/// A channel that shows nothing but one value or two neighbouring steps of the converter. A
+/// contact may well stay open.
+fn dead(channel: &Channel, driven: bool) -> Option<Flag> {
+    if channel.role == Role::Contact || (channel.role == Role::Drive && !driven) {
+        return None;
+    }
+    let (low, high, step) = span(&channel.values);
+    if high > low && high - low > 1.001 * step {
+        return None;
+    }
+    Some(flag(
+        "dead_channel",
+        Some(&channel.name),
+        format!("channel '{}' is constant at {low:.6e}", channel.name),
+        "look for a loose cable or a wrong channel in campaign.toml; the record is left out",
+    ))
+}
+
+/// A channel that runs into the rails of its converter: at its greatest or least value it stays
+/// for three samples or more and got there by a step that no quantised crest makes.
+fn clipped(channel: &Channel, range: Option<f64>) -> Option<Flag> {
+    if channel.role == Role::Contact {
+        return None;
+    }
+    let (low, high, step) = span(&channel.values);
+    let count = match range {
+        // Where the converter's range is stated, only samples at its end are clipped: a coarse
+        // converter rests on one code at the top of any slow wave.
+        Some(r) => {
+            let end = (r - 1.5 * step).max(r * (1.0 - 1e-9) - 2.0 * step);
+            channel.values.iter().filter(|v| v.abs() >= end).count()
+        }
+        None => at_rails(channel, low, high, step),
+    };
+    if count == 0 {
+        return None;
+    }
+    let part = count as f64 / channel.values.len() as f64;
+    let mut found = flag(
+        "clipped",
+        Some(&channel.name),
+        format!(
+            "channel '{}' is clipped: {count} samples ({:.1} %) at {:.4e} or {:.4e}",
+            channel.name,
+            100.0 * part,
+            low,
+            high
+        ),
+        "record again with a larger range of the converter",
+    );
+    found.excludes = part > CLIPPED_PART && channel.role != Role::Drive;
+    Some(found)
+}
+
+/// Number of samples at both rails. A mass that rests at its stop shows a plateau of displacement
+/// at one side, which is no rail.
+fn at_rails(channel: &Channel, low: f64, high: f64, step: f64) -> usize {
+    let rails = [low, high].map(|rail| at_rail(&channel.values, rail, step));
+    let displacement = matches!(channel.role, Role::DisplacementX | Role::DisplacementY);
+    if displacement && rails.contains(&0) { 0 } else { rails[0] + rails[1] }
+}
+
+/// Number of samples in runs at a rail that were entered and left by more than a crest's steps.
+fn at_rail(values: &[f64], rail: f64, step: f64) -> usize {
+    let mut count = 0;
+    let mut start = 0;
+    while start < values.len() {
+        if values[start] != rail {
+            start += 1;
+            continue;
+        }
+        let length = values[start..].iter().take_while(|v| **v == rail).count();
+        let end = start + length;
+        let steep = |i: Option<usize>| {
+            i.and_then(|i| values.get(i))
+                .is_none_or(|v| (v - rail).abs() > 3.0 * step)
+        };
+        if length >= 3 && steep(start.checked_sub(1)) && steep(Some(end)) {
+            count += length;
+        }
+        start = end;
+    }
+    count
+}
+
+/// A stretch in which every channel holds its value: samples were lost and the converter
+/// repeated the last.
+fn held(record: &Record) -> Option<Flag> {
+    if record.channels.len() < 2 {
+        return None;
+    }
+    let still = |i: usize| {
+        record
+            .channels
+            .iter()
+            .all(|c| c.values[i] == c.values[i - 1])
+    };
+    let (mut longest, mut run, mut at, mut all) = (0, 0, 0, 0);
+    for i in 1..record.samples() {
+        run = if still(i) { run + 1 } else { 0 };
+        all += usize::from(run > 0);
+        if run > longest {
+            (longest, at) = (run, i - run);
+        }
+    }
+    if longest < 6 || all > longest * 8 {
+        return None;
+    }
+    Some(flag(
+        "dropped_samples",
+        None,
+        format!("all channels hold their value for {longest} samples from sample {at} on"),
+        "record again with a larger buffer; the record is left out",
+    ))
+}

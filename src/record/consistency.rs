@@ -1,0 +1,198 @@
+//! Whether the channels of one record can belong together: the change of a displacement is the
+//! integral of the velocity of the same mass.
+
+use super::{Flag, Record, Role};
+
+/// Correlation from which two channels count as the same motion.
+const SAME: f64 = 0.9;
+
+/// Ratio of scales from which one of them must be wrong.
+const SCALE_RATIO: f64 = 1.5;
+
+/// Look for swapped masses, opposite signs and contradicting scales.
+pub fn inspect(record: &Record) -> Vec<Flag> {
+    let x = compare(record, Role::DisplacementX, Role::VelocityX);
+    let y = compare(record, Role::DisplacementY, Role::VelocityY);
+    if let Some(flag) = swapped(record, x, y) {
+        return vec![flag];
+    }
+    let pairs = [
+        (x, Role::DisplacementX, Role::VelocityX),
+        (y, Role::DisplacementY, Role::VelocityY),
+    ];
+    pairs
+        .into_iter()
+        .filter_map(|(match_, d, v)| contradiction(record, match_?, d, v))
+        .collect()
+}
+
+/// How a displacement's change compares with a velocity's integral over the same windows.
+#[derive(Debug, Clone, Copy)]
+struct Match {
+    /// Correlation coefficient.
+    correlation: f64,
+    /// Displacement's change over velocity's integral.
+    gain: f64,
+}
+
+fn compare(record: &Record, displacement: Role, velocity: Role) -> Option<Match> {
+    let (d, v) = (record.values(displacement)?, record.values(velocity)?);
+    let width = (d.len() / 100).clamp(2, 64);
+    if d.len() < 8 * width || record.sample_rate_hz <= 0.0 {
+        return None;
+    }
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+    let rest = mean(v);
+    let moved: Vec<f64> = (0..d.len() - width).map(|i| d[i + width] - d[i]).collect();
+    let drift = mean(&moved);
+    let mut integral = Vec::with_capacity(moved.len());
+    let mut sum: f64 = v[..width].iter().map(|v| v - rest).sum();
+    for i in 0..moved.len() {
+        integral.push(sum / record.sample_rate_hz);
+        sum += v[i + width] - v[i];
+    }
+    let (mut mm, mut ii, mut mi) = (0.0, 0.0, 0.0);
+    for (m, i) in moved.iter().map(|m| m - drift).zip(&integral) {
+        mm += m * m;
+        ii += i * i;
+        mi += m * i;
+    }
+    let size = (mm * ii).sqrt();
+    (size > 0.0 && size.is_finite()).then(|| Match { correlation: mi / size, gain: mi / ii })
+}
+
+fn flag(record: &Record, role: Role, code: &str, message: String, remedy: String) -> Flag {
+    Flag {
+        code: code.to_owned(),
+        channel: record.channel(role).map(|c| c.name.clone()),
+        message,
+        remedy,
+        excludes: true,
+    }
+}
+
+/// Each displacement follows the velocity of the other mass better than that of its own.
+fn swapped(record: &Record, x: Option<Match>, y: Option<Match>) -> Option<Flag> {
+    let crossed_x = compare(record, Role::DisplacementX, Role::VelocityY)?.correlation;
+    let crossed_y = compare(record, Role::DisplacementY, Role::VelocityX)?.correlation;
+    let (own_x, own_y) = (x?.correlation, y?.correlation);
+    let crossed = crossed_x > SAME && crossed_y > SAME;
+    let own = own_x > SAME - 0.1 || own_y > SAME - 0.1;
+    let better = crossed_x - own_x > 0.05 && crossed_y - own_y > 0.05;
+    (crossed && (better || !own)).then(|| {
+        flag(
+            record,
+            Role::VelocityX,
+            "swapped_masses",
+            format!(
+                "the displacement of x follows the velocity of y (correlation {crossed_x:.2}) \
+                 rather than that of x ({own_x:.2})"
+            ),
+            "swap [channels.velocity_x] and [channels.velocity_y], or the displacements".to_owned(),
+        )
+    })
+}
+
+fn contradiction(record: &Record, found: Match, d: Role, v: Role) -> Option<Flag> {
+    if found.correlation < -SAME {
+        return Some(flag(
+            record,
+            v,
+            "opposite_sign",
+            format!("{} and {} have opposite signs", d.name(), v.name()),
+            format!(
+                "set sign = -1 in [channels.{}] or in [channels.{}]: both count toward the other \
+                 mass",
+                v.name(),
+                d.name()
+            ),
+        ));
+    }
+    let off = found.gain > SCALE_RATIO || found.gain < 1.0 / SCALE_RATIO;
+    (found.correlation > SAME && off).then(|| {
+        flag(
+            record,
+            v,
+            "scales_contradict",
+            format!(
+                "{} moves {:.4} times as far as {} says",
+                d.name(),
+                found.gain,
+                v.name()
+            ),
+            format!(
+                "mend unit or scale in [channels.{}] or in [channels.{}]",
+                v.name(),
+                d.name()
+            ),
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::{Channel, Setting, Sweep};
+
+    fn record(signals: &[(Role, &dyn Fn(f64) -> f64)]) -> Record {
+        let channels = signals
+            .iter()
+            .map(|(role, of)| Channel {
+                role: *role,
+                name: role.name().to_owned(),
+                dimension: role.dimension().unwrap(),
+                values: (0..2000).map(|i| of(f64::from(i) / 2000.0)).collect(),
+                high_pass_hz: None,
+                threshold: None,
+            })
+            .collect();
+        Record {
+            id: "r".into(),
+            sample_rate_hz: 2000.0,
+            channels,
+            setting: Setting {
+                stated_frequency_hz: None,
+                clearance_m: None,
+                sweep: Sweep::Unknown,
+                drive_amplitude: 1.0,
+                sequence: 0,
+                specimen: None,
+            },
+            flags: Vec::new(),
+        }
+    }
+
+    const W: f64 = 80.0;
+
+    fn codes(signals: &[(Role, &dyn Fn(f64) -> f64)]) -> Vec<String> {
+        inspect(&record(signals)).into_iter().map(|f| f.code).collect()
+    }
+
+    #[test]
+    fn valid_channels_that_belong_together_pass_and_others_are_told() {
+        let dx = |t: f64| 1e-3 * (W * t).sin();
+        let vx = |t: f64| 1e-3 * W * (W * t).cos();
+        let dy = |t: f64| 1e-3 * (2.0 * W * t).sin();
+        let vy = |t: f64| 2e-3 * W * (2.0 * W * t).cos();
+        let against = |t: f64| -vx(t);
+        let thousandfold = |t: f64| 1e3 * vx(t);
+        use Role::{DisplacementX, DisplacementY, VelocityX, VelocityY};
+        assert!(codes(&[(DisplacementX, &dx), (VelocityX, &vx)]).is_empty());
+        assert_eq!(codes(&[(DisplacementX, &dx), (VelocityX, &against)]), ["opposite_sign"]);
+        assert_eq!(codes(&[(DisplacementX, &dx), (VelocityX, &thousandfold)]), ["scales_contradict"]);
+        let good = [
+            (DisplacementX, &dx as &dyn Fn(f64) -> f64),
+            (DisplacementY, &dy),
+            (VelocityX, &vx),
+            (VelocityY, &vy),
+        ];
+        assert!(codes(&good).is_empty());
+        let swapped = [
+            (DisplacementX, &dx as &dyn Fn(f64) -> f64),
+            (DisplacementY, &dy),
+            (VelocityX, &vy),
+            (VelocityY, &vx),
+        ];
+        assert_eq!(codes(&swapped), ["swapped_masses"]);
+    }
+}

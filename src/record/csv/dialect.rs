@@ -1,0 +1,166 @@
+//! How a text table is written, told from its first lines.
+
+use crate::record::text::table::{Cells, Separator};
+use crate::record::text::{clock, decode, number};
+
+/// First characters that make a line a comment.
+pub const COMMENTS: &[u8] = b"#%!";
+/// Lines at the end of the head by which the dialect is judged.
+const JUDGED_LINES: usize = 60;
+
+/// How a table is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Dialect {
+    /// What stands between two cells.
+    pub separator: Separator,
+    /// The decimal mark.
+    pub decimal: u8,
+    /// Number of columns.
+    pub columns: usize,
+}
+
+/// Dialects in the order in which they are preferred when they explain a text equally well.
+const CANDIDATES: [(Separator, u8); 9] = [
+    (Separator::Byte(b'\t'), b'.'),
+    (Separator::Byte(b';'), b'.'),
+    (Separator::Byte(b','), b'.'),
+    (Separator::Byte(b'|'), b'.'),
+    (Separator::Blanks, b'.'),
+    (Separator::Byte(b'\t'), b','),
+    (Separator::Byte(b';'), b','),
+    (Separator::Byte(b'|'), b','),
+    (Separator::Blanks, b','),
+];
+
+/// The dialect that explains the lines best; `None` where none makes a table of them.
+///
+/// `lines` are the first lines of the file without blank lines and comments. The last of them
+/// count: a preamble stands before the table.
+pub fn detect(lines: &[&[u8]]) -> Option<Dialect> {
+    let judged = &lines[lines.len().saturating_sub(JUDGED_LINES)..];
+    // A preamble in a short file must not outvote the table: its second half decides.
+    let judged = &judged[judged.len() / 2..];
+    let mut best: Option<(f64, Dialect)> = None;
+    for (separator, decimal) in CANDIDATES {
+        let Some((score, columns)) = score(judged, separator, decimal) else {
+            continue;
+        };
+        if best.is_none_or(|(b, _)| score > b + 1e-9) {
+            best = Some((
+                score,
+                Dialect {
+                    separator,
+                    decimal,
+                    columns,
+                },
+            ));
+        }
+    }
+    best.map(|(_, dialect)| dialect)
+}
+
+/// How well a dialect explains lines: the share of lines with the usual number of cells times
+/// the share of filled cells that hold a value; and that number of cells.
+fn score(lines: &[&[u8]], separator: Separator, decimal: u8) -> Option<(f64, usize)> {
+    let widths: Vec<usize> = lines
+        .iter()
+        .map(|l| Cells::new(l, separator).count())
+        .collect();
+    let columns = usual(&widths)?;
+    let consistent = widths.iter().filter(|&&w| w == columns).count() as f64;
+    let (mut filled, mut values) = (0usize, 0usize);
+    for cell in lines
+        .iter()
+        .flat_map(|l| Cells::new(l, separator))
+        .filter(|c| !c.is_empty())
+    {
+        filled += 1;
+        values += usize::from(is_value(cell, decimal));
+    }
+    if values == 0 {
+        return None;
+    }
+    let score = consistent / lines.len() as f64 * values as f64 / filled as f64;
+    // Among equals the dialect that finds a table wins over the one that finds a column.
+    Some((score + if columns > 1 { 1e-6 } else { 0.0 }, columns))
+}
+
+/// The most frequent number, the greatest of several.
+fn usual(widths: &[usize]) -> Option<usize> {
+    let count = |w: usize| widths.iter().filter(|&&v| v == w).count();
+    widths.iter().copied().max_by_key(|&w| (count(w), w))
+}
+
+/// Whether a cell holds a number (or says that there is none) or a point in time.
+pub fn is_value(cell: &[u8], decimal: u8) -> bool {
+    if cell.is_empty() {
+        return false;
+    }
+    number::parse_cell(cell, decimal).is_some() || is_time(cell)
+}
+
+/// Whether a cell holds a point in time.
+pub fn is_time(cell: &[u8]) -> bool {
+    clock::parse(&decode(cell), false).is_some()
+}
+
+/// Whether a line is a row of values: some filled cells, most of them values, the first of
+/// the filled ones too.
+pub fn is_value_row(line: &[u8], dialect: &Dialect) -> bool {
+    let cells: Vec<&[u8]> = Cells::new(line, dialect.separator)
+        .filter(|c| !c.is_empty())
+        .collect();
+    let values = cells
+        .iter()
+        .filter(|c| is_value(c, dialect.decimal))
+        .count();
+    let width = Cells::new(line, dialect.separator).count();
+    let near = width.abs_diff(dialect.columns) <= dialect.columns / 2;
+    near && values > 0 && 2 * values >= cells.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Dialect {
+        let lines: Vec<&[u8]> = text.lines().map(str::as_bytes).collect();
+        detect(&lines).unwrap()
+    }
+
+    #[test]
+    fn valid_dialects_are_told_apart() {
+        let tab = Separator::Byte(b'\t');
+        let is = |text, separator, decimal, columns| {
+            assert_eq!(
+                of(text),
+                Dialect {
+                    separator,
+                    decimal,
+                    columns
+                },
+                "{text}"
+            );
+        };
+        is("a,b\n1.5,2\n2.5,3", Separator::Byte(b','), b'.', 2);
+        is("a;b\n1,5;2\n2,5;3", Separator::Byte(b';'), b',', 2);
+        is("1,5\t2\n2,5\t3", tab, b',', 2);
+        is("1.5\t2\n2.5\t3", tab, b'.', 2);
+        is(" 1.5   2\n 12.5  3", Separator::Blanks, b'.', 2);
+        is("1, 2, 3\n4, 5, 6", Separator::Byte(b','), b'.', 3);
+        is("1\n2\n3", tab, b'.', 1);
+        is("0,5\n0,7\n", Separator::Byte(b','), b'.', 2);
+        is(
+            "2024-05-01 12:00:00;1,5\n2024-05-01 12:00:01;1,6",
+            Separator::Byte(b';'),
+            b',',
+            2,
+        );
+        is(
+            "t,x,note\n0,1,fine\n1,2,\n2,3,\"a, b\"\n3,4,",
+            Separator::Byte(b','),
+            b'.',
+            3,
+        );
+    }
+}

@@ -1,0 +1,166 @@
+use super::*;
+use std::io::Write;
+
+fn file(bytes: &[u8]) -> tempfile::NamedTempFile {
+    let mut file = tempfile::Builder::new().suffix(".csv").tempfile().unwrap();
+    file.write_all(bytes).unwrap();
+    file
+}
+
+fn source(bytes: &[u8]) -> Box<dyn Source> {
+    open(file(bytes).path()).unwrap()
+}
+
+fn real(source: &dyn Source, channel: usize) -> Vec<f64> {
+    source
+        .read(0, &[channel])
+        .unwrap()
+        .remove(0)
+        .into_real()
+        .unwrap()
+}
+
+#[test]
+fn valid_plain_table_with_units_in_the_header() {
+    let s = source(b"time [s],velocity_x [mm/s],note\n0,1.5,a\n0.0005,,\"b, c\"\n0.001,2.5,\n");
+    let info = &s.datasets()[0];
+    assert_eq!(info.time_axis, Some(0));
+    assert_eq!(info.channels[1].unit.as_deref(), Some("mm/s"));
+    assert!((info.sample_rate_hz().unwrap() - 2000.0).abs() < 1e-9);
+    let v = real(&*s, 1);
+    assert_eq!((v[0], v[1].is_nan(), v[2]), (1.5, true, 2.5));
+    assert_eq!(
+        s.read(0, &[2]).unwrap()[0],
+        Samples::Text(vec!["a".into(), "b, c".into(), String::new()])
+    );
+}
+
+#[test]
+fn valid_decimal_comma_with_units_in_a_second_line_and_a_mark() {
+    let text = "\u{feff}# clearance_m: 0,001\nčas;rychlost\nms;mm/s\n0;1,25\n0,5;-2,5e1\n1;3\n";
+    let s = source(text.as_bytes());
+    let info = &s.datasets()[0];
+    assert_eq!(info.channels[0].name, "čas");
+    assert_eq!(info.channels[1].unit.as_deref(), Some("mm/s"));
+    assert_eq!(info.attributes["clearance_m"], "0,001");
+    assert!((info.sample_rate_hz().unwrap() - 2000.0).abs() < 1e-9);
+    assert_eq!(real(&*s, 1), [1.25, -25.0, 3.0]);
+}
+
+#[test]
+fn valid_utf16_and_windows_line_ends() {
+    let text = "t;x [µm]\r\n0;1\r\n1;2\r\n";
+    let bytes: Vec<u8> = [0xFF, 0xFE]
+        .into_iter()
+        .chain(text.encode_utf16().flat_map(u16::to_le_bytes))
+        .collect();
+    let s = source(&bytes);
+    assert_eq!(s.datasets()[0].channels[1].unit.as_deref(), Some("µm"));
+    assert_eq!(real(&*s, 1), [1.0, 2.0]);
+}
+
+#[test]
+fn valid_points_in_time_become_seconds() {
+    let s = source(
+        b"when,x\n2024-05-01 23:59:59.5,1\n2024-05-02 00:00:00.0,2\n2024-05-02 00:00:00.5,3\n",
+    );
+    let info = &s.datasets()[0];
+    assert_eq!(info.time_axis, Some(0));
+    assert_eq!(
+        info.channels[1].start_time.as_deref(),
+        Some("2024-05-01T23:59:59.5")
+    );
+    assert_eq!(info.sample_rate_hz(), Some(2.0));
+    assert_eq!(real(&*s, 0), [0.0, 0.5, 1.0]);
+    let s = source(b"Time\tx\n23:59:59\t1\n00:00:00\t2\n00:00:01\t3\n");
+    assert_eq!(real(&*s, 0), [0.0, 1.0, 2.0]);
+}
+
+#[test]
+fn valid_table_without_header_and_with_stated_rate() {
+    let s = source(b"# sample_rate_hz = 2000\n1.5 2\n2.5 3\n3.5 7\n");
+    let info = &s.datasets()[0];
+    assert_eq!(info.channels[1].name, "column_2");
+    assert_eq!(real(&*s, 1), [2.0, 3.0, 7.0]);
+    let s = source(b"# sample_rate_hz = 2000\n1\n3\n2\n");
+    assert_eq!(s.datasets()[0].sample_rate_hz(), Some(2000.0));
+}
+
+#[test]
+fn valid_a_wrong_cell_is_named_and_located() {
+    let s = source(b"t,x\n0,1\n1,2\n2,4..5\n3,4\n4,5\n5,6\n6,7\n");
+    let error = s.read(0, &[1]).unwrap_err();
+    assert_eq!(error.channel.as_deref(), Some("x"));
+    assert_eq!(error.byte, Some(14));
+    assert!(error.found.contains("4..5"), "{error}");
+    let s = source(b"t,x\n0,1\n1,2\n2,4,9\n3,4\n4,5\n5,6\n6,7\n");
+    assert!(
+        s.read(0, &[0])
+            .unwrap_err()
+            .found
+            .contains("further cell '9'")
+    );
+}
+
+#[test]
+fn valid_files_that_are_no_table_are_refused() {
+    for bytes in [
+        &b""[..],
+        b"hello world\n",
+        b"# only a comment\n",
+        b"\x00\x01\x02",
+    ] {
+        assert!(open(file(bytes).path()).is_err(), "{bytes:?}");
+    }
+    let wide = format!("{}\n", vec!["1"; 500].join(","));
+    let short = format!("{}{}", wide.repeat(70), "1\n".repeat(50_000));
+    assert!(open(file(short.as_bytes()).path()).is_err());
+}
+
+#[test]
+fn valid_blocks_join_without_a_seam() {
+    let mut text = String::from("t,x,y\n");
+    for i in 0..60_000 {
+        text.push_str(&format!(
+            "{:.4},{},{:.6}\n",
+            f64::from(i) * 1e-4,
+            i,
+            f64::from(i) * 0.25
+        ));
+    }
+    let s = source(text.as_bytes());
+    let all = s.read(0, &[2, 1, 1]).unwrap();
+    let y = all[0].clone().into_real().unwrap();
+    assert_eq!(y.len(), 60_000);
+    assert!(y.iter().enumerate().all(|(i, v)| *v == i as f64 * 0.25));
+    assert_eq!(all[1], all[2]);
+    assert!((s.datasets()[0].sample_rate_hz().unwrap() - 1e4).abs() < 1e-6);
+}
+
+fn shared_data() -> Option<std::path::PathBuf> {
+    let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
+    if !dir.is_dir() {
+        println!("skipped: ../shared/data is absent");
+        return None;
+    }
+    Some(dir)
+}
+
+#[test]
+fn valid_cart_and_blade_spring_records() {
+    let Some(dir) = shared_data() else { return };
+    let s = open(&dir.join("pasco_cart_bouncing_on_stop/csv/cart_run07.csv")).unwrap();
+    let info = &s.datasets()[0];
+    assert_eq!(info.time_axis, Some(0));
+    assert_eq!(info.channels.len(), 11);
+    assert!((info.sample_rate_hz().unwrap() - 20.0).abs() < 1e-6);
+    assert!(real(&*s, 1)[0].is_nan());
+    let s = open(&dir.join("unb_cantilever_sdof/first_experiment/massa1/test1-1/tps.txt")).unwrap();
+    let info = &s.datasets()[0];
+    assert_eq!(info.time_axis, Some(0));
+    assert_eq!(info.channels[2].name, "column_3");
+    let rate = info.sample_rate_hz().unwrap();
+    // 4107 steps in 2.48666 s.
+    assert!((rate - 1651.613).abs() < 1e-3, "{rate}");
+    assert_eq!(real(&*s, 3)[0], -0.190312);
+}

@@ -1,0 +1,453 @@
+//! MATLAB files of level 7.3: HDF5 with MATLAB's conventions. Their variables are arranged to
+//! datasets and channels as those of the older levels are.
+//!
+//! An array lies in the file with its dimensions reversed, so that its bytes are MATLAB's own
+//! order, column by column. Structs are groups, cells and struct arrays are arrays of references.
+
+use crate::record::hdf5::element::{Element, Stride};
+use crate::record::hdf5::store::{Array, Attr, Attrs, DEEPEST, MOST_OBJECTS, Store, Target, Tree};
+use crate::record::mat::arrange::{Origin, Slice};
+use crate::record::mat::text;
+use crate::record::mat::tree::{Content, Encoding, Leaf, Part, Place, Tree as Variables, Variable};
+use crate::record::numbers::{ByteOrder, Number};
+use crate::record::source::Samples;
+
+/// Groups at the root that are MATLAB's own.
+const OWN_GROUPS: [&str; 2] = ["#refs#", "#subsystem#"];
+
+/// Whether a tree follows MATLAB's conventions.
+pub fn is_matlab(tree: &Tree) -> bool {
+    let classed = |attributes: &Attrs| attributes.contains_key("MATLAB_class");
+    tree.arrays.iter().any(|a| classed(&a.attributes))
+        || tree
+            .groups
+            .iter()
+            .any(|g| classed(&g.attributes) || g.path == OWN_GROUPS[0])
+}
+
+/// The variables of a file, and the arrays to which the places of their leaves refer.
+pub struct Found {
+    /// As the older levels' readers find them.
+    pub variables: Variables,
+    /// The array of each leaf: [`Part::at`] counts them.
+    pub arrays: Vec<Array>,
+}
+
+/// Find all variables.
+///
+/// # Errors
+/// Where references lead nowhere or too deep.
+pub fn find(store: &dyn Store, tree: &Tree) -> Result<Found, String> {
+    let found = Found {
+        variables: Variables::default(),
+        arrays: Vec::new(),
+    };
+    let mut walk = Walk {
+        store,
+        found,
+        visited: 0,
+    };
+    for array in &tree.arrays {
+        walk.variable(&array.name);
+        walk.array(array, &Way::to(&array.name))?;
+    }
+    for group in tree
+        .groups
+        .iter()
+        .filter(|g| !OWN_GROUPS.contains(&g.path.as_str()))
+    {
+        walk.variable(&group.path);
+        walk.group(group, &Way::to(&group.path))?;
+    }
+    Ok(walk.found)
+}
+
+/// The way that leads to an array.
+#[derive(Debug, Clone)]
+struct Way {
+    name: String,
+    tail: String,
+    element: Option<u64>,
+    depth: usize,
+}
+
+impl Way {
+    fn to(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            tail: String::new(),
+            element: None,
+            depth: 0,
+        }
+    }
+
+    fn child(&self, suffix: &str) -> Self {
+        Self {
+            name: format!("{}{suffix}", self.name),
+            tail: format!("{}{suffix}", self.tail),
+            element: self.element,
+            depth: self.depth + 1,
+        }
+    }
+
+    /// The way to an element of a container of `count`; a single one is the container itself.
+    fn element(&self, index: usize, count: usize, dims: &[u64], brackets: [char; 2]) -> Self {
+        if count == 1 {
+            return Self {
+                depth: self.depth + 1,
+                ..self.clone()
+            };
+        }
+        let child = self.child(&subscript(dims, index as u64, brackets));
+        match self.depth {
+            0 => Self {
+                element: Some(index as u64),
+                tail: String::new(),
+                ..child
+            },
+            _ => child,
+        }
+    }
+
+    fn leaf_tail(&self) -> String {
+        let tail = self.tail.trim_start_matches('.');
+        if tail.is_empty() {
+            self.name.clone()
+        } else {
+            tail.to_owned()
+        }
+    }
+}
+
+/// `(2)` for a vector, `(2,1)` otherwise, counted from 1.
+fn subscript(dims: &[u64], mut index: u64, [open, close]: [char; 2]) -> String {
+    if dims.iter().filter(|&&d| d != 1).count() <= 1 {
+        return format!("{open}{}{close}", index + 1);
+    }
+    let mut parts = Vec::new();
+    for &dim in dims {
+        parts.push((index % dim.max(1) + 1).to_string());
+        index /= dim.max(1);
+    }
+    format!("{open}{}{close}", parts.join(","))
+}
+
+struct Walk<'a> {
+    store: &'a dyn Store,
+    found: Found,
+    visited: usize,
+}
+
+impl Walk<'_> {
+    fn variable(&mut self, name: &str) {
+        self.found.variables.variables.push(Variable {
+            name: name.to_owned(),
+            place: Place::Plain,
+            order: ByteOrder::Little,
+            elements: 1,
+        });
+    }
+
+    fn current(&self) -> usize {
+        self.found.variables.variables.len().saturating_sub(1)
+    }
+
+    fn visit(&mut self, way: &Way) -> Result<(), String> {
+        self.visited += 1;
+        if way.depth > DEEPEST || self.visited > MOST_OBJECTS {
+            return Err(format!(
+                "'{}': more or deeper nested values than are believed",
+                way.name
+            ));
+        }
+        Ok(())
+    }
+
+    /// A struct, a struct array, or a sparse matrix.
+    fn group(&mut self, group: &Tree, way: &Way) -> Result<(), String> {
+        self.visit(way)?;
+        if group.attributes.contains_key("MATLAB_sparse") {
+            self.found
+                .variables
+                .refused
+                .push((way.name.clone(), "sparse"));
+            return Ok(());
+        }
+        let references =
+            |a: &&Array| a.element == Element::Reference && class(&a.attributes).is_empty();
+        let several: Vec<&Array> = group.arrays.iter().filter(references).collect();
+        if let Some(first) = several.first()
+            && several.len() == group.arrays.len()
+        {
+            return self.struct_array(&several, first, way);
+        }
+        for name in field_order(group) {
+            if let Some(array) = group.arrays.iter().find(|a| a.name == name) {
+                self.array(array, &way.child(&format!(".{name}")))?;
+            } else if let Some(inner) = group.groups.iter().find(|g| last(&g.path) == name) {
+                self.group(inner, &way.child(&format!(".{name}")))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Fields that are arrays of references, one for each element.
+    fn struct_array(&mut self, fields: &[&Array], first: &Array, way: &Way) -> Result<(), String> {
+        let dims = reversed(&first.shape);
+        let mut columns = Vec::new();
+        for field in fields {
+            columns.push((field.name.clone(), self.store.targets(field)?));
+        }
+        let count = columns.iter().map(|(_, t)| t.len()).max().unwrap_or(0);
+        if way.depth == 0 {
+            let current = self.current();
+            self.found.variables.variables[current].elements = count as u64;
+        }
+        let mut columns: Vec<_> = columns
+            .into_iter()
+            .map(|(n, t)| (n, t.into_iter()))
+            .collect();
+        for index in 0..count {
+            let element = way.element(index, count, &dims, ['(', ')']);
+            for (name, targets) in &mut columns {
+                if let Some(Some(target)) = targets.next() {
+                    self.target(target, &element.child(&format!(".{name}")))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn target(&mut self, target: Target, way: &Way) -> Result<(), String> {
+        match target {
+            Target::Array(array) => self.array(&array, way),
+            Target::Group(group) => self.group(&group, way),
+        }
+    }
+
+    fn array(&mut self, array: &Array, way: &Way) -> Result<(), String> {
+        self.visit(way)?;
+        if array.attributes.contains_key("MATLAB_object_decode") {
+            self.found
+                .variables
+                .refused
+                .push((way.name.clone(), "opaque object"));
+            return Ok(());
+        }
+        if array.element == Element::Reference && !array.attributes.contains_key("MATLAB_empty") {
+            return self.cell(array, way);
+        }
+        self.leaf(array, way)
+    }
+
+    fn cell(&mut self, array: &Array, way: &Way) -> Result<(), String> {
+        let dims = reversed(&array.shape);
+        let targets = self.store.targets(array)?;
+        let count = targets.len();
+        if way.depth == 0 {
+            let current = self.current();
+            self.found.variables.variables[current].elements = count as u64;
+        }
+        for (index, target) in targets.into_iter().enumerate() {
+            if let Some(target) = target {
+                self.target(target, &way.element(index, count, &dims, ['{', '}']))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn leaf(&mut self, array: &Array, way: &Way) -> Result<(), String> {
+        let name = class(&array.attributes);
+        let at = self.found.arrays.len() as u64;
+        let dims = self.dims(array)?;
+        let Some(content) = content(array, &name, at) else {
+            let note = format!(
+                "'{}' left out: {:?} of class '{name}'",
+                way.name, array.element
+            );
+            self.found.variables.notes.push(note);
+            return Ok(());
+        };
+        let mut leaf = Leaf {
+            variable: self.current(),
+            element: way.element,
+            name: way.name.clone(),
+            tail: way.leaf_tail(),
+            dims,
+            content,
+            class: static_class(&name),
+            logical: name == "logical",
+            value: None,
+        };
+        if leaf.count() == 1 || (!leaf.is_numeric() && leaf.count() > 0) {
+            let store = self.store;
+            leaf.value = text::short_value(&leaf, ByteOrder::Little, |_| {
+                Ok(little(array, store.raw(array).unwrap_or_default()))
+            })
+            .unwrap_or(None);
+        }
+        self.found.arrays.push(array.clone());
+        self.found.variables.leaves.push(leaf);
+        Ok(())
+    }
+
+    /// MATLAB's dimensions; an empty array's data are its dimensions.
+    fn dims(&self, array: &Array) -> Result<Vec<u64>, String> {
+        if !array.attributes.contains_key("MATLAB_empty") {
+            let mut dims = reversed(&array.shape);
+            dims.resize(dims.len().max(2), 1);
+            return Ok(dims);
+        }
+        Ok(vec![0, 0])
+    }
+}
+
+fn class(attributes: &Attrs) -> String {
+    attributes
+        .get("MATLAB_class")
+        .map(Attr::text)
+        .unwrap_or_default()
+}
+
+fn reversed(shape: &[u64]) -> Vec<u64> {
+    shape.iter().rev().copied().collect()
+}
+
+fn last(path: &str) -> &str {
+    path.rsplit('/').next().unwrap_or(path)
+}
+
+/// The fields of a struct in MATLAB's order where the file states it.
+fn field_order(group: &Tree) -> Vec<String> {
+    let arrays = group.arrays.iter().map(|a| a.name.clone());
+    let mut names: Vec<String> = arrays
+        .chain(group.groups.iter().map(|g| last(&g.path).to_owned()))
+        .collect();
+    if let Some(Attr::Text(stated)) = group.attributes.get("MATLAB_fields") {
+        names.sort_by_key(|n| stated.iter().position(|s| s == n).unwrap_or(usize::MAX));
+    }
+    names
+}
+
+/// What an array holds: numbers, or characters of 16 bits.
+fn content(array: &Array, class: &str, at: u64) -> Option<Content> {
+    let bytes = array.count()?.checked_mul(array.element.bytes() as u64)?;
+    match (&array.element, class) {
+        (element, "char") => {
+            let part = Part {
+                at,
+                bytes,
+                number: number(element)?,
+            };
+            Some(Content::Text(part, Encoding::Utf16))
+        }
+        (Element::Complex { part, .. }, _) => {
+            let bits = 8 * part.bytes() as u8;
+            let part = Part {
+                at,
+                bytes,
+                number: number(part)?,
+            };
+            Some(Content::Complex(part, part, bits))
+        }
+        (element, _) => Some(Content::Real(Part {
+            at,
+            bytes,
+            number: number(element)?,
+        })),
+    }
+}
+
+fn number(element: &Element) -> Option<Number> {
+    Some(match element {
+        Element::Int {
+            bytes: 1,
+            signed: true,
+            ..
+        } => Number::I8,
+        Element::Int {
+            bytes: 2,
+            signed: true,
+            ..
+        } => Number::I16,
+        Element::Int {
+            bytes: 4,
+            signed: true,
+            ..
+        } => Number::I32,
+        Element::Int {
+            bytes: 8,
+            signed: true,
+            ..
+        } => Number::I64,
+        Element::Int { bytes: 1, .. } => Number::U8,
+        Element::Int { bytes: 2, .. } => Number::U16,
+        Element::Int { bytes: 4, .. } => Number::U32,
+        Element::Int { bytes: 8, .. } => Number::U64,
+        Element::Float { bytes: 4, .. } => Number::F32,
+        Element::Float { bytes: 8, .. } => Number::F64,
+        _ => return None,
+    })
+}
+
+fn static_class(name: &str) -> &'static str {
+    const CLASSES: [&str; 12] = [
+        "char", "double", "single", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64",
+        "uint64", "logical",
+    ];
+    CLASSES
+        .iter()
+        .find(|c| **c == name)
+        .copied()
+        .unwrap_or("array")
+}
+
+/// An array's bytes with the least significant byte of each number first.
+fn little(array: &Array, mut raw: Vec<u8>) -> Vec<u8> {
+    if let Element::Int {
+        bytes, big: true, ..
+    }
+    | Element::Float { bytes, big: true } = array.element
+    {
+        raw.chunks_exact_mut(bytes).for_each(<[u8]>::reverse);
+    }
+    raw
+}
+
+/// The samples that an origin names, from its array's bytes. `None`: the bytes are too few.
+pub fn extract(leaf: &Leaf, array: &Array, origin: Origin, raw: &[u8]) -> Option<Samples> {
+    if leaf.count() == 0 {
+        return Some(if leaf.is_numeric() {
+            Samples::Real(Vec::new())
+        } else {
+            Samples::Text(Vec::new())
+        });
+    }
+    if !leaf.is_numeric() {
+        return Some(Samples::Text(text::rows(
+            leaf,
+            &little(array, raw.to_vec()),
+            ByteOrder::Little,
+        )));
+    }
+    let size = array.element.bytes();
+    let (rows, count) = (leaf.dims[0] as usize, leaf.count() as usize);
+    let stride = match origin.slice {
+        Slice::Whole => Stride {
+            first: 0,
+            step: size,
+            count,
+        },
+        Slice::Column(c) => Stride {
+            first: c as usize * rows * size,
+            step: size,
+            count: rows,
+        },
+        Slice::Row(r) => Stride {
+            first: r as usize * size,
+            step: rows * size,
+            count: count / rows.max(1),
+        },
+    };
+    array.element.decode(raw, stride)
+}

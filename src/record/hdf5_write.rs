@@ -1,0 +1,524 @@
+//! Writing records to HDF5: one table a record, self-describing, packed.
+//!
+//! The layout is described in `docs/formats.md` and is what [`crate::record::hdf5`] reads back:
+//! a two-dimensional dataset samples × channels for each record, with the attributes `channels`,
+//! `units`, `sample_rate_hz` and whatever the record states besides. Tables of converter counts
+//! are kept as 16-bit integers with `scale` and `offset`: value = count · scale + offset.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use ::hdf5::{AttrValue, DatasetBuilder, FileBuilder, FinishedGroup, GroupBuilder};
+
+/// Version of the layout, written as `impactid_layout` into the file.
+pub const LAYOUT_VERSION: i64 = 1;
+/// Rows of a chunk.
+const CHUNK_ROWS: u64 = 4096;
+/// Effort of packing: higher ones gain little on noisy signals.
+const DEFLATE_LEVEL: u32 = 4;
+
+/// Why a campaign could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// The file system refused.
+    #[error("{}: {source}. Check that the folder exists, is writable and has room.", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The record cannot be laid out.
+    #[error("record '{record}': {reason}")]
+    Record {
+        /// The record's name.
+        record: String,
+        /// What is wrong with it and what to do.
+        reason: String,
+    },
+    /// The HDF5 library refused.
+    #[error("{}: {reason}", path.display())]
+    Library {
+        /// The file.
+        path: PathBuf,
+        /// What the library said.
+        reason: String,
+    },
+}
+
+/// An attribute's value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// A number.
+    Number(f64),
+    /// A text.
+    Text(String),
+}
+
+impl From<f64> for Value {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<&str> for Value {
+    fn from(text: &str) -> Self {
+        Self::Text(text.to_owned())
+    }
+}
+
+impl From<String> for Value {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
+
+/// The samples of a channel as they are to be stored.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Stored {
+    /// Numbers in the channel's unit.
+    Numbers(Vec<f64>),
+    /// Converter counts: value = count · scale + offset in the channel's unit.
+    Counts {
+        /// The counts.
+        counts: Vec<i16>,
+        /// Unit per count.
+        scale: f64,
+        /// Value of count zero.
+        offset: f64,
+    },
+}
+
+impl Stored {
+    fn len(&self) -> usize {
+        match self {
+            Self::Numbers(v) => v.len(),
+            Self::Counts { counts, .. } => counts.len(),
+        }
+    }
+}
+
+/// A channel to be written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColumnToWrite {
+    /// Its name.
+    pub name: String,
+    /// Its unit; empty for none.
+    pub unit: String,
+    /// Its samples.
+    pub samples: Stored,
+}
+
+impl ColumnToWrite {
+    /// A channel of numbers.
+    pub fn numbers(name: impl Into<String>, unit: impl Into<String>, values: Vec<f64>) -> Self {
+        Self {
+            name: name.into(),
+            unit: unit.into(),
+            samples: Stored::Numbers(values),
+        }
+    }
+}
+
+/// A record to be written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordTable {
+    /// Name, unique in the file; slashes make groups.
+    pub name: String,
+    /// Samples per second, Hz; `None` where it is unknown or the channels differ in it.
+    pub sample_rate_hz: Option<f64>,
+    /// Its channels.
+    pub channels: Vec<ColumnToWrite>,
+    /// Further attributes with their unit in the name: `clearance_m`, `drive_frequency_hz`, …
+    pub attributes: Vec<(String, Value)>,
+}
+
+/// Collects records; nothing is at the path before [`CampaignWriter::finish`].
+pub struct CampaignWriter {
+    path: PathBuf,
+    attributes: Vec<(String, Value)>,
+    root: Folder,
+    single_precision: bool,
+}
+
+/// A group to be: records and further groups.
+#[derive(Default)]
+struct Folder {
+    names: BTreeSet<String>,
+    records: Vec<RecordTable>,
+    folders: BTreeMap<String, Folder>,
+}
+
+impl CampaignWriter {
+    /// Begin a file. Numbers are kept in double precision; see
+    /// [`CampaignWriter::single_precision`].
+    pub fn create(path: &Path) -> Self {
+        Self {
+            path: path.to_path_buf(),
+            attributes: Vec::new(),
+            root: Folder::default(),
+            single_precision: false,
+        }
+    }
+
+    /// Keep numbers in single precision.
+    #[must_use]
+    pub fn single_precision(mut self) -> Self {
+        self.single_precision = true;
+        self
+    }
+
+    /// An attribute of the whole file, inherited by all records.
+    pub fn attribute(&mut self, name: &str, value: impl Into<Value>) -> &mut Self {
+        self.attributes.push((name.to_owned(), value.into()));
+        self
+    }
+
+    /// Add a record.
+    ///
+    /// Channels of one length, all numbers or all counts, become a table; others a group of
+    /// arrays.
+    ///
+    /// # Errors
+    /// Where the name is empty or taken, or there is no channel.
+    pub fn add(&mut self, mut record: RecordTable) -> Result<(), WriteError> {
+        let wrong = |reason: &str, record: &RecordTable| WriteError::Record {
+            record: record.name.clone(),
+            reason: reason.into(),
+        };
+        let parts: Vec<String> = record.name.split('/').map(str::to_owned).collect();
+        if parts.iter().any(|p| p.is_empty() || p == ".") {
+            return Err(wrong("a part of its name is empty; give it one", &record));
+        }
+        if record.channels.is_empty() {
+            return Err(wrong("it has no channels; leave it out", &record));
+        }
+        let (leaf, folders) = parts
+            .split_last()
+            .ok_or_else(|| wrong("it has no name", &record))?;
+        let folder = folders.iter().fold(&mut self.root, |folder, name| {
+            folder.folders.entry(name.clone()).or_default()
+        });
+        let taken = folder.folders.contains_key(leaf) || folder.names.contains(leaf);
+        if taken {
+            return Err(wrong(
+                "the file already holds one of this name; name it otherwise",
+                &record,
+            ));
+        }
+        folder.names.insert(leaf.clone());
+        record.name.clone_from(leaf);
+        folder.records.push(record);
+        Ok(())
+    }
+
+    /// Write the file under a temporary name beside the path, then rename it.
+    ///
+    /// # Errors
+    /// Where the file system or the library refuses; nothing is left then.
+    pub fn finish(self) -> Result<(), WriteError> {
+        let io = |source| WriteError::Io {
+            path: self.path.clone(),
+            source,
+        };
+        let mut builder = FileBuilder::new();
+        builder.set_attr("impactid_layout", AttrValue::I64(LAYOUT_VERSION));
+        for (name, value) in &self.attributes {
+            builder.set_attr(name, attr(value));
+        }
+        for record in self.root.records {
+            if is_table(&record) {
+                table(
+                    builder.create_dataset(&record.name),
+                    &record,
+                    self.single_precision,
+                );
+            } else {
+                let group = arrays(
+                    builder.create_group(&record.name),
+                    &record,
+                    self.single_precision,
+                );
+                builder.add_group(group);
+            }
+        }
+        for (name, folder) in self.root.folders {
+            let group = builder.create_group(&name);
+            builder.add_group(fill(group, folder, self.single_precision));
+        }
+        let file = temporary_beside(&self.path).map_err(io)?;
+        builder
+            .finish_to(std::io::BufWriter::new(file.as_file()))
+            .map_err(|e| WriteError::Library {
+                path: self.path.clone(),
+                reason: e.to_string(),
+            })?;
+        file.persist(&self.path).map(drop).map_err(|e| io(e.error))
+    }
+}
+
+/// A temporary file in the folder of a path, to be renamed to it; readable as new files are.
+///
+/// # Errors
+/// Where the folder is absent or not writable.
+pub fn temporary_beside(path: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+    let folder = path
+        .parent()
+        .filter(|p| !p.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".impactid-");
+    #[cfg(unix)]
+    let builder = {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(std::fs::Permissions::from_mode(0o666))
+    };
+    builder.tempfile_in(folder)
+}
+
+/// Put a folder's records and folders into a group.
+fn fill(mut group: GroupBuilder, folder: Folder, single: bool) -> FinishedGroup {
+    for record in folder.records {
+        if is_table(&record) {
+            table(group.create_dataset(&record.name), &record, single);
+        } else {
+            let own = arrays(group.create_group(&record.name), &record, single);
+            group.add_group(own);
+        }
+    }
+    for (name, folder) in folder.folders {
+        let inner = fill(group.create_group(&name), folder, single);
+        group.add_group(inner);
+    }
+    group.finish()
+}
+
+/// Whether all channels fit one table: of one length, all numbers or all counts.
+fn is_table(record: &RecordTable) -> bool {
+    let counts = |c: &ColumnToWrite| matches!(c.samples, Stored::Counts { .. });
+    record
+        .channels
+        .windows(2)
+        .all(|w| w[0].samples.len() == w[1].samples.len() && counts(&w[0]) == counts(&w[1]))
+        && record.channels.len() > 1
+        && record.channels[0].samples.len() > 1
+}
+
+fn attr(value: &Value) -> AttrValue {
+    match value {
+        Value::Number(number) => AttrValue::F64(*number),
+        Value::Text(text) => AttrValue::String(text.clone()),
+    }
+}
+
+/// A record as one dataset samples × channels.
+fn table(dataset: &mut DatasetBuilder, record: &RecordTable, single: bool) {
+    let rows = record.channels.first().map_or(0, |c| c.samples.len());
+    let columns = record.channels.len();
+    match &record.channels[0].samples {
+        Stored::Counts { .. } => {
+            dataset.with_i16_data(&interleaved(record, rows, |s, i| match s {
+                Stored::Counts { counts, .. } => counts[i],
+                Stored::Numbers(_) => 0,
+            }));
+            scales(dataset, record);
+        }
+        Stored::Numbers(_) if single => {
+            dataset.with_f32_data(&interleaved(record, rows, |s, i| number(s, i) as f32));
+        }
+        Stored::Numbers(_) => {
+            dataset.with_f64_data(&interleaved(record, rows, number));
+        }
+    }
+    dataset.with_shape(&[rows as u64, columns as u64]);
+    pack(
+        dataset,
+        &[(rows as u64).clamp(1, CHUNK_ROWS), columns as u64],
+    );
+    let names = record.channels.iter().map(|c| c.name.clone()).collect();
+    let units = record.channels.iter().map(|c| c.unit.clone()).collect();
+    dataset.set_attr("channels", AttrValue::StringArray(names));
+    dataset.set_attr("units", AttrValue::StringArray(units));
+    for (name, value) in described(record) {
+        dataset.set_attr(&name, value);
+    }
+}
+
+/// Scale and offset of each channel of counts.
+fn scales(dataset: &mut DatasetBuilder, record: &RecordTable) {
+    let (scale, offset) = record
+        .channels
+        .iter()
+        .map(|c| match c.samples {
+            Stored::Counts { scale, offset, .. } => (scale, offset),
+            Stored::Numbers(_) => (1.0, 0.0),
+        })
+        .unzip();
+    dataset.set_attr("scale", AttrValue::F64Array(scale));
+    dataset.set_attr("offset", AttrValue::F64Array(offset));
+}
+
+fn number(samples: &Stored, i: usize) -> f64 {
+    match samples {
+        Stored::Numbers(values) => values[i],
+        Stored::Counts {
+            counts,
+            scale,
+            offset,
+        } => f64::from(counts[i]) * scale + offset,
+    }
+}
+
+/// The channels' samples row by row.
+fn interleaved<T>(record: &RecordTable, rows: usize, of: impl Fn(&Stored, usize) -> T) -> Vec<T> {
+    (0..rows)
+        .flat_map(|i| record.channels.iter().map(move |c| (c, i)))
+        .map(|(c, i)| of(&c.samples, i))
+        .collect()
+}
+
+fn pack(dataset: &mut DatasetBuilder, chunk: &[u64]) {
+    dataset
+        .with_chunks(chunk)
+        .with_shuffle()
+        .with_deflate(DEFLATE_LEVEL);
+}
+
+/// The attributes that describe a record.
+fn described(record: &RecordTable) -> Vec<(String, AttrValue)> {
+    let rate = record
+        .sample_rate_hz
+        .map(|r| ("sample_rate_hz".to_owned(), AttrValue::F64(r)));
+    let own = record.attributes.iter().map(|(n, v)| (n.clone(), attr(v)));
+    rate.into_iter().chain(own).collect()
+}
+
+/// A record as a group of one-dimensional datasets.
+fn arrays(mut group: GroupBuilder, record: &RecordTable, single: bool) -> FinishedGroup {
+    for (name, value) in described(record) {
+        group.set_attr(&name, value);
+    }
+    for channel in &record.channels {
+        // A slash would make a group of the channel.
+        let dataset = group.create_dataset(&channel.name.replace('/', "_"));
+        match &channel.samples {
+            Stored::Counts {
+                counts,
+                scale,
+                offset,
+            } => {
+                dataset.with_i16_data(counts);
+                dataset.set_attr("scale", AttrValue::F64(*scale));
+                dataset.set_attr("offset", AttrValue::F64(*offset));
+            }
+            Stored::Numbers(values) if single => {
+                let values: Vec<f32> = values.iter().map(|v| *v as f32).collect();
+                dataset.with_f32_data(&values);
+            }
+            Stored::Numbers(values) => {
+                dataset.with_f64_data(values);
+            }
+        }
+        if channel.samples.len() > 0 {
+            pack(dataset, &[(channel.samples.len() as u64).min(CHUNK_ROWS)]);
+        }
+        dataset.set_attr("units", AttrValue::String(channel.unit.clone()));
+    }
+    group.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::hdf5;
+    use crate::record::source::Samples;
+
+    fn counts(name: &str, counts: Vec<i16>) -> ColumnToWrite {
+        let samples = Stored::Counts {
+            counts,
+            scale: 0.25,
+            offset: -1.0,
+        };
+        ColumnToWrite {
+            name: name.into(),
+            unit: "mm/s".into(),
+            samples,
+        }
+    }
+
+    fn record(name: &str, channels: Vec<ColumnToWrite>) -> RecordTable {
+        let attributes = vec![
+            ("clearance_m".into(), 1e-3.into()),
+            ("sweep".into(), "up".into()),
+        ];
+        RecordTable {
+            name: name.into(),
+            sample_rate_hz: Some(2000.0),
+            channels,
+            attributes,
+        }
+    }
+
+    #[test]
+    fn valid_what_is_written_comes_back() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("campaign.h5");
+        let mut writer = CampaignWriter::create(&path);
+        writer.attribute("rig", "synthetic");
+        let ramp: Vec<i16> = (0..5000).map(|i| (i % 4096 - 2048) as i16).collect();
+        writer
+            .add(record(
+                "up/run1",
+                vec![counts("x", ramp.clone()), counts("y", ramp.clone())],
+            ))
+            .unwrap();
+        let v: Vec<f64> = (0..50).map(|i| f64::from(i) / 3.0).collect();
+        let numbers = |n: &str| ColumnToWrite::numbers(n, "m/s", v.clone());
+        writer
+            .add(record("run2", vec![numbers("x"), numbers("y")]))
+            .unwrap();
+        writer
+            .add(record(
+                "run3",
+                vec![numbers("x"), counts("y", ramp.clone())],
+            ))
+            .unwrap();
+        assert!(writer.add(record("run2", vec![numbers("x")])).is_err());
+        assert!(writer.add(record("a//b", vec![numbers("x")])).is_err());
+        assert!(!path.exists());
+        writer.finish().unwrap();
+        let source = hdf5::open(&path).unwrap();
+        let names: Vec<&str> = source.datasets().iter().map(|d| d.name.as_str()).collect();
+        assert_eq!(names, ["run2", "run3", "up/run1"]);
+        for info in source.datasets() {
+            assert_eq!(info.sample_rate_hz(), Some(2000.0));
+            assert_eq!(info.attributes["clearance_m"], "0.001");
+            assert_eq!(info.attributes["rig"], "synthetic");
+            assert_eq!(info.channels[1].name, "y");
+        }
+        assert_eq!(
+            source.datasets()[2].channels[0].unit.as_deref(),
+            Some("mm/s")
+        );
+        let scaled = ramp.iter().map(|c| f64::from(*c) * 0.25 - 1.0).collect();
+        assert_eq!(source.read(2, &[1]).unwrap()[0], Samples::Real(scaled));
+        assert_eq!(source.read(0, &[0]).unwrap()[0], Samples::Real(v.clone()));
+        assert_eq!(source.read(1, &[0]).unwrap()[0], Samples::Real(v));
+        assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn valid_a_folder_that_is_absent_is_named() {
+        let mut writer = CampaignWriter::create(Path::new("/nowhere/at/all.h5"));
+        writer
+            .add(record("r", vec![counts("x", vec![1, 2])]))
+            .unwrap();
+        assert!(
+            writer
+                .finish()
+                .unwrap_err()
+                .to_string()
+                .contains("/nowhere/at/all.h5")
+        );
+    }
+}

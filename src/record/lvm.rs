@@ -1,0 +1,410 @@
+//! LabVIEW measurement files (LVM): a header, then one or more tables with headers of their own.
+
+pub mod scan;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use crate::record::lvm::scan::{Keys, Scan, Segment};
+use crate::record::rate;
+use crate::record::source::{
+    self, ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType,
+};
+use crate::record::text::table::{self, Cells, Kind, Layout, Lines, Separator};
+use crate::record::text::{TextFile, number};
+
+/// Bytes of a table's head from which its rate is told.
+const HEAD_BYTES: usize = 1 << 15;
+
+struct LvmSource {
+    text: TextFile,
+    tables: Vec<Table>,
+    datasets: Vec<DatasetInfo>,
+    notes: Vec<String>,
+}
+
+/// A table: how it is written and which of its columns are channels.
+struct Table {
+    layout: Layout,
+    columns: Vec<usize>,
+    rows: usize,
+}
+
+/// What a column of a table holds.
+#[derive(Clone, Copy, PartialEq)]
+enum Column {
+    /// X values for the channels from this number on.
+    X(usize),
+    /// The channel of this number.
+    Y(usize),
+    /// Remarks.
+    Comment,
+}
+
+/// Open a LabVIEW measurement file.
+///
+/// # Errors
+/// Where the file cannot be read, a header does not end, or there are no rows.
+pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
+    let text = TextFile::open(path)?;
+    let Scan {
+        keys,
+        separator,
+        segments,
+        notes,
+    } = scan::scan(&text)?;
+    let many = segments.len() > 1;
+    let mut source = LvmSource {
+        text,
+        tables: Vec::new(),
+        datasets: Vec::new(),
+        notes,
+    };
+    for (i, segment) in segments.iter().enumerate() {
+        let name = if many {
+            format!("segment_{}", i + 1)
+        } else {
+            String::new()
+        };
+        source.add(name, &keys, separator, segment)?;
+    }
+    Ok(Box::new(source))
+}
+
+impl LvmSource {
+    fn add(
+        &mut self,
+        name: String,
+        keys: &Keys,
+        separator: Separator,
+        segment: &Segment,
+    ) -> Result<(), ReadError> {
+        let head = self.text.range(
+            segment.start,
+            HEAD_BYTES.min((segment.end - segment.start) as usize),
+        )?;
+        let columns = columns(keys, segment, &head, separator);
+        self.refuse_ragged(segment, columns.len())?;
+        let layout = layout(keys, separator, segment, &columns, &head);
+        let remarks = has_remarks(&layout, &columns, &head);
+        let shown: Vec<usize> = (0..columns.len())
+            .filter(|&i| match columns[i] {
+                Column::X(_) => keys
+                    .get("X_Columns")
+                    .and_then(|v| v.first())
+                    .is_none_or(|v| v != "No"),
+                Column::Y(_) => true,
+                Column::Comment => remarks,
+            })
+            .collect();
+        let mut info = DatasetInfo {
+            name,
+            time_axis: shown
+                .iter()
+                .position(|&i| columns[i] == Column::X(0) && x_is_time(segment, 0)),
+            channels: shown
+                .iter()
+                .map(|&i| channel(keys, segment, &layout, columns[i], i))
+                .collect(),
+            attributes: attributes(keys, segment),
+        };
+        self.rates(&mut info, segment, &layout, &columns, &shown, &head)?;
+        self.datasets.push(info);
+        self.tables.push(Table {
+            layout,
+            columns: shown,
+            rows: segment.rows as usize,
+        });
+        Ok(())
+    }
+
+    fn refuse_ragged(&self, segment: &Segment, columns: usize) -> Result<(), ReadError> {
+        if segment.rows.saturating_mul(columns as u64) <= 2 * (segment.end - segment.start) + 1024 {
+            return Ok(());
+        }
+        let found = format!("{} rows that are much shorter", segment.rows);
+        let remedy = "Split the file where its number of columns changes.";
+        Err(ReadError::new(
+            self.text.path(),
+            format!("rows of {columns} cells"),
+            found,
+            remedy,
+        )
+        .at(segment.start))
+    }
+
+    /// Rates from the X columns, which are more exact than the printed step; else from the step.
+    fn rates(
+        &self,
+        info: &mut DatasetInfo,
+        segment: &Segment,
+        layout: &Layout,
+        columns: &[Column],
+        shown: &[usize],
+        head: &[u8],
+    ) -> Result<(), ReadError> {
+        let tail = self.text.range(segment.last, HEAD_BYTES)?;
+        let end: Vec<&[u8]> = Lines::new(&tail, false)
+            .next()
+            .map_or(Vec::new(), |(_, l)| {
+                Cells::new(l, layout.separator).collect()
+            });
+        let mut measured = BTreeMap::new();
+        for &i in shown {
+            if let Column::X(first) = columns[i] {
+                let values = x_values(layout, head, i);
+                let last = end
+                    .get(i)
+                    .and_then(|c| number::parse_cell(c, layout.decimal));
+                measured.insert(first, rate::from_axis(&values, last, segment.rows));
+            }
+        }
+        for (channel, &i) in info.channels.iter_mut().zip(shown) {
+            let (Column::X(n) | Column::Y(n)) = columns[i] else {
+                continue;
+            };
+            let own = measured.range(..=n).next_back().and_then(|(_, r)| *r);
+            let step = nth(&segment.keys, "Delta_X", n).and_then(|s| decimal_any(&s));
+            let rate = own
+                .or(step.map(|s| 1.0 / s))
+                .filter(|r| r.is_finite() && *r > 0.0);
+            channel.sample_rate_hz = rate.filter(|_| x_is_time(segment, n));
+        }
+        Ok(())
+    }
+}
+
+/// The value of a header key for a channel; a single value holds for all.
+fn nth(keys: &Keys, key: &str, n: usize) -> Option<String> {
+    let values: Vec<&String> = keys.get(key)?.iter().collect();
+    let packed: Vec<&String> = values.iter().copied().filter(|v| !v.is_empty()).collect();
+    // With an X column for each channel the header has an empty cell for each of them.
+    let sparse = values.iter().filter(|v| !v.is_empty()).count() * 2 <= values.len() + 1;
+    let found = if sparse { packed.get(n) } else { values.get(n) };
+    found
+        .or(packed.first().filter(|_| packed.len() == 1))
+        .map(|v| (*v).clone())
+        .filter(|v| !v.is_empty())
+}
+
+/// A number with either decimal mark.
+fn decimal_any(text: &str) -> Option<f64> {
+    number::parse_cell(text.as_bytes(), b'.').or_else(|| number::parse_cell(text.as_bytes(), b','))
+}
+
+fn x_is_time(segment: &Segment, n: usize) -> bool {
+    nth(&segment.keys, "X_Dimension", n).is_none_or(|d| d.trim() == "Time")
+}
+
+/// The columns that the headings, or else the number of channels, make.
+fn columns(keys: &Keys, segment: &Segment, head: &[u8], separator: Separator) -> Vec<Column> {
+    let multi = keys
+        .get("X_Columns")
+        .and_then(|v| v.first())
+        .is_some_and(|v| v == "Multi");
+    let first_row = Lines::new(head, false).find(|(_, l)| !l.trim_ascii().is_empty());
+    let cells = first_row.map_or(0, |(_, l)| Cells::new(l, separator).count());
+    let filled = segment
+        .headings
+        .iter()
+        .rposition(|h| !h.is_empty())
+        .map_or(0, |i| i + 1);
+    let stated = keys_channels(segment).map_or(0, |n| if multi { 2 * n } else { n + 1 });
+    let comment = filled > 0 && segment.headings[filled - 1] == "Comment";
+    let numbers = if filled > 0 {
+        filled - usize::from(comment)
+    } else {
+        stated.max(cells)
+    };
+    let mut columns: Vec<Column> = (0..numbers)
+        .map(|i| match (multi, i) {
+            (true, i) if i % 2 == 0 => Column::X(i / 2),
+            (true, i) => Column::Y(i / 2),
+            (false, 0) => Column::X(0),
+            (false, i) => Column::Y(i - 1),
+        })
+        .collect();
+    columns.push(Column::Comment);
+    columns
+}
+
+fn keys_channels(segment: &Segment) -> Option<usize> {
+    let stated: usize = segment.keys.get("Channels")?.first()?.trim().parse().ok()?;
+    // More channels than the header has cells for are no channels.
+    let cells = segment.keys.values().map(Vec::len).max().unwrap_or(0);
+    Some(stated.min(cells))
+}
+
+fn layout(
+    keys: &Keys,
+    separator: Separator,
+    segment: &Segment,
+    columns: &[Column],
+    head: &[u8],
+) -> Layout {
+    let kinds = columns.iter().map(|c| {
+        if *c == Column::Comment {
+            Kind::Text
+        } else {
+            Kind::Number
+        }
+    });
+    let names = (0..columns.len()).map(|i| segment.headings.get(i).cloned().unwrap_or_default());
+    Layout {
+        separator,
+        decimal: decimal(keys, separator, head),
+        kinds: kinds.collect(),
+        names: names.collect(),
+        start: segment.start,
+        end: segment.end,
+        quotes: false,
+        month_first: false,
+        comments: b"",
+    }
+}
+
+/// The decimal mark that the header states; a header without it leaves it to the rows.
+fn decimal(keys: &Keys, separator: Separator, head: &[u8]) -> u8 {
+    let stated = keys
+        .get("Decimal_Separator")
+        .and_then(|v| v.iter().find(|v| !v.is_empty()));
+    match stated.and_then(|v| v.bytes().next()) {
+        Some(mark @ (b'.' | b',')) => mark,
+        _ if separator != Separator::Byte(b',')
+            && head.contains(&b',')
+            && !head.contains(&b'.') =>
+        {
+            b','
+        }
+        _ => b'.',
+    }
+}
+
+/// Whether a row in the head of the table has a remark.
+fn has_remarks(layout: &Layout, columns: &[Column], head: &[u8]) -> bool {
+    let Some(at) = columns.iter().position(|c| *c == Column::Comment) else {
+        return false;
+    };
+    Lines::new(head, false).any(|(_, l)| {
+        Cells::new(l, layout.separator)
+            .nth(at)
+            .is_some_and(|c| !c.is_empty())
+    })
+}
+
+fn x_values(layout: &Layout, head: &[u8], column: usize) -> Vec<f64> {
+    Lines::new(head, false)
+        .filter_map(|(_, l)| Cells::new(l, layout.separator).nth(column))
+        .filter_map(|c| number::parse_cell(c, layout.decimal))
+        .filter(|v| v.is_finite())
+        .take(rate::HEAD_SAMPLES)
+        .collect()
+}
+
+fn channel(
+    keys: &Keys,
+    segment: &Segment,
+    layout: &Layout,
+    column: Column,
+    i: usize,
+) -> ChannelInfo {
+    let own = |key: &str, n: usize| nth(&segment.keys, key, n);
+    let (unit, stored, n) = match column {
+        Column::X(n) => (x_unit(segment, n), StoredType::Float(64), Some(n)),
+        Column::Y(n) => (own("Y_Unit_Label", n), StoredType::Float(64), Some(n)),
+        Column::Comment => (None, StoredType::Text, None),
+    };
+    let name = match (&layout.names[i], column) {
+        (name, _) if !name.is_empty() => name.clone(),
+        (_, Column::X(_)) => "X_Value".to_owned(),
+        (_, Column::Y(n)) => format!("column_{}", n + 1),
+        (_, Column::Comment) => "Comment".to_owned(),
+    };
+    let properties = ["Samples", "X_Dimension", "X0", "Delta_X"]
+        .iter()
+        .filter_map(|k| Some(((*k).to_owned(), own(k, n?)?)))
+        .collect();
+    let start = n
+        .and_then(|n| start_time(&segment.keys, n))
+        .or_else(|| start_time(keys, 0));
+    ChannelInfo {
+        name,
+        unit,
+        stored,
+        samples: segment.rows,
+        sample_rate_hz: None,
+        start_time: start,
+        properties,
+    }
+}
+
+fn x_unit(segment: &Segment, n: usize) -> Option<String> {
+    match nth(&segment.keys, "X_Dimension", n)?.trim() {
+        "Time" => Some("s".to_owned()),
+        "Frequency" => Some("Hz".to_owned()),
+        _ => None,
+    }
+}
+
+/// Date and time of a header as ISO 8601.
+fn start_time(keys: &Keys, n: usize) -> Option<String> {
+    let date = nth(keys, "Date", n)?.replace('/', "-");
+    let time = nth(keys, "Time", n)?.replace(',', ".");
+    Some(format!("{date}T{time}"))
+}
+
+/// What the headers say of the whole table.
+fn attributes(keys: &Keys, segment: &Segment) -> BTreeMap<String, String> {
+    let own = [
+        "Notes",
+        "Test_Name",
+        "Test_Numbers",
+        "Test_Series",
+        "UUT_Name",
+        "UUT_M/N",
+        "UUT_S/N",
+    ];
+    let of_segment = segment
+        .keys
+        .iter()
+        .filter(|(k, _)| own.contains(&k.as_str()));
+    keys.iter()
+        .filter(|(k, _)| {
+            !matches!(
+                k.as_str(),
+                scan::FIRST_WORDS | "Separator" | "Decimal_Separator"
+            )
+        })
+        .chain(of_segment)
+        .map(|(k, v)| (k.clone(), v.join(" ").trim().to_owned()))
+        .filter(|(_, v)| !v.is_empty())
+        .collect()
+}
+
+impl Source for LvmSource {
+    fn format(&self) -> &'static str {
+        "lvm"
+    }
+
+    fn path(&self) -> &Path {
+        self.text.path()
+    }
+
+    fn datasets(&self) -> &[DatasetInfo] {
+        &self.datasets
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
+        source::requested(self, dataset, channels)?;
+        let table = &self.tables[dataset];
+        let wanted: Vec<usize> = channels.iter().map(|&c| table.columns[c]).collect();
+        table::read_columns(&self.text, &table.layout, &wanted, table.rows)
+    }
+}
+
+#[cfg(test)]
+mod tests;

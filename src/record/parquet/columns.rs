@@ -1,0 +1,372 @@
+//! Columns of a Parquet file as samples, through polars.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+use polars::prelude::{
+    ArrowDataType, ArrowField, ArrowTimeUnit, DataType, PlSmallStr, PolarsResult, Series,
+    polars_bail,
+};
+use polars_io::SerReader;
+use polars_io::parquet::read::{_internal::to_deserializer, FileMetadata, ParquetReader};
+
+use crate::record::parquet::shape::Range;
+use crate::record::source::{ReadError, Samples, StoredType};
+use crate::record::text::clock::Stamp;
+use crate::record::text::read_exact_at;
+
+/// A column that is asked for in parts is kept whole up to this size.
+const KEPT_BYTES: u64 = 1 << 28;
+/// More rows than this for each byte of the file are no data.
+const MOST_ROWS_PER_BYTE: u64 = 1024;
+
+/// A column's name and type.
+#[derive(Debug, Clone)]
+pub struct Field {
+    /// Its name as written.
+    pub name: String,
+    /// How its samples are stored; `None`: a type that is not read.
+    pub stored: Option<StoredType>,
+    /// The type by which its pages are decoded.
+    physical: ArrowDataType,
+    /// Ticks per second of a point in time.
+    ticks_per_second: f64,
+}
+
+/// A file's columns.
+pub struct Columns {
+    path: PathBuf,
+    file: File,
+    length: u64,
+    metadata: Arc<FileMetadata>,
+    fields: Vec<Field>,
+    rows: u64,
+    attributes: BTreeMap<String, String>,
+    kept: Vec<OnceLock<Arc<Samples>>>,
+}
+
+impl Columns {
+    /// Read a file's footer.
+    ///
+    /// # Errors
+    /// Where it is damaged or states more rows than the file can hold.
+    pub fn open(path: &Path) -> Result<Self, ReadError> {
+        let file = File::open(path).map_err(|e| ReadError::io(path, &e))?;
+        let length = file.metadata().map_err(|e| ReadError::io(path, &e))?.len();
+        let handle = file.try_clone().map_err(|e| ReadError::io(path, &e))?;
+        let (fields, metadata) = guarded(path, || {
+            let mut reader = ParquetReader::new(handle);
+            let schema = reader.schema()?;
+            let fields = schema
+                .iter_values()
+                .map(|f| Field::new(f.name.to_string(), &f.dtype));
+            Ok((
+                fields.collect::<Vec<_>>(),
+                Arc::clone(reader.get_metadata()?),
+            ))
+        })?;
+        let rows: u64 = metadata
+            .row_groups
+            .iter()
+            .map(|g| g.num_rows() as u64)
+            .sum();
+        let pairs = metadata.key_value_metadata().iter().flatten();
+        let attributes = pairs
+            .filter(|p| p.key != "ARROW:schema")
+            .filter_map(|p| Some((p.key.clone(), p.value.clone()?)))
+            .collect();
+        if rows > length.saturating_mul(MOST_ROWS_PER_BYTE) {
+            let expected = format!(
+                "at most {} rows in {length} bytes",
+                length.saturating_mul(MOST_ROWS_PER_BYTE)
+            );
+            return Err(ReadError::new(
+                path,
+                expected,
+                format!("{rows} rows"),
+                "Copy the file anew.",
+            ));
+        }
+        let kept = fields.iter().map(|_| OnceLock::new()).collect();
+        Ok(Self {
+            path: path.to_path_buf(),
+            file,
+            length,
+            metadata,
+            fields,
+            rows,
+            attributes,
+            kept,
+        })
+    }
+
+    /// The columns, in file order.
+    pub fn fields(&self) -> &[Field] {
+        &self.fields
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> u64 {
+        self.rows
+    }
+
+    /// The first point in time of a column as ISO 8601, where it holds dates.
+    pub fn first_time(&self, column: usize, rows: &[Range]) -> Option<String> {
+        let field = &self.fields[column];
+        let row = rows.first()?.0;
+        if field.stored != Some(StoredType::Time) {
+            return None;
+        }
+        let mut first = 0;
+        let number = self.metadata.row_groups.iter().position(|g| {
+            let here = (first..first + g.num_rows() as u64).contains(&row);
+            first += if here { 0 } else { g.num_rows() as u64 };
+            here
+        })?;
+        let values = self.group(field, number).ok()?.into_real()?;
+        let seconds = values.get((row - first) as usize)? / field.ticks_per_second;
+        let days = (seconds / 86_400.0).floor();
+        Some(
+            Stamp {
+                days: Some(days as i64),
+                seconds: seconds - days * 86_400.0,
+            }
+            .iso(),
+        )
+    }
+
+    /// What the footer states besides.
+    pub fn attributes(&self) -> &BTreeMap<String, String> {
+        &self.attributes
+    }
+
+    /// A note for each column that is not read.
+    pub fn left_out(&self) -> Vec<String> {
+        let unread = self.fields.iter().filter(|f| f.stored.is_none());
+        unread
+            .map(|f| format!("column '{}' left out: its type is not read", f.name))
+            .collect()
+    }
+
+    /// The samples of a column in some ranges of rows.
+    ///
+    /// # Errors
+    /// Where the file's pages are damaged.
+    pub fn read(&self, column: usize, ranges: &[Range]) -> Result<Samples, ReadError> {
+        if ranges == [(0, self.rows)] {
+            return self.load(column, (0, self.rows));
+        }
+        if self.rows * 8 > KEPT_BYTES
+            && let [range] = ranges
+        {
+            return self.load(column, *range);
+        }
+        let whole = match self.kept[column].get() {
+            Some(whole) => Arc::clone(whole),
+            None => {
+                let loaded = Arc::new(self.load(column, (0, self.rows))?);
+                Arc::clone(self.kept[column].get_or_init(|| loaded))
+            }
+        };
+        Ok(pick(&whole, ranges))
+    }
+
+    /// The texts of a column; numbers are written out.
+    pub fn texts(&self, column: usize) -> Result<Vec<String>, ReadError> {
+        Ok(match self.load(column, (0, self.rows))? {
+            Samples::Text(texts) => texts,
+            Samples::Real(values) => values.iter().map(f64::to_string).collect(),
+            Samples::Complex(_) => Vec::new(),
+        })
+    }
+
+    /// Decode the row groups that a range of rows touches, one after the other.
+    fn load(&self, column: usize, range: Range) -> Result<Samples, ReadError> {
+        let field = &self.fields[column];
+        let mut parts = Vec::new();
+        let mut first = 0;
+        for number in 0..self.metadata.row_groups.len() {
+            let rows = self.metadata.row_groups[number].num_rows() as u64;
+            if first < range.0 + range.1 && first + rows > range.0 {
+                let group = self
+                    .group(field, number)
+                    .map_err(|e| e.channel(&field.name))?;
+                let from = range.0.saturating_sub(first);
+                let to = (range.0 + range.1 - first).min(rows);
+                parts.push(pick(&group, &[(from, to - from)]));
+            }
+            first += rows;
+        }
+        Ok(joined(parts, field))
+    }
+
+    /// One column of one row group.
+    fn group(&self, field: &Field, number: usize) -> Result<Samples, ReadError> {
+        let group = &self.metadata.row_groups[number];
+        let damaged =
+            |found: String| ReadError::new(&self.path, "a complete Parquet file", found, REMEDY);
+        let chunks: Vec<_> = group
+            .columns_under_root_iter(&field.name)
+            .into_iter()
+            .flatten()
+            .collect();
+        let mut pages = Vec::new();
+        for chunk in chunks {
+            let span = chunk.byte_range();
+            if span.start > span.end || span.end > self.length {
+                return Err(
+                    damaged(format!("pages from byte {} to {}", span.start, span.end))
+                        .at(span.start),
+                );
+            }
+            let mut bytes = vec![0; (span.end - span.start) as usize];
+            read_exact_at(&self.file, &mut bytes, span.start)
+                .map_err(|e| ReadError::io(&self.path, &e))?;
+            pages.push((chunk, bytes.into()));
+        }
+        let samples = guarded(&self.path, || {
+            let name = PlSmallStr::from_str(&field.name);
+            let arrow = ArrowField::new(name.clone(), field.physical.clone(), true);
+            let (arrays, _) = to_deserializer(pages, arrow, None)?;
+            samples(&Series::try_from((name, arrays))?)
+        })?;
+        match samples.len() == group.num_rows() {
+            true => Ok(samples),
+            false => Err(damaged(format!(
+                "{} rows where the footer says {}",
+                samples.len(),
+                group.num_rows()
+            ))),
+        }
+    }
+}
+
+/// Parts of a column as one; points in time become seconds since the first.
+fn joined(parts: Vec<Samples>, field: &Field) -> Samples {
+    let mut parts = parts.into_iter();
+    let mut all = parts.next().unwrap_or(Samples::Real(Vec::new()));
+    for part in parts {
+        match (&mut all, part) {
+            (Samples::Real(all), Samples::Real(part)) => all.extend(part),
+            (Samples::Text(all), Samples::Text(part)) => all.extend(part),
+            _ => {}
+        }
+    }
+    if let (Samples::Real(values), Some(StoredType::Time)) = (&mut all, field.stored) {
+        let origin = values.iter().copied().find(|v| !v.is_nan()).unwrap_or(0.0);
+        values
+            .iter_mut()
+            .for_each(|v| *v = (*v - origin) / field.ticks_per_second);
+    }
+    all
+}
+
+const REMEDY: &str = "Copy the file anew, or write it again with the program that made it.";
+
+/// Run the library; its errors, and its panics on damaged files, become errors of ours.
+fn guarded<T>(path: &Path, run: impl FnOnce() -> PolarsResult<T>) -> Result<T, ReadError> {
+    let damaged = |found: String| ReadError::new(path, "a complete Parquet file", found, REMEDY);
+    match catch_unwind(AssertUnwindSafe(run)) {
+        Ok(result) => result.map_err(|e| damaged(e.to_string())),
+        Err(_) => Err(damaged("pages that contradict each other".to_owned())),
+    }
+}
+
+impl Field {
+    fn new(name: String, datatype: &ArrowDataType) -> Self {
+        use ArrowDataType as A;
+        let ticks = |unit: &ArrowTimeUnit| match unit {
+            ArrowTimeUnit::Second => 1.0,
+            ArrowTimeUnit::Millisecond => 1e3,
+            ArrowTimeUnit::Microsecond => 1e6,
+            ArrowTimeUnit::Nanosecond => 1e9,
+        };
+        let text = |d: &A| matches!(d, A::Utf8 | A::LargeUtf8 | A::Utf8View);
+        let (stored, physical, ticks_per_second) = match datatype {
+            A::Int8 => (Some(StoredType::Int(8)), A::Int32, 1.0),
+            A::Int16 => (Some(StoredType::Int(16)), A::Int32, 1.0),
+            A::Int32 => (Some(StoredType::Int(32)), A::Int32, 1.0),
+            A::Int64 => (Some(StoredType::Int(64)), A::Int64, 1.0),
+            A::UInt8 => (Some(StoredType::UInt(8)), A::Int32, 1.0),
+            A::UInt16 => (Some(StoredType::UInt(16)), A::Int32, 1.0),
+            A::UInt32 => (Some(StoredType::UInt(32)), A::UInt32, 1.0),
+            A::UInt64 => (Some(StoredType::UInt(64)), A::UInt64, 1.0),
+            A::Float32 => (Some(StoredType::Float(32)), A::Float32, 1.0),
+            A::Float64 => (Some(StoredType::Float(64)), A::Float64, 1.0),
+            A::Boolean => (Some(StoredType::Bool), A::Boolean, 1.0),
+            A::Timestamp(unit, _) | A::Time64(unit) | A::Duration(unit) => {
+                (Some(StoredType::Time), A::Int64, ticks(unit))
+            }
+            A::Time32(unit) => (Some(StoredType::Time), A::Int32, ticks(unit)),
+            A::Date32 => (Some(StoredType::Time), A::Int32, 1.0 / 86_400.0),
+            A::Dictionary(_, inner, _) if text(inner) => (Some(StoredType::Text), A::Utf8View, 1.0),
+            other if text(other) => (Some(StoredType::Text), A::Utf8View, 1.0),
+            other => (None, other.clone(), 1.0),
+        };
+        Self {
+            name,
+            stored,
+            physical,
+            ticks_per_second,
+        }
+    }
+}
+
+/// A column's samples; missing numbers are NaN, missing texts empty.
+fn samples(series: &Series) -> PolarsResult<Samples> {
+    macro_rules! numbers {
+        ($chunked:expr) => {{
+            let mut values = Vec::with_capacity($chunked.len());
+            for chunk in $chunked.downcast_iter() {
+                match chunk.validity() {
+                    None => values.extend(chunk.values().iter().map(|v| *v as f64)),
+                    Some(_) => {
+                        values.extend(chunk.iter().map(|v| v.map_or(f64::NAN, |v| *v as f64)))
+                    }
+                }
+            }
+            Samples::Real(values)
+        }};
+    }
+    Ok(match series.dtype() {
+        DataType::String => {
+            let texts = series
+                .str()?
+                .iter()
+                .map(|t| t.unwrap_or_default().to_owned());
+            Samples::Text(texts.collect())
+        }
+        DataType::Boolean => {
+            let truths = series
+                .bool()?
+                .iter()
+                .map(|b| b.map_or(f64::NAN, |b| f64::from(u8::from(b))));
+            Samples::Real(truths.collect())
+        }
+        DataType::Int32 => numbers!(series.i32()?),
+        DataType::Int64 => numbers!(series.i64()?),
+        DataType::UInt32 => numbers!(series.u32()?),
+        DataType::UInt64 => numbers!(series.u64()?),
+        DataType::Float32 => numbers!(series.f32()?),
+        DataType::Float64 => numbers!(series.f64()?),
+        other => polars_bail!(ComputeError: "{other} is not read"),
+    })
+}
+
+fn pick(whole: &Samples, ranges: &[Range]) -> Samples {
+    fn parts<T: Clone>(all: &[T], ranges: &[Range]) -> Vec<T> {
+        ranges
+            .iter()
+            .flat_map(|&(from, count)| &all[from as usize..(from + count) as usize])
+            .cloned()
+            .collect()
+    }
+    match whole {
+        Samples::Real(all) => Samples::Real(parts(all, ranges)),
+        Samples::Complex(all) => Samples::Complex(parts(all, ranges)),
+        Samples::Text(all) => Samples::Text(parts(all, ranges)),
+    }
+}

@@ -1,0 +1,202 @@
+//! Points in time as instruments print them: dates, times of day, both together.
+
+/// A point in time: days since 1970-01-01 where a date is given, and seconds of the day.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stamp {
+    /// Days since 1970-01-01; `None` for a time of day alone.
+    pub days: Option<i64>,
+    /// Seconds since midnight (or since the clock's zero).
+    pub seconds: f64,
+}
+
+impl Stamp {
+    /// Seconds from `origin` to this stamp; a clock that passed midnight gains a day.
+    pub fn since(self, origin: Stamp) -> f64 {
+        let days = match (self.days, origin.days) {
+            (Some(a), Some(b)) => (a - b) as f64,
+            _ => 0.0,
+        };
+        days * 86_400.0 + (self.seconds - origin.seconds)
+    }
+
+    /// ISO 8601 text: `2024-05-01T12:30:00.25`, or the time alone.
+    pub fn iso(self) -> String {
+        let whole = self.seconds.floor();
+        let nanos = ((self.seconds - whole) * 1e9).round().min(999_999_999.0) as u32;
+        let s = whole as i64;
+        let mut text = format!("{:02}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+        if nanos > 0 {
+            text.push_str(format!(".{nanos:09}").trim_end_matches('0'));
+        }
+        match self.days.map(civil_of_days) {
+            Some((y, m, d)) => format!("{y:04}-{m:02}-{d:02}T{text}"),
+            None => text,
+        }
+    }
+}
+
+/// The stamp that a cell holds: `2024-05-01T12:00:00.5Z`, `1.5.2024 12:00:00,5`,
+/// `05/01/2024 1:00 PM`, `12:00:00`, `00:01.5`. `None`: the cell is no point in time.
+///
+/// `month_first` reads `05/01/2024` as the first of May; a number above 12 overrules it.
+pub fn parse(cell: &str, month_first: bool) -> Option<Stamp> {
+    let cell = cell.trim();
+    if cell.is_empty() || cell.len() > 48 || !cell.is_ascii() {
+        return None;
+    }
+    let (date, time) = match cell.find(['T', ' ']) {
+        Some(i) if parse_date(&cell[..i], month_first).is_some() => (&cell[..i], &cell[i + 1..]),
+        Some(_) => ("", cell),
+        None if parse_date(cell, month_first).is_some() => (cell, ""),
+        None => ("", cell),
+    };
+    let days = if date.is_empty() {
+        None
+    } else {
+        Some(parse_date(date, month_first)?)
+    };
+    let seconds = if time.is_empty() {
+        0.0
+    } else {
+        parse_time(time.trim())?
+    };
+    Some(Stamp { days, seconds })
+}
+
+/// Days since 1970-01-01 of a date in any of the usual orders.
+pub fn parse_date(text: &str, month_first: bool) -> Option<i64> {
+    let mark = text.bytes().find(|b| matches!(b, b'-' | b'/' | b'.'))? as char;
+    let mut parts = text.split(mark);
+    let [a, b, c] = [parts.next()?, parts.next()?, parts.next()?];
+    if parts.next().is_some() || [a, b, c].iter().any(|p| !is_digits(p, 4)) {
+        return None;
+    }
+    let [x, y, z]: [i64; 3] = [a.parse().ok()?, b.parse().ok()?, c.parse().ok()?];
+    let (year, month, day) = match (a.len(), c.len()) {
+        (4, _) => (x, y, z),
+        (_, 4) if (month_first && x <= 12) || y > 12 => (z, x, y),
+        (_, 4) => (z, y, x),
+        _ => return None,
+    };
+    ((1..=12).contains(&month) && (1..=31).contains(&day)).then(|| days_of_civil(year, month, day))
+}
+
+fn is_digits(text: &str, longest: usize) -> bool {
+    (1..=longest).contains(&text.len()) && text.bytes().all(|b| b.is_ascii_digit())
+}
+
+/// Seconds of `h:mm:ss.fff`, `mm:ss.fff`, either with AM or PM, `Z` or an offset (left out:
+/// all stamps of a file share it).
+pub fn parse_time(text: &str) -> Option<f64> {
+    let upper = text.to_ascii_uppercase();
+    let half_day = if upper.ends_with("PM") { 12.0 } else { 0.0 };
+    let twelve = upper.ends_with("AM") || upper.ends_with("PM");
+    let body = if twelve {
+        upper[..upper.len() - 2].trim_end()
+    } else {
+        upper.as_str()
+    };
+    let body = without_zone(body);
+    let parts: Vec<&str> = body.split(':').collect();
+    let (hours, minutes, seconds) = match parts[..] {
+        [h, m] if twelve => (h, m, "0"),
+        [m, s] if s.contains(['.', ',']) => ("0", m, s),
+        [h, m] => (h, m, "0"),
+        [h, m, s] => (h, m, s),
+        _ => return None,
+    };
+    let whole = seconds.split(['.', ',']).next()?;
+    if !is_digits(hours, 5) || !is_digits(minutes, 2) || !is_digits(whole, 2) {
+        return None;
+    }
+    let seconds: f64 = seconds.replace(',', ".").parse().ok()?;
+    let (hours, minutes): (f64, f64) = (hours.parse().ok()?, minutes.parse().ok()?);
+    let hours = if twelve {
+        hours % 12.0 + half_day
+    } else {
+        hours
+    };
+    (minutes < 60.0 && seconds < 61.0).then_some(hours * 3600.0 + minutes * 60.0 + seconds)
+}
+
+/// A time without its `Z` or `+01:00`.
+fn without_zone(text: &str) -> &str {
+    let text = text.trim_end_matches('Z');
+    match text.rfind(['+', '-']) {
+        Some(i) if i > 0 => &text[..i],
+        _ => text,
+    }
+}
+
+/// Days from 1970-01-01 to a date of the Gregorian calendar, counted in years that begin in
+/// March so that leap days fall at their ends.
+pub fn days_of_civil(year: i64, month: i64, day: i64) -> i64 {
+    let shifted = if month > 2 { year } else { year - 1 };
+    let month_from_march = (month + 9) % 12;
+    let leap_days = shifted.div_euclid(4) - shifted.div_euclid(100) + shifted.div_euclid(400);
+    // 719468 days lie between 0000-03-01 and 1970-01-01.
+    shifted * 365 + leap_days + (153 * month_from_march + 2) / 5 + day - 1 - 719_468
+}
+
+/// Year, month and day of a count of days since 1970-01-01.
+pub fn civil_of_days(days: i64) -> (i64, i64, i64) {
+    let mut year = 1970 + days.div_euclid(366);
+    while days_of_civil(year + 1, 1, 1) <= days {
+        year += 1;
+    }
+    let month = (2..=12)
+        .take_while(|&m| days_of_civil(year, m, 1) <= days)
+        .last()
+        .unwrap_or(1);
+    (year, month, days - days_of_civil(year, month, 1) + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn valid_stamps_in_the_usual_orders() {
+        let may = Some(days_of_civil(2024, 5, 1));
+        for (text, seconds) in [
+            ("2024-05-01T12:00:00.5Z", 43_200.5),
+            ("2024/05/01 12:00:00,5", 43_200.5),
+            ("1.5.2024 0:00:01", 1.0),
+            ("2024-05-01T12:00:00+02:00", 43_200.0),
+            ("2024-05-01", 0.0),
+            ("01/05/2024 01:00:00 PM", 46_800.0),
+        ] {
+            assert_eq!(
+                parse(text, false),
+                Some(Stamp { days: may, seconds }),
+                "{text}"
+            );
+        }
+        assert_eq!(parse("05/01/2024 1:00 PM", true).unwrap().days, may);
+        assert_eq!(parse("00:01.5", false).unwrap().seconds, 1.5);
+        assert_eq!(parse("10:45:47.25", false).unwrap().seconds, 38_747.25);
+        for text in ["1.5", "12", "", "a:b", "2024-13-01", "12:61:00", "-1:00:00"] {
+            assert_eq!(parse(text, false), None, "{text}");
+        }
+        assert_eq!(days_of_civil(1970, 1, 1), 0);
+        assert_eq!(days_of_civil(2000, 3, 1), 11_017);
+        assert_eq!(
+            parse("2024-05-01T12:00:00.5Z", false).unwrap().iso(),
+            "2024-05-01T12:00:00.5"
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn prop_dates_come_back(days in -700_000i64..700_000) {
+            let (y, m, d) = civil_of_days(days);
+            prop_assert_eq!(days_of_civil(y, m, d), days);
+        }
+
+        #[test]
+        fn prop_no_text_panics(text in ".{0,40}") {
+            let _ = parse(&text, false);
+        }
+    }
+}

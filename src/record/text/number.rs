@@ -1,0 +1,204 @@
+//! Decimal numbers from bytes, exactly rounded, fast for the lengths that instruments print.
+
+/// Powers of ten that binary64 holds exactly.
+const EXACT_POWERS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
+    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+];
+/// The greatest integer below which binary64 holds every integer.
+const EXACT_INTEGER: u64 = 1 << 53;
+
+/// A decimal number at the front of `bytes`: its value and the number of bytes it takes.
+///
+/// `decimal` is the decimal mark. Exponents are written with e, E, d or D. The value is the
+/// binary64 number nearest to the decimal one. `None`: no number stands there.
+#[inline]
+pub fn parse_prefix(bytes: &[u8], decimal: u8) -> Option<(f64, usize)> {
+    let mut i = 0;
+    let negative = match bytes.first() {
+        Some(b'-') => {
+            i = 1;
+            true
+        }
+        Some(b'+') => {
+            i = 1;
+            false
+        }
+        _ => false,
+    };
+    let mut mantissa = 0u64;
+    let first = i;
+    while let Some(digit) = digit_at(bytes, i) {
+        mantissa = mantissa.wrapping_mul(10).wrapping_add(digit);
+        i += 1;
+    }
+    let mut digits = i - first;
+    let mut exponent = 0i64;
+    if bytes.get(i) == Some(&decimal) {
+        let fraction = i + 1;
+        i = fraction;
+        while let Some(digit) = digit_at(bytes, i) {
+            mantissa = mantissa.wrapping_mul(10).wrapping_add(digit);
+            i += 1;
+        }
+        digits += i - fraction;
+        exponent = -((i - fraction) as i64);
+    }
+    if digits == 0 {
+        return None;
+    }
+    if let Some((power, end)) = exponent_at(bytes, i) {
+        exponent += power;
+        i = end;
+    }
+    let value = match exact(mantissa, digits, exponent) {
+        Some(value) => {
+            if negative {
+                -value
+            } else {
+                value
+            }
+        }
+        None => slow(&bytes[..i], decimal)?,
+    };
+    Some((value, i))
+}
+
+#[inline]
+fn digit_at(bytes: &[u8], i: usize) -> Option<u64> {
+    let digit = bytes.get(i)?.wrapping_sub(b'0');
+    (digit < 10).then_some(u64::from(digit))
+}
+
+/// The power of ten of an exponent at `i` and where it ends.
+#[inline]
+fn exponent_at(bytes: &[u8], i: usize) -> Option<(i64, usize)> {
+    if !matches!(bytes.get(i)?, b'e' | b'E' | b'd' | b'D') {
+        return None;
+    }
+    let sign = bytes.get(i + 1)?;
+    let mut end = i + 1 + usize::from(matches!(sign, b'+' | b'-'));
+    digit_at(bytes, end)?;
+    let mut power = 0i64;
+    while let Some(digit) = digit_at(bytes, end) {
+        power = (power * 10 + digit as i64).min(100_000);
+        end += 1;
+    }
+    Some((if *sign == b'-' { -power } else { power }, end))
+}
+
+/// mantissa · 10^exponent where one rounding gives the nearest number.
+#[inline]
+fn exact(mantissa: u64, digits: usize, exponent: i64) -> Option<f64> {
+    if digits > 19 || mantissa > EXACT_INTEGER || !(-22..=22).contains(&exponent) {
+        return None;
+    }
+    let power = EXACT_POWERS[exponent.unsigned_abs() as usize];
+    Some(if exponent < 0 {
+        mantissa as f64 / power
+    } else {
+        mantissa as f64 * power
+    })
+}
+
+/// The standard library's conversion, for long mantissas and great exponents.
+#[cold]
+fn slow(bytes: &[u8], decimal: u8) -> Option<f64> {
+    let mut short = [0u8; 64];
+    let mut long = Vec::new();
+    let text = if bytes.len() <= short.len() {
+        &mut short[..bytes.len()]
+    } else {
+        long.resize(bytes.len(), 0);
+        &mut long[..]
+    };
+    text.copy_from_slice(bytes);
+    for b in text.iter_mut() {
+        if *b == decimal {
+            *b = b'.';
+        } else if matches!(*b, b'd' | b'D') {
+            *b = b'e';
+        }
+    }
+    std::str::from_utf8(text).ok()?.parse().ok()
+}
+
+/// Tokens by which instruments say that there is no number.
+const MISSING: [&str; 14] = [
+    "", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---", "?", "*", "1.#qnan", "1.#ind",
+];
+
+/// A whole cell as a number: a decimal number, an infinity, or NaN for a cell that says that
+/// there is none. `None`: the cell holds something else.
+pub fn parse_cell(cell: &[u8], decimal: u8) -> Option<f64> {
+    let cell = cell.trim_ascii();
+    if let Some((value, end)) = parse_prefix(cell, decimal)
+        && end == cell.len()
+    {
+        return Some(value);
+    }
+    let text = std::str::from_utf8(cell).ok()?.to_ascii_lowercase();
+    if MISSING.contains(&text.as_str()) {
+        return Some(f64::NAN);
+    }
+    match text.trim_start_matches('+') {
+        "inf" | "infinity" | "1.#inf" => Some(f64::INFINITY),
+        "-inf" | "-infinity" | "-1.#inf" => Some(f64::NEG_INFINITY),
+        "-nan" | "-1.#ind" | "-1.#qnan" => Some(f64::NAN),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn valid_numbers_as_instruments_print_them() {
+        for (text, value) in [
+            ("1.953125E-5", 1.953125e-5),
+            ("-0.0", -0.0),
+            (".5", 0.5),
+            ("5.", 5.0),
+            ("1D3", 1e3),
+        ] {
+            assert_eq!(parse_cell(text.as_bytes(), b'.'), Some(value), "{text}");
+        }
+        assert_eq!(parse_cell(b" 0,914018 ", b','), Some(0.914018));
+        assert_eq!(parse_prefix(b"12;3", b','), Some((12.0, 2)));
+        assert_eq!(parse_prefix(b"1e", b'.'), Some((1.0, 1)));
+        for text in ["", ".", "-", "abc", "e5"] {
+            assert_eq!(parse_prefix(text.as_bytes(), b'.'), None, "{text}");
+        }
+        assert!(parse_cell(b"NaN", b'.').unwrap().is_nan());
+        assert_eq!(parse_cell(b"1.5 V", b'.'), None);
+    }
+
+    proptest! {
+        #[test]
+        fn prop_every_binary64_number_comes_back(bits: u64) {
+            let value = f64::from_bits(bits);
+            prop_assume!(value.is_finite());
+            for text in [format!("{value}"), format!("{value:e}"), format!("{value:.6}")] {
+                let expected: f64 = text.parse().unwrap();
+                let (read, end) = parse_prefix(text.as_bytes(), b'.').unwrap();
+                prop_assert_eq!(read.to_bits(), expected.to_bits());
+                prop_assert_eq!(end, text.len());
+            }
+        }
+
+        #[test]
+        fn prop_short_decimals_are_rounded_once(m in -99_999_999i64..99_999_999, e in 0u32..9) {
+            let text = format!("{:.*}", e as usize, m as f64 / 10f64.powi(e as i32));
+            let expected: f64 = text.parse().unwrap();
+            prop_assert_eq!(parse_prefix(text.as_bytes(), b'.').unwrap().0, expected);
+        }
+
+        #[test]
+        fn prop_no_bytes_panic(bytes: Vec<u8>) {
+            let _ = parse_cell(&bytes, b'.');
+            let _ = parse_prefix(&bytes, b',');
+        }
+    }
+}

@@ -1,0 +1,441 @@
+//! Rows of a delimited table to columns of numbers, a block of lines at a time.
+
+use crate::record::source::{ReadError, Samples};
+use crate::record::text::clock::{self, Stamp};
+use crate::record::text::{TextFile, decode, number};
+
+/// What stands between two cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Separator {
+    /// One byte.
+    Byte(u8),
+    /// Any run of spaces and tabs.
+    Blanks,
+}
+
+/// How the cells of a column are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Decimal numbers.
+    Number,
+    /// Points in time, given as seconds since the first.
+    Time,
+    /// Anything else.
+    Text,
+}
+
+/// Where the rows of a table lie and how they are written.
+#[derive(Debug, Clone)]
+pub struct Layout {
+    /// What stands between two cells.
+    pub separator: Separator,
+    /// The decimal mark.
+    pub decimal: u8,
+    /// The kinds of the columns.
+    pub kinds: Vec<Kind>,
+    /// Names of the columns, for messages.
+    pub names: Vec<String>,
+    /// Offset of the first row.
+    pub start: u64,
+    /// Offset of the end of the last row.
+    pub end: u64,
+    /// Whether line feeds may stand between quotes.
+    pub quotes: bool,
+    /// Whether `05/01/2024` is the first of May.
+    pub month_first: bool,
+    /// Line prefixes that make a line a comment.
+    pub comments: &'static [u8],
+}
+
+/// The cells of one line, without the blanks around them and without their quotes.
+pub struct Cells<'a> {
+    rest: Option<&'a [u8]>,
+    separator: Separator,
+}
+
+impl<'a> Cells<'a> {
+    /// The cells of a line that has no line end.
+    pub fn new(line: &'a [u8], separator: Separator) -> Self {
+        let rest = match separator {
+            Separator::Blanks => line.trim_ascii(),
+            Separator::Byte(_) => line,
+        };
+        Self {
+            rest: Some(rest),
+            separator,
+        }
+    }
+
+    fn cut(&mut self, rest: &'a [u8], end: usize) -> &'a [u8] {
+        self.rest = match self.separator {
+            _ if end >= rest.len() => None,
+            Separator::Byte(_) => Some(&rest[end + 1..]),
+            Separator::Blanks => Some(rest[end..].trim_ascii_start()),
+        };
+        &rest[..end.min(rest.len())]
+    }
+}
+
+impl<'a> Iterator for Cells<'a> {
+    type Item = &'a [u8];
+
+    fn next(&mut self) -> Option<&'a [u8]> {
+        let rest = self.rest?;
+        let skipped = rest.len() - rest.trim_ascii_start().len();
+        let is_separator = |b: u8| match self.separator {
+            Separator::Byte(s) => b == s,
+            Separator::Blanks => b == b' ' || b == b'\t',
+        };
+        if rest.get(skipped) == Some(&b'"') && !rest[..skipped].iter().any(|&b| is_separator(b)) {
+            let close = closing_quote(&rest[skipped + 1..]).map_or(rest.len(), |i| skipped + 2 + i);
+            let after = rest[close..].iter().position(|&b| is_separator(b));
+            let cell = self.cut(rest, after.map_or(rest.len(), |i| close + i));
+            let inner = cell.trim_ascii();
+            return Some(inner[1..].strip_suffix(b"\"").unwrap_or(&inner[1..]));
+        }
+        let end = rest
+            .iter()
+            .position(|&b| is_separator(b))
+            .unwrap_or(rest.len());
+        Some(self.cut(rest, end).trim_ascii())
+    }
+}
+
+/// Position of the quote that closes a cell; two in a row are one quote in the cell.
+fn closing_quote(bytes: &[u8]) -> Option<usize> {
+    let mut i = 0;
+    loop {
+        i += memchr::memchr(b'"', bytes.get(i..)?)?;
+        if bytes.get(i + 1) != Some(&b'"') {
+            return Some(i);
+        }
+        i += 2;
+    }
+}
+
+/// Lines of a block without their line ends, each with its offset in the block.
+pub struct Lines<'a> {
+    block: &'a [u8],
+    at: usize,
+    quotes: bool,
+}
+
+impl<'a> Lines<'a> {
+    /// The lines of a block; with `quotes`, line feeds between quotes do not end a line.
+    pub fn new(block: &'a [u8], quotes: bool) -> Self {
+        Self {
+            block,
+            at: 0,
+            quotes,
+        }
+    }
+
+    fn end(&self) -> usize {
+        let rest = &self.block[self.at..];
+        if !self.quotes {
+            return memchr::memchr(b'\n', rest).unwrap_or(rest.len());
+        }
+        let mut open = false;
+        for i in memchr::memchr2_iter(b'\n', b'"', rest) {
+            match rest[i] {
+                b'"' => open = !open,
+                _ if !open => return i,
+                _ => {}
+            }
+        }
+        rest.len()
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = (usize, &'a [u8]);
+
+    fn next(&mut self) -> Option<(usize, &'a [u8])> {
+        if self.at >= self.block.len() {
+            return None;
+        }
+        let at = self.at;
+        let end = self.end();
+        self.at += end + 1;
+        let line = &self.block[at..at + end];
+        Some((at, line.strip_suffix(b"\r").unwrap_or(line)))
+    }
+}
+
+/// Whether a line is a row: not blank, not a comment.
+#[inline]
+pub fn is_row(line: &[u8], comments: &[u8]) -> bool {
+    line.iter()
+        .find(|b| !matches!(b, b' ' | b'\t' | b'\r'))
+        .is_some_and(|first| !comments.contains(first))
+}
+
+/// Columns being filled.
+enum Column {
+    Skip,
+    Number(Vec<f64>),
+    Time {
+        values: Vec<f64>,
+        origin: Option<Stamp>,
+        days: f64,
+    },
+    Text(Vec<String>),
+}
+
+impl Column {
+    fn samples(self) -> Samples {
+        match self {
+            Self::Skip => Samples::Real(Vec::new()),
+            Self::Number(values) | Self::Time { values, .. } => Samples::Real(values),
+            Self::Text(values) => Samples::Text(values),
+        }
+    }
+}
+
+/// Read the columns `wanted` (indices, any order) of a table of `rows` rows.
+pub fn read_columns(
+    text: &TextFile,
+    layout: &Layout,
+    wanted: &[usize],
+    rows: usize,
+) -> Result<Vec<Samples>, ReadError> {
+    let width = layout.kinds.len();
+    let mut columns: Vec<Column> = (0..width)
+        .map(|i| {
+            if wanted.contains(&i) {
+                empty_column(layout.kinds[i], rows)
+            } else {
+                Column::Skip
+            }
+        })
+        .collect();
+    let last = wanted.iter().copied().max().map_or(0, |i| i + 1);
+    let mut read = 0usize;
+    text.blocks(layout.start, layout.quotes, |offset, block| {
+        for (at, line) in Lines::new(block, layout.quotes) {
+            let position = offset + at as u64;
+            if read == rows || position >= layout.end {
+                break;
+            }
+            if !is_row(line, layout.comments) {
+                continue;
+            }
+            read_row(line, layout, &mut columns, last)
+                .map_err(|fault| fault.error(text, layout, read, position))?;
+            read += 1;
+        }
+        Ok(())
+    })?;
+    Ok(wanted
+        .iter()
+        .map(|&i| take_or_copy(&mut columns, wanted, i))
+        .collect())
+}
+
+/// A column's samples; one that is wanted twice is copied.
+fn take_or_copy(columns: &mut [Column], wanted: &[usize], i: usize) -> Samples {
+    if wanted.iter().filter(|&&w| w == i).count() == 1 {
+        return std::mem::replace(&mut columns[i], Column::Skip).samples();
+    }
+    match &columns[i] {
+        Column::Skip => Samples::Real(Vec::new()),
+        Column::Number(values) | Column::Time { values, .. } => Samples::Real(values.clone()),
+        Column::Text(values) => Samples::Text(values.clone()),
+    }
+}
+
+fn empty_column(kind: Kind, rows: usize) -> Column {
+    match kind {
+        Kind::Number => Column::Number(Vec::with_capacity(rows)),
+        Kind::Time => Column::Time {
+            values: Vec::with_capacity(rows),
+            origin: None,
+            days: 0.0,
+        },
+        Kind::Text => Column::Text(Vec::with_capacity(rows)),
+    }
+}
+
+/// What is wrong with a row: the column, the offset in the line, the words.
+struct Fault {
+    column: usize,
+    at: usize,
+    found: String,
+}
+
+impl Fault {
+    fn error(self, text: &TextFile, layout: &Layout, row: usize, position: u64) -> ReadError {
+        let expected = match layout.kinds.get(self.column) {
+            Some(Kind::Number) => "a number or an empty cell".to_owned(),
+            Some(Kind::Time) => "a point in time as in the rows before".to_owned(),
+            _ => format!("{} cells in a row", layout.kinds.len()),
+        };
+        let error = ReadError::new(
+            text.path(),
+            expected,
+            format!("{} in row {}", self.found, row + 1),
+            "Correct the row, or turn it into a comment with '#'.",
+        )
+        .at(position + self.at as u64);
+        match layout.names.get(self.column) {
+            Some(name) => error.channel(name.clone()),
+            None => error,
+        }
+    }
+}
+
+/// Append one row to the columns; cells that the row lacks become NaN or empty.
+fn read_row(
+    line: &[u8],
+    layout: &Layout,
+    columns: &mut [Column],
+    last: usize,
+) -> Result<(), Fault> {
+    let done = match layout.separator {
+        Separator::Byte(separator) => {
+            fast_row(line, separator, layout.decimal, &mut columns[..last])
+        }
+        Separator::Blanks => 0,
+    };
+    let mut cells = Cells::new(line, layout.separator);
+    if done > 0 && done == last {
+        return extra_cells(line, layout);
+    }
+    for (i, column) in columns[..last].iter_mut().enumerate() {
+        let cell = cells.next().unwrap_or(b"");
+        if i >= done {
+            push(column, cell, layout).map_err(|found| Fault {
+                column: i,
+                at: offset_of(line, cell),
+                found,
+            })?;
+        }
+    }
+    extra_cells(line, layout)
+}
+
+/// Read leading number cells without looking for their ends first; the count of columns done.
+#[inline]
+fn fast_row(line: &[u8], separator: u8, decimal: u8, columns: &mut [Column]) -> usize {
+    let mut at = 0;
+    let count = columns.len();
+    for (i, column) in columns.iter_mut().enumerate() {
+        let Column::Number(values) = column else {
+            return i;
+        };
+        while line.get(at) == Some(&b' ') {
+            at += 1;
+        }
+        let Some((value, taken)) = line
+            .get(at..)
+            .and_then(|l| number::parse_prefix(l, decimal))
+        else {
+            return i;
+        };
+        match line.get(at + taken) {
+            Some(&b) if b == separator => at += taken + 1,
+            None if i + 1 == count => {}
+            _ => return i,
+        }
+        values.push(value);
+    }
+    count
+}
+
+/// Refuse a row with more filled cells than the table has columns.
+fn extra_cells(line: &[u8], layout: &Layout) -> Result<(), Fault> {
+    let width = layout.kinds.len();
+    if let Separator::Byte(b) = layout.separator
+        && memchr::memchr_iter(b, line).count() < width
+    {
+        return Ok(());
+    }
+    match Cells::new(line, layout.separator)
+        .skip(width)
+        .find(|c| !c.is_empty())
+    {
+        None => Ok(()),
+        Some(cell) => Err(Fault {
+            column: width,
+            at: offset_of(line, cell),
+            found: format!("a further cell '{}'", shortened(cell)),
+        }),
+    }
+}
+
+fn offset_of(line: &[u8], cell: &[u8]) -> usize {
+    (cell.as_ptr() as usize)
+        .saturating_sub(line.as_ptr() as usize)
+        .min(line.len())
+}
+
+fn shortened(cell: &[u8]) -> String {
+    let text = decode(cell);
+    if text.chars().count() <= 24 {
+        text
+    } else {
+        text.chars().take(24).chain(['…']).collect()
+    }
+}
+
+fn push(column: &mut Column, cell: &[u8], layout: &Layout) -> Result<(), String> {
+    match column {
+        Column::Skip => {}
+        Column::Number(values) => {
+            let value = number::parse_cell(cell, layout.decimal);
+            values.push(value.ok_or_else(|| format!("'{}'", shortened(cell)))?);
+        }
+        Column::Time {
+            values,
+            origin,
+            days,
+        } => {
+            let value = seconds_since(cell, layout, origin, days, values.last().copied())?;
+            values.push(value);
+        }
+        Column::Text(values) => values.push(decode(cell).replace("\"\"", "\"")),
+    }
+    Ok(())
+}
+
+/// Seconds of a stamp since the column's first; a clock that passes midnight goes on.
+fn seconds_since(
+    cell: &[u8],
+    layout: &Layout,
+    origin: &mut Option<Stamp>,
+    days: &mut f64,
+    before: Option<f64>,
+) -> Result<f64, String> {
+    if cell.is_empty() {
+        return Ok(f64::NAN);
+    }
+    let stamp = clock::parse(&decode(cell), layout.month_first)
+        .ok_or_else(|| format!("'{}'", shortened(cell)))?;
+    let origin = *origin.get_or_insert(stamp);
+    let mut value = stamp.since(origin) + *days * 86_400.0;
+    if stamp.days.is_none() && before.is_some_and(|b| value < b - 43_200.0) {
+        *days += 1.0;
+        value += 86_400.0;
+    }
+    Ok(value)
+}
+
+/// Count the rows of a table and find where the last begins.
+pub fn count_rows(text: &TextFile, layout: &Layout) -> Result<(u64, Option<u64>), ReadError> {
+    let mut rows = 0;
+    let mut last = None;
+    text.blocks(layout.start, layout.quotes, |offset, block| {
+        for (at, line) in Lines::new(block, layout.quotes) {
+            let position = offset + at as u64;
+            if position >= layout.end {
+                break;
+            }
+            if is_row(line, layout.comments) {
+                rows += 1;
+                last = Some(position);
+            }
+        }
+        Ok(())
+    })?;
+    Ok((rows, last))
+}

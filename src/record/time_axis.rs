@@ -1,0 +1,246 @@
+//! The time axis of a record: which channel holds it, its step, and what is wrong with it.
+
+use super::Flag;
+use super::calibrate::ChannelKey;
+use super::source::DatasetInfo;
+use crate::units;
+
+/// What a time axis says.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct TimeAxis {
+    /// Samples per second, Hz; `None` where no step can be told.
+    pub sample_rate_hz: Option<f64>,
+    /// What is wrong with it.
+    pub flags: Vec<Flag>,
+}
+
+/// Index of the channel that holds the time: as campaign.toml says, else as the reader found.
+///
+/// # Errors
+/// The flag for a channel that campaign.toml names and the dataset lacks.
+pub fn find(key: Option<&ChannelKey>, dataset: &DatasetInfo) -> Result<Option<usize>, Flag> {
+    let Some(key) = key else {
+        return Ok(dataset.time_axis.or_else(|| by_name(dataset)));
+    };
+    let found = key.find(dataset);
+    found.map(Some).ok_or_else(|| {
+        fault(
+            "missing_channel",
+            format!("no channel '{}' for the time axis", key.text()),
+            "mend time in [records], or leave it out where a sample rate is stated",
+        )
+    })
+}
+
+/// A channel in units of time by name and unit, which a reader did not take for a time axis,
+/// perhaps since it runs backward; only where no rate tells when the samples were taken.
+fn by_name(dataset: &DatasetInfo) -> Option<usize> {
+    if dataset.channels.iter().any(|c| c.sample_rate_hz.is_some()) {
+        return None;
+    }
+    dataset.channels.iter().position(|c| {
+        let (bare, symbol) = units::split_unit(&c.name);
+        let symbol = c.unit.as_deref().or(symbol);
+        let unit = symbol.and_then(units::parse_split_unit);
+        let named = matches!(bare.to_lowercase().as_str(), "t" | "time" | "zeit");
+        named && unit.is_none_or(|u| u.dimension == units::Dimension::Time)
+    })
+}
+
+fn fault(code: &str, message: String, remedy: &str) -> Flag {
+    Flag {
+        code: code.to_owned(),
+        channel: None,
+        message,
+        remedy: remedy.to_owned(),
+        excludes: true,
+    }
+}
+
+/// Factor to seconds of a time axis from its unit or its name (`time_ms`); 1 where neither says.
+pub fn seconds_per_unit(dataset: &DatasetInfo, index: usize) -> f64 {
+    let info = &dataset.channels[index];
+    let of_name = units::split_unit(&info.name)
+        .1
+        .and_then(units::parse_split_unit);
+    info.unit
+        .as_deref()
+        .and_then(units::parse_unit)
+        .or(of_name)
+        .filter(|u| u.dimension == units::Dimension::Time)
+        .map_or(1.0, |u| u.to_si)
+}
+
+/// Judge a time axis in s.
+///
+/// Time stamps printed with few digits are taken as uniform as long as no stamp strays from a
+/// straight line by more than their own rounding.
+pub fn inspect(times: &[f64]) -> TimeAxis {
+    if times.len() < 2 || times.iter().any(|t| !t.is_finite()) {
+        return unreadable(times);
+    }
+    let mut steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
+    let backward = steps.iter().position(|s| *s < 0.0);
+    if let Some(at) = backward {
+        return backward_at(times, at);
+    }
+    let in_order = steps.clone();
+    steps.sort_by(f64::total_cmp);
+    let quantile = |q: f64| steps[((steps.len() - 1) as f64 * q) as usize];
+    let mean = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
+    let spread = quantile(0.95) - quantile(0.05);
+    if spread > 0.2 * mean {
+        return coarse(times, mean, spread);
+    }
+    regular(times, &in_order, quantile(0.5))
+}
+
+fn unreadable(times: &[f64]) -> TimeAxis {
+    let flags = match times.len() {
+        0 => Vec::new(),
+        _ => vec![fault(
+            "time_unreadable",
+            "the time axis has a single sample or holds no numbers".to_owned(),
+            "name the right channel in time of [records], or give sample_rate",
+        )],
+    };
+    TimeAxis {
+        sample_rate_hz: None,
+        flags,
+    }
+}
+
+fn backward_at(times: &[f64], at: usize) -> TimeAxis {
+    let what = format!(
+        "the time runs backward after sample {at}: {} s, then {} s",
+        times[at],
+        times[at + 1]
+    );
+    let flag = fault(
+        "time_backward",
+        what,
+        "sort or re-export the record; it is left out",
+    );
+    TimeAxis {
+        sample_rate_hz: None,
+        flags: vec![flag],
+    }
+}
+
+/// An axis whose steps scatter: rounded stamps of a uniform axis, or no uniform axis.
+fn coarse(times: &[f64], mean: f64, spread: f64) -> TimeAxis {
+    let strayed = times
+        .iter()
+        .enumerate()
+        .map(|(i, t)| (t - times[0] - i as f64 * mean).abs())
+        .fold(0.0, f64::max);
+    let mut flags = Vec::new();
+    if strayed > 1.05 * spread.max(mean) {
+        flags.push(fault(
+            "time_not_uniform",
+            format!(
+                "the time axis is not uniform: steps scatter by {spread:.3e} s about {mean:.3e} s"
+            ),
+            "resample the record to a uniform rate before, or export it with its true rate",
+        ));
+    }
+    TimeAxis {
+        sample_rate_hz: Some(1.0 / mean),
+        flags,
+    }
+}
+
+/// An axis of equal steps but for gaps and repetitions.
+fn regular(times: &[f64], steps: &[f64], step: f64) -> TimeAxis {
+    let mut flags = Vec::new();
+    let lost: f64 = steps
+        .iter()
+        .filter(|s| **s > 1.5 * step)
+        .map(|s| (s / step).round() - 1.0)
+        .sum();
+    if let Some(at) = steps.iter().position(|s| *s > 1.5 * step) {
+        flags.push(fault(
+            "dropped_samples",
+            format!(
+                "{lost} samples are missing in the time axis, the first after {} s",
+                times[at]
+            ),
+            "record again with a larger buffer; the record is left out",
+        ));
+    }
+    let repeated = steps.iter().filter(|s| **s < 0.5 * step).count();
+    if repeated > 0 {
+        flags.push(fault(
+            "repeated_samples",
+            format!("{repeated} time stamps are repeated"),
+            "remove the repetitions where the record was exported; it is left out",
+        ));
+    }
+    let good: Vec<f64> = steps
+        .iter()
+        .copied()
+        .filter(|s| (s / step - 1.0).abs() <= 0.5)
+        .collect();
+    let mean = good.iter().sum::<f64>() / good.len().max(1) as f64;
+    TimeAxis {
+        sample_rate_hz: (mean > 0.0).then(|| 1.0 / mean),
+        flags,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn uniform(n: usize, step: f64) -> Vec<f64> {
+        (0..n).map(|i| i as f64 * step).collect()
+    }
+
+    fn codes(axis: &TimeAxis) -> Vec<&str> {
+        axis.flags.iter().map(|f| f.code.as_str()).collect()
+    }
+
+    #[test]
+    fn valid_a_uniform_axis_gives_its_rate() {
+        let axis = inspect(&uniform(2000, 5e-4));
+        assert!(axis.flags.is_empty());
+        assert!((axis.sample_rate_hz.unwrap() - 2000.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn valid_rounded_stamps_are_still_uniform() {
+        for digits in [1e3, 1e4, 1e6] {
+            let t: Vec<f64> = uniform(2000, 0.000_605_5)
+                .iter()
+                .map(|t| (t * digits).round() / digits)
+                .collect();
+            let axis = inspect(&t);
+            assert!(axis.flags.is_empty(), "{digits}: {:?}", axis.flags);
+            assert!((axis.sample_rate_hz.unwrap() * 0.000_605_5 - 1.0).abs() < 1e-3);
+        }
+    }
+
+    #[test]
+    fn valid_gaps_repetitions_and_backward_time_are_told() {
+        let mut t = uniform(1000, 1e-3);
+        t.drain(300..303);
+        let axis = inspect(&t);
+        assert_eq!(codes(&axis), ["dropped_samples"]);
+        assert!(axis.flags[0].message.starts_with("3 samples"));
+        assert!((axis.sample_rate_hz.unwrap() - 1000.0).abs() < 1e-6);
+
+        let mut t = uniform(1000, 1e-3);
+        t[500] = t[499];
+        assert!(codes(&inspect(&t)).contains(&"repeated_samples"));
+
+        let mut t = uniform(1000, 1e-3);
+        t.reverse();
+        assert_eq!(codes(&inspect(&t)), ["time_backward"]);
+    }
+
+    #[test]
+    fn valid_an_irregular_axis_is_told() {
+        let t: Vec<f64> = uniform(1000, 1e-3).iter().map(|t| t * t).collect();
+        assert_eq!(codes(&inspect(&t)), ["time_not_uniform"]);
+    }
+}

@@ -1,0 +1,197 @@
+//! What each method rests on: resonance curve, speeds at impacts, residuals, correlation.
+
+use super::Gathered;
+use crate::identify::methods::{Blocks, Evidence, Nominal};
+use crate::identify::resonance::predicted;
+use crate::identify::solver::Block;
+use crate::motion::Observation;
+use crate::motion::response::Response;
+use crate::record::Role;
+use crate::report::content::{
+    Correlation, ImpactPoint, ImpactScatter, ResidualPoint, ResidualSet, ResonanceCurve,
+    ResonancePoint,
+};
+use crate::units::Dimension;
+
+/// Points of a fitted resonance curve.
+const CURVE_POINTS: usize = 240;
+/// Most residuals of one method that are drawn.
+const MOST_RESIDUALS: usize = 4000;
+
+pub(super) fn resonance(gathered: &Gathered) -> Vec<ResonanceCurve> {
+    let roles = [
+        Role::VelocityX,
+        Role::VelocityY,
+        Role::DisplacementX,
+        Role::DisplacementY,
+        Role::AccelerationX,
+        Role::AccelerationY,
+    ];
+    roles.into_iter().filter_map(|role| curve(gathered, role)).take(2).collect()
+}
+
+fn curve(gathered: &Gathered, role: Role) -> Option<ResonanceCurve> {
+    let mut points: Vec<ResonancePoint> = gathered
+        .observations
+        .iter()
+        .filter_map(|o| {
+            let response = o.response.iter().find(|r| r.role == role)?;
+            Some(point(gathered, o, response))
+        })
+        .collect();
+    if points.len() < 3 {
+        return None;
+    }
+    points.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
+    let method = gathered.identification.methods.get("resonance");
+    Some(ResonanceCurve {
+        name: role.name().replace('_', " "),
+        dimension: role.dimension().unwrap_or(Dimension::Number),
+        unit: None,
+        fitted: fitted(gathered, role, &points),
+        points,
+        fits: method.and_then(|m| m.fits),
+        note: method.map(|m| m.remarks.join("; ")).unwrap_or_default(),
+    })
+}
+
+fn point(gathered: &Gathered, o: &Observation, response: &Response) -> ResonancePoint {
+    let amplitude = response.amplitude();
+    let left = gathered.left_out.iter().any(|(name, _)| *name == o.record);
+    ResonancePoint {
+        record: o.record.clone(),
+        frequency_hz: o.frequency_hz().unwrap_or(f64::NAN),
+        amplitude: amplitude / o.setting.drive_amplitude,
+        amplitude_error: Some(response.error / o.setting.drive_amplitude),
+        phase_rad: Some(-response.imaginary.atan2(response.real)),
+        phase_error_rad: Some(response.error / amplitude),
+        used: !o.excluded() && !left,
+    }
+}
+
+fn fitted(gathered: &Gathered, role: Role, points: &[ResonancePoint]) -> Vec<[f64; 3]> {
+    let (Some(parameters), Some(first), Some(last)) =
+        (gathered.parameters(), points.first(), points.last())
+    else {
+        return Vec::new();
+    };
+    crate::atlas::map::even((first.frequency_hz, last.frequency_hz, CURVE_POINTS))
+        .into_iter()
+        .map(|f| {
+            let z = predicted(parameters, gathered.campaign.rig, role, f, 1.0);
+            [f, z.norm(), -z.im.atan2(z.re)]
+        })
+        .collect()
+}
+
+fn blocks(gathered: &Gathered) -> Blocks {
+    Blocks::new(&Evidence {
+        rig: gathered.campaign.rig,
+        observations: gathered.observations,
+        brackets: gathered.brackets,
+        nominal: Nominal::default(),
+    })
+}
+
+pub(super) fn impacts(gathered: &Gathered) -> Vec<ImpactScatter> {
+    let block = blocks(gathered).impact;
+    if block.pairs.is_empty() {
+        return Vec::new();
+    }
+    let method = gathered.identification.methods.get("impacts");
+    let estimate = method.and_then(|m| m.parameters.restitution.as_ref());
+    vec![ImpactScatter {
+        name: String::new(),
+        points: block
+            .pairs
+            .iter()
+            .map(|p| ImpactPoint {
+                record: gathered.observations[p.observation].record.clone(),
+                before_m_s: p.before_m_s,
+                after_m_s: p.after_m_s,
+                error_m_s: Some(p.error_m_s),
+                used: true,
+            })
+            .collect(),
+        restitution: estimate.and_then(|e| e.value),
+        interval95: estimate.and_then(|e| e.interval95),
+        restitution_of_speed: Vec::new(),
+        note: method.map(|m| m.remarks.join("; ")).unwrap_or_default(),
+    }]
+}
+
+pub(super) fn residuals(gathered: &Gathered) -> Vec<ResidualSet> {
+    let Some(parameters) = gathered.parameters() else {
+        return Vec::new();
+    };
+    let all = blocks(gathered);
+    let resonance: Vec<usize> = all.resonance.points.iter().map(|p| p.observation).collect();
+    let trajectory: Vec<usize> = all.trajectory.records.iter().map(|r| r.observation).collect();
+    let impact: Vec<usize> = all.impact.pairs.iter().map(|p| p.observation).collect();
+    let of = |method: &str, block: &dyn Block, owners: &[usize]| {
+        let points: Vec<ResidualPoint> = (0..block.items())
+            .filter_map(|i| Some((owners[i], block.residuals(i, parameters)?)))
+            .filter(|(owner, _)| {
+                let name = &gathered.observations[*owner].record;
+                !gathered.left_out.iter().any(|(left, _)| left == name)
+            })
+            .flat_map(|(owner, list)| list.into_iter().map(move |r| (owner, r)))
+            .map(|(owner, residual)| residual_point(&gathered.observations[owner], residual))
+            .collect();
+        set(method, points)
+    };
+    [
+        of("resonance", &all.resonance, &resonance),
+        of("trajectories", &all.trajectory, &trajectory),
+        of("impacts", &all.impact, &impact),
+    ]
+    .into_iter()
+    .filter(|set| set.points.len() > 4)
+    .collect()
+}
+
+fn residual_point(o: &Observation, residual: f64) -> ResidualPoint {
+    ResidualPoint {
+        record: o.record.clone(),
+        residual,
+        frequency_hz: o.frequency_hz(),
+        clearance_m: o.setting.clearance_m,
+    }
+}
+
+fn set(method: &str, points: Vec<ResidualPoint>) -> ResidualSet {
+    let values: Vec<f64> = points.iter().map(|p| p.residual).collect();
+    let autocorrelation = autocorrelation(&values, 20);
+    let stride = points.len().div_ceil(MOST_RESIDUALS).max(1);
+    ResidualSet {
+        method: method.to_owned(),
+        points: points.into_iter().step_by(stride).collect(),
+        autocorrelation,
+        note: String::new(),
+    }
+}
+
+fn autocorrelation(values: &[f64], most: usize) -> Vec<f64> {
+    let mean = crate::signal::robust::mean(values);
+    let centred: Vec<f64> = values.iter().map(|v| v - mean).collect();
+    let total: f64 = centred.iter().map(|v| v * v).sum();
+    (0..=most.min(values.len().saturating_sub(1)))
+        .map(|lag| {
+            let product: f64 = centred.iter().zip(&centred[lag..]).map(|(a, b)| a * b).sum();
+            if total > 0.0 { product / total } else { 0.0 }
+        })
+        .collect()
+}
+
+pub(super) fn correlation(gathered: &Gathered) -> Option<Correlation> {
+    let fit = gathered.fit?;
+    let matrix = fit
+        .free
+        .iter()
+        .map(|a| fit.free.iter().map(|b| fit.correlation(*a, *b).unwrap_or(0.0)).collect())
+        .collect();
+    Some(Correlation {
+        parameters: fit.free.iter().map(|c| c.name().to_owned()).collect(),
+        matrix,
+    })
+}

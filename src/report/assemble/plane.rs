@@ -1,0 +1,188 @@
+//! Boundaries and regions of the fitted model in the (η, ρ) plane of the campaign.
+
+use super::{Gathered, rows};
+use crate::atlas::map::even;
+use crate::atlas::{MapGrid, MapSettings, region_map as simulate_map};
+use crate::identify::parameters::Coordinate;
+use crate::identify::solver::Fit;
+use crate::model::boundary::{rho_grazing, rho_s1, rho_s2};
+use crate::model::params::{Initial, Machine};
+use crate::motion::Motion;
+use crate::report::content::{BoundaryCurve, BoundaryKind, RegionMap};
+
+/// Columns and rows of the region map.
+const MAP: (usize, usize) = (180, 130);
+/// Points of a boundary curve.
+const CURVE_POINTS: usize = 220;
+/// Largest n whose z = 1/n boundaries are drawn.
+const MOST_PERIODS: u32 = 3;
+
+/// The part of the plane that the campaign visited, with a margin.
+struct View {
+    eta: (f64, f64),
+    rho: (f64, f64),
+}
+
+impl View {
+    fn of(gathered: &Gathered) -> Option<Self> {
+        let places: Vec<(f64, f64)> = gathered
+            .observations
+            .iter()
+            .filter(|o| !o.excluded())
+            .map(|o| rows::place(gathered, o))
+            .filter_map(|(eta, rho)| Some((eta?, rho?)))
+            .collect();
+        if places.len() < 3 {
+            return None;
+        }
+        let span = |values: Vec<f64>, margin: f64| {
+            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let room = margin * (high - low).max(0.1);
+            (low - room, high + room)
+        };
+        let eta = span(places.iter().map(|p| p.0).collect(), 0.05);
+        // Gaps so wide that nothing can touch say nothing about the regions.
+        let reach = gathered.parameters().map_or(f64::INFINITY, |p| 0.55 / p.damping_ratio);
+        let touching: Vec<f64> = places.iter().map(|p| p.1).filter(|r| *r <= reach).collect();
+        if touching.is_empty() {
+            return None;
+        }
+        let rho = span(touching, 0.12);
+        Some(Self { eta: (eta.0.max(0.05), eta.1), rho: (rho.0.min(0.05).max(rho.0 - 0.1).max(0.0), rho.1) })
+    }
+}
+
+fn machine(gathered: &Gathered) -> Option<Machine> {
+    let fitted = gathered.parameters()?;
+    // The plane is drawn for the symmetric machine, as the paper does.
+    let symmetric = crate::identify::parameters::Parameters {
+        drive_asymmetry: 0.0,
+        stiffness_asymmetry: 0.0,
+        ..*fitted
+    };
+    (fitted.in_range() && tells_restitution(gathered)).then(|| symmetric.machine(gathered.campaign.rig))
+}
+
+/// Without a fitted R there are no regions of impact motion to draw.
+fn tells_restitution(gathered: &Gathered) -> bool {
+    gathered.fit.is_some_and(|fit| fit.free.contains(&Coordinate::Restitution))
+}
+
+/// s2 and s1 of z = 1/n and the grazing boundary, each with a 95 % band where R is uncertain.
+pub(super) fn curves(gathered: &Gathered) -> Vec<BoundaryCurve> {
+    let (Some(view), Some(machine), Some(fit)) =
+        (View::of(gathered), machine(gathered), gathered.fit)
+    else {
+        return Vec::new();
+    };
+    let etas = even((view.eta.0, view.eta.1, CURVE_POINTS));
+    let mut out = vec![BoundaryCurve {
+        kind: BoundaryKind::Grazing,
+        periods_n: 1,
+        points: etas.iter().map(|eta| [*eta, rho_grazing(&machine, *eta)]).collect(),
+        band95: Vec::new(),
+    }];
+    for n in 1..=MOST_PERIODS {
+        for kind in [BoundaryKind::S2, BoundaryKind::S1] {
+            let place = |machine: &Machine, eta: f64| {
+                let point = match kind {
+                    BoundaryKind::S2 => rho_s2(machine, eta, n),
+                    _ => rho_s1(machine, eta, n),
+                }?;
+                (point.is_valid() && point.rho > 0.0).then_some(point.rho)
+            };
+            out.extend(pieces(&etas, |eta| place(&machine, eta)).into_iter().map(|points| {
+                BoundaryCurve {
+                    kind,
+                    periods_n: n,
+                    band95: band(gathered, fit, &points, &place),
+                    points,
+                }
+            }));
+        }
+    }
+    out
+}
+
+/// Unbroken pieces of a curve: a jump or a missing value ends one.
+fn pieces(etas: &[f64], rho: impl Fn(f64) -> Option<f64>) -> Vec<Vec<[f64; 2]>> {
+    let mut out: Vec<Vec<[f64; 2]>> = Vec::new();
+    let mut broken = true;
+    for eta in etas {
+        match rho(*eta) {
+            Some(value) => {
+                if broken {
+                    out.push(Vec::new());
+                }
+                if let Some(piece) = out.last_mut() {
+                    piece.push([*eta, value]);
+                }
+                broken = false;
+            }
+            None => broken = true,
+        }
+    }
+    out.retain(|piece| piece.len() > 2);
+    out
+}
+
+/// Band of a curve for R at both ends of its 95 % interval.
+fn band(
+    gathered: &Gathered,
+    fit: &Fit,
+    points: &[[f64; 2]],
+    place: &impl Fn(&Machine, f64) -> Option<f64>,
+) -> Vec<[f64; 3]> {
+    let Some(error) = fit.error(Coordinate::Restitution) else {
+        return Vec::new();
+    };
+    let half = 1.96 * error * gathered.factor.sqrt();
+    let ends = [-half, half].map(|shift| {
+        let r = (fit.parameters.restitution + shift).clamp(0.0, 1.0);
+        let parameters = fit.parameters.with(Coordinate::Restitution, r);
+        parameters.machine(gathered.campaign.rig)
+    });
+    points
+        .iter()
+        .filter_map(|[eta, _]| {
+            let (a, b) = (place(&ends[0], *eta)?, place(&ends[1], *eta)?);
+            Some([*eta, a.min(b), a.max(b)])
+        })
+        .collect()
+}
+
+/// Regions of motion: every cell from rest, and again from a lively start where hysteresis lies.
+pub(super) fn region_map(gathered: &Gathered) -> Option<RegionMap> {
+    let (view, machine) = (View::of(gathered)?, machine(gathered)?);
+    let grid =
+        MapGrid::even((view.eta.0, view.eta.1, MAP.0), (view.rho.0.max(0.02), view.rho.1, MAP.1));
+    let rest = simulate_map(&machine, &grid, &MapSettings::default()).ok()?;
+    let lively = MapSettings { start: Initial::both(0.0, 3.0), ..MapSettings::default() };
+    let second = simulate_map(&machine, &grid, &lively).ok()?;
+    let mut motions = Vec::new();
+    let mut index = |cells: &[crate::atlas::CellMotion]| -> Vec<u16> {
+        cells
+            .iter()
+            .map(|cell| {
+                let motion = Motion::from(*cell);
+                let at = motions.iter().position(|m| *m == motion).unwrap_or_else(|| {
+                    motions.push(motion);
+                    motions.len() - 1
+                });
+                at as u16
+            })
+            .collect()
+    };
+    let (cells, second) = (index(&rest.cells), index(&second.cells));
+    Some(RegionMap {
+        eta: grid.eta,
+        rho: grid.rho,
+        motions,
+        cells,
+        second,
+        note: "every cell simulated from rest, and again from a lively start; where the two \
+               differ, both motions exist"
+            .into(),
+    })
+}

@@ -1,0 +1,160 @@
+//! The campaign's summary and the rows of records and brackets.
+
+use super::Gathered;
+use crate::motion::{self, Motion, Observation};
+use crate::record::Role;
+use crate::report::content::{
+    BoundaryKind, BracketRow, CampaignSummary, ChannelRow, NominalValue, RecordRow,
+};
+use crate::signal::robust;
+
+pub(super) fn summary(gathered: &Gathered) -> CampaignSummary {
+    let all = gathered.observations;
+    let frequencies: Vec<f64> = all.iter().filter_map(|o| Some(o.drive?.frequency_hz)).collect();
+    let mut clearances: Vec<f64> = all.iter().filter_map(|o| o.setting.clearance_m).collect();
+    clearances.sort_by(f64::total_cmp);
+    clearances.dedup();
+    let median = |f: fn(&Observation) -> f64| {
+        robust::median(&all.iter().map(f).filter(|v| *v > 0.0).collect::<Vec<_>>())
+    };
+    CampaignSummary {
+        name: gathered.campaign.name.clone(),
+        rig: match gathered.campaign.rig {
+            crate::event::Rig::Double => "two masses against each other".into(),
+            crate::event::Rig::Single => "one mass against a stop".into(),
+        },
+        records_total: all.len(),
+        records_used: all.iter().filter(|o| !o.excluded()).count(),
+        impacts_total: all.iter().map(|o| o.impacts.len()).sum(),
+        files_total: gathered.campaign.files,
+        record_length_s: median(|o| o.duration_s),
+        sample_rate_hz: median(|o| o.sample_rate_hz),
+        frequency_range_hz: range(&frequencies),
+        clearances_m: clearances,
+        nominal: gathered
+            .campaign
+            .nominal
+            .iter()
+            .map(|(name, value, unit)| NominalValue {
+                name: name.clone(),
+                value: *value,
+                unit: unit.clone(),
+            })
+            .collect(),
+        channels: gathered.campaign.channels.iter().map(channel_row).collect(),
+        synthetic: gathered.campaign.name.to_lowercase().contains("synthetic"),
+        ..CampaignSummary::default()
+    }
+}
+
+fn channel_row((role, name, high_pass_hz): &(Role, String, Option<f64>)) -> ChannelRow {
+    ChannelRow {
+        role: *role,
+        name: name.clone(),
+        unit: role.dimension().map_or("", |d| d.si_symbol()).to_owned(),
+        note: high_pass_hz.map(|c| format!("high-pass at {c} Hz undone")).unwrap_or_default(),
+    }
+}
+
+fn range(values: &[f64]) -> Option<[f64; 2]> {
+    let low = values.iter().copied().reduce(f64::min)?;
+    let high = values.iter().copied().reduce(f64::max)?;
+    Some([low, high])
+}
+
+/// η and ρ of a setting with the fitted parameters.
+pub(super) fn place(gathered: &Gathered, o: &Observation) -> (Option<f64>, Option<f64>) {
+    let Some(parameters) = gathered.parameters() else {
+        return (None, None);
+    };
+    let eta = o.frequency_hz().map(|f| f / parameters.natural_frequency_hz);
+    let scale = parameters.static_deflection_m * o.setting.drive_amplitude;
+    (eta, o.setting.clearance_m.map(|c| c / scale))
+}
+
+pub(super) fn records(gathered: &Gathered) -> Vec<RecordRow> {
+    gathered.observations.iter().map(|o| record(gathered, o)).collect()
+}
+
+fn record(gathered: &Gathered, o: &Observation) -> RecordRow {
+    let (eta, rho) = place(gathered, o);
+    let pair = o.finding.impacts_and_periods();
+    let left = gathered.left_out.iter().find(|(name, _)| *name == o.record);
+    let used_by = if o.excluded() { Vec::new() } else { used_by(o, left.is_some()) };
+    let excluded = o.flags.iter().find(|f| f.excludes).map(|f| f.message.clone());
+    RecordRow {
+        id: o.record.clone(),
+        frequency_hz: o.frequency_hz(),
+        eta,
+        clearance_m: o.setting.clearance_m,
+        rho,
+        sweep: o.setting.sweep,
+        motion: o.finding.motion.clone(),
+        impacts_p: pair.map(|p| p.0),
+        periods_n: pair.map(|p| p.1),
+        confidence: Some(o.finding.confidence),
+        impacts: o.impacts.len(),
+        flags: o.flags.iter().map(|f| f.code.replace('_', " ")).collect(),
+        left_out: excluded.or_else(|| left.map(|l| l.1.clone())).filter(|_| used_by.is_empty()),
+        used_by,
+    }
+}
+
+fn used_by(o: &Observation, left_out: bool) -> Vec<String> {
+    let mut out = Vec::new();
+    let mut add = |name: &str, used: bool| {
+        if used {
+            out.push(name.to_owned());
+        }
+    };
+    add("resonance", !o.response.is_empty() && !left_out);
+    add("trajectories", o.folded.is_some() && !left_out);
+    add("impacts", o.impacts.iter().any(|i| i.closing_speed_before_m_s.is_some()));
+    add("free_decay", o.decay.is_some());
+    out
+}
+
+pub(super) fn brackets(gathered: &Gathered) -> Vec<BracketRow> {
+    gathered.brackets.iter().map(|b| bracket(gathered, b)).collect()
+}
+
+fn bracket(gathered: &Gathered, b: &motion::Bracket) -> BracketRow {
+    let parameters = gathered.parameters();
+    let eta = |f: f64| parameters.map(|p| f / p.natural_frequency_hz);
+    let closed_form =
+        matches!(b.kind, motion::BoundaryKind::SaddleNode | motion::BoundaryKind::Grazing);
+    let place = format!(
+        "bracket {} {:.2}–{:.2} Hz",
+        b.kind.name(),
+        b.frequency_low_hz,
+        b.frequency_high_hz
+    );
+    BracketRow {
+        kind: match b.kind {
+            motion::BoundaryKind::SaddleNode => BoundaryKind::S2,
+            motion::BoundaryKind::PeriodDoubling => BoundaryKind::S1,
+            motion::BoundaryKind::Grazing => BoundaryKind::Grazing,
+            motion::BoundaryKind::Other => BoundaryKind::Edge,
+        },
+        motion: match b.kind {
+            motion::BoundaryKind::Grazing => Motion::Impactless,
+            _ => Motion::periodic(1, b.periods_n),
+        },
+        clearance_m: b.clearance_m,
+        rho: parameters.map(|p| b.clearance_m / (p.static_deflection_m * b.drive_amplitude)),
+        frequency_low_hz: b.frequency_low_hz,
+        frequency_high_hz: b.frequency_high_hz,
+        eta_low: eta(b.frequency_low_hz),
+        eta_high: eta(b.frequency_high_hz),
+        direction: b.sweep,
+        simulated_hz: parameters.filter(|_| closed_form).and_then(|p| {
+            crate::identify::boundary::predicted_hz(b, p, gathered.campaign.rig)
+        }),
+        records: Some(b.records.clone()),
+        left_out: gathered
+            .left_out
+            .iter()
+            .find(|(what, _)| what.starts_with(&place))
+            .map(|l| l.1.clone()),
+    }
+}

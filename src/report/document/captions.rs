@@ -1,0 +1,90 @@
+//! Which figures the methods' section shows, in order, and what stands under each.
+
+use crate::report::content::ReportContent;
+use crate::report::figures::{decays, numbered};
+use crate::report::parameters::method_name;
+
+/// A figure's name and its caption.
+type Captioned = (String, String);
+
+/// Groups of figures; those of one group stand side by side where they are narrow.
+pub fn method_figures(content: &ReportContent) -> Vec<Vec<Captioned>> {
+    let mut groups = vec![narrow()];
+    groups.extend(impacts(content).into_iter().map(|c| vec![c]));
+    groups.extend(resonance(content).into_iter().map(|c| vec![c]));
+    groups.extend(free_decays(content).into_iter().map(|c| vec![c]));
+    groups.push(vec![profiles()]);
+    groups.extend(residuals(content).into_iter().map(|c| vec![c]));
+    groups
+}
+
+fn narrow() -> Vec<Captioned> {
+    let boundary = "Boundary fit: each bracket, measured less simulated. A bracket that crosses \
+                    zero agrees with the fit. Brackets of an upward sweep stand a little above \
+                    their clearance, those of a downward sweep below.";
+    let correlation = "Correlation of the joint estimates. Strong correlation means that the data \
+                       tell a combination of the two better than either.";
+    vec![
+        ("boundary_fit".into(), boundary.into()),
+        ("correlation".into(), correlation.into()),
+    ]
+}
+
+fn with_note(text: &str, note: &str) -> String {
+    if note.is_empty() {
+        text.to_owned()
+    } else {
+        format!("{text} {note}")
+    }
+}
+
+fn impacts(content: &ReportContent) -> Vec<Captioned> {
+    let text = "Speeds at impact: speed of parting over speed of closing (left) and their ratio, \
+                the restitution, over the closing speed (right).";
+    let each = content.impacts.iter().enumerate();
+    each.map(|(i, s)| (numbered("impacts", i), with_note(text, &s.note)))
+        .collect()
+}
+
+fn resonance(content: &ReportContent) -> Vec<Captioned> {
+    let text = "Resonance curve of the motion without impacts, measured and fitted.";
+    let each = content.resonance.iter().enumerate();
+    each.map(|(i, c)| (numbered("resonance", i), with_note(text, &c.note)))
+        .collect()
+}
+
+fn free_decays(content: &ReportContent) -> Vec<Captioned> {
+    let each = content.free_decays.chunks(decays::PER_FIGURE).enumerate();
+    each.map(|(i, few)| {
+        let notes = few.iter().filter(|d| !d.note.is_empty());
+        let notes: Vec<String> = notes.map(|d| format!("{}: {}", d.record, d.note)).collect();
+        let text = "Free decays (black) and their fits (vermilion), with natural frequency and \
+                    damping ratio ± standard error.";
+        (
+            numbered("free_decays", i),
+            with_note(text, &notes.join(" ")),
+        )
+    })
+    .collect()
+}
+
+fn profiles() -> Captioned {
+    let text = "Profile likelihoods: the rise of $χ$² when one parameter is held and the others \
+                are fitted again. Tinted: 95 % intervals; dashed: the rise of 3.84 that bounds them.";
+    ("profiles".into(), text.into())
+}
+
+fn residuals(content: &ReportContent) -> Vec<Captioned> {
+    let each = content.residuals.iter().enumerate();
+    each.map(|(i, set)| {
+        let text = format!(
+            "{}, residual diagnostics ({} residuals over their standard errors): histogram with the \
+             normal curve, autocorrelation with the 95 % band of white noise, over frequency and \
+             over gap.",
+            method_name(&set.method),
+            set.points.len()
+        );
+        (numbered("residuals", i), with_note(&text, &set.note))
+    })
+    .collect()
+}

@@ -1,0 +1,240 @@
+//! The first page's data: the answer, the agreement, what was measured.
+
+use super::Drawn;
+use super::model::{Answer, Front, Rich};
+use crate::identify::{Estimate, VerdictKind};
+use crate::report::content::{CampaignSummary, ReportContent};
+use crate::report::figures::look::NumberLook;
+use crate::report::parameters::{self, PARAMETERS, ParameterLook};
+
+/// Builds the first page.
+pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
+    let id = &content.identification;
+    let joint = &id.joint.parameters;
+    let (verdict, headline) = headline(id.verdict.kind);
+    Front {
+        synthetic: content.summary.synthetic,
+        verdict,
+        headline,
+        summary: Rich::from(&id.verdict.summary),
+        findings: id.verdict.findings.iter().map(Rich::from).collect(),
+        answers: PARAMETERS
+            .iter()
+            .map(|look| answer(look, (look.pick)(joint), drawn.numbers))
+            .collect(),
+        agree: match id.agreement.agree {
+            Some(true) => "yes",
+            Some(false) => "no",
+            None => "unknown",
+        },
+        agreement: Rich::from(&id.agreement.summary),
+        facts: facts(&content.summary, drawn.numbers),
+        map: drawn.figure("map_small", ""),
+        estimates: drawn.figure("estimates", ""),
+    }
+}
+
+/// A parameter ready to print.
+fn answer(look: &ParameterLook, estimate: Option<&Estimate>, numbers: NumberLook) -> Answer {
+    let half = estimate
+        .and_then(parameters::half_width)
+        .map(|h| h * look.factor);
+    let decimals = parameters::decimals_for(half.unwrap_or(0.0));
+    let print = |v: f64| numbers.fixed(v * look.factor, decimals);
+    let value = estimate.and_then(|e| e.value);
+    let interval = estimate
+        .and_then(|e| e.interval95)
+        .filter(|_| value.is_some());
+    Answer {
+        symbol: Rich::from(look.symbol),
+        name: Rich::from(look.name),
+        value: value.map(print),
+        plus_minus: half
+            .filter(|_| value.is_some())
+            .map(|h| numbers.fixed(h, decimals)),
+        unit: look.unit.into(),
+        interval: interval.map(|[low, high]| format!("{} to {}", print(low), print(high))),
+        status: estimate.map_or("not_asked", |e| parameters::status_name(e.status)),
+        note: estimate.and_then(|e| e.note.as_ref()).map(Rich::from),
+    }
+}
+
+fn headline(kind: VerdictKind) -> (&'static str, &'static str) {
+    match kind {
+        VerdictKind::Identified => ("identified", "Identified: the model fits the rig"),
+        VerdictKind::Weak => ("weak", "Identified in part"),
+        VerdictKind::NotIdentifiable => ("not_identifiable", "Not identifiable from these data"),
+        VerdictKind::DoesNotFit => ("does_not_fit", "The model does not fit the rig"),
+    }
+}
+
+fn facts(summary: &CampaignSummary, numbers: NumberLook) -> Vec<(Rich, Rich)> {
+    let mut facts: Vec<(String, String)> = Vec::new();
+    let mut add = |label: &str, value: String| {
+        if !value.is_empty() {
+            facts.push((label.into(), value));
+        }
+    };
+    add("campaign", summary.name.clone());
+    add("rig", summary.rig.clone());
+    add("laboratory", summary.laboratory.clone().unwrap_or_default());
+    add("measured", dates(summary));
+    add("records", records(summary));
+    add("sampling", sampling(summary, numbers));
+    add("drive", drive(summary, numbers));
+    add("clearances", clearances(summary, numbers));
+    add("nominal values", nominal(summary, numbers));
+    add("channels", channels(summary));
+    for note in &summary.notes {
+        add("note", note.clone());
+    }
+    facts
+        .into_iter()
+        .map(|(l, v)| (Rich::from(l), Rich::from(v)))
+        .collect()
+}
+
+fn dates(summary: &CampaignSummary) -> String {
+    match &summary.dates {
+        Some([first, last]) if first == last => first.clone(),
+        Some([first, last]) => format!("{first} to {last}"),
+        None => String::new(),
+    }
+}
+
+fn records(summary: &CampaignSummary) -> String {
+    if summary.records_total == 0 {
+        return String::new();
+    }
+    let mut text = format!(
+        "{} read, {} used",
+        summary.records_total, summary.records_used
+    );
+    if summary.files_total > 0 {
+        let plural = if summary.files_total == 1 {
+            "file"
+        } else {
+            "files"
+        };
+        text.push_str(&format!(", from {} {plural}", summary.files_total));
+    }
+    if summary.impacts_total > 0 {
+        text.push_str(&format!("; {} impacts detected", summary.impacts_total));
+    }
+    text
+}
+
+fn sampling(summary: &CampaignSummary, numbers: NumberLook) -> String {
+    let rate = summary.sample_rate_hz.map(|r| {
+        if r >= 1e3 {
+            format!(
+                "{}\u{2009}kHz",
+                numbers
+                    .significant(r / 1e3, 4)
+                    .trim_end_matches('0')
+                    .trim_end_matches(['.', ','])
+            )
+        } else {
+            format!("{}\u{2009}Hz", numbers.significant(r, 4))
+        }
+    });
+    let length = summary
+        .record_length_s
+        .map(|l| format!("{}\u{2009}s a record", numbers.significant(l, 3)));
+    [rate, length]
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+fn drive(summary: &CampaignSummary, numbers: NumberLook) -> String {
+    summary
+        .frequency_range_hz
+        .map_or(String::new(), |[low, high]| {
+            let (low, high) = (numbers.fixed(low, 2), numbers.fixed(high, 2));
+            format!("{low} to {high}\u{2009}Hz, as measured")
+        })
+}
+
+fn clearances(summary: &CampaignSummary, numbers: NumberLook) -> String {
+    let all: Vec<String> = summary
+        .clearances_m
+        .iter()
+        .map(|r| numbers.significant(1e3 * r, 3))
+        .collect();
+    match all.as_slice() {
+        [] => String::new(),
+        [one] => format!("$r$ = {one}\u{2009}mm"),
+        few if few.len() <= 8 => format!("$r$ = {}\u{2009}mm", few.join("; ")),
+        many => {
+            let (first, last) = (&many[0], &many[many.len() - 1]);
+            format!(
+                "{} values of $r$ from {first} to {last}\u{2009}mm",
+                many.len()
+            )
+        }
+    }
+}
+
+fn nominal(summary: &CampaignSummary, numbers: NumberLook) -> String {
+    let each = summary.nominal.iter().map(|n| {
+        let (value, unit) = match n.unit.as_str() {
+            "m" if n.value.abs() < 1.0 => (n.value * 1e3, "mm"),
+            unit => (n.value, unit),
+        };
+        let space = if unit.is_empty() { "" } else { "\u{2009}" };
+        let value = trimmed(&numbers.significant(value, 4));
+        format!("{} {value}{space}{unit}", n.name)
+    });
+    each.collect::<Vec<_>>().join(", ")
+}
+
+/// Without zeros at the end that a nominal value does not mean.
+fn trimmed(number: &str) -> String {
+    if number.contains(['.', ',']) && !number.contains('·') {
+        number
+            .trim_end_matches('0')
+            .trim_end_matches(['.', ','])
+            .to_owned()
+    } else {
+        number.to_owned()
+    }
+}
+
+fn channels(summary: &CampaignSummary) -> String {
+    let each = summary.channels.iter().map(|c| {
+        let role = c.role.name().replace('_', " ");
+        let unit = if c.unit.is_empty() {
+            String::new()
+        } else {
+            format!(" ({})", c.unit)
+        };
+        if c.note.is_empty() {
+            format!("{role}{unit}")
+        } else {
+            format!("{role}{unit}, {}", c.note)
+        }
+    });
+    each.collect::<Vec<_>>().join("; ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::Status;
+
+    #[test]
+    fn valid_what_is_not_identifiable_has_no_number() {
+        let none = Estimate {
+            value: None,
+            standard_error: None,
+            interval95: None,
+            status: Status::NotIdentifiable,
+            note: Some("no bracket".into()),
+        };
+        let answer = super::answer(&PARAMETERS[0], Some(&none), NumberLook::default());
+        assert_eq!((answer.value, answer.interval), (None, None));
+        assert_eq!(answer.status, "not_identifiable");
+    }
+}

@@ -1,0 +1,204 @@
+//! The document as plain data: what the template and the HTML page lay out.
+
+use serde::{Serialize, Serializer};
+
+use crate::report::figures::richtext::{self, Run};
+
+/// A text with markup, split into runs; serialised as a string where it has none.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Rich(pub Vec<Run>);
+
+impl Rich {
+    /// The text without markup.
+    pub fn plain(&self) -> String {
+        self.0.iter().map(|r| r.text.as_str()).collect()
+    }
+}
+
+impl<T: AsRef<str>> From<T> for Rich {
+    fn from(markup: T) -> Self {
+        Self(richtext::parse(markup.as_ref()))
+    }
+}
+
+impl Serialize for Rich {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.0.as_slice() {
+            [] => serializer.serialize_str(""),
+            [run] if !run.italic && run.level == richtext::Level::Base => {
+                serializer.serialize_str(&run.text)
+            }
+            runs => runs.serialize(serializer),
+        }
+    }
+}
+
+/// The whole document.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Document {
+    /// Title.
+    pub title: String,
+    /// A line under the title.
+    pub subtitle: Rich,
+    /// What stands at the foot of each page.
+    pub footer: Rich,
+    /// The first page.
+    pub front: Front,
+    /// All that follows.
+    pub sections: Vec<Section>,
+}
+
+/// The first page: the answer.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Front {
+    /// Whether the data are simulated.
+    pub synthetic: bool,
+    /// One word for the verdict: `identified`, `weak`, `not_identifiable`, `does_not_fit`.
+    pub verdict: &'static str,
+    /// The verdict as a headline.
+    pub headline: &'static str,
+    /// Two sentences.
+    pub summary: Rich,
+    /// Reasons and findings.
+    pub findings: Vec<Rich>,
+    /// The parameters.
+    pub answers: Vec<Answer>,
+    /// Whether the methods agree: `yes`, `no` or `unknown`.
+    pub agree: &'static str,
+    /// The same in words.
+    pub agreement: Rich,
+    /// What was measured: label and value.
+    pub facts: Vec<(Rich, Rich)>,
+    /// The small map, where there is one.
+    pub map: Option<FigureRef>,
+    /// The estimates of all methods, where there are any.
+    pub estimates: Option<FigureRef>,
+}
+
+/// One parameter with its value and interval, ready to print.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Answer {
+    /// Its symbol.
+    pub symbol: Rich,
+    /// Its name.
+    pub name: Rich,
+    /// Its value without unit; `None` where not identifiable.
+    pub value: Option<String>,
+    /// Half the 95 % interval, same decimals.
+    pub plus_minus: Option<String>,
+    /// The unit; empty for a plain number.
+    pub unit: String,
+    /// The interval as text.
+    pub interval: Option<String>,
+    /// `identified`, `weak`, `not_identifiable` or `not_asked`.
+    pub status: &'static str,
+    /// Why weak or not identifiable.
+    pub note: Option<Rich>,
+}
+
+/// A figure where it stands.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FigureRef {
+    /// Its name, the stem of its file.
+    pub name: String,
+    /// Width, points.
+    pub width: f64,
+    /// Height, points.
+    pub height: f64,
+    /// Caption; empty for none.
+    pub caption: Rich,
+    /// Text for those who cannot see it.
+    pub alt: String,
+}
+
+/// A section with its heading.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Section {
+    /// Heading.
+    pub title: Rich,
+    /// Depth: 1 or 2.
+    pub level: u8,
+    /// Whether it begins a page.
+    pub new_page: bool,
+    /// What stands in it.
+    pub blocks: Vec<Block>,
+}
+
+/// A part of a section.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Block {
+    /// A paragraph.
+    Paragraph {
+        /// The text.
+        text: Rich,
+    },
+    /// Figures; narrow ones stand side by side.
+    Figures {
+        /// The figures.
+        figures: Vec<FigureRef>,
+    },
+    /// A table.
+    Table(Table),
+    /// Text as typed.
+    Verbatim {
+        /// The text.
+        text: String,
+    },
+    /// Terms and what they mean; formulas are typst maths.
+    Definitions {
+        /// The entries.
+        entries: Vec<Definition>,
+    },
+}
+
+/// A convention: a formula and its meaning.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Definition {
+    /// The formula as typst maths.
+    pub formula: &'static str,
+    /// The formula as plain text.
+    pub plain: &'static str,
+    /// What it means.
+    pub meaning: Rich,
+}
+
+/// A table.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Table {
+    /// Caption; empty for none.
+    pub caption: Rich,
+    /// Heads of the columns.
+    pub heads: Vec<Rich>,
+    /// `left`, `right` or `center` of each column.
+    pub align: Vec<&'static str>,
+    /// Relative width of each column; 0: as wide as its content.
+    pub widths: Vec<u16>,
+    /// The cells, row by row.
+    pub rows: Vec<Vec<Rich>>,
+    /// Size of the type, points.
+    pub size: f64,
+    /// How many copies of the columns stand side by side.
+    pub side_by_side: u8,
+    /// Where the rows are many and short: whole columns as text, one line a row, and no `rows`.
+    pub dense: bool,
+    /// The columns' text of a dense table.
+    pub columns_text: Vec<String>,
+}
+
+impl Table {
+    /// The same table with its columns as text, which is set far faster and drops all markup.
+    pub fn densely(self) -> Self {
+        let column = |i: usize| {
+            let cells: Vec<String> = self.rows.iter().map(|row| row[i].plain()).collect();
+            cells.join("\n")
+        };
+        let columns_text = (0..self.heads.len()).map(column).collect();
+        Self {
+            dense: true,
+            columns_text,
+            rows: Vec::new(),
+            ..self
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! The sections after the first page, each only where there is something to show.
+
+use super::model::{Block, Definition, Rich, Section};
+use super::tables;
+use super::{Drawn, captions};
+use crate::report::content::ReportContent;
+use crate::report::parameters::method_name;
+
+/// All sections in their order.
+pub fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
+    [
+        regions(content, drawn),
+        comparisons(content, drawn),
+        methods(content, drawn),
+        left_out(content),
+        records(content, drawn),
+        conventions(content),
+        provenance(content),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+fn section(title: &str, new_page: bool, blocks: Vec<Block>) -> Option<Section> {
+    (!blocks.is_empty()).then(|| Section {
+        title: Rich::from(title),
+        level: 1,
+        new_page,
+        blocks,
+    })
+}
+
+fn paragraph(text: impl AsRef<str>) -> Block {
+    Block::Paragraph {
+        text: Rich::from(text),
+    }
+}
+
+fn regions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let mut blocks = Vec::new();
+    blocks.extend(drawn.figures_block(&[("map", &map_caption(content))]));
+    blocks.extend(tables::brackets(content, drawn.numbers).map(Block::Table));
+    section("Regions of motion", true, blocks)
+}
+
+fn map_caption(content: &ReportContent) -> String {
+    let mut text = String::from(
+        "Measured motions in the plane of frequency and clearance. Each mark is a record; marks of \
+         an upward sweep stand a little above their clearance, those of a downward sweep a little \
+         below.",
+    );
+    if let Some(map) = &content.region_map {
+        text.push_str(
+            " Tinted regions: simulated with the fitted parameters, labelled by $z$ = $p$/$n$",
+        );
+        if !map.second.is_empty() {
+            text.push_str(
+                "; hatched, with two labels, where two motions are possible (hysteresis)",
+            );
+        }
+        text.push('.');
+        if !map.note.is_empty() {
+            text.push(' ');
+            text.push_str(&map.note);
+        }
+    }
+    if content.curves.iter().any(|c| !c.band95.is_empty()) {
+        text.push_str(" Grey bands: 95 % bands of the simulated boundaries.");
+    }
+    if !content.comparisons.is_empty() {
+        text.push_str(" Letters: the points compared in the next figures.");
+    }
+    text
+}
+
+fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let mut blocks = Vec::new();
+    for comparison in &content.comparisons {
+        let name = crate::report::figures::comparison::name(comparison);
+        blocks.extend(drawn.figures_block(&[(&name, &comparison.note)]));
+    }
+    if !blocks.is_empty() {
+        let keys = "Each point as simulated with the fitted parameters (left) and as measured \
+                    (middle), on the same scales, with the residual (measured less simulated) and \
+                    the phase portraits (simulated: broad and pale; measured: thin and dark). Mass \
+                    $x$ is blue, mass $y$ vermilion; dotted lines are impacts.";
+        blocks.insert(0, paragraph(keys));
+    }
+    section("Simulated and measured motions", false, blocks)
+}
+
+fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let mut blocks = Vec::new();
+    blocks.extend(tables::methods(content, drawn.numbers).map(Block::Table));
+    blocks.extend(tables::agreement(content, drawn.numbers).map(Block::Table));
+    let remarks = content
+        .identification
+        .methods
+        .iter()
+        .flat_map(|(name, method)| {
+            let name = method_name(name);
+            method
+                .remarks
+                .iter()
+                .map(move |r| paragraph(format!("{name}: {r}")))
+        });
+    blocks.extend(remarks);
+    for group in captions::method_figures(content) {
+        let named: Vec<(&str, &str)> = group
+            .iter()
+            .map(|(n, c)| (n.as_str(), c.as_str()))
+            .collect();
+        blocks.extend(drawn.figures_block(&named));
+    }
+    section("Method by method", false, blocks)
+}
+
+fn left_out(content: &ReportContent) -> Option<Section> {
+    let mut blocks: Vec<Block> = tables::left_out(content)
+        .map(Block::Table)
+        .into_iter()
+        .collect();
+    blocks.extend(content.remarks.iter().map(paragraph));
+    section("What was left out, and why", false, blocks)
+}
+
+fn records(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let table = tables::records(content, drawn.numbers).map(Block::Table);
+    section(
+        "Appendix A. All records",
+        false,
+        table.into_iter().collect(),
+    )
+}
+
+/// Formula as typst maths, as plain text, what it means, and whether it takes a drive.
+type Convention = (&'static str, &'static str, &'static str, bool);
+
+const CONVENTIONS: [Convention; 8] = [
+    (
+        "R = - (X'_+ + Y'_+) / (X'_- + Y'_-)",
+        "R = −(X′₊ + Y′₊)/(X′₋ + Y′₋)",
+        "coefficient of restitution: speed of parting over speed of closing",
+        false,
+    ),
+    (
+        "beta = b / (2 sqrt(k m))",
+        "β = b/(2√(km))",
+        "damping ratio of a mass $m$ on a spring $k$ with viscous damping $b$",
+        false,
+    ),
+    (
+        "tau = Omega t",
+        "τ = Ωt",
+        "time counted in natural angle, Ω = √($k$/$m$) = 2π$f_0$",
+        false,
+    ),
+    (
+        "eta = omega / Omega = f / f_0",
+        "η = ω/Ω = f/f0",
+        "frequency ratio of the drive",
+        true,
+    ),
+    (
+        "x_\"st\" = F_0 / k",
+        "x_st = F0/k",
+        "static deflection under the drive's amplitude $F_0$",
+        true,
+    ),
+    (
+        "rho = r / x_\"st\" = r k / F_0",
+        "ρ = r/x_st = rk/F0",
+        "clearance ratio; the gap between the masses is 2$r$",
+        true,
+    ),
+    (
+        "z = p / n",
+        "z = p/n",
+        "$p$ impacts in $n$ drive periods; 1j: a dead zone follows the impact",
+        true,
+    ),
+    (
+        "X'' + 2 beta X' + X = cos(eta tau + phi)",
+        "X″ + 2βX′ + X = cos(ητ + φ)",
+        "motion of each mass between impacts, $X$ = $x$/$x_st$; impact where $X$ + $Y$ ≥ 2$ρ$",
+        true,
+    ),
+];
+
+fn conventions(content: &ReportContent) -> Option<Section> {
+    let driven = content.records.iter().any(|r| r.frequency_hz.is_some());
+    let entries = CONVENTIONS
+        .into_iter()
+        .filter(|c| driven || !c.3)
+        .map(|c| Definition {
+            formula: c.0,
+            plain: c.1,
+            meaning: Rich::from(c.2),
+        });
+    let entries = entries.collect();
+    let intervals = "Intervals are at 95 % confidence; a number after ± is half of that interval. \
+                     All quantities are in SI units.";
+    let blocks = vec![Block::Definitions { entries }, paragraph(intervals)];
+    section("Appendix B. Conventions", false, blocks)
+}
+
+fn provenance(content: &ReportContent) -> Option<Section> {
+    let mut blocks = Vec::new();
+    if !content.command_line.is_empty() {
+        blocks.push(paragraph("The command that makes this report again:"));
+        blocks.push(Block::Verbatim {
+            text: content.command_line.clone(),
+        });
+    }
+    blocks.extend(tables::versions(content).map(Block::Table));
+    blocks.extend(tables::hashes(content).map(Block::Table));
+    if !content.settings_text.is_empty() {
+        blocks.push(paragraph("Settings, as resolved:"));
+        blocks.push(Block::Verbatim {
+            text: content.settings_text.clone(),
+        });
+    }
+    section("Appendix C. Settings, versions, inputs", false, blocks)
+}

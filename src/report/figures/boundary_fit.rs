@@ -1,0 +1,121 @@
+//! The boundary fit: measured brackets less the simulated boundary, over the clearance.
+
+use super::Figure;
+use super::axes::{Axis, Panel, Sides};
+use super::canvas::{Canvas, Colour};
+use super::csv::Csv;
+use super::legend::{self, Key, Sign};
+use super::look::{self, NumberLook};
+use super::marks;
+use super::path::Rect;
+use crate::report::content::{BoundaryKind, BracketRow, ReportContent};
+
+/// Draws the brackets against the fit; `None` where none has a simulated value.
+pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
+    let rows: Vec<(&BracketRow, f64, f64)> = content
+        .brackets
+        .iter()
+        .filter_map(|b| {
+            let f = b.simulated_hz?;
+            Some((b, b.frequency_low_hz - f, b.frequency_high_hz - f))
+        })
+        .collect();
+    if rows.is_empty() {
+        return None;
+    }
+    let keys = keys(&rows);
+    let top = legend::height(&keys, look::HALF_WIDTH - 34.0) + 4.0;
+    let rect = Rect::new(34.0, top, look::HALF_WIDTH - 38.0, 132.0);
+    let x = Axis::around(
+        rows.iter().flat_map(|r| [r.1, r.2, 0.0]),
+        0.08,
+        "bracket less simulated boundary (Hz)",
+    );
+    let y = Axis::around(
+        rows.iter().map(|r| 1e3 * r.0.clearance_m),
+        0.10,
+        "clearance $r$ (mm)",
+    );
+    let panel = Panel::new(rect, x, y);
+    let mut canvas = Canvas::new(look::HALF_WIDTH, top + 132.0 + 24.0);
+    panel.upright(&mut canvas, 0.0, look::ZERO_STROKE);
+    for (row, low, high) in &rows {
+        let (from, y) = panel.at(*low, 1e3 * row.clearance_m);
+        let (to, _) = panel.at(*high, 0.0);
+        let lift = match row.direction {
+            crate::record::Sweep::Up => 2.2,
+            crate::record::Sweep::Down => -2.2,
+            crate::record::Sweep::Unknown => 0.0,
+        };
+        let kind = colour(row.kind);
+        let shade = if row.left_out.is_some() {
+            marks::mix(kind, 0.35)
+        } else {
+            kind
+        };
+        legend::bracket(&mut canvas, (from, to), y - lift, shade);
+    }
+    panel.frame(&mut canvas, Sides::BOTH, numbers);
+    legend::draw(&mut canvas, (rect.left, 0.0), rect.width(), &keys);
+    Some(Figure::new(
+        "boundary_fit",
+        "Measured brackets against the fitted boundary",
+        canvas,
+        csv(&rows),
+    ))
+}
+
+fn colour(kind: BoundaryKind) -> Colour {
+    match kind {
+        BoundaryKind::S2 => look::INK,
+        BoundaryKind::Grazing => look::BLUE,
+        BoundaryKind::S1 => look::VERMILION,
+        BoundaryKind::Edge => look::GREEN,
+    }
+}
+
+fn keys(rows: &[(&BracketRow, f64, f64)]) -> Vec<Key> {
+    let kinds = [
+        BoundaryKind::S2,
+        BoundaryKind::S1,
+        BoundaryKind::Grazing,
+        BoundaryKind::Edge,
+    ];
+    let met = kinds
+        .into_iter()
+        .filter(|k| rows.iter().any(|r| r.0.kind == *k));
+    let mut keys: Vec<Key> = met
+        .map(|k| Key::new(Sign::Bracket(colour(k)), k.symbol()))
+        .collect();
+    if rows.iter().any(|r| r.0.left_out.is_some()) {
+        keys.push(Key::new(
+            Sign::Bracket(marks::mix(look::INK, 0.35)),
+            "pale: not used",
+        ));
+    }
+    keys
+}
+
+fn csv(rows: &[(&BracketRow, f64, f64)]) -> String {
+    let mut csv = Csv::new(&[
+        "kind",
+        "motion",
+        "sweep",
+        "used",
+        "clearance_m",
+        "low_less_simulated_hz",
+        "high_less_simulated_hz",
+    ]);
+    for (row, low, high) in rows {
+        let used = if row.left_out.is_none() { "yes" } else { "no" };
+        csv.row()
+            .texts(&[
+                row.kind.name(),
+                &row.motion.label(),
+                row.direction.name(),
+                used,
+            ])
+            .numbers(&[Some(row.clearance_m), Some(*low), Some(*high)]);
+    }
+    csv.finish()
+}

@@ -1,0 +1,148 @@
+//! Free decays with their fits, three to a row.
+
+use super::Figure;
+use super::axes::{Axis, Panel, Sides, range};
+use super::canvas::{Anchor, Canvas, Stroke, TextLook};
+use super::csv::Csv;
+use super::fonts::Face;
+use super::look::{self, NumberLook};
+use super::path::Rect;
+use super::units::print_unit;
+use crate::report::content::{FreeDecay, Signal};
+
+/// How many decays one figure holds.
+pub const PER_FIGURE: usize = 12;
+
+const COLUMNS: usize = 3;
+const PANEL_HEIGHT: f64 = 74.0;
+const ROW_HEIGHT: f64 = PANEL_HEIGHT + 48.0;
+
+/// Draws up to [`PER_FIGURE`] decays; `None` for none.
+pub fn draw(decays: &[FreeDecay], name: &str, numbers: NumberLook) -> Option<Figure> {
+    if decays.is_empty() {
+        return None;
+    }
+    let rows = decays.len().div_ceil(COLUMNS);
+    let mut canvas = Canvas::new(look::FULL_WIDTH, rows as f64 * ROW_HEIGHT);
+    for (i, decay) in decays.iter().enumerate() {
+        let left = 34.0 + (i % COLUMNS) as f64 * 161.0;
+        let top = (i / COLUMNS) as f64 * ROW_HEIGHT + 23.0;
+        one(
+            &mut canvas,
+            decay,
+            Rect::new(left, top, 122.0, PANEL_HEIGHT),
+            numbers,
+        );
+    }
+    Some(Figure::new(
+        name,
+        "Free decays and their fits",
+        canvas,
+        csv(decays),
+    ))
+}
+
+fn one(canvas: &mut Canvas, decay: &FreeDecay, rect: Rect, numbers: NumberLook) {
+    let peak = decay
+        .measured
+        .values
+        .iter()
+        .fold(0.0_f64, |m, v| m.max(v.abs()));
+    let unit = print_unit(decay.dimension, peak);
+    let symbol = match decay.dimension {
+        crate::units::Dimension::Acceleration => "$a$",
+        crate::units::Dimension::Velocity => "$v$",
+        crate::units::Dimension::Length => "$x$",
+        _ => "signal",
+    };
+    let times = decay.measured.time_s.iter().copied();
+    let (start, end) = range(times).unwrap_or((0.0, 1.0));
+    let x = Axis::new(start, end, "$t$ (s)").with_ticks(4);
+    let values = decay.measured.values.iter().map(|v| v * unit.factor);
+    let y = Axis::around(values, 0.06, format!("{symbol} ({})", unit.symbol)).with_ticks(4);
+    let panel = Panel::new(rect, x, y);
+    canvas.layer(0);
+    panel.level(canvas, 0.0, look::ZERO_STROKE);
+    canvas.layer(1);
+    signal(
+        canvas,
+        &panel,
+        &decay.measured,
+        unit.factor,
+        Stroke::solid(look::INK, 0.5),
+    );
+    if let Some(fitted) = &decay.fitted {
+        signal(
+            canvas,
+            &panel,
+            fitted,
+            unit.factor,
+            Stroke::solid(look::VERMILION, 0.6),
+        );
+    }
+    canvas.layer(2);
+    panel.frame(canvas, Sides::BOTH, numbers);
+    heading(canvas, decay, &rect, numbers);
+}
+
+fn signal(canvas: &mut Canvas, panel: &Panel, signal: &Signal, factor: f64, stroke: Stroke) {
+    let data = signal.time_s.iter().zip(&signal.values);
+    panel.curve(canvas, data.map(|(t, v)| (*t, v * factor)), stroke);
+}
+
+fn heading(canvas: &mut Canvas, decay: &FreeDecay, rect: &Rect, numbers: NumberLook) {
+    let bold = TextLook::new(look::NOTE_SIZE, Anchor::Left)
+        .face(Face::Bold)
+        .colour(look::INK);
+    canvas.text((rect.left, rect.top - 13.5), &decay.record, bold);
+    let plain = TextLook::new(look::TICK_SIZE, Anchor::Right).colour(look::QUIET);
+    let frequency = decay.natural_frequency_hz.map(|f| {
+        let value = with_error(f, decay.natural_frequency_error_hz, numbers);
+        format!("$f_0$ = {value}\u{2009}Hz")
+    });
+    let damping = decay.damping_ratio.map(|b| {
+        format!(
+            "$β$ = {}",
+            with_error(b, decay.damping_ratio_error, numbers)
+        )
+    });
+    let lines = match (frequency, damping) {
+        (None, None) => vec!["no fit".to_owned()],
+        (frequency, damping) => frequency.into_iter().chain(damping).collect(),
+    };
+    for (i, line) in lines.iter().enumerate() {
+        canvas.text((rect.right, rect.top - 13.5 + 9.5 * i as f64), line, plain);
+    }
+}
+
+fn with_error(value: f64, error: Option<f64>, numbers: NumberLook) -> String {
+    match error.filter(|e| *e > 0.0) {
+        Some(e) => {
+            let decimals = crate::report::parameters::decimals_for(e);
+            format!(
+                "{} ± {}",
+                numbers.fixed(value, decimals),
+                numbers.fixed(e, decimals)
+            )
+        }
+        None => numbers.significant(value, 4),
+    }
+}
+
+fn csv(decays: &[FreeDecay]) -> String {
+    let mut csv = Csv::new(&["record", "source", "time_s", "value_si"]);
+    for decay in decays {
+        for (source, signal) in [
+            ("measured", Some(&decay.measured)),
+            ("fitted", decay.fitted.as_ref()),
+        ] {
+            let Some(signal) = signal else { continue };
+            for (t, v) in signal.time_s.iter().zip(&signal.values) {
+                csv.row()
+                    .texts(&[&decay.record, source])
+                    .numbers(&[Some(*t), Some(*v)]);
+            }
+        }
+    }
+    csv.finish()
+}

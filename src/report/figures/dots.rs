@@ -1,0 +1,63 @@
+//! Many small points: those that would cover one another are drawn once.
+
+use std::collections::HashSet;
+
+use super::axes::Panel;
+use super::canvas::{Canvas, Colour, Stroke};
+use super::look;
+
+/// Side in points of the squares that hold at most one dot.
+const CELL: f64 = 0.55;
+
+/// Where dots already lie.
+#[derive(Default)]
+pub struct Dots {
+    taken: HashSet<(i64, i64)>,
+}
+
+impl Dots {
+    /// Draws a dot at data unless one lies there or the panel does not show it; gives its place.
+    pub fn put(
+        &mut self,
+        canvas: &mut Canvas,
+        panel: &Panel,
+        (x, y): (f64, f64),
+        look: DotLook,
+    ) -> Option<(f64, f64)> {
+        if !panel.shows(x, y) {
+            return None;
+        }
+        let at = panel.at(x, y);
+        let cell = ((at.0 / CELL) as i64, (at.1 / CELL) as i64);
+        if self.taken.insert(cell) {
+            if look.open {
+                canvas.disc(at, look.radius, look::PAPER);
+                canvas.ring(at, look.radius, Stroke::solid(look.colour, 0.5));
+            } else {
+                canvas.disc(at, look.radius, look.colour);
+            }
+        }
+        Some(at)
+    }
+}
+
+/// How a dot looks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DotLook {
+    /// Radius, points.
+    pub radius: f64,
+    /// Colour.
+    pub colour: Colour,
+    /// Whether it is open: not used in the fit.
+    pub open: bool,
+}
+
+/// Radius for a number of dots.
+pub fn radius(count: usize) -> f64 {
+    match count {
+        0..=60 => 1.6,
+        61..=400 => 1.15,
+        401..=2000 => 0.8,
+        _ => 0.6,
+    }
+}

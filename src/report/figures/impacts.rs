@@ -1,0 +1,195 @@
+//! Speeds after over before each impact, and their ratio over the closing speed.
+
+use super::axes::{Axis, Panel, Sides, range};
+use super::canvas::{Canvas, Stroke};
+use super::csv::Csv;
+use super::dots::{self, DotLook, Dots};
+use super::legend::{self, Key, Sign};
+use super::look::{self, NumberLook};
+use super::path::Rect;
+use super::units::{PrintUnit, print_unit};
+use super::{Figure, Spot};
+use crate::report::content::ImpactScatter;
+use crate::units::Dimension;
+
+const HEIGHT: f64 = 150.0;
+const TOP: f64 = 15.0;
+
+/// Draws one group of impacts; `None` where it is empty.
+pub fn draw(scatter: &ImpactScatter, name: &str, numbers: NumberLook) -> Option<Figure> {
+    let peak = scatter
+        .points
+        .iter()
+        .map(|p| p.before_m_s)
+        .fold(0.0, f64::max);
+    if scatter.points.is_empty() || peak <= 0.0 {
+        return None;
+    }
+    let unit = print_unit(Dimension::Velocity, peak);
+    let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + 24.0);
+    let panels = panels(scatter, unit);
+    let mut spots = Vec::new();
+    lines(&mut canvas, &panels, scatter, unit);
+    points(&mut canvas, &panels, scatter, unit, &mut spots, numbers);
+    for panel in &panels {
+        panel.frame(&mut canvas, Sides::BOTH, numbers);
+    }
+    legend::draw(
+        &mut canvas,
+        (36.0, 0.0),
+        look::FULL_WIDTH - 36.0,
+        &keys(scatter, numbers),
+    );
+    let title = "Speeds after over before impact";
+    Some(Figure::new(name, title, canvas, csv(scatter)).with_spots(spots))
+}
+
+/// The two panels: speed after, and restitution, over speed before.
+fn panels(scatter: &ImpactScatter, unit: PrintUnit) -> [Panel; 2] {
+    let peak = |f: fn(&crate::report::content::ImpactPoint) -> f64| {
+        scatter.points.iter().map(f).fold(0.0, f64::max) * unit.factor * 1.04
+    };
+    let before = || {
+        let title = format!("closing speed before impact ({})", unit.symbol);
+        Axis::new(0.0, peak(|p| p.before_m_s), title)
+    };
+    let after = Axis::new(
+        0.0,
+        peak(|p| p.after_m_s),
+        format!("parting speed after ({})", unit.symbol),
+    );
+    let ratio = ratio_axis(scatter);
+    let left = Rect::new(36.0, TOP, 196.0, HEIGHT);
+    let right = Rect::new(280.0, TOP, 198.0, HEIGHT);
+    [
+        Panel::new(left, before(), after),
+        Panel::new(right, before(), ratio),
+    ]
+}
+
+/// The ratios without the few wildest at low speed, and always the fitted value.
+fn ratio_axis(scatter: &ImpactScatter) -> Axis {
+    let mut ratios: Vec<f64> = scatter
+        .points
+        .iter()
+        .map(|p| p.after_m_s / p.before_m_s)
+        .filter(|r| r.is_finite())
+        .collect();
+    ratios.sort_by(f64::total_cmp);
+    let n = ratios.len();
+    let trimmed = ratios.iter().skip(n / 100).take(n - 2 * (n / 100)).copied();
+    let fitted = scatter.restitution.into_iter();
+    let fitted = fitted.chain(scatter.restitution_of_speed.iter().map(|p| p[1]));
+    let (low, high) = range(trimmed.chain(fitted)).unwrap_or((0.0, 1.0));
+    let (low, high) = (low.max(-0.1), high.min(1.5));
+    let pad = (0.1 * (high - low)).max(0.01);
+    Axis::new(low - pad, high + pad, "restitution $R$ (1)")
+}
+
+fn lines(canvas: &mut Canvas, panels: &[Panel; 2], scatter: &ImpactScatter, unit: PrintUnit) {
+    let [speeds, ratios] = panels;
+    let end = speeds.x.high;
+    if let Some([low, high]) = scatter.interval95 {
+        let (a, b) = (ratios.at(0.0, high), ratios.at(end, low));
+        canvas.rectangle(a, b, look::BAND);
+    }
+    canvas.layer(2);
+    let stroke = Stroke::solid(look::VERMILION, 1.0);
+    if let Some(r) = scatter.restitution {
+        speeds.curve(canvas, [(0.0, 0.0), (end, r * end)], stroke);
+        ratios.level(canvas, r, stroke);
+    }
+    let dashed = Stroke::dashed(look::VERMILION, 1.0, &[4.0, 2.0]);
+    let of_speed = || {
+        scatter
+            .restitution_of_speed
+            .iter()
+            .map(|p| (p[0] * unit.factor, p[1]))
+    };
+    ratios.curve(canvas, of_speed(), dashed);
+    speeds.curve(canvas, of_speed().map(|(v, r)| (v, v * r)), dashed);
+}
+
+fn points(
+    canvas: &mut Canvas,
+    panels: &[Panel; 2],
+    scatter: &ImpactScatter,
+    unit: PrintUnit,
+    spots: &mut Vec<Spot>,
+    numbers: NumberLook,
+) {
+    canvas.layer(1);
+    let radius = dots::radius(scatter.points.len());
+    let mut taken = [Dots::default(), Dots::default()];
+    for p in &scatter.points {
+        let colour = if p.used { look::BLUE } else { look::QUIET };
+        let dot = DotLook {
+            radius,
+            colour,
+            open: !p.used,
+        };
+        let before = p.before_m_s * unit.factor;
+        let values = [p.after_m_s * unit.factor, p.after_m_s / p.before_m_s];
+        for ((panel, dots), value) in panels.iter().zip(&mut taken).zip(values) {
+            if let Some((x, y)) = dots.put(canvas, panel, (before, value), dot)
+                && spots.len() < 4000
+            {
+                let ratio = numbers.fixed(p.after_m_s / p.before_m_s, 3);
+                spots.push(Spot {
+                    x,
+                    y,
+                    text: format!("{}\nR = {ratio}", p.record),
+                });
+            }
+        }
+    }
+    canvas.layer(3);
+}
+
+fn keys(scatter: &ImpactScatter, numbers: NumberLook) -> Vec<Key> {
+    let mut keys = Vec::new();
+    if !scatter.name.is_empty() {
+        keys.push(Key::new(Sign::Nothing, scatter.name.clone()));
+    }
+    let count = scatter.points.iter().filter(|p| p.used).count();
+    let dot = super::marks::MotionLook {
+        shape: super::marks::Shape::Dot,
+        colour: look::BLUE,
+        tint: look::PAPER,
+    };
+    keys.push(Key::new(Sign::Mark(dot), format!("impacts used ({count})")));
+    let unused = scatter.points.len() - count;
+    if unused > 0 {
+        let ring = super::marks::MotionLook {
+            shape: super::marks::Shape::Circle,
+            colour: look::QUIET,
+            tint: look::PAPER,
+        };
+        keys.push(Key::new(Sign::Mark(ring), format!("not used ({unused})")));
+    }
+    if let Some(r) = scatter.restitution {
+        let stroke = Stroke::solid(look::VERMILION, 1.0);
+        keys.push(Key::new(
+            Sign::Line(stroke),
+            format!("$R$ = {}", numbers.fixed(r, 4)),
+        ));
+    }
+    if scatter.interval95.is_some() {
+        keys.push(Key::new(Sign::Patch(look::BAND), "95 % interval"));
+    }
+    if !scatter.restitution_of_speed.is_empty() {
+        let stroke = Stroke::dashed(look::VERMILION, 1.0, &[4.0, 2.0]);
+        keys.push(Key::new(Sign::Line(stroke), "$R$ over speed"));
+    }
+    keys
+}
+
+fn csv(scatter: &ImpactScatter) -> String {
+    let mut csv = Csv::new(&["record", "used", "before_m_s", "after_m_s", "error_m_s"]);
+    for p in &scatter.points {
+        csv.row()
+            .texts(&[&p.record, if p.used { "yes" } else { "no" }])
+            .numbers(&[Some(p.before_m_s), Some(p.after_m_s), p.error_m_s]);
+    }
+    csv.finish()
+}

@@ -1,0 +1,118 @@
+//! Keys of a figure, set in lines outside the plotted area.
+
+use super::canvas::{Anchor, Canvas, Colour, Stroke, TextLook};
+use super::fonts::Face;
+use super::look;
+use super::marks::{self, MotionLook};
+use super::richtext;
+
+/// What stands before a key's text.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Sign {
+    /// A mark of a motion.
+    Mark(MotionLook),
+    /// A line.
+    Line(Stroke),
+    /// A patch of colour.
+    Patch(Colour),
+    /// A bar with ends, as brackets are drawn.
+    Bracket(Colour),
+    /// Nothing: a heading.
+    Nothing,
+}
+
+impl Sign {
+    fn width(self) -> f64 {
+        match self {
+            Sign::Mark(_) => 7.0,
+            Sign::Line(_) => 15.0,
+            Sign::Patch(_) => 10.0,
+            Sign::Bracket(_) => 11.0,
+            Sign::Nothing => -3.0,
+        }
+    }
+}
+
+/// A key: sign and text.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Key {
+    /// The sign.
+    pub sign: Sign,
+    /// The text, with markup.
+    pub text: String,
+}
+
+impl Key {
+    /// A key.
+    pub fn new(sign: Sign, text: impl Into<String>) -> Self {
+        Self {
+            sign,
+            text: text.into(),
+        }
+    }
+
+    fn width(&self) -> f64 {
+        self.sign.width() + 3.0 + richtext::width(&self.text, Face::Regular, look::NOTE_SIZE)
+    }
+}
+
+const LINE_HEIGHT: f64 = 11.0;
+const GAP: f64 = 11.0;
+
+/// Lays keys in lines of a width: (key, left, line).
+fn flow(keys: &[Key], width: f64) -> Vec<(&Key, f64, usize)> {
+    let (mut x, mut line) = (0.0, 0);
+    keys.iter()
+        .map(|key| {
+            if x > 0.0 && x + key.width() > width {
+                x = 0.0;
+                line += 1;
+            }
+            let place = (key, x, line);
+            x += key.width() + GAP;
+            place
+        })
+        .collect()
+}
+
+/// Height that the keys need at a width.
+pub fn height(keys: &[Key], width: f64) -> f64 {
+    flow(keys, width)
+        .last()
+        .map_or(0.0, |(_, _, line)| (*line + 1) as f64 * LINE_HEIGHT)
+}
+
+/// Draws the keys from an upper left corner.
+pub fn draw(canvas: &mut Canvas, (left, top): (f64, f64), width: f64, keys: &[Key]) {
+    for (key, x, line) in flow(keys, width) {
+        let y = top + (line as f64 + 0.5) * LINE_HEIGHT;
+        sign(canvas, (left + x, y), key.sign);
+        let at = (
+            left + x + key.sign.width() + 3.0,
+            y + 0.33 * look::NOTE_SIZE,
+        );
+        let text_look = TextLook::new(look::NOTE_SIZE, Anchor::Left).colour(look::INK);
+        canvas.text(at, &key.text, text_look);
+    }
+}
+
+fn sign(canvas: &mut Canvas, (x, y): (f64, f64), sign: Sign) {
+    let end = x + sign.width();
+    match sign {
+        Sign::Mark(mark) => marks::draw(canvas, (x + 3.5, y), 2.6, mark),
+        Sign::Line(stroke) => canvas.segment((x, y), (end, y), stroke),
+        Sign::Patch(colour) => canvas.rectangle((x, y - 3.5), (end, y + 3.5), colour),
+        Sign::Bracket(colour) => bracket(canvas, (x, end), y, colour),
+        Sign::Nothing => {}
+    }
+}
+
+/// A measured bracket: a bar with ends.
+pub fn bracket(canvas: &mut Canvas, (from, to): (f64, f64), y: f64, colour: Colour) {
+    let casing = Stroke::solid(look::PAPER, 2.4);
+    canvas.segment((from - 0.6, y), (to + 0.6, y), casing);
+    canvas.segment((from, y), (to, y), Stroke::solid(colour, 1.3));
+    for x in [from, to] {
+        canvas.segment((x, y - 2.4), (x, y + 2.4), Stroke::solid(colour, 0.8));
+    }
+}

@@ -1,0 +1,136 @@
+//! One set of sizes, widths and colours for all figures.
+
+use plotters::style::RGBColor;
+
+use super::canvas::{Colour, Stroke};
+
+/// Width of the text block, points (170 mm).
+pub const FULL_WIDTH: f64 = 481.9;
+/// Width of one of two columns, points.
+pub const HALF_WIDTH: f64 = 234.0;
+/// Size of tick labels, points.
+pub const TICK_SIZE: f64 = 7.0;
+/// Size of axis titles, points.
+pub const TITLE_SIZE: f64 = 8.0;
+/// Size of notes inside a figure, points.
+pub const NOTE_SIZE: f64 = 7.5;
+/// Width of frames and ticks, points.
+pub const FRAME_WIDTH: f64 = 0.5;
+/// Width of curves, points.
+pub const CURVE_WIDTH: f64 = 1.0;
+/// Width of thin lines, points.
+pub const THIN_WIDTH: f64 = 0.35;
+
+/// Near black, for text and measured lines.
+pub const INK: Colour = RGBColor(0x1a, 0x1a, 0x1a);
+/// Frames and ticks.
+pub const FRAME: Colour = RGBColor(0x55, 0x55, 0x55);
+/// Second text.
+pub const QUIET: Colour = RGBColor(0x5f, 0x66, 0x6d);
+/// Lines of a grid.
+pub const GRID: Colour = RGBColor(0xe3, 0xe5, 0xe8);
+/// Paper.
+pub const PAPER: Colour = RGBColor(0xff, 0xff, 0xff);
+/// Okabe and Ito's blue: mass x, first series.
+pub const BLUE: Colour = RGBColor(0x00, 0x5f, 0xa3);
+/// Okabe and Ito's vermilion: mass y, second series.
+pub const VERMILION: Colour = RGBColor(0xd5, 0x5e, 0x00);
+/// Okabe and Ito's bluish green: third series.
+pub const GREEN: Colour = RGBColor(0x00, 0x8a, 0x66);
+/// A pale blue for 95 % bands.
+pub const BAND: Colour = RGBColor(0xc9, 0xdd, 0xee);
+
+/// Frame lines.
+pub const FRAME_STROKE: Stroke = Stroke::solid(FRAME, FRAME_WIDTH);
+/// Lines of a grid.
+pub const GRID_STROKE: Stroke = Stroke::solid(GRID, THIN_WIDTH);
+/// A line at zero.
+pub const ZERO_STROKE: Stroke = Stroke::solid(RGBColor(0xb5, 0xb9, 0xbe), 0.4);
+
+/// What the reader chose about numbers.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct NumberLook {
+    /// Whether numbers have a decimal comma.
+    pub decimal_comma: bool,
+}
+
+impl NumberLook {
+    /// A number with a fixed count of decimals, a true minus and the chosen decimal sign.
+    pub fn fixed(self, value: f64, decimals: usize) -> String {
+        let text = format!("{value:.decimals$}");
+        let is_zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
+        let text = if is_zero {
+            text.replace('-', "")
+        } else {
+            text.replace('-', "\u{2212}")
+        };
+        self.sign(&text)
+    }
+
+    /// A number with a count of significant digits; powers of ten where it is very large or small.
+    pub fn significant(self, value: f64, digits: usize) -> String {
+        if value == 0.0 || !value.is_finite() {
+            return if value == 0.0 {
+                "0".into()
+            } else {
+                "–".into()
+            };
+        }
+        let exponent = decimal_exponent(value, digits);
+        if (-4..6).contains(&exponent) {
+            let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+            self.fixed(value, decimals)
+        } else {
+            let mantissa = self.fixed(value / 10f64.powi(exponent), digits.saturating_sub(1));
+            format!("{mantissa}\u{2009}·\u{2009}10{}", superscript(exponent))
+        }
+    }
+
+    /// Puts the chosen decimal sign.
+    pub fn sign(self, text: &str) -> String {
+        if self.decimal_comma {
+            text.replace('.', ",")
+        } else {
+            text.to_owned()
+        }
+    }
+}
+
+/// Exponent of ten of a number once rounded to some digits (0.99996 to four digits is 1.000).
+pub fn decimal_exponent(value: f64, digits: usize) -> i32 {
+    let exponent = value.abs().log10().floor() as i32;
+    let rounded = (value.abs() / 10f64.powi(exponent - digits as i32 + 1)).round();
+    exponent + i32::from(rounded >= 10f64.powi(digits as i32))
+}
+
+/// An exponent in raised digits.
+fn superscript(exponent: i32) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    exponent
+        .to_string()
+        .chars()
+        .map(|c| c.to_digit(10).map_or('⁻', |d| DIGITS[d as usize]))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_numbers_are_printed_as_books_do() {
+        let point = NumberLook::default();
+        assert_eq!(point.fixed(-0.0004, 2), "0.00");
+        assert_eq!(point.fixed(-1.25, 2), "\u{2212}1.25");
+        assert_eq!(point.significant(0.999_96, 4), "1.000");
+        assert_eq!(point.significant(12.3456, 3), "12.3");
+        assert_eq!(point.significant(1.5e-7, 2), "1.5\u{2009}·\u{2009}10⁻⁷");
+        assert_eq!(
+            NumberLook {
+                decimal_comma: true
+            }
+            .fixed(1.5, 1),
+            "1,5"
+        );
+    }
+}

@@ -1,0 +1,260 @@
+//! How a motion looks: each has its own shape and its own colour, told apart in grey and by the
+//! colour-blind; and the pale tint of its region.
+
+use plotters::style::RGBColor;
+
+use super::canvas::{Canvas, Colour, Point, Stroke};
+use super::look;
+use crate::motion::Motion;
+
+/// Shape of a mark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Shape {
+    /// An open circle.
+    Circle,
+    /// A filled circle.
+    Disc,
+    /// A filled circle with a pale core.
+    Target,
+    /// A filled square.
+    Square,
+    /// An open square.
+    Box,
+    /// A filled triangle.
+    Triangle,
+    /// An open triangle.
+    Delta,
+    /// A filled triangle, point downward.
+    Wedge,
+    /// A filled diamond.
+    Diamond,
+    /// An open diamond.
+    Lozenge,
+    /// A filled five-pointed star.
+    Star,
+    /// An upright cross.
+    Plus,
+    /// A diagonal cross.
+    Cross,
+    /// A horizontal bar.
+    Bar,
+    /// A small dot.
+    Dot,
+}
+
+/// How a motion is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MotionLook {
+    /// Shape of its marks.
+    pub shape: Shape,
+    /// Colour of its marks.
+    pub colour: Colour,
+    /// Tint of its region.
+    pub tint: Colour,
+}
+
+const BLUE: Colour = RGBColor(0x00, 0x5f, 0xa3);
+const SKY: Colour = RGBColor(0x2f, 0x9b, 0xd8);
+const VERMILION: Colour = RGBColor(0xd5, 0x5e, 0x00);
+const ORANGE: Colour = RGBColor(0xc9, 0x86, 0x00);
+const GREEN: Colour = RGBColor(0x00, 0x8a, 0x66);
+const PURPLE: Colour = RGBColor(0xb0, 0x52, 0x8a);
+const PLUM: Colour = RGBColor(0x6f, 0x4a, 0x9e);
+const BROWN: Colour = RGBColor(0x7a, 0x50, 0x30);
+const GREY: Colour = RGBColor(0x77, 0x77, 0x77);
+
+/// The look of a motion: the common ones by name, all others by their p and n.
+pub fn of(motion: &Motion) -> MotionLook {
+    match motion {
+        Motion::Impactless => look(Shape::Circle, RGBColor(0x44, 0x4a, 0x50), 0.0),
+        Motion::Periodic {
+            impacts_p,
+            periods_n,
+            dead_zone,
+        } => periodic(*impacts_p, *periods_n, *dead_zone),
+        Motion::Beat => look(Shape::Plus, BROWN, 0.16),
+        Motion::Chaotic => look(Shape::Cross, RGBColor(0x8c, 0x1d, 0x1d), 0.16),
+        Motion::Joined => look(Shape::Bar, GREY, 0.22),
+        Motion::Undetermined { .. } => look(Shape::Dot, GREY, 0.10),
+    }
+}
+
+fn periodic(p: u32, n: u32, dead_zone: bool) -> MotionLook {
+    match (p, n, dead_zone) {
+        (1, 1, false) => look(Shape::Disc, BLUE, 0.17),
+        (_, 1, true) => look(Shape::Target, SKY, 0.26),
+        (1, 2, _) => look(Shape::Square, VERMILION, 0.17),
+        (2, 2, _) => look(Shape::Box, ORANGE, 0.26),
+        (2, 1, _) => look(Shape::Triangle, GREEN, 0.17),
+        (1, 3, _) => look(Shape::Diamond, PURPLE, 0.20),
+        (1, 4, _) => look(Shape::Wedge, PLUM, 0.17),
+        (1, 5, _) => look(Shape::Star, BROWN, 0.14),
+        (2, 3 | 4, _) => look(Shape::Lozenge, PURPLE, 0.10),
+        (_, 1, _) => look(Shape::Delta, GREEN, 0.10),
+        _ => other(p, n),
+    }
+}
+
+fn other(p: u32, n: u32) -> MotionLook {
+    const SHAPES: [Shape; 4] = [Shape::Lozenge, Shape::Delta, Shape::Star, Shape::Wedge];
+    const COLOURS: [Colour; 5] = [PLUM, ORANGE, BROWN, SKY, GREEN];
+    let shape = SHAPES[(p as usize + 2 * n as usize) % SHAPES.len()];
+    look(
+        shape,
+        COLOURS[(2 * p as usize + n as usize) % COLOURS.len()],
+        0.12,
+    )
+}
+
+fn look(shape: Shape, colour: Colour, depth: f64) -> MotionLook {
+    MotionLook {
+        shape,
+        colour,
+        tint: mix(colour, depth),
+    }
+}
+
+/// A colour thinned with white.
+pub fn mix(colour: Colour, depth: f64) -> Colour {
+    let thin = |c: u8| (255.0 - depth * (255.0 - f64::from(c))).round() as u8;
+    RGBColor(thin(colour.0), thin(colour.1), thin(colour.2))
+}
+
+/// Order of motions in legends: impactless, then periodic by n and p, then the rest.
+pub fn order(motion: &Motion) -> (u32, u32, u32, bool) {
+    match motion {
+        Motion::Impactless => (0, 0, 0, false),
+        Motion::Periodic {
+            impacts_p,
+            periods_n,
+            dead_zone,
+        } => (1, *periods_n, *impacts_p, *dead_zone),
+        Motion::Beat => (2, 0, 0, false),
+        Motion::Chaotic => (3, 0, 0, false),
+        Motion::Joined => (4, 0, 0, false),
+        Motion::Undetermined { .. } => (5, 0, 0, false),
+    }
+}
+
+/// The motions met, each label once, in the order of legends.
+pub fn met<'a>(motions: impl IntoIterator<Item = &'a Motion>) -> Vec<&'a Motion> {
+    let mut seen: Vec<&Motion> = Vec::new();
+    for motion in motions {
+        if !seen.iter().any(|m| m.label() == motion.label()) {
+            seen.push(motion);
+        }
+    }
+    seen.sort_by_key(|m| order(m));
+    seen
+}
+
+/// Draws a mark of a radius in points, with a thin light rim that parts it from its neighbours.
+pub fn draw(canvas: &mut Canvas, (x, y): Point, radius: f64, mark: MotionLook) {
+    let r = radius;
+    let c = mark.colour;
+    let outline = Stroke::solid(c, 0.32 * r);
+    let rim = Stroke::solid(look::PAPER, 0.25);
+    match mark.shape {
+        Shape::Circle => {
+            canvas.disc((x, y), r, look::PAPER);
+            canvas.ring((x, y), 0.85 * r, outline);
+        }
+        Shape::Disc => canvas.disc((x, y), r, c),
+        Shape::Target => {
+            canvas.disc((x, y), r, c);
+            canvas.disc((x, y), 0.42 * r, look::PAPER);
+        }
+        Shape::Dot => canvas.disc((x, y), 0.55 * r, c),
+        Shape::Square => canvas.outlined(&regular(x, y, 1.15 * r, 4, 45.0), c, rim),
+        Shape::Box => canvas.outlined(&regular(x, y, 1.1 * r, 4, 45.0), look::PAPER, outline),
+        Shape::Triangle => canvas.outlined(&regular(x, y + 0.15 * r, 1.3 * r, 3, 90.0), c, rim),
+        Shape::Delta => {
+            canvas.outlined(
+                &regular(x, y + 0.15 * r, 1.2 * r, 3, 90.0),
+                look::PAPER,
+                outline,
+            );
+        }
+        Shape::Wedge => canvas.outlined(&regular(x, y - 0.15 * r, 1.3 * r, 3, -90.0), c, rim),
+        Shape::Diamond => canvas.outlined(&regular(x, y, 1.3 * r, 4, 0.0), c, rim),
+        Shape::Lozenge => canvas.outlined(&regular(x, y, 1.2 * r, 4, 0.0), look::PAPER, outline),
+        Shape::Star => canvas.outlined(&star(x, y, 1.4 * r), c, rim),
+        Shape::Plus => crossed(canvas, (x, y), 1.1 * r, 0.0, c),
+        Shape::Cross => crossed(canvas, (x, y), 1.1 * r, 45.0, c),
+        Shape::Bar => canvas.segment((x - r, y), (x + r, y), Stroke::solid(c, 0.6 * r)),
+    }
+}
+
+fn regular(x: f64, y: f64, radius: f64, corners: u32, start_degrees: f64) -> Vec<Point> {
+    (0..corners)
+        .map(|i| {
+            let a = (start_degrees + 360.0 * f64::from(i) / f64::from(corners)).to_radians();
+            (x + radius * a.cos(), y - radius * a.sin())
+        })
+        .collect()
+}
+
+fn star(x: f64, y: f64, radius: f64) -> Vec<Point> {
+    (0..10)
+        .map(|i| {
+            let a = (90.0 + 36.0 * f64::from(i)).to_radians();
+            let r = if i % 2 == 0 { radius } else { 0.45 * radius };
+            (x + r * a.cos(), y - r * a.sin())
+        })
+        .collect()
+}
+
+fn crossed(canvas: &mut Canvas, (x, y): Point, arm: f64, turn_degrees: f64, colour: Colour) {
+    for quarter in [0.0, 90.0] {
+        let a = f64::to_radians(turn_degrees + quarter);
+        let (dx, dy) = (arm * a.cos(), arm * a.sin());
+        canvas.segment(
+            (x - dx, y - dy),
+            (x + dx, y + dy),
+            Stroke::solid(colour, 0.42 * arm),
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_common_motions_differ_in_shape_and_in_colour() {
+        let common: Vec<Motion> = vec![
+            Motion::Impactless,
+            Motion::periodic(1, 1),
+            Motion::Periodic {
+                impacts_p: 1,
+                periods_n: 1,
+                dead_zone: true,
+            },
+            Motion::periodic(1, 2),
+            Motion::periodic(2, 2),
+            Motion::periodic(2, 1),
+            Motion::periodic(1, 3),
+            Motion::periodic(1, 4),
+            Motion::Beat,
+            Motion::Chaotic,
+        ];
+        for (i, a) in common.iter().enumerate() {
+            for b in &common[..i] {
+                assert_ne!(of(a).shape, of(b).shape, "{a} and {b}");
+                assert_ne!(of(a).colour, of(b).colour, "{a} and {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn valid_legends_name_each_motion_once_in_order() {
+        let motions = [
+            Motion::Chaotic,
+            Motion::periodic(1, 2),
+            Motion::Impactless,
+            Motion::periodic(1, 2),
+        ];
+        let labels: Vec<_> = met(&motions).iter().map(|m| m.label()).collect();
+        assert_eq!(labels, ["0", "1/2", "chaotic"]);
+    }
+}

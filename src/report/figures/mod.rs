@@ -1,0 +1,147 @@
+//! The figures, one file each: from content to SVG, its data as CSV, its points for hovering.
+
+pub mod axes;
+pub mod boundary_fit;
+pub mod canvas;
+pub mod comparison;
+pub mod correlation;
+pub mod csv;
+pub mod decays;
+pub mod dots;
+pub mod estimates;
+pub mod fonts;
+pub mod impacts;
+pub mod legend;
+pub mod look;
+pub mod map;
+pub mod marks;
+pub mod path;
+pub mod placing;
+pub mod plane;
+pub mod profiles;
+pub mod regions;
+pub mod residuals;
+pub mod resonance;
+pub mod richtext;
+pub mod units;
+
+use canvas::Canvas;
+use look::NumberLook;
+use rayon::prelude::*;
+
+use crate::report::content::ReportContent;
+
+/// A finished figure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// Stem of its file name.
+    pub name: String,
+    /// What it shows, with markup.
+    pub title: String,
+    /// The drawing.
+    pub svg: String,
+    /// Width, points.
+    pub width: f64,
+    /// Height, points.
+    pub height: f64,
+    /// Its data.
+    pub csv: String,
+    /// Points that tell something when hovered over.
+    pub spots: Vec<Spot>,
+    /// Texts that reach beyond the drawing's edges.
+    pub overfull: Vec<String>,
+}
+
+/// A point of a figure that tells something.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Spot {
+    /// From the left, points.
+    pub x: f64,
+    /// From the top, points.
+    pub y: f64,
+    /// What it tells; lines are parted by line feeds.
+    pub text: String,
+}
+
+impl Figure {
+    /// A figure from its drawing.
+    pub fn new(name: impl Into<String>, title: &str, canvas: Canvas, csv: String) -> Self {
+        let (width, height) = (canvas.width, canvas.height);
+        let overfull = canvas.overfull();
+        let svg = canvas.into_svg(title);
+        let (name, title) = (name.into(), title.to_owned());
+        Self {
+            name,
+            title,
+            svg,
+            width,
+            height,
+            csv,
+            spots: Vec::new(),
+            overfull,
+        }
+    }
+
+    /// With points that tell something.
+    pub fn with_spots(self, spots: Vec<Spot>) -> Self {
+        Self { spots, ..self }
+    }
+}
+
+/// A figure waiting to be drawn.
+type Job<'a> = Box<dyn Fn() -> Option<Figure> + Send + Sync + 'a>;
+
+/// Draws all figures that the content allows, side by side on all cores, in a fixed order.
+pub fn draw_all(content: &ReportContent, numbers: NumberLook) -> Vec<Figure> {
+    jobs(content, numbers)
+        .par_iter()
+        .filter_map(|job| job())
+        .collect()
+}
+
+fn jobs<'a>(content: &'a ReportContent, numbers: NumberLook) -> Vec<Job<'a>> {
+    let mut jobs: Vec<Job<'a>> = vec![
+        Box::new(move || map::draw(content, map::MapSize::Full, numbers)),
+        Box::new(move || map::draw(content, map::MapSize::Small, numbers)),
+    ];
+    for comparison in &content.comparisons {
+        jobs.push(Box::new(move || comparison::draw(comparison, numbers)));
+    }
+    jobs.push(Box::new(move || estimates::draw(content, numbers)));
+    jobs.push(Box::new(move || boundary_fit::draw(content, numbers)));
+    jobs.push(Box::new(move || profiles::draw(&content.profiles, numbers)));
+    if let Some(correlation) = &content.correlation {
+        jobs.push(Box::new(move || correlation::draw(correlation, numbers)));
+    }
+    method_jobs(content, numbers, &mut jobs);
+    jobs
+}
+
+/// Figures of which there may be several.
+fn method_jobs<'a>(content: &'a ReportContent, numbers: NumberLook, jobs: &mut Vec<Job<'a>>) {
+    for (i, scatter) in content.impacts.iter().enumerate() {
+        jobs.push(Box::new(move || {
+            impacts::draw(scatter, &numbered("impacts", i), numbers)
+        }));
+    }
+    for (i, curve) in content.resonance.iter().enumerate() {
+        jobs.push(Box::new(move || {
+            resonance::draw(curve, &numbered("resonance", i), numbers)
+        }));
+    }
+    for (i, few) in content.free_decays.chunks(decays::PER_FIGURE).enumerate() {
+        jobs.push(Box::new(move || {
+            decays::draw(few, &numbered("free_decays", i), numbers)
+        }));
+    }
+    for (i, set) in content.residuals.iter().enumerate() {
+        jobs.push(Box::new(move || {
+            residuals::draw(set, &numbered("residuals", i), numbers)
+        }));
+    }
+}
+
+/// Name of the i-th figure of a kind.
+pub fn numbered(kind: &str, index: usize) -> String {
+    format!("{kind}_{}", index + 1)
+}

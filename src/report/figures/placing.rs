@@ -1,0 +1,107 @@
+//! Placing labels where nothing else stands.
+
+use super::canvas::Point;
+use super::path::Rect;
+
+/// Which square points of a drawing are taken.
+pub struct Occupancy {
+    columns: usize,
+    rows: usize,
+    taken: Vec<u8>,
+}
+
+impl Occupancy {
+    /// An empty drawing of a size in points.
+    pub fn new(width: f64, height: f64) -> Self {
+        let (columns, rows) = (width.ceil() as usize + 1, height.ceil() as usize + 1);
+        Self {
+            columns,
+            rows,
+            taken: vec![0; columns * rows],
+        }
+    }
+
+    /// Takes a rectangle.
+    pub fn take_rect(&mut self, rect: &Rect) {
+        for index in self.cells(rect) {
+            self.taken[index] = self.taken[index].saturating_add(1);
+        }
+    }
+
+    /// Takes a disc's square.
+    pub fn take_spot(&mut self, (x, y): Point, radius: f64) {
+        self.take_rect(&Rect::new(
+            x - radius,
+            y - radius,
+            2.0 * radius,
+            2.0 * radius,
+        ));
+    }
+
+    /// Takes what a line covers.
+    pub fn take_line(&mut self, points: &[Point]) {
+        for pair in points.windows(2) {
+            let length = (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1);
+            let steps = length.ceil().max(1.0) as usize;
+            for i in 0..=steps {
+                let t = i as f64 / steps as f64;
+                let x = pair[0].0 + t * (pair[1].0 - pair[0].0);
+                let y = pair[0].1 + t * (pair[1].1 - pair[0].1);
+                self.take_rect(&Rect::new(x - 0.5, y - 0.5, 0.9, 0.9));
+            }
+        }
+    }
+
+    /// How many square points of a rectangle are taken.
+    pub fn taken(&self, rect: &Rect) -> usize {
+        self.cells(rect).filter(|&i| self.taken[i] > 0).count()
+    }
+
+    fn cells(&self, rect: &Rect) -> impl Iterator<Item = usize> + use<> {
+        let clamp = |v: f64, most: usize| (v.max(0.0) as usize).min(most);
+        let columns = self.columns;
+        let x = clamp(rect.left, columns)..clamp(rect.right + 1.0, columns);
+        let y = clamp(rect.top, self.rows)..clamp(rect.bottom + 1.0, self.rows);
+        y.flat_map(move |row| x.clone().map(move |column| row * columns + column))
+    }
+
+    /// The best place for a box of a size near a point: its middle, or `None` where all places
+    /// within reach lie outside the bounds or on something.
+    pub fn near(&self, point: Point, (width, height): (f64, f64), bounds: &Rect) -> Option<Point> {
+        let candidates = (0..10).flat_map(|ring| {
+            (0..16).map(move |turn| (5.0 + 4.0 * f64::from(ring), f64::from(turn) / 16.0))
+        });
+        let mut best: Option<(f64, Point)> = None;
+        for (distance, turn) in candidates {
+            let angle = std::f64::consts::TAU * (turn + 0.125);
+            let x = point.0 + (distance + 0.5 * width) * angle.cos();
+            let y = point.1 - (distance + 0.5 * height) * angle.sin();
+            let rect = Rect::new(x - 0.5 * width, y - 0.5 * height, width, height);
+            let corners = [(rect.left, rect.top), (rect.right, rect.bottom)];
+            if !corners.iter().all(|&c| bounds.contains(c)) {
+                continue;
+            }
+            let cost = 3.0 * self.taken(&rect) as f64 + distance;
+            if best.is_none_or(|(least, _)| cost < least) {
+                best = Some((cost, (x, y)));
+            }
+        }
+        best.map(|(_, place)| place)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_a_label_avoids_what_is_taken() {
+        let mut occupancy = Occupancy::new(200.0, 200.0);
+        occupancy.take_rect(&Rect::new(100.0, 0.0, 100.0, 200.0));
+        let bounds = Rect::new(0.0, 0.0, 200.0, 200.0);
+        let (x, _) = occupancy
+            .near((98.0, 100.0), (20.0, 8.0), &bounds)
+            .expect("a place");
+        assert!(x + 10.0 <= 101.0, "{x}");
+    }
+}

@@ -1,0 +1,386 @@
+//! The regions of motion of a simulated grid: tints with smoothed edges, and places for labels.
+
+use super::axes::Panel;
+use super::canvas::{Canvas, Colour, Point, Stroke};
+use super::look;
+use super::marks;
+use super::path::{self, Rect};
+use super::placing::Occupancy;
+use crate::report::content::RegionMap;
+
+/// Regions smaller than this share of the map get no label and no outline.
+const LEAST_SHARE: f64 = 0.0025;
+
+/// A map laid on a panel, with its connected regions.
+pub struct Regions<'a> {
+    map: &'a RegionMap,
+    panel: &'a Panel,
+    /// Region of each cell, and each region's number of cells.
+    region: Vec<usize>,
+    areas: Vec<usize>,
+}
+
+/// Where a region's label may stand.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RegionLabel {
+    /// Its text.
+    pub text: String,
+    /// Middle of the text, points.
+    pub at: Point,
+    /// Size of the text, points.
+    pub size: f64,
+}
+
+impl<'a> Regions<'a> {
+    /// Lays a map on a panel. `None` where its axes and cells contradict each other.
+    pub fn new(map: &'a RegionMap, panel: &'a Panel) -> Option<Self> {
+        let cells = map.eta.len() * map.rho.len();
+        let in_range = map
+            .cells
+            .iter()
+            .all(|&c| usize::from(c) < map.motions.len());
+        if map.eta.len() < 2 || map.rho.len() < 2 || map.cells.len() != cells || !in_range {
+            return None;
+        }
+        let mut regions = Self {
+            map,
+            panel,
+            region: vec![usize::MAX; cells],
+            areas: Vec::new(),
+        };
+        for start in 0..cells {
+            if regions.region[start] == usize::MAX {
+                let area = regions.flood(start);
+                regions.areas.push(area);
+            }
+        }
+        Some(regions)
+    }
+
+    /// What a cell is: the motion from the first start, and from the second where it differs.
+    fn kind(&self, index: usize) -> (u16, u16) {
+        let first = self.map.cells[index];
+        let second = self.map.second.get(index).copied().unwrap_or(first);
+        let known = usize::from(second) < self.map.motions.len();
+        (first, if known { second } else { first })
+    }
+
+    fn flood(&mut self, start: usize) -> usize {
+        let (columns, rows) = (self.map.eta.len(), self.map.rho.len());
+        let (number, kind) = (self.areas.len(), self.kind(start));
+        let mut open = vec![start];
+        let mut area = 0;
+        while let Some(index) = open.pop() {
+            if self.region[index] != usize::MAX || self.kind(index) != kind {
+                continue;
+            }
+            self.region[index] = number;
+            area += 1;
+            let (i, j) = (index % columns, index / columns);
+            let next = [(i > 0, -1), (i + 1 < columns, 1)];
+            let beside = next
+                .iter()
+                .filter(|n| n.0)
+                .map(|n| index.wrapping_add_signed(n.1));
+            open.extend(beside);
+            if j > 0 {
+                open.push(index - columns);
+            }
+            if j + 1 < rows {
+                open.push(index + columns);
+            }
+        }
+        area
+    }
+
+    /// Draws tints, outlines and the hatching of hysteresis.
+    pub fn draw(&self, canvas: &mut Canvas) {
+        let (columns, rows) = (self.map.eta.len() as isize, self.map.rho.len() as isize);
+        for j in -1..rows {
+            self.draw_even_runs(canvas, j, columns);
+        }
+        for j in -1..rows {
+            for i in -1..columns {
+                self.draw_mixed(canvas, i, j);
+            }
+        }
+        self.hatch(canvas);
+    }
+
+    fn tint(&self, cell: usize) -> Colour {
+        let (first, _) = self.kind(cell);
+        marks::of(&self.map.motions[usize::from(first)]).tint
+    }
+
+    /// Index of a grid cell, held to the grid.
+    fn cell(&self, i: isize, j: isize) -> usize {
+        let (columns, rows) = (self.map.eta.len(), self.map.rho.len());
+        let clamp = |v: isize, n: usize| v.clamp(0, n as isize - 1) as usize;
+        clamp(j, rows) * columns + clamp(i, columns)
+    }
+
+    /// Centre of a cell on paper; beyond the grid its outer edge.
+    fn centre(&self, i: isize, j: isize) -> Point {
+        self.panel
+            .at(along(&self.map.eta, i), along(&self.map.rho, j))
+    }
+
+    fn corners(&self, i: isize, j: isize) -> [(usize, Point); 4] {
+        [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
+            .map(|(a, b)| (self.cell(a, b), self.centre(a, b)))
+    }
+
+    fn same_motion(&self, corners: &[(usize, Point); 4]) -> bool {
+        corners
+            .iter()
+            .all(|c| self.map.cells[c.0] == self.map.cells[corners[0].0])
+    }
+
+    /// Squares between four centres of one motion, run by run along a row.
+    fn draw_even_runs(&self, canvas: &mut Canvas, j: isize, columns: isize) {
+        let mut i = -1;
+        while i < columns {
+            let first = self.corners(i, j);
+            let mut end = i + 1;
+            if self.same_motion(&first) {
+                while end < columns
+                    && self.same_motion(&self.corners(end, j))
+                    && self.map.cells[self.cell(end, j)] == self.map.cells[first[0].0]
+                {
+                    end += 1;
+                }
+            }
+            let (lower, upper) = (self.centre(i, j), self.centre(end, j + 1));
+            self.patch(canvas, lower, upper, self.tint(first[0].0));
+            i = end;
+        }
+    }
+
+    /// A rectangle, a hair larger than it is so that no seam shows.
+    fn patch(&self, canvas: &mut Canvas, lower: Point, upper: Point, tint: Colour) {
+        if tint == look::PAPER {
+            return;
+        }
+        let r = &self.panel.rect;
+        let (left, right) = ((lower.0 - 0.1).max(r.left), (upper.0 + 0.1).min(r.right));
+        let (top, bottom) = ((upper.1 - 0.1).max(r.top), (lower.1 + 0.1).min(r.bottom));
+        if right > left && bottom > top {
+            canvas.rectangle((left, top), (right, bottom), tint);
+        }
+    }
+
+    /// A square whose corners differ: each motion gets its corners, cut straight between.
+    fn draw_mixed(&self, canvas: &mut Canvas, i: isize, j: isize) {
+        let corners = self.corners(i, j);
+        if self.same_motion(&corners) {
+            return;
+        }
+        self.patch(canvas, corners[0].1, corners[2].1, self.tint(corners[0].0));
+        let kinds = corners.map(|c| self.map.cells[c.0]);
+        let saddle = kinds[0] == kinds[2] && kinds[1] == kinds[3];
+        let centre = (saddle || distinct(kinds) > 2).then(|| middle(corners[0].1, corners[2].1));
+        for start in (0..4).filter(|&s| kinds[s] != kinds[(s + 3) % 4]) {
+            let run = (0..4)
+                .take_while(|k| kinds[(start + k) % 4] == kinds[start])
+                .count();
+            let (last, after) = ((start + run - 1) % 4, (start + run) % 4);
+            let mut polygon: Vec<Point> = (0..run).map(|k| corners[(start + k) % 4].1).collect();
+            let edge = [
+                Some(middle(corners[last].1, corners[after].1)),
+                centre,
+                Some(middle(corners[(start + 3) % 4].1, corners[start].1)),
+            ];
+            let edge: Vec<Point> = edge.into_iter().flatten().collect();
+            polygon.extend(&edge);
+            let polygon = path::clip_polygon(&polygon, &self.panel.rect);
+            canvas.fill(&polygon, self.tint(corners[start].0));
+            if kinds[start] > kinds[after]
+                && self.is_large(corners[start].0)
+                && self.is_large(corners[after].0)
+            {
+                self.outline(canvas, &edge);
+            }
+        }
+    }
+
+    fn outline(&self, canvas: &mut Canvas, edge: &[Point]) {
+        for piece in path::clip(edge, &self.panel.rect) {
+            canvas.line(&piece, Stroke::solid(marks::mix(look::FRAME, 0.45), 0.3));
+        }
+    }
+
+    fn is_large(&self, cell: usize) -> bool {
+        let area = self.areas[self.region[cell]] as f64;
+        area >= LEAST_SHARE * self.region.len() as f64
+    }
+
+    /// Diagonal lines where two starts give two motions, in the second motion's colour.
+    fn hatch(&self, canvas: &mut Canvas) {
+        if self.map.second.len() != self.map.cells.len() {
+            return;
+        }
+        let r = self.panel.rect;
+        let lines = ((r.width() + r.height()) / 5.0) as usize;
+        for line in 0..lines {
+            let start = (r.left + 5.0 * line as f64 - r.height(), r.bottom);
+            self.hatch_line(canvas, start, r.height());
+        }
+    }
+
+    fn hatch_line(&self, canvas: &mut Canvas, (x0, y0): Point, length: f64) {
+        let steps = length.floor() as usize;
+        let second_at = |k: usize| {
+            let cell = self.cell_at((x0 + k as f64, y0 - k as f64))?;
+            let (first, second) = self.kind(cell);
+            (first != second).then_some(second)
+        };
+        let mut k = 0;
+        while k < steps {
+            let Some(second) = second_at(k) else {
+                k += 1;
+                continue;
+            };
+            let end = (k..=steps)
+                .find(|&e| second_at(e) != Some(second))
+                .unwrap_or(steps);
+            let colour = marks::mix(
+                marks::of(&self.map.motions[usize::from(second)]).colour,
+                0.45,
+            );
+            let point = |k: usize| (x0 + k as f64, y0 - k as f64);
+            canvas.segment(point(k), point(end), Stroke::solid(colour, 0.35));
+            k = end.max(k + 1);
+        }
+    }
+
+    fn cell_at(&self, (x, y): Point) -> Option<usize> {
+        let r = &self.panel.rect;
+        if !r.contains((x, y)) {
+            return None;
+        }
+        let across =
+            self.panel.x.low + (x - r.left) / r.width() * (self.panel.x.high - self.panel.x.low);
+        let up =
+            self.panel.y.low + (r.bottom - y) / r.height() * (self.panel.y.high - self.panel.y.low);
+        let i = nearest(&self.map.eta, across)?;
+        let j = nearest(&self.map.rho, up)?;
+        Some(self.cell(i, j))
+    }
+
+    /// A label for each region that is large enough, where its text stands free.
+    pub fn labels(&self, occupancy: &mut Occupancy, size: f64) -> Vec<RegionLabel> {
+        let mut order: Vec<usize> = (0..self.areas.len()).collect();
+        order.sort_by_key(|&r| std::cmp::Reverse(self.areas[r]));
+        let least = LEAST_SHARE * self.region.len() as f64;
+        let large = order
+            .into_iter()
+            .take_while(|&r| self.areas[r] as f64 >= least);
+        let place = |r| {
+            [size, 0.8 * size]
+                .into_iter()
+                .find_map(|s| self.label(r, occupancy, s))
+        };
+        large.filter_map(place).collect()
+    }
+
+    fn label(&self, region: usize, occupancy: &mut Occupancy, size: f64) -> Option<RegionLabel> {
+        let first_cell = self.region.iter().position(|&r| r == region)?;
+        let text = self.name(first_cell);
+        let half = (
+            0.5 * super::fonts::width(&text, super::fonts::Face::Bold, size) + 3.0,
+            0.5 * size + 1.5,
+        );
+        let columns = self.map.eta.len();
+        let best = self
+            .region
+            .iter()
+            .enumerate()
+            .filter(|(_, r)| **r == region)
+            .filter_map(|(index, _)| {
+                let at = self.centre((index % columns) as isize, (index / columns) as isize);
+                Some((self.room(region, at, half, occupancy)?, at))
+            })
+            .max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let (x, y) = best.1;
+        occupancy.take_rect(&Rect::new(
+            x - half.0,
+            y - half.1,
+            2.0 * half.0,
+            2.0 * half.1,
+        ));
+        Some(RegionLabel {
+            text,
+            at: best.1,
+            size,
+        })
+    }
+
+    fn name(&self, cell: usize) -> String {
+        let (first, second) = self.kind(cell);
+        let label = |k: u16| self.map.motions[usize::from(k)].label();
+        if first == second {
+            label(first)
+        } else {
+            format!("{}, {}", label(first), label(second))
+        }
+    }
+
+    /// How well a text of a half size stands at a place: `None` where it leaves the region.
+    fn room(&self, region: usize, at: Point, half: Point, taken: &Occupancy) -> Option<f64> {
+        let inside = |grow: f64| {
+            let (w, h) = (half.0 + grow, half.1 + grow);
+            [
+                (-w, -h),
+                (0.0, -h),
+                (w, -h),
+                (-w, 0.0),
+                (w, 0.0),
+                (-w, h),
+                (0.0, h),
+                (w, h),
+            ]
+            .into_iter()
+            .all(|(dx, dy)| {
+                self.cell_at((at.0 + dx, at.1 + dy))
+                    .is_some_and(|c| self.region[c] == region)
+            })
+        };
+        if !inside(0.0) {
+            return None;
+        }
+        let free = [3.0, 6.0, 10.0, 15.0, 22.0]
+            .into_iter()
+            .take_while(|g| inside(*g))
+            .count();
+        let rect = Rect::new(at.0 - half.0, at.1 - half.1, 2.0 * half.0, 2.0 * half.1);
+        let covered = taken.taken(&rect) as f64;
+        (covered <= 0.08 * rect.width() * rect.height()).then_some(free as f64 - 0.5 * covered)
+    }
+}
+
+/// Value of an evenly spaced axis at an index; half a step beyond either end its outer edge.
+fn along(values: &[f64], index: isize) -> f64 {
+    let last = values.len() as isize - 1;
+    if index < 0 {
+        values[0] - 0.5 * (values[1] - values[0])
+    } else if index > last {
+        let n = values.len();
+        values[n - 1] + 0.5 * (values[n - 1] - values[n - 2])
+    } else {
+        values[index as usize]
+    }
+}
+
+fn nearest(values: &[f64], value: f64) -> Option<isize> {
+    let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
+    let index = ((value - values[0]) / step).round();
+    (index >= -0.51 && index <= values.len() as f64 - 0.49).then_some(index.max(0.0) as isize)
+}
+
+fn middle(a: Point, b: Point) -> Point {
+    (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1))
+}
+
+fn distinct(kinds: [u16; 4]) -> usize {
+    (0..4).filter(|&i| !kinds[..i].contains(&kinds[i])).count()
+}

@@ -1,0 +1,174 @@
+//! Residual diagnostics of one method: histogram, autocorrelation, over frequency, over gap.
+
+use super::axes::{Axis, Panel, Sides, range};
+use super::canvas::{Canvas, Stroke};
+use super::csv::Csv;
+use super::dots::{self, DotLook, Dots};
+use super::look::{self, NumberLook};
+use super::marks;
+use super::path::Rect;
+use super::{Figure, Spot};
+use crate::report::content::{ResidualPoint, ResidualSet};
+
+const HEIGHT: f64 = 84.0;
+const TOP: f64 = 3.0;
+
+/// Draws the diagnostics of one method; `None` where it has no residuals.
+pub fn draw(set: &ResidualSet, name: &str, numbers: NumberLook) -> Option<Figure> {
+    if set.points.is_empty() {
+        return None;
+    }
+    let mut sheet = Sheet {
+        set,
+        numbers,
+        canvas: Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + 24.0),
+        spots: Vec::new(),
+    };
+    let mut drawers: Vec<fn(&mut Sheet<'_>, Rect)> = vec![|s, r| s.histogram(r)];
+    if set.autocorrelation.len() > 2 {
+        drawers.push(|s, r| s.autocorrelation(r));
+    }
+    if set.points.iter().any(|p| p.frequency_hz.is_some()) {
+        drawers.push(|s, r| s.over(r, "drive frequency $f$ (Hz)", |p| p.frequency_hz));
+    }
+    if set.points.iter().any(|p| p.clearance_m.is_some()) {
+        drawers.push(|s, r| s.over(r, "clearance $r$ (mm)", |p| p.clearance_m.map(|c| 1e3 * c)));
+    }
+    let count = drawers.len() as f64;
+    let step = (look::FULL_WIDTH - 2.0) / count;
+    for (i, draw) in drawers.iter().enumerate() {
+        draw(
+            &mut sheet,
+            Rect::new(31.0 + i as f64 * step, TOP, step - 36.0, HEIGHT),
+        );
+    }
+    let title = "Residual diagnostics";
+    Some(Figure::new(name, title, sheet.canvas, csv(set)).with_spots(sheet.spots))
+}
+
+struct Sheet<'a> {
+    set: &'a ResidualSet,
+    numbers: NumberLook,
+    canvas: Canvas,
+    spots: Vec<Spot>,
+}
+
+impl Sheet<'_> {
+    fn reach(&self) -> f64 {
+        let most = self
+            .set
+            .points
+            .iter()
+            .map(|p| p.residual.abs())
+            .filter(|r| r.is_finite());
+        most.fold(3.0, f64::max).min(8.0)
+    }
+
+    /// Bars beside the normal curve of unit width.
+    fn histogram(&mut self, rect: Rect) {
+        let reach = self.reach();
+        let n = self.set.points.len() as f64;
+        let bins = (n.sqrt() * 1.2).clamp(7.0, 41.0) as usize | 1;
+        let width = 2.0 * reach / bins as f64;
+        let mut counts = vec![0usize; bins];
+        for p in &self.set.points {
+            let index = ((p.residual + reach) / width).floor();
+            counts[(index.max(0.0) as usize).min(bins - 1)] += 1;
+        }
+        let density: Vec<f64> = counts.iter().map(|c| *c as f64 / (n * width)).collect();
+        let highest = density.iter().copied().fold(0.4, f64::max);
+        let x = Axis::new(-reach, reach, "weighted residual (1)").with_ticks(4);
+        let y = Axis::new(0.0, 1.1 * highest, "density (1)").with_ticks(3);
+        let panel = Panel::new(rect, x, y);
+        for (i, d) in density.iter().enumerate() {
+            let from = -reach + i as f64 * width;
+            let (a, b) = (panel.at(from, *d), panel.at(from + width, 0.0));
+            self.canvas.rectangle(
+                (a.0 + 0.2, a.1),
+                (b.0 - 0.2, b.1),
+                marks::mix(look::BLUE, 0.45),
+            );
+        }
+        let normal = (0..=80).map(|i| {
+            let r = reach * (f64::from(i) / 40.0 - 1.0);
+            (r, (-0.5 * r * r).exp() / std::f64::consts::TAU.sqrt())
+        });
+        panel.curve(
+            &mut self.canvas,
+            normal,
+            Stroke::solid(look::VERMILION, 0.9),
+        );
+        panel.frame(&mut self.canvas, Sides::BOTH, self.numbers);
+    }
+
+    /// Stems from lag 1, with the band in which white residuals stay.
+    fn autocorrelation(&mut self, rect: Rect) {
+        let rho = &self.set.autocorrelation;
+        let limit = 1.96 / (self.set.points.len() as f64).sqrt();
+        let (low, high) = range(rho[1..].iter().copied()).unwrap_or((0.0, 0.0));
+        let x = Axis::new(0.0, rho.len() as f64, "lag (observations)").with_ticks(4);
+        let reach = (1.2 * low.abs().max(high.abs())).max(2.0 * limit).min(1.0);
+        let y = Axis::new(-reach, reach, "autocorrelation (1)").with_ticks(4);
+        let panel = Panel::new(rect, x, y);
+        let corners = (
+            panel.at(panel.x.low, limit.min(reach)),
+            panel.at(panel.x.high, -limit.min(reach)),
+        );
+        self.canvas.rectangle(corners.0, corners.1, look::BAND);
+        panel.level(&mut self.canvas, 0.0, look::ZERO_STROKE);
+        for (lag, r) in rho.iter().enumerate().skip(1) {
+            panel.error_bar(
+                &mut self.canvas,
+                lag as f64,
+                (0.0, *r),
+                Stroke::solid(look::INK, 0.9),
+            );
+        }
+        panel.frame(&mut self.canvas, Sides::BOTH, self.numbers);
+    }
+
+    /// Residuals over a quantity, with lines at ±1.96.
+    fn over(&mut self, rect: Rect, title: &str, of: fn(&ResidualPoint) -> Option<f64>) {
+        let reach = self.reach();
+        let x = Axis::around(self.set.points.iter().filter_map(of), 0.05, title).with_ticks(4);
+        let panel = Panel::new(
+            rect,
+            x,
+            Axis::new(-reach, reach, "weighted residual (1)").with_ticks(4),
+        );
+        panel.level(&mut self.canvas, 0.0, look::ZERO_STROKE);
+        for level in [-1.96, 1.96] {
+            let stroke = Stroke::dashed(look::ZERO_STROKE.colour, 0.5, &[2.0, 2.0]);
+            panel.level(&mut self.canvas, level, stroke);
+        }
+        let dot = DotLook {
+            radius: dots::radius(self.set.points.len()),
+            colour: look::BLUE,
+            open: false,
+        };
+        let mut taken = Dots::default();
+        for p in &self.set.points {
+            let Some(value) = of(p) else { continue };
+            let shown = p.residual.clamp(-reach, reach);
+            if let Some((x, y)) = taken.put(&mut self.canvas, &panel, (value, shown), dot) {
+                let r = self.numbers.fixed(p.residual, 2);
+                self.spots.push(Spot {
+                    x,
+                    y,
+                    text: format!("{}\nresidual {r}", p.record),
+                });
+            }
+        }
+        panel.frame(&mut self.canvas, Sides::BOTH, self.numbers);
+    }
+}
+
+fn csv(set: &ResidualSet) -> String {
+    let mut csv = Csv::new(&["record", "residual", "frequency_hz", "clearance_m"]);
+    for p in &set.points {
+        csv.row()
+            .texts(&[&p.record])
+            .numbers(&[Some(p.residual), p.frequency_hz, p.clearance_m]);
+    }
+    csv.finish()
+}

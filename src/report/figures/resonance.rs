@@ -1,0 +1,231 @@
+//! The impactless resonance curve: amplitude and phase, measured with errors, and the fit.
+
+use super::axes::{Axis, Panel, Sides};
+use super::canvas::{Canvas, Stroke};
+use super::csv::Csv;
+use super::dots::{self, DotLook, Dots};
+use super::legend::{self, Key, Sign};
+use super::look::{self, NumberLook};
+use super::path::Rect;
+use super::units::{PrintUnit, print_unit};
+use super::{Figure, Spot};
+use crate::report::content::{ResonanceCurve, ResonancePoint};
+
+const HEIGHT: f64 = 128.0;
+const TOP: f64 = 15.0;
+
+/// Draws one curve; `None` where it has no points.
+pub fn draw(curve: &ResonanceCurve, name: &str, numbers: NumberLook) -> Option<Figure> {
+    if curve.points.is_empty() {
+        return None;
+    }
+    let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + 24.0);
+    let has_phase = curve.points.iter().any(|p| p.phase_rad.is_some());
+    let width = if has_phase { 196.0 } else { 441.0 };
+    let unit = amplitude_unit(curve);
+    let amplitude = amplitude_panel(curve, &unit, Rect::new(36.0, TOP, width, HEIGHT));
+    let mut spots = Vec::new();
+    let value =
+        |p: &ResonancePoint| Some((p.amplitude * unit.0, p.amplitude_error.map(|e| e * unit.0)));
+    let fit = curve.fitted.iter().map(|f| (f[0], f[1] * unit.0)).collect();
+    Series {
+        curve,
+        panel: amplitude,
+        fit,
+    }
+    .draw(&mut canvas, value, numbers, &mut spots);
+    if has_phase {
+        let panel = phase_panel(curve, Rect::new(280.0, TOP, 198.0, HEIGHT));
+        let value = |p: &ResonancePoint| {
+            Some((
+                p.phase_rad?.to_degrees(),
+                p.phase_error_rad.map(f64::to_degrees),
+            ))
+        };
+        let fit = curve
+            .fitted
+            .iter()
+            .map(|f| (f[0], f[2].to_degrees()))
+            .collect();
+        Series { curve, panel, fit }.draw(&mut canvas, value, numbers, &mut spots);
+    }
+    legend::draw(
+        &mut canvas,
+        (36.0, 0.0),
+        look::FULL_WIDTH - 36.0,
+        &keys(curve),
+    );
+    let title = "Resonance curve without impacts";
+    Some(Figure::new(name, title, canvas, csv(curve)).with_spots(spots))
+}
+
+/// Factor and symbol of the amplitude's unit as printed.
+fn amplitude_unit(curve: &ResonanceCurve) -> (f64, String) {
+    match &curve.unit {
+        Some(unit) => (1.0, unit.clone()),
+        None => {
+            let peak = curve.points.iter().map(|p| p.amplitude).fold(0.0, f64::max);
+            let PrintUnit { factor, symbol } = print_unit(curve.dimension, peak);
+            (factor, symbol.to_owned())
+        }
+    }
+}
+
+fn frequency_axis(curve: &ResonanceCurve) -> Axis {
+    Axis::around(
+        curve.points.iter().map(|p| p.frequency_hz),
+        0.04,
+        "drive frequency $f$ (Hz)",
+    )
+}
+
+fn amplitude_panel(curve: &ResonanceCurve, unit: &(f64, String), rect: Rect) -> Panel {
+    let x = frequency_axis(curve);
+    let within = curve
+        .fitted
+        .iter()
+        .filter(|f| f[0] >= x.low && f[0] <= x.high)
+        .map(|f| f[1]);
+    let values: Vec<f64> = curve
+        .points
+        .iter()
+        .map(|p| p.amplitude)
+        .chain(within)
+        .collect();
+    let title = format!("amplitude ({})", unit.1);
+    let (low, high) = super::axes::range(values.iter().copied()).unwrap_or((0.0, 1.0));
+    let y = if low > 0.0 && high / low > 12.0 {
+        Axis::new(0.8 * low * unit.0, 1.25 * high * unit.0, title).logarithmic()
+    } else {
+        Axis::new(0.0, 1.08 * high * unit.0, title)
+    };
+    Panel::new(rect, x, y)
+}
+
+fn phase_panel(curve: &ResonanceCurve, rect: Rect) -> Panel {
+    let phases = curve.points.iter().filter_map(|p| p.phase_rad);
+    let values = phases
+        .chain(curve.fitted.iter().map(|f| f[2]))
+        .map(f64::to_degrees);
+    let y = Axis::around(values, 0.06, "phase behind the drive (°)");
+    Panel::new(rect, frequency_axis(curve), y)
+}
+
+struct Series<'a> {
+    curve: &'a ResonanceCurve,
+    panel: Panel,
+    fit: Vec<(f64, f64)>,
+}
+
+impl Series<'_> {
+    fn draw(
+        &self,
+        canvas: &mut Canvas,
+        value: impl Fn(&ResonancePoint) -> Option<(f64, Option<f64>)>,
+        numbers: NumberLook,
+        spots: &mut Vec<Spot>,
+    ) {
+        let radius = dots::radius(self.curve.points.len()) + 0.2;
+        let mut taken = Dots::default();
+        canvas.layer(1);
+        for point in &self.curve.points {
+            let Some((y, error)) = value(point) else {
+                continue;
+            };
+            let colour = if point.used { look::BLUE } else { look::QUIET };
+            if let Some(e) = error {
+                let bar = Stroke::solid(colour, 0.4);
+                let low = if self.panel.y.log {
+                    (y - e).max(self.panel.y.low)
+                } else {
+                    y - e
+                };
+                self.panel
+                    .error_bar(canvas, point.frequency_hz, (low, y + e), bar);
+            }
+            let dot = DotLook {
+                radius,
+                colour,
+                open: !point.used,
+            };
+            if let Some((x, y)) = taken.put(canvas, &self.panel, (point.frequency_hz, y), dot) {
+                let f = numbers.fixed(point.frequency_hz, 3);
+                spots.push(Spot {
+                    x,
+                    y,
+                    text: format!("{}\nf = {f} Hz", point.record),
+                });
+            }
+        }
+        canvas.layer(2);
+        self.panel.curve(
+            canvas,
+            self.fit.iter().copied(),
+            Stroke::solid(look::VERMILION, 1.0),
+        );
+        canvas.layer(3);
+        self.panel.frame(canvas, Sides::BOTH, numbers);
+    }
+}
+
+fn keys(curve: &ResonanceCurve) -> Vec<Key> {
+    use super::marks::{MotionLook, Shape};
+    let mut keys = Vec::new();
+    if !curve.name.is_empty() {
+        keys.push(Key::new(Sign::Nothing, curve.name.clone()));
+    }
+    let dot = |shape, colour| {
+        Sign::Mark(MotionLook {
+            shape,
+            colour,
+            tint: look::PAPER,
+        })
+    };
+    keys.push(Key::new(
+        dot(Shape::Dot, look::BLUE),
+        "measured, with standard error",
+    ));
+    if curve.points.iter().any(|p| !p.used) {
+        keys.push(Key::new(dot(Shape::Circle, look::QUIET), "not used"));
+    }
+    if !curve.fitted.is_empty() {
+        let text = match curve.fits {
+            Some(false) => "fit of one degree of freedom (does not fit)",
+            _ => "fit of one degree of freedom",
+        };
+        keys.push(Key::new(
+            Sign::Line(Stroke::solid(look::VERMILION, 1.0)),
+            text,
+        ));
+    }
+    keys
+}
+
+fn csv(curve: &ResonanceCurve) -> String {
+    let header = [
+        "source",
+        "record",
+        "used",
+        "frequency_hz",
+        "amplitude",
+        "amplitude_error",
+        "phase_rad",
+        "phase_error_rad",
+    ];
+    let mut csv = Csv::new(&header);
+    for p in &curve.points {
+        let used = if p.used { "yes" } else { "no" };
+        csv.row().texts(&["measured", &p.record, used]).numbers(&[
+            Some(p.frequency_hz),
+            Some(p.amplitude),
+            p.amplitude_error,
+            p.phase_rad,
+            p.phase_error_rad,
+        ]);
+    }
+    for f in &curve.fitted {
+        let row = csv.row().texts(&["fitted", "", ""]);
+        row.numbers(&[Some(f[0]), Some(f[1]), None, Some(f[2])]);
+    }
+    csv.finish()
+}

@@ -1,0 +1,76 @@
+//! The report as one self-contained page: the same document, figures that can be zoomed, points
+//! that show their record.
+
+mod base64;
+mod parts;
+
+use super::document::model::Document;
+use super::figures::Figure;
+use super::figures::canvas::escape;
+use super::figures::fonts::{self, FAMILY, Face};
+use super::{RenderOptions, ReportError};
+
+const STYLE: &str = include_str!("style.css");
+const SCRIPT: &str = include_str!("script.js");
+
+/// The page. The same input gives the same bytes; nothing is loaded from elsewhere.
+pub fn html(
+    document: &Document,
+    figures: &[Figure],
+    options: &RenderOptions,
+) -> Result<String, ReportError> {
+    let mut page =
+        String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+    page.push_str("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
+    page.push_str(&format!(
+        "<title>{}</title>\n<style>\n",
+        escape(&document.title)
+    ));
+    for (face, style, weight) in FACES {
+        page.push_str(&font_face(face, style, weight));
+    }
+    page.push_str(STYLE);
+    page.push_str("</style>\n</head>\n<body>\n");
+    page.push_str(&logo(options));
+    let mut parts = parts::Parts::new(figures);
+    page.push_str(&parts.document(document)?);
+    page.push_str("<div id=\"tip\" role=\"status\"></div>\n<script>\n");
+    page.push_str(SCRIPT);
+    page.push_str("</script>\n</body>\n</html>\n");
+    Ok(page)
+}
+
+const FACES: [(Face, &str, &str); 3] = [
+    (Face::Regular, "normal", "400"),
+    (Face::Italic, "italic", "400"),
+    (Face::Bold, "normal", "700"),
+];
+
+fn font_face(face: Face, style: &str, weight: &str) -> String {
+    let Some(bytes) = fonts::face_bytes(face) else {
+        return String::new();
+    };
+    format!(
+        "@font-face {{ font-family: \"{FAMILY}\"; font-style: {style}; font-weight: {weight}; \
+         src: url(data:font/otf;base64,{}) format(\"opentype\"); }}\n",
+        base64::encode(bytes)
+    )
+}
+
+fn logo(options: &RenderOptions) -> String {
+    let Some(logo) = &options.logo else {
+        return String::new();
+    };
+    let kind = match logo.extension.as_str() {
+        "svg" => "image/svg+xml",
+        "jpg" | "jpeg" => "image/jpeg",
+        "webp" => "image/webp",
+        "gif" => "image/gif",
+        "pdf" => return String::new(),
+        _ => "image/png",
+    };
+    let data = base64::encode(&logo.bytes);
+    format!(
+        "<img alt=\"logo\" style=\"float:right;height:3.4rem\" src=\"data:{kind};base64,{data}\">\n"
+    )
+}

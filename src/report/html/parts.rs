@@ -1,0 +1,276 @@
+//! The parts of the page, from the document's data.
+
+use crate::report::ReportError;
+use crate::report::document::model::*;
+use crate::report::figures::Figure;
+use crate::report::figures::canvas::escape;
+use crate::report::figures::richtext::Level;
+
+/// Writes the parts, numbering the captions of figures.
+pub struct Parts<'a> {
+    figures: &'a [Figure],
+    numbered: usize,
+}
+
+impl<'a> Parts<'a> {
+    /// With the figures that may be referred to.
+    pub fn new(figures: &'a [Figure]) -> Self {
+        Self {
+            figures,
+            numbered: 0,
+        }
+    }
+
+    /// The whole body.
+    pub fn document(&mut self, document: &Document) -> Result<String, ReportError> {
+        let mut body = format!(
+            "<header>\n<h1>{}</h1>\n<div class=\"subtitle\">{}</div>\n</header>\n",
+            escape(&document.title),
+            rich(&document.subtitle)
+        );
+        body.push_str(&self.front(&document.front)?);
+        for section in &document.sections {
+            body.push_str(&format!("<section>\n<h2>{}</h2>\n", rich(&section.title)));
+            for block in &section.blocks {
+                body.push_str(&self.block(block)?);
+            }
+            body.push_str("</section>\n");
+        }
+        body.push_str(&format!("<footer>{}</footer>\n", rich(&document.footer)));
+        Ok(body)
+    }
+
+    fn front(&mut self, front: &Front) -> Result<String, ReportError> {
+        let mut text = String::new();
+        if front.synthetic {
+            text.push_str("<p class=\"synthetic\">Synthetic data: simulated records, not a measurement.</p>\n");
+        }
+        text.push_str(&format!(
+            "<div class=\"verdict {}\"><div class=\"headline\">{}</div><p>{}</p></div>\n",
+            front.verdict,
+            front.headline,
+            rich(&front.summary)
+        ));
+        let answers: String = front.answers.iter().map(answer).collect();
+        text.push_str(&format!("<div class=\"answers\">\n{answers}</div>\n"));
+        let pair: Vec<FigureRef> = [&front.map, &front.estimates]
+            .into_iter()
+            .flatten()
+            .cloned()
+            .collect();
+        text.push_str(&self.figures(&pair)?);
+        text.push_str(&agreement(front));
+        let findings: String = front
+            .findings
+            .iter()
+            .map(|f| format!("<li>{}</li>\n", rich(f)))
+            .collect();
+        if !findings.is_empty() {
+            text.push_str(&format!("<ul>\n{findings}</ul>\n"));
+        }
+        if !front.facts.is_empty() {
+            text.push_str("<h2>What was measured</h2>\n");
+            text.push_str(&pairs(
+                "facts",
+                front.facts.iter().map(|(a, b)| (rich(a), rich(b))),
+            ));
+        }
+        Ok(text)
+    }
+
+    fn block(&mut self, block: &Block) -> Result<String, ReportError> {
+        Ok(match block {
+            Block::Paragraph { text } => format!("<p>{}</p>\n", rich(text)),
+            Block::Figures { figures } => self.figures(figures)?,
+            Block::Table(table) => self::table(table),
+            Block::Verbatim { text } => format!("<pre>{}</pre>\n", escape(text)),
+            Block::Definitions { entries } => pairs(
+                "definitions",
+                entries.iter().map(|e| (escape(e.plain), rich(&e.meaning))),
+            ),
+        })
+    }
+
+    fn figures(&mut self, refs: &[FigureRef]) -> Result<String, ReportError> {
+        let mut text = String::new();
+        for reference in refs {
+            if let Some(figure) = self.figures.iter().find(|f| f.name == reference.name) {
+                text.push_str(&self.figure(reference, figure)?);
+            }
+        }
+        Ok(if text.is_empty() {
+            text
+        } else {
+            format!("<div class=\"figures\">\n{text}</div>\n")
+        })
+    }
+
+    fn figure(&mut self, reference: &FigureRef, figure: &Figure) -> Result<String, ReportError> {
+        let class = if figure.width > 300.0 {
+            " class=\"wide\""
+        } else {
+            ""
+        };
+        let mut text = format!(
+            "<figure{class}>\n<div class=\"drawing\" data-name=\"{}\" data-width=\"{}\">\n{}",
+            escape(&figure.name),
+            figure.width,
+            figure.svg
+        );
+        if !figure.spots.is_empty() {
+            let spots = serde_json::to_string(&figure.spots).map_err(ReportError::Data)?;
+            let safe = spots.replace("</", "<\\/");
+            text.push_str(&format!(
+                "<script type=\"application/json\">{safe}</script>\n"
+            ));
+        }
+        text.push_str("</div>\n");
+        let caption = rich(&reference.caption);
+        if !caption.is_empty() {
+            self.numbered += 1;
+            let number = self.numbered;
+            text.push_str(&format!(
+                "<figcaption><b>Figure {number}.</b> {caption}</figcaption>\n"
+            ));
+        }
+        text.push_str("</figure>\n");
+        Ok(text)
+    }
+}
+
+/// A text with symbols as HTML.
+fn rich(text: &Rich) -> String {
+    let run = |r: &crate::report::figures::richtext::Run| {
+        let body = escape(&r.text);
+        let body = if r.italic {
+            format!("<i>{body}</i>")
+        } else {
+            body
+        };
+        match r.level {
+            Level::Base => body,
+            Level::Sub => format!("<sub>{body}</sub>"),
+            Level::Super => format!("<sup>{body}</sup>"),
+        }
+    };
+    text.0.iter().map(run).collect()
+}
+
+fn answer(a: &Answer) -> String {
+    let mut text = format!(
+        "<div class=\"answer\"><div class=\"label\">{}</div>",
+        rich(&a.name)
+    );
+    match &a.value {
+        Some(value) => {
+            text.push_str(&format!(
+                "<div class=\"value\">{} = {value}</div>",
+                rich(&a.symbol)
+            ));
+            if let Some(half) = &a.plus_minus {
+                text.push_str(&format!("<div>± {half} {}</div>", a.unit));
+            }
+            if let Some(interval) = &a.interval {
+                text.push_str(&format!(
+                    "<div class=\"interval\">95 %: {interval} {}</div>",
+                    a.unit
+                ));
+            }
+            if a.status == "weak" {
+                text.push_str("<div class=\"warn\">weakly identified</div>");
+            }
+        }
+        None => {
+            text.push_str(&format!(
+                "<div class=\"value label\">{}</div>",
+                rich(&a.symbol)
+            ));
+            text.push_str(if a.status == "not_identifiable" {
+                "<div class=\"bad\">not identifiable</div>"
+            } else {
+                "<div class=\"label\">not determined by these data</div>"
+            });
+        }
+    }
+    if let Some(note) = a.note.as_ref().filter(|_| a.status != "identified") {
+        text.push_str(&format!("<div class=\"note\">{}</div>", rich(note)));
+    }
+    text.push_str("</div>\n");
+    text
+}
+
+fn agreement(front: &Front) -> String {
+    let text = rich(&front.agreement);
+    if text.is_empty() {
+        return text;
+    }
+    let word = match front.agree {
+        "yes" => "The methods agree.",
+        "no" => "The methods disagree.",
+        _ => "Agreement cannot be judged.",
+    };
+    format!("<p><b class=\"{}\">{word}</b> {text}</p>\n", front.agree)
+}
+
+fn pairs(class: &str, entries: impl Iterator<Item = (String, String)>) -> String {
+    let entries: String = entries
+        .map(|(term, text)| format!("<dt>{term}</dt><dd>{text}</dd>\n"))
+        .collect();
+    format!("<dl class=\"{class}\">\n{entries}</dl>\n")
+}
+
+fn table(table: &Table) -> String {
+    let rows = html_rows(table);
+    let cell = |tag: &str, i: usize, text: &str| {
+        let align = table.align.get(i).copied().unwrap_or("left");
+        format!("<{tag} class=\"{align}\">{text}</{tag}>")
+    };
+    let heads = table.heads.iter().enumerate();
+    let heads: String = heads.map(|(i, h)| cell("th", i, &rich(h))).collect();
+    let caption = rich(&table.caption);
+    let caption = if caption.is_empty() {
+        caption
+    } else {
+        format!("<caption>{caption}</caption>\n")
+    };
+    let mut text = format!("<table>\n{caption}<thead><tr>{heads}</tr></thead>\n<tbody>\n");
+    for row in &rows {
+        let cells: String = row
+            .iter()
+            .enumerate()
+            .map(|(i, t)| cell("td", i, t))
+            .collect();
+        text.push_str(&format!("<tr>{cells}</tr>\n"));
+    }
+    text.push_str("</tbody>\n</table>\n");
+    if rows.len() > 40 {
+        format!("<div class=\"scroll\">\n{text}</div>\n")
+    } else {
+        text
+    }
+}
+
+/// The rows as HTML; those of a dense table are found again in its columns.
+fn html_rows(table: &Table) -> Vec<Vec<String>> {
+    if !table.dense {
+        return table
+            .rows
+            .iter()
+            .map(|row| row.iter().map(rich).collect())
+            .collect();
+    }
+    let columns: Vec<Vec<&str>> = table
+        .columns_text
+        .iter()
+        .map(|c| c.split('\n').collect())
+        .collect();
+    let count = columns.first().map_or(0, Vec::len);
+    (0..count)
+        .map(|i| {
+            columns
+                .iter()
+                .map(|c| escape(c.get(i).copied().unwrap_or("")))
+                .collect()
+        })
+        .collect()
+}

@@ -1,0 +1,159 @@
+//! Parameters and methods as printed: names, symbols, units, digits.
+
+use super::figures::look::{NumberLook, decimal_exponent};
+use crate::identify::{Estimate, ParameterSet, Status};
+
+/// How a parameter is named and printed.
+#[derive(Debug, Clone, Copy)]
+pub struct ParameterLook {
+    /// Its name in `identification.json`.
+    pub key: &'static str,
+    /// Its symbol, with markup.
+    pub symbol: &'static str,
+    /// Its name in words.
+    pub name: &'static str,
+    /// Its unit as printed.
+    pub unit: &'static str,
+    /// Multiply an SI value by this.
+    pub factor: f64,
+    /// Where it stands in the set.
+    pub pick: fn(&ParameterSet) -> Option<&Estimate>,
+}
+
+/// The four parameters of the oscillator.
+pub const PARAMETERS: [ParameterLook; 4] = [
+    ParameterLook {
+        key: "restitution",
+        symbol: "$R$",
+        name: "coefficient of restitution",
+        unit: "",
+        factor: 1.0,
+        pick: |p| p.restitution.as_ref(),
+    },
+    ParameterLook {
+        key: "natural_frequency_hz",
+        symbol: "$f_0$",
+        name: "natural frequency",
+        unit: "Hz",
+        factor: 1.0,
+        pick: |p| p.natural_frequency_hz.as_ref(),
+    },
+    ParameterLook {
+        key: "damping_ratio",
+        symbol: "$β$",
+        name: "damping ratio",
+        unit: "",
+        factor: 1.0,
+        pick: |p| p.damping_ratio.as_ref(),
+    },
+    ParameterLook {
+        key: "static_deflection_m",
+        symbol: "$x_{st}$",
+        name: "static deflection",
+        unit: "mm",
+        factor: 1e3,
+        pick: |p| p.static_deflection_m.as_ref(),
+    },
+];
+
+/// The look of a parameter by its name.
+pub fn parameter(key: &str) -> Option<&'static ParameterLook> {
+    PARAMETERS.iter().find(|p| p.key == key)
+}
+
+/// Name of a method in words.
+pub fn method_name(key: &str) -> String {
+    match key {
+        "boundaries" => "Boundaries".into(),
+        "trajectories" => "Trajectories".into(),
+        "impacts" => "Speeds at impact".into(),
+        "resonance" => "Resonance curve".into(),
+        "free_decay" => "Free decay".into(),
+        "joint" => "Joint".into(),
+        other => {
+            let text = other.replace('_', " ");
+            let mut chars = text.chars();
+            chars
+                .next()
+                .map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
+        }
+    }
+}
+
+/// Name of a status in the document.
+pub fn status_name(status: Status) -> &'static str {
+    match status {
+        Status::Identified => "identified",
+        Status::Weak => "weak",
+        Status::NotIdentifiable => "not_identifiable",
+    }
+}
+
+/// Decimals at which an uncertainty shows two significant digits.
+pub fn decimals_for(uncertainty: f64) -> usize {
+    if !(uncertainty.is_finite() && uncertainty > 0.0) {
+        return 4;
+    }
+    (1 - decimal_exponent(uncertainty, 2)).clamp(0, 9) as usize
+}
+
+/// Half the 95 % interval: from the interval, else from the standard error.
+pub fn half_width(estimate: &Estimate) -> Option<f64> {
+    match (estimate.interval95, estimate.standard_error) {
+        (Some([low, high]), _) => Some(0.5 * (high - low)),
+        (None, Some(error)) => Some(1.96 * error),
+        (None, None) => None,
+    }
+}
+
+/// `value ± half width` with unit, `not identifiable` where there is no value, `–` where the
+/// parameter was not asked for.
+pub fn short(look: &ParameterLook, estimate: Option<&Estimate>, numbers: NumberLook) -> String {
+    let Some(estimate) = estimate else {
+        return "–".into();
+    };
+    let Some(value) = estimate.value else {
+        return "not identifiable".into();
+    };
+    let half = half_width(estimate).map(|h| h * look.factor);
+    let decimals = decimals_for(half.unwrap_or(0.0));
+    let mut text = numbers.fixed(value * look.factor, decimals);
+    if let Some(half) = half {
+        text.push_str(&format!(" ± {}", numbers.fixed(half, decimals)));
+    }
+    if !look.unit.is_empty() {
+        text.push_str(&format!("\u{2009}{}", look.unit));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn estimate(value: f64, half: f64) -> Estimate {
+        Estimate {
+            value: Some(value),
+            standard_error: Some(half / 1.96),
+            interval95: Some([value - half, value + half]),
+            status: Status::Identified,
+            note: None,
+        }
+    }
+
+    #[test]
+    fn valid_estimates_show_two_digits_of_their_uncertainty() {
+        let numbers = NumberLook::default();
+        let r = estimate(0.901_34, 0.002_41);
+        assert_eq!(short(&PARAMETERS[0], Some(&r), numbers), "0.9013 ± 0.0024");
+        let x = estimate(0.001_234_5, 0.000_009_96);
+        assert_eq!(
+            short(&PARAMETERS[3], Some(&x), numbers),
+            "1.234 ± 0.010\u{2009}mm"
+        );
+        let comma = NumberLook {
+            decimal_comma: true,
+        };
+        assert_eq!(short(&PARAMETERS[0], Some(&r), comma), "0,9013 ± 0,0024");
+    }
+}

@@ -1,0 +1,355 @@
+//! Tests of the whole report.
+
+use std::path::Path;
+use std::process::Command;
+
+use super::content::ReportContent;
+use super::example::{self, others};
+use super::*;
+
+/// All kinds of campaign that the examples know.
+fn kinds() -> Vec<(&'static str, ReportContent)> {
+    vec![
+        ("small", example::content(example::SMALL)),
+        ("large", example::content(example::LARGE)),
+        ("decays", others::decays_only()),
+        ("cart", others::cart()),
+        ("unidentified", others::unidentified()),
+    ]
+}
+
+/// Output of a program; `None`, with a message, where it is not installed.
+fn output(program: &str, arguments: &[&str]) -> Option<String> {
+    match Command::new(program).args(arguments).output() {
+        Ok(done) => Some(String::from_utf8_lossy(&done.stdout).into_owned()),
+        Err(_) => {
+            println!("skipped: {program} is not installed");
+            None
+        }
+    }
+}
+
+fn written(folder: &Path, name: &str, bytes: &[u8]) -> String {
+    let path = folder.join(name);
+    std::fs::write(&path, bytes).expect("written");
+    path.display().to_string()
+}
+
+/// Renders the examples into the folder named by IMPACTID_REPORT_LOOKS, to be looked at.
+#[test]
+fn regress_examples_can_be_looked_at() {
+    let Ok(folder) = std::env::var("IMPACTID_REPORT_LOOKS") else {
+        println!("skipped: IMPACTID_REPORT_LOOKS names no folder");
+        return;
+    };
+    for (name, content) in kinds() {
+        let start = std::time::Instant::now();
+        let report = Report::new(&content, &RenderOptions::default());
+        let drawn = start.elapsed();
+        let pdf = report.pdf().expect("a PDF");
+        println!(
+            "{name}: figures {drawn:?}, all {:?}, {} bytes",
+            start.elapsed(),
+            pdf.len()
+        );
+        written(Path::new(&folder), &format!("{name}.pdf"), &pdf);
+        let page = report.html().expect("a page");
+        written(Path::new(&folder), &format!("{name}.html"), page.as_bytes());
+    }
+}
+
+#[test]
+fn regress_documents_as_text() {
+    for (name, content) in [
+        ("decays", others::decays_only()),
+        ("unidentified", others::unidentified()),
+    ] {
+        let report = Report::new(&content, &RenderOptions::default());
+        insta::assert_snapshot!(name, text_of(&report.document));
+    }
+}
+
+/// The document as lines of text, block by block.
+fn text_of(document: &document::model::Document) -> String {
+    use document::model::Block;
+    let front = &document.front;
+    let mut lines = vec![
+        document.title.clone(),
+        document.subtitle.plain(),
+        front.headline.into(),
+    ];
+    lines.push(front.summary.plain());
+    for a in &front.answers {
+        let value = a.value.as_deref().unwrap_or("-");
+        let half = a.plus_minus.as_deref().unwrap_or("-");
+        lines.push(format!(
+            "{} = {value} +- {half} {} [{}]",
+            a.symbol.plain(),
+            a.unit,
+            a.status
+        ));
+    }
+    lines.extend(
+        front
+            .facts
+            .iter()
+            .map(|(a, b)| format!("{}: {}", a.plain(), b.plain())),
+    );
+    for section in &document.sections {
+        lines.push(format!("## {}", section.title.plain()));
+        for block in &section.blocks {
+            match block {
+                Block::Paragraph { text } => lines.push(text.plain()),
+                Block::Figures { figures } => lines.extend(
+                    figures
+                        .iter()
+                        .map(|f| format!("[figure {}] {}", f.name, f.caption.plain())),
+                ),
+                Block::Table(t) => {
+                    let row = |r: &Vec<document::model::Rich>| {
+                        r.iter().map(|c| c.plain()).collect::<Vec<_>>().join(" | ")
+                    };
+                    lines.push(format!("[table] {}", row(&t.heads)));
+                    lines.extend(t.rows.iter().map(row));
+                }
+                Block::Verbatim { text } => lines.push(format!("[verbatim] {text}")),
+                Block::Definitions { entries } => {
+                    lines.extend(
+                        entries
+                            .iter()
+                            .map(|e| format!("{}: {}", e.plain, e.meaning.plain())),
+                    );
+                }
+            }
+        }
+    }
+    lines.join("\n")
+}
+
+#[test]
+fn valid_no_text_of_a_figure_is_overfull() {
+    for (name, content) in kinds() {
+        for decimal_comma in [false, true] {
+            let options = RenderOptions {
+                decimal_comma,
+                ..RenderOptions::default()
+            };
+            for figure in Report::new(&content, &options).figures {
+                assert!(
+                    figure.overfull.is_empty(),
+                    "{name}, {}: {:?}",
+                    figure.name,
+                    figure.overfull
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn valid_pdf_has_its_pages_fonts_and_selectable_answer() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let content = example::content(example::SMALL);
+    let pdf = render_pdf(&content, &RenderOptions::default()).expect("a PDF");
+    assert!(pdf.len() < 5_000_000);
+    let path = written(folder.path(), "report.pdf", &pdf);
+    let Some(text) = output("pdftotext", &["-layout", &path, "-"]) else {
+        return;
+    };
+    let pages = text.matches('\u{c}').count();
+    assert!((4..=9).contains(&pages), "{pages} pages");
+    for wanted in [
+        "R = 0.9005",
+        "± 0.0018",
+        "Identified",
+        "Regions of motion",
+        "12.5996",
+        "η",
+    ] {
+        assert!(text.contains(wanted), "'{wanted}' is not in the text");
+    }
+    let Some(fonts) = output("pdffonts", &[&path]) else {
+        return;
+    };
+    let fonts: Vec<&str> = fonts.lines().skip(2).collect();
+    assert!(!fonts.is_empty());
+    for font in fonts {
+        let fields: Vec<&str> = font.split_whitespace().rev().collect();
+        let (embedded, subset) = (fields[4], fields[3]);
+        assert_eq!((embedded, subset), ("yes", "yes"), "{font}");
+    }
+}
+
+#[test]
+fn valid_no_word_leaves_the_page_s_margins() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, content) in kinds() {
+        for paper in [Paper::A4, Paper::Letter] {
+            let options = RenderOptions {
+                paper,
+                ..RenderOptions::default()
+            };
+            let pdf = render_pdf(&content, &options).expect("a PDF");
+            let path = written(folder.path(), "report.pdf", &pdf);
+            let Some(boxes) = output("pdftotext", &["-bbox", &path, "-"]) else {
+                return;
+            };
+            words_within_margins(name, &boxes);
+        }
+    }
+}
+
+fn words_within_margins(name: &str, boxes: &str) {
+    let number = |line: &str, key: &str| -> f64 {
+        let rest = line
+            .split(&format!("{key}=\""))
+            .nth(1)
+            .expect("the attribute");
+        rest.split('"')
+            .next()
+            .and_then(|v| v.parse().ok())
+            .expect("a number")
+    };
+    let (mut width, mut height) = (0.0, 0.0);
+    for line in boxes.lines() {
+        if line.contains("<page ") {
+            (width, height) = (number(line, "width"), number(line, "height"));
+        } else if line.contains("<word ") {
+            let (left, right) = (number(line, "xMin"), number(line, "xMax"));
+            let (top, bottom) = (number(line, "yMin"), number(line, "yMax"));
+            let margin = 0.5 * (width - figures::look::FULL_WIDTH) - 2.5;
+            let inside =
+                left >= margin && right <= width - margin && top > 20.0 && bottom < height - 20.0;
+            assert!(inside, "{name}: {line}");
+        }
+    }
+}
+
+#[test]
+fn prop_same_content_gives_same_bytes() {
+    let content = others::unidentified();
+    let options = RenderOptions::default();
+    assert_eq!(
+        render_pdf(&content, &options).ok(),
+        render_pdf(&content, &options).ok()
+    );
+    let page = || Report::new(&content, &options).html().ok();
+    assert_eq!(page(), page());
+}
+
+#[test]
+fn prop_content_survives_json() {
+    let content = others::unidentified();
+    let text = serde_json::to_string(&content).expect("JSON");
+    let back: ReportContent = serde_json::from_str(&text).expect("content");
+    assert_eq!(back, content);
+}
+
+#[test]
+fn valid_decimal_comma_reaches_text_and_figures() {
+    let options = RenderOptions {
+        decimal_comma: true,
+        ..RenderOptions::default()
+    };
+    let report = Report::new(&example::content(example::SMALL), &options);
+    assert_eq!(
+        report.document.front.answers[0].value.as_deref(),
+        Some("0,9005")
+    );
+    let map = report
+        .figures
+        .iter()
+        .find(|f| f.name == "map")
+        .expect("a map");
+    assert!(map.svg.contains("\n1,5\n") && !map.svg.contains("\n1.5\n"));
+}
+
+#[test]
+fn valid_own_template_and_logo_are_used() {
+    let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='40' height='20'><rect width='40' height='20'/></svg>";
+    let options = RenderOptions {
+        template: Some("#let d = json(\"report.json\")\n= #d.title\n#image(d.logo)".into()),
+        logo: Some(Logo {
+            bytes: svg.into(),
+            extension: "svg".into(),
+        }),
+        ..RenderOptions::default()
+    };
+    assert!(render_pdf(&others::cart(), &options).is_ok());
+    let plain = RenderOptions {
+        template: None,
+        ..options
+    };
+    assert!(render_pdf(&others::cart(), &plain).is_ok());
+}
+
+#[test]
+fn valid_wrong_template_is_named_with_its_line() {
+    let options = RenderOptions {
+        template: Some("text\n#unknown-thing".into()),
+        ..RenderOptions::default()
+    };
+    let error = render_pdf(&others::cart(), &options).expect_err("a wrong template");
+    let text = error.to_string();
+    assert!(
+        text.contains("unknown variable: unknown-thing") && text.contains("line 2"),
+        "{text}"
+    );
+}
+
+#[test]
+fn valid_every_format_has_its_files() {
+    let report = Report::new(&others::cart(), &RenderOptions::default());
+    for format in Format::ALL {
+        let files = report.files(format).expect("files");
+        assert!(!files.is_empty() && files.iter().all(|(_, bytes)| !bytes.is_empty()));
+        for (path, bytes) in files {
+            assert!(path.ends_with(format.name()), "{path}");
+            if format == Format::Png {
+                assert_eq!(bytes[..8], *b"\x89PNG\r\n\x1a\n");
+            }
+        }
+    }
+}
+
+/// A browser opens the page, zooms a figure and hovers over a record.
+#[test]
+fn valid_page_works_in_a_browser() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let report = Report::new(&others::unidentified(), &RenderOptions::default());
+    let page = report.html().expect("a page");
+    for outside in ["src=\"http", "href=\"http", "url(http"] {
+        assert!(
+            !page.contains(outside),
+            "the page loads from elsewhere: {outside}"
+        );
+    }
+    let path = written(folder.path(), "report.html", page.as_bytes());
+    let profile = format!(
+        "--user-data-dir={}",
+        folder.path().join("profile").display()
+    );
+    let flags = [
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--virtual-time-budget=3000",
+        &profile,
+        "--dump-dom",
+    ];
+    let address = format!("file://{path}#check");
+    let Some(seen) = output("chromium", &[&flags[..], &[address.as_str()]].concat()) else {
+        return;
+    };
+    let body = seen
+        .split("<body")
+        .nth(1)
+        .and_then(|b| b.split('>').next())
+        .expect("a body");
+    assert!(
+        body.contains(&format!("data-figures=\"{}\"", report.figures.len())),
+        "{body}"
+    );
+    assert!(body.contains("data-hovered=\"r0001"), "{body}");
+    assert!(body.contains("data-zoomed=\"2.00\""), "{body}");
+}

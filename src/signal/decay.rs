@@ -1,0 +1,221 @@
+//! A free decay: offset + e^{−σt}(a cos ω_d t + b sin ω_d t), fitted by least squares.
+
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
+
+/// A fitted free decay.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Decay {
+    /// Natural frequency f0 = √(σ² + ω_d²)/2π, Hz.
+    pub natural_frequency_hz: f64,
+    /// Its standard error, Hz.
+    pub natural_frequency_error_hz: f64,
+    /// Damping ratio β = σ/√(σ² + ω_d²).
+    pub damping_ratio: f64,
+    /// Its standard error.
+    pub damping_ratio_error: f64,
+    /// Amplitude at the first fitted sample, the samples' unit.
+    pub amplitude: f64,
+    /// Phase of the cosine there, rad.
+    pub phase_rad: f64,
+    /// Constant part, the samples' unit.
+    pub offset: f64,
+    /// Root mean square of the residual over that of the signal.
+    pub residual_ratio: f64,
+    /// First fitted sample.
+    pub first: usize,
+    /// Number of fitted samples.
+    pub samples: usize,
+}
+
+/// Time after the blow for other modes and the blow itself to die away, s.
+const WAIT_S: f64 = 0.1;
+
+/// Fit the free decay that follows the greatest excursion of the samples.
+///
+/// `None` where there are fewer than three periods to fit, or nothing decays.
+pub fn fit(samples: &[f64], rate_hz: f64) -> Option<Decay> {
+    let centre = super::robust::median(samples)?;
+    let peak = samples
+        .iter()
+        .enumerate()
+        .max_by(|a, b| (a.1 - centre).abs().total_cmp(&(b.1 - centre).abs()))?
+        .0;
+    let first = peak + (WAIT_S * rate_hz).ceil() as usize;
+    let tail = samples.get(first..)?;
+    let frequency_hz = super::spectrum::peak_frequency(tail)? * rate_hz;
+    let count = audible(tail, rate_hz / frequency_hz);
+    if (count as f64) < 3.0 * rate_hz / frequency_hz {
+        return None;
+    }
+    let tail = &tail[..count];
+    let start = Vector2::new(frequency_hz * std::f64::consts::TAU / rate_hz, 0.0);
+    let best = [0.005, 0.02, 0.08]
+        .into_iter()
+        .filter_map(|beta| descend(tail, Vector2::new(start[0], beta * start[0])))
+        .min_by(|a, b| a.squares.total_cmp(&b.squares))?;
+    let mut decay = best.finish(tail, rate_hz)?;
+    decay.first = first;
+    Some(decay)
+}
+
+/// Number of samples until the envelope (rms over one period) falls to a fortieth of its start.
+fn audible(tail: &[f64], period: f64) -> usize {
+    let length = (period.round() as usize).max(4);
+    let level = |chunk: &[f64]| {
+        let mean = super::robust::mean(chunk);
+        super::robust::rms(&chunk.iter().map(|v| v - mean).collect::<Vec<_>>())
+    };
+    let levels: Vec<f64> = tail.chunks_exact(length).map(level).collect();
+    let Some(first) = levels.first() else { return 0 };
+    let heard = levels.iter().take_while(|l| **l > first / 40.0).count();
+    if heard == levels.len() { tail.len() } else { heard * length }
+}
+
+/// State of the search: ω_d and σ per sample with the best linear part.
+struct Point {
+    rates: Vector2<f64>,
+    linear: Vector3<f64>,
+    squares: f64,
+}
+
+fn basis(rates: Vector2<f64>, i: usize) -> Vector3<f64> {
+    let t = i as f64;
+    let envelope = (-rates[1] * t).exp();
+    let (sin, cos) = (rates[0] * t).sin_cos();
+    Vector3::new(1.0, envelope * cos, envelope * sin)
+}
+
+/// Best offset and amplitudes at given rates (the linear part is projected out).
+fn project(tail: &[f64], rates: Vector2<f64>) -> Option<Point> {
+    let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    for (i, v) in tail.iter().enumerate() {
+        let row = basis(rates, i);
+        normal += row * row.transpose();
+        right += row * *v;
+    }
+    let linear = normal.cholesky()?.solve(&right);
+    let squares =
+        tail.iter().enumerate().map(|(i, v)| (v - linear.dot(&basis(rates, i))).powi(2)).sum();
+    Some(Point { rates, linear, squares })
+}
+
+impl Point {
+    /// Gauss–Newton equations of the rates.
+    fn equations(&self, tail: &[f64]) -> (Matrix2<f64>, Vector2<f64>) {
+        let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
+        for (i, v) in tail.iter().enumerate() {
+            let row = basis(self.rates, i);
+            let t = i as f64;
+            let slope = Vector2::new(
+                t * (self.linear[2] * row[1] - self.linear[1] * row[2]),
+                -t * (self.linear[1] * row[1] + self.linear[2] * row[2]),
+            );
+            normal += slope * slope.transpose();
+            right += slope * (v - self.linear.dot(&row));
+        }
+        (normal, right)
+    }
+
+    fn finish(&self, tail: &[f64], rate_hz: f64) -> Option<Decay> {
+        let (omega, sigma) = (self.rates[0], self.rates[1]);
+        let natural = omega.hypot(sigma);
+        let covariance = self.covariance(tail)?;
+        let to_natural = Vector2::new(omega, sigma) / natural;
+        let to_beta = Vector2::new(-sigma * omega, omega * omega) / natural.powi(3);
+        let error = |g: Vector2<f64>| (g.transpose() * covariance * g)[(0, 0)].max(0.0).sqrt();
+        let to_hz = rate_hz / std::f64::consts::TAU;
+        let level = super::robust::rms(tail);
+        (sigma > 0.0).then(|| Decay {
+            natural_frequency_hz: natural * to_hz,
+            natural_frequency_error_hz: error(to_natural) * to_hz,
+            damping_ratio: sigma / natural,
+            damping_ratio_error: error(to_beta),
+            amplitude: self.linear[1].hypot(self.linear[2]),
+            phase_rad: (-self.linear[2]).atan2(self.linear[1]),
+            offset: self.linear[0],
+            residual_ratio: (self.squares / tail.len() as f64).sqrt() / level,
+            first: 0,
+            samples: tail.len(),
+        })
+    }
+
+    /// Covariance of the rates from the full five-parameter Jacobian, widened for residuals that
+    /// hang together from sample to sample.
+    fn covariance(&self, tail: &[f64]) -> Option<Matrix2<f64>> {
+        let mut normal = nalgebra::SMatrix::<f64, 5, 5>::zeros();
+        let mut residuals = Vec::with_capacity(tail.len());
+        for (i, v) in tail.iter().enumerate() {
+            let row = basis(self.rates, i);
+            let t = i as f64;
+            let full = nalgebra::SVector::<f64, 5>::from([
+                row[0],
+                row[1],
+                row[2],
+                t * (self.linear[2] * row[1] - self.linear[1] * row[2]),
+                -t * (self.linear[1] * row[1] + self.linear[2] * row[2]),
+            ]);
+            normal += full * full.transpose();
+            residuals.push(v - self.linear.dot(&row));
+        }
+        let variance = self.squares / (tail.len() - 5) as f64;
+        let inverse = normal.try_inverse()? * (variance * correlation_factor(&residuals));
+        Some(inverse.fixed_view::<2, 2>(3, 3).into_owned())
+    }
+}
+
+/// Factor on a variance for residuals with autocorrelation: 1 + 2 Σ r_k until r_k falls to zero.
+fn correlation_factor(residuals: &[f64]) -> f64 {
+    let total: f64 = residuals.iter().map(|r| r * r).sum();
+    let mut factor = 1.0;
+    for lag in 1..residuals.len() / 4 {
+        let product: f64 = residuals.iter().zip(&residuals[lag..]).map(|(a, b)| a * b).sum();
+        if product <= 0.0 {
+            break;
+        }
+        factor += 2.0 * product / total;
+    }
+    factor
+}
+
+fn descend(tail: &[f64], start: Vector2<f64>) -> Option<Point> {
+    let mut point = project(tail, start)?;
+    let mut damping = 1e-3;
+    for _ in 0..60 {
+        let (normal, right) = point.equations(tail);
+        let damped = normal + Matrix2::from_diagonal(&normal.diagonal()) * damping;
+        let step = damped.try_inverse()? * right;
+        match project(tail, point.rates + step) {
+            Some(next) if next.squares <= point.squares && next.rates[0] > 0.0 => {
+                let small = step.norm() < 1e-12 * point.rates[0];
+                point = next;
+                damping *= 0.2;
+                if small {
+                    break;
+                }
+            }
+            _ if damping > 1e8 => break,
+            _ => damping = (damping * 10.0).max(1e-6),
+        }
+    }
+    Some(point)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_a_noise_free_decay_is_recovered() {
+        let (rate, f0, beta) = (1652.9, 14.3, 0.0183);
+        let natural = std::f64::consts::TAU * f0;
+        let damped = natural * f64::sqrt(1.0 - beta * beta);
+        let samples: Vec<f64> = (0..2048)
+            .map(|i| (f64::from(i) - 10.0) / rate)
+            .map(|t| if t < 0.0 { 0.2 } else { 0.2 + 3.0 * (-beta * natural * t).exp() * (damped * t).cos() })
+            .collect();
+        let decay = fit(&samples, rate).unwrap();
+        assert!((decay.natural_frequency_hz / f0 - 1.0).abs() < 1e-8);
+        assert!((decay.damping_ratio / beta - 1.0).abs() < 1e-6);
+        assert!((decay.offset - 0.2).abs() < 1e-8);
+    }
+}

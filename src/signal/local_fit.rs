@@ -1,0 +1,111 @@
+//! Polynomials fitted to a few samples beside an instant and extrapolated to it.
+
+use nalgebra::{DMatrix, DVector};
+
+/// A polynomial in (t − origin)/scale fitted by least squares.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LocalFit {
+    coefficients: DVector<f64>,
+    covariance: DMatrix<f64>,
+    origin: f64,
+    scale: f64,
+    /// Number of samples.
+    pub samples: usize,
+    /// Sum of squared residuals.
+    pub residual_squares: f64,
+}
+
+impl LocalFit {
+    /// Fit a polynomial of at most `degree` to samples `first..last` (index = time in steps).
+    ///
+    /// The degree is lowered where the samples are too few for it (at least one more sample than
+    /// coefficients, except for a constant). `None` for an empty range.
+    pub fn new(samples: &[f64], first: usize, last: usize, degree: usize) -> Option<Self> {
+        let last = last.min(samples.len());
+        let count = last.checked_sub(first).filter(|n| *n > 0)?;
+        let degree = degree.min(count.saturating_sub(2));
+        let origin = 0.5 * (first + last - 1) as f64;
+        let scale = (0.5 * count as f64).max(1.0);
+        let design = DMatrix::from_fn(count, degree + 1, |row, power| {
+            (((first + row) as f64 - origin) / scale).powi(power as i32)
+        });
+        let values = DVector::from_column_slice(&samples[first..last]);
+        let covariance = (design.transpose() * &design).try_inverse()?;
+        let coefficients = &covariance * design.transpose() * &values;
+        let residual_squares = (values - design * &coefficients).norm_squared();
+        Some(Self { coefficients, covariance, origin, scale, samples: count, residual_squares })
+    }
+
+    /// Degree of the polynomial.
+    pub fn degree(&self) -> usize {
+        self.coefficients.len() - 1
+    }
+
+    /// Value at a time in steps.
+    pub fn value(&self, time: f64) -> f64 {
+        let u = (time - self.origin) / self.scale;
+        self.coefficients.iter().rev().fold(0.0, |sum, c| sum * u + c)
+    }
+
+    /// Slope per step at a time in steps.
+    pub fn slope(&self, time: f64) -> f64 {
+        let u = (time - self.origin) / self.scale;
+        let last = self.coefficients.len();
+        (1..last).rev().fold(0.0, |sum, k| sum * u + k as f64 * self.coefficients[k]) / self.scale
+    }
+
+    /// Standard error of the value at a time, per unit of noise deviation.
+    pub fn error_factor(&self, time: f64) -> f64 {
+        let u = (time - self.origin) / self.scale;
+        let row = DVector::from_fn(self.coefficients.len(), |k, _| u.powi(k as i32));
+        (row.transpose() * &self.covariance * row)[(0, 0)].max(0.0).sqrt()
+    }
+}
+
+/// Time between `low` and `high` (in steps) where two fits cross, nearest to the middle.
+///
+/// Newton from the middle; `None` where the fits do not cross within the interval.
+pub fn crossing(before: &LocalFit, after: &LocalFit, low: f64, high: f64) -> Option<f64> {
+    let mut time = 0.5 * (low + high);
+    for _ in 0..20 {
+        let gap = before.value(time) - after.value(time);
+        let slope = before.slope(time) - after.slope(time);
+        if slope == 0.0 {
+            return None;
+        }
+        let next = time - gap / slope;
+        if !next.is_finite() || next < low - 1.0 || next > high + 1.0 {
+            return None;
+        }
+        if (next - time).abs() < 1e-9 {
+            return Some(next.clamp(low, high));
+        }
+        time = next;
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_a_cubic_is_reproduced_and_extrapolated() {
+        let cubic = |t: f64| 1.0 - 0.5 * t + 0.02 * t * t + 1e-3 * t.powi(3);
+        let samples: Vec<f64> = (0..30).map(|i| cubic(f64::from(i))).collect();
+        let fit = LocalFit::new(&samples, 5, 25, 3).unwrap();
+        assert!((fit.value(27.3) - cubic(27.3)).abs() < 1e-9);
+        let slope = -0.5 + 0.04 * 10.0 + 3e-3 * 100.0;
+        assert!((fit.slope(10.0) - slope).abs() < 1e-9);
+    }
+
+    #[test]
+    fn valid_crossing_of_a_kink_is_found_between_samples() {
+        let kink = 14.37;
+        let samples: Vec<f64> =
+            (0..30).map(|i| f64::from(i) - kink).map(|t| if t < 0.0 { t } else { -0.9 * t }).collect();
+        let before = LocalFit::new(&samples, 4, 15, 2).unwrap();
+        let after = LocalFit::new(&samples, 15, 26, 2).unwrap();
+        assert!((crossing(&before, &after, 14.0, 15.0).unwrap() - kink).abs() < 1e-8);
+    }
+}

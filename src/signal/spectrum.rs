@@ -1,0 +1,53 @@
+//! Spectra of real samples.
+
+use realfft::RealFftPlanner;
+
+/// One-sided amplitude spectrum of the samples, mean removed, Hann window, zero-padded to twice
+/// the next power of two: (frequency step in units of the sample rate, amplitudes of sines).
+pub fn amplitude_spectrum(samples: &[f64]) -> (f64, Vec<f64>) {
+    let count = samples.len();
+    let padded = (2 * count.max(2)).next_power_of_two();
+    let mut buffer = vec![0.0; padded];
+    let mean = super::robust::mean(samples);
+    for (i, (slot, sample)) in buffer.iter_mut().zip(samples).enumerate() {
+        let window = 0.5 - 0.5 * (std::f64::consts::TAU * (i as f64 + 0.5) / count as f64).cos();
+        *slot = (sample - mean) * window;
+    }
+    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(padded);
+    let mut bins = plan.make_output_vec();
+    // The lengths come from the plan itself, so the transform cannot refuse them.
+    if plan.process(&mut buffer, &mut bins).is_err() {
+        return (1.0 / padded as f64, vec![0.0; padded / 2 + 1]);
+    }
+    let scale = 4.0 / count.max(1) as f64;
+    (1.0 / padded as f64, bins.iter().map(|b| b.norm() * scale).collect())
+}
+
+/// Frequency of the greatest spectral peak, in units of the sample rate, refined by a parabola
+/// through the logarithms of the three bins at the top; `None` where nothing stands out.
+pub fn peak_frequency(samples: &[f64]) -> Option<f64> {
+    let (step, amplitudes) = amplitude_spectrum(samples);
+    let first = 2.min(amplitudes.len());
+    let (top, &height) =
+        amplitudes.iter().enumerate().skip(first).max_by(|a, b| a.1.total_cmp(b.1))?;
+    if !(height > 0.0) || top + 1 >= amplitudes.len() {
+        return None;
+    }
+    let [left, centre, right] = [top - 1, top, top + 1].map(|i| amplitudes[i].max(1e-300).ln());
+    let curvature = left - 2.0 * centre + right;
+    let shift = if curvature < 0.0 { 0.5 * (left - right) / curvature } else { 0.0 };
+    Some((top as f64 + shift.clamp(-0.5, 0.5)) * step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_peak_of_a_sine_is_found_between_bins() {
+        let samples: Vec<f64> =
+            (0..2000).map(|i| (std::f64::consts::TAU * 0.006_31 * f64::from(i)).sin()).collect();
+        assert!((peak_frequency(&samples).unwrap() - 0.006_31).abs() < 2e-5);
+        assert_eq!(peak_frequency(&[1.0; 64]), None);
+    }
+}

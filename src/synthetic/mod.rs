@@ -1,0 +1,12 @@
+//! A virtual laboratory: campaigns simulated with a known truth and with the faults of a real
+//! rig, as the same [`Record`](crate::record::Record)s that a real campaign gives. They test
+//! detector, classifier and identification alike, and are always labelled as synthetic.
+
+pub mod acquisition;
+pub mod plan;
+pub mod run;
+pub mod truth;
+
+pub use plan::{Plan, Step};
+pub use run::{RawChannel, RawRecord, records};
+pub use truth::{Faults, Truth};

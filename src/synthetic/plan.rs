@@ -1,0 +1,120 @@
+//! Which settings a synthetic laboratory visits, in which order.
+
+use serde::{Deserialize, Serialize};
+
+use crate::model::boundary::eta_s2;
+use crate::model::params::Machine;
+use crate::record::Sweep;
+
+/// One setting: a record is taken there once the motion has settled.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Step {
+    /// Drive frequency, Hz.
+    pub frequency_hz: f64,
+    /// Half the gap, m.
+    pub clearance_m: f64,
+    /// Direction of the sweep.
+    pub sweep: Sweep,
+    /// Whether the motion starts from rest here instead of going on from the step before.
+    pub from_rest: bool,
+}
+
+/// The settings of a whole campaign in the order of acquisition.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// The steps.
+    pub steps: Vec<Step>,
+}
+
+/// Clearance ratios of the gaps: the hysteresis region of z = 1 at several heights, the regions
+/// of z = 1/2 and more below, as the paper's Fig. 11 shows them.
+const GAPS: [f64; 8] = [0.35, 0.6, 0.95, 1.4, 2.0, 2.7, 3.5, 4.4];
+
+/// Clearance ratio at which nothing touches, as a multiple of the resonance amplitude.
+const OPEN_GAP: f64 = 1.25;
+
+impl Plan {
+    /// A plan of about `records` records for a rig of roughly these parameters.
+    ///
+    /// One gap is wide open and gives the resonance curve; at every other gap the frequency is
+    /// stepped up and then down again, from η = 0.75 to beyond the end of z = 1 (z = 1/2 and more
+    /// appear above it at small gaps). Fewer records mean fewer gaps.
+    pub fn for_rig(
+        natural_frequency_hz: f64,
+        damping_ratio: f64,
+        static_deflection_m: f64,
+        records: usize,
+    ) -> Self {
+        let resonance_steps = (records / 10).clamp(4, 24);
+        let sweeps = records.saturating_sub(resonance_steps).max(4);
+        let gaps = chosen_gaps(sweeps);
+        let mut steps = Vec::with_capacity(records);
+        let open = OPEN_GAP * 0.5 / damping_ratio * static_deflection_m;
+        let grid = frequencies(natural_frequency_hz, (0.7, 1.5), resonance_steps);
+        push_sweep(&mut steps, &grid, open, Sweep::Up);
+        for (i, rho) in gaps.iter().enumerate() {
+            // Shares of what is left, so that the total comes out exactly.
+            let (from, to) = (sweeps * i / gaps.len(), sweeps * (i + 1) / gaps.len());
+            let (up, down) = ((to - from).div_ceil(2), (to - from) / 2);
+            let clearance_m = round_to(rho * static_deflection_m, 1e-5);
+            let range = (0.75, highest(damping_ratio, *rho));
+            let grid = frequencies(natural_frequency_hz, range, up.max(2));
+            push_sweep(&mut steps, &grid, clearance_m, Sweep::Up);
+            let mut grid = frequencies(natural_frequency_hz, range, down.max(2));
+            grid.reverse();
+            push_sweep(&mut steps, &grid, clearance_m, Sweep::Down);
+        }
+        Self { steps }
+    }
+}
+
+fn chosen_gaps(sweeps: usize) -> Vec<f64> {
+    let wanted = (sweeps / 40).clamp(1, GAPS.len());
+    // Spread over the list, the middle of the hysteresis region first.
+    (0..wanted).map(|i| GAPS[((2 * i + 1) * GAPS.len()) / (2 * wanted)]).collect()
+}
+
+/// Highest η of the sweeps at a gap: beyond the end of z = 1 for elastic impacts, and at small
+/// gaps on to the regions of z = 1/2 and 1/3.
+fn highest(damping_ratio: f64, rho: f64) -> f64 {
+    if rho < 0.7 {
+        return 3.2;
+    }
+    let elastic = Machine::symmetric(damping_ratio, 0.95);
+    let end = eta_s2(&elastic, rho, 1).map_or(2.0, |point| point.eta);
+    (end + 0.2).clamp(1.3, 2.3)
+}
+
+fn frequencies(natural_frequency_hz: f64, (from, to): (f64, f64), count: usize) -> Vec<f64> {
+    (0..count)
+        .map(|i| {
+            let eta = from + (to - from) * i as f64 / (count - 1).max(1) as f64;
+            round_to(eta * natural_frequency_hz, 0.01)
+        })
+        .collect()
+}
+
+fn round_to(value: f64, step: f64) -> f64 {
+    // Division by the reciprocal keeps the decimal short: 12.6, not 12.600000000000001.
+    (value / step).round() / (1.0 / step).round()
+}
+
+fn push_sweep(steps: &mut Vec<Step>, grid: &[f64], clearance_m: f64, sweep: Sweep) {
+    for (i, frequency_hz) in grid.iter().enumerate() {
+        let from_rest = i == 0 && sweep == Sweep::Up;
+        steps.push(Step { frequency_hz: *frequency_hz, clearance_m, sweep, from_rest });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prop_a_plan_has_the_records_asked_for() {
+        for records in [40, 100, 200, 333, 846] {
+            let plan = Plan::for_rig(12.6, 0.07, 5e-4, records);
+            assert_eq!(plan.steps.len(), records);
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! The verbs as a user meets them.
+
+use std::fs;
+
+use crate::support::Lab;
+
+#[test]
+fn valid_help_of_each_verb_shows_an_example_and_ends_with_0() {
+    let lab = Lab::new();
+    for verb in ["init", "check", "run", "ingest", "classify", "identify", "report", "simulate"] {
+        let ran = lab.run(&[verb, "--help"]);
+        assert_eq!(ran.code, 0, "{verb}");
+        assert!(ran.said.contains("Example:"), "{verb}: {}", ran.said);
+    }
+    assert_eq!(lab.run(&["--version"]).code, 0);
+}
+
+#[test]
+fn valid_check_changes_nothing() {
+    let lab = Lab::new();
+    let list = || {
+        let mut names: Vec<_> = fs::read_dir(lab.folder())
+            .expect("the folder")
+            .map(|e| e.expect("an entry"))
+            .map(|e| (e.file_name(), e.metadata().expect("its metadata").modified().ok()))
+            .collect();
+        names.sort();
+        names
+    };
+    let before = list();
+    lab.run(&["check", "campaign.toml"]);
+    assert_eq!(before, list());
+}
+
+#[test]
+fn valid_quiet_says_nothing_of_a_good_campaign() {
+    let ran = Lab::new().run(&["--quiet", "check", "campaign.toml"]);
+    assert_eq!((ran.code, ran.said.as_str()), (0, ""));
+}
+
+#[test]
+fn valid_output_in_a_pipe_has_no_colour_and_no_bar() {
+    let lab = Lab::new();
+    lab.mend("\"double\"", "\"triple\"");
+    let ran = lab.run(&["check", "campaign.toml"]);
+    assert!(!ran.said.contains('\u{1b}') && !ran.said.contains('\r'), "{:?}", ran.said);
+}
+
+#[test]
+fn valid_all_faults_are_told_in_one_run() {
+    let lab = Lab::new();
+    lab.mend("\"double\"", "\"triple\"");
+    lab.mend("restitution = 0.9", "restitution = 9");
+    lab.mend("\"50 mm/s per V\"\nhigh", "\"50 mm/s\"\nhigh");
+    lab.replace("runs.csv", "clearance_mm", "clearance");
+    let said = lab.run(&["check", "campaign.toml"]).said;
+    for words in ["triple", "rig.restitution", "channels.velocity_x.scale", "clearance without unit"]
+    {
+        assert!(said.contains(words), "{words} is not in {said}");
+    }
+}
+
+#[test]
+fn valid_init_writes_a_campaign_that_check_understands() {
+    let lab = Lab::new();
+    lab.remove("campaign.toml");
+    lab.remove("runs.csv");
+    let ran = lab.run(&["init", "."]);
+    assert_eq!(ran.code, 0, "{}", ran.said);
+    let text = lab.read("campaign.toml");
+    for words in [
+        "files = \"*.csv\"",
+        "machine = \"double\"",
+        "[channels.drive]",
+        "[channels.velocity_x]",
+        "[channels.velocity_y]",
+        "[channels.contact]\nchannel = \"contact\"",
+        "threshold = \"2.5",
+    ] {
+        assert!(text.contains(words), "{words} is not in {text}");
+    }
+    // what is left to do is told: volts are no velocity
+    let ran = lab.run(&["check", "campaign.toml"]);
+    assert_eq!(ran.code, 2);
+    assert!(ran.said.contains("comes out as a voltage"), "{}", ran.said);
+    lab.mend("# scale", "scale");
+    assert_eq!(lab.run(&["check", "campaign.toml"]).code, 0);
+}
+
+#[test]
+fn valid_init_finds_a_run_table() {
+    let lab = Lab::new();
+    let ran = lab.run(&["init", ".", "--force"]);
+    assert_eq!(ran.code, 0, "{}", ran.said);
+    assert!(lab.read("campaign.toml").contains("run_table = \"runs.csv\""));
+}
+
+#[test]
+fn valid_check_works_from_another_folder() {
+    let lab = Lab::new();
+    fs::create_dir(lab.path("elsewhere")).expect("a folder");
+    let path = lab.path("campaign.toml");
+    let ran = lab.run(&["check", path.to_str().expect("a name in UTF-8")]);
+    assert_eq!(ran.code, 0, "{}", ran.said);
+}
+
+#[test]
+fn valid_completions_and_man_pages_name_the_verbs() {
+    let lab = Lab::new();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let ran = lab.run(&["completions", shell]);
+        assert_eq!(ran.code, 0, "{shell}");
+        assert!(ran.said.contains("simulate"), "{shell}");
+    }
+    assert_eq!(lab.run(&["man", "--out", "man1"]).code, 0);
+    let page = lab.read("man1/impactid-run.1");
+    assert!(page.contains("resume") && page.contains("Example"), "{page}");
+}

@@ -1,0 +1,117 @@
+//! What the house promises: a room never imports from a room to its right.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The rooms from left to right.
+const ROOMS: [&str; 14] = [
+    "units", "output", "signal", "record", "event", "motion", "model", "atlas", "synthetic",
+    "identify", "report", "campaign", "pipeline", "cli",
+];
+
+fn sources(folder: &Path, all: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("src can be read").map(|e| e.expect("an entry")) {
+        let path = entry.path();
+        if path.is_dir() {
+            sources(&path, all);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            all.push(path);
+        }
+    }
+}
+
+fn all_sources() -> Vec<(String, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut paths = Vec::new();
+    sources(&root, &mut paths);
+    paths
+        .iter()
+        .map(|p| {
+            let name = p.strip_prefix(&root).expect("below src").to_string_lossy().into_owned();
+            (name, fs::read_to_string(p).expect("a source is text"))
+        })
+        .collect()
+}
+
+/// The room of a file: the first part of its path; `None` for lib.rs and main.rs.
+fn room(name: &str) -> Option<usize> {
+    let first = name.split(['/', '.']).next()?;
+    ROOMS.iter().position(|r| *r == first)
+}
+
+/// Rooms that a source names after `crate::`, tests in it included.
+fn imports(text: &str) -> Vec<&str> {
+    text.lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
+        .flat_map(|line| line.split("crate::").skip(1))
+        .flat_map(|after| match after.strip_prefix('{') {
+            Some(list) => list.split(',').map(str::trim).collect(),
+            None => vec![after],
+        })
+        .filter_map(|path| path.split(|c: char| !c.is_alphanumeric() && c != '_').next())
+        .collect()
+}
+
+#[test]
+fn valid_no_room_imports_from_its_right() {
+    let mut faults = Vec::new();
+    for (name, text) in all_sources() {
+        let Some(own) = room(&name) else { continue };
+        for import in imports(&text) {
+            let other = ROOMS.iter().position(|r| *r == import);
+            if other.is_some_and(|o| o > own) {
+                faults.push(format!("{name} imports from {import}, a room to its right"));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn valid_every_room_is_known_and_in_architecture_md() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = fs::read_to_string(root.join("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
+    for room in ROOMS {
+        assert!(page.contains(&format!("`{room}`")), "ARCHITECTURE.md does not name {room}");
+    }
+    for (name, _) in all_sources() {
+        let known = room(&name).is_some() || ["lib.rs", "main.rs"].contains(&name.as_str());
+        assert!(known, "{name} lies in no room");
+    }
+}
+
+#[test]
+fn valid_only_the_command_line_prints_or_exits() {
+    let printing = ["println!", "eprintln!", "print!(", "eprint!(", "process::exit", "dbg!"];
+    for (name, text) in all_sources() {
+        if name.starts_with("cli/") || name.ends_with("tests.rs") {
+            continue;
+        }
+        let code = text.split("#[cfg(test)]").next().unwrap_or("");
+        for (number, line) in code.lines().enumerate() {
+            let comment = line.trim_start().starts_with("//");
+            let found = printing.iter().find(|p| line.contains(**p));
+            assert!(comment || found.is_none(), "src/{name}:{} prints or exits: {line}", number + 1);
+        }
+    }
+}
+
+#[test]
+fn valid_a_library_user_of_a_foreign_crate_stays_in_its_room() {
+    let homes = [
+        ("rustfft", &["signal"][..]),
+        ("realfft", &["signal"]),
+        ("argmin", &["identify"]),
+        ("plotters", &["report"]),
+        ("indicatif", &["cli"]),
+        ("miette", &["cli"]),
+        ("clap", &["cli"]),
+    ];
+    for (name, text) in all_sources() {
+        for (foreign, rooms) in homes {
+            let uses = text.lines().any(|l| l.trim_start().starts_with(&format!("use {foreign}::")));
+            let home = rooms.iter().any(|r| name.starts_with(r));
+            assert!(!uses || home, "src/{name} uses {foreign}, which belongs to {rooms:?}");
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! Wrong commands and outputs that cannot be written.
+
+use super::Case;
+
+/// The cases.
+pub fn cases() -> Vec<Case> {
+    let mut all = commands();
+    all.extend(folders());
+    all
+}
+
+const fn case(
+    input: &'static str,
+    spoil: fn(&crate::support::Lab),
+    run: &'static [&'static str],
+    says: &'static [&'static str],
+) -> Case {
+    Case { input, spoil, run, says, code: 2 }
+}
+
+fn commands() -> Vec<Case> {
+    vec![
+        case("no verb", |_| {}, &[], &["Usage: impactid"]),
+        case("an unknown verb", |_| {}, &["rum"], &["unrecognized subcommand 'rum'", "run"]),
+        case("an unknown flag", |_| {}, &["run", "--outt"], &["unexpected argument '--outt'", "--out"]),
+        case("run without --out", |_| {}, &["run", "campaign.toml"], &["--out"]),
+        case(
+            "run on a faulty campaign",
+            |lab| lab.mend("\"double\"", "\"triple\""),
+            &["run", "campaign.toml", "--out", "out"],
+            &["unknown variant `triple`"],
+        ),
+        case(
+            "quiet and verbose at once",
+            |_| {},
+            &["--quiet", "-v", "check"],
+            &["cannot be used with"],
+        ),
+        case(
+            "a simulated restitution above 1",
+            |_| {},
+            &["simulate", "campaign", "--restitution", "1.5", "--out", "synthetic"],
+            &["it must lie between 0 and 1"],
+        ),
+        case(
+            "a simulated frequency that is no number",
+            |_| {},
+            &["simulate", "campaign", "--natural-frequency-hz", "low", "--out", "synthetic"],
+            &["it is not a number"],
+        ),
+    ]
+}
+
+fn folders() -> Vec<Case> {
+    vec![
+        case(
+            "a file where the output folder should be",
+            |lab| lab.write("out", "mine"),
+            &["run", "campaign.toml", "--out", "out"],
+            &["the folder out cannot be written into", "name another folder with --out"],
+        ),
+        case(
+            "a stage on a folder that is not there",
+            |_| {},
+            &["classify", "nowhere"],
+            &["nowhere is no folder with results", "impactid ingest"],
+        ),
+        case(
+            "init in a folder without records",
+            |lab| std::fs::create_dir(lab.path("empty")).expect("a folder"),
+            &["init", "empty"],
+            &["no record was found in empty"],
+        ),
+        case("init in no folder", |_| {}, &["init", "nowhere"], &["nowhere is no folder"]),
+        case(
+            "init where campaign.toml is",
+            |_| {},
+            &["init", "."],
+            &["campaign.toml is there already", "--force"],
+        ),
+        case(
+            "simulate where a campaign is",
+            |_| {},
+            &["simulate", "campaign", "--out", "."],
+            &["holds a campaign already", "--force"],
+        ),
+    ]
+}

@@ -1,0 +1,224 @@
+//! Faults in the record files.
+
+use super::{Case, noted, refused};
+use crate::support::{Lab, SAMPLES};
+
+/// The cases.
+pub fn cases() -> Vec<Case> {
+    let mut all = files();
+    all.extend(channels());
+    all.extend(values());
+    all.extend(times());
+    all
+}
+
+fn files() -> Vec<Case> {
+    vec![
+        refused(
+            "an empty file",
+            |lab| lab.write("r2.csv", ""),
+            &["r2.csv", "an empty file", "2 of 3 records can be used"],
+        ),
+        refused(
+            "a file with a header alone",
+            |lab| lab.write("r2.csv", "time [s],drive [V],contact [V],vx [V],vy [V]\n"),
+            &["r2.csv", "2 of 3 records can be used"],
+        ),
+        refused(
+            "a file of random bytes",
+            |lab| {
+                let bytes: Vec<u8> = (0..4096_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+                lab.write_bytes("r2.bin", &bytes);
+                lab.replace("runs.csv", "r2.csv", "r2.bin");
+            },
+            &["r2.bin", "no known format", "2 of 3 records can be used"],
+        ),
+        refused(
+            "a folder where a file should be",
+            |lab| {
+                lab.remove("r2.csv");
+                std::fs::create_dir(lab.path("r2.csv")).expect("a folder");
+            },
+            &["r2.csv", "a directory", "2 of 3 records can be used"],
+        ),
+        refused(
+            "a truncated HDF5 file",
+            |lab| {
+                let mut bytes = b"\x89HDF\r\n\x1a\n".to_vec();
+                bytes.extend([0; 40]);
+                lab.write_bytes("r2.h5", &bytes);
+                lab.replace("runs.csv", "r2.csv", "r2.h5");
+            },
+            &["r2.h5", "2 of 3 records can be used"],
+        ),
+        noted(
+            "a file cut off in the middle of a row",
+            |lab| {
+                let text = lab.read("r2.csv");
+                lab.write("r2.csv", &text[..text.len() / 2 - 7]);
+            },
+            &["r2.csv: r2: it holds 99", "the usual record 2000", "copy the file anew"],
+        ),
+    ]
+}
+
+fn channels() -> Vec<Case> {
+    vec![
+        refused(
+            "a channel missing in one file",
+            |lab| lab.replace("r2.csv", "vy [V]", "vz [V]"),
+            &[
+                "r2.csv: vy: no channel 'vy' for the role velocity_y",
+                "the channels are: time, drive, contact, vx, vz",
+                "name one of them in [channels.velocity_y]",
+                "2 of 3 records can be used",
+            ],
+        ),
+        refused(
+            "a channel missing in all files",
+            |lab| lab.mend("channel = \"vy\"", "channel = \"laser 2\""),
+            &["in all 3 records: no channel 'laser 2'", "velocity_y"],
+        ),
+        refused(
+            "an index beyond the last channel",
+            |lab| lab.mend("channel = \"vy\"", "channel = 12"),
+            &["in all 3 records: no channel 'number 12'"],
+        ),
+        refused(
+            "another unit in the file than in campaign.toml",
+            |lab| lab.replace("r2.csv", "vx [V]", "vx [mV]"),
+            &[
+                "the file states the unit 'mV' for channel",
+                "campaign.toml 'V'",
+                "ignore_file_unit = true",
+                "2 of 3 records can be used",
+            ],
+        ),
+        refused(
+            "no unit in the file nor in campaign.toml",
+            |lab| {
+                lab.replace("r2.csv", "vx [V]", "vx");
+                lab.mend("channel = \"vx\"\nunit = \"V\"", "channel = \"vx\"");
+            },
+            &["the file states no unit for channel 'vx'", "[channels.velocity_x]"],
+        ),
+    ]
+}
+
+fn spoil(lab: &Lab, column: usize, text: &'static str) {
+    lab.column("r2.csv", column, |i, v| if i == 700 { text.into() } else { format!("{v:.6}") });
+}
+
+fn values() -> Vec<Case> {
+    vec![
+        refused(
+            "NaN in a channel",
+            |lab| spoil(lab, 3, "NaN"),
+            &[
+                "r2.csv: r2: vx",
+                "has 1 values that are not numbers (NaN or infinite), the first at sample 700",
+                "2 of 3 records can be used",
+            ],
+        ),
+        refused(
+            "an infinite value",
+            |lab| spoil(lab, 4, "inf"),
+            &["r2.csv: r2: vy", "not numbers (NaN or infinite)", "2 of 3 records can be used"],
+        ),
+        refused(
+            "a gap in a channel",
+            |lab| spoil(lab, 3, ""),
+            &["r2.csv: r2: vx", "not numbers", "2 of 3 records can be used"],
+        ),
+        noted(
+            "no values at a channel's beginning",
+            |lab| {
+                lab.column("r2.csv", 3, |i, v| if i < 5 { String::new() } else { format!("{v}") });
+            },
+            &["5 samples without a value at the ends are cut off", "3 of 3 records"],
+        ),
+        refused(
+            "a constant velocity",
+            |lab| lab.column("r2.csv", 3, |_, _| "0.125".into()),
+            &["r2.csv: r2: vx", "is constant at", "loose cable", "2 of 3 records can be used"],
+        ),
+        refused(
+            "a constant drive",
+            |lab| lab.column("r2.csv", 1, |_, _| "0".into()),
+            &["r2.csv: r2: drive", "is constant", "2 of 3 records can be used"],
+        ),
+        refused(
+            "a saturated velocity",
+            |lab| lab.column("r2.csv", 3, |_, v| format!("{:.6}", v.clamp(-1.0, 1.0))),
+            &["r2.csv: r2: vx", "is clipped", "larger range", "2 of 3 records can be used"],
+        ),
+        noted(
+            "a saturated drive",
+            |lab| lab.column("r2.csv", 1, |_, v| format!("{:.6}", v.clamp(-0.7, 0.7))),
+            &["r2.csv: r2: drive", "is clipped", "3 of 3 records can be used"],
+        ),
+        refused(
+            "samples held by the converter",
+            |lab| {
+                let text = lab.read("r2.csv");
+                let held = text.lines().nth(900).expect("a row").to_owned();
+                let (_, held) = held.split_once(',').expect("cells");
+                lab.lines("r2.csv", |i, line| {
+                    let (time, rest) = line.split_once(',').expect("cells");
+                    let rest = if (900..925).contains(&i) { held } else { rest };
+                    Some(format!("{time},{rest}"))
+                });
+            },
+            &["all channels hold their value for 24 samples", "2 of 3 records can be used"],
+        ),
+    ]
+}
+
+fn times() -> Vec<Case> {
+    vec![
+        refused(
+            "time running backward",
+            |lab| {
+                lab.column("r2.csv", 0, |i, t| {
+                    format!("{:.6}", if i > 1200 { 1.2 - t } else { t })
+                });
+            },
+            &["r2.csv", "the time runs backward", "2 of 3 records can be used"],
+        ),
+        refused(
+            "time running backward from the first sample on",
+            |lab| lab.column("r2.csv", 0, |_, t| format!("{:.6}", 1.0 - t)),
+            &["r2.csv", "the time runs backward", "2 of 3 records can be used"],
+        ),
+        refused(
+            "dropped samples",
+            |lab| lab.lines("r2.csv", |i, l| (!(800..817).contains(&i)).then(|| l.to_owned())),
+            &["17 samples are missing in the time axis", "2 of 3 records can be used"],
+        ),
+        refused(
+            "a repeated time stamp",
+            |lab| {
+                lab.column("r2.csv", 0, |i, t| {
+                    format!("{:.6}", if i == 500 { t - 0.0005 } else { t })
+                });
+            },
+            &["time stamps are repeated", "2 of 3 records can be used"],
+        ),
+        refused(
+            "a time axis that is not uniform",
+            |lab| lab.column("r2.csv", 0, |_, t| format!("{:.6}", t * t)),
+            &["the time axis is not uniform", "2 of 3 records can be used"],
+        ),
+        refused(
+            "no time axis and no sample rate",
+            |lab| {
+                lab.lines("r2.csv", |i, line| {
+                    let (_, rest) = line.split_once(',').expect("cells");
+                    let _ = (i, SAMPLES);
+                    Some(rest.to_owned())
+                });
+            },
+            &["neither a time axis nor a sample rate", "sample_rate = \"2 kHz\""],
+        ),
+    ]
+}

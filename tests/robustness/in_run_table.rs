@@ -1,0 +1,120 @@
+//! Faults in the run table.
+
+use super::{Case, refused};
+
+/// The cases.
+pub fn cases() -> Vec<Case> {
+    let mut all = header();
+    all.extend(rows());
+    all
+}
+
+fn header() -> Vec<Case> {
+    vec![
+        refused(
+            "the run table is not there",
+            |lab| lab.remove("runs.csv"),
+            &["runs.csv", "the run table cannot be read", "mend run_table"],
+        ),
+        refused(
+            "the run table is empty",
+            |lab| lab.write("runs.csv", ""),
+            &["runs.csv:1", "the run table is empty"],
+        ),
+        refused(
+            "a header and no rows",
+            |lab| lab.write("runs.csv", "file,clearance_mm\n"),
+            &["has a header and no records"],
+        ),
+        refused(
+            "no column of files",
+            |lab| lab.replace("runs.csv", "file,", "name,"),
+            &["the run table has no column 'file'"],
+        ),
+        refused(
+            "a clearance column without unit",
+            |lab| lab.replace("runs.csv", "clearance_mm", "clearance"),
+            &["runs.csv:1: clearance", "a clearance without unit", "call it clearance_mm"],
+        ),
+        refused(
+            "a frequency column without unit",
+            |lab| lab.replace("runs.csv", "drive_frequency_hz", "drive_frequency"),
+            &["a drive frequency without unit", "call it drive_frequency_hz"],
+        ),
+        refused(
+            "a frequency column in mm",
+            |lab| lab.replace("runs.csv", "drive_frequency_hz", "drive_frequency [mm]"),
+            &["'mm' is no unit of frequency"],
+        ),
+        refused(
+            "an unknown column",
+            |lab| lab.replace("runs.csv", "sweep", "swep"),
+            &["the column 'swep' is not known", "did you mean 'sweep'"],
+        ),
+        refused(
+            "a column that stands twice",
+            |lab| lab.replace("runs.csv", "sweep", "clearance_mm"),
+            &["the column 'clearance' stands twice"],
+        ),
+    ]
+}
+
+fn rows() -> Vec<Case> {
+    vec![
+        refused(
+            "a cell that is no number",
+            |lab| lab.replace("runs.csv", "r2.csv,12,", "r2.csv,twelve,"),
+            &["runs.csv:3: drive_frequency", "'twelve' is not a number"],
+        ),
+        refused(
+            "a row with a decimal comma",
+            |lab| lab.replace("runs.csv", "r2.csv,12,1.0", "r2.csv,12,1,0"),
+            &["runs.csv:3", "the row has 5 cells, the header 4"],
+        ),
+        refused(
+            "a row cut short",
+            |lab| lab.replace("runs.csv", "r2.csv,12,1.0,up", "r2.csv,12"),
+            &["runs.csv:3", "the row has 2 cells, the header 4"],
+        ),
+        refused(
+            "a sweep direction that is none",
+            |lab| lab.replace("runs.csv", "down", "sideways"),
+            &["runs.csv:4: sweep", "'sideways' is not one of up, down, unknown"],
+        ),
+        refused(
+            "a row without a file",
+            |lab| lab.replace("runs.csv", "r2.csv,", ","),
+            &["runs.csv:3: file", "no file is named"],
+        ),
+        refused(
+            "the same file in two rows",
+            |lab| lab.replace("runs.csv", "r3.csv", "r1.csv"),
+            &["runs.csv:4", "'r1.csv' already stands in line 2"],
+        ),
+        refused(
+            "a row names a file that is not there",
+            |lab| lab.remove("r2.csv"),
+            &["r2.csv", "2 of 3 records can be used"],
+        ),
+        refused(
+            "a row names a dataset that is not there",
+            |lab| {
+                lab.write("runs.csv", "file,dataset\nr1.csv,run7\nr2.csv,\n");
+            },
+            &["r1.csv: run7", "no dataset 'run7' in it", "mend the column dataset"],
+        ),
+        refused(
+            "a clearance in m that was meant in mm",
+            |lab| {
+                lab.replace("runs.csv", "clearance_mm", "clearance_m");
+                lab.replace("runs.csv", "1.0", "15");
+            },
+            &["a clearance of 15 m", "mend its unit: mm?"],
+        ),
+        refused(
+            "a drive frequency of zero",
+            |lab| lab.replace("runs.csv", "r2.csv,12", "r2.csv,0"),
+            &["r2: drive_frequency", "a drive frequency of 0 Hz"],
+        ),
+    ]
+}

@@ -1,0 +1,137 @@
+//! Wrong inputs. Each case spoils a good campaign in one way; the message must name the remedy
+//! and the exit code must be right.
+
+mod in_campaign_toml;
+mod in_outputs;
+mod in_records;
+mod in_run_table;
+mod physical;
+
+use crate::support::Lab;
+
+/// One wrong input.
+pub struct Case {
+    /// What is wrong, for the table.
+    pub input: &'static str,
+    /// How a good campaign is spoilt.
+    pub spoil: fn(&Lab),
+    /// The command.
+    pub run: &'static [&'static str],
+    /// What the message must say.
+    pub says: &'static [&'static str],
+    /// Exit code.
+    pub code: i32,
+}
+
+/// The command of most cases.
+pub const CHECK: &[&str] = &["check", "campaign.toml"];
+
+/// A case of `impactid check` that ends with 2.
+pub const fn refused(
+    input: &'static str,
+    spoil: fn(&Lab),
+    says: &'static [&'static str],
+) -> Case {
+    Case { input, spoil, run: CHECK, says, code: 2 }
+}
+
+/// A case of `impactid check` that is noted and goes on.
+pub const fn noted(input: &'static str, spoil: fn(&Lab), says: &'static [&'static str]) -> Case {
+    Case { input, spoil, run: CHECK, says, code: 0 }
+}
+
+fn groups() -> [(&'static str, Vec<Case>); 5] {
+    [
+        ("campaign.toml", in_campaign_toml::cases()),
+        ("Run table", in_run_table::cases()),
+        ("Records", in_records::cases()),
+        ("Contradictions", physical::cases()),
+        ("Command and output", in_outputs::cases()),
+    ]
+}
+
+fn test_all(cases: &[Case]) {
+    let mut failures = Vec::new();
+    for case in cases {
+        let lab = Lab::new();
+        (case.spoil)(&lab);
+        let ran = lab.run(case.run);
+        let missing: Vec<_> = case.says.iter().filter(|s| !ran.said.contains(**s)).collect();
+        if !missing.is_empty() || ran.code != case.code {
+            failures.push(format!(
+                "{}: exit {} (expected {}), not said: {missing:?}\n{}",
+                case.input, ran.code, case.code, ran.said
+            ));
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn valid_the_good_campaign_has_no_fault() {
+    let ran = Lab::new().run(CHECK);
+    assert_eq!(ran.code, 0, "{}", ran.said);
+    assert!(ran.said.contains("3 of 3 records can be used"), "{}", ran.said);
+}
+
+#[test]
+fn valid_faults_in_campaign_toml() {
+    test_all(&in_campaign_toml::cases());
+}
+
+#[test]
+fn valid_faults_in_the_run_table() {
+    test_all(&in_run_table::cases());
+}
+
+#[test]
+fn valid_faults_in_records() {
+    test_all(&in_records::cases());
+}
+
+#[test]
+fn valid_contradictions() {
+    test_all(&physical::cases());
+}
+
+#[test]
+fn valid_faults_of_command_and_output() {
+    test_all(&in_outputs::cases());
+}
+
+/// docs/robustness.md as the cases say it.
+fn document() -> String {
+    let mut text = String::from(
+        "# Wrong inputs and what the program says\n\n\
+         Every row is a test in `tests/robustness`: a good campaign is spoilt in this one way, the\n\
+         message must hold these words, and the exit code must be this one. 0: noted, and the run\n\
+         goes on; 2: a fault that stops the campaign or leaves a record out. Each message names\n\
+         the file, the line or channel, and what to do.\n",
+    );
+    let mut number = 0;
+    for (title, cases) in groups() {
+        text += &format!("\n## {title}\n\n| | input | the message holds | exit |\n| --- | --- | --- | --- |\n");
+        for case in cases {
+            number += 1;
+            let words: Vec<String> =
+                case.says.iter().map(|s| format!("“{}”", s.replace('|', "\\|"))).collect();
+            text += &format!("| {number} | {} | {} | {} |\n", case.input, words.join(" … "), case.code);
+        }
+    }
+    text
+}
+
+#[test]
+fn regress_docs_robustness_md_lists_the_cases() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/robustness.md");
+    let expected = document();
+    if std::env::var_os("UPDATE_DOCS").is_some() {
+        std::fs::write(path, &expected).expect("docs/ can be written");
+    }
+    let found = std::fs::read_to_string(path).unwrap_or_default();
+    assert!(
+        found == expected,
+        "docs/robustness.md is not what the cases say: UPDATE_DOCS=1 cargo test writes it anew"
+    );
+    assert!(groups().iter().map(|(_, cases)| cases.len()).sum::<usize>() >= 60);
+}

@@ -1,0 +1,186 @@
+//! A good campaign in a temporary folder, and the program run on it.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Samples a second of the records.
+pub const RATE_HZ: f64 = 2000.0;
+
+/// Samples in a record.
+pub const SAMPLES: usize = 2000;
+
+/// The good campaign.toml.
+pub const CAMPAIGN: &str = r#"[campaign]
+name = "Test rig"
+machine = "double"
+flight = "harmonic"
+
+[records]
+run_table = "runs.csv"
+
+[rig]
+natural_frequency = "12.6 Hz"
+damping_ratio = 0.07
+restitution = 0.9
+
+[channels.drive]
+channel = "drive"
+unit = "V"
+
+[channels.contact]
+channel = "contact"
+unit = "V"
+threshold = "2.5 V"
+
+[channels.velocity_x]
+channel = "vx"
+unit = "V"
+scale = "50 mm/s per V"
+high_pass = "0.5 Hz"
+sign = 1
+
+[channels.velocity_y]
+channel = "vy"
+unit = "V"
+scale = "50 mm/s per V"
+
+[analysis]
+longest_period_n = 6
+seed = 1
+
+[report]
+paper = "a4"
+"#;
+
+/// The good run table.
+pub const RUNS: &str = "file,drive_frequency_hz,clearance_mm,sweep\n\
+    r1.csv,11,1.0,up\nr2.csv,12,1.0,up\nr3.csv,13,1.0,down\n";
+
+/// What a program run left behind.
+pub struct Ran {
+    /// All it said, both streams.
+    pub said: String,
+    /// Its exit code; -1 where a signal ended it.
+    pub code: i32,
+}
+
+/// A folder with a campaign.
+pub struct Lab {
+    folder: tempfile::TempDir,
+}
+
+impl Lab {
+    /// A good campaign: three records with one impact a drive period.
+    pub fn new() -> Self {
+        let lab = Self { folder: tempfile::tempdir().expect("a temporary folder") };
+        lab.write("campaign.toml", CAMPAIGN);
+        lab.write("runs.csv", RUNS);
+        for (name, frequency_hz) in [("r1.csv", 11.0), ("r2.csv", 12.0), ("r3.csv", 13.0)] {
+            lab.write(name, &table(frequency_hz));
+        }
+        lab
+    }
+
+    /// Path of a file in the folder.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// The folder.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Write a file.
+    pub fn write(&self, name: &str, text: &str) {
+        self.write_bytes(name, text.as_bytes());
+    }
+
+    /// Write a file of bytes.
+    pub fn write_bytes(&self, name: &str, bytes: &[u8]) {
+        fs::write(self.path(name), bytes).expect("the test folder can be written");
+    }
+
+    /// Remove a file.
+    pub fn remove(&self, name: &str) {
+        fs::remove_file(self.path(name)).expect("it is there");
+    }
+
+    /// Read a file.
+    pub fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).expect("it is there")
+    }
+
+    /// Replace a text that must stand in a file.
+    pub fn replace(&self, name: &str, from: &str, to: &str) {
+        let text = self.read(name);
+        assert!(text.contains(from), "'{from}' does not stand in {name}");
+        self.write(name, &text.replace(from, to));
+    }
+
+    /// Replace in campaign.toml.
+    pub fn mend(&self, from: &str, to: &str) {
+        self.replace("campaign.toml", from, to);
+    }
+
+    /// Change the lines of a record: header is line 0; `None` drops the line.
+    pub fn lines(&self, name: &str, change: impl Fn(usize, &str) -> Option<String>) {
+        let text = self.read(name);
+        let lines: Vec<String> =
+            text.lines().enumerate().filter_map(|(i, l)| change(i, l)).collect();
+        self.write(name, &(lines.join("\n") + "\n"));
+    }
+
+    /// Change one column of a record by sample number and value.
+    pub fn column(&self, name: &str, column: usize, change: impl Fn(usize, f64) -> String) {
+        self.lines(name, |i, line| {
+            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+            if i > 0 {
+                let value = cells[column].parse().expect("a number");
+                cells[column] = change(i - 1, value);
+            }
+            Some(cells.join(","))
+        });
+    }
+
+    /// Run the program in the folder.
+    pub fn run(&self, args: &[&str]) -> Ran {
+        let output = Command::new(env!("CARGO_BIN_EXE_impactid"))
+            .args(args)
+            .current_dir(self.folder())
+            .output()
+            .expect("the program starts");
+        let said = String::from_utf8_lossy(&output.stdout).into_owned()
+            + &String::from_utf8_lossy(&output.stderr);
+        Ran { said, code: output.status.code().unwrap_or(-1) }
+    }
+}
+
+/// Velocity of a mass in one period of a motion with one impact: from -0.9 v up to v.
+fn velocity(phase: f64) -> f64 {
+    let s = phase.rem_euclid(1.0);
+    -0.9 + 1.9 * s + 0.3 * (std::f64::consts::TAU * s).sin()
+}
+
+/// A record as CSV: time, drive, contact, both velocities in V.
+pub fn table(frequency_hz: f64) -> String {
+    let mut text = String::from("time [s],drive [V],contact [V],vx [V],vy [V]\n");
+    for i in 0..SAMPLES {
+        let t = i as f64 / RATE_HZ;
+        let phase = frequency_hz * t;
+        let drive = (std::f64::consts::TAU * phase).cos();
+        let closed = (phase - 0.3).rem_euclid(1.0) < frequency_hz * 1.2e-3;
+        let contact = if closed { 5.0 } else { 0.02 };
+        let noise = 1e-4 * ((i * 7919 % 1009) as f64 / 1009.0 - 0.5);
+        let v = 2.0 * velocity(phase - 0.3) + noise;
+        let _ = writeln!(
+            text,
+            "{t:.6},{:.6},{contact:.3},{v:.6},{:.6}",
+            drive + noise,
+            0.98 * v + 2.0 * noise
+        );
+    }
+    text
+}
