@@ -52,6 +52,11 @@ impl<'a> Elements<'a> {
         }
     }
 
+    /// Where the variable's bytes lie.
+    pub fn place(&self) -> Place {
+        self.place
+    }
+
     /// The byte order of the numbers.
     pub fn order(&self) -> ByteOrder {
         self.order

@@ -75,7 +75,12 @@ impl Store {
             return Ok(Bytes::File(self.file.all()));
         };
         let all_at_once = self.leaves_of[variable] == 1 && parts > 1;
-        let keep = inflated <= self.file.len().saturating_mul(KEPT_MULTIPLE).max(KEPT_SIZE);
+        let keep = inflated
+            <= self
+                .file
+                .size()
+                .saturating_mul(KEPT_MULTIPLE)
+                .max(KEPT_SIZE);
         if all_at_once || !keep {
             return Ok(Bytes::Inflated(Arc::new(inflate::inflate(
                 &self.file, place,
@@ -163,9 +168,10 @@ fn take(leaf: &Leaf, slice: Slice, bytes: &[u8], part: Part, order: ByteOrder) -
             let spacing = Spacing {
                 offset: row as usize * width,
                 stride: rows * width,
+                count: columns,
             };
             out.reserve_exact(columns);
-            numbers::decode_spaced(part.number, order, bytes, spacing, columns, &mut out);
+            numbers::decode_spaced(part.number, order, bytes, spacing, &mut out);
         }
     }
     out

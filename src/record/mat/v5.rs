@@ -69,8 +69,8 @@ pub struct Head {
 pub fn scan(file: &FileBytes, order: ByteOrder) -> Result<Tree, ReadError> {
     let mut tree = Tree::default();
     let mut at = HEADER;
-    while at < file.len() {
-        let rest = file.slice(at, file.len() - at, "a variable")?;
+    while at < file.size() {
+        let rest = file.slice(at, file.size() - at, "a variable")?;
         if rest.len() < 8 && rest.iter().all(|&byte| byte == 0) {
             break;
         }
@@ -90,7 +90,7 @@ fn variable(
     let kind = cursor.u32("the kind of an element")?;
     let bytes = u64::from(cursor.u32("the length of an element")?);
     let data = cursor.at();
-    let left = file.len() - data;
+    let left = file.size() - data;
     if bytes > left {
         let found = format!("only {left} bytes left");
         return Err(file.refuse(at, format!("a variable of {bytes} bytes"), found));
@@ -103,8 +103,9 @@ fn variable(
                 at: data,
                 next: data + bytes.next_multiple_of(8),
             };
-            walk(file, Input::Plain(file), tag, Place::Plain, order, tree)?;
-            Ok(tag.next.min(file.len()))
+            let elements = Elements::new(file, Input::Plain(file), Place::Plain, order);
+            walk(elements, tag, tree)?;
+            Ok(tag.next.min(file.size()))
         }
         COMPRESSED => {
             packed(file, order, data, bytes, tree)?;
@@ -152,28 +153,22 @@ fn packed(
         packed: bytes,
         inflated,
     };
-    walk(file, Input::Packed(stream), tag, place, order, tree)
+    let elements = Elements::new(file, Input::Packed(stream), place, order);
+    walk(elements, tag, tree)
 }
 
-fn walk<'a>(
-    file: &'a FileBytes,
-    input: Input<'a>,
-    tag: Tag,
-    place: Place,
-    order: ByteOrder,
-    tree: &mut Tree,
-) -> Result<(), ReadError> {
+/// Walk through the variable whose matrix element was found.
+fn walk(elements: Elements<'_>, tag: Tag, tree: &mut Tree) -> Result<(), ReadError> {
     if tag.bytes == 0 {
         return Ok(());
     }
     let variable = tree.variables.len();
     tree.variables.push(Variable {
         name: String::new(),
-        place,
-        order,
+        place: elements.place(),
+        order: elements.order(),
         elements: 1,
     });
-    let elements = Elements::new(file, input, place, order);
     let mut walker = Walker {
         elements,
         variable,

@@ -221,7 +221,7 @@ impl<'a> Builder<'a> {
             .iter()
             .map(|(name, value)| name.len() + value.len() + 64)
             .sum();
-        let affordable = (size * self.datasets.len()) as u64 <= self.file.len().max(1 << 16);
+        let affordable = (size * self.datasets.len()) as u64 <= self.file.size().max(1 << 16);
         let reach = if affordable { self.datasets.len() } else { 1 };
         for dataset in self.datasets.iter_mut().take(reach) {
             for (name, value) in &all {

@@ -130,8 +130,9 @@ impl<'a> Reader<'a> {
             let spacing = Spacing {
                 offset: 0,
                 stride: run.stride as usize,
+                count: run.count as usize,
             };
-            numbers::decode_spaced(number, order, bytes, spacing, run.count as usize, &mut out);
+            numbers::decode_spaced(number, order, bytes, spacing, &mut out);
             Ok(())
         })?;
         Ok(out)

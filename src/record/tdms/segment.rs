@@ -50,7 +50,7 @@ pub fn scan(file: &FileBytes) -> Result<Content, ReadError> {
         built: 0,
     };
     let mut at = 0;
-    while at < file.len() {
+    while at < file.size() {
         let Some(lead) = scanner.lead_in(at)? else {
             break;
         };
@@ -75,7 +75,7 @@ struct Scanner<'a> {
 
 impl Scanner<'_> {
     fn lead_in(&mut self, at: u64) -> Result<Option<LeadIn>, ReadError> {
-        let left = self.file.len() - at;
+        let left = self.file.size() - at;
         if left < LEAD_IN && at > 0 {
             self.content.notes.push(format!(
                 "{left} bytes at byte {at} are no segment: not read"
@@ -109,9 +109,9 @@ impl Scanner<'_> {
         let start = cursor.at();
         let end = start
             .checked_add(next)
-            .filter(|&end| end <= self.file.len());
+            .filter(|&end| end <= self.file.size());
         let cut_short = end.is_none();
-        let end = end.unwrap_or(self.file.len());
+        let end = end.unwrap_or(self.file.size());
         let data = start.checked_add(raw).filter(|&data| data <= end);
         if cut_short {
             self.content.notes.push(format!(
@@ -275,7 +275,7 @@ impl Scanner<'_> {
     /// Count entries of layouts that a few bytes of metadata can call forth.
     fn spend(&mut self, at: u64, entries: usize) -> Result<(), ReadError> {
         self.built += entries as u64;
-        match self.built <= self.file.len() / 4 + 4096 {
+        match self.built <= self.file.size() / 4 + 4096 {
             true => Ok(()),
             false => Err(self
                 .file
