@@ -474,5 +474,5 @@ fn prop_mutated_files_are_read_or_refused() {
     seeds.push(file(&[record.clone(), cells.clone()], false));
     seeds.push(file(&[packed(&record), packed(&cells)], false));
     seeds.push(v4_matrix(0, [2, 1], "x", &[1; 16], false));
-    conformance::survive(&seeds, open, mutate_inside, 200);
+    conformance::survive(&seeds, open, mutate_inside, 40);
 }

@@ -40,9 +40,10 @@ use super::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, Stored
 /// The scaling of a channel, or what of it is not done; shared by channels that inherit it.
 type Scale = Arc<Result<Scaling, String>>;
 
-/// Whether a file's first bytes are those of a TDMS file.
+/// Whether a file's first bytes are those of a TDMS file, or of its index, which [`open`] refuses
+/// with the remedy.
 pub fn recognises(head: &[u8]) -> bool {
-    head.starts_with(b"TDSm")
+    head.starts_with(b"TDSm") || head.starts_with(b"TDSh")
 }
 
 /// Open a TDMS file: the metadata of all segments is read, no samples are.

@@ -635,5 +635,5 @@ fn prop_mutated_files_are_read_or_refused() {
             .concat(),
         );
     }
-    conformance::survive(&seeds, open, mutate_segment, 100);
+    conformance::survive(&seeds, open, mutate_segment, 40);
 }

@@ -479,5 +479,5 @@ fn prop_mutated_files_are_read_or_refused() {
         ]
         .concat(),
     );
-    conformance::survive(&seeds, open, mutate_text, 100);
+    conformance::survive(&seeds, open, mutate_text, 40);
 }
