@@ -6,9 +6,9 @@ use toml::Spanned;
 
 use super::channels;
 use super::faults::{Faults, Notebook, Severity};
+use super::listing::{Opener, Shared};
 use super::quantity::Desk;
 use super::read::{self, Text};
-use super::listing::{Opener, Shared};
 use super::records;
 use super::resolved::{Analysis, RecordEntry, Report, ResolvedCampaign, Rig};
 use super::written::{self, Flight, Language, Machine, Paper, Placed, WrittenCampaign};

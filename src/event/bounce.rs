@@ -9,7 +9,7 @@ use crate::signal::local_fit::LocalFit;
 use crate::signal::robust;
 
 /// Least samples of flight on either side of a bounce.
-const FEWEST: usize = 3;
+const FEWEST: usize = 5;
 /// Drop of velocity that makes a fall a bounce, in steps of the flight and in noise deviations.
 const IN_STEPS: f64 = 2.5;
 const IN_NOISE: f64 = 6.0;

@@ -27,7 +27,8 @@ pub struct ImpactBlock {
 }
 
 impl ImpactBlock {
-    /// Collect impacts without dead zone, faster than six standard errors.
+    /// Collect impacts without dead zone, faster than six standard errors (twelve where a contact
+    /// lasts several samples, as slow ones are then swayed by where its middle is put).
     pub fn new(observations: &[Observation], relative_error: f64) -> Self {
         let pairs = observations
             .iter()
@@ -35,6 +36,11 @@ impl ImpactBlock {
             .filter(|(_, o)| !o.excluded())
             .flat_map(|(i, o)| o.impacts.iter().map(move |impact| (i, impact)))
             .filter(|(_, impact)| impact.dead_zone_s == 0.0)
+            .filter(|(i, impact)| {
+                let least = if observations[*i].jump_samples > 2 { 12.0 } else { 6.0 };
+                let speed = impact.closing_speed_before_m_s.unwrap_or(0.0);
+                speed > least * impact.speed_error_m_s.unwrap_or(f64::INFINITY)
+            })
             .filter_map(|(i, impact)| {
                 Some(SpeedPair {
                     observation: i,
@@ -43,7 +49,7 @@ impl ImpactBlock {
                     error_m_s: impact.speed_error_m_s?,
                 })
             })
-            .filter(|p| p.before_m_s > 6.0 * p.error_m_s && p.after_m_s > -4.0 * p.error_m_s)
+            .filter(|p| p.after_m_s > -4.0 * p.error_m_s)
             .collect();
         Self {
             pairs,

@@ -80,38 +80,42 @@ pub fn judge_trajectories(result: &mut MethodResult, block: &TrajectoryBlock, fi
     ));
 }
 
-/// How R changes with the closing speed: from the slowest to the fastest fifth of the impacts.
+/// How R changes with the closing speed: a straight line through after/before over before,
+/// weighted by the speed squared (the error of a ratio falls with it).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RestitutionTrend {
-    /// Median speed and R of the slowest fifth.
+    /// Slowest speed, m/s, and R there on the line.
     pub slow: (f64, f64),
-    /// Median speed and R of the fastest fifth.
+    /// Fastest speed, m/s, and R there on the line.
     pub fast: (f64, f64),
-    /// Change over its standard error.
+    /// Slope over its standard error.
     pub z_score: f64,
 }
 
 /// Trend of R over the closing speed; `None` with fewer than fifteen impacts.
 pub fn restitution_trend(block: &ImpactBlock) -> Option<RestitutionTrend> {
-    let mut pairs = block.pairs.clone();
-    pairs.sort_by(|a, b| a.before_m_s.total_cmp(&b.before_m_s));
-    let fifth = pairs.len() / 5;
-    if fifth < 3 {
+    let pairs = &block.pairs;
+    if pairs.len() < 15 {
         return None;
     }
-    let group = |part: &[crate::identify::impacts::SpeedPair]| {
-        let speeds: Vec<f64> = part.iter().map(|p| p.before_m_s).collect();
-        let ratios: Vec<f64> = part.iter().map(|p| p.after_m_s / p.before_m_s).collect();
-        let spread = robust::robust_deviation(&ratios)?.max(1e-4);
-        let error = 1.2533 * spread / (ratios.len() as f64).sqrt();
-        Some((robust::median(&speeds)?, robust::median(&ratios)?, error))
+    let weight: f64 = pairs.iter().map(|p| p.before_m_s.powi(2)).sum();
+    let mean = |f: &dyn Fn(f64, f64) -> f64| {
+        let each = |p: &crate::identify::impacts::SpeedPair| {
+            p.before_m_s.powi(2) * f(p.before_m_s, p.after_m_s / p.before_m_s)
+        };
+        pairs.iter().map(each).sum::<f64>() / weight
     };
-    let slow = group(&pairs[..fifth])?;
-    let fast = group(&pairs[pairs.len() - fifth..])?;
+    let (speed, ratio) = (mean(&|v, _| v), mean(&|_, r| r));
+    let spread = mean(&|v, _| (v - speed).powi(2));
+    let slope = mean(&|v, r| (v - speed) * (r - ratio)) / spread;
+    let square = mean(&|v, r| (r - ratio - slope * (v - speed)).powi(2));
+    let error = (square / spread / (pairs.len() - 2) as f64).sqrt();
+    let at = |v: f64| (v, ratio + slope * (v - speed));
+    let speeds = pairs.iter().map(|p| p.before_m_s);
     Some(RestitutionTrend {
-        slow: (slow.0, slow.1),
-        fast: (fast.0, fast.1),
-        z_score: (fast.1 - slow.1) / slow.2.hypot(fast.2),
+        slow: at(speeds.clone().fold(f64::INFINITY, f64::min)),
+        fast: at(speeds.fold(0.0, f64::max)),
+        z_score: slope / error,
     })
 }
 

@@ -9,7 +9,7 @@ use crate::record::lvm;
 use crate::record::mat;
 use crate::record::parquet;
 use crate::record::source::{ReadError, Source};
-use crate::record::tdms;
+use crate::record::tdms, uff, wav;
 use crate::record::text::read_exact_at;
 
 /// Bytes at the front of a file by which formats are told apart.
@@ -27,6 +27,8 @@ const BY_BYTES: &[(Test, Reader)] = &[
     (is_lvm, lvm::open),
     (is_parquet, parquet::open),
     (tdms::recognises, tdms::open),
+    (uff::recognises, uff::open),
+    (wav::recognises, wav::open),
     (mat::recognises, mat::open),
 ];
 

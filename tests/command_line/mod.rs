@@ -142,5 +142,9 @@ fn valid_completions_and_man_pages_name_the_verbs() {
 fn valid_selftest_meets_the_published_numbers() {
     let ran = Lab::new().run(&["selftest"]);
     assert_eq!(ran.code, 0, "{}", ran.said);
-    assert!(ran.said.contains("18 of 18 published numbers are met"), "{}", ran.said);
+    assert!(
+        ran.said.contains("18 of 18 published numbers are met"),
+        "{}",
+        ran.said
+    );
 }

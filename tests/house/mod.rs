@@ -107,15 +107,27 @@ fn valid_every_room_is_known_and_in_architecture_md() {
 
 /// Whether a file is a module that only tests see.
 fn for_tests_alone(name: &str, all: &[(String, String)]) -> bool {
-    let stem = name.trim_end_matches(".rs").rsplit('/').next().unwrap_or("");
+    let stem = name
+        .trim_end_matches(".rs")
+        .rsplit('/')
+        .next()
+        .unwrap_or("");
     let declared = ["mod", "pub mod"].map(|m| format!("#[cfg(test)]\n{m} {stem};"));
-    all.iter().any(|(_, text)| declared.iter().any(|d| text.contains(d)))
+    all.iter()
+        .any(|(_, text)| declared.iter().any(|d| text.contains(d)))
 }
 
 #[test]
 fn valid_only_the_command_line_prints_or_exits() {
     let all = all_sources();
-    let printing = ["println!", "eprintln!", "print!(", "eprint!(", "process::exit", "dbg!"];
+    let printing = [
+        "println!",
+        "eprintln!",
+        "print!(",
+        "eprint!(",
+        "process::exit",
+        "dbg!",
+    ];
     for (name, text) in &all {
         if name.starts_with("cli/") || for_tests_alone(name, &all) {
             continue;

@@ -33,7 +33,11 @@ pub fn bombs() -> Vec<Case> {
         refused(
             "MATLAB v5 that unfolds to a gigabyte",
             |lab| instead(lab, "r2.mat", &matlab_bomb()),
-            &["r2.mat", "compressed bytes that claim to hold", "2 of 3 records can be used"],
+            &[
+                "r2.mat",
+                "compressed bytes that claim to hold",
+                "2 of 3 records can be used",
+            ],
         ),
         refused(
             "TDMS with 100 GB of metadata",
@@ -46,12 +50,20 @@ pub fn bombs() -> Vec<Case> {
                 bytes.extend([0xff; 100]);
                 instead(lab, "r2.tdms", &bytes);
             },
-            &["r2.tdms", "copy or export it again", "2 of 3 records can be used"],
+            &[
+                "r2.tdms",
+                "copy or export it again",
+                "2 of 3 records can be used",
+            ],
         ),
         refused(
             "CSV of one endless line",
             |lab| instead(lab, "r2.csv", &[b'a'; 20_000_000]),
-            &["r2.csv", "no column of numbers", "2 of 3 records can be used"],
+            &[
+                "r2.csv",
+                "no column of numbers",
+                "2 of 3 records can be used",
+            ],
         ),
         refused(
             "CSV of half a million columns",

@@ -115,9 +115,17 @@ fn valid_bombs_end_soon_and_in_little_memory() {
             .expect("a shell");
         let said = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{}: {said}", case.input);
-        assert!(said.contains("2 of 3 records can be used"), "{}: {said}", case.input);
+        assert!(
+            said.contains("2 of 3 records can be used"),
+            "{}: {said}",
+            case.input
+        );
         // a second on an idle machine; tests share theirs
-        assert!(begin.elapsed().as_secs_f64() < 15.0, "{} takes too long", case.input);
+        assert!(
+            begin.elapsed().as_secs_f64() < 15.0,
+            "{} takes too long",
+            case.input
+        );
     }
 }
 
