@@ -6,9 +6,9 @@ use toml::Spanned;
 
 use super::channels;
 use super::faults::{Faults, Notebook, Severity};
+use super::listing::{Opener, Shared};
 use super::quantity::Desk;
 use super::read::{self, Text};
-use super::listing::{Opener, Shared};
 use super::records;
 use super::resolved::{Analysis, RecordEntry, Report, ResolvedCampaign, Rig};
 use super::written::{self, Flight, Language, Machine, Paper, Placed, WrittenCampaign};
@@ -87,7 +87,11 @@ fn resolve(
         .as_ref()
         .map_or(Flight::Harmonic, |f| *f.get_ref());
     demand_one_mass(machine, flight, &written.campaign.flight, desk);
-    let run_table = written.records.run_table.as_ref().map(|t| folder.join(t.get_ref()));
+    let run_table = written
+        .records
+        .run_table
+        .as_ref()
+        .map(|t| folder.join(t.get_ref()));
     ResolvedCampaign {
         run_table,
         machine,

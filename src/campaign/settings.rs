@@ -144,7 +144,12 @@ fn attribute(
     })
 }
 
-pub(super) fn setting(one: &Listed, wanted: &Wanted, defaults: &Defaults, desk: &mut Desk<'_>) -> Setting {
+pub(super) fn setting(
+    one: &Listed,
+    wanted: &Wanted,
+    defaults: &Defaults,
+    desk: &mut Desk<'_>,
+) -> Setting {
     let row = one.row.as_ref();
     let mut number = |attribute: &Option<Attribute>| {
         let attribute = attribute.as_ref()?;

@@ -13,7 +13,10 @@ const BROKEN_OFF: i32 = 130;
 pub fn watch(folder: PathBuf) {
     let flag = Arc::new(AtomicBool::new(false));
     let signals = [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM];
-    if signals.iter().any(|s| signal_hook::flag::register(*s, Arc::clone(&flag)).is_err()) {
+    if signals
+        .iter()
+        .any(|s| signal_hook::flag::register(*s, Arc::clone(&flag)).is_err())
+    {
         return;
     }
     std::thread::spawn(move || {

@@ -107,12 +107,19 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => {
             let _ = error.print();
-            return if error.use_stderr() { Exit::BadInput } else { Exit::Done }.into();
+            return if error.use_stderr() {
+                Exit::BadInput
+            } else {
+                Exit::Done
+            }
+            .into();
         }
     };
     let voice = Voice::new(cli.common.quiet, cli.common.verbose);
     if let Some(threads) = cli.common.threads {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.get())
+            .build_global();
         if let Err(error) = pool {
             voice.detail(&format!("the number of threads stays as it is: {error}"));
         }
@@ -137,9 +144,20 @@ mod tests {
         let command = Cli::command();
         command.clone().debug_assert();
         for verb in command.get_subcommands() {
-            let help = verb.get_after_help().map(ToString::to_string).unwrap_or_default();
-            assert!(help.contains("Example:"), "{} shows no example", verb.get_name());
-            assert!(verb.get_about().is_some(), "{} says nothing", verb.get_name());
+            let help = verb
+                .get_after_help()
+                .map(ToString::to_string)
+                .unwrap_or_default();
+            assert!(
+                help.contains("Example:"),
+                "{} shows no example",
+                verb.get_name()
+            );
+            assert!(
+                verb.get_about().is_some(),
+                "{} says nothing",
+                verb.get_name()
+            );
         }
     }
 }

@@ -19,19 +19,33 @@ Exit codes: 0 all numbers are met; 1 some are not.";
 impl SelfTest {
     pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
         let all = checks().map_err(|e| {
-            Failure::new(e.to_string(), "please report it: the program is not what it should be")
+            Failure::new(
+                e.to_string(),
+                "please report it: the program is not what it should be",
+            )
         })?;
         if !voice.is_quiet() {
             print_table(&all);
         }
         let missed = all.iter().filter(|c| !c.agrees()).count();
-        voice.say(&format!("{} of {} published numbers are met.", all.len() - missed, all.len()));
-        Ok(if missed == 0 { Exit::Done } else { Exit::AnswerIsNo })
+        voice.say(&format!(
+            "{} of {} published numbers are met.",
+            all.len() - missed,
+            all.len()
+        ));
+        Ok(if missed == 0 {
+            Exit::Done
+        } else {
+            Exit::AnswerIsNo
+        })
     }
 }
 
 fn print_table(all: &[Check]) {
-    println!("{:44} {:>10} {:>11} {:>9}", "", "published", "computed", "allowed");
+    println!(
+        "{:44} {:>10} {:>11} {:>9}",
+        "", "published", "computed", "allowed"
+    );
     for check in all {
         let mark = if check.agrees() { "" } else { "  MISSED" };
         println!(

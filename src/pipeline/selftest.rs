@@ -22,7 +22,12 @@ pub struct Check {
 
 impl Check {
     fn new(what: impl Into<String>, published: f64, computed: f64, tolerance: f64) -> Self {
-        Self { what: what.into(), published, computed, tolerance }
+        Self {
+            what: what.into(),
+            published,
+            computed,
+            tolerance,
+        }
     }
 
     /// Whether the two agree.
@@ -44,12 +49,30 @@ pub fn checks() -> Result<Vec<Check>, ModelError> {
 
 /// Fig. 2: plastic impacts with dead zones, η = 0.95, β = 0.1, ρ = 0.7, R = 0, φ = π/4.
 fn figure_2() -> Result<Vec<Check>, ModelError> {
-    let setting = Setting { phase: PI / 4.0, ..Setting::new(0.95, 0.7) };
-    let start = Initial { x: -1.0, vx: 1.5, y: -3.0, vy: 2.5 };
+    let setting = Setting {
+        phase: PI / 4.0,
+        ..Setting::new(0.95, 0.7)
+    };
+    let start = Initial {
+        x: -1.0,
+        vx: 1.5,
+        y: -3.0,
+        vy: 2.5,
+    };
     let period = setting.period();
     let found = simulate(&Machine::symmetric(0.1, 0.0), setting, start, 3.0 * period)?;
-    let expected = [(0.1589, 4.9422), (0.8846, 4.6027), (1.8677, 4.4129), (2.8677, 4.4129)];
-    let mut all = vec![Check::new("Fig. 2: impacts in 3 periods", 4.0, found.impacts.len() as f64, 0.0)];
+    let expected = [
+        (0.1589, 4.9422),
+        (0.8846, 4.6027),
+        (1.8677, 4.4129),
+        (2.8677, 4.4129),
+    ];
+    let mut all = vec![Check::new(
+        "Fig. 2: impacts in 3 periods",
+        4.0,
+        found.impacts.len() as f64,
+        0.0,
+    )];
     for (i, ((time, speed), impact)) in expected.iter().zip(&found.impacts).enumerate() {
         let n = i + 1;
         all.push(Check::new(
@@ -75,9 +98,24 @@ fn figure_4() -> Vec<Check> {
     let doubling = |eta: f64| rho_s1(&machine, eta, 1).map_or(f64::NAN, |p| p.rho - 3.0);
     let end = eta_s2(&machine, 3.0, 1).map_or(f64::NAN, |p| p.eta);
     vec![
-        Check::new("Fig. 4: grazing G1, η", 0.8165, root(grazing, 0.5, 0.95), 1e-4),
-        Check::new("Fig. 4: period doubling s1, η", 0.889, root(doubling, 0.87, 0.92), 6e-4),
-        Check::new("Fig. 4: grazing G2, η", 1.1546, root(grazing, 1.05, 1.5), 2e-4),
+        Check::new(
+            "Fig. 4: grazing G1, η",
+            0.8165,
+            root(grazing, 0.5, 0.95),
+            1e-4,
+        ),
+        Check::new(
+            "Fig. 4: period doubling s1, η",
+            0.889,
+            root(doubling, 0.87, 0.92),
+            6e-4,
+        ),
+        Check::new(
+            "Fig. 4: grazing G2, η",
+            1.1546,
+            root(grazing, 1.05, 1.5),
+            2e-4,
+        ),
         Check::new("Fig. 4: saddle-node s2, η", 1.2728, end, 3e-4),
     ]
 }
@@ -87,7 +125,11 @@ fn root(function: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     let falls = function(low) > 0.0;
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if (function(middle) > 0.0) == falls { low = middle } else { high = middle }
+        if (function(middle) > 0.0) == falls {
+            low = middle
+        } else {
+            high = middle
+        }
     }
     0.5 * (low + high)
 }
@@ -112,7 +154,12 @@ fn figure_5() -> Result<Vec<Check>, ModelError> {
     }
     let orbit = stable_orbit(&Machine::symmetric(0.005, 0.9), Setting::new(1.5, 3.0), 1)?;
     let speed = orbit.map_or(f64::NAN, |o| o.closing_speed);
-    all.push(Check::new("Fig. 5: closing speed at η = 1.5, R = 0.9", 13.65, speed, 0.01));
+    all.push(Check::new(
+        "Fig. 5: closing speed at η = 1.5, R = 0.9",
+        13.65,
+        speed,
+        0.01,
+    ));
     Ok(all)
 }
 

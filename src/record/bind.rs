@@ -140,7 +140,13 @@ pub fn bind(setup: &ChannelSetup, dataset: &DatasetInfo) -> Result<Bound, Flag> 
     })
 }
 
-pub(super) fn flag(setup: &ChannelSetup, channel: &str, code: &str, message: String, remedy: &str) -> Flag {
+pub(super) fn flag(
+    setup: &ChannelSetup,
+    channel: &str,
+    code: &str,
+    message: String,
+    remedy: &str,
+) -> Flag {
     Flag {
         code: code.to_owned(),
         channel: Some(channel.to_owned()),

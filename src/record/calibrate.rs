@@ -1,12 +1,12 @@
 //! From what a file holds to a [`Record`] in SI: each channel is found, its unit settled, its
 //! numbers scaled; what is wrong with it becomes a [`Flag`] and the other records go on.
 
-pub use super::bind::{Bound, ChannelKey, ChannelSetup, bind};
 use super::bind::flag;
-use super::{condition, consistency};
+pub use super::bind::{Bound, ChannelKey, ChannelSetup, bind};
 use super::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
 use super::time_axis::{self, TimeAxis};
 use super::{Channel, Flag, Record, Setting};
+use super::{condition, consistency};
 
 /// Everything that turns one dataset into one record.
 #[derive(Debug, Clone)]
@@ -42,7 +42,10 @@ pub fn read_flag(error: &ReadError) -> Flag {
         Some(channel) => format!("channel '{channel}': "),
         None => String::new(),
     };
-    let byte = error.byte.map(|b| format!(" (at byte {b})")).unwrap_or_default();
+    let byte = error
+        .byte
+        .map(|b| format!(" (at byte {b})"))
+        .unwrap_or_default();
     Flag {
         code: "unreadable".to_owned(),
         channel: error.channel.clone(),

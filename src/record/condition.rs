@@ -243,7 +243,11 @@ fn clipped(channel: &Channel, range: Option<f64>) -> Option<Flag> {
 fn at_rails(channel: &Channel, low: f64, high: f64, step: f64) -> usize {
     let rails = [low, high].map(|rail| at_rail(&channel.values, rail, step));
     let displacement = matches!(channel.role, Role::DisplacementX | Role::DisplacementY);
-    if displacement && rails.contains(&0) { 0 } else { rails[0] + rails[1] }
+    if displacement && rails.contains(&0) {
+        0
+    } else {
+        rails[0] + rails[1]
+    }
 }
 
 /// Number of samples in runs at a rail that were entered and left by more than a crest's steps.

@@ -13,14 +13,26 @@ use crate::support::Lab;
 const KILLS: u64 = 40;
 
 fn kills() -> u64 {
-    std::env::var("IMPACTID_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(KILLS)
+    std::env::var("IMPACTID_KILLS")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(KILLS)
 }
 
 /// A synthetic campaign of few records in a folder of its own.
 fn small_campaign() -> Lab {
     let lab = Lab::new();
     let made = lab.run(&[
-        "-q", "simulate", "campaign", "--seed", "7", "--records", "8", "--force", "--out", ".",
+        "-q",
+        "simulate",
+        "campaign",
+        "--seed",
+        "7",
+        "--records",
+        "8",
+        "--force",
+        "--out",
+        ".",
     ]);
     assert_eq!(made.code, 0, "{}", made.said);
     lab
@@ -28,13 +40,19 @@ fn small_campaign() -> Lab {
 
 fn program(lab: &Lab, args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_impactid"));
-    command.args(args).current_dir(lab.folder()).stdout(Stdio::null()).stderr(Stdio::null());
+    command
+        .args(args)
+        .current_dir(lab.folder())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
     command
 }
 
 /// All files of a folder that bear a final name, with their bytes.
 fn outputs(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let Ok(entries) = fs::read_dir(folder) else { return BTreeMap::new() };
+    let Ok(entries) = fs::read_dir(folder) else {
+        return BTreeMap::new();
+    };
     entries
         .map(|e| e.expect("an entry"))
         .map(|e| (e.file_name().to_string_lossy().into_owned(), e.path()))
@@ -130,7 +148,13 @@ fn valid_a_second_run_into_the_same_folder_is_refused() {
     first.wait().expect("it ends");
     if still_running {
         assert_eq!(second.code, 2);
-        assert!(second.said.contains("another run of impactid writes into out"), "{}", second.said);
+        assert!(
+            second
+                .said
+                .contains("another run of impactid writes into out"),
+            "{}",
+            second.said
+        );
     }
     assert!(!lock.exists(), "the lock is left behind");
 }
@@ -153,11 +177,17 @@ fn valid_a_failed_write_is_told_and_what_was_there_stays() {
         .expect("a shell");
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("could not be written") && said.contains("free space"), "{said}");
+    assert!(
+        said.contains("could not be written") && said.contains("free space"),
+        "{said}"
+    );
     assert_eq!(lab.read("out/report.pdf"), "the report of yesterday");
     let parts = fs::read_dir(lab.path("out"))
         .expect("the folder")
-        .filter(|e| e.as_ref().is_ok_and(|e| e.file_name().to_string_lossy().contains("part")))
+        .filter(|e| {
+            e.as_ref()
+                .is_ok_and(|e| e.file_name().to_string_lossy().contains("part"))
+        })
         .count();
     assert_eq!(parts, 0, "half-written files are left");
 }
@@ -177,13 +207,19 @@ fn valid_ctrl_c_says_so_and_ends_with_130() {
     }
     std::thread::sleep(Duration::from_millis(30));
     let id = run.id().to_string();
-    Command::new("kill").args(["-INT", &id]).status().expect("kill");
+    Command::new("kill")
+        .args(["-INT", &id])
+        .status()
+        .expect("kill");
     let mut said = String::new();
     std::io::Read::read_to_string(run.stderr.as_mut().expect("its words"), &mut said)
         .expect("text");
     let code = run.wait().expect("it ends").code();
     assert_eq!(code, Some(130), "{said}");
-    assert!(said.contains("broken off") && said.contains("--resume"), "{said}");
+    assert!(
+        said.contains("broken off") && said.contains("--resume"),
+        "{said}"
+    );
     let files = outputs(&lab.path("out"));
     assert!(!files.contains_key("report.pdf"));
 }
