@@ -21,5 +21,8 @@ mod broken_runs;
 /// The verbs: help, exit codes, quiet and verbose, what they write and what they leave alone.
 mod command_line;
 
+/// What record files hold and how they are written anew.
+mod formats;
+
 /// The order of the rooms, and what the house promises of its files.
 mod house;

@@ -1,10 +1,15 @@
 //! Many simulations: region maps over (η, ρ), diagrams, basins. This room knows no files.
 
+pub mod brute;
+pub mod continuation;
 pub mod kernel;
 pub mod lanes;
 pub mod map;
+pub mod regions;
+pub mod resting;
 
 pub use map::{CellMotion, MapGrid, MapSettings, RegionMap, region_map};
+pub use regions::{Atlas, AtlasSettings, Curve, atlas};
 
 #[cfg(test)]
 mod tests;

@@ -99,8 +99,6 @@ pub struct RecordEntry {
     pub dataset: Option<usize>,
     /// The setting as stated.
     pub setting: Setting,
-    /// How it was excited.
-    pub excitation: Excitation,
     /// Whether `exclude` names it.
     pub excluded: bool,
 }
@@ -113,7 +111,7 @@ impl ResolvedCampaign {
 
     /// Whether a harmonic drive must be seen in a record.
     pub fn driven(&self, entry: &RecordEntry) -> bool {
-        self.flight == Flight::Harmonic && entry.excitation == Excitation::Harmonic
+        self.flight == Flight::Harmonic && entry.setting.excitation == Excitation::Harmonic
     }
 
     /// What [`crate::record::calibrate::calibrate`] needs for one of its records.

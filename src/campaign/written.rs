@@ -47,25 +47,8 @@ pub struct About {
     pub flight: Placed<Flight>,
 }
 
-/// What acts on the masses between impacts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Flight {
-    /// Springs and a harmonic drive.
-    Harmonic,
-    /// No spring: a constant force toward the stop, such as weight on an inclined track.
-    ConstantForce,
-}
-
-/// How a record was excited.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Excitation {
-    /// A harmonic drive.
-    Harmonic,
-    /// A blow or a release, then nothing.
-    FreeDecay,
-}
+pub use crate::event::detect::FlightKind as Flight;
+pub use crate::record::Excitation;
 
 /// `[records]`.
 #[derive(Debug, Clone, Default, Deserialize)]

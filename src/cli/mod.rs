@@ -2,14 +2,17 @@
 
 mod check;
 mod completions;
+mod convert;
 mod exit;
 mod fail;
 mod init;
+mod inspect;
 mod interrupt;
 mod progress;
 mod run;
 mod selftest;
 mod simulate;
+mod sketch;
 mod stage;
 mod voice;
 
@@ -73,6 +76,10 @@ enum Verb {
     Identify(stage::Identify),
     /// Fourth stage: write the report
     Report(stage::Report),
+    /// What record files hold: channels, units, rates, ranges
+    Inspect(inspect::Inspect),
+    /// Write records of any format as HDF5, Parquet or CSV
+    Convert(convert::Convert),
     /// Simulate a campaign with known truth
     Simulate(simulate::Simulate),
     /// Compute the paper's published numbers on this machine
@@ -93,6 +100,8 @@ impl Verb {
             Self::Classify(verb) => verb.go(voice),
             Self::Identify(verb) => verb.go(voice),
             Self::Report(verb) => verb.go(voice),
+            Self::Inspect(verb) => verb.go(voice),
+            Self::Convert(verb) => verb.go(voice),
             Self::Simulate(verb) => verb.go(voice),
             Self::Selftest(verb) => verb.go(voice),
             Self::Completions(verb) => verb.go(voice),

@@ -27,7 +27,7 @@ pub struct ImpactBlock {
 }
 
 impl ImpactBlock {
-    /// Collect impacts without dead zone, faster than four standard errors.
+    /// Collect impacts without dead zone, faster than six standard errors.
     pub fn new(observations: &[Observation], relative_error: f64) -> Self {
         let pairs = observations
             .iter()
@@ -43,24 +43,37 @@ impl ImpactBlock {
                     error_m_s: impact.speed_error_m_s?,
                 })
             })
-            .filter(|p| p.before_m_s > 4.0 * p.error_m_s && p.after_m_s > -4.0 * p.error_m_s)
+            .filter(|p| p.before_m_s > 6.0 * p.error_m_s && p.after_m_s > -4.0 * p.error_m_s)
             .collect();
-        Self { pairs, relative_error }
+        Self {
+            pairs,
+            relative_error,
+        }
     }
 
     /// Keep only pairs that lie within `limit` robust deviations of the bulk; gives the number
     /// left out.
     pub fn without_outliers(mut self, limit: f64) -> (Self, usize) {
-        let ratios: Vec<f64> = self.pairs.iter().map(|p| p.after_m_s / p.before_m_s).collect();
+        let ratios: Vec<f64> = self
+            .pairs
+            .iter()
+            .map(|p| p.after_m_s / p.before_m_s)
+            .collect();
         let Some(centre) = crate::signal::robust::median(&ratios) else {
             return (self, 0);
         };
-        let scores: Vec<f64> =
-            self.pairs.iter().map(|p| (p.after_m_s - centre * p.before_m_s) / self.error(p, centre)).collect();
-        let spread = crate::signal::robust::robust_deviation(&scores).unwrap_or(1.0).max(0.5);
+        let scores: Vec<f64> = self
+            .pairs
+            .iter()
+            .map(|p| (p.after_m_s - centre * p.before_m_s) / self.error(p, centre))
+            .collect();
+        let spread = crate::signal::robust::robust_deviation(&scores)
+            .unwrap_or(1.0)
+            .max(0.5);
         let before = self.pairs.len();
         let mut scores = scores.into_iter();
-        self.pairs.retain(|_| scores.next().is_some_and(|s| s.abs() <= limit * spread));
+        self.pairs
+            .retain(|_| scores.next().is_some_and(|s| s.abs() <= limit * spread));
         let dropped = before - self.pairs.len();
         (self, dropped)
     }
@@ -80,7 +93,9 @@ impl Block for ImpactBlock {
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let pair = &self.pairs[item];
         let r = parameters.restitution;
-        Some(vec![(pair.after_m_s - r * pair.before_m_s) / self.error(pair, r)])
+        Some(vec![
+            (pair.after_m_s - r * pair.before_m_s) / self.error(pair, r),
+        ])
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {

@@ -37,7 +37,10 @@ pub fn judge_resonance(result: &mut MethodResult, block: &ResonanceBlock, fitted
     let deviation = robust::rms(&deviations);
     result.fits = Some(deviation < RESONANCE_DEVIATION);
     result.remarks.push(if deviation < RESONANCE_DEVIATION {
-        format!("the responses follow one degree of freedom within {:.2} %", 100.0 * deviation)
+        format!(
+            "the responses follow one degree of freedom within {:.2} %",
+            100.0 * deviation
+        )
     } else {
         format!(
             "the responses deviate by {:.0} % from the curve of one degree of freedom: there is \
@@ -51,7 +54,9 @@ pub fn judge_resonance(result: &mut MethodResult, block: &ResonanceBlock, fitted
 pub fn judge_trajectories(result: &mut MethodResult, block: &TrajectoryBlock, fitted: &Parameters) {
     let mut ratios = Vec::new();
     for item in 0..block.items() {
-        let Some(residuals) = block.residuals(item, fitted) else { continue };
+        let Some(residuals) = block.residuals(item, fitted) else {
+            continue;
+        };
         let channels = &block.records[item].folded.channels;
         let (mut apart, mut whole, mut k) = (0.0, 0.0, 0);
         for channel in channels {
@@ -65,7 +70,9 @@ pub fn judge_trajectories(result: &mut MethodResult, block: &TrajectoryBlock, fi
         }
         ratios.push((apart / whole.max(f64::MIN_POSITIVE)).sqrt());
     }
-    let Some(deviation) = robust::median(&ratios) else { return };
+    let Some(deviation) = robust::median(&ratios) else {
+        return;
+    };
     result.fits = Some(deviation < WAVEFORM_DEVIATION);
     result.remarks.push(format!(
         "the simulated waveforms leave {:.2} % of the measured ones unexplained",
@@ -112,18 +119,24 @@ pub fn restitution_trend(block: &ImpactBlock) -> Option<RestitutionTrend> {
 pub fn judge_impacts(result: &mut MethodResult, block: &ImpactBlock, evidence: &Evidence) {
     let used: std::collections::BTreeSet<usize> =
         block.pairs.iter().map(|p| p.observation).collect();
-    let gaps: Vec<f64> =
-        used.iter().map(|i| evidence.observations[*i].jump_samples as f64).collect();
+    let gaps: Vec<f64> = used
+        .iter()
+        .map(|i| evidence.observations[*i].jump_samples as f64)
+        .collect();
     let gap = robust::median(&gaps).unwrap_or(1.0);
     let long = gap > 1.5;
-    let Some(trend) = restitution_trend(block) else { return };
+    let Some(trend) = restitution_trend(block) else {
+        return;
+    };
     let change = trend.fast.1 - trend.slow.1;
     let changes = change.abs() > RESTITUTION_CHANGE && trend.z_score.abs() > 4.0;
     result.fits = Some(!changes);
     if !changes {
         result.remarks.push(format!(
             "R is the same from {:.3} to {:.3} m/s within {:.3}",
-            trend.slow.0, trend.fast.0, change.abs().max(1e-3)
+            trend.slow.0,
+            trend.fast.0,
+            change.abs().max(1e-3)
         ));
         return;
     }
@@ -187,15 +200,26 @@ pub fn verdict(found: &Findings) -> Verdict {
     } else {
         VerdictKind::Identified
     };
-    Verdict { kind, summary: sentences(kind, &told, &unknown, &weak, found), findings }
+    Verdict {
+        kind,
+        summary: sentences(kind, &told, &unknown, &weak, found),
+        findings,
+    }
 }
 
 fn with_status(told: &[(Coordinate, &Estimate)], status: Status) -> Vec<Coordinate> {
-    told.iter().filter(|(_, e)| e.status == status).map(|(c, _)| *c).collect()
+    told.iter()
+        .filter(|(_, e)| e.status == status)
+        .map(|(c, _)| *c)
+        .collect()
 }
 
 fn symbols(coordinates: &[Coordinate]) -> String {
-    coordinates.iter().map(|c| c.symbol()).collect::<Vec<_>>().join(", ")
+    coordinates
+        .iter()
+        .map(|c| c.symbol())
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 fn sentences(
@@ -222,7 +246,11 @@ fn sentences(
             symbols(unknown)
         ),
         VerdictKind::Weak => {
-            format!("The rig has {}; {} only weakly.", values.join(", "), symbols(weak))
+            format!(
+                "The rig has {}; {} only weakly.",
+                values.join(", "),
+                symbols(weak)
+            )
         }
         VerdictKind::Identified => format!("The rig has {}.", values.join(", ")),
     };
@@ -244,5 +272,8 @@ fn phrase(coordinate: Coordinate, estimate: &Estimate) -> Option<String> {
     };
     let (value, half) = (value * scale, half * scale);
     let digits = (1.0 - half.max(1e-9).log10().floor()).clamp(0.0, 8.0) as usize;
-    Some(format!("{} = {value:.digits$} ± {half:.digits$}{unit}", coordinate.symbol()))
+    Some(format!(
+        "{} = {value:.digits$} ± {half:.digits$}{unit}",
+        coordinate.symbol()
+    ))
 }

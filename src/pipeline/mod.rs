@@ -17,7 +17,7 @@ use std::path::Path;
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::Verdict;
-use crate::motion::{Bracket, Observation, brackets};
+use crate::motion::{Bracket, Observation, brackets, scale_drives};
 use crate::output::OutputError;
 use crate::pipeline::checkpoint::Checkpoint;
 use crate::record::source::ReadError;
@@ -120,12 +120,16 @@ impl Observed {
         Self::from_observations(observations)
     }
 
-    fn from_observations(observations: Vec<Observation>) -> Result<Self, PipelineError> {
+    fn from_observations(mut observations: Vec<Observation>) -> Result<Self, PipelineError> {
+        scale_drives(&mut observations);
         if observations.iter().all(Observation::excluded) {
             return Err(PipelineError::NothingUsable(observations.len()));
         }
         let brackets = brackets(&observations);
-        Ok(Self { observations, brackets })
+        Ok(Self {
+            observations,
+            brackets,
+        })
     }
 }
 
@@ -150,7 +154,11 @@ pub fn run(
     destination: &Destination<'_>,
     progress: Progress,
 ) -> Result<Verdict, PipelineError> {
-    let Destination { out, resume, command_line } = *destination;
+    let Destination {
+        out,
+        resume,
+        command_line,
+    } = *destination;
     let observed = Observed::resumable(campaign, out, resume, progress)?;
     progress("identify", 0, 1);
     let found = identify::identify(campaign, &observed)?;

@@ -21,7 +21,7 @@ use crate::record::text::read_exact_at;
 /// A column that is asked for in parts is kept whole up to this size.
 const KEPT_BYTES: u64 = 1 << 28;
 /// More rows than this for each byte of the file are no data.
-const MOST_ROWS_PER_BYTE: u64 = 1024;
+const MOST_ROWS_PER_BYTE: u64 = 64;
 
 /// A column's name and type.
 #[derive(Debug, Clone)]

@@ -79,3 +79,19 @@ fn valid_files_cut_off_are_refused() {
         assert!(open(file.path()).is_err(), "{keep}");
     }
 }
+
+#[test]
+fn prop_mutated_files_are_read_or_refused() {
+    use crate::record::conformance::{Random, mutate, own_seeds, survive};
+    // The footer lies at the end of the file: half of the mutations go there.
+    let change = |random: &mut Random, bytes: &mut Vec<u8>| {
+        if random.below(2) == 0 {
+            bytes.reverse();
+            mutate(random, bytes);
+            bytes.reverse();
+        } else {
+            mutate(random, bytes);
+        }
+    };
+    survive(&own_seeds(&["parquet"]), open, change, 1200);
+}

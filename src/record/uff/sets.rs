@@ -322,7 +322,7 @@ impl<'a> Scanner<'a> {
             length(per_point).is_some_and(|bytes| self.mark_at(at.saturating_add(bytes)))
         };
         let found = forms.iter().find(fits).copied();
-        let left = self.file.len() - at;
+        let left = self.file.size() - at;
         let (abscissa, per_point) = match found {
             Some(form) => form,
             None => {

@@ -116,7 +116,7 @@ impl Scanner<'_> {
             _ => stated,
         };
         let start = cursor.at();
-        let left = self.file.len() - start;
+        let left = self.file.size() - start;
         let end = start.saturating_add(length);
         let mut inner = cursor.part(start, end);
         match &name {
@@ -143,7 +143,7 @@ impl Scanner<'_> {
             _ => {}
         }
         // Chunks begin at even offsets.
-        cursor.seek(end.saturating_add(length % 2).min(self.file.len()));
+        cursor.seek(end.saturating_add(length % 2).min(self.file.size()));
         Ok(())
     }
 
@@ -267,7 +267,7 @@ impl Scanner<'_> {
     }
 
     fn finish(mut self) -> Result<Wave, ReadError> {
-        let end = self.file.len();
+        let end = self.file.size();
         let Some(format) = self.format else {
             return Err(self
                 .file
