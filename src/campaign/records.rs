@@ -69,11 +69,6 @@ fn entries(
                 sequence,
                 ..setting(one, &wanted, defaults, desk)
             },
-            excitation: one
-                .row
-                .as_ref()
-                .and_then(|r| r.excitation)
-                .unwrap_or(defaults.excitation),
             excluded: false,
         })
         .collect()

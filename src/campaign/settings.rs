@@ -13,7 +13,6 @@ use crate::units::{self, Dimension};
 #[derive(Debug, Clone)]
 pub(super) struct Defaults {
     pub(super) setting: Setting,
-    pub(super) excitation: Excitation,
 }
 
 pub(super) fn defaults(records: &Records, desk: &mut Desk<'_>) -> Defaults {
@@ -48,11 +47,11 @@ pub(super) fn defaults(records: &Records, desk: &mut Desk<'_>) -> Defaults {
             drive_amplitude: amplitude.unwrap_or(1.0),
             sequence: 0,
             specimen: None,
+            excitation: records
+                .excitation
+                .as_ref()
+                .map_or(Excitation::Harmonic, |e| *e.get_ref()),
         },
-        excitation: records
-            .excitation
-            .as_ref()
-            .map_or(Excitation::Harmonic, |e| *e.get_ref()),
     }
 }
 
@@ -182,6 +181,9 @@ pub(super) fn setting(
             .or(amplitude)
             .unwrap_or(default.drive_amplitude),
         sequence: 0,
+        excitation: row
+            .and_then(|r| r.excitation)
+            .unwrap_or(default.excitation),
         specimen: row.and_then(|r| r.specimen.clone()).or(specimen),
     }
 }
