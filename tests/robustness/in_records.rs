@@ -31,7 +31,7 @@ pub fn bombs() -> Vec<Case> {
             &["r2.h5", "2 of 3 records can be used"],
         ),
         refused(
-            "MATLAB v5 that unfolds to a gigabyte",
+            "MATLAB v5 that unfolds to a quarter of a gigabyte",
             |lab| instead(lab, "r2.mat", &matlab_bomb()),
             &[
                 "r2.mat",
@@ -76,14 +76,14 @@ pub fn bombs() -> Vec<Case> {
     ]
 }
 
-/// A header and one compressed element that claims a gigabyte of zeros.
+/// A header and one compressed element that holds a quarter of a gigabyte of zeros.
 fn matlab_bomb() -> Vec<u8> {
     let mut packed = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
     let mut put = |bytes: &[u8]| std::io::Write::write_all(&mut packed, bytes).expect("memory");
     put(&14_u32.to_le_bytes());
-    put(&(1_u32 << 30).to_le_bytes());
-    for _ in 0..64 {
-        put(&[0; 1 << 16]);
+    put(&(1_u32 << 28).to_le_bytes());
+    for _ in 0..256 {
+        put(&[0; 1 << 20]);
     }
     let packed = packed.finish().expect("memory");
     let mut bytes = b"MATLAB 5.0 MAT-file".to_vec();
