@@ -33,7 +33,7 @@ pub fn sketch(values: &[f64], width: usize, height: usize) -> Vec<String> {
         let to = ((column + 1) * values.len() / columns)
             .max(from + 1)
             .min(values.len());
-        let own = values[from..to].iter().copied().filter(|v| v.is_finite());
+        let mut own = values[from..to].iter().copied().filter(|v| v.is_finite());
         // Join to the column before, so that steep flanks are no gaps.
         let joined = own
             .clone()
@@ -46,7 +46,7 @@ pub fn sketch(values: &[f64], width: usize, height: usize) -> Vec<String> {
                 cells[r / 4][column / 2] |= DOTS[column % 2][r % 4];
             }
         }
-        before = own.last();
+        before = own.next_back();
     }
     cells
         .iter()

@@ -138,7 +138,7 @@ fn items<'a>(sources: &'a [Box<dyn Source>], options: &Options) -> Vec<Item<'a>>
                 (false, 1) => info.name.clone(),
                 (false, _) => format!("{stem}/{}", info.name),
             };
-            let name = unique(plain, &mut taken);
+            let name = unique(&plain, &mut taken);
             let mut attributes = info.attributes.clone();
             attributes.extend(options.attributes.clone());
             items.push(Item {
@@ -152,7 +152,7 @@ fn items<'a>(sources: &'a [Box<dyn Source>], options: &Options) -> Vec<Item<'a>>
     items
 }
 
-fn unique(plain: String, taken: &mut std::collections::BTreeSet<String>) -> String {
+fn unique(plain: &str, taken: &mut std::collections::BTreeSet<String>) -> String {
     let parts: Vec<&str> = plain
         .split('/')
         .filter(|p| !p.is_empty() && *p != ".")

@@ -61,8 +61,11 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     Ok(Box::new(source))
 }
 
+/// A file's reader, its tree, and a note where the second library reads it.
+type Opened = (Box<dyn Store>, Tree, Option<String>);
+
 /// Open a file with the first library that reads its structure.
-fn open_store(path: &Path) -> Result<(Box<dyn Store>, Tree, Option<String>), ReadError> {
+fn open_store(path: &Path) -> Result<Opened, ReadError> {
     let io = |e: std::io::Error| ReadError::io(path, &e);
     let file = File::open(path).map_err(io)?;
     let length = file.metadata().map_err(io)?.len();

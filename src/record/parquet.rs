@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use crate::record::attribute;
 use crate::record::csv::header::name_and_unit;
 use crate::record::parquet::columns::{Columns, Field};
-use crate::record::parquet::shape::{Range, Shape};
+use crate::record::parquet::shape::{Labelled, Range, Shape, Tidy};
 use crate::record::rate;
 use crate::record::source::{
     self, ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType,
@@ -65,14 +65,9 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
                 source.add_wide(name, &rows, &[key]);
             }
         }
-        Shape::Tidy {
-            value,
-            time,
-            unit,
-            records,
-        } => {
+        Shape::Tidy { tidy, records } => {
             for (name, channels) in records {
-                source.add_tidy(name, channels, value, time, unit.as_ref());
+                source.add_tidy(name, channels, &tidy);
             }
         }
     }
@@ -118,14 +113,13 @@ impl ParquetSource {
     }
 
     /// A record whose channels are rows of one column.
-    fn add_tidy(
-        &mut self,
-        name: String,
-        channels: Vec<(String, Vec<Range>)>,
-        value: usize,
-        time: Option<usize>,
-        units: Option<&BTreeMap<String, String>>,
-    ) {
+    fn add_tidy(&mut self, name: String, channels: Labelled, tidy: &Tidy) {
+        let Tidy {
+            value,
+            time,
+            unit: units,
+        } = tidy;
+        let (value, time) = (*value, *time);
         let mut infos = Vec::new();
         let mut plan = Vec::new();
         let axis = time.zip(channels.first().map(|(_, rows)| rows.clone()));
@@ -136,7 +130,7 @@ impl ParquetSource {
         }
         let field = self.columns.fields()[value].clone();
         for (channel, rows) in channels {
-            let unit = units.and_then(|u| u.get(&channel).cloned());
+            let unit = units.as_ref().and_then(|u| u.get(&channel).cloned());
             infos.push(self.channel(&channel, unit, &field, length(&rows)));
             plan.push(Origin {
                 column: value,

@@ -43,7 +43,7 @@ fn rows(item: &Item, samples: &[Samples], mut out: impl Write) -> std::io::Resul
     for (info, samples) in item.channels().iter().zip(samples) {
         match samples {
             Samples::Complex(_) => {
-                headings.extend(["re", "im"].map(|p| quoted(&format!("{}.{p}", heading(info)))))
+                headings.extend(["re", "im"].map(|p| quoted(&format!("{}.{p}", heading(info)))));
             }
             _ => headings.push(quoted(&heading(info))),
         }

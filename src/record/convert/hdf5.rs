@@ -27,7 +27,7 @@ fn record(item: &Item) -> Result<RecordTable, ConvertError> {
         let unit = info.unit.clone().unwrap_or_default();
         match samples {
             Samples::Real(values) => {
-                channels.push(ColumnToWrite::numbers(&info.name, unit, values))
+                channels.push(ColumnToWrite::numbers(&info.name, unit, values));
             }
             Samples::Complex(values) => {
                 let (re, im) = values.into_iter().unzip();

@@ -27,14 +27,16 @@ impl<S: Store> Guarded<S> {
             .count()
             .and_then(|n| n.checked_mul(element))
             .unwrap_or(u64::MAX);
-        let stored = || self.0.stored_bytes(array).unwrap_or(0);
-        if claimed <= HARMLESS_BYTES || (self.within(claimed) && stored() > 0) {
+        let stored = self.0.stored_bytes(array).unwrap_or(0);
+        if stored > self.0.file_bytes() {
+            return Err(format!("{stored} stored bytes, more than the file has"));
+        }
+        if claimed <= HARMLESS_BYTES || (self.within(claimed) && stored > 0) {
             return Ok(());
         }
         let shape = &array.shape;
         Err(format!(
-            "a shape of {shape:?} for which the file stores {} bytes",
-            stored()
+            "a shape of {shape:?} for which the file stores {stored} bytes"
         ))
     }
 }
