@@ -119,6 +119,8 @@ struct Point {
 struct Follower<'a> {
     machine: &'a Machine,
     along: Along,
+    /// +1: rising parameter, −1: falling.
+    direction: f64,
 }
 
 impl Follower<'_> {
@@ -215,13 +217,23 @@ impl Follower<'_> {
         }
     }
 
+    /// What ends the motion before or at a point reached from another. A branch that turns back
+    /// although it stays stable has passed the doubling at which it was born, and is now its
+    /// own copy shifted by half its period.
+    fn ends(&self, from: &Point, orbit: &PeriodicOrbit) -> Option<EdgeKind> {
+        self.fault(orbit).or_else(|| {
+            let tangent = self.tangent(orbit, &from.tangent)?;
+            (tangent[tangent.len() - 1] * self.direction < 0.0).then_some(EdgeKind::PeriodDoubling)
+        })
+    }
+
     /// Between a good point and a step that is too far, the last good orbit and what ends it.
     fn locate(&self, from: &Point, mut too_far: f64, mut kind: EdgeKind, resolution: f64) -> Edge {
         let (mut good, mut orbit) = (0.0, from.orbit.clone());
         while too_far - good > resolution {
             let middle = 0.5 * (good + too_far);
             let found = self.at(from, middle);
-            match found.as_ref().map(|o| self.fault(o)) {
+            match found.as_ref().map(|o| self.ends(from, o)) {
                 Some(None) => {
                     good = middle;
                     orbit = found.unwrap_or(orbit);
@@ -229,6 +241,10 @@ impl Follower<'_> {
                 Some(Some(k)) => (too_far, kind) = (middle, k),
                 None => (too_far, kind) = (middle, EdgeKind::Lost),
             }
+        }
+        // at the doubling where it was born an orbit is twice its half
+        if kind == EdgeKind::SaddleNode && orbit.reduced_within(1e-3).n < orbit.n {
+            kind = EdgeKind::PeriodDoubling;
         }
         Edge { kind, orbit }
     }
@@ -242,7 +258,11 @@ pub fn follow(
     direction: f64,
     walk: &Walk,
 ) -> Edge {
-    let follower = Follower { machine, along };
+    let follower = Follower {
+        machine,
+        along,
+        direction,
+    };
     let n = 2 * seed.p() + 1;
     let mut towards = DVector::zeros(n);
     towards[n - 1] = direction;
@@ -266,7 +286,7 @@ pub fn follow(
             }
             continue;
         };
-        if let Some(kind) = follower.fault(&next) {
+        if let Some(kind) = follower.ends(&point, &next) {
             return follower.locate(&point, ds, kind, walk.resolution);
         }
         let value = along.of(&next);

@@ -315,7 +315,6 @@ struct Lane {
     /// Time and impacts at the last release from the stop.
     released: Option<(f64, f64)>,
     hits_at_watch: f64,
-    live: bool,
 }
 
 const IDLE: Lane = Lane {
@@ -334,7 +333,6 @@ const IDLE: Lane = Lane {
     confirming: false,
     released: None,
     hits_at_watch: 0.0,
-    live: false,
 };
 
 /// Lanes of the widest kernel.
@@ -409,7 +407,8 @@ fn empty_group<V: Lanes>() -> Group<V> {
     }
 }
 
-/// Load the next cell into a lane; gives the lane's bit, or 0 where no cell is left.
+/// Load the next cell into a lane; gives the lane's bit, or 0 where no cell is left. A mass
+/// that starts at rest at the stop and is never let go is done at once.
 #[inline(never)]
 fn refill<V: Lanes>(
     course: &Course,
@@ -418,11 +417,37 @@ fn refill<V: Lanes>(
     info: &mut Lane,
     lane: usize,
 ) -> u32 {
-    let Some((index, cell)) = feed.next() else {
-        park(s, lane);
-        info.live = false;
-        return 0;
-    };
+    while let Some((index, cell)) = feed.next() {
+        load(course, s, info, lane, (index, cell));
+        let rests = cell.x >= cell.rho && cell.v.abs() <= 1e-12;
+        if !rests || !come_to_rest(course, s, info, lane, (0.0, cell.phase)) {
+            return 1 << lane;
+        }
+        let end = Cell {
+            x: cell.rho,
+            v: 0.0,
+            ..cell
+        };
+        feed.done(
+            index,
+            Outcome {
+                motion: SettledMotion::Joined,
+                end,
+            },
+        );
+    }
+    park(s, lane);
+    0
+}
+
+/// Load a cell into a lane.
+fn load<V: Lanes>(
+    course: &Course,
+    s: &mut Group<V>,
+    info: &mut Lane,
+    lane: usize,
+    (index, cell): (usize, Cell),
+) {
     let eta = cell.eta;
     let (re, im) = (1.0 - eta * eta, 2.0 * course.damping_ratio * eta);
     let d = re * re + im * im;
@@ -432,7 +457,6 @@ fn refill<V: Lanes>(
         cell,
         period,
         forced: (re / d, -im / d),
-        live: true,
         ..IDLE
     };
     let amplitude = 1.0 / d.sqrt();
@@ -471,10 +495,6 @@ fn refill<V: Lanes>(
         lane,
         (0.0, cell.x.min(cell.rho), cell.v, cell.phase),
     );
-    if cell.x >= cell.rho && cell.v <= 0.0 {
-        come_to_rest(course, s, info, lane, (0.0, cell.phase));
-    }
-    1 << lane
 }
 
 /// A lane without a cell: far from the stop, never due.

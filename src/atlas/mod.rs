@@ -7,6 +7,7 @@ pub mod lanes;
 pub mod map;
 pub mod regions;
 pub mod resting;
+pub mod shard;
 
 pub use map::{CellMotion, MapGrid, MapSettings, RegionMap, region_map};
 pub use regions::{Atlas, AtlasSettings, Curve, atlas};

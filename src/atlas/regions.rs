@@ -128,7 +128,7 @@ pub fn atlas(machine: &Machine, settings: &AtlasSettings) -> Result<Atlas, Model
         .grid
         .eta
         .par_iter()
-        .map(|&eta| resting_slices(machine, eta, &settings.grid.rho))
+        .map(|&eta| resting_slices(machine, eta, &settings.grid.rho, settings.largest_n))
         .collect();
     let curves = curves(machine, settings, &columns, &resting);
     let slices: Vec<Slice> = columns.into_iter().flatten().collect();
@@ -142,6 +142,26 @@ pub fn atlas(machine: &Machine, settings: &AtlasSettings) -> Result<Atlas, Model
         maps,
         agreement,
     })
+}
+
+/// All slices at one η: see [`atlas`]; the settings' columns are ignored.
+///
+/// # Errors
+/// [`ModelError`] where a parameter is out of range.
+pub fn slices_at(
+    machine: &Machine,
+    eta: f64,
+    settings: &AtlasSettings,
+) -> Result<Vec<Slice>, ModelError> {
+    let mut settings = settings.clone();
+    settings.grid.eta = vec![eta];
+    let map = brute_map(
+        machine,
+        &settings.grid,
+        &settings.map,
+        super::brute::Way::FromStart,
+    )?;
+    Ok(column(machine, &settings, &[map], 0))
 }
 
 /// All slices of one column: from closed forms, from the maps' cells, from period doublings.

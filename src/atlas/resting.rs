@@ -60,11 +60,9 @@ impl RestingSlice {
     }
 }
 
-/// Most drive periods between two dead zones.
-const LONGEST: f64 = 64.0;
-
-/// (p, n) of the motion that starts at the release; `None`: it never rests again.
-fn from_release(machine: &Machine, eta: f64, rho: f64) -> Option<(u32, u32)> {
+/// (p, n) of the motion that starts at the release; `None`: it does not rest again within
+/// `longest` drive periods.
+fn from_release(machine: &Machine, eta: f64, rho: f64, longest: u32) -> Option<(u32, u32)> {
     if !(-1.0..1.0).contains(&rho) {
         return None;
     }
@@ -78,7 +76,7 @@ fn from_release(machine: &Machine, eta: f64, rho: f64) -> Option<(u32, u32)> {
     };
     let mut simulator = Simulator::new(machine, setting, start).ok()?;
     let (mut impacts, mut rested) = (0, None);
-    for _ in 0..(LONGEST as usize) {
+    for _ in 0..longest {
         simulator.advance(setting.period(), &mut |i: &ModelImpact| {
             if rested.is_none() {
                 impacts += 1;
@@ -100,15 +98,21 @@ fn from_release(machine: &Machine, eta: f64, rho: f64) -> Option<(u32, u32)> {
     None
 }
 
-/// All resting motions along ρ at one η, from the rows of a grid; edges to 1e-7. Empty for
+/// All resting motions of at most `longest` drive periods along ρ at one η, from the rows of a
+/// grid; edges to 1e-7. Empty for
 /// machines whose release is not one state (asymmetric ones).
-pub fn resting_slices(machine: &Machine, eta: f64, rows: &[f64]) -> Vec<RestingSlice> {
+pub fn resting_slices(
+    machine: &Machine,
+    eta: f64,
+    rows: &[f64],
+    longest: u32,
+) -> Vec<RestingSlice> {
     let Some(unit) = UnitMass::of(machine) else {
         return Vec::new();
     };
     let (length, rate) = unit.scales();
     let single = unit.machine();
-    let label = |rho: f64| from_release(&single, eta / rate, rho / length);
+    let label = |rho: f64| from_release(&single, eta / rate, rho / length, longest);
     let labels: Vec<Option<(u32, u32)>> = rows.iter().map(|&rho| label(rho)).collect();
     let mut slices = Vec::new();
     let mut first = 0;

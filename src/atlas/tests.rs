@@ -1,9 +1,12 @@
 //! Maps: the vector kernel against the exact simulator, and invariants of maps.
 
+use super::continuation::EdgeKind;
 use super::map::Kernel;
+use super::regions::{Slice, slices_at};
+use super::shard::{MapPart, MapRequest, MergeError, merge, part};
 use super::*;
 
-use crate::model::{Machine, Restitution};
+use crate::model::{Machine, Restitution, SettledMotion, rho_s1, rho_s2};
 
 const KERNELS: [Kernel; 3] = [Kernel::Scalar, Kernel::Avx2, Kernel::Avx512];
 
@@ -43,6 +46,119 @@ fn valid_kernel_agrees_with_the_exact_simulator() {
             differ.is_empty(),
             "β {beta} R {r}: {} {differ:#?}",
             differ.len()
+        );
+    }
+}
+
+#[test]
+fn prop_parts_make_up_the_whole_map_and_nothing_else_does() {
+    let grid = MapGrid::even((0.7, 2.0, 13), (0.1, 3.0, 11));
+    let machine = Machine::symmetric(0.07, 0.9);
+    let request = MapRequest::new(machine.clone(), grid.clone(), MapSettings::default());
+    let parts: Vec<MapPart> = (0..3).map(|k| part(&request, k, 3).unwrap()).collect();
+    let whole = region_map(&machine, &grid, &MapSettings::default()).unwrap();
+    assert_eq!(merge(&parts).unwrap(), whole);
+    let text = serde_json::to_string(&parts[1]).unwrap();
+    assert_eq!(serde_json::from_str::<MapPart>(&text).unwrap(), parts[1]);
+    assert_eq!(
+        merge(&parts[..2]),
+        Err(MergeError::Missing {
+            numbers: vec![2],
+            of: 3
+        })
+    );
+    let doubled = [parts[0].clone(), parts[0].clone()];
+    assert_eq!(merge(&doubled), Err(MergeError::Doubled { number: 0 }));
+    let other = MapRequest {
+        machine: Machine::symmetric(0.07, 0.8),
+        ..request
+    };
+    let foreign = [parts[0].clone(), part(&other, 1, 3).unwrap()];
+    assert_eq!(
+        merge(&foreign),
+        Err(MergeError::Foreign { number: 1, of: 3 })
+    );
+    let mut short = parts.clone();
+    short[2].cells.pop();
+    assert!(matches!(
+        merge(&short),
+        Err(MergeError::Damaged { number: 2, .. })
+    ));
+}
+
+#[test]
+fn prop_maps_do_not_depend_on_the_number_of_threads() {
+    let grid = MapGrid::even((0.7, 3.0, 17), (0.05, 3.0, 13));
+    let machine = Machine::symmetric(0.07, 0.9);
+    let with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| region_map(&machine, &grid, &MapSettings::default()).unwrap())
+    };
+    assert_eq!(with(1), with(3));
+}
+
+#[test]
+fn valid_edges_by_continuation_are_the_closed_forms() {
+    let machine = Machine::symmetric(0.07, 0.9);
+    let settings = AtlasSettings {
+        grid: MapGrid::even((0.9, 0.9, 1), (0.1, 6.0, 60)),
+        largest_p: 2,
+        largest_n: 2,
+        map: MapSettings::default(),
+    };
+    let at = |eta: f64| slices_at(&machine, eta, &settings).unwrap();
+    let one = |slices: &[Slice]| {
+        slices
+            .iter()
+            .find(|s| (s.p, s.n) == (1, 1))
+            .unwrap()
+            .clone()
+    };
+    let s = one(&at(0.9));
+    assert_eq!(s.high.kind, EdgeKind::PeriodDoubling);
+    assert!((s.high.orbit.rho - rho_s1(&machine, 0.9, 1).unwrap().rho).abs() < 1e-6);
+    let s = one(&at(1.3));
+    assert_eq!(s.high.kind, EdgeKind::SaddleNode);
+    assert!((s.high.orbit.rho - rho_s2(&machine, 1.3, 1).unwrap().rho).abs() < 1e-6);
+    // the doubled motion branches off where z = 1 ends
+    let two = at(0.9).into_iter().find(|s| (s.p, s.n) == (2, 2)).unwrap();
+    assert!((two.low.orbit.rho - rho_s1(&machine, 0.9, 1).unwrap().rho).abs() < 1e-3);
+}
+
+#[test]
+fn prop_curves_and_brute_force_agree() {
+    let settings = AtlasSettings {
+        grid: MapGrid::even((0.6, 2.4, 19), (0.05, 4.0, 24)),
+        largest_p: 4,
+        largest_n: 4,
+        map: MapSettings::default(),
+    };
+    for (beta, r) in [(0.07, 0.9), (0.05, 0.0)] {
+        let atlas = atlas(&Machine::symmetric(beta, r), &settings).unwrap();
+        let a = &atlas.agreement;
+        assert!(a.compared > 900);
+        let share = a.differing.len() as f64 / a.compared as f64;
+        assert!(share < 0.01, "R {r}: {share} {:?}", a.differing);
+    }
+}
+
+#[test]
+fn valid_preloaded_cells_are_joined_or_rest_once_a_period() {
+    let grid = MapGrid::even((0.5, 2.0, 7), (-1.3, -0.7, 7));
+    let machine = Machine::symmetric(0.1, 0.0);
+    let map = region_map(&machine, &grid, &MapSettings::default()).unwrap();
+    let exact = region_map(&slow_path(&machine), &grid, &MapSettings::default()).unwrap();
+    assert_eq!(map.cells, exact.cells);
+    for (i, cell) in map.cells.iter().enumerate() {
+        let joined = *cell == SettledMotion::Joined;
+        assert_eq!(
+            joined,
+            grid.at(i).1 < -1.0 + 1e-9,
+            "{:?} {cell:?}",
+            grid.at(i)
         );
     }
 }

@@ -181,13 +181,9 @@ pub(super) fn setting(
             .or(amplitude)
             .unwrap_or(default.drive_amplitude),
         sequence: 0,
-        excitation: row
-            .and_then(|r| r.excitation)
-            .unwrap_or(default.excitation),
+        excitation: row.and_then(|r| r.excitation).unwrap_or(default.excitation),
         specimen: row.and_then(|r| r.specimen.clone()).or(specimen),
-        excitation: row
-            .and_then(|r| r.excitation)
-            .unwrap_or(default.excitation),
+        excitation: row.and_then(|r| r.excitation).unwrap_or(default.excitation),
     }
 }
 

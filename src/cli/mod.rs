@@ -1,5 +1,7 @@
 //! The command line: one file per verb; the only room that prints or exits.
 
+mod atlas;
+mod boundary;
 mod check;
 mod completions;
 mod convert;
@@ -8,6 +10,7 @@ mod fail;
 mod init;
 mod inspect;
 mod interrupt;
+mod machine;
 mod progress;
 mod run;
 mod selftest;
@@ -80,6 +83,10 @@ enum Verb {
     Inspect(inspect::Inspect),
     /// Write records of any format as HDF5, Parquet or CSV
     Convert(convert::Convert),
+    /// Regions and boundaries of all motions in the (η, ρ) plane
+    Atlas(atlas::Atlas),
+    /// A single point of a boundary
+    Boundary(boundary::Boundary),
     /// Simulate a campaign with known truth
     Simulate(simulate::Simulate),
     /// Compute the paper's published numbers on this machine
@@ -102,6 +109,8 @@ impl Verb {
             Self::Report(verb) => verb.go(voice),
             Self::Inspect(verb) => verb.go(voice),
             Self::Convert(verb) => verb.go(voice),
+            Self::Atlas(verb) => verb.go(voice),
+            Self::Boundary(verb) => verb.go(voice),
             Self::Simulate(verb) => verb.go(voice),
             Self::Selftest(verb) => verb.go(voice),
             Self::Completions(verb) => verb.go(voice),

@@ -37,7 +37,11 @@ impl ImpactBlock {
             .flat_map(|(i, o)| o.impacts.iter().map(move |impact| (i, impact)))
             .filter(|(_, impact)| impact.dead_zone_s == 0.0)
             .filter(|(i, impact)| {
-                let least = if observations[*i].jump_samples > 2 { 12.0 } else { 6.0 };
+                let least = if observations[*i].jump_samples > 2 {
+                    12.0
+                } else {
+                    6.0
+                };
                 let speed = impact.closing_speed_before_m_s.unwrap_or(0.0);
                 speed > least * impact.speed_error_m_s.unwrap_or(f64::INFINITY)
             })

@@ -336,6 +336,11 @@ impl PeriodicOrbit {
 
     /// Smallest p/n that it is: an orbit that repeats itself within its period is divided.
     pub fn reduced(&self) -> Self {
+        self.reduced_within(1e-7)
+    }
+
+    /// The same, where times and speeds may differ by a tolerance between the repetitions.
+    pub fn reduced_within(&self, tolerance: f64) -> Self {
         let p = self.p();
         let parts = (2..=p)
             .rev()
@@ -343,8 +348,8 @@ impl PeriodicOrbit {
         for d in parts {
             let (q, shift) = (p / d, self.period() / d as f64);
             let repeats = (0..p - q).all(|k| {
-                (self.times[k + q] - self.times[k] - shift).abs() < 1e-7
-                    && (self.speeds[k + q] - self.speeds[k]).abs() < 1e-7
+                (self.times[k + q] - self.times[k] - shift).abs() < tolerance
+                    && (self.speeds[k + q] - self.speeds[k]).abs() < tolerance
             });
             if repeats {
                 return Self {

@@ -9,8 +9,10 @@ use crate::record::lvm;
 use crate::record::mat;
 use crate::record::parquet;
 use crate::record::source::{ReadError, Source};
-use crate::record::tdms, uff, wav;
+use crate::record::tdms;
 use crate::record::text::read_exact_at;
+use crate::record::uff;
+use crate::record::wav;
 
 /// Bytes at the front of a file by which formats are told apart.
 const FRONT_BYTES: usize = 4096;
