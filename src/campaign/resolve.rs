@@ -70,7 +70,10 @@ fn resolve(
         desk,
     );
     let machine = machine.unwrap_or(Machine::Double);
-    let channels = channels::resolve(&written.channels, machine, desk);
+    let channels = match written.published {
+        Some(_) => Vec::new(),
+        None => channels::resolve(&written.channels, machine, desk),
+    };
     let time = written.records.time.as_ref().map(|t| t.get_ref().0.clone());
     let folder = path.parent().unwrap_or(Path::new(""));
     let shared = Shared {
@@ -78,7 +81,10 @@ fn resolve(
         channels: &channels,
         time: time.as_ref(),
     };
-    let mut records = records::resolve(&written.records, shared, open, desk);
+    let mut records = match written.published {
+        Some(_) => Vec::new(),
+        None => records::resolve(&written.records, shared, open, desk),
+    };
     exclude(&mut records, &written.analysis.exclude, desk);
     let name = name(&written.campaign.name, folder);
     let flight = written
@@ -109,6 +115,7 @@ fn resolve(
         channels,
         time,
         records,
+        published: written.published.clone(),
     }
 }
 

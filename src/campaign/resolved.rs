@@ -37,6 +37,9 @@ pub struct ResolvedCampaign {
     pub analysis: Analysis,
     /// How the report looks.
     pub report: Report,
+    /// Published speeds to be identified from, instead of records.
+    #[serde(default)]
+    pub published: Option<super::written::Published>,
 }
 
 /// Nominal values of the rig; `None`: not stated.

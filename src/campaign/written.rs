@@ -33,6 +33,19 @@ pub struct WrittenCampaign {
     pub analysis: Analysis,
     /// How the report looks.
     pub report: Report,
+    /// Published speeds to be identified from, instead of records.
+    pub published: Option<Published>,
+}
+
+/// `[published]`: a table of published closing speeds, and values of β that it is tested against.
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Published {
+    /// CSV table, relative to campaign.toml's folder.
+    pub speeds: String,
+    /// Damping ratios that were printed with the speeds.
+    #[serde(default)]
+    pub damping_ratio_hypotheses: Vec<f64>,
 }
 
 /// `[campaign]`.

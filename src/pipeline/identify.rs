@@ -80,7 +80,7 @@ pub fn identify(campaign: &ResolvedCampaign, observed: &Observed) -> Result<Foun
 }
 
 /// The resolved settings without the list of records, which has its own table.
-fn settings(campaign: &ResolvedCampaign) -> Result<serde_json::Value, PipelineError> {
+pub(super) fn settings(campaign: &ResolvedCampaign) -> Result<serde_json::Value, PipelineError> {
     let short = ResolvedCampaign {
         records: Vec::new(),
         ..campaign.clone()

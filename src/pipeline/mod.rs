@@ -7,6 +7,7 @@ pub mod checkpoint;
 pub mod identify;
 pub mod inputs;
 pub mod observe;
+pub mod published;
 pub mod report;
 pub mod selftest;
 pub mod store;
@@ -159,6 +160,9 @@ pub fn run(
         resume,
         command_line,
     } = *destination;
+    if let Some(published) = &campaign.published {
+        return published::run(campaign, published, out, command_line);
+    }
     let observed = Observed::resumable(campaign, out, resume, progress)?;
     progress("identify", 0, 1);
     let found = identify::identify(campaign, &observed)?;
