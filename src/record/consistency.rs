@@ -160,7 +160,6 @@ mod tests {
                 drive_amplitude: 1.0,
                 sequence: 0,
                 specimen: None,
-                excitation: crate::record::Excitation::default(),
                 excitation: Default::default(),
             },
             flags: Vec::new(),

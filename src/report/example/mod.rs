@@ -168,7 +168,6 @@ pub fn identification() -> Identification {
         versions: [("impactid", "0.1.0"), ("identification.json", "1"), ("polars", "0.55.2")]
             .map(|(k, v)| (k.to_owned(), v.to_owned()))
             .into(),
-        specimens: Default::default(),
         inputs_sha256: (1..=3)
             .map(|i| (format!("raw/sweep_{i:02}.h5"), format!("{:064x}", 0x1234_5678_9abc_def0_u128 * i * i)))
             .collect(),
