@@ -26,3 +26,9 @@ mod formats;
 
 /// The order of the rooms, and what the house promises of its files.
 mod house;
+
+/// The main job on campaigns with known truth.
+mod main_job;
+
+/// Records that nobody here wrote.
+mod real_data;
