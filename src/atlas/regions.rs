@@ -435,7 +435,7 @@ fn chains(columns: Vec<Vec<Mark>>) -> Vec<Curve> {
         open = next;
     }
     done.extend(open.into_values().flatten().map(|(_, curve)| curve));
-    done.sort_by(|a, b| (a.n, a.p, a.dead_zone, a.upper).cmp(&(b.n, b.p, b.dead_zone, b.upper)));
+    done.sort_by_key(|a| (a.n, a.p, a.dead_zone, a.upper));
     done
 }
 

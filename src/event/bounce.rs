@@ -59,7 +59,7 @@ fn candidate(velocity: &Series, falls: &[(usize, usize)], index: usize) -> Optio
     let (mut left, mut right) = falls[index];
     let low = index.checked_sub(1).map_or(0, |i| falls[i].1);
     let high = falls.get(index + 1).map_or(count, |f| f.0 + 1);
-    if left >= low + FEWEST + 1 {
+    if left > low + FEWEST {
         left -= 1;
     }
     if right + FEWEST + 1 < high {

@@ -344,7 +344,7 @@ impl PeriodicOrbit {
         let p = self.p();
         let parts = (2..=p)
             .rev()
-            .filter(|d| p % d == 0 && self.n as usize % d == 0);
+            .filter(|d| p.is_multiple_of(*d) && (self.n as usize).is_multiple_of(*d));
         for d in parts {
             let (q, shift) = (p / d, self.period() / d as f64);
             let repeats = (0..p - q).all(|k| {
