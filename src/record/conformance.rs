@@ -372,6 +372,16 @@ pub fn survive(
     change: impl Fn(&mut Random, &mut Vec<u8>),
     factor: usize,
 ) {
+    survive_within(seeds, open, change, [factor, 1 << 20]);
+}
+
+/// As [`survive`], with memory of a factor times the file plus a number of bytes.
+pub fn survive_within(
+    seeds: &[Vec<u8>],
+    open: fn(&Path) -> Result<Box<dyn Source>, ReadError>,
+    change: impl Fn(&mut Random, &mut Vec<u8>),
+    [factor, slack]: [usize; 2],
+) {
     assert!(!seeds.is_empty());
     let temp = tempfile::NamedTempFile::new().unwrap();
     let (mut opened, mut refused) = (0, 0);
@@ -391,7 +401,7 @@ pub fn survive(
                 std::env::temp_dir().display()
             );
         };
-        if begin.elapsed() > Duration::from_secs(10) || peak > factor * bytes.len() + (1 << 20) {
+        if begin.elapsed() > Duration::from_secs(10) || peak > factor * bytes.len() + slack {
             keep().unwrap();
             panic!(
                 "case {case}: {:?}, {peak} bytes of memory for {} of file",
