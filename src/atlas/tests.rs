@@ -1,12 +1,19 @@
 //! Maps: the vector kernel against the exact simulator, and invariants of maps.
 
+use super::basins::{BasinGrid, Starts, basins};
 use super::continuation::EdgeKind;
-use super::map::Kernel;
+use super::lyapunov::Lyapunov;
+use super::map::{Kernel, even};
 use super::regions::{Slice, slices_at};
 use super::shard::{MapPart, MapRequest, MergeError, merge, part};
+use super::sweep::{Sweep, SweepPoint, sweep};
 use super::*;
 
-use crate::model::{Machine, Restitution, SettledMotion, rho_s1, rho_s2};
+use crate::model::orbit::stable_orbit;
+use crate::model::{
+    Initial, Machine, Restitution, Setting, SettledMotion, Simulator, Watch, eta_s2, rho_grazing,
+    rho_s1, rho_s2,
+};
 
 const KERNELS: [Kernel; 3] = [Kernel::Scalar, Kernel::Avx2, Kernel::Avx512];
 
@@ -161,4 +168,103 @@ fn valid_preloaded_cells_are_joined_or_rest_once_a_period() {
             grid.at(i)
         );
     }
+}
+
+fn walk_eta(first: f64, last: f64, count: usize, rho: f64) -> Sweep {
+    let steps = even((first, last, count))
+        .into_iter()
+        .map(|eta| (eta, rho))
+        .collect();
+    let watch = Watch {
+        settle_periods: 150.0,
+        watch_periods: 40.0,
+        ..Watch::default()
+    };
+    Sweep {
+        steps,
+        start: Initial::rest(),
+        watch,
+    }
+}
+
+#[test]
+fn valid_sweeps_show_hysteresis_between_grazing_and_s2() {
+    let machine = Machine::symmetric(0.07, 0.9);
+    let s2 = eta_s2(&machine, 2.0, 1).unwrap().eta;
+    let is_one = |p: &SweepPoint| matches!(p.motion, SettledMotion::Periodic { p: 1, n: 1, .. });
+    let up = sweep(&machine, &walk_eta(1.1, 1.7, 121, 2.0), |_| true).unwrap();
+    let jump = up.iter().rfind(|p| is_one(p)).unwrap();
+    assert!(jump.eta <= s2 && jump.eta > s2 - 0.03, "{} {s2}", jump.eta);
+    // X of a z = 1 motion of equal masses is greatest at the contact, or before
+    assert!(
+        up.iter()
+            .filter(|p| is_one(p))
+            .all(|p| p.x_max >= 2.0 - 1e-9 && p.x_max < 2.0 + 1e-9)
+    );
+    let down = sweep(&machine, &walk_eta(1.7, 1.1, 121, 2.0), |_| true).unwrap();
+    let first = down.iter().find(|p| !p.closing_speeds.is_empty()).unwrap();
+    assert!(
+        (rho_grazing(&machine, first.eta) - 2.0).abs() < 0.1,
+        "{}",
+        first.eta
+    );
+}
+
+#[test]
+fn valid_lyapunov_exponent_is_that_of_the_multipliers() {
+    let machine = Machine::single(0.07, 0.9);
+    let setting = Setting::new(1.2, 2.0);
+    let orbit = stable_orbit(&machine, setting, 1).unwrap().unwrap();
+    let s = orbit.after;
+    let start = Initial {
+        x: s.x,
+        vx: s.vx,
+        ..Initial::rest()
+    };
+    let mut simulator = Simulator::new(&machine, orbit.setting, start).unwrap();
+    let mut lyapunov = Lyapunov::new(&machine, 1.2);
+    simulator.advance(2000.0 * setting.period(), &mut lyapunov);
+    let want = orbit.multipliers[0].norm().ln() / setting.period();
+    assert!(
+        (lyapunov.exponent() - want).abs() < 1e-3,
+        "{} {want}",
+        lyapunov.exponent()
+    );
+    // chaos where the map says so
+    let plan = Sweep {
+        steps: vec![(2.0, 0.2)],
+        ..walk_eta(1.0, 2.0, 2, 0.2)
+    };
+    let point = &sweep(&machine, &plan, |_| true).unwrap()[0];
+    let positive = point.lyapunov.unwrap() > 0.0;
+    assert_eq!(positive, !point.motion.is_periodic(), "{point:?}");
+}
+
+#[test]
+fn valid_basins_of_fig5_shrink_with_restitution() {
+    // in the hysteresis region, at the greatest closing speeds: z = 1 is easily reached at
+    // R = 0 and hardly at R = 0.9
+    let share = |r: f64, eta: f64| {
+        let grid = BasinGrid {
+            x: (-6.0, 3.0, 31),
+            vx: (-6.0, 6.0, 31),
+            starts: Starts::BothMasses,
+        };
+        let machine = Machine::symmetric(0.005, r);
+        let long = Watch {
+            settle_periods: 600.0,
+            ..Watch::default()
+        };
+        let settings = MapSettings {
+            watch: long,
+            ..MapSettings::default()
+        };
+        let b = basins(&machine, Setting::new(eta, 3.0), &grid, &settings).unwrap();
+        let one = |c: &&Option<SettledMotion>| {
+            matches!(c, Some(SettledMotion::Periodic { p: 1, n: 1, .. }))
+        };
+        b.cells.iter().filter(one).count() as f64 / b.cells.len() as f64
+    };
+    let (plastic, elastic) = (share(0.0, 1.19), share(0.9, 1.74));
+    assert!(plastic > 0.5 && elastic < 0.1, "{plastic} {elastic}");
 }

@@ -24,4 +24,8 @@ pub use recurrence::{SettledMotion, Watch, settle};
 pub use simulate::{Simulator, Trajectory, simulate};
 
 #[cfg(test)]
+mod accuracy;
+#[cfg(test)]
+mod invariants;
+#[cfg(test)]
 mod tests;
