@@ -13,7 +13,7 @@ fn limits(coordinate: Coordinate) -> (f64, f64) {
     match coordinate {
         Coordinate::Restitution => (0.03, 0.15),
         Coordinate::Frequency => (0.01, 0.08),
-        Coordinate::Damping => (0.15, 0.6),
+        Coordinate::Damping => (0.15, 0.9),
         Coordinate::Deflection => (0.05, 0.5),
         Coordinate::Gain(_) => (0.05, 0.5),
         Coordinate::DriveAsymmetry | Coordinate::StiffnessAsymmetry => (0.05, 0.5),
