@@ -270,6 +270,74 @@ pub fn put_extreme(random: &mut Random, bytes: &mut [u8], at: usize) {
     }
 }
 
+/// Change a text at random: as [`mutate`] does, or lines doubled, dropped, swapped or joined,
+/// and cells replaced by what instruments print when things go wrong.
+pub fn mutate_text(random: &mut Random, bytes: &mut Vec<u8>) {
+    const CELLS: [&str; 16] = [
+        "",
+        "NaN",
+        "-",
+        "1e999",
+        "-1e-999",
+        "1e12",
+        "0x1F",
+        "1,5",
+        "1.5.2024",
+        "25:61:61",
+        "\"",
+        "***End_of_Header***",
+        "X_Columns",
+        "Samples\t1000000000000",
+        "\u{fffd}",
+        "1e+",
+    ];
+    if random.below(3) == 0 {
+        return mutate(random, bytes);
+    }
+    let mut lines: Vec<Vec<u8>> = bytes.split(|b| *b == b'\n').map(<[u8]>::to_vec).collect();
+    for _ in 0..=random.below(3) {
+        let (at, other) = (random.below(lines.len()), random.below(lines.len()));
+        match random.below(5) {
+            0 => lines.swap(at, other),
+            1 => lines.insert(at, lines[other].clone()),
+            2 if lines.len() > 1 => drop(lines.remove(at)),
+            _ => {
+                let line = &mut lines[at];
+                let marks: Vec<usize> = (0..line.len())
+                    .filter(|&i| b"\t,; ".contains(&line[i]))
+                    .collect();
+                let from = if marks.is_empty() {
+                    0
+                } else {
+                    marks[random.below(marks.len())] + 1
+                };
+                let to = marks
+                    .iter()
+                    .copied()
+                    .find(|&m| m >= from)
+                    .unwrap_or(line.len());
+                line.splice(from..to, CELLS[random.below(CELLS.len())].bytes());
+            }
+        }
+    }
+    *bytes = lines.join(&b'\n');
+}
+
+/// Files of the repository's own folder of formats with these endings, as seeds of mutations.
+pub fn own_seeds(endings: &[&str]) -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/formats");
+    let entries = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().path());
+    let fits = |p: &PathBuf| {
+        p.extension()
+            .is_some_and(|e| endings.iter().any(|x| e == *x))
+    };
+    let mut paths: Vec<PathBuf> = entries.filter(fits).collect();
+    paths.sort();
+    paths.iter().map(|p| std::fs::read(p).unwrap()).collect()
+}
+
 /// Number of mutations per reader: `IMPACTID_MUTATIONS`, else few so that the suite stays quick.
 pub fn mutations() -> usize {
     std::env::var("IMPACTID_MUTATIONS")
@@ -304,6 +372,16 @@ pub fn survive(
     change: impl Fn(&mut Random, &mut Vec<u8>),
     factor: usize,
 ) {
+    survive_within(seeds, open, change, [factor, 1 << 20]);
+}
+
+/// As [`survive`], with memory of a factor times the file plus a number of bytes.
+pub fn survive_within(
+    seeds: &[Vec<u8>],
+    open: fn(&Path) -> Result<Box<dyn Source>, ReadError>,
+    change: impl Fn(&mut Random, &mut Vec<u8>),
+    [factor, slack]: [usize; 2],
+) {
     assert!(!seeds.is_empty());
     let temp = tempfile::NamedTempFile::new().unwrap();
     let (mut opened, mut refused) = (0, 0);
@@ -323,7 +401,7 @@ pub fn survive(
                 std::env::temp_dir().display()
             );
         };
-        if begin.elapsed() > Duration::from_secs(10) || peak > factor * bytes.len() + (1 << 20) {
+        if begin.elapsed() > Duration::from_secs(10) || peak > factor * bytes.len() + slack {
             keep().unwrap();
             panic!(
                 "case {case}: {:?}, {peak} bytes of memory for {} of file",

@@ -58,7 +58,10 @@ fn compare(record: &Record, displacement: Role, velocity: Role) -> Option<Match>
         mi += m * i;
     }
     let size = (mm * ii).sqrt();
-    (size > 0.0 && size.is_finite()).then(|| Match { correlation: mi / size, gain: mi / ii })
+    (size > 0.0 && size.is_finite()).then(|| Match {
+        correlation: mi / size,
+        gain: mi / ii,
+    })
 }
 
 fn flag(record: &Record, role: Role, code: &str, message: String, remedy: String) -> Flag {
@@ -157,6 +160,7 @@ mod tests {
                 drive_amplitude: 1.0,
                 sequence: 0,
                 specimen: None,
+                excitation: Default::default(),
             },
             flags: Vec::new(),
         }
@@ -165,7 +169,10 @@ mod tests {
     const W: f64 = 80.0;
 
     fn codes(signals: &[(Role, &dyn Fn(f64) -> f64)]) -> Vec<String> {
-        inspect(&record(signals)).into_iter().map(|f| f.code).collect()
+        inspect(&record(signals))
+            .into_iter()
+            .map(|f| f.code)
+            .collect()
     }
 
     #[test]
@@ -178,8 +185,14 @@ mod tests {
         let thousandfold = |t: f64| 1e3 * vx(t);
         use Role::{DisplacementX, DisplacementY, VelocityX, VelocityY};
         assert!(codes(&[(DisplacementX, &dx), (VelocityX, &vx)]).is_empty());
-        assert_eq!(codes(&[(DisplacementX, &dx), (VelocityX, &against)]), ["opposite_sign"]);
-        assert_eq!(codes(&[(DisplacementX, &dx), (VelocityX, &thousandfold)]), ["scales_contradict"]);
+        assert_eq!(
+            codes(&[(DisplacementX, &dx), (VelocityX, &against)]),
+            ["opposite_sign"]
+        );
+        assert_eq!(
+            codes(&[(DisplacementX, &dx), (VelocityX, &thousandfold)]),
+            ["scales_contradict"]
+        );
         let good = [
             (DisplacementX, &dx as &dyn Fn(f64) -> f64),
             (DisplacementY, &dy),

@@ -47,7 +47,7 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let axis = time_axis::find(&front.header, &layout, &rows, last_row.as_deref(), count);
     layout.names.clone_from(&front.header.names);
     notes.extend(axis.iter().flat_map(|a| a.note.clone()));
-    let dataset = dataset(front.header, &layout, count, axis);
+    let dataset = dataset(front.header, &layout, count, axis.as_ref());
     Ok(Box::new(CsvSource {
         text,
         layout,
@@ -202,20 +202,15 @@ fn last_row(
     Ok(Some(cells))
 }
 
-fn dataset(header: Header, layout: &Layout, rows: u64, axis: Option<TimeAxis>) -> DatasetInfo {
+fn dataset(header: Header, layout: &Layout, rows: u64, axis: Option<&TimeAxis>) -> DatasetInfo {
     let stated = crate::record::attribute::sample_rate_hz(&header.attributes);
-    let rate = axis.as_ref().and_then(|a| a.rate_hz).or(stated);
+    let rate = axis.and_then(|a| a.rate_hz).or(stated);
     let start = axis
-        .as_ref()
         .and_then(|a| a.start.clone())
         .or_else(|| crate::record::attribute::start_time(&header.attributes));
     let channel = |(i, (name, unit)): (usize, (String, Option<String>))| ChannelInfo {
         name,
-        unit: unit.or_else(|| {
-            axis.as_ref()
-                .filter(|a| a.column == i)
-                .and_then(|a| a.unit.clone())
-        }),
+        unit: unit.or_else(|| axis.filter(|a| a.column == i).and_then(|a| a.unit.clone())),
         stored: match layout.kinds[i] {
             Kind::Number => StoredType::Float(64),
             Kind::Time => StoredType::Time,
@@ -230,7 +225,7 @@ fn dataset(header: Header, layout: &Layout, rows: u64, axis: Option<TimeAxis>) -
     DatasetInfo {
         name: String::new(),
         channels: columns.enumerate().map(channel).collect(),
-        time_axis: axis.as_ref().map(|a| a.column),
+        time_axis: axis.map(|a| a.column),
         attributes: header.attributes,
     }
 }

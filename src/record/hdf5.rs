@@ -4,6 +4,7 @@
 
 pub mod element;
 pub mod fallback;
+pub mod guard;
 pub mod legacy;
 pub mod matlab;
 pub mod matlab_file;
@@ -15,6 +16,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use crate::record::hdf5::element::{Element, Stride};
+use crate::record::hdf5::guard::Guarded;
 use crate::record::hdf5::plan::{Locator, Part, Plan, Plans};
 use crate::record::hdf5::store::{Array, Store, Tree};
 use rayon::prelude::*;
@@ -25,12 +27,6 @@ use crate::units::parse_unit;
 
 /// The first bytes of an HDF5 file.
 pub const SIGNATURE: [u8; 8] = [0x89, b'H', b'D', b'F', b'\r', b'\n', 0x1A, b'\n'];
-/// How many times larger than its packed bytes an array may be; deflate packs up to 1032 to 1,
-/// signals far less.
-const GREATEST_RATIO: u64 = 512;
-/// Arrays up to this size are read whatever their packing.
-const HARMLESS_BYTES: u64 = 1 << 22;
-
 struct Hdf5Source {
     path: PathBuf,
     store: Box<dyn Store>,
@@ -65,32 +61,44 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     Ok(Box::new(source))
 }
 
+/// A file's reader, its tree, and a note where the second library reads it.
+type Opened = (Box<dyn Store>, Tree, Option<String>);
+
 /// Open a file with the first library that reads its structure.
-fn open_store(path: &Path) -> Result<(Box<dyn Store>, Tree, Option<String>), ReadError> {
+fn open_store(path: &Path) -> Result<Opened, ReadError> {
     let io = |e: std::io::Error| ReadError::io(path, &e);
     let file = File::open(path).map_err(io)?;
     let length = file.metadata().map_err(io)?.len();
     match pure::open(file, length) {
         Ok((store, tree)) => Ok((
-            Box::new(fallback::WithFallback::new(store, path)),
+            Box::new(Guarded(fallback::WithFallback::new(store, path))),
             tree,
             None,
         )),
-        Err(first) => match fallback::open(path) {
+        Err(first) => match second(path, &first) {
             Ok((store, tree)) => {
                 let note =
                     format!("read by the second HDF5 library, because the first says: {first}");
-                Ok((Box::new(store), tree, Some(note)))
+                Ok((Box::new(Guarded(store)), tree, Some(note)))
             }
-            Err(second) => Err(ReadError::new(
+            Err(both) => Err(ReadError::new(
                 path,
                 "a complete HDF5 file",
-                format!("{first}; the second library says: {second}"),
+                both,
                 "Copy the file anew from the instrument, or write it with an older file layout.",
             )
             .at(byte_of(&first, length))),
         },
     }
+}
+
+/// Open a file with the second library, where the first does not know its layout; else, and where
+/// both refuse, their words.
+fn second(path: &Path, first: &str) -> Result<(fallback::SecondStore, Tree), String> {
+    if !fallback::is_unsupported(first) {
+        return Err(first.to_owned());
+    }
+    fallback::open(path).map_err(|e| format!("{first}; the second library says: {e}"))
 }
 
 /// Where a library's message points: behind the end for a file cut off, else its beginning.
@@ -99,22 +107,6 @@ fn byte_of(message: &str, length: u64) -> u64 {
         length
     } else {
         0
-    }
-}
-
-/// Refuse an array whose shape claims far more than its stored bytes can hold.
-fn check_claim(store: &dyn Store, array: &Array) -> Result<(), String> {
-    let claimed = array
-        .count()
-        .and_then(|n| n.checked_mul(array.element.bytes() as u64));
-    let stored = || store.stored_bytes(array).unwrap_or(0);
-    match claimed {
-        Some(bytes) if bytes <= HARMLESS_BYTES || bytes / GREATEST_RATIO <= stored() => Ok(()),
-        _ => Err(format!(
-            "a shape of {:?} that only {} bytes stand for",
-            array.shape,
-            stored()
-        )),
     }
 }
 
@@ -131,7 +123,6 @@ impl Hdf5Source {
 
     /// The bytes of an array, once its size is known to be earnest.
     fn bytes(&self, plan: &Plan, array: &Array) -> Result<Vec<u8>, ReadError> {
-        check_claim(&*self.store, array).map_err(|found| self.error(array, found))?;
         match plan.slab {
             Some(slab) => self.store.rows(array, slab, 1),
             None => self.store.raw(array),

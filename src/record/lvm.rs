@@ -30,6 +30,14 @@ struct Table {
     rows: usize,
 }
 
+/// A table as it was made out: its layout, its columns, those shown, and its first rows.
+struct Made<'a> {
+    layout: &'a Layout,
+    columns: &'a [Column],
+    shown: &'a [usize],
+    head: &'a [u8],
+}
+
 /// What a column of a table holds.
 #[derive(Clone, Copy, PartialEq)]
 enum Column {
@@ -108,7 +116,13 @@ impl LvmSource {
                 .collect(),
             attributes: attributes(keys, segment),
         };
-        self.rates(&mut info, segment, &layout, &columns, &shown, &head)?;
+        let made = Made {
+            layout: &layout,
+            columns: &columns,
+            shown: &shown,
+            head: &head,
+        };
+        self.rates(&mut info, segment, &made)?;
         self.datasets.push(info);
         self.tables.push(Table {
             layout,
@@ -138,11 +152,14 @@ impl LvmSource {
         &self,
         info: &mut DatasetInfo,
         segment: &Segment,
-        layout: &Layout,
-        columns: &[Column],
-        shown: &[usize],
-        head: &[u8],
+        made: &Made,
     ) -> Result<(), ReadError> {
+        let Made {
+            layout,
+            columns,
+            shown,
+            head,
+        } = made;
         let tail = self.text.range(segment.last, HEAD_BYTES)?;
         let end: Vec<&[u8]> = Lines::new(&tail, false)
             .next()
@@ -150,7 +167,7 @@ impl LvmSource {
                 Cells::new(l, layout.separator).collect()
             });
         let mut measured = BTreeMap::new();
-        for &i in shown {
+        for &i in *shown {
             if let Column::X(first) = columns[i] {
                 let values = x_values(layout, head, i);
                 let last = end
@@ -159,7 +176,7 @@ impl LvmSource {
                 measured.insert(first, rate::from_axis(&values, last, segment.rows));
             }
         }
-        for (channel, &i) in info.channels.iter_mut().zip(shown) {
+        for (channel, &i) in info.channels.iter_mut().zip(shown.iter()) {
             let (Column::X(n) | Column::Y(n)) = columns[i] else {
                 continue;
             };

@@ -5,12 +5,14 @@
 //! judge experiment and simulation alike. This room does not know the model.
 
 pub mod attribute;
+pub mod bind;
 pub mod bytes;
 pub mod calibrate;
 mod condition;
 #[cfg(test)]
 pub mod conformance;
 mod consistency;
+pub mod convert;
 pub mod csv;
 pub mod hdf5;
 pub mod hdf5_write;
@@ -21,6 +23,7 @@ pub mod open;
 pub mod parquet;
 pub mod rate;
 pub mod source;
+pub mod summary;
 pub mod tdms;
 pub mod text;
 pub mod time_axis;
@@ -140,6 +143,17 @@ impl Sweep {
     }
 }
 
+/// How a record was excited.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Excitation {
+    /// A harmonic drive.
+    #[default]
+    Harmonic,
+    /// A blow or a release, then nothing.
+    FreeDecay,
+}
+
 /// The setting at which a record was taken, as the laboratory states it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Setting {
@@ -157,6 +171,9 @@ pub struct Setting {
     /// `specimen` of the run table); parameters are identified for each.
     #[serde(default)]
     pub specimen: Option<String>,
+    /// How it was excited.
+    #[serde(default)]
+    pub excitation: Excitation,
 }
 
 /// Something wrong or noteworthy with a record: what, where, and what to do about it.

@@ -10,13 +10,15 @@ use std::path::{Path, PathBuf};
 use crate::record::attribute;
 use crate::record::csv::header::name_and_unit;
 use crate::record::parquet::columns::{Columns, Field};
-use crate::record::parquet::shape::{Range, Shape};
+use crate::record::parquet::shape::{Labelled, Range, Shape, Tidy};
 use crate::record::rate;
 use crate::record::source::{
     self, ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType,
 };
 use crate::units::parse_unit;
 
+/// The key under which a footer keeps each record's attributes, as JSON.
+pub const RECORDS_KEY: &str = "impactid_records";
 /// The first and the last four bytes of a Parquet file.
 pub const SIGNATURE: [u8; 4] = *b"PAR1";
 
@@ -26,6 +28,8 @@ struct ParquetSource {
     datasets: Vec<DatasetInfo>,
     plans: Vec<Vec<Origin>>,
     notes: Vec<String>,
+    /// Attributes of each record, where the file's footer keeps them.
+    own: BTreeMap<String, BTreeMap<String, String>>,
 }
 
 /// Where a channel's samples are: a column and its rows.
@@ -42,12 +46,17 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let columns = Columns::open(path)?;
     let shape = shape::find(&columns)?;
     let notes = columns.left_out();
+    let own = columns.attributes().get(RECORDS_KEY);
+    let own = own
+        .and_then(|json| serde_json::from_str(json).ok())
+        .unwrap_or_default();
     let mut source = ParquetSource {
         path: path.to_path_buf(),
         columns,
         datasets: Vec::new(),
         plans: Vec::new(),
         notes,
+        own,
     };
     match shape {
         Shape::Wide => source.add_wide(String::new(), &[(0, source.columns.rows())], &[]),
@@ -56,14 +65,9 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
                 source.add_wide(name, &rows, &[key]);
             }
         }
-        Shape::Tidy {
-            value,
-            time,
-            unit,
-            records,
-        } => {
+        Shape::Tidy { tidy, records } => {
             for (name, channels) in records {
-                source.add_tidy(name, channels, value, time, unit.as_ref());
+                source.add_tidy(name, channels, &tidy);
             }
         }
     }
@@ -109,14 +113,13 @@ impl ParquetSource {
     }
 
     /// A record whose channels are rows of one column.
-    fn add_tidy(
-        &mut self,
-        name: String,
-        channels: Vec<(String, Vec<Range>)>,
-        value: usize,
-        time: Option<usize>,
-        units: Option<&BTreeMap<String, String>>,
-    ) {
+    fn add_tidy(&mut self, name: String, channels: Labelled, tidy: &Tidy) {
+        let Tidy {
+            value,
+            time,
+            unit: units,
+        } = tidy;
+        let (value, time) = (*value, *time);
         let mut infos = Vec::new();
         let mut plan = Vec::new();
         let axis = time.zip(channels.first().map(|(_, rows)| rows.clone()));
@@ -127,7 +130,7 @@ impl ParquetSource {
         }
         let field = self.columns.fields()[value].clone();
         for (channel, rows) in channels {
-            let unit = units.and_then(|u| u.get(&channel).cloned());
+            let unit = units.as_ref().and_then(|u| u.get(&channel).cloned());
             infos.push(self.channel(&channel, unit, &field, length(&rows)));
             plan.push(Origin {
                 column: value,
@@ -153,8 +156,8 @@ impl ParquetSource {
             name,
             stored: field.stored.unwrap_or(StoredType::Text),
             samples,
-            sample_rate_hz: attribute::sample_rate_hz(self.columns.attributes()),
-            start_time: attribute::start_time(self.columns.attributes()),
+            sample_rate_hz: None,
+            start_time: None,
             properties: BTreeMap::new(),
         }
     }
@@ -171,7 +174,17 @@ impl ParquetSource {
                 .iter_mut()
                 .for_each(|c| c.start_time = Some(start.clone()));
         }
-        let attributes = self.columns.attributes().clone();
+        let mut attributes = self.columns.attributes().clone();
+        attributes.remove(RECORDS_KEY);
+        attributes.extend(self.own.get(&name).cloned().unwrap_or_default());
+        let (rate, start) = (
+            attribute::sample_rate_hz(&attributes),
+            attribute::start_time(&attributes),
+        );
+        for channel in &mut channels {
+            channel.sample_rate_hz = channel.sample_rate_hz.or(rate);
+            channel.start_time = channel.start_time.take().or_else(|| start.clone());
+        }
         self.datasets.push(DatasetInfo {
             name,
             channels,

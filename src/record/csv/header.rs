@@ -51,7 +51,7 @@ pub fn read(lines: &[&[u8]], dialect: &Dialect) -> Header {
             &mut header.attributes,
         );
     }
-    name_columns(&mut header, units.unwrap_or_default(), dialect.columns);
+    name_columns(&mut header, &units.unwrap_or_default(), dialect.columns);
     header
 }
 
@@ -155,7 +155,7 @@ pub fn name_and_unit(heading: &str) -> (String, Option<String>) {
 }
 
 /// Fill names and units up to the number of columns; repeated names gain a number.
-fn name_columns(header: &mut Header, units: Vec<Option<String>>, columns: usize) {
+fn name_columns(header: &mut Header, units: &[Option<String>], columns: usize) {
     let headings = std::mem::take(&mut header.names);
     let mut seen: BTreeMap<String, usize> = BTreeMap::new();
     for i in 0..columns {

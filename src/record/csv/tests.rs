@@ -164,3 +164,16 @@ fn valid_cart_and_blade_spring_records() {
     assert!((rate - 1651.613).abs() < 1e-3, "{rate}");
     assert_eq!(real(&*s, 3)[0], -0.190312);
 }
+
+#[test]
+fn prop_mutated_tables_are_read_or_refused() {
+    use crate::record::conformance::{mutate_text, survive};
+    let seeds = [
+        "time [s],velocity_x [mm/s],note\n0,1.5,a\n0.0005,,\"b, c\"\n0.001,2.5,\n",
+        "# rate = 2000\nt;x;y\ns;mm;mm\n0;1,25;3\n0,5;-2,5e1;4\n1;3;5\n",
+        "1.5 2\n2.5 3\n3.5 7\n4.5 8\n",
+        "when\tx\n2024-05-01 23:59:59.5\t1\n2024-05-02 00:00:00.0\t2\n2024-05-02 00:00:00.5\t3\n",
+    ];
+    let seeds: Vec<Vec<u8>> = seeds.iter().map(|s| s.as_bytes().to_vec()).collect();
+    survive(&seeds, open, mutate_text, 64);
+}

@@ -95,21 +95,13 @@ impl Element {
     /// Decode the numbers at a stride in an array's bytes. `None`: the bytes are too few or the
     /// type is no number.
     pub fn decode(&self, raw: &[u8], stride: Stride) -> Option<Samples> {
-        if !stride.fits(raw.len(), self.bytes()) {
-            return None;
-        }
         match self {
             Self::Complex {
                 part, imaginary, ..
             } => {
                 let re = part.real(raw, stride)?;
-                let im = part.real(
-                    raw,
-                    Stride {
-                        first: stride.first + imaginary,
-                        ..stride
-                    },
-                )?;
+                let first = stride.first.checked_add(*imaginary)?;
+                let im = part.real(raw, Stride { first, ..stride })?;
                 Some(Samples::Complex(re.into_iter().zip(im).collect()))
             }
             _ => self.real(raw, stride).map(Samples::Real),
@@ -117,6 +109,9 @@ impl Element {
     }
 
     fn real(&self, raw: &[u8], stride: Stride) -> Option<Vec<f64>> {
+        if !stride.fits(raw.len(), self.bytes()) {
+            return None;
+        }
         macro_rules! numbers {
             ($type:ty, $big:expr) => {
                 if $big {

@@ -17,6 +17,22 @@ pub struct SecondStore {
     path: PathBuf,
 }
 
+/// Whether the first library's words mean that it does not know a layout, rather than that the
+/// file is damaged: only then the second one may do better.
+pub fn is_unsupported(message: &str) -> bool {
+    const WORDS: [&str; 7] = [
+        "unsupported",
+        "not supported",
+        "version",
+        "index type",
+        "layout class",
+        "datatype class",
+        "filter",
+    ];
+    let message = message.to_lowercase();
+    WORDS.iter().any(|w| message.contains(w))
+}
+
 /// The first library, and the second for arrays that it refuses.
 pub struct WithFallback {
     first: PureStore,
@@ -39,8 +55,9 @@ impl WithFallback {
         first: Result<T, String>,
         second: impl FnOnce(&SecondStore) -> Result<T, String>,
     ) -> Result<T, String> {
-        first.or_else(|e| {
-            second(&self.second).map_err(|f| format!("{e}; the second library says: {f}"))
+        first.or_else(|e| match is_unsupported(&e) {
+            true => second(&self.second).map_err(|f| format!("{e}; the second library says: {f}")),
+            false => Err(e),
         })
     }
 }
@@ -62,6 +79,14 @@ impl Store for WithFallback {
 
     fn targets(&self, array: &Array) -> Result<Vec<Option<Target>>, String> {
         self.first.targets(array)
+    }
+
+    fn file_bytes(&self) -> u64 {
+        self.first.file_bytes()
+    }
+
+    fn chunk_bytes(&self, array: &Array) -> u64 {
+        self.first.chunk_bytes(array)
     }
 
     fn stored_bytes(&self, array: &Array) -> Option<u64> {
@@ -250,10 +275,29 @@ impl Store for SecondStore {
         ))
     }
 
+    fn chunk_bytes(&self, array: &Array) -> u64 {
+        let chunk = self
+            .with(array, |d| Ok(d.chunk_dims()))
+            .ok()
+            .flatten()
+            .unwrap_or_default();
+        if chunk.is_empty() {
+            return 0;
+        }
+        let bytes = array.element.bytes().max(1) as u64;
+        chunk
+            .iter()
+            .try_fold(bytes, |n, &d| n.checked_mul(d as u64))
+            .unwrap_or(u64::MAX)
+    }
+
+    fn file_bytes(&self) -> u64 {
+        std::fs::metadata(&self.path).map_or(0, |m| m.len())
+    }
+
     fn stored_bytes(&self, array: &Array) -> Option<u64> {
-        let claimed = array.count()?.checked_mul(array.element.bytes() as u64)?;
-        let length = std::fs::metadata(&self.path).ok()?.len();
         // The library does not tell; the file's length bounds it.
-        Some(claimed.min(length))
+        let claimed = array.count()?.checked_mul(array.element.bytes() as u64)?;
+        Some(claimed.min(self.file_bytes()))
     }
 }

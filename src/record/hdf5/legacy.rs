@@ -63,10 +63,10 @@ fn rewritten(bytes: &[u8]) -> Option<Vec<u8>> {
             new.extend(body.get(sizes_end + 4..sizes_end + 4 + count as usize)?);
         }
         1 => {
-            let words = sizes(16)?
+            let mut words = sizes(16)?
                 .chunks_exact(4)
                 .map(|w| u64::from(u32::from_le_bytes([w[0], w[1], w[2], w[3]])));
-            let count = words.fold(Some(1u64), |all, d| all?.checked_mul(d))?;
+            let count = words.try_fold(1u64, u64::checked_mul)?;
             new.extend(&body[8..16]);
             new.extend(count.to_le_bytes());
         }

@@ -165,13 +165,14 @@ impl Plans {
         if let [table] = tables[..]
             && matches(table)
         {
-            let mut record = Record::new(tree.path.clone(), attributes.clone());
+            let mut record = Record::new(tree.path.clone(), attributes);
             columns.iter().for_each(|c| record.column(c));
             record.table(table, attributes);
             return self.push(record);
         }
         for table in tables {
-            let mut record = Record::new(table.path.clone(), merged(attributes, &table.attributes));
+            let mut record =
+                Record::new(table.path.clone(), &merged(attributes, &table.attributes));
             let rows = Orientation::of(table, attributes).samples(table);
             let time = columns
                 .iter()
@@ -181,7 +182,7 @@ impl Plans {
             self.push(record);
         }
         if !columns.is_empty() {
-            let mut record = Record::new(tree.path.clone(), attributes.clone());
+            let mut record = Record::new(tree.path.clone(), attributes);
             columns.iter().for_each(|c| record.column(c));
             self.push(record);
         }
@@ -203,7 +204,7 @@ impl Plans {
             ..array.clone()
         };
         for slab in 0..slabs {
-            let mut record = Record::new(format!("{}[{slab}]", array.path), all.clone());
+            let mut record = Record::new(format!("{}[{slab}]", array.path), &all);
             record.table(&table, attributes);
             record.plan.arrays = vec![array.clone()];
             record.plan.slab = Some(slab);
@@ -217,7 +218,7 @@ impl Plans {
         };
         let all = merged(attributes, &array.attributes);
         let units = units(&array.attributes, fields.len());
-        let mut record = Record::new(array.path.clone(), all);
+        let mut record = Record::new(array.path.clone(), &all);
         record.plan.arrays.push(array.clone());
         for (i, (name, _, element)) in fields.iter().enumerate() {
             if element.is_number() {
@@ -266,7 +267,7 @@ struct Record {
 }
 
 impl Record {
-    fn new(name: String, attributes: Attrs) -> Self {
+    fn new(name: String, attributes: &Attrs) -> Self {
         let attributes = attributes
             .iter()
             .map(|(k, v)| (k.clone(), v.text()))

@@ -18,6 +18,9 @@ use crate::record::text::read_exact_at;
 /// Bytes of metadata that the library may keep.
 const METADATA_CACHE_BYTES: usize = 4 << 20;
 
+/// The registered number of h5py's LZF filter.
+const FILTER_LZF: u16 = 32000;
+
 /// A file read at offsets, shared by threads.
 struct Positional {
     file: File,
@@ -51,6 +54,7 @@ impl ::hdf5::Source for Positional {
 /// An open file.
 pub struct PureStore {
     datasets: Mutex<Vec<Dataset>>,
+    length: u64,
 }
 
 /// Open a file and walk its tree.
@@ -81,6 +85,7 @@ fn walk(source: Positional) -> Result<(PureStore, Tree, bool), String> {
     let access = FileAccessProperties::new()
         .with_metadata_cache(MetadataCacheConfig::new(METADATA_CACHE_BYTES))
         .with_chunk_cache(ChunkCacheConfig::disabled());
+    let length = source.length;
     let file = ::hdf5::File::from_source_with_options(source, access).map_err(|e| e.to_string())?;
     let mut walk = Walk {
         datasets: Vec::new(),
@@ -91,6 +96,7 @@ fn walk(source: Positional) -> Result<(PureStore, Tree, bool), String> {
     Ok((
         PureStore {
             datasets: Mutex::new(walk.datasets),
+            length,
         },
         tree,
         old,
@@ -367,6 +373,32 @@ impl Store for PureStore {
             });
         }
         Ok(targets)
+    }
+
+    fn file_bytes(&self) -> u64 {
+        self.length
+    }
+
+    fn chunk_bytes(&self, array: &Array) -> u64 {
+        let Ok(dataset) = self.dataset(array) else {
+            return 0;
+        };
+        let shape = dataset.chunk_shape().ok().flatten().unwrap_or_default();
+        if shape.is_empty() {
+            return 0;
+        }
+        let bytes = array.element.bytes().max(1) as u64;
+        let by_shape = shape
+            .iter()
+            .try_fold(bytes, |n, &d| n.checked_mul(d))
+            .unwrap_or(u64::MAX);
+        // LZF states the size of an unpacked chunk in its own parameters.
+        let pipeline = dataset.filter_pipeline();
+        let lzf = pipeline
+            .iter()
+            .filter(|f| f.id == FILTER_LZF)
+            .flat_map(|f| f.client_data.get(2));
+        by_shape.max(lzf.map(|&n| u64::from(n)).max().unwrap_or(0))
     }
 
     fn stored_bytes(&self, array: &Array) -> Option<u64> {

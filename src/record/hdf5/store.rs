@@ -106,6 +106,12 @@ pub trait Store: Send + Sync {
 
     /// Bytes that an array takes in the file, where the library tells.
     fn stored_bytes(&self, array: &Array) -> Option<u64>;
+
+    /// Bytes that one unpacked chunk of an array takes; zero where it has no chunks.
+    fn chunk_bytes(&self, array: &Array) -> u64;
+
+    /// Length of the file.
+    fn file_bytes(&self) -> u64;
 }
 
 /// What a reference points at.

@@ -223,3 +223,16 @@ fn valid_matlab_7_3_variables_are_named_as_in_older_levels() {
     );
     println!("{:?}", s.notes());
 }
+
+#[test]
+fn prop_mutated_files_are_read_or_refused() {
+    use crate::record::conformance::{mutate, own_seeds, seeds, survive_within};
+    let mut all = own_seeds(&["h5"]);
+    all.extend(
+        seeds("mat73_conformance", 4000)
+            .into_iter()
+            .filter(|b| b.starts_with(b"MATLAB")),
+    );
+    // The libraries take a few MiB whatever the file.
+    survive_within(&all, open, mutate, [1200, 8 << 20]);
+}

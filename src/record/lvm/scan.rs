@@ -182,7 +182,7 @@ impl Pass {
         }
         self.scan.segments.retain(|s| s.rows > 0);
         if self.scan.segments.is_empty() {
-            return Err(self_no_rows(text));
+            return Err(no_rows(text));
         }
         Ok(self.scan)
     }
@@ -198,7 +198,7 @@ impl Pass {
     }
 }
 
-fn self_no_rows(text: &TextFile) -> ReadError {
+fn no_rows(text: &TextFile) -> ReadError {
     ReadError::new(
         text.path(),
         "rows of numbers after ***End_of_Header***",

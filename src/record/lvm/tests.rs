@@ -136,3 +136,12 @@ fn valid_files_cut_off_are_refused() {
     let (whole, _) = TWO.split_once("0,1\n0.5").unwrap();
     assert!(of_text(whole).is_err());
 }
+
+#[test]
+fn prop_mutated_files_are_read_or_refused() {
+    use crate::record::conformance::{mutate_text, seeds, survive};
+    let mut all = seeds("lvm_conformance", 2000);
+    all.retain(|bytes| bytes.starts_with(b"LabVIEW"));
+    all.push(TWO.as_bytes().to_vec());
+    survive(&all, open, mutate_text, 64);
+}

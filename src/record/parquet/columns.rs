@@ -21,7 +21,10 @@ use crate::record::text::read_exact_at;
 /// A column that is asked for in parts is kept whole up to this size.
 const KEPT_BYTES: u64 = 1 << 28;
 /// More rows than this for each byte of the file are no data.
-const MOST_ROWS_PER_BYTE: u64 = 1024;
+const MOST_ROWS_PER_BYTE: u64 = 64;
+
+/// More unpacked bytes than this for each byte of the file are no data.
+const MOST_BYTES_PER_BYTE: u64 = 512;
 
 /// A column's name and type.
 #[derive(Debug, Clone)]
@@ -215,15 +218,24 @@ impl Columns {
             .collect();
         let mut pages = Vec::new();
         for chunk in chunks {
-            let span = chunk.byte_range();
-            if span.start > span.end || span.end > self.length {
-                return Err(
-                    damaged(format!("pages from byte {} to {}", span.start, span.end))
-                        .at(span.start),
-                );
+            // Offsets and sizes are signed in the footer; a damaged one may be negative.
+            let first = chunk
+                .dictionary_page_offset()
+                .unwrap_or(chunk.data_page_offset());
+            let (first, size) = (u64::try_from(first), u64::try_from(chunk.compressed_size()));
+            let (Ok(first), Ok(size)) = (first, size) else {
+                return Err(damaged("pages at negative offsets".to_owned()));
+            };
+            if first.checked_add(size).is_none_or(|end| end > self.length) {
+                return Err(damaged(format!("{size} bytes of pages from byte {first}")).at(first));
             }
-            let mut bytes = vec![0; (span.end - span.start) as usize];
-            read_exact_at(&self.file, &mut bytes, span.start)
+            let values = u64::try_from(chunk.num_values()).unwrap_or(u64::MAX);
+            let unpacked = u64::try_from(chunk.uncompressed_size()).unwrap_or(u64::MAX);
+            if values > group.num_rows() as u64 || unpacked > MOST_BYTES_PER_BYTE * self.length {
+                return Err(damaged(format!("{values} values in {unpacked} bytes")).at(first));
+            }
+            let mut bytes = vec![0; size as usize];
+            read_exact_at(&self.file, &mut bytes, first)
                 .map_err(|e| ReadError::io(&self.path, &e))?;
             pages.push((chunk, bytes.into()));
         }

@@ -9,6 +9,9 @@ use crate::record::source::{ReadError, StoredType};
 /// First row and number of rows.
 pub type Range = (u64, u64);
 
+/// Labels with the rows that bear them.
+pub type Labelled = Vec<(String, Vec<Range>)>;
+
 /// Names of columns that tell the record, lower case.
 const RECORD_NAMES: [&str; 9] = [
     "record",
@@ -35,19 +38,25 @@ pub enum Shape {
         /// That column.
         key: usize,
         /// The records with their rows.
-        records: Vec<(String, Vec<Range>)>,
+        records: Labelled,
     },
     /// One column holds all values, others tell record, channel and time.
     Tidy {
-        /// The column of values.
-        value: usize,
-        /// The time axis.
-        time: Option<usize>,
-        /// Units by channel.
-        unit: Option<BTreeMap<String, String>>,
+        /// Which columns they are.
+        tidy: Tidy,
         /// The records with their channels and their rows.
-        records: Vec<(String, Vec<(String, Vec<Range>)>)>,
+        records: Vec<(String, Labelled)>,
     },
+}
+
+/// The columns of a tidy table.
+pub struct Tidy {
+    /// The column of values.
+    pub value: usize,
+    /// The time axis.
+    pub time: Option<usize>,
+    /// Units by channel.
+    pub unit: Option<BTreeMap<String, String>>,
 }
 
 /// Find out.
@@ -95,7 +104,7 @@ fn tidy(
         Some(key) => columns.texts(key)?,
         None => vec![String::new(); labels.len()],
     };
-    let mut sorted: Vec<(String, Vec<(String, Vec<Range>)>)> = Vec::new();
+    let mut sorted: Vec<(String, Labelled)> = Vec::new();
     let mut places: BTreeMap<&str, (usize, BTreeMap<&str, usize>)> = BTreeMap::new();
     for (row, (record, label)) in records.iter().zip(&labels).enumerate() {
         let (r, channels) = places.entry(record).or_insert_with(|| {
@@ -120,16 +129,14 @@ fn tidy(
     let unit = unit.map(|u| columns.texts(u)).transpose()?;
     let unit = unit.map(|units| labels.iter().cloned().zip(units).collect());
     Ok(Shape::Tidy {
-        value,
-        time,
-        unit,
+        tidy: Tidy { value, time, unit },
         records: sorted,
     })
 }
 
 /// The rows of each label, labels in the order in which they come first.
-fn ranges<'a>(labels: impl Iterator<Item = &'a str>) -> Vec<(String, Vec<Range>)> {
-    let mut all: Vec<(String, Vec<Range>)> = Vec::new();
+fn ranges<'a>(labels: impl Iterator<Item = &'a str>) -> Labelled {
+    let mut all: Labelled = Vec::new();
     let mut places: BTreeMap<&str, usize> = BTreeMap::new();
     for (row, label) in labels.enumerate() {
         let place = *places.entry(label).or_insert_with(|| {

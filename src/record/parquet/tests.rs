@@ -79,3 +79,21 @@ fn valid_files_cut_off_are_refused() {
         assert!(open(file.path()).is_err(), "{keep}");
     }
 }
+
+#[test]
+fn prop_mutated_files_are_read_or_refused() {
+    use crate::record::conformance::{Random, mutate, own_seeds, survive_within};
+    // The footer lies at the end of the file: half of the mutations go there.
+    let change = |random: &mut Random, bytes: &mut Vec<u8>| {
+        if random.below(2) == 0 {
+            bytes.reverse();
+            mutate(random, bytes);
+            bytes.reverse();
+        } else {
+            mutate(random, bytes);
+        }
+    };
+    // A panic of the library that is caught may print a trace, for which the debugging
+    // information of the program is loaded.
+    survive_within(&own_seeds(&["parquet"]), open, change, [1200, 256 << 20]);
+}

@@ -1,0 +1,291 @@
+//! `impactid inspect`: what record files hold.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::sketch::sketch;
+use super::{Exit, Failure, Voice};
+use crate::record::open::open;
+use crate::record::source::{DatasetInfo, ReadError, Samples, Source};
+use crate::record::summary::{Summary, summarise};
+
+/// Arguments of `impactid inspect`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLE)]
+pub struct Inspect {
+    /// Record files of any supported format
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+    /// Print a list of channels for programs instead
+    #[arg(long)]
+    json: bool,
+    /// Draw each channel
+    #[arg(long, conflicts_with = "json")]
+    plot: bool,
+    /// Only this dataset (record) of the files
+    #[arg(long, value_name = "NAME")]
+    dataset: Option<String>,
+    /// Show the channels of every dataset, however many there are
+    #[arg(long)]
+    all: bool,
+}
+
+const EXAMPLE: &str = "\
+Example:
+  impactid inspect record.lvm --plot
+  impactid inspect campaign.h5 --dataset run0001 --json
+
+Formats: HDF5, CSV and other text tables, LVM, TDMS, UFF 58, MATLAB 4 to 7.3, WAV, Parquet.
+Exit codes: 0 done; 2 a file could not be read.";
+
+/// With more datasets than this a file is listed a line a dataset.
+const FEW: usize = 4;
+/// Characters of a picture.
+const PICTURE: (usize, usize) = (72, 6);
+
+/// A channel in the list for programs.
+#[derive(Serialize)]
+struct Listed<'a> {
+    #[serde(flatten)]
+    summary: Summary,
+    dataset: &'a str,
+    file: String,
+}
+
+impl Inspect {
+    pub(super) fn go(self, _voice: Voice) -> Result<Exit, Failure> {
+        let mut exit = Exit::Done;
+        let mut listed = Vec::new();
+        let mut text = String::new();
+        for path in &self.files {
+            let done = open(path).and_then(|s| match self.json {
+                true => self.list(&*s, &mut listed),
+                false => self.tell(&*s, &mut text),
+            });
+            if let Err(error) = done {
+                Failure::from(error).print();
+                exit = Exit::BadInput;
+            }
+            print(&std::mem::take(&mut text))?;
+        }
+        if self.json {
+            let json = serde_json::to_string_pretty(&listed)
+                .map_err(|e| Failure::new(e.to_string(), "Report this as a fault of impactid."))?;
+            print(&format!("{json}\n"))?;
+        }
+        Ok(exit)
+    }
+
+    /// The datasets that are asked for.
+    fn chosen(&self, source: &dyn Source) -> Result<Vec<usize>, ReadError> {
+        let datasets = source.datasets();
+        let Some(name) = &self.dataset else {
+            return Ok((0..datasets.len()).collect());
+        };
+        let found: Vec<usize> = (0..datasets.len())
+            .filter(|&d| datasets[d].name == *name)
+            .collect();
+        if found.is_empty() {
+            let some: Vec<&str> = datasets.iter().take(8).map(|d| d.name.as_str()).collect();
+            let expected = format!("one of the file's datasets ({}…)", some.join(", "));
+            let remedy = "Run inspect without --dataset to see all names.";
+            return Err(ReadError::new(
+                source.path(),
+                expected,
+                format!("--dataset {name}"),
+                remedy,
+            ));
+        }
+        Ok(found)
+    }
+
+    fn list(
+        &self,
+        source: &dyn Source,
+        listed: &mut Vec<serde_json::Value>,
+    ) -> Result<(), ReadError> {
+        let chosen = self.chosen(source)?;
+        let read: Vec<Vec<Summary>> = chosen
+            .par_iter()
+            .map(|&d| summaries(source, d).map(|(s, _)| s))
+            .collect::<Result<_, _>>()?;
+        for (&d, summaries) in chosen.iter().zip(read) {
+            let dataset = source.datasets()[d].name.as_str();
+            let file = source.path().display().to_string();
+            let rows = summaries.into_iter().map(|summary| Listed {
+                summary,
+                dataset,
+                file: file.clone(),
+            });
+            listed.extend(rows.filter_map(|row| serde_json::to_value(row).ok()));
+        }
+        Ok(())
+    }
+
+    fn tell(&self, source: &dyn Source, text: &mut String) -> Result<(), ReadError> {
+        let chosen = self.chosen(source)?;
+        heading(source, text);
+        if chosen.len() > FEW && !self.all && !self.plot {
+            for &d in &chosen {
+                one_line(&source.datasets()[d], text);
+            }
+            let _ = writeln!(text, "--dataset NAME or --all shows channels");
+            return Ok(());
+        }
+        for d in chosen {
+            let (summaries, samples) = summaries(source, d)?;
+            describe(&source.datasets()[d], &summaries, text);
+            if self.plot {
+                draw(&summaries, &samples, text);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Write to the standard output; a reader that has closed it ends the program quietly.
+fn print(text: &str) -> Result<(), Failure> {
+    match std::io::stdout().lock().write_all(text.as_bytes()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::io(Path::new("standard output"), &e))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// All channels of a dataset: their statistics and their samples.
+fn summaries(
+    source: &dyn Source,
+    dataset: usize,
+) -> Result<(Vec<Summary>, Vec<Samples>), ReadError> {
+    let channels = &source.datasets()[dataset].channels;
+    let all: Vec<usize> = (0..channels.len()).collect();
+    let samples = source.read(dataset, &all)?;
+    let summaries = channels
+        .iter()
+        .zip(&samples)
+        .map(|(c, s)| summarise(c, s))
+        .collect();
+    Ok((summaries, samples))
+}
+
+fn heading(source: &dyn Source, text: &mut String) {
+    let count = source.datasets().len();
+    let plural = if count == 1 { "" } else { "s" };
+    let _ = writeln!(
+        text,
+        "{}: {}, {count} dataset{plural}",
+        source.path().display(),
+        source.format()
+    );
+    for note in source.notes() {
+        let _ = writeln!(text, "  note: {note}");
+    }
+}
+
+fn one_line(info: &DatasetInfo, text: &mut String) {
+    let samples = info.channels.iter().map(|c| c.samples).max().unwrap_or(0);
+    let rate = info
+        .sample_rate_hz()
+        .map_or(String::new(), |r| format!(", {r} Hz"));
+    let _ = writeln!(
+        text,
+        "  {}: {} channels, {samples} samples{rate}",
+        info.name,
+        info.channels.len()
+    );
+}
+
+fn describe(info: &DatasetInfo, summaries: &[Summary], text: &mut String) {
+    if !info.name.is_empty() {
+        let _ = writeln!(text, "{}", info.name);
+    }
+    for (key, value) in &info.attributes {
+        let _ = writeln!(text, "  {key} = {value}");
+    }
+    let mut rows = vec![
+        [
+            "channel", "unit", "type", "samples", "rate Hz", "first", "last", "min", "max",
+        ]
+        .map(str::to_owned),
+    ];
+    for (i, s) in summaries.iter().enumerate() {
+        let axis = if info.time_axis == Some(i) {
+            " (time axis)"
+        } else {
+            ""
+        };
+        rows.push([
+            format!("{}{axis}", s.name),
+            s.unit.clone().unwrap_or_else(|| "-".to_owned()),
+            s.stored.clone(),
+            s.samples.to_string(),
+            s.sample_rate_hz.map_or_else(
+                || "-".to_owned(),
+                |r| {
+                    format!("{r:.3}")
+                        .trim_end_matches('0')
+                        .trim_end_matches('.')
+                        .to_owned()
+                },
+            ),
+            s.first.to_string(),
+            s.last.to_string(),
+            s.min.to_string(),
+            s.max.to_string(),
+        ]);
+    }
+    table(&rows, text);
+}
+
+/// Rows of cells under each other: words to the left, numbers to the right.
+fn table(rows: &[[String; 9]], text: &mut String) {
+    let width = |column: usize| {
+        rows.iter()
+            .map(|r| r[column].chars().count())
+            .max()
+            .unwrap_or(0)
+    };
+    let widths: [usize; 9] = std::array::from_fn(width);
+    for row in rows {
+        let cells = row
+            .iter()
+            .zip(widths)
+            .enumerate()
+            .map(|(i, (cell, w))| match i {
+                0..=2 => format!("{cell:<w$}"),
+                _ => format!("{cell:>w$}"),
+            });
+        let _ = writeln!(
+            text,
+            "  {}",
+            cells.collect::<Vec<_>>().join("  ").trim_end()
+        );
+    }
+}
+
+fn draw(summaries: &[Summary], samples: &[Samples], text: &mut String) {
+    for (summary, samples) in summaries.iter().zip(samples) {
+        let real: Vec<f64> = match samples {
+            Samples::Real(values) => values.clone(),
+            Samples::Complex(values) => values.iter().map(|v| v.0.hypot(v.1)).collect(),
+            Samples::Text(_) => continue,
+        };
+        let lines = sketch(&real, PICTURE.0, PICTURE.1);
+        let unit = summary.unit.as_deref().unwrap_or("");
+        let _ = writeln!(text, "\n  {} {unit}", summary.name);
+        for (i, line) in lines.iter().enumerate() {
+            let mark = match i {
+                0 => summary.max.to_string(),
+                i if i + 1 == lines.len() => summary.min.to_string(),
+                _ => String::new(),
+            };
+            let _ = writeln!(text, "  {mark:>11} {line}");
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! Records of any format written anew: HDF5, Parquet or CSV, self-describing.
+
+mod csv;
+mod hdf5;
+mod parquet;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use crate::record::attribute;
+use crate::record::hdf5_write::WriteError;
+use crate::record::source::{ChannelInfo, ReadError, Samples, Source};
+
+/// What to write.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Target {
+    /// One HDF5 file in the layout of `docs/formats.md`.
+    Hdf5,
+    /// One Parquet file: wide for one record, long by record for several.
+    Parquet,
+    /// One CSV file for one record, a folder of CSV files for several.
+    Csv,
+}
+
+impl Target {
+    /// The target that a path's extension says.
+    pub fn of(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "h5" | "hdf5" | "hdf" => Some(Self::Hdf5),
+            "parquet" | "pq" => Some(Self::Parquet),
+            "csv" => Some(Self::Csv),
+            _ => None,
+        }
+    }
+}
+
+/// Why records could not be converted.
+#[derive(Debug, thiserror::Error)]
+pub enum ConvertError {
+    /// A record could not be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The output could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+/// How to write.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Keep numbers in single precision (HDF5 and Parquet).
+    pub single_precision: bool,
+    /// Attributes that every record gains, over those of the file.
+    pub attributes: BTreeMap<String, String>,
+}
+
+/// One record of a source, to be read when its turn comes.
+pub struct Item<'a> {
+    /// Its name in the output.
+    pub name: String,
+    source: &'a dyn Source,
+    dataset: usize,
+    attributes: BTreeMap<String, String>,
+}
+
+impl Item<'_> {
+    fn channels(&self) -> &[ChannelInfo] {
+        &self.source.datasets()[self.dataset].channels
+    }
+
+    fn read(&self) -> Result<Vec<Samples>, ReadError> {
+        let all: Vec<usize> = (0..self.channels().len()).collect();
+        self.source.read(self.dataset, &all)
+    }
+
+    /// The record's rate: what its channels share, else what its attributes state.
+    fn sample_rate_hz(&self) -> Option<f64> {
+        let shared = self.source.datasets()[self.dataset].sample_rate_hz();
+        shared.or_else(|| attribute::sample_rate_hz(&self.attributes))
+    }
+
+    fn start_time(&self) -> Option<&str> {
+        self.channels().iter().find_map(|c| c.start_time.as_deref())
+    }
+
+    /// The attributes to write: the record's own without those that are written in other ways.
+    fn described(&self) -> impl Iterator<Item = (&String, &String)> {
+        const ELSEWHERE: [&str; 10] = [
+            "channels",
+            "units",
+            "scale",
+            "offset",
+            "sample_rate_hz",
+            "impactid_layout",
+            "names",
+            "columns",
+            "start_time",
+            crate::record::parquet::RECORDS_KEY,
+        ];
+        self.attributes
+            .iter()
+            .filter(|(k, _)| !ELSEWHERE.contains(&k.as_str()))
+    }
+}
+
+/// Convert all records of the sources to one output.
+///
+/// # Errors
+/// Where a record cannot be read or the output cannot be written; nothing is left then.
+pub fn convert(
+    sources: &[Box<dyn Source>],
+    target: Target,
+    out: &Path,
+    options: &Options,
+) -> Result<usize, ConvertError> {
+    let items = items(sources, options);
+    match target {
+        Target::Hdf5 => hdf5::write(&items, out, options)?,
+        Target::Parquet => parquet::write(&items, out, options)?,
+        Target::Csv => csv::write(&items, out)?,
+    }
+    Ok(items.len())
+}
+
+/// The records with names that are unique: the file's where it holds one, `file/dataset` where
+/// there are several files, the dataset's where there is one file.
+fn items<'a>(sources: &'a [Box<dyn Source>], options: &Options) -> Vec<Item<'a>> {
+    let mut taken = std::collections::BTreeSet::new();
+    let mut items = Vec::new();
+    for source in sources {
+        let stem = source
+            .path()
+            .file_stem()
+            .map_or("record".into(), |s| s.to_string_lossy());
+        for (dataset, info) in source.datasets().iter().enumerate() {
+            let plain = match (info.name.is_empty(), sources.len()) {
+                (true, _) => stem.to_string(),
+                (false, 1) => info.name.clone(),
+                (false, _) => format!("{stem}/{}", info.name),
+            };
+            let name = unique(&plain, &mut taken);
+            let mut attributes = info.attributes.clone();
+            attributes.extend(options.attributes.clone());
+            items.push(Item {
+                name,
+                source: &**source,
+                dataset,
+                attributes,
+            });
+        }
+    }
+    items
+}
+
+fn unique(plain: &str, taken: &mut std::collections::BTreeSet<String>) -> String {
+    let parts: Vec<&str> = plain
+        .split('/')
+        .filter(|p| !p.is_empty() && *p != ".")
+        .collect();
+    let plain = if parts.is_empty() {
+        "record".to_owned()
+    } else {
+        parts.join("/")
+    };
+    let mut name = plain.clone();
+    let mut number = 2;
+    while !taken.insert(name.clone()) {
+        name = format!("{plain}_{number}");
+        number += 1;
+    }
+    name
+}
+
+/// A channel's heading with its unit: `velocity_x [mm/s]`.
+fn heading(channel: &ChannelInfo) -> String {
+    match &channel.unit {
+        Some(unit) => format!("{} [{unit}]", channel.name),
+        None => channel.name.clone(),
+    }
+}
+
+fn io(path: &Path) -> impl Fn(std::io::Error) -> WriteError {
+    let path: PathBuf = path.to_path_buf();
+    move |source| WriteError::Io {
+        path: path.clone(),
+        source,
+    }
+}
+
+#[cfg(test)]
+mod tests;

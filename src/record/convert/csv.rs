@@ -1,0 +1,86 @@
+//! Records to CSV: remarks, a header with units, a row a sample.
+
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+use crate::record::convert::{ConvertError, Item, heading, io};
+use crate::record::hdf5_write::temporary_beside;
+use crate::record::source::Samples;
+
+/// Write one record to a file, or several to the files of a folder.
+pub fn write(items: &[Item], out: &Path) -> Result<(), ConvertError> {
+    if let [item] = items {
+        return one(item, out);
+    }
+    let folder = out.with_extension("");
+    std::fs::create_dir_all(&folder).map_err(io(&folder))?;
+    for item in items {
+        let path = folder.join(format!("{}.csv", item.name.replace('/', "_")));
+        one(item, &path)?;
+    }
+    Ok(())
+}
+
+fn one(item: &Item, path: &Path) -> Result<(), ConvertError> {
+    let samples = item.read()?;
+    let file = temporary_beside(path).map_err(io(path))?;
+    rows(item, &samples, BufWriter::new(file.as_file())).map_err(io(path))?;
+    file.persist(path).map_err(|e| io(path)(e.error))?;
+    Ok(())
+}
+
+fn rows(item: &Item, samples: &[Samples], mut out: impl Write) -> std::io::Result<()> {
+    for (key, value) in item.described() {
+        writeln!(out, "# {key} = {}", value.replace(['\n', '\r'], " "))?;
+    }
+    if let Some(rate) = item.sample_rate_hz() {
+        writeln!(out, "# sample_rate_hz = {rate}")?;
+    }
+    if let Some(start) = item.start_time() {
+        writeln!(out, "# start_time = {start}")?;
+    }
+    let mut headings = Vec::new();
+    for (info, samples) in item.channels().iter().zip(samples) {
+        match samples {
+            Samples::Complex(_) => {
+                headings.extend(["re", "im"].map(|p| quoted(&format!("{}.{p}", heading(info)))));
+            }
+            _ => headings.push(quoted(&heading(info))),
+        }
+    }
+    writeln!(out, "{}", headings.join(","))?;
+    let longest = samples.iter().map(Samples::len).max().unwrap_or(0);
+    for row in 0..longest {
+        let mut first = true;
+        for samples in samples {
+            if !std::mem::replace(&mut first, false) {
+                out.write_all(b",")?;
+            }
+            cell(&mut out, samples, row)?;
+        }
+        out.write_all(b"\n")?;
+    }
+    out.flush()
+}
+
+fn cell(out: &mut impl Write, samples: &Samples, row: usize) -> std::io::Result<()> {
+    match samples {
+        Samples::Real(values) => values.get(row).map_or(Ok(()), |v| write!(out, "{v}")),
+        Samples::Complex(values) => match values.get(row) {
+            Some((re, im)) => write!(out, "{re},{im}"),
+            None => out.write_all(b","),
+        },
+        Samples::Text(values) => values
+            .get(row)
+            .map_or(Ok(()), |t| out.write_all(quoted(t).as_bytes())),
+    }
+}
+
+/// A text as a cell: quoted where it holds a comma, a quote or a line end, or could be taken
+/// for a comment.
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) || text.starts_with(['#', '%', '!']) {
+        return format!("\"{}\"", text.replace('"', "\"\""));
+    }
+    text.to_owned()
+}
