@@ -283,7 +283,7 @@ fn valid_periodic_orbit_and_multipliers() {
             assert!((tau - want).abs() < 1e-10, "{tau} {want}");
             assert!((w - orbit.closing_speed).abs() < 1e-10);
         }
-        let want = orbit::eigenvalues(&m, &reference_map(&m, 1.25, 1.0, start));
+        let want = variation::eigenvalues(&m, &reference_map(&m, 1.25, 1.0, start));
         for (a, b) in want.iter().zip(&orbit.multipliers) {
             assert!((a.norm() - b.norm()).abs() < 1e-8, "{a} {b}");
             assert!((a.re - b.re).abs() < 1e-8, "{a} {b}");

@@ -13,8 +13,10 @@ pub mod params;
 pub mod path;
 pub mod periodic;
 pub mod recurrence;
+pub mod restitution;
 pub mod simulate;
 pub mod soft;
+pub mod variation;
 
 pub use boundary::{BoundaryPoint, eta_s2, rho_grazing, rho_s1, rho_s2};
 pub use contact::{ImpactKind, ModelImpact};

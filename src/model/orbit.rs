@@ -10,13 +10,12 @@
 //! a quadratic for w. With Pᵢ, Dᵢ the Green's functions' position and velocity just before the
 //! impact, α = −(1+R)Σ μᵢPᵢ and Q = 1 + (1+R)Σ μᵢDᵢ.
 
-use nalgebra::{Matrix4, Vector4};
-
 use super::contact::{ImpactKind, free_accelerations, newton};
 use super::crossing::first_zero;
 use super::flight::{Drive, FlightPaths, State, exponent, forced_amplitude, free_flight};
 use super::params::{Flight, Machine, ModelError, Oscillator, Setting};
 use super::path::C64;
+use super::variation::{eigenvalues, free_flow, saltation};
 
 /// Why an orbit that solves the equations is no motion of the machine, or that it is one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -347,61 +346,6 @@ fn existence(machine: &Machine, orbit: &Orbit) -> Existence {
         Some(_) => Existence::FurtherImpact,
         None => Existence::Exists,
     }
-}
-
-/// Flow of the variation over a time: each mass's free vibration, block diagonal.
-pub fn free_flow(machine: &Machine, time: f64) -> Matrix4<f64> {
-    let mut m = Matrix4::identity();
-    fill_flow(&mut m, 0, &machine.x, time);
-    if let Some(y) = &machine.y {
-        fill_flow(&mut m, 2, y, time);
-    }
-    m
-}
-
-fn fill_flow(m: &mut Matrix4<f64>, at: usize, o: &Oscillator, time: f64) {
-    let lambda = exponent(o);
-    let (d, w) = (-lambda.re, lambda.im);
-    let e = (-d * time).exp();
-    let (s, c) = (w * time).sin_cos();
-    m[(at, at)] = e * (c + d * s / w);
-    m[(at, at + 1)] = e * s / w;
-    m[(at + 1, at)] = -e * s * o.stiffness_per_mass() / w;
-    m[(at + 1, at + 1)] = e * (c - d * s / w);
-}
-
-/// Saltation matrix at an impact: how a variation (X, X', Y, Y') just before goes over into one
-/// just after, S = DR + (f₊ − DR f₋)nᵀ/w with n the gap's normal.
-pub fn saltation(machine: &Machine, before: &State, after: &State) -> Matrix4<f64> {
-    let w = before.vx + before.vy;
-    let law = machine.restitution();
-    let slope = 1.0 + law.at(w) + w * law.slope_at(w);
-    let (mx, my) = machine.mobility();
-    let mut jump = Matrix4::identity();
-    for (row, mobility) in [(1, mx), (3, my)] {
-        jump[(row, 1)] -= mobility * slope;
-        jump[(row, 3)] -= mobility * slope;
-    }
-    let rate = |s: &State| Vector4::new(s.vx, s.ax, s.vy, s.ay);
-    let normal = Vector4::new(1.0, 0.0, 1.0, 0.0);
-    jump + (rate(after) - jump * rate(before)) * normal.transpose() / w
-}
-
-/// Eigenvalues of a variation's map, largest modulus first; the stop's own two rows are left
-/// out for a single mass.
-pub fn eigenvalues(machine: &Machine, map: &Matrix4<f64>) -> Vec<C64> {
-    let mut values: Vec<C64> = if machine.y.is_some() {
-        map.complex_eigenvalues().iter().copied().collect()
-    } else {
-        map.fixed_view::<2, 2>(0, 0)
-            .into_owned()
-            .complex_eigenvalues()
-            .iter()
-            .copied()
-            .collect()
-    };
-    values.sort_by(|a, b| b.norm_sqr().total_cmp(&a.norm_sqr()));
-    values
 }
 
 fn multipliers(machine: &Machine, orbit: &Orbit) -> Vec<C64> {

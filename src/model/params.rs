@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+pub use super::restitution::Restitution;
+
 /// Why a model cannot be evaluated as asked.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ModelError {
@@ -98,7 +100,7 @@ impl Oscillator {
     }
 }
 
-fn range(
+pub(super) fn range(
     name: &'static str,
     value: f64,
     ok: bool,
@@ -112,127 +114,6 @@ fn range(
             value,
             expected,
         })
-    }
-}
-
-/// The coefficient of restitution R, constant or depending on the closing speed v.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Restitution {
-    /// The same R at every speed.
-    Constant(f64),
-    /// Pairs (closing speed, R) with rising speeds: linear between them, constant beyond.
-    Table(Vec<(f64, f64)>),
-    /// R = max(floor, 1 − coefficient · v^exponent).
-    PowerLaw {
-        /// Factor of the power.
-        coefficient: f64,
-        /// Exponent, positive.
-        exponent: f64,
-        /// Least R.
-        floor: f64,
-    },
-    /// R = fast + (slow − fast) · exp(−v/speed).
-    Exponential {
-        /// R at speed zero.
-        slow: f64,
-        /// R at great speed.
-        fast: f64,
-        /// Speed scale of the decay.
-        speed: f64,
-    },
-}
-
-impl Restitution {
-    /// R at a closing speed v ≥ 0.
-    pub fn at(&self, v: f64) -> f64 {
-        match self {
-            Self::Constant(r) => *r,
-            Self::Table(pairs) => table(pairs, v).0,
-            Self::PowerLaw {
-                coefficient,
-                exponent,
-                floor,
-            } => (1.0 - coefficient * v.max(0.0).powf(*exponent)).max(*floor),
-            Self::Exponential { slow, fast, speed } => fast + (slow - fast) * (-v / speed).exp(),
-        }
-    }
-
-    /// dR/dv at a closing speed v > 0 (one-sided at the kinks of a table).
-    pub fn slope_at(&self, v: f64) -> f64 {
-        match self {
-            Self::Constant(_) => 0.0,
-            Self::Table(pairs) => table(pairs, v).1,
-            Self::PowerLaw {
-                coefficient,
-                exponent,
-                floor,
-            } => {
-                if 1.0 - coefficient * v.powf(*exponent) <= *floor {
-                    0.0
-                } else {
-                    -coefficient * exponent * v.powf(exponent - 1.0)
-                }
-            }
-            Self::Exponential { slow, fast, speed } => -(slow - fast) / speed * (-v / speed).exp(),
-        }
-    }
-
-    /// The constant value, if R does not depend on the speed.
-    pub fn constant(&self) -> Option<f64> {
-        match self {
-            Self::Constant(r) => Some(*r),
-            _ => None,
-        }
-    }
-
-    fn check(&self) -> Result<(), ModelError> {
-        let unit = |name, r: f64| range(name, r, (0.0..=1.0).contains(&r), "0 ≤ R ≤ 1");
-        match self {
-            Self::Constant(r) => unit("restitution", *r),
-            Self::Table(pairs) => {
-                if pairs.is_empty() || pairs.windows(2).any(|w| w[0].0 >= w[1].0) {
-                    return Err(ModelError::Unsupported(
-                        "the table of R(v) needs at least one pair and rising speeds",
-                    ));
-                }
-                pairs
-                    .iter()
-                    .try_for_each(|p| unit("restitution (table)", p.1))
-            }
-            Self::PowerLaw {
-                coefficient,
-                exponent,
-                floor,
-            } => {
-                range(
-                    "coefficient",
-                    *coefficient,
-                    *coefficient >= 0.0,
-                    "not negative",
-                )?;
-                range("exponent", *exponent, *exponent > 0.0, "positive")?;
-                unit("floor", *floor)
-            }
-            Self::Exponential { slow, fast, speed } => {
-                range("speed", *speed, *speed > 0.0, "positive")?;
-                unit("slow", *slow)?;
-                unit("fast", *fast)
-            }
-        }
-    }
-}
-
-/// Value and slope of a piecewise linear table, constant beyond its ends.
-fn table(pairs: &[(f64, f64)], v: f64) -> (f64, f64) {
-    let above = pairs.partition_point(|p| p.0 <= v);
-    match (above.checked_sub(1).map(|i| pairs[i]), pairs.get(above)) {
-        (Some((v0, r0)), Some(&(v1, r1))) => {
-            let slope = (r1 - r0) / (v1 - v0);
-            (r0 + slope * (v - v0), slope)
-        }
-        (Some((_, r)), None) | (None, Some(&(_, r))) => (r, 0.0),
-        (None, None) => (f64::NAN, 0.0),
     }
 }
 

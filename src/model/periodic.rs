@@ -12,7 +12,8 @@ use nalgebra::{DMatrix, DVector, Matrix4};
 use super::contact::{ModelImpact, free_accelerations, newton};
 use super::crossing::first_zero;
 use super::flight::{Drive, State, exponent, forced_amplitude, free_flight};
-use super::orbit::{Existence, eigenvalues, free_flow, saltation};
+use super::orbit::Existence;
+use super::variation::{eigenvalues, free_flow, saltation};
 use super::params::{Machine, Setting};
 use super::path::C64;
 

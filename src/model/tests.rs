@@ -195,7 +195,7 @@ fn prop_multipliers_match_finite_differences() {
                 jacobian[(i, k)] = (fu[i] - fd[i]) / 2e-5;
             }
         }
-        let values = super::orbit::eigenvalues(&m, &jacobian);
+        let values = super::variation::eigenvalues(&m, &jacobian);
         for (a, b) in values.iter().zip(&o.multipliers) {
             close(a.norm(), b.norm(), 1e-8);
             close(a.re, b.re, 1e-8);
