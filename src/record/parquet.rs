@@ -2,6 +2,7 @@
 //! beside the channels) and tidy (columns record, channel, time, value).
 
 pub mod columns;
+pub mod footer;
 pub mod shape;
 
 use std::collections::BTreeMap;

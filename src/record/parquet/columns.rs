@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
+use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
@@ -12,8 +13,11 @@ use polars::prelude::{
 };
 use polars_io::SerReader;
 use polars_io::parquet::read::{_internal::to_deserializer, FileMetadata, ParquetReader};
+use polars_parquet::parquet::page::CompressedPage;
+use polars_parquet::read::PageReader;
 
 use crate::record::parquet::shape::Range;
+use crate::record::parquet::{SIGNATURE, footer};
 use crate::record::source::{ReadError, Samples, StoredType};
 use crate::record::text::clock::Stamp;
 use crate::record::text::read_exact_at;
@@ -60,6 +64,7 @@ impl Columns {
         let file = File::open(path).map_err(|e| ReadError::io(path, &e))?;
         let length = file.metadata().map_err(|e| ReadError::io(path, &e))?.len();
         let handle = file.try_clone().map_err(|e| ReadError::io(path, &e))?;
+        check_footer(path, &file, length)?;
         let (fields, metadata) = guarded(path, || {
             let mut reader = ParquetReader::new(handle);
             let schema = reader.schema()?;
@@ -237,11 +242,22 @@ impl Columns {
             let mut bytes = vec![0; size as usize];
             read_exact_at(&self.file, &mut bytes, first)
                 .map_err(|e| ReadError::io(&self.path, &e))?;
+            if first_claim(&bytes).is_some_and(|n| n > MOST_BYTES_PER_BYTE * self.length) {
+                return Err(damaged("a first page far larger than the file".to_owned()).at(first));
+            }
             pages.push((chunk, bytes.into()));
         }
         let samples = guarded(&self.path, || {
             let name = PlSmallStr::from_str(&field.name);
             let arrow = ArrowField::new(name.clone(), field.physical.clone(), true);
+            for (chunk, bytes) in &pages {
+                let limit = self.length as usize;
+                let bytes = Cursor::new(Clone::clone(bytes));
+                self.check_pages(
+                    PageReader::new(bytes, chunk, Vec::new(), limit),
+                    group.num_rows(),
+                )?;
+            }
             let (arrays, _) = to_deserializer(pages, arrow, None)?;
             samples(&Series::try_from((name, arrays))?)
         })?;
@@ -254,6 +270,57 @@ impl Columns {
             ))),
         }
     }
+}
+
+impl Columns {
+    /// Refuse pages that claim to unpack to far more than the file, or to hold more values than
+    /// the row group has rows, before they are unpacked.
+    fn check_pages(&self, pages: PageReader, rows: usize) -> PolarsResult<()> {
+        let (mut unpacked, mut values) = (0u64, 0u64);
+        for page in pages {
+            if let CompressedPage::Data(page) = page? {
+                unpacked = unpacked.saturating_add(page.uncompressed_size() as u64);
+                values = values.saturating_add(page.num_values() as u64);
+            }
+        }
+        if unpacked > MOST_BYTES_PER_BYTE * self.length || values > rows as u64 {
+            polars_bail!(ComputeError: "pages that claim {unpacked} bytes and {values} values");
+        }
+        Ok(())
+    }
+}
+
+/// Unpacked bytes, or values of a dictionary where they are more, that a column's first page
+/// claims. Its header is a structure of thrift's compact protocol: the first three fields are
+/// 32-bit integers (kind, unpacked and packed bytes), the seventh is a dictionary's own header,
+/// which begins with its number of values.
+fn first_claim(bytes: &[u8]) -> Option<u64> {
+    const NEXT_FIELD_I32: u8 = 0x15;
+    const FOURTH_NEXT_STRUCTURE: u8 = 0x4C;
+    let mut rest = bytes.iter().copied();
+    field(&mut rest, NEXT_FIELD_I32)?;
+    let unpacked = field(&mut rest, NEXT_FIELD_I32)?;
+    let dictionary = field(&mut rest, NEXT_FIELD_I32).and_then(|_packed| {
+        rest.next().filter(|b| *b == FOURTH_NEXT_STRUCTURE)?;
+        field(&mut rest, NEXT_FIELD_I32)
+    });
+    Some(unpacked.max(dictionary.unwrap_or(0)))
+}
+
+/// An integer field of thrift's compact protocol whose header is `mark`; a negative or endless
+/// one is the greatest number.
+fn field(bytes: &mut impl Iterator<Item = u8>, mark: u8) -> Option<u64> {
+    bytes.next().filter(|b| *b == mark)?;
+    let mut value = 0u64;
+    for shift in (0..35).step_by(7) {
+        let byte = bytes.next()?;
+        value |= u64::from(byte & 0x7F) << shift;
+        if byte < 0x80 {
+            // Zigzag: even numbers are the positive ones, odd ones the negative.
+            return Some(if value % 2 == 0 { value / 2 } else { u64::MAX });
+        }
+    }
+    Some(u64::MAX)
 }
 
 /// Parts of a column as one; points in time become seconds since the first.
@@ -274,6 +341,28 @@ fn joined(parts: Vec<Samples>, field: &Field) -> Samples {
             .for_each(|v| *v = (*v - origin) / field.ticks_per_second);
     }
     all
+}
+
+/// Refuse a footer whose lengths exceed it.
+fn check_footer(path: &Path, file: &File, length: u64) -> Result<(), ReadError> {
+    let damaged = |found: String, at: u64| {
+        ReadError::new(path, "a complete Parquet file", found, REMEDY).at(at)
+    };
+    let mut tail = [0u8; 8];
+    let end = length
+        .checked_sub(12)
+        .ok_or_else(|| damaged(format!("{length} bytes"), 0))?
+        + 4;
+    read_exact_at(file, &mut tail, end).map_err(|e| ReadError::io(path, &e))?;
+    if tail[4..] != SIGNATURE {
+        return Err(damaged("no PAR1 at the end".to_owned(), end + 4));
+    }
+    let size = u64::from(u32::from_le_bytes([tail[0], tail[1], tail[2], tail[3]]));
+    let start = end.checked_sub(size).filter(|s| *s >= 4);
+    let start = start.ok_or_else(|| damaged(format!("a footer of {size} bytes"), end))?;
+    let mut bytes = vec![0; size as usize];
+    read_exact_at(file, &mut bytes, start).map_err(|e| ReadError::io(path, &e))?;
+    footer::check(&bytes).map_err(|(words, at)| damaged(words, start + at as u64))
 }
 
 const REMEDY: &str = "Copy the file anew, or write it again with the program that made it.";
