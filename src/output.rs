@@ -50,7 +50,7 @@ impl OutputError {
 
 fn remedy_for(kind: io::ErrorKind) -> &'static str {
     match kind {
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded | io::ErrorKind::FileTooLarge => {
             "free space on the disk, then run again; nothing that was there before is lost"
         }
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
@@ -79,19 +79,31 @@ impl Drop for Part {
 
 impl Part {
     fn of(target: &Path) -> Self {
-        let name = target.file_name().map(|n| n.to_string_lossy()).unwrap_or_default();
+        let name = target
+            .file_name()
+            .map(|n| n.to_string_lossy())
+            .unwrap_or_default();
         let path = target.with_file_name(format!(".{name}.{}{PART_ENDING}", std::process::id()));
-        Self { path, placed: false }
+        Self {
+            path,
+            placed: false,
+        }
     }
 
     fn write<E: From<io::Error>>(
         &self,
         fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), E>,
     ) -> Result<(), E> {
-        let file = OpenOptions::new().write(true).create(true).truncate(true).open(&self.path)?;
+        let file = OpenOptions::new()
+            .write(true)
+            .create(true)
+            .truncate(true)
+            .open(&self.path)?;
         let mut writer = BufWriter::with_capacity(1 << 16, file);
         fill(&mut writer)?;
-        let file = writer.into_inner().map_err(io::IntoInnerError::into_error)?;
+        let file = writer
+            .into_inner()
+            .map_err(io::IntoInnerError::into_error)?;
         file.sync_all()?;
         Ok(())
     }
@@ -108,7 +120,11 @@ impl Part {
 
 /// Have the rename itself on the disk.
 fn sync_folder(folder: &Path) -> io::Result<()> {
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let folder = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
     match File::open(folder) {
         Ok(open) if cfg!(unix) => open.sync_all(),
         _ => Ok(()),
@@ -127,7 +143,10 @@ pub fn write_whole(
     let part = Part::of(path);
     part.write(fill)
         .and_then(|()| part.place(path))
-        .map_err(|source| OutputError::File { path: path.to_path_buf(), source })
+        .map_err(|source| OutputError::File {
+            path: path.to_path_buf(),
+            source,
+        })
 }
 
 /// Write bytes as [`write_whole`] does.
@@ -143,8 +162,10 @@ pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
 /// # Errors
 /// [`OutputError::Folder`] with what the system said.
 pub fn make_folder(path: &Path) -> Result<(), OutputError> {
-    fs::create_dir_all(path)
-        .map_err(|source| OutputError::Folder { path: path.to_path_buf(), source })
+    fs::create_dir_all(path).map_err(|source| OutputError::Folder {
+        path: path.to_path_buf(),
+        source,
+    })
 }
 
 /// Sole right to write into a folder, until it is dropped or the process ends.
@@ -164,7 +185,10 @@ impl Lock {
     pub fn take(folder: &Path) -> Result<Self, OutputError> {
         make_folder(folder)?;
         let path = folder.join(LOCK_NAME);
-        let failed = |source| OutputError::Folder { path: folder.to_path_buf(), source };
+        let failed = |source| OutputError::Folder {
+            path: folder.to_path_buf(),
+            source,
+        };
         loop {
             let file = OpenOptions::new()
                 .write(true)
@@ -175,7 +199,9 @@ impl Lock {
             match file.try_lock() {
                 Ok(()) => {}
                 Err(fs::TryLockError::WouldBlock) => {
-                    return Err(OutputError::Locked { path: folder.to_path_buf() });
+                    return Err(OutputError::Locked {
+                        path: folder.to_path_buf(),
+                    });
                 }
                 Err(fs::TryLockError::Error(source)) => return Err(failed(source)),
             }
@@ -212,7 +238,9 @@ fn is_still(_: &File, path: &Path) -> bool {
 
 /// Remove what broken-off runs left in a folder under temporary names.
 pub fn clear_parts(folder: &Path) {
-    let Ok(entries) = fs::read_dir(folder) else { return };
+    let Ok(entries) = fs::read_dir(folder) else {
+        return;
+    };
     for entry in entries.filter_map(Result::ok) {
         let name = entry.file_name();
         let name = name.to_string_lossy();

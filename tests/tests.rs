@@ -1,11 +1,22 @@
 //! The one integration binary: each module is a subject.
 
+// a test fails by panicking, and a table of cases is as long as it has cases
+#![allow(
+    clippy::expect_used,
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::too_many_lines
+)]
+
 /// A small laboratory in a temporary folder: a good campaign that tests spoil.
 mod support;
 
 /// Wrong inputs, each with the message and the exit code it gets; docs/robustness.md is their
 /// table.
 mod robustness;
+
+/// Runs killed, run twice, without room on the disk; determinism.
+mod broken_runs;
 
 /// The verbs: help, exit codes, quiet and verbose, what they write and what they leave alone.
 mod command_line;
@@ -15,3 +26,9 @@ mod formats;
 
 /// The order of the rooms, and what the house promises of its files.
 mod house;
+
+/// The main job on campaigns with known truth.
+mod main_job;
+
+/// Records that nobody here wrote.
+mod real_data;

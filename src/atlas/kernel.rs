@@ -75,8 +75,11 @@ const COS: [f64; 6] = [
     -2.755574396426964e-07,
     2.0657616391477202e-09,
 ];
-/// Longest step in units of the faster of both rates: half of it is where the polynomials end.
-const LONGEST: f64 = 1.6;
+/// Longest step in units of the faster of both rates: a quarter of it is where the polynomials
+/// end.
+const LONGEST: f64 = 3.2;
+/// Longest first step after an impact, likewise: a shorter one has a tighter bound.
+const FIRST: f64 = 1.6;
 /// Displacement resolution below which a bounce is not told from rest (as in `model::contact`).
 const RESOLUTION: f64 = 1e-13;
 
@@ -87,8 +90,8 @@ struct Constants<V> {
     omega: V,
     inverse_omega: V,
     restitution: V,
-    half_omega: V,
-    half_beta: V,
+    quarter_omega: V,
+    quarter_beta: V,
 }
 
 /// The state of `V::WIDTH` cells.
@@ -97,7 +100,7 @@ struct Group<V> {
     eta: V,
     eta2: V,
     eta3: V,
-    half_eta: V,
+    quarter_eta: V,
     rho: V,
     /// ρ where the impactless exit is open, else −∞.
     exit_rho: V,
@@ -105,6 +108,7 @@ struct Group<V> {
     /// η⁴|F|
     k4: V,
     longest: V,
+    first: V,
     near: V,
     rest: V,
     zr: V,
@@ -114,59 +118,92 @@ struct Group<V> {
     fi: V,
     t: V,
     t_next: V,
-    step: V,
     hm: V,
     hits: V,
     anchor_fr: V,
     anchor_fi: V,
     anchor_v: V,
     anchor_t: V,
-    count: V,
-    limit: V,
+    anchor_hits: V,
+    /// Impacts at which the anchor is set anew.
+    reach: V,
     tolerance: V,
 }
 
-/// What the loop asks the slow path for: one bit per lane.
-struct Events {
-    due: u32,
-    rest: u32,
-    recurs: u32,
-    never: u32,
+/// What the loop asks the slow path for, and the step just made.
+struct Events<V: Lanes> {
+    due: V::Mask,
+    rest: V::Mask,
+    recurs: V::Mask,
+    never: V::Mask,
+    step: V,
 }
 
-/// sin and cos of an angle up to [`LONGEST`], from the half angle.
+impl<V: Lanes> Events<V> {
+    /// Lanes with any event, a bit each.
+    #[inline(always)]
+    fn any(&self) -> u32 {
+        V::bits(V::or(
+            V::or(self.due, self.rest),
+            V::or(self.recurs, self.never),
+        ))
+    }
+}
+
+/// sin and cos of an angle up to [`LONGEST`], from a quarter of it.
 #[inline(always)]
-fn sin_cos<V: Lanes>(half: V) -> (V, V) {
-    let u = half.mul(half);
+fn sin_cos<V: Lanes>(quarter: V) -> (V, V) {
+    let u = quarter.mul(quarter);
     let (mut p, mut q) = (V::splat(SIN[5]), V::splat(COS[5]));
     for k in (0..5).rev() {
         p = p.mul_add(u, V::splat(SIN[k]));
         q = q.mul_add(u, V::splat(COS[k]));
     }
-    let s = half.mul(u).mul_add(p, half);
+    let s = quarter.mul(u).mul_add(p, quarter);
     let c = u.mul_add(q, V::splat(1.0));
+    double(double((s, c)))
+}
+
+/// sin and cos of twice the angle.
+#[inline(always)]
+fn double<V: Lanes>((s, c): (V, V)) -> (V, V) {
     let s2 = s.add(s);
     (s2.mul(c), s2.neg_mul_add(s, V::splat(1.0)))
 }
 
-/// e^(−y) by Horner, then squared: e^(−2y).
+/// e^(−4y), from the series of e^(−y).
 #[inline(always)]
 fn decay<V: Lanes, const DEGREE: usize>(y: V) -> V {
-    let mut p = V::splat(1.0);
-    for k in (1..=DEGREE).rev() {
-        // 1 − (y/k)(1 − (y/(k+1))(…))
-        p = y
-            .mul(V::splat(1.0 / k as f64))
-            .neg_mul_add(p, V::splat(1.0));
+    let mut p = V::splat(SERIES[DEGREE]);
+    for k in (0..DEGREE).rev() {
+        p = p.mul_add(y, V::splat(SERIES[k]));
     }
-    p.mul(p)
+    let p2 = p.mul(p);
+    p2.mul(p2)
+}
+
+/// (−1)^k/k!
+const SERIES: [f64; 18] = {
+    let mut c = [1.0; 18];
+    let mut k = 1;
+    while k < 18 {
+        c[k] = -c[k - 1] / k as f64;
+        k += 1;
+    }
+    c
+};
+
+/// Upper bound of |z|, at most 12 % too great: greater part + half the smaller.
+#[inline(always)]
+fn modulus_above<V: Lanes>(re: V, im: V) -> V {
+    let (re, im) = (re.abs(), im.abs());
+    re.min(im).mul_add(V::splat(0.5), re.max(im))
 }
 
 /// One step of all lanes of a group.
 #[inline(always)]
-fn step<V: Lanes, const DEGREE: usize>(c: &Constants<V>, s: &mut Group<V>) -> Events {
+fn step<V: Lanes, const DEGREE: usize>(c: &Constants<V>, s: &mut Group<V>) -> Events<V> {
     let zero = V::splat(0.0);
-    let one = V::splat(1.0);
     // where the mass is
     let velocity_h = |zr: V, zi: V| zero.sub(c.beta.mul_add(zr, c.omega.mul(zi)));
     let vh = velocity_h(s.zr, s.zi);
@@ -179,7 +216,7 @@ fn step<V: Lanes, const DEGREE: usize>(c: &Constants<V>, s: &mut Group<V>) -> Ev
         .max(V::splat(4e-15).mul_add(s.zm, s.near)));
     let hit = V::and(near, zero.lt(v));
     // the impact, applied where it hits
-    let dt = g.div_rough(v.max(V::splat(1e-300)));
+    let dt = g.mul(v.reciprocal_rough());
     let turn = s.eta.mul(dt);
     let fr_hit = turn.neg_mul_add(s.fi, s.fr);
     let fi_hit = turn.mul_add(s.fr, s.fi);
@@ -189,9 +226,8 @@ fn step<V: Lanes, const DEGREE: usize>(c: &Constants<V>, s: &mut Group<V>) -> Ev
     let zr_hit = s.rho.sub(fr_hit);
     let vh_hit = s.eta.mul_add(fi_hit, after);
     let zi_hit = zero.sub(c.beta.mul_add(zr_hit, vh_hit).mul(c.inverse_omega));
-    let zm_hit = zi_hit.mul_add(zi_hit, zr_hit.mul(zr_hit)).sqrt_above();
+    let zm_hit = modulus_above(zr_hit, zi_hit);
     let recurs = recurrence(s, hit, (fr_hit, fi_hit, v_hit, t_hit));
-    s.hits = s.hits.add(one.or_else(hit, zero));
     let fr = fr_hit.or_else(hit, s.fr);
     let fi = fi_hit.or_else(hit, s.fi);
     let zr = zr_hit.or_else(hit, s.zr);
@@ -201,7 +237,7 @@ fn step<V: Lanes, const DEGREE: usize>(c: &Constants<V>, s: &mut Group<V>) -> Ev
     let v = after.or_else(hit, v);
     let g = zero.or_else(hit, g.max(zero));
     let t = t_hit.or_else(hit, s.t);
-    let hm = s.longest.or_else(hit, s.hm);
+    let hm = s.first.or_else(hit, s.hm);
     let ah = zero.sub(c.two_beta.mul_add(vh, zr));
     let a = s.eta2.neg_mul_add(fr, ah);
     let rest = V::and(hit, after.mul(after).le(s.rest.mul(a.abs())));
@@ -222,9 +258,9 @@ fn step<V: Lanes, const DEGREE: usize>(c: &Constants<V>, s: &mut Group<V>) -> Ev
     let down = v.add(root).or_else(closing, m);
     let h = hm.or_else(no_root, up.div(down).min(hm));
     // the exact motion over it
-    let e = decay::<V, DEGREE>(c.half_beta.mul(h));
-    let (sw, cw) = sin_cos(c.half_omega.mul(h));
-    let (se, ce) = sin_cos(s.half_eta.mul(h));
+    let e = decay::<V, DEGREE>(c.quarter_beta.mul(h));
+    let (sw, cw) = sin_cos(c.quarter_omega.mul(h));
+    let (se, ce) = sin_cos(s.quarter_eta.mul(h));
     let (er, ei) = (e.mul(cw), e.mul(sw));
     s.zr = er.mul_add(zr, zero.sub(ei.mul(zi)));
     s.zi = er.mul_add(zi, ei.mul(zr));
@@ -232,13 +268,14 @@ fn step<V: Lanes, const DEGREE: usize>(c: &Constants<V>, s: &mut Group<V>) -> Ev
     s.fr = ce.mul_add(fr, zero.sub(se.mul(fi)));
     s.fi = ce.mul_add(fi, se.mul(fr));
     s.t = t.add(h);
-    s.step = h;
     s.hm = h.mul(V::splat(1.5)).min(s.longest);
+    let (due, never) = (s.t_next.le(s.t), s.zm.add(s.forced).lt(s.exit_rho));
     Events {
-        due: V::bits(s.t_next.le(s.t)),
-        rest: V::bits(rest),
-        recurs: V::bits(recurs),
-        never: V::bits(s.zm.add(s.forced).lt(s.exit_rho)),
+        due,
+        rest,
+        recurs,
+        never,
+        step: h,
     }
 }
 
@@ -251,14 +288,15 @@ fn recurrence<V: Lanes>(s: &mut Group<V>, hit: V::Mask, at: (V, V, V, V)) -> V::
     let same_phase = turned.le(s.tolerance.mul(s.forced));
     let same_speed = v.sub(s.anchor_v).abs().le(s.tolerance.mul(v.add(s.forced)));
     let recurs = V::and(hit, V::and(same_phase, same_speed));
-    let count = s.count.add(V::splat(1.0).or_else(hit, V::splat(0.0)));
-    let anew = V::and_not(V::and(hit, s.limit.le(count)), recurs);
+    s.hits = s.hits.add(V::splat(1.0)).or_else(hit, s.hits);
+    let anew = V::and_not(V::and(hit, s.reach.le(s.hits)), recurs);
     s.anchor_fr = fr.or_else(anew, s.anchor_fr);
     s.anchor_fi = fi.or_else(anew, s.anchor_fi);
     s.anchor_v = v.or_else(anew, s.anchor_v);
     s.anchor_t = t.or_else(anew, s.anchor_t);
-    s.count = V::splat(0.0).or_else(anew, count);
-    s.limit = s.limit.add(s.limit).or_else(anew, s.limit);
+    let count = s.hits.sub(s.anchor_hits);
+    s.reach = s.hits.add(count.add(count)).or_else(anew, s.reach);
+    s.anchor_hits = s.hits.or_else(anew, s.anchor_hits);
     recurs
 }
 
@@ -277,7 +315,6 @@ struct Lane {
     /// Time and impacts at the last release from the stop.
     released: Option<(f64, f64)>,
     hits_at_watch: f64,
-    live: bool,
 }
 
 const IDLE: Lane = Lane {
@@ -296,12 +333,10 @@ const IDLE: Lane = Lane {
     confirming: false,
     released: None,
     hits_at_watch: 0.0,
-    live: false,
 };
 
-/// Groups in flight together, which hides the latency of each.
-const GROUPS: usize = 2;
-const MAX_WIDTH: usize = 8;
+/// Lanes of the widest kernel.
+const MAX_WIDTH: usize = 32;
 
 /// March all cells of a feed.
 #[inline(always)]
@@ -313,29 +348,25 @@ pub fn march<V: Lanes, const DEGREE: usize>(course: &Course, feed: &mut impl Fee
         omega: V::splat(omega),
         inverse_omega: V::splat(1.0 / omega),
         restitution: V::splat(course.restitution),
-        half_omega: V::splat(0.5 * omega),
-        half_beta: V::splat(0.5 * course.damping_ratio),
+        quarter_omega: V::splat(0.25 * omega),
+        quarter_beta: V::splat(0.25 * course.damping_ratio),
     };
-    let mut groups = [empty_group::<V>(); GROUPS];
-    let mut lanes = [[IDLE; MAX_WIDTH]; GROUPS];
-    let mut live = [0u32; GROUPS];
-    for k in 0..GROUPS {
-        for lane in 0..V::WIDTH {
-            live[k] |= refill(course, feed, &mut groups[k], &mut lanes[k][lane], lane);
-        }
+    let mut group = empty_group::<V>();
+    let mut lanes = [IDLE; MAX_WIDTH];
+    let mut live = 0u32;
+    for (lane, info) in lanes.iter_mut().enumerate().take(V::WIDTH) {
+        live |= refill(course, feed, &mut group, info, lane);
     }
-    while live.iter().any(|l| *l != 0) {
-        for k in 0..GROUPS {
-            let e = step::<V, DEGREE>(&c, &mut groups[k]);
-            let mut bits = (e.due | e.rest | e.recurs | e.never) & live[k];
-            while bits != 0 {
-                let lane = bits.trailing_zeros() as usize;
-                bits &= bits - 1;
-                let info = &mut lanes[k][lane];
-                if serve(course, feed, &mut groups[k], info, (lane, &e)) {
-                    live[k] &= !(1 << lane);
-                    live[k] |= refill(course, feed, &mut groups[k], info, lane);
-                }
+    while live != 0 {
+        let e = step::<V, DEGREE>(&c, &mut group);
+        let mut bits = e.any() & live;
+        while bits != 0 {
+            let lane = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            let info = &mut lanes[lane];
+            if serve(course, feed, &mut group, info, (lane, &e)) {
+                live &= !(1 << lane);
+                live |= refill(course, feed, &mut group, info, lane);
             }
         }
     }
@@ -348,12 +379,13 @@ fn empty_group<V: Lanes>() -> Group<V> {
         eta: one,
         eta2: one,
         eta3: one,
-        half_eta: V::splat(0.5),
+        quarter_eta: V::splat(0.25),
         rho: V::splat(1e6),
         exit_rho: V::splat(f64::NEG_INFINITY),
         forced: one,
         k4: one,
         longest: one,
+        first: one,
         near: zero,
         rest: zero,
         zr: zero,
@@ -363,20 +395,20 @@ fn empty_group<V: Lanes>() -> Group<V> {
         fi: zero,
         t: zero,
         t_next: far,
-        step: zero,
         hm: one,
         hits: zero,
         anchor_fr: far,
         anchor_fi: far,
         anchor_v: far,
         anchor_t: zero,
-        count: zero,
-        limit: one,
+        anchor_hits: zero,
+        reach: one,
         tolerance: zero,
     }
 }
 
-/// Load the next cell into a lane; gives the lane's bit, or 0 where no cell is left.
+/// Load the next cell into a lane; gives the lane's bit, or 0 where no cell is left. A mass
+/// that starts at rest at the stop and is never let go is done at once.
 #[inline(never)]
 fn refill<V: Lanes>(
     course: &Course,
@@ -385,11 +417,37 @@ fn refill<V: Lanes>(
     info: &mut Lane,
     lane: usize,
 ) -> u32 {
-    let Some((index, cell)) = feed.next() else {
-        park(s, lane);
-        info.live = false;
-        return 0;
-    };
+    while let Some((index, cell)) = feed.next() {
+        load(course, s, info, lane, (index, cell));
+        let rests = cell.x >= cell.rho && cell.v.abs() <= 1e-12;
+        if !rests || !come_to_rest(course, s, info, lane, (0.0, cell.phase)) {
+            return 1 << lane;
+        }
+        let end = Cell {
+            x: cell.rho,
+            v: 0.0,
+            ..cell
+        };
+        feed.done(
+            index,
+            Outcome {
+                motion: SettledMotion::Joined,
+                end,
+            },
+        );
+    }
+    park(s, lane);
+    0
+}
+
+/// Load a cell into a lane.
+fn load<V: Lanes>(
+    course: &Course,
+    s: &mut Group<V>,
+    info: &mut Lane,
+    lane: usize,
+    (index, cell): (usize, Cell),
+) {
     let eta = cell.eta;
     let (re, im) = (1.0 - eta * eta, 2.0 * course.damping_ratio * eta);
     let d = re * re + im * im;
@@ -399,7 +457,6 @@ fn refill<V: Lanes>(
         cell,
         period,
         forced: (re / d, -im / d),
-        live: true,
         ..IDLE
     };
     let amplitude = 1.0 / d.sqrt();
@@ -408,7 +465,7 @@ fn refill<V: Lanes>(
         (&mut s.eta, eta),
         (&mut s.eta2, eta * eta),
         (&mut s.eta3, eta * eta * eta),
-        (&mut s.half_eta, 0.5 * eta),
+        (&mut s.quarter_eta, 0.25 * eta),
         (&mut s.rho, cell.rho),
         (
             &mut s.exit_rho,
@@ -417,6 +474,7 @@ fn refill<V: Lanes>(
         (&mut s.forced, amplitude),
         (&mut s.k4, eta.powi(4) * amplitude),
         (&mut s.longest, LONGEST / eta.max(1.0)),
+        (&mut s.first, FIRST / eta.max(1.0)),
         (&mut s.near, 4e-15 * (amplitude + 1.0)),
         (
             &mut s.rest,
@@ -437,10 +495,6 @@ fn refill<V: Lanes>(
         lane,
         (0.0, cell.x.min(cell.rho), cell.v, cell.phase),
     );
-    if cell.x >= cell.rho && cell.v <= 0.0 {
-        come_to_rest(course, s, info, lane, (0.0, cell.phase));
-    }
-    1 << lane
 }
 
 /// A lane without a cell: far from the stop, never due.
@@ -448,7 +502,7 @@ fn park<V: Lanes>(s: &mut Group<V>, lane: usize) {
     let idle = empty_group::<V>();
     let pairs = [
         (&mut s.eta, idle.eta),
-        (&mut s.half_eta, idle.half_eta),
+        (&mut s.quarter_eta, idle.quarter_eta),
         (&mut s.rho, idle.rho),
         (&mut s.exit_rho, idle.exit_rho),
         (&mut s.longest, idle.longest),
@@ -471,8 +525,9 @@ fn forget<V: Lanes>(s: &mut Group<V>, lane: usize, t: f64) {
         vector.set(lane, f64::INFINITY);
     }
     s.anchor_t.set(lane, t);
-    s.count.set(lane, 0.0);
-    s.limit.set(lane, 1.0);
+    let hits = s.hits.get(lane);
+    s.anchor_hits.set(lane, hits);
+    s.reach.set(lane, hits + 1.0);
 }
 
 /// Put a lane at (t, x, v, phase), with libm's precision.
@@ -602,15 +657,16 @@ fn serve<V: Lanes>(
     feed: &mut impl Feed,
     s: &mut Group<V>,
     info: &mut Lane,
-    (lane, e): (usize, &Events),
+    (lane, e): (usize, &Events<V>),
 ) -> bool {
-    let raised = |bits: u32| bits & (1 << lane) != 0;
+    let raised = |mask: V::Mask| V::bits(mask) & (1 << lane) != 0;
+    let h = e.step.get(lane);
     if raised(e.recurs) {
-        recognise(s, info, lane);
+        recognise(s, info, lane, h);
     }
     let mut finished = info.found.is_some() && course.leave_early;
     if raised(e.rest) && !finished {
-        let (h, phase) = (s.step.get(lane), where_is(course, s, info, lane).2);
+        let phase = where_is(course, s, info, lane).2;
         let at = (s.t.get(lane) - h, phase - info.cell.eta * h);
         let stays = come_to_rest(course, s, info, lane, at);
         finished = stays || (info.found.is_some() && course.leave_early);
@@ -647,15 +703,13 @@ fn serve<V: Lanes>(
 /// An orbit has come back to its anchor. With complex multipliers a motion that still converges
 /// comes back first after several turns, so a return of p > 1 impacts is followed once more
 /// with a wider tolerance, and the first return then counts.
-fn recognise<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize) {
-    let (anchor_t, hit_t) = (s.anchor_t.get(lane), s.t.get(lane) - s.step.get(lane));
+fn recognise<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize, h: f64) {
+    let (anchor_t, hit_t) = (s.anchor_t.get(lane), s.t.get(lane) - h);
     if info.found.is_some() || info.released.is_some_and(|(t, _)| t >= anchor_t) {
         return; // an orbit that rests at the stop is told by its releases
     }
-    let (p, n) = (
-        s.count.get(lane),
-        ((hit_t - anchor_t) / info.period).round(),
-    );
+    let p = s.hits.get(lane) - s.anchor_hits.get(lane);
+    let n = ((hit_t - anchor_t) / info.period).round();
     if n < 1.0 {
         return;
     }
@@ -670,8 +724,9 @@ fn recognise<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize) {
         return;
     }
     info.confirming = true;
-    s.count.set(lane, 0.0);
-    s.limit.set(lane, f64::INFINITY);
+    let hits = s.hits.get(lane);
+    s.anchor_hits.set(lane, hits);
+    s.reach.set(lane, f64::INFINITY);
     s.anchor_t.set(lane, hit_t);
     let wider = s.tolerance.get(lane) * if info.watching { 100.0 } else { 1000.0 };
     s.tolerance.set(lane, wider);

@@ -32,10 +32,8 @@ pub trait Lanes: Copy {
     fn abs(self) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
-    /// self / b to seven digits.
-    fn div_rough(self, b: Self) -> Self;
-    /// Upper bound of the square root, at most 1e-6 too great.
-    fn sqrt_above(self) -> Self;
+    /// 1/self to three digits at least; anything where self is zero or less.
+    fn reciprocal_rough(self) -> Self;
     /// self < b
     fn lt(self, b: Self) -> Self::Mask;
     /// self ≤ b
@@ -112,12 +110,8 @@ impl Lanes for f64 {
         f64::sqrt(self)
     }
     #[inline(always)]
-    fn div_rough(self, b: Self) -> Self {
-        self / b
-    }
-    #[inline(always)]
-    fn sqrt_above(self) -> Self {
-        f64::sqrt(self)
+    fn reciprocal_rough(self) -> Self {
+        1.0 / self
     }
     #[inline(always)]
     fn lt(self, b: Self) -> bool {
@@ -146,6 +140,95 @@ impl Lanes for f64 {
     #[inline(always)]
     fn bits(mask: bool) -> u32 {
         u32::from(mask)
+    }
+}
+
+/// Two vectors side by side: their instructions interleave, which hides the latency of each.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct Two<V>(V, V);
+
+impl<V: Lanes> Lanes for Two<V> {
+    const WIDTH: usize = 2 * V::WIDTH;
+    type Mask = (V::Mask, V::Mask);
+    #[inline(always)]
+    fn splat(a: f64) -> Self {
+        Self(V::splat(a), V::splat(a))
+    }
+    #[inline(always)]
+    fn add(self, b: Self) -> Self {
+        Self(self.0.add(b.0), self.1.add(b.1))
+    }
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        Self(self.0.sub(b.0), self.1.sub(b.1))
+    }
+    #[inline(always)]
+    fn mul(self, b: Self) -> Self {
+        Self(self.0.mul(b.0), self.1.mul(b.1))
+    }
+    #[inline(always)]
+    fn div(self, b: Self) -> Self {
+        Self(self.0.div(b.0), self.1.div(b.1))
+    }
+    #[inline(always)]
+    fn min(self, b: Self) -> Self {
+        Self(self.0.min(b.0), self.1.min(b.1))
+    }
+    #[inline(always)]
+    fn max(self, b: Self) -> Self {
+        Self(self.0.max(b.0), self.1.max(b.1))
+    }
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        Self(self.0.mul_add(b.0, c.0), self.1.mul_add(b.1, c.1))
+    }
+    #[inline(always)]
+    fn neg_mul_add(self, b: Self, c: Self) -> Self {
+        Self(self.0.neg_mul_add(b.0, c.0), self.1.neg_mul_add(b.1, c.1))
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.abs(), self.1.abs())
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt(), self.1.sqrt())
+    }
+    #[inline(always)]
+    fn reciprocal_rough(self) -> Self {
+        Self(self.0.reciprocal_rough(), self.1.reciprocal_rough())
+    }
+    #[inline(always)]
+    fn lt(self, b: Self) -> Self::Mask {
+        (self.0.lt(b.0), self.1.lt(b.1))
+    }
+    #[inline(always)]
+    fn le(self, b: Self) -> Self::Mask {
+        (self.0.le(b.0), self.1.le(b.1))
+    }
+    #[inline(always)]
+    fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask {
+        (V::and(a.0, b.0), V::and(a.1, b.1))
+    }
+    #[inline(always)]
+    fn and_not(a: Self::Mask, b: Self::Mask) -> Self::Mask {
+        (V::and_not(a.0, b.0), V::and_not(a.1, b.1))
+    }
+    #[inline(always)]
+    fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask {
+        (V::or(a.0, b.0), V::or(a.1, b.1))
+    }
+    #[inline(always)]
+    fn or_else(self, mask: Self::Mask, other: Self) -> Self {
+        Self(
+            self.0.or_else(mask.0, other.0),
+            self.1.or_else(mask.1, other.1),
+        )
+    }
+    #[inline(always)]
+    fn bits(mask: Self::Mask) -> u32 {
+        V::bits(mask.0) | (V::bits(mask.1) << V::WIDTH)
     }
 }
 
@@ -218,15 +301,8 @@ mod x86 {
             Self(unsafe { _mm256_sqrt_pd(self.0) })
         }
         #[inline(always)]
-        fn div_rough(self, b: Self) -> Self {
-            Self(unsafe {
-                _mm256_cvtps_pd(_mm_div_ps(_mm256_cvtpd_ps(self.0), _mm256_cvtpd_ps(b.0)))
-            })
-        }
-        #[inline(always)]
-        fn sqrt_above(self) -> Self {
-            let rough = unsafe { _mm256_cvtps_pd(_mm_sqrt_ps(_mm256_cvtpd_ps(self.0))) };
-            Self(rough).mul(Self::splat(1.0 + 4e-7))
+        fn reciprocal_rough(self) -> Self {
+            Self(unsafe { _mm256_cvtps_pd(_mm_rcp_ps(_mm256_cvtpd_ps(self.0))) })
         }
         #[inline(always)]
         fn lt(self, b: Self) -> __m256d {
@@ -306,15 +382,8 @@ mod x86 {
             Self(unsafe { _mm512_sqrt_pd(self.0) })
         }
         #[inline(always)]
-        fn div_rough(self, b: Self) -> Self {
-            Self(unsafe {
-                _mm512_cvtps_pd(_mm256_div_ps(_mm512_cvtpd_ps(self.0), _mm512_cvtpd_ps(b.0)))
-            })
-        }
-        #[inline(always)]
-        fn sqrt_above(self) -> Self {
-            let rough = unsafe { _mm512_cvtps_pd(_mm256_sqrt_ps(_mm512_cvtpd_ps(self.0))) };
-            Self(rough).mul(Self::splat(1.0 + 4e-7))
+        fn reciprocal_rough(self) -> Self {
+            Self(unsafe { _mm512_rcp14_pd(self.0) })
         }
         #[inline(always)]
         fn lt(self, b: Self) -> __mmask8 {

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::kernel::{Cell, Course, Feed, Outcome, march};
+use super::lanes::Two;
 use crate::model::recurrence::observe;
 use crate::model::{
     Flight, Initial, Machine, ModelError, ModelImpact, Oscillator, Setting, SettledMotion,
@@ -176,25 +177,67 @@ pub fn map_cells(
     chosen: &[usize],
 ) -> Result<Vec<CellMotion>, ModelError> {
     check(machine, grid, settings)?;
-    if let Some(unit) = UnitMass::of(machine)
-        && settings.start.x == settings.start.y_or_x(machine)
-        && settings.start.vx == settings.start.vy_or_vx(machine)
-    {
-        let cells: Vec<Cell> = chosen
-            .iter()
-            .map(|&i| unit.cell(grid.at(i), &settings.start))
-            .collect();
-        let outcomes = march_all(&unit.course(settings), &cells, settings.kernel);
-        let chosen = outcomes
+    let starts: Vec<Start> = chosen
+        .iter()
+        .map(|&i| Start {
+            at: grid.at(i),
+            initial: settings.start,
+            phase: 0.0,
+        })
+        .collect();
+    Ok(march_from(machine, &starts, settings)?
+        .into_iter()
+        .map(|end| end.motion)
+        .collect())
+}
+
+/// A cell with its own start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Start {
+    /// (η, ρ)
+    pub at: (f64, f64),
+    /// Displacements and velocities; beyond the contact they are moved to it.
+    pub initial: Initial,
+    /// Phase of the drive, rad.
+    pub phase: f64,
+}
+
+/// What a cell settled on, and where it ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct End {
+    /// The motion.
+    pub motion: CellMotion,
+    /// A state of that motion.
+    pub initial: Initial,
+    /// Phase of the drive there, rad.
+    pub phase: f64,
+}
+
+/// March cells, each from its own start, in the fast kernel where machine and starts allow.
+///
+/// # Errors
+/// [`ModelError`] where a parameter is out of range.
+pub fn march_from(
+    machine: &Machine,
+    starts: &[Start],
+    settings: &MapSettings,
+) -> Result<Vec<End>, ModelError> {
+    let together = |i: &Initial| machine.y.is_none() || (i.x == i.y && i.vx == i.vy);
+    match UnitMass::of(machine) {
+        Some(unit) if starts.iter().all(|s| together(&s.initial)) => {
+            let cells: Vec<Cell> = starts.iter().map(|s| unit.cell(s)).collect();
+            let outcomes = march_all(&unit.course(settings), &cells, settings.kernel);
+            let end = |o: &Outcome| End {
+                motion: unit.judge(o, &settings.watch),
+                ..unit.end(o)
+            };
+            Ok(outcomes.par_iter().map(end).collect())
+        }
+        _ => starts
             .par_iter()
-            .map(|o| unit.judge(o, &settings.watch))
-            .collect();
-        return Ok(chosen);
+            .map(|s| exact_cell(machine, s, settings))
+            .collect(),
     }
-    chosen
-        .par_iter()
-        .map(|&i| exact_cell(machine, grid.at(i), settings))
-        .collect()
 }
 
 fn check(machine: &Machine, grid: &MapGrid, settings: &MapSettings) -> Result<(), ModelError> {
@@ -213,34 +256,40 @@ fn check(machine: &Machine, grid: &MapGrid, settings: &MapSettings) -> Result<()
         .try_for_each(|&rho| Setting::new(1.0, rho).check())
 }
 
-impl Initial {
-    fn y_or_x(&self, machine: &Machine) -> f64 {
-        if machine.y.is_some() { self.y } else { self.x }
-    }
-    fn vy_or_vx(&self, machine: &Machine) -> f64 {
-        if machine.y.is_some() {
-            self.vy
-        } else {
-            self.vx
-        }
-    }
-}
-
 /// One cell in the exact simulator.
-fn exact_cell(
-    machine: &Machine,
-    (eta, rho): (f64, f64),
-    settings: &MapSettings,
-) -> Result<CellMotion, ModelError> {
-    let setting = Setting::new(eta, rho);
-    let mut start = settings.start;
-    let (mx, my) = machine.mobility();
-    let depth = (start.x + start.y_or_x(machine) * my.signum() - machine.gap(rho)).max(0.0);
-    (start.x, start.y) = (start.x - mx * depth, start.y - my * depth);
-    let mut simulator = Simulator::new(machine, setting, start)?;
+fn exact_cell(machine: &Machine, s: &Start, settings: &MapSettings) -> Result<End, ModelError> {
+    let (eta, rho) = s.at;
+    let setting = Setting {
+        phase: s.phase,
+        ..Setting::new(eta, rho)
+    };
+    let mut simulator = Simulator::new(machine, setting, clear_of(machine, rho, s.initial))?;
     let settle = settings.watch.settle_periods * setting.period();
     simulator.advance(settle, &mut |_: &ModelImpact| {});
-    Ok(observe(&mut simulator, setting, &settings.watch).0)
+    let motion = observe(&mut simulator, setting, &settings.watch).0;
+    let now = simulator.state();
+    let initial = Initial {
+        x: now.x,
+        vx: now.vx,
+        y: now.y,
+        vy: now.vy,
+    };
+    Ok(End {
+        motion,
+        initial,
+        phase: simulator.phase(),
+    })
+}
+
+/// A start moved back to the contact where it lies beyond, each mass by its mobility.
+pub fn clear_of(machine: &Machine, rho: f64, mut start: Initial) -> Initial {
+    if machine.y.is_none() {
+        (start.y, start.vy) = (0.0, 0.0);
+    }
+    let (mx, my) = machine.mobility();
+    let depth = (start.x + start.y - machine.gap(rho)).max(0.0);
+    (start.x, start.y) = (start.x - mx * depth, start.y - my * depth);
+    start
 }
 
 /// A machine that is one mass of unit frequency, mass and drive in scaled quantities:
@@ -263,16 +312,40 @@ impl UnitMass {
         })
     }
 
+    /// Length and rate by which the quantities are scaled.
+    pub fn scales(&self) -> (f64, f64) {
+        let o = &self.oscillator;
+        (
+            o.drive_per_mass() / o.stiffness_per_mass(),
+            o.natural_frequency_ratio,
+        )
+    }
+
+    /// The machine in the scaled quantities: one nominal mass against a stop.
+    pub fn machine(&self) -> Machine {
+        Machine::single(self.oscillator.damping_ratio, self.restitution)
+    }
+
     /// A cell in the scaled quantities.
-    pub fn cell(&self, (eta, rho): (f64, f64), start: &Initial) -> Cell {
-        let rate = self.oscillator.natural_frequency_ratio;
-        let length = self.oscillator.drive_per_mass() / self.oscillator.stiffness_per_mass();
+    pub fn cell(&self, s: &Start) -> Cell {
+        let (length, rate) = self.scales();
         Cell {
-            eta: eta / rate,
-            rho: rho / length,
-            x: start.x / length,
-            v: start.vx / (length * rate),
-            phase: 0.0,
+            eta: s.at.0 / rate,
+            rho: s.at.1 / length,
+            x: s.initial.x / length,
+            v: s.initial.vx / (length * rate),
+            phase: s.phase,
+        }
+    }
+
+    /// Where an outcome ended, in the machine's own quantities.
+    pub fn end(&self, o: &Outcome) -> End {
+        let (length, rate) = self.scales();
+        let initial = Initial::both(o.end.x * length, o.end.v * length * rate);
+        End {
+            motion: o.motion,
+            initial,
+            phase: o.end.phase,
         }
     }
 
@@ -282,8 +355,7 @@ impl UnitMass {
         if outcome.motion != SettledMotion::Chaotic {
             return outcome.motion;
         }
-        let end = outcome.end;
-        let machine = Machine::single(self.oscillator.damping_ratio, self.restitution);
+        let (end, machine) = (outcome.end, self.machine());
         let setting = Setting {
             phase: end.phase,
             ..Setting::new(end.eta, end.rho)
@@ -360,14 +432,14 @@ pub fn march_all(course: &Course, cells: &[Cell], kernel: Option<Kernel>) -> Vec
 }
 
 /// Greatest β for which the short polynomial of the decay is exact to rounding.
-const LIGHT_DAMPING: f64 = 0.1;
+const LIGHT_DAMPING: f64 = 0.08;
 
 /// March a feed with a kernel that this processor runs.
 pub fn run(kernel: Kernel, course: &Course, feed: &mut impl Feed) {
     let light = course.damping_ratio <= LIGHT_DAMPING;
     match kernel {
-        Kernel::Scalar if light => march::<f64, 9>(course, feed),
-        Kernel::Scalar => march::<f64, 17>(course, feed),
+        Kernel::Scalar if light => march::<Two<f64>, 8>(course, feed),
+        Kernel::Scalar => march::<Two<f64>, 17>(course, feed),
         // SAFETY: `march_all` and the caller asked the processor for the instruction set.
         #[cfg(target_arch = "x86_64")]
         Kernel::Avx2 => unsafe { x86::march_avx2(light, course, feed) },
@@ -375,30 +447,30 @@ pub fn run(kernel: Kernel, course: &Course, feed: &mut impl Feed) {
         #[cfg(target_arch = "x86_64")]
         Kernel::Avx512 => unsafe { x86::march_avx512(light, course, feed) },
         #[cfg(not(target_arch = "x86_64"))]
-        _ => march::<f64, 17>(course, feed),
+        _ => march::<Two<f64>, 17>(course, feed),
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use super::super::kernel::{Course, Feed, march};
-    use super::super::lanes::{Avx2, Avx512};
+    use super::super::lanes::{Avx2, Avx512, Two};
 
     #[target_feature(enable = "avx2,fma")]
     pub fn march_avx2(light: bool, course: &Course, feed: &mut impl Feed) {
         if light {
-            march::<Avx2, 9>(course, feed)
+            march::<Two<Avx2>, 8>(course, feed)
         } else {
-            march::<Avx2, 17>(course, feed)
+            march::<Two<Avx2>, 17>(course, feed)
         }
     }
 
     #[target_feature(enable = "avx512f,avx2,fma")]
     pub fn march_avx512(light: bool, course: &Course, feed: &mut impl Feed) {
         if light {
-            march::<Avx512, 9>(course, feed)
+            march::<Two<Avx512>, 8>(course, feed)
         } else {
-            march::<Avx512, 17>(course, feed)
+            march::<Two<Avx512>, 17>(course, feed)
         }
     }
 }

@@ -1,9 +1,19 @@
 //! Maps: the vector kernel against the exact simulator, and invariants of maps.
 
-use super::map::Kernel;
+use super::basins::{BasinGrid, Starts, basins};
+use super::continuation::EdgeKind;
+use super::lyapunov::Lyapunov;
+use super::map::{Kernel, even};
+use super::regions::{Slice, slices_at};
+use super::shard::{MapPart, MapRequest, MergeError, merge, part};
+use super::sweep::{Sweep, SweepPoint, sweep};
 use super::*;
 
-use crate::model::{Machine, Restitution};
+use crate::model::orbit::stable_orbit;
+use crate::model::{
+    Initial, Machine, Restitution, Setting, SettledMotion, Simulator, Watch, eta_s2, rho_grazing,
+    rho_s1, rho_s2,
+};
 
 const KERNELS: [Kernel; 3] = [Kernel::Scalar, Kernel::Avx2, Kernel::Avx512];
 
@@ -45,4 +55,216 @@ fn valid_kernel_agrees_with_the_exact_simulator() {
             differ.len()
         );
     }
+}
+
+#[test]
+fn prop_parts_make_up_the_whole_map_and_nothing_else_does() {
+    let grid = MapGrid::even((0.7, 2.0, 13), (0.1, 3.0, 11));
+    let machine = Machine::symmetric(0.07, 0.9);
+    let request = MapRequest::new(machine.clone(), grid.clone(), MapSettings::default());
+    let parts: Vec<MapPart> = (0..3).map(|k| part(&request, k, 3).unwrap()).collect();
+    let whole = region_map(&machine, &grid, &MapSettings::default()).unwrap();
+    assert_eq!(merge(&parts).unwrap(), whole);
+    let text = serde_json::to_string(&parts[1]).unwrap();
+    assert_eq!(serde_json::from_str::<MapPart>(&text).unwrap(), parts[1]);
+    assert_eq!(
+        merge(&parts[..2]),
+        Err(MergeError::Missing {
+            numbers: vec![2],
+            of: 3
+        })
+    );
+    let doubled = [parts[0].clone(), parts[0].clone()];
+    assert_eq!(merge(&doubled), Err(MergeError::Doubled { number: 0 }));
+    let other = MapRequest {
+        machine: Machine::symmetric(0.07, 0.8),
+        ..request
+    };
+    let foreign = [parts[0].clone(), part(&other, 1, 3).unwrap()];
+    assert_eq!(
+        merge(&foreign),
+        Err(MergeError::Foreign { number: 1, of: 3 })
+    );
+    let mut short = parts.clone();
+    short[2].cells.pop();
+    assert!(matches!(
+        merge(&short),
+        Err(MergeError::Damaged { number: 2, .. })
+    ));
+}
+
+#[test]
+fn prop_maps_do_not_depend_on_the_number_of_threads() {
+    let grid = MapGrid::even((0.7, 3.0, 17), (0.05, 3.0, 13));
+    let machine = Machine::symmetric(0.07, 0.9);
+    let with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| region_map(&machine, &grid, &MapSettings::default()).unwrap())
+    };
+    assert_eq!(with(1), with(3));
+}
+
+#[test]
+fn valid_edges_by_continuation_are_the_closed_forms() {
+    let machine = Machine::symmetric(0.07, 0.9);
+    let settings = AtlasSettings {
+        grid: MapGrid::even((0.9, 0.9, 1), (0.1, 6.0, 60)),
+        largest_p: 2,
+        largest_n: 2,
+        map: MapSettings::default(),
+    };
+    let at = |eta: f64| slices_at(&machine, eta, &settings).unwrap();
+    let one = |slices: &[Slice]| {
+        slices
+            .iter()
+            .find(|s| (s.p, s.n) == (1, 1))
+            .unwrap()
+            .clone()
+    };
+    let s = one(&at(0.9));
+    assert_eq!(s.high.kind, EdgeKind::PeriodDoubling);
+    assert!((s.high.orbit.rho - rho_s1(&machine, 0.9, 1).unwrap().rho).abs() < 1e-6);
+    let s = one(&at(1.3));
+    assert_eq!(s.high.kind, EdgeKind::SaddleNode);
+    assert!((s.high.orbit.rho - rho_s2(&machine, 1.3, 1).unwrap().rho).abs() < 1e-6);
+    // the doubled motion branches off where z = 1 ends
+    let two = at(0.9).into_iter().find(|s| (s.p, s.n) == (2, 2)).unwrap();
+    assert!((two.low.orbit.rho - rho_s1(&machine, 0.9, 1).unwrap().rho).abs() < 1e-3);
+}
+
+#[test]
+fn prop_curves_and_brute_force_agree() {
+    let settings = AtlasSettings {
+        grid: MapGrid::even((0.6, 2.4, 19), (0.05, 4.0, 24)),
+        largest_p: 4,
+        largest_n: 4,
+        map: MapSettings::default(),
+    };
+    for (beta, r) in [(0.07, 0.9), (0.05, 0.0)] {
+        let atlas = atlas(&Machine::symmetric(beta, r), &settings).unwrap();
+        let a = &atlas.agreement;
+        assert!(a.compared > 900);
+        let share = a.differing.len() as f64 / a.compared as f64;
+        assert!(share < 0.01, "R {r}: {share} {:?}", a.differing);
+    }
+}
+
+#[test]
+fn valid_preloaded_cells_are_joined_or_rest_once_a_period() {
+    let grid = MapGrid::even((0.5, 2.0, 7), (-1.3, -0.7, 7));
+    let machine = Machine::symmetric(0.1, 0.0);
+    let map = region_map(&machine, &grid, &MapSettings::default()).unwrap();
+    let exact = region_map(&slow_path(&machine), &grid, &MapSettings::default()).unwrap();
+    assert_eq!(map.cells, exact.cells);
+    for (i, cell) in map.cells.iter().enumerate() {
+        let joined = *cell == SettledMotion::Joined;
+        assert_eq!(
+            joined,
+            grid.at(i).1 < -1.0 + 1e-9,
+            "{:?} {cell:?}",
+            grid.at(i)
+        );
+    }
+}
+
+fn walk_eta(first: f64, last: f64, count: usize, rho: f64) -> Sweep {
+    let steps = even((first, last, count))
+        .into_iter()
+        .map(|eta| (eta, rho))
+        .collect();
+    let watch = Watch {
+        settle_periods: 150.0,
+        watch_periods: 40.0,
+        ..Watch::default()
+    };
+    Sweep {
+        steps,
+        start: Initial::rest(),
+        watch,
+    }
+}
+
+#[test]
+fn valid_sweeps_show_hysteresis_between_grazing_and_s2() {
+    let machine = Machine::symmetric(0.07, 0.9);
+    let s2 = eta_s2(&machine, 2.0, 1).unwrap().eta;
+    let is_one = |p: &SweepPoint| matches!(p.motion, SettledMotion::Periodic { p: 1, n: 1, .. });
+    let up = sweep(&machine, &walk_eta(1.1, 1.7, 121, 2.0), |_| true).unwrap();
+    let jump = up.iter().rfind(|p| is_one(p)).unwrap();
+    assert!(jump.eta <= s2 && jump.eta > s2 - 0.03, "{} {s2}", jump.eta);
+    // X of a z = 1 motion of equal masses is greatest at the contact, or before
+    assert!(
+        up.iter()
+            .filter(|p| is_one(p))
+            .all(|p| p.x_max >= 2.0 - 1e-9 && p.x_max < 2.0 + 1e-9)
+    );
+    let down = sweep(&machine, &walk_eta(1.7, 1.1, 121, 2.0), |_| true).unwrap();
+    let first = down.iter().find(|p| !p.closing_speeds.is_empty()).unwrap();
+    assert!(
+        (rho_grazing(&machine, first.eta) - 2.0).abs() < 0.1,
+        "{}",
+        first.eta
+    );
+}
+
+#[test]
+fn valid_lyapunov_exponent_is_that_of_the_multipliers() {
+    let machine = Machine::single(0.07, 0.9);
+    let setting = Setting::new(1.2, 2.0);
+    let orbit = stable_orbit(&machine, setting, 1).unwrap().unwrap();
+    let s = orbit.after;
+    let start = Initial {
+        x: s.x,
+        vx: s.vx,
+        ..Initial::rest()
+    };
+    let mut simulator = Simulator::new(&machine, orbit.setting, start).unwrap();
+    let mut lyapunov = Lyapunov::new(&machine, 1.2);
+    simulator.advance(2000.0 * setting.period(), &mut lyapunov);
+    let want = orbit.multipliers[0].norm().ln() / setting.period();
+    assert!(
+        (lyapunov.exponent() - want).abs() < 1e-3,
+        "{} {want}",
+        lyapunov.exponent()
+    );
+    // chaos where the map says so
+    let plan = Sweep {
+        steps: vec![(2.0, 0.2)],
+        ..walk_eta(1.0, 2.0, 2, 0.2)
+    };
+    let point = &sweep(&machine, &plan, |_| true).unwrap()[0];
+    let positive = point.lyapunov.unwrap() > 0.0;
+    assert_eq!(positive, !point.motion.is_periodic(), "{point:?}");
+}
+
+#[test]
+fn valid_basins_of_fig5_shrink_with_restitution() {
+    // in the hysteresis region, at the greatest closing speeds: z = 1 is easily reached at
+    // R = 0 and hardly at R = 0.9
+    let share = |r: f64, eta: f64| {
+        let grid = BasinGrid {
+            x: (-6.0, 3.0, 31),
+            vx: (-6.0, 6.0, 31),
+            starts: Starts::BothMasses,
+        };
+        let machine = Machine::symmetric(0.005, r);
+        let long = Watch {
+            settle_periods: 600.0,
+            ..Watch::default()
+        };
+        let settings = MapSettings {
+            watch: long,
+            ..MapSettings::default()
+        };
+        let b = basins(&machine, Setting::new(eta, 3.0), &grid, &settings).unwrap();
+        let one = |c: &&Option<SettledMotion>| {
+            matches!(c, Some(SettledMotion::Periodic { p: 1, n: 1, .. }))
+        };
+        b.cells.iter().filter(one).count() as f64 / b.cells.len() as f64
+    };
+    let (plastic, elastic) = (share(0.0, 1.19), share(0.9, 1.74));
+    assert!(plastic > 0.5 && elastic < 0.1, "{plastic} {elastic}");
 }

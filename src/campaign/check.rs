@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
 use super::faults::{Fault, Severity};
-use super::records::Opener;
+use super::listing::Opener;
 use super::resolved::{RecordEntry, ResolvedCampaign};
 use crate::event::Seen;
 use crate::event::detect::{DetectSettings, Detection, detect};
@@ -108,12 +108,20 @@ fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Sourc
         id: record.id,
         file: entry.file.clone(),
     };
-    Checked { faults, usable, prints: vec![print] }
+    Checked {
+        faults,
+        usable,
+        prints: vec![print],
+    }
 }
 
 /// A contact that closes again and again while no velocity changes is no contact of the masses.
 fn contact_without_jump(record: &Record, found: &Detection) -> Option<Flag> {
-    let supported = found.impacts.iter().filter(|i| i.seen == Seen::Both).count();
+    let supported = found
+        .impacts
+        .iter()
+        .filter(|i| i.seen == Seen::Both)
+        .count();
     let channel = record.channel(Role::Contact)?;
     (found.unsupported_pulses >= 3 && found.unsupported_pulses > 2 * supported).then(|| Flag {
         code: "contact_without_jump".to_owned(),
@@ -137,7 +145,10 @@ fn fingerprint(record: &Record) -> Option<[u8; 32]> {
     let mut hash = Sha256::new();
     for channel in &record.channels {
         hash.update(channel.role.name().as_bytes());
-        channel.values.iter().for_each(|v| hash.update(v.to_le_bytes()));
+        channel
+            .values
+            .iter()
+            .for_each(|v| hash.update(v.to_le_bytes()));
     }
     Some(hash.finalize().into())
 }
@@ -166,9 +177,17 @@ fn duplicates(prints: &[Print]) -> Vec<Fault> {
 
 /// Records much shorter than the usual one of the campaign.
 fn cut_short(prints: &[Print]) -> Vec<Fault> {
-    let mut lengths: Vec<usize> = prints.iter().map(|p| p.samples).filter(|n| *n > 0).collect();
+    let mut lengths: Vec<usize> = prints
+        .iter()
+        .map(|p| p.samples)
+        .filter(|n| *n > 0)
+        .collect();
     lengths.sort_unstable();
-    let Some(usual) = lengths.get(lengths.len() / 2).copied().filter(|_| lengths.len() >= 3) else {
+    let Some(usual) = lengths
+        .get(lengths.len() / 2)
+        .copied()
+        .filter(|_| lengths.len() >= 3)
+    else {
         return Vec::new();
     };
     let short = |p: &&Print| p.samples > 0 && 10 * p.samples < 8 * usual;
@@ -187,7 +206,12 @@ fn cut_short(prints: &[Print]) -> Vec<Fault> {
 }
 
 /// Codes that the listing of the records tells already.
-const LISTED: [&str; 4] = ["missing_channel", "wrong_unit", "unit_missing", "unreadable_file"];
+const LISTED: [&str; 4] = [
+    "missing_channel",
+    "wrong_unit",
+    "unit_missing",
+    "unreadable_file",
+];
 
 fn fault_of(flag: &Flag, record: &Record, file: &Path) -> Fault {
     Fault {
@@ -199,6 +223,10 @@ fn fault_of(flag: &Flag, record: &Record, file: &Path) -> Fault {
         },
         what: flag.message.clone(),
         remedy: flag.remedy.clone(),
-        severity: if flag.excludes { Severity::Record } else { Severity::Note },
+        severity: if flag.excludes {
+            Severity::Record
+        } else {
+            Severity::Note
+        },
     }
 }

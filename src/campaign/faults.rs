@@ -72,10 +72,12 @@ impl Faults {
         let mut groups: Vec<Vec<&Fault>> = Vec::new();
         let mut index: HashMap<(&str, Severity), usize> = HashMap::new();
         for fault in &self.0 {
-            let at = *index.entry((&fault.what, fault.severity)).or_insert_with(|| {
-                groups.push(Vec::new());
-                groups.len() - 1
-            });
+            let at = *index
+                .entry((&fault.what, fault.severity))
+                .or_insert_with(|| {
+                    groups.push(Vec::new());
+                    groups.len() - 1
+                });
             groups[at].push(fault);
         }
         groups

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::records::Opener;
+use super::listing::Opener;
 use crate::record::Role;
 use crate::record::source::{ChannelInfo, DatasetInfo, Samples, Source};
 use crate::units::{self, Dimension};
@@ -84,11 +84,16 @@ pub fn look(folder: &Path, open: Opener<'_>) -> Found {
 }
 
 fn slashed(path: &Path) -> String {
-    path.iter().map(|p| p.to_string_lossy()).collect::<Vec<_>>().join("/")
+    path.iter()
+        .map(|p| p.to_string_lossy())
+        .collect::<Vec<_>>()
+        .join("/")
 }
 
 fn collect(folder: &Path, depth: usize, paths: &mut Vec<PathBuf>) {
-    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return;
+    };
     for entry in entries.filter_map(Result::ok) {
         let hidden = entry.file_name().to_string_lossy().starts_with('.');
         let path = entry.path();
@@ -102,39 +107,55 @@ fn collect(folder: &Path, depth: usize, paths: &mut Vec<PathBuf>) {
 
 /// Files that hold no records by their ending.
 fn is_other(path: &Path) -> bool {
-    const OTHER: [&str; 10] =
-        ["toml", "json", "md", "pdf", "svg", "png", "py", "m", "tex", "zip"];
+    const OTHER: [&str; 10] = [
+        "toml", "json", "md", "pdf", "svg", "png", "py", "m", "tex", "zip",
+    ];
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     ending.is_none_or(|e| OTHER.contains(&e.as_str()))
 }
 
 /// Whether a file is a CSV table with a column `file`.
 fn is_run_table(path: &Path) -> bool {
-    if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("csv")) {
+    if path
+        .extension()
+        .is_none_or(|e| !e.eq_ignore_ascii_case("csv"))
+    {
         return false;
     }
-    let Ok(mut reader) = csv::ReaderBuilder::new().flexible(true).comment(Some(b'#')).from_path(path)
+    let Ok(mut reader) = csv::ReaderBuilder::new()
+        .flexible(true)
+        .comment(Some(b'#'))
+        .from_path(path)
     else {
         return false;
     };
-    reader.headers().is_ok_and(|h| h.iter().any(|name| name.trim() == "file"))
+    reader
+        .headers()
+        .is_ok_and(|h| h.iter().any(|name| name.trim() == "file"))
 }
 
 fn holds_record(source: &dyn Source) -> bool {
-    source.datasets().iter().any(|d| d.channels.iter().any(|c| c.samples >= 16))
+    source
+        .datasets()
+        .iter()
+        .any(|d| d.channels.iter().any(|c| c.samples >= 16))
 }
 
 /// One glob a folder and ending; `**` where the files lie in many folders.
 fn globs(paths: &[PathBuf]) -> Vec<String> {
     let ending = |p: &PathBuf| {
-        p.extension().map(|e| format!("*.{}", e.to_string_lossy())).unwrap_or_default()
+        p.extension()
+            .map(|e| format!("*.{}", e.to_string_lossy()))
+            .unwrap_or_default()
     };
     let mut all: Vec<String> = paths
         .iter()
-        .map(|p| match p.parent().map(slashed).filter(|f| !f.is_empty()) {
-            Some(folder) => format!("{folder}/{}", ending(p)),
-            None => ending(p),
-        })
+        .map(
+            |p| match p.parent().map(slashed).filter(|f| !f.is_empty()) {
+                Some(folder) => format!("{folder}/{}", ending(p)),
+                None => ending(p),
+            },
+        )
         .collect();
     all.sort();
     all.dedup();
@@ -186,8 +207,9 @@ fn channels(source: &dyn Source, dataset: usize, set: &DatasetInfo) -> Vec<Seen>
 
 fn range(values: &[f64]) -> Option<[f64; 2]> {
     let finite = values.iter().filter(|v| v.is_finite());
-    let (low, high) = finite
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+        (l.min(*v), h.max(*v))
+    });
     (low <= high).then_some([low, high])
 }
 
@@ -196,7 +218,10 @@ fn two_levels(values: &[f64]) -> Option<[f64; 2]> {
     let [low, high] = range(values)?;
     let near = |level: f64| {
         let width = 0.15 * (high - low);
-        values.iter().filter(|v| (**v - level).abs() < width).count()
+        values
+            .iter()
+            .filter(|v| (**v - level).abs() < width)
+            .count()
     };
     let (below, above) = (near(low), near(high));
     let kept = (below + above) as f64 >= 0.9 * values.len() as f64;
@@ -205,7 +230,10 @@ fn two_levels(values: &[f64]) -> Option<[f64; 2]> {
         .filter(|w| (w[0] < 0.5 * (low + high)) != (w[1] < 0.5 * (low + high)))
         .count();
     // a sine lingers at its crests too, but passes more slowly than two samples
-    let steep = values.windows(2).filter(|w| (w[1] - w[0]).abs() > 0.4 * (high - low)).count();
+    let steep = values
+        .windows(2)
+        .filter(|w| (w[1] - w[0]).abs() > 0.4 * (high - low))
+        .count();
     (high > low && kept && below > 0 && above > 0 && crossings > 0 && 2 * steep >= crossings)
         .then_some([low, high])
 }
@@ -267,7 +295,11 @@ fn score(channel: &Seen, role: Role, two_sided: bool) -> u32 {
     );
     let alive = channel.range.is_some_and(|[low, high]| high > low);
     let base = 1 + 4 * u32::from(alive) + u32::from(channel.unit.is_some());
-    match (fits, role.dimension().is_some() || kind == Kind::Frame, side(&channel.name)) {
+    match (
+        fits,
+        role.dimension().is_some() || kind == Kind::Frame,
+        side(&channel.name),
+    ) {
         (false, _, _) => 0,
         (true, false, _) => base,
         (true, true, Some('y')) if of_y => base + 2,
@@ -300,7 +332,9 @@ fn kind(channel: &Seen) -> Kind {
         return Kind::Contact;
     }
     let unit = channel.unit.as_deref().and_then(units::parse_unit);
-    let of_name = units::split_unit(&channel.name).1.and_then(units::parse_split_unit);
+    let of_name = units::split_unit(&channel.name)
+        .1
+        .and_then(units::parse_split_unit);
     match unit.or(of_name).map(|u| u.dimension) {
         Some(Dimension::Velocity) => return Kind::Velocity,
         Some(Dimension::Length) => return Kind::Displacement,
@@ -361,7 +395,9 @@ mod tests {
 
     #[test]
     fn valid_a_contact_keeps_to_two_levels_and_a_sine_does_not() {
-        let contact: Vec<f64> = (0..500).map(|i| if i % 50 < 3 { 5.0 } else { 0.01 }).collect();
+        let contact: Vec<f64> = (0..500)
+            .map(|i| if i % 50 < 3 { 5.0 } else { 0.01 })
+            .collect();
         let sine: Vec<f64> = (0..500).map(|i| (f64::from(i) * 0.1).sin()).collect();
         assert!(two_levels(&contact).is_some());
         assert!(two_levels(&sine).is_none());

@@ -5,6 +5,7 @@ mod channels;
 pub mod check;
 pub mod faults;
 pub mod guess;
+mod listing;
 mod names;
 mod quantity;
 pub mod read;
@@ -12,8 +13,9 @@ mod records;
 mod resolve;
 pub mod resolved;
 mod run_table;
+mod settings;
 pub mod template;
 pub mod written;
 
-pub use records::Opener;
+pub use listing::Opener;
 pub use resolve::{Outcome, load};

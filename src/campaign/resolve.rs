@@ -6,9 +6,10 @@ use toml::Spanned;
 
 use super::channels;
 use super::faults::{Faults, Notebook, Severity};
+use super::listing::{Opener, Shared};
 use super::quantity::Desk;
 use super::read::{self, Text};
-use super::records::{self, Opener, Shared};
+use super::records;
 use super::resolved::{Analysis, RecordEntry, Report, ResolvedCampaign, Rig};
 use super::written::{self, Flight, Language, Machine, Paper, Placed, WrittenCampaign};
 use crate::units::Dimension;
@@ -69,7 +70,10 @@ fn resolve(
         desk,
     );
     let machine = machine.unwrap_or(Machine::Double);
-    let channels = channels::resolve(&written.channels, machine, desk);
+    let channels = match written.published {
+        Some(_) => Vec::new(),
+        None => channels::resolve(&written.channels, machine, desk),
+    };
     let time = written.records.time.as_ref().map(|t| t.get_ref().0.clone());
     let folder = path.parent().unwrap_or(Path::new(""));
     let shared = Shared {
@@ -77,7 +81,10 @@ fn resolve(
         channels: &channels,
         time: time.as_ref(),
     };
-    let mut records = records::resolve(&written.records, shared, open, desk);
+    let mut records = match written.published {
+        Some(_) => Vec::new(),
+        None => records::resolve(&written.records, shared, open, desk),
+    };
     exclude(&mut records, &written.analysis.exclude, desk);
     let name = name(&written.campaign.name, folder);
     let flight = written
@@ -86,7 +93,11 @@ fn resolve(
         .as_ref()
         .map_or(Flight::Harmonic, |f| *f.get_ref());
     demand_one_mass(machine, flight, &written.campaign.flight, desk);
-    let run_table = written.records.run_table.as_ref().map(|t| folder.join(t.get_ref()));
+    let run_table = written
+        .records
+        .run_table
+        .as_ref()
+        .map(|t| folder.join(t.get_ref()));
     ResolvedCampaign {
         run_table,
         machine,
@@ -104,6 +115,7 @@ fn resolve(
         channels,
         time,
         records,
+        published: written.published.clone(),
     }
 }
 

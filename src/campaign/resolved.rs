@@ -37,6 +37,9 @@ pub struct ResolvedCampaign {
     pub analysis: Analysis,
     /// How the report looks.
     pub report: Report,
+    /// Published speeds to be identified from, instead of records.
+    #[serde(default)]
+    pub published: Option<super::written::Published>,
 }
 
 /// Nominal values of the rig; `None`: not stated.
@@ -99,8 +102,6 @@ pub struct RecordEntry {
     pub dataset: Option<usize>,
     /// The setting as stated.
     pub setting: Setting,
-    /// How it was excited.
-    pub excitation: Excitation,
     /// Whether `exclude` names it.
     pub excluded: bool,
 }
@@ -113,7 +114,7 @@ impl ResolvedCampaign {
 
     /// Whether a harmonic drive must be seen in a record.
     pub fn driven(&self, entry: &RecordEntry) -> bool {
-        self.flight == Flight::Harmonic && entry.excitation == Excitation::Harmonic
+        self.flight == Flight::Harmonic && entry.setting.excitation == Excitation::Harmonic
     }
 
     /// What [`crate::record::calibrate::calibrate`] needs for one of its records.

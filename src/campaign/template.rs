@@ -29,7 +29,11 @@ fn has_role(found: &Found, role: Role) -> bool {
 
 fn head(text: &mut String, name: &str, found: &Found) -> std::fmt::Result {
     let two = [Role::VelocityY, Role::DisplacementY, Role::AccelerationY];
-    let machine = if two.iter().any(|r| has_role(found, *r)) { "double" } else { "single" };
+    let machine = if two.iter().any(|r| has_role(found, *r)) {
+        "double"
+    } else {
+        "single"
+    };
     writeln!(
         text,
         "# A campaign for impactid, guessed from {} files ({}); look through every line.\n\
@@ -59,17 +63,26 @@ fn records(text: &mut String, found: &Found) -> std::fmt::Result {
         text.write_str(RUN_TABLE)?;
     }
     if !found.timed {
-        writeln!(text, "sample_rate = \"2 kHz\"       # FILL IN: the files do not tell")?;
+        writeln!(
+            text,
+            "sample_rate = \"2 kHz\"       # FILL IN: the files do not tell"
+        )?;
     }
     let attributes = attributes(found);
     let lacks = |key: &str| !attributes.iter().any(|(k, _)| *k == key);
     if found.run_table.is_none() && lacks("clearance") {
-        writeln!(text, "# clearance = \"1.0 mm\"      # r, half the gap between two masses; the \
-                        gap to a stop")?;
+        writeln!(
+            text,
+            "# clearance = \"1.0 mm\"      # r, half the gap between two masses; the \
+                        gap to a stop"
+        )?;
     }
     text.write_str(RECORD_DEFAULTS)?;
     if !attributes.is_empty() && found.run_table.is_none() {
-        writeln!(text, "\n# Attributes of the files that hold the setting, the unit in brackets")?;
+        writeln!(
+            text,
+            "\n# Attributes of the files that hold the setting, the unit in brackets"
+        )?;
         writeln!(text, "[records.attributes]")?;
         for (key, value) in &attributes {
             writeln!(text, "{key} = {}", quoted(value))?;
@@ -80,9 +93,23 @@ fn records(text: &mut String, found: &Found) -> std::fmt::Result {
 
 /// Which attributes may hold the setting; where the name bears no unit, the usual one.
 fn attributes(found: &Found) -> Vec<(&'static str, String)> {
-    const KEYS: [(&str, &[&str], Option<(Dimension, &str)>); 4] = [
-        ("clearance", &["clearance", "gap"], Some((Dimension::Length, "mm"))),
-        ("drive_frequency", &["freq"], Some((Dimension::Frequency, "Hz"))),
+    /// Key, stems of attribute names, dimension and usual unit.
+    type Key = (
+        &'static str,
+        &'static [&'static str],
+        Option<(Dimension, &'static str)>,
+    );
+    const KEYS: [Key; 4] = [
+        (
+            "clearance",
+            &["clearance", "gap"],
+            Some((Dimension::Length, "mm")),
+        ),
+        (
+            "drive_frequency",
+            &["freq"],
+            Some((Dimension::Frequency, "Hz")),
+        ),
         ("drive_amplitude", &["amplitude"], None),
         ("sweep", &["sweep", "direction"], None),
     ];
@@ -116,12 +143,17 @@ fn channels(text: &mut String, found: &Found) -> std::fmt::Result {
     text.write_str(CHANNELS)?;
     let mut named = 0;
     for role in Role::ALL {
-        let Some(channel) = found.channels.iter().find(|c| c.role == Some(role)) else { continue };
+        let Some(channel) = found.channels.iter().find(|c| c.role == Some(role)) else {
+            continue;
+        };
         table(text, role, channel)?;
         named += 1;
     }
     if named == 0 {
-        writeln!(text, "# FILL IN: no channel could be guessed\n# [channels.velocity_x]\n# channel = \"…\"\n")?;
+        writeln!(
+            text,
+            "# FILL IN: no channel could be guessed\n# [channels.velocity_x]\n# channel = \"…\"\n"
+        )?;
     }
     Ok(())
 }
@@ -141,27 +173,43 @@ fn table(text: &mut String, role: Role, channel: &Seen) -> std::fmt::Result {
     writeln!(text, "[channels.{}]", role.name())?;
     writeln!(text, "channel = {}", quoted(&channel.name))?;
     let known = channel.unit.as_deref().and_then(units::parse_unit);
-    let of_name = units::split_unit(&channel.name).1.and_then(units::parse_split_unit);
+    let of_name = units::split_unit(&channel.name)
+        .1
+        .and_then(units::parse_split_unit);
     let unit = known.or(of_name);
     match (known, unit.and_then(units::symbol_of)) {
         (Some(_), _) => writeln!(text, "# unit = as the file states")?,
-        (None, Some(symbol)) => writeln!(text, "unit = \"{symbol}\"                 # from its name")?,
-        (None, None) => writeln!(text, "# unit = \"V\"               # FILL IN: the file states none")?,
+        (None, Some(symbol)) => {
+            writeln!(text, "unit = \"{symbol}\"                 # from its name")?
+        }
+        (None, None) => writeln!(
+            text,
+            "# unit = \"V\"               # FILL IN: the file states none"
+        )?,
     }
     let volts = unit.is_none_or(|u| u.dimension == Dimension::Voltage);
     match (role.dimension(), role) {
         (Some(dimension), _) if volts => {
             let symbol = dimension.si_symbol().replace('²', "2");
-            writeln!(text, "# scale = \"0.05 {symbol} per V\"   # FILL IN: what one volt stands for")?;
+            writeln!(
+                text,
+                "# scale = \"0.05 {symbol} per V\"   # FILL IN: what one volt stands for"
+            )?;
         }
         (None, Role::Contact) => threshold(text, channel, unit)?,
         _ => {}
     }
     if role.dimension().is_some() {
-        writeln!(text, "sign = 1                     # -1 where it counts away from the other mass")?;
+        writeln!(
+            text,
+            "sign = 1                     # -1 where it counts away from the other mass"
+        )?;
     }
     if matches!(role, Role::VelocityX | Role::VelocityY) {
-        writeln!(text, "# high_pass = \"0.5 Hz\"       # corner of an integrator's high-pass")?;
+        writeln!(
+            text,
+            "# high_pass = \"0.5 Hz\"       # corner of an integrator's high-pass"
+        )?;
     }
     writeln!(text)
 }
@@ -171,9 +219,15 @@ fn threshold(text: &mut String, channel: &Seen, unit: Option<units::Unit>) -> st
     match channel.levels {
         Some([low, high]) => {
             let level = 0.5 * (low + high);
-            writeln!(text, "threshold = \"{level:.4} {symbol}\"      # midway between its two levels")
+            writeln!(
+                text,
+                "threshold = \"{level:.4} {symbol}\"      # midway between its two levels"
+            )
         }
-        None => writeln!(text, "# threshold = \"2.5 {symbol}\"   # level between open and closed"),
+        None => writeln!(
+            text,
+            "# threshold = \"2.5 {symbol}\"   # level between open and closed"
+        ),
     }
 }
 

@@ -33,6 +33,19 @@ pub struct WrittenCampaign {
     pub analysis: Analysis,
     /// How the report looks.
     pub report: Report,
+    /// Published speeds to be identified from, instead of records.
+    pub published: Option<Published>,
+}
+
+/// `[published]`: a table of published closing speeds, and values of β that it is tested against.
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Published {
+    /// CSV table, relative to campaign.toml's folder.
+    pub speeds: String,
+    /// Damping ratios that were printed with the speeds.
+    #[serde(default)]
+    pub damping_ratio_hypotheses: Vec<f64>,
 }
 
 /// `[campaign]`.
@@ -47,25 +60,8 @@ pub struct About {
     pub flight: Placed<Flight>,
 }
 
-/// What acts on the masses between impacts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Flight {
-    /// Springs and a harmonic drive.
-    Harmonic,
-    /// No spring: a constant force toward the stop, such as weight on an inclined track.
-    ConstantForce,
-}
-
-/// How a record was excited.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Excitation {
-    /// A harmonic drive.
-    Harmonic,
-    /// A blow or a release, then nothing.
-    FreeDecay,
-}
+pub use crate::event::detect::FlightKind as Flight;
+pub use crate::record::Excitation;
 
 /// `[records]`.
 #[derive(Debug, Clone, Default, Deserialize)]

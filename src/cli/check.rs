@@ -33,14 +33,21 @@ impl Check {
         if let Some(campaign) = &outcome.campaign {
             let total = campaign.records.len() as u64;
             let progress = Progress::new(voice, "reading", total);
-            let Checked { faults, usable: count, .. } =
-                check::read_all(campaign, &open, &|done| progress.set(done, total));
+            let Checked {
+                faults,
+                usable: count,
+                ..
+            } = check::read_all(campaign, &open, &|done| progress.set(done, total));
             outcome.faults.0.extend(faults);
             outcome.faults.tidy();
             usable = Some((count, campaign.records.len()));
         }
         tell(&outcome.faults, usable, voice);
-        let harmless = outcome.faults.0.iter().all(|f| f.severity == Severity::Note);
+        let harmless = outcome
+            .faults
+            .0
+            .iter()
+            .all(|f| f.severity == Severity::Note);
         Ok(if harmless { Exit::Done } else { Exit::BadInput })
     }
 }
@@ -74,7 +81,12 @@ fn gathered(group: &[&Fault]) -> Fault {
     let keys: Vec<&str> = group.iter().map(|f| f.key.as_str()).collect();
     let first = group[0];
     Fault {
-        what: format!("{} (in {} records: {})", first.what, keys.len(), keys.join(", ")),
+        what: format!(
+            "{} (in {} records: {})",
+            first.what,
+            keys.len(),
+            keys.join(", ")
+        ),
         key: String::new(),
         ..first.clone()
     }

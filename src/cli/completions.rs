@@ -57,14 +57,11 @@ impl Man {
     }
 
     /// Write the page of a command and of all below it.
-    fn write(
-        &self,
-        command: &clap::Command,
-        name: &str,
-        pages: &mut usize,
-    ) -> Result<(), Failure> {
+    fn write(&self, command: &clap::Command, name: &str, pages: &mut usize) -> Result<(), Failure> {
         let path = self.out.join(format!("{name}.1"));
-        output::write_whole(&path, |file| clap_mangen::Man::new(command.clone()).render(file))?;
+        output::write_whole(&path, |file| {
+            clap_mangen::Man::new(command.clone()).render(file)
+        })?;
         *pages += 1;
         for below in command.get_subcommands().filter(|c| c.get_name() != "help") {
             self.write(below, &format!("{name}-{}", below.get_name()), pages)?;

@@ -48,7 +48,10 @@ impl Failure {
 
     /// A file that could not be read or written.
     pub fn io(path: &Path, error: &std::io::Error) -> Self {
-        Self::new(format!("{}: {error}", path.display()), "look at the name and the rights")
+        Self::new(
+            format!("{}: {error}", path.display()),
+            "look at the name and the rights",
+        )
     }
 
     /// Print all troubles on the standard error stream.
@@ -120,5 +123,9 @@ fn theme() -> GraphicalTheme {
 /// Width of lines: broken on a terminal, whole elsewhere, so that programs find their words.
 fn width() -> usize {
     use std::io::IsTerminal;
-    if std::io::stderr().is_terminal() { 96 } else { 4096 }
+    if std::io::stderr().is_terminal() {
+        96
+    } else {
+        4096
+    }
 }

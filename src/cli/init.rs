@@ -30,7 +30,10 @@ impl Init {
     pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
         if !self.folder.is_dir() {
             let message = format!("{} is no folder", self.folder.display());
-            return Err(Failure::new(message, "name the folder that holds the records"));
+            return Err(Failure::new(
+                message,
+                "name the folder that holds the records",
+            ));
         }
         let path = self.folder.join("campaign.toml");
         if path.exists() && !self.force {
@@ -52,7 +55,10 @@ impl Init {
 
 fn name_of(folder: &Path) -> String {
     let whole = std::path::absolute(folder).unwrap_or_else(|_| folder.to_path_buf());
-    whole.file_name().map_or_else(|| "campaign".to_owned(), |n| n.to_string_lossy().into_owned())
+    whole.file_name().map_or_else(
+        || "campaign".to_owned(),
+        |n| n.to_string_lossy().into_owned(),
+    )
 }
 
 fn none_found(folder: &Path, found: &Found) -> Failure {

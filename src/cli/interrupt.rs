@@ -13,7 +13,10 @@ const BROKEN_OFF: i32 = 130;
 pub fn watch(folder: PathBuf) {
     let flag = Arc::new(AtomicBool::new(false));
     let signals = [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM];
-    if signals.iter().any(|s| signal_hook::flag::register(*s, Arc::clone(&flag)).is_err()) {
+    if signals
+        .iter()
+        .any(|s| signal_hook::flag::register(*s, Arc::clone(&flag)).is_err())
+    {
         return;
     }
     std::thread::spawn(move || {
@@ -26,6 +29,7 @@ pub fn watch(folder: PathBuf) {
              --resume goes on.",
             folder.display()
         );
+        #[allow(clippy::exit)] // the working threads need not be waited for: outputs are whole
         std::process::exit(BROKEN_OFF);
     });
 }

@@ -1,5 +1,7 @@
 //! The command line: one file per verb; the only room that prints or exits.
 
+mod atlas;
+mod boundary;
 mod check;
 mod completions;
 mod convert;
@@ -8,8 +10,10 @@ mod fail;
 mod init;
 mod inspect;
 mod interrupt;
+mod machine;
 mod progress;
 mod run;
+mod selftest;
 mod simulate;
 mod sketch;
 mod stage;
@@ -79,8 +83,14 @@ enum Verb {
     Inspect(inspect::Inspect),
     /// Write records of any format as HDF5, Parquet or CSV
     Convert(convert::Convert),
+    /// Regions and boundaries of all motions in the (η, ρ) plane
+    Atlas(atlas::Atlas),
+    /// A single point of a boundary
+    Boundary(boundary::Boundary),
     /// Simulate a campaign with known truth
     Simulate(simulate::Simulate),
+    /// Compute the paper's published numbers on this machine
+    Selftest(selftest::SelfTest),
     /// Print the completions of a shell
     Completions(completions::Completions),
     /// Write the manual's pages
@@ -99,7 +109,10 @@ impl Verb {
             Self::Report(verb) => verb.go(voice),
             Self::Inspect(verb) => verb.go(voice),
             Self::Convert(verb) => verb.go(voice),
+            Self::Atlas(verb) => verb.go(voice),
+            Self::Boundary(verb) => verb.go(voice),
             Self::Simulate(verb) => verb.go(voice),
+            Self::Selftest(verb) => verb.go(voice),
             Self::Completions(verb) => verb.go(voice),
             Self::Man(verb) => verb.go(voice),
         }
@@ -112,12 +125,19 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => {
             let _ = error.print();
-            return if error.use_stderr() { Exit::BadInput } else { Exit::Done }.into();
+            return if error.use_stderr() {
+                Exit::BadInput
+            } else {
+                Exit::Done
+            }
+            .into();
         }
     };
     let voice = Voice::new(cli.common.quiet, cli.common.verbose);
     if let Some(threads) = cli.common.threads {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.get())
+            .build_global();
         if let Err(error) = pool {
             voice.detail(&format!("the number of threads stays as it is: {error}"));
         }
@@ -142,9 +162,20 @@ mod tests {
         let command = Cli::command();
         command.clone().debug_assert();
         for verb in command.get_subcommands() {
-            let help = verb.get_after_help().map(ToString::to_string).unwrap_or_default();
-            assert!(help.contains("Example:"), "{} shows no example", verb.get_name());
-            assert!(verb.get_about().is_some(), "{} says nothing", verb.get_name());
+            let help = verb
+                .get_after_help()
+                .map(ToString::to_string)
+                .unwrap_or_default();
+            assert!(
+                help.contains("Example:"),
+                "{} shows no example",
+                verb.get_name()
+            );
+            assert!(
+                verb.get_about().is_some(),
+                "{} says nothing",
+                verb.get_name()
+            );
         }
     }
 }

@@ -58,7 +58,10 @@ impl Run {
         for finding in &found.findings {
             voice.say(&format!("  - {finding}"));
         }
-        voice.say(&format!("Report: {}", self.out.join(pipeline::report::FILE).display()));
+        voice.say(&format!(
+            "Report: {}",
+            self.out.join(pipeline::report::FILE).display()
+        ));
         Ok(Exit::of(found.kind))
     }
 }

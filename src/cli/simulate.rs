@@ -107,7 +107,11 @@ impl Campaign {
             ));
         }
         interrupt::watch(self.out.clone());
-        let faults = if self.ideal { Faults::none() } else { Faults::default() };
+        let faults = if self.ideal {
+            Faults::none()
+        } else {
+            Faults::default()
+        };
         let (drive_asymmetry, stiffness_asymmetry) = draw_asymmetry(&faults, self.seed);
         let recipe = Recipe {
             truth: Truth {
@@ -119,7 +123,9 @@ impl Campaign {
                 stiffness_asymmetry,
             },
             faults,
-            records: self.records.map_or(DEFAULT_RECORDS, std::num::NonZeroUsize::get),
+            records: self
+                .records
+                .map_or(DEFAULT_RECORDS, std::num::NonZeroUsize::get),
             seed: self.seed,
         };
         let count = write_campaign(&recipe, &self.out)?;

@@ -114,7 +114,10 @@ impl Ingest {
         let bar = Progress::new(voice, "ingest", campaign.records.len() as u64);
         let usable = store::ingest(&campaign, &self.out, &|_, done, total| bar.set(done, total))?;
         drop(bar);
-        voice.say(&format!("{usable} of {} records are usable.", campaign.records.len()));
+        voice.say(&format!(
+            "{usable} of {} records are usable.",
+            campaign.records.len()
+        ));
         Ok(Exit::Done)
     }
 }
@@ -127,7 +130,9 @@ impl Classify {
         drop(bar);
         let mut counts: BTreeMap<String, usize> = BTreeMap::new();
         for observation in &observed.observations {
-            *counts.entry(observation.finding.motion.label()).or_default() += 1;
+            *counts
+                .entry(observation.finding.motion.label())
+                .or_default() += 1;
         }
         for (motion, count) in counts {
             voice.say(&format!("{count:6}  {motion}"));

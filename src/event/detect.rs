@@ -3,9 +3,21 @@
 use crate::event::contact::{Closed, closed_intervals};
 use crate::event::jumps::{Jump, JumpSearch, SUPPORTED};
 use crate::event::kinematics::{Kinematics, Series};
-use crate::event::refine::{self, Candidate};
-use crate::event::{DriveTone, Impact, Rig, Seen, drift, drive};
+use crate::event::refine::{self, ArcFit, Candidate};
+use crate::event::{DriveTone, Impact, Rig, Seen, bounce, drift, drive};
 use crate::record::{Flag, Record, Role};
+use crate::signal::robust;
+
+/// What acts on a body between impacts, as far as the detection has to know.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FlightKind {
+    /// Springs and a harmonic drive: arcs are smooth curves.
+    #[default]
+    Harmonic,
+    /// A constant force toward the stop, and friction: arcs are straight in velocity.
+    ConstantForce,
+}
 
 /// Settings of the detection. All times in s.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -19,11 +31,19 @@ pub struct DetectSettings {
     pub window_periods: f64,
     /// Relative difference from which the measured drive frequency contradicts the stated one.
     pub drive_tolerance: f64,
+    /// What acts between impacts.
+    pub flight: FlightKind,
 }
 
 impl Default for DetectSettings {
     fn default() -> Self {
-        Self { bounce_s: 3e-3, dead_zone_s: 4e-3, window_periods: 0.1, drive_tolerance: 5e-3 }
+        Self {
+            bounce_s: 3e-3,
+            dead_zone_s: 4e-3,
+            window_periods: 0.1,
+            drive_tolerance: 5e-3,
+            flight: FlightKind::Harmonic,
+        }
     }
 }
 
@@ -56,28 +76,52 @@ pub fn detect(record: &Record, rig: Rig, settings: &DetectSettings) -> Detection
     let (drive, mut flags) = drive::measure(record, settings.drive_tolerance);
     let mut kinematics = Kinematics::of(record, rig);
     let rate_hz = record.sample_rate_hz;
-    let closed = record.channel(Role::Contact).map_or_else(Vec::new, |channel| {
-        closed_intervals(channel, samples_of(settings.bounce_s, rate_hz))
-    });
+    let closed = record
+        .channel(Role::Contact)
+        .map_or_else(Vec::new, |channel| {
+            closed_intervals(channel, samples_of(settings.bounce_s, rate_hz))
+        });
     let dead_from = samples_of(settings.dead_zone_s, rate_hz).max(4);
     let width = window_samples(drive.as_ref(), rate_hz, settings.window_periods);
     let found = match &kinematics.closing.velocity {
+        Some(velocity) if settings.flight == FlightKind::ConstantForce => bounces(velocity),
         Some(velocity) => fuse(velocity, &closed, width, dead_from),
         None => from_contact_alone(&closed, dead_from),
     };
     if let Some(flag) = wrong_way(&found, record) {
         flags.push(flag);
     }
-    let speed_width = (4 * width / 3).max(6);
-    let impacts =
-        refined(&mut kinematics, &found.candidates, drive.as_ref(), (rig, speed_width));
+    let arc = match settings.flight {
+        FlightKind::Harmonic => ArcFit {
+            degree: 3,
+            displacement_degree: 3,
+            width: (4 * width / 3).max(6),
+            same_way: false,
+        },
+        FlightKind::ConstantForce => ArcFit {
+            degree: 1,
+            displacement_degree: 2,
+            width: 24,
+            same_way: true,
+        },
+    };
+    let impacts = refined(
+        &mut kinematics,
+        &found.candidates,
+        drive.as_ref(),
+        (rig, arc),
+    );
     let closed_samples: usize = closed.iter().map(Closed::samples).sum();
     Detection {
         drive,
         impacts,
         jump_samples: found.jump_samples,
         unsupported_pulses: found.unsupported,
-        missed_pulses: if record.channel(Role::Contact).is_some() { found.missed } else { 0 },
+        missed_pulses: if record.channel(Role::Contact).is_some() {
+            found.missed
+        } else {
+            0
+        },
         closed_fraction: closed_samples as f64 / record.samples().max(1) as f64,
         kinematics,
         flags,
@@ -100,24 +144,33 @@ fn refined(
     kinematics: &mut Kinematics,
     candidates: &[Candidate],
     drive: Option<&DriveTone>,
-    (rig, width): (Rig, usize),
+    (rig, arc): (Rig, ArcFit),
 ) -> Vec<Impact> {
     if kinematics.closing.velocity.is_none() {
         return without_speeds(candidates, drive, kinematics.rate_hz);
     }
-    let first = refine::instants(kinematics, candidates, width);
-    refine::correct_jumps(kinematics, candidates, &first, width);
+    if arc.same_way {
+        // Straight arcs are drawn from few samples: no drift is to be told from them.
+        let instants = refine::instants(kinematics, candidates, arc);
+        return refine::impacts(kinematics, candidates, &instants, drive, arc);
+    }
+    let first = refine::instants(kinematics, candidates, arc);
+    refine::correct_jumps(kinematics, candidates, &first, arc);
     kinematics.close_again(rig);
     let times: Vec<f64> = first.iter().map(|i| i.time).collect();
     let rate_hz = kinematics.rate_hz;
-    for series in [&mut kinematics.closing, &mut kinematics.x, &mut kinematics.y]
-        .into_iter()
-        .filter_map(|b| b.velocity.as_mut())
+    for series in [
+        &mut kinematics.closing,
+        &mut kinematics.x,
+        &mut kinematics.y,
+    ]
+    .into_iter()
+    .filter_map(|b| b.velocity.as_mut())
     {
         drift::settle(series, &times, drive, rate_hz);
     }
-    let instants = refine::instants(kinematics, candidates, width);
-    refine::impacts(kinematics, candidates, &instants, drive, width)
+    let instants = refine::instants(kinematics, candidates, arc);
+    refine::impacts(kinematics, candidates, &instants, drive, arc)
 }
 
 struct Fused {
@@ -127,6 +180,21 @@ struct Fused {
     missed: usize,
     upward: usize,
     downward: usize,
+}
+
+/// Bounces under a constant force, from the velocity alone.
+fn bounces(velocity: &Series) -> Fused {
+    let candidates = bounce::find(velocity);
+    let gaps: Vec<f64> = candidates.iter().map(|c| c.jump.gap as f64).collect();
+    let jump_samples = robust::median(&gaps).map_or(1, |g| g.round() as usize);
+    Fused {
+        candidates,
+        jump_samples,
+        unsupported: 0,
+        missed: 0,
+        upward: 0,
+        downward: 0,
+    }
 }
 
 /// Fuse jumps and contact pulses: a pulse belongs to the strongest jump inside it; a pulse without
@@ -151,8 +219,18 @@ fn fuse(velocity: &Series, closed: &[Closed], width: usize, dead_from: usize) ->
         }
     }
     let candidates = candidates(&jumps, closed, search.gap, dead_from, velocity);
-    let missed = candidates.iter().filter(|c| c.seen == Seen::Velocity).count();
-    Fused { candidates, jump_samples: search.gap, unsupported, missed, upward, downward }
+    let missed = candidates
+        .iter()
+        .filter(|c| c.seen == Seen::Velocity)
+        .count();
+    Fused {
+        candidates,
+        jump_samples: search.gap,
+        unsupported,
+        missed,
+        upward,
+        downward,
+    }
 }
 
 /// Samples at which a jump that belongs to a pulse may begin.
@@ -183,8 +261,16 @@ fn candidates(
             (None, true) => resting_samples(velocity, jump, next, dead_from),
             (None, false) => 0.0,
         };
-        let seen = if pulse.is_some() { Seen::Both } else { Seen::Velocity };
-        out.push(Candidate { jump: *jump, seen, dead_samples });
+        let seen = if pulse.is_some() {
+            Seen::Both
+        } else {
+            Seen::Velocity
+        };
+        out.push(Candidate {
+            jump: *jump,
+            seen,
+            dead_samples,
+        });
     }
     out
 }
@@ -197,7 +283,11 @@ fn resting_samples(velocity: &Series, jump: &Jump, next: usize, dead_from: usize
         .iter()
         .take_while(|v| v.abs() <= rest_below)
         .count();
-    if resting >= dead_from { resting as f64 } else { 0.0 }
+    if resting >= dead_from {
+        resting as f64
+    } else {
+        0.0
+    }
 }
 
 fn from_contact_alone(closed: &[Closed], dead_from: usize) -> Fused {
@@ -211,10 +301,21 @@ fn from_contact_alone(closed: &[Closed], dead_from: usize) -> Fused {
                 error: f64::NAN,
             },
             seen: Seen::Contact,
-            dead_samples: if pulse.samples() >= dead_from { pulse.samples() as f64 } else { 0.0 },
+            dead_samples: if pulse.samples() >= dead_from {
+                pulse.samples() as f64
+            } else {
+                0.0
+            },
         })
         .collect();
-    Fused { candidates, jump_samples: 1, unsupported: 0, missed: 0, upward: 0, downward: 0 }
+    Fused {
+        candidates,
+        jump_samples: 1,
+        unsupported: 0,
+        missed: 0,
+        upward: 0,
+        downward: 0,
+    }
 }
 
 fn without_speeds(

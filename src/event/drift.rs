@@ -59,24 +59,33 @@ fn weighted_line(points: &[(f64, f64, f64)], with_slope: bool) -> Option<(f64, f
         return Some((mean, 0.0));
     }
     let spread: f64 = points.iter().map(|p| p.2 * (p.0 - centre).powi(2)).sum();
-    let shear: f64 = points.iter().map(|p| p.2 * (p.0 - centre) * (p.1 - mean)).sum();
+    let shear: f64 = points
+        .iter()
+        .map(|p| p.2 * (p.0 - centre) * (p.1 - mean))
+        .sum();
     let slope = if spread > 0.0 { shear / spread } else { 0.0 };
     Some((mean - slope * centre, slope))
 }
 
 /// Offset and ramp from samples a whole drive period apart, else the plain mean.
-fn period_line(
-    velocity: &Series,
-    drive: Option<&DriveTone>,
-    rate_hz: f64,
-) -> Option<(f64, f64)> {
+fn period_line(velocity: &Series, drive: Option<&DriveTone>, rate_hz: f64) -> Option<(f64, f64)> {
     let values = &velocity.values;
-    let period = drive.map(|d| rate_hz / d.frequency_hz).filter(|p| 2.0 * p < values.len() as f64);
+    let period = drive
+        .map(|d| rate_hz / d.frequency_hz)
+        .filter(|p| 2.0 * p < values.len() as f64);
     let Some(period) = period else {
         return Some((robust::mean(values), 0.0));
     };
-    let slope = if velocity.high_pass_hz.is_some() { strobed_slope(values, period) } else { 0.0 };
-    let level: Vec<f64> = values.iter().enumerate().map(|(i, v)| v - slope * i as f64).collect();
+    let slope = if velocity.high_pass_hz.is_some() {
+        strobed_slope(values, period)
+    } else {
+        0.0
+    };
+    let level: Vec<f64> = values
+        .iter()
+        .enumerate()
+        .map(|(i, v)| v - slope * i as f64)
+        .collect();
     let whole = (level.len() as f64 / period - 1e-9).floor() * period;
     let offset = integral(&level, 0.0, whole.min(level.len() as f64 - 2.0))? / whole;
     Some((offset, slope))

@@ -30,7 +30,9 @@ pub fn measure(record: &Record, tolerance: f64) -> (Option<DriveTone>, Vec<Flag>
         phase_rad: tone.phase_rad,
         residual_ratio: ratio,
     };
-    let flags = contradiction(record, &channel.name, &drive, tolerance).into_iter().collect();
+    let flags = contradiction(record, &channel.name, &drive, tolerance)
+        .into_iter()
+        .collect();
     (Some(drive), flags)
 }
 

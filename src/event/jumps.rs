@@ -73,8 +73,14 @@ impl<'a> JumpSearch<'a> {
             scan[left] = height;
         }
         let theory = velocity.noise * factor * 2f64.sqrt();
-        let seen = robust::robust_deviation(&scan).unwrap_or(0.0);
-        Self { velocity, window, gap, scan_deviation: seen.max(theory), scan }
+        let seen = quiet_deviation(&scan);
+        Self {
+            velocity,
+            window,
+            gap,
+            scan_deviation: seen.max(theory),
+            scan,
+        }
     }
 
     /// How many samples the strongest jumps take from branch to branch (median over up to ten).
@@ -142,10 +148,18 @@ impl<'a> JumpSearch<'a> {
     pub fn directions(&self) -> (usize, usize) {
         let mut all = self.candidates(SIGNIFICANT, 1.0);
         all.extend(self.candidates(SIGNIFICANT, -1.0));
-        all.sort_by(|&a, &b| self.scan[b].abs().total_cmp(&self.scan[a].abs()).then(a.cmp(&b)));
+        all.sort_by(|&a, &b| {
+            self.scan[b]
+                .abs()
+                .total_cmp(&self.scan[a].abs())
+                .then(a.cmp(&b))
+        });
         let mut kept: Vec<usize> = Vec::new();
         for i in all {
-            if kept.iter().all(|k| k.abs_diff(i) > 2 * self.window + self.gap) {
+            if kept
+                .iter()
+                .all(|k| k.abs_diff(i) > 2 * self.window + self.gap)
+            {
                 kept.push(i);
             }
         }
@@ -173,7 +187,9 @@ impl<'a> JumpSearch<'a> {
             Some(j) => j.left + j.gap,
             None => 0,
         };
-        let high = accepted.get(after).map_or(self.velocity.values.len(), |j| j.left + 1);
+        let high = accepted
+            .get(after)
+            .map_or(self.velocity.values.len(), |j| j.left + 1);
         // Two samples between impacts are the least that tells a jump from a slope; at the
         // record's edges, where no other impact vouches for them, five.
         let end = self.velocity.values.len();
@@ -195,10 +211,16 @@ impl<'a> JumpSearch<'a> {
         let before = LocalFit::new(values, first, left + 1, 2)?;
         let after = LocalFit::new(values, begin, last, 2)?;
         let middle = left as f64 + 0.5 * self.gap as f64;
-        let factor = before.error_factor(middle).hypot(after.error_factor(middle));
+        let factor = before
+            .error_factor(middle)
+            .hypot(after.error_factor(middle));
         let full = before.samples == self.window && after.samples == self.window;
         let noise = self.velocity.noise * factor;
-        let error = if full { noise.max(self.scan_deviation) } else { 1.5 * noise };
+        let error = if full {
+            noise.max(self.scan_deviation)
+        } else {
+            1.5 * noise
+        };
         let jump = Jump {
             left,
             gap: self.gap,
@@ -212,12 +234,28 @@ impl<'a> JumpSearch<'a> {
     fn remeasured(&self, accepted: Vec<Jump>) -> Vec<Jump> {
         (0..accepted.len())
             .filter_map(|i| {
-                let others: Vec<Jump> =
-                    accepted.iter().enumerate().filter(|(k, _)| *k != i).map(|(_, j)| *j).collect();
+                let others: Vec<Jump> = accepted
+                    .iter()
+                    .enumerate()
+                    .filter(|(k, _)| *k != i)
+                    .map(|(_, j)| *j)
+                    .collect();
                 self.measure(accepted[i].left, &others, 0.8 * SIGNIFICANT)
             })
             .collect()
     }
+}
+
+/// Deviation of the scan where nothing jumps, from the quarter of its values nearest to zero:
+/// impacts may follow each other so closely that half the scan is under their influence.
+fn quiet_deviation(scan: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = scan.iter().map(|v| v.abs()).filter(|v| *v > 0.0).collect();
+    let quarter = sizes.len() / 4;
+    if sizes.is_empty() {
+        return 0.0;
+    }
+    // A quarter of a normal distribution lies within 0.3186 deviations of its centre.
+    *sizes.select_nth_unstable_by(quarter, f64::total_cmp).1 / 0.3186
 }
 
 /// Weights that extrapolate a parabola from `count` samples by `ahead` steps beyond the first of

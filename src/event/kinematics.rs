@@ -23,7 +23,9 @@ impl Series {
     /// The integral ω_c ∫ y dt was taken by trapezoids, as if the jump stood in the middle of its
     /// interval; at a fraction u of it the area differs by (before − after)(u − ½) of a step.
     pub fn correct_jump(&mut self, time_steps: f64, before: f64, after: f64, rate_hz: f64) {
-        let Some(corner_hz) = self.high_pass_hz else { return };
+        let Some(corner_hz) = self.high_pass_hz else {
+            return;
+        };
         let left = time_steps.floor();
         let area = (before - after) * (time_steps - left - 0.5) / rate_hz;
         let step = std::f64::consts::TAU * corner_hz * area;
@@ -66,6 +68,9 @@ pub struct Kinematics {
     pub closing: Body,
     /// From what the closing velocity was built; `None` without any velocity.
     pub closing_from: Option<ClosingFrom>,
+    /// The closing motion as it was measured (velocity, else displacement, else acceleration):
+    /// what is compared with itself a period later, free of any drift of integration.
+    pub waveform: Option<Series>,
 }
 
 impl Kinematics {
@@ -84,7 +89,28 @@ impl Kinematics {
             Rig::Single => Body::default(),
         };
         let (closing, closing_from) = closing_motion(&x, &y, rig);
-        Self { rate_hz, x, y, closing, closing_from }
+        let waveform = [
+            [Role::VelocityX, Role::VelocityY],
+            [Role::DisplacementX, Role::DisplacementY],
+            [Role::AccelerationX, Role::AccelerationY],
+        ]
+        .into_iter()
+        .find_map(|[of_x, of_y]| {
+            let of_y = if rig == Rig::Double {
+                series(record, of_y)
+            } else {
+                None
+            };
+            self::closing(&series(record, of_x), &of_y, rig).0
+        });
+        Self {
+            rate_hz,
+            x,
+            y,
+            closing,
+            closing_from,
+            waveform,
+        }
     }
 
     /// Build the closing motion anew after the bodies' signals were corrected.
@@ -94,7 +120,9 @@ impl Kinematics {
 
     /// The measured bodies with a velocity, x first.
     pub fn bodies(&self) -> impl Iterator<Item = &Body> {
-        [&self.x, &self.y].into_iter().filter(|b| b.velocity.is_some())
+        [&self.x, &self.y]
+            .into_iter()
+            .filter(|b| b.velocity.is_some())
     }
 }
 
@@ -103,15 +131,28 @@ fn closing_motion(x: &Body, y: &Body, rig: Rig) -> (Body, Option<ClosingFrom>) {
     let (displacement, displacement_from) = closing(&x.displacement, &y.displacement, rig);
     // A closing displacement of another making than the velocity would not fit to it.
     let displacement = displacement.filter(|_| displacement_from == closing_from);
-    (Body { velocity, displacement }, closing_from)
+    (
+        Body {
+            velocity,
+            displacement,
+        },
+        closing_from,
+    )
 }
 
 fn body(record: &Record, [velocity, displacement, acceleration]: [Role; 3]) -> Body {
     let displacement = series(record, displacement);
     let velocity = series(record, velocity)
-        .or_else(|| displacement.as_ref().map(|s| differentiated(s, record.sample_rate_hz)))
+        .or_else(|| {
+            displacement
+                .as_ref()
+                .map(|s| differentiated(s, record.sample_rate_hz))
+        })
         .or_else(|| series(record, acceleration).map(|s| integrated(&s, record.sample_rate_hz)));
-    Body { velocity, displacement }
+    Body {
+        velocity,
+        displacement,
+    }
 }
 
 fn series(record: &Record, role: Role) -> Option<Series> {
@@ -129,8 +170,15 @@ fn series(record: &Record, role: Role) -> Option<Series> {
         }
         None => channel.values.clone(),
     };
-    let mut series = Series { values, noise, high_pass_hz: channel.high_pass_hz };
-    remove_mean(&mut series.values);
+    let mut series = Series {
+        values,
+        noise,
+        high_pass_hz: channel.high_pass_hz,
+    };
+    if series.high_pass_hz.is_some() {
+        // The constant part is lost anyway; a measured one is kept until drift is told from arcs.
+        remove_mean(&mut series.values);
+    }
     Some(series)
 }
 
@@ -147,7 +195,11 @@ fn noise_with_converter(values: &[f64]) -> f64 {
         .map(|w| (w[1] - w[0]).abs())
         .filter(|d| *d > 1e-9 * scale)
         .fold(f64::INFINITY, f64::min);
-    let converter = if step.is_finite() { step / 12f64.sqrt() } else { 0.0 };
+    let converter = if step.is_finite() {
+        step / 12f64.sqrt()
+    } else {
+        0.0
+    };
     // A step as large as the noise itself is noise, not a converter.
     let noise = robust::noise_deviation(values);
     noise.max(converter.min(0.05 * scale)).max(1e-12 * scale)
@@ -183,7 +235,11 @@ fn integrated(acceleration: &Series, rate_hz: f64) -> Series {
         .collect();
     remove_mean(&mut values);
     let high_pass_hz = Some(acceleration.high_pass_hz.unwrap_or(0.0));
-    Series { noise: acceleration.noise / rate_hz, values, high_pass_hz }
+    Series {
+        noise: acceleration.noise / rate_hz,
+        values,
+        high_pass_hz,
+    }
 }
 
 fn closing(
@@ -197,11 +253,22 @@ fn closing(
             let values = x.values.iter().zip(&y.values).map(|(a, b)| a + b).collect();
             let noise = x.noise.hypot(y.noise);
             let high_pass_hz = x.high_pass_hz.or(y.high_pass_hz);
-            (Some(Series { values, noise, high_pass_hz }), Some(ClosingFrom::Both))
+            (
+                Some(Series {
+                    values,
+                    noise,
+                    high_pass_hz,
+                }),
+                Some(ClosingFrom::Both),
+            )
         }
         (Some(one), None, Rig::Double) | (None, Some(one), Rig::Double) => {
             let values = one.values.iter().map(|v| 2.0 * v).collect();
-            let series = Series { values, noise: 2.0 * one.noise, high_pass_hz: one.high_pass_hz };
+            let series = Series {
+                values,
+                noise: 2.0 * one.noise,
+                high_pass_hz: one.high_pass_hz,
+            };
             (Some(series), Some(ClosingFrom::Doubled))
         }
         _ => (None, None),

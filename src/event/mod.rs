@@ -1,6 +1,7 @@
 //! Impacts seen in a record, from the contact channel and from velocity jumps, and the drive's
 //! tone that strobes them. This room sees no parameter of the model.
 
+pub mod bounce;
 pub mod contact;
 pub mod detect;
 pub mod drift;

@@ -8,8 +8,19 @@ use crate::event::kinematics::{Body, Kinematics, Series};
 use crate::event::{DriveTone, Impact, MassSpeeds, Seen};
 use crate::signal::local_fit::{LocalFit, crossing};
 
-/// Degree of the one-sided polynomials that carry speeds to the impact.
-const DEGREE: usize = 3;
+/// How the arcs beside an impact are fitted to carry speeds and places to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ArcFit {
+    /// Degree of the polynomials of velocity.
+    pub degree: usize,
+    /// Degree of the polynomials of displacement.
+    pub displacement_degree: usize,
+    /// Most samples on either side.
+    pub width: usize,
+    /// Use only samples on which the body still moves toward the impact (after it: away), as
+    /// friction bends the arc where it turns.
+    pub same_way: bool,
+}
 
 /// An impact's time in samples with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,61 +49,115 @@ struct Windows {
     after: (usize, usize),
 }
 
-fn windows(candidates: &[Candidate], index: usize, width: usize, samples: usize) -> Windows {
+fn windows(velocity: &Series, candidates: &[Candidate], index: usize, arc: ArcFit) -> Windows {
+    let (width, samples) = (arc.width, velocity.values.len());
     let jump = candidates[index].jump;
     let low = match index.checked_sub(1).map(|i| &candidates[i]) {
         Some(c) => c.jump.left + c.jump.gap + c.dead_samples.ceil() as usize,
         None => 0,
     };
-    let high = candidates.get(index + 1).map_or(samples, |c| c.jump.left + 1);
+    let high = candidates
+        .get(index + 1)
+        .map_or(samples, |c| c.jump.left + 1);
     let begin = jump.left + jump.gap;
     let dead = candidates[index].dead_samples as usize;
     // Within a dead zone the bodies move together: only samples inside it belong to "after".
-    let end = if dead > 3 { begin + dead } else { begin + width };
-    Windows {
-        before: (low.max((jump.left + 1).saturating_sub(width)).min(jump.left), jump.left + 1),
+    let end = if dead > 3 {
+        begin + dead
+    } else {
+        begin + width
+    };
+    let mut found = Windows {
+        before: (
+            low.max((jump.left + 1).saturating_sub(width))
+                .min(jump.left),
+            jump.left + 1,
+        ),
         after: (begin, end.min(high).min(begin + width).max(begin + 1)),
+    };
+    if arc.same_way {
+        let values = &velocity.values;
+        let (first, last) = found.before;
+        let toward = values[first..last]
+            .iter()
+            .rev()
+            .take_while(|v| **v > 0.0)
+            .count();
+        found.before.0 = (last - toward.max(1)).max(first);
+        let (first, last) = found.after;
+        let away = values[first..last].iter().take_while(|v| **v < 0.0).count();
+        found.after.1 = (first + away.max(1)).min(last);
     }
+    found
 }
 
 /// Times of all candidates: from the kink of the displacement where it is measured, else from
 /// the condition that the closing motion returns to the same place at every impact, else the
 /// middle of the sample interval.
-pub fn instants(kinematics: &Kinematics, candidates: &[Candidate], width: usize) -> Vec<Instant> {
+pub fn instants(kinematics: &Kinematics, candidates: &[Candidate], arc: ArcFit) -> Vec<Instant> {
     let middle = |c: &Candidate| Instant {
         time: c.jump.middle(),
-        error: c.jump.gap as f64 / 12f64.sqrt(),
+        error: if arc.same_way {
+            0.5
+        } else {
+            c.jump.gap as f64 / 12f64.sqrt()
+        },
     };
     let plain: Vec<Instant> = candidates.iter().map(middle).collect();
-    match (&kinematics.closing.displacement, &kinematics.closing.velocity) {
+    if arc.same_way {
+        // A contact of several samples: its middle stands for the instantaneous impact.
+        return plain;
+    }
+    match (
+        &kinematics.closing.displacement,
+        &kinematics.closing.velocity,
+    ) {
         (Some(displacement), Some(velocity)) => (0..candidates.len())
             .map(|i| {
-                kink(displacement, velocity, candidates, i, width, kinematics.rate_hz)
-                    .filter(|k| k.error < plain[i].error)
-                    .unwrap_or(plain[i])
+                kink(
+                    (displacement, velocity),
+                    candidates,
+                    i,
+                    arc,
+                    kinematics.rate_hz,
+                )
+                .filter(|k| k.error < plain[i].error)
+                .unwrap_or(plain[i])
             })
             .collect(),
-        (None, Some(velocity)) => closed_arcs(velocity, candidates, &plain, width),
+        (None, Some(velocity)) => closed_arcs(velocity, candidates, &plain, arc),
         _ => plain,
     }
 }
 
 fn kink(
-    displacement: &Series,
-    velocity: &Series,
+    (displacement, velocity): (&Series, &Series),
     candidates: &[Candidate],
     index: usize,
-    width: usize,
+    arc: ArcFit,
     rate_hz: f64,
 ) -> Option<Instant> {
     let jump = candidates[index].jump;
-    let w = windows(candidates, index, width, velocity.values.len());
-    let before = LocalFit::new(&displacement.values, w.before.0, w.before.1, DEGREE)?;
-    let after = LocalFit::new(&displacement.values, w.after.0, w.after.1, DEGREE)?;
+    let w = windows(velocity, candidates, index, arc);
+    let before = LocalFit::new(
+        &displacement.values,
+        w.before.0,
+        w.before.1,
+        arc.displacement_degree,
+    )?;
+    let after = LocalFit::new(
+        &displacement.values,
+        w.after.0,
+        w.after.1,
+        arc.displacement_degree,
+    )?;
     let (low, high) = (jump.left as f64, (jump.left + jump.gap) as f64);
     let time = crossing(&before, &after, low, high)?;
     let spread = before.error_factor(time).hypot(after.error_factor(time)) * displacement.noise;
-    Some(Instant { time, error: spread * rate_hz / jump.height.abs() })
+    Some(Instant {
+        time,
+        error: spread * rate_hz / jump.height.abs(),
+    })
 }
 
 /// Least squares for the shifts δ of all impact times within their sample intervals and the
@@ -101,14 +166,14 @@ fn closed_arcs(
     velocity: &Series,
     candidates: &[Candidate],
     plain: &[Instant],
-    width: usize,
+    arc: ArcFit,
 ) -> Vec<Instant> {
     let count = plain.len();
     if count < 3 {
         return plain.to_vec();
     }
     let speeds: Vec<Option<MassSpeeds>> = (0..count)
-        .map(|i| speeds(velocity, candidates, i, plain[i].time, width).map(|s| s.0))
+        .map(|i| speeds(velocity, candidates, i, plain[i], arc).map(|s| s.0))
         .collect();
     let mut normal = DMatrix::<f64>::zeros(count + 1, count + 1);
     let mut right = DVector::<f64>::zeros(count + 1);
@@ -118,11 +183,19 @@ fn closed_arcs(
     normal[(count, count)] = 1e-12;
     for i in 0..count - 1 {
         let (from, to) = (plain[i].time, plain[i + 1].time);
-        let (Some(start), Some(end)) = (speeds[i], speeds[i + 1]) else { continue };
-        let Some(area) = integral(&velocity.values, from, to) else { continue };
+        let (Some(start), Some(end)) = (speeds[i], speeds[i + 1]) else {
+            continue;
+        };
+        let Some(area) = integral(&velocity.values, from, to) else {
+            continue;
+        };
         // The trapezoid's own error scales with the speeds; noise adds up over the arc.
         let error = velocity.noise * (to - from).sqrt() + 1e-3 * end.before_m_s.abs();
-        let row = [(i, -start.after_m_s), (i + 1, end.before_m_s), (count, from - to)];
+        let row = [
+            (i, -start.after_m_s),
+            (i + 1, end.before_m_s),
+            (count, from - to),
+        ];
         for (a, ra) in row {
             right[a] -= ra * area / error.powi(2);
             for (b, rb) in row {
@@ -150,14 +223,23 @@ fn speeds(
     velocity: &Series,
     candidates: &[Candidate],
     index: usize,
-    time: f64,
-    width: usize,
+    instant: Instant,
+    arc: ArcFit,
 ) -> Option<(MassSpeeds, f64)> {
-    let w = windows(candidates, index, width, velocity.values.len());
-    let before = LocalFit::new(&velocity.values, w.before.0, w.before.1, DEGREE)?;
-    let after = LocalFit::new(&velocity.values, w.after.0, w.after.1, DEGREE)?;
-    let error = velocity.noise * before.error_factor(time).max(after.error_factor(time));
-    let speeds = MassSpeeds { before_m_s: before.value(time), after_m_s: after.value(time) };
+    let w = windows(velocity, candidates, index, arc);
+    let before = LocalFit::new(&velocity.values, w.before.0, w.before.1, arc.degree)?;
+    let after = LocalFit::new(&velocity.values, w.after.0, w.after.1, arc.degree)?;
+    let time = instant.time;
+    let mut error = velocity.noise * before.error_factor(time).max(after.error_factor(time));
+    if arc.same_way {
+        // Straight arcs are steep against the step: the middle's own uncertainty counts.
+        let slope = before.slope(time).abs().max(after.slope(time).abs());
+        error = error.hypot(slope * instant.error);
+    }
+    let speeds = MassSpeeds {
+        before_m_s: before.value(time),
+        after_m_s: after.value(time),
+    };
     Some((speeds, error))
 }
 
@@ -167,7 +249,7 @@ pub fn correct_jumps(
     kinematics: &mut Kinematics,
     candidates: &[Candidate],
     instants: &[Instant],
-    width: usize,
+    arc: ArcFit,
 ) {
     let rate_hz = kinematics.rate_hz;
     for body in [&mut kinematics.x, &mut kinematics.y] {
@@ -175,7 +257,7 @@ pub fn correct_jumps(
             continue;
         };
         let known: Vec<Option<MassSpeeds>> = (0..candidates.len())
-            .map(|i| speeds(velocity, candidates, i, instants[i].time, width).map(|s| s.0))
+            .map(|i| speeds(velocity, candidates, i, instants[i], arc).map(|s| s.0))
             .collect();
         for (instant, speeds) in instants.iter().zip(known) {
             if let Some(s) = speeds {
@@ -191,11 +273,11 @@ pub fn impacts(
     candidates: &[Candidate],
     instants: &[Instant],
     drive: Option<&DriveTone>,
-    width: usize,
+    arc: ArcFit,
 ) -> Vec<Impact> {
     let of = |body: &Body, i: usize| {
         let velocity = body.velocity.as_ref()?;
-        speeds(velocity, candidates, i, instants[i].time, width)
+        speeds(velocity, candidates, i, instants[i], arc)
     };
     (0..candidates.len())
         .map(|i| {

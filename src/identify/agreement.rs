@@ -26,11 +26,23 @@ pub fn agreement(methods: &BTreeMap<String, MethodResult>) -> Agreement {
     let limit = LEVEL / pairs.len().max(1) as f64;
     let apart: Vec<&PairAgreement> = pairs.iter().filter(|p| p.p_value < limit).collect();
     let (agree, summary) = match (pairs.len(), apart.len()) {
-        (0, _) => (None, "Only one method tells each parameter, so there is nothing to compare.".into()),
-        (n, 0) => (Some(true), format!("The methods agree: none of the {n} comparisons differs by more than its uncertainty allows.")),
+        (0, _) => (
+            None,
+            "Only one method tells each parameter, so there is nothing to compare.".into(),
+        ),
+        (n, 0) => (
+            Some(true),
+            format!(
+                "The methods agree: none of the {n} comparisons differs by more than its uncertainty allows."
+            ),
+        ),
         _ => (Some(false), disagreement(methods, &apart)),
     };
-    Agreement { agree, summary, pairs }
+    Agreement {
+        agree,
+        summary,
+        pairs,
+    }
 }
 
 fn shares(a: &str, b: &str, coordinate: Coordinate) -> bool {
@@ -61,11 +73,15 @@ fn pair(
 }
 
 fn disagreement(methods: &BTreeMap<String, MethodResult>, apart: &[&PairAgreement]) -> String {
-    let worst = apart.iter().max_by(|a, b| a.z_score.abs().total_cmp(&b.z_score.abs()));
+    let worst = apart
+        .iter()
+        .max_by(|a, b| a.z_score.abs().total_cmp(&b.z_score.abs()));
     let Some(worst) = worst else {
         return String::new();
     };
-    let coordinate = Coordinate::PHYSICAL.into_iter().find(|c| c.name() == worst.parameter);
+    let coordinate = Coordinate::PHYSICAL
+        .into_iter()
+        .find(|c| c.name() == worst.parameter);
     let value = |name: &String| {
         let estimate = methods.get(name)?.parameters.get(coordinate?)?;
         Some(format!("{:.5}", estimate.value?))
@@ -91,8 +107,16 @@ pub fn two_sided(z: f64) -> f64 {
 pub(crate) fn erfc(x: f64) -> f64 {
     let t = 1.0 / (1.0 + 0.5 * x.abs());
     let coefficients = [
-        -1.265_512_23, 1.000_023_68, 0.374_091_96, 0.096_784_18, -0.186_288_06, 0.278_868_07,
-        -1.135_203_98, 1.488_515_87, -0.822_152_23, 0.170_872_77,
+        -1.265_512_23,
+        1.000_023_68,
+        0.374_091_96,
+        0.096_784_18,
+        -0.186_288_06,
+        0.278_868_07,
+        -1.135_203_98,
+        1.488_515_87,
+        -0.822_152_23,
+        0.170_872_77,
     ];
     let polynomial = coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c);
     let value = t * (-x * x + polynomial).exp();

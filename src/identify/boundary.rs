@@ -3,8 +3,8 @@
 use crate::event::Rig;
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::Block;
-use crate::model::orbit::Branch;
 use crate::model::boundary::s2_of_branch;
+use crate::model::orbit::Branch;
 use crate::model::params::Machine;
 use crate::motion::bracket::{BoundaryKind, Bracket};
 
@@ -27,12 +27,18 @@ impl BoundaryBlock {
             .filter(|b| matches!(b.kind, BoundaryKind::SaddleNode | BoundaryKind::Grazing))
             .cloned()
             .collect();
-        Self { rig, brackets, early_scale: 0.01 }
+        Self {
+            rig,
+            brackets,
+            early_scale: 0.01,
+        }
     }
 
     /// Whether any bracket tells R.
     pub fn tells_restitution(&self) -> bool {
-        self.brackets.iter().any(|b| b.kind == BoundaryKind::SaddleNode)
+        self.brackets
+            .iter()
+            .any(|b| b.kind == BoundaryKind::SaddleNode)
     }
 
     /// Set the scale of early jumps to the one that makes the brackets most likely at given
@@ -44,7 +50,10 @@ impl BoundaryBlock {
             .filter_map(|b| Some((b.clone(), predicted_hz(b, parameters, self.rig)?)))
             .collect();
         let cost = |scale: f64| -> f64 {
-            places.iter().map(|(b, f)| -Jump::of(b, scale).probability(*f).ln()).sum()
+            places
+                .iter()
+                .map(|(b, f)| -Jump::of(b, scale).probability(*f).ln())
+                .sum()
         };
         let scales = (0..24).map(|i| 1e-3 * 1.25f64.powi(i));
         if let Some(best) = scales.min_by(|a, b| cost(*a).total_cmp(&cost(*b))) {
@@ -94,7 +103,11 @@ impl Jump {
     fn cumulative(&self, x: f64) -> f64 {
         let (s, e) = (self.setting, self.early);
         let tail = x / e + 0.5 * (s / e).powi(2);
-        let mixed = if tail > 600.0 { 0.0 } else { tail.exp() * normal(-x / s - s / e) };
+        let mixed = if tail > 600.0 {
+            0.0
+        } else {
+            tail.exp() * normal(-x / s - s / e)
+        };
         normal(x / s) + mixed
     }
 
@@ -118,8 +131,11 @@ fn normal(x: f64) -> f64 {
 /// `None` where the boundary does not reach this clearance.
 pub fn predicted_hz(bracket: &Bracket, parameters: &Parameters, rig: Rig) -> Option<f64> {
     let machine = parameters.machine(rig);
-    let middle =
-        parameters.setting(bracket.middle_hz(), bracket.clearance_m, bracket.drive_amplitude);
+    let middle = parameters.setting(
+        bracket.middle_hz(),
+        bracket.clearance_m,
+        bracket.drive_amplitude,
+    );
     let rho = |eta: f64| match bracket.kind {
         BoundaryKind::Grazing => grazing(&machine, eta),
         _ => saddle_node(&machine, parameters.restitution, eta, bracket.periods_n),
@@ -135,7 +151,10 @@ fn grazing(machine: &Machine, eta: f64) -> f64 {
 
 fn saddle_node(machine: &Machine, restitution: f64, eta: f64, n: u32) -> f64 {
     let branch = Branch::new(machine, eta, n);
-    half_gap(machine, s2_of_branch(&branch, restitution.clamp(0.0, 1.0)).0)
+    half_gap(
+        machine,
+        s2_of_branch(&branch, restitution.clamp(0.0, 1.0)).0,
+    )
 }
 
 /// Clearance ρ that belongs to a whole gap.
@@ -174,7 +193,11 @@ fn bisected(excess: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     for k in 0..80 {
         let secant = (low * at_high - high * at_low) / (at_high - at_low);
         let inside = secant > low && secant < high;
-        let eta = if k % 3 == 2 || !inside { 0.5 * (low + high) } else { secant };
+        let eta = if k % 3 == 2 || !inside {
+            0.5 * (low + high)
+        } else {
+            secant
+        };
         let value = excess(eta);
         if value == 0.0 || high - low < 1e-13 * high {
             return eta;

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::identify::MethodResult;
 use crate::identify::estimate;
 use crate::identify::parameters::Coordinate;
-use crate::identify::MethodResult;
 use crate::motion::Observation;
 use crate::signal::decay::Decay;
 use crate::signal::robust;
@@ -16,17 +16,32 @@ const STRANGE: f64 = 0.05;
 
 /// All free decays of a campaign, pooled; `None` without any.
 pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
-    let decays: Vec<&Decay> =
-        observations.iter().filter(|o| !o.excluded()).filter_map(|o| o.decay.as_ref()).collect();
+    let decays: Vec<&Decay> = observations
+        .iter()
+        .filter(|o| !o.excluded())
+        .filter_map(|o| o.decay.as_ref())
+        .collect();
     if decays.is_empty() {
         return None;
     }
     let frequencies: Vec<(f64, f64)> = decays
         .iter()
-        .map(|d| (d.natural_frequency_hz.ln(), d.natural_frequency_error_hz / d.natural_frequency_hz))
+        .map(|d| {
+            (
+                d.natural_frequency_hz.ln(),
+                d.natural_frequency_error_hz / d.natural_frequency_hz,
+            )
+        })
         .collect();
-    let dampings: Vec<(f64, f64)> =
-        decays.iter().map(|d| (d.damping_ratio.ln(), d.damping_ratio_error / d.damping_ratio)).collect();
+    let dampings: Vec<(f64, f64)> = decays
+        .iter()
+        .map(|d| {
+            (
+                d.damping_ratio.ln(),
+                d.damping_ratio_error / d.damping_ratio,
+            )
+        })
+        .collect();
     let mut result = MethodResult {
         observations: decays.iter().map(|d| d.samples).sum(),
         records: decays.len(),
@@ -39,7 +54,10 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
     result.parameters.damping_ratio =
         Some(estimate::estimate(Coordinate::Damping, b, b_error, None));
     let residual = robust::median(&decays.iter().map(|d| d.residual_ratio).collect::<Vec<_>>());
-    let spread = frequencies.iter().map(|p| (p.0 - f).abs()).fold(0.0, f64::max);
+    let spread = frequencies
+        .iter()
+        .map(|p| (p.0 - f).abs())
+        .fold(0.0, f64::max);
     if spread > ONE_OSCILLATOR {
         result.fits = Some(false);
         result.remarks.push(format!(
@@ -75,7 +93,10 @@ pub fn misfiled(observations: &[Observation]) -> Vec<(String, String)> {
     let mut groups: BTreeMap<&str, Vec<(&str, f64)>> = BTreeMap::new();
     for o in observations {
         if let (Some(specimen), Some(decay)) = (&o.setting.specimen, &o.decay) {
-            groups.entry(specimen).or_default().push((&o.record, decay.natural_frequency_hz));
+            groups
+                .entry(specimen)
+                .or_default()
+                .push((&o.record, decay.natural_frequency_hz));
         }
     }
     let centres: BTreeMap<&str, f64> = groups

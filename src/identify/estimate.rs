@@ -13,7 +13,7 @@ fn limits(coordinate: Coordinate) -> (f64, f64) {
     match coordinate {
         Coordinate::Restitution => (0.03, 0.15),
         Coordinate::Frequency => (0.01, 0.08),
-        Coordinate::Damping => (0.15, 0.6),
+        Coordinate::Damping => (0.15, 0.9),
         Coordinate::Deflection => (0.05, 0.5),
         Coordinate::Gain(_) => (0.05, 0.5),
         Coordinate::DriveAsymmetry | Coordinate::StiffnessAsymmetry => (0.05, 0.5),
@@ -21,13 +21,23 @@ fn limits(coordinate: Coordinate) -> (f64, f64) {
 }
 
 /// Estimate of one coordinate from its value and standard error (both of the coordinate).
-pub fn estimate(coordinate: Coordinate, value: f64, error: f64, leans_on: Option<String>) -> Estimate {
+pub fn estimate(
+    coordinate: Coordinate,
+    value: f64,
+    error: f64,
+    leans_on: Option<String>,
+) -> Estimate {
     let (weak, unknown) = limits(coordinate);
     if !error.is_finite() || error >= unknown {
         return not_identifiable(format!(
             "the data leave {} open by ± {:.2}{}",
             coordinate.symbol(),
-            error * if coordinate.is_logarithm() { 100.0 } else { 1.0 },
+            error
+                * if coordinate.is_logarithm() {
+                    100.0
+                } else {
+                    1.0
+                },
             if coordinate.is_logarithm() { " %" } else { "" },
         ));
     }
@@ -42,13 +52,21 @@ pub fn estimate(coordinate: Coordinate, value: f64, error: f64, leans_on: Option
         Coordinate::Restitution => [interval[0].max(0.0), interval[1].min(1.0)],
         _ => interval,
     };
-    let status = if error >= weak { Status::Weak } else { Status::Identified };
+    let status = if error >= weak {
+        Status::Weak
+    } else {
+        Status::Identified
+    };
     Estimate {
         value: Some(value),
         standard_error: Some(standard_error),
         interval95: Some(interval),
         status,
-        note: if status == Status::Weak { leans_on } else { None },
+        note: if status == Status::Weak {
+            leans_on
+        } else {
+            None
+        },
     }
 }
 
@@ -89,9 +107,8 @@ fn leaning(fit: &Fit, coordinate: Coordinate) -> Option<String> {
         .filter(|c| **c != coordinate)
         .filter_map(|c| Some((*c, fit.correlation(coordinate, *c)?)))
         .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-    (correlation.abs() > 0.7).then(|| {
-        format!("leans on {} (correlation {correlation:.2})", other.symbol())
-    })
+    (correlation.abs() > 0.7)
+        .then(|| format!("leans on {} (correlation {correlation:.2})", other.symbol()))
 }
 
 impl ParameterSet {

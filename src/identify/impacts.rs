@@ -27,7 +27,8 @@ pub struct ImpactBlock {
 }
 
 impl ImpactBlock {
-    /// Collect impacts without dead zone, faster than four standard errors.
+    /// Collect impacts without dead zone, faster than six standard errors (twelve where a contact
+    /// lasts several samples, as slow ones are then swayed by where its middle is put).
     pub fn new(observations: &[Observation], relative_error: f64) -> Self {
         let pairs = observations
             .iter()
@@ -35,6 +36,15 @@ impl ImpactBlock {
             .filter(|(_, o)| !o.excluded())
             .flat_map(|(i, o)| o.impacts.iter().map(move |impact| (i, impact)))
             .filter(|(_, impact)| impact.dead_zone_s == 0.0)
+            .filter(|(i, impact)| {
+                let least = if observations[*i].jump_samples > 2 {
+                    12.0
+                } else {
+                    6.0
+                };
+                let speed = impact.closing_speed_before_m_s.unwrap_or(0.0);
+                speed > least * impact.speed_error_m_s.unwrap_or(f64::INFINITY)
+            })
             .filter_map(|(i, impact)| {
                 Some(SpeedPair {
                     observation: i,
@@ -43,24 +53,37 @@ impl ImpactBlock {
                     error_m_s: impact.speed_error_m_s?,
                 })
             })
-            .filter(|p| p.before_m_s > 4.0 * p.error_m_s && p.after_m_s > -4.0 * p.error_m_s)
+            .filter(|p| p.after_m_s > -4.0 * p.error_m_s)
             .collect();
-        Self { pairs, relative_error }
+        Self {
+            pairs,
+            relative_error,
+        }
     }
 
     /// Keep only pairs that lie within `limit` robust deviations of the bulk; gives the number
     /// left out.
     pub fn without_outliers(mut self, limit: f64) -> (Self, usize) {
-        let ratios: Vec<f64> = self.pairs.iter().map(|p| p.after_m_s / p.before_m_s).collect();
+        let ratios: Vec<f64> = self
+            .pairs
+            .iter()
+            .map(|p| p.after_m_s / p.before_m_s)
+            .collect();
         let Some(centre) = crate::signal::robust::median(&ratios) else {
             return (self, 0);
         };
-        let scores: Vec<f64> =
-            self.pairs.iter().map(|p| (p.after_m_s - centre * p.before_m_s) / self.error(p, centre)).collect();
-        let spread = crate::signal::robust::robust_deviation(&scores).unwrap_or(1.0).max(0.5);
+        let scores: Vec<f64> = self
+            .pairs
+            .iter()
+            .map(|p| (p.after_m_s - centre * p.before_m_s) / self.error(p, centre))
+            .collect();
+        let spread = crate::signal::robust::robust_deviation(&scores)
+            .unwrap_or(1.0)
+            .max(0.5);
         let before = self.pairs.len();
         let mut scores = scores.into_iter();
-        self.pairs.retain(|_| scores.next().is_some_and(|s| s.abs() <= limit * spread));
+        self.pairs
+            .retain(|_| scores.next().is_some_and(|s| s.abs() <= limit * spread));
         let dropped = before - self.pairs.len();
         (self, dropped)
     }
@@ -80,7 +103,9 @@ impl Block for ImpactBlock {
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let pair = &self.pairs[item];
         let r = parameters.restitution;
-        Some(vec![(pair.after_m_s - r * pair.before_m_s) / self.error(pair, r)])
+        Some(vec![
+            (pair.after_m_s - r * pair.before_m_s) / self.error(pair, r),
+        ])
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {

@@ -1,6 +1,7 @@
 //! The methods, each alone: boundaries, trajectories, impacts, resonance.
 
 use crate::event::Rig;
+use crate::identify::MethodResult;
 use crate::identify::boundary::BoundaryBlock;
 use crate::identify::estimate;
 use crate::identify::impacts::ImpactBlock;
@@ -8,7 +9,6 @@ use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::resonance::ResonanceBlock;
 use crate::identify::solver::{Block, Fit, FitError, Prior, Problem};
 use crate::identify::trajectory::TrajectoryBlock;
-use crate::identify::MethodResult;
 use crate::motion::{Bracket, Observation};
 
 /// What the laboratory states about its rig.
@@ -66,7 +66,12 @@ pub struct Blocks {
 impl Blocks {
     /// Sort the evidence.
     pub fn new(evidence: &Evidence) -> Self {
-        let Evidence { rig, observations, brackets, .. } = *evidence;
+        let Evidence {
+            rig,
+            observations,
+            brackets,
+            ..
+        } = *evidence;
         let (impact, impact_outliers) =
             ImpactBlock::new(observations, IMPACT_SCATTER).without_outliers(5.0);
         Self {
@@ -95,12 +100,20 @@ impl Blocks {
     /// Nuisance coordinates of gains and asymmetry, with their priors.
     pub fn nuisances(&self, gain_uncertainty: f64) -> (Vec<Coordinate>, Vec<Prior>) {
         let mut free = self.gains();
-        let gain = |coordinate| Prior { coordinate, centre: 0.0, deviation: gain_uncertainty.max(1e-6) };
+        let gain = |coordinate| Prior {
+            coordinate,
+            centre: 0.0,
+            deviation: gain_uncertainty.max(1e-6),
+        };
         let mut priors: Vec<Prior> = free.iter().map(|c| gain(*c)).collect();
         if self.sees_both() {
             for coordinate in [Coordinate::DriveAsymmetry, Coordinate::StiffnessAsymmetry] {
                 free.push(coordinate);
-                priors.push(Prior { coordinate, centre: 0.0, deviation: ASYMMETRY });
+                priors.push(Prior {
+                    coordinate,
+                    centre: 0.0,
+                    deviation: ASYMMETRY,
+                });
             }
         }
         (free, priors)
@@ -117,7 +130,11 @@ pub fn wide_priors(start: &Parameters, free: &[Coordinate]) -> Vec<Prior> {
                 Coordinate::Damping | Coordinate::Deflection => 2.0,
                 _ => return None,
             };
-            Some(Prior { coordinate: *coordinate, centre: start.coordinate(*coordinate), deviation })
+            Some(Prior {
+                coordinate: *coordinate,
+                centre: start.coordinate(*coordinate),
+                deviation,
+            })
         })
         .collect()
 }
@@ -141,12 +158,20 @@ pub fn fit_blocks(
     start: Parameters,
 ) -> Result<MethodFit, FitError> {
     let prior_count = priors.len();
-    let problem = Problem { blocks, priors, free };
+    let problem = Problem {
+        blocks,
+        priors,
+        free,
+    };
     let fit = problem.fit(start)?;
     let informed = problem.free.len().saturating_sub(prior_count);
     let freedom = fit.residuals.saturating_sub(informed).max(1) as f64;
     let reduced = fit.cost / freedom;
-    Ok(MethodFit { factor: reduced.max(1.0), reduced, fit })
+    Ok(MethodFit {
+        factor: reduced.max(1.0),
+        reduced,
+        fit,
+    })
 }
 
 /// f0, β and x_st from the impactless records; the gains' uncertainty enters x_st.
@@ -154,8 +179,11 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<Result<MethodFit,
     if blocks.resonance.points.len() < 3 {
         return None;
     }
-    let mut free =
-        vec![Coordinate::Frequency, Coordinate::Damping, Coordinate::Deflection];
+    let mut free = vec![
+        Coordinate::Frequency,
+        Coordinate::Damping,
+        Coordinate::Deflection,
+    ];
     let (nuisances, priors) = blocks.nuisances(nominal.gain_uncertainty);
     free.extend(nuisances);
     let best = starts(blocks, nominal)
@@ -172,17 +200,27 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<Result<MethodFit,
 /// Starting values of the resonance curve: the stated ones, and a coarse grid whose deflection
 /// follows from the greatest response.
 fn starts(blocks: &Blocks, nominal: &Nominal) -> Vec<Parameters> {
-    let frequencies: Vec<f64> = blocks.resonance.points.iter().map(|p| p.frequency_hz).collect();
+    let frequencies: Vec<f64> = blocks
+        .resonance
+        .points
+        .iter()
+        .map(|p| p.frequency_hz)
+        .collect();
     let low = frequencies.iter().copied().fold(f64::INFINITY, f64::min);
     let high = frequencies.iter().copied().fold(0.0, f64::max);
     let mut out = Vec::new();
-    let mut grid: Vec<f64> = (0..7).map(|i| low * 0.8 * (high * 1.25 / (low * 0.8)).powf(f64::from(i) / 6.0)).collect();
+    let mut grid: Vec<f64> = (0..7)
+        .map(|i| low * 0.8 * (high * 1.25 / (low * 0.8)).powf(f64::from(i) / 6.0))
+        .collect();
     grid.extend(nominal.natural_frequency_hz);
     for f0 in grid {
         for beta in [0.01, 0.05, 0.2] {
             let beta = nominal.damping_ratio.unwrap_or(beta);
             let unit = Parameters::symmetric(0.8, f0, beta, 1.0);
-            out.push(Parameters { static_deflection_m: deflection_guess(blocks, &unit), ..unit });
+            out.push(Parameters {
+                static_deflection_m: deflection_guess(blocks, &unit),
+                ..unit
+            });
         }
     }
     out.sort_by(|a, b| {
@@ -225,7 +263,12 @@ pub fn impacts(blocks: &Blocks, start: Parameters) -> Option<Result<MethodFit, F
         return None;
     }
     let free = vec![Coordinate::Restitution];
-    Some(fit_blocks(vec![(&blocks.impact, 1.0)], free, Vec::new(), start))
+    Some(fit_blocks(
+        vec![(&blocks.impact, 1.0)],
+        free,
+        Vec::new(),
+        start,
+    ))
 }
 
 /// s2 and grazing brackets, with f0, β and x_st from the impactless records beside them.
@@ -266,7 +309,12 @@ pub fn trajectories(
     let (nuisances, more) = blocks.nuisances(nominal.gain_uncertainty);
     free.extend(nuisances);
     priors.extend(more);
-    Some(fit_blocks(vec![(&blocks.trajectory, 1.0)], free, priors, start))
+    Some(fit_blocks(
+        vec![(&blocks.trajectory, 1.0)],
+        free,
+        priors,
+        start,
+    ))
 }
 
 /// A method's result from its fit.
@@ -300,7 +348,11 @@ pub fn result(
             result
         }
         Err(error) => {
-            let mut result = MethodResult { observations, records, ..MethodResult::default() };
+            let mut result = MethodResult {
+                observations,
+                records,
+                ..MethodResult::default()
+            };
             for coordinate in tells {
                 if let Some(slot) = result.parameters.slot(*coordinate) {
                     *slot = Some(estimate::not_identifiable(error.to_string()));

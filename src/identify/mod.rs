@@ -9,6 +9,7 @@ pub mod estimate;
 pub mod impacts;
 pub mod methods;
 pub mod parameters;
+pub mod published;
 pub mod resonance;
 pub mod run;
 pub mod solver;

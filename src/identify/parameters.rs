@@ -48,7 +48,9 @@ impl Parameters {
     pub fn machine(&self, rig: Rig) -> Machine {
         let mass = |sign: f64| Oscillator {
             mass: 1.0,
-            natural_frequency_ratio: (1.0 + 0.5 * sign * self.stiffness_asymmetry).max(0.01).sqrt(),
+            natural_frequency_ratio: (1.0 + 0.5 * sign * self.stiffness_asymmetry)
+                .max(0.01)
+                .sqrt(),
             damping_ratio: self.damping_ratio,
             drive_amplitude: 1.0 + 0.5 * sign * self.drive_asymmetry,
         };
@@ -57,7 +59,12 @@ impl Parameters {
             Rig::Double => (mass(1.0), Some(mass(-1.0))),
             Rig::Single => (Oscillator::nominal(self.damping_ratio), None),
         };
-        Machine { x, y, contact: Contact::Rigid(restitution), flight: Flight::Harmonic }
+        Machine {
+            x,
+            y,
+            contact: Contact::Rigid(restitution),
+            flight: Flight::Harmonic,
+        }
     }
 
     /// η and ρ of a setting; the drive amplitude scales the static deflection.
@@ -150,8 +157,12 @@ pub enum Coordinate {
 
 impl Coordinate {
     /// The four parameters that the user asks for.
-    pub const PHYSICAL: [Coordinate; 4] =
-        [Coordinate::Restitution, Coordinate::Frequency, Coordinate::Damping, Coordinate::Deflection];
+    pub const PHYSICAL: [Coordinate; 4] = [
+        Coordinate::Restitution,
+        Coordinate::Frequency,
+        Coordinate::Damping,
+        Coordinate::Deflection,
+    ];
 
     /// Name in `identification.json`.
     pub fn name(self) -> &'static str {
@@ -182,6 +193,9 @@ impl Coordinate {
 
     /// Whether the coordinate is a logarithm of the value.
     pub fn is_logarithm(self) -> bool {
-        !matches!(self, Self::Restitution | Self::DriveAsymmetry | Self::StiffnessAsymmetry)
+        !matches!(
+            self,
+            Self::Restitution | Self::DriveAsymmetry | Self::StiffnessAsymmetry
+        )
     }
 }

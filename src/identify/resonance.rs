@@ -55,18 +55,29 @@ impl ResonanceBlock {
                 })
             })
             .collect();
-        Self { rig, points, relative_error }
+        Self {
+            rig,
+            points,
+            relative_error,
+        }
     }
 
     /// Whether any channel of a gain's index is present.
     pub fn has_gain(&self, index: usize) -> bool {
-        let mut roles = self.points.iter().flat_map(|p| &p.responses).map(|r| r.role);
+        let mut roles = self
+            .points
+            .iter()
+            .flat_map(|p| &p.responses)
+            .map(|r| r.role);
         roles.any(|r| gain_index(r) == Some(index))
     }
 }
 
 fn is_of_y(role: Role) -> bool {
-    matches!(role, Role::VelocityY | Role::DisplacementY | Role::AccelerationY)
+    matches!(
+        role,
+        Role::VelocityY | Role::DisplacementY | Role::AccelerationY
+    )
 }
 
 /// Predicted complex response of a channel, SI, gain included; the drive is cos θ.
@@ -78,7 +89,11 @@ pub fn predicted(
     drive_amplitude: f64,
 ) -> Complex<f64> {
     let machine = parameters.machine(rig);
-    let mass = if is_of_y(role) { machine.y.unwrap_or(machine.x) } else { machine.x };
+    let mass = if is_of_y(role) {
+        machine.y.unwrap_or(machine.x)
+    } else {
+        machine.x
+    };
     let eta = frequency_hz / parameters.natural_frequency_hz;
     let forced = forced_amplitude(&mass, Drive { eta, phase: 0.0 });
     let rate = Complex::new(0.0, std::f64::consts::TAU * frequency_hz);
@@ -100,8 +115,13 @@ impl Block for ResonanceBlock {
         let point = &self.points[item];
         let mut out = Vec::with_capacity(2 * point.responses.len());
         for r in &point.responses {
-            let model =
-                predicted(parameters, self.rig, r.role, point.frequency_hz, point.drive_amplitude);
+            let model = predicted(
+                parameters,
+                self.rig,
+                r.role,
+                point.frequency_hz,
+                point.drive_amplitude,
+            );
             let error = r.error.hypot(self.relative_error * r.amplitude());
             out.push((r.real - model.re) / error);
             out.push((r.imaginary - model.im) / error);

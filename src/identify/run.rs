@@ -79,7 +79,10 @@ fn succeeded(attempt: Option<&Result<MethodFit, FitError>>) -> Option<&MethodFit
     attempt.and_then(|a| a.as_ref().ok())
 }
 
-fn with_restitution(start: Parameters, impacts: Option<&Result<MethodFit, FitError>>) -> Parameters {
+fn with_restitution(
+    start: Parameters,
+    impacts: Option<&Result<MethodFit, FitError>>,
+) -> Parameters {
     match succeeded(impacts) {
         Some(found) => Parameters {
             restitution: found.fit.parameters.restitution.clamp(0.0, 1.0),
@@ -101,7 +104,11 @@ struct Work<'a> {
 
 impl<'a> Work<'a> {
     fn new(evidence: &'a Evidence<'a>) -> Self {
-        Self { evidence, blocks: Blocks::new(evidence), left_out: Vec::new() }
+        Self {
+            evidence,
+            blocks: Blocks::new(evidence),
+            left_out: Vec::new(),
+        }
     }
 
     /// Starting values: the resonance curve's, else the stated ones, else guesses of scale.
@@ -110,16 +117,28 @@ impl<'a> Work<'a> {
             return found.fit.parameters;
         }
         let nominal = &self.evidence.nominal;
-        let frequencies: Vec<f64> =
-            self.evidence.observations.iter().filter_map(|o| o.frequency_hz()).collect();
-        let clearances: Vec<f64> =
-            self.evidence.observations.iter().filter_map(|o| o.setting.clearance_m).collect();
+        let frequencies: Vec<f64> = self
+            .evidence
+            .observations
+            .iter()
+            .filter_map(|o| o.frequency_hz())
+            .collect();
+        let clearances: Vec<f64> = self
+            .evidence
+            .observations
+            .iter()
+            .filter_map(|o| o.setting.clearance_m)
+            .collect();
         let median = |v: &[f64], default: f64| crate::signal::robust::median(v).unwrap_or(default);
         Parameters::symmetric(
             nominal.restitution.unwrap_or(0.8),
-            nominal.natural_frequency_hz.unwrap_or_else(|| median(&frequencies, 10.0) / 1.2),
+            nominal
+                .natural_frequency_hz
+                .unwrap_or_else(|| median(&frequencies, 10.0) / 1.2),
             nominal.damping_ratio.unwrap_or(0.05),
-            nominal.static_deflection_m.unwrap_or_else(|| median(&clearances, 1e-3).abs() / 2.0),
+            nominal
+                .static_deflection_m
+                .unwrap_or_else(|| median(&clearances, 1e-3).abs() / 2.0),
         )
     }
 
@@ -135,9 +154,17 @@ impl<'a> Work<'a> {
         };
         let block = &self.blocks.resonance;
         let scores: Vec<f64> = (0..block.items())
-            .map(|i| mean_square(&block.residuals(i, &first.fit.parameters).unwrap_or_default()))
+            .map(|i| {
+                mean_square(
+                    &block
+                        .residuals(i, &first.fit.parameters)
+                        .unwrap_or_default(),
+                )
+            })
             .collect();
-        let typical = crate::signal::robust::median(&scores).unwrap_or(1.0).max(1.0);
+        let typical = crate::signal::robust::median(&scores)
+            .unwrap_or(1.0)
+            .max(1.0);
         if scores.iter().all(|s| *s <= OUTLYING * typical) {
             return Some(Ok(first));
         }
@@ -162,8 +189,12 @@ impl<'a> Work<'a> {
     fn trajectories(&mut self, start: Parameters) -> Attempt {
         let all = self.blocks.trajectory.records.clone();
         let at_start = self.trajectory_scores(&all, &start);
-        self.blocks.trajectory.records =
-            all.iter().zip(at_start).filter(|(_, s)| s.is_some()).map(|(r, _)| r.clone()).collect();
+        self.blocks.trajectory.records = all
+            .iter()
+            .zip(at_start)
+            .filter(|(_, s)| s.is_some())
+            .map(|(r, _)| r.clone())
+            .collect();
         let first = match methods::trajectories(&self.blocks, &self.evidence.nominal, start)? {
             Ok(first) => first,
             failed => return Some(failed),
@@ -171,7 +202,9 @@ impl<'a> Work<'a> {
         let parameters = first.fit.parameters;
         let scores: Vec<Option<f64>> = self.trajectory_scores(&all, &parameters);
         let known: Vec<f64> = scores.iter().flatten().copied().collect();
-        let typical = crate::signal::robust::median(&known).unwrap_or(1.0).max(1.0);
+        let typical = crate::signal::robust::median(&known)
+            .unwrap_or(1.0)
+            .max(1.0);
         let mut kept = Vec::new();
         for (record, score) in all.iter().zip(&scores) {
             let reason = match score {
@@ -203,9 +236,7 @@ impl<'a> Work<'a> {
         let mut block = self.blocks.trajectory.clone();
         block.records = records.to_vec();
         (0..records.len())
-            .map(|i| {
-                block.residuals(i, parameters).map(|r| mean_square(&r))
-            })
+            .map(|i| block.residuals(i, parameters).map(|r| mean_square(&r)))
             .collect()
     }
 
@@ -263,7 +294,9 @@ impl<'a> Work<'a> {
         let mut priors = methods::wide_priors(&start, &free);
         let waveforms = resonance.is_some() || trajectories.is_some();
         if waveforms {
-            let (nuisances, more) = self.blocks.nuisances(self.evidence.nominal.gain_uncertainty);
+            let (nuisances, more) = self
+                .blocks
+                .nuisances(self.evidence.nominal.gain_uncertainty);
             free.extend(nuisances);
             priors.extend(more);
         }
@@ -285,7 +318,12 @@ impl<'a> Work<'a> {
             Ok(found) => found.fit.free.clone(),
             Err(_) => Coordinate::PHYSICAL.to_vec(),
         };
-        let records = self.evidence.observations.iter().filter(|o| !o.excluded()).count();
+        let records = self
+            .evidence
+            .observations
+            .iter()
+            .filter(|o| !o.excluded())
+            .count();
         let observations = attempt.as_ref().map_or(0, |f| f.fit.residuals);
         let result = methods::result(&attempt, &tells, observations, records);
         match attempt {
@@ -294,9 +332,17 @@ impl<'a> Work<'a> {
         }
     }
 
-    fn store_resonance(&self, found: &mut BTreeMap<String, MethodResult>, attempt: Option<&Result<MethodFit, FitError>>) {
+    fn store_resonance(
+        &self,
+        found: &mut BTreeMap<String, MethodResult>,
+        attempt: Option<&Result<MethodFit, FitError>>,
+    ) {
         let Some(attempt) = attempt else { return };
-        let tells = [Coordinate::Frequency, Coordinate::Damping, Coordinate::Deflection];
+        let tells = [
+            Coordinate::Frequency,
+            Coordinate::Damping,
+            Coordinate::Deflection,
+        ];
         let block = &self.blocks.resonance;
         let observations = block.points.iter().map(|p| 2 * p.responses.len()).sum();
         let mut result = methods::result(attempt, &tells, observations, block.points.len());
@@ -306,13 +352,21 @@ impl<'a> Work<'a> {
         found.insert("resonance".into(), result);
     }
 
-    fn store_impacts(&self, found: &mut BTreeMap<String, MethodResult>, attempt: Option<&Result<MethodFit, FitError>>) {
+    fn store_impacts(
+        &self,
+        found: &mut BTreeMap<String, MethodResult>,
+        attempt: Option<&Result<MethodFit, FitError>>,
+    ) {
         let Some(attempt) = attempt else { return };
         let block = &self.blocks.impact;
         let mut records: Vec<usize> = block.pairs.iter().map(|p| p.observation).collect();
         records.dedup();
-        let mut result =
-            methods::result(attempt, &[Coordinate::Restitution], block.pairs.len(), records.len());
+        let mut result = methods::result(
+            attempt,
+            &[Coordinate::Restitution],
+            block.pairs.len(),
+            records.len(),
+        );
         if let Some(estimate) = &mut result.parameters.restitution {
             widen(estimate, IMPACT_BIAS);
         }
@@ -326,19 +380,31 @@ impl<'a> Work<'a> {
         found.insert("impacts".into(), result);
     }
 
-    fn store_trajectories(&self, found: &mut BTreeMap<String, MethodResult>, attempt: Option<&Result<MethodFit, FitError>>) {
+    fn store_trajectories(
+        &self,
+        found: &mut BTreeMap<String, MethodResult>,
+        attempt: Option<&Result<MethodFit, FitError>>,
+    ) {
         let Some(attempt) = attempt else { return };
         let block = &self.blocks.trajectory;
         let observations = attempt.as_ref().map_or(0, |f| f.fit.residuals);
-        let mut result =
-            methods::result(attempt, &Coordinate::PHYSICAL, observations, block.records.len());
+        let mut result = methods::result(
+            attempt,
+            &Coordinate::PHYSICAL,
+            observations,
+            block.records.len(),
+        );
         if let Ok(fit) = attempt {
             verdict::judge_trajectories(&mut result, block, &fit.fit.parameters);
         }
         found.insert("trajectories".into(), result);
     }
 
-    fn store_boundaries(&self, found: &mut BTreeMap<String, MethodResult>, attempt: Option<&Result<MethodFit, FitError>>) {
+    fn store_boundaries(
+        &self,
+        found: &mut BTreeMap<String, MethodResult>,
+        attempt: Option<&Result<MethodFit, FitError>>,
+    ) {
         let Some(attempt) = attempt else { return };
         let brackets = self.blocks.boundary.brackets.len();
         let tells = match attempt {
@@ -367,9 +433,17 @@ fn fit_without_lost(
     priors: Vec<crate::identify::solver::Prior>,
     start: Parameters,
 ) -> Result<MethodFit, FitError> {
-    let problem = Problem { blocks: list, priors, free };
+    let problem = Problem {
+        blocks: list,
+        priors,
+        free,
+    };
     let fit = problem.fit(start)?;
     let freedom = fit.residuals.saturating_sub(4).max(1) as f64;
     let reduced = fit.cost / freedom;
-    Ok(MethodFit { factor: reduced.max(1.0), reduced, fit })
+    Ok(MethodFit {
+        factor: reduced.max(1.0),
+        reduced,
+        fit,
+    })
 }

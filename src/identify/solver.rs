@@ -96,8 +96,10 @@ mod rows {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     pub fn serialize<S: Serializer>(matrix: &DMatrix<f64>, to: S) -> Result<S::Ok, S::Error> {
-        let rows: Vec<Vec<f64>> =
-            matrix.row_iter().map(|row| row.iter().copied().collect()).collect();
+        let rows: Vec<Vec<f64>> = matrix
+            .row_iter()
+            .map(|row| row.iter().copied().collect())
+            .collect();
         rows.serialize(to)
     }
 
@@ -105,7 +107,9 @@ mod rows {
         let rows: Vec<Vec<f64>> = Deserialize::deserialize(from)?;
         let width = rows.first().map_or(0, Vec::len);
         if rows.iter().any(|row| row.len() != width) {
-            return Err(serde::de::Error::custom("the rows of a matrix differ in length"));
+            return Err(serde::de::Error::custom(
+                "the rows of a matrix differ in length",
+            ));
         }
         Ok(DMatrix::from_fn(rows.len(), width, |i, k| rows[i][k]))
     }
@@ -135,7 +139,12 @@ struct Normal {
 
 impl Normal {
     fn zeros(n: usize) -> Self {
-        Self { matrix: DMatrix::zeros(n, n), gradient: DVector::zeros(n), cost: 0.0, count: 0 }
+        Self {
+            matrix: DMatrix::zeros(n, n),
+            gradient: DVector::zeros(n),
+            cost: 0.0,
+            count: 0,
+        }
     }
 
     fn add(&mut self, other: &Self) {
@@ -200,11 +209,19 @@ impl Problem<'_> {
         if !parameters.in_range() {
             return None;
         }
-        let mut sum: f64 = self.priors.iter().map(|p| prior_residual(p, parameters).powi(2)).sum();
+        let mut sum: f64 = self
+            .priors
+            .iter()
+            .map(|p| prior_residual(p, parameters).powi(2))
+            .sum();
         for (block, weight) in &self.blocks {
             let costs: Vec<Option<f64>> = (0..block.items())
                 .into_par_iter()
-                .map(|i| block.residuals(i, parameters).map(|r| r.iter().map(|x| x * x).sum()))
+                .map(|i| {
+                    block
+                        .residuals(i, parameters)
+                        .map(|r| r.iter().map(|x| x * x).sum())
+                })
                 .collect();
             for cost in costs {
                 sum += weight * cost?;
@@ -231,7 +248,11 @@ impl Problem<'_> {
         for prior in &self.priors {
             total.add(&self.prior_normal(prior, parameters));
         }
-        if missing.is_empty() { Ok(total) } else { Err(missing) }
+        if missing.is_empty() {
+            Ok(total)
+        } else {
+            Err(missing)
+        }
     }
 
     fn item_normal(
@@ -279,15 +300,20 @@ impl Problem<'_> {
                 *damping = (*damping * 10.0).max(1e-6);
                 continue;
             };
-            let to = self.free.iter().zip(step.iter()).fold(*from, |p, (c, d)| {
-                p.with(*c, p.coordinate(*c) + d)
-            });
+            let to = self
+                .free
+                .iter()
+                .zip(step.iter())
+                .fold(*from, |p, (c, d)| p.with(*c, p.coordinate(*c) + d));
             // Size of the step in standard errors.
             let size = step.dot(&(&normal.matrix * &step)).max(0.0).sqrt();
             match self.cost(&to) {
                 Some(cost) if cost < normal.cost => {
                     *damping = (*damping * 0.2).max(1e-12);
-                    return Step::Taken { to, negligible: size < 1e-4 };
+                    return Step::Taken {
+                        to,
+                        negligible: size < 1e-4,
+                    };
                 }
                 _ if size < 1e-4 => return Step::Negligible,
                 _ => *damping = (*damping * 8.0).max(1e-6),
@@ -319,7 +345,10 @@ fn slope(
     let evaluate = |shift: f64| {
         let shifted = at.with(coordinate, centre + shift);
         let inside = shifted.in_range();
-        inside.then(|| block.residuals(item, &shifted)).flatten().map(DVector::from_vec)
+        inside
+            .then(|| block.residuals(item, &shifted))
+            .flatten()
+            .map(DVector::from_vec)
     };
     match (evaluate(DIFFERENCE), evaluate(-DIFFERENCE)) {
         (Some(above), Some(below)) => Some((above - below) / (2.0 * DIFFERENCE)),
@@ -331,7 +360,9 @@ fn slope(
 
 /// Inverse through a scaled Cholesky factor; `None` where numerically singular.
 fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let scale = matrix.diagonal().map(|d| if d > 0.0 { d.sqrt().recip() } else { 0.0 });
+    let scale = matrix
+        .diagonal()
+        .map(|d| if d > 0.0 { d.sqrt().recip() } else { 0.0 });
     if scale.iter().any(|s| *s == 0.0) {
         return None;
     }

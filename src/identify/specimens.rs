@@ -14,8 +14,11 @@ use crate::motion::{Bracket, Observation};
 /// Records that look misfiled are named and left out.
 pub fn identify_campaign(evidence: &Evidence) -> (Outcome, BTreeMap<String, SpecimenResult>) {
     let misfiled = decay::misfiled(evidence.observations);
-    let names: std::collections::BTreeSet<&str> =
-        evidence.observations.iter().filter_map(|o| o.setting.specimen.as_deref()).collect();
+    let names: std::collections::BTreeSet<&str> = evidence
+        .observations
+        .iter()
+        .filter_map(|o| o.setting.specimen.as_deref())
+        .collect();
     if names.len() < 2 {
         return (identify(evidence), BTreeMap::new());
     }
@@ -26,16 +29,23 @@ pub fn identify_campaign(evidence: &Evidence) -> (Outcome, BTreeMap<String, Spec
             o.setting.specimen.as_deref() == Some(name)
                 && !misfiled.iter().any(|(record, _)| *record == o.record)
         };
-        let observations: Vec<Observation> =
-            evidence.observations.iter().filter(of_specimen).cloned().collect();
+        let observations: Vec<Observation> = evidence
+            .observations
+            .iter()
+            .filter(of_specimen)
+            .cloned()
+            .collect();
         let brackets: Vec<Bracket> = evidence
             .brackets
             .iter()
             .filter(|b| observations.iter().any(|o| b.records.contains(&o.record)))
             .cloned()
             .collect();
-        let outcome =
-            identify(&Evidence { observations: &observations, brackets: &brackets, ..*evidence });
+        let outcome = identify(&Evidence {
+            observations: &observations,
+            brackets: &brackets,
+            ..*evidence
+        });
         left_out.extend(outcome.left_out);
         results.insert(
             name.to_owned(),
@@ -71,7 +81,11 @@ fn summary(
         .iter()
         .map(|(name, r)| format!("{name}: {}", r.verdict.summary))
         .collect();
-    findings.extend(misfiled.iter().map(|(record, why)| format!("{record}: {why}")));
+    findings.extend(
+        misfiled
+            .iter()
+            .map(|(record, why)| format!("{record}: {why}")),
+    );
     let mut joint = MethodResult::default();
     let why = "the campaign holds several specimens; each has its own parameters";
     joint.parameters.restitution = Some(estimate::not_identifiable(why));

@@ -46,12 +46,20 @@ impl TrajectoryBlock {
             .filter(|(_, o)| !o.excluded() && o.finding.confidence >= 0.7)
             .filter_map(|(i, o)| trajectory_record(i, o))
             .collect();
-        Self { rig, records, relative_error }
+        Self {
+            rig,
+            records,
+            relative_error,
+        }
     }
 
     /// Whether any channel of a gain's index is present.
     pub fn has_gain(&self, index: usize) -> bool {
-        let mut roles = self.records.iter().flat_map(|r| &r.folded.channels).map(|c| c.role);
+        let mut roles = self
+            .records
+            .iter()
+            .flat_map(|r| &r.folded.channels)
+            .map(|c| c.role);
         roles.any(|r| gain_index(r) == Some(index))
     }
 
@@ -60,8 +68,11 @@ impl TrajectoryBlock {
     pub fn orbit(&self, item: usize, parameters: &Parameters) -> Option<Orbit> {
         let record = &self.records[item];
         let machine = parameters.machine(self.rig);
-        let setting =
-            parameters.setting(record.frequency_hz, record.clearance_m, record.drive_amplitude);
+        let setting = parameters.setting(
+            record.frequency_hz,
+            record.clearance_m,
+            record.drive_amplitude,
+        );
         let n = record.folded.periods_n;
         let branch = Branch::new(&machine, setting.frequency_ratio, n);
         let restitution = parameters.restitution.clamp(0.0, 1.0);
@@ -78,7 +89,11 @@ impl TrajectoryBlock {
 }
 
 fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> {
-    let speeds: Vec<f64> = o.impacts.iter().filter_map(|i| i.closing_speed_before_m_s).collect();
+    let speeds: Vec<f64> = o
+        .impacts
+        .iter()
+        .filter_map(|i| i.closing_speed_before_m_s)
+        .collect();
     Some(TrajectoryRecord {
         observation: index,
         frequency_hz: o.drive?.frequency_hz,
@@ -112,9 +127,8 @@ pub fn channel_value(
 /// their mean carries the curvature within the bin.
 fn states(orbit: &Orbit, point: &FoldedPoint, impact_phase: f64) -> [State; 2] {
     let eta = orbit.setting.frequency_ratio;
-    [-1.0, 1.0].map(|sign| {
-        orbit.at((point.phase_rad + sign * point.spread_rad - impact_phase) / eta)
-    })
+    [-1.0, 1.0]
+        .map(|sign| orbit.at((point.phase_rad + sign * point.spread_rad - impact_phase) / eta))
 }
 
 /// The orbit's impact phase on the fold's axis: whole turns put it next to the measured one.
@@ -138,13 +152,20 @@ impl Block for TrajectoryBlock {
         let mut shared: (&[FoldedPoint], Vec<[State; 2]>) = (&[], Vec::new());
         for channel in &record.folded.channels {
             if !same_phases(shared.0, &channel.points) {
-                let all = channel.points.iter().map(|p| states(&orbit, p, phase)).collect();
+                let all = channel
+                    .points
+                    .iter()
+                    .map(|p| states(&orbit, p, phase))
+                    .collect();
                 shared = (&channel.points, all);
             }
             let value =
                 |s: &State| channel_value(parameters, record.drive_amplitude, channel.role, s);
-            let values: Vec<f64> =
-                shared.1.iter().map(|[a, b]| 0.5 * (value(a) + value(b))).collect();
+            let values: Vec<f64> = shared
+                .1
+                .iter()
+                .map(|[a, b]| 0.5 * (value(a) + value(b)))
+                .collect();
             out.extend(centred_residuals(channel, &values, self.relative_error));
         }
         Some(out)
@@ -157,7 +178,9 @@ impl Block for TrajectoryBlock {
 
 fn same_phases(a: &[FoldedPoint], b: &[FoldedPoint]) -> bool {
     a.len() == b.len()
-        && a.iter().zip(b).all(|(p, q)| p.phase_rad == q.phase_rad && p.spread_rad == q.spread_rad)
+        && a.iter()
+            .zip(b)
+            .all(|(p, q)| p.phase_rad == q.phase_rad && p.spread_rad == q.spread_rad)
 }
 
 /// Weighted residuals with the channel's offset, a nuisance, projected out.
@@ -169,9 +192,21 @@ fn centred_residuals(channel: &FoldedChannel, model: &[f64], relative_error: f64
         .map(|p| 1.0 / (channel.noise.powi(2) / f64::from(p.samples.max(1)) + scale * scale))
         .collect();
     let total: f64 = weights.iter().sum();
-    let differences: Vec<f64> =
-        channel.points.iter().zip(model).map(|(p, m)| p.value - m).collect();
-    let offset =
-        differences.iter().zip(&weights).map(|(d, w)| d * w).sum::<f64>() / total.max(1e-300);
-    differences.iter().zip(&weights).map(|(d, w)| (d - offset) * w.sqrt()).collect()
+    let differences: Vec<f64> = channel
+        .points
+        .iter()
+        .zip(model)
+        .map(|(p, m)| p.value - m)
+        .collect();
+    let offset = differences
+        .iter()
+        .zip(&weights)
+        .map(|(d, w)| d * w)
+        .sum::<f64>()
+        / total.max(1e-300);
+    differences
+        .iter()
+        .zip(&weights)
+        .map(|(d, w)| (d - offset) * w.sqrt())
+        .collect()
 }

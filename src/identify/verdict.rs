@@ -37,7 +37,10 @@ pub fn judge_resonance(result: &mut MethodResult, block: &ResonanceBlock, fitted
     let deviation = robust::rms(&deviations);
     result.fits = Some(deviation < RESONANCE_DEVIATION);
     result.remarks.push(if deviation < RESONANCE_DEVIATION {
-        format!("the responses follow one degree of freedom within {:.2} %", 100.0 * deviation)
+        format!(
+            "the responses follow one degree of freedom within {:.2} %",
+            100.0 * deviation
+        )
     } else {
         format!(
             "the responses deviate by {:.0} % from the curve of one degree of freedom: there is \
@@ -51,7 +54,9 @@ pub fn judge_resonance(result: &mut MethodResult, block: &ResonanceBlock, fitted
 pub fn judge_trajectories(result: &mut MethodResult, block: &TrajectoryBlock, fitted: &Parameters) {
     let mut ratios = Vec::new();
     for item in 0..block.items() {
-        let Some(residuals) = block.residuals(item, fitted) else { continue };
+        let Some(residuals) = block.residuals(item, fitted) else {
+            continue;
+        };
         let channels = &block.records[item].folded.channels;
         let (mut apart, mut whole, mut k) = (0.0, 0.0, 0);
         for channel in channels {
@@ -65,7 +70,9 @@ pub fn judge_trajectories(result: &mut MethodResult, block: &TrajectoryBlock, fi
         }
         ratios.push((apart / whole.max(f64::MIN_POSITIVE)).sqrt());
     }
-    let Some(deviation) = robust::median(&ratios) else { return };
+    let Some(deviation) = robust::median(&ratios) else {
+        return;
+    };
     result.fits = Some(deviation < WAVEFORM_DEVIATION);
     result.remarks.push(format!(
         "the simulated waveforms leave {:.2} % of the measured ones unexplained",
@@ -73,38 +80,42 @@ pub fn judge_trajectories(result: &mut MethodResult, block: &TrajectoryBlock, fi
     ));
 }
 
-/// How R changes with the closing speed: from the slowest to the fastest fifth of the impacts.
+/// How R changes with the closing speed: a straight line through after/before over before,
+/// weighted by the speed squared (the error of a ratio falls with it).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RestitutionTrend {
-    /// Median speed and R of the slowest fifth.
+    /// Slowest speed, m/s, and R there on the line.
     pub slow: (f64, f64),
-    /// Median speed and R of the fastest fifth.
+    /// Fastest speed, m/s, and R there on the line.
     pub fast: (f64, f64),
-    /// Change over its standard error.
+    /// Slope over its standard error.
     pub z_score: f64,
 }
 
 /// Trend of R over the closing speed; `None` with fewer than fifteen impacts.
 pub fn restitution_trend(block: &ImpactBlock) -> Option<RestitutionTrend> {
-    let mut pairs = block.pairs.clone();
-    pairs.sort_by(|a, b| a.before_m_s.total_cmp(&b.before_m_s));
-    let fifth = pairs.len() / 5;
-    if fifth < 3 {
+    let pairs = &block.pairs;
+    if pairs.len() < 15 {
         return None;
     }
-    let group = |part: &[crate::identify::impacts::SpeedPair]| {
-        let speeds: Vec<f64> = part.iter().map(|p| p.before_m_s).collect();
-        let ratios: Vec<f64> = part.iter().map(|p| p.after_m_s / p.before_m_s).collect();
-        let spread = robust::robust_deviation(&ratios)?.max(1e-4);
-        let error = 1.2533 * spread / (ratios.len() as f64).sqrt();
-        Some((robust::median(&speeds)?, robust::median(&ratios)?, error))
+    let weight: f64 = pairs.iter().map(|p| p.before_m_s.powi(2)).sum();
+    let mean = |f: &dyn Fn(f64, f64) -> f64| {
+        let each = |p: &crate::identify::impacts::SpeedPair| {
+            p.before_m_s.powi(2) * f(p.before_m_s, p.after_m_s / p.before_m_s)
+        };
+        pairs.iter().map(each).sum::<f64>() / weight
     };
-    let slow = group(&pairs[..fifth])?;
-    let fast = group(&pairs[pairs.len() - fifth..])?;
+    let (speed, ratio) = (mean(&|v, _| v), mean(&|_, r| r));
+    let spread = mean(&|v, _| (v - speed).powi(2));
+    let slope = mean(&|v, r| (v - speed) * (r - ratio)) / spread;
+    let square = mean(&|v, r| (r - ratio - slope * (v - speed)).powi(2));
+    let error = (square / spread / (pairs.len() - 2) as f64).sqrt();
+    let at = |v: f64| (v, ratio + slope * (v - speed));
+    let speeds = pairs.iter().map(|p| p.before_m_s);
     Some(RestitutionTrend {
-        slow: (slow.0, slow.1),
-        fast: (fast.0, fast.1),
-        z_score: (fast.1 - slow.1) / slow.2.hypot(fast.2),
+        slow: at(speeds.clone().fold(f64::INFINITY, f64::min)),
+        fast: at(speeds.fold(0.0, f64::max)),
+        z_score: slope / error,
     })
 }
 
@@ -112,18 +123,24 @@ pub fn restitution_trend(block: &ImpactBlock) -> Option<RestitutionTrend> {
 pub fn judge_impacts(result: &mut MethodResult, block: &ImpactBlock, evidence: &Evidence) {
     let used: std::collections::BTreeSet<usize> =
         block.pairs.iter().map(|p| p.observation).collect();
-    let gaps: Vec<f64> =
-        used.iter().map(|i| evidence.observations[*i].jump_samples as f64).collect();
+    let gaps: Vec<f64> = used
+        .iter()
+        .map(|i| evidence.observations[*i].jump_samples as f64)
+        .collect();
     let gap = robust::median(&gaps).unwrap_or(1.0);
     let long = gap > 1.5;
-    let Some(trend) = restitution_trend(block) else { return };
+    let Some(trend) = restitution_trend(block) else {
+        return;
+    };
     let change = trend.fast.1 - trend.slow.1;
     let changes = change.abs() > RESTITUTION_CHANGE && trend.z_score.abs() > 4.0;
     result.fits = Some(!changes);
     if !changes {
         result.remarks.push(format!(
             "R is the same from {:.3} to {:.3} m/s within {:.3}",
-            trend.slow.0, trend.fast.0, change.abs().max(1e-3)
+            trend.slow.0,
+            trend.fast.0,
+            change.abs().max(1e-3)
         ));
         return;
     }
@@ -187,15 +204,26 @@ pub fn verdict(found: &Findings) -> Verdict {
     } else {
         VerdictKind::Identified
     };
-    Verdict { kind, summary: sentences(kind, &told, &unknown, &weak, found), findings }
+    Verdict {
+        kind,
+        summary: sentences(kind, &told, &unknown, &weak, found),
+        findings,
+    }
 }
 
 fn with_status(told: &[(Coordinate, &Estimate)], status: Status) -> Vec<Coordinate> {
-    told.iter().filter(|(_, e)| e.status == status).map(|(c, _)| *c).collect()
+    told.iter()
+        .filter(|(_, e)| e.status == status)
+        .map(|(c, _)| *c)
+        .collect()
 }
 
 fn symbols(coordinates: &[Coordinate]) -> String {
-    coordinates.iter().map(|c| c.symbol()).collect::<Vec<_>>().join(", ")
+    coordinates
+        .iter()
+        .map(|c| c.symbol())
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 fn sentences(
@@ -222,7 +250,11 @@ fn sentences(
             symbols(unknown)
         ),
         VerdictKind::Weak => {
-            format!("The rig has {}; {} only weakly.", values.join(", "), symbols(weak))
+            format!(
+                "The rig has {}; {} only weakly.",
+                values.join(", "),
+                symbols(weak)
+            )
         }
         VerdictKind::Identified => format!("The rig has {}.", values.join(", ")),
     };
@@ -244,5 +276,8 @@ fn phrase(coordinate: Coordinate, estimate: &Estimate) -> Option<String> {
     };
     let (value, half) = (value * scale, half * scale);
     let digits = (1.0 - half.max(1e-9).log10().floor()).clamp(0.0, 8.0) as usize;
-    Some(format!("{} = {value:.digits$} ± {half:.digits$}{unit}", coordinate.symbol()))
+    Some(format!(
+        "{} = {value:.digits$} ± {half:.digits$}{unit}",
+        coordinate.symbol()
+    ))
 }

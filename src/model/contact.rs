@@ -145,18 +145,25 @@ fn rest_after(machine: &Machine, v: f64, a: f64) -> f64 {
     2.0 * v / (a * (1.0 - r))
 }
 
-/// The state with the masses exactly in contact and without relative velocity; momentum and
-/// the centre of mobility are kept.
-pub fn joined_state(machine: &Machine, clearance: f64, s: &State) -> State {
+/// The state with the masses exactly in contact; what rounding left over is shared by mobility.
+pub fn in_contact(machine: &Machine, clearance: f64, s: &State) -> State {
     let (mx, my) = machine.mobility();
-    let w = s.vx + s.vy;
     let depth = s.x + s.y - machine.gap(clearance);
     State {
         x: s.x - mx * depth,
         y: s.y - my * depth,
+        ..*s
+    }
+}
+
+/// The state with the masses in contact and without relative velocity; momentum is kept.
+pub fn joined_state(machine: &Machine, clearance: f64, s: &State) -> State {
+    let (mx, my) = machine.mobility();
+    let w = s.vx + s.vy;
+    State {
         vx: s.vx - mx * w,
         vy: s.vy - my * w,
-        ..*s
+        ..in_contact(machine, clearance, s)
     }
 }
 

@@ -22,7 +22,7 @@ pub fn first_zero(path: &Path, t_max: f64) -> Option<Crossing> {
     let tolerance = 4e-15 * path.size();
     let longest = 1.6 / path.rate();
     let mut hm = longest;
-    let mut t = 0.0;
+    let (mut t, mut before) = (0.0, 0.0);
     loop {
         let jet = path.jet(t);
         let (g, v) = (jet.value, -jet.d1);
@@ -33,13 +33,15 @@ pub fn first_zero(path: &Path, t_max: f64) -> Option<Crossing> {
         let h = if near && leaves(&jet, tolerance) {
             leaving_step(&jet, hm)
         } else if near && v > 0.0 {
-            return accept(t, &jet, t_max);
+            let zero = accept(before, t, &jet);
+            return (zero.time <= t_max).then_some(zero);
         } else {
             safe_step(g.max(0.0), v, &jet, hm)
         };
         if t + h >= t_max {
             return None;
         }
+        before = t;
         t = if t + h > t { t + h } else { t.next_up() };
         hm = (1.5 * h).min(longest);
     }
@@ -57,20 +59,21 @@ fn leaves(jet: &Jet, tolerance: f64) -> bool {
     slow && jet.d2 >= -still
 }
 
-/// Newton's correction of an accepted zero, with the curvature where the speed is small.
-fn accept(t: f64, jet: &Jet, t_max: f64) -> Option<Crossing> {
+/// Newton's correction of an accepted zero, with the curvature where the speed is small; never
+/// back beyond the point before, where the path was above zero.
+fn accept(before: f64, t: f64, jet: &Jet) -> Crossing {
     let (g, v, a) = (jet.value, -jet.d1, -jet.d2);
     let root = v * v + 2.0 * a * g;
     let dt = if root > 0.0 {
         2.0 * g / (v + root.sqrt())
     } else {
-        g / v
+        0.0
     };
-    let time = (t + dt).max(0.0);
-    (time <= t_max).then_some(Crossing {
-        time,
+    let dt = dt.max(0.5 * (before - t));
+    Crossing {
+        time: t + dt,
         speed: v + a * dt,
-    })
+    }
 }
 
 /// First root of −g + vh + M h²/2, or hm where there is none before.

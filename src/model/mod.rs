@@ -11,6 +11,7 @@ pub mod flight;
 pub mod orbit;
 pub mod params;
 pub mod path;
+pub mod periodic;
 pub mod recurrence;
 pub mod simulate;
 
@@ -18,8 +19,13 @@ pub use boundary::{BoundaryPoint, eta_s2, rho_grazing, rho_s1, rho_s2};
 pub use contact::{ImpactKind, ModelImpact};
 pub use orbit::{Existence, Orbit};
 pub use params::{Contact, Flight, Initial, Machine, ModelError, Oscillator, Restitution, Setting};
+pub use periodic::PeriodicOrbit;
 pub use recurrence::{SettledMotion, Watch, settle};
 pub use simulate::{Simulator, Trajectory, simulate};
 
+#[cfg(test)]
+mod accuracy;
+#[cfg(test)]
+mod invariants;
 #[cfg(test)]
 mod tests;

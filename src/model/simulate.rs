@@ -115,12 +115,10 @@ impl Simulator {
     /// the contact, each by its mobility.
     pub fn set(&mut self, frequency_ratio: f64, clearance: f64) {
         (self.eta, self.clearance) = (frequency_ratio, clearance);
-        if self.joined || self.gap_left() < 0.0 {
-            let w = (self.state.vx, self.state.vy);
+        if self.joined {
             self.state = contact::joined_state(&self.machine, clearance, &self.state);
-            if !self.joined {
-                (self.state.vx, self.state.vy) = w;
-            }
+        } else if self.gap_left() < 0.0 {
+            self.state = contact::in_contact(&self.machine, clearance, &self.state);
         }
         self.settle();
     }
@@ -211,7 +209,7 @@ impl Simulator {
     }
 
     fn impact(&mut self, sink: &mut impl Sink) {
-        let before = self.state;
+        let before = contact::in_contact(&self.machine, self.clearance, &self.state);
         let Outcome {
             after,
             kind,

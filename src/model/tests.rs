@@ -279,3 +279,50 @@ fn valid_preload_keeps_the_masses_joined() {
     let t = simulate(&m, Setting::new(0.9, -0.9), start, 50.0).unwrap();
     assert!(!t.impacts.is_empty());
 }
+
+#[test]
+fn prop_newton_orbits_match_simulated_motions() {
+    let asymmetry = Asymmetry {
+        drive_amplitude: 0.95,
+        stiffness: 1.0,
+        mass: 1.0,
+    };
+    for (m, eta, rho) in [
+        (Machine::symmetric(0.07, 0.9), 0.9, 1.6),
+        (Machine::symmetric(0.07, 0.9), 2.6, 0.1),
+        (Machine::asymmetric(0.07, 0.8, asymmetry), 0.75, 0.8),
+        (Machine::symmetric(0.07, 0.9), 0.7, 0.7),
+    ] {
+        let setting = Setting::new(eta, rho);
+        let watch = Watch {
+            settle_periods: 600.0,
+            ..Watch::default()
+        };
+        let (motion, impacts) = settle(&m, setting, Initial::rest(), &watch).unwrap();
+        let SettledMotion::Periodic { p, n, .. } = motion else {
+            panic!("{eta} {rho} {motion:?}")
+        };
+        let last = &impacts[impacts.len() - usize::from(p)..];
+        let guess = PeriodicOrbit::from_impacts(last, setting, n.into()).unwrap();
+        let orbit = guess.clone().solve(&m).unwrap();
+        println!(
+            "{eta} {rho}: {p}/{n} {:?}",
+            orbit
+                .multipliers(&m)
+                .iter()
+                .map(|c| c.norm())
+                .collect::<Vec<_>>()
+        );
+        close((orbit.unknowns() - guess.unknowns()).amax(), 0.0, 1e-6);
+        assert!(orbit.residual(&m).amax() < 1e-11);
+        assert_eq!(orbit.existence(&m), Existence::Exists);
+        assert!(orbit.is_stable(&m));
+        if p == 1 {
+            let closed = stable_orbit(&m, setting, n.into()).unwrap().unwrap();
+            close(closed.closing_speed, orbit.speeds[0], 1e-11);
+            for (a, b) in closed.multipliers.iter().zip(orbit.multipliers(&m)) {
+                close(a.norm(), b.norm(), 1e-9);
+            }
+        }
+    }
+}

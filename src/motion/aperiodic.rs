@@ -45,9 +45,16 @@ impl Irregularity {
 }
 
 fn roughness(impacts: &[Impact]) -> f64 {
-    let speeds: Vec<f64> = impacts.iter().filter_map(|i| i.closing_speed_before_m_s).collect();
+    let speeds: Vec<f64> = impacts
+        .iter()
+        .filter_map(|i| i.closing_speed_before_m_s)
+        .collect();
     let mean = crate::signal::robust::mean(&speeds);
     let variance: f64 = speeds.iter().map(|v| (v - mean).powi(2)).sum();
     let steps: f64 = speeds.windows(2).map(|w| (w[1] - w[0]).powi(2)).sum();
-    if variance > 0.0 { steps / variance } else { 2.0 }
+    if variance > 0.0 {
+        steps / variance
+    } else {
+        2.0
+    }
 }

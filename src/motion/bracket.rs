@@ -79,7 +79,10 @@ pub fn brackets(observations: &[Observation]) -> Vec<Bracket> {
         .filter(|o| o.frequency_hz().is_some() && o.setting.clearance_m.is_some())
         .collect();
     usable.sort_by_key(|o| o.setting.sequence);
-    usable.windows(2).filter_map(|pair| bracket(pair[0], pair[1])).collect()
+    usable
+        .windows(2)
+        .filter_map(|pair| bracket(pair[0], pair[1]))
+        .collect()
 }
 
 fn bracket(before: &Observation, after: &Observation) -> Option<Bracket> {
@@ -87,7 +90,7 @@ fn bracket(before: &Observation, after: &Observation) -> Option<Bracket> {
     let rising = b > a;
     let one_run = before.setting.clearance_m == after.setting.clearance_m
         && before.setting.sweep == after.setting.sweep
-        && before.setting.drive_amplitude == after.setting.drive_amplitude
+        && (before.setting.drive_amplitude / after.setting.drive_amplitude - 1.0).abs() < 0.02
         && rising == (before.setting.sweep == Sweep::Up);
     if !one_run || before.finding.motion == after.finding.motion {
         return None;
@@ -97,7 +100,7 @@ fn bracket(before: &Observation, after: &Observation) -> Option<Bracket> {
         kind,
         periods_n,
         clearance_m: before.setting.clearance_m?,
-        drive_amplitude: before.setting.drive_amplitude,
+        drive_amplitude: 0.5 * (before.setting.drive_amplitude + after.setting.drive_amplitude),
         frequency_low_hz: a.min(b),
         frequency_high_hz: a.max(b),
         sweep: before.setting.sweep,
@@ -127,8 +130,16 @@ fn kind(before: &Observation, after: &Observation) -> (BoundaryKind, u32) {
 fn doubled(one: &Motion, two: &Motion) -> Option<u32> {
     match (one, two) {
         (
-            Motion::Periodic { impacts_p: 1, periods_n: n, .. },
-            Motion::Periodic { impacts_p: 2, periods_n: m, .. },
+            Motion::Periodic {
+                impacts_p: 1,
+                periods_n: n,
+                ..
+            },
+            Motion::Periodic {
+                impacts_p: 2,
+                periods_n: m,
+                ..
+            },
         ) if *m == 2 * n => Some(*n),
         _ => None,
     }

@@ -21,7 +21,11 @@ pub struct ClassifySettings {
 
 impl Default for ClassifySettings {
     fn default() -> Self {
-        Self { most_periods: 8, closed_ratio: 0.02, open_ratio: 0.10 }
+        Self {
+            most_periods: 8,
+            closed_ratio: 0.02,
+            open_ratio: 0.10,
+        }
     }
 }
 
@@ -64,7 +68,11 @@ impl Finding {
     pub fn impacts_and_periods(&self) -> Option<(u32, u32)> {
         match self.motion {
             Motion::Impactless => Some((0, 1)),
-            Motion::Periodic { impacts_p, periods_n, .. } => Some((impacts_p, periods_n)),
+            Motion::Periodic {
+                impacts_p,
+                periods_n,
+                ..
+            } => Some((impacts_p, periods_n)),
             _ => None,
         }
     }
@@ -76,12 +84,21 @@ impl Finding {
 }
 
 fn undetermined(reason: impl Into<String>, evidence: Evidence) -> Finding {
-    Finding { motion: Motion::Undetermined { reason: reason.into() }, confidence: 0.0, evidence }
+    Finding {
+        motion: Motion::Undetermined {
+            reason: reason.into(),
+        },
+        confidence: 0.0,
+        evidence,
+    }
 }
 
 /// Classify the motion of a record from what was detected in it.
 pub fn classify(detection: &Detection, duration_s: f64, settings: &ClassifySettings) -> Finding {
-    let mut evidence = Evidence { impacts: detection.impacts.len(), ..Evidence::default() };
+    let mut evidence = Evidence {
+        impacts: detection.impacts.len(),
+        ..Evidence::default()
+    };
     let Some(drive) = &detection.drive else {
         return undetermined("no drive was measured, so no period can be told", evidence);
     };
@@ -90,12 +107,26 @@ pub fn classify(detection: &Detection, duration_s: f64, settings: &ClassifySetti
     if evidence.periods_observed < 2.0 {
         return undetermined("the record holds fewer than two drive periods", evidence);
     }
-    let View { closures, noise_ratio, rest } = View::of(detection, period_s, settings);
+    let View {
+        closures,
+        noise_ratio,
+        rest,
+    } = View::of(detection, period_s, settings);
     evidence.noise_ratio = noise_ratio;
     if rest && detection.closed_fraction > 0.9 {
-        return Finding { motion: Motion::Joined, confidence: 0.95, evidence };
+        return Finding {
+            motion: Motion::Joined,
+            confidence: 0.95,
+            evidence,
+        };
     }
-    let case = Case { detection, period_s, duration_s, noise: noise_ratio.unwrap_or(0.0), settings };
+    let case = Case {
+        detection,
+        period_s,
+        duration_s,
+        noise: noise_ratio.unwrap_or(0.0),
+        settings,
+    };
     match closures.as_slice() {
         [] => case.by_impacts_alone(evidence),
         closures => case.by_waveform(closures, evidence),
@@ -111,18 +142,28 @@ struct View {
 
 impl View {
     fn of(detection: &Detection, period_s: f64, settings: &ClassifySettings) -> Self {
-        let Some(velocity) = &detection.kinematics.closing.velocity else {
-            return Self { closures: Vec::new(), noise_ratio: None, rest: false };
+        let Some(velocity) = &detection.kinematics.waveform else {
+            return Self {
+                closures: Vec::new(),
+                noise_ratio: None,
+                rest: false,
+            };
         };
         let rate_hz = detection.kinematics.rate_hz;
-        let times: Vec<f64> = detection.impacts.iter().map(|i| i.time_s * rate_hz).collect();
+        let times: Vec<f64> = detection
+            .impacts
+            .iter()
+            .map(|i| i.time_s * rate_hz)
+            .collect();
         let guard = detection.jump_samples as f64 + 1.5;
         let period = period_s * rate_hz;
         let periods = velocity.values.len() as f64 / period;
         // At least three drive periods, or as many again, must overlap.
         let reach = (periods - 3.0).max(0.5 * periods).floor().max(1.0) as u32;
         let most = settings.most_periods.min(reach);
-        let level = crate::signal::robust::rms(&velocity.values);
+        let mean = crate::signal::robust::mean(&velocity.values);
+        let centred: Vec<f64> = velocity.values.iter().map(|v| v - mean).collect();
+        let level = crate::signal::robust::rms(&centred);
         Self {
             closures: closure::waveform(&velocity.values, period, &times, guard, most),
             noise_ratio: (level > 0.0).then(|| velocity.noise / level),
@@ -142,7 +183,10 @@ struct Case<'a> {
 
 impl Case<'_> {
     fn by_waveform(&self, closures: &[WaveformClosure], mut evidence: Evidence) -> Finding {
-        let best = closures.iter().map(|c| c.ratio).fold(f64::INFINITY, f64::min);
+        let best = closures
+            .iter()
+            .map(|c| c.ratio)
+            .fold(f64::INFINITY, f64::min);
         // The smallest n that closes about as well as any: white noise leaves a few per cent of
         // scatter between the ratios, and interpolation a little more.
         let slack = 1.12 * best + 1e-4;
@@ -194,7 +238,12 @@ impl Case<'_> {
     }
 
     fn timing_noise_rad(&self) -> f64 {
-        let errors: Vec<f64> = self.detection.impacts.iter().map(|i| i.time_error_s).collect();
+        let errors: Vec<f64> = self
+            .detection
+            .impacts
+            .iter()
+            .map(|i| i.time_error_s)
+            .collect();
         crate::signal::robust::rms(&errors) * 2f64.sqrt() * std::f64::consts::TAU / self.period_s
     }
 
@@ -207,7 +256,10 @@ impl Case<'_> {
     fn periodic(&self, periods_n: u32, quality: f64, mut evidence: Evidence) -> Finding {
         evidence.cycles_observed = evidence.periods_observed / f64::from(periods_n);
         let Some(count) = self.count(periods_n) else {
-            return undetermined("no whole period of the motion fits into the record", evidence);
+            return undetermined(
+                "no whole period of the motion fits into the record",
+                evidence,
+            );
         };
         evidence.count_agreement = Some(count.agreement);
         if count.impacts_p == 0 {
@@ -234,10 +286,15 @@ impl Case<'_> {
             periods_n,
             dead_zone: has_dead_zone(&self.detection.impacts),
         };
-        let confidence =
-            quality * count.agreement.powi(2) * cycles_factor(evidence.cycles_observed)
-                * shorter_factor(&evidence);
-        Finding { motion, confidence, evidence }
+        let confidence = quality
+            * count.agreement.powi(2)
+            * cycles_factor(evidence.cycles_observed)
+            * shorter_factor(&evidence);
+        Finding {
+            motion,
+            confidence,
+            evidence,
+        }
     }
 
     fn impactless(
@@ -249,13 +306,19 @@ impl Case<'_> {
     ) -> Finding {
         if periods_n > 1 && evidence.shorter_closure > evidence.waveform_closure.map(|c| 2.0 * c) {
             return undetermined(
-                format!("no impact was found, yet the motion repeats only after {periods_n} \
-                         drive periods: impacts too slow to see, or still settling"),
+                format!(
+                    "no impact was found, yet the motion repeats only after {periods_n} \
+                         drive periods: impacts too slow to see, or still settling"
+                ),
                 evidence,
             );
         }
         let confidence = quality * count.agreement.powi(2);
-        Finding { motion: Motion::Impactless, confidence, evidence }
+        Finding {
+            motion: Motion::Impactless,
+            confidence,
+            evidence,
+        }
     }
 
     fn aperiodic(&self, mut evidence: Evidence) -> Finding {
@@ -270,11 +333,19 @@ impl Case<'_> {
         let Some(irregularity) = evidence.irregularity else {
             return undetermined("too few impacts to tell an irregular motion", evidence);
         };
-        let motion = if irregularity.is_beat() { Motion::Beat } else { Motion::Chaotic };
+        let motion = if irregularity.is_beat() {
+            Motion::Beat
+        } else {
+            Motion::Chaotic
+        };
         let seen = (evidence.periods_observed / 8.0).min(1.0);
         let open = evidence.waveform_closure.unwrap_or(0.0) / self.settings.open_ratio;
         let confidence = 0.9 * seen * (1.0 - (-open).exp());
-        Finding { motion, confidence, evidence }
+        Finding {
+            motion,
+            confidence,
+            evidence,
+        }
     }
 }
 

@@ -27,8 +27,12 @@ pub fn waveform(
     most: u32,
 ) -> Vec<WaveformClosure> {
     let blocked = blocked_samples(values.len(), impacts, guard);
-    let free: Vec<f64> =
-        values.iter().zip(&blocked).filter(|(_, b)| !**b).map(|(v, _)| *v).collect();
+    let free: Vec<f64> = values
+        .iter()
+        .zip(&blocked)
+        .filter(|(_, b)| !**b)
+        .map(|(v, _)| *v)
+        .collect();
     let mean = robust::mean(&free);
     let scale = robust::rms(&free.iter().map(|v| v - mean).collect::<Vec<_>>());
     (1..=most)
@@ -90,7 +94,9 @@ pub fn count(times: &[f64], period: f64, duration: f64, periods_n: u32) -> Optio
     let mut start = 0.0;
     while start + length <= duration {
         let (low, high) = (start, start + length);
-        let touches = times.iter().any(|t| (t - low).abs() < clear || (t - high).abs() < clear);
+        let touches = times
+            .iter()
+            .any(|t| (t - low).abs() < clear || (t - high).abs() < clear);
         if !touches {
             let inside = times.iter().filter(|t| (low..high).contains(*t)).count() as u32;
             *votes.entry(inside).or_default() += 1;
@@ -99,7 +105,11 @@ pub fn count(times: &[f64], period: f64, duration: f64, periods_n: u32) -> Optio
     }
     let windows: usize = votes.values().sum();
     let (&impacts_p, &most) = votes.iter().max_by_key(|(_, v)| **v)?;
-    Some(Count { impacts_p, agreement: most as f64 / windows as f64, windows })
+    Some(Count {
+        impacts_p,
+        agreement: most as f64 / windows as f64,
+        windows,
+    })
 }
 
 /// How well impacts close after p impacts in n drive periods.
@@ -130,7 +140,10 @@ pub fn impacts(impacts: &[Impact], period_s: f64, p: u32, n: u32) -> Option<Impa
         .iter()
         .map(|(a, b)| Some(b.closing_speed_before_m_s? - a.closing_speed_before_m_s?))
         .collect();
-    let level: Vec<f64> = impacts.iter().filter_map(|i| i.closing_speed_before_m_s).collect();
+    let level: Vec<f64> = impacts
+        .iter()
+        .filter_map(|i| i.closing_speed_before_m_s)
+        .collect();
     let level = robust::mean(&level).abs().max(f64::MIN_POSITIVE);
     Some(ImpactClosure {
         phase_rad: typical(&phases),
@@ -157,10 +170,16 @@ mod tests {
         // 12.6 periods of one impact each, at any start phase.
         for k in 0..20 {
             let shift = f64::from(k) / 20.0;
-            let times: Vec<f64> =
-                (0..13).map(|i| f64::from(i) + shift).filter(|t| *t < 12.6).collect();
+            let times: Vec<f64> = (0..13)
+                .map(|i| f64::from(i) + shift)
+                .filter(|t| *t < 12.6)
+                .collect();
             let found = count(&times, 1.0, 12.6, 1).unwrap();
-            assert_eq!((found.impacts_p, found.agreement), (1, 1.0), "shift {shift}");
+            assert_eq!(
+                (found.impacts_p, found.agreement),
+                (1, 1.0),
+                "shift {shift}"
+            );
         }
     }
 

@@ -66,7 +66,9 @@ pub fn fold(detection: &Detection, drive: &DriveTone, periods_n: u32) -> Folded 
     let guard_s = (detection.jump_samples as f64 + 1.0) / rate_hz;
     let impact_phase_rad = mean_impact_phase(detection, phase, span);
     let mut axis = Axis {
-        phases: (0..sample_count(detection)).map(|i| phase(i as f64 / rate_hz)).collect(),
+        phases: (0..sample_count(detection))
+            .map(|i| phase(i as f64 / rate_hz))
+            .collect(),
         blocked: blocked(detection, guard_s),
         span,
         bins: BINS_PER_PERIOD * periods_n as usize,
@@ -75,7 +77,11 @@ pub fn fold(detection: &Detection, drive: &DriveTone, periods_n: u32) -> Folded 
         // Also those at the record's very edges, where no impact could be detected.
         axis.block_phase(impact, guard_s * std::f64::consts::TAU * drive.frequency_hz);
     }
-    Folded { periods_n, impact_phase_rad, channels: channels(detection, &axis) }
+    Folded {
+        periods_n,
+        impact_phase_rad,
+        channels: channels(detection, &axis),
+    }
 }
 
 fn sample_count(detection: &Detection) -> usize {
@@ -104,11 +110,7 @@ fn blocked(detection: &Detection, guard_s: f64) -> Vec<bool> {
 }
 
 /// Circular mean of the impacts' phases on 0 … span.
-fn mean_impact_phase(
-    detection: &Detection,
-    phase: impl Fn(f64) -> f64,
-    span: f64,
-) -> Option<f64> {
+fn mean_impact_phase(detection: &Detection, phase: impl Fn(f64) -> f64, span: f64) -> Option<f64> {
     let turn = std::f64::consts::TAU / span;
     let (mut cos, mut sin) = (0.0, 0.0);
     for impact in &detection.impacts {
@@ -138,13 +140,19 @@ impl Axis {
         let (mut sum, mut count) = (0.0, 0.0);
         for i in 0..values.len() {
             let partner = i as f64 + lag;
-            let Some(later) = drift::interpolate(values, partner) else { break };
+            let Some(later) = drift::interpolate(values, partner) else {
+                break;
+            };
             if !self.blocked[i] && !self.blocked[partner.round() as usize] {
                 sum += later - values[i];
                 count += 1.0;
             }
         }
-        if count > 0.0 { sum / (count * lag) } else { 0.0 }
+        if count > 0.0 {
+            sum / (count * lag)
+        } else {
+            0.0
+        }
     }
 
     /// Leave out all samples within a guard of a phase.
@@ -172,7 +180,11 @@ fn channels(detection: &Detection, axis: &Axis) -> Vec<FoldedChannel> {
             let slope = axis.ramp(&values);
             drift::remove_line(&mut values, 0.0, slope);
         }
-        Some(FoldedChannel { role, noise: series.noise, points: points(&values, axis) })
+        Some(FoldedChannel {
+            role,
+            noise: series.noise,
+            points: points(&values, axis),
+        })
     })
     .collect()
 }

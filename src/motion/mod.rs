@@ -11,7 +11,7 @@ pub mod response;
 
 pub use bracket::{BoundaryKind, Bracket, brackets};
 pub use classify::{ClassifySettings, Evidence, Finding, classify};
-pub use observation::{Observation, observe};
+pub use observation::{Observation, observe, scale_drives};
 
 use serde::{Deserialize, Serialize};
 

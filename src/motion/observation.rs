@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::event::detect::DetectSettings;
 use crate::event::{DriveTone, Impact, Rig, detect};
+use crate::motion::Motion;
 use crate::motion::classify::{ClassifySettings, Finding, classify};
 use crate::motion::fold::{Folded, fold};
 use crate::motion::response::{Response, responses};
-use crate::motion::Motion;
-use crate::record::{Flag, Record, Role, Setting};
+use crate::record::{Excitation, Flag, Record, Role, Setting};
 use crate::signal::decay::{self, Decay};
 
 /// Greatest and least value of a motion channel, SI, about its mean.
@@ -61,7 +61,9 @@ pub struct Observation {
 impl Observation {
     /// Measured drive frequency, Hz; the stated one where the drive was not recorded.
     pub fn frequency_hz(&self) -> Option<f64> {
-        self.drive.map(|d| d.frequency_hz).or(self.setting.stated_frequency_hz)
+        self.drive
+            .map(|d| d.frequency_hz)
+            .or(self.setting.stated_frequency_hz)
     }
 
     /// Whether the record must stay out of the identification.
@@ -69,10 +71,25 @@ impl Observation {
         self.flags.iter().any(|f| f.excludes)
     }
 
+    /// Whether nothing touched: no impact was seen, and none of the evidence speaks of one. What
+    /// is not harmonic in such a record widens the error of its response.
+    pub fn has_no_impact(&self) -> bool {
+        self.impacts.is_empty()
+            && self.unsupported_pulses == 0
+            && matches!(
+                self.finding.motion,
+                Motion::Impactless | Motion::Undetermined { .. }
+            )
+    }
+
     /// Whether the motion is z = 1/n without a dead zone; gives n.
     pub fn one_impact_in(&self) -> Option<u32> {
         match self.finding.motion {
-            Motion::Periodic { impacts_p: 1, periods_n, dead_zone: false } => Some(periods_n),
+            Motion::Periodic {
+                impacts_p: 1,
+                periods_n,
+                dead_zone: false,
+            } => Some(periods_n),
             _ => None,
         }
     }
@@ -85,11 +102,18 @@ pub fn observe(
     detecting: &DetectSettings,
     classifying: &ClassifySettings,
 ) -> Observation {
+    if record.setting.excitation == Excitation::FreeDecay {
+        return observe_decay(record);
+    }
     let mut detection = detect(record, rig, detecting);
     let finding = classify(&detection, record.duration_s(), classifying);
     let mut flags = record.flags.clone();
     flags.append(&mut detection.flags);
-    flags.extend(contact_flag(record, &detection.impacts, detection.unsupported_pulses));
+    flags.extend(contact_flag(
+        record,
+        &detection.impacts,
+        detection.unsupported_pulses,
+    ));
     let mut observation = Observation {
         record: record.id.clone(),
         setting: record.setting.clone(),
@@ -107,11 +131,8 @@ pub fn observe(
         flags,
         finding,
     };
-    if observation.drive.is_none() && observation.impacts.is_empty() {
-        observation.decay = free_decay(record);
-    }
     if let Some(drive) = &observation.drive {
-        if observation.finding.motion == Motion::Impactless {
+        if observation.has_no_impact() {
             observation.response = responses(record, drive);
         } else if let Some(n) = observation.one_impact_in() {
             observation.folded = Some(fold(&detection, drive, n));
@@ -120,10 +141,83 @@ pub fn observe(
     observation
 }
 
+/// Observe a free decay: no drive, no impacts, one fit.
+fn observe_decay(record: &Record) -> Observation {
+    let decay = free_decay(record);
+    let mut flags = record.flags.clone();
+    if decay.is_none() {
+        flags.push(Flag {
+            code: "no_free_decay".into(),
+            channel: None,
+            message: "no free decay of three periods or more was found".into(),
+            remedy: "check that the record is a free decay and that its motion channel is named"
+                .into(),
+            excludes: true,
+        });
+    }
+    Observation {
+        record: record.id.clone(),
+        setting: record.setting.clone(),
+        sample_rate_hz: record.sample_rate_hz,
+        duration_s: record.duration_s(),
+        drive: None,
+        finding: Finding {
+            motion: Motion::Undetermined {
+                reason: "a free decay, without drive".into(),
+            },
+            confidence: 0.0,
+            evidence: Default::default(),
+        },
+        impacts: Vec::new(),
+        unsupported_pulses: 0,
+        missed_pulses: 0,
+        jump_samples: 1,
+        amplitudes: amplitudes(record),
+        response: Vec::new(),
+        folded: None,
+        decay,
+        flags,
+    }
+}
+
+/// Scale each record's drive amplitude by what was measured, relative to the median of its
+/// specimen, where the measured amplitudes differ; the static deflection then belongs to that
+/// median.
+pub fn scale_drives(observations: &mut [Observation]) {
+    let groups: std::collections::BTreeSet<Option<String>> = observations
+        .iter()
+        .map(|o| o.setting.specimen.clone())
+        .collect();
+    for group in groups {
+        let same = |o: &&mut Observation| o.setting.specimen == group;
+        let measured: Vec<f64> = observations
+            .iter()
+            .filter(|o| o.setting.specimen == group && !o.excluded())
+            .filter_map(|o| Some(o.drive?.amplitude))
+            .collect();
+        let Some(median) = crate::signal::robust::median(&measured).filter(|m| *m > 0.0) else {
+            continue;
+        };
+        for o in observations.iter_mut().filter(same) {
+            let Some(drive) = o.drive else { continue };
+            let ratio = drive.amplitude / median;
+            if (ratio / o.setting.drive_amplitude - 1.0).abs() > DRIVE_CHANGES {
+                o.setting.drive_amplitude = ratio;
+            }
+        }
+    }
+}
+
+/// Relative change of the measured drive amplitude from which it counts.
+const DRIVE_CHANGES: f64 = 5e-3;
+
 /// Free decay of the first motion channel that shows one.
 fn free_decay(record: &Record) -> Option<Decay> {
     let motion = |role: &Role| {
-        !matches!(role, Role::Drive | Role::Contact | Role::FrameX | Role::FrameY)
+        !matches!(
+            role,
+            Role::Drive | Role::Contact | Role::FrameX | Role::FrameY
+        )
     };
     Role::ALL
         .into_iter()

@@ -35,7 +35,12 @@ pub fn responses(record: &Record, drive: &DriveTone) -> Vec<Response> {
     record
         .channels
         .iter()
-        .filter(|c| !matches!(c.role, Role::Drive | Role::Contact | Role::FrameX | Role::FrameY))
+        .filter(|c| {
+            !matches!(
+                c.role,
+                Role::Drive | Role::Contact | Role::FrameX | Role::FrameY
+            )
+        })
         .filter_map(|c| {
             let raw = tone_at_drive(&c.values, record.sample_rate_hz, drive)?;
             let (real, imaginary, gain) = match c.high_pass_hz {
@@ -43,7 +48,13 @@ pub fn responses(record: &Record, drive: &DriveTone) -> Vec<Response> {
                 None => (raw.0, raw.1, 1.0),
             };
             let error = raw.2 / gain;
-            Some(Response { role: c.role, real, imaginary, error, residual_rms: raw.3 })
+            Some(Response {
+                role: c.role,
+                real,
+                imaginary,
+                error,
+                residual_rms: raw.3,
+            })
         })
         .collect()
 }
@@ -56,11 +67,7 @@ fn undo(real: f64, imaginary: f64, ratio: f64) -> (f64, f64, f64) {
 }
 
 /// Least squares of 1, t, cos θ, sin θ: (real, imaginary, error, residual rms).
-fn tone_at_drive(
-    values: &[f64],
-    rate_hz: f64,
-    drive: &DriveTone,
-) -> Option<(f64, f64, f64, f64)> {
+fn tone_at_drive(values: &[f64], rate_hz: f64, drive: &DriveTone) -> Option<(f64, f64, f64, f64)> {
     let count = values.len();
     if count < 8 || values.iter().any(|v| !v.is_finite()) {
         return None;
@@ -78,8 +85,11 @@ fn tone_at_drive(
     }
     let inverse = normal.try_inverse()?;
     let solution = inverse * right;
-    let squares: f64 =
-        values.iter().enumerate().map(|(i, v)| (v - solution.dot(&row(i))).powi(2)).sum();
+    let squares: f64 = values
+        .iter()
+        .enumerate()
+        .map(|(i, v)| (v - solution.dot(&row(i))).powi(2))
+        .sum();
     let deviation = (squares / (count - 4) as f64).sqrt();
     let error = deviation * (0.5 * (inverse[(2, 2)] + inverse[(3, 3)])).sqrt();
     let rms = (squares / count as f64).sqrt();

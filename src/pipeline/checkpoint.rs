@@ -48,7 +48,10 @@ impl Checkpoint {
         out: &Path,
         resume: bool,
     ) -> Result<Self, OutputError> {
-        let checkpoint = Self { folder: out.join(FOLDER), key: key(campaign) };
+        let checkpoint = Self {
+            folder: out.join(FOLDER),
+            key: key(campaign),
+        };
         if !resume {
             remove(out);
         }
@@ -65,10 +68,11 @@ impl Checkpoint {
     pub fn load(&self, number: usize, records: usize) -> Option<Vec<Observation>> {
         let file = std::fs::File::open(self.path(number)).ok()?;
         let mut text = String::new();
-        flate2::read::GzDecoder::new(file).read_to_string(&mut text).ok()?;
+        flate2::read::GzDecoder::new(file)
+            .read_to_string(&mut text)
+            .ok()?;
         let chunk: Chunk<Vec<Observation>> = serde_json::from_str(&text).ok()?;
-        (chunk.key == self.key && chunk.observations.len() == records)
-            .then_some(chunk.observations)
+        (chunk.key == self.key && chunk.observations.len() == records).then_some(chunk.observations)
     }
 
     /// Keep the observations of a chunk.
@@ -76,7 +80,10 @@ impl Checkpoint {
     /// # Errors
     /// Where it cannot be written.
     pub fn save(&self, number: usize, observations: &[Observation]) -> Result<(), OutputError> {
-        let chunk = Chunk { key: self.key.clone(), observations };
+        let chunk = Chunk {
+            key: self.key.clone(),
+            observations,
+        };
         output::write_whole(&self.path(number), |writer| {
             let mut gzip = flate2::write::GzEncoder::new(writer, flate2::Compression::fast());
             serde_json::to_writer(&mut gzip, &chunk)?;
@@ -104,7 +111,10 @@ fn key(campaign: &ResolvedCampaign) -> String {
         hash.update(file.to_string_lossy().as_bytes());
         hash.update(state(file).as_bytes());
     }
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hash.finalize()
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
 }
 
 /// Length and time of the last change of a file.
@@ -112,7 +122,10 @@ fn state(file: &Path) -> String {
     let Ok(metadata) = std::fs::metadata(file) else {
         return "missing".to_owned();
     };
-    let changed = metadata.modified().ok().and_then(|t| t.duration_since(UNIX_EPOCH).ok());
+    let changed = metadata
+        .modified()
+        .ok()
+        .and_then(|t| t.duration_since(UNIX_EPOCH).ok());
     format!("{} {:?}", metadata.len(), changed)
 }
 

@@ -6,10 +6,10 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::campaign::resolved::ResolvedCampaign;
+use crate::identify::Identification;
 use crate::identify::methods::{Evidence, Nominal};
 use crate::identify::solver::Fit;
 use crate::identify::specimens::identify_campaign;
-use crate::identify::Identification;
 use crate::output::write_bytes;
 use crate::pipeline::{Observed, PipelineError, inputs};
 
@@ -68,23 +68,39 @@ pub fn identify(campaign: &ResolvedCampaign, observed: &Observed) -> Result<Foun
         versions: versions(),
         inputs_sha256: inputs::hashes(campaign),
     };
-    let outcome = Kept { fit: outcome.fit, factor: outcome.factor, left_out: outcome.left_out };
-    Ok(Found { identification, outcome })
+    let outcome = Kept {
+        fit: outcome.fit,
+        factor: outcome.factor,
+        left_out: outcome.left_out,
+    };
+    Ok(Found {
+        identification,
+        outcome,
+    })
 }
 
 /// The resolved settings without the list of records, which has its own table.
-fn settings(campaign: &ResolvedCampaign) -> Result<serde_json::Value, PipelineError> {
-    let short = ResolvedCampaign { records: Vec::new(), ..campaign.clone() };
-    serde_json::to_value(short)
-        .map_err(|e| PipelineError::Table { table: "settings".into(), reason: e.to_string() })
+pub(super) fn settings(campaign: &ResolvedCampaign) -> Result<serde_json::Value, PipelineError> {
+    let short = ResolvedCampaign {
+        records: Vec::new(),
+        ..campaign.clone()
+    };
+    serde_json::to_value(short).map_err(|e| PipelineError::Table {
+        table: "settings".into(),
+        reason: e.to_string(),
+    })
 }
 
 /// Versions of the program and of what it writes.
 pub fn versions() -> BTreeMap<String, String> {
-    [("impactid", env!("CARGO_PKG_VERSION")), ("identification.json", "1"), ("records.parquet", "1")]
-        .into_iter()
-        .map(|(name, version)| (name.to_owned(), version.to_owned()))
-        .collect()
+    [
+        ("impactid", env!("CARGO_PKG_VERSION")),
+        ("identification.json", "1"),
+        ("records.parquet", "1"),
+    ]
+    .into_iter()
+    .map(|(name, version)| (name.to_owned(), version.to_owned()))
+    .collect()
 }
 
 /// Write identification.json.
@@ -92,8 +108,11 @@ pub fn versions() -> BTreeMap<String, String> {
 /// # Errors
 /// Where it cannot be written.
 pub fn write(identification: &Identification, out: &Path) -> Result<(), PipelineError> {
-    let mut text = serde_json::to_string_pretty(identification)
-        .map_err(|e| PipelineError::Table { table: FILE.into(), reason: e.to_string() })?;
+    let mut text =
+        serde_json::to_string_pretty(identification).map_err(|e| PipelineError::Table {
+            table: FILE.into(),
+            reason: e.to_string(),
+        })?;
     text.push('\n');
     Ok(write_bytes(&out.join(FILE), text.as_bytes())?)
 }

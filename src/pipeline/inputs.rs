@@ -15,6 +15,12 @@ pub fn hashes(campaign: &ResolvedCampaign) -> BTreeMap<String, String> {
     let mut files: BTreeSet<PathBuf> = campaign.records.iter().map(|r| r.file.clone()).collect();
     files.insert(campaign.file.clone());
     files.extend(campaign.run_table.clone());
+    files.extend(
+        campaign
+            .published
+            .as_ref()
+            .map(|p| campaign.folder().join(&p.speeds)),
+    );
     let files: Vec<PathBuf> = files.into_iter().collect();
     files
         .par_iter()
@@ -38,5 +44,9 @@ fn hash(path: &Path) -> std::io::Result<String> {
         }
         hasher.update(&buffer[..read]);
     }
-    Ok(hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+    Ok(hasher
+        .finalize()
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect())
 }

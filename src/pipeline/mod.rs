@@ -7,7 +7,9 @@ pub mod checkpoint;
 pub mod identify;
 pub mod inputs;
 pub mod observe;
+pub mod published;
 pub mod report;
+pub mod selftest;
 pub mod store;
 pub mod synthesise;
 pub mod tables;
@@ -16,7 +18,7 @@ use std::path::Path;
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::Verdict;
-use crate::motion::{Bracket, Observation, brackets};
+use crate::motion::{Bracket, Observation, brackets, scale_drives};
 use crate::output::OutputError;
 use crate::pipeline::checkpoint::Checkpoint;
 use crate::record::source::ReadError;
@@ -119,12 +121,16 @@ impl Observed {
         Self::from_observations(observations)
     }
 
-    fn from_observations(observations: Vec<Observation>) -> Result<Self, PipelineError> {
+    fn from_observations(mut observations: Vec<Observation>) -> Result<Self, PipelineError> {
+        scale_drives(&mut observations);
         if observations.iter().all(Observation::excluded) {
             return Err(PipelineError::NothingUsable(observations.len()));
         }
         let brackets = brackets(&observations);
-        Ok(Self { observations, brackets })
+        Ok(Self {
+            observations,
+            brackets,
+        })
     }
 }
 
@@ -149,7 +155,14 @@ pub fn run(
     destination: &Destination<'_>,
     progress: Progress,
 ) -> Result<Verdict, PipelineError> {
-    let Destination { out, resume, command_line } = *destination;
+    let Destination {
+        out,
+        resume,
+        command_line,
+    } = *destination;
+    if let Some(published) = &campaign.published {
+        return published::run(campaign, published, out, command_line);
+    }
     let observed = Observed::resumable(campaign, out, resume, progress)?;
     progress("identify", 0, 1);
     let found = identify::identify(campaign, &observed)?;

@@ -16,6 +16,14 @@ use crate::record::open::open;
 use crate::record::source::Source;
 use crate::record::{Flag, Record};
 
+/// Settings of the detection as the campaign has them.
+fn detect_settings(campaign: &ResolvedCampaign) -> DetectSettings {
+    DetectSettings {
+        flight: campaign.flight,
+        ..DetectSettings::default()
+    }
+}
+
 /// Settings of the classification as the campaign has them.
 fn classify_settings(campaign: &ResolvedCampaign) -> ClassifySettings {
     ClassifySettings {
@@ -50,7 +58,11 @@ pub fn observe_in_chunks(
     for (number, entries) in campaign.records.chunks(chunk.max(1)).enumerate() {
         if let Some(kept) = checkpoint.load(number, entries.len()) {
             let count = entries.len() as u64;
-            progress("observe", done.fetch_add(count, Ordering::Relaxed) + count, total);
+            progress(
+                "observe",
+                done.fetch_add(count, Ordering::Relaxed) + count,
+                total,
+            );
             all.extend(kept);
             continue;
         }
@@ -74,7 +86,7 @@ fn observe_some(
         .into_par_iter()
         .map(|entries| {
             each_record(campaign, entries, |record| {
-                let detect = DetectSettings::default();
+                let detect = detect_settings(campaign);
                 let observation = observe(&record, campaign.machine, &detect, &settings);
                 each();
                 observation

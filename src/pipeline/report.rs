@@ -57,9 +57,17 @@ fn facts(campaign: &ResolvedCampaign) -> crate::report::assemble::CampaignFacts 
         name: campaign.name.clone(),
         rig: campaign.machine,
         nominal: [
-            ("natural frequency $f_0$", campaign.rig.natural_frequency_hz, "Hz"),
+            (
+                "natural frequency $f_0$",
+                campaign.rig.natural_frequency_hz,
+                "Hz",
+            ),
             ("damping ratio $β$", campaign.rig.damping_ratio, ""),
-            ("static deflection $x_st$", campaign.rig.static_deflection_m, "m"),
+            (
+                "static deflection $x_st$",
+                campaign.rig.static_deflection_m,
+                "m",
+            ),
             ("restitution $R$", campaign.rig.restitution, ""),
             ("gain uncertainty", Some(campaign.rig.gain_uncertainty), ""),
         ]

@@ -23,7 +23,10 @@ const FIT: &str = "fit.json";
 const OBSERVATIONS: &str = "observations.json.gz";
 
 fn store_error(path: &Path, reason: impl std::fmt::Display) -> PipelineError {
-    PipelineError::Store { path: path.display().to_string(), reason: reason.to_string() }
+    PipelineError::Store {
+        path: path.display().to_string(),
+        reason: reason.to_string(),
+    }
 }
 
 fn write_json<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), PipelineError> {
@@ -76,15 +79,25 @@ pub fn ingest(
     let mut roles: Vec<ChannelSetup> = Vec::new();
     let total = campaign.records.len() as u64;
     for group in by_file(&campaign.records) {
-        for (entry, record) in group.iter().zip(each_record(campaign, group, |record| record)) {
-            let dataset = entries.iter().filter(|e: &&RecordEntry| e.dataset.is_some()).count();
+        for (entry, record) in group
+            .iter()
+            .zip(each_record(campaign, group, |record| record))
+        {
+            let dataset = entries
+                .iter()
+                .filter(|e: &&RecordEntry| e.dataset.is_some())
+                .count();
             let kept = record.samples() > 0;
             if kept {
                 note_roles(&mut roles, &record);
                 writer.add(table(&record))?;
             }
             let dataset = kept.then_some(dataset);
-            entries.push(RecordEntry { file: path.clone(), dataset, ..entry.clone() });
+            entries.push(RecordEntry {
+                file: path.clone(),
+                dataset,
+                ..entry.clone()
+            });
             flags.push(record.flags);
             progress("ingest", entries.len() as u64, total);
         }
@@ -104,7 +117,11 @@ pub fn ingest(
         },
         flags,
     };
-    let usable = ingested.flags.iter().filter(|f| !f.iter().any(|f| f.excludes)).count();
+    let usable = ingested
+        .flags
+        .iter()
+        .filter(|f| !f.iter().any(|f| f.excludes))
+        .count();
     write_json(&out.join(INGESTED_CAMPAIGN), &ingested)?;
     Ok(usable)
 }
@@ -132,11 +149,17 @@ fn note_roles(roles: &mut Vec<ChannelSetup>, record: &Record) {
         }
         let key = ChannelKey::Name(channel.role.name().to_owned());
         roles.push(ChannelSetup {
-            unit: Some(Unit { dimension: channel.dimension, to_si: 1.0 }),
+            unit: Some(Unit {
+                dimension: channel.dimension,
+                to_si: 1.0,
+            }),
             high_pass_hz: channel.high_pass_hz,
             threshold: channel
                 .threshold
-                .map(|si| Quantity { si, dimension: channel.dimension })
+                .map(|si| Quantity {
+                    si,
+                    dimension: channel.dimension,
+                })
                 .filter(|_| channel.role == Role::Contact),
             ..ChannelSetup::plain(channel.role, key)
         });
@@ -205,5 +228,8 @@ pub fn read_observed(out: &Path) -> Result<Observed, PipelineError> {
     let observations: Vec<Observation> =
         serde_json::from_str(&text).map_err(|e| store_error(&path, e))?;
     let brackets = brackets(&observations);
-    Ok(Observed { observations, brackets })
+    Ok(Observed {
+        observations,
+        brackets,
+    })
 }

@@ -68,7 +68,10 @@ pub fn write_campaign(recipe: &Recipe, out: &Path) -> Result<usize, PipelineErro
     write_records(recipe, &raw, &out.join(RECORDS_FILE))?;
     write_bytes(&out.join(RUN_TABLE), run_table(&raw).as_bytes())?;
     write_bytes(&out.join("campaign.toml"), campaign_toml(recipe).as_bytes())?;
-    write_bytes(&out.join("truth.json"), truth_json(recipe, &raw)?.as_bytes())?;
+    write_bytes(
+        &out.join("truth.json"),
+        truth_json(recipe, &raw)?.as_bytes(),
+    )?;
     Ok(raw.len())
 }
 
@@ -143,8 +146,10 @@ fn truth_json(recipe: &Recipe, raw: &[RawRecord]) -> Result<String, PipelineErro
             })
             .collect(),
     };
-    let mut text = serde_json::to_string_pretty(&file)
-        .map_err(|e| PipelineError::Table { table: "truth.json".into(), reason: e.to_string() })?;
+    let mut text = serde_json::to_string_pretty(&file).map_err(|e| PipelineError::Table {
+        table: "truth.json".into(),
+        reason: e.to_string(),
+    })?;
     text.push('\n');
     Ok(text)
 }
@@ -163,10 +168,14 @@ fn campaign_toml(recipe: &Recipe) -> String {
          [rig]\n\
          gain_uncertainty = \"0.5 %\"\n",
     );
-    for (sensitivity, (role, dimension, filtered)) in
-        sensitivities(&recipe.truth).iter().zip(ROLES)
+    for (sensitivity, (role, dimension, filtered)) in sensitivities(&recipe.truth).iter().zip(ROLES)
     {
-        let _ = write!(text, "\n[channels.{}]\nchannel = \"{}\"\n", role.name(), sensitivity.name);
+        let _ = write!(
+            text,
+            "\n[channels.{}]\nchannel = \"{}\"\n",
+            role.name(),
+            sensitivity.name
+        );
         let symbol = dimension.si_symbol();
         if symbol != "V" {
             let _ = writeln!(text, "scale = \"{} {symbol}/V\"", sensitivity.si_per_volt);

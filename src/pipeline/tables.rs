@@ -30,7 +30,10 @@ fn column<T>(name: &str, rows: &[T], get: &Get<T>) -> Column {
 }
 
 fn amplitude(o: &Observation, role: Role) -> Option<f64> {
-    o.amplitudes.iter().find(|a| a.role == role).map(|a| a.half_range)
+    o.amplitudes
+        .iter()
+        .find(|a| a.role == role)
+        .map(|a| a.half_range)
 }
 
 fn reason(o: &Observation) -> Option<String> {
@@ -58,38 +61,116 @@ const RECORDS: &[(&str, Get<Observation>)] = &[
     ("specimen", Get::Text(|o| o.setting.specimen.clone())),
     ("sequence", Get::Count(|o| Some(o.setting.sequence as u32))),
     ("frequency_hz", Get::Number(Observation::frequency_hz)),
-    ("frequency_error_hz", Get::Number(|o| Some(o.drive?.frequency_error_hz))),
-    ("stated_frequency_hz", Get::Number(|o| o.setting.stated_frequency_hz)),
+    (
+        "frequency_error_hz",
+        Get::Number(|o| Some(o.drive?.frequency_error_hz)),
+    ),
+    (
+        "stated_frequency_hz",
+        Get::Number(|o| o.setting.stated_frequency_hz),
+    ),
     ("drive_amplitude", Get::Number(|o| Some(o.drive?.amplitude))),
     ("clearance_m", Get::Number(|o| o.setting.clearance_m)),
-    ("sweep", Get::Text(|o| Some(o.setting.sweep.name().to_owned()))),
+    (
+        "sweep",
+        Get::Text(|o| Some(o.setting.sweep.name().to_owned())),
+    ),
     ("motion", Get::Text(|o| Some(o.finding.motion.label()))),
-    ("impacts_p", Get::Count(|o| o.finding.impacts_and_periods().map(|p| p.0))),
-    ("periods_n", Get::Count(|o| o.finding.impacts_and_periods().map(|p| p.1))),
+    (
+        "impacts_p",
+        Get::Count(|o| o.finding.impacts_and_periods().map(|p| p.0)),
+    ),
+    (
+        "periods_n",
+        Get::Count(|o| o.finding.impacts_and_periods().map(|p| p.1)),
+    ),
     ("confidence", Get::Number(|o| Some(o.finding.confidence))),
     ("reason", Get::Text(reason)),
     ("impacts", Get::Count(|o| Some(o.impacts.len() as u32))),
-    ("missed_contact_pulses", Get::Count(|o| Some(o.missed_pulses as u32))),
-    ("contact_pulses_without_jump", Get::Count(|o| Some(o.unsupported_pulses as u32))),
-    ("periods_observed", Get::Number(|o| Some(o.finding.evidence.periods_observed))),
-    ("waveform_closure_ratio", Get::Number(|o| o.finding.evidence.waveform_closure)),
-    ("shorter_closure_ratio", Get::Number(|o| o.finding.evidence.shorter_closure)),
-    ("noise_ratio", Get::Number(|o| o.finding.evidence.noise_ratio)),
-    ("impact_closure_rad", Get::Number(|o| Some(o.finding.evidence.impact_closure?.phase_rad))),
-    ("impact_closure_speed_ratio", Get::Number(|o| o.finding.evidence.impact_closure?.speed_ratio)),
-    ("count_agreement", Get::Number(|o| o.finding.evidence.count_agreement)),
-    ("impactless_periods", Get::Number(|o| Some(o.finding.evidence.irregularity?.impactless_periods))),
-    ("speed_roughness", Get::Number(|o| Some(o.finding.evidence.irregularity?.speed_roughness))),
-    ("velocity_x_amplitude_m_s", Get::Number(|o| amplitude(o, Role::VelocityX))),
-    ("velocity_y_amplitude_m_s", Get::Number(|o| amplitude(o, Role::VelocityY))),
-    ("displacement_x_amplitude_m", Get::Number(|o| amplitude(o, Role::DisplacementX))),
-    ("displacement_y_amplitude_m", Get::Number(|o| amplitude(o, Role::DisplacementY))),
-    ("acceleration_x_amplitude_m_s2", Get::Number(|o| amplitude(o, Role::AccelerationX))),
-    ("acceleration_y_amplitude_m_s2", Get::Number(|o| amplitude(o, Role::AccelerationY))),
-    ("decay_natural_frequency_hz", Get::Number(|o| Some(o.decay?.natural_frequency_hz))),
-    ("decay_natural_frequency_error_hz", Get::Number(|o| Some(o.decay?.natural_frequency_error_hz))),
-    ("decay_damping_ratio", Get::Number(|o| Some(o.decay?.damping_ratio))),
-    ("decay_damping_ratio_error", Get::Number(|o| Some(o.decay?.damping_ratio_error))),
+    (
+        "missed_contact_pulses",
+        Get::Count(|o| Some(o.missed_pulses as u32)),
+    ),
+    (
+        "contact_pulses_without_jump",
+        Get::Count(|o| Some(o.unsupported_pulses as u32)),
+    ),
+    (
+        "periods_observed",
+        Get::Number(|o| Some(o.finding.evidence.periods_observed)),
+    ),
+    (
+        "waveform_closure_ratio",
+        Get::Number(|o| o.finding.evidence.waveform_closure),
+    ),
+    (
+        "shorter_closure_ratio",
+        Get::Number(|o| o.finding.evidence.shorter_closure),
+    ),
+    (
+        "noise_ratio",
+        Get::Number(|o| o.finding.evidence.noise_ratio),
+    ),
+    (
+        "impact_closure_rad",
+        Get::Number(|o| Some(o.finding.evidence.impact_closure?.phase_rad)),
+    ),
+    (
+        "impact_closure_speed_ratio",
+        Get::Number(|o| o.finding.evidence.impact_closure?.speed_ratio),
+    ),
+    (
+        "count_agreement",
+        Get::Number(|o| o.finding.evidence.count_agreement),
+    ),
+    (
+        "impactless_periods",
+        Get::Number(|o| Some(o.finding.evidence.irregularity?.impactless_periods)),
+    ),
+    (
+        "speed_roughness",
+        Get::Number(|o| Some(o.finding.evidence.irregularity?.speed_roughness)),
+    ),
+    (
+        "velocity_x_amplitude_m_s",
+        Get::Number(|o| amplitude(o, Role::VelocityX)),
+    ),
+    (
+        "velocity_y_amplitude_m_s",
+        Get::Number(|o| amplitude(o, Role::VelocityY)),
+    ),
+    (
+        "displacement_x_amplitude_m",
+        Get::Number(|o| amplitude(o, Role::DisplacementX)),
+    ),
+    (
+        "displacement_y_amplitude_m",
+        Get::Number(|o| amplitude(o, Role::DisplacementY)),
+    ),
+    (
+        "acceleration_x_amplitude_m_s2",
+        Get::Number(|o| amplitude(o, Role::AccelerationX)),
+    ),
+    (
+        "acceleration_y_amplitude_m_s2",
+        Get::Number(|o| amplitude(o, Role::AccelerationY)),
+    ),
+    (
+        "decay_natural_frequency_hz",
+        Get::Number(|o| Some(o.decay?.natural_frequency_hz)),
+    ),
+    (
+        "decay_natural_frequency_error_hz",
+        Get::Number(|o| Some(o.decay?.natural_frequency_error_hz)),
+    ),
+    (
+        "decay_damping_ratio",
+        Get::Number(|o| Some(o.decay?.damping_ratio)),
+    ),
+    (
+        "decay_damping_ratio_error",
+        Get::Number(|o| Some(o.decay?.damping_ratio_error)),
+    ),
     ("flags", Get::Text(flags)),
     ("excluded", Get::Flag(|o| Some(o.excluded()))),
 ];
@@ -111,8 +192,14 @@ const IMPACTS: &[(&str, Get<ImpactRow>)] = &[
     ("time_s", Get::Number(|r| Some(r.1.time_s))),
     ("time_error_s", Get::Number(|r| Some(r.1.time_error_s))),
     ("drive_phase_rad", Get::Number(|r| r.1.drive_phase_rad)),
-    ("closing_speed_before_m_s", Get::Number(|r| r.1.closing_speed_before_m_s)),
-    ("closing_speed_after_m_s", Get::Number(|r| r.1.closing_speed_after_m_s)),
+    (
+        "closing_speed_before_m_s",
+        Get::Number(|r| r.1.closing_speed_before_m_s),
+    ),
+    (
+        "closing_speed_after_m_s",
+        Get::Number(|r| r.1.closing_speed_after_m_s),
+    ),
     ("speed_error_m_s", Get::Number(|r| r.1.speed_error_m_s)),
     ("velocity_x_before_m_s", Get::Number(|r| before(r.1.x))),
     ("velocity_x_after_m_s", Get::Number(|r| after(r.1.x))),
@@ -127,17 +214,25 @@ fn frame<T>(
     rows: &[T],
     columns: &[(&str, Get<T>)],
 ) -> Result<DataFrame, PipelineError> {
-    let columns = columns.iter().map(|(name, get)| column(name, rows, get)).collect();
+    let columns = columns
+        .iter()
+        .map(|(name, get)| column(name, rows, get))
+        .collect();
     DataFrame::new(rows.len(), columns).map_err(|e| failed(table, &e))
 }
 
 fn failed(table: &str, error: &dyn std::fmt::Display) -> PipelineError {
-    PipelineError::Table { table: table.to_owned(), reason: error.to_string() }
+    PipelineError::Table {
+        table: table.to_owned(),
+        reason: error.to_string(),
+    }
 }
 
 fn write_parquet(out: &Path, name: &str, mut frame: DataFrame) -> Result<(), PipelineError> {
     let mut bytes = Vec::new();
-    ParquetWriter::new(&mut bytes).finish(&mut frame).map_err(|e| failed(name, &e))?;
+    ParquetWriter::new(&mut bytes)
+        .finish(&mut frame)
+        .map_err(|e| failed(name, &e))?;
     Ok(write_bytes(&out.join(name), &bytes)?)
 }
 
@@ -153,8 +248,15 @@ pub fn write_all(observed: &Observed, out: &Path) -> Result<(), PipelineError> {
         .iter()
         .flat_map(|o| o.impacts.iter().map(|i| (o.record.clone(), i.clone())))
         .collect();
-    write_parquet(out, "impacts.parquet", frame("impacts.parquet", &rows, IMPACTS)?)?;
-    Ok(write_bytes(&out.join("boundaries.csv"), &boundaries(&observed.brackets)?)?)
+    write_parquet(
+        out,
+        "impacts.parquet",
+        frame("impacts.parquet", &rows, IMPACTS)?,
+    )?;
+    Ok(write_bytes(
+        &out.join("boundaries.csv"),
+        &boundaries(&observed.brackets)?,
+    )?)
 }
 
 fn boundaries(brackets: &[Bracket]) -> Result<Vec<u8>, PipelineError> {

@@ -56,20 +56,25 @@ impl FileBytes {
         self.map.as_deref().unwrap_or(&[])
     }
 
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.all().is_empty()
+    }
+
     /// Number of bytes.
-    pub fn len(&self) -> u64 {
+    pub fn size(&self) -> u64 {
         self.all().len() as u64
     }
 
     /// The bytes `at..at + length`, which are called `what` where the file does not hold them.
     pub fn slice(&self, at: u64, length: u64, what: &str) -> Result<&[u8], ReadError> {
-        let end = at.checked_add(length).filter(|&end| end <= self.len());
+        let end = at.checked_add(length).filter(|&end| end <= self.size());
         match end {
             Some(end) => Ok(&self.all()[at as usize..end as usize]),
             None => Err(self.refuse(
                 at,
                 format!("{length} bytes of {what}"),
-                format!("only {} bytes left", self.len().saturating_sub(at)),
+                format!("only {} bytes left", self.size().saturating_sub(at)),
             )),
         }
     }
@@ -110,7 +115,7 @@ impl FileBytes {
         Cursor {
             file: self,
             at: 0,
-            end: self.len(),
+            end: self.size(),
             order,
         }
     }
@@ -151,7 +156,7 @@ impl<'a> Cursor<'a> {
         Cursor {
             file: self.file,
             at,
-            end: end.min(self.file.len()),
+            end: end.min(self.file.size()),
             order: self.order,
         }
     }
@@ -244,7 +249,7 @@ mod tests {
     #[test]
     fn valid_empty_and_missing_files() {
         let (_keep, bytes) = file(&[]);
-        assert_eq!(bytes.len(), 0);
+        assert_eq!(bytes.size(), 0);
         assert!(FileBytes::open(Path::new("/nonexistent/x.tdms")).is_err());
     }
 

@@ -54,7 +54,7 @@ pub fn equal_lengths(record: &mut Record, times: Option<&mut Vec<f64>>) {
 }
 
 /// Cut samples off both ends where a channel has no value there (exports often pad so).
-pub fn trim_missing(record: &mut Record, mut times: Option<&mut Vec<f64>>) {
+pub fn trim_missing(record: &mut Record, times: Option<&mut Vec<f64>>) {
     let samples = record.samples();
     if samples == 0 {
         return;
@@ -79,7 +79,7 @@ pub fn trim_missing(record: &mut Record, mut times: Option<&mut Vec<f64>>) {
     for channel in &mut record.channels {
         keep(&mut channel.values, first, last);
     }
-    if let Some(times) = times.as_deref_mut() {
+    if let Some(times) = times {
         keep(times, first, last);
     }
     record.flags.push(trimmed(name, cut));
@@ -243,7 +243,11 @@ fn clipped(channel: &Channel, range: Option<f64>) -> Option<Flag> {
 fn at_rails(channel: &Channel, low: f64, high: f64, step: f64) -> usize {
     let rails = [low, high].map(|rail| at_rail(&channel.values, rail, step));
     let displacement = matches!(channel.role, Role::DisplacementX | Role::DisplacementY);
-    if displacement && rails.contains(&0) { 0 } else { rails[0] + rails[1] }
+    if displacement && rails.contains(&0) {
+        0
+    } else {
+        rails[0] + rails[1]
+    }
 }
 
 /// Number of samples in runs at a rail that were entered and left by more than a crest's steps.

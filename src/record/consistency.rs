@@ -160,6 +160,7 @@ mod tests {
                 drive_amplitude: 1.0,
                 sequence: 0,
                 specimen: None,
+                excitation: Default::default(),
             },
             flags: Vec::new(),
         }

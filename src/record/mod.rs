@@ -5,6 +5,7 @@
 //! judge experiment and simulation alike. This room does not know the model.
 
 pub mod attribute;
+pub mod bind;
 pub mod bytes;
 pub mod calibrate;
 mod condition;
@@ -142,6 +143,17 @@ impl Sweep {
     }
 }
 
+/// How a record was excited.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Excitation {
+    /// A harmonic drive.
+    #[default]
+    Harmonic,
+    /// A blow or a release, then nothing.
+    FreeDecay,
+}
+
 /// The setting at which a record was taken, as the laboratory states it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Setting {
@@ -159,6 +171,9 @@ pub struct Setting {
     /// `specimen` of the run table); parameters are identified for each.
     #[serde(default)]
     pub specimen: Option<String>,
+    /// How it was excited.
+    #[serde(default)]
+    pub excitation: Excitation,
 }
 
 /// Something wrong or noteworthy with a record: what, where, and what to do about it.

@@ -81,16 +81,8 @@ pub struct Spacing {
     pub offset: usize,
     /// Bytes from one sample to the next.
     pub stride: usize,
-}
-
-impl Spacing {
-    /// Samples that follow each other without a gap.
-    pub fn packed(number: Number) -> Self {
-        Self {
-            offset: 0,
-            stride: number.bytes() as usize,
-        }
-    }
+    /// Number of samples.
+    pub count: usize,
 }
 
 macro_rules! by_kind {
@@ -126,33 +118,32 @@ pub fn decode(number: Number, order: ByteOrder, bytes: &[u8], out: &mut Vec<f64>
             $out.extend(whole.iter().map(|&chunk| <$kind>::$from(chunk) as f64));
         }};
     }
-    by_kind!(number, order, go, bytes, out)
+    by_kind!(number, order, go, bytes, out);
 }
 
-/// Append `count` numbers spaced in `bytes`; stops early where the bytes end.
+/// Append the numbers spaced in `bytes`; stops early where the bytes end.
 pub fn decode_spaced(
     number: Number,
     order: ByteOrder,
     bytes: &[u8],
     spacing: Spacing,
-    count: usize,
     out: &mut Vec<f64>,
 ) {
     macro_rules! go {
         ($kind:ty, $from:ident, $bytes:expr, $out:expr) => {{
             let rows = $bytes.get(spacing.offset..).unwrap_or(&[]);
-            let rows = rows.chunks(spacing.stride.max(1)).take(count);
+            let rows = rows.chunks(spacing.stride.max(1)).take(spacing.count);
             $out.extend(
                 rows.map_while(|row| row.first_chunk())
                     .map(|&c| <$kind>::$from(c) as f64),
             );
         }};
     }
-    if spacing == Spacing::packed(number) {
-        let length = count.saturating_mul(spacing.stride).min(bytes.len());
-        return decode(number, order, &bytes[..length], out);
+    if spacing.offset == 0 && spacing.stride as u64 == number.bytes() {
+        let length = spacing.count.saturating_mul(spacing.stride);
+        return decode(number, order, &bytes[..length.min(bytes.len())], out);
     }
-    by_kind!(number, order, go, bytes, out)
+    by_kind!(number, order, go, bytes, out);
 }
 
 /// Pair real and imaginary parts.
@@ -201,22 +192,17 @@ mod tests {
         let spacing = Spacing {
             offset: 0,
             stride: 3,
+            count: 100,
         };
-        decode_spaced(
-            Number::U8,
-            ByteOrder::Little,
-            &bytes,
-            spacing,
-            100,
-            &mut out,
-        );
+        decode_spaced(Number::U8, ByteOrder::Little, &bytes, spacing, &mut out);
         assert_eq!(out, [1.0, 2.0, 3.0]);
         out.clear();
         let spacing = Spacing {
             offset: 1,
             stride: 3,
+            count: 2,
         };
-        decode_spaced(Number::U16, ByteOrder::Little, &bytes, spacing, 2, &mut out);
+        decode_spaced(Number::U16, ByteOrder::Little, &bytes, spacing, &mut out);
         assert_eq!(out, [f64::from(0x0909), f64::from(0x0909)]);
     }
 }

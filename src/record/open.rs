@@ -11,6 +11,8 @@ use crate::record::parquet;
 use crate::record::source::{ReadError, Source};
 use crate::record::tdms;
 use crate::record::text::read_exact_at;
+use crate::record::uff;
+use crate::record::wav;
 
 /// Bytes at the front of a file by which formats are told apart.
 const FRONT_BYTES: usize = 4096;
@@ -27,6 +29,8 @@ const BY_BYTES: &[(Test, Reader)] = &[
     (is_lvm, lvm::open),
     (is_parquet, parquet::open),
     (tdms::recognises, tdms::open),
+    (uff::recognises, uff::open),
+    (wav::recognises, wav::open),
     (mat::recognises, mat::open),
 ];
 

@@ -27,12 +27,19 @@ pub struct Decay {
     pub samples: usize,
 }
 
-/// Time after the blow for other modes and the blow itself to die away, s.
-const WAIT_S: f64 = 0.1;
+/// Earliest start of a fit, s from the first sample: records of blows are triggered by them.
+const FROM_S: f64 = 0.1;
+/// Least time between the blow and the start of a fit, s.
+const WAIT_S: f64 = 0.05;
+/// Further starts within one period that show how far the answer depends on the start.
+const OTHER_STARTS: usize = 4;
 
 /// Fit the free decay that follows the greatest excursion of the samples.
 ///
-/// `None` where there are fewer than three periods to fit, or nothing decays.
+/// The fit begins 0.1 s into the record, and at least 0.05 s after the blow. Fits from later
+/// starts within one period show how far another mode or a drift sways the answer; their spread
+/// is part of the standard errors. `None` where there are fewer than three periods to fit, or
+/// nothing decays.
 pub fn fit(samples: &[f64], rate_hz: f64) -> Option<Decay> {
     let centre = super::robust::median(samples)?;
     let peak = samples
@@ -40,35 +47,38 @@ pub fn fit(samples: &[f64], rate_hz: f64) -> Option<Decay> {
         .enumerate()
         .max_by(|a, b| (a.1 - centre).abs().total_cmp(&(b.1 - centre).abs()))?
         .0;
-    let first = peak + (WAIT_S * rate_hz).ceil() as usize;
+    let wait = (WAIT_S * rate_hz).ceil() as usize;
+    let first = (peak + wait).max((FROM_S * rate_hz).ceil() as usize);
     let tail = samples.get(first..)?;
     let frequency_hz = super::spectrum::peak_frequency(tail)? * rate_hz;
-    let count = audible(tail, rate_hz / frequency_hz);
-    if (count as f64) < 3.0 * rate_hz / frequency_hz {
-        return None;
+    let period = rate_hz / frequency_hz;
+    let others = (1..=OTHER_STARTS)
+        .map(|k| (period * k as f64 / OTHER_STARTS as f64).round() as usize)
+        .filter_map(|skip| fit_tail(tail.get(skip..)?, rate_hz, frequency_hz));
+    let mut decay = fit_tail(tail, rate_hz, frequency_hz)?;
+    let (mut of_frequency, mut of_damping, mut count) = (0.0, 0.0, 0.0);
+    for other in others {
+        of_frequency += (other.natural_frequency_hz - decay.natural_frequency_hz).powi(2);
+        of_damping += (other.damping_ratio - decay.damping_ratio).powi(2);
+        count += 1.0;
     }
-    let tail = &tail[..count];
-    let start = Vector2::new(frequency_hz * std::f64::consts::TAU / rate_hz, 0.0);
-    let best = [0.005, 0.02, 0.08]
-        .into_iter()
-        .filter_map(|beta| descend(tail, Vector2::new(start[0], beta * start[0])))
-        .min_by(|a, b| a.squares.total_cmp(&b.squares))?;
-    let mut decay = best.finish(tail, rate_hz)?;
+    let spread = |squares: f64| (squares / f64::max(count, 1.0)).sqrt();
+    decay.natural_frequency_error_hz = decay.natural_frequency_error_hz.hypot(spread(of_frequency));
+    decay.damping_ratio_error = decay.damping_ratio_error.hypot(spread(of_damping));
     decay.first = first;
     Some(decay)
 }
 
-/// Number of samples until the envelope (rms over one period) falls to a fortieth of its start.
-fn audible(tail: &[f64], period: f64) -> usize {
-    let length = (period.round() as usize).max(4);
-    let level = |chunk: &[f64]| {
-        let mean = super::robust::mean(chunk);
-        super::robust::rms(&chunk.iter().map(|v| v - mean).collect::<Vec<_>>())
-    };
-    let levels: Vec<f64> = tail.chunks_exact(length).map(level).collect();
-    let Some(first) = levels.first() else { return 0 };
-    let heard = levels.iter().take_while(|l| **l > first / 40.0).count();
-    if heard == levels.len() { tail.len() } else { heard * length }
+fn fit_tail(tail: &[f64], rate_hz: f64, frequency_hz: f64) -> Option<Decay> {
+    if (tail.len() as f64) < 3.0 * rate_hz / frequency_hz {
+        return None;
+    }
+    let omega = frequency_hz * std::f64::consts::TAU / rate_hz;
+    [0.005, 0.02, 0.08]
+        .into_iter()
+        .filter_map(|beta| descend(tail, Vector2::new(omega, beta * omega)))
+        .min_by(|a, b| a.squares.total_cmp(&b.squares))?
+        .finish(tail, rate_hz)
 }
 
 /// State of the search: ω_d and σ per sample with the best linear part.
@@ -94,9 +104,16 @@ fn project(tail: &[f64], rates: Vector2<f64>) -> Option<Point> {
         right += row * *v;
     }
     let linear = normal.cholesky()?.solve(&right);
-    let squares =
-        tail.iter().enumerate().map(|(i, v)| (v - linear.dot(&basis(rates, i))).powi(2)).sum();
-    Some(Point { rates, linear, squares })
+    let squares = tail
+        .iter()
+        .enumerate()
+        .map(|(i, v)| (v - linear.dot(&basis(rates, i))).powi(2))
+        .sum();
+    Some(Point {
+        rates,
+        linear,
+        squares,
+    })
 }
 
 impl Point {
@@ -168,7 +185,11 @@ fn correlation_factor(residuals: &[f64]) -> f64 {
     let total: f64 = residuals.iter().map(|r| r * r).sum();
     let mut factor = 1.0;
     for lag in 1..residuals.len() / 4 {
-        let product: f64 = residuals.iter().zip(&residuals[lag..]).map(|(a, b)| a * b).sum();
+        let product: f64 = residuals
+            .iter()
+            .zip(&residuals[lag..])
+            .map(|(a, b)| a * b)
+            .sum();
         if product <= 0.0 {
             break;
         }
@@ -211,7 +232,13 @@ mod tests {
         let damped = natural * f64::sqrt(1.0 - beta * beta);
         let samples: Vec<f64> = (0..2048)
             .map(|i| (f64::from(i) - 10.0) / rate)
-            .map(|t| if t < 0.0 { 0.2 } else { 0.2 + 3.0 * (-beta * natural * t).exp() * (damped * t).cos() })
+            .map(|t| {
+                if t < 0.0 {
+                    0.2
+                } else {
+                    0.2 + 3.0 * (-beta * natural * t).exp() * (damped * t).cos()
+                }
+            })
             .collect();
         let decay = fit(&samples, rate).unwrap();
         assert!((decay.natural_frequency_hz / f0 - 1.0).abs() < 1e-8);

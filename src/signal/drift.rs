@@ -82,13 +82,17 @@ mod tests {
         let wc = std::f64::consts::TAU * corner;
         // Steady response of jω/(jω + ω_c) to sin.
         let (gain, lead) = (w / w.hypot(wc), (wc / w).atan());
-        let filtered: Vec<f64> =
-            (0..4000).map(|i| gain * (w * f64::from(i) / rate + lead).sin()).collect();
+        let filtered: Vec<f64> = (0..4000)
+            .map(|i| gain * (w * f64::from(i) / rate + lead).sin())
+            .collect();
         let restored = undo_high_pass(&filtered, rate, corner);
         let constant = restored[0];
         for (i, value) in restored.iter().enumerate() {
             let truth = (w * i as f64 / rate).sin();
-            assert!((value - constant - truth).abs() < 1e-4, "{i}: {value} {truth}");
+            assert!(
+                (value - constant - truth).abs() < 1e-4,
+                "{i}: {value} {truth}"
+            );
         }
     }
 }

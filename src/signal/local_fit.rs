@@ -33,7 +33,14 @@ impl LocalFit {
         let covariance = (design.transpose() * &design).try_inverse()?;
         let coefficients = &covariance * design.transpose() * &values;
         let residual_squares = (values - design * &coefficients).norm_squared();
-        Some(Self { coefficients, covariance, origin, scale, samples: count, residual_squares })
+        Some(Self {
+            coefficients,
+            covariance,
+            origin,
+            scale,
+            samples: count,
+            residual_squares,
+        })
     }
 
     /// Degree of the polynomial.
@@ -44,21 +51,29 @@ impl LocalFit {
     /// Value at a time in steps.
     pub fn value(&self, time: f64) -> f64 {
         let u = (time - self.origin) / self.scale;
-        self.coefficients.iter().rev().fold(0.0, |sum, c| sum * u + c)
+        self.coefficients
+            .iter()
+            .rev()
+            .fold(0.0, |sum, c| sum * u + c)
     }
 
     /// Slope per step at a time in steps.
     pub fn slope(&self, time: f64) -> f64 {
         let u = (time - self.origin) / self.scale;
         let last = self.coefficients.len();
-        (1..last).rev().fold(0.0, |sum, k| sum * u + k as f64 * self.coefficients[k]) / self.scale
+        (1..last)
+            .rev()
+            .fold(0.0, |sum, k| sum * u + k as f64 * self.coefficients[k])
+            / self.scale
     }
 
     /// Standard error of the value at a time, per unit of noise deviation.
     pub fn error_factor(&self, time: f64) -> f64 {
         let u = (time - self.origin) / self.scale;
         let row = DVector::from_fn(self.coefficients.len(), |k, _| u.powi(k as i32));
-        (row.transpose() * &self.covariance * row)[(0, 0)].max(0.0).sqrt()
+        (row.transpose() * &self.covariance * row)[(0, 0)]
+            .max(0.0)
+            .sqrt()
     }
 }
 
@@ -102,8 +117,10 @@ mod tests {
     #[test]
     fn valid_crossing_of_a_kink_is_found_between_samples() {
         let kink = 14.37;
-        let samples: Vec<f64> =
-            (0..30).map(|i| f64::from(i) - kink).map(|t| if t < 0.0 { t } else { -0.9 * t }).collect();
+        let samples: Vec<f64> = (0..30)
+            .map(|i| f64::from(i) - kink)
+            .map(|t| if t < 0.0 { t } else { -0.9 * t })
+            .collect();
         let before = LocalFit::new(&samples, 4, 15, 2).unwrap();
         let after = LocalFit::new(&samples, 15, 26, 2).unwrap();
         assert!((crossing(&before, &after, 14.0, 15.0).unwrap() - kink).abs() < 1e-8);

@@ -32,8 +32,10 @@ pub fn robust_deviation(values: &[f64]) -> Option<f64> {
 /// From third differences, which cancel a local parabola and have variance 20 σ², with a robust
 /// scale that isolated jumps do not move. A quantised signal at rest gives zero.
 pub fn noise_deviation(samples: &[f64]) -> f64 {
-    let thirds: Vec<f64> =
-        samples.windows(4).map(|w| w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).collect();
+    let thirds: Vec<f64> = samples
+        .windows(4)
+        .map(|w| w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0])
+        .collect();
     robust_deviation(&thirds).map_or(0.0, |d| d / 20f64.sqrt())
 }
 

@@ -20,7 +20,10 @@ pub fn amplitude_spectrum(samples: &[f64]) -> (f64, Vec<f64>) {
         return (1.0 / padded as f64, vec![0.0; padded / 2 + 1]);
     }
     let scale = 4.0 / count.max(1) as f64;
-    (1.0 / padded as f64, bins.iter().map(|b| b.norm() * scale).collect())
+    (
+        1.0 / padded as f64,
+        bins.iter().map(|b| b.norm() * scale).collect(),
+    )
 }
 
 /// Frequency of the greatest spectral peak, in units of the sample rate, refined by a parabola
@@ -28,14 +31,21 @@ pub fn amplitude_spectrum(samples: &[f64]) -> (f64, Vec<f64>) {
 pub fn peak_frequency(samples: &[f64]) -> Option<f64> {
     let (step, amplitudes) = amplitude_spectrum(samples);
     let first = 2.min(amplitudes.len());
-    let (top, &height) =
-        amplitudes.iter().enumerate().skip(first).max_by(|a, b| a.1.total_cmp(b.1))?;
+    let (top, &height) = amplitudes
+        .iter()
+        .enumerate()
+        .skip(first)
+        .max_by(|a, b| a.1.total_cmp(b.1))?;
     if !(height > 0.0) || top + 1 >= amplitudes.len() {
         return None;
     }
     let [left, centre, right] = [top - 1, top, top + 1].map(|i| amplitudes[i].max(1e-300).ln());
     let curvature = left - 2.0 * centre + right;
-    let shift = if curvature < 0.0 { 0.5 * (left - right) / curvature } else { 0.0 };
+    let shift = if curvature < 0.0 {
+        0.5 * (left - right) / curvature
+    } else {
+        0.0
+    };
     Some((top as f64 + shift.clamp(-0.5, 0.5)) * step)
 }
 
@@ -45,8 +55,9 @@ mod tests {
 
     #[test]
     fn valid_peak_of_a_sine_is_found_between_bins() {
-        let samples: Vec<f64> =
-            (0..2000).map(|i| (std::f64::consts::TAU * 0.006_31 * f64::from(i)).sin()).collect();
+        let samples: Vec<f64> = (0..2000)
+            .map(|i| (std::f64::consts::TAU * 0.006_31 * f64::from(i)).sin())
+            .collect();
         assert!((peak_frequency(&samples).unwrap() - 0.006_31).abs() < 2e-5);
         assert_eq!(peak_frequency(&[1.0; 64]), None);
     }

@@ -35,7 +35,12 @@ pub fn fit_known_frequency(samples: &[f64], rate_hz: f64, frequency_hz: f64) -> 
         return None;
     }
     let solution = normal.cholesky()?.solve(&right);
-    Some(tone_from(samples, rate_hz, frequency_hz, [solution[0], solution[1], solution[2]]))
+    Some(tone_from(
+        samples,
+        rate_hz,
+        frequency_hz,
+        [solution[0], solution[1], solution[2]],
+    ))
 }
 
 /// Fit a tone with its frequency, starting at the greatest spectral peak.
@@ -52,7 +57,10 @@ pub fn fit(samples: &[f64], rate_hz: f64) -> Option<Tone> {
         }
         if step_hz.abs() <= 1e-3 * error_hz + 1e-12 * frequency_hz {
             let tone = fit_known_frequency(samples, rate_hz, frequency_hz)?;
-            return Some(Tone { frequency_error_hz: error_hz, ..tone });
+            return Some(Tone {
+                frequency_error_hz: error_hz,
+                ..tone
+            });
         }
     }
     None
@@ -107,7 +115,12 @@ struct Phasor {
 impl Phasor {
     fn new(ratio: f64) -> Self {
         let (sin, cos) = (std::f64::consts::TAU * ratio).sin_cos();
-        Self { ratio, index: 0, current: (1.0, 0.0), step: (cos, sin) }
+        Self {
+            ratio,
+            index: 0,
+            current: (1.0, 0.0),
+            step: (cos, sin),
+        }
     }
 }
 

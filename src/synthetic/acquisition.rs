@@ -19,7 +19,10 @@ pub struct HighPass {
 impl HighPass {
     /// A high-pass of the given corner for samples `step_s` apart.
     pub fn new(corner_hz: f64, step_s: f64) -> Self {
-        Self { low: 0.0, decay: (-std::f64::consts::TAU * corner_hz * step_s).exp() }
+        Self {
+            low: 0.0,
+            decay: (-std::f64::consts::TAU * corner_hz * step_s).exp(),
+        }
     }
 
     /// The next sample; `mean` is the input's mean since the last one, which a jump between
@@ -37,14 +40,19 @@ pub fn convert(volts: &mut [f64], faults: &Faults, rng: &mut ChaCha8Rng) {
         let normal: f64 = StandardNormal.sample(rng);
         *v += faults.noise_v * normal;
         if let Some(step) = step {
-            *v = (*v / step).round().clamp(-FULL_SCALE_V / step, FULL_SCALE_V / step - 1.0) * step;
+            *v = (*v / step)
+                .round()
+                .clamp(-FULL_SCALE_V / step, FULL_SCALE_V / step - 1.0)
+                * step;
         }
     }
 }
 
 /// Step of the converter, V.
 pub fn converter_step(faults: &Faults) -> Option<f64> {
-    faults.converter_bits.map(|bits| 2.0 * FULL_SCALE_V / 2f64.powi(bits as i32))
+    faults
+        .converter_bits
+        .map(|bits| 2.0 * FULL_SCALE_V / 2f64.powi(bits as i32))
 }
 
 /// Voltage of the contact at each sample: 5 V while it is closed.
@@ -73,6 +81,12 @@ pub fn contact_volts(
     }
     times_s
         .iter()
-        .map(|t| if closed.iter().any(|(a, b)| (*a..*b).contains(t)) { 4.8 } else { 0.02 })
+        .map(|t| {
+            if closed.iter().any(|(a, b)| (*a..*b).contains(t)) {
+                4.8
+            } else {
+                0.02
+            }
+        })
         .collect()
 }

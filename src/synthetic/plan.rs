@@ -71,7 +71,9 @@ impl Plan {
 fn chosen_gaps(sweeps: usize) -> Vec<f64> {
     let wanted = (sweeps / 40).clamp(1, GAPS.len());
     // Spread over the list, the middle of the hysteresis region first.
-    (0..wanted).map(|i| GAPS[((2 * i + 1) * GAPS.len()) / (2 * wanted)]).collect()
+    (0..wanted)
+        .map(|i| GAPS[((2 * i + 1) * GAPS.len()) / (2 * wanted)])
+        .collect()
 }
 
 /// Highest η of the sweeps at a gap: beyond the end of z = 1 for elastic impacts, and at small
@@ -102,7 +104,12 @@ fn round_to(value: f64, step: f64) -> f64 {
 fn push_sweep(steps: &mut Vec<Step>, grid: &[f64], clearance_m: f64, sweep: Sweep) {
     for (i, frequency_hz) in grid.iter().enumerate() {
         let from_rest = i == 0 && sweep == Sweep::Up;
-        steps.push(Step { frequency_hz: *frequency_hz, clearance_m, sweep, from_rest });
+        steps.push(Step {
+            frequency_hz: *frequency_hz,
+            clearance_m,
+            sweep,
+            from_rest,
+        });
     }
 }
 

@@ -66,20 +66,45 @@ pub fn sensitivities(truth: &Truth) -> [Sensitivity; 7] {
     let length = round_up(truth.static_deflection_m * reach);
     let speed = round_up(truth.static_deflection_m * truth.natural_rate() * reach);
     [
-        Sensitivity { name: "generator", si_per_volt: 1.0 },
-        Sensitivity { name: "contact", si_per_volt: 1.0 },
-        Sensitivity { name: "laser_x", si_per_volt: speed },
-        Sensitivity { name: "integrator_vy", si_per_volt: speed },
-        Sensitivity { name: "integrator_x", si_per_volt: length },
-        Sensitivity { name: "integrator_y", si_per_volt: length },
-        Sensitivity { name: "frame_x", si_per_volt: 1e-2 * length },
+        Sensitivity {
+            name: "generator",
+            si_per_volt: 1.0,
+        },
+        Sensitivity {
+            name: "contact",
+            si_per_volt: 1.0,
+        },
+        Sensitivity {
+            name: "laser_x",
+            si_per_volt: speed,
+        },
+        Sensitivity {
+            name: "integrator_vy",
+            si_per_volt: speed,
+        },
+        Sensitivity {
+            name: "integrator_x",
+            si_per_volt: length,
+        },
+        Sensitivity {
+            name: "integrator_y",
+            si_per_volt: length,
+        },
+        Sensitivity {
+            name: "frame_x",
+            si_per_volt: 1e-2 * length,
+        },
     ]
 }
 
 fn round_up(value: f64) -> f64 {
     let power = 10f64.powf(value.log10().floor());
     let leading = value / power;
-    power * [1.0, 2.0, 5.0, 10.0].into_iter().find(|s| *s >= leading).unwrap_or(10.0)
+    power
+        * [1.0, 2.0, 5.0, 10.0]
+            .into_iter()
+            .find(|s| *s >= leading)
+            .unwrap_or(10.0)
 }
 
 /// All records of a plan, in order. Sweeps run in parallel; the result does not depend on it.
@@ -100,9 +125,16 @@ pub fn records(
             _ => runs.push((i, vec![*step])),
         }
     }
-    let rig = VirtualRig { truth, faults, gains, seed };
-    let parts: Result<Vec<Vec<RawRecord>>, ModelError> =
-        runs.par_iter().map(|(first, steps)| rig.sweep(*first, steps)).collect();
+    let rig = VirtualRig {
+        truth,
+        faults,
+        gains,
+        seed,
+    };
+    let parts: Result<Vec<Vec<RawRecord>>, ModelError> = runs
+        .par_iter()
+        .map(|(first, steps)| rig.sweep(*first, steps))
+        .collect();
     Ok(parts?.into_iter().flatten().collect())
 }
 
@@ -151,7 +183,11 @@ impl VirtualRig<'_> {
             .impacts
             .iter()
             .map(|i| {
-                ((i.tau - first_tau) / omega, i.closing_before * self.speed(), i.dead_zone / omega)
+                (
+                    (i.tau - first_tau) / omega,
+                    i.closing_before * self.speed(),
+                    i.dead_zone / omega,
+                )
             })
             .collect();
         let phase = simulator.phase() - setting.frequency_ratio * (simulator.tau() - first_tau);
@@ -202,7 +238,10 @@ impl VirtualRig<'_> {
                 };
                 let mut volts: Vec<f64> = values.iter().map(|v| v * factor).collect();
                 acquisition::convert(&mut volts, self.faults, rng);
-                RawChannel { name: sensitivity.name, volts }
+                RawChannel {
+                    name: sensitivity.name,
+                    volts,
+                }
             })
             .collect()
     }
@@ -216,11 +255,17 @@ impl VirtualRig<'_> {
         let step_s = 1.0 / (RATE_HZ * FINE as f64);
         let count = pre + (SAMPLES - 1) * FINE + 1;
         let taus = (0..count).map(|i| start_tau + i as f64 * step_s * omega);
-        let mut filters = [(); 3].map(|()| self.faults.high_pass_hz.map(|c| HighPass::new(c, step_s)));
+        let mut filters =
+            [(); 3].map(|()| self.faults.high_pass_hz.map(|c| HighPass::new(c, step_s)));
         let mut out = [(); 4].map(|()| Vec::with_capacity(SAMPLES));
         let mut before: Option<[f64; 4]> = None;
         for (i, state) in trajectory.sample(taus).into_iter().enumerate() {
-            let raw = [state.vx * speed, state.vy * speed, state.x * x_st, state.y * x_st];
+            let raw = [
+                state.vx * speed,
+                state.vy * speed,
+                state.x * x_st,
+                state.y * x_st,
+            ];
             let last = before.replace(raw).unwrap_or(raw);
             // The mean velocity is the displacement's difference, jumps included.
             let means = [
@@ -267,10 +312,17 @@ fn true_motion(mut simulator: Simulator, setting: Setting) -> Motion {
         states.push([s.x, s.vx, s.y, s.vy]);
         counts.push(count);
     }
-    let size = states.iter().flatten().fold(0.0f64, |m, v| m.max(v.abs())).max(1e-9);
+    let size = states
+        .iter()
+        .flatten()
+        .fold(0.0f64, |m, v| m.max(v.abs()))
+        .max(1e-9);
     let closes = |n: usize| {
         (n..WATCHED).all(|i| {
-            states[i].iter().zip(states[i - n]).all(|(a, b)| (a - b).abs() < CLOSED * size)
+            states[i]
+                .iter()
+                .zip(states[i - n])
+                .all(|(a, b)| (a - b).abs() < CLOSED * size)
                 && counts[i] == counts[i - n]
         })
     };
@@ -282,7 +334,9 @@ fn true_motion(mut simulator: Simulator, setting: Setting) -> Motion {
             periods_n: n as u32,
             dead_zone: 2 * dead_zones >= impacts.max(1),
         },
-        None => Motion::Undetermined { reason: "the noiseless simulation is not periodic".into() },
+        None => Motion::Undetermined {
+            reason: "the noiseless simulation is not periodic".into(),
+        },
     }
 }
 
@@ -293,14 +347,20 @@ pub fn calibrated(raw: &RawRecord, truth: &Truth, faults: &Faults) -> Record {
         .iter()
         .zip(sensitivities(truth))
         .zip(ROLES)
-        .map(|((channel, sensitivity), (role, dimension, filtered))| Channel {
-            role,
-            name: channel.name.into(),
-            dimension,
-            values: channel.volts.iter().map(|v| v * sensitivity.si_per_volt).collect(),
-            high_pass_hz: faults.high_pass_hz.filter(|_| filtered),
-            threshold: (role == Role::Contact).then_some(2.5),
-        })
+        .map(
+            |((channel, sensitivity), (role, dimension, filtered))| Channel {
+                role,
+                name: channel.name.into(),
+                dimension,
+                values: channel
+                    .volts
+                    .iter()
+                    .map(|v| v * sensitivity.si_per_volt)
+                    .collect(),
+                high_pass_hz: faults.high_pass_hz.filter(|_| filtered),
+                threshold: (role == Role::Contact).then_some(2.5),
+            },
+        )
         .collect();
     Record {
         id: raw.id.clone(),
@@ -313,6 +373,7 @@ pub fn calibrated(raw: &RawRecord, truth: &Truth, faults: &Faults) -> Record {
             drive_amplitude: 1.0,
             sequence: 0,
             specimen: None,
+            excitation: Default::default(),
         },
         flags: Vec::new(),
     }

@@ -7,7 +7,9 @@ use crate::support::Lab;
 #[test]
 fn valid_help_of_each_verb_shows_an_example_and_ends_with_0() {
     let lab = Lab::new();
-    for verb in ["init", "check", "run", "ingest", "classify", "identify", "report", "simulate"] {
+    for verb in [
+        "init", "check", "run", "ingest", "classify", "identify", "report", "simulate",
+    ] {
         let ran = lab.run(&[verb, "--help"]);
         assert_eq!(ran.code, 0, "{verb}");
         assert!(ran.said.contains("Example:"), "{verb}: {}", ran.said);
@@ -22,7 +24,12 @@ fn valid_check_changes_nothing() {
         let mut names: Vec<_> = fs::read_dir(lab.folder())
             .expect("the folder")
             .map(|e| e.expect("an entry"))
-            .map(|e| (e.file_name(), e.metadata().expect("its metadata").modified().ok()))
+            .map(|e| {
+                (
+                    e.file_name(),
+                    e.metadata().expect("its metadata").modified().ok(),
+                )
+            })
             .collect();
         names.sort();
         names
@@ -43,7 +50,11 @@ fn valid_output_in_a_pipe_has_no_colour_and_no_bar() {
     let lab = Lab::new();
     lab.mend("\"double\"", "\"triple\"");
     let ran = lab.run(&["check", "campaign.toml"]);
-    assert!(!ran.said.contains('\u{1b}') && !ran.said.contains('\r'), "{:?}", ran.said);
+    assert!(
+        !ran.said.contains('\u{1b}') && !ran.said.contains('\r'),
+        "{:?}",
+        ran.said
+    );
 }
 
 #[test]
@@ -54,8 +65,12 @@ fn valid_all_faults_are_told_in_one_run() {
     lab.mend("\"50 mm/s per V\"\nhigh", "\"50 mm/s\"\nhigh");
     lab.replace("runs.csv", "clearance_mm", "clearance");
     let said = lab.run(&["check", "campaign.toml"]).said;
-    for words in ["triple", "rig.restitution", "channels.velocity_x.scale", "clearance without unit"]
-    {
+    for words in [
+        "triple",
+        "rig.restitution",
+        "channels.velocity_x.scale",
+        "clearance without unit",
+    ] {
         assert!(said.contains(words), "{words} is not in {said}");
     }
 }
@@ -92,7 +107,10 @@ fn valid_init_finds_a_run_table() {
     let lab = Lab::new();
     let ran = lab.run(&["init", ".", "--force"]);
     assert_eq!(ran.code, 0, "{}", ran.said);
-    assert!(lab.read("campaign.toml").contains("run_table = \"runs.csv\""));
+    assert!(
+        lab.read("campaign.toml")
+            .contains("run_table = \"runs.csv\"")
+    );
 }
 
 #[test]
@@ -114,5 +132,19 @@ fn valid_completions_and_man_pages_name_the_verbs() {
     }
     assert_eq!(lab.run(&["man", "--out", "man1"]).code, 0);
     let page = lab.read("man1/impactid-run.1");
-    assert!(page.contains("resume") && page.contains("Example"), "{page}");
+    assert!(
+        page.contains("resume") && page.contains("Example"),
+        "{page}"
+    );
+}
+
+#[test]
+fn valid_selftest_meets_the_published_numbers() {
+    let ran = Lab::new().run(&["selftest"]);
+    assert_eq!(ran.code, 0, "{}", ran.said);
+    assert!(
+        ran.said.contains("18 of 18 published numbers are met"),
+        "{}",
+        ran.said
+    );
 }

@@ -21,7 +21,11 @@ fn form() -> Vec<Case> {
         refused(
             "campaign.toml is empty",
             |lab| lab.write("campaign.toml", ""),
-            &["where the records are is not said", "no channel of motion", "campaign.machine"],
+            &[
+                "where the records are is not said",
+                "no channel of motion",
+                "campaign.machine",
+            ],
         ),
         refused(
             "a quote is not closed",
@@ -30,7 +34,12 @@ fn form() -> Vec<Case> {
         ),
         refused(
             "a key stands twice",
-            |lab| lab.mend("machine = \"double\"", "machine = \"double\"\nmachine = \"single\""),
+            |lab| {
+                lab.mend(
+                    "machine = \"double\"",
+                    "machine = \"double\"\nmachine = \"single\"",
+                )
+            },
             &["campaign.toml:4", "duplicate key"],
         ),
         refused(
@@ -41,7 +50,10 @@ fn form() -> Vec<Case> {
         refused(
             "an unknown key",
             |lab| lab.mend("run_table =", "clearence = \"1 mm\"\nrun_table ="),
-            &["campaign.toml:7: records.clearence", "did you mean 'clearance'"],
+            &[
+                "campaign.toml:7: records.clearence",
+                "did you mean 'clearance'",
+            ],
         ),
         refused(
             "an unknown section",
@@ -56,12 +68,18 @@ fn form() -> Vec<Case> {
         refused(
             "a number where a text is needed",
             |lab| lab.mend("\"Test rig\"", "3"),
-            &["campaign.toml:2: campaign.name", "invalid type: integer `3`, expected a string"],
+            &[
+                "campaign.toml:2: campaign.name",
+                "invalid type: integer `3`, expected a string",
+            ],
         ),
         refused(
             "a machine that is not known",
             |lab| lab.mend("\"double\"", "\"triple\""),
-            &["campaign.toml:3: campaign.machine", "unknown variant `triple`"],
+            &[
+                "campaign.toml:3: campaign.machine",
+                "unknown variant `triple`",
+            ],
         ),
         refused(
             "a paper size that is not known",
@@ -81,22 +99,36 @@ fn quantities() -> Vec<Case> {
         refused(
             "a clearance without unit",
             |lab| lab.mend("run_table =", "clearance = 1.0\nrun_table ="),
-            &["campaign.toml:7: records.clearance", "a clearance without unit: 1", "\"1 mm\""],
+            &[
+                "campaign.toml:7: records.clearance",
+                "a clearance without unit: 1",
+                "\"1 mm\"",
+            ],
         ),
         refused(
             "a clearance in quotes without unit",
             |lab| lab.mend("run_table =", "clearance = \"1.0\"\nrun_table ="),
-            &["a clearance without unit", "write number and unit in quotes"],
+            &[
+                "a clearance without unit",
+                "write number and unit in quotes",
+            ],
         ),
         refused(
             "a clearance in Hz",
             |lab| lab.mend("run_table =", "clearance = \"1 Hz\"\nrun_table ="),
-            &["'1 Hz' is a frequency, where a length is expected", "write a number and a unit of length"],
+            &[
+                "'1 Hz' is a frequency, where a length is expected",
+                "write a number and a unit of length",
+            ],
         ),
         refused(
             "a decimal comma",
             |lab| lab.mend("\"12.6 Hz\"", "\"12,6 Hz\""),
-            &["rig.natural_frequency", "is written with a comma", "write a decimal point"],
+            &[
+                "rig.natural_frequency",
+                "is written with a comma",
+                "write a decimal point",
+            ],
         ),
         refused(
             "a unit that is not known",
@@ -135,33 +167,63 @@ fn channels() -> Vec<Case> {
     vec![
         refused(
             "a channel's unit that is not known",
-            |lab| lab.mend("channel = \"vx\"\nunit = \"V\"", "channel = \"vx\"\nunit = \"Vlt\""),
+            |lab| {
+                lab.mend(
+                    "channel = \"vx\"\nunit = \"V\"",
+                    "channel = \"vx\"\nunit = \"Vlt\"",
+                )
+            },
             &["channels.velocity_x.unit", "the unit 'Vlt' is not known"],
         ),
         refused(
             "a scale that does not say per what",
-            |lab| lab.mend("scale = \"50 mm/s per V\"\nhigh", "scale = \"50 mm/s\"\nhigh"),
+            |lab| {
+                lab.mend(
+                    "scale = \"50 mm/s per V\"\nhigh",
+                    "scale = \"50 mm/s\"\nhigh",
+                )
+            },
             &["channels.velocity_x.scale", "\"50 mm/s per V\""],
         ),
         refused(
             "a scale of zero",
-            |lab| lab.mend("scale = \"50 mm/s per V\"\nhigh", "scale = \"0 mm/s per V\"\nhigh"),
+            |lab| {
+                lab.mend(
+                    "scale = \"50 mm/s per V\"\nhigh",
+                    "scale = \"0 mm/s per V\"\nhigh",
+                )
+            },
             &["channels.velocity_x.scale", "a scale must be positive"],
         ),
         refused(
             "a scale from another unit than the channel's",
-            |lab| lab.mend("scale = \"50 mm/s per V\"\nhigh", "scale = \"50 mm/s per N\"\nhigh"),
-            &["the scale of channel 'vx' does not start from its unit", "[channels.velocity_x]"],
+            |lab| {
+                lab.mend(
+                    "scale = \"50 mm/s per V\"\nhigh",
+                    "scale = \"50 mm/s per N\"\nhigh",
+                )
+            },
+            &[
+                "the scale of channel 'vx' does not start from its unit",
+                "[channels.velocity_x]",
+            ],
         ),
         refused(
             "a velocity channel left in V",
             |lab| lab.mend("scale = \"50 mm/s per V\"\nhigh", "high"),
-            &["comes out as a voltage, not as a velocity", "mend unit and scale"],
+            &[
+                "comes out as a voltage, not as a velocity",
+                "mend unit and scale",
+            ],
         ),
         refused(
             "a sign of 2",
             |lab| lab.mend("sign = 1", "sign = 2"),
-            &["channels.velocity_x.sign", "a sign is 1 or -1", "put a factor into scale"],
+            &[
+                "channels.velocity_x.sign",
+                "a sign is 1 or -1",
+                "put a factor into scale",
+            ],
         ),
         refused(
             "a negative high-pass corner",
@@ -171,12 +233,19 @@ fn channels() -> Vec<Case> {
         refused(
             "a threshold for a velocity",
             |lab| lab.mend("sign = 1", "threshold = \"1 V\""),
-            &["a threshold means nothing for velocity_x", "[channels.contact]"],
+            &[
+                "a threshold means nothing for velocity_x",
+                "[channels.contact]",
+            ],
         ),
         refused(
             "a threshold without unit",
             |lab| lab.mend("threshold = \"2.5 V\"", "threshold = 2.5"),
-            &["channels.contact.threshold", "a level without unit", "\"2.5 V\""],
+            &[
+                "channels.contact.threshold",
+                "a level without unit",
+                "\"2.5 V\"",
+            ],
         ),
         refused(
             "a threshold in another unit than its channel",
@@ -186,18 +255,26 @@ fn channels() -> Vec<Case> {
         refused(
             "a role without a channel",
             |lab| lab.mend("channel = \"drive\"\n", ""),
-            &["channels.drive.channel", "which channel of the file is not said"],
+            &[
+                "channels.drive.channel",
+                "which channel of the file is not said",
+            ],
         ),
         refused(
             "one channel for two roles",
             |lab| lab.mend("channel = \"vy\"", "channel = \"vx\""),
-            &["channels.velocity_y.channel", "already serves as velocity_x"],
+            &[
+                "channels.velocity_y.channel",
+                "already serves as velocity_x",
+            ],
         ),
         refused(
             "no channel of motion",
             |lab| {
                 let text = lab.read("campaign.toml");
-                let (head, rest) = text.split_once("[channels.velocity_x]").expect("it is there");
+                let (head, rest) = text
+                    .split_once("[channels.velocity_x]")
+                    .expect("it is there");
                 let (_, tail) = rest.split_once("[analysis]").expect("it is there");
                 lab.write("campaign.toml", &format!("{head}[analysis]{tail}"));
             },
@@ -206,7 +283,10 @@ fn channels() -> Vec<Case> {
         refused(
             "a second mass against a stop",
             |lab| lab.mend("\"double\"", "\"single\""),
-            &["channels.velocity_y", "one mass against a stop has no mass y"],
+            &[
+                "channels.velocity_y",
+                "one mass against a stop has no mass y",
+            ],
         ),
         refused(
             "a constant force on two masses",
@@ -226,7 +306,10 @@ fn records() -> Vec<Case> {
         refused(
             "neither files nor run_table given",
             |lab| lab.mend("run_table = \"runs.csv\"", ""),
-            &["where the records are is not said", "files = \"records/*.h5\""],
+            &[
+                "where the records are is not said",
+                "files = \"records/*.h5\"",
+            ],
         ),
         refused(
             "a pattern that no file matches",
@@ -241,12 +324,19 @@ fn records() -> Vec<Case> {
         refused(
             "report.points names no record",
             |lab| lab.mend("paper = \"a4\"", "points = [\"r11\"]"),
-            &["report.points", "no record is called 'r11'", "did you mean 'r1'?"],
+            &[
+                "report.points",
+                "no record is called 'r11'",
+                "did you mean 'r1'?",
+            ],
         ),
         refused(
             "an attribute for a clearance without unit",
             |lab| lab.mend("[rig]", "[records.attributes]\nclearance = \"gap\"\n[rig]"),
-            &["an attribute 'gap' for a clearance without unit", "\"gap [m]\""],
+            &[
+                "an attribute 'gap' for a clearance without unit",
+                "\"gap [m]\"",
+            ],
         ),
         refused(
             "a time channel that no file has",
@@ -256,7 +346,10 @@ fn records() -> Vec<Case> {
         refused(
             "more is skipped than a record holds",
             |lab| lab.mend("seed = 1", "skip = \"2 s\""),
-            &["the record lasts 1 s, and 2 s of it are skipped", "lower skip in [analysis]"],
+            &[
+                "the record lasts 1 s, and 2 s of it are skipped",
+                "lower skip in [analysis]",
+            ],
         ),
     ]
 }

@@ -15,15 +15,36 @@ const fn case(
     run: &'static [&'static str],
     says: &'static [&'static str],
 ) -> Case {
-    Case { input, spoil, run, says, code: 2 }
+    Case {
+        input,
+        spoil,
+        run,
+        says,
+        code: 2,
+    }
 }
 
 fn commands() -> Vec<Case> {
     vec![
         case("no verb", |_| {}, &[], &["Usage: impactid"]),
-        case("an unknown verb", |_| {}, &["rum"], &["unrecognized subcommand 'rum'", "run"]),
-        case("an unknown flag", |_| {}, &["run", "--outt"], &["unexpected argument '--outt'", "--out"]),
-        case("run without --out", |_| {}, &["run", "campaign.toml"], &["--out"]),
+        case(
+            "an unknown verb",
+            |_| {},
+            &["rum"],
+            &["unrecognized subcommand 'rum'", "run"],
+        ),
+        case(
+            "an unknown flag",
+            |_| {},
+            &["run", "--outt"],
+            &["unexpected argument '--outt'", "--out"],
+        ),
+        case(
+            "run without --out",
+            |_| {},
+            &["run", "campaign.toml"],
+            &["--out"],
+        ),
         case(
             "run on a faulty campaign",
             |lab| lab.mend("\"double\"", "\"triple\""),
@@ -39,13 +60,27 @@ fn commands() -> Vec<Case> {
         case(
             "a simulated restitution above 1",
             |_| {},
-            &["simulate", "campaign", "--restitution", "1.5", "--out", "synthetic"],
+            &[
+                "simulate",
+                "campaign",
+                "--restitution",
+                "1.5",
+                "--out",
+                "synthetic",
+            ],
             &["it must lie between 0 and 1"],
         ),
         case(
             "a simulated frequency that is no number",
             |_| {},
-            &["simulate", "campaign", "--natural-frequency-hz", "low", "--out", "synthetic"],
+            &[
+                "simulate",
+                "campaign",
+                "--natural-frequency-hz",
+                "low",
+                "--out",
+                "synthetic",
+            ],
             &["it is not a number"],
         ),
     ]
@@ -57,7 +92,10 @@ fn folders() -> Vec<Case> {
             "a file where the output folder should be",
             |lab| lab.write("out", "mine"),
             &["run", "campaign.toml", "--out", "out"],
-            &["the folder out cannot be written into", "name another folder with --out"],
+            &[
+                "the folder out cannot be written into",
+                "name another folder with --out",
+            ],
         ),
         case(
             "a stage on a folder that is not there",
@@ -71,7 +109,12 @@ fn folders() -> Vec<Case> {
             &["init", "empty"],
             &["no record was found in empty"],
         ),
-        case("init in no folder", |_| {}, &["init", "nowhere"], &["nowhere is no folder"]),
+        case(
+            "init in no folder",
+            |_| {},
+            &["init", "nowhere"],
+            &["nowhere is no folder"],
+        ),
         case(
             "init where campaign.toml is",
             |_| {},

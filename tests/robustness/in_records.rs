@@ -9,7 +9,90 @@ pub fn cases() -> Vec<Case> {
     all.extend(channels());
     all.extend(values());
     all.extend(times());
+    all.extend(bombs());
     all
+}
+
+/// The second record is this file instead.
+fn instead(lab: &Lab, name: &str, bytes: &[u8]) {
+    lab.write_bytes(name, bytes);
+    lab.replace("runs.csv", "r2.csv", name);
+}
+
+/// Files that claim or unfold to more than a machine holds.
+pub fn bombs() -> Vec<Case> {
+    vec![
+        refused(
+            "HDF5 that claims more samples than its bytes can hold",
+            |lab| {
+                let bytes = include_bytes!("../data/formats/claims_too_much.h5");
+                instead(lab, "r2.h5", bytes);
+            },
+            &["r2.h5", "2 of 3 records can be used"],
+        ),
+        refused(
+            "MATLAB v5 that unfolds to a quarter of a gigabyte",
+            |lab| instead(lab, "r2.mat", &matlab_bomb()),
+            &[
+                "r2.mat",
+                "compressed bytes that claim to hold",
+                "2 of 3 records can be used",
+            ],
+        ),
+        refused(
+            "TDMS with 100 GB of metadata",
+            |lab| {
+                let mut bytes = b"TDSm".to_vec();
+                bytes.extend(0x0e_u32.to_le_bytes());
+                bytes.extend(4713_u32.to_le_bytes());
+                bytes.extend(1_000_000_000_000_u64.to_le_bytes());
+                bytes.extend(100_000_000_000_u64.to_le_bytes());
+                bytes.extend([0xff; 100]);
+                instead(lab, "r2.tdms", &bytes);
+            },
+            &[
+                "r2.tdms",
+                "copy or export it again",
+                "2 of 3 records can be used",
+            ],
+        ),
+        refused(
+            "CSV of one endless line",
+            |lab| instead(lab, "r2.csv", &[b'a'; 20_000_000]),
+            &[
+                "r2.csv",
+                "no column of numbers",
+                "2 of 3 records can be used",
+            ],
+        ),
+        refused(
+            "CSV of half a million columns",
+            |lab| {
+                let names: Vec<String> = (0..500_000).map(|i| format!("c{i}")).collect();
+                instead(lab, "r2.csv", (names.join(",") + "\n1\n").as_bytes());
+            },
+            &["r2.csv", "2 of 3 records can be used"],
+        ),
+    ]
+}
+
+/// A header and one compressed element that holds a quarter of a gigabyte of zeros.
+fn matlab_bomb() -> Vec<u8> {
+    let mut packed = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
+    let mut put = |bytes: &[u8]| std::io::Write::write_all(&mut packed, bytes).expect("memory");
+    put(&14_u32.to_le_bytes());
+    put(&(1_u32 << 28).to_le_bytes());
+    for _ in 0..256 {
+        put(&[0; 1 << 20]);
+    }
+    let packed = packed.finish().expect("memory");
+    let mut bytes = b"MATLAB 5.0 MAT-file".to_vec();
+    bytes.resize(124, b' ');
+    bytes.extend([0, 1, b'I', b'M']);
+    bytes.extend(15_u32.to_le_bytes());
+    bytes.extend((packed.len() as u32).to_le_bytes());
+    bytes.extend(packed);
+    bytes
 }
 
 fn files() -> Vec<Case> {
@@ -27,7 +110,9 @@ fn files() -> Vec<Case> {
         refused(
             "a file of random bytes",
             |lab| {
-                let bytes: Vec<u8> = (0..4096_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+                let bytes: Vec<u8> = (0..4096_u32)
+                    .map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8)
+                    .collect();
                 lab.write_bytes("r2.bin", &bytes);
                 lab.replace("runs.csv", "r2.csv", "r2.bin");
             },
@@ -57,7 +142,11 @@ fn files() -> Vec<Case> {
                 let text = lab.read("r2.csv");
                 lab.write("r2.csv", &text[..text.len() / 2 - 7]);
             },
-            &["r2.csv: r2: it holds 99", "the usual record 2000", "copy the file anew"],
+            &[
+                "r2.csv: r2: it holds 99",
+                "the usual record 2000",
+                "copy the file anew",
+            ],
         ),
     ]
 }
@@ -100,13 +189,22 @@ fn channels() -> Vec<Case> {
                 lab.replace("r2.csv", "vx [V]", "vx");
                 lab.mend("channel = \"vx\"\nunit = \"V\"", "channel = \"vx\"");
             },
-            &["the file states no unit for channel 'vx'", "[channels.velocity_x]"],
+            &[
+                "the file states no unit for channel 'vx'",
+                "[channels.velocity_x]",
+            ],
         ),
     ]
 }
 
 fn spoil(lab: &Lab, column: usize, text: &'static str) {
-    lab.column("r2.csv", column, |i, v| if i == 700 { text.into() } else { format!("{v:.6}") });
+    lab.column("r2.csv", column, |i, v| {
+        if i == 700 {
+            text.into()
+        } else {
+            format!("{v:.6}")
+        }
+    });
 }
 
 fn values() -> Vec<Case> {
@@ -123,39 +221,70 @@ fn values() -> Vec<Case> {
         refused(
             "an infinite value",
             |lab| spoil(lab, 4, "inf"),
-            &["r2.csv: r2: vy", "not numbers (NaN or infinite)", "2 of 3 records can be used"],
+            &[
+                "r2.csv: r2: vy",
+                "not numbers (NaN or infinite)",
+                "2 of 3 records can be used",
+            ],
         ),
         refused(
             "a gap in a channel",
             |lab| spoil(lab, 3, ""),
-            &["r2.csv: r2: vx", "not numbers", "2 of 3 records can be used"],
+            &[
+                "r2.csv: r2: vx",
+                "not numbers",
+                "2 of 3 records can be used",
+            ],
         ),
         noted(
             "no values at a channel's beginning",
             |lab| {
-                lab.column("r2.csv", 3, |i, v| if i < 5 { String::new() } else { format!("{v}") });
+                lab.column("r2.csv", 3, |i, v| {
+                    if i < 5 { String::new() } else { format!("{v}") }
+                });
             },
-            &["5 samples without a value at the ends are cut off", "3 of 3 records"],
+            &[
+                "5 samples without a value at the ends are cut off",
+                "3 of 3 records",
+            ],
         ),
         refused(
             "a constant velocity",
             |lab| lab.column("r2.csv", 3, |_, _| "0.125".into()),
-            &["r2.csv: r2: vx", "is constant at", "loose cable", "2 of 3 records can be used"],
+            &[
+                "r2.csv: r2: vx",
+                "is constant at",
+                "loose cable",
+                "2 of 3 records can be used",
+            ],
         ),
         refused(
             "a constant drive",
             |lab| lab.column("r2.csv", 1, |_, _| "0".into()),
-            &["r2.csv: r2: drive", "is constant", "2 of 3 records can be used"],
+            &[
+                "r2.csv: r2: drive",
+                "is constant",
+                "2 of 3 records can be used",
+            ],
         ),
         refused(
             "a saturated velocity",
             |lab| lab.column("r2.csv", 3, |_, v| format!("{:.6}", v.clamp(-1.0, 1.0))),
-            &["r2.csv: r2: vx", "is clipped", "larger range", "2 of 3 records can be used"],
+            &[
+                "r2.csv: r2: vx",
+                "is clipped",
+                "larger range",
+                "2 of 3 records can be used",
+            ],
         ),
         noted(
             "a saturated drive",
             |lab| lab.column("r2.csv", 1, |_, v| format!("{:.6}", v.clamp(-0.7, 0.7))),
-            &["r2.csv: r2: drive", "is clipped", "3 of 3 records can be used"],
+            &[
+                "r2.csv: r2: drive",
+                "is clipped",
+                "3 of 3 records can be used",
+            ],
         ),
         refused(
             "samples held by the converter",
@@ -169,7 +298,10 @@ fn values() -> Vec<Case> {
                     Some(format!("{time},{rest}"))
                 });
             },
-            &["all channels hold their value for 24 samples", "2 of 3 records can be used"],
+            &[
+                "all channels hold their value for 24 samples",
+                "2 of 3 records can be used",
+            ],
         ),
     ]
 }
@@ -183,17 +315,32 @@ fn times() -> Vec<Case> {
                     format!("{:.6}", if i > 1200 { 1.2 - t } else { t })
                 });
             },
-            &["r2.csv", "the time runs backward", "2 of 3 records can be used"],
+            &[
+                "r2.csv",
+                "the time runs backward",
+                "2 of 3 records can be used",
+            ],
         ),
         refused(
             "time running backward from the first sample on",
             |lab| lab.column("r2.csv", 0, |_, t| format!("{:.6}", 1.0 - t)),
-            &["r2.csv", "the time runs backward", "2 of 3 records can be used"],
+            &[
+                "r2.csv",
+                "the time runs backward",
+                "2 of 3 records can be used",
+            ],
         ),
         refused(
             "dropped samples",
-            |lab| lab.lines("r2.csv", |i, l| (!(800..817).contains(&i)).then(|| l.to_owned())),
-            &["17 samples are missing in the time axis", "2 of 3 records can be used"],
+            |lab| {
+                lab.lines("r2.csv", |i, l| {
+                    (!(800..817).contains(&i)).then(|| l.to_owned())
+                })
+            },
+            &[
+                "17 samples are missing in the time axis",
+                "2 of 3 records can be used",
+            ],
         ),
         refused(
             "a repeated time stamp",
@@ -218,7 +365,10 @@ fn times() -> Vec<Case> {
                     Some(rest.to_owned())
                 });
             },
-            &["neither a time axis nor a sample rate", "sample_rate = \"2 kHz\""],
+            &[
+                "neither a time axis nor a sample rate",
+                "sample_rate = \"2 kHz\"",
+            ],
         ),
     ]
 }

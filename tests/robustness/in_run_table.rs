@@ -34,12 +34,19 @@ fn header() -> Vec<Case> {
         refused(
             "a clearance column without unit",
             |lab| lab.replace("runs.csv", "clearance_mm", "clearance"),
-            &["runs.csv:1: clearance", "a clearance without unit", "call it clearance_mm"],
+            &[
+                "runs.csv:1: clearance",
+                "a clearance without unit",
+                "call it clearance_mm",
+            ],
         ),
         refused(
             "a frequency column without unit",
             |lab| lab.replace("runs.csv", "drive_frequency_hz", "drive_frequency"),
-            &["a drive frequency without unit", "call it drive_frequency_hz"],
+            &[
+                "a drive frequency without unit",
+                "call it drive_frequency_hz",
+            ],
         ),
         refused(
             "a frequency column in mm",
@@ -79,7 +86,10 @@ fn rows() -> Vec<Case> {
         refused(
             "a sweep direction that is none",
             |lab| lab.replace("runs.csv", "down", "sideways"),
-            &["runs.csv:4: sweep", "'sideways' is not one of up, down, unknown"],
+            &[
+                "runs.csv:4: sweep",
+                "'sideways' is not one of up, down, unknown",
+            ],
         ),
         refused(
             "a row without a file",
@@ -101,7 +111,11 @@ fn rows() -> Vec<Case> {
             |lab| {
                 lab.write("runs.csv", "file,dataset\nr1.csv,run7\nr2.csv,\n");
             },
-            &["r1.csv: run7", "no dataset 'run7' in it", "mend the column dataset"],
+            &[
+                "r1.csv: run7",
+                "no dataset 'run7' in it",
+                "mend the column dataset",
+            ],
         ),
         refused(
             "a clearance in m that was meant in mm",

@@ -27,17 +27,25 @@ pub struct Case {
 pub const CHECK: &[&str] = &["check", "campaign.toml"];
 
 /// A case of `impactid check` that ends with 2.
-pub const fn refused(
-    input: &'static str,
-    spoil: fn(&Lab),
-    says: &'static [&'static str],
-) -> Case {
-    Case { input, spoil, run: CHECK, says, code: 2 }
+pub const fn refused(input: &'static str, spoil: fn(&Lab), says: &'static [&'static str]) -> Case {
+    Case {
+        input,
+        spoil,
+        run: CHECK,
+        says,
+        code: 2,
+    }
 }
 
 /// A case of `impactid check` that is noted and goes on.
 pub const fn noted(input: &'static str, spoil: fn(&Lab), says: &'static [&'static str]) -> Case {
-    Case { input, spoil, run: CHECK, says, code: 0 }
+    Case {
+        input,
+        spoil,
+        run: CHECK,
+        says,
+        code: 0,
+    }
 }
 
 fn groups() -> [(&'static str, Vec<Case>); 5] {
@@ -56,7 +64,11 @@ fn test_all(cases: &[Case]) {
         let lab = Lab::new();
         (case.spoil)(&lab);
         let ran = lab.run(case.run);
-        let missing: Vec<_> = case.says.iter().filter(|s| !ran.said.contains(**s)).collect();
+        let missing: Vec<_> = case
+            .says
+            .iter()
+            .filter(|s| !ran.said.contains(**s))
+            .collect();
         if !missing.is_empty() || ran.code != case.code {
             failures.push(format!(
                 "{}: exit {} (expected {}), not said: {missing:?}\n{}",
@@ -71,12 +83,50 @@ fn test_all(cases: &[Case]) {
 fn valid_the_good_campaign_has_no_fault() {
     let ran = Lab::new().run(CHECK);
     assert_eq!(ran.code, 0, "{}", ran.said);
-    assert!(ran.said.contains("3 of 3 records can be used"), "{}", ran.said);
+    assert!(
+        ran.said.contains("3 of 3 records can be used"),
+        "{}",
+        ran.said
+    );
 }
 
 #[test]
 fn valid_faults_in_campaign_toml() {
     test_all(&in_campaign_toml::cases());
+}
+
+/// Bombs end in an error soon, under a limit of memory that a quarter of a gigabyte of data and
+/// the program's own mappings fit into.
+#[cfg(target_os = "linux")]
+#[test]
+fn valid_bombs_end_soon_and_in_little_memory() {
+    for case in in_records::bombs() {
+        let lab = Lab::new();
+        (case.spoil)(&lab);
+        let begin = std::time::Instant::now();
+        let script = format!(
+            "ulimit -v 900000; exec {} --threads 2 check campaign.toml",
+            env!("CARGO_BIN_EXE_impactid")
+        );
+        let output = std::process::Command::new("sh")
+            .args(["-c", &script])
+            .current_dir(lab.folder())
+            .output()
+            .expect("a shell");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{}: {said}", case.input);
+        assert!(
+            said.contains("2 of 3 records can be used"),
+            "{}: {said}",
+            case.input
+        );
+        // a second on an idle machine; tests share theirs
+        assert!(
+            begin.elapsed().as_secs_f64() < 15.0,
+            "{} takes too long",
+            case.input
+        );
+    }
 }
 
 #[test]
@@ -110,12 +160,22 @@ fn document() -> String {
     );
     let mut number = 0;
     for (title, cases) in groups() {
-        text += &format!("\n## {title}\n\n| | input | the message holds | exit |\n| --- | --- | --- | --- |\n");
+        text += &format!(
+            "\n## {title}\n\n| | input | the message holds | exit |\n| --- | --- | --- | --- |\n"
+        );
         for case in cases {
             number += 1;
-            let words: Vec<String> =
-                case.says.iter().map(|s| format!("“{}”", s.replace('|', "\\|"))).collect();
-            text += &format!("| {number} | {} | {} | {} |\n", case.input, words.join(" … "), case.code);
+            let words: Vec<String> = case
+                .says
+                .iter()
+                .map(|s| format!("“{}”", s.replace('|', "\\|")))
+                .collect();
+            text += &format!(
+                "| {number} | {} | {} | {} |\n",
+                case.input,
+                words.join(" … "),
+                case.code
+            );
         }
     }
     text

@@ -14,13 +14,20 @@ fn with_displacement(lab: &Lab, factor: f64) {
                 lines.push(format!("{line},dx [mm]"));
                 continue;
             }
-            let v: f64 = line.split(',').nth(3).and_then(|c| c.parse().ok()).expect("a number");
+            let v: f64 = line
+                .split(',')
+                .nth(3)
+                .and_then(|c| c.parse().ok())
+                .expect("a number");
             sum += 50.0 * v / RATE_HZ;
             lines.push(format!("{line},{:.6}", factor * sum));
         }
         lab.write(name, &(lines.join("\n") + "\n"));
     }
-    lab.mend("[analysis]", "[channels.displacement_x]\nchannel = \"dx\"\n\n[analysis]");
+    lab.mend(
+        "[analysis]",
+        "[channels.displacement_x]\nchannel = \"dx\"\n\n[analysis]",
+    );
 }
 
 /// The cases.
@@ -29,14 +36,24 @@ pub fn cases() -> Vec<Case> {
         noted(
             "a drive frequency that is not the stated one",
             |lab| lab.replace("runs.csv", "r2.csv,12", "r2.csv,14"),
-            &["r2.csv: r2: drive", "the drive channel shows 12.00", "states 14.0"],
+            &[
+                "r2.csv: r2: drive",
+                "the drive channel shows 12.00",
+                "states 14.0",
+            ],
         ),
         refused(
             "a drive channel without a tone",
             |lab| {
-                lab.column("r2.csv", 1, |i, _| format!("{}", (i * 7919 % 1009) as f64 / 1009.0));
+                lab.column("r2.csv", 1, |i, _| {
+                    format!("{}", (i * 7919 % 1009) as f64 / 1009.0)
+                });
             },
-            &["r2.csv: r2: drive", "no single harmonic tone", "2 of 3 records can be used"],
+            &[
+                "r2.csv: r2: drive",
+                "no single harmonic tone",
+                "2 of 3 records can be used",
+            ],
         ),
         noted(
             "a contact that closes without a jump of the velocity",
@@ -54,13 +71,18 @@ pub fn cases() -> Vec<Case> {
             },
             &["jumps of the closing velocity go up", "sign"],
         ),
-        noted("a displacement that fits the velocity", |lab| with_displacement(lab, 1.0), &[
-            "3 of 3 records can be used",
-        ]),
+        noted(
+            "a displacement that fits the velocity",
+            |lab| with_displacement(lab, 1.0),
+            &["3 of 3 records can be used"],
+        ),
         refused(
             "a displacement against the velocity",
             |lab| with_displacement(lab, -1.0),
-            &["displacement_x and velocity_x have opposite signs", "sign = -1"],
+            &[
+                "displacement_x and velocity_x have opposite signs",
+                "sign = -1",
+            ],
         ),
         refused(
             "a displacement in the wrong unit",
@@ -91,5 +113,8 @@ pub fn cases() -> Vec<Case> {
 
 /// A velocity without jumps.
 fn smooth(i: usize) -> String {
-    format!("{:.6}", (std::f64::consts::TAU * 12.0 * i as f64 / RATE_HZ).sin())
+    format!(
+        "{:.6}",
+        (std::f64::consts::TAU * 12.0 * i as f64 / RATE_HZ).sin()
+    )
 }

@@ -74,7 +74,9 @@ pub struct Lab {
 impl Lab {
     /// A good campaign: three records with one impact a drive period.
     pub fn new() -> Self {
-        let lab = Self { folder: tempfile::tempdir().expect("a temporary folder") };
+        let lab = Self {
+            folder: tempfile::tempdir().expect("a temporary folder"),
+        };
         lab.write("campaign.toml", CAMPAIGN);
         lab.write("runs.csv", RUNS);
         for (name, frequency_hz) in [("r1.csv", 11.0), ("r2.csv", 12.0), ("r3.csv", 13.0)] {
@@ -128,8 +130,11 @@ impl Lab {
     /// Change the lines of a record: header is line 0; `None` drops the line.
     pub fn lines(&self, name: &str, change: impl Fn(usize, &str) -> Option<String>) {
         let text = self.read(name);
-        let lines: Vec<String> =
-            text.lines().enumerate().filter_map(|(i, l)| change(i, l)).collect();
+        let lines: Vec<String> = text
+            .lines()
+            .enumerate()
+            .filter_map(|(i, l)| change(i, l))
+            .collect();
         self.write(name, &(lines.join("\n") + "\n"));
     }
 
@@ -154,7 +159,10 @@ impl Lab {
             .expect("the program starts");
         let said = String::from_utf8_lossy(&output.stdout).into_owned()
             + &String::from_utf8_lossy(&output.stderr);
-        Ran { said, code: output.status.code().unwrap_or(-1) }
+        Ran {
+            said,
+            code: output.status.code().unwrap_or(-1),
+        }
     }
 }
 

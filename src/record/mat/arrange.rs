@@ -8,8 +8,6 @@ use crate::record::source::{ChannelInfo, DatasetInfo};
 
 /// Matrices with more columns than this are one channel, not one per column.
 const MOST_COLUMNS: u64 = 4096;
-/// Most attributes of the file that are repeated with each of its records.
-const MOST_SHARED: usize = 64;
 /// A matrix this many times wider than tall is read by rows.
 const WIDE: u64 = 16;
 
@@ -46,6 +44,9 @@ pub struct Arranged {
 
 /// Arrange the arrays: a struct or cell array of records gives one dataset per element; all
 /// other variables are one dataset without a name.
+///
+/// Single values of the file are repeated as attributes of every record as far as that takes no
+/// more memory than the arrays themselves.
 pub fn arrange(tree: &Tree) -> Arranged {
     let mut by_variable: Vec<Vec<usize>> = vec![Vec::new(); tree.variables.len()];
     for (index, leaf) in tree.leaves.iter().enumerate() {
@@ -167,7 +168,15 @@ impl<'t> Builder<'t> {
             .filter_map(|l| Some((l.name.as_str(), l.value.as_deref()?)))
             .collect();
         let shared = common().filter_map(|l| Some((l.name.clone(), l.value.clone()?)));
-        let shared = shared.take(MOST_SHARED).collect();
+        let sizes = tree.leaves.iter().map(|leaf| leaf.part().bytes + 128);
+        let mut left = sizes.sum::<u64>() / tree.leaves.len().max(1) as u64;
+        let affordable = |(name, value): &(String, String)| {
+            let size = (name.len() + value.len() + 64) as u64;
+            let fits = size <= left;
+            left = left.saturating_sub(size);
+            fits
+        };
+        let shared = shared.take_while(affordable).collect();
         let is_time = |(_, leaf): &(usize, &Leaf)| {
             let open = !records[leaf.variable] && is_vector(leaf) && leaf.count() > 1;
             open && matches!(leaf.content, Content::Real(_)) && is_time_name(&leaf.name)

@@ -20,7 +20,10 @@
 //!   refused.
 
 pub(crate) mod arrange;
+mod contents;
+mod element;
 mod inflate;
+mod names;
 mod samples;
 #[cfg(test)]
 mod tests;

@@ -49,28 +49,20 @@ impl Store {
 
     /// The samples of some channels, in the order asked for; each variable is inflated once.
     pub fn read(&self, wanted: &[Origin]) -> Result<Vec<Samples>, ReadError> {
-        let mut variable = None;
+        let variable_of = |slot: usize| self.tree.leaves[wanted[slot].leaf].variable;
         let mut all: Vec<Option<Samples>> = vec![None; wanted.len()];
         let mut order: Vec<usize> = (0..wanted.len()).collect();
-        order.sort_by_key(|&slot| self.tree.leaves[wanted[slot].leaf].variable);
-        for slot in order {
-            let leaf = &self.tree.leaves[wanted[slot].leaf];
-            if variable
-                .as_ref()
-                .is_none_or(|(index, _)| *index != leaf.variable)
-            {
-                let parts = wanted
-                    .iter()
-                    .filter(|w| self.tree.leaves[w.leaf].variable == leaf.variable);
-                let bytes = self.bytes(leaf.variable, parts.count())?;
-                variable = Some((leaf.variable, bytes));
-            }
-            if let Some((_, bytes)) = &variable {
-                let samples = self.samples(leaf, wanted[slot].slice, bytes);
-                all[slot] = Some(samples.map_err(|e| ReadError {
+        order.sort_by_key(|&slot| variable_of(slot));
+        for slots in order.chunk_by(|&a, &b| variable_of(a) == variable_of(b)) {
+            let bytes = self.bytes(variable_of(slots[0]), slots.len())?;
+            for &slot in slots {
+                let leaf = &self.tree.leaves[wanted[slot].leaf];
+                let samples = self.samples(leaf, wanted[slot].slice, &bytes);
+                let named = |e| ReadError {
                     channel: Some(leaf.name.clone()),
                     ..e
-                })?);
+                };
+                all[slot] = Some(samples.map_err(named)?);
             }
         }
         Ok(all.into_iter().flatten().collect())
@@ -83,7 +75,12 @@ impl Store {
             return Ok(Bytes::File(self.file.all()));
         };
         let all_at_once = self.leaves_of[variable] == 1 && parts > 1;
-        let keep = inflated <= self.file.len().saturating_mul(KEPT_MULTIPLE).max(KEPT_SIZE);
+        let keep = inflated
+            <= self
+                .file
+                .size()
+                .saturating_mul(KEPT_MULTIPLE)
+                .max(KEPT_SIZE);
         if all_at_once || !keep {
             return Ok(Bytes::Inflated(Arc::new(inflate::inflate(
                 &self.file, place,
@@ -171,9 +168,10 @@ fn take(leaf: &Leaf, slice: Slice, bytes: &[u8], part: Part, order: ByteOrder) -
             let spacing = Spacing {
                 offset: row as usize * width,
                 stride: rows * width,
+                count: columns,
             };
             out.reserve_exact(columns);
-            numbers::decode_spaced(part.number, order, bytes, spacing, columns, &mut out);
+            numbers::decode_spaced(part.number, order, bytes, spacing, &mut out);
         }
     }
     out

@@ -96,6 +96,13 @@ impl Leaf {
         self.dims.iter().product()
     }
 
+    /// Its numbers or characters (of complex numbers: the real parts).
+    pub fn part(&self) -> Part {
+        match self.content {
+            Content::Real(part) | Content::Complex(part, ..) | Content::Text(part, _) => part,
+        }
+    }
+
     /// How the numbers are stored.
     pub fn stored(&self) -> StoredType {
         match self.content {

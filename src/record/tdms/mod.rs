@@ -15,6 +15,8 @@
 //!   way); the first stamp is its start time, and it is the dataset's time axis.
 //! - A last segment that was cut short is read as far as it goes, with a note.
 
+mod content;
+mod index;
 mod layout;
 mod samples;
 mod scale;
@@ -27,9 +29,9 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 use std::sync::Arc;
 
+use content::{Content, Object};
 use samples::Reader;
 use scale::Scaling;
-use segment::{Content, Object};
 use value::{Kind, Value};
 
 use super::bytes::FileBytes;
@@ -38,9 +40,10 @@ use super::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, Stored
 /// The scaling of a channel, or what of it is not done; shared by channels that inherit it.
 type Scale = Arc<Result<Scaling, String>>;
 
-/// Whether a file's first bytes are those of a TDMS file.
+/// Whether a file's first bytes are those of a TDMS file, or of its index, which [`open`] refuses
+/// with the remedy.
 pub fn recognises(head: &[u8]) -> bool {
-    head.starts_with(b"TDSm")
+    head.starts_with(b"TDSm") || head.starts_with(b"TDSh")
 }
 
 /// Open a TDMS file: the metadata of all segments is read, no samples are.
@@ -219,7 +222,7 @@ impl<'a> Builder<'a> {
             .iter()
             .map(|(name, value)| name.len() + value.len() + 64)
             .sum();
-        let affordable = (size * self.datasets.len()) as u64 <= self.file.len().max(1 << 16);
+        let affordable = (size * self.datasets.len()) as u64 <= self.file.size().max(1 << 16);
         let reach = if affordable { self.datasets.len() } else { 1 };
         for dataset in self.datasets.iter_mut().take(reach) {
             for (name, value) in &all {

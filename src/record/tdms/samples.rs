@@ -1,8 +1,8 @@
 //! Samples of a channel, gathered from the chunks of all segments.
 
+use super::content::{Content, Object, Piece};
 use super::layout::Entry;
 use super::scale::Scaling;
-use super::segment::{Content, Object, Piece};
 use super::value::{Kind, Stamp};
 use crate::record::bytes::FileBytes;
 use crate::record::numbers::{self, ByteOrder, Number, Spacing};
@@ -130,8 +130,9 @@ impl<'a> Reader<'a> {
             let spacing = Spacing {
                 offset: 0,
                 stride: run.stride as usize,
+                count: run.count as usize,
             };
-            numbers::decode_spaced(number, order, bytes, spacing, run.count as usize, &mut out);
+            numbers::decode_spaced(number, order, bytes, spacing, &mut out);
             Ok(())
         })?;
         Ok(out)

@@ -1,12 +1,13 @@
 //! The segments of a TDMS file: lead-in, metadata, and where their raw data lie.
 
-use std::collections::{BTreeMap, HashMap};
-use std::sync::Arc;
+use std::collections::HashMap;
 
-use super::layout::{Device, Layout, Scaler, Share};
-use super::value::{self, Kind, Value};
+use super::content::{Content, Object, Piece};
+use super::index;
+use super::layout::Layout;
+use super::value::{self, Value};
 use crate::record::bytes::{Cursor, FileBytes};
-use crate::record::numbers::{ByteOrder, Number};
+use crate::record::numbers::ByteOrder;
 use crate::record::source::ReadError;
 
 const META_DATA: u32 = 1 << 1;
@@ -19,56 +20,6 @@ const BIG_ENDIAN: u32 = 1 << 6;
 const LEAD_IN: u64 = 28;
 const NO_DATA: u32 = u32::MAX;
 const AS_BEFORE: u32 = 0;
-const DEVICE: u32 = 0x1269;
-const DIGITAL: [u32; 2] = [0x126a, 0x1369];
-
-/// A file, group or channel.
-#[derive(Debug, Default)]
-pub struct Object {
-    /// Empty for the file, one part for a group, two for a channel.
-    pub path: Vec<String>,
-    /// Its properties, of which later segments may change some.
-    pub properties: BTreeMap<String, Value>,
-    /// Kind of its samples, once it has some.
-    pub kind: Option<Kind>,
-    /// Number of its samples.
-    pub samples: u64,
-    /// Layouts in which it has samples, and its entry in each.
-    pub places: Vec<(u32, u32)>,
-    share: Option<Share>,
-    listed: bool,
-    active: bool,
-}
-
-/// Chunks of one layout that follow each other in the file.
-#[derive(Debug, Clone, Copy)]
-pub struct Piece {
-    /// Offset of the first chunk.
-    pub at: u64,
-    /// Number of chunks.
-    pub chunks: u64,
-    /// Their layout.
-    pub layout: u32,
-    /// Byte order of the numbers.
-    pub order: ByteOrder,
-    /// Whether the channels are interleaved row by row.
-    pub interleaved: bool,
-}
-
-/// All that opening a file finds.
-#[derive(Debug, Default)]
-pub struct Content {
-    /// File, groups and channels in order of appearance.
-    pub objects: Vec<Object>,
-    /// The layouts of the chunks.
-    pub layouts: Vec<Layout>,
-    /// The raw data in file order.
-    pub pieces: Vec<Piece>,
-    /// For each layout its pieces.
-    pub pieces_of: Vec<Vec<u32>>,
-    /// What was skipped or assumed.
-    pub notes: Vec<String>,
-}
 
 struct LeadIn {
     at: u64,
@@ -99,7 +50,7 @@ pub fn scan(file: &FileBytes) -> Result<Content, ReadError> {
         built: 0,
     };
     let mut at = 0;
-    while at < file.len() {
+    while at < file.size() {
         let Some(lead) = scanner.lead_in(at)? else {
             break;
         };
@@ -124,7 +75,7 @@ struct Scanner<'a> {
 
 impl Scanner<'_> {
     fn lead_in(&mut self, at: u64) -> Result<Option<LeadIn>, ReadError> {
-        let left = self.file.len() - at;
+        let left = self.file.size() - at;
         if left < LEAD_IN && at > 0 {
             self.content.notes.push(format!(
                 "{left} bytes at byte {at} are no segment: not read"
@@ -158,9 +109,9 @@ impl Scanner<'_> {
         let start = cursor.at();
         let end = start
             .checked_add(next)
-            .filter(|&end| end <= self.file.len());
+            .filter(|&end| end <= self.file.size());
         let cut_short = end.is_none();
-        let end = end.unwrap_or(self.file.len());
+        let end = end.unwrap_or(self.file.size());
         let data = start.checked_add(raw).filter(|&data| data <= end);
         if cut_short {
             self.content.notes.push(format!(
@@ -280,7 +231,7 @@ impl Scanner<'_> {
                 .file
                 .refuse(at, "raw data of a channel", "raw data of a group"));
         }
-        let share = self.share(cursor, header)?;
+        let share = index::share(self.file, cursor, header)?;
         let object = &mut self.content.objects[index];
         if share.count > 0 && *object.kind.get_or_insert(share.kind) != share.kind {
             let found = format!("channel {:?} that changes its type", object.path);
@@ -288,76 +239,6 @@ impl Scanner<'_> {
         }
         object.share = Some(share);
         Ok(true)
-    }
-
-    fn share(&self, cursor: &mut Cursor<'_>, header: u32) -> Result<Share, ReadError> {
-        let at = cursor.at() - 4;
-        let digital = DIGITAL.contains(&header);
-        let device = digital || header == DEVICE;
-        if !device && !(20..=28).contains(&header) {
-            let expected = "a raw data index of 20 or 28 bytes, or one of DAQmx";
-            return Err(self.file.refuse(at, expected, format!("{header:#x}")));
-        }
-        let code = cursor.u32("a data type")?;
-        let kind = Kind::of(code).map_err(|found| {
-            let remedy = "Save the channel as double precision numbers.";
-            self.file
-                .unsupported(at + 4, found, "a data type that is read", remedy)
-        })?;
-        let dimension = cursor.u32("a dimension")?;
-        if dimension != 1 {
-            return Err(self
-                .file
-                .refuse(at + 8, "dimension 1", dimension.to_string()));
-        }
-        let count = cursor.u64("the number of samples")?;
-        if device {
-            let device = Some(Arc::new(self.device(cursor, digital)?));
-            return Ok(Share {
-                kind,
-                count,
-                bytes: 0,
-                device,
-            });
-        }
-        let bytes = match kind.bytes() {
-            Some(size) => count.checked_mul(size),
-            None if kind == Kind::Text => {
-                Some(cursor.u64("the bytes of texts")?).filter(|&bytes| bytes / 4 >= count)
-            }
-            None => None,
-        };
-        match bytes {
-            Some(bytes) => Ok(Share {
-                kind,
-                count,
-                bytes,
-                device: None,
-            }),
-            None => Err(self.file.refuse(
-                at,
-                "a length that fits the type",
-                format!("{count} samples"),
-            )),
-        }
-    }
-
-    fn device(&self, cursor: &mut Cursor<'_>, digital: bool) -> Result<Device, ReadError> {
-        let at = cursor.at();
-        let count = cursor.u32("the number of DAQmx scalers")?;
-        let scalers: Result<Vec<_>, _> = (0..count).map(|_| scaler(cursor, digital)).collect();
-        let scalers = scalers?;
-        let widths = cursor.u32("the number of raw data widths")?;
-        let widths: Result<Vec<_>, _> = (0..widths)
-            .map(|_| cursor.u32("a raw data width").map(u64::from))
-            .collect();
-        if scalers.is_empty() {
-            return Err(self.file.refuse(at, "at least one DAQmx scaler", "none"));
-        }
-        Ok(Device {
-            scalers,
-            widths: widths?,
-        })
     }
 
     /// Build the layout of the listed objects that have data.
@@ -394,7 +275,7 @@ impl Scanner<'_> {
     /// Count entries of layouts that a few bytes of metadata can call forth.
     fn spend(&mut self, at: u64, entries: usize) -> Result<(), ReadError> {
         self.built += entries as u64;
-        match self.built <= self.file.len() / 4 + 4096 {
+        match self.built <= self.file.size() / 4 + 4096 {
             true => Ok(()),
             false => Err(self
                 .file
@@ -483,39 +364,6 @@ impl Scanner<'_> {
             }
         }
     }
-}
-
-fn scaler(cursor: &mut Cursor<'_>, digital: bool) -> Result<Scaler, ReadError> {
-    let code = cursor.u32("a DAQmx type")?;
-    let number = match code {
-        0 => Number::U8,
-        1 => Number::I8,
-        2 => Number::U16,
-        3 => Number::I16,
-        4 => Number::U32,
-        5 => Number::I32,
-        6 => Number::U64,
-        7 => Number::I64,
-        other => return Err(cursor.refuse("a DAQmx type from 0 to 7", other.to_string())),
-    };
-    let buffer = cursor.u32("a DAQmx buffer")?;
-    let offset = u64::from(cursor.u32("a DAQmx offset")?);
-    match digital {
-        true => drop(cursor.u8("a DAQmx bitmap")?),
-        false => drop(cursor.u32("a DAQmx bitmap")?),
-    }
-    let scale = cursor.u32("a DAQmx scale")?;
-    let (byte, bit) = match digital {
-        true => (offset / 8, Some((offset % 8) as u32)),
-        false => (offset, None),
-    };
-    Ok(Scaler {
-        scale,
-        number,
-        buffer,
-        byte,
-        bit,
-    })
 }
 
 /// The parts of `/'group'/'channel'`; a quote in a name stands doubled.

@@ -138,8 +138,12 @@ fn binary(
     let count = function.samples as usize;
     let take = |number, offset| {
         let mut out = Vec::with_capacity(count);
-        let spacing = Spacing { offset, stride };
-        numbers::decode_spaced(number, order, body, spacing, count, &mut out);
+        let spacing = Spacing {
+            offset,
+            stride,
+            count,
+        };
+        numbers::decode_spaced(number, order, body, spacing, &mut out);
         out
     };
     Columns {

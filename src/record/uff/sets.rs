@@ -145,12 +145,12 @@ impl<'a> Scanner<'a> {
             None if skipped.len() < 100 => skipped.push((name, 1)),
             None => {}
         }
-        self.to_mark();
+        self.seek_mark();
     }
 
     /// Go behind the next mark; gives the offset where it stands, how many lines came before it,
     /// and whether there is one at all.
-    fn to_mark(&mut self) -> (usize, u64, bool) {
+    fn seek_mark(&mut self) -> (usize, u64, bool) {
         let mut lines = 0;
         while let Some((at, line)) = self.line() {
             if is_mark(line) {
@@ -204,7 +204,7 @@ impl<'a> Scanner<'a> {
     fn ascii(&mut self, at: usize) -> Result<(), ReadError> {
         let header = self.header(at)?;
         let start = self.at;
-        let (end, lines, marked) = self.to_mark();
+        let (end, lines, marked) = self.seek_mark();
         let body = &self.file.all()[start..end];
         let samples = self.count_ascii(&header, start, body, lines)?;
         if samples < header.points || !marked {
@@ -322,7 +322,7 @@ impl<'a> Scanner<'a> {
             length(per_point).is_some_and(|bytes| self.mark_at(at.saturating_add(bytes)))
         };
         let found = forms.iter().find(fits).copied();
-        let left = self.file.len() - at;
+        let left = self.file.size() - at;
         let (abscissa, per_point) = match found {
             Some(form) => form,
             None => {

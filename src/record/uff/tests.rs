@@ -369,7 +369,7 @@ fn valid_frequency_is_a_channel() {
 #[test]
 fn valid_broken_files_are_refused_at_a_byte() {
     let good = sweep("x", &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]).ascii();
-    let text = String::from_utf8(good.clone()).unwrap();
+    let text = String::from_utf8(good).unwrap();
     let word = text.replace("6.00000E0", "6.0x000E0");
     let error = opened(word.as_bytes()).unwrap().read(0, &[0]).unwrap_err();
     assert_eq!(error.byte, Some(word.find("x000").unwrap() as u64));
@@ -479,5 +479,5 @@ fn prop_mutated_files_are_read_or_refused() {
         ]
         .concat(),
     );
-    conformance::survive(&seeds, open, mutate_text, 100);
+    conformance::survive(&seeds, open, mutate_text, 40);
 }

@@ -116,7 +116,7 @@ impl Scanner<'_> {
             _ => stated,
         };
         let start = cursor.at();
-        let left = self.file.len() - start;
+        let left = self.file.size() - start;
         let end = start.saturating_add(length);
         let mut inner = cursor.part(start, end);
         match &name {
@@ -143,7 +143,7 @@ impl Scanner<'_> {
             _ => {}
         }
         // Chunks begin at even offsets.
-        cursor.seek(end.saturating_add(length % 2).min(self.file.len()));
+        cursor.seek(end.saturating_add(length % 2).min(self.file.size()));
         Ok(())
     }
 
@@ -257,7 +257,7 @@ impl Scanner<'_> {
         let digits = |text: &[u8], separator: usize| {
             text.iter()
                 .enumerate()
-                .all(|(k, b)| (k % 3 == separator) == !b.is_ascii_digit())
+                .all(|(k, b)| (k % 3 == separator) != b.is_ascii_digit())
         };
         if digits(&date[2..], 2) && date[..2].iter().all(u8::is_ascii_digit) && digits(time, 2) {
             let [year, month, day] = [&date[..4], &date[5..7], &date[8..]].map(decode_text);
@@ -267,7 +267,7 @@ impl Scanner<'_> {
     }
 
     fn finish(mut self) -> Result<Wave, ReadError> {
-        let end = self.file.len();
+        let end = self.file.size();
         let Some(format) = self.format else {
             return Err(self
                 .file

@@ -110,6 +110,7 @@ impl WaveFile {
         let spacing = Spacing {
             offset: channel * bytes,
             stride,
+            count,
         };
         let number = match (format.float, bytes) {
             (true, 4) => Number::F32,
@@ -121,7 +122,7 @@ impl WaveFile {
             _ => return Ok(Samples::Real(odd(data, spacing, bytes, *order))),
         };
         let mut out = Vec::with_capacity(count);
-        numbers::decode_spaced(number, *order, data, spacing, count, &mut out);
+        numbers::decode_spaced(number, *order, data, spacing, &mut out);
         Ok(Samples::Real(out))
     }
 }

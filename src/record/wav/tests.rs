@@ -256,5 +256,5 @@ fn prop_mutated_files_are_read_or_refused() {
     seeds.retain(|seed| recognises(seed));
     seeds.push(integers(3, false, &[5; 40]).file(&[]));
     seeds.push(integers(7, true, &[-5; 40]).file(&[]));
-    conformance::survive(&seeds, open, conformance::mutate, 100);
+    conformance::survive(&seeds, open, conformance::mutate, 40);
 }

@@ -46,7 +46,9 @@ fn comparison(
         _ => 10,
     };
     let window = Window::new(&detection, &drive, f64::from(periods));
-    let simulation = gathered.fit.and_then(|_| Simulation::of(gathered, o, &drive, &window));
+    let simulation = gathered
+        .fit
+        .and_then(|_| Simulation::of(gathered, o, &drive, &window));
     let (eta, rho) = rows::place(gathered, o);
     let traces = traces(record, &detection, &window, simulation.as_ref());
     Some(Comparison {
@@ -82,7 +84,11 @@ impl Window {
         let rate_hz = detection.kinematics.rate_hz;
         let period = drive.period_s();
         let start_s = period * (1.0 - drive.phase_at(0.0) / std::f64::consts::TAU);
-        Self { start_s, length_s: periods * period, rate_hz }
+        Self {
+            start_s,
+            length_s: periods * period,
+            rate_hz,
+        }
     }
 
     fn range(&self, samples: usize) -> std::ops::Range<usize> {
@@ -94,7 +100,10 @@ impl Window {
     fn signal(&self, values: &[f64]) -> Signal {
         let range = self.range(values.len());
         Signal {
-            time_s: range.clone().map(|i| i as f64 / self.rate_hz - self.start_s).collect(),
+            time_s: range
+                .clone()
+                .map(|i| i as f64 / self.rate_hz - self.start_s)
+                .collect(),
             values: values[range].to_vec(),
         }
     }
@@ -111,7 +120,12 @@ struct Simulation {
 }
 
 impl Simulation {
-    fn of(gathered: &Gathered, o: &Observation, drive: &DriveTone, window: &Window) -> Option<Self> {
+    fn of(
+        gathered: &Gathered,
+        o: &Observation,
+        drive: &DriveTone,
+        window: &Window,
+    ) -> Option<Self> {
         let parameters = *gathered.parameters()?;
         let clearance_m = match (o.setting.clearance_m, &o.finding.motion) {
             (Some(clearance), _) => clearance,
@@ -124,32 +138,53 @@ impl Simulation {
         let setting = parameters.setting(drive.frequency_hz, clearance_m, amplitude);
         let mut simulator = started(&machine, setting, o, &parameters, amplitude)?;
         let periods = SETTLE_PERIODS - simulator.tau() / setting.period();
-        simulator.advance(periods.max(0.0) * setting.period(), &mut Trajectory::default());
+        simulator.advance(
+            periods.max(0.0) * setting.period(),
+            &mut Trajectory::default(),
+        );
         let to_zero = (std::f64::consts::TAU - simulator.phase()) / setting.frequency_ratio;
         simulator.advance(to_zero, &mut Trajectory::default());
         let skip = cycle_shift(&mut simulator, o, drive, window, setting);
-        simulator.advance(f64::from(skip) * setting.period(), &mut Trajectory::default());
+        simulator.advance(
+            f64::from(skip) * setting.period(),
+            &mut Trajectory::default(),
+        );
         let start_tau = simulator.tau();
         let omega = parameters.natural_rate();
         let mut trajectory = Trajectory::default();
         simulator.advance(window.length_s * omega, &mut trajectory);
-        let impacts_s =
-            trajectory.impacts.iter().map(|i| (i.tau - start_tau) / omega).collect();
+        let impacts_s = trajectory
+            .impacts
+            .iter()
+            .map(|i| (i.tau - start_tau) / omega)
+            .collect();
         let drive_amplitude = amplitude;
-        Some(Self { trajectory, start_tau, omega, impacts_s, parameters, drive_amplitude })
+        Some(Self {
+            trajectory,
+            start_tau,
+            omega,
+            impacts_s,
+            parameters,
+            drive_amplitude,
+        })
     }
 
     fn signal(&self, role: Role, times_s: &[f64]) -> Option<Signal> {
-        channel_value(&self.parameters, 1.0, role, &State::default()).is_finite().then(|| {
-            let values = times_s
-                .iter()
-                .map(|t| {
-                    let state = self.trajectory.at(self.start_tau + t * self.omega);
-                    channel_value(&self.parameters, self.drive_amplitude, role, &state)
-                })
-                .collect();
-            Signal { time_s: times_s.to_vec(), values }
-        })
+        channel_value(&self.parameters, 1.0, role, &State::default())
+            .is_finite()
+            .then(|| {
+                let values = times_s
+                    .iter()
+                    .map(|t| {
+                        let state = self.trajectory.at(self.start_tau + t * self.omega);
+                        channel_value(&self.parameters, self.drive_amplitude, role, &state)
+                    })
+                    .collect();
+                Signal {
+                    time_s: times_s.to_vec(),
+                    values,
+                }
+            })
     }
 }
 
@@ -163,7 +198,11 @@ fn started(
     amplitude: f64,
 ) -> Option<Simulator> {
     let rest = || Simulator::new(machine, setting, Initial::rest()).ok();
-    let Some(impact) = o.impacts.iter().find(|i| i.closing_speed_after_m_s.is_some()) else {
+    let Some(impact) = o
+        .impacts
+        .iter()
+        .find(|i| i.closing_speed_after_m_s.is_some())
+    else {
         return rest();
     };
     let scale = parameters.static_deflection_m * amplitude * parameters.natural_rate();
@@ -177,7 +216,12 @@ fn started(
             y: setting.clearance,
             vy: 0.5 * after,
         },
-        None => Initial { x: setting.clearance, vx: after, y: 0.0, vy: 0.0 },
+        None => Initial {
+            x: setting.clearance,
+            vx: after,
+            y: 0.0,
+            vy: 0.0,
+        },
     };
     Simulator::new(machine, start, initial).ok().or_else(rest)
 }
@@ -191,7 +235,9 @@ fn cycle_shift(
     window: &Window,
     setting: Setting,
 ) -> u32 {
-    let Motion::Periodic { periods_n, .. } = o.finding.motion else { return 0 };
+    let Motion::Periodic { periods_n, .. } = o.finding.motion else {
+        return 0;
+    };
     if periods_n < 2 {
         return 0;
     }
@@ -214,7 +260,8 @@ fn cycle_shift(
         })
         .filter(|(t, _)| (0.0..f64::from(periods_n)).contains(t))
         .collect();
-    let scale = |list: &[(f64, f64)]| list.iter().map(|i| i.1).sum::<f64>() / list.len().max(1) as f64;
+    let scale =
+        |list: &[(f64, f64)]| list.iter().map(|i| i.1).sum::<f64>() / list.len().max(1) as f64;
     let (of_model, of_record) = (scale(&simulated), scale(&measured));
     let mismatch = |shift: u32| -> f64 {
         measured
@@ -230,7 +277,9 @@ fn cycle_shift(
             })
             .sum()
     };
-    (0..periods_n).min_by(|a, b| mismatch(*a).total_cmp(&mismatch(*b))).unwrap_or(0)
+    (0..periods_n)
+        .min_by(|a, b| mismatch(*a).total_cmp(&mismatch(*b)))
+        .unwrap_or(0)
 }
 
 fn traces(
@@ -241,10 +290,26 @@ fn traces(
 ) -> Vec<Trace> {
     let k = &detection.kinematics;
     let moving = [
-        (Role::DisplacementX, Dimension::Length, k.x.displacement.as_ref()),
-        (Role::DisplacementY, Dimension::Length, k.y.displacement.as_ref()),
-        (Role::VelocityX, Dimension::Velocity, measured_velocity(&k.x)),
-        (Role::VelocityY, Dimension::Velocity, measured_velocity(&k.y)),
+        (
+            Role::DisplacementX,
+            Dimension::Length,
+            k.x.displacement.as_ref(),
+        ),
+        (
+            Role::DisplacementY,
+            Dimension::Length,
+            k.y.displacement.as_ref(),
+        ),
+        (
+            Role::VelocityX,
+            Dimension::Velocity,
+            measured_velocity(&k.x),
+        ),
+        (
+            Role::VelocityY,
+            Dimension::Velocity,
+            measured_velocity(&k.y),
+        ),
     ];
     let mut out: Vec<Trace> = moving
         .into_iter()
@@ -287,17 +352,32 @@ fn compared(
         }
         Signal {
             time_s: s.time_s.clone(),
-            values: measured.values.iter().zip(&s.values).map(|(m, s)| m - s).collect(),
+            values: measured
+                .values
+                .iter()
+                .zip(&s.values)
+                .map(|(m, s)| m - s)
+                .collect(),
         }
     });
-    Trace { role, dimension, measured: Some(measured), simulated, residual }
+    Trace {
+        role,
+        dimension,
+        measured: Some(measured),
+        simulated,
+        residual,
+    }
 }
 
 /// Offset and slope of measured − simulated over time, by least squares.
 fn fitted_line(measured: &Signal, simulated: &Signal) -> (f64, f64) {
     let count = measured.values.len().max(1) as f64;
-    let difference: Vec<f64> =
-        measured.values.iter().zip(&simulated.values).map(|(m, s)| m - s).collect();
+    let difference: Vec<f64> = measured
+        .values
+        .iter()
+        .zip(&simulated.values)
+        .map(|(m, s)| m - s)
+        .collect();
     let mean_t = measured.time_s.iter().sum::<f64>() / count;
     let mean_d = difference.iter().sum::<f64>() / count;
     let (mut shear, mut spread) = (0.0, 0.0);
@@ -319,9 +399,12 @@ fn portraits(traces: &[Trace]) -> Vec<Portrait> {
         let of = |role: Role| traces.iter().find(|t| t.role == role);
         let (d, v) = (of(displacement)?, of(velocity)?);
         let pair = |a: &Option<Signal>, b: &Option<Signal>| match (a, b) {
-            (Some(a), Some(b)) => {
-                a.values.iter().zip(&b.values).map(|(x, y)| [*x, *y]).collect()
-            }
+            (Some(a), Some(b)) => a
+                .values
+                .iter()
+                .zip(&b.values)
+                .map(|(x, y)| [*x, *y])
+                .collect(),
             _ => Vec::new(),
         };
         Some(Portrait {

@@ -27,7 +27,11 @@ pub(super) fn resonance(gathered: &Gathered) -> Vec<ResonanceCurve> {
         Role::AccelerationX,
         Role::AccelerationY,
     ];
-    roles.into_iter().filter_map(|role| curve(gathered, role)).take(2).collect()
+    roles
+        .into_iter()
+        .filter_map(|role| curve(gathered, role))
+        .take(2)
+        .collect()
 }
 
 fn curve(gathered: &Gathered, role: Role) -> Option<ResonanceCurve> {
@@ -126,7 +130,12 @@ pub(super) fn residuals(gathered: &Gathered) -> Vec<ResidualSet> {
     };
     let all = blocks(gathered);
     let resonance: Vec<usize> = all.resonance.points.iter().map(|p| p.observation).collect();
-    let trajectory: Vec<usize> = all.trajectory.records.iter().map(|r| r.observation).collect();
+    let trajectory: Vec<usize> = all
+        .trajectory
+        .records
+        .iter()
+        .map(|r| r.observation)
+        .collect();
     let impact: Vec<usize> = all.impact.pairs.iter().map(|p| p.observation).collect();
     let of = |method: &str, block: &dyn Block, owners: &[usize]| {
         let points: Vec<ResidualPoint> = (0..block.items())
@@ -177,7 +186,11 @@ fn autocorrelation(values: &[f64], most: usize) -> Vec<f64> {
     let total: f64 = centred.iter().map(|v| v * v).sum();
     (0..=most.min(values.len().saturating_sub(1)))
         .map(|lag| {
-            let product: f64 = centred.iter().zip(&centred[lag..]).map(|(a, b)| a * b).sum();
+            let product: f64 = centred
+                .iter()
+                .zip(&centred[lag..])
+                .map(|(a, b)| a * b)
+                .sum();
             if total > 0.0 { product / total } else { 0.0 }
         })
         .collect()
@@ -188,7 +201,12 @@ pub(super) fn correlation(gathered: &Gathered) -> Option<Correlation> {
     let matrix = fit
         .free
         .iter()
-        .map(|a| fit.free.iter().map(|b| fit.correlation(*a, *b).unwrap_or(0.0)).collect())
+        .map(|a| {
+            fit.free
+                .iter()
+                .map(|b| fit.correlation(*a, *b).unwrap_or(0.0))
+                .collect()
+        })
         .collect();
     Some(Correlation {
         parameters: fit.free.iter().map(|c| c.name().to_owned()).collect(),

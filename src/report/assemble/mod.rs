@@ -125,7 +125,11 @@ fn left_out(gathered: &Gathered) -> Vec<LeftOut> {
     let mut by_reason: std::collections::BTreeMap<String, Vec<&str>> = Default::default();
     for o in gathered.observations {
         for flag in o.flags.iter().filter(|f| f.excludes) {
-            let channel = flag.channel.as_ref().map(|c| format!(" ({c})")).unwrap_or_default();
+            let channel = flag
+                .channel
+                .as_ref()
+                .map(|c| format!(" ({c})"))
+                .unwrap_or_default();
             let why = format!("{}{channel}: {}", flag.code, flag.message);
             by_reason.entry(why).or_default().push(&o.record);
         }
@@ -133,7 +137,10 @@ fn left_out(gathered: &Gathered) -> Vec<LeftOut> {
             && !o.excluded()
             && o.decay.is_none()
         {
-            by_reason.entry(format!("motion undetermined: {reason}")).or_default().push(&o.record);
+            by_reason
+                .entry(format!("motion undetermined: {reason}"))
+                .or_default()
+                .push(&o.record);
         }
     }
     let mut out: Vec<LeftOut> = by_reason

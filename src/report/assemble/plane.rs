@@ -43,13 +43,18 @@ impl View {
         };
         let eta = span(places.iter().map(|p| p.0).collect(), 0.05);
         // Gaps so wide that nothing can touch say nothing about the regions.
-        let reach = gathered.parameters().map_or(f64::INFINITY, |p| 0.55 / p.damping_ratio);
+        let reach = gathered
+            .parameters()
+            .map_or(f64::INFINITY, |p| 0.55 / p.damping_ratio);
         let touching: Vec<f64> = places.iter().map(|p| p.1).filter(|r| *r <= reach).collect();
         if touching.is_empty() {
             return None;
         }
         let rho = span(touching, 0.12);
-        Some(Self { eta: (eta.0.max(0.05), eta.1), rho: (rho.0.min(0.05).max(rho.0 - 0.1).max(0.0), rho.1) })
+        Some(Self {
+            eta: (eta.0.max(0.05), eta.1),
+            rho: (rho.0.min(0.05).max(rho.0 - 0.1).max(0.0), rho.1),
+        })
     }
 }
 
@@ -61,12 +66,15 @@ fn machine(gathered: &Gathered) -> Option<Machine> {
         stiffness_asymmetry: 0.0,
         ..*fitted
     };
-    (fitted.in_range() && tells_restitution(gathered)).then(|| symmetric.machine(gathered.campaign.rig))
+    (fitted.in_range() && tells_restitution(gathered))
+        .then(|| symmetric.machine(gathered.campaign.rig))
 }
 
 /// Without a fitted R there are no regions of impact motion to draw.
 fn tells_restitution(gathered: &Gathered) -> bool {
-    gathered.fit.is_some_and(|fit| fit.free.contains(&Coordinate::Restitution))
+    gathered
+        .fit
+        .is_some_and(|fit| fit.free.contains(&Coordinate::Restitution))
 }
 
 /// s2 and s1 of z = 1/n and the grazing boundary, each with a 95 % band where R is uncertain.
@@ -80,7 +88,10 @@ pub(super) fn curves(gathered: &Gathered) -> Vec<BoundaryCurve> {
     let mut out = vec![BoundaryCurve {
         kind: BoundaryKind::Grazing,
         periods_n: 1,
-        points: etas.iter().map(|eta| [*eta, rho_grazing(&machine, *eta)]).collect(),
+        points: etas
+            .iter()
+            .map(|eta| [*eta, rho_grazing(&machine, *eta)])
+            .collect(),
         band95: Vec::new(),
     }];
     for n in 1..=MOST_PERIODS {
@@ -92,14 +103,16 @@ pub(super) fn curves(gathered: &Gathered) -> Vec<BoundaryCurve> {
                 }?;
                 (point.is_valid() && point.rho > 0.0).then_some(point.rho)
             };
-            out.extend(pieces(&etas, |eta| place(&machine, eta)).into_iter().map(|points| {
-                BoundaryCurve {
-                    kind,
-                    periods_n: n,
-                    band95: band(gathered, fit, &points, &place),
-                    points,
-                }
-            }));
+            out.extend(
+                pieces(&etas, |eta| place(&machine, eta))
+                    .into_iter()
+                    .map(|points| BoundaryCurve {
+                        kind,
+                        periods_n: n,
+                        band95: band(gathered, fit, &points, &place),
+                        points,
+                    }),
+            );
         }
     }
     out
@@ -155,10 +168,15 @@ fn band(
 /// Regions of motion: every cell from rest, and again from a lively start where hysteresis lies.
 pub(super) fn region_map(gathered: &Gathered) -> Option<RegionMap> {
     let (view, machine) = (View::of(gathered)?, machine(gathered)?);
-    let grid =
-        MapGrid::even((view.eta.0, view.eta.1, MAP.0), (view.rho.0.max(0.02), view.rho.1, MAP.1));
+    let grid = MapGrid::even(
+        (view.eta.0, view.eta.1, MAP.0),
+        (view.rho.0.max(0.02), view.rho.1, MAP.1),
+    );
     let rest = simulate_map(&machine, &grid, &MapSettings::default()).ok()?;
-    let lively = MapSettings { start: Initial::both(0.0, 3.0), ..MapSettings::default() };
+    let lively = MapSettings {
+        start: Initial::both(0.0, 3.0),
+        ..MapSettings::default()
+    };
     let second = simulate_map(&machine, &grid, &lively).ok()?;
     let mut motions = Vec::new();
     let mut index = |cells: &[crate::atlas::CellMotion]| -> Vec<u16> {
@@ -166,10 +184,13 @@ pub(super) fn region_map(gathered: &Gathered) -> Option<RegionMap> {
             .iter()
             .map(|cell| {
                 let motion = Motion::from(*cell);
-                let at = motions.iter().position(|m| *m == motion).unwrap_or_else(|| {
-                    motions.push(motion);
-                    motions.len() - 1
-                });
+                let at = motions
+                    .iter()
+                    .position(|m| *m == motion)
+                    .unwrap_or_else(|| {
+                        motions.push(motion);
+                        motions.len() - 1
+                    });
                 at as u16
             })
             .collect()

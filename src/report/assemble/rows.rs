@@ -10,7 +10,10 @@ use crate::signal::robust;
 
 pub(super) fn summary(gathered: &Gathered) -> CampaignSummary {
     let all = gathered.observations;
-    let frequencies: Vec<f64> = all.iter().filter_map(|o| Some(o.drive?.frequency_hz)).collect();
+    let frequencies: Vec<f64> = all
+        .iter()
+        .filter_map(|o| Some(o.drive?.frequency_hz))
+        .collect();
     let mut clearances: Vec<f64> = all.iter().filter_map(|o| o.setting.clearance_m).collect();
     clearances.sort_by(f64::total_cmp);
     clearances.dedup();
@@ -52,7 +55,9 @@ fn channel_row((role, name, high_pass_hz): &(Role, String, Option<f64>)) -> Chan
         role: *role,
         name: name.clone(),
         unit: role.dimension().map_or("", |d| d.si_symbol()).to_owned(),
-        note: high_pass_hz.map(|c| format!("high-pass at {c} Hz undone")).unwrap_or_default(),
+        note: high_pass_hz
+            .map(|c| format!("high-pass at {c} Hz undone"))
+            .unwrap_or_default(),
     }
 }
 
@@ -67,21 +72,35 @@ pub(super) fn place(gathered: &Gathered, o: &Observation) -> (Option<f64>, Optio
     let Some(parameters) = gathered.parameters() else {
         return (None, None);
     };
-    let eta = o.frequency_hz().map(|f| f / parameters.natural_frequency_hz);
+    let eta = o
+        .frequency_hz()
+        .map(|f| f / parameters.natural_frequency_hz);
     let scale = parameters.static_deflection_m * o.setting.drive_amplitude;
     (eta, o.setting.clearance_m.map(|c| c / scale))
 }
 
 pub(super) fn records(gathered: &Gathered) -> Vec<RecordRow> {
-    gathered.observations.iter().map(|o| record(gathered, o)).collect()
+    gathered
+        .observations
+        .iter()
+        .map(|o| record(gathered, o))
+        .collect()
 }
 
 fn record(gathered: &Gathered, o: &Observation) -> RecordRow {
     let (eta, rho) = place(gathered, o);
     let pair = o.finding.impacts_and_periods();
     let left = gathered.left_out.iter().find(|(name, _)| *name == o.record);
-    let used_by = if o.excluded() { Vec::new() } else { used_by(o, left.is_some()) };
-    let excluded = o.flags.iter().find(|f| f.excludes).map(|f| f.message.clone());
+    let used_by = if o.excluded() {
+        Vec::new()
+    } else {
+        used_by(o, left.is_some())
+    };
+    let excluded = o
+        .flags
+        .iter()
+        .find(|f| f.excludes)
+        .map(|f| f.message.clone());
     RecordRow {
         id: o.record.clone(),
         frequency_hz: o.frequency_hz(),
@@ -95,7 +114,9 @@ fn record(gathered: &Gathered, o: &Observation) -> RecordRow {
         confidence: Some(o.finding.confidence),
         impacts: o.impacts.len(),
         flags: o.flags.iter().map(|f| f.code.replace('_', " ")).collect(),
-        left_out: excluded.or_else(|| left.map(|l| l.1.clone())).filter(|_| used_by.is_empty()),
+        left_out: excluded
+            .or_else(|| left.map(|l| l.1.clone()))
+            .filter(|_| used_by.is_empty()),
         used_by,
     }
 }
@@ -109,20 +130,31 @@ fn used_by(o: &Observation, left_out: bool) -> Vec<String> {
     };
     add("resonance", !o.response.is_empty() && !left_out);
     add("trajectories", o.folded.is_some() && !left_out);
-    add("impacts", o.impacts.iter().any(|i| i.closing_speed_before_m_s.is_some()));
+    add(
+        "impacts",
+        o.impacts
+            .iter()
+            .any(|i| i.closing_speed_before_m_s.is_some()),
+    );
     add("free_decay", o.decay.is_some());
     out
 }
 
 pub(super) fn brackets(gathered: &Gathered) -> Vec<BracketRow> {
-    gathered.brackets.iter().map(|b| bracket(gathered, b)).collect()
+    gathered
+        .brackets
+        .iter()
+        .map(|b| bracket(gathered, b))
+        .collect()
 }
 
 fn bracket(gathered: &Gathered, b: &motion::Bracket) -> BracketRow {
     let parameters = gathered.parameters();
     let eta = |f: f64| parameters.map(|p| f / p.natural_frequency_hz);
-    let closed_form =
-        matches!(b.kind, motion::BoundaryKind::SaddleNode | motion::BoundaryKind::Grazing);
+    let closed_form = matches!(
+        b.kind,
+        motion::BoundaryKind::SaddleNode | motion::BoundaryKind::Grazing
+    );
     let place = format!(
         "bracket {} {:.2}–{:.2} Hz",
         b.kind.name(),
@@ -147,9 +179,9 @@ fn bracket(gathered: &Gathered, b: &motion::Bracket) -> BracketRow {
         eta_low: eta(b.frequency_low_hz),
         eta_high: eta(b.frequency_high_hz),
         direction: b.sweep,
-        simulated_hz: parameters.filter(|_| closed_form).and_then(|p| {
-            crate::identify::boundary::predicted_hz(b, p, gathered.campaign.rig)
-        }),
+        simulated_hz: parameters
+            .filter(|_| closed_form)
+            .and_then(|p| crate::identify::boundary::predicted_hz(b, p, gathered.campaign.rig)),
         records: Some(b.records.clone()),
         left_out: gathered
             .left_out

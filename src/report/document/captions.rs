@@ -34,7 +34,25 @@ fn with_note(text: &str, note: &str) -> String {
     if note.is_empty() {
         text.to_owned()
     } else {
-        format!("{text} {note}")
+        format!("{text} {}", sentence(note))
+    }
+}
+
+/// A remark as a sentence: a capital at its start, a full stop at its end.
+pub fn sentence(remark: &str) -> String {
+    let remark = remark.trim();
+    let mut chars = remark.chars();
+    // A symbol or a record's name keeps its small letter.
+    let word = remark.split_whitespace().next().unwrap_or("");
+    let plain = word.chars().count() > 1 && word.chars().all(|c| c.is_ascii_lowercase());
+    let start = match chars.next() {
+        Some(first) if plain => first.to_uppercase().chain(chars).collect(),
+        _ => remark.to_owned(),
+    };
+    if start.ends_with(['.', '!', '?']) || start.is_empty() {
+        start
+    } else {
+        format!("{start}.")
     }
 }
 
@@ -87,4 +105,17 @@ fn residuals(content: &ReportContent) -> Vec<Captioned> {
         (numbered("residuals", i), with_note(&text, &set.note))
     })
     .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::sentence;
+
+    #[test]
+    fn valid_remarks_become_sentences() {
+        assert_eq!(sentence("the responses follow"), "The responses follow.");
+        assert_eq!(sentence("x is clipped."), "x is clipped.");
+        assert_eq!(sentence("r0012 was left out"), "r0012 was left out.");
+        assert_eq!(sentence(""), "");
+    }
 }

@@ -1,7 +1,8 @@
 //! The first page's data: the answer, the agreement, what was measured.
 
-use super::Drawn;
 use super::model::{Answer, Front, Rich};
+use super::prose::prose;
+use super::{Drawn, captions, tables};
 use crate::identify::{Estimate, VerdictKind};
 use crate::report::content::{CampaignSummary, ReportContent};
 use crate::report::figures::look::NumberLook;
@@ -10,28 +11,57 @@ use crate::report::parameters::{self, PARAMETERS, ParameterLook};
 /// Builds the first page.
 pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
     let id = &content.identification;
-    let joint = &id.joint.parameters;
     let (verdict, headline) = headline(id.verdict.kind);
     Front {
         synthetic: content.summary.synthetic,
         verdict,
         headline,
-        summary: Rich::from(&id.verdict.summary),
-        findings: id.verdict.findings.iter().map(Rich::from).collect(),
-        answers: PARAMETERS
+        summary: prose(&id.verdict.summary),
+        findings: id
+            .verdict
+            .findings
             .iter()
-            .map(|look| answer(look, (look.pick)(joint), drawn.numbers))
+            .map(|f| prose(&captions::sentence(f)))
             .collect(),
+        answers: answers(content, drawn.numbers),
+        specimens: tables::specimens(content, drawn.numbers),
         agree: match id.agreement.agree {
             Some(true) => "yes",
             Some(false) => "no",
             None => "unknown",
         },
-        agreement: Rich::from(&id.agreement.summary),
+        agreement: prose(&agreement(&id.agreement.summary)),
         facts: facts(&content.summary, drawn.numbers),
         map: drawn.figure("map_small", ""),
         estimates: drawn.figure("estimates", ""),
     }
+}
+
+/// The parameters' cards; none where only each specimen alone has an answer.
+fn answers(content: &ReportContent, numbers: NumberLook) -> Vec<Answer> {
+    let id = &content.identification;
+    let estimates = PARAMETERS
+        .iter()
+        .map(|look| (look, (look.pick)(&id.joint.parameters)));
+    let told = estimates
+        .clone()
+        .any(|(_, e)| e.is_some_and(|e| e.value.is_some()));
+    if !told && !id.specimens.is_empty() {
+        return Vec::new();
+    }
+    estimates
+        .map(|(look, e)| answer(look, e, numbers))
+        .collect()
+}
+
+/// The words on agreement without the headline that stands before them.
+fn agreement(summary: &str) -> String {
+    if let Some(rest) = summary.strip_prefix("The methods do not agree on ") {
+        return captions::sentence(&format!("This concerns {rest}"));
+    }
+    let rest = summary.strip_prefix("The methods agree");
+    let rest = rest.map_or(summary, |r| r.trim_start_matches([':', '.', ';', ',', ' ']));
+    captions::sentence(rest)
 }
 
 /// A parameter ready to print.
@@ -55,11 +85,12 @@ fn answer(look: &ParameterLook, estimate: Option<&Estimate>, numbers: NumberLook
         unit: look.unit.into(),
         interval: interval.map(|[low, high]| format!("{} to {}", print(low), print(high))),
         status: estimate.map_or("not_asked", |e| parameters::status_name(e.status)),
-        note: estimate.and_then(|e| e.note.as_ref()).map(Rich::from),
+        note: estimate.and_then(|e| e.note.as_ref()).map(|n| prose(n)),
     }
 }
 
-fn headline(kind: VerdictKind) -> (&'static str, &'static str) {
+/// Name of a verdict in the document, and its headline.
+pub fn headline(kind: VerdictKind) -> (&'static str, &'static str) {
     match kind {
         VerdictKind::Identified => ("identified", "Identified: the model fits the rig"),
         VerdictKind::Weak => ("weak", "Identified in part"),

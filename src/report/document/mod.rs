@@ -4,7 +4,9 @@ mod captions;
 mod front;
 pub mod model;
 mod pdf;
+mod prose;
 mod sections;
+mod settings;
 mod tables;
 mod world;
 
@@ -75,7 +77,7 @@ fn subtitle(content: &ReportContent) -> String {
     let parts: Vec<String> = parts
         .into_iter()
         .flatten()
-        .filter(|p| !p.is_empty())
+        .filter(|p| !p.is_empty() && *p != content.title)
         .collect();
     parts.join(" · ")
 }

@@ -61,8 +61,10 @@ pub struct Front {
     pub summary: Rich,
     /// Reasons and findings.
     pub findings: Vec<Rich>,
-    /// The parameters.
+    /// The parameters; empty where only each specimen alone has an answer.
     pub answers: Vec<Answer>,
+    /// The answer for each specimen, where the campaign holds several.
+    pub specimens: Option<Table>,
     /// Whether the methods agree: `yes`, `no` or `unknown`.
     pub agree: &'static str,
     /// The same in words.
@@ -144,6 +146,8 @@ pub enum Block {
     Verbatim {
         /// The text.
         text: String,
+        /// In how many columns.
+        columns: u8,
     },
     /// Terms and what they mean; formulas are typst maths.
     Definitions {

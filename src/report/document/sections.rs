@@ -1,9 +1,13 @@
 //! The sections after the first page, each only where there is something to show.
 
 use super::model::{Block, Definition, Rich, Section};
+use super::prose::prose;
+use super::settings::settings;
 use super::tables;
 use super::{Drawn, captions};
 use crate::report::content::ReportContent;
+use crate::report::figures::comparison;
+use crate::report::figures::plane::Plane;
 use crate::report::parameters::method_name;
 
 /// All sections in their order.
@@ -11,6 +15,7 @@ pub fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
     [
         regions(content, drawn),
         comparisons(content, drawn),
+        specimens(content, drawn),
         methods(content, drawn),
         left_out(content),
         records(content, drawn),
@@ -37,6 +42,11 @@ fn paragraph(text: impl AsRef<str>) -> Block {
     }
 }
 
+/// A paragraph of words that carry no markup.
+fn remark(text: &str) -> Block {
+    Block::Paragraph { text: prose(text) }
+}
+
 fn regions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
     blocks.extend(drawn.figures_block(&[("map", &map_caption(content))]));
@@ -50,6 +60,10 @@ fn map_caption(content: &ReportContent) -> String {
          an upward sweep stand a little above their clearance, those of a downward sweep a little \
          below.",
     );
+    let strips = Plane::of(content).map(|p| p.view(content).strips);
+    if strips.is_some_and(|s| !s.is_empty()) {
+        text.push_str(" Clearances far above all impacts stand in a strip of their own.");
+    }
     if let Some(map) = &content.region_map {
         text.push_str(
             " Tinted regions: simulated with the fitted parameters, labelled by $z$ = $p$/$n$",
@@ -61,8 +75,7 @@ fn map_caption(content: &ReportContent) -> String {
         }
         text.push('.');
         if !map.note.is_empty() {
-            text.push(' ');
-            text.push_str(&map.note);
+            text.push_str(&format!(" {}", captions::sentence(&map.note)));
         }
     }
     if content.curves.iter().any(|c| !c.band95.is_empty()) {
@@ -77,8 +90,9 @@ fn map_caption(content: &ReportContent) -> String {
 fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
     for comparison in &content.comparisons {
-        let name = crate::report::figures::comparison::name(comparison);
-        blocks.extend(drawn.figures_block(&[(&name, &comparison.note)]));
+        let name = comparison::name(comparison);
+        let caption = comparison::caption(comparison, drawn.numbers);
+        blocks.extend(drawn.figures_block(&[(&name, &caption)]));
     }
     if !blocks.is_empty() {
         let keys = "Each point as simulated with the fitted parameters (left) and as measured \
@@ -88,6 +102,21 @@ fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
         blocks.insert(0, paragraph(keys));
     }
     section("Simulated and measured motions", false, blocks)
+}
+
+/// What was found of each specimen, in words and by method.
+fn specimens(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let table = tables::specimen_methods(content, drawn.numbers).map(Block::Table);
+    let mut blocks: Vec<Block> = table.into_iter().collect();
+    for (specimen, result) in &content.identification.specimens {
+        let verdict = &result.verdict;
+        let mut words = format!("{specimen}: {}", captions::sentence(&verdict.summary));
+        for finding in &verdict.findings {
+            words.push_str(&format!(" {}", captions::sentence(finding)));
+        }
+        blocks.push(remark(&words));
+    }
+    section("Specimen by specimen", false, blocks)
 }
 
 fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
@@ -103,7 +132,7 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
             method
                 .remarks
                 .iter()
-                .map(move |r| paragraph(format!("{name}: {r}")))
+                .map(move |r| remark(&format!("{name}: {}", captions::sentence(r))))
         });
     blocks.extend(remarks);
     for group in captions::method_figures(content) {
@@ -121,7 +150,7 @@ fn left_out(content: &ReportContent) -> Option<Section> {
         .map(Block::Table)
         .into_iter()
         .collect();
-    blocks.extend(content.remarks.iter().map(paragraph));
+    blocks.extend(content.remarks.iter().map(|r| remark(r)));
     section("What was left out, and why", false, blocks)
 }
 
@@ -211,15 +240,14 @@ fn provenance(content: &ReportContent) -> Option<Section> {
         blocks.push(paragraph("The command that makes this report again:"));
         blocks.push(Block::Verbatim {
             text: content.command_line.clone(),
+            columns: 1,
         });
     }
     blocks.extend(tables::versions(content).map(Block::Table));
     blocks.extend(tables::hashes(content).map(Block::Table));
     if !content.settings_text.is_empty() {
         blocks.push(paragraph("Settings, as resolved:"));
-        blocks.push(Block::Verbatim {
-            text: content.settings_text.clone(),
-        });
+        blocks.push(settings(&content.settings_text));
     }
     section("Appendix C. Settings, versions, inputs", false, blocks)
 }

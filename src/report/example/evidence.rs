@@ -41,8 +41,9 @@ fn comparisons(content: &ReportContent) -> Vec<Comparison> {
         .collect()
 }
 
-fn comparison(record: &RecordRow, letter: char) -> Comparison {
-    let (eta, rho) = (record.eta.unwrap_or(1.0), record.rho.unwrap_or(1.0));
+/// Four settled drive periods of a record's motion: states and impacts.
+fn settled(record: &RecordRow) -> (Vec<State>, Vec<oscillator::Hit>) {
+    let at = (record.eta.unwrap_or(1.0), record.rho.unwrap_or(1.0));
     let start = if record.motion == crate::motion::Motion::Impactless {
         State::default()
     } else {
@@ -52,87 +53,27 @@ fn comparison(record: &RecordRow, letter: char) -> Comparison {
             phase: 3.0,
         }
     };
-    let (settled, _, _) = oscillator::march(&TRUTH, (eta, rho), start, 120, 40);
-    let aligned = State {
-        phase: settled.phase.rem_euclid(TAU),
-        ..settled
+    let (end, _, _) = oscillator::march(&TRUTH, at, start, 120, 40);
+    let end = State {
+        phase: end.phase.rem_euclid(TAU),
+        ..end
     };
-    let aligned = oscillator::flight(&TRUTH, eta, aligned, (TAU - aligned.phase) / eta);
-    let aligned = State {
+    let whole = oscillator::flight(&TRUTH, at.0, end, (TAU - end.phase) / at.0);
+    let whole = State {
         phase: 0.0,
-        x: aligned.x.min(rho),
-        ..aligned
+        x: whole.x.min(at.1),
+        ..whole
     };
-    let (_, hits, samples) = oscillator::march(&TRUTH, (eta, rho), aligned, 4, 160);
-    let omega = TAU * F0;
-    let times: Vec<f64> = samples.iter().map(|s| s.phase / (eta * omega)).collect();
-    let hit_times: Vec<f64> = hits.iter().map(|h| h.phase / (eta * omega)).collect();
-    let x: Vec<f64> = samples.iter().map(|s| s.x * X_ST).collect();
-    let v: Vec<f64> = samples.iter().map(|s| s.v * X_ST * omega).collect();
-    let mut noise = Noise::new(letter as u64);
-    let mut noisy = |values: &[f64], gain: f64, sigma: f64| -> Vec<f64> {
-        values
-            .iter()
-            .map(|v| gain * v + sigma * noise.gauss())
-            .collect()
-    };
-    let mut traces = vec![
-        trace(
-            Role::DisplacementX,
-            Dimension::Length,
-            &times,
-            &x,
-            noisy(&x, 1.004, 6e-6),
-        ),
-        trace(
-            Role::DisplacementY,
-            Dimension::Length,
-            &times,
-            &x,
-            noisy(&x, 0.97, 6e-6),
-        ),
-        trace(
-            Role::VelocityX,
-            Dimension::Velocity,
-            &times,
-            &v,
-            noisy(&v, 1.003, 1.2e-3),
-        ),
-        trace(
-            Role::VelocityY,
-            Dimension::Velocity,
-            &times,
-            &v,
-            noisy(&v, 0.98, 1.2e-3),
-        ),
-    ];
-    let closed = times.iter().map(|t| {
-        if hit_times.iter().any(|h| (t - h).abs() < 6e-4) {
-            5.0
-        } else {
-            0.0
-        }
-    });
-    traces.push(Trace {
-        role: Role::Contact,
-        dimension: Dimension::Voltage,
-        measured: Some(Signal {
-            time_s: times.clone(),
-            values: closed.collect(),
-        }),
-        simulated: None,
-        residual: None,
-    });
-    traces.push(Trace {
-        role: Role::FrameX,
-        dimension: Dimension::Length,
-        measured: Some(Signal {
-            time_s: times.clone(),
-            values: noisy(&x, 1.2e-3, 2e-7),
-        }),
-        simulated: None,
-        residual: None,
-    });
+    let (_, hits, samples) = oscillator::march(&TRUTH, at, whole, 4, 160);
+    (samples, hits)
+}
+
+fn comparison(record: &RecordRow, letter: char) -> Comparison {
+    let (samples, hits) = settled(record);
+    let speed = record.eta.unwrap_or(1.0) * TAU * F0;
+    let times: Vec<f64> = samples.iter().map(|s| s.phase / speed).collect();
+    let hit_times: Vec<f64> = hits.iter().map(|h| h.phase / speed).collect();
+    let traces = traces(&samples, &times, &hit_times, letter as u64);
     let portrait = |mass: &str, i: usize| Portrait {
         mass: mass.into(),
         measured: paired(&traces[i].measured, &traces[i + 2].measured),
@@ -144,7 +85,7 @@ fn comparison(record: &RecordRow, letter: char) -> Comparison {
         record: record.id.clone(),
         eta: record.eta,
         rho: record.rho,
-        drive_period_s: Some(1.0 / (eta * F0)),
+        drive_period_s: Some(TAU / speed),
         motion: record.motion.clone(),
         simulated_motion: Some(record.motion.clone()),
         traces,
@@ -152,6 +93,70 @@ fn comparison(record: &RecordRow, letter: char) -> Comparison {
         impacts_s: hit_times.clone(),
         simulated_impacts_s: hit_times,
         note: String::new(),
+    }
+}
+
+fn traces(samples: &[State], times: &[f64], hit_times: &[f64], seed: u64) -> Vec<Trace> {
+    let x: Vec<f64> = samples.iter().map(|s| s.x * X_ST).collect();
+    let v: Vec<f64> = samples.iter().map(|s| s.v * X_ST * TAU * F0).collect();
+    let mut noise = Noise::new(seed);
+    let mut noisy = |values: &[f64], gain: f64, sigma: f64| -> Vec<f64> {
+        values
+            .iter()
+            .map(|v| gain * v + sigma * noise.gauss())
+            .collect()
+    };
+    let is_closed = |t: &f64| hit_times.iter().any(|h| (t - h).abs() < 6e-4);
+    let contact = times
+        .iter()
+        .map(|t| if is_closed(t) { 5.0 } else { 0.0 })
+        .collect();
+    let (length, velocity) = (Dimension::Length, Dimension::Velocity);
+    vec![
+        trace(
+            Role::DisplacementX,
+            length,
+            times,
+            &x,
+            noisy(&x, 1.004, 6e-6),
+        ),
+        trace(
+            Role::DisplacementY,
+            length,
+            times,
+            &x,
+            noisy(&x, 0.97, 6e-6),
+        ),
+        trace(
+            Role::VelocityX,
+            velocity,
+            times,
+            &v,
+            noisy(&v, 1.003, 1.2e-3),
+        ),
+        trace(
+            Role::VelocityY,
+            velocity,
+            times,
+            &v,
+            noisy(&v, 0.98, 1.2e-3),
+        ),
+        measured_alone(Role::Contact, Dimension::Voltage, times, contact),
+        measured_alone(Role::FrameX, length, times, noisy(&x, 1.2e-3, 2e-7)),
+    ]
+}
+
+fn measured_alone(role: Role, dimension: Dimension, times: &[f64], values: Vec<f64>) -> Trace {
+    let measured = Some(Signal {
+        time_s: times.to_vec(),
+        values,
+    });
+    Trace {
+        role,
+        dimension,
+        measured,
+        simulated: None,
+        residual: None,
     }
 }
 

@@ -163,6 +163,7 @@ pub fn identification() -> Identification {
                 pair("static_deflection_m", "trajectories", "resonance", -0.51, 0.61),
             ],
         },
+        specimens: BTreeMap::new(),
         settings: serde_json::json!({}),
         versions: [("impactid", "0.1.0"), ("identification.json", "1"), ("polars", "0.55.2")]
             .map(|(k, v)| (k.to_owned(), v.to_owned()))
@@ -385,9 +386,9 @@ fn region_map((columns, rows): (usize, usize)) -> RegionMap {
                     map.motions.len() - 1
                 });
                 if map.cells.len() < columns * rows {
-                    map.cells.push(index as u16)
+                    map.cells.push(index as u16);
                 } else {
-                    map.second.push(index as u16)
+                    map.second.push(index as u16);
                 }
             }
         }

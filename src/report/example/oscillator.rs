@@ -88,9 +88,9 @@ fn one_step(
         for _ in 0..30 {
             let middle = 0.5 * (low + high);
             if flight(p, eta, state, middle).x > rho {
-                high = middle
+                high = middle;
             } else {
-                low = middle
+                low = middle;
             }
         }
         let hit = flight(p, eta, state, low);

@@ -32,16 +32,48 @@ pub fn decays_only() -> ReportContent {
         VerdictKind::Weak,
         "The free decays give natural frequency and damping of each specimen. Nothing was hit, so the restitution cannot be told.",
     );
-    id.joint.parameters.restitution = unknown("There is no impact in these records.");
-    id.joint.parameters.natural_frequency_hz = estimate(14.31, 0.004);
-    id.joint.parameters.damping_ratio = estimate(0.0162, 0.0002);
-    let free_decay = MethodResult {
-        records: 9,
-        observations: 14_400,
-        reduced_residual: Some(1.3),
-        ..id.joint.clone()
-    };
-    id.methods.insert("free_decay".into(), free_decay);
+    for (i, name) in ["mass 1", "mass 2", "mass 3", "mass 4"]
+        .into_iter()
+        .enumerate()
+    {
+        let joint = MethodResult {
+            parameters: ParameterSet {
+                restitution: unknown("There is no impact in these records."),
+                natural_frequency_hz: estimate(11.2 + 3.1 * i as f64, 0.004),
+                damping_ratio: estimate(0.0138 + 0.002 * i as f64, 0.0002),
+                static_deflection_m: None,
+            },
+            records: 3,
+            observations: 4_800,
+            reduced_residual: Some(1.3),
+            fits: Some(i < 2),
+            ..MethodResult::default()
+        };
+        let kind = if i < 2 {
+            VerdictKind::Weak
+        } else {
+            VerdictKind::DoesNotFit
+        };
+        let summary = if i < 2 {
+            "The decays give f0 and β."
+        } else {
+            "The forced runs show two resonances: not one degree of freedom."
+        };
+        let verdict = Verdict {
+            kind,
+            summary: summary.into(),
+            findings: vec![],
+        };
+        let methods = [("free_decay".to_owned(), joint.clone())].into();
+        let agreement = Agreement::default();
+        let result = SpecimenResult {
+            verdict,
+            joint,
+            methods,
+            agreement,
+        };
+        id.specimens.insert(name.into(), result);
+    }
     let mut content = ReportContent::new("Blade spring with four tip masses", id);
     content.free_decays = (0..9).map(evidence::decay).collect();
     content.free_decays[5].note = "filed under mass 2, behaves as mass 3.".into();

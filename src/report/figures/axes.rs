@@ -5,6 +5,9 @@ use super::fonts::{self, Face};
 use super::look::{self, NumberLook};
 use super::path::{self, Rect};
 
+/// How far in points a number below may reach beyond the panel's sides.
+const MOST_OVERHANG: f64 = 5.5;
+
 /// One axis: its range in data and its title with unit, in the report's markup.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
@@ -277,13 +280,21 @@ impl Panel {
     fn ticks_below(&self, canvas: &mut Canvas, labels: bool, numbers: NumberLook) {
         let (ticks, decimals) = self.x.major();
         let bottom = self.rect.bottom;
+        let mut taken = f64::NEG_INFINITY;
         for v in ticks {
             let (x, _) = self.at(v, self.y.low);
             canvas.segment((x, bottom), (x, bottom - 2.5), look::FRAME_STROKE);
-            if labels {
-                let text = self.x.label(v, decimals, numbers);
+            let text = self.x.label(v, decimals, numbers);
+            let half = 0.5 * fonts::width(&text, Face::Regular, look::TICK_SIZE);
+            let (least, most) = (
+                self.rect.left - MOST_OVERHANG + half,
+                self.rect.right + MOST_OVERHANG - half,
+            );
+            let middle = x.min(most).max(least);
+            if labels && middle - half > taken {
                 let text_look = TextLook::new(look::TICK_SIZE, Anchor::Middle).colour(look::INK);
-                canvas.text((x, bottom + look::TICK_SIZE + 1.5), &text, text_look);
+                canvas.text((middle, bottom + look::TICK_SIZE + 1.5), &text, text_look);
+                taken = middle + half + 3.0;
             }
         }
         if labels {

@@ -8,7 +8,11 @@ use super::legend::{self, Key, Sign};
 use super::look::{self, NumberLook};
 use super::marks;
 use super::path::Rect;
+use super::plane::same;
 use crate::report::content::{BoundaryKind, BracketRow, ReportContent};
+
+/// Distance of brackets at one clearance, points.
+const STACK_STEP: f64 = 4.4;
 
 /// Draws the brackets against the fit; `None` where none has a simulated value.
 pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
@@ -39,14 +43,21 @@ pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
     let panel = Panel::new(rect, x, y);
     let mut canvas = Canvas::new(look::HALF_WIDTH, top + 132.0 + 24.0);
     panel.upright(&mut canvas, 0.0, look::ZERO_STROKE);
-    for (row, low, high) in &rows {
+    let mut order: Vec<usize> = (0..rows.len()).collect();
+    order.sort_by_key(|&i| (rows[i].0.kind, rows[i].0.direction));
+    for &i in &order {
+        let (row, low, high) = &rows[i];
         let (from, y) = panel.at(*low, 1e3 * row.clearance_m);
         let (to, _) = panel.at(*high, 0.0);
-        let lift = match row.direction {
-            crate::record::Sweep::Up => 2.2,
-            crate::record::Sweep::Down => -2.2,
-            crate::record::Sweep::Unknown => 0.0,
-        };
+        // Those of one clearance are stacked around it.
+        let beside = |k: &&usize| same(rows[**k].0.clearance_m, row.clearance_m);
+        let count = order.iter().filter(beside).count();
+        let place = order
+            .iter()
+            .filter(beside)
+            .position(|&k| k == i)
+            .unwrap_or(0);
+        let lift = STACK_STEP * (place as f64 - 0.5 * (count as f64 - 1.0));
         let kind = colour(row.kind);
         let shade = if row.left_out.is_some() {
             marks::mix(kind, 0.35)

@@ -265,11 +265,11 @@ impl Canvas {
             // A string buffer cannot fail to be written.
             let _ = root.present();
         }
-        self.finish_root(svg, size, title)
+        self.finish_root(&svg, size, title)
     }
 
     /// Puts the size in points and what all elements share on the root element.
-    fn finish_root(&self, svg: String, size: (u32, u32), title: &str) -> String {
+    fn finish_root(&self, svg: &str, size: (u32, u32), title: &str) -> String {
         let old = format!("<svg width=\"{}\" height=\"{}\"", size.0, size.1);
         let new = format!(
             "<svg width=\"{}pt\" height=\"{}pt\" stroke-linejoin=\"round\" role=\"img\"",

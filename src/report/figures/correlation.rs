@@ -45,11 +45,8 @@ pub fn draw(correlation: &Correlation, numbers: NumberLook) -> Option<Figure> {
                 tint(*value),
             );
             let dark = value.abs() > 0.75;
-            let text_look = TextLook::new(look::TICK_SIZE, Anchor::Middle).colour(if dark {
-                look::PAPER
-            } else {
-                look::INK
-            });
+            let text_look = TextLook::new((0.34 * side).min(look::TICK_SIZE), Anchor::Middle)
+                .colour(if dark { look::PAPER } else { look::INK });
             let text = if i == j {
                 "1".into()
             } else {

@@ -13,7 +13,7 @@ use crate::report::content::ReportContent;
 use crate::report::parameters::{PARAMETERS, ParameterLook, method_name};
 
 const WIDTH: f64 = 236.0;
-const ROW: f64 = 12.5;
+const ROW: f64 = 14.5;
 
 /// One method's estimates by their names.
 struct Line<'a> {
@@ -36,7 +36,7 @@ pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
         .map(|l| fonts::width(&l.name, Face::Regular, look::TICK_SIZE));
     let left = names.fold(0.0, f64::max) + 6.0;
     let columns = if shown.len() > 1 { 2 } else { 1 };
-    let gap = 12.0;
+    let gap = 15.0;
     let width = (WIDTH - left - 9.0 - gap * (columns - 1) as f64) / columns as f64;
     let height = ROW * lines.len() as f64 + 4.0;
     let rows = shown.len().div_ceil(columns);

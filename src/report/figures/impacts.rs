@@ -28,9 +28,8 @@ pub fn draw(scatter: &ImpactScatter, name: &str, numbers: NumberLook) -> Option<
     let unit = print_unit(Dimension::Velocity, peak);
     let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + 24.0);
     let panels = panels(scatter, unit);
-    let mut spots = Vec::new();
     lines(&mut canvas, &panels, scatter, unit);
-    points(&mut canvas, &panels, scatter, unit, &mut spots, numbers);
+    let spots = points(&mut canvas, &panels, scatter, unit);
     for panel in &panels {
         panel.frame(&mut canvas, Sides::BOTH, numbers);
     }
@@ -110,14 +109,15 @@ fn lines(canvas: &mut Canvas, panels: &[Panel; 2], scatter: &ImpactScatter, unit
     speeds.curve(canvas, of_speed().map(|(v, r)| (v, v * r)), dashed);
 }
 
+/// Draws the impacts; gives what hovering over them tells.
 fn points(
     canvas: &mut Canvas,
     panels: &[Panel; 2],
     scatter: &ImpactScatter,
     unit: PrintUnit,
-    spots: &mut Vec<Spot>,
-    numbers: NumberLook,
-) {
+) -> Vec<Spot> {
+    const MOST_SPOTS: usize = 4000;
+    let mut spots = Vec::new();
     canvas.layer(1);
     let radius = dots::radius(scatter.points.len());
     let mut taken = [Dots::default(), Dots::default()];
@@ -132,18 +132,19 @@ fn points(
         let values = [p.after_m_s * unit.factor, p.after_m_s / p.before_m_s];
         for ((panel, dots), value) in panels.iter().zip(&mut taken).zip(values) {
             if let Some((x, y)) = dots.put(canvas, panel, (before, value), dot)
-                && spots.len() < 4000
+                && spots.len() < MOST_SPOTS
             {
-                let ratio = numbers.fixed(p.after_m_s / p.before_m_s, 3);
+                let ratio = p.after_m_s / p.before_m_s;
                 spots.push(Spot {
                     x,
                     y,
-                    text: format!("{}\nR = {ratio}", p.record),
+                    text: format!("{}\nR = {ratio:.3}", p.record),
                 });
             }
         }
     }
     canvas.layer(3);
+    spots
 }
 
 fn keys(scatter: &ImpactScatter, numbers: NumberLook) -> Vec<Key> {

@@ -65,9 +65,14 @@ impl Occupancy {
         y.flat_map(move |row| x.clone().map(move |column| row * columns + column))
     }
 
-    /// The best place for a box of a size near a point: its middle, or `None` where all places
-    /// within reach lie outside the bounds or on something.
-    pub fn near(&self, point: Point, (width, height): (f64, f64), bounds: &Rect) -> Option<Point> {
+    /// The best place for a box of a size near a point: its cost (covered area and distance) and
+    /// its middle, or `None` where all places within reach lie outside the bounds.
+    pub fn near(
+        &self,
+        point: Point,
+        (width, height): (f64, f64),
+        bounds: &Rect,
+    ) -> Option<(f64, Point)> {
         let candidates = (0..10).flat_map(|ring| {
             (0..16).map(move |turn| (5.0 + 4.0 * f64::from(ring), f64::from(turn) / 16.0))
         });
@@ -86,7 +91,7 @@ impl Occupancy {
                 best = Some((cost, (x, y)));
             }
         }
-        best.map(|(_, place)| place)
+        best
     }
 }
 
@@ -99,7 +104,7 @@ mod tests {
         let mut occupancy = Occupancy::new(200.0, 200.0);
         occupancy.take_rect(&Rect::new(100.0, 0.0, 100.0, 200.0));
         let bounds = Rect::new(0.0, 0.0, 200.0, 200.0);
-        let (x, _) = occupancy
+        let (_, (x, _)) = occupancy
             .near((98.0, 100.0), (20.0, 8.0), &bounds)
             .expect("a place");
         assert!(x + 10.0 <= 101.0, "{x}");

@@ -2,7 +2,22 @@
 
 use super::axes::{Axis, range};
 use crate::identify::Estimate;
+use crate::motion::Motion;
 use crate::report::content::{BracketRow, RecordRow, ReportContent};
+
+/// Least and greatest value, where there is any.
+type Range = Option<(f64, f64)>;
+
+/// What part of a plane the map shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct View {
+    /// Across.
+    pub x: Axis,
+    /// Upward.
+    pub y: Axis,
+    /// Clearances above the axis, ascending, each shown in a strip of its own.
+    pub strips: Vec<f64>,
+}
 
 /// Which coordinates the map has, and how they turn into laboratory units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,19 +69,30 @@ impl Plane {
         }
     }
 
-    /// The two axes that show all records, brackets and the simulated map.
-    pub fn axes(&self, content: &ReportContent) -> (Axis, Axis) {
-        let (mut xs, mut ys) = (Vec::new(), Vec::new());
-        for (x, y) in content.records.iter().filter_map(|r| self.record(r)) {
-            xs.push(x);
-            ys.push(y);
-        }
-        for ((low, high), y) in content.brackets.iter().filter_map(|b| self.bracket(b)) {
-            xs.extend([low, high]);
-            ys.push(y);
-        }
-        let x = pad(range(xs), 0.03);
-        let y = pad(range(ys), 0.06);
+    /// The axes that show all records, brackets and the simulated map. Clearances far above all
+    /// that happens are shown in strips above the axes, so that they do not squeeze the rest.
+    pub fn view(&self, content: &ReportContent) -> View {
+        let records = || {
+            content
+                .records
+                .iter()
+                .filter_map(|r| Some((r, self.record(r)?)))
+        };
+        let brackets = || content.brackets.iter().filter_map(|b| self.bracket(b));
+        let xs = records().map(|(_, p)| p.0);
+        let x = pad(
+            range(xs.chain(brackets().flat_map(|b| [b.0.0, b.0.1]))),
+            0.03,
+        );
+        let ys: Vec<f64> = records().map(|(_, p)| p.1).collect();
+        let busy = records().filter(|(r, _)| busy(&r.motion)).map(|(_, p)| p.1);
+        let busy = range(busy.chain(brackets().map(|b| b.1)));
+        let strips = strips(&ys, busy);
+        let below = ys
+            .iter()
+            .copied()
+            .filter(|y| !strips.iter().any(|s| same(*s, *y)));
+        let y = pad(range(below.chain(brackets().map(|b| b.1))), 0.06);
         let (x, y) = if self.dimensionless {
             self.with_map(content, x, y)
         } else {
@@ -76,23 +102,19 @@ impl Plane {
         let titles = if self.dimensionless {
             (
                 "frequency ratio $η$ = $f$/$f_0$ (1)",
-                "clearance ratio $ρ$ = $r$/$x_{st}$ (1)",
+                "clearance ratio $ρ$ = $r$/$x_st$ (1)",
             )
         } else {
             ("drive frequency $f$ (Hz)", "clearance $r$ (mm)")
         };
-        (
-            Axis::new(x.0, x.1, titles.0).with_ticks(8),
-            Axis::new(y.0, y.1, titles.1).with_ticks(7),
-        )
+        View {
+            x: Axis::new(x.0, x.1, titles.0).with_ticks(8),
+            y: Axis::new(y.0, y.1, titles.1).with_ticks(7),
+            strips: strips.into_iter().filter(|s| *s > y.1).collect(),
+        }
     }
 
-    fn with_map(
-        &self,
-        content: &ReportContent,
-        x: Option<(f64, f64)>,
-        y: Option<(f64, f64)>,
-    ) -> (Option<(f64, f64)>, Option<(f64, f64)>) {
+    fn with_map(&self, content: &ReportContent, x: Range, y: Range) -> (Range, Range) {
         match &content.region_map {
             Some(map) => (union(x, edges(&map.eta)), union(y, edges(&map.rho))),
             None => (x, y),
@@ -100,7 +122,34 @@ impl Plane {
     }
 }
 
-fn pad(seen: Option<(f64, f64)>, share: f64) -> Option<(f64, f64)> {
+/// Whether a motion has impacts or none can be said of it: what a map is drawn for.
+fn busy(motion: &Motion) -> bool {
+    !matches!(motion, Motion::Impactless | Motion::Undetermined { .. })
+}
+
+/// Whether two clearances are one, as set on a rig.
+pub fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 5e-3 * a.abs().max(b.abs())
+}
+
+/// The clearances, ascending, that lie far above all that happens; none where they are many.
+fn strips(all: &[f64], busy: Range) -> Vec<f64> {
+    const MOST: usize = 3;
+    const FAR: f64 = 1.3;
+    let Some((_, high)) = busy else {
+        return Vec::new();
+    };
+    let mut far: Vec<f64> = Vec::new();
+    for y in all.iter().filter(|y| **y > FAR * high) {
+        if !far.iter().any(|f| same(*f, *y)) {
+            far.push(*y);
+        }
+    }
+    far.sort_by(f64::total_cmp);
+    if far.len() > MOST { Vec::new() } else { far }
+}
+
+fn pad(seen: Range, share: f64) -> Range {
     let (low, high) = seen?;
     let pad = if high > low {
         share * (high - low)
@@ -110,7 +159,7 @@ fn pad(seen: Option<(f64, f64)>, share: f64) -> Option<(f64, f64)> {
     Some((low - pad, high + pad))
 }
 
-fn union(a: Option<(f64, f64)>, b: Option<(f64, f64)>) -> Option<(f64, f64)> {
+fn union(a: Range, b: Range) -> Range {
     match (a, b) {
         (Some(a), Some(b)) => Some((a.0.min(b.0), a.1.max(b.1))),
         (a, b) => a.or(b),
@@ -118,11 +167,25 @@ fn union(a: Option<(f64, f64)>, b: Option<(f64, f64)>) -> Option<(f64, f64)> {
 }
 
 /// Outer edges of evenly spaced cells.
-fn edges(centres: &[f64]) -> Option<(f64, f64)> {
+fn edges(centres: &[f64]) -> Range {
     let n = centres.len();
     if n < 2 {
         return None;
     }
     let half = 0.5 * (centres[1] - centres[0]);
     Some((centres[0] - half, centres[n - 1] + half))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_clearances_far_above_all_impacts_stand_in_strips() {
+        let all = [0.6, 1.4, 4.4, 8.9, 8.93];
+        assert_eq!(strips(&all, Some((0.6, 4.4))), [8.9]);
+        assert!(strips(&all, None).is_empty());
+        let many: Vec<f64> = (1..20).map(f64::from).collect();
+        assert!(strips(&many, Some((1.0, 2.0))).is_empty());
+    }
 }

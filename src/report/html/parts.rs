@@ -52,7 +52,12 @@ impl<'a> Parts<'a> {
             rich(&front.summary)
         ));
         let answers: String = front.answers.iter().map(answer).collect();
-        text.push_str(&format!("<div class=\"answers\">\n{answers}</div>\n"));
+        if !answers.is_empty() {
+            text.push_str(&format!("<div class=\"answers\">\n{answers}</div>\n"));
+        }
+        if let Some(specimens) = &front.specimens {
+            text.push_str(&table(specimens));
+        }
         let pair: Vec<FigureRef> = [&front.map, &front.estimates]
             .into_iter()
             .flatten()
@@ -83,7 +88,7 @@ impl<'a> Parts<'a> {
             Block::Paragraph { text } => format!("<p>{}</p>\n", rich(text)),
             Block::Figures { figures } => self.figures(figures)?,
             Block::Table(table) => self::table(table),
-            Block::Verbatim { text } => format!("<pre>{}</pre>\n", escape(text)),
+            Block::Verbatim { text, .. } => format!("<pre>{}</pre>\n", escape(text)),
             Block::Definitions { entries } => pairs(
                 "definitions",
                 entries.iter().map(|e| (escape(e.plain), rich(&e.meaning))),

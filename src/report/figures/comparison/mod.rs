@@ -1,16 +1,21 @@
 //! A chosen point: simulated beside measured over the drive periods, phase portraits, residuals.
 
-use super::axes::{Axis, Panel, Sides, range};
-use super::canvas::{Anchor, Canvas, Colour, Stroke, TextLook};
-use super::csv::Csv;
-use super::fonts::Face;
-use super::look::{self, NumberLook};
-use super::marks;
-use super::path::Rect;
-use super::units::{PrintUnit, print_unit};
-use super::{Figure, richtext};
+mod portraits;
+mod rows;
+mod words;
+
+pub use words::{caption, name};
+
 use crate::record::Role;
-use crate::report::content::{Comparison, Portrait, Signal, Trace};
+use crate::report::content::{Comparison, Signal};
+use crate::report::figures::axes::{Axis, Panel, Sides, range};
+use crate::report::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
+use crate::report::figures::fonts::Face;
+use crate::report::figures::look::{self, NumberLook};
+use crate::report::figures::marks;
+use crate::report::figures::path::Rect;
+use crate::report::figures::{Figure, richtext};
+use rows::{Row, root_mean_square, rows, shown, symbol};
 
 const LEFT: f64 = 40.0;
 /// Width of a column of panels beside phase portraits, and without them.
@@ -21,18 +26,9 @@ const PORTRAIT_LEFT: f64 = 387.0;
 const TITLE_REACH: f64 = 22.0;
 const PORTRAIT_WIDTH: f64 = look::FULL_WIDTH - PORTRAIT_LEFT - 2.0;
 const ROW_GAP: f64 = 5.0;
-const TOP: f64 = 27.0;
+const TOP: f64 = 13.0;
 const BOTTOM: f64 = 22.0;
 const BACK_WIDTH: f64 = 1.7;
-
-/// A row of panels: which channels, how tall, how titled.
-struct Row<'a> {
-    traces: Vec<(&'a Trace, Colour)>,
-    height: f64,
-    unit: PrintUnit,
-    title: String,
-    residual: bool,
-}
 
 /// Draws one comparison; `None` where it has no trace at all.
 pub fn draw(comparison: &Comparison, numbers: NumberLook) -> Option<Figure> {
@@ -58,120 +54,12 @@ pub fn draw(comparison: &Comparison, numbers: NumberLook) -> Option<Figure> {
     sheet.portraits(stack);
     let name = name(comparison);
     let title = format!("Point ({}): simulated and measured", comparison.letter);
-    Some(Figure::new(name, &title, sheet.canvas, csv(comparison)))
-}
-
-/// Name of a comparison's figure.
-pub fn name(comparison: &Comparison) -> String {
-    let letter = comparison.letter.chars();
-    let letter: String = letter
-        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })
-        .collect();
-    format!("comparison_{letter}")
-}
-
-fn rows(comparison: &Comparison) -> Vec<Row<'_>> {
-    let pairs = [
-        ([Role::DisplacementX, Role::DisplacementY], "$x$, $y$", 38.0),
-        ([Role::VelocityX, Role::VelocityY], "$v_x$, $v_y$", 38.0),
-        (
-            [Role::AccelerationX, Role::AccelerationY],
-            "$a_x$, $a_y$",
-            38.0,
-        ),
-        ([Role::Drive, Role::Drive], "drive", 22.0),
-        ([Role::Contact, Role::Contact], "contact", 21.0),
-        ([Role::FrameX, Role::FrameY], "frame", 21.0),
-    ];
-    let mut rows: Vec<Row<'_>> = pairs
-        .iter()
-        .filter_map(|(roles, name, height)| row(comparison, roles, name, *height))
-        .collect();
-    rows.extend(residual_row(comparison));
-    rows
-}
-
-fn row<'a>(
-    comparison: &'a Comparison,
-    roles: &[Role; 2],
-    name: &str,
-    height: f64,
-) -> Option<Row<'a>> {
-    let traces = pick(comparison, roles, |t| {
-        t.measured.is_some() || t.simulated.is_some()
-    });
-    let dimension = traces.first()?.0.dimension;
-    let peak = traces
-        .iter()
-        .flat_map(|(t, _)| [&t.measured, &t.simulated])
-        .flatten()
-        .map(peak)
-        .fold(0.0, f64::max);
-    let unit = print_unit(dimension, peak);
-    let between = if height < 30.0 { "\n" } else { " " };
-    let title = format!("{name}{between}({})", unit.symbol);
-    Some(Row {
-        traces,
-        height,
-        title,
-        unit,
-        residual: false,
-    })
-}
-
-/// The residual of the best channel that has one: velocity first.
-fn residual_row(comparison: &Comparison) -> Option<Row<'_>> {
-    let families = [
-        [Role::VelocityX, Role::VelocityY],
-        [Role::DisplacementX, Role::DisplacementY],
-        [Role::AccelerationX, Role::AccelerationY],
-    ];
-    families.iter().find_map(|roles| {
-        let traces = pick(comparison, roles, |t| t.residual.is_some());
-        let dimension = traces.first()?.0.dimension;
-        let peak = traces
-            .iter()
-            .filter_map(|(t, _)| t.residual.as_ref())
-            .map(peak)
-            .fold(0.0, f64::max);
-        let unit = print_unit(dimension, peak);
-        let title = format!("residual\n({})", unit.symbol);
-        Some(Row {
-            traces,
-            height: 30.0,
-            title,
-            unit,
-            residual: true,
-        })
-    })
-}
-
-fn pick<'a>(
-    comparison: &'a Comparison,
-    roles: &[Role; 2],
-    wanted: impl Fn(&Trace) -> bool,
-) -> Vec<(&'a Trace, Colour)> {
-    let colour = |role: Role| {
-        if role == roles[0] {
-            look::BLUE
-        } else {
-            look::VERMILION
-        }
-    };
-    comparison
-        .traces
-        .iter()
-        .filter(|t| roles.contains(&t.role) && wanted(t))
-        .map(|t| (t, colour(t.role)))
-        .collect()
-}
-
-fn peak(signal: &Signal) -> f64 {
-    signal
-        .values
-        .iter()
-        .filter(|v| v.is_finite())
-        .fold(0.0, |m, v| m.max(v.abs()))
+    Some(Figure::new(
+        name,
+        &title,
+        sheet.canvas,
+        words::csv(comparison),
+    ))
 }
 
 /// Time axis in drive periods from the first whole period, in seconds without a drive.
@@ -248,39 +136,21 @@ impl Sheet<'_> {
         }
     }
 
+    /// The point's letter and mark, before the titles of the columns.
     fn heading(&mut self) {
         let c = self.comparison;
-        marks::draw(
-            &mut self.canvas,
-            (LEFT + 3.5, 5.5),
-            3.0,
-            marks::of(&c.motion),
-        );
         let letter = format!("({})", c.letter);
         let bold = TextLook::new(9.0, Anchor::Left)
             .face(Face::Bold)
             .colour(look::INK);
-        let x = LEFT + 10.0;
-        self.canvas.text((x, 8.5), &letter, bold);
-        let x = x + richtext::width(&letter, Face::Bold, 9.0) + 6.0;
-        let driven = c.drive_period_s.is_some();
-        let mut text = if driven {
-            format!("$z$ = {}", c.motion.label())
-        } else {
-            String::new()
-        };
-        if let (Some(eta), Some(rho)) = (c.eta, c.rho) {
-            let (eta, rho) = (self.numbers.fixed(eta, 3), self.numbers.fixed(rho, 3));
-            text.push_str(&format!(",   $η$ = {eta},   $ρ$ = {rho}"));
-        }
-        self.canvas.text((x, 8.5), &text, bold.face(Face::Regular));
-        let after = x + richtext::width(&text, Face::Regular, 9.0) + 12.0;
-        let quiet = TextLook::new(8.0, Anchor::Left).colour(look::QUIET);
-        let mut note = format!("record {}", c.record);
-        if let Some(simulated) = c.simulated_motion.as_ref().filter(|m| **m != c.motion) {
-            note.push_str(&format!("; simulated motion: {}", simulated.label()));
-        }
-        self.canvas.text((after, 8.5), &note, quiet);
+        self.canvas.text((1.0, TOP - 4.0), &letter, bold);
+        let after = 1.0 + richtext::width(&letter, Face::Bold, 9.0) + 6.0;
+        marks::draw(
+            &mut self.canvas,
+            (after, TOP - 7.0),
+            2.9,
+            marks::of(&c.motion),
+        );
     }
 
     fn columns(&mut self, rows: &[Row<'_>]) {
@@ -317,7 +187,10 @@ impl Sheet<'_> {
             .iter()
             .flat_map(|(t, _)| shown(t, row.residual))
             .flat_map(|s| &s.values);
-        let y = Axis::around(values.map(|v| v * row.unit.factor), 0.08, row.title.clone());
+        let contact = row.traces.iter().any(|(t, _)| t.role == Role::Contact);
+        let least: &[f64] = if contact { &[0.0, 1.0] } else { &[] };
+        let values = values.chain(least).map(|v| v * row.unit.factor);
+        let y = Axis::around(values, 0.08, row.title.clone());
         let y = y.with_ticks(if row.height > 35.0 { 3 } else { 2 });
         let panel = Panel::new(rect, self.time.axis(), y).with_title_reach(TITLE_REACH);
         self.canvas.layer(0);
@@ -334,8 +207,11 @@ impl Sheet<'_> {
                 (false, Side::Measured) => &trace.measured,
             };
             if let Some(signal) = signal {
-                let width = if i == 0 { 0.65 } else { 1.25 };
-                let stroke = Stroke::solid(*colour, width);
+                let stroke = match (row.residual, i) {
+                    (true, _) => Stroke::solid(*colour, 0.45),
+                    (false, 0) => Stroke::solid(*colour, 0.6),
+                    (false, _) => Stroke::solid(marks::mix(*colour, 0.75), 1.6),
+                };
                 self.signal(&panel, signal, row.unit.factor, stroke);
             }
         }
@@ -423,113 +299,4 @@ impl Sheet<'_> {
             self.canvas.text((LEFT, y), line, quiet);
         }
     }
-
-    fn portraits(&mut self, stack: f64) {
-        let shown: Vec<&Portrait> = self.comparison.portraits.iter().take(2).collect();
-        if shown.is_empty() {
-            return;
-        }
-        let title = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::QUIET);
-        let middle = PORTRAIT_LEFT + 0.5 * PORTRAIT_WIDTH;
-        self.canvas
-            .text((middle, TOP - 4.0), "phase portraits", title);
-        let count = shown.len() as f64;
-        let height = ((stack - (count - 1.0) * 24.0) / count).min(PORTRAIT_WIDTH);
-        for (i, portrait) in shown.into_iter().enumerate() {
-            let top = TOP + i as f64 * (height + 24.0);
-            self.portrait(
-                portrait,
-                Rect::new(PORTRAIT_LEFT, top, PORTRAIT_WIDTH, height),
-            );
-        }
-    }
-
-    fn portrait(&mut self, portrait: &Portrait, rect: Rect) {
-        let all = || portrait.measured.iter().chain(&portrait.simulated);
-        let peak = |k: usize| all().map(|p| p[k].abs()).fold(0.0, f64::max);
-        let (length, speed) = (
-            print_unit(crate::units::Dimension::Length, peak(0)),
-            print_unit(crate::units::Dimension::Velocity, peak(1)),
-        );
-        let mass = &portrait.mass;
-        let x = Axis::around(
-            all().map(|p| p[0] * length.factor),
-            0.06,
-            format!("${mass}$ ({})", length.symbol),
-        );
-        let y = Axis::around(
-            all().map(|p| p[1] * speed.factor),
-            0.06,
-            format!("$v_{mass}$ ({})", speed.symbol),
-        );
-        let panel = Panel::new(rect, x.with_ticks(4), y.with_ticks(4));
-        let colour = if mass == "y" {
-            look::VERMILION
-        } else {
-            look::BLUE
-        };
-        let strokes = [
-            (
-                &portrait.simulated,
-                Stroke::solid(marks::mix(colour, 0.40), BACK_WIDTH),
-            ),
-            (&portrait.measured, Stroke::solid(look::INK, 0.45)),
-        ];
-        self.canvas.layer(1);
-        for (points, stroke) in strokes {
-            let data: Vec<_> = points
-                .iter()
-                .map(|p| (p[0] * length.factor, p[1] * speed.factor))
-                .collect();
-            panel.curve(&mut self.canvas, data, stroke);
-        }
-        self.canvas.layer(2);
-        panel.frame(&mut self.canvas, Sides::BOTH, self.numbers);
-    }
-}
-
-fn shown(trace: &Trace, residual: bool) -> Vec<&Signal> {
-    let picked = if residual {
-        [trace.residual.as_ref(), None]
-    } else {
-        [trace.measured.as_ref(), trace.simulated.as_ref()]
-    };
-    picked.into_iter().flatten().collect()
-}
-
-fn symbol(role: Role) -> &'static str {
-    match role {
-        Role::VelocityX => "$v_x$",
-        Role::VelocityY => "$v_y$",
-        Role::DisplacementX => "$x$",
-        Role::DisplacementY => "$y$",
-        Role::AccelerationX => "$a_x$",
-        Role::AccelerationY => "$a_y$",
-        other => other.name(),
-    }
-}
-
-fn root_mean_square(signal: &Signal) -> Option<f64> {
-    let n = signal.values.len();
-    (n > 0).then(|| (signal.values.iter().map(|v| v * v).sum::<f64>() / n as f64).sqrt())
-}
-
-fn csv(comparison: &Comparison) -> String {
-    let mut csv = Csv::new(&["channel", "source", "time_s", "value_si"]);
-    for trace in &comparison.traces {
-        let sources = [
-            ("measured", &trace.measured),
-            ("simulated", &trace.simulated),
-            ("residual", &trace.residual),
-        ];
-        for (source, signal) in sources {
-            let Some(signal) = signal else { continue };
-            for (t, v) in signal.time_s.iter().zip(&signal.values) {
-                csv.row()
-                    .texts(&[trace.role.name(), source])
-                    .numbers(&[Some(*t), Some(*v)]);
-            }
-        }
-    }
-    csv.finish()
 }

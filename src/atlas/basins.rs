@@ -1,0 +1,90 @@
+//! Basins of attraction: on which motion every start (X(0), X'(0)) settles at one (η, ρ, φ)
+//! (Fig. 5 of the paper).
+
+use serde::{Deserialize, Serialize};
+
+use super::map::{CellMotion, MapSettings, Start, even, march_from};
+use crate::model::{Initial, Machine, ModelError, Setting};
+
+/// Which masses take the start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Starts {
+    /// Both masses alike, as in Fig. 5.
+    #[default]
+    BothMasses,
+    /// X alone; Y starts at rest at zero.
+    OneMass,
+}
+
+/// The starts to try.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BasinGrid {
+    /// X(0): first, last, count.
+    pub x: (f64, f64, usize),
+    /// X'(0): first, last, count.
+    pub vx: (f64, f64, usize),
+    /// Which masses take the start.
+    #[serde(default)]
+    pub starts: Starts,
+}
+
+/// Basins of attraction.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Basins {
+    /// X(0) of the columns.
+    pub x: Vec<f64>,
+    /// X'(0) of the rows.
+    pub vx: Vec<f64>,
+    /// Motions row by row; `None`: the start lies beyond the contact.
+    pub cells: Vec<Option<CellMotion>>,
+}
+
+/// Settle every start of a grid in a setting.
+///
+/// # Errors
+/// [`ModelError`] where a parameter is out of range.
+pub fn basins(
+    machine: &Machine,
+    setting: Setting,
+    grid: &BasinGrid,
+    settings: &MapSettings,
+) -> Result<Basins, ModelError> {
+    machine.check()?;
+    setting.check()?;
+    let (x, vx) = (even(grid.x), even(grid.vx));
+    let initial = |i: usize| {
+        let (x, vx) = (x[i % x.len()], vx[i / x.len()]);
+        match grid.starts {
+            Starts::BothMasses => Initial::both(x, vx),
+            Starts::OneMass => Initial {
+                x,
+                vx,
+                ..Initial::rest()
+            },
+        }
+    };
+    let gap = machine.gap(setting.clearance);
+    let clear = |s: &Initial| s.x + if machine.y.is_some() { s.y } else { 0.0 } <= gap;
+    let at = (setting.frequency_ratio, setting.clearance);
+    let (numbers, starts): (Vec<usize>, Vec<Start>) = (0..x.len() * vx.len())
+        .map(|i| {
+            (
+                i,
+                Start {
+                    at,
+                    initial: initial(i),
+                    phase: setting.phase,
+                },
+            )
+        })
+        .filter(|(_, s)| clear(&s.initial))
+        .unzip();
+    let ends = march_from(machine, &starts, settings)?;
+    let mut cells = vec![None; x.len() * vx.len()];
+    for (i, end) in numbers.into_iter().zip(ends) {
+        cells[i] = Some(end.motion);
+    }
+    Ok(Basins { x, vx, cells })
+}

@@ -1,0 +1,346 @@
+//! Pseudo-arclength continuation of periodic orbits p/n along ρ or η, to the edge where they
+//! lose stability or cease to exist, and the orbits that branch off at a period doubling.
+
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+use crate::model::{Existence, Machine, PeriodicOrbit};
+
+/// The parameter along which an orbit is continued; the other one stays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Along {
+    /// ρ
+    Clearance,
+    /// η
+    FrequencyRatio,
+}
+
+impl Along {
+    /// The parameter's value at an orbit.
+    pub fn of(self, orbit: &PeriodicOrbit) -> f64 {
+        match self {
+            Self::Clearance => orbit.rho,
+            Self::FrequencyRatio => orbit.eta,
+        }
+    }
+
+    fn set(self, orbit: &mut PeriodicOrbit, value: f64) {
+        match self {
+            Self::Clearance => orbit.rho = value,
+            Self::FrequencyRatio => orbit.eta = value,
+        }
+    }
+}
+
+/// What ends a motion z = p/n.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EdgeKind {
+    /// Multiplier +1: s2, the orbit meets its unstable twin.
+    SaddleNode,
+    /// Multiplier −1: s1, the period doubles.
+    PeriodDoubling,
+    /// A pair of complex multipliers on the unit circle.
+    Torus,
+    /// The flight touches the contact: a further impact begins.
+    Grazing,
+    /// An impact's closing speed falls to zero.
+    ImpactVanishes,
+    /// The masses begin to stay together after an impact (1 | 1j).
+    DeadZone,
+    /// The search's bound: the motion goes on.
+    Bound,
+    /// The continuation broke off.
+    Lost,
+}
+
+impl EdgeKind {
+    /// The name in tables; s1 and s2 as in the paper.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SaddleNode => "s2",
+            Self::PeriodDoubling => "s1",
+            Self::Torus => "torus",
+            Self::Grazing => "grazing",
+            Self::ImpactVanishes => "impact_vanishes",
+            Self::DeadZone => "dead_zone",
+            Self::Bound => "bound",
+            Self::Lost => "lost",
+        }
+    }
+}
+
+/// Where a motion ends, and the orbit there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Edge {
+    /// What ends it.
+    pub kind: EdgeKind,
+    /// The last orbit.
+    pub orbit: PeriodicOrbit,
+}
+
+/// How far and how finely an orbit is continued.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Walk {
+    /// Least value of the parameter.
+    pub least: f64,
+    /// Greatest value of the parameter.
+    pub greatest: f64,
+    /// Longest step in arclength.
+    pub longest: f64,
+    /// Length to which an edge is located.
+    pub resolution: f64,
+    /// Most steps.
+    pub steps: usize,
+}
+
+impl Default for Walk {
+    fn default() -> Self {
+        Self {
+            least: -1.0,
+            greatest: 10.0,
+            longest: 0.3,
+            resolution: 1e-9,
+            steps: 400,
+        }
+    }
+}
+
+/// A point of a branch with its direction in (times, speeds, parameter).
+#[derive(Debug, Clone)]
+struct Point {
+    orbit: PeriodicOrbit,
+    tangent: DVector<f64>,
+}
+
+/// Follows one branch.
+struct Follower<'a> {
+    machine: &'a Machine,
+    along: Along,
+    /// +1: rising parameter, −1: falling.
+    direction: f64,
+}
+
+impl Follower<'_> {
+    /// Jacobian by unknowns and parameter, and residual.
+    fn extended(&self, orbit: &PeriodicOrbit) -> (DVector<f64>, DMatrix<f64>) {
+        let (residual, jacobian) = orbit.linearised(self.machine);
+        let n = residual.len();
+        let by_parameter = match self.along {
+            Along::Clearance => {
+                let gap = self.machine.gap(1.0);
+                DVector::from_fn(n, |i, _| if i < n / 2 { -gap } else { 0.0 })
+            }
+            Along::FrequencyRatio => {
+                let h = 1e-6;
+                let at = |eta| {
+                    PeriodicOrbit {
+                        eta,
+                        ..orbit.clone()
+                    }
+                    .residual(self.machine)
+                };
+                (at(orbit.eta + h) - at(orbit.eta - h)) / (2.0 * h)
+            }
+        };
+        let mut wide = jacobian.insert_column(n, 0.0);
+        wide.set_column(n, &by_parameter);
+        (residual, wide)
+    }
+
+    /// Unit tangent, oriented like a reference.
+    fn tangent(&self, orbit: &PeriodicOrbit, like: &DVector<f64>) -> Option<DVector<f64>> {
+        let (_, wide) = self.extended(orbit);
+        let n = wide.nrows();
+        let mut square = wide.insert_row(n, 0.0);
+        square.set_row(n, &like.transpose());
+        let mut right = DVector::zeros(n + 1);
+        right[n] = 1.0;
+        square.lu().solve(&right).map(|t| t.normalize())
+    }
+
+    /// The branch's point at arclength ds from a point (its tangent is the point's own still).
+    fn at(&self, from: &Point, ds: f64) -> Option<PeriodicOrbit> {
+        let start = self.unknowns(&from.orbit) + &from.tangent * ds;
+        let mut z = start.clone();
+        for _ in 0..12 {
+            let orbit = self.orbit(&from.orbit, &z);
+            let (residual, wide) = self.extended(&orbit);
+            let n = residual.len();
+            let mut square = wide.insert_row(n, 0.0);
+            square.set_row(n, &from.tangent.transpose());
+            let right = residual.insert_row(n, from.tangent.dot(&(&z - &start)));
+            let change = square.lu().solve(&right)?;
+            z -= &change;
+            if change.amax() < 1e-11 {
+                let orbit = self.orbit(&from.orbit, &z);
+                return orbit.is_ordered().then_some(orbit);
+            }
+            if !(change.amax() < 1.0) {
+                return None;
+            }
+        }
+        None
+    }
+
+    fn unknowns(&self, orbit: &PeriodicOrbit) -> DVector<f64> {
+        let z = orbit.unknowns();
+        let n = z.len();
+        z.insert_row(n, self.along.of(orbit))
+    }
+
+    fn orbit(&self, like: &PeriodicOrbit, z: &DVector<f64>) -> PeriodicOrbit {
+        let mut orbit = like.with_unknowns(z);
+        self.along.set(&mut orbit, z[z.len() - 1]);
+        orbit
+    }
+
+    /// Whether an orbit is a stable motion; if not, why.
+    fn fault(&self, orbit: &PeriodicOrbit) -> Option<EdgeKind> {
+        match orbit.existence(self.machine) {
+            Existence::Exists => {}
+            Existence::FurtherImpact => return Some(EdgeKind::Grazing),
+            Existence::NotClosing => return Some(EdgeKind::ImpactVanishes),
+            Existence::DeadZone => return Some(EdgeKind::DeadZone),
+        }
+        let largest = orbit.multipliers(self.machine)[0];
+        if largest.norm() < 1.0 {
+            None
+        } else if largest.im.abs() > 1e-9 {
+            Some(EdgeKind::Torus)
+        } else if largest.re < 0.0 {
+            Some(EdgeKind::PeriodDoubling)
+        } else {
+            Some(EdgeKind::SaddleNode)
+        }
+    }
+
+    /// What ends the motion before or at a point reached from another. A branch that turns back
+    /// although it stays stable has passed the doubling at which it was born, and is now its
+    /// own copy shifted by half its period.
+    fn ends(&self, from: &Point, orbit: &PeriodicOrbit) -> Option<EdgeKind> {
+        self.fault(orbit).or_else(|| {
+            let tangent = self.tangent(orbit, &from.tangent)?;
+            (tangent[tangent.len() - 1] * self.direction < 0.0).then_some(EdgeKind::PeriodDoubling)
+        })
+    }
+
+    /// Between a good point and a step that is too far, the last good orbit and what ends it.
+    fn locate(&self, from: &Point, mut too_far: f64, mut kind: EdgeKind, resolution: f64) -> Edge {
+        let (mut good, mut orbit) = (0.0, from.orbit.clone());
+        while too_far - good > resolution {
+            let middle = 0.5 * (good + too_far);
+            let found = self.at(from, middle);
+            match found.as_ref().map(|o| self.ends(from, o)) {
+                Some(None) => {
+                    good = middle;
+                    orbit = found.unwrap_or(orbit);
+                }
+                Some(Some(k)) => (too_far, kind) = (middle, k),
+                None => (too_far, kind) = (middle, EdgeKind::Lost),
+            }
+        }
+        // at the doubling where it was born an orbit is twice its half
+        if kind == EdgeKind::SaddleNode && orbit.reduced_within(1e-3).n < orbit.n {
+            kind = EdgeKind::PeriodDoubling;
+        }
+        Edge { kind, orbit }
+    }
+}
+
+/// Continue a stable orbit in one direction (+1: rising parameter) to its edge.
+pub fn follow(
+    machine: &Machine,
+    seed: &PeriodicOrbit,
+    along: Along,
+    direction: f64,
+    walk: &Walk,
+) -> Edge {
+    let follower = Follower {
+        machine,
+        along,
+        direction,
+    };
+    let n = 2 * seed.p() + 1;
+    let mut towards = DVector::zeros(n);
+    towards[n - 1] = direction;
+    let lost = |orbit: &PeriodicOrbit| Edge {
+        kind: EdgeKind::Lost,
+        orbit: orbit.clone(),
+    };
+    let Some(tangent) = follower.tangent(seed, &towards) else {
+        return lost(seed);
+    };
+    let mut point = Point {
+        orbit: seed.clone(),
+        tangent,
+    };
+    let mut ds = 0.1 * walk.longest;
+    for _ in 0..walk.steps {
+        let Some(next) = follower.at(&point, ds) else {
+            ds *= 0.4;
+            if ds < walk.resolution {
+                return lost(&point.orbit);
+            }
+            continue;
+        };
+        if let Some(kind) = follower.ends(&point, &next) {
+            return follower.locate(&point, ds, kind, walk.resolution);
+        }
+        let value = along.of(&next);
+        if value <= walk.least || value >= walk.greatest {
+            return Edge {
+                kind: EdgeKind::Bound,
+                orbit: next,
+            };
+        }
+        let Some(tangent) = follower.tangent(&next, &point.tangent) else {
+            return lost(&next);
+        };
+        // a sharp turn asks for shorter steps
+        let turn = tangent.dot(&point.tangent);
+        ds = if turn < 0.9 {
+            0.5 * ds
+        } else {
+            (1.5 * ds).min(walk.longest)
+        };
+        point = Point {
+            orbit: next,
+            tangent,
+        };
+    }
+    lost(&point.orbit)
+}
+
+/// The stable orbit of doubled period that branches from an orbit at its period doubling (in
+/// the direction of `along` in which it is found first), by a start displaced alternately.
+pub fn branch_at_doubling(
+    machine: &Machine,
+    edge: &PeriodicOrbit,
+    along: Along,
+) -> Option<PeriodicOrbit> {
+    let value = along.of(edge);
+    [3e-3, -3e-3, 3e-2, -3e-2].into_iter().find_map(|step| {
+        let mut twice = edge.doubled();
+        along.set(&mut twice, value + step * (0.1 + value.abs()));
+        let mode = alternating_mode(machine, edge)?;
+        [0.3, 0.1, 0.03].into_iter().find_map(|size| {
+            let z = twice.unknowns() + &mode * (size * step.abs().sqrt() / 0.05);
+            let orbit = twice.with_unknowns(&z).solve(machine)?;
+            let fresh = orbit.reduced().n == twice.n;
+            let good = fresh && orbit.existence(machine) == Existence::Exists;
+            (good && orbit.is_stable(machine)).then_some(orbit)
+        })
+    })
+}
+
+/// Direction of the doubled orbit's unknowns that alternates between both runs: the null
+/// vector of the doubled orbit's Jacobian at the doubling.
+fn alternating_mode(machine: &Machine, edge: &PeriodicOrbit) -> Option<DVector<f64>> {
+    let (_, jacobian) = edge.doubled().linearised(machine);
+    let svd = jacobian.svd(false, true);
+    let least = svd.singular_values.argmin().0;
+    Some(svd.v_t?.row(least).transpose())
+}

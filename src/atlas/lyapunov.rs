@@ -1,0 +1,120 @@
+//! Largest Lyapunov exponent of a simulated motion: a variation carried exactly through flights
+//! and, by saltation matrices, through impacts and into dead zones.
+
+use nalgebra::{Matrix4, Vector4};
+
+use crate::model::contact::free_accelerations;
+use crate::model::flight::{Drive, State};
+use crate::model::orbit::{free_flow, saltation};
+use crate::model::simulate::{Arc, Sink};
+use crate::model::{ImpactKind, Machine, ModelImpact, Restitution};
+
+/// Carries a variation along a simulation; give it to `Simulator::advance`.
+#[derive(Debug, Clone)]
+pub struct Lyapunov<'a> {
+    machine: &'a Machine,
+    eta: f64,
+    variation: Vector4<f64>,
+    growth: f64,
+    time: f64,
+    before: State,
+}
+
+impl<'a> Lyapunov<'a> {
+    /// Start with a variation of all coordinates.
+    pub fn new(machine: &'a Machine, eta: f64) -> Self {
+        let second = if machine.y.is_some() { 0.3 } else { 0.0 };
+        let variation = Vector4::new(0.7, 0.5, second, -second).normalize();
+        Self {
+            machine,
+            eta,
+            variation,
+            growth: 0.0,
+            time: 0.0,
+            before: State::default(),
+        }
+    }
+
+    /// Mean growth rate so far per unit of τ; −∞ where a dead zone wiped every variation out.
+    pub fn exponent(&self) -> f64 {
+        if self.time > 0.0 {
+            self.growth / self.time
+        } else {
+            0.0
+        }
+    }
+
+    fn apply(&mut self, map: &Matrix4<f64>) {
+        self.variation = map * self.variation;
+        let size = self.variation.norm();
+        if size > 0.0 {
+            self.growth += size.ln();
+            self.variation /= size;
+        } else {
+            self.growth = f64::NEG_INFINITY;
+        }
+    }
+
+    /// Into a dead zone: the impact's map with R = 0, relative motion gone.
+    fn into_rest(&self, impact: &ModelImpact, after: &State) -> Matrix4<f64> {
+        let plastic = self
+            .machine
+            .clone()
+            .with_restitution(Restitution::Constant(0.0));
+        if impact.kind == ImpactKind::Stick && self.machine.y.is_some() {
+            let (mx, my) = self.machine.mobility();
+            let press = after.ax + after.ay;
+            let rest = State {
+                ax: after.ax - mx * press,
+                ay: after.ay - my * press,
+                ..*after
+            };
+            return saltation(&plastic, &self.before, &rest);
+        }
+        let (mx, my) = self.machine.mobility();
+        let mut rest = Matrix4::identity();
+        for (row, share) in [(0, mx), (1, mx), (2, my), (3, my)] {
+            rest[(row, row % 2)] -= share;
+            rest[(row, row % 2 + 2)] -= share;
+        }
+        rest
+    }
+}
+
+impl Sink for Lyapunov<'_> {
+    fn arc(&mut self, arc: &Arc) {
+        self.time += arc.duration;
+        self.before = arc.paths.at(arc.duration);
+        if !arc.joined {
+            self.apply(&free_flow(self.machine, arc.duration));
+        } else if self.machine.is_symmetric() {
+            // the common motion of joined equal masses is each mass's free vibration
+            self.apply(&free_flow(self.machine, arc.duration));
+        } else if let Some(y) = &self.machine.y {
+            let decay = (self.machine.x.mass * self.machine.x.decay_rate()
+                + y.mass * y.decay_rate())
+                / (self.machine.x.mass + y.mass);
+            self.apply(&(Matrix4::identity() * (-decay * arc.duration).exp()));
+        }
+    }
+
+    fn impact(&mut self, impact: &ModelImpact) {
+        let drive = Drive {
+            eta: self.eta,
+            phase: impact.phase,
+        };
+        let mut after = State {
+            vx: impact.vx_after,
+            vy: impact.vy_after,
+            ..self.before
+        };
+        (after.ax, after.ay) = free_accelerations(self.machine, drive, &after);
+        let map = match impact.kind {
+            ImpactKind::Stick | ImpactKind::ChatterEnd => self.into_rest(impact, &after),
+            ImpactKind::Bounce | ImpactKind::Plastic => {
+                saltation(self.machine, &self.before, &after)
+            }
+        };
+        self.apply(&map);
+    }
+}

@@ -1,0 +1,493 @@
+//! The complete atlas: regions of existence and stability of all motions z = p/n in the (η, ρ)
+//! plane, column by column, each followed to both its edges; with the boundaries as curves and
+//! a brute-force map beside it.
+
+use std::collections::{BTreeMap, VecDeque};
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::brute::{WAYS, brute_map};
+use super::continuation::{Along, Edge, EdgeKind, Walk, branch_at_doubling, follow};
+use super::map::{CellMotion, End, MapGrid, MapSettings, clear_of};
+use super::resting::{RestingSlice, resting_slices};
+use crate::model::orbit::stable_orbit;
+use crate::model::{
+    Existence, Initial, Machine, ModelError, ModelImpact, PeriodicOrbit, Setting, Simulator,
+    rho_grazing, rho_s2,
+};
+
+/// What an atlas covers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AtlasSettings {
+    /// Columns (η) along which regions are followed, and rows of the brute-force map.
+    pub grid: MapGrid,
+    /// Most impacts in a period of the motion.
+    pub largest_p: u32,
+    /// Most drive periods in a period of the motion.
+    pub largest_n: u32,
+    /// How the brute-force maps are marched.
+    #[serde(default)]
+    pub map: MapSettings,
+}
+
+/// One motion's interval of existence and stability along ρ at one η.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Slice {
+    /// η
+    pub eta: f64,
+    /// Impacts in a period of the motion.
+    pub p: u32,
+    /// Drive periods in a period of the motion.
+    pub n: u32,
+    /// Its lower edge.
+    pub low: Edge,
+    /// Its upper edge.
+    pub high: Edge,
+}
+
+impl Slice {
+    /// Whether a clearance lies in it.
+    pub fn holds(&self, rho: f64) -> bool {
+        self.low.orbit.rho <= rho && rho <= self.high.orbit.rho
+    }
+}
+
+/// A point of a curve.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct CurvePoint {
+    /// η
+    pub eta: f64,
+    /// ρ
+    pub rho: f64,
+    /// Greatest closing speed of the marginal orbit.
+    pub closing_speed: f64,
+}
+
+/// A boundary as a curve in the (η, ρ) plane, η rising.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Curve {
+    /// Name of the boundary: s1, s2, grazing, rho_grazing (ρ' of z = 0), joined (ρp), …
+    pub kind: String,
+    /// Impacts of the motion that it bounds.
+    pub p: u32,
+    /// Drive periods of the motion.
+    pub n: u32,
+    /// Whether the motion has a dead zone.
+    pub dead_zone: bool,
+    /// Whether the motion lies below the curve.
+    pub upper: bool,
+    /// Its points.
+    pub points: Vec<CurvePoint>,
+}
+
+/// How well the curves and the brute-force maps agree.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Agreement {
+    /// Cells whose motion the curves can judge.
+    pub compared: usize,
+    /// Cells whose motion lies in no region of the curves: (η, ρ, motion).
+    pub differing: Vec<(f64, f64, CellMotion)>,
+    /// Periodic cells beyond the largest p or n.
+    pub beyond: usize,
+    /// Cells without a period.
+    pub aperiodic: usize,
+}
+
+/// The atlas of a machine.
+#[derive(Debug, Clone)]
+pub struct Atlas {
+    /// All slices, by η.
+    pub slices: Vec<Slice>,
+    /// Motions that rest in a dead zone, by η.
+    pub resting: Vec<RestingSlice>,
+    /// The boundaries.
+    pub curves: Vec<Curve>,
+    /// The brute-force maps: from the start, rising, falling.
+    pub maps: [Vec<CellMotion>; 3],
+    /// How curves and maps agree.
+    pub agreement: Agreement,
+}
+
+/// Compute the atlas of a machine.
+///
+/// # Errors
+/// [`ModelError`] where a parameter is out of range.
+pub fn atlas(machine: &Machine, settings: &AtlasSettings) -> Result<Atlas, ModelError> {
+    machine.check()?;
+    let mut maps: Vec<Vec<End>> = Vec::new();
+    for way in WAYS {
+        maps.push(brute_map(machine, &settings.grid, &settings.map, way)?);
+    }
+    let columns: Vec<Vec<Slice>> = (0..settings.grid.eta.len())
+        .into_par_iter()
+        .map(|i| column(machine, settings, &maps, i))
+        .collect();
+    let resting: Vec<Vec<RestingSlice>> = settings
+        .grid
+        .eta
+        .par_iter()
+        .map(|&eta| resting_slices(machine, eta, &settings.grid.rho, settings.largest_n))
+        .collect();
+    let curves = curves(machine, settings, &columns, &resting);
+    let slices: Vec<Slice> = columns.into_iter().flatten().collect();
+    let resting: Vec<RestingSlice> = resting.into_iter().flatten().collect();
+    let agreement = compare(machine, settings, &maps, &slices, &resting);
+    let maps = [0, 1, 2].map(|k| maps[k].iter().map(|end| end.motion).collect());
+    Ok(Atlas {
+        slices,
+        resting,
+        curves,
+        maps,
+        agreement,
+    })
+}
+
+/// All slices at one η: see [`atlas`]; the settings' columns are ignored.
+///
+/// # Errors
+/// [`ModelError`] where a parameter is out of range.
+pub fn slices_at(
+    machine: &Machine,
+    eta: f64,
+    settings: &AtlasSettings,
+) -> Result<Vec<Slice>, ModelError> {
+    let mut settings = settings.clone();
+    settings.grid.eta = vec![eta];
+    let map = brute_map(
+        machine,
+        &settings.grid,
+        &settings.map,
+        super::brute::Way::FromStart,
+    )?;
+    Ok(column(machine, &settings, &[map], 0))
+}
+
+/// All slices of one column: from closed forms, from the maps' cells, from period doublings.
+fn column(machine: &Machine, settings: &AtlasSettings, maps: &[Vec<End>], i: usize) -> Vec<Slice> {
+    let eta = settings.grid.eta[i];
+    let mut seeds: VecDeque<PeriodicOrbit> = closed_form_seeds(machine, eta, settings.largest_n);
+    let cells = cell_seeds(settings, maps, i);
+    let mut slices: Vec<Slice> = Vec::new();
+    let mut cells = cells.into_iter();
+    loop {
+        let seed = match seeds.pop_front() {
+            Some(seed) => seed,
+            None => match cells.next() {
+                Some((p, n, rho, end)) => {
+                    if known(&slices, p, n, rho) {
+                        continue;
+                    }
+                    match orbit_of_cell(machine, (eta, rho), &end, (p, n)) {
+                        Some(orbit) => orbit,
+                        None => continue,
+                    }
+                }
+                None => return slices,
+            },
+        };
+        if known(&slices, seed.p() as u32, seed.n, seed.rho) {
+            continue;
+        }
+        if let Some(slice) = slice(machine, settings, &seed) {
+            for edge in [&slice.low, &slice.high] {
+                let fits = 2 * slice.p <= settings.largest_p && 2 * slice.n <= settings.largest_n;
+                if edge.kind == EdgeKind::PeriodDoubling && fits {
+                    seeds.extend(branch_at_doubling(machine, &edge.orbit, Along::Clearance));
+                }
+            }
+            slices.push(slice);
+        }
+    }
+}
+
+fn known(slices: &[Slice], p: u32, n: u32, rho: f64) -> bool {
+    slices.iter().any(|s| s.p == p && s.n == n && s.holds(rho))
+}
+
+/// z = 1/n just inside its saddle-node.
+fn closed_form_seeds(machine: &Machine, eta: f64, largest_n: u32) -> VecDeque<PeriodicOrbit> {
+    let seed = |n: u32| {
+        let s2 = rho_s2(machine, eta, n)?;
+        let setting = Setting::new(eta, s2.rho - 1e-4 * (0.1 + s2.rho.abs()));
+        let orbit = stable_orbit(machine, setting, n).ok()??;
+        let t = orbit.phase_at_impact / eta;
+        let (times, speeds) = (vec![t], vec![orbit.closing_speed]);
+        PeriodicOrbit {
+            n,
+            eta,
+            rho: setting.clearance,
+            times,
+            speeds,
+        }
+        .solve(machine)
+    };
+    (1..=largest_n).filter_map(seed).collect()
+}
+
+type CellSeed = (u32, u32, f64, End);
+
+/// The middle cell of every run of equal periodic cells in a column of each map.
+fn cell_seeds(settings: &AtlasSettings, maps: &[Vec<End>], i: usize) -> Vec<CellSeed> {
+    let (columns, rho) = (settings.grid.eta.len(), &settings.grid.rho);
+    let mut seeds = Vec::new();
+    for map in maps {
+        let at = |k: usize| map[k * columns + i];
+        let mut first = 0;
+        for k in 1..=rho.len() {
+            if k < rho.len() && at(k).motion == at(first).motion {
+                continue;
+            }
+            let middle = (first + k - 1) / 2;
+            if let CellMotion::Periodic {
+                p,
+                n,
+                dead_zone: false,
+                ..
+            } = at(middle).motion
+            {
+                let (p, n) = (u32::from(p), u32::from(n));
+                if p <= settings.largest_p && n <= settings.largest_n {
+                    seeds.push((p, n, rho[middle], at(middle)));
+                }
+            }
+            first = k;
+        }
+    }
+    seeds
+}
+
+/// The orbit that a cell's end lies on.
+fn orbit_of_cell(
+    machine: &Machine,
+    (eta, rho): (f64, f64),
+    end: &End,
+    (p, n): (u32, u32),
+) -> Option<PeriodicOrbit> {
+    let setting = Setting {
+        phase: end.phase,
+        ..Setting::new(eta, rho)
+    };
+    let initial: Initial = clear_of(machine, rho, end.initial);
+    let mut simulator = Simulator::new(machine, setting, initial).ok()?;
+    let mut impacts: Vec<ModelImpact> = Vec::new();
+    let periods = f64::from(2 * n + 1);
+    simulator.advance(periods * setting.period(), &mut |i: &ModelImpact| {
+        impacts.push(*i)
+    });
+    let last = impacts.len().checked_sub(p as usize)?;
+    let orbit = PeriodicOrbit::from_impacts(&impacts[last..], setting, n)?
+        .solve(machine)?
+        .reduced();
+    let good = orbit.existence(machine) == Existence::Exists && orbit.is_stable(machine);
+    good.then_some(orbit)
+}
+
+fn slice(machine: &Machine, settings: &AtlasSettings, seed: &PeriodicOrbit) -> Option<Slice> {
+    let rho = &settings.grid.rho;
+    let (first, last) = (rho.first()?, rho.last()?);
+    let walk = Walk {
+        least: *first,
+        greatest: *last,
+        resolution: 1e-7,
+        ..Walk::default()
+    };
+    let edge = |direction| follow(machine, seed, Along::Clearance, direction, &walk);
+    let (low, high) = (edge(-1.0), edge(1.0));
+    let (eta, p, n) = (seed.eta, seed.p() as u32, seed.n);
+    Some(if low.orbit.rho <= high.orbit.rho {
+        Slice {
+            eta,
+            p,
+            n,
+            low,
+            high,
+        }
+    } else {
+        Slice {
+            eta,
+            p,
+            n,
+            low: high,
+            high: low,
+        }
+    })
+}
+
+/// All boundaries as curves.
+fn curves(
+    machine: &Machine,
+    settings: &AtlasSettings,
+    columns: &[Vec<Slice>],
+    resting: &[Vec<RestingSlice>],
+) -> Vec<Curve> {
+    let mut curves = vec![grazing_curve(machine, &settings.grid.eta)];
+    let marks = columns
+        .iter()
+        .map(|slices| slices.iter().flat_map(slice_marks).collect());
+    curves.extend(chains(marks.collect()));
+    let marks = resting
+        .iter()
+        .map(|slices| slices.iter().flat_map(resting_marks).collect());
+    curves.extend(chains(marks.collect()));
+    curves
+}
+
+fn grazing_curve(machine: &Machine, etas: &[f64]) -> Curve {
+    let at = |eta: &f64| CurvePoint {
+        eta: *eta,
+        rho: rho_grazing(machine, *eta),
+        closing_speed: 0.0,
+    };
+    Curve {
+        kind: "rho_grazing".into(),
+        p: 0,
+        n: 1,
+        dead_zone: false,
+        upper: false,
+        points: etas.iter().map(at).collect(),
+    }
+}
+
+/// What a curve is, and the interval of its motion by which neighbours are told to belong.
+type Key = (u32, u32, bool, bool, String);
+
+#[derive(Debug, Clone)]
+struct Mark {
+    key: Key,
+    point: CurvePoint,
+    interval: (f64, f64),
+}
+
+fn slice_marks(s: &Slice) -> Vec<Mark> {
+    let interval = (s.low.orbit.rho, s.high.orbit.rho);
+    [(&s.low, false), (&s.high, true)]
+        .into_iter()
+        .filter(|(edge, _)| edge.kind != EdgeKind::Bound)
+        .map(|(edge, upper)| {
+            let speed = edge.orbit.speeds.iter().fold(0.0, |m: f64, w| m.max(*w));
+            let point = CurvePoint {
+                eta: s.eta,
+                rho: edge.orbit.rho,
+                closing_speed: speed,
+            };
+            Mark {
+                key: (s.p, s.n, false, upper, edge.kind.name().into()),
+                point,
+                interval,
+            }
+        })
+        .collect()
+}
+
+fn resting_marks(s: &RestingSlice) -> Vec<Mark> {
+    [(s.low, false), (s.high, true)]
+        .into_iter()
+        .filter_map(|(edge, upper)| {
+            let (rho, kind) = edge?;
+            let point = CurvePoint {
+                eta: s.eta,
+                rho,
+                closing_speed: 0.0,
+            };
+            let key = (s.p, s.n, true, upper, kind.name().into());
+            Some(Mark {
+                key,
+                point,
+                interval: s.interval,
+            })
+        })
+        .collect()
+}
+
+/// Chain marks of neighbouring columns whose motions' intervals overlap.
+fn chains(columns: Vec<Vec<Mark>>) -> Vec<Curve> {
+    let mut done: Vec<Curve> = Vec::new();
+    let mut open: BTreeMap<Key, Vec<(Mark, Curve)>> = BTreeMap::new();
+    for marks in columns {
+        let mut next: BTreeMap<Key, Vec<(Mark, Curve)>> = BTreeMap::new();
+        for mark in marks {
+            let list = open.entry(mark.key.clone()).or_default();
+            let fits = |(last, _): &(Mark, Curve)| {
+                last.interval.0 <= mark.interval.1 && mark.interval.0 <= last.interval.1
+            };
+            let mut curve = match list.iter().position(fits) {
+                Some(at) => list.swap_remove(at).1,
+                None => {
+                    let (p, n, dead_zone, upper, kind) = mark.key.clone();
+                    Curve {
+                        kind,
+                        p,
+                        n,
+                        dead_zone,
+                        upper,
+                        points: Vec::new(),
+                    }
+                }
+            };
+            curve.points.push(mark.point);
+            next.entry(mark.key.clone())
+                .or_default()
+                .push((mark, curve));
+        }
+        done.extend(open.into_values().flatten().map(|(_, curve)| curve));
+        open = next;
+    }
+    done.extend(open.into_values().flatten().map(|(_, curve)| curve));
+    done.sort_by_key(|a| (a.n, a.p, a.dead_zone, a.upper));
+    done
+}
+
+/// Look every cell of the maps up in the regions of the curves.
+fn compare(
+    machine: &Machine,
+    settings: &AtlasSettings,
+    maps: &[Vec<End>],
+    slices: &[Slice],
+    resting: &[RestingSlice],
+) -> Agreement {
+    let mut by_eta: BTreeMap<u64, Vec<&Slice>> = BTreeMap::new();
+    for s in slices {
+        by_eta.entry(s.eta.to_bits()).or_default().push(s);
+    }
+    let mut rest_by_eta: BTreeMap<u64, Vec<&RestingSlice>> = BTreeMap::new();
+    for s in resting {
+        rest_by_eta.entry(s.eta.to_bits()).or_default().push(s);
+    }
+    let mut agreement = Agreement::default();
+    for (i, end) in maps.iter().flat_map(|map| map.iter().enumerate()) {
+        let (eta, rho) = settings.grid.at(i);
+        let found = match end.motion {
+            CellMotion::Impactless => rho >= rho_grazing(machine, eta) * (1.0 - 1e-9),
+            CellMotion::Joined => rho < 0.0,
+            CellMotion::Beat | CellMotion::Chaotic => {
+                agreement.aperiodic += 1;
+                continue;
+            }
+            CellMotion::Periodic { p, n, .. }
+                if u32::from(p) > settings.largest_p || u32::from(n) > settings.largest_n =>
+            {
+                agreement.beyond += 1;
+                continue;
+            }
+            CellMotion::Periodic {
+                p,
+                n,
+                dead_zone: true,
+                ..
+            } => rest_by_eta
+                .get(&eta.to_bits())
+                .is_some_and(|l| l.iter().any(|s| s.is(p.into(), n.into()) && s.holds(rho))),
+            CellMotion::Periodic { p, n, .. } => by_eta.get(&eta.to_bits()).is_some_and(|l| {
+                l.iter()
+                    .any(|s| s.p == u32::from(p) && s.n == u32::from(n) && s.holds(rho))
+            }),
+        };
+        agreement.compared += 1;
+        if !found {
+            agreement.differing.push((eta, rho, end.motion));
+        }
+    }
+    agreement
+}

@@ -1,0 +1,293 @@
+//! Which records there are: files that match, rows of the run table, datasets in each, and what
+//! their metadata alone says to be wrong.
+
+use std::collections::{BTreeMap, HashMap};
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use super::faults::{Fault, Notebook, Severity};
+use super::quantity::Desk;
+use super::run_table::{self, Row};
+use super::written::OneOrMany;
+use crate::record::Flag;
+use crate::record::calibrate::{self, ChannelKey, ChannelSetup};
+use crate::record::source::{DatasetInfo, ReadError, Source};
+
+/// How a file is opened; [`crate::record::open::open`] but for tests.
+pub type Opener<'a> = &'a (dyn Fn(&Path) -> Result<Box<dyn Source>, ReadError> + Sync);
+
+/// What a dataset is known by before it is read.
+#[derive(Debug, Clone)]
+pub(super) struct Listed {
+    pub(super) file: PathBuf,
+    /// Line of the run table; `None` for a glob.
+    pub(super) row: Option<Row>,
+    pub(super) dataset: Option<usize>,
+    pub(super) dataset_name: String,
+    pub(super) attributes: BTreeMap<String, String>,
+    pub(super) flags: Vec<Flag>,
+}
+
+/// What the records of a campaign share.
+#[derive(Debug, Clone, Copy)]
+pub struct Shared<'a> {
+    /// The folder of campaign.toml.
+    pub folder: &'a Path,
+    /// The channels by role.
+    pub channels: &'a [ChannelSetup],
+    /// The channel with the time.
+    pub time: Option<&'a ChannelKey>,
+}
+
+pub(super) fn list_files(
+    files: &toml::Spanned<OneOrMany>,
+    shared: Shared<'_>,
+    open: Opener<'_>,
+    desk: &mut Desk<'_>,
+) -> Vec<Listed> {
+    let mut paths = Vec::new();
+    for pattern in &files.get_ref().0 {
+        let found = expand(shared.folder, pattern);
+        if found.is_empty() {
+            let what = format!("no file matches '{pattern}' in {}", shared.folder.display());
+            desk.fault(
+                files,
+                "records.files",
+                what,
+                "mend the pattern; it is relative to campaign.toml",
+            );
+        }
+        paths.extend(found);
+    }
+    paths.sort_by_cached_key(|p| natural_key(&p.to_string_lossy()));
+    paths.dedup();
+    let listed: Vec<Vec<Listed>> = paths
+        .par_iter()
+        .map(|path| list_file(path, shared, open))
+        .collect();
+    listed.into_iter().flatten().collect()
+}
+
+/// The files that a glob matches, folders left out.
+fn expand(folder: &Path, pattern: &str) -> Vec<PathBuf> {
+    let whole = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
+    let Ok(paths) = glob::glob(&whole.to_string_lossy()) else {
+        return Vec::new();
+    };
+    paths
+        .filter_map(Result::ok)
+        .filter(|p| p.is_file())
+        .collect()
+}
+
+/// A key that puts `run2` before `run10`.
+fn natural_key(name: &str) -> Vec<(u8, u64, String)> {
+    let mut key: Vec<(u8, u64, String)> = Vec::new();
+    for letter in name.chars() {
+        match (letter.to_digit(10), key.last_mut()) {
+            (Some(d), Some((0, number, text))) if number.checked_mul(10).is_some() => {
+                *number = number.saturating_mul(10).saturating_add(u64::from(d));
+                text.push(letter);
+            }
+            (Some(d), _) => key.push((0, u64::from(d), letter.to_string())),
+            (None, Some((1, _, text))) => text.push(letter),
+            (None, _) => key.push((1, 0, letter.to_string())),
+        }
+    }
+    key
+}
+
+fn list_file(path: &Path, shared: Shared<'_>, open: Opener<'_>) -> Vec<Listed> {
+    match open(path) {
+        Ok(source) => {
+            let sets = source.datasets();
+            if sets.is_empty() {
+                return vec![failed(path, None, empty_file(path))];
+            }
+            sets.iter()
+                .enumerate()
+                .map(|(i, set)| listed(path, i, set, None, shared))
+                .collect()
+        }
+        Err(error) => vec![failed(path, None, calibrate::read_flag(&error))],
+    }
+}
+
+fn empty_file(path: &Path) -> Flag {
+    Flag {
+        code: "empty".to_owned(),
+        channel: None,
+        message: format!("{} holds no dataset", path.display()),
+        remedy: "remove the file, or record again".to_owned(),
+        excludes: true,
+    }
+}
+
+fn failed(path: &Path, row: Option<Row>, flag: Flag) -> Listed {
+    Listed {
+        file: path.to_path_buf(),
+        dataset_name: row
+            .as_ref()
+            .and_then(|r| r.dataset.clone())
+            .unwrap_or_default(),
+        row,
+        dataset: None,
+        attributes: BTreeMap::new(),
+        flags: vec![flag],
+    }
+}
+
+fn listed(
+    path: &Path,
+    index: usize,
+    set: &DatasetInfo,
+    row: Option<Row>,
+    shared: Shared<'_>,
+) -> Listed {
+    let mut flags: Vec<Flag> = shared
+        .channels
+        .iter()
+        .filter_map(|c| calibrate::bind(c, set).err())
+        .collect();
+    flags.extend(crate::record::time_axis::find(shared.time, set).err());
+    Listed {
+        file: path.to_path_buf(),
+        row,
+        dataset: Some(index),
+        dataset_name: set.name.clone(),
+        attributes: set.attributes.clone(),
+        flags,
+    }
+}
+
+pub(super) fn list_rows(
+    table: &str,
+    shared: Shared<'_>,
+    open: Opener<'_>,
+    desk: &mut Desk<'_>,
+) -> Vec<Listed> {
+    let path = shared.folder.join(table);
+    let mut book = Notebook::new(&path);
+    let rows = run_table::read(&path, &mut book);
+    refuse_twice(&rows, &mut book);
+    desk.book.absorb(book.into_faults());
+    let mut by_file: HashMap<&str, Vec<&Row>> = HashMap::new();
+    for row in &rows {
+        by_file.entry(&row.file).or_default().push(row);
+    }
+    let by_file: Vec<(&str, Vec<&Row>)> = by_file.into_iter().collect();
+    let mut all: Vec<Listed> = by_file
+        .par_iter()
+        .flat_map_iter(|(file, rows)| list_rows_of(&shared.folder.join(file), rows, shared, open))
+        .collect();
+    all.sort_by_key(|l| (l.row.as_ref().map(|r| r.line), l.dataset));
+    all
+}
+
+/// The same file and dataset in two rows is a record counted twice.
+fn refuse_twice(rows: &[Row], book: &mut Notebook) {
+    let mut seen: HashMap<(&str, Option<&str>), usize> = HashMap::new();
+    for row in rows {
+        let key = (row.file.as_str(), row.dataset.as_deref());
+        if let Some(first) = seen.insert(key, row.line) {
+            let what = format!("'{}' already stands in line {first}", row.file);
+            book.fault(Some(row.line), "file", what, "remove one of the two rows");
+        }
+    }
+}
+
+fn list_rows_of(path: &Path, rows: &[&Row], shared: Shared<'_>, open: Opener<'_>) -> Vec<Listed> {
+    let source = match open(path) {
+        Ok(source) => source,
+        Err(error) => {
+            let flag = calibrate::read_flag(&error);
+            return rows
+                .iter()
+                .map(|r| failed(path, Some((*r).clone()), flag.clone()))
+                .collect();
+        }
+    };
+    let sets = source.datasets();
+    let mut all = Vec::new();
+    for row in rows {
+        let wanted = |set: &DatasetInfo| row.dataset.as_ref().is_none_or(|d| names(set, d));
+        let before = all.len();
+        for (index, set) in sets.iter().enumerate().filter(|(_, set)| wanted(set)) {
+            all.push(listed(path, index, set, Some((*row).clone()), shared));
+        }
+        if all.len() == before {
+            all.push(failed(path, Some((*row).clone()), no_dataset(row, sets)));
+        }
+    }
+    all
+}
+
+fn names(set: &DatasetInfo, name: &str) -> bool {
+    set.name == name || set.name.trim_start_matches('/') == name.trim_start_matches('/')
+}
+
+fn no_dataset(row: &Row, sets: &[DatasetInfo]) -> Flag {
+    let some: Vec<&str> = sets.iter().take(8).map(|s| s.name.as_str()).collect();
+    Flag {
+        code: "missing_dataset".to_owned(),
+        channel: None,
+        message: format!(
+            "no dataset '{}' in it; it holds {}",
+            row.dataset.as_deref().unwrap_or(""),
+            some.join(", ")
+        ),
+        remedy: "mend the column dataset of the run table".to_owned(),
+        excludes: true,
+    }
+}
+
+/// Tell the flags of the listing: what every record has is one fault of the campaign.
+pub(super) fn note_flags(listed: &[Listed], desk: &mut Desk<'_>) {
+    let mut groups: Vec<(&Flag, Vec<&Listed>)> = Vec::new();
+    let mut index: HashMap<(&str, &str), usize> = HashMap::new();
+    for one in listed {
+        for flag in &one.flags {
+            let key = (flag.code.as_str(), flag.message.as_str());
+            let at = *index.entry(key).or_insert_with(|| {
+                groups.push((flag, Vec::new()));
+                groups.len() - 1
+            });
+            groups[at].1.push(one);
+        }
+    }
+    for (flag, records) in groups {
+        let all = records.len() == listed.len() && flag.excludes;
+        if all && listed.len() > 1 {
+            let what = format!("in all {} records: {}", listed.len(), flag.message);
+            let key = flag.channel.as_deref().unwrap_or("records").to_owned();
+            desk.book.fault(None, &key, what, &flag.remedy);
+            continue;
+        }
+        let severity = match (all, flag.excludes) {
+            (true, _) => Severity::Campaign,
+            (false, true) => Severity::Record,
+            (false, false) => Severity::Note,
+        };
+        let faults = records
+            .iter()
+            .map(|one| record_fault(one, flag, severity))
+            .collect();
+        desk.book.absorb(faults);
+    }
+}
+
+fn record_fault(one: &Listed, flag: &Flag, severity: Severity) -> Fault {
+    Fault {
+        file: one.file.clone(),
+        line: None,
+        key: match (one.dataset_name.as_str(), &flag.channel) {
+            ("", Some(channel)) => channel.clone(),
+            (name, Some(channel)) => format!("{name}: {channel}"),
+            (name, None) => name.to_owned(),
+        },
+        what: flag.message.clone(),
+        remedy: flag.remedy.clone(),
+        severity,
+    }
+}

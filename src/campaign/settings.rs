@@ -1,0 +1,284 @@
+//! The setting of each record, joined from run table, attributes and defaults.
+
+use super::faults::{Fault, Severity};
+use super::listing::Listed;
+use super::quantity::Desk;
+use super::resolved::RecordEntry;
+use super::run_table::SWEEPS;
+use super::written::{Attributes, Excitation, Placed, Records, WrittenSweep};
+use crate::record::{Setting, Sweep};
+use crate::units::{self, Dimension};
+
+/// Settings of the records that state none.
+#[derive(Debug, Clone)]
+pub(super) struct Defaults {
+    pub(super) setting: Setting,
+}
+
+pub(super) fn defaults(records: &Records, desk: &mut Desk<'_>) -> Defaults {
+    let frequency = desk.positive(
+        &records.drive_frequency,
+        "records.drive_frequency",
+        Dimension::Frequency,
+    );
+    let clearance = desk.quantity(&records.clearance, "records.clearance", Dimension::Length);
+    if clearance.is_some_and(|c| c.abs() > 1.0) {
+        let what = "a clearance of more than 1 m".to_owned();
+        desk.book
+            .fault(None, "records.clearance", what, "mend its unit: mm?");
+    }
+    let amplitude = records.drive_amplitude.as_ref().map(|a| *a.get_ref());
+    if let (Some(placed), Some(value)) = (&records.drive_amplitude, amplitude)
+        && (!value.is_finite() || value < 0.0)
+    {
+        let what = format!("a drive amplitude of {value}");
+        desk.fault(
+            placed,
+            "records.drive_amplitude",
+            what,
+            "write it relative to the nominal one: 1",
+        );
+    }
+    Defaults {
+        setting: Setting {
+            stated_frequency_hz: frequency,
+            clearance_m: clearance,
+            sweep: sweep(&records.sweep),
+            drive_amplitude: amplitude.unwrap_or(1.0),
+            sequence: 0,
+            specimen: None,
+            excitation: records
+                .excitation
+                .as_ref()
+                .map_or(Excitation::Harmonic, |e| *e.get_ref()),
+        },
+    }
+}
+
+fn sweep(written: &Placed<WrittenSweep>) -> Sweep {
+    match written.as_ref().map(|s| *s.get_ref()) {
+        Some(WrittenSweep::Up) => Sweep::Up,
+        Some(WrittenSweep::Down) => Sweep::Down,
+        Some(WrittenSweep::Unknown) | None => Sweep::Unknown,
+    }
+}
+
+/// Attributes to look for: full name, name without unit, factor to SI.
+#[derive(Debug, Default)]
+pub(super) struct Wanted {
+    clearance: Option<Attribute>,
+    frequency: Option<Attribute>,
+    amplitude: Option<Attribute>,
+    sweep: Option<String>,
+    specimen: Option<String>,
+}
+
+#[derive(Debug)]
+struct Attribute {
+    name: String,
+    bare: String,
+    to_si: f64,
+}
+
+impl Attribute {
+    fn text<'a>(&self, of: &'a Listed) -> Option<&'a String> {
+        of.attributes
+            .get(&self.name)
+            .or_else(|| of.attributes.get(&self.bare))
+    }
+}
+
+impl Wanted {
+    pub(super) fn of(written: &Attributes, desk: &mut Desk<'_>) -> Self {
+        Self {
+            clearance: attribute(&written.clearance, "clearance", Dimension::Length, desk),
+            frequency: attribute(
+                &written.drive_frequency,
+                "drive_frequency",
+                Dimension::Frequency,
+                desk,
+            ),
+            amplitude: attribute(
+                &written.drive_amplitude,
+                "drive_amplitude",
+                Dimension::Number,
+                desk,
+            ),
+            sweep: written.sweep.as_ref().map(|s| s.get_ref().clone()),
+            specimen: written.specimen.as_ref().map(|s| s.get_ref().clone()),
+        }
+    }
+}
+
+fn attribute(
+    placed: &Placed<String>,
+    key: &str,
+    dimension: Dimension,
+    desk: &mut Desk<'_>,
+) -> Option<Attribute> {
+    let placed = placed.as_ref()?;
+    let name = placed.get_ref();
+    let (bare, symbol) = units::split_unit(name);
+    let unit = symbol.and_then(units::parse_split_unit);
+    let to_si = match unit {
+        Some(unit) if unit.dimension == dimension => unit.to_si,
+        None if dimension == Dimension::Number => 1.0,
+        _ => {
+            let what = format!(
+                "an attribute '{name}' for a {} without unit",
+                key.replace('_', " ")
+            );
+            let remedy = format!(
+                "write the unit after it in brackets, such as \"{bare} [{}]\"",
+                units::symbols_of(dimension).first().unwrap_or(&"1")
+            );
+            desk.fault(placed, &format!("records.attributes.{key}"), what, &remedy);
+            return None;
+        }
+    };
+    Some(Attribute {
+        name: name.clone(),
+        bare: bare.to_owned(),
+        to_si,
+    })
+}
+
+pub(super) fn setting(
+    one: &Listed,
+    wanted: &Wanted,
+    defaults: &Defaults,
+    desk: &mut Desk<'_>,
+) -> Setting {
+    let row = one.row.as_ref();
+    let mut number = |attribute: &Option<Attribute>| {
+        let attribute = attribute.as_ref()?;
+        attribute_number(one, attribute, desk)
+    };
+    let frequency = number(&wanted.frequency);
+    let clearance = number(&wanted.clearance);
+    let amplitude = number(&wanted.amplitude);
+    let sweep = wanted
+        .sweep
+        .as_ref()
+        .and_then(|name| attribute_sweep(one, name, desk));
+    let specimen = wanted
+        .specimen
+        .as_ref()
+        .and_then(|name| one.attributes.get(name).cloned());
+    let default = &defaults.setting;
+    Setting {
+        stated_frequency_hz: row
+            .and_then(|r| r.drive_frequency_hz)
+            .or(frequency)
+            .or(default.stated_frequency_hz),
+        clearance_m: row
+            .and_then(|r| r.clearance_m)
+            .or(clearance)
+            .or(default.clearance_m),
+        sweep: row.and_then(|r| r.sweep).or(sweep).unwrap_or(default.sweep),
+        drive_amplitude: row
+            .and_then(|r| r.drive_amplitude)
+            .or(amplitude)
+            .unwrap_or(default.drive_amplitude),
+        sequence: 0,
+        excitation: row.and_then(|r| r.excitation).unwrap_or(default.excitation),
+        specimen: row.and_then(|r| r.specimen.clone()).or(specimen),
+    }
+}
+
+fn attribute_number(one: &Listed, wanted: &Attribute, desk: &mut Desk<'_>) -> Option<f64> {
+    one.dataset?;
+    let Some(text) = wanted.text(one) else {
+        let what = format!("it has no attribute '{}'", wanted.name);
+        desk.book
+            .absorb(vec![attribute_fault(one, &wanted.name, what)]);
+        return None;
+    };
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() => Some(value * wanted.to_si),
+        _ => {
+            let what = format!("its attribute '{}' is '{text}', not a number", wanted.name);
+            desk.book
+                .absorb(vec![attribute_fault(one, &wanted.name, what)]);
+            None
+        }
+    }
+}
+
+fn attribute_sweep(one: &Listed, name: &str, desk: &mut Desk<'_>) -> Option<Sweep> {
+    let text = one.attributes.get(name)?;
+    let found = SWEEPS
+        .iter()
+        .find(|(word, _)| word.eq_ignore_ascii_case(text.trim()));
+    if found.is_none() {
+        let what = format!("its attribute '{name}' is '{text}', not up, down or unknown");
+        desk.book.absorb(vec![attribute_fault(one, name, what)]);
+    }
+    found.map(|(_, sweep)| *sweep)
+}
+
+fn attribute_fault(one: &Listed, name: &str, what: String) -> Fault {
+    Fault {
+        file: one.file.clone(),
+        line: None,
+        key: match one.dataset_name.as_str() {
+            "" => name.to_owned(),
+            dataset => format!("{dataset}: {name}"),
+        },
+        what,
+        remedy: "mend [records.attributes], or write a run table".to_owned(),
+        severity: Severity::Record,
+    }
+}
+
+/// Settings that cannot be.
+pub(super) fn note_settings(entries: &[RecordEntry], desk: &mut Desk<'_>) {
+    for entry in entries {
+        let setting = &entry.setting;
+        let mut note = |severity, key: &str, what: String, remedy: &str| {
+            desk.book.absorb(vec![Fault {
+                file: entry.file.clone(),
+                line: None,
+                key: format!("{}: {key}", entry.id),
+                what,
+                remedy: remedy.to_owned(),
+                severity,
+            }]);
+        };
+        if let Some(c) = setting.clearance_m.filter(|c| c.abs() > 1.0) {
+            note(
+                Severity::Record,
+                "clearance",
+                format!("a clearance of {c} m"),
+                "mend its unit: mm?",
+            );
+        }
+        if let Some(c) = setting.clearance_m.filter(|c| *c <= 0.0) {
+            let what = format!("a clearance of {c} m: a preload, or a slip");
+            note(
+                Severity::Note,
+                "clearance",
+                what,
+                "nothing, where the rig was so preloaded",
+            );
+        }
+        if let Some(f) = setting.stated_frequency_hz.filter(|f| *f <= 0.0) {
+            let what = format!("a drive frequency of {f} Hz");
+            note(
+                Severity::Record,
+                "drive_frequency",
+                what,
+                "mend the run table",
+            );
+        }
+        if setting.drive_amplitude <= 0.0 {
+            let what = format!("a drive amplitude of {}", setting.drive_amplitude);
+            note(
+                Severity::Record,
+                "drive_amplitude",
+                what,
+                "write it relative to the nominal one: 1",
+            );
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! `impactid selftest`: the paper's published numbers on the user's machine.
+
+use clap::Args;
+
+use super::{Exit, Failure, Voice};
+use crate::pipeline::selftest::{Check, checks};
+
+/// Arguments of `impactid selftest`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLE)]
+pub struct SelfTest {}
+
+const EXAMPLE: &str = "\
+Example:
+  impactid selftest
+
+Exit codes: 0 all numbers are met; 1 some are not.";
+
+impl SelfTest {
+    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+        let all = checks().map_err(|e| {
+            Failure::new(
+                e.to_string(),
+                "please report it: the program is not what it should be",
+            )
+        })?;
+        if !voice.is_quiet() {
+            print_table(&all);
+        }
+        let missed = all.iter().filter(|c| !c.agrees()).count();
+        voice.say(&format!(
+            "{} of {} published numbers are met.",
+            all.len() - missed,
+            all.len()
+        ));
+        Ok(if missed == 0 {
+            Exit::Done
+        } else {
+            Exit::AnswerIsNo
+        })
+    }
+}
+
+fn print_table(all: &[Check]) {
+    println!(
+        "{:44} {:>10} {:>11} {:>9}",
+        "", "published", "computed", "allowed"
+    );
+    for check in all {
+        let mark = if check.agrees() { "" } else { "  MISSED" };
+        println!(
+            "{:44} {:>10} {:>11.5} {:>9.5}{mark}",
+            check.what, check.published, check.computed, check.tolerance
+        );
+    }
+}

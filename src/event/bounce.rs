@@ -1,0 +1,93 @@
+//! Bounces under a constant force: velocity climbs steadily in flight, against friction of either
+//! sign, and falls while the body touches the stop, however many samples that takes.
+
+use crate::event::Seen;
+use crate::event::jumps::Jump;
+use crate::event::kinematics::Series;
+use crate::event::refine::Candidate;
+use crate::signal::local_fit::LocalFit;
+use crate::signal::robust;
+
+/// Least samples of flight on either side of a bounce.
+const FEWEST: usize = 5;
+/// Drop of velocity that makes a fall a bounce, in steps of the flight and in noise deviations.
+const IN_STEPS: f64 = 2.5;
+const IN_NOISE: f64 = 6.0;
+
+/// All bounces: falls of the velocity from toward the stop to away from it.
+///
+/// A positive velocity is toward the stop. The jump spans from the last sample before the fall to
+/// the first one after it; samples next to the fall, which a differentiated position smears, are
+/// left to it where the flights are long enough.
+pub fn find(velocity: &Series) -> Vec<Candidate> {
+    let values = &velocity.values;
+    let steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).collect();
+    let rises: Vec<f64> = steps.iter().copied().filter(|s| *s > 0.0).collect();
+    let Some(step) = robust::median(&rises) else {
+        return Vec::new();
+    };
+    let least = (IN_STEPS * step).max(IN_NOISE * velocity.noise);
+    let falls: Vec<(usize, usize)> = falls(&steps)
+        .into_iter()
+        .filter(|(first, last)| {
+            let (before, after) = (values[*first], values[*last]);
+            before > 0.0 && after < 0.0 && before - after > least
+        })
+        .collect();
+    (0..falls.len())
+        .filter_map(|i| candidate(velocity, &falls, i))
+        .collect()
+}
+
+/// Runs of falling samples: (last sample before, first sample after).
+fn falls(steps: &[f64]) -> Vec<(usize, usize)> {
+    let mut out: Vec<(usize, usize)> = Vec::new();
+    for (i, step) in steps.iter().enumerate() {
+        if *step >= 0.0 {
+            continue;
+        }
+        match out.last_mut() {
+            Some(last) if last.1 == i => last.1 = i + 1,
+            _ => out.push((i, i + 1)),
+        }
+    }
+    out
+}
+
+fn candidate(velocity: &Series, falls: &[(usize, usize)], index: usize) -> Option<Candidate> {
+    let count = velocity.values.len();
+    let (mut left, mut right) = falls[index];
+    let low = index.checked_sub(1).map_or(0, |i| falls[i].1);
+    let high = falls.get(index + 1).map_or(count, |f| f.0 + 1);
+    if left > low + FEWEST {
+        left -= 1;
+    }
+    if right + FEWEST + 1 < high {
+        right += 1;
+    }
+    if left + 1 < low + FEWEST || right + FEWEST > high {
+        return None;
+    }
+    let middle = 0.5 * (left + right) as f64;
+    let before = LocalFit::new(
+        &velocity.values,
+        low.max(left.saturating_sub(5)),
+        left + 1,
+        1,
+    )?;
+    let after = LocalFit::new(&velocity.values, right, high.min(right + 6), 1)?;
+    let spread = before
+        .error_factor(middle)
+        .hypot(after.error_factor(middle));
+    let jump = Jump {
+        left,
+        gap: right - left,
+        height: after.value(middle) - before.value(middle),
+        error: (velocity.noise * spread).max(f64::MIN_POSITIVE),
+    };
+    Some(Candidate {
+        jump,
+        seen: Seen::Velocity,
+        dead_samples: 0.0,
+    })
+}

@@ -1,0 +1,281 @@
+//! Channels found in a dataset: which one serves a role, in which unit, and how its numbers
+//! become SI. All of it from metadata, before a sample is read.
+
+use serde::{Deserialize, Serialize};
+
+use super::source::{ChannelInfo, DatasetInfo};
+use super::{Flag, Role};
+use crate::units::{self, Dimension, Quantity, Scale, Unit};
+
+/// A channel of a file, by name or by index.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ChannelKey {
+    /// By name; a name without its group serves where only one channel ends so.
+    Name(String),
+    /// By index in the dataset, from 0.
+    Index(usize),
+}
+
+impl ChannelKey {
+    /// The key in messages.
+    pub fn text(&self) -> String {
+        match self {
+            Self::Name(name) => name.clone(),
+            Self::Index(index) => format!("number {index}"),
+        }
+    }
+
+    /// Index of the channel in a dataset; `None` where it has none such, or several.
+    pub fn find(&self, dataset: &DatasetInfo) -> Option<usize> {
+        match self {
+            Self::Index(index) => (*index < dataset.channels.len()).then_some(*index),
+            Self::Name(name) => find_name(name, dataset),
+        }
+    }
+}
+
+fn find_name(name: &str, dataset: &DatasetInfo) -> Option<usize> {
+    let exact = dataset.channels.iter().position(|c| c.name == name);
+    exact
+        .or_else(|| only_one(dataset, |c| c.rsplit('/').next() == Some(name)))
+        .or_else(|| {
+            only_one(dataset, |c| {
+                units::split_unit(c).0 == name && !name.is_empty()
+            })
+        })
+}
+
+fn only_one(dataset: &DatasetInfo, fits: impl Fn(&str) -> bool) -> Option<usize> {
+    let mut all = dataset
+        .channels
+        .iter()
+        .enumerate()
+        .filter(|(_, c)| fits(&c.name));
+    let first = all.next()?.0;
+    all.next().is_none().then_some(first)
+}
+
+/// How the channel of one role is read: SI value = sign · (number · unit − offset) · scale.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ChannelSetup {
+    /// What it measures.
+    pub role: Role,
+    /// Which channel of the file.
+    pub source: ChannelKey,
+    /// Unit of the numbers in the file; `None`: as the file states.
+    pub unit: Option<Unit>,
+    /// What the numbers stand for.
+    pub scale: Scale,
+    /// Value at rest, SI of the file's unit; subtracted before the scale.
+    pub offset: f64,
+    /// 1 or −1.
+    pub sign: f64,
+    /// Corner of the first-order high-pass that the signal carries, Hz.
+    pub high_pass_hz: Option<f64>,
+    /// Level between open and closed contact, after the scale.
+    pub threshold: Option<Quantity>,
+    /// Greatest magnitude the converter gives, SI of the file's unit.
+    pub range: Option<f64>,
+    /// Believe `unit` where the file states another.
+    pub ignore_file_unit: bool,
+}
+
+impl ChannelSetup {
+    /// A channel read as it is, in the unit the file states.
+    pub fn plain(role: Role, source: ChannelKey) -> Self {
+        Self {
+            role,
+            source,
+            unit: None,
+            scale: Scale::Factor(1.0),
+            offset: 0.0,
+            sign: 1.0,
+            high_pass_hz: None,
+            threshold: None,
+            range: None,
+            ignore_file_unit: false,
+        }
+    }
+}
+
+/// A channel of a role found in a dataset, with the conversion settled.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bound {
+    /// Index in the dataset.
+    pub index: usize,
+    /// Factor and dimension of the calibrated values.
+    pub to_si: Unit,
+    /// Subtracted after the factor, SI.
+    pub offset_si: f64,
+    /// Greatest magnitude the converter gives, SI after the scale.
+    pub range_si: Option<f64>,
+}
+
+/// Find a role's channel in a dataset and settle its conversion, from metadata alone.
+///
+/// # Errors
+/// The [`Flag`] that says why the channel cannot be used.
+pub fn bind(setup: &ChannelSetup, dataset: &DatasetInfo) -> Result<Bound, Flag> {
+    let index = setup
+        .source
+        .find(dataset)
+        .ok_or_else(|| missing(setup, dataset))?;
+    let info = &dataset.channels[index];
+    let unit = settle_unit(setup, info)?;
+    let scaled = setup
+        .scale
+        .apply(unit)
+        .ok_or_else(|| unfit_scale(setup, info, unit))?;
+    check_dimension(setup, info, scaled.dimension)?;
+    let after_scale = scaled.to_si / unit.to_si;
+    Ok(Bound {
+        index,
+        to_si: Unit {
+            to_si: scaled.to_si * setup.sign,
+            ..scaled
+        },
+        offset_si: setup.offset * after_scale * setup.sign,
+        range_si: setup.range.map(|r| (r * after_scale).abs()),
+    })
+}
+
+pub(super) fn flag(
+    setup: &ChannelSetup,
+    channel: &str,
+    code: &str,
+    message: String,
+    remedy: &str,
+) -> Flag {
+    Flag {
+        code: code.to_owned(),
+        channel: Some(channel.to_owned()),
+        message,
+        remedy: remedy.to_owned(),
+        excludes: !matches!(setup.role, Role::FrameX | Role::FrameY),
+    }
+}
+
+fn missing(setup: &ChannelSetup, dataset: &DatasetInfo) -> Flag {
+    let names: Vec<&str> = dataset.channels.iter().map(|c| c.name.as_str()).collect();
+    let shown = names
+        .iter()
+        .take(16)
+        .copied()
+        .collect::<Vec<_>>()
+        .join(", ");
+    let key = setup.source.text();
+    let role = setup.role.name();
+    flag(
+        setup,
+        &key,
+        "missing_channel",
+        format!("no channel '{key}' for the role {role}; the channels are: {shown}"),
+        &format!("name one of them in [channels.{role}], or leave the record out"),
+    )
+}
+
+/// The unit of the numbers in the file: as stated there, or as the set-up says.
+fn settle_unit(setup: &ChannelSetup, info: &ChannelInfo) -> Result<Unit, Flag> {
+    let stated = info.unit.as_deref().filter(|u| !u.trim().is_empty());
+    let known = stated.and_then(units::parse_unit);
+    match (setup.unit, known) {
+        (Some(ours), Some(theirs)) if !same(ours, theirs) && !setup.ignore_file_unit => {
+            Err(contradicts(setup, info, ours))
+        }
+        (Some(ours), _) => Ok(ours),
+        (None, Some(theirs)) => Ok(theirs),
+        (None, None) => Err(without_unit(setup, info, stated)),
+    }
+}
+
+fn same(a: Unit, b: Unit) -> bool {
+    a.dimension == b.dimension && (a.to_si / b.to_si - 1.0).abs() < 1e-9
+}
+
+fn contradicts(setup: &ChannelSetup, info: &ChannelInfo, ours: Unit) -> Flag {
+    let stated = info.unit.as_deref().unwrap_or_default().trim();
+    let ours = units::symbol_of(ours).unwrap_or("another unit");
+    flag(
+        setup,
+        &info.name,
+        "wrong_unit",
+        format!(
+            "the file states the unit '{stated}' for channel '{}', campaign.toml '{ours}'",
+            info.name
+        ),
+        &format!(
+            "set unit = \"{stated}\" in [channels.{}], or ignore_file_unit = true where the \
+             file is wrong",
+            setup.role.name()
+        ),
+    )
+}
+
+fn without_unit(setup: &ChannelSetup, info: &ChannelInfo, stated: Option<&str>) -> Flag {
+    let found = match stated {
+        Some(symbol) => format!("the file states a unit '{symbol}' that is not known"),
+        None => "the file states no unit".to_owned(),
+    };
+    flag(
+        setup,
+        &info.name,
+        "unit_missing",
+        format!("{found} for channel '{}'", info.name),
+        &format!("write unit = \"…\" in [channels.{}]", setup.role.name()),
+    )
+}
+
+fn unfit_scale(setup: &ChannelSetup, info: &ChannelInfo, unit: Unit) -> Flag {
+    let role = setup.role.name();
+    flag(
+        setup,
+        &info.name,
+        "wrong_unit",
+        format!(
+            "the scale of channel '{}' does not start from its unit, a {}",
+            info.name,
+            unit.dimension.name()
+        ),
+        &format!(
+            "mend scale or unit in [channels.{role}]: scale = \"50 mm/s per V\", unit = \"V\""
+        ),
+    )
+}
+
+fn check_dimension(setup: &ChannelSetup, info: &ChannelInfo, found: Dimension) -> Result<(), Flag> {
+    let role = setup.role;
+    let wrong = |expected: &str| {
+        let what = format!(
+            "channel '{}' of the role {} comes out as a {}, not as {expected}",
+            info.name,
+            role.name(),
+            found.name()
+        );
+        let remedy = format!("mend unit and scale in [channels.{}]", role.name());
+        Err(flag(setup, &info.name, "wrong_unit", what, &remedy))
+    };
+    match role.dimension() {
+        Some(expected) if found != expected => return wrong(&format!("a {}", expected.name())),
+        None if !serves(role, found) => return wrong("a quantity that serves there"),
+        _ => {}
+    }
+    match setup.threshold {
+        Some(level) if level.dimension != found => wrong(&format!(
+            "a {} as its threshold does",
+            level.dimension.name()
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Which dimensions serve for the roles that take several.
+fn serves(role: Role, found: Dimension) -> bool {
+    use Dimension::{Acceleration, Force, Length, Number, Velocity, Voltage};
+    match role {
+        Role::Drive => matches!(found, Voltage | Force | Length | Acceleration | Number),
+        Role::Contact => matches!(found, Voltage | Force | Number),
+        Role::FrameX | Role::FrameY => matches!(found, Length | Velocity | Acceleration),
+        _ => true,
+    }
+}

@@ -1,0 +1,88 @@
+//! The table of measured brackets.
+
+use super::{Column, arrow, table};
+use crate::report::content::{BracketRow, ReportContent};
+use crate::report::document::model::{Rich, Table};
+use crate::report::figures::look::NumberLook;
+
+/// From how many brackets on their table is set small and in two columns.
+const MANY_BRACKETS: usize = 14;
+
+/// The measured brackets beside the simulated boundary; many of them small and in two columns.
+pub fn brackets(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
+    let many = content.brackets.len() > MANY_BRACKETS;
+    let rows = content
+        .brackets
+        .iter()
+        .map(|b| bracket_row(b, many, numbers))
+        .collect();
+    let columns: [Column; 8] = [
+        (if many { "" } else { "boundary" }, "left", 0),
+        ("$z$", "left", 0),
+        ("$r$ (mm)", "right", 0),
+        ("$ρ$", "right", 0),
+        (if many { "" } else { "sweep" }, "center", 0),
+        ("measured between (Hz)", "center", 0),
+        ("simulated (Hz)", "right", 0),
+        (if many { "" } else { "remark" }, "left", 1),
+    ];
+    let caption = if many {
+        "Measured brackets of the boundaries, and the boundary of the fitted model: = within the \
+         bracket, < below, > above it; × not used in the fit."
+    } else {
+        "Measured brackets of the boundaries, and the boundary of the fitted model."
+    };
+    let table = table(caption, &columns, rows)?;
+    Some(if many {
+        Table {
+            size: 6.8,
+            side_by_side: 2,
+            ..table
+        }
+    } else {
+        Table { size: 8.0, ..table }
+    })
+}
+
+fn bracket_row(b: &BracketRow, many: bool, numbers: NumberLook) -> Vec<Rich> {
+    let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
+    vec![
+        Rich::from(b.kind.symbol()),
+        Rich::from(b.motion.label()),
+        Rich::from(numbers.significant(1e3 * b.clearance_m, 3)),
+        Rich::from(b.rho.map_or("–".into(), |r| numbers.fixed(r, 3))),
+        Rich::from(arrow(b.direction)),
+        Rich::from(format!(
+            "{} … {}",
+            numbers.fixed(low, 3),
+            numbers.fixed(high, 3)
+        )),
+        Rich::from(b.simulated_hz.map_or("–".into(), |f| numbers.fixed(f, 3))),
+        Rich::from(if many {
+            bracket_sign(b).into()
+        } else {
+            bracket_remark(b, numbers)
+        }),
+    ]
+}
+
+fn bracket_sign(b: &BracketRow) -> &'static str {
+    match (&b.left_out, b.simulated_hz) {
+        (Some(_), _) => "×",
+        (None, Some(f)) if f < b.frequency_low_hz => "<",
+        (None, Some(f)) if f > b.frequency_high_hz => ">",
+        (None, Some(_)) => "=",
+        (None, None) => "",
+    }
+}
+
+fn bracket_remark(b: &BracketRow, numbers: NumberLook) -> String {
+    let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
+    match (&b.left_out, b.simulated_hz) {
+        (Some(why), _) => format!("not used: {why}"),
+        (None, Some(f)) if f < low => format!("below by {} Hz", numbers.fixed(low - f, 3)),
+        (None, Some(f)) if f > high => format!("above by {} Hz", numbers.fixed(f - high, 3)),
+        (None, Some(_)) => "within".into(),
+        (None, None) => String::new(),
+    }
+}

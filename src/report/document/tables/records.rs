@@ -1,0 +1,155 @@
+//! The table of all records.
+
+use super::{Column, arrow, table, verbatim};
+use crate::motion::Motion;
+use crate::report::content::{RecordRow, ReportContent};
+use crate::report::document::model::{Rich, Table};
+use crate::report::figures::fonts::{self, Face};
+use crate::report::figures::look::{self, NumberLook};
+use crate::report::parameters::method_name;
+
+/// From how many records on the table is set small and in two columns.
+const MANY_RECORDS: usize = 45;
+
+/// All records; many of them small and in two columns.
+pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
+    let many = content.records.len() > MANY_RECORDS;
+    let planar = content
+        .records
+        .iter()
+        .any(|r| r.eta.is_some() && r.rho.is_some());
+    let mut columns: Vec<Column> = vec![("record", "left", 0)];
+    columns.extend([
+        ("", "center", 0),
+        ("$f$ (Hz)", "right", 0),
+        ("$r$ (mm)", "right", 0),
+    ]);
+    if planar {
+        columns.extend([("$η$", "right", 0), ("$ρ$", "right", 0)]);
+    }
+    columns.extend([("$z$", "center", 0), ("conf.", "right", 0)]);
+    columns.push(if many {
+        ("", "left", 0)
+    } else {
+        ("used by; flags", "left", 1)
+    });
+    let row = |r: &RecordRow| record_row(r, planar, many, numbers);
+    let rows = content.records.iter().map(row).collect();
+    let caption = if many {
+        "All records: sweep, measured drive frequency, clearance, motion, confidence. \
+         ? undetermined; • used in the identification; ! flagged. Reasons and flags in full are in \
+         records.parquet."
+    } else {
+        "All records: sweep, measured drive frequency, clearance, motion and confidence."
+    };
+    let table = table(caption, &columns, rows)?;
+    Some(if many {
+        crowded(table)
+    } else {
+        Table { size: 7.5, ..table }
+    })
+}
+
+/// Many rows: small type, whole columns at once, two tables beside each other where they fit.
+fn crowded(table: Table) -> Table {
+    const SIZE: f64 = 6.2;
+    const PADDING: f64 = 0.9 * SIZE;
+    const GUTTER: f64 = 14.0;
+    let mut table = table;
+    let width = |cell: &Rich| fonts::width(&cell.plain(), Face::Bold, SIZE);
+    let need = |table: &Table, i: usize| {
+        let cells = table.rows.iter().map(|row| width(&row[i]));
+        (cells.fold(width(&table.heads[i]), f64::max) + PADDING).ceil()
+    };
+    let rest: f64 = (1..table.heads.len()).map(|i| need(&table, i)).sum();
+    let half = 0.5 * (look::FULL_WIDTH - GUTTER);
+    let side_by_side = if need(&table, 0) + rest <= half { 2 } else { 1 };
+    let room = if side_by_side == 2 {
+        half
+    } else {
+        look::FULL_WIDTH
+    } - rest
+        - PADDING;
+    for row in &mut table.rows {
+        row[0] = shortened(&row[0], room, SIZE);
+    }
+    let widths = (0..table.heads.len())
+        .map(|i| need(&table, i) as u16)
+        .collect();
+    Table {
+        size: SIZE,
+        side_by_side,
+        widths,
+        ..table
+    }
+    .densely()
+}
+
+/// A name cut at its front where it is wider than the room: a wrapped line would shift the rows.
+fn shortened(name: &Rich, room: f64, size: f64) -> Rich {
+    let plain = name.plain();
+    let wide = |text: &str| fonts::width(text, Face::Bold, size) > room;
+    if !wide(&plain) {
+        return name.clone();
+    }
+    let starts = plain.char_indices().map(|(i, _)| i).skip(1);
+    let fitting = starts
+        .map(|i| format!("…{}", &plain[i..]))
+        .find(|text| !wide(text));
+    verbatim(fitting.unwrap_or_else(|| "…".into()))
+}
+
+fn record_row(r: &RecordRow, planar: bool, many: bool, numbers: NumberLook) -> Vec<Rich> {
+    let number = |v: Option<f64>, decimals| v.map_or("–".into(), |v| numbers.fixed(v, decimals));
+    let mut row: Vec<String> = vec![
+        r.id.clone(),
+        arrow(r.sweep).into(),
+        number(r.frequency_hz, 3),
+        r.clearance_m
+            .map_or("–".into(), |c| numbers.fixed(1e3 * c, 3)),
+    ];
+    if planar {
+        row.extend([number(r.eta, 4), number(r.rho, 3)]);
+    }
+    row.extend([motion_label(r, many), number(r.confidence, 2)]);
+    row.push(if many {
+        short_remark(r)
+    } else {
+        long_remark(r)
+    });
+    row.into_iter().map(verbatim).collect()
+}
+
+fn motion_label(r: &RecordRow, many: bool) -> String {
+    match &r.motion {
+        Motion::Undetermined { .. } if r.frequency_hz.is_none() => "–".into(),
+        Motion::Undetermined { .. } if many => "?".into(),
+        motion => motion.label(),
+    }
+}
+
+fn short_remark(r: &RecordRow) -> String {
+    let used = if r.used_by.is_empty() { "" } else { "•" };
+    let flagged = if r.flags.is_empty() { "" } else { "!" };
+    format!("{used}{flagged}")
+}
+
+fn long_remark(r: &RecordRow) -> String {
+    let used = if r.used_by.is_empty() {
+        r.left_out.as_ref().map(|why| format!("not used: {why}"))
+    } else {
+        Some(
+            r.used_by
+                .iter()
+                .map(|m| method_name(m).to_lowercase())
+                .collect::<Vec<_>>()
+                .join(", "),
+        )
+    };
+    let flags = (!r.flags.is_empty()).then(|| r.flags.join(", "));
+    [used, flags]
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>()
+        .join("; ")
+}

@@ -1,0 +1,76 @@
+//! The phase portraits of a comparison.
+
+use super::{BACK_WIDTH, PORTRAIT_LEFT, PORTRAIT_WIDTH, Sheet, TOP};
+use crate::report::content::Portrait;
+use crate::report::figures::axes::{Axis, Panel, Sides};
+use crate::report::figures::canvas::{Anchor, Stroke, TextLook};
+use crate::report::figures::path::Rect;
+use crate::report::figures::units::print_unit;
+use crate::report::figures::{look, marks};
+use crate::units::Dimension;
+
+impl Sheet<'_> {
+    /// Velocity over displacement of each mass, one above the other.
+    pub(super) fn portraits(&mut self, stack: f64) {
+        let shown: Vec<&Portrait> = self.comparison.portraits.iter().take(2).collect();
+        if shown.is_empty() {
+            return;
+        }
+        let title = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::QUIET);
+        let middle = PORTRAIT_LEFT + 0.5 * PORTRAIT_WIDTH;
+        self.canvas
+            .text((middle, TOP - 4.0), "phase portraits", title);
+        let count = shown.len() as f64;
+        let height = ((stack - (count - 1.0) * 24.0) / count).min(PORTRAIT_WIDTH);
+        for (i, portrait) in shown.into_iter().enumerate() {
+            let top = TOP + i as f64 * (height + 24.0);
+            self.portrait(
+                portrait,
+                Rect::new(PORTRAIT_LEFT, top, PORTRAIT_WIDTH, height),
+            );
+        }
+    }
+
+    fn portrait(&mut self, portrait: &Portrait, rect: Rect) {
+        let all = || portrait.measured.iter().chain(&portrait.simulated);
+        let peak = |k: usize| all().map(|p| p[k].abs()).fold(0.0, f64::max);
+        let (length, speed) = (
+            print_unit(Dimension::Length, peak(0)),
+            print_unit(Dimension::Velocity, peak(1)),
+        );
+        let mass = &portrait.mass;
+        let x = Axis::around(
+            all().map(|p| p[0] * length.factor),
+            0.06,
+            format!("${mass}$ ({})", length.symbol),
+        );
+        let y = Axis::around(
+            all().map(|p| p[1] * speed.factor),
+            0.06,
+            format!("$v_{mass}$ ({})", speed.symbol),
+        );
+        let panel = Panel::new(rect, x.with_ticks(4), y.with_ticks(4));
+        let colour = if mass == "y" {
+            look::VERMILION
+        } else {
+            look::BLUE
+        };
+        let strokes = [
+            (
+                &portrait.simulated,
+                Stroke::solid(marks::mix(colour, 0.40), BACK_WIDTH),
+            ),
+            (&portrait.measured, Stroke::solid(look::INK, 0.45)),
+        ];
+        self.canvas.layer(1);
+        for (points, stroke) in strokes {
+            let data: Vec<_> = points
+                .iter()
+                .map(|p| (p[0] * length.factor, p[1] * speed.factor))
+                .collect();
+            panel.curve(&mut self.canvas, data, stroke);
+        }
+        self.canvas.layer(2);
+        panel.frame(&mut self.canvas, Sides::BOTH, self.numbers);
+    }
+}

@@ -1,0 +1,155 @@
+//! Which channels of a comparison share a row of panels, and in which unit.
+
+use crate::record::Role;
+use crate::report::content::{Comparison, Signal, Trace};
+use crate::report::figures::canvas::Colour;
+use crate::report::figures::look;
+use crate::report::figures::units::{PrintUnit, print_unit};
+
+/// A row of panels: which channels, how tall, how titled.
+pub struct Row<'a> {
+    /// The channels with their colours.
+    pub traces: Vec<(&'a Trace, Colour)>,
+    /// Height of its panels, points.
+    pub height: f64,
+    /// The unit in which they are printed.
+    pub unit: PrintUnit,
+    /// Title of the upward axis.
+    pub title: String,
+    /// Whether it shows residuals.
+    pub residual: bool,
+}
+
+pub fn rows(comparison: &Comparison) -> Vec<Row<'_>> {
+    let pairs = [
+        ([Role::DisplacementX, Role::DisplacementY], "", 38.0),
+        ([Role::VelocityX, Role::VelocityY], "", 38.0),
+        ([Role::AccelerationX, Role::AccelerationY], "", 38.0),
+        ([Role::Drive, Role::Drive], "drive", 22.0),
+        ([Role::Contact, Role::Contact], "contact", 21.0),
+        ([Role::FrameX, Role::FrameY], "frame", 21.0),
+    ];
+    let mut rows: Vec<Row<'_>> = pairs
+        .iter()
+        .filter_map(|(roles, name, height)| row(comparison, roles, name, *height))
+        .collect();
+    rows.extend(residual_row(comparison));
+    rows
+}
+
+fn row<'a>(
+    comparison: &'a Comparison,
+    roles: &[Role; 2],
+    name: &str,
+    height: f64,
+) -> Option<Row<'a>> {
+    let traces = pick(comparison, roles, |t| {
+        t.measured.is_some() || t.simulated.is_some()
+    });
+    let dimension = traces.first()?.0.dimension;
+    // An open contact's noise is not to be blown up.
+    let least = if roles[0] == Role::Contact { 1.0 } else { 0.0 };
+    let peak = traces
+        .iter()
+        .flat_map(|(t, _)| [&t.measured, &t.simulated])
+        .flatten()
+        .map(peak)
+        .fold(least, f64::max);
+    let unit = print_unit(dimension, peak);
+    let between = if height < 30.0 { "\n" } else { " " };
+    let symbols: Vec<&str> = traces.iter().map(|(t, _)| symbol(t.role)).collect();
+    let name = if symbols.iter().all(|s| s.starts_with('$')) {
+        symbols.join(", ")
+    } else {
+        name.into()
+    };
+    let title = format!("{name}{between}({})", unit.symbol);
+    Some(Row {
+        traces,
+        height,
+        title,
+        unit,
+        residual: false,
+    })
+}
+
+/// The residual of the best channel that has one: velocity first.
+fn residual_row(comparison: &Comparison) -> Option<Row<'_>> {
+    let families = [
+        [Role::VelocityX, Role::VelocityY],
+        [Role::DisplacementX, Role::DisplacementY],
+        [Role::AccelerationX, Role::AccelerationY],
+    ];
+    families.iter().find_map(|roles| {
+        let traces = pick(comparison, roles, |t| t.residual.is_some());
+        let dimension = traces.first()?.0.dimension;
+        let peak = traces
+            .iter()
+            .filter_map(|(t, _)| t.residual.as_ref())
+            .map(peak)
+            .fold(0.0, f64::max);
+        let unit = print_unit(dimension, peak);
+        let title = format!("residual\n({})", unit.symbol);
+        Some(Row {
+            traces,
+            height: 30.0,
+            title,
+            unit,
+            residual: true,
+        })
+    })
+}
+
+fn pick<'a>(
+    comparison: &'a Comparison,
+    roles: &[Role; 2],
+    wanted: impl Fn(&Trace) -> bool,
+) -> Vec<(&'a Trace, Colour)> {
+    let colour = |role: Role| {
+        if role == roles[0] {
+            look::BLUE
+        } else {
+            look::VERMILION
+        }
+    };
+    comparison
+        .traces
+        .iter()
+        .filter(|t| roles.contains(&t.role) && wanted(t))
+        .map(|t| (t, colour(t.role)))
+        .collect()
+}
+
+fn peak(signal: &Signal) -> f64 {
+    signal
+        .values
+        .iter()
+        .filter(|v| v.is_finite())
+        .fold(0.0, |m, v| m.max(v.abs()))
+}
+
+pub fn symbol(role: Role) -> &'static str {
+    match role {
+        Role::VelocityX => "$v_x$",
+        Role::VelocityY => "$v_y$",
+        Role::DisplacementX => "$x$",
+        Role::DisplacementY => "$y$",
+        Role::AccelerationX => "$a_x$",
+        Role::AccelerationY => "$a_y$",
+        other => other.name(),
+    }
+}
+
+pub fn shown(trace: &Trace, residual: bool) -> Vec<&Signal> {
+    let picked = if residual {
+        [trace.residual.as_ref(), None]
+    } else {
+        [trace.measured.as_ref(), trace.simulated.as_ref()]
+    };
+    picked.into_iter().flatten().collect()
+}
+
+pub fn root_mean_square(signal: &Signal) -> Option<f64> {
+    let n = signal.values.len();
+    (n > 0).then(|| (signal.values.iter().map(|v| v * v).sum::<f64>() / n as f64).sqrt())
+}

@@ -1,0 +1,80 @@
+//! The map's data: what hovering over a record tells, and all layers as CSV.
+
+use crate::report::content::{RecordRow, ReportContent};
+use crate::report::figures::csv::Csv;
+use crate::report::figures::look::NumberLook;
+
+/// What hovering over a record tells.
+pub fn describe(record: &RecordRow, numbers: NumberLook) -> String {
+    let mut parts = vec![record.id.clone(), format!("z = {}", record.motion.label())];
+    if let Some(f) = record.frequency_hz {
+        parts.push(format!("f = {} Hz", numbers.fixed(f, 3)));
+    }
+    if let Some(r) = record.clearance_m {
+        parts.push(format!("r = {} mm", numbers.significant(1e3 * r, 4)));
+    }
+    if let (Some(eta), Some(rho)) = (record.eta, record.rho) {
+        parts.push(format!(
+            "η = {}, ρ = {}",
+            numbers.fixed(eta, 4),
+            numbers.fixed(rho, 3)
+        ));
+    }
+    parts.push(format!("sweep {}", record.sweep.name()));
+    if let Some(c) = record.confidence {
+        parts.push(format!("confidence {}", numbers.fixed(c, 2)));
+    }
+    parts.join("\n")
+}
+
+/// All layers of the map as CSV.
+pub fn csv(content: &ReportContent) -> String {
+    let mut csv = Csv::new(&[
+        "layer",
+        "name",
+        "motion",
+        "sweep",
+        "eta",
+        "rho",
+        "frequency_hz",
+        "clearance_m",
+        "eta_high",
+        "rho_high",
+        "frequency_high_hz",
+    ]);
+    for r in &content.records {
+        csv.row()
+            .texts(&["record", &r.id, &r.motion.label(), r.sweep.name()])
+            .numbers(&[r.eta, r.rho, r.frequency_hz, r.clearance_m]);
+    }
+    for b in &content.brackets {
+        csv.row()
+            .texts(&[
+                "bracket",
+                b.kind.name(),
+                &b.motion.label(),
+                b.direction.name(),
+            ])
+            .numbers(&[
+                b.eta_low,
+                b.rho,
+                Some(b.frequency_low_hz),
+                Some(b.clearance_m),
+            ])
+            .numbers(&[b.eta_high, b.rho, Some(b.frequency_high_hz)]);
+    }
+    for c in &content.curves {
+        let name = c.kind.name();
+        let motion = format!("1/{}", c.periods_n);
+        for p in &c.points {
+            csv.row()
+                .texts(&["curve", name, &motion, ""])
+                .numbers(&[Some(p[0]), Some(p[1])]);
+        }
+        for b in &c.band95 {
+            let row = csv.row().texts(&["band95", name, &motion, ""]);
+            row.numbers(&[Some(b[0]), Some(b[1]), None, None, Some(b[0]), Some(b[2])]);
+        }
+    }
+    csv.finish()
+}

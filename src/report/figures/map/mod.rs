@@ -1,0 +1,312 @@
+//! The map of motions: regions, boundaries with their bands, records, brackets, chosen points.
+
+mod data;
+mod keys;
+mod labels;
+
+use crate::record::Sweep;
+use crate::report::content::{BoundaryCurve, RecordRow, ReportContent};
+use crate::report::figures::axes::{Panel, Sides};
+use crate::report::figures::canvas::{Anchor, Canvas, Point, TextLook};
+use crate::report::figures::fonts::Face;
+use crate::report::figures::legend::{self, Key};
+use crate::report::figures::look::{self, NumberLook};
+use crate::report::figures::marks;
+use crate::report::figures::path::{self, Rect};
+use crate::report::figures::placing::Occupancy;
+use crate::report::figures::plane::{Plane, View, same};
+use crate::report::figures::regions::Regions;
+use crate::report::figures::{Figure, Spot};
+
+/// Which of the two maps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MapSize {
+    /// The large one over the whole width, with keys, points and both unit systems.
+    Full,
+    /// The small one of the first page.
+    Small,
+}
+
+const BAND: plotters::style::RGBColor = plotters::style::RGBColor(0xbd, 0xc3, 0xca);
+/// Height of a strip with its gap, points.
+const STRIP_STEP: f64 = 15.0;
+const UNUSED: plotters::style::RGBColor = plotters::style::RGBColor(0x9a, 0x9f, 0xa5);
+
+/// Draws the map; `None` where the records have no place in a plane.
+pub fn draw(content: &ReportContent, size: MapSize, numbers: NumberLook) -> Option<Figure> {
+    let plane = Plane::of(content)?;
+    let keys = if size == MapSize::Full {
+        keys::full(content, plane)
+    } else {
+        keys::motions(content)
+    };
+    let mut map = Map::new(content, plane, size, &keys);
+    // Labels go where records and curves leave room.
+    map.take_records_and_curves();
+    map.regions();
+    map.curves();
+    map.brackets();
+    map.records(numbers);
+    if size == MapSize::Full {
+        map.letters();
+    }
+    map.frame(numbers, &keys);
+    Some(map.finish())
+}
+
+struct Map<'a> {
+    content: &'a ReportContent,
+    plane: Plane,
+    size: MapSize,
+    canvas: Canvas,
+    panel: Panel,
+    /// Clearances above the panel, each in a strip of its own.
+    strips: Vec<f64>,
+    /// Radius of the marks, points.
+    radius: f64,
+    occupancy: Occupancy,
+    spots: Vec<Spot>,
+}
+
+impl<'a> Map<'a> {
+    fn new(content: &'a ReportContent, plane: Plane, size: MapSize, keys: &[Key]) -> Self {
+        let full = size == MapSize::Full;
+        let flat = content.region_map.is_none() && heights(content, plane) <= 3;
+        let (width, height) = match (full, flat) {
+            (true, false) => (look::FULL_WIDTH, 370.0),
+            (true, true) => (look::FULL_WIDTH, 200.0),
+            (false, false) => (236.0, 235.0),
+            (false, true) => (236.0, 130.0),
+        };
+        let keys_height = legend::height(keys, width) + if keys.is_empty() { 0.0 } else { 3.0 };
+        let both_units = full && plane.dimensionless;
+        let (left, right) = (33.0, if both_units { 30.0 } else { 4.0 });
+        let View { x, y, strips } = plane.view(content);
+        let strips_height = STRIP_STEP * strips.len() as f64;
+        let top = keys_height + strips_height + if both_units { 26.0 } else { 3.0 };
+        let rect = Rect::new(left, top, width - left - right, height - 24.0);
+        let total = top + height;
+        let (x, y) = if full {
+            (x, y)
+        } else {
+            (x.with_ticks(5), y.with_ticks(4))
+        };
+        let mut map = Self {
+            content,
+            plane,
+            size,
+            canvas: Canvas::new(width, total),
+            panel: Panel::new(rect, x, y),
+            strips,
+            radius: 0.0,
+            occupancy: Occupancy::new(width, total),
+            spots: Vec::new(),
+        };
+        map.radius = map.fitting_radius();
+        map
+    }
+
+    fn full(&self) -> bool {
+        self.size == MapSize::Full
+    }
+
+    fn regions(&mut self) {
+        let Some(map) = self
+            .content
+            .region_map
+            .as_ref()
+            .filter(|_| self.plane.dimensionless)
+        else {
+            return;
+        };
+        let panel = self.panel.clone();
+        let Some(regions) = Regions::new(map, &panel) else {
+            return;
+        };
+        self.canvas.layer(0);
+        regions.draw(&mut self.canvas);
+        let size = if self.full() { 10.0 } else { 8.0 };
+        self.canvas.layer(6);
+        for label in regions.labels(&mut self.occupancy, size) {
+            let text_look = TextLook::new(label.size, Anchor::Middle).face(Face::Bold);
+            let (x, y) = label.at;
+            let baseline = (x, y + 0.33 * label.size);
+            self.canvas
+                .text(baseline, &label.text, text_look.colour(look::INK));
+        }
+    }
+
+    fn take_records_and_curves(&mut self) {
+        let radius = self.radius;
+        for record in &self.content.records {
+            if let Some(at) = self.place(record) {
+                self.occupancy.take_spot(at, radius + 0.5);
+            }
+        }
+        for curve in &self.content.curves {
+            let points: Vec<Point> = curve
+                .points
+                .iter()
+                .map(|p| self.panel.at(p[0], p[1]))
+                .collect();
+            for piece in path::clip(&points, &self.panel.rect) {
+                self.occupancy.take_line(&piece);
+            }
+        }
+    }
+
+    fn curves(&mut self) {
+        if !self.plane.dimensionless {
+            return;
+        }
+        for curve in &self.content.curves {
+            self.canvas.layer(1);
+            self.band(curve);
+        }
+        for curve in &self.content.curves {
+            self.canvas.layer(2);
+            let stroke = keys::boundary_stroke(curve.kind, if self.full() { 1.1 } else { 0.8 });
+            let data = curve.points.iter().map(|p| (p[0], p[1]));
+            let pieces = self.panel.curve(&mut self.canvas, data, stroke);
+            if self.full() {
+                self.curve_label(curve, &pieces);
+            }
+        }
+    }
+
+    fn band(&mut self, curve: &BoundaryCurve) {
+        let upper = curve.band95.iter().map(|b| self.panel.at(b[0], b[2]));
+        let lower = curve.band95.iter().rev().map(|b| self.panel.at(b[0], b[1]));
+        let outline: Vec<Point> = upper.chain(lower).collect();
+        if outline.len() >= 4 {
+            let polygon = path::clip_polygon(&outline, &self.panel.rect);
+            self.canvas.fill(&path::thin(&polygon), BAND);
+        }
+    }
+
+    fn brackets(&mut self) {
+        let lift = self.lift();
+        for bracket in &self.content.brackets {
+            let Some(((low, high), height)) = self.plane.bracket(bracket) else {
+                continue;
+            };
+            if !self.panel.shows(low, height) || !self.panel.shows(high, height) {
+                continue;
+            }
+            let (from, to) = (self.panel.at(low, height), self.panel.at(high, height));
+            let y = from.1 - lift * direction(bracket.direction);
+            let colour = if bracket.left_out.is_none() {
+                look::INK
+            } else {
+                UNUSED
+            };
+            self.canvas.layer(3);
+            legend::bracket(&mut self.canvas, (from.0, to.0), y, colour);
+            self.occupancy
+                .take_rect(&Rect::new(from.0, y - 2.5, to.0 - from.0, 5.0));
+        }
+    }
+
+    /// Radius of the marks: smaller where there are many, or where they follow closely.
+    fn fitting_radius(&self) -> f64 {
+        let area = self.panel.rect.width() * self.panel.rect.height();
+        let records = &self.content.records;
+        let (least, most) = if self.full() { (1.2, 2.9) } else { (0.6, 1.8) };
+        let mut steps: Vec<f64> = records
+            .windows(2)
+            .filter_map(|pair| Some((self.plane.record(&pair[0])?, self.plane.record(&pair[1])?)))
+            .filter(|(a, b)| same(a.1, b.1) && a.0 != b.0)
+            .map(|(a, b)| (self.panel.at(a.0, a.1).0 - self.panel.at(b.0, b.1).0).abs())
+            .collect();
+        steps.sort_by(f64::total_cmp);
+        let usual = steps.get(steps.len() / 4).copied().unwrap_or(f64::INFINITY);
+        let by_area = 0.13 * (area / records.len().max(1) as f64).sqrt();
+        by_area.min(0.44 * usual).clamp(least, most)
+    }
+
+    /// Up-sweep records stand a little above their clearance, down-sweep ones below.
+    fn lift(&self) -> f64 {
+        0.95 * self.radius
+    }
+
+    fn place(&self, record: &RecordRow) -> Option<Point> {
+        let (x, y) = self.plane.record(record)?;
+        let lift = self.lift() * direction(record.sweep);
+        if let Some(strip) = self.strips.iter().position(|s| same(*s, y)) {
+            return Some((self.panel.at(x, 0.0).0, self.strip_middle(strip) - lift));
+        }
+        let at = self.panel.at(x, y);
+        self.panel.shows(x, y).then_some((at.0, at.1 - lift))
+    }
+
+    fn strip_middle(&self, index: usize) -> f64 {
+        self.panel.rect.top - STRIP_STEP * (index as f64 + 0.5) - 1.0
+    }
+
+    fn records(&mut self, numbers: NumberLook) {
+        let radius = self.radius;
+        let mut drawn: Vec<(Point, String)> = Vec::new();
+        self.canvas.layer(4);
+        for record in &self.content.records {
+            let Some(at) = self.place(record) else {
+                continue;
+            };
+            let text = data::describe(record, numbers);
+            self.spots.push(Spot {
+                x: at.0,
+                y: at.1,
+                text,
+            });
+            let label = record.motion.label();
+            let hidden = drawn.iter().any(|(p, l)| {
+                (p.0 - at.0).abs() < 0.35 * radius
+                    && (p.1 - at.1).abs() < 0.35 * radius
+                    && *l == label
+            });
+            if !hidden {
+                marks::draw(&mut self.canvas, at, radius, marks::of(&record.motion));
+                drawn.push((at, label));
+            }
+        }
+    }
+
+    fn frame(&mut self, numbers: NumberLook, keys: &[Key]) {
+        self.canvas.layer(7);
+        self.panel.frame(&mut self.canvas, Sides::BOTH, numbers);
+        if self.full() && self.plane.dimensionless {
+            self.laboratory_axes(numbers);
+        }
+        self.strip_frames(numbers);
+        let width = self.canvas.width;
+        legend::draw(&mut self.canvas, (0.0, 0.0), width, keys);
+    }
+
+    fn finish(self) -> Figure {
+        let csv = data::csv(self.content);
+        let (name, title) = match self.size {
+            MapSize::Full => ("map", "Regions of motion, simulated and measured"),
+            MapSize::Small => ("map_small", "Measured motions and boundaries"),
+        };
+        Figure::new(name, title, self.canvas, csv).with_spots(self.spots)
+    }
+}
+
+/// How many clearances the records have.
+fn heights(content: &ReportContent, plane: Plane) -> usize {
+    let mut seen: Vec<f64> = Vec::new();
+    for (_, y) in content.records.iter().filter_map(|r| plane.record(r)) {
+        if !seen.iter().any(|s| (s - y).abs() <= 1e-6 * y.abs()) {
+            seen.push(y);
+        }
+    }
+    seen.len()
+}
+
+/// +1 above the clearance's own height, −1 below.
+fn direction(sweep: Sweep) -> f64 {
+    match sweep {
+        Sweep::Up => 1.0,
+        Sweep::Down => -1.0,
+        Sweep::Unknown => 0.0,
+    }
+}
