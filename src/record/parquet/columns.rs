@@ -7,15 +7,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use polars::prelude::{
-    ArrowDataType, ArrowField, ArrowTimeUnit, DataType, PlSmallStr, PolarsResult, Series,
-    polars_bail,
-};
+use polars::prelude::{ArrowField, PlSmallStr, PolarsResult, Series, polars_bail};
 use polars_io::SerReader;
 use polars_io::parquet::read::{_internal::to_deserializer, FileMetadata, ParquetReader};
 use polars_parquet::parquet::page::CompressedPage;
 use polars_parquet::read::PageReader;
 
+use crate::record::parquet::field::{Field, samples};
 use crate::record::parquet::shape::Range;
 use crate::record::parquet::{SIGNATURE, footer};
 use crate::record::source::{ReadError, Samples, StoredType};
@@ -29,19 +27,6 @@ const MOST_ROWS_PER_BYTE: u64 = 64;
 
 /// More unpacked bytes than this for each byte of the file are no data.
 const MOST_BYTES_PER_BYTE: u64 = 512;
-
-/// A column's name and type.
-#[derive(Debug, Clone)]
-pub struct Field {
-    /// Its name as written.
-    pub name: String,
-    /// How its samples are stored; `None`: a type that is not read.
-    pub stored: Option<StoredType>,
-    /// The type by which its pages are decoded.
-    physical: ArrowDataType,
-    /// Ticks per second of a point in time.
-    ticks_per_second: f64,
-}
 
 /// A file's columns.
 pub struct Columns {
@@ -242,7 +227,7 @@ impl Columns {
             let mut bytes = vec![0; size as usize];
             read_exact_at(&self.file, &mut bytes, first)
                 .map_err(|e| ReadError::io(&self.path, &e))?;
-            if first_claim(&bytes).is_some_and(|n| n > MOST_BYTES_PER_BYTE * self.length) {
+            if footer::first_claim(&bytes).is_some_and(|n| n > MOST_BYTES_PER_BYTE * self.length) {
                 return Err(damaged("a first page far larger than the file".to_owned()).at(first));
             }
             pages.push((chunk, bytes.into()));
@@ -288,39 +273,6 @@ impl Columns {
         }
         Ok(())
     }
-}
-
-/// Unpacked bytes, or values of a dictionary where they are more, that a column's first page
-/// claims. Its header is a structure of thrift's compact protocol: the first three fields are
-/// 32-bit integers (kind, unpacked and packed bytes), the seventh is a dictionary's own header,
-/// which begins with its number of values.
-fn first_claim(bytes: &[u8]) -> Option<u64> {
-    const NEXT_FIELD_I32: u8 = 0x15;
-    const FOURTH_NEXT_STRUCTURE: u8 = 0x4C;
-    let mut rest = bytes.iter().copied();
-    field(&mut rest, NEXT_FIELD_I32)?;
-    let unpacked = field(&mut rest, NEXT_FIELD_I32)?;
-    let dictionary = field(&mut rest, NEXT_FIELD_I32).and_then(|_packed| {
-        rest.next().filter(|b| *b == FOURTH_NEXT_STRUCTURE)?;
-        field(&mut rest, NEXT_FIELD_I32)
-    });
-    Some(unpacked.max(dictionary.unwrap_or(0)))
-}
-
-/// An integer field of thrift's compact protocol whose header is `mark`; a negative or endless
-/// one is the greatest number.
-fn field(bytes: &mut impl Iterator<Item = u8>, mark: u8) -> Option<u64> {
-    bytes.next().filter(|b| *b == mark)?;
-    let mut value = 0u64;
-    for shift in (0..35).step_by(7) {
-        let byte = bytes.next()?;
-        value |= u64::from(byte & 0x7F) << shift;
-        if byte < 0x80 {
-            // Zigzag: even numbers are the positive ones, odd ones the negative.
-            return Some(if value % 2 == 0 { value / 2 } else { u64::MAX });
-        }
-    }
-    Some(u64::MAX)
 }
 
 /// Parts of a column as one; points in time become seconds since the first.
@@ -374,87 +326,6 @@ fn guarded<T>(path: &Path, run: impl FnOnce() -> PolarsResult<T>) -> Result<T, R
         Ok(result) => result.map_err(|e| damaged(e.to_string())),
         Err(_) => Err(damaged("pages that contradict each other".to_owned())),
     }
-}
-
-impl Field {
-    fn new(name: String, datatype: &ArrowDataType) -> Self {
-        use ArrowDataType as A;
-        let ticks = |unit: &ArrowTimeUnit| match unit {
-            ArrowTimeUnit::Second => 1.0,
-            ArrowTimeUnit::Millisecond => 1e3,
-            ArrowTimeUnit::Microsecond => 1e6,
-            ArrowTimeUnit::Nanosecond => 1e9,
-        };
-        let text = |d: &A| matches!(d, A::Utf8 | A::LargeUtf8 | A::Utf8View);
-        let (stored, physical, ticks_per_second) = match datatype {
-            A::Int8 => (Some(StoredType::Int(8)), A::Int32, 1.0),
-            A::Int16 => (Some(StoredType::Int(16)), A::Int32, 1.0),
-            A::Int32 => (Some(StoredType::Int(32)), A::Int32, 1.0),
-            A::Int64 => (Some(StoredType::Int(64)), A::Int64, 1.0),
-            A::UInt8 => (Some(StoredType::UInt(8)), A::Int32, 1.0),
-            A::UInt16 => (Some(StoredType::UInt(16)), A::Int32, 1.0),
-            A::UInt32 => (Some(StoredType::UInt(32)), A::UInt32, 1.0),
-            A::UInt64 => (Some(StoredType::UInt(64)), A::UInt64, 1.0),
-            A::Float32 => (Some(StoredType::Float(32)), A::Float32, 1.0),
-            A::Float64 => (Some(StoredType::Float(64)), A::Float64, 1.0),
-            A::Boolean => (Some(StoredType::Bool), A::Boolean, 1.0),
-            A::Timestamp(unit, _) | A::Time64(unit) | A::Duration(unit) => {
-                (Some(StoredType::Time), A::Int64, ticks(unit))
-            }
-            A::Time32(unit) => (Some(StoredType::Time), A::Int32, ticks(unit)),
-            A::Date32 => (Some(StoredType::Time), A::Int32, 1.0 / 86_400.0),
-            A::Dictionary(_, inner, _) if text(inner) => (Some(StoredType::Text), A::Utf8View, 1.0),
-            other if text(other) => (Some(StoredType::Text), A::Utf8View, 1.0),
-            other => (None, other.clone(), 1.0),
-        };
-        Self {
-            name,
-            stored,
-            physical,
-            ticks_per_second,
-        }
-    }
-}
-
-/// A column's samples; missing numbers are NaN, missing texts empty.
-fn samples(series: &Series) -> PolarsResult<Samples> {
-    macro_rules! numbers {
-        ($chunked:expr) => {{
-            let mut values = Vec::with_capacity($chunked.len());
-            for chunk in $chunked.downcast_iter() {
-                match chunk.validity() {
-                    None => values.extend(chunk.values().iter().map(|v| *v as f64)),
-                    Some(_) => {
-                        values.extend(chunk.iter().map(|v| v.map_or(f64::NAN, |v| *v as f64)))
-                    }
-                }
-            }
-            Samples::Real(values)
-        }};
-    }
-    Ok(match series.dtype() {
-        DataType::String => {
-            let texts = series
-                .str()?
-                .iter()
-                .map(|t| t.unwrap_or_default().to_owned());
-            Samples::Text(texts.collect())
-        }
-        DataType::Boolean => {
-            let truths = series
-                .bool()?
-                .iter()
-                .map(|b| b.map_or(f64::NAN, |b| f64::from(u8::from(b))));
-            Samples::Real(truths.collect())
-        }
-        DataType::Int32 => numbers!(series.i32()?),
-        DataType::Int64 => numbers!(series.i64()?),
-        DataType::UInt32 => numbers!(series.u32()?),
-        DataType::UInt64 => numbers!(series.u64()?),
-        DataType::Float32 => numbers!(series.f32()?),
-        DataType::Float64 => numbers!(series.f64()?),
-        other => polars_bail!(ComputeError: "{other} is not read"),
-    })
 }
 
 fn pick(whole: &Samples, ranges: &[Range]) -> Samples {

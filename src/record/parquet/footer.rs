@@ -121,6 +121,39 @@ impl Walk<'_> {
     }
 }
 
+/// Unpacked bytes, or values of a dictionary where they are more, that a column's first page
+/// claims. Its header is a structure of thrift's compact protocol: the first three fields are
+/// 32-bit integers (kind, unpacked and packed bytes), the seventh is a dictionary's own header,
+/// which begins with its number of values.
+pub fn first_claim(bytes: &[u8]) -> Option<u64> {
+    const NEXT_FIELD_I32: u8 = 0x15;
+    const FOURTH_NEXT_STRUCTURE: u8 = 0x4C;
+    let mut rest = bytes.iter().copied();
+    field(&mut rest, NEXT_FIELD_I32)?;
+    let unpacked = field(&mut rest, NEXT_FIELD_I32)?;
+    let dictionary = field(&mut rest, NEXT_FIELD_I32).and_then(|_packed| {
+        rest.next().filter(|b| *b == FOURTH_NEXT_STRUCTURE)?;
+        field(&mut rest, NEXT_FIELD_I32)
+    });
+    Some(unpacked.max(dictionary.unwrap_or(0)))
+}
+
+/// An integer field of thrift's compact protocol whose header is `mark`; a negative or endless
+/// one is the greatest number.
+fn field(bytes: &mut impl Iterator<Item = u8>, mark: u8) -> Option<u64> {
+    bytes.next().filter(|b| *b == mark)?;
+    let mut value = 0u64;
+    for shift in (0..35).step_by(7) {
+        let byte = bytes.next()?;
+        value |= u64::from(byte & 0x7F) << shift;
+        if byte < 0x80 {
+            // Zigzag: even numbers are the positive ones, odd ones the negative.
+            return Some(if value.is_multiple_of(2) { value / 2 } else { u64::MAX });
+        }
+    }
+    Some(u64::MAX)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
