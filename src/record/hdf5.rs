@@ -8,6 +8,7 @@ pub mod guard;
 pub mod legacy;
 pub mod matlab;
 pub mod matlab_file;
+pub mod naming;
 pub mod plan;
 pub mod pure;
 pub mod store;

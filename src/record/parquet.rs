@@ -2,6 +2,8 @@
 //! beside the channels) and tidy (columns record, channel, time, value).
 
 pub mod columns;
+pub mod field;
+pub mod footer;
 pub mod shape;
 
 use std::collections::BTreeMap;
@@ -9,7 +11,8 @@ use std::path::{Path, PathBuf};
 
 use crate::record::attribute;
 use crate::record::csv::header::name_and_unit;
-use crate::record::parquet::columns::{Columns, Field};
+use crate::record::parquet::columns::Columns;
+use crate::record::parquet::field::Field;
 use crate::record::parquet::shape::{Labelled, Range, Shape, Tidy};
 use crate::record::rate;
 use crate::record::source::{

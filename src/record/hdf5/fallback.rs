@@ -198,7 +198,9 @@ fn element(datatype: &DatatypeMessage) -> Element {
             signed,
             bit_offset: 0,
             bit_precision,
-        } if matches!(size, 1 | 2 | 4 | 8) && u32::from(*bit_precision) == 8 * size => {
+        } if matches!(size, 1 | 2 | 4 | 8)
+            && size.checked_mul(8) == Some(u32::from(*bit_precision)) =>
+        {
             let big = matches!(byte_order, ByteOrder::BigEndian);
             Element::Int {
                 bytes: *size as usize,

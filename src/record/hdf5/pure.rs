@@ -201,7 +201,8 @@ fn element(datatype: &Datatype) -> Element {
             byte_order,
             layout,
         } => {
-            let whole = layout.bit_offset == 0 && u32::from(layout.bit_precision) == 8 * size;
+            let whole = layout.bit_offset == 0
+                && size.checked_mul(8) == Some(u32::from(layout.bit_precision));
             match (*size, byte_order, whole) {
                 (
                     1 | 2 | 4 | 8,

@@ -2,18 +2,20 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
+use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use polars::prelude::{
-    ArrowDataType, ArrowField, ArrowTimeUnit, DataType, PlSmallStr, PolarsResult, Series,
-    polars_bail,
-};
+use polars::prelude::{ArrowField, PlSmallStr, PolarsResult, Series, polars_bail};
 use polars_io::SerReader;
 use polars_io::parquet::read::{_internal::to_deserializer, FileMetadata, ParquetReader};
+use polars_parquet::parquet::page::CompressedPage;
+use polars_parquet::read::PageReader;
 
+use crate::record::parquet::field::{Field, samples};
 use crate::record::parquet::shape::Range;
+use crate::record::parquet::{SIGNATURE, footer};
 use crate::record::source::{ReadError, Samples, StoredType};
 use crate::record::text::clock::Stamp;
 use crate::record::text::read_exact_at;
@@ -25,19 +27,6 @@ const MOST_ROWS_PER_BYTE: u64 = 64;
 
 /// More unpacked bytes than this for each byte of the file are no data.
 const MOST_BYTES_PER_BYTE: u64 = 512;
-
-/// A column's name and type.
-#[derive(Debug, Clone)]
-pub struct Field {
-    /// Its name as written.
-    pub name: String,
-    /// How its samples are stored; `None`: a type that is not read.
-    pub stored: Option<StoredType>,
-    /// The type by which its pages are decoded.
-    physical: ArrowDataType,
-    /// Ticks per second of a point in time.
-    ticks_per_second: f64,
-}
 
 /// A file's columns.
 pub struct Columns {
@@ -60,6 +49,7 @@ impl Columns {
         let file = File::open(path).map_err(|e| ReadError::io(path, &e))?;
         let length = file.metadata().map_err(|e| ReadError::io(path, &e))?.len();
         let handle = file.try_clone().map_err(|e| ReadError::io(path, &e))?;
+        check_footer(path, &file, length)?;
         let (fields, metadata) = guarded(path, || {
             let mut reader = ParquetReader::new(handle);
             let schema = reader.schema()?;
@@ -237,11 +227,22 @@ impl Columns {
             let mut bytes = vec![0; size as usize];
             read_exact_at(&self.file, &mut bytes, first)
                 .map_err(|e| ReadError::io(&self.path, &e))?;
+            if footer::first_claim(&bytes).is_some_and(|n| n > MOST_BYTES_PER_BYTE * self.length) {
+                return Err(damaged("a first page far larger than the file".to_owned()).at(first));
+            }
             pages.push((chunk, bytes.into()));
         }
         let samples = guarded(&self.path, || {
             let name = PlSmallStr::from_str(&field.name);
             let arrow = ArrowField::new(name.clone(), field.physical.clone(), true);
+            for (chunk, bytes) in &pages {
+                let limit = self.length as usize;
+                let bytes = Cursor::new(Clone::clone(bytes));
+                self.check_pages(
+                    PageReader::new(bytes, chunk, Vec::new(), limit),
+                    group.num_rows(),
+                )?;
+            }
             let (arrays, _) = to_deserializer(pages, arrow, None)?;
             samples(&Series::try_from((name, arrays))?)
         })?;
@@ -253,6 +254,24 @@ impl Columns {
                 group.num_rows()
             ))),
         }
+    }
+}
+
+impl Columns {
+    /// Refuse pages that claim to unpack to far more than the file, or to hold more values than
+    /// the row group has rows, before they are unpacked.
+    fn check_pages(&self, pages: PageReader, rows: usize) -> PolarsResult<()> {
+        let (mut unpacked, mut values) = (0u64, 0u64);
+        for page in pages {
+            if let CompressedPage::Data(page) = page? {
+                unpacked = unpacked.saturating_add(page.uncompressed_size() as u64);
+                values = values.saturating_add(page.num_values() as u64);
+            }
+        }
+        if unpacked > MOST_BYTES_PER_BYTE * self.length || values > rows as u64 {
+            polars_bail!(ComputeError: "pages that claim {unpacked} bytes and {values} values");
+        }
+        Ok(())
     }
 }
 
@@ -276,6 +295,28 @@ fn joined(parts: Vec<Samples>, field: &Field) -> Samples {
     all
 }
 
+/// Refuse a footer whose lengths exceed it.
+fn check_footer(path: &Path, file: &File, length: u64) -> Result<(), ReadError> {
+    let damaged = |found: String, at: u64| {
+        ReadError::new(path, "a complete Parquet file", found, REMEDY).at(at)
+    };
+    let mut tail = [0u8; 8];
+    let end = length
+        .checked_sub(12)
+        .ok_or_else(|| damaged(format!("{length} bytes"), 0))?
+        + 4;
+    read_exact_at(file, &mut tail, end).map_err(|e| ReadError::io(path, &e))?;
+    if tail[4..] != SIGNATURE {
+        return Err(damaged("no PAR1 at the end".to_owned(), end + 4));
+    }
+    let size = u64::from(u32::from_le_bytes([tail[0], tail[1], tail[2], tail[3]]));
+    let start = end.checked_sub(size).filter(|s| *s >= 4);
+    let start = start.ok_or_else(|| damaged(format!("a footer of {size} bytes"), end))?;
+    let mut bytes = vec![0; size as usize];
+    read_exact_at(file, &mut bytes, start).map_err(|e| ReadError::io(path, &e))?;
+    footer::check(&bytes).map_err(|(words, at)| damaged(words, start + at as u64))
+}
+
 const REMEDY: &str = "Copy the file anew, or write it again with the program that made it.";
 
 /// Run the library; its errors, and its panics on damaged files, become errors of ours.
@@ -285,87 +326,6 @@ fn guarded<T>(path: &Path, run: impl FnOnce() -> PolarsResult<T>) -> Result<T, R
         Ok(result) => result.map_err(|e| damaged(e.to_string())),
         Err(_) => Err(damaged("pages that contradict each other".to_owned())),
     }
-}
-
-impl Field {
-    fn new(name: String, datatype: &ArrowDataType) -> Self {
-        use ArrowDataType as A;
-        let ticks = |unit: &ArrowTimeUnit| match unit {
-            ArrowTimeUnit::Second => 1.0,
-            ArrowTimeUnit::Millisecond => 1e3,
-            ArrowTimeUnit::Microsecond => 1e6,
-            ArrowTimeUnit::Nanosecond => 1e9,
-        };
-        let text = |d: &A| matches!(d, A::Utf8 | A::LargeUtf8 | A::Utf8View);
-        let (stored, physical, ticks_per_second) = match datatype {
-            A::Int8 => (Some(StoredType::Int(8)), A::Int32, 1.0),
-            A::Int16 => (Some(StoredType::Int(16)), A::Int32, 1.0),
-            A::Int32 => (Some(StoredType::Int(32)), A::Int32, 1.0),
-            A::Int64 => (Some(StoredType::Int(64)), A::Int64, 1.0),
-            A::UInt8 => (Some(StoredType::UInt(8)), A::Int32, 1.0),
-            A::UInt16 => (Some(StoredType::UInt(16)), A::Int32, 1.0),
-            A::UInt32 => (Some(StoredType::UInt(32)), A::UInt32, 1.0),
-            A::UInt64 => (Some(StoredType::UInt(64)), A::UInt64, 1.0),
-            A::Float32 => (Some(StoredType::Float(32)), A::Float32, 1.0),
-            A::Float64 => (Some(StoredType::Float(64)), A::Float64, 1.0),
-            A::Boolean => (Some(StoredType::Bool), A::Boolean, 1.0),
-            A::Timestamp(unit, _) | A::Time64(unit) | A::Duration(unit) => {
-                (Some(StoredType::Time), A::Int64, ticks(unit))
-            }
-            A::Time32(unit) => (Some(StoredType::Time), A::Int32, ticks(unit)),
-            A::Date32 => (Some(StoredType::Time), A::Int32, 1.0 / 86_400.0),
-            A::Dictionary(_, inner, _) if text(inner) => (Some(StoredType::Text), A::Utf8View, 1.0),
-            other if text(other) => (Some(StoredType::Text), A::Utf8View, 1.0),
-            other => (None, other.clone(), 1.0),
-        };
-        Self {
-            name,
-            stored,
-            physical,
-            ticks_per_second,
-        }
-    }
-}
-
-/// A column's samples; missing numbers are NaN, missing texts empty.
-fn samples(series: &Series) -> PolarsResult<Samples> {
-    macro_rules! numbers {
-        ($chunked:expr) => {{
-            let mut values = Vec::with_capacity($chunked.len());
-            for chunk in $chunked.downcast_iter() {
-                match chunk.validity() {
-                    None => values.extend(chunk.values().iter().map(|v| *v as f64)),
-                    Some(_) => {
-                        values.extend(chunk.iter().map(|v| v.map_or(f64::NAN, |v| *v as f64)))
-                    }
-                }
-            }
-            Samples::Real(values)
-        }};
-    }
-    Ok(match series.dtype() {
-        DataType::String => {
-            let texts = series
-                .str()?
-                .iter()
-                .map(|t| t.unwrap_or_default().to_owned());
-            Samples::Text(texts.collect())
-        }
-        DataType::Boolean => {
-            let truths = series
-                .bool()?
-                .iter()
-                .map(|b| b.map_or(f64::NAN, |b| f64::from(u8::from(b))));
-            Samples::Real(truths.collect())
-        }
-        DataType::Int32 => numbers!(series.i32()?),
-        DataType::Int64 => numbers!(series.i64()?),
-        DataType::UInt32 => numbers!(series.u32()?),
-        DataType::UInt64 => numbers!(series.u64()?),
-        DataType::Float32 => numbers!(series.f32()?),
-        DataType::Float64 => numbers!(series.f64()?),
-        other => polars_bail!(ComputeError: "{other} is not read"),
-    })
 }
 
 fn pick(whole: &Samples, ranges: &[Range]) -> Samples {
