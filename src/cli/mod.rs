@@ -10,6 +10,7 @@ mod fail;
 mod init;
 mod inspect;
 mod interrupt;
+mod look;
 mod machine;
 mod progress;
 mod run;

@@ -6,10 +6,9 @@ use crate::campaign::resolved::ResolvedCampaign;
 use crate::campaign::written::Published;
 use crate::identify::published::{PublishedSpeed, identify, methods};
 use crate::identify::{Identification, Verdict};
-use crate::output::write_bytes;
 use crate::pipeline::identify::{settings, versions};
 use crate::pipeline::{PipelineError, inputs, report, store};
-use crate::report::{RenderOptions, ReportContent, render_pdf};
+use crate::report::ReportContent;
 
 /// Identify from published speeds and write identification.json and report.pdf.
 ///
@@ -39,10 +38,10 @@ pub fn run(
     content.summary.rig = "closing speeds as published; nothing was measured here".into();
     content.remarks = found.hypotheses;
     content.command_line = command_line.to_owned();
-    let pdf = render_pdf(&content, &RenderOptions::default())?;
+    let report = report::render(&content, campaign)?;
     store::write_resolved(campaign, out)?;
     super::identify::write(&content.identification, out)?;
-    write_bytes(&out.join(report::FILE), &pdf)?;
+    report::write(&report, out)?;
     Ok(found.verdict)
 }
 
