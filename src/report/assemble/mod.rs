@@ -7,6 +7,7 @@ mod decays;
 mod evidence;
 mod plane;
 mod rows;
+mod simulation;
 
 pub use decays::shown_decays;
 
