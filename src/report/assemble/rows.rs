@@ -108,6 +108,7 @@ fn record(gathered: &Gathered, o: &Observation) -> RecordRow {
         .map(|f| f.message.clone());
     RecordRow {
         id: o.record.clone(),
+        specimen: o.setting.specimen.clone(),
         frequency_hz: o.frequency_hz(),
         eta,
         clearance_m: o.setting.clearance_m,

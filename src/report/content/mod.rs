@@ -168,6 +168,9 @@ pub struct ChannelRow {
 pub struct RecordRow {
     /// The record's name.
     pub id: String,
+    /// Rig, mass or bumper, where the campaign holds several.
+    #[serde(default)]
+    pub specimen: Option<String>,
     /// Measured drive frequency, Hz; `None` without a drive.
     pub frequency_hz: Option<f64>,
     /// η = f/f0, where f0 is known.

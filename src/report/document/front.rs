@@ -11,18 +11,13 @@ use crate::report::parameters::{self, PARAMETERS, ParameterLook};
 /// Builds the first page.
 pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
     let id = &content.identification;
-    let (verdict, headline) = headline(id.verdict.kind);
+    let verdict = headline(id.verdict.kind).0;
     Front {
         synthetic: content.summary.synthetic,
         verdict,
-        headline,
+        headline: campaign_headline(content),
         summary: prose(&id.verdict.summary),
-        findings: id
-            .verdict
-            .findings
-            .iter()
-            .map(|f| prose(&captions::sentence(f)))
-            .collect(),
+        findings: findings(content),
         answers: answers(content, drawn.numbers),
         specimens: tables::specimens(content, drawn.numbers),
         agree: match id.agreement.agree {
@@ -30,11 +25,48 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
             Some(false) => "no",
             None => "unknown",
         },
-        agreement: prose(&agreement(&id.agreement.summary)),
+        agreement: match id.specimens.is_empty() {
+            true => prose(&agreement(&id.agreement.summary)),
+            false => Rich::default(),
+        },
         facts: facts(&content.summary, drawn.numbers),
         map: drawn.figure("map_small", ""),
         estimates: drawn.figure("estimates", ""),
     }
+}
+
+/// The headline of the whole campaign.
+fn campaign_headline(content: &ReportContent) -> String {
+    let id = &content.identification;
+    let specimens = id.specimens.len();
+    let identified = id.specimens.values();
+    let identified = identified
+        .filter(|s| s.verdict.kind == VerdictKind::Identified)
+        .count();
+    match specimens - identified {
+        _ if specimens == 0 => headline(id.verdict.kind).1.to_owned(),
+        0 => format!("Identified: the model fits each of the {specimens} specimens"),
+        _ => format!("The model fits {identified} of the {specimens} specimens"),
+    }
+}
+
+/// Reasons and findings; where there are specimens, what was found of each in full.
+fn findings(content: &ReportContent) -> Vec<Rich> {
+    let id = &content.identification;
+    let of = |finding: &String| {
+        let specimen = id.specimens.iter().find(|(name, _)| {
+            let rest = finding.strip_prefix(name.as_str());
+            rest.is_some_and(|r| r.starts_with(':'))
+        });
+        let mut words = captions::spoken(finding);
+        if let Some((_, result)) = specimen {
+            for more in &result.verdict.findings {
+                words.push_str(&format!(" {}", captions::spoken(more)));
+            }
+        }
+        prose(&words)
+    };
+    id.verdict.findings.iter().map(of).collect()
 }
 
 /// The parameters' cards; none where only each specimen alone has an answer.

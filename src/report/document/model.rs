@@ -56,7 +56,7 @@ pub struct Front {
     /// One word for the verdict: `identified`, `weak`, `not_identifiable`, `does_not_fit`.
     pub verdict: &'static str,
     /// The verdict as a headline.
-    pub headline: &'static str,
+    pub headline: String,
     /// Two sentences.
     pub summary: Rich,
     /// Reasons and findings.
@@ -122,6 +122,8 @@ pub struct Section {
     pub level: u8,
     /// Whether it begins a page.
     pub new_page: bool,
+    /// Whether it is an appendix.
+    pub appendix: bool,
     /// What stands in it.
     pub blocks: Vec<Block>,
 }
