@@ -11,6 +11,8 @@ use crate::signal::decay::Decay;
 
 /// Most decays that are drawn.
 const MOST: usize = 12;
+/// How much is drawn before the fit begins, s.
+const SHOWN_BEFORE_S: f64 = 0.03;
 /// Most points of a drawn decay: more than the figure can show.
 const MOST_POINTS: usize = 3000;
 
@@ -58,10 +60,13 @@ fn free_decay(gathered: &Gathered, o: &Observation, record: &Record) -> Option<F
         Some(specimen) => format!("{specimen}: {}", o.record),
         None => o.record.clone(),
     };
+    // the blow itself would dwarf what was fitted
+    let before = (SHOWN_BEFORE_S * record.sample_rate_hz) as usize;
+    let shown = decay.first.saturating_sub(before);
     Some(FreeDecay {
         record: name,
         dimension: channel.dimension,
-        measured: thinned(record.sample_rate_hz, 0, &channel.values),
+        measured: thinned(record.sample_rate_hz, shown, &channel.values[shown..]),
         fitted: Some(thinned(
             record.sample_rate_hz,
             decay.first,

@@ -16,8 +16,8 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
         synthetic: content.summary.synthetic,
         verdict,
         headline: campaign_headline(content),
-        summary: prose(&id.verdict.summary),
-        findings: findings(content),
+        summary: prose(&id.verdict.summary).localised(drawn.numbers),
+        findings: localised(findings(content), drawn.numbers),
         answers: answers(content, drawn.numbers),
         specimens: tables::specimens(content, drawn.numbers),
         agree: match id.agreement.agree {
@@ -26,13 +26,17 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
             None => "unknown",
         },
         agreement: match id.specimens.is_empty() {
-            true => prose(&agreement(&id.agreement.summary)),
+            true => prose(&agreement(&id.agreement.summary)).localised(drawn.numbers),
             false => Rich::default(),
         },
         facts: facts(&content.summary, drawn.numbers),
         map: drawn.figure("map_small", ""),
         estimates: drawn.figure("estimates", ""),
     }
+}
+
+fn localised(texts: Vec<Rich>, numbers: NumberLook) -> Vec<Rich> {
+    texts.into_iter().map(|t| t.localised(numbers)).collect()
 }
 
 /// The headline of the whole campaign.
@@ -117,7 +121,9 @@ fn answer(look: &ParameterLook, estimate: Option<&Estimate>, numbers: NumberLook
         unit: look.unit.into(),
         interval: interval.map(|[low, high]| format!("{} to {}", print(low), print(high))),
         status: estimate.map_or("not_asked", |e| parameters::status_name(e.status)),
-        note: estimate.and_then(|e| e.note.as_ref()).map(|n| prose(n)),
+        note: estimate
+            .and_then(|e| e.note.as_ref())
+            .map(|n| prose(n).localised(numbers)),
     }
 }
 
@@ -153,7 +159,7 @@ fn facts(summary: &CampaignSummary, numbers: NumberLook) -> Vec<(Rich, Rich)> {
     }
     facts
         .into_iter()
-        .map(|(l, v)| (Rich::from(l), Rich::from(v)))
+        .map(|(l, v)| (Rich::from(l), Rich::from(v).localised(numbers)))
         .collect()
 }
 

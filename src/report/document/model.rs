@@ -2,6 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
+use crate::report::figures::look::NumberLook;
 use crate::report::figures::richtext::{self, Run};
 
 /// A text with markup, split into runs; serialised as a string where it has none.
@@ -9,6 +10,14 @@ use crate::report::figures::richtext::{self, Run};
 pub struct Rich(pub Vec<Run>);
 
 impl Rich {
+    /// The same with the decimal sign of the reader's choice.
+    pub fn localised(mut self, numbers: NumberLook) -> Self {
+        for run in &mut self.0 {
+            run.text = numbers.words(&run.text);
+        }
+        self
+    }
+
     /// The text without markup.
     pub fn plain(&self) -> String {
         self.0.iter().map(|r| r.text.as_str()).collect()

@@ -7,6 +7,7 @@ use super::tables;
 use super::{Drawn, captions};
 use crate::report::content::ReportContent;
 use crate::report::figures::comparison;
+use crate::report::figures::look::NumberLook;
 use crate::report::figures::plane::Plane;
 use crate::report::parameters::method_name;
 
@@ -15,8 +16,8 @@ pub fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
     let mut sections: Vec<Section> = [
         regions(content, drawn),
         comparisons(content, drawn),
-        specimens(content, drawn),
         methods(content, drawn),
+        specimens(content, drawn),
         left_out(content),
         records(content, drawn),
         conventions(content),
@@ -26,7 +27,25 @@ pub fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
     .flatten()
     .collect();
     letter_appendices(&mut sections);
+    for section in &mut sections {
+        localise(&mut section.blocks, drawn.numbers);
+    }
     sections
+}
+
+/// Paragraphs and captions with the decimal sign of the reader's choice.
+fn localise(blocks: &mut [Block], numbers: NumberLook) {
+    for block in blocks {
+        match block {
+            Block::Paragraph { text } => *text = std::mem::take(text).localised(numbers),
+            Block::Figures { figures } => {
+                for figure in figures {
+                    figure.caption = std::mem::take(&mut figure.caption).localised(numbers);
+                }
+            }
+            _ => {}
+        }
+    }
 }
 
 /// Letters before the titles of the appendices, in the order in which they come.
@@ -159,6 +178,7 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
                 .map(move |r| remark(&format!("{name}: {}", captions::sentence(r))))
         });
     blocks.extend(remarks);
+    blocks.extend(tables::further(content).map(Block::Table));
     for group in captions::method_figures(content) {
         let named: Vec<(&str, &str)> = group
             .iter()

@@ -6,7 +6,7 @@ use super::model::Block;
 use crate::units::Dimension;
 
 /// From how many lines on the settings stand in columns.
-const MANY_LINES: usize = 24;
+const MANY_LINES: usize = 12;
 
 /// What a channel has where nothing was said: not worth a line.
 const DEFAULTS: [&str; 4] = [

@@ -197,6 +197,27 @@ pub fn agreement(content: &ReportContent, numbers: NumberLook) -> Option<Table> 
     )
 }
 
+/// Further tables of the content, as they stand.
+pub fn further(content: &ReportContent) -> impl Iterator<Item = Table> + use<'_> {
+    content.tables.iter().filter_map(|t| {
+        let columns: Vec<Column> = t.heads.iter().map(|_| ("", "right", 0)).collect();
+        let rows = t.rows.iter();
+        let rows = rows.map(|row| row.iter().map(Rich::from).collect());
+        let heads = t.heads.iter().map(Rich::from).collect();
+        (!t.rows.is_empty()).then(|| Table {
+            caption: Rich::from(&t.caption),
+            heads,
+            align: columns.iter().map(|c| c.1).collect(),
+            widths: columns.iter().map(|c| c.2).collect(),
+            rows: rows.collect(),
+            size: 8.5,
+            side_by_side: 1,
+            dense: false,
+            columns_text: Vec::new(),
+        })
+    })
+}
+
 fn arrow(sweep: Sweep) -> &'static str {
     match sweep {
         Sweep::Up => "↑",
