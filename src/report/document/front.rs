@@ -48,7 +48,13 @@ fn campaign_headline(content: &ReportContent) -> String {
         .filter(|s| s.verdict.kind == VerdictKind::Identified)
         .count();
     match specimens - identified {
-        _ if specimens == 0 => headline(id.verdict.kind).1.to_owned(),
+        _ if specimens == 0 => {
+            let words = headline(id.verdict.kind).1;
+            match content.records.is_empty() {
+                true => words.trim_end_matches(" the rig").to_owned(),
+                false => words.to_owned(),
+            }
+        }
         0 => format!("Identified: the model fits each of the {specimens} specimens"),
         _ => format!("The model fits {identified} of the {specimens} specimens"),
     }

@@ -263,7 +263,8 @@ const CONVENTIONS: [Convention; 8] = [
 ];
 
 fn conventions(content: &ReportContent) -> Option<Section> {
-    let driven = content.records.iter().any(|r| r.frequency_hz.is_some());
+    let records = &content.records;
+    let driven = records.is_empty() || records.iter().any(|r| r.frequency_hz.is_some());
     let entries = CONVENTIONS
         .into_iter()
         .filter(|c| driven || !c.3)
@@ -279,6 +280,16 @@ fn conventions(content: &ReportContent) -> Option<Section> {
     appendix("Conventions", blocks)
 }
 
+/// Versions of program and formats.
+fn versions(content: &ReportContent) -> Option<Block> {
+    let versions = &content.identification.versions;
+    let each: Vec<String> = versions.iter().map(|(k, v)| format!("{k} {v}")).collect();
+    let text = format!("Versions of program and files: {}.", each.join(", "));
+    (!each.is_empty()).then(|| Block::Paragraph {
+        text: tables::verbatim(text),
+    })
+}
+
 fn provenance(content: &ReportContent) -> Option<Section> {
     let mut blocks = Vec::new();
     if !content.command_line.is_empty() {
@@ -288,7 +299,7 @@ fn provenance(content: &ReportContent) -> Option<Section> {
             columns: 1,
         });
     }
-    blocks.extend(tables::versions(content).map(Block::Table));
+    blocks.extend(versions(content));
     blocks.extend(tables::hashes(content).map(Block::Table));
     if !content.settings_text.is_empty() {
         blocks.push(paragraph("Settings, as resolved:"));

@@ -241,7 +241,7 @@ pub fn left_out(content: &ReportContent) -> Option<Table> {
 }
 
 /// A cell whose text has no markup, whatever signs it holds.
-fn verbatim(text: String) -> Rich {
+pub fn verbatim(text: String) -> Rich {
     use crate::report::figures::richtext::{Level, Run};
     if text.is_empty() {
         Rich::default()
@@ -252,19 +252,6 @@ fn verbatim(text: String) -> Rich {
             level: Level::Base,
         }])
     }
-}
-
-/// Versions of program and formats.
-pub fn versions(content: &ReportContent) -> Option<Table> {
-    let rows = content.identification.versions.iter();
-    let rows = rows
-        .map(|(k, v)| vec![verbatim(k.clone()), verbatim(v.clone())])
-        .collect();
-    table(
-        "Versions.",
-        &[("what", "left", 1), ("version", "left", 3)],
-        rows,
-    )
 }
 
 /// SHA-256 of the inputs.
