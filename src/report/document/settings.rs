@@ -128,8 +128,8 @@ mod tests {
         assert_eq!(
             lines,
             [
-                "channels.velocity_x.scale = 0.2 m/s per V",
-                "channels.velocity_x.source = \"laser\""
+                "channels.velocity_x.source = \"laser\"",
+                "channels.velocity_x.scale = 0.2 m/s per V"
             ]
         );
         let plain = settings("[rig]\nf = 12.6");

@@ -4,6 +4,7 @@ pub mod axes;
 pub mod boundary_fit;
 pub mod canvas;
 pub mod comparison;
+mod compact;
 pub mod correlation;
 pub mod csv;
 pub mod decays;
