@@ -96,12 +96,14 @@ impl<'a> JumpSearch<'a> {
         robust::median(&gaps).map_or(1, |g| (g.round() as usize).clamp(1, self.window))
     }
 
-    /// Samples of the steep stretch around a jump: steps of at least a tenth of the jump.
+    /// Samples of the steep stretch around a jump: steps that exceed the flight's own slope beside
+    /// it by a good part of the jump.
     fn transition_samples(&self, left: usize) -> Option<usize> {
         let values = &self.velocity.values;
         let height = self.scan[left].abs();
+        let slope = self.slope_beside(left);
         let steep = |i: usize| {
-            let step = values.get(i)? - values.get(i + 1)?;
+            let step = values.get(i)? - values.get(i + 1)? - slope;
             Some(step > (0.15 * height).max(4.0 * self.velocity.noise))
         };
         let centre = (left.saturating_sub(1)..=left + 1).find(|&i| steep(i) == Some(true))?;
@@ -114,6 +116,19 @@ impl<'a> JumpSearch<'a> {
             last += 1;
         }
         Some(last - first + 1)
+    }
+
+    /// Fall per sample of the flight on the steeper side of a jump, never less than zero.
+    fn slope_beside(&self, left: usize) -> f64 {
+        let values = &self.velocity.values;
+        let fall = |first: usize, end: usize| {
+            let side = values.get(first..end.min(values.len()))?;
+            let steps: Vec<f64> = side.windows(2).map(|w| w[0] - w[1]).collect();
+            robust::median(&steps)
+        };
+        let before = fall(left.saturating_sub(self.window), left);
+        let after = fall(left + self.gap + 1, left + self.gap + 1 + self.window);
+        before.into_iter().chain(after).fold(0.0, f64::max)
     }
 
     /// Local extrema of the scan, strongest first; `sign` −1 for downward jumps, +1 for upward.
