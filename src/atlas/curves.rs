@@ -3,12 +3,14 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::continuation::EdgeKind;
 use super::regions::Slice;
 use super::resting::RestingSlice;
-use crate::model::{Machine, rho_grazing};
+use crate::model::orbit::stable_orbit;
+use crate::model::{BoundaryPoint, Machine, Orbit, Setting, rho_grazing, rho_s1, rho_s2};
 
 /// A point of a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -41,20 +43,96 @@ pub struct Curve {
 /// All boundaries as curves.
 pub fn curves(
     machine: &Machine,
-    etas: &[f64],
+    (etas, range): (&[f64], (f64, f64)),
+    largest_n: u32,
     columns: &[Vec<Slice>],
     resting: &[Vec<RestingSlice>],
 ) -> Vec<Curve> {
-    let mut curves = vec![grazing_curve(machine, etas)];
-    let marks = columns
-        .iter()
-        .map(|slices| slices.iter().flat_map(slice_marks).collect());
+    let fine = refined(etas);
+    let mut curves = vec![grazing_curve(machine, &fine)];
+    curves.extend(closed_forms(machine, &fine, largest_n, range));
+    let marks = columns.iter().map(|slices| {
+        let followed = slices.iter().flat_map(slice_marks);
+        followed.filter(|m| !is_closed_form(&m.key)).collect()
+    });
     curves.extend(chains(marks.collect()));
     let marks = resting
         .iter()
         .map(|slices| slices.iter().flat_map(resting_marks).collect());
     curves.extend(chains(marks.collect()));
     curves
+}
+
+/// Points of a closed form between two columns.
+const REFINEMENT: usize = 6;
+
+/// The columns' η with further ones evenly between them.
+fn refined(etas: &[f64]) -> Vec<f64> {
+    let mut fine: Vec<f64> = etas
+        .windows(2)
+        .flat_map(|w| {
+            (0..REFINEMENT).map(move |k| w[0] + (w[1] - w[0]) * k as f64 / REFINEMENT as f64)
+        })
+        .collect();
+    fine.extend(etas.last());
+    fine
+}
+
+/// Whether a boundary is one that closed forms give.
+fn is_closed_form((p, _, dead_zone, _, kind): &Key) -> bool {
+    *p == 1 && !dead_zone && (kind == "s1" || kind == "s2")
+}
+
+/// s2 and s1 of z = 1/n: pieces along which the marginal orbit exists.
+fn closed_forms(
+    machine: &Machine,
+    etas: &[f64],
+    largest_n: u32,
+    (low, high): (f64, f64),
+) -> Vec<Curve> {
+    type Form = fn(&Machine, f64, u32) -> Option<BoundaryPoint>;
+    let forms: [(&str, Form); 2] = [("s2", rho_s2), ("s1", rho_s1)];
+    let all: Vec<(&str, Form, u32)> = (1..=largest_n)
+        .flat_map(|n| forms.map(|(kind, form)| (kind, form, n)))
+        .collect();
+    all.par_iter()
+        .flat_map(|(kind, form, n)| {
+            let shown = |p: &BoundaryPoint| p.is_valid() && p.rho >= low && p.rho <= high;
+            let points: Vec<Option<BoundaryPoint>> = etas
+                .iter()
+                .map(|&eta| form(machine, eta, *n).filter(shown))
+                .collect();
+            let pieces = points.split(Option::is_none).filter(|p| !p.is_empty());
+            pieces
+                .map(|piece| Curve {
+                    kind: (*kind).to_owned(),
+                    p: 1,
+                    n: *n,
+                    dead_zone: false,
+                    upper: *kind == "s2" || stable_below(machine, piece, *n),
+                    points: piece.iter().flatten().map(curve_point).collect(),
+                })
+                .collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+fn curve_point(p: &BoundaryPoint) -> CurvePoint {
+    CurvePoint {
+        eta: p.eta,
+        rho: p.rho,
+        closing_speed: p.closing_speed,
+    }
+}
+
+/// Whether the stable motion lies below a piece of s1.
+fn stable_below(machine: &Machine, piece: &[Option<BoundaryPoint>], n: u32) -> bool {
+    let Some(p) = piece[piece.len() / 2] else {
+        return true;
+    };
+    let below = Setting::new(p.eta, p.rho - 1e-4 * (0.1 + p.rho.abs()));
+    let near = |o: &Orbit| (o.closing_speed - p.closing_speed).abs() < 0.1 * p.closing_speed;
+    stable_orbit(machine, below, n).is_ok_and(|o| o.is_some_and(|o| near(&o)))
 }
 
 fn grazing_curve(machine: &Machine, etas: &[f64]) -> Curve {
@@ -161,4 +239,3 @@ fn chains(columns: Vec<Vec<Mark>>) -> Vec<Curve> {
     done.sort_by_key(|a| (a.n, a.p, a.dead_zone, a.upper));
     done
 }
-

@@ -138,7 +138,7 @@ impl Sink for Strobe {
 /// Samples of X a drive period that its autocorrelation is taken from.
 const CORRELATED: usize = 24;
 /// Longest lag of the autocorrelation, drive periods.
-const LONGEST_LAG: usize = 40;
+const LONGEST_LAG: usize = 20;
 
 /// Simulate a motion and look at it.
 ///
@@ -285,7 +285,10 @@ fn pressed(
         together_periods: c.duration / period,
         kind: "soft",
     };
-    let within = motion.contacts.iter().filter(|c| c.tau >= skip && c.tau <= end);
+    let within = motion
+        .contacts
+        .iter()
+        .filter(|c| c.tau >= skip && c.tau <= end);
     let impacts = within.map(strike).collect();
     let first = first_strobe(plan, skip);
     let every = |from: f64, step: f64, count: usize| {

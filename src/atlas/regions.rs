@@ -2,7 +2,7 @@
 //! plane, column by column, each followed to both its edges; with the boundaries as curves and
 //! a brute-force map beside it.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -15,8 +15,7 @@ use super::map::{CellMotion, End, MapGrid, MapSettings, clear_of};
 use super::resting::{RestingSlice, resting_slices};
 use crate::model::orbit::stable_orbit;
 use crate::model::{
-    Existence, Initial, Machine, ModelError, ModelImpact, PeriodicOrbit, Setting, Simulator,
-    rho_s2,
+    Existence, Initial, Machine, ModelError, ModelImpact, PeriodicOrbit, Setting, Simulator, rho_s2,
 };
 
 /// What an atlas covers.
@@ -50,6 +49,16 @@ pub struct Slice {
 }
 
 impl Slice {
+    /// The motion.
+    pub fn motion(&self) -> CellMotion {
+        CellMotion::Periodic {
+            p: self.p as u16,
+            n: self.n as u16,
+            dead_zone: false,
+            chatter: false,
+        }
+    }
+
     /// Whether a clearance lies in it.
     pub fn holds(&self, rho: f64) -> bool {
         self.low.orbit.rho <= rho && rho <= self.high.orbit.rho
@@ -69,6 +78,30 @@ pub struct Atlas {
     pub maps: [Vec<CellMotion>; 3],
     /// How curves and maps agree.
     pub agreement: Agreement,
+}
+
+impl Atlas {
+    /// A motion of each cell beside the one from the start, where there is another: carried along
+    /// rising or falling, else by the regions of the curves.
+    pub fn other_motions(&self, grid: &MapGrid) -> Vec<CellMotion> {
+        let mut by_eta: BTreeMap<u64, Vec<&Slice>> = BTreeMap::new();
+        for s in &self.slices {
+            by_eta.entry(s.eta.to_bits()).or_default().push(s);
+        }
+        let other = |i: usize| {
+            let first = self.maps[0][i];
+            let (eta, rho) = grid.at(i);
+            let carried = [self.maps[1][i], self.maps[2][i]];
+            let there = by_eta.get(&eta.to_bits()).into_iter().flatten();
+            let by_curves = there
+                .filter(|s| s.holds(rho))
+                .min_by_key(|s| (s.p, s.n))
+                .map(|s| s.motion());
+            let all = carried.into_iter().chain(by_curves);
+            all.into_iter().find(|m| *m != first).unwrap_or(first)
+        };
+        (0..grid.len()).map(other).collect()
+    }
 }
 
 /// Compute the atlas of a machine.
@@ -107,7 +140,13 @@ pub fn assemble(
         .par_iter()
         .map(|&eta| resting_slices(machine, eta, &grid.rho, settings.largest_n))
         .collect();
-    let curves = curves(machine, &grid.eta, &columns, &resting);
+    let rows = (grid.rho.first(), grid.rho.last());
+    let range = (
+        rows.0.copied().unwrap_or(0.0),
+        rows.1.copied().unwrap_or(0.0),
+    );
+    let along = (grid.eta.as_slice(), range);
+    let curves = curves(machine, along, settings.largest_n, &columns, &resting);
     let slices: Vec<Slice> = columns.into_iter().flatten().collect();
     let resting: Vec<RestingSlice> = resting.into_iter().flatten().collect();
     let agreement = compare(machine, settings, maps, &slices, &resting);
@@ -132,12 +171,7 @@ pub fn slices_at(
 ) -> Result<Vec<Slice>, ModelError> {
     let mut settings = settings.clone();
     settings.grid.eta = vec![eta];
-    let map = brute_map(
-        machine,
-        &settings.grid,
-        &settings.map,
-        Way::FromStart,
-    )?;
+    let map = brute_map(machine, &settings.grid, &settings.map, Way::FromStart)?;
     Ok(column(machine, &settings, &[map], 0))
 }
 
@@ -291,4 +325,3 @@ fn slice(machine: &Machine, settings: &AtlasSettings, seed: &PeriodicOrbit) -> O
         }
     })
 }
-

@@ -78,10 +78,7 @@ fn prop_parts_make_up_the_whole_atlas_and_nothing_else_does() {
     let parts: Vec<AtlasPart> = (0..3).map(|k| part(&request, k, 3).unwrap()).collect();
     assert_eq!(merge(&[]), Err(MergeError::Nothing));
     let (numbers, of) = (vec![2], 3);
-    assert_eq!(
-        merge(&parts[..2]),
-        Err(MergeError::Missing { numbers, of })
-    );
+    assert_eq!(merge(&parts[..2]), Err(MergeError::Missing { numbers, of }));
     let doubled = [parts[0].clone(), parts[0].clone()];
     assert_eq!(merge(&doubled), Err(MergeError::Doubled { number: 0 }));
     let other = AtlasRequest::new(Machine::symmetric(0.07, 0.8), settings);

@@ -128,7 +128,10 @@ impl Atlas {
         (number, of): (usize, usize),
         voice: Voice,
     ) -> Result<Exit, Failure> {
-        let file = self.out.folder().join(format!("part-{number}-of-{of}.json"));
+        let file = self
+            .out
+            .folder()
+            .join(format!("part-{number}-of-{of}.json"));
         crate::output::make_folder(self.out.folder())?;
         // many parts of an array of jobs may share the folder: the lock is the part's own
         let _lock = Lock::take(&self.out.folder().join(format!(".part-{number}")))?;

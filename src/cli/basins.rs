@@ -22,7 +22,12 @@ pub struct Basins {
     #[arg(long, value_name = "RHO", allow_negative_numbers = true)]
     rho: f64,
     /// Phase φ of the drive at the start, rad
-    #[arg(long, value_name = "PHI", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "PHI",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
     phase: f64,
     /// Starts X(0)
     #[arg(long, value_name = "LOW..HIGH", value_parser = range, allow_hyphen_values = true)]

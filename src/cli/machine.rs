@@ -83,7 +83,12 @@ fn law(text: &str) -> Result<Law, String> {
 #[derive(Debug, Clone, Args)]
 pub struct StartArgs {
     /// Start X, X' or X, X', Y, Y'; two numbers start both masses alike
-    #[arg(long, value_name = "X,X'[,Y,Y']", default_value = "0,0", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "X,X'[,Y,Y']",
+        default_value = "0,0",
+        allow_hyphen_values = true
+    )]
     pub start: String,
 }
 

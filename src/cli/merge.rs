@@ -51,7 +51,11 @@ impl Merge {
         };
         let _lock = Lock::take(self.out.folder())?;
         interrupt::watch(self.out.folder().to_path_buf());
-        voice.say(&format!("{} parts make {} cells", parts.len(), maps[0].len()));
+        voice.say(&format!(
+            "{} parts make {} cells",
+            parts.len(),
+            maps[0].len()
+        ));
         let text = serde_json::to_string(&first.request).unwrap_or_default();
         let work = Work {
             folder: self.out.folder(),

@@ -54,10 +54,20 @@ pub struct MotionArgs {
     #[arg(long, value_name = "ETA", required = true)]
     eta: Option<f64>,
     /// Clearance ρ
-    #[arg(long, value_name = "RHO", required = true, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "RHO",
+        required = true,
+        allow_negative_numbers = true
+    )]
     rho: Option<f64>,
     /// Phase φ of the drive at the start, rad
-    #[arg(long, value_name = "PHI", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "PHI",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
     phase: f64,
     #[command(flatten)]
     start: StartArgs,
@@ -74,7 +84,12 @@ pub struct MotionArgs {
     #[arg(long, value_name = "N", default_value_t = 500)]
     poincare_periods: usize,
     /// Phase of the drive at which the Poincaré map is taken, rad
-    #[arg(long, value_name = "PHI", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "PHI",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
     poincare_phase: f64,
     /// Contact of a finite stiffness (over the spring's) instead of Newton's law; its damper
     /// gives the same R

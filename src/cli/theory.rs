@@ -42,9 +42,8 @@ impl OutArgs {
     /// # Errors
     /// [`Failure`] where a parameter is out of range or an output cannot be written.
     pub fn study(&self, study: &Study, what: &'static str, voice: Voice) -> Result<Exit, Failure> {
-        let text = toml::to_string(study).map_err(|e| {
-            Failure::new(e.to_string(), "give numbers that can be written as TOML")
-        })?;
+        let text = toml::to_string(study)
+            .map_err(|e| Failure::new(e.to_string(), "give numbers that can be written as TOML"))?;
         let _lock = Lock::take(self.folder())?;
         interrupt::watch(self.folder().to_path_buf());
         let work = Work {

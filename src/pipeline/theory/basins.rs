@@ -43,7 +43,10 @@ pub fn run(
 
 fn setting(plan: &BasinPlan) -> String {
     let s = &plan.setting;
-    format!("η = {}, ρ = {}, φ = {}", s.frequency_ratio, s.clearance, s.phase)
+    format!(
+        "η = {}, ρ = {}, φ = {}",
+        s.frequency_ratio, s.clearance, s.phase
+    )
 }
 
 fn cells(
@@ -102,7 +105,11 @@ fn shares(name: &str, basins: &Basins) -> String {
     counts.sort_by_key(|c| std::cmp::Reverse(c.1));
     let all: usize = counts.iter().map(|c| c.1).sum();
     let part = |c: &(String, usize)| {
-        format!("z = {}: {:.1} %", c.0, 100.0 * c.1 as f64 / all.max(1) as f64)
+        format!(
+            "z = {}: {:.1} %",
+            c.0,
+            100.0 * c.1 as f64 / all.max(1) as f64
+        )
     };
     let parts: Vec<String> = counts.iter().take(5).map(part).collect();
     format!("{name}: {} of {all} starts", parts.join(", "))

@@ -34,7 +34,10 @@ impl Kept {
     pub fn open(out: &Path, work: &str, resume: bool) -> Result<Self, OutputError> {
         let mut hash = Sha256::new();
         hash.update(env!("CARGO_PKG_VERSION"));
-        hash.update(format!("{:?}", crate::atlas::map::Kernel::of_this_machine()));
+        hash.update(format!(
+            "{:?}",
+            crate::atlas::map::Kernel::of_this_machine()
+        ));
         hash.update(work);
         let key = hash.finalize().iter().map(|b| format!("{b:02x}")).collect();
         let kept = Self {

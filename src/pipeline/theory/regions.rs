@@ -68,11 +68,11 @@ pub fn leave(
         "agreement": atlas.agreement,
     });
     desk.bytes(&format!("{name}.json"), format!("{summary:#}\n").as_bytes())?;
-    let [first, rising, _] = &atlas.maps;
+    let second = atlas.other_motions(&settings.grid);
     let plane = Plane {
         grid: &settings.grid,
-        first,
-        second: rising,
+        first: &atlas.maps[0],
+        second: &second,
         curves: &atlas.curves,
     };
     let title = "Regions of existence and stability of all motions";

@@ -9,8 +9,8 @@ use super::table::Table;
 use super::{Desk, StudyError};
 use crate::atlas::map::even;
 use crate::atlas::sweep::{Carried, Impactless, LONGEST_LAG, SweepPoint, impactless};
-use crate::model::simulate::Snapshot;
 use crate::model::Machine;
+use crate::model::simulate::Snapshot;
 use crate::motion::Motion;
 use crate::report::figures::look::NumberLook;
 use crate::report::theory::sweep::{Characteristics, draw};
@@ -54,8 +54,7 @@ pub fn run(
         };
         walk.go(way, steps, &tick)
     };
-    let (forward, backward) =
-        rayon::join(|| walk("forward", &steps), || walk("backward", &back));
+    let (forward, backward) = rayon::join(|| walk("forward", &steps), || walk("backward", &back));
     let (forward, backward) = (forward?, backward?);
     let impactless: Vec<Impactless> = steps.iter().map(|s| impactless(machine, s.0)).collect();
     desk.table(name, &characteristics(machine, &forward, &backward))?;

@@ -28,10 +28,7 @@ pub fn run(
         &autocorrelation(&portrait),
     )?;
     let s = &plan.setting;
-    let title = format!(
-        "Motion at η = {}, ρ = {}",
-        s.frequency_ratio, s.clearance
-    );
+    let title = format!("Motion at η = {}, ρ = {}", s.frequency_ratio, s.clearance);
     desk.figure(&draw(&portrait, name, &title, NumberLook::default()))?;
     (desk.progress)(2, 2);
     Ok(())
@@ -76,7 +73,9 @@ fn poincare(p: &Portrait) -> Table {
         .numbers("x", column(0))
         .numbers("x_velocity", column(1));
     if p.two_masses {
-        table.numbers("y", column(2)).numbers("y_velocity", column(3))
+        table
+            .numbers("y", column(2))
+            .numbers("y_velocity", column(3))
     } else {
         table
     }

@@ -64,12 +64,11 @@ fn tint_keys(map: &RegionMap, most: usize) -> Vec<Key> {
             _ => format!("$z$ = {}", motion.label()),
         };
         let tint = marks::of(motion).tint;
-        let sign = if tint == look::PAPER {
-            Sign::Patch(look::GRID)
+        if tint == look::PAPER {
+            Key::new(Sign::Nothing, format!("white: {text}"))
         } else {
-            Sign::Patch(tint)
-        };
-        Key::new(sign, text)
+            Key::new(Sign::Patch(tint), text)
+        }
     };
     order.iter().map(key).collect()
 }

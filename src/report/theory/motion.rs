@@ -27,7 +27,7 @@ pub fn draw(portrait: &Portrait, name: &str, title: &str, numbers: NumberLook) -
     keys_on_top(&mut canvas, LEFT, &keys);
     let drawing = Drawing {
         portrait,
-        samples: &portrait.samples[portrait.samples.len().saturating_sub(MOST_SAMPLES)..],
+        samples: with_impacts(portrait),
         numbers,
     };
     drawing.series(&mut canvas, top);
@@ -37,6 +37,44 @@ pub fn draw(portrait: &Portrait, name: &str, title: &str, numbers: NumberLook) -
     drawing.poincare(&mut canvas, square(LEFT + step, squares, step));
     drawing.autocorrelation(&mut canvas, square(LEFT + 2.0 * step, squares, step));
     Figure::new(name, title, canvas, String::new())
+}
+
+/// The time series with the instants just before and after every impact, so that jumps are drawn
+/// upright.
+fn with_impacts(portrait: &Portrait) -> Vec<Sample> {
+    let all = &portrait.samples;
+    let samples = &all[all.len().saturating_sub(MOST_SAMPLES)..];
+    let first = samples.first().map_or(0.0, |s| s.periods);
+    let mut strikes = portrait
+        .impacts
+        .iter()
+        .filter(|i| i.periods >= first)
+        .peekable();
+    let mut merged = Vec::with_capacity(samples.len());
+    for sample in samples {
+        while let Some(i) = strikes.next_if(|i| i.periods <= sample.periods) {
+            let y = if portrait.two_masses {
+                portrait.gap - i.x
+            } else {
+                0.0
+            };
+            let speeds = [(i.vx_before, i.vy_before), (i.vx_after, i.vy_after)];
+            for (vx, vy) in speeds {
+                if let (Some(vx), Some(vy)) = (vx, vy) {
+                    merged.push(Sample {
+                        periods: i.periods,
+                        x: i.x,
+                        vx,
+                        y,
+                        vy,
+                        joined: false,
+                    });
+                }
+            }
+        }
+        merged.push(*sample);
+    }
+    merged
 }
 
 fn square(left: f64, top: f64, step: f64) -> Rect {
@@ -49,7 +87,7 @@ fn keys(portrait: &Portrait) -> Vec<Key> {
     if portrait.two_masses {
         keys.push(Key::new(
             line(look::VERMILION),
-            "2$ρ$ − $Y$ above, $Y$ and $Y$′ else",
+            "2$ρ$ − $Y$ (top), $Y$, $Y$′",
         ));
     } else {
         keys.push(Key::new(line(look::INK), "stop at $ρ$"));
@@ -74,7 +112,7 @@ const JOINED: Colour = plotters::style::RGBColor(0xd9, 0xdd, 0xe2);
 
 struct Drawing<'a> {
     portrait: &'a Portrait,
-    samples: &'a [Sample],
+    samples: Vec<Sample>,
     numbers: NumberLook,
 }
 
@@ -90,7 +128,7 @@ impl Drawing<'_> {
     fn across(&self, top: f64, height: f64, y: Axis, titled: bool) -> Panel {
         let (first, last) = self.times();
         let title = if titled { "time $τ$/$T$ (1)" } else { "" };
-        let rect = Rect::new(LEFT, top, look::FULL_WIDTH - LEFT - 4.0, height);
+        let rect = Rect::new(LEFT, top, look::FULL_WIDTH - LEFT - 7.0, height);
         Panel::new(rect, Axis::new(first, last, title).with_ticks(8), y).with_title_reach(27.0)
     }
 
@@ -143,7 +181,7 @@ impl Drawing<'_> {
             let (a, b) = (panel.at(from, panel.y.low), panel.at(to, panel.y.high));
             canvas.rectangle((a.0, b.1), (b.0, a.1), JOINED);
         };
-        for s in self.samples {
+        for s in &self.samples {
             match (s.joined, first) {
                 (true, None) => first = Some(s.periods),
                 (false, Some(from)) => {
@@ -182,7 +220,11 @@ impl Drawing<'_> {
     fn phase_plane(&self, canvas: &mut Canvas, rect: Rect) {
         let two = self.portrait.two_masses;
         let title = if two { "$X$, $Y$ (1)" } else { "$X$ (1)" };
-        let up = if two { "$X$′, $Y$′ (1)" } else { "$X$′ (1)" };
+        let up = if two {
+            "$X$′, $Y$′ (1)"
+        } else {
+            "$X$′ (1)"
+        };
         let of = |x: &dyn Fn(&Sample) -> [f64; 2]| -> Vec<f64> {
             self.samples
                 .iter()
@@ -239,7 +281,7 @@ impl Drawing<'_> {
         let y = Axis::new(-1.08, 1.08, "autocorrelation of $X$ (1)").with_ticks(4);
         let panel = Panel::new(rect, x, y);
         panel.level(canvas, 0.0, look::ZERO_STROKE);
-        let stroke = Stroke::solid(mix(look::BLUE, 0.9), 0.8);
+        let stroke = Stroke::solid(mix(look::BLUE, 0.9), 0.6);
         panel.curve(canvas, values.iter().copied(), stroke);
         canvas.layer(4);
         panel.frame(canvas, Sides::BOTH, self.numbers);

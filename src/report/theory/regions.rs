@@ -17,6 +17,8 @@ use crate::report::figures::regions::Regions;
 
 const LEFT: f64 = 34.0;
 const HEIGHT: f64 = 380.0;
+/// Shorter pieces of boundaries are told in the table alone.
+const FEWEST_POINTS: usize = 3;
 
 /// What is drawn.
 #[derive(Debug, Clone, Copy)]
@@ -33,9 +35,8 @@ pub struct Plane<'a> {
 
 /// Draws the plane; `None` where the grid has no area.
 pub fn draw(plane: &Plane<'_>, name: &str, title: &str, numbers: NumberLook) -> Option<Figure> {
-    let motions = |cells: &[CellMotion]| -> Vec<Motion> {
-        cells.iter().map(|c| Motion::from(*c)).collect()
-    };
+    let motions =
+        |cells: &[CellMotion]| -> Vec<Motion> { cells.iter().map(|c| Motion::from(*c)).collect() };
     let (first, second) = (motions(plane.first), motions(plane.second));
     let map = plane_of(&plane.grid.eta, &plane.grid.rho, &first, &second);
     let keys = keys(plane.curves, first != second);
@@ -47,7 +48,7 @@ pub fn draw(plane: &Plane<'_>, name: &str, title: &str, numbers: NumberLook) -> 
         Some(Axis::new(*v.first()?, *v.last()?, title).with_ticks(ticks))
     };
     let panel = Panel::new(
-        Rect::new(LEFT, top, look::FULL_WIDTH - LEFT - 5.0, HEIGHT),
+        Rect::new(LEFT, top, look::FULL_WIDTH - LEFT - 7.0, HEIGHT),
         axis(&plane.grid.eta, "frequency ratio $η$ (1)", 8)?,
         axis(&plane.grid.rho, "clearance ratio $ρ$ (1)", 7)?,
     );
@@ -75,10 +76,11 @@ fn curves(canvas: &mut Canvas, panel: &Panel, curves: &[Curve], occupancy: &mut 
         for piece in path::clip(&points, &panel.rect) {
             occupancy.take_line(&piece);
         }
-        if curve.points.len() > 1 {
-            panel.curve(canvas, data(), stroke(&curve.kind));
-        } else if let Some(at) = points.first().filter(|at| panel.rect.contains(**at)) {
-            canvas.disc(*at, 0.5, stroke(&curve.kind).colour);
+        if curve.points.len() >= FEWEST_POINTS {
+            let full = stroke(&curve.kind);
+            let minor = curve.p > 1 || curve.n > 5;
+            let width = if minor { 0.6 * full.width } else { full.width };
+            panel.curve(canvas, data(), Stroke { width, ..full });
         }
     }
 }

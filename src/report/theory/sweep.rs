@@ -50,7 +50,7 @@ const ROWS: [Row; 4] = [
         height: 110.0,
         values: |p| p.closing_speeds.clone(),
         zero: true,
-        ticks: 5,
+        ticks: 6,
     },
     Row {
         title: "Lyapunov\nexponent (1)",
@@ -195,7 +195,7 @@ impl Drawing<'_> {
     }
 
     fn phase(&self, canvas: &mut Canvas, top: f64) {
-        let y = Axis::new(-8.0, 188.0, "impactless\nphase (°)").with_ticks(3);
+        let y = Axis::new(-8.0, 188.0, "impactless\nphase (°)").with_ticks(4);
         let panel = self.panel(top, PHASE_HEIGHT, y, true);
         self.impactless(canvas, &panel, |p| p.1.to_degrees());
         canvas.layer(4);
