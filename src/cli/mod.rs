@@ -11,6 +11,7 @@ mod fail;
 mod init;
 mod inspect;
 mod interrupt;
+mod look;
 mod machine;
 mod merge;
 mod progress;
