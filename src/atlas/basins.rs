@@ -41,6 +41,24 @@ pub struct Basins {
     pub cells: Vec<Option<CellMotion>>,
 }
 
+impl BasinGrid {
+    /// Number of rows: X'(0).
+    pub fn rows(&self) -> usize {
+        self.vx.2
+    }
+
+    fn initial(&self, x: f64, vx: f64) -> Initial {
+        match self.starts {
+            Starts::BothMasses => Initial::both(x, vx),
+            Starts::OneMass => Initial {
+                x,
+                vx,
+                ..Initial::rest()
+            },
+        }
+    }
+}
+
 /// Settle every start of a grid in a setting.
 ///
 /// # Errors
@@ -51,34 +69,37 @@ pub fn basins(
     grid: &BasinGrid,
     settings: &MapSettings,
 ) -> Result<Basins, ModelError> {
+    Ok(Basins {
+        x: even(grid.x),
+        vx: even(grid.vx),
+        cells: basin_rows(machine, setting, grid, settings, 0..grid.rows())?,
+    })
+}
+
+/// The cells of some rows of a grid; they do not depend on the others.
+///
+/// # Errors
+/// As [`basins`].
+pub fn basin_rows(
+    machine: &Machine,
+    setting: Setting,
+    grid: &BasinGrid,
+    settings: &MapSettings,
+    rows: std::ops::Range<usize>,
+) -> Result<Vec<Option<CellMotion>>, ModelError> {
     machine.check()?;
     setting.check()?;
     let (x, vx) = (even(grid.x), even(grid.vx));
-    let initial = |i: usize| {
-        let (x, vx) = (x[i % x.len()], vx[i / x.len()]);
-        match grid.starts {
-            Starts::BothMasses => Initial::both(x, vx),
-            Starts::OneMass => Initial {
-                x,
-                vx,
-                ..Initial::rest()
-            },
-        }
-    };
+    let vx = vx.get(rows).unwrap_or_default();
     let gap = machine.gap(setting.clearance);
     let clear = |s: &Initial| s.x + if machine.y.is_some() { s.y } else { 0.0 } <= gap;
-    let at = (setting.frequency_ratio, setting.clearance);
+    let start = |i: usize| Start {
+        at: (setting.frequency_ratio, setting.clearance),
+        initial: grid.initial(x[i % x.len()], vx[i / x.len()]),
+        phase: setting.phase,
+    };
     let (numbers, starts): (Vec<usize>, Vec<Start>) = (0..x.len() * vx.len())
-        .map(|i| {
-            (
-                i,
-                Start {
-                    at,
-                    initial: initial(i),
-                    phase: setting.phase,
-                },
-            )
-        })
+        .map(|i| (i, start(i)))
         .filter(|(_, s)| clear(&s.initial))
         .unzip();
     let ends = march_from(machine, &starts, settings)?;
@@ -86,5 +107,5 @@ pub fn basins(
     for (i, end) in numbers.into_iter().zip(ends) {
         cells[i] = Some(end.motion);
     }
-    Ok(Basins { x, vx, cells })
+    Ok(cells)
 }

@@ -1,7 +1,7 @@
 //! Brute-force maps: every cell from rest, and carried along from its neighbour in rising and in
 //! falling η, so that coexisting motions show.
 
-use super::map::{End, MapGrid, MapSettings, Start, march_from};
+use super::map::{End, MapGrid, MapSettings, Start, check, march_from};
 use crate::model::{Machine, ModelError};
 
 /// How the cells of a map are started.
@@ -17,6 +17,23 @@ pub enum Way {
 
 /// All ways, in the order of [`brute_maps`].
 pub const WAYS: [Way; 3] = [Way::FromStart, Way::Rising, Way::Falling];
+
+/// The three maps of a grid, in the order of [`WAYS`].
+pub type Maps = [Vec<End>; 3];
+
+/// All three maps; they do not depend on each other, nor one row on another.
+///
+/// # Errors
+/// [`ModelError`] where a parameter is out of range.
+pub fn brute_maps(
+    machine: &Machine,
+    grid: &MapGrid,
+    settings: &MapSettings,
+) -> Result<Maps, ModelError> {
+    check(machine, grid, settings)?;
+    let [start, rising, falling] = WAYS.map(|way| brute_map(machine, grid, settings, way));
+    Ok([start?, rising?, falling?])
+}
 
 /// What every cell settles on, row by row as in `RegionMap`.
 ///

@@ -72,7 +72,7 @@ impl EdgeKind {
 }
 
 /// Where a motion ends, and the orbit there.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Edge {
     /// What ends it.
     pub kind: EdgeKind,

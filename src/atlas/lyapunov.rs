@@ -5,8 +5,8 @@ use nalgebra::{Matrix4, Vector4};
 
 use crate::model::contact::free_accelerations;
 use crate::model::flight::{Drive, State};
-use crate::model::variation::{free_flow, saltation};
 use crate::model::simulate::{Arc, Sink};
+use crate::model::variation::{free_flow, saltation};
 use crate::model::{ImpactKind, Machine, ModelImpact, Restitution};
 
 /// Carries a variation along a simulation; give it to `Simulator::advance`.

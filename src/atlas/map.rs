@@ -203,7 +203,7 @@ pub struct Start {
 }
 
 /// What a cell settled on, and where it ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct End {
     /// The motion.
     pub motion: CellMotion,
@@ -240,7 +240,11 @@ pub fn march_from(
     }
 }
 
-fn check(machine: &Machine, grid: &MapGrid, settings: &MapSettings) -> Result<(), ModelError> {
+/// Whether machine, grid and settings make a map.
+///
+/// # Errors
+/// [`ModelError`] with the first parameter out of range.
+pub fn check(machine: &Machine, grid: &MapGrid, settings: &MapSettings) -> Result<(), ModelError> {
     machine.check()?;
     settings.start.check()?;
     if machine.flight != Flight::Harmonic {

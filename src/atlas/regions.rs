@@ -7,14 +7,15 @@ use std::collections::{BTreeMap, VecDeque};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::brute::{WAYS, brute_map};
+use super::agreement::{Agreement, compare};
+use super::brute::{Maps, Way, brute_map, brute_maps};
 use super::continuation::{Along, Edge, EdgeKind, Walk, branch_at_doubling, follow};
+use super::curves::{Curve, curves};
 use super::map::{CellMotion, End, MapGrid, MapSettings, clear_of};
 use super::resting::{RestingSlice, resting_slices};
 use crate::model::orbit::stable_orbit;
 use crate::model::{
-    Existence, Initial, Machine, ModelError, ModelImpact, PeriodicOrbit, Setting, Simulator,
-    rho_grazing, rho_s2,
+    Existence, Initial, Machine, ModelError, ModelImpact, PeriodicOrbit, Setting, Simulator, rho_s2,
 };
 
 /// What an atlas covers.
@@ -33,7 +34,7 @@ pub struct AtlasSettings {
 }
 
 /// One motion's interval of existence and stability along ρ at one η.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Slice {
     /// η
     pub eta: f64,
@@ -48,51 +49,20 @@ pub struct Slice {
 }
 
 impl Slice {
+    /// The motion.
+    pub fn motion(&self) -> CellMotion {
+        CellMotion::Periodic {
+            p: self.p as u16,
+            n: self.n as u16,
+            dead_zone: false,
+            chatter: false,
+        }
+    }
+
     /// Whether a clearance lies in it.
     pub fn holds(&self, rho: f64) -> bool {
         self.low.orbit.rho <= rho && rho <= self.high.orbit.rho
     }
-}
-
-/// A point of a curve.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct CurvePoint {
-    /// η
-    pub eta: f64,
-    /// ρ
-    pub rho: f64,
-    /// Greatest closing speed of the marginal orbit.
-    pub closing_speed: f64,
-}
-
-/// A boundary as a curve in the (η, ρ) plane, η rising.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Curve {
-    /// Name of the boundary: s1, s2, grazing, rho_grazing (ρ' of z = 0), joined (ρp), …
-    pub kind: String,
-    /// Impacts of the motion that it bounds.
-    pub p: u32,
-    /// Drive periods of the motion.
-    pub n: u32,
-    /// Whether the motion has a dead zone.
-    pub dead_zone: bool,
-    /// Whether the motion lies below the curve.
-    pub upper: bool,
-    /// Its points.
-    pub points: Vec<CurvePoint>,
-}
-
-/// How well the curves and the brute-force maps agree.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Agreement {
-    /// Cells whose motion the curves can judge.
-    pub compared: usize,
-    /// Cells whose motion lies in no region of the curves: (η, ρ, motion).
-    pub differing: Vec<(f64, f64, CellMotion)>,
-    /// Periodic cells beyond the largest p or n.
-    pub beyond: usize,
-    /// Cells without a period.
-    pub aperiodic: usize,
 }
 
 /// The atlas of a machine.
@@ -110,38 +80,84 @@ pub struct Atlas {
     pub agreement: Agreement,
 }
 
+impl Atlas {
+    /// A motion of each cell beside the one from the start, where there is another: carried along
+    /// rising or falling, else by the regions of the curves.
+    pub fn other_motions(&self, grid: &MapGrid) -> Vec<CellMotion> {
+        let mut by_eta: BTreeMap<u64, Vec<&Slice>> = BTreeMap::new();
+        for s in &self.slices {
+            by_eta.entry(s.eta.to_bits()).or_default().push(s);
+        }
+        let other = |i: usize| {
+            let first = self.maps[0][i];
+            let (eta, rho) = grid.at(i);
+            let carried = [self.maps[1][i], self.maps[2][i]];
+            let there = by_eta.get(&eta.to_bits()).into_iter().flatten();
+            let by_curves = there
+                .filter(|s| s.holds(rho))
+                .min_by_key(|s| (s.p, s.n))
+                .map(|s| s.motion());
+            let all = carried.into_iter().chain(by_curves);
+            all.into_iter().find(|m| *m != first).unwrap_or(first)
+        };
+        (0..grid.len()).map(other).collect()
+    }
+}
+
 /// Compute the atlas of a machine.
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range.
 pub fn atlas(machine: &Machine, settings: &AtlasSettings) -> Result<Atlas, ModelError> {
-    machine.check()?;
-    let mut maps: Vec<Vec<End>> = Vec::new();
-    for way in WAYS {
-        maps.push(brute_map(machine, &settings.grid, &settings.map, way)?);
-    }
-    let columns: Vec<Vec<Slice>> = (0..settings.grid.eta.len())
+    let maps = brute_maps(machine, &settings.grid, &settings.map)?;
+    let columns = columns(machine, settings, &maps, 0..settings.grid.eta.len());
+    Ok(assemble(machine, settings, &maps, columns))
+}
+
+/// The slices of some columns, each with its own list; see [`atlas`].
+pub fn columns(
+    machine: &Machine,
+    settings: &AtlasSettings,
+    maps: &Maps,
+    chosen: std::ops::Range<usize>,
+) -> Vec<Vec<Slice>> {
+    chosen
         .into_par_iter()
-        .map(|i| column(machine, settings, &maps, i))
-        .collect();
-    let resting: Vec<Vec<RestingSlice>> = settings
-        .grid
+        .map(|i| column(machine, settings, maps, i))
+        .collect()
+}
+
+/// The atlas from its maps and the slices of all its columns.
+pub fn assemble(
+    machine: &Machine,
+    settings: &AtlasSettings,
+    maps: &Maps,
+    columns: Vec<Vec<Slice>>,
+) -> Atlas {
+    let grid = &settings.grid;
+    let resting: Vec<Vec<RestingSlice>> = grid
         .eta
         .par_iter()
-        .map(|&eta| resting_slices(machine, eta, &settings.grid.rho, settings.largest_n))
+        .map(|&eta| resting_slices(machine, eta, &grid.rho, settings.largest_n))
         .collect();
-    let curves = curves(machine, settings, &columns, &resting);
+    let rows = (grid.rho.first(), grid.rho.last());
+    let range = (
+        rows.0.copied().unwrap_or(0.0),
+        rows.1.copied().unwrap_or(0.0),
+    );
+    let along = (grid.eta.as_slice(), range);
+    let curves = curves(machine, along, settings.largest_n, &columns, &resting);
     let slices: Vec<Slice> = columns.into_iter().flatten().collect();
     let resting: Vec<RestingSlice> = resting.into_iter().flatten().collect();
-    let agreement = compare(machine, settings, &maps, &slices, &resting);
+    let agreement = compare(machine, settings, maps, &slices, &resting);
     let maps = [0, 1, 2].map(|k| maps[k].iter().map(|end| end.motion).collect());
-    Ok(Atlas {
+    Atlas {
         slices,
         resting,
         curves,
         maps,
         agreement,
-    })
+    }
 }
 
 /// All slices at one η: see [`atlas`]; the settings' columns are ignored.
@@ -155,12 +171,7 @@ pub fn slices_at(
 ) -> Result<Vec<Slice>, ModelError> {
     let mut settings = settings.clone();
     settings.grid.eta = vec![eta];
-    let map = brute_map(
-        machine,
-        &settings.grid,
-        &settings.map,
-        super::brute::Way::FromStart,
-    )?;
+    let map = brute_map(machine, &settings.grid, &settings.map, Way::FromStart)?;
     Ok(column(machine, &settings, &[map], 0))
 }
 
@@ -313,181 +324,4 @@ fn slice(machine: &Machine, settings: &AtlasSettings, seed: &PeriodicOrbit) -> O
             high: low,
         }
     })
-}
-
-/// All boundaries as curves.
-fn curves(
-    machine: &Machine,
-    settings: &AtlasSettings,
-    columns: &[Vec<Slice>],
-    resting: &[Vec<RestingSlice>],
-) -> Vec<Curve> {
-    let mut curves = vec![grazing_curve(machine, &settings.grid.eta)];
-    let marks = columns
-        .iter()
-        .map(|slices| slices.iter().flat_map(slice_marks).collect());
-    curves.extend(chains(marks.collect()));
-    let marks = resting
-        .iter()
-        .map(|slices| slices.iter().flat_map(resting_marks).collect());
-    curves.extend(chains(marks.collect()));
-    curves
-}
-
-fn grazing_curve(machine: &Machine, etas: &[f64]) -> Curve {
-    let at = |eta: &f64| CurvePoint {
-        eta: *eta,
-        rho: rho_grazing(machine, *eta),
-        closing_speed: 0.0,
-    };
-    Curve {
-        kind: "rho_grazing".into(),
-        p: 0,
-        n: 1,
-        dead_zone: false,
-        upper: false,
-        points: etas.iter().map(at).collect(),
-    }
-}
-
-/// What a curve is, and the interval of its motion by which neighbours are told to belong.
-type Key = (u32, u32, bool, bool, String);
-
-#[derive(Debug, Clone)]
-struct Mark {
-    key: Key,
-    point: CurvePoint,
-    interval: (f64, f64),
-}
-
-fn slice_marks(s: &Slice) -> Vec<Mark> {
-    let interval = (s.low.orbit.rho, s.high.orbit.rho);
-    [(&s.low, false), (&s.high, true)]
-        .into_iter()
-        .filter(|(edge, _)| edge.kind != EdgeKind::Bound)
-        .map(|(edge, upper)| {
-            let speed = edge.orbit.speeds.iter().fold(0.0, |m: f64, w| m.max(*w));
-            let point = CurvePoint {
-                eta: s.eta,
-                rho: edge.orbit.rho,
-                closing_speed: speed,
-            };
-            Mark {
-                key: (s.p, s.n, false, upper, edge.kind.name().into()),
-                point,
-                interval,
-            }
-        })
-        .collect()
-}
-
-fn resting_marks(s: &RestingSlice) -> Vec<Mark> {
-    [(s.low, false), (s.high, true)]
-        .into_iter()
-        .filter_map(|(edge, upper)| {
-            let (rho, kind) = edge?;
-            let point = CurvePoint {
-                eta: s.eta,
-                rho,
-                closing_speed: 0.0,
-            };
-            let key = (s.p, s.n, true, upper, kind.name().into());
-            Some(Mark {
-                key,
-                point,
-                interval: s.interval,
-            })
-        })
-        .collect()
-}
-
-/// Chain marks of neighbouring columns whose motions' intervals overlap.
-fn chains(columns: Vec<Vec<Mark>>) -> Vec<Curve> {
-    let mut done: Vec<Curve> = Vec::new();
-    let mut open: BTreeMap<Key, Vec<(Mark, Curve)>> = BTreeMap::new();
-    for marks in columns {
-        let mut next: BTreeMap<Key, Vec<(Mark, Curve)>> = BTreeMap::new();
-        for mark in marks {
-            let list = open.entry(mark.key.clone()).or_default();
-            let fits = |(last, _): &(Mark, Curve)| {
-                last.interval.0 <= mark.interval.1 && mark.interval.0 <= last.interval.1
-            };
-            let mut curve = match list.iter().position(fits) {
-                Some(at) => list.swap_remove(at).1,
-                None => {
-                    let (p, n, dead_zone, upper, kind) = mark.key.clone();
-                    Curve {
-                        kind,
-                        p,
-                        n,
-                        dead_zone,
-                        upper,
-                        points: Vec::new(),
-                    }
-                }
-            };
-            curve.points.push(mark.point);
-            next.entry(mark.key.clone())
-                .or_default()
-                .push((mark, curve));
-        }
-        done.extend(open.into_values().flatten().map(|(_, curve)| curve));
-        open = next;
-    }
-    done.extend(open.into_values().flatten().map(|(_, curve)| curve));
-    done.sort_by_key(|a| (a.n, a.p, a.dead_zone, a.upper));
-    done
-}
-
-/// Look every cell of the maps up in the regions of the curves.
-fn compare(
-    machine: &Machine,
-    settings: &AtlasSettings,
-    maps: &[Vec<End>],
-    slices: &[Slice],
-    resting: &[RestingSlice],
-) -> Agreement {
-    let mut by_eta: BTreeMap<u64, Vec<&Slice>> = BTreeMap::new();
-    for s in slices {
-        by_eta.entry(s.eta.to_bits()).or_default().push(s);
-    }
-    let mut rest_by_eta: BTreeMap<u64, Vec<&RestingSlice>> = BTreeMap::new();
-    for s in resting {
-        rest_by_eta.entry(s.eta.to_bits()).or_default().push(s);
-    }
-    let mut agreement = Agreement::default();
-    for (i, end) in maps.iter().flat_map(|map| map.iter().enumerate()) {
-        let (eta, rho) = settings.grid.at(i);
-        let found = match end.motion {
-            CellMotion::Impactless => rho >= rho_grazing(machine, eta) * (1.0 - 1e-9),
-            CellMotion::Joined => rho < 0.0,
-            CellMotion::Beat | CellMotion::Chaotic => {
-                agreement.aperiodic += 1;
-                continue;
-            }
-            CellMotion::Periodic { p, n, .. }
-                if u32::from(p) > settings.largest_p || u32::from(n) > settings.largest_n =>
-            {
-                agreement.beyond += 1;
-                continue;
-            }
-            CellMotion::Periodic {
-                p,
-                n,
-                dead_zone: true,
-                ..
-            } => rest_by_eta
-                .get(&eta.to_bits())
-                .is_some_and(|l| l.iter().any(|s| s.is(p.into(), n.into()) && s.holds(rho))),
-            CellMotion::Periodic { p, n, .. } => by_eta.get(&eta.to_bits()).is_some_and(|l| {
-                l.iter()
-                    .any(|s| s.p == u32::from(p) && s.n == u32::from(n) && s.holds(rho))
-            }),
-        };
-        agreement.compared += 1;
-        if !found {
-            agreement.differing.push((eta, rho, end.motion));
-        }
-    }
-    agreement
 }

@@ -30,7 +30,7 @@ impl RestingEdge {
 }
 
 /// A resting motion's interval along ρ at one η.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RestingSlice {
     /// η
     pub eta: f64,

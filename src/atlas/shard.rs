@@ -1,59 +1,58 @@
-//! Maps beyond one machine: a part computes every N-th cell, exactly as the whole map has it,
-//! and a merge refuses what does not make up the whole.
+//! Atlases beyond one machine: a part computes every N-th row of the three brute-force maps,
+//! exactly as the whole has it, and a merge refuses what does not make up the whole.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::map::{CellMotion, Kernel, MapGrid, MapSettings, RegionMap, map_cells};
+use super::brute::{Maps, brute_maps};
+use super::map::{End, Kernel, MapGrid};
+use super::regions::AtlasSettings;
 use crate::model::{Machine, ModelError};
 
-/// Everything that determines a map.
+/// Everything that determines an atlas.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct MapRequest {
+pub struct AtlasRequest {
     /// The machine.
     pub machine: Machine,
-    /// The grid.
-    pub grid: MapGrid,
-    /// How it is marched; the kernel is named, for rounding differs between kernels.
-    pub settings: MapSettings,
+    /// Grid and march; the kernel is named, for rounding differs between kernels.
+    pub settings: AtlasSettings,
 }
 
-impl MapRequest {
+impl AtlasRequest {
     /// A request with the kernel of this machine where none is named.
-    pub fn new(machine: Machine, grid: MapGrid, mut settings: MapSettings) -> Self {
-        settings.kernel = Some(settings.kernel.unwrap_or_else(Kernel::of_this_machine));
-        Self {
-            machine,
-            grid,
-            settings,
-        }
+    pub fn new(machine: Machine, mut settings: AtlasSettings) -> Self {
+        let named = settings.map.kernel;
+        settings.map.kernel = Some(named.unwrap_or_else(Kernel::of_this_machine));
+        Self { machine, settings }
     }
 }
 
-/// One part of a map: the cells number, number + of, number + 2·of …
+/// One part of an atlas: the rows number, number + of, number + 2·of …
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct MapPart {
-    /// The whole map's request.
-    pub request: MapRequest,
+pub struct AtlasPart {
+    /// Version of the program that computed it.
+    pub version: String,
+    /// The whole atlas' request.
+    pub request: AtlasRequest,
     /// This part's number, 0 ≤ number < of.
     pub number: usize,
     /// Number of parts.
     pub of: usize,
-    /// Its cells' motions, in the order of the cells' numbers.
-    pub cells: Vec<CellMotion>,
+    /// What its cells settle on in the three maps, row by row.
+    pub maps: Maps,
 }
 
-/// Why parts do not make up a map.
+/// Why parts do not make up an atlas.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum MergeError {
     /// There is no part.
     #[error("there is no part to merge")]
     Nothing,
-    /// A part belongs to another map, or to another division of it.
+    /// A part belongs to another atlas, or to another division of it.
     #[error(
-        "part {number} of {of} belongs to another map: machine, grid, settings or kernel differ from the first part's"
+        "part {number} of {of} belongs to another atlas: program, machine, grid, settings or kernel differ from the first part's"
     )]
     Foreign {
         /// The part's number.
@@ -87,48 +86,54 @@ pub enum MergeError {
     },
 }
 
-fn numbers(cells: usize, number: usize, of: usize) -> Vec<usize> {
-    (number..cells).step_by(of.max(1)).collect()
+fn rows(count: usize, number: usize, of: usize) -> Vec<usize> {
+    (number..count).step_by(of.max(1)).collect()
 }
 
 /// Compute one part.
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range, or the part's number is not below `of`.
-pub fn part(request: &MapRequest, number: usize, of: usize) -> Result<MapPart, ModelError> {
+pub fn part(request: &AtlasRequest, number: usize, of: usize) -> Result<AtlasPart, ModelError> {
     if number >= of {
         return Err(ModelError::Unsupported(
             "a part's number lies below the number of parts",
         ));
     }
-    let available = request.settings.kernel.is_none_or(Kernel::is_available);
-    if !available {
+    let (grid, map) = (&request.settings.grid, &request.settings.map);
+    if !map.kernel.is_none_or(Kernel::is_available) {
         return Err(ModelError::Unsupported(
-            "this processor does not run the map's kernel: name one that all machines run",
+            "this processor does not run the atlas' kernel: name one that all machines run",
         ));
     }
-    let chosen = numbers(request.grid.len(), number, of);
-    let cells = map_cells(&request.machine, &request.grid, &request.settings, &chosen)?;
-    Ok(MapPart {
+    let chosen = rows(grid.rho.len(), number, of);
+    let own = MapGrid {
+        eta: grid.eta.clone(),
+        rho: chosen.iter().map(|&k| grid.rho[k]).collect(),
+    };
+    Ok(AtlasPart {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
         request: request.clone(),
         number,
         of,
-        cells,
+        maps: brute_maps(&request.machine, &own, map)?,
     })
 }
 
-/// Put the parts together.
+/// Put the parts together to the whole's maps.
 ///
 /// # Errors
-/// [`MergeError`] where a part is missing, doubled, damaged or of another map.
-pub fn merge(parts: &[MapPart]) -> Result<RegionMap, MergeError> {
+/// [`MergeError`] where a part is missing, doubled, damaged or of another atlas.
+pub fn merge(parts: &[AtlasPart]) -> Result<Maps, MergeError> {
     let first = parts.first().ok_or(MergeError::Nothing)?;
-    let (grid, of) = (&first.request.grid, first.of);
-    let mut whole: Vec<Option<CellMotion>> = vec![None; grid.len()];
+    let (grid, of) = (&first.request.settings.grid, first.of);
+    let columns = grid.eta.len();
+    let mut whole: [Vec<Option<End>>; 3] = [0, 1, 2].map(|_| vec![None; grid.len()]);
     let mut seen = vec![false; of];
     for part in parts {
         let number = part.number;
-        if part.request != first.request || part.of != of || number >= of {
+        let same = part.request == first.request && part.version == first.version;
+        if !same || part.of != of || number >= of {
             return Err(MergeError::Foreign {
                 number,
                 of: part.of,
@@ -137,17 +142,19 @@ pub fn merge(parts: &[MapPart]) -> Result<RegionMap, MergeError> {
         if std::mem::replace(&mut seen[number], true) {
             return Err(MergeError::Doubled { number });
         }
-        let chosen = numbers(grid.len(), number, of);
-        let (found, expected) = (part.cells.len(), chosen.len());
-        if found != expected {
-            return Err(MergeError::Damaged {
-                number,
-                found,
-                expected,
-            });
-        }
-        for (i, cell) in chosen.into_iter().zip(&part.cells) {
-            whole[i] = Some(*cell);
+        let chosen = rows(grid.rho.len(), number, of);
+        let expected = chosen.len() * columns;
+        for (map, own) in whole.iter_mut().zip(&part.maps) {
+            if own.len() != expected {
+                return Err(MergeError::Damaged {
+                    number,
+                    found: own.len(),
+                    expected,
+                });
+            }
+            for (i, end) in own.iter().enumerate() {
+                map[chosen[i / columns] * columns + i % columns] = Some(*end);
+            }
         }
     }
     let missing: Vec<usize> = (0..of).filter(|&k| !seen[k]).collect();
@@ -157,10 +164,5 @@ pub fn merge(parts: &[MapPart]) -> Result<RegionMap, MergeError> {
             of,
         });
     }
-    let cells = whole.into_iter().flatten().collect();
-    Ok(RegionMap {
-        eta: grid.eta.clone(),
-        rho: grid.rho.clone(),
-        cells,
-    })
+    Ok(whole.map(|map| map.into_iter().flatten().collect()))
 }

@@ -5,10 +5,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::lyapunov::Lyapunov;
+use crate::model::flight::{Drive, forced_amplitude};
 use crate::model::recurrence::observe;
-use crate::model::simulate::{Arc, Sink};
+use crate::model::simulate::{Arc, Sink, Snapshot};
 use crate::model::{
-    Initial, Machine, ModelError, ModelImpact, Setting, SettledMotion, Simulator, Watch,
+    Initial, Machine, ModelError, ModelImpact, Oscillator, Setting, SettledMotion, Simulator, Watch,
 };
 
 /// What a sweep goes through.
@@ -46,6 +47,8 @@ pub struct SweepPoint {
     pub phases: Vec<f64>,
     /// Largest Lyapunov exponent per unit of τ; `None` where a dead zone wipes it out.
     pub lyapunov: Option<f64>,
+    /// Autocorrelation of X at lags of 1, 2, … drive periods; empty where X stands still.
+    pub autocorrelation: Vec<f64>,
 }
 
 /// Greatest displacements over arcs, from samples refined where the velocity turns.
@@ -92,28 +95,110 @@ fn maximum(path: &crate::model::path::Path, duration: f64) -> f64 {
 /// Most impacts told of a motion without a period.
 const MOST_IMPACTS: usize = 64;
 
+/// Samples of X a drive period that its autocorrelation is taken from.
+const SAMPLES: usize = 32;
+/// Longest lag of a point's autocorrelation, drive periods.
+pub const LONGEST_LAG: usize = 6;
+
+/// X at even times.
+#[derive(Debug)]
+struct Sampler {
+    next: f64,
+    step: f64,
+    x: Vec<f64>,
+}
+
+impl Sink for Sampler {
+    fn arc(&mut self, arc: &Arc) {
+        while self.next < arc.tau + arc.duration {
+            self.x.push(arc.paths.at(self.next - arc.tau).x);
+            self.next += self.step;
+        }
+    }
+}
+
+/// A motion that is carried along step by step.
+#[derive(Debug, Clone)]
+pub struct Carried<'a> {
+    machine: &'a Machine,
+    watch: Watch,
+    simulator: Simulator,
+}
+
+impl<'a> Carried<'a> {
+    /// From a start at the first (η, ρ); beyond the contact it is moved to it.
+    ///
+    /// # Errors
+    /// [`ModelError`] where a parameter is out of range.
+    pub fn start(
+        machine: &'a Machine,
+        (eta, rho): (f64, f64),
+        initial: Initial,
+        watch: Watch,
+    ) -> Result<Self, ModelError> {
+        let start = super::map::clear_of(machine, rho, initial);
+        Ok(Self {
+            machine,
+            watch,
+            simulator: Simulator::new(machine, Setting::new(eta, rho), start)?,
+        })
+    }
+
+    /// Go on from where another was, bit for bit.
+    ///
+    /// # Errors
+    /// [`ModelError`] where a parameter is out of range.
+    pub fn resume(
+        machine: &'a Machine,
+        snapshot: &Snapshot,
+        watch: Watch,
+    ) -> Result<Self, ModelError> {
+        Ok(Self {
+            machine,
+            watch,
+            simulator: Simulator::resume(machine, snapshot)?,
+        })
+    }
+
+    /// Where the motion is.
+    pub fn snapshot(&self) -> Snapshot {
+        self.simulator.snapshot()
+    }
+
+    /// Carry the motion on to (η, ρ) and tell what it is there.
+    ///
+    /// # Errors
+    /// [`ModelError`] where η or ρ is out of range.
+    pub fn step(&mut self, (eta, rho): (f64, f64)) -> Result<SweepPoint, ModelError> {
+        let setting = Setting::new(eta, rho);
+        setting.check()?;
+        self.simulator.set(eta, rho);
+        Ok(one_step(
+            self.machine,
+            &mut self.simulator,
+            setting,
+            &self.watch,
+        ))
+    }
+}
+
 /// Carry a motion through a sweep; `told` hears every point as it is done and may end the sweep
 /// by giving false.
 ///
 /// # Errors
-/// [`ModelError`] where a parameter is out of range or the start lies beyond the contact.
+/// [`ModelError`] where a parameter is out of range.
 pub fn sweep(
     machine: &Machine,
     plan: &Sweep,
     mut told: impl FnMut(&SweepPoint) -> bool,
 ) -> Result<Vec<SweepPoint>, ModelError> {
     let mut points = Vec::with_capacity(plan.steps.len());
-    let Some(&(eta, rho)) = plan.steps.first() else {
+    let Some(&first) = plan.steps.first() else {
         return Ok(points);
     };
-    for &(eta, rho) in &plan.steps {
-        Setting::new(eta, rho).check()?;
-    }
-    let start = super::map::clear_of(machine, rho, plan.start);
-    let mut simulator = Simulator::new(machine, Setting::new(eta, rho), start)?;
-    for &(eta, rho) in &plan.steps {
-        simulator.set(eta, rho);
-        let point = one_step(machine, &mut simulator, Setting::new(eta, rho), &plan.watch);
+    let mut carried = Carried::start(machine, first, plan.start, plan.watch)?;
+    for &at in &plan.steps {
+        let point = carried.step(at)?;
         let go_on = told(&point);
         points.push(point);
         if !go_on {
@@ -137,6 +222,14 @@ fn one_step(
     follower
         .clone()
         .advance(watch.watch_periods * period, &mut extremes);
+    let mut sampler = Sampler {
+        next: follower.tau(),
+        step: period / SAMPLES as f64,
+        x: Vec::new(),
+    };
+    follower
+        .clone()
+        .advance(watch.watch_periods * period, &mut sampler);
     let mut lyapunov = Lyapunov::new(machine, setting.frequency_ratio);
     follower.advance(watch.watch_periods * period, &mut lyapunov);
     let count = match motion {
@@ -157,25 +250,53 @@ fn one_step(
         x_speeds: of(|i| i.vx_before),
         phases: of(|i| i.phase),
         lyapunov: Some(lyapunov.exponent()).filter(|l| l.is_finite()),
+        autocorrelation: whole_periods(&sampler.x),
     }
 }
 
-/// Autocorrelation of a uniformly sampled signal at lags 0 … `lags`, mean removed, 1 at lag 0.
+/// The autocorrelation of samples at lags of 1, 2, … drive periods.
+fn whole_periods(samples: &[f64]) -> Vec<f64> {
+    let all = autocorrelation(samples, LONGEST_LAG * SAMPLES);
+    all.into_iter().step_by(SAMPLES).skip(1).collect()
+}
+
+/// Autocorrelation of a uniformly sampled signal at lags 0 … `lags`: the correlation coefficient
+/// of the signal with itself shifted, mean removed, each over the samples that both have; 1 at
+/// lag 0, and at every whole period of a periodic signal.
 pub fn autocorrelation(samples: &[f64], lags: usize) -> Vec<f64> {
     let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
     let centred: Vec<f64> = samples.iter().map(|x| x - mean).collect();
+    let size = centred.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let at = |lag: usize| -> f64 {
-        centred
-            .iter()
-            .zip(&centred[lag..])
-            .map(|(a, b)| a * b)
-            .sum()
+        let (head, tail) = (&centred[..centred.len() - lag], &centred[lag..]);
+        let square = |part: &[f64]| part.iter().map(|x| x * x).sum::<f64>();
+        let product: f64 = head.iter().zip(tail).map(|(a, b)| a * b).sum();
+        let scale = (square(head) * square(tail)).sqrt();
+        if scale > 0.0 { product / scale } else { 0.0 }
     };
-    let lags = lags.min(samples.len().saturating_sub(1));
-    let zero = if samples.is_empty() { 0.0 } else { at(0) };
-    let scale = if zero > 0.0 { 1.0 / zero } else { 0.0 };
-    (0..=lags)
-        .filter(|l| *l < samples.len())
-        .map(|l| at(l) * scale)
-        .collect()
+    if !(size > 0.0) {
+        return Vec::new();
+    }
+    (0..samples.len().min(lags + 1)).map(at).collect()
+}
+
+/// Amplitude and phase of the impactless motion of each mass.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Impactless {
+    /// Amplitude of X, and its phase behind the drive in [0, π], rad.
+    pub x: (f64, f64),
+    /// The same of Y; `None` for one mass.
+    pub y: Option<(f64, f64)>,
+}
+
+/// Amplitude and phase characteristic of the impactless motion at η.
+pub fn impactless(machine: &Machine, eta: f64) -> Impactless {
+    let of = |o: &Oscillator| {
+        let forced = forced_amplitude(o, Drive { eta, phase: 0.0 });
+        (forced.norm(), (-forced.im).atan2(forced.re))
+    };
+    Impactless {
+        x: of(&machine.x),
+        y: machine.y.as_ref().map(of),
+    }
 }

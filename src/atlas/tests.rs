@@ -1,11 +1,12 @@
 //! Maps: the vector kernel against the exact simulator, and invariants of maps.
 
 use super::basins::{BasinGrid, Starts, basins};
+use super::brute::brute_maps;
 use super::continuation::EdgeKind;
 use super::lyapunov::Lyapunov;
 use super::map::{Kernel, even};
 use super::regions::{Slice, slices_at};
-use super::shard::{MapPart, MapRequest, MergeError, merge, part};
+use super::shard::{AtlasPart, AtlasRequest, MergeError, merge, part};
 use super::sweep::{Sweep, SweepPoint, sweep};
 use super::*;
 
@@ -58,35 +59,36 @@ fn valid_kernel_agrees_with_the_exact_simulator() {
 }
 
 #[test]
-fn prop_parts_make_up_the_whole_map_and_nothing_else_does() {
-    let grid = MapGrid::even((0.7, 2.0, 13), (0.1, 3.0, 11));
+fn prop_parts_make_up_the_whole_atlas_and_nothing_else_does() {
+    let settings = AtlasSettings {
+        grid: MapGrid::even((0.7, 2.0, 13), (0.1, 3.0, 11)),
+        largest_p: 2,
+        largest_n: 2,
+        map: MapSettings::default(),
+    };
     let machine = Machine::symmetric(0.07, 0.9);
-    let request = MapRequest::new(machine.clone(), grid.clone(), MapSettings::default());
-    let parts: Vec<MapPart> = (0..3).map(|k| part(&request, k, 3).unwrap()).collect();
-    let whole = region_map(&machine, &grid, &MapSettings::default()).unwrap();
-    assert_eq!(merge(&parts).unwrap(), whole);
-    let text = serde_json::to_string(&parts[1]).unwrap();
-    assert_eq!(serde_json::from_str::<MapPart>(&text).unwrap(), parts[1]);
-    assert_eq!(
-        merge(&parts[..2]),
-        Err(MergeError::Missing {
-            numbers: vec![2],
-            of: 3
-        })
-    );
+    let request = AtlasRequest::new(machine.clone(), settings.clone());
+    let whole = brute_maps(&machine, &settings.grid, &settings.map).unwrap();
+    for of in [1, 3, 14] {
+        let parts: Vec<AtlasPart> = (0..of).map(|k| part(&request, k, of).unwrap()).collect();
+        assert_eq!(merge(&parts).unwrap(), whole, "{of} parts");
+        let text = serde_json::to_string(&parts[0]).unwrap();
+        assert_eq!(serde_json::from_str::<AtlasPart>(&text).unwrap(), parts[0]);
+    }
+    let parts: Vec<AtlasPart> = (0..3).map(|k| part(&request, k, 3).unwrap()).collect();
+    assert_eq!(merge(&[]), Err(MergeError::Nothing));
+    let (numbers, of) = (vec![2], 3);
+    assert_eq!(merge(&parts[..2]), Err(MergeError::Missing { numbers, of }));
     let doubled = [parts[0].clone(), parts[0].clone()];
     assert_eq!(merge(&doubled), Err(MergeError::Doubled { number: 0 }));
-    let other = MapRequest {
-        machine: Machine::symmetric(0.07, 0.8),
-        ..request
-    };
+    let other = AtlasRequest::new(Machine::symmetric(0.07, 0.8), settings);
     let foreign = [parts[0].clone(), part(&other, 1, 3).unwrap()];
     assert_eq!(
         merge(&foreign),
         Err(MergeError::Foreign { number: 1, of: 3 })
     );
     let mut short = parts.clone();
-    short[2].cells.pop();
+    short[2].maps[1].pop();
     assert!(matches!(
         merge(&short),
         Err(MergeError::Damaged { number: 2, .. })

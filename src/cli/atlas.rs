@@ -1,20 +1,16 @@
 //! `impactid atlas`: regions of all motions in the (η, ρ) plane, their boundaries as curves, and
-//! the brute-force map beside them; parts of a map for many machines, and their merge.
+//! the brute-force map beside them; `--shard` computes a part of it for `impactid merge`.
 
-use std::fmt::Write as _;
-use std::fs;
-use std::path::{Path, PathBuf};
+use clap::{Args, ValueEnum};
 
-use clap::Args;
-use serde_json::json;
-
-use super::machine::{MachineArgs, range, refused};
-use super::{Exit, Failure, Voice};
-use crate::atlas::map::{CellMotion, MapGrid, MapSettings, RegionMap};
-use crate::atlas::regions::{Atlas as Regions, AtlasSettings, atlas};
-use crate::atlas::shard::{MapPart, MapRequest, merge, part};
-use crate::motion::Motion;
-use crate::output::{OutputError, write_bytes};
+use super::machine::{MachineArgs, WatchArgs, range, refused};
+use super::theory::OutArgs;
+use super::{Exit, Failure, Voice, interrupt};
+use crate::atlas::map::{Kernel, MapSettings};
+use crate::atlas::shard::{AtlasRequest, part};
+use crate::output::{Lock, write_bytes};
+use crate::pipeline::theory::Study;
+use crate::pipeline::theory::plan::RegionsPlan;
 
 /// Arguments of `impactid atlas`.
 #[derive(Debug, Args)]
@@ -41,24 +37,39 @@ pub struct Atlas {
     /// Most drive periods n in a period of the motion
     #[arg(long, value_name = "N", default_value_t = 6)]
     largest_n: u32,
-    /// Compute only part I of N of the map alone, I from 0
+    #[command(flatten)]
+    watch: WatchArgs,
+    /// Instruction set; the widest that this processor runs where it is not given
+    #[arg(long, value_enum, value_name = "SET")]
+    kernel: Option<Instructions>,
+    /// Compute only part I of N, I from 0, for `impactid merge`
     #[arg(long, value_name = "I/N", value_parser = shard)]
     shard: Option<(usize, usize)>,
-    /// Put parts of a map together
-    #[arg(long, value_name = "PART", num_args = 1.., conflicts_with = "shard")]
-    merge: Vec<PathBuf>,
-    /// Folder for the results
-    #[arg(long, short, value_name = "DIR")]
-    out: PathBuf,
+    #[command(flatten)]
+    out: OutArgs,
+}
+
+/// Instruction sets of the marching kernel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Instructions {
+    /// Plain arithmetic, any processor
+    Scalar,
+    /// AVX2 and FMA
+    Avx2,
+    /// AVX-512
+    Avx512,
 }
 
 const EXAMPLE: &str = "\
 Example:
   impactid atlas --restitution 0.9 --damping-ratio 0.07 --out atlas/
   impactid atlas --columns 2000 --rows 1500 --shard 3/16 --out parts/
-  impactid atlas --merge parts/*.json --out atlas/
+  impactid merge parts/*.json --out atlas/
 
-It writes curves.csv, map.csv and atlas.json; with --shard part-I-of-N.json.";
+It leaves atlas-curves and atlas-map as CSV and Parquet, the figure atlas as SVG, PNG and PDF,
+atlas.json with how curves and brute force agree, and study.toml to replay it; with --shard only
+part-I-of-N.json. Rounding differs between instruction sets: parts for machines of several kinds
+need one --kernel.";
 
 fn shard(text: &str) -> Result<(usize, usize), String> {
     let wrong = || format!("“{text}” is no part: write I/N with I from 0 to N−1, such as 3/16");
@@ -73,141 +84,64 @@ impl Atlas {
     /// Compute and write.
     ///
     /// # Errors
-    /// [`Failure`] where a parameter is out of range, parts do not fit, or a file cannot be
-    /// written.
+    /// [`Failure`] where a parameter is out of range or a file cannot be written.
     pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
-        fs::create_dir_all(&self.out).map_err(|e| Failure::io(&self.out, &e))?;
-        if !self.merge.is_empty() {
-            return self.put_together(voice);
+        let title = "Regions of existence and stability of all motions";
+        let mut study = self.machine.study(title)?;
+        let plan = self.plan()?;
+        if let Some(shard) = self.shard {
+            return self.part(&study, &plan, shard, voice);
         }
-        let machine = self.machine.machine()?;
-        let (eta, rho) = (self.eta, self.rho);
-        let grid = MapGrid::even((eta.0, eta.1, self.columns), (rho.0, rho.1, self.rows));
-        if let Some((number, of)) = self.shard {
-            let request = MapRequest::new(machine, grid, MapSettings::default());
-            let part = part(&request, number, of).map_err(|e| refused(&e))?;
-            let name = format!("part-{number}-of-{of}.json");
-            return write(
-                &self.out,
-                &name,
-                &serde_json::to_vec(&part).unwrap_or_default(),
-            );
+        study.regions.insert("atlas".into(), plan);
+        self.out.study(&study, "atlas", voice)
+    }
+
+    fn plan(&self) -> Result<RegionsPlan, Failure> {
+        let kernel = self.kernel.map(|k| match k {
+            Instructions::Scalar => Kernel::Scalar,
+            Instructions::Avx2 => Kernel::Avx2,
+            Instructions::Avx512 => Kernel::Avx512,
+        });
+        if kernel.is_some_and(|k| !k.is_available()) {
+            return Err(Failure::new(
+                "this processor does not have the instruction set named with --kernel",
+                "leave --kernel out, or name one that it has: scalar always works",
+            ));
         }
-        let settings = AtlasSettings {
-            grid,
+        Ok(RegionsPlan {
+            eta: (self.eta.0, self.eta.1, self.columns.max(2)),
+            rho: (self.rho.0, self.rho.1, self.rows.max(2)),
             largest_p: self.largest_p,
             largest_n: self.largest_n,
-            map: MapSettings::default(),
-        };
-        let regions = atlas(&machine, &settings).map_err(|e| refused(&e))?;
-        say(voice, &regions);
-        write(&self.out, "curves.csv", curves_csv(&regions).as_bytes())?;
-        write(
-            &self.out,
-            "map.csv",
-            maps_csv(&settings.grid, &regions).as_bytes(),
-        )?;
-        let summary = json!({
-            "version": env!("CARGO_PKG_VERSION"),
-            "machine": machine,
-            "settings": settings,
-            "agreement": regions.agreement,
-        });
-        write(&self.out, "atlas.json", format!("{summary:#}\n").as_bytes())
+            map: MapSettings {
+                watch: self.watch.watch(),
+                kernel,
+                ..MapSettings::default()
+            },
+        })
     }
 
-    fn put_together(&self, voice: Voice) -> Result<Exit, Failure> {
-        let parts: Vec<MapPart> = self
-            .merge
-            .iter()
-            .map(|path| read_part(path))
-            .collect::<Result<_, _>>()?;
-        let map = merge(&parts).map_err(|e| {
-            Failure::new(
-                e.to_string(),
-                "give every part of one map once, all of one --shard …/N",
-            )
-        })?;
-        voice.say(&format!(
-            "{} parts make {} cells",
-            parts.len(),
-            map.cells.len()
-        ));
-        write(&self.out, "map.csv", map_csv(&map).as_bytes())
+    fn part(
+        &self,
+        study: &Study,
+        plan: &RegionsPlan,
+        (number, of): (usize, usize),
+        voice: Voice,
+    ) -> Result<Exit, Failure> {
+        let file = self
+            .out
+            .folder()
+            .join(format!("part-{number}-of-{of}.json"));
+        crate::output::make_folder(self.out.folder())?;
+        // many parts of an array of jobs may share the folder: the lock is the part's own
+        let _lock = Lock::take(&self.out.folder().join(format!(".part-{number}")))?;
+        interrupt::watch(self.out.folder().to_path_buf());
+        let request = AtlasRequest::new(study.machine(), plan.settings());
+        let part = part(&request, number, of).map_err(|e| refused(&e))?;
+        write_bytes(&file, &serde_json::to_vec(&part).unwrap_or_default())?;
+        drop(_lock);
+        let _ = std::fs::remove_dir(self.out.folder().join(format!(".part-{number}")));
+        voice.say(&format!("{}; next: impactid merge", file.display()));
+        Ok(Exit::Done)
     }
-}
-
-fn read_part(path: &Path) -> Result<MapPart, Failure> {
-    let bytes = fs::read(path).map_err(|e| Failure::io(path, &e))?;
-    serde_json::from_slice(&bytes).map_err(|e| {
-        Failure::new(
-            format!("{}: no part of a map: {e}", path.display()),
-            "give files that `impactid atlas --shard I/N` wrote",
-        )
-    })
-}
-
-pub(super) fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<Exit, Failure> {
-    let told = |e: OutputError| Failure::new(e.to_string(), e.remedy());
-    write_bytes(&folder.join(name), bytes).map_err(told)?;
-    Ok(Exit::Done)
-}
-
-/// How curves and maps agree, as every run prints it.
-pub(super) fn say(voice: Voice, regions: &Regions) {
-    let a = &regions.agreement;
-    voice.say(&format!(
-        "{} curves; brute force: {} cells compared, {} differ from the curves, {} aperiodic, {} \
-         beyond the largest p or n",
-        regions.curves.len(),
-        a.compared,
-        a.differing.len(),
-        a.aperiodic,
-        a.beyond
-    ));
-    for (eta, rho, motion) in a.differing.iter().take(20) {
-        voice.say(&format!(
-            "  η = {eta:.4}  ρ = {rho:.4}  z = {}",
-            label(*motion)
-        ));
-    }
-}
-
-pub(super) fn label(motion: CellMotion) -> String {
-    Motion::from(motion).label()
-}
-
-pub(super) fn curves_csv(regions: &Regions) -> String {
-    let mut text = String::from("curve,kind,motion,side,eta,rho,closing_speed\n");
-    for (number, c) in regions.curves.iter().enumerate() {
-        let j = if c.dead_zone { "j" } else { "" };
-        let side = if c.upper { "upper" } else { "lower" };
-        for p in &c.points {
-            let _ = writeln!(
-                text,
-                "{number},{},{}/{}{j},{side},{},{},{}",
-                c.kind, c.p, c.n, p.eta, p.rho, p.closing_speed
-            );
-        }
-    }
-    text
-}
-
-pub(super) fn maps_csv(grid: &MapGrid, regions: &Regions) -> String {
-    let mut text = String::from("eta,rho,from_start,rising,falling\n");
-    for i in 0..grid.len() {
-        let (eta, rho) = grid.at(i);
-        let [a, b, c] = [0, 1, 2].map(|k| label(regions.maps[k][i]));
-        let _ = writeln!(text, "{eta},{rho},{a},{b},{c}");
-    }
-    text
-}
-
-fn map_csv(map: &RegionMap) -> String {
-    let mut text = String::from("eta,rho,from_start\n");
-    for (i, cell) in map.cells.iter().enumerate() {
-        let (eta, rho) = (map.eta[i % map.eta.len()], map.rho[i / map.eta.len()]);
-        let _ = writeln!(text, "{eta},{rho},{}", label(*cell));
-    }
-    text
 }

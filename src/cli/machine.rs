@@ -3,15 +3,18 @@
 use clap::Args;
 
 use super::Failure;
-use crate::model::Machine;
 use crate::model::params::Asymmetry;
+use crate::model::{Initial, Machine, Restitution, Watch};
+use crate::pipeline::theory::Study;
+use crate::pipeline::theory::plan::Law;
 
 /// The dimensionless machine.
 #[derive(Debug, Clone, Args)]
 pub struct MachineArgs {
-    /// Coefficient of restitution R, 0 to 1
-    #[arg(long, value_name = "R", default_value_t = 0.9)]
-    pub restitution: f64,
+    /// Coefficient of restitution R, 0 to 1, or a law of the closing speed: `table = [[0, 0.95],
+    /// [6, 0.85]]`, `power_law = {…}`, `exponential = {…}`
+    #[arg(long, value_name = "R|LAW", default_value = "0.9", value_parser = law)]
+    pub restitution: Law,
     /// Damping ratio β, from 0 to below 1
     #[arg(long, value_name = "B", default_value_t = 0.07)]
     pub damping_ratio: f64,
@@ -30,25 +33,103 @@ pub struct MachineArgs {
 }
 
 impl MachineArgs {
+    /// A study of the machine without any work, its parameters checked.
+    ///
+    /// # Errors
+    /// [`Failure`] naming the parameter that is out of range.
+    pub fn study(&self, title: &str) -> Result<Study, Failure> {
+        let study = Study {
+            single: self.single,
+            asymmetry: Asymmetry {
+                drive_amplitude: self.drive_ratio,
+                stiffness: self.stiffness_ratio,
+                mass: self.mass_ratio,
+            },
+            ..Study::empty(title, self.damping_ratio, self.restitution.clone())
+        };
+        study.machine().check().map_err(|e| refused(&e))?;
+        Ok(study)
+    }
+
     /// The machine, its parameters checked.
     ///
     /// # Errors
     /// [`Failure`] naming the parameter that is out of range.
     pub fn machine(&self) -> Result<Machine, Failure> {
-        let asymmetry = Asymmetry {
-            drive_amplitude: self.drive_ratio,
-            stiffness: self.stiffness_ratio,
-            mass: self.mass_ratio,
-        };
-        let machine = if self.single {
-            Machine::single(self.damping_ratio, self.restitution)
-        } else if asymmetry == Asymmetry::default() {
-            Machine::symmetric(self.damping_ratio, self.restitution)
-        } else {
-            Machine::asymmetric(self.damping_ratio, self.restitution, asymmetry)
-        };
-        machine.check().map_err(|e| refused(&e))?;
-        Ok(machine)
+        Ok(self.study("")?.machine())
+    }
+}
+
+/// R as a number, or a law of the closing speed as a key and its value in TOML.
+fn law(text: &str) -> Result<Law, String> {
+    #[derive(serde::Deserialize)]
+    struct Wrapped {
+        law: Restitution,
+    }
+    if let Ok(r) = text.trim().parse::<f64>() {
+        return Ok(Law::Constant(r));
+    }
+    toml::from_str::<Wrapped>(&format!("law = {{ {text} }}"))
+        .map(|w| Law::Law(w.law))
+        .map_err(|_| {
+            format!(
+                "“{text}” is neither a number nor a law: write 0.9, or a law such as \
+                 table = [[0, 0.95], [6, 0.85]]"
+            )
+        })
+}
+
+/// The start of a motion.
+#[derive(Debug, Clone, Args)]
+pub struct StartArgs {
+    /// Start X, X' or X, X', Y, Y'; two numbers start both masses alike
+    #[arg(
+        long,
+        value_name = "X,X'[,Y,Y']",
+        default_value = "0,0",
+        allow_hyphen_values = true
+    )]
+    pub start: String,
+}
+
+impl StartArgs {
+    /// The start.
+    ///
+    /// # Errors
+    /// [`Failure`] where the text is not two or four numbers.
+    pub fn initial(&self) -> Result<Initial, Failure> {
+        let numbers: Result<Vec<f64>, _> =
+            self.start.split(',').map(|n| n.trim().parse()).collect();
+        match numbers.as_deref() {
+            Ok(&[x, vx]) => Ok(Initial::both(x, vx)),
+            Ok(&[x, vx, y, vy]) => Ok(Initial { x, vx, y, vy }),
+            _ => Err(Failure::new(
+                format!("“{}” is no start", self.start),
+                "write X,X' for both masses alike, or X,X',Y,Y', such as --start=-1,1.5,-3,2.5",
+            )),
+        }
+    }
+}
+
+/// How long a motion settles and is watched.
+#[derive(Debug, Clone, Args)]
+pub struct WatchArgs {
+    /// Drive periods that a motion settles before it is looked at
+    #[arg(long, value_name = "N", default_value_t = 200.0)]
+    pub settle_periods: f64,
+    /// Drive periods in which it is looked at
+    #[arg(long, value_name = "N", default_value_t = 60.0)]
+    pub watch_periods: f64,
+}
+
+impl WatchArgs {
+    /// Settling and watch.
+    pub fn watch(&self) -> Watch {
+        Watch {
+            settle_periods: self.settle_periods.max(0.0),
+            watch_periods: self.watch_periods.max(1.0),
+            ..Watch::default()
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The command line: one file per verb; the only room that prints or exits.
 
 mod atlas;
+mod basins;
 mod boundary;
 mod check;
 mod completions;
@@ -12,6 +13,7 @@ mod inspect;
 mod interrupt;
 mod look;
 mod machine;
+mod merge;
 mod progress;
 mod run;
 mod selftest;
@@ -19,6 +21,8 @@ mod simulate;
 mod sketch;
 mod stage;
 mod study;
+mod sweep;
+mod theory;
 mod voice;
 
 use std::process::ExitCode;
@@ -87,11 +91,17 @@ enum Verb {
     Convert(convert::Convert),
     /// Regions and boundaries of all motions in the (η, ρ) plane
     Atlas(atlas::Atlas),
+    /// Put the parts of an atlas together
+    Merge(merge::Merge),
     /// A single point of a boundary
     Boundary(boundary::Boundary),
+    /// Quasi-stationary characteristics over η or ρ, there and back
+    Sweep(sweep::Sweep),
+    /// Basins of attraction in the plane of the starts
+    Basins(basins::Basins),
     /// Studies of the theory from TOML files: time series, sweeps, basins, regions
     Study(study::Study),
-    /// Simulate a campaign with known truth
+    /// Simulate a motion, or a campaign with known truth
     Simulate(simulate::Simulate),
     /// Compute the paper's published numbers on this machine
     Selftest(selftest::SelfTest),
@@ -114,7 +124,10 @@ impl Verb {
             Self::Inspect(verb) => verb.go(voice),
             Self::Convert(verb) => verb.go(voice),
             Self::Atlas(verb) => verb.go(voice),
+            Self::Merge(verb) => verb.go(voice),
             Self::Boundary(verb) => verb.go(voice),
+            Self::Sweep(verb) => verb.go(voice),
+            Self::Basins(verb) => verb.go(voice),
             Self::Study(verb) => verb.go(voice),
             Self::Simulate(verb) => verb.go(voice),
             Self::Selftest(verb) => verb.go(voice),

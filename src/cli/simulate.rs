@@ -1,10 +1,14 @@
-//! `impactid simulate`: campaigns with known truth.
+//! `impactid simulate`: motions of the theory, and campaigns with known truth.
 
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
+use super::machine::{MachineArgs, StartArgs};
+use super::theory::OutArgs;
 use super::{Exit, Failure, Voice, interrupt};
+use crate::atlas::portrait::{PortraitPlan, Soft};
+use crate::model::Setting;
 use crate::output::Lock;
 use crate::pipeline::synthesise::{Recipe, write_campaign};
 use crate::synthetic::truth::draw_asymmetry;
@@ -12,21 +16,108 @@ use crate::synthetic::{Faults, Truth};
 
 /// Arguments of `impactid simulate`.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLE)]
+#[command(
+    after_help = EXAMPLE,
+    args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true
+)]
 pub struct Simulate {
     #[command(subcommand)]
-    what: What,
+    what: Option<What>,
+    #[command(flatten)]
+    motion: MotionArgs,
 }
 
 const EXAMPLE: &str = "\
 Example:
-  impactid simulate campaign --seed 1 --restitution 0.9 --damping-ratio 0.07 \\
-      --natural-frequency-hz 12.6 --static-deflection-m 0.001 --out synthetic/";
+  impactid simulate --eta 0.95 --rho 0.7 --phase 0.7854 --restitution 0 --damping-ratio 0.1 \\
+      --start=-1,1.5,-3,2.5 --periods 3 --out fig2/
+  impactid simulate --eta 2 --rho 0.2 --skip-periods 300 --periods 12 --out chaos/
+  impactid simulate campaign --seed 1 --restitution 0.9 --damping-ratio 0.07 --out synthetic/
+
+A motion leaves its time series (motion), motion-impacts, motion-poincare and
+motion-autocorrelation as CSV and Parquet, a figure with phase trajectories and Poincaré map as
+SVG, PNG and PDF, and study.toml to replay it.";
 
 #[derive(Debug, Subcommand)]
 enum What {
     /// A whole campaign as a laboratory would record it, the truth in truth.json beside it
     Campaign(Campaign),
+}
+
+/// A motion of the theory.
+#[derive(Debug, Clone, Args)]
+pub struct MotionArgs {
+    #[command(flatten)]
+    machine: MachineArgs,
+    /// Frequency ratio η
+    #[arg(long, value_name = "ETA", required = true)]
+    eta: Option<f64>,
+    /// Clearance ρ
+    #[arg(
+        long,
+        value_name = "RHO",
+        required = true,
+        allow_negative_numbers = true
+    )]
+    rho: Option<f64>,
+    /// Phase φ of the drive at the start, rad
+    #[arg(
+        long,
+        value_name = "PHI",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
+    phase: f64,
+    #[command(flatten)]
+    start: StartArgs,
+    /// Drive periods left out first
+    #[arg(long, value_name = "N", default_value_t = 0.0)]
+    skip_periods: f64,
+    /// Drive periods of the time series
+    #[arg(long, value_name = "N", default_value_t = 10.0)]
+    periods: f64,
+    /// Samples of the time series in a drive period
+    #[arg(long, value_name = "N", default_value_t = 200)]
+    samples_per_period: usize,
+    /// Drive periods of the Poincaré map and of the autocorrelation
+    #[arg(long, value_name = "N", default_value_t = 500)]
+    poincare_periods: usize,
+    /// Phase of the drive at which the Poincaré map is taken, rad
+    #[arg(
+        long,
+        value_name = "PHI",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
+    poincare_phase: f64,
+    /// Contact of a finite stiffness (over the spring's) instead of Newton's law; its damper
+    /// gives the same R
+    #[arg(long, value_name = "KAPPA")]
+    contact_stiffness: Option<f64>,
+    #[command(flatten)]
+    out: OutArgs,
+}
+
+impl MotionArgs {
+    fn go(&self, voice: Voice) -> Result<Exit, Failure> {
+        let mut study = self.machine.study("A motion")?;
+        let plan = PortraitPlan {
+            setting: Setting {
+                phase: self.phase,
+                ..Setting::new(self.eta.unwrap_or(1.0), self.rho.unwrap_or(1.0))
+            },
+            start: self.start.initial()?,
+            skip_periods: self.skip_periods.max(0.0),
+            periods: self.periods.max(0.0),
+            samples_per_period: self.samples_per_period.max(1),
+            poincare_periods: self.poincare_periods,
+            poincare_phase: self.poincare_phase,
+            soft: self.contact_stiffness.map(|stiffness| Soft { stiffness }),
+        };
+        study.time_series.insert("motion".into(), plan);
+        self.out.study(&study, "simulate", voice)
+    }
 }
 
 /// Arguments of `impactid simulate campaign`.
@@ -92,7 +183,8 @@ fn number_within(text: &str, low: f64, high: f64) -> Result<f64, String> {
 impl Simulate {
     pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
         match self.what {
-            What::Campaign(campaign) => campaign.go(voice),
+            Some(What::Campaign(campaign)) => campaign.go(voice),
+            None => self.motion.go(voice),
         }
     }
 }

@@ -5,8 +5,8 @@ use serde::Serialize;
 
 use super::flight::{Drive, exponent, forced_amplitude};
 use super::orbit::{Branch, Existence, Orbit, bisect, orbit_with_speed};
-use super::variation::{free_flow, saltation};
 use super::params::{Flight, Machine, Setting};
+use super::variation::{free_flow, saltation};
 
 /// A point of a boundary, with the orbit that is marginal there.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

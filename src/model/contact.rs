@@ -21,6 +21,18 @@ pub enum ImpactKind {
     ChatterEnd,
 }
 
+impl ImpactKind {
+    /// The name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bounce => "bounce",
+            Self::Plastic => "plastic",
+            Self::Stick => "stick",
+            Self::ChatterEnd => "chatter_end",
+        }
+    }
+}
+
 /// One impact of a simulated motion, dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ModelImpact {

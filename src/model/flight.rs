@@ -4,7 +4,7 @@ use super::params::{Flight, Machine, Oscillator};
 use super::path::{C64, Mode, Path};
 
 /// Displacements, velocities and accelerations of both masses.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct State {
     /// X
     pub x: f64,

@@ -18,7 +18,7 @@ use super::params::{Machine, Setting};
 use super::path::C64;
 
 /// A periodic orbit with p impacts in n drive periods.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PeriodicOrbit {
     /// Drive periods in one period of the motion.
     pub n: u32,

@@ -50,6 +50,18 @@ pub struct Simulator {
     size: f64,
 }
 
+/// A motion at an instant, to go on from later.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Snapshot {
+    eta: f64,
+    clearance: f64,
+    tau: f64,
+    phase: f64,
+    state: State,
+    joined: bool,
+    size: f64,
+}
+
 impl Simulator {
     /// Start a motion at τ = 0. Masses that start in contact, at rest and pressed together
     /// start joined.
@@ -88,6 +100,37 @@ impl Simulator {
         }
         new.settle();
         Ok(new)
+    }
+
+    /// Everything that the rest of the motion depends on, beside the machine.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            eta: self.eta,
+            clearance: self.clearance,
+            tau: self.tau,
+            phase: self.phase,
+            state: self.state,
+            joined: self.joined,
+            size: self.size,
+        }
+    }
+
+    /// Go on from a snapshot, bit for bit as if there had been no break.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the machine's parameters are out of range.
+    pub fn resume(machine: &Machine, snapshot: &Snapshot) -> Result<Self, ModelError> {
+        machine.check()?;
+        Ok(Self {
+            machine: machine.clone(),
+            eta: snapshot.eta,
+            clearance: snapshot.clearance,
+            tau: snapshot.tau,
+            phase: snapshot.phase,
+            state: snapshot.state,
+            joined: snapshot.joined,
+            size: snapshot.size,
+        })
     }
 
     /// τ reached.

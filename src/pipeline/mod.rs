@@ -13,6 +13,7 @@ pub mod selftest;
 pub mod store;
 pub mod synthesise;
 pub mod tables;
+pub mod theory;
 
 use std::path::Path;
 

@@ -8,7 +8,9 @@ pub mod document;
 pub mod figures;
 mod html;
 pub mod parameters;
+pub mod picture;
 mod png;
+pub mod theory;
 
 pub use content::ReportContent;
 

@@ -8,7 +8,7 @@ mod prose;
 mod sections;
 mod settings;
 mod tables;
-mod world;
+pub(super) mod world;
 
 pub use pdf::pdf;
 

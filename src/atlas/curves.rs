@@ -1,0 +1,241 @@
+//! The boundaries as curves: edges of neighbouring columns chained where their motions' intervals
+//! overlap, and the grazing of the impactless motion.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::continuation::EdgeKind;
+use super::regions::Slice;
+use super::resting::RestingSlice;
+use crate::model::orbit::stable_orbit;
+use crate::model::{BoundaryPoint, Machine, Orbit, Setting, rho_grazing, rho_s1, rho_s2};
+
+/// A point of a curve.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct CurvePoint {
+    /// η
+    pub eta: f64,
+    /// ρ
+    pub rho: f64,
+    /// Greatest closing speed of the marginal orbit.
+    pub closing_speed: f64,
+}
+
+/// A boundary as a curve in the (η, ρ) plane, η rising.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Curve {
+    /// Name of the boundary: s1, s2, grazing, rho_grazing (ρ' of z = 0), joined (ρp), …
+    pub kind: String,
+    /// Impacts of the motion that it bounds.
+    pub p: u32,
+    /// Drive periods of the motion.
+    pub n: u32,
+    /// Whether the motion has a dead zone.
+    pub dead_zone: bool,
+    /// Whether the motion lies below the curve.
+    pub upper: bool,
+    /// Its points.
+    pub points: Vec<CurvePoint>,
+}
+
+/// All boundaries as curves.
+pub fn curves(
+    machine: &Machine,
+    (etas, range): (&[f64], (f64, f64)),
+    largest_n: u32,
+    columns: &[Vec<Slice>],
+    resting: &[Vec<RestingSlice>],
+) -> Vec<Curve> {
+    let fine = refined(etas);
+    let mut curves = vec![grazing_curve(machine, &fine)];
+    curves.extend(closed_forms(machine, &fine, largest_n, range));
+    let marks = columns.iter().map(|slices| {
+        let followed = slices.iter().flat_map(slice_marks);
+        followed.filter(|m| !is_closed_form(&m.key)).collect()
+    });
+    curves.extend(chains(marks.collect()));
+    let marks = resting
+        .iter()
+        .map(|slices| slices.iter().flat_map(resting_marks).collect());
+    curves.extend(chains(marks.collect()));
+    curves
+}
+
+/// Points of a closed form between two columns.
+const REFINEMENT: usize = 6;
+
+/// The columns' η with further ones evenly between them.
+fn refined(etas: &[f64]) -> Vec<f64> {
+    let mut fine: Vec<f64> = etas
+        .windows(2)
+        .flat_map(|w| {
+            (0..REFINEMENT).map(move |k| w[0] + (w[1] - w[0]) * k as f64 / REFINEMENT as f64)
+        })
+        .collect();
+    fine.extend(etas.last());
+    fine
+}
+
+/// Whether a boundary is one that closed forms give.
+fn is_closed_form((p, _, dead_zone, _, kind): &Key) -> bool {
+    *p == 1 && !dead_zone && (kind == "s1" || kind == "s2")
+}
+
+/// s2 and s1 of z = 1/n: pieces along which the marginal orbit exists.
+fn closed_forms(
+    machine: &Machine,
+    etas: &[f64],
+    largest_n: u32,
+    (low, high): (f64, f64),
+) -> Vec<Curve> {
+    type Form = fn(&Machine, f64, u32) -> Option<BoundaryPoint>;
+    let forms: [(&str, Form); 2] = [("s2", rho_s2), ("s1", rho_s1)];
+    let all: Vec<(&str, Form, u32)> = (1..=largest_n)
+        .flat_map(|n| forms.map(|(kind, form)| (kind, form, n)))
+        .collect();
+    all.par_iter()
+        .flat_map(|(kind, form, n)| {
+            let shown = |p: &BoundaryPoint| p.is_valid() && p.rho >= low && p.rho <= high;
+            let points: Vec<Option<BoundaryPoint>> = etas
+                .iter()
+                .map(|&eta| form(machine, eta, *n).filter(shown))
+                .collect();
+            let pieces = points.split(Option::is_none).filter(|p| !p.is_empty());
+            pieces
+                .map(|piece| Curve {
+                    kind: (*kind).to_owned(),
+                    p: 1,
+                    n: *n,
+                    dead_zone: false,
+                    upper: *kind == "s2" || stable_below(machine, piece, *n),
+                    points: piece.iter().flatten().map(curve_point).collect(),
+                })
+                .collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+fn curve_point(p: &BoundaryPoint) -> CurvePoint {
+    CurvePoint {
+        eta: p.eta,
+        rho: p.rho,
+        closing_speed: p.closing_speed,
+    }
+}
+
+/// Whether the stable motion lies below a piece of s1.
+fn stable_below(machine: &Machine, piece: &[Option<BoundaryPoint>], n: u32) -> bool {
+    let Some(p) = piece[piece.len() / 2] else {
+        return true;
+    };
+    let below = Setting::new(p.eta, p.rho - 1e-4 * (0.1 + p.rho.abs()));
+    let near = |o: &Orbit| (o.closing_speed - p.closing_speed).abs() < 0.1 * p.closing_speed;
+    stable_orbit(machine, below, n).is_ok_and(|o| o.is_some_and(|o| near(&o)))
+}
+
+fn grazing_curve(machine: &Machine, etas: &[f64]) -> Curve {
+    let at = |eta: &f64| CurvePoint {
+        eta: *eta,
+        rho: rho_grazing(machine, *eta),
+        closing_speed: 0.0,
+    };
+    Curve {
+        kind: "rho_grazing".into(),
+        p: 0,
+        n: 1,
+        dead_zone: false,
+        upper: false,
+        points: etas.iter().map(at).collect(),
+    }
+}
+
+/// What a curve is, and the interval of its motion by which neighbours are told to belong.
+type Key = (u32, u32, bool, bool, String);
+
+#[derive(Debug, Clone)]
+struct Mark {
+    key: Key,
+    point: CurvePoint,
+    interval: (f64, f64),
+}
+
+fn slice_marks(s: &Slice) -> Vec<Mark> {
+    let interval = (s.low.orbit.rho, s.high.orbit.rho);
+    [(&s.low, false), (&s.high, true)]
+        .into_iter()
+        .filter(|(edge, _)| edge.kind != EdgeKind::Bound)
+        .map(|(edge, upper)| {
+            let speed = edge.orbit.speeds.iter().fold(0.0, |m: f64, w| m.max(*w));
+            let point = CurvePoint {
+                eta: s.eta,
+                rho: edge.orbit.rho,
+                closing_speed: speed,
+            };
+            Mark {
+                key: (s.p, s.n, false, upper, edge.kind.name().into()),
+                point,
+                interval,
+            }
+        })
+        .collect()
+}
+
+fn resting_marks(s: &RestingSlice) -> Vec<Mark> {
+    [(s.low, false), (s.high, true)]
+        .into_iter()
+        .filter_map(|(edge, upper)| {
+            let (rho, kind) = edge?;
+            let point = CurvePoint {
+                eta: s.eta,
+                rho,
+                closing_speed: 0.0,
+            };
+            let key = (s.p, s.n, true, upper, kind.name().into());
+            Some(Mark {
+                key,
+                point,
+                interval: s.interval,
+            })
+        })
+        .collect()
+}
+
+/// Chain marks of neighbouring columns whose motions' intervals overlap.
+fn chains(columns: Vec<Vec<Mark>>) -> Vec<Curve> {
+    let mut done: Vec<Curve> = Vec::new();
+    let mut open: BTreeMap<Key, Vec<(Mark, Curve)>> = BTreeMap::new();
+    for marks in columns {
+        let mut next: BTreeMap<Key, Vec<(Mark, Curve)>> = BTreeMap::new();
+        for mark in marks {
+            let list = open.entry(mark.key.clone()).or_default();
+            let fits = |(last, _): &(Mark, Curve)| {
+                last.interval.0 <= mark.interval.1 && mark.interval.0 <= last.interval.1
+            };
+            let mut curve = match list.iter().position(fits) {
+                Some(at) => list.swap_remove(at).1,
+                None => {
+                    let (p, n, dead_zone, upper, kind) = mark.key.clone();
+                    Curve {
+                        kind,
+                        p,
+                        n,
+                        dead_zone,
+                        upper,
+                        points: Vec::new(),
+                    }
+                }
+            };
+            curve.points.push(mark.point);
+            next.entry(mark.key.clone())
+                .or_default()
+                .push((mark, curve));
+        }
+        done.extend(open.into_values().flatten().map(|(_, curve)| curve));
+        open = next;
+    }
+    done.extend(open.into_values().flatten().map(|(_, curve)| curve));
+    done.sort_by_key(|a| (a.n, a.p, a.dead_zone, a.upper));
+    done
+}

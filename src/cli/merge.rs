@@ -1,0 +1,80 @@
+//! `impactid merge`: the parts of an atlas put together, exactly as one run gives it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::theory::{OutArgs, Work};
+use super::{Exit, Failure, Voice, interrupt};
+use crate::atlas::shard::{AtlasPart, merge};
+use crate::output::Lock;
+use crate::pipeline::theory::regions::leave;
+
+/// Arguments of `impactid merge`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLE)]
+pub struct Merge {
+    /// The parts that `impactid atlas --shard I/N` left, all N of them
+    #[arg(value_name = "PART.JSON", required = true)]
+    parts: Vec<PathBuf>,
+    #[command(flatten)]
+    out: OutArgs,
+}
+
+const EXAMPLE: &str = "\
+Example:
+  impactid atlas --shard 0/2 --out parts/
+  impactid atlas --shard 1/2 --out parts/
+  impactid merge parts/part-*.json --out atlas/
+
+A part that is missing, there twice, damaged or of another atlas is refused. The result is bit for
+bit that of `impactid atlas` without --shard.";
+
+impl Merge {
+    /// Put the parts together and leave the atlas.
+    ///
+    /// # Errors
+    /// [`Failure`] where the parts do not make up one atlas, or a file cannot be written.
+    pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
+        let parts: Vec<AtlasPart> = self
+            .parts
+            .iter()
+            .map(|path| read(path))
+            .collect::<Result<_, _>>()?;
+        let maps = merge(&parts).map_err(|e| {
+            let remedy = "give every part of one atlas once, all of one --shard …/N";
+            Failure::new(e.to_string(), remedy)
+        })?;
+        let Some(first) = parts.first() else {
+            return Ok(Exit::Done);
+        };
+        let _lock = Lock::take(self.out.folder())?;
+        interrupt::watch(self.out.folder().to_path_buf());
+        voice.say(&format!(
+            "{} parts make {} cells",
+            parts.len(),
+            maps[0].len()
+        ));
+        let text = serde_json::to_string(&first.request).unwrap_or_default();
+        let work = Work {
+            folder: self.out.folder(),
+            text: &text,
+            resume: self.out.resume,
+        };
+        work.go(voice, "merge", |desk| {
+            Ok(leave(&first.request, &maps, "atlas", desk)?)
+        })?;
+        Ok(Exit::Done)
+    }
+}
+
+fn read(path: &Path) -> Result<AtlasPart, Failure> {
+    let bytes = fs::read(path).map_err(|e| Failure::io(path, &e))?;
+    serde_json::from_slice(&bytes).map_err(|e| {
+        Failure::new(
+            format!("{}: no part of an atlas: {e}", path.display()),
+            "give files that `impactid atlas --shard I/N` wrote",
+        )
+    })
+}

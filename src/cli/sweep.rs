@@ -1,0 +1,67 @@
+//! `impactid sweep`: quasi-stationary characteristics in both directions.
+
+use clap::Args;
+
+use super::machine::{MachineArgs, StartArgs, WatchArgs, range};
+use super::theory::OutArgs;
+use super::{Exit, Failure, Voice};
+use crate::pipeline::theory::plan::SweepPlan;
+
+/// Arguments of `impactid sweep`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLE)]
+pub struct Sweep {
+    #[command(flatten)]
+    machine: MachineArgs,
+    /// Frequency ratios η: the sweep's ends, or one value where ρ moves
+    #[arg(long, value_name = "FROM..TO|ETA", value_parser = ends)]
+    eta: (f64, f64),
+    /// Clearances ρ: the sweep's ends, or one value where η moves
+    #[arg(long, value_name = "FROM..TO|RHO", value_parser = ends, allow_hyphen_values = true)]
+    rho: (f64, f64),
+    /// Steps from end to end
+    #[arg(long, value_name = "N", default_value_t = 301)]
+    steps: usize,
+    #[command(flatten)]
+    start: StartArgs,
+    #[command(flatten)]
+    watch: WatchArgs,
+    #[command(flatten)]
+    out: OutArgs,
+}
+
+const EXAMPLE: &str = "\
+Example:
+  impactid sweep --eta 0.78..1.4 --rho 3 --restitution 0 --damping-ratio 0.002 --out fig4/
+  impactid sweep --eta 1.2 --rho 0.1..5 --out over-rho/
+
+It leaves sweep.csv and .parquet (amplitudes, closing speeds, Lyapunov exponents, autocorrelation,
+amplitude and phase of the impactless motion), sweep-impacts (every impact's speeds), the figure
+as SVG, PNG and PDF, and study.toml to replay it.";
+
+/// `from..to`, or one number for both.
+fn ends(text: &str) -> Result<(f64, f64), String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok((value, value)),
+        _ => range(text),
+    }
+}
+
+impl Sweep {
+    /// Sweep there and back.
+    ///
+    /// # Errors
+    /// [`Failure`] where a parameter is out of range or a file cannot be written.
+    pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
+        let mut study = self.machine.study("Quasi-stationary characteristics")?;
+        let plan = SweepPlan {
+            eta: self.eta,
+            rho: self.rho,
+            steps: self.steps,
+            start: self.start.initial()?,
+            watch: self.watch.watch(),
+        };
+        study.sweep.insert("sweep".into(), plan);
+        self.out.study(&study, "sweep", voice)
+    }
+}

@@ -1,0 +1,107 @@
+//! What the verbs of the theory share: a study, a folder, progress, an end that can be resumed.
+
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+use clap::Args;
+
+use super::{Exit, Failure, Progress, Voice, interrupt};
+use crate::output::{Lock, write_bytes};
+use crate::pipeline::theory::kept::Kept;
+use crate::pipeline::theory::{Desk, Study, StudyError, run};
+
+/// Where results go.
+#[derive(Debug, Clone, Args)]
+pub struct OutArgs {
+    /// Folder for the results; it is made where it does not exist
+    #[arg(long, short, value_name = "DIR", required = true)]
+    pub out: Option<PathBuf>,
+    /// Go on where a run of the same work that was broken off had come
+    #[arg(long)]
+    pub resume: bool,
+}
+
+/// Name of the study beside its results; it is written last, so it tells that all is there.
+pub const COPY: &str = "study.toml";
+
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
+        Self::new(error.to_string(), error.remedy())
+    }
+}
+
+impl OutArgs {
+    /// The folder.
+    pub fn folder(&self) -> &Path {
+        self.out.as_deref().unwrap_or(Path::new("."))
+    }
+
+    /// Do a study's work into the folder and leave the study itself beside it, to be kept and
+    /// replayed.
+    ///
+    /// # Errors
+    /// [`Failure`] where a parameter is out of range or an output cannot be written.
+    pub fn study(&self, study: &Study, what: &'static str, voice: Voice) -> Result<Exit, Failure> {
+        let text = toml::to_string(study)
+            .map_err(|e| Failure::new(e.to_string(), "give numbers that can be written as TOML"))?;
+        let _lock = Lock::take(self.folder())?;
+        interrupt::watch(self.folder().to_path_buf());
+        let work = Work {
+            folder: self.folder(),
+            text: &text,
+            resume: self.resume,
+        };
+        work.go(voice, what, |desk| Ok(run(study, desk)?))?;
+        write_bytes(&self.folder().join(COPY), text.as_bytes())?;
+        voice.say(&format!(
+            "{} holds the results; impactid study {} --out DIR replays them",
+            self.folder().display(),
+            self.folder().join(COPY).display()
+        ));
+        Ok(Exit::Done)
+    }
+}
+
+/// Work in a folder, of which a text says all.
+pub struct Work<'a> {
+    /// The folder.
+    pub folder: &'a Path,
+    /// Everything that the results depend on.
+    pub text: &'a str,
+    /// Whether to take over what is there.
+    pub resume: bool,
+}
+
+impl Work<'_> {
+    /// Do it, with a progress bar; what is worth saying is said at its end.
+    ///
+    /// # Errors
+    /// [`Failure`] of the work.
+    pub fn go(
+        &self,
+        voice: Voice,
+        what: &'static str,
+        work: impl FnOnce(&Desk<'_>) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let kept = Kept::open(self.folder, self.text, self.resume)?;
+        let progress = Progress::new(voice, what, 1);
+        let said = Mutex::new(Vec::new());
+        let done = work(&Desk {
+            folder: self.folder,
+            kept: &kept,
+            progress: &|done, all| progress.set(done, all),
+            say: &|text| {
+                if let Ok(mut said) = said.lock() {
+                    said.push(text.to_owned());
+                }
+            },
+        });
+        drop(progress);
+        for text in said.into_inner().unwrap_or_default() {
+            voice.say(&text);
+        }
+        done?;
+        kept.remove();
+        Ok(())
+    }
+}

@@ -1,0 +1,116 @@
+//! Basins of attraction, block of rows by block of rows, and their figure.
+
+use super::plan::BasinPlan;
+use super::table::Table;
+use super::{Desk, StudyError};
+use crate::atlas::basins::{Basins, basin_rows};
+use crate::atlas::map::{CellMotion, MapSettings, even};
+use crate::model::{Machine, Restitution};
+use crate::motion::Motion;
+use crate::report::figures::look::NumberLook;
+use crate::report::theory::basins::draw;
+
+/// Rows of a block.
+const BLOCK: usize = 8;
+
+/// Settle every start and leave everything.
+///
+/// # Errors
+/// [`StudyError`] where a parameter is out of range or an output cannot be written.
+pub fn run(
+    machine: &Machine,
+    name: &str,
+    plan: &BasinPlan,
+    desk: &Desk<'_>,
+) -> Result<(), StudyError> {
+    let machine = match plan.restitution {
+        Some(r) => machine.clone().with_restitution(Restitution::Constant(r)),
+        None => machine.clone(),
+    };
+    let basins = Basins {
+        x: even(plan.grid.x),
+        vx: even(plan.grid.vx),
+        cells: cells(&machine, name, plan, desk)?,
+    };
+    desk.table(name, &table(&basins))?;
+    (desk.say)(&shares(name, &basins));
+    let title = format!("Basins of attraction at {}", setting(plan));
+    match draw(&basins, name, &title, NumberLook::default()) {
+        Some(figure) => desk.figure(&figure),
+        None => Ok(()),
+    }
+}
+
+fn setting(plan: &BasinPlan) -> String {
+    let s = &plan.setting;
+    format!(
+        "η = {}, ρ = {}, φ = {}",
+        s.frequency_ratio, s.clearance, s.phase
+    )
+}
+
+fn cells(
+    machine: &Machine,
+    name: &str,
+    plan: &BasinPlan,
+    desk: &Desk<'_>,
+) -> Result<Vec<Option<CellMotion>>, StudyError> {
+    let settings = MapSettings {
+        watch: plan.watch,
+        ..MapSettings::default()
+    };
+    let rows = plan.grid.rows();
+    let mut cells = Vec::with_capacity(rows * plan.grid.x.2);
+    for first in (0..rows).step_by(BLOCK) {
+        let last = (first + BLOCK).min(rows);
+        let block = format!("{name} rows {first}");
+        let found: Vec<Option<CellMotion>> = match desk.kept.load(&block) {
+            Some(found) => found,
+            None => {
+                let found = basin_rows(machine, plan.setting, &plan.grid, &settings, first..last)
+                    .map_err(StudyError::of(name))?;
+                desk.kept.save(&block, &found)?;
+                found
+            }
+        };
+        cells.extend(found);
+        (desk.progress)(last as u64, rows as u64);
+    }
+    Ok(cells)
+}
+
+fn label(cell: &Option<CellMotion>) -> String {
+    cell.map_or("beyond contact".into(), |m| Motion::from(m).label())
+}
+
+fn table(b: &Basins) -> Table {
+    let columns = b.x.len();
+    let count = b.cells.len();
+    Table::new()
+        .numbers("x", (0..count).map(|i| b.x[i % columns]))
+        .numbers("x_velocity", (0..count).map(|i| b.vx[i / columns]))
+        .texts("motion", b.cells.iter().map(label))
+}
+
+/// Which motions hold which share of the starts that were tried.
+fn shares(name: &str, basins: &Basins) -> String {
+    let mut counts: Vec<(String, usize)> = Vec::new();
+    for cell in basins.cells.iter().filter(|c| c.is_some()) {
+        let text = label(cell);
+        match counts.iter_mut().find(|c| c.0 == text) {
+            Some(count) => count.1 += 1,
+            None => counts.push((text, 1)),
+        }
+    }
+    counts.sort_by_key(|c| std::cmp::Reverse(c.1));
+    let all: usize = counts.iter().map(|c| c.1).sum();
+    let part = |c: &(String, usize)| {
+        format!(
+            "z = {}: {:.1} %",
+            c.0,
+            100.0 * c.1 as f64 / all.max(1) as f64
+        )
+    };
+    let parts: Vec<String> = counts.iter().take(5).map(part).collect();
+    format!("{name}: {} of {all} starts", parts.join(", "))
+}

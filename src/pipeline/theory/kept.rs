@@ -1,0 +1,106 @@
+//! Blocks of work kept while a long study goes on, so that one that was broken off can be
+//! resumed: a resumed study gives the bytes of an undisturbed one.
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use sha2::{Digest, Sha256};
+
+use crate::output::{self, OutputError};
+
+/// Folder of the blocks in the output folder; it is removed when the work is done.
+const FOLDER: &str = ".impactid-blocks";
+
+/// The blocks of one study.
+#[derive(Debug)]
+pub struct Kept {
+    folder: PathBuf,
+    key: String,
+}
+
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Block<T> {
+    key: String,
+    content: T,
+}
+
+impl Kept {
+    /// The blocks in an output folder, of work that a text describes in full. Without `resume`
+    /// what an earlier run left is removed.
+    ///
+    /// # Errors
+    /// Where the folder cannot be written into.
+    pub fn open(out: &Path, work: &str, resume: bool) -> Result<Self, OutputError> {
+        let mut hash = Sha256::new();
+        hash.update(env!("CARGO_PKG_VERSION"));
+        hash.update(format!(
+            "{:?}",
+            crate::atlas::map::Kernel::of_this_machine()
+        ));
+        hash.update(work);
+        let key = hash.finalize().iter().map(|b| format!("{b:02x}")).collect();
+        let kept = Self {
+            folder: out.join(FOLDER),
+            key,
+        };
+        if !resume {
+            kept.remove();
+        }
+        output::make_folder(&kept.folder)?;
+        output::clear_parts(&kept.folder);
+        Ok(kept)
+    }
+
+    /// A block; `None` where it is not there, of other work or unreadable.
+    pub fn load<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
+        let bytes = std::fs::read(self.path(name)).ok()?;
+        let block: Block<T> = serde_json::from_slice(&bytes).ok()?;
+        (block.key == self.key).then_some(block.content)
+    }
+
+    /// Keep a block.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn save<T: Serialize>(&self, name: &str, content: &T) -> Result<(), OutputError> {
+        let block = Block {
+            key: self.key.clone(),
+            content,
+        };
+        let bytes = serde_json::to_vec(&block).unwrap_or_default();
+        output::write_bytes(&self.path(name), &bytes)
+    }
+
+    /// Remove all blocks: the work is done.
+    pub fn remove(&self) {
+        // what cannot be removed does no harm: a block is taken over by its key alone
+        let _ = std::fs::remove_dir_all(&self.folder);
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        let safe: String = name
+            .chars()
+            .map(|c| if c.is_alphanumeric() { c } else { '_' })
+            .collect();
+        self.folder.join(format!("{safe}.json"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prop_blocks_are_taken_over_by_the_same_work_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let kept = Kept::open(folder.path(), "work", false).unwrap();
+        kept.save("rows 0", &vec![0.1, 0.2]).unwrap();
+        let again = Kept::open(folder.path(), "work", true).unwrap();
+        assert_eq!(again.load("rows 0"), Some(vec![0.1, 0.2]));
+        let other = Kept::open(folder.path(), "other work", true).unwrap();
+        assert_eq!(other.load::<Vec<f64>>("rows 0"), None);
+        let anew = Kept::open(folder.path(), "work", false).unwrap();
+        assert_eq!(anew.load::<Vec<f64>>("rows 0"), None);
+    }
+}

@@ -1,0 +1,127 @@
+//! Studies of the theory: small TOML files that say what to simulate, and what each leaves:
+//! tables as CSV and Parquet, a figure as SVG, PNG and PDF.
+
+pub mod basins;
+pub mod kept;
+pub mod plan;
+pub mod regions;
+pub mod sweep;
+pub mod table;
+pub mod time_series;
+
+use std::path::Path;
+
+use crate::model::ModelError;
+use crate::output::{OutputError, write_bytes};
+use crate::report::ReportError;
+use crate::report::figures::Figure;
+use crate::report::picture::pictures;
+use kept::Kept;
+pub use plan::Study;
+use table::Table;
+
+/// Why a study stopped.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// A parameter is out of range.
+    #[error("{name}: {source}")]
+    Model {
+        /// What was computed.
+        name: String,
+        /// Which parameter.
+        source: ModelError,
+    },
+    /// An output could not be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A table could not be made.
+    #[error("{table}: {reason}")]
+    Table {
+        /// Which table.
+        table: String,
+        /// What the library said.
+        reason: String,
+    },
+    /// A figure could not be drawn.
+    #[error(transparent)]
+    Figure(#[from] ReportError),
+}
+
+impl StudyError {
+    /// What the user can do.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::Model { .. } => "give a value within the range that the message names",
+            Self::Output(e) => e.remedy(),
+            Self::Table { .. } => "look at the disk, then run again",
+            Self::Figure(_) => "the tables are written; draw them with another program",
+        }
+    }
+
+    /// A model's refusal of a named piece of work.
+    pub fn of(name: &str) -> impl Fn(ModelError) -> Self + use<'_> {
+        move |source| Self::Model {
+            name: name.to_owned(),
+            source,
+        }
+    }
+}
+
+/// Where a piece of work leaves its results, and what it tells on the way.
+pub struct Desk<'a> {
+    /// The folder.
+    pub folder: &'a Path,
+    /// Blocks of an earlier run that was broken off.
+    pub kept: &'a Kept,
+    /// Told the steps done and the steps in all.
+    pub progress: &'a (dyn Fn(u64, u64) + Sync),
+    /// Told what is worth saying.
+    pub say: &'a (dyn Fn(&str) + Sync),
+}
+
+impl Desk<'_> {
+    /// Leave a table as `NAME.csv` and `NAME.parquet`.
+    fn table(&self, name: &str, table: &Table) -> Result<(), StudyError> {
+        self.bytes(&format!("{name}.csv"), table.csv().as_bytes())?;
+        let parquet = table.parquet().map_err(|reason| StudyError::Table {
+            table: name.to_owned(),
+            reason,
+        })?;
+        self.bytes(&format!("{name}.parquet"), &parquet)
+    }
+
+    /// Leave a figure as SVG, PNG and PDF.
+    fn figure(&self, figure: &Figure) -> Result<(), StudyError> {
+        for (name, bytes) in pictures(figure)? {
+            self.bytes(&name, &bytes)?;
+        }
+        Ok(())
+    }
+
+    fn bytes(&self, name: &str, bytes: &[u8]) -> Result<(), StudyError> {
+        write_bytes(&self.folder.join(name), bytes)?;
+        Ok(())
+    }
+}
+
+/// Do everything that a study asks for.
+///
+/// # Errors
+/// [`StudyError`] with the first piece of work that could not be done.
+pub fn run(study: &Study, desk: &Desk<'_>) -> Result<(), StudyError> {
+    let machine = study.machine();
+    machine.check().map_err(StudyError::of("machine"))?;
+    for (name, plan) in &study.time_series {
+        time_series::run(&machine, name, plan, desk)?;
+    }
+    for (name, plan) in &study.sweep {
+        sweep::run(&machine, name, plan, desk)?;
+    }
+    for (name, plan) in &study.basins {
+        basins::run(&machine, name, plan, desk)?;
+    }
+    for (name, plan) in &study.regions {
+        regions::run(&machine, name, plan, desk)?;
+    }
+    Ok(())
+}

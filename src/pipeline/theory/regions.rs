@@ -1,0 +1,165 @@
+//! Regions of all motions: brute-force maps, boundaries as curves, their agreement, and the
+//! figure.
+
+use serde_json::json;
+
+use super::plan::RegionsPlan;
+use super::table::Table;
+use super::{Desk, StudyError};
+use crate::atlas::brute::{Maps, brute_maps};
+use crate::atlas::curves::{Curve, CurvePoint};
+use crate::atlas::map::{CellMotion, MapGrid};
+use crate::atlas::regions::{Atlas, Slice, assemble, columns};
+use crate::atlas::shard::AtlasRequest;
+use crate::model::Machine;
+use crate::motion::Motion;
+use crate::report::figures::look::NumberLook;
+use crate::report::theory::regions::{Plane, draw};
+
+/// Columns of a block.
+const BLOCK: usize = 16;
+/// Differing cells told one by one.
+const TOLD: usize = 20;
+
+/// Compute the regions and leave everything.
+///
+/// # Errors
+/// [`StudyError`] where a parameter is out of range or an output cannot be written.
+pub fn run(
+    machine: &Machine,
+    name: &str,
+    plan: &RegionsPlan,
+    desk: &Desk<'_>,
+) -> Result<(), StudyError> {
+    let request = AtlasRequest::new(machine.clone(), plan.settings());
+    let block = format!("{name} maps");
+    let maps: Maps = match desk.kept.load(&block) {
+        Some(maps) => maps,
+        None => {
+            let maps = brute_maps(machine, &request.settings.grid, &request.settings.map)
+                .map_err(StudyError::of(name))?;
+            desk.kept.save(&block, &maps)?;
+            maps
+        }
+    };
+    leave(&request, &maps, name, desk)
+}
+
+/// From the maps on: follow every motion, compare, and leave everything.
+///
+/// # Errors
+/// [`StudyError`] where an output cannot be written.
+pub fn leave(
+    request: &AtlasRequest,
+    maps: &Maps,
+    name: &str,
+    desk: &Desk<'_>,
+) -> Result<(), StudyError> {
+    let slices = all_columns(request, maps, name, desk)?;
+    let (machine, settings) = (&request.machine, &request.settings);
+    let atlas = assemble(machine, settings, maps, slices);
+    tell(&atlas, desk);
+    desk.table(&format!("{name}-curves"), &curves(&atlas.curves))?;
+    desk.table(&format!("{name}-map"), &map(&settings.grid, &atlas.maps))?;
+    let summary = json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "machine": machine,
+        "settings": settings,
+        "agreement": atlas.agreement,
+    });
+    desk.bytes(&format!("{name}.json"), format!("{summary:#}\n").as_bytes())?;
+    let second = atlas.other_motions(&settings.grid);
+    let plane = Plane {
+        grid: &settings.grid,
+        first: &atlas.maps[0],
+        second: &second,
+        curves: &atlas.curves,
+    };
+    let title = "Regions of existence and stability of all motions";
+    match draw(&plane, name, title, NumberLook::default()) {
+        Some(figure) => desk.figure(&figure),
+        None => Ok(()),
+    }
+}
+
+fn all_columns(
+    request: &AtlasRequest,
+    maps: &Maps,
+    name: &str,
+    desk: &Desk<'_>,
+) -> Result<Vec<Vec<Slice>>, StudyError> {
+    let count = request.settings.grid.eta.len();
+    let mut slices = Vec::with_capacity(count);
+    for first in (0..count).step_by(BLOCK) {
+        let last = (first + BLOCK).min(count);
+        let block = format!("{name} columns {first}");
+        let found: Vec<Vec<Slice>> = match desk.kept.load(&block) {
+            Some(found) => found,
+            None => {
+                let found = columns(&request.machine, &request.settings, maps, first..last);
+                desk.kept.save(&block, &found)?;
+                found
+            }
+        };
+        slices.extend(found);
+        (desk.progress)(last as u64, count as u64);
+    }
+    Ok(slices)
+}
+
+/// How curves and maps agree, as every run prints it.
+fn tell(atlas: &Atlas, desk: &Desk<'_>) {
+    let a = &atlas.agreement;
+    (desk.say)(&format!(
+        "{} curves; brute force: {} cells compared, {} differ from the curves, {} aperiodic, {} \
+         beyond the largest p or n",
+        atlas.curves.len(),
+        a.compared,
+        a.differing.len(),
+        a.aperiodic,
+        a.beyond
+    ));
+    for (eta, rho, motion) in a.differing.iter().take(TOLD) {
+        let z = Motion::from(*motion).label();
+        (desk.say)(&format!("  η = {eta:.4}  ρ = {rho:.4}  z = {z}"));
+    }
+    if a.differing.len() > TOLD {
+        (desk.say)("  … all of them in the JSON file");
+    }
+}
+
+fn curves(curves: &[Curve]) -> Table {
+    let rows: Vec<(usize, &Curve, &CurvePoint)> = curves
+        .iter()
+        .enumerate()
+        .flat_map(|(i, c)| c.points.iter().map(move |p| (i, c, p)))
+        .collect();
+    let motion = |c: &Curve| {
+        Motion::Periodic {
+            impacts_p: c.p,
+            periods_n: c.n,
+            dead_zone: c.dead_zone,
+        }
+        .label()
+    };
+    let motion = |c: &Curve| if c.p == 0 { "0".into() } else { motion(c) };
+    let side = |c: &Curve| if c.upper { "upper" } else { "lower" };
+    Table::new()
+        .counts("curve", rows.iter().map(|r| r.0))
+        .texts("kind", rows.iter().map(|r| r.1.kind.as_str()))
+        .texts("motion", rows.iter().map(|r| motion(r.1)))
+        .texts("side", rows.iter().map(|r| side(r.1)))
+        .numbers("eta", rows.iter().map(|r| r.2.eta))
+        .numbers("rho", rows.iter().map(|r| r.2.rho))
+        .numbers("closing_speed", rows.iter().map(|r| r.2.closing_speed))
+}
+
+fn map(grid: &MapGrid, maps: &[Vec<CellMotion>; 3]) -> Table {
+    let labels = |k: usize| maps[k].iter().map(|m| Motion::from(*m).label());
+    Table::new()
+        .numbers("eta", (0..grid.len()).map(|i| grid.at(i).0))
+        .numbers("rho", (0..grid.len()).map(|i| grid.at(i).1))
+        .texts("from_start", labels(0))
+        .texts("rising", labels(1))
+        .texts("falling", labels(2))
+}

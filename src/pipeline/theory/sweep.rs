@@ -1,0 +1,180 @@
+//! A quasi-stationary sweep, there and back, with its characteristics and their figure.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use serde::{Deserialize, Serialize};
+
+use super::plan::SweepPlan;
+use super::table::Table;
+use super::{Desk, StudyError};
+use crate::atlas::map::even;
+use crate::atlas::sweep::{Carried, Impactless, LONGEST_LAG, SweepPoint, impactless};
+use crate::model::Machine;
+use crate::model::simulate::Snapshot;
+use crate::motion::Motion;
+use crate::report::figures::look::NumberLook;
+use crate::report::theory::sweep::{Characteristics, draw};
+
+/// Steps after which a sweep keeps what it has.
+const KEEP_EVERY: usize = 16;
+
+/// A sweep as far as it has come.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+struct Walked {
+    points: Vec<SweepPoint>,
+    at: Option<Snapshot>,
+}
+
+/// Sweep there and back and leave everything.
+///
+/// # Errors
+/// [`StudyError`] where a parameter is out of range or an output cannot be written.
+pub fn run(
+    machine: &Machine,
+    name: &str,
+    plan: &SweepPlan,
+    desk: &Desk<'_>,
+) -> Result<(), StudyError> {
+    let (eta, rho) = (
+        even((plan.eta.0, plan.eta.1, plan.steps)),
+        even((plan.rho.0, plan.rho.1, plan.steps)),
+    );
+    let steps: Vec<(f64, f64)> = eta.into_iter().zip(rho).collect();
+    let back: Vec<(f64, f64)> = steps.iter().rev().copied().collect();
+    let (done, all) = (AtomicU64::new(0), 2 * steps.len() as u64);
+    let tick = |count: u64| {
+        (desk.progress)(done.fetch_add(count, Ordering::Relaxed) + count, all);
+    };
+    let walk = |way: &str, steps: &[(f64, f64)]| {
+        let walk = Walk {
+            machine,
+            name,
+            plan,
+            desk,
+        };
+        walk.go(way, steps, &tick)
+    };
+    let (forward, backward) = rayon::join(|| walk("forward", &steps), || walk("backward", &back));
+    let (forward, backward) = (forward?, backward?);
+    let impactless: Vec<Impactless> = steps.iter().map(|s| impactless(machine, s.0)).collect();
+    desk.table(name, &characteristics(machine, &forward, &backward))?;
+    desk.table(&format!("{name}-impacts"), &impacts(&forward, &backward))?;
+    let data = Characteristics {
+        forward: &forward,
+        backward: &backward,
+        impactless: &impactless,
+        two_masses: machine.y.is_some(),
+    };
+    let title = "Quasi-stationary characteristics";
+    desk.figure(&draw(&data, name, title, NumberLook::default()))
+}
+
+struct Walk<'a> {
+    machine: &'a Machine,
+    name: &'a str,
+    plan: &'a SweepPlan,
+    desk: &'a Desk<'a>,
+}
+
+impl Walk<'_> {
+    /// One direction, from where a run that was broken off had come.
+    fn go(
+        &self,
+        way: &str,
+        steps: &[(f64, f64)],
+        tick: &(dyn Fn(u64) + Sync),
+    ) -> Result<Vec<SweepPoint>, StudyError> {
+        let block = format!("{} {way}", self.name);
+        let refused = StudyError::of(self.name);
+        let mut walked: Walked = self.desk.kept.load(&block).unwrap_or_default();
+        tick(walked.points.len() as u64);
+        let Some(&first) = steps.first() else {
+            return Ok(Vec::new());
+        };
+        let watch = self.plan.watch;
+        let mut carried = match &walked.at {
+            Some(snapshot) => Carried::resume(self.machine, snapshot, watch),
+            None => Carried::start(self.machine, first, self.plan.start, watch),
+        }
+        .map_err(&refused)?;
+        for &at in &steps[walked.points.len()..] {
+            walked.points.push(carried.step(at).map_err(&refused)?);
+            tick(1);
+            if walked.points.len() % KEEP_EVERY == 0 {
+                walked.at = Some(carried.snapshot());
+                self.desk.kept.save(&block, &walked)?;
+            }
+        }
+        Ok(walked.points)
+    }
+}
+
+type Directed<'a> = (&'static str, &'a SweepPoint);
+
+fn directed<'a>(
+    forward: &'a [SweepPoint],
+    backward: &'a [SweepPoint],
+) -> impl Iterator<Item = Directed<'a>> + Clone {
+    let mark = |way: &'static str| move |p| (way, p);
+    let back = backward.iter().map(mark("backward"));
+    forward.iter().map(mark("forward")).chain(back)
+}
+
+fn characteristics(machine: &Machine, forward: &[SweepPoint], backward: &[SweepPoint]) -> Table {
+    let all = directed(forward, backward);
+    let of = |f: fn(&SweepPoint) -> f64| all.clone().map(move |(_, p)| f(p));
+    let maybe = |f: fn(&SweepPoint) -> Option<f64>| all.clone().map(move |(_, p)| f(p));
+    let free: Vec<Impactless> = all
+        .clone()
+        .map(|(_, p)| impactless(machine, p.eta))
+        .collect();
+    let greatest = |v: &[f64]| v.iter().copied().reduce(f64::max);
+    let least = |v: &[f64]| v.iter().copied().reduce(f64::min);
+    let speeds = all.clone().map(|(_, p)| &p.closing_speeds);
+    let mut table = Table::new()
+        .texts("direction", all.clone().map(|(way, _)| way))
+        .numbers("eta", of(|p| p.eta))
+        .numbers("rho", of(|p| p.rho))
+        .texts(
+            "motion",
+            all.clone().map(|(_, p)| Motion::from(p.motion).label()),
+        )
+        .numbers("x_max", of(|p| p.x_max));
+    if machine.y.is_some() {
+        table = table.numbers("y_max", of(|p| p.y_max));
+    }
+    table = table
+        .missing("closing_speed_least", speeds.clone().map(|v| least(v)))
+        .missing("closing_speed_greatest", speeds.map(|v| greatest(v)))
+        .missing("lyapunov_exponent", maybe(|p| p.lyapunov));
+    for lag in 0..LONGEST_LAG {
+        let values = all
+            .clone()
+            .map(|(_, p)| p.autocorrelation.get(lag).copied());
+        table = table.missing(&format!("autocorrelation_{}_periods", lag + 1), values);
+    }
+    table = table
+        .numbers("impactless_amplitude_x", free.iter().map(|f| f.x.0))
+        .numbers("impactless_phase_x_rad", free.iter().map(|f| f.x.1));
+    if machine.y.is_some() {
+        table = table
+            .missing("impactless_amplitude_y", free.iter().map(|f| Some(f.y?.0)))
+            .missing("impactless_phase_y_rad", free.iter().map(|f| Some(f.y?.1)));
+    }
+    table
+}
+
+/// One row for every impact: one period's of a periodic motion, else the last ones.
+fn impacts(forward: &[SweepPoint], backward: &[SweepPoint]) -> Table {
+    let rows: Vec<(Directed<'_>, usize)> = directed(forward, backward)
+        .flat_map(|d| (0..d.1.closing_speeds.len()).map(move |i| (d, i)))
+        .collect();
+    let of = |f: fn(&SweepPoint, usize) -> f64| rows.iter().map(move |((_, p), i)| f(p, *i));
+    Table::new()
+        .texts("direction", rows.iter().map(|((way, _), _)| *way))
+        .numbers("eta", of(|p, _| p.eta))
+        .numbers("rho", of(|p, _| p.rho))
+        .numbers("phase_rad", of(|p, i| p.phases[i]))
+        .numbers("closing_speed", of(|p, i| p.closing_speeds[i]))
+        .numbers("x_velocity_before", of(|p, i| p.x_speeds[i]))
+}

@@ -1,0 +1,88 @@
+//! A motion in full: time series, impacts, Poincaré map, autocorrelation, and their figure.
+
+use super::table::Table;
+use super::{Desk, StudyError};
+use crate::atlas::portrait::{Portrait, PortraitPlan, Strike, portrait};
+use crate::model::Machine;
+use crate::report::figures::look::NumberLook;
+use crate::report::theory::motion::draw;
+
+/// Simulate and leave everything.
+///
+/// # Errors
+/// [`StudyError`] where a parameter is out of range or an output cannot be written.
+pub fn run(
+    machine: &Machine,
+    name: &str,
+    plan: &PortraitPlan,
+    desk: &Desk<'_>,
+) -> Result<(), StudyError> {
+    (desk.progress)(0, 2);
+    let portrait = portrait(machine, plan).map_err(StudyError::of(name))?;
+    (desk.progress)(1, 2);
+    desk.table(name, &series(&portrait))?;
+    desk.table(&format!("{name}-impacts"), &impacts(&portrait))?;
+    desk.table(&format!("{name}-poincare"), &poincare(&portrait))?;
+    desk.table(
+        &format!("{name}-autocorrelation"),
+        &autocorrelation(&portrait),
+    )?;
+    let s = &plan.setting;
+    let title = format!("Motion at η = {}, ρ = {}", s.frequency_ratio, s.clearance);
+    desk.figure(&draw(&portrait, name, &title, NumberLook::default()))?;
+    (desk.progress)(2, 2);
+    Ok(())
+}
+
+fn series(p: &Portrait) -> Table {
+    let of = |f: fn(&crate::atlas::portrait::Sample) -> f64| p.samples.iter().map(f);
+    let table = Table::new()
+        .numbers("tau_over_period", of(|s| s.periods))
+        .numbers("x", of(|s| s.x))
+        .numbers("x_velocity", of(|s| s.vx));
+    let table = if p.two_masses {
+        table
+            .numbers("y", of(|s| s.y))
+            .numbers("y_velocity", of(|s| s.vy))
+    } else {
+        table
+    };
+    table.flags("joined", p.samples.iter().map(|s| s.joined))
+}
+
+fn impacts(p: &Portrait) -> Table {
+    let of = |f: fn(&Strike) -> f64| p.impacts.iter().map(f);
+    let maybe = |f: fn(&Strike) -> Option<f64>| p.impacts.iter().map(f);
+    Table::new()
+        .numbers("tau_over_period", of(|i| i.periods))
+        .numbers("phase_rad", of(|i| i.phase))
+        .numbers("closing_speed_before", of(|i| i.closing_before))
+        .numbers("closing_speed_after", of(|i| i.closing_after))
+        .missing("x_velocity_before", maybe(|i| i.vx_before))
+        .missing("x_velocity_after", maybe(|i| i.vx_after))
+        .missing("y_velocity_before", maybe(|i| i.vy_before))
+        .missing("y_velocity_after", maybe(|i| i.vy_after))
+        .numbers("together_over_period", of(|i| i.together_periods))
+        .texts("kind", p.impacts.iter().map(|i| i.kind))
+}
+
+fn poincare(p: &Portrait) -> Table {
+    let column = |k: usize| p.poincare.iter().map(move |s| s[k]);
+    let table = Table::new()
+        .counts("period", 0..p.poincare.len())
+        .numbers("x", column(0))
+        .numbers("x_velocity", column(1));
+    if p.two_masses {
+        table
+            .numbers("y", column(2))
+            .numbers("y_velocity", column(3))
+    } else {
+        table
+    }
+}
+
+fn autocorrelation(p: &Portrait) -> Table {
+    Table::new()
+        .numbers("lag_over_period", p.autocorrelation.iter().map(|a| a.0))
+        .numbers("autocorrelation", p.autocorrelation.iter().map(|a| a.1))
+}

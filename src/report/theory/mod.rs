@@ -1,0 +1,74 @@
+//! Figures of the theory alone: motions, characteristics, basins, regions. What is drawn was
+//! computed in `atlas`.
+
+pub mod basins;
+pub mod motion;
+pub mod regions;
+pub mod sweep;
+
+use super::content::RegionMap;
+use super::figures::canvas::Canvas;
+use super::figures::legend::{self, Key, Sign};
+use super::figures::look;
+use super::figures::marks;
+use crate::motion::Motion;
+
+/// Draws keys over the whole width of the figure's top; gives the height they take.
+fn keys_on_top(canvas: &mut Canvas, left: f64, keys: &[Key]) {
+    legend::draw(canvas, (left, 1.0), look::FULL_WIDTH - left, keys);
+}
+
+/// Height of keys on the figure's top.
+fn keys_height(left: f64, keys: &[Key]) -> f64 {
+    legend::height(keys, look::FULL_WIDTH - left) + 4.0
+}
+
+/// A map of motions over a plane from each cell's motion and, where there is one, from a second.
+fn plane_of(across: &[f64], up: &[f64], cells: &[Motion], second: &[Motion]) -> RegionMap {
+    let mut motions: Vec<Motion> = Vec::new();
+    let mut index = |m: &Motion| {
+        let found = motions.iter().position(|k| k == m);
+        found.unwrap_or_else(|| {
+            motions.push(m.clone());
+            motions.len() - 1
+        }) as u16
+    };
+    let cells = cells.iter().map(&mut index).collect();
+    let second = second.iter().map(&mut index).collect();
+    RegionMap {
+        eta: across.to_vec(),
+        rho: up.to_vec(),
+        motions,
+        cells,
+        second,
+        note: String::new(),
+    }
+}
+
+/// Keys of the motions that a map shows, each with its tint; the rare ones last and left out
+/// beyond a number.
+fn tint_keys(map: &RegionMap, most: usize) -> Vec<Key> {
+    let mut counts = vec![0_usize; map.motions.len()];
+    for &cell in map.cells.iter().chain(&map.second) {
+        counts[usize::from(cell)] += 1;
+    }
+    let mut order: Vec<usize> = (0..counts.len()).collect();
+    order.sort_by_key(|&i| std::cmp::Reverse(counts[i]));
+    order.truncate(most);
+    order.sort_by_key(|&i| marks::order(&map.motions[i]));
+    let key = |i: &usize| {
+        let motion = &map.motions[*i];
+        let text = match motion {
+            Motion::Undetermined { reason } => reason.clone(),
+            Motion::Beat | Motion::Chaotic | Motion::Joined => motion.label(),
+            _ => format!("$z$ = {}", motion.label()),
+        };
+        let tint = marks::of(motion).tint;
+        if tint == look::PAPER {
+            Key::new(Sign::Nothing, format!("white: {text}"))
+        } else {
+            Key::new(Sign::Patch(tint), text)
+        }
+    };
+    order.iter().map(key).collect()
+}

@@ -1,0 +1,140 @@
+//! Regions of existence and stability of all motions in the (η, ρ) plane: the brute-force maps as
+//! tints (hatched where they differ), the boundaries as curves.
+
+use super::{keys_height, keys_on_top, plane_of};
+use crate::atlas::curves::Curve;
+use crate::atlas::map::{CellMotion, MapGrid};
+use crate::motion::Motion;
+use crate::report::figures::Figure;
+use crate::report::figures::axes::{Axis, Panel, Sides};
+use crate::report::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
+use crate::report::figures::fonts::Face;
+use crate::report::figures::legend::{Key, Sign};
+use crate::report::figures::look::{self, NumberLook};
+use crate::report::figures::path::{self, Rect};
+use crate::report::figures::placing::Occupancy;
+use crate::report::figures::regions::Regions;
+
+const LEFT: f64 = 34.0;
+const HEIGHT: f64 = 380.0;
+/// Shorter pieces of boundaries are told in the table alone.
+const FEWEST_POINTS: usize = 3;
+
+/// What is drawn.
+#[derive(Debug, Clone, Copy)]
+pub struct Plane<'a> {
+    /// The cells.
+    pub grid: &'a MapGrid,
+    /// From one start, row by row.
+    pub first: &'a [CellMotion],
+    /// From another; where it differs lies hysteresis.
+    pub second: &'a [CellMotion],
+    /// The boundaries.
+    pub curves: &'a [Curve],
+}
+
+/// Draws the plane; `None` where the grid has no area.
+pub fn draw(plane: &Plane<'_>, name: &str, title: &str, numbers: NumberLook) -> Option<Figure> {
+    let motions =
+        |cells: &[CellMotion]| -> Vec<Motion> { cells.iter().map(|c| Motion::from(*c)).collect() };
+    let (first, second) = (motions(plane.first), motions(plane.second));
+    let map = plane_of(&plane.grid.eta, &plane.grid.rho, &first, &second);
+    let keys = keys(plane.curves, first != second);
+    let top = keys_height(LEFT, &keys);
+    let size = (look::FULL_WIDTH, top + HEIGHT + 26.0);
+    let mut canvas = Canvas::new(size.0, size.1);
+    keys_on_top(&mut canvas, LEFT, &keys);
+    let axis = |v: &[f64], title: &str, ticks| {
+        Some(Axis::new(*v.first()?, *v.last()?, title).with_ticks(ticks))
+    };
+    let panel = Panel::new(
+        Rect::new(LEFT, top, look::FULL_WIDTH - LEFT - 7.0, HEIGHT),
+        axis(&plane.grid.eta, "frequency ratio $η$ (1)", 8)?,
+        axis(&plane.grid.rho, "clearance ratio $ρ$ (1)", 7)?,
+    );
+    let regions = Regions::new(&map, &panel)?;
+    canvas.layer(0);
+    regions.draw(&mut canvas);
+    let mut occupancy = Occupancy::new(size.0, size.1);
+    curves(&mut canvas, &panel, plane.curves, &mut occupancy);
+    canvas.layer(5);
+    for label in regions.labels(&mut occupancy, 9.5) {
+        let text_look = TextLook::new(label.size, Anchor::Middle).face(Face::Bold);
+        let at = (label.at.0, label.at.1 + 0.33 * label.size);
+        canvas.text(at, &label.text, text_look.colour(look::INK));
+    }
+    canvas.layer(6);
+    panel.frame(&mut canvas, Sides::BOTH, numbers);
+    Some(Figure::new(name, title, canvas, String::new()))
+}
+
+fn curves(canvas: &mut Canvas, panel: &Panel, curves: &[Curve], occupancy: &mut Occupancy) {
+    canvas.layer(3);
+    for curve in curves {
+        let data = || curve.points.iter().map(|p| (p.eta, p.rho));
+        let points: Vec<_> = data().map(|(x, y)| panel.at(x, y)).collect();
+        for piece in path::clip(&points, &panel.rect) {
+            occupancy.take_line(&piece);
+        }
+        if curve.points.len() >= FEWEST_POINTS {
+            let full = stroke(&curve.kind);
+            let minor = curve.p > 1 || curve.n > 5;
+            let width = if minor { 0.6 * full.width } else { full.width };
+            panel.curve(canvas, data(), Stroke { width, ..full });
+        }
+    }
+}
+
+/// The boundaries by name, with the text of their key and how they are drawn.
+const KINDS: [(&str, &str, Stroke); 8] = [
+    ("s2", "saddle-node $s_2$", Stroke::solid(look::INK, 1.0)),
+    (
+        "s1",
+        "period doubling $s_1$",
+        Stroke::dashed(look::VERMILION, 0.9, &[4.0, 1.8]),
+    ),
+    (
+        "rho_grazing",
+        "grazing $ρ$′ of $z$ = 0",
+        Stroke::solid(look::BLUE, 1.1),
+    ),
+    (
+        "grazing",
+        "a further impact",
+        Stroke::dashed(look::GREEN, 0.9, &[1.4, 1.4]),
+    ),
+    (
+        "impact_vanishes",
+        "an impact vanishes",
+        Stroke::dashed(look::BLUE, 0.8, &[1.4, 1.4]),
+    ),
+    (
+        "dead_zone",
+        "dead zone begins ($p$ | $p$j)",
+        Stroke::dashed(PURPLE, 0.9, &[5.0, 1.6, 1.4, 1.6]),
+    ),
+    (
+        "joined",
+        "$ρ_p$: together for ever",
+        Stroke::solid(look::QUIET, 1.2),
+    ),
+    ("torus", "torus", Stroke::solid(PURPLE, 0.7)),
+];
+const PURPLE: plotters::style::RGBColor = plotters::style::RGBColor(0x6f, 0x4a, 0x9e);
+
+fn stroke(kind: &str) -> Stroke {
+    let known = KINDS.iter().find(|k| k.0 == kind);
+    known.map_or(Stroke::solid(look::QUIET, 0.5), |k| k.2)
+}
+
+fn keys(curves: &[Curve], hysteresis: bool) -> Vec<Key> {
+    let mut keys = vec![Key::new(Sign::Nothing, "$z$ = $p$/$n$ in the regions;")];
+    let met = KINDS
+        .iter()
+        .filter(|k| curves.iter().any(|c| c.kind == k.0));
+    keys.extend(met.map(|k| Key::new(Sign::Line(k.2), k.1)));
+    if hysteresis {
+        keys.push(Key::new(Sign::Nothing, "hatched: another motion too"));
+    }
+    keys
+}
