@@ -10,6 +10,8 @@ use crate::record::{Record, Role};
 use crate::report::content::{Comparison, Portrait, Signal, Trace};
 use crate::units::Dimension;
 
+/// Residual over the signal below which the simulated motion is the measured one.
+const SAME_MOTION: f64 = 0.05;
 /// Drive periods that are drawn at least.
 const SHOWN_PERIODS: u32 = 4;
 
@@ -44,8 +46,13 @@ fn comparison(
         .fit
         .and_then(|_| Simulation::of(gathered, o, &drive, &window));
     let (eta, rho) = rows::place(gathered, o);
-    let note = note(&o.finding.motion, simulation.as_ref().map(|s| &s.motion));
     let traces = traces(record, &detection, &window, simulation.as_ref());
+    let motion = &o.finding.motion;
+    let simulated_motion = simulation.as_ref().map(|s| match apart(&traces) {
+        apart if apart < SAME_MOTION => motion.clone(),
+        _ => s.motion.clone(),
+    });
+    let note = note(motion, simulated_motion.as_ref());
     Some(Comparison {
         letter,
         record: o.record.clone(),
@@ -53,7 +60,7 @@ fn comparison(
         rho,
         drive_period_s: Some(drive.period_s()),
         motion: o.finding.motion.clone(),
-        simulated_motion: simulation.as_ref().map(|s| s.motion.clone()),
+        simulated_motion,
         portraits: portraits(&traces),
         traces,
         impacts_s: o
@@ -65,6 +72,19 @@ fn comparison(
         simulated_impacts_s: simulation.map(|s| s.impacts_s).unwrap_or_default(),
         note,
     })
+}
+
+/// Greatest residual of a channel over its own size.
+fn apart(traces: &[Trace]) -> f64 {
+    let rms = |signal: &Option<Signal>| {
+        signal
+            .as_ref()
+            .map(|s| crate::signal::robust::rms(&s.values))
+    };
+    traces
+        .iter()
+        .filter_map(|t| Some(rms(&t.residual)? / rms(&t.measured)?))
+        .fold(0.0, f64::max)
 }
 
 /// What is to be said of a simulated motion that is not the measured one.
