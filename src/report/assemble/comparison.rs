@@ -94,6 +94,10 @@ fn note(measured: &Motion, simulated: Option<&Motion>) -> String {
             "From none of the starts tried does the fitted model settle on the measured motion."
                 .to_owned()
         }
+        Some(_) if matches!(measured, Motion::Chaotic | Motion::Beat) => {
+            "Two runs of such a motion part from each other: they are alike in kind, not in course."
+                .to_owned()
+        }
         _ => String::new(),
     }
 }
