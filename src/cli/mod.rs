@@ -6,6 +6,7 @@ mod boundary;
 mod check;
 mod completions;
 mod convert;
+mod coverage;
 mod exit;
 mod fail;
 mod init;

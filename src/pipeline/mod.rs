@@ -4,6 +4,7 @@
 //! go through [`store`].
 
 pub mod checkpoint;
+pub mod coverage;
 pub mod identify;
 pub mod inputs;
 pub mod observe;

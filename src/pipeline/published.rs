@@ -31,6 +31,7 @@ pub fn run(
         joint: found.result.clone(),
         methods,
         agreement,
+        suspicions: Vec::new(),
         specimens: std::collections::BTreeMap::new(),
         settings: settings(campaign)?,
         versions: versions(),
