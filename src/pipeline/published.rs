@@ -4,9 +4,7 @@ use std::path::Path;
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::campaign::written::Published;
-use crate::identify::published::{
-    PublishedOutcome, PublishedSpeed, identify, methods, predicted,
-};
+use crate::identify::published::{PublishedOutcome, PublishedSpeed, identify, methods, predicted};
 use crate::identify::{Identification, Verdict};
 use crate::pipeline::identify::{settings, versions};
 use crate::pipeline::{PipelineError, inputs, report, store};

@@ -78,7 +78,13 @@ fn valid_every_format_is_written_and_every_figure_has_its_data() {
     assert_eq!(drawn, stems(&figures, "png"));
     assert_eq!(drawn, stems(&figures, "csv"));
     let map = fs::read_to_string(figures.join("map.csv")).expect("the map's data");
-    for layer in ["record,", "curve,s2,", "curve,grazing,", "region,", "band95,"] {
+    for layer in [
+        "record,",
+        "curve,s2,",
+        "curve,grazing,",
+        "region,",
+        "band95,",
+    ] {
         let there = map.lines().any(|l| l.starts_with(layer));
         assert!(there, "the map's data has no layer {layer}");
     }
@@ -146,7 +152,10 @@ fn valid_the_look_is_the_user_s() {
         assert!(words.contains("Our own: Synthetic"), "{words}");
     }
     let (code, complaint) = impactid(&["report", &out, "--template", "nowhere.typ"]);
-    assert!(code == 2 && complaint.contains("nowhere.typ"), "{complaint}");
+    assert!(
+        code == 2 && complaint.contains("nowhere.typ"),
+        "{complaint}"
+    );
 }
 
 /// What the README's command leaves is what lies in reports/example.
@@ -160,18 +169,30 @@ fn regress_the_example_is_what_the_readme_s_command_leaves() {
         .expect("the README shows the command");
     let words: Vec<&str> = line.split_whitespace().collect();
     let verb = words.iter().position(|w| *w == "run").expect("run") + 1;
-    let arguments: Vec<&str> = words[verb..].iter().copied().filter(|w| *w != "--").collect();
+    let arguments: Vec<&str> = words[verb..]
+        .iter()
+        .copied()
+        .filter(|w| *w != "--")
+        .collect();
     let folder = tempfile::tempdir().expect("a folder");
     let out = text(folder.path());
     let here: Vec<&str> = arguments
         .iter()
-        .map(|w| if *w == "reports/example" { out.as_str() } else { w })
+        .map(|w| {
+            if *w == "reports/example" {
+                out.as_str()
+            } else {
+                w
+            }
+        })
         .collect();
     assert_eq!(impactid(&here).0, 0);
     let example = root().join("reports/example");
     let list = |folder: &Path| -> BTreeSet<String> {
         let entries = walk(folder);
-        let relative = entries.iter().map(|p| p.strip_prefix(folder).expect("below"));
+        let relative = entries
+            .iter()
+            .map(|p| p.strip_prefix(folder).expect("below"));
         relative.map(text).collect()
     };
     assert_eq!(list(folder.path()), list(&example));
@@ -226,7 +247,10 @@ fn checked_pdf(path: &Path) {
 fn checked_page(path: &Path) {
     let page = fs::read_to_string(path).expect("the page");
     for outside in ["src=\"http", "href=\"http", "url(http"] {
-        assert!(!page.contains(outside), "it loads from elsewhere: {outside}");
+        assert!(
+            !page.contains(outside),
+            "it loads from elsewhere: {outside}"
+        );
     }
     let folder = tempfile::tempdir().expect("a folder");
     let profile = format!("--user-data-dir={}", text(folder.path()));

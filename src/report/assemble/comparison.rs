@@ -1,5 +1,7 @@
 //! Chosen records beside their simulation with the fitted parameters.
 
+use rayon::prelude::*;
+
 use super::simulation::{Simulation, Window};
 use super::{Gathered, rows};
 use crate::event::detect::DetectSettings;
@@ -16,11 +18,9 @@ const SAME_MOTION: f64 = 0.05;
 const SHOWN_PERIODS: u32 = 4;
 
 pub(super) fn comparisons(gathered: &Gathered) -> Vec<Comparison> {
-    let letters = ('A'..='Z').map(String::from);
-    gathered
-        .chosen
-        .iter()
-        .zip(gathered.chosen_records)
+    let letters: Vec<String> = ('A'..='Z').map(String::from).collect();
+    let pairs = gathered.chosen.par_iter().zip(gathered.chosen_records);
+    pairs
         .zip(letters)
         .filter_map(|((index, record), letter)| {
             comparison(gathered, &gathered.observations[*index], record, letter)

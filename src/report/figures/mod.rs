@@ -3,8 +3,8 @@
 pub mod axes;
 pub mod boundary_fit;
 pub mod canvas;
-pub mod comparison;
 mod compact;
+pub mod comparison;
 pub mod correlation;
 pub mod csv;
 pub mod decays;

@@ -75,8 +75,6 @@ fn columns(trace: &Trace) -> Vec<(String, &Signal)> {
     ];
     sources
         .into_iter()
-        .filter_map(|(source, signal)| {
-            Some((format!("{role} {source}{unit}"), signal.as_ref()?))
-        })
+        .filter_map(|(source, signal)| Some((format!("{role} {source}{unit}"), signal.as_ref()?)))
         .collect()
 }
