@@ -32,6 +32,7 @@ pub fn run(
         methods,
         agreement,
         suspicions: Vec::new(),
+        uncertainty: Default::default(),
         specimens: std::collections::BTreeMap::new(),
         settings: settings(campaign)?,
         versions: versions(),
