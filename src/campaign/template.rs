@@ -264,6 +264,7 @@ const TAIL: &str = "\
 # exclude = [\"record_12\"]    # records to leave out, by name; * and ? are wildcards
 # skip = \"0.1 s\"             # part of each record to leave out at its start
 longest_period_n = 6         # longest motion z = p/n looked for
+uncertainty = \"profile\"      # beside the covariance: profile, bootstrap or covariance
 seed = 1
 
 [report]

@@ -89,7 +89,7 @@ impl ImpactBlock {
     }
 
     /// Standard error of after − R·before.
-    fn error(&self, pair: &SpeedPair, restitution: f64) -> f64 {
+    pub fn error(&self, pair: &SpeedPair, restitution: f64) -> f64 {
         let noise = pair.error_m_s * 1f64.hypot(restitution);
         noise.hypot(self.relative_error * pair.before_m_s)
     }

@@ -5,6 +5,7 @@
 pub mod agreement;
 pub mod bound;
 pub mod boundary;
+pub mod contact_law;
 pub mod coverage;
 pub mod decay;
 pub mod estimate;
@@ -92,6 +93,9 @@ pub struct MethodResult {
     /// Remarks in words a user understands.
     #[serde(default)]
     pub remarks: Vec<String>,
+    /// How R depends on the closing speed; of impacts alone.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub contact_law: Option<contact_law::ContactLaw>,
     /// Further numbers of the method (gains, asymmetries …), named with their unit.
     #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
     pub further: BTreeMap<String, Estimate>,

@@ -13,7 +13,7 @@ use crate::identify::suspicion::{self, OddGap, Suspicion};
 use crate::identify::trajectory::TrajectoryRecord;
 use crate::identify::uncertainty::{self, Uncertainty};
 use crate::identify::verdict::{self, Findings};
-use crate::identify::{Agreement, Estimate, MethodResult, Verdict, decay, estimate};
+use crate::identify::{Agreement, Estimate, MethodResult, Verdict, contact_law, decay, estimate};
 
 /// What an identification leads to; settings, versions and hashes are the caller's to add.
 #[derive(Debug, Clone)]
@@ -612,6 +612,7 @@ impl<'a> Work<'a> {
                 self.blocks.impact_outliers
             ));
         }
+        result.contact_law = contact_law::contact_law(block);
         verdict::judge_impacts(&mut result, block, self.evidence);
         found.insert("impacts".into(), result);
     }

@@ -17,9 +17,9 @@ use crate::identify::solver::{Fit, Normal, Problem, inverse};
 #[serde(rename_all = "snake_case")]
 pub enum Way {
     /// The covariance at the optimum alone.
-    #[default]
     Covariance,
     /// Profile likelihood of each parameter.
+    #[default]
     Profile,
     /// Bootstrap over records.
     Bootstrap,
@@ -39,7 +39,7 @@ pub struct Asked {
 impl Default for Asked {
     fn default() -> Self {
         Self {
-            way: Way::Covariance,
+            way: Way::default(),
             replicas: 1000,
             seed: 1,
         }

@@ -1,8 +1,10 @@
 //! What each method rests on: resonance curve, speeds at impacts, residuals, correlation.
 
 use super::Gathered;
+use crate::identify::contact_law::Law;
 use crate::identify::impacts::SpeedPair;
 use crate::identify::methods::{Blocks, Evidence, Nominal};
+use crate::identify::parameters::Coordinate;
 use crate::identify::resonance::predicted;
 use crate::identify::solver::Block;
 use crate::identify::{MethodResult, SpecimenResult};
@@ -10,7 +12,7 @@ use crate::motion::Observation;
 use crate::motion::response::Response;
 use crate::record::Role;
 use crate::report::content::{
-    Correlation, ImpactPoint, ImpactScatter, ResidualPoint, ResidualSet, ResonanceCurve,
+    Correlation, ImpactPoint, ImpactScatter, Profile, ResidualPoint, ResidualSet, ResonanceCurve,
     ResonancePoint,
 };
 use crate::units::Dimension;
@@ -139,9 +141,17 @@ fn scatter(
         points: points.collect(),
         restitution: estimate.and_then(|e| e.value),
         interval95: estimate.and_then(|e| e.interval95),
-        restitution_of_speed: Vec::new(),
+        restitution_of_speed: method.map(law_curve).unwrap_or_default(),
         note: method.map(|m| m.remarks.join("; ")).unwrap_or_default(),
     })
+}
+
+/// R over the closing speed, where it is not one number.
+fn law_curve(method: &MethodResult) -> Vec<[f64; 2]> {
+    let law = method.contact_law.as_ref();
+    law.filter(|l| l.law != Law::Constant && method.fits == Some(false))
+        .map(|l| l.curve.iter().map(|p| [p.speed_m_s, p.restitution]).collect())
+        .unwrap_or_default()
 }
 
 pub(super) fn residuals(gathered: &Gathered) -> Vec<ResidualSet> {
@@ -232,4 +242,27 @@ pub(super) fn correlation(gathered: &Gathered) -> Option<Correlation> {
         parameters: fit.free.iter().map(|c| c.name().to_owned()).collect(),
         matrix,
     })
+}
+
+/// Profile likelihoods of the joint estimate.
+pub(super) fn profiles(gathered: &Gathered) -> Vec<Profile> {
+    let id = gathered.identification;
+    let best = |name: &str| {
+        Coordinate::PHYSICAL
+            .into_iter()
+            .find(|c| c.name() == name)
+            .and_then(|c| id.joint.parameters.get(c)?.value)
+    };
+    id.uncertainty
+        .profiles
+        .iter()
+        .map(|p| Profile {
+            parameter: p.parameter.clone(),
+            method: String::new(),
+            values: p.values.clone(),
+            delta_chi2: p.delta_chi2.clone(),
+            best: best(&p.parameter),
+            interval95: p.interval95,
+        })
+        .collect()
 }

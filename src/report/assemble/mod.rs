@@ -140,6 +140,7 @@ pub fn assemble(gathered: &Gathered) -> ReportContent {
     content.free_decays = decays::free_decays(gathered);
     content.residuals = evidence::residuals(gathered);
     content.correlation = evidence::correlation(gathered);
+    content.profiles = evidence::profiles(gathered);
     content.left_out = left_out(gathered);
     content.settings_text = gathered.campaign.settings.clone();
     content.command_line = gathered.command_line.to_owned();
