@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::flight::{Drive, exponent, forced_amplitude};
 use super::orbit::{Branch, Existence, Orbit, bisect, orbit_with_speed};
 use super::params::{Flight, Machine, Setting};
+use super::path::C64;
 use super::variation::{free_flow, saltation};
 
 /// A point of a boundary, with the orbit that is marginal there.
@@ -130,7 +131,7 @@ pub fn rho_s1(machine: &Machine, eta: f64, n: u32) -> Option<BoundaryPoint> {
     let equal = machine.y.is_none() || machine.is_symmetric();
     match machine.restitution().constant() {
         Some(r) if equal => {
-            let at = marginal(machine, &branch, r, n, -1.0)?;
+            let at = s1_of_branch(machine, &branch, r)?;
             point(machine, eta, n, at)
         }
         Some(r) => s1_along_branch(machine, &branch, r, n),
@@ -138,16 +139,21 @@ pub fn rho_s1(machine: &Machine, eta: f64, n: u32) -> Option<BoundaryPoint> {
     }
 }
 
+/// Clearance and closing speed at s1 of one mass (or of equal ones) for constant R, without a
+/// check of existence.
+pub fn s1_of_branch(machine: &Machine, branch: &Branch, restitution: f64) -> Option<(f64, f64)> {
+    marginal(machine, branch, restitution, -1.0)
+}
+
 /// Clearance and closing speed of one mass (or of equal ones) where a multiplier is `sign`
 /// (±1): trace = sign·(1 + determinant). For +1 it is s2 again.
-fn marginal(machine: &Machine, branch: &Branch, r: f64, n: u32, sign: f64) -> Option<(f64, f64)> {
+fn marginal(machine: &Machine, branch: &Branch, r: f64, sign: f64) -> Option<(f64, f64)> {
     let masses = machine.gap(1.0);
     let (o, eta) = (&machine.x, branch.eta);
     let lambda = exponent(o);
-    let period = f64::from(n) * std::f64::consts::TAU / eta;
-    let (s, c) = (lambda.im * period).sin_cos();
-    let e = (lambda.re * period).exp();
-    let g = (2.0 * r * e * c + sign * (1.0 + (r * e).powi(2))) * lambda.im / (e * s);
+    let C64 { re: ec, im: es } = branch.returned;
+    let determinant = r * r * branch.returned.norm_sqr();
+    let g = (2.0 * r * ec + sign * (1.0 + determinant)) * lambda.im / es;
     let (f, p) = (branch.forced / masses, o.drive_per_mass());
     let (alpha, q) = (branch.alpha(r), branch.q(r) / eta);
     let f2 = f.norm_sqr();
