@@ -31,8 +31,12 @@ pub fn brute_maps(
     settings: &MapSettings,
 ) -> Result<Maps, ModelError> {
     check(machine, grid, settings)?;
-    let [start, rising, falling] = WAYS.map(|way| brute_map(machine, grid, settings, way));
-    Ok([start?, rising?, falling?])
+    let start = brute_map(machine, grid, settings, Way::FromStart)?;
+    // both ways in one march, so that all lanes have work
+    let mut carried = carried(machine, grid, settings, &[Way::Rising, Way::Falling])?;
+    let falling = carried.pop().unwrap_or_default();
+    let rising = carried.pop().unwrap_or_default();
+    Ok([start, rising, falling])
 }
 
 /// What every cell settles on, row by row as in `RegionMap`.
@@ -45,42 +49,50 @@ pub fn brute_map(
     settings: &MapSettings,
     way: Way,
 ) -> Result<Vec<End>, ModelError> {
-    let columns = grid.eta.len();
+    if way != Way::FromStart {
+        let mut carried = carried(machine, grid, settings, &[way])?;
+        return Ok(carried.pop().unwrap_or_default());
+    }
     let start = |i: usize| Start {
         at: grid.at(i),
         initial: settings.start,
         phase: 0.0,
     };
-    if way == Way::FromStart {
-        let starts: Vec<Start> = (0..grid.len()).map(start).collect();
-        return march_from(machine, &starts, settings);
-    }
-    let mut cells: Vec<Option<End>> = vec![None; grid.len()];
+    let starts: Vec<Start> = (0..grid.len()).map(start).collect();
+    march_from(machine, &starts, settings)
+}
+
+/// Carry motions from column to column, in one or both directions at once.
+fn carried(
+    machine: &Machine,
+    grid: &MapGrid,
+    settings: &MapSettings,
+    ways: &[Way],
+) -> Result<Vec<Vec<End>>, ModelError> {
+    let (columns, rows) = (grid.eta.len(), grid.rho.len());
+    let mut cells: Vec<Vec<Option<End>>> = vec![vec![None; grid.len()]; ways.len()];
     let mut before: Option<Vec<End>> = None;
     for step in 0..columns {
-        let column = if way == Way::Rising {
-            step
-        } else {
-            columns - 1 - step
+        let column = |way: Way| match way {
+            Way::Falling => columns - 1 - step,
+            _ => step,
         };
-        let numbers: Vec<usize> = (0..grid.rho.len()).map(|k| k * columns + column).collect();
-        let starts: Vec<Start> = numbers
-            .iter()
-            .enumerate()
-            .map(|(k, &i)| match &before {
-                None => start(i),
-                Some(ends) => Start {
-                    at: grid.at(i),
-                    initial: ends[k].initial,
-                    phase: ends[k].phase,
-                },
-            })
-            .collect();
+        let number = |k: usize| (k % rows) * columns + column(ways[k / rows]);
+        let start = |k: usize| {
+            let last = before.as_ref().map(|ends| ends[k]);
+            Start {
+                at: grid.at(number(k)),
+                initial: last.map_or(settings.start, |end| end.initial),
+                phase: last.map_or(0.0, |end| end.phase),
+            }
+        };
+        let starts: Vec<Start> = (0..ways.len() * rows).map(start).collect();
         let ends = march_from(machine, &starts, settings)?;
-        for (&i, end) in numbers.iter().zip(&ends) {
-            cells[i] = Some(*end);
+        for (k, end) in ends.iter().enumerate() {
+            cells[k / rows][number(k)] = Some(*end);
         }
         before = Some(ends);
     }
-    Ok(cells.into_iter().flatten().collect())
+    let whole = |map: Vec<Option<End>>| map.into_iter().flatten().collect();
+    Ok(cells.into_iter().map(whole).collect())
 }
