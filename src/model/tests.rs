@@ -326,3 +326,48 @@ fn prop_newton_orbits_match_simulated_motions() {
         }
     }
 }
+
+#[test]
+fn valid_masses_stay_together_for_ever_below_rho_p() {
+    let asymmetry = params::Asymmetry {
+        drive_amplitude: 0.8,
+        stiffness: 1.3,
+        mass: 1.5,
+    };
+    let machines = [
+        Machine::single(0.1, 0.0),
+        Machine::symmetric(0.1, 0.0),
+        Machine::asymmetric(0.1, 0.0, asymmetry),
+    ];
+    for (machine, eta) in machines.iter().zip([0.8, 1.3, 0.9]) {
+        let edge = boundary::rho_joined(machine, eta);
+        let stays = |rho: f64| {
+            // in contact and at rest; the joined masses' own vibration has died away
+            let start = Initial::both(rho, 0.0);
+            let mut s = Simulator::new(machine, Setting::new(eta, rho), start).unwrap();
+            s.advance(400.0, &mut |_: &ModelImpact| {});
+            let mut apart = false;
+            for _ in 0..2000 {
+                s.advance(0.01, &mut |_: &ModelImpact| {});
+                apart |= !s.is_joined();
+            }
+            !apart
+        };
+        assert!(stays(edge - 1e-3), "{edge}");
+        assert!(!stays(edge + 1e-3), "{edge}");
+    }
+    assert!((boundary::rho_joined(&machines[1], 2.0) + 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn valid_boundaries_at_a_clearance_are_those_at_their_frequency() {
+    let machine = Machine::symmetric(0.07, 0.9);
+    for p in boundary::etas_s1(&machine, 1.9, 1) {
+        assert!((rho_s1(&machine, p.eta, 1).unwrap().rho - 1.9).abs() < 1e-8);
+    }
+    let grazing = boundary::etas_grazing(&machine, 2.0);
+    assert_eq!(grazing.len(), 2);
+    for eta in grazing {
+        assert!((rho_grazing(&machine, eta) - 2.0).abs() < 1e-9);
+    }
+}
