@@ -32,3 +32,6 @@ mod main_job;
 
 /// Records that nobody here wrote.
 mod real_data;
+
+/// The report as a user gets it, and the finished example.
+mod report;

@@ -106,6 +106,7 @@ fn resolve_one(role: Role, placed: &Spanned<Channel>, desk: &mut Desk<'_>) -> Op
             .ignore_file_unit
             .as_ref()
             .is_some_and(|b| *b.get_ref()),
+        instrument: written.instrument.as_ref().map(|i| i.get_ref().clone()),
         ..ChannelSetup::plain(role, source(role, placed, desk)?)
     };
     Some(setup)

@@ -14,11 +14,16 @@ pub struct Known<'a> {
     pub given: Option<&'a str>,
 }
 
-/// One name a record: as given, else the file's name without extension, with as many folders
-/// before it as tell the files apart, with the dataset after it where the file holds several.
+/// One name a record: as given; else its dataset where these alone tell all records apart; else
+/// the file's name without extension, with as many folders before it as tell the files apart and
+/// the dataset after it.
 pub fn of<'a>(records: impl Iterator<Item = Known<'a>>) -> Vec<String> {
     let records: Vec<Known<'a>> = records.collect();
-    let depth = depth_needed(&records);
+    let depth = if datasets_suffice(&records) {
+        0
+    } else {
+        depth_needed(&records)
+    };
     let mut names: Vec<String> = records.iter().map(|r| name(r, depth)).collect();
     number_repeated(&mut names);
     names
@@ -28,11 +33,22 @@ fn name(record: &Known<'_>, depth: usize) -> String {
     if let Some(given) = record.given {
         return given.to_owned();
     }
+    if depth == 0 {
+        return record.dataset.trim_matches('/').to_owned();
+    }
     let file = tail(record.file, depth);
     match record.dataset.trim_matches('/') {
         "" => file,
         dataset => format!("{file}/{dataset}"),
     }
+}
+
+fn datasets_suffice(records: &[Known<'_>]) -> bool {
+    let names: std::collections::BTreeSet<&str> = records
+        .iter()
+        .map(|r| r.dataset.trim_matches('/'))
+        .collect();
+    !names.contains("") && names.len() == records.len()
 }
 
 /// Last parts of a path, without the extension.
@@ -88,6 +104,10 @@ mod tests {
     fn valid_names_are_as_short_as_tells_the_files_apart() {
         let short = of([known("/a/b/one.h5", "run1"), known("/a/b/two.csv", "")].into_iter());
         assert_eq!(short, ["one/run1", "two"]);
+        let sets = of([known("/a/b/one.h5", "run1"), known("/a/b/two.h5", "/run2")].into_iter());
+        assert_eq!(sets, ["run1", "run2"]);
+        let both = of([known("/a/one.h5", "run1"), known("/a/two.h5", "run1")].into_iter());
+        assert_eq!(both, ["one/run1", "two/run1"]);
         let deep = of([known("/a/b/tps.txt", ""), known("/a/c/tps.txt", "")].into_iter());
         assert_eq!(deep, ["b/tps", "c/tps"]);
         let same = of([known("/a/x.csv", ""), known("/a/x.lvm", "")].into_iter());

@@ -1,6 +1,6 @@
 //! From campaign.toml as written to the campaign as resolved, or every fault at once.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 
@@ -11,7 +11,7 @@ use super::quantity::Desk;
 use super::read::{self, Text};
 use super::records;
 use super::resolved::{Analysis, RecordEntry, Report, ResolvedCampaign, Rig};
-use super::written::{self, Flight, Language, Machine, Paper, Placed, WrittenCampaign};
+use super::written::{self, Flight, Format, Language, Machine, Paper, Placed, WrittenCampaign};
 use crate::units::Dimension;
 
 /// A campaign as far as it could be resolved, and all that is wrong with it.
@@ -109,7 +109,9 @@ fn resolve(
             Dimension::Frequency,
         ),
         analysis: analysis(&written.analysis, desk),
-        report: report(&written.report, &name, &records, desk),
+        report: report(&written.report, &name, (folder, &records), desk),
+        laboratory: words(&written.campaign.laboratory),
+        measured: words(&written.campaign.measured),
         file: path.to_path_buf(),
         name,
         channels,
@@ -210,7 +212,7 @@ fn analysis(written: &written::Analysis, desk: &mut Desk<'_>) -> Analysis {
 fn report(
     written: &written::Report,
     name: &str,
-    records: &[RecordEntry],
+    (folder, records): (&Path, &[RecordEntry]),
     desk: &mut Desk<'_>,
 ) -> Report {
     if let Some(points) = &written.points {
@@ -236,7 +238,35 @@ fn report(
             .as_ref()
             .map_or(Language::En, |l| *l.get_ref()),
         decimal_comma: written.decimal_comma.as_ref().is_some_and(|d| *d.get_ref()),
+        formats: match &written.formats {
+            Some(formats) if !formats.get_ref().is_empty() => formats.get_ref().clone(),
+            _ => vec![Format::Pdf],
+        },
+        template: beside(&written.template, "report.template", folder, desk),
+        logo: beside(&written.logo, "report.logo", folder, desk),
     }
+}
+
+/// A file that campaign.toml names; a fault where it is not there.
+fn beside(
+    placed: &Placed<String>,
+    key: &str,
+    folder: &Path,
+    desk: &mut Desk<'_>,
+) -> Option<PathBuf> {
+    let placed = placed.as_ref()?;
+    let path = folder.join(placed.get_ref());
+    if !path.is_file() {
+        let what = format!("{} is no file", path.display());
+        let remedy = "write its path as seen from campaign.toml's folder, or remove the line";
+        desk.fault(placed, key, what, remedy);
+    }
+    Some(path)
+}
+
+/// A text as written.
+fn words(placed: &Placed<String>) -> Option<String> {
+    placed.as_ref().map(|p| p.get_ref().clone())
 }
 
 fn unknown_record<T>(

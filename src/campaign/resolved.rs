@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::written::{Excitation, Flight, Language, Machine, Paper};
+use super::written::{Excitation, Flight, Format, Language, Machine, Paper};
 use crate::record::Setting;
 use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup};
 
@@ -18,6 +18,12 @@ pub struct ResolvedCampaign {
     pub machine: Machine,
     /// What acts between impacts.
     pub flight: Flight,
+    /// Who measured, and where.
+    #[serde(default)]
+    pub laboratory: Option<String>,
+    /// When it was measured, in words.
+    #[serde(default)]
+    pub measured: Option<String>,
     /// campaign.toml itself.
     pub file: PathBuf,
     /// The run table, where there is one.
@@ -89,6 +95,15 @@ pub struct Report {
     pub language: Language,
     /// Whether numbers are printed with a decimal comma.
     pub decimal_comma: bool,
+    /// What it is written as; the figures' data is always written beside it.
+    #[serde(default)]
+    pub formats: Vec<Format>,
+    /// A typst template instead of the built-in one.
+    #[serde(default)]
+    pub template: Option<PathBuf>,
+    /// An image for the first page.
+    #[serde(default)]
+    pub logo: Option<PathBuf>,
 }
 
 /// One record of the campaign.

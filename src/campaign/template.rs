@@ -270,5 +270,8 @@ seed = 1
 paper = \"a4\"                 # or \"us-letter\"
 language = \"en\"              # en, cs or de
 decimal_comma = false
+formats = [\"pdf\"]            # any of pdf, html, svg, png; the figures' data comes as CSV with each
 # points = [\"record_12\"]     # records to draw; chosen by the program where not given
+# logo = \"logo.svg\"          # an image for the first page (svg, png or jpg)
+# template = \"report.typ\"    # a typst template instead of the built-in one
 ";

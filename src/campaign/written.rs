@@ -58,6 +58,10 @@ pub struct About {
     pub machine: Placed<Machine>,
     /// What acts on the masses between impacts.
     pub flight: Placed<Flight>,
+    /// Who measured, and where.
+    pub laboratory: Placed<String>,
+    /// When it was measured, in words; the files' own times where it is not given.
+    pub measured: Placed<String>,
 }
 
 pub use crate::event::detect::FlightKind as Flight;
@@ -180,6 +184,8 @@ pub struct Channel {
     pub range: Placed<Quantity>,
     /// Believe this table's unit where the file states another.
     pub ignore_file_unit: Placed<bool>,
+    /// What recorded it, in words: sensor, amplifier, serial number.
+    pub instrument: Placed<String>,
 }
 
 /// `[analysis]`.
@@ -212,7 +218,15 @@ pub struct Report {
     pub language: Placed<Language>,
     /// Whether numbers are printed with a decimal comma.
     pub decimal_comma: Placed<bool>,
+    /// What it is written as: pdf, html, svg, png.
+    pub formats: Placed<Vec<Format>>,
+    /// A typst template instead of the built-in one, relative to campaign.toml's folder.
+    pub template: Placed<String>,
+    /// An image for the first page, relative to campaign.toml's folder.
+    pub logo: Placed<String>,
 }
+
+pub use crate::report::Format;
 
 /// Paper size of the report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

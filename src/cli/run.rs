@@ -1,13 +1,16 @@
 //! `impactid run`: all stages, from campaign.toml to the report.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::look::{Look, quoted};
 use super::progress::Progress;
 use super::{Exit, Failure, Voice, interrupt};
+use crate::campaign::resolved::ResolvedCampaign;
 use crate::output::Lock;
 use crate::pipeline::{self, Destination};
+use crate::report::Format;
 
 /// Arguments of `impactid run`.
 #[derive(Debug, Args)]
@@ -22,18 +25,38 @@ pub struct Run {
     /// Take over what a run that was broken off left in DIR
     #[arg(long)]
     resume: bool,
+    #[command(flatten)]
+    look: Look,
 }
 
 const EXAMPLE: &str = "\
 Example:
   impactid run data-samples/double-oscillator/campaign.toml --out results/
+  impactid run campaign.toml --out results/ --format pdf,html,svg,png --paper letter
 
-It leaves report.pdf, identification.json, records.parquet, impacts.parquet and boundaries.csv.
+It leaves report.pdf, the figures' data in figures/, identification.json, records.parquet, impacts.parquet and boundaries.csv.
 Exit codes: 0 done; 1 done, but the answer is \"does not fit\" or \"not identifiable\"; 2 bad input.";
+
+/// Say where the report lies.
+pub(super) fn say_report(campaign: &ResolvedCampaign, out: &Path, voice: Voice) {
+    for format in &campaign.report.formats {
+        let name = match format {
+            Format::Pdf => "report.pdf",
+            Format::Html => "report.html",
+            Format::Svg | Format::Png | Format::Csv => "figures/",
+        };
+        voice.say(&format!(
+            "Report ({}): {}",
+            format.name(),
+            out.join(name).display()
+        ));
+    }
+}
 
 impl Run {
     pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
-        let campaign = super::stage::load_campaign(&self.campaign, voice)?;
+        let mut campaign = super::stage::load_campaign(&self.campaign, voice)?;
+        self.look.apply(&mut campaign.report)?;
         let _lock = Lock::take(&self.out)?;
         interrupt::watch(self.out.clone());
         voice.detail(&format!("{} records", campaign.records.len()));
@@ -43,9 +66,10 @@ impl Run {
             progress.set(done, total);
         };
         let command = format!(
-            "impactid run {} --out {}",
-            self.campaign.display(),
-            self.out.display()
+            "impactid run {} --out {}{}",
+            quoted(&self.campaign),
+            quoted(&self.out),
+            self.look.typed()
         );
         let destination = Destination {
             out: &self.out,
@@ -58,10 +82,7 @@ impl Run {
         for finding in &found.findings {
             voice.say(&format!("  - {finding}"));
         }
-        voice.say(&format!(
-            "Report: {}",
-            self.out.join(pipeline::report::FILE).display()
-        ));
+        say_report(&campaign, &self.out, voice);
         Ok(Exit::of(found.kind))
     }
 }

@@ -7,12 +7,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::fail::rendered_fault;
+use super::look::{Look, quoted};
 use super::progress::Progress;
+use super::run::say_report;
 use super::{Exit, Failure, Voice, interrupt};
 use crate::campaign::faults::Severity;
 use crate::campaign::load;
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::output::{Lock, write_bytes};
+use crate::output::Lock;
 use crate::pipeline::{self, store};
 use crate::record::open::open;
 
@@ -98,13 +100,26 @@ Exit codes: 0 done; 1 done, but the answer is \"does not fit\" or \"not identifi
 pub struct Report {
     #[command(flatten)]
     folder: Folder,
+    #[command(flatten)]
+    look: Look,
 }
 
 const REPORT: &str = "\
 Example:
   impactid report results/
+  impactid report results/ --format html,png --template mine.typ
 
-It reads what `impactid identify` left there and writes report.pdf.";
+It reads what `impactid identify` left there and writes report.pdf and the figures' data.";
+
+/// The commands that make a report in stages.
+fn commands(campaign: &Path, folder: &Path, look: &Look) -> String {
+    let (campaign, out) = (quoted(campaign), quoted(folder));
+    format!(
+        "impactid ingest {campaign} --out {out}\nimpactid classify {out}\n\
+         impactid identify {out}\nimpactid report {out}{}",
+        look.typed()
+    )
+}
 
 impl Ingest {
     pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
@@ -158,14 +173,14 @@ impl Identify {
 impl Report {
     pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
         let (folder, _lock) = self.folder.take()?;
-        let campaign = store::read_resolved(&folder)?;
+        let mut campaign = store::read_resolved(&folder)?;
+        self.look.apply(&mut campaign.report)?;
         let observed = store::read_observed(&folder)?;
         let found = store::read_found(&folder)?;
-        let command = format!("impactid report {}", folder.display());
-        let pdf = pipeline::report::pdf(&campaign, &observed, &found, &command)?;
-        let path = folder.join(pipeline::report::FILE);
-        write_bytes(&path, &pdf)?;
-        voice.say(&format!("Report: {}", path.display()));
+        let command = commands(&campaign.file, &folder, &self.look);
+        let report = pipeline::report::files(&campaign, &observed, &found, &command)?;
+        pipeline::report::write(&report, &folder)?;
+        say_report(&campaign, &folder, voice);
         Ok(Exit::Done)
     }
 }

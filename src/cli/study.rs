@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, Subcommand};
 
+use super::coverage::Coverage;
 use super::theory::{COPY, Work};
 use super::{Exit, Failure, Voice, interrupt};
 use crate::output::{Lock, write_bytes};
@@ -12,17 +13,26 @@ use crate::pipeline::theory::{self, Study as Written};
 
 /// Arguments of `impactid study`.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLE)]
+#[command(after_help = EXAMPLE, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct Study {
+    #[command(subcommand)]
+    kind: Option<Kind>,
     /// The studies; a folder stands for all *.toml in it
     #[arg(value_name = "STUDY.TOML", required = true)]
     files: Vec<PathBuf>,
     /// Folder for the results, one folder in it for each study
-    #[arg(long, short, value_name = "DIR")]
-    out: PathBuf,
+    #[arg(long, short, value_name = "DIR", required = true)]
+    out: Option<PathBuf>,
     /// Go on after an interruption: leave studies out whose results are there
     #[arg(long)]
     resume: bool,
+}
+
+/// Studies that have no file.
+#[derive(Debug, Subcommand)]
+enum Kind {
+    /// Bias, error and coverage of the identification over many synthetic campaigns
+    Coverage(Coverage),
 }
 
 const EXAMPLE: &str = "\
@@ -40,16 +50,20 @@ impl Study {
     /// [`Failure`] where a study cannot be read, a parameter is out of range or a file cannot
     /// be written.
     pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
+        if let Some(Kind::Coverage(verb)) = self.kind {
+            return verb.go(voice);
+        }
+        let out = self.out.unwrap_or_default();
         let files = all_files(&self.files)?;
         let studies = files
             .iter()
             .map(|file| read(file))
             .collect::<Result<Vec<_>, _>>()?;
-        let _lock = Lock::take(&self.out)?;
-        interrupt::watch(self.out.clone());
+        let _lock = Lock::take(&out)?;
+        interrupt::watch(out.clone());
         for (file, (study, text)) in files.iter().zip(studies) {
             let name = name(file);
-            let folder = self.out.join(&name);
+            let folder = out.join(&name);
             let there = fs::read_to_string(folder.join(COPY)).is_ok_and(|copy| copy == text);
             if self.resume && there {
                 voice.say(&format!("{name}: there already"));

@@ -9,7 +9,7 @@ pub const NORMAL_975: f64 = 1.959_963_984_540_054;
 
 /// Standard errors (of the coordinate: R absolute, the others relative) from which a parameter is
 /// weak and from which it is not identifiable.
-fn limits(coordinate: Coordinate) -> (f64, f64) {
+pub(super) fn limits(coordinate: Coordinate) -> (f64, f64) {
     match coordinate {
         Coordinate::Restitution => (0.03, 0.15),
         Coordinate::Frequency => (0.01, 0.08),

@@ -66,6 +66,15 @@ pub struct Blocks {
 impl Blocks {
     /// Sort the evidence.
     pub fn new(evidence: &Evidence) -> Self {
+        Self::with_errors(evidence, RELATIVE_ERROR, IMPACT_SCATTER)
+    }
+
+    /// The evidence without allowance for anything but noise.
+    pub fn with_noise_alone(evidence: &Evidence) -> Self {
+        Self::with_errors(evidence, 0.0, 0.0)
+    }
+
+    fn with_errors(evidence: &Evidence, relative_error: f64, impact_scatter: f64) -> Self {
         let Evidence {
             rig,
             observations,
@@ -73,10 +82,10 @@ impl Blocks {
             ..
         } = *evidence;
         let (impact, impact_outliers) =
-            ImpactBlock::new(observations, IMPACT_SCATTER).without_outliers(5.0);
+            ImpactBlock::new(observations, impact_scatter).without_outliers(5.0);
         Self {
-            resonance: ResonanceBlock::new(rig, observations, RELATIVE_ERROR),
-            trajectory: TrajectoryBlock::new(rig, observations, RELATIVE_ERROR),
+            resonance: ResonanceBlock::new(rig, observations, relative_error),
+            trajectory: TrajectoryBlock::new(rig, observations, relative_error),
             boundary: BoundaryBlock::new(rig, brackets),
             impact,
             impact_outliers,

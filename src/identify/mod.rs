@@ -3,7 +3,9 @@
 //! The result is plain data ([`Identification`]), written as `identification.json`.
 
 pub mod agreement;
+pub mod bound;
 pub mod boundary;
+pub mod coverage;
 pub mod decay;
 pub mod estimate;
 pub mod impacts;
@@ -14,6 +16,7 @@ pub mod resonance;
 pub mod run;
 pub mod solver;
 pub mod specimens;
+pub mod suspicion;
 pub mod trajectory;
 pub mod verdict;
 
@@ -163,6 +166,9 @@ pub struct Identification {
     pub methods: BTreeMap<String, MethodResult>,
     /// Whether the methods agree.
     pub agreement: Agreement,
+    /// Mistakes of the laboratory that the data give away.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub suspicions: Vec<suspicion::Suspicion>,
     /// Results for each specimen, where the campaign holds several.
     #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
     pub specimens: BTreeMap<String, SpecimenResult>,

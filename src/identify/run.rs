@@ -6,6 +6,8 @@ use crate::identify::agreement::agreement;
 use crate::identify::methods::{self, Blocks, Evidence, IMPACT_BIAS, MethodFit};
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::{Block, Fit, FitError, Problem};
+use crate::identify::suspicion::{self, OddGap, Suspicion};
+use crate::identify::trajectory::TrajectoryRecord;
 use crate::identify::verdict::{self, Findings};
 use crate::identify::{Agreement, Estimate, MethodResult, Verdict, decay};
 
@@ -26,6 +28,8 @@ pub struct Outcome {
     pub factor: f64,
     /// Records or impacts that were left out of a fit, each with the reason.
     pub left_out: Vec<(String, String)>,
+    /// Mistakes of the laboratory that the data give away.
+    pub suspicions: Vec<Suspicion>,
 }
 
 /// Identify from observations and brackets.
@@ -35,9 +39,22 @@ pub fn identify(evidence: &Evidence) -> Outcome {
     let start = work.start(resonance.as_ref());
     let impacts = methods::impacts(&work.blocks, start);
     let start = with_restitution(start, impacts.as_ref());
-    let trajectories = work.trajectories(start);
-    let start = best_start(start, trajectories.as_ref());
-    let boundaries = work.boundaries(start);
+    let first = [resonance.as_ref(), impacts.as_ref()];
+    let mut fits = work.fits(start, first);
+    let mut suspicions = Vec::new();
+    while let Some(odd) = work.odd_gap(&fits, suspicions.len()) {
+        suspicions.push(odd.suspicion());
+        if !work.leave_out_gap(odd.stated_m) {
+            break;
+        }
+        fits = work.fits(start, first);
+    }
+    suspicions.extend(work.other_suspicions(&fits));
+    let Fits {
+        trajectories,
+        boundaries,
+        joint,
+    } = fits;
     let mut found = BTreeMap::new();
     work.store_resonance(&mut found, resonance.as_ref());
     work.store_impacts(&mut found, impacts.as_ref());
@@ -46,14 +63,13 @@ pub fn identify(evidence: &Evidence) -> Outcome {
     if let Some(result) = decay::pooled(evidence.observations) {
         found.insert("free_decay".into(), result);
     }
-    let fits = [&resonance, &trajectories, &boundaries, &impacts];
-    let joint = work.joint(start, fits);
     let (joint_result, fit, factor) = work.joint_result(joint, &found);
     let agreement = agreement(&found);
     let verdict = verdict::verdict(&Findings {
         joint: &joint_result,
         methods: &found,
         agreement: &agreement,
+        suspicions: &suspicions,
     });
     Outcome {
         verdict,
@@ -63,8 +79,22 @@ pub fn identify(evidence: &Evidence) -> Outcome {
         fit,
         factor,
         left_out: work.left_out,
+        suspicions,
     }
 }
+
+/// The fits that rest on the records of single gaps, and all together.
+struct Fits {
+    trajectories: Attempt,
+    boundaries: Attempt,
+    joint: Attempt,
+}
+
+/// Gaps that may be found wrong before the campaign as a whole is at fault.
+const MOST_ODD_GAPS: usize = 2;
+
+/// Reduced sum of squares from which an interchange of channels is looked for.
+const POOR_FIT: f64 = 1.5;
 
 /// How many times the typical mean square of residuals makes a record an outlier.
 const OUTLYING: f64 = 25.0;
@@ -100,6 +130,9 @@ struct Work<'a> {
     evidence: &'a Evidence<'a>,
     blocks: Blocks,
     left_out: Vec<(String, String)>,
+    /// Periodic records that the trajectories' fit lost, and the typical mean square of the others.
+    lost: Vec<TrajectoryRecord>,
+    typical: f64,
 }
 
 impl<'a> Work<'a> {
@@ -108,7 +141,87 @@ impl<'a> Work<'a> {
             evidence,
             blocks: Blocks::new(evidence),
             left_out: Vec::new(),
+            lost: Vec::new(),
+            typical: 1.0,
         }
+    }
+
+    /// Trajectories, boundaries and all together, beside the resonance curve and the impacts.
+    fn fits(
+        &mut self,
+        start: Parameters,
+        [resonance, impacts]: [Option<&Result<MethodFit, FitError>>; 2],
+    ) -> Fits {
+        let trajectories = self.trajectories(start);
+        let start = best_start(start, trajectories.as_ref());
+        let boundaries = self.boundaries(start);
+        let weights = [
+            resonance,
+            trajectories.as_ref(),
+            boundaries.as_ref(),
+            impacts,
+        ]
+        .map(|attempt| succeeded(attempt).map(|f| 1.0 / f.factor));
+        let joint = self.joint(&self.blocks, start, weights);
+        Fits {
+            trajectories,
+            boundaries,
+            joint,
+        }
+    }
+
+    /// The gap that deviates most from what the others say, if one does.
+    fn odd_gap(&self, fits: &Fits, found: usize) -> Option<OddGap> {
+        if found >= MOST_ODD_GAPS {
+            return None;
+        }
+        let joint = succeeded(fits.joint.as_ref())?;
+        let block = &self.blocks.trajectory;
+        let weight = 1.0 / succeeded(fits.trajectories.as_ref())?.factor;
+        suspicion::lost_gap(block, &self.lost, &joint.fit.parameters, self.typical)
+            .or_else(|| suspicion::odd_gap(block, weight, &joint.fit, joint.factor))
+    }
+
+    /// Leave the records and brackets of one gap out; false where nothing would remain.
+    fn leave_out_gap(&mut self, clearance_m: f64) -> bool {
+        let records = &mut self.blocks.trajectory.records;
+        if records.iter().all(|r| r.clearance_m == clearance_m) {
+            return false;
+        }
+        let reason = "its gap is not as stated: left out of trajectories and boundaries";
+        let observations = self.evidence.observations;
+        self.left_out.extend(
+            records
+                .iter()
+                .filter(|r| r.clearance_m == clearance_m)
+                .map(|r| (observations[r.observation].record.clone(), reason.to_owned())),
+        );
+        records.retain(|r| r.clearance_m != clearance_m);
+        self.lost.retain(|r| r.clearance_m != clearance_m);
+        let brackets = &mut self.blocks.boundary.brackets;
+        brackets.retain(|b| b.clearance_m != clearance_m);
+        true
+    }
+
+    /// Gains far off and interchanged channels.
+    fn other_suspicions(&self, fits: &Fits) -> Vec<Suspicion> {
+        let Some(joint) = succeeded(fits.joint.as_ref()) else {
+            return Vec::new();
+        };
+        let nominal = &self.evidence.nominal;
+        if joint.reduced > POOR_FIT || self.lost.len() > self.blocks.trajectory.records.len() {
+            let start = joint.fit.parameters;
+            let unit = [Some(1.0), Some(1.0), None, None];
+            let cost = |blocks: &Blocks| {
+                let attempt = self.joint(blocks, start, unit);
+                let found = succeeded(attempt.as_ref())?;
+                Some((found.fit.cost, found.fit.residuals))
+            };
+            if let Some(found) = suspicion::swapped(&self.blocks, &cost) {
+                return vec![found];
+            }
+        }
+        suspicion::gains(&joint.fit, joint.factor, nominal)
     }
 
     /// Starting values: the resonance curve's, else the stated ones, else guesses of scale.
@@ -206,6 +319,7 @@ impl<'a> Work<'a> {
             .unwrap_or(1.0)
             .max(1.0);
         let mut kept = Vec::new();
+        self.typical = typical;
         for (record, score) in all.iter().zip(&scores) {
             let reason = match score {
                 Some(s) if *s <= OUTLYING * typical => {
@@ -221,6 +335,7 @@ impl<'a> Work<'a> {
                          out of the trajectories"
                     .to_owned(),
             };
+            self.lost.push(record.clone());
             self.left_out.push((self.name(record.observation), reason));
         }
         self.blocks.trajectory.records = kept;
@@ -269,15 +384,19 @@ impl<'a> Work<'a> {
         methods::boundaries(&self.blocks, &self.evidence.nominal, start)
     }
 
-    fn joint(&self, start: Parameters, fits: [&Attempt; 4]) -> Attempt {
-        let weight = |attempt: &Attempt| succeeded(attempt.as_ref()).map(|f| 1.0 / f.factor);
-        let [resonance, trajectories, boundaries, impacts] = fits.map(weight);
+    /// All blocks in one fit, each with its weight; those without one stay out.
+    fn joint(
+        &self,
+        blocks: &Blocks,
+        start: Parameters,
+        [resonance, trajectories, boundaries, impacts]: [Option<f64>; 4],
+    ) -> Attempt {
         let mut list: Vec<(&dyn Block, f64)> = Vec::new();
         let candidates: [(&dyn Block, Option<f64>); 4] = [
-            (&self.blocks.resonance, resonance),
-            (&self.blocks.trajectory, trajectories),
-            (&self.blocks.boundary, boundaries),
-            (&self.blocks.impact, impacts),
+            (&blocks.resonance, resonance),
+            (&blocks.trajectory, trajectories),
+            (&blocks.boundary, boundaries),
+            (&blocks.impact, impacts),
         ];
         for (block, weight) in candidates {
             if let (Some(weight), true) = (weight, block.items() > 0) {
@@ -294,8 +413,7 @@ impl<'a> Work<'a> {
         let mut priors = methods::wide_priors(&start, &free);
         let waveforms = resonance.is_some() || trajectories.is_some();
         if waveforms {
-            let (nuisances, more) = self
-                .blocks
+            let (nuisances, more) = blocks
                 .nuisances(self.evidence.nominal.gain_uncertainty);
             free.extend(nuisances);
             priors.extend(more);

@@ -230,7 +230,23 @@ impl Problem<'_> {
         sum.is_finite().then_some(sum)
     }
 
+    /// Inverse of the information at given parameters, over the items that have a model there;
+    /// `None` where it is singular.
+    pub fn covariance_at(&self, parameters: &Parameters) -> Option<DMatrix<f64>> {
+        inverse(&self.known_normal(parameters).0.matrix)
+    }
+
     fn normal(&self, parameters: &Parameters) -> Result<Normal, Vec<(usize, usize)>> {
+        let (total, missing) = self.known_normal(parameters);
+        if missing.is_empty() {
+            Ok(total)
+        } else {
+            Err(missing)
+        }
+    }
+
+    /// Normal equations over the items that have a model, and those (block, item) that have none.
+    fn known_normal(&self, parameters: &Parameters) -> (Normal, Vec<(usize, usize)>) {
         let mut total = Normal::zeros(self.free.len());
         let mut missing = Vec::new();
         for (b, (block, weight)) in self.blocks.iter().enumerate() {
@@ -248,11 +264,7 @@ impl Problem<'_> {
         for prior in &self.priors {
             total.add(&self.prior_normal(prior, parameters));
         }
-        if missing.is_empty() {
-            Ok(total)
-        } else {
-            Err(missing)
-        }
+        (total, missing)
     }
 
     fn item_normal(

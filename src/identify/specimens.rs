@@ -112,6 +112,7 @@ fn summary(
             summary: "See each specimen.".into(),
             pairs: Vec::new(),
         },
+        suspicions: Vec::new(),
         fit: None,
         factor: 1.0,
         left_out,

@@ -7,6 +7,7 @@ use crate::identify::methods::Evidence;
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::resonance::{self, ResonanceBlock};
 use crate::identify::solver::Block;
+use crate::identify::suspicion::Suspicion;
 use crate::identify::trajectory::TrajectoryBlock;
 use crate::identify::{Agreement, Estimate, MethodResult, Status, Verdict, VerdictKind};
 use crate::signal::robust;
@@ -170,11 +171,13 @@ pub struct Findings<'a> {
     pub methods: &'a BTreeMap<String, MethodResult>,
     /// Their agreement.
     pub agreement: &'a Agreement,
+    /// Mistakes of the laboratory that the data give away.
+    pub suspicions: &'a [Suspicion],
 }
 
 /// One word and plain sentences.
 pub fn verdict(found: &Findings) -> Verdict {
-    let mut findings = Vec::new();
+    let mut findings: Vec<String> = found.suspicions.iter().map(|s| s.message.clone()).collect();
     for (name, method) in found.methods {
         if method.fits == Some(false) {
             findings.extend(method.remarks.iter().map(|r| format!("{name}: {r}")));

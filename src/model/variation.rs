@@ -1,6 +1,6 @@
 //! How a variation (X, X', Y, Y') passes flights and impacts: free flow, saltation, multipliers.
 
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{Matrix2, Matrix4, Schur, Vector4};
 
 use super::flight::{State, exponent};
 use super::params::{Machine, Oscillator};
@@ -45,18 +45,44 @@ pub fn saltation(machine: &Machine, before: &State, after: &State) -> Matrix4<f6
 }
 
 /// Eigenvalues of a variation's map, largest modulus first; the stop's own two rows are left
-/// out for a single mass.
+/// out for a single mass. Not a number where the map is not finite.
 pub fn eigenvalues(machine: &Machine, map: &Matrix4<f64>) -> Vec<C64> {
-    let mut values: Vec<C64> = if machine.y.is_some() {
-        map.complex_eigenvalues().iter().copied().collect()
+    let mut values = if !map.iter().all(|v| v.is_finite()) {
+        vec![C64::new(f64::NAN, f64::NAN); if machine.y.is_some() { 4 } else { 2 }]
+    } else if machine.y.is_some() {
+        of_four(map)
     } else {
-        map.fixed_view::<2, 2>(0, 0)
-            .into_owned()
-            .complex_eigenvalues()
-            .iter()
-            .copied()
-            .collect()
+        of_two(&map.fixed_view::<2, 2>(0, 0).into_owned())
     };
     values.sort_by(|a, b| b.norm_sqr().total_cmp(&a.norm_sqr()));
     values
+}
+
+/// Steps after which the QR iteration of a matrix of four rows is given up; it needs about ten.
+const MOST_STEPS: usize = 1000;
+
+/// Eigenvalues by the QR iteration, which is told when to stop: where a map's last digits toss to
+/// and fro it would go on for ever.
+fn of_four(map: &Matrix4<f64>) -> Vec<C64> {
+    [f64::EPSILON, 1e3 * f64::EPSILON, 1e6 * f64::EPSILON]
+        .into_iter()
+        .find_map(|tolerance| Schur::try_new(*map, tolerance, MOST_STEPS))
+        .map_or_else(
+            || vec![C64::new(f64::NAN, f64::NAN); 4],
+            |schur| schur.complex_eigenvalues().iter().copied().collect(),
+        )
+}
+
+/// Eigenvalues from trace and determinant; of real ones the larger first, the smaller from the
+/// product so that it keeps its digits.
+fn of_two(map: &Matrix2<f64>) -> Vec<C64> {
+    let (half, product) = (0.5 * map.trace(), map.determinant());
+    let square = half * half - product;
+    if square < 0.0 {
+        let im = (-square).sqrt();
+        return vec![C64::new(half, im), C64::new(half, -im)];
+    }
+    let large = half + square.sqrt().copysign(half);
+    let small = if large == 0.0 { 0.0 } else { product / large };
+    vec![C64::new(large, 0.0), C64::new(small, 0.0)]
 }

@@ -63,6 +63,7 @@ pub fn identify(campaign: &ResolvedCampaign, observed: &Observed) -> Result<Foun
         joint: outcome.joint,
         methods: outcome.methods,
         agreement: outcome.agreement,
+        suspicions: outcome.suspicions,
         specimens,
         settings: settings(campaign)?,
         versions: versions(),

@@ -4,6 +4,7 @@
 //! go through [`store`].
 
 pub mod checkpoint;
+pub mod coverage;
 pub mod identify;
 pub mod inputs;
 pub mod observe;
@@ -55,6 +56,14 @@ pub enum PipelineError {
     /// No record of the campaign could be used.
     #[error("none of the {0} records can be used")]
     NothingUsable(usize),
+    /// A file that the report's look needs could not be read.
+    #[error("{path}: {reason}")]
+    Look {
+        /// The file.
+        path: String,
+        /// What the system said.
+        reason: String,
+    },
     /// The report could not be made.
     #[error(transparent)]
     Report(#[from] crate::report::ReportError),
@@ -79,6 +88,11 @@ impl PipelineError {
                 "run `impactid check` on the campaign; it lists what is wrong with each record"
                     .to_owned()
             }
+            Self::Look { .. } => {
+                "name the template and the logo as they lie on the disk, or leave them out"
+                    .to_owned()
+            }
+            Self::Report(_) => "mend the template or the logo, or leave them out".to_owned(),
             Self::Model(_) => "choose parameters within the range that the message names".into(),
             _ => "this should not happen: please report it with the command line".to_owned(),
         }
@@ -168,12 +182,12 @@ pub fn run(
     progress("identify", 0, 1);
     let found = identify::identify(campaign, &observed)?;
     progress("report", 0, 1);
-    let pdf = report::pdf(campaign, &observed, &found, command_line)?;
+    let report = report::files(campaign, &observed, &found, command_line)?;
     progress("write", 0, 1);
     store::write_resolved(campaign, out)?;
     tables::write_all(&observed, out)?;
     identify::write(&found.identification, out)?;
-    crate::output::write_bytes(&out.join(report::FILE), &pdf)?;
+    report::write(&report, out)?;
     checkpoint::remove(out);
     Ok(found.identification.verdict)
 }

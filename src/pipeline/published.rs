@@ -4,12 +4,14 @@ use std::path::Path;
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::campaign::written::Published;
-use crate::identify::published::{PublishedSpeed, identify, methods};
+use crate::identify::published::{
+    PublishedOutcome, PublishedSpeed, identify, methods, predicted,
+};
 use crate::identify::{Identification, Verdict};
-use crate::output::write_bytes;
 use crate::pipeline::identify::{settings, versions};
 use crate::pipeline::{PipelineError, inputs, report, store};
-use crate::report::{RenderOptions, ReportContent, render_pdf};
+use crate::report::ReportContent;
+use crate::report::content::DataTable;
 
 /// Identify from published speeds and write identification.json and report.pdf.
 ///
@@ -29,6 +31,7 @@ pub fn run(
         joint: found.result.clone(),
         methods,
         agreement,
+        suspicions: Vec::new(),
         specimens: std::collections::BTreeMap::new(),
         settings: settings(campaign)?,
         versions: versions(),
@@ -37,13 +40,45 @@ pub fn run(
     let mut content = ReportContent::new(campaign.report.title.clone(), identification);
     content.summary.name = campaign.name.clone();
     content.summary.rig = "closing speeds as published; nothing was measured here".into();
-    content.remarks = found.hypotheses;
+    content.tables = vec![table(&speeds, found_damping(&found), published)];
+    content.settings_text =
+        serde_json::to_string_pretty(&content.identification.settings).unwrap_or_default();
     content.command_line = command_line.to_owned();
-    let pdf = render_pdf(&content, &RenderOptions::default())?;
+    let report = report::render(&content, campaign)?;
     store::write_resolved(campaign, out)?;
     super::identify::write(&content.identification, out)?;
-    write_bytes(&out.join(report::FILE), &pdf)?;
+    report::write(&report, out)?;
     Ok(found.verdict)
+}
+
+fn found_damping(found: &PublishedOutcome) -> Option<f64> {
+    found.result.parameters.damping_ratio.as_ref()?.value
+}
+
+/// Each published speed beside the model's for the damping ratio found and those printed.
+fn table(speeds: &[PublishedSpeed], found: Option<f64>, published: &Published) -> DataTable {
+    let printed = &published.damping_ratio_hypotheses;
+    let dampings: Vec<f64> = found.into_iter().chain(printed.iter().copied()).collect();
+    let texts = ["$R$", "$ρ$", "$η$", "published speed"].map(str::to_owned);
+    let heads = dampings.iter().map(|b| format!("$β$ = {b:.4}"));
+    let row = |s: &PublishedSpeed| {
+        let given = [s.restitution, s.clearance_ratio, s.frequency_ratio];
+        let given = given.map(|v| v.to_string());
+        let decimals = (-s.printed_step.log10().floor()).max(0.0) as usize;
+        let model = dampings.iter().map(|b| match predicted(s, *b) {
+            Some(speed) => format!("{speed:.0$}", decimals + 1),
+            None => "no such motion".to_owned(),
+        });
+        let printed = format!("{:.decimals$}", s.closing_speed_ratio);
+        given.into_iter().chain([printed]).chain(model).collect()
+    };
+    DataTable {
+        caption: "Closing speeds at impact, dimensionless: as published, and as the model has \
+                  them for the damping ratio found and for those printed."
+            .to_owned(),
+        heads: texts.into_iter().chain(heads).collect(),
+        rows: speeds.iter().map(row).collect(),
+    }
 }
 
 /// Read the table of speeds.

@@ -79,6 +79,9 @@ pub struct ChannelSetup {
     pub range: Option<f64>,
     /// Believe `unit` where the file states another.
     pub ignore_file_unit: bool,
+    /// What recorded it, in words.
+    #[serde(default)]
+    pub instrument: Option<String>,
 }
 
 impl ChannelSetup {
@@ -95,6 +98,7 @@ impl ChannelSetup {
             threshold: None,
             range: None,
             ignore_file_unit: false,
+            instrument: None,
         }
     }
 }

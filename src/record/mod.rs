@@ -11,7 +11,7 @@ pub mod calibrate;
 mod condition;
 #[cfg(test)]
 pub mod conformance;
-mod consistency;
+pub mod consistency;
 pub mod convert;
 pub mod csv;
 pub mod hdf5;

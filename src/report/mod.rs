@@ -39,7 +39,8 @@ impl Paper {
 }
 
 /// What a report can be written as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Format {
     /// The document as PDF.
     Pdf,
@@ -94,16 +95,31 @@ pub struct Logo {
 }
 
 /// What the reader chose about the report's look.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RenderOptions {
     /// Paper.
     pub paper: Paper,
+    /// Language that a template of the user's own may go by, as ISO 639-1 writes it; the built-in
+    /// template speaks English.
+    pub language: String,
     /// Whether numbers have a decimal comma.
     pub decimal_comma: bool,
     /// A typst template instead of the built-in one; it reads `report.json` and the figures.
     pub template: Option<String>,
     /// A logo.
     pub logo: Option<Logo>,
+}
+
+impl Default for RenderOptions {
+    fn default() -> Self {
+        Self {
+            paper: Paper::default(),
+            language: "en".to_owned(),
+            decimal_comma: false,
+            template: None,
+            logo: None,
+        }
+    }
 }
 
 impl RenderOptions {

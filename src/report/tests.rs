@@ -83,7 +83,7 @@ fn text_of(document: &document::model::Document) -> String {
     let mut lines = vec![
         document.title.clone(),
         document.subtitle.plain(),
-        front.headline.into(),
+        front.headline.clone(),
     ];
     lines.push(front.summary.plain());
     for a in &front.answers {

@@ -3,10 +3,12 @@
 //! detector, classifier and identification alike, and are always labelled as synthetic.
 
 pub mod acquisition;
+pub mod draw;
 pub mod plan;
 pub mod run;
 pub mod truth;
 
+pub use draw::{Draw, Reach, draw};
 pub use plan::{Plan, Step};
 pub use run::{RawChannel, RawRecord, records};
 pub use truth::{Faults, Truth};

@@ -1,9 +1,11 @@
 //! What each method rests on: resonance curve, speeds at impacts, residuals, correlation.
 
 use super::Gathered;
+use crate::identify::impacts::SpeedPair;
 use crate::identify::methods::{Blocks, Evidence, Nominal};
 use crate::identify::resonance::predicted;
 use crate::identify::solver::Block;
+use crate::identify::{MethodResult, SpecimenResult};
 use crate::motion::Observation;
 use crate::motion::response::Response;
 use crate::record::Role;
@@ -97,31 +99,48 @@ fn blocks(gathered: &Gathered) -> Blocks {
     })
 }
 
+/// Speeds before and after impact; each specimen by itself where there are several.
 pub(super) fn impacts(gathered: &Gathered) -> Vec<ImpactScatter> {
     let block = blocks(gathered).impact;
-    if block.pairs.is_empty() {
-        return Vec::new();
+    let specimens = &gathered.identification.specimens;
+    if specimens.is_empty() {
+        let method = gathered.identification.methods.get("impacts");
+        let pairs: Vec<&SpeedPair> = block.pairs.iter().collect();
+        return scatter(gathered, "", &pairs, method).into_iter().collect();
     }
-    let method = gathered.identification.methods.get("impacts");
+    let of_specimen = |(name, result): (&String, &SpecimenResult)| {
+        let specimen = |p: &&SpeedPair| {
+            let setting = &gathered.observations[p.observation].setting;
+            setting.specimen.as_ref() == Some(name)
+        };
+        let pairs: Vec<&SpeedPair> = block.pairs.iter().filter(specimen).collect();
+        scatter(gathered, name, &pairs, result.methods.get("impacts"))
+    };
+    specimens.iter().filter_map(of_specimen).collect()
+}
+
+fn scatter(
+    gathered: &Gathered,
+    name: &str,
+    pairs: &[&SpeedPair],
+    method: Option<&MethodResult>,
+) -> Option<ImpactScatter> {
     let estimate = method.and_then(|m| m.parameters.restitution.as_ref());
-    vec![ImpactScatter {
-        name: String::new(),
-        points: block
-            .pairs
-            .iter()
-            .map(|p| ImpactPoint {
-                record: gathered.observations[p.observation].record.clone(),
-                before_m_s: p.before_m_s,
-                after_m_s: p.after_m_s,
-                error_m_s: Some(p.error_m_s),
-                used: true,
-            })
-            .collect(),
+    let points = pairs.iter().map(|p| ImpactPoint {
+        record: gathered.observations[p.observation].record.clone(),
+        before_m_s: p.before_m_s,
+        after_m_s: p.after_m_s,
+        error_m_s: Some(p.error_m_s),
+        used: true,
+    });
+    (!pairs.is_empty()).then(|| ImpactScatter {
+        name: name.to_owned(),
+        points: points.collect(),
         restitution: estimate.and_then(|e| e.value),
         interval95: estimate.and_then(|e| e.interval95),
         restitution_of_speed: Vec::new(),
         note: method.map(|m| m.remarks.join("; ")).unwrap_or_default(),
-    }]
+    })
 }
 
 pub(super) fn residuals(gathered: &Gathered) -> Vec<ResidualSet> {

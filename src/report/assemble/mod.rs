@@ -3,9 +3,13 @@
 //! Nothing is identified here; the fitted model is only drawn beside the measurement.
 
 mod comparison;
+mod decays;
 mod evidence;
 mod plane;
 mod rows;
+mod simulation;
+
+pub use decays::shown_decays;
 
 use crate::event::Rig;
 use crate::identify::Identification;
@@ -26,12 +30,29 @@ pub struct CampaignFacts {
     pub rig: Rig,
     /// Nominal values: name, value in SI, unit.
     pub nominal: Vec<(String, f64, String)>,
-    /// Channels: role, name in the file, high-pass corner in Hz.
-    pub channels: Vec<(Role, String, Option<f64>)>,
+    /// Who measured, and where.
+    pub laboratory: Option<String>,
+    /// First and last day of the acquisition.
+    pub dates: Option<[String; 2]>,
+    /// The channels.
+    pub channels: Vec<ChannelFacts>,
     /// Number of input files.
     pub files: usize,
     /// The resolved settings as text.
     pub settings: String,
+}
+
+/// What the report says of a channel.
+#[derive(Debug, Clone)]
+pub struct ChannelFacts {
+    /// What it measures.
+    pub role: Role,
+    /// Its name in the files.
+    pub name: String,
+    /// Corner of its high-pass, Hz.
+    pub high_pass_hz: Option<f64>,
+    /// What recorded it, in words.
+    pub instrument: Option<String>,
 }
 
 /// Everything that the report is gathered from.
@@ -54,6 +75,10 @@ pub struct Gathered<'a> {
     pub chosen: &'a [usize],
     /// These records, samples included.
     pub chosen_records: &'a [Record],
+    /// Indices of the free decays to be drawn.
+    pub decays: &'a [usize],
+    /// These records, samples included.
+    pub decay_records: &'a [Record],
     /// The command that makes this report again.
     pub command_line: &'a str,
 }
@@ -112,6 +137,7 @@ pub fn assemble(gathered: &Gathered) -> ReportContent {
     content.comparisons = comparison::comparisons(gathered);
     content.resonance = evidence::resonance(gathered);
     content.impacts = evidence::impacts(gathered);
+    content.free_decays = decays::free_decays(gathered);
     content.residuals = evidence::residuals(gathered);
     content.correlation = evidence::correlation(gathered);
     content.left_out = left_out(gathered);
@@ -122,7 +148,7 @@ pub fn assemble(gathered: &Gathered) -> ReportContent {
 
 /// Records that no method could use, by reason, and what the fits left out.
 fn left_out(gathered: &Gathered) -> Vec<LeftOut> {
-    let mut by_reason: std::collections::BTreeMap<String, Vec<&str>> = Default::default();
+    let mut by_reason: std::collections::BTreeMap<String, Why> = Default::default();
     for o in gathered.observations {
         for flag in o.flags.iter().filter(|f| f.excludes) {
             let channel = flag
@@ -130,25 +156,24 @@ fn left_out(gathered: &Gathered) -> Vec<LeftOut> {
                 .as_ref()
                 .map(|c| format!(" ({c})"))
                 .unwrap_or_default();
-            let why = format!("{}{channel}: {}", flag.code, flag.message);
-            by_reason.entry(why).or_default().push(&o.record);
+            let reason = format!("{}{channel}", flag.code.replace('_', " "));
+            let why = by_reason.entry(reason).or_default();
+            why.note(&o.record, &flag.message);
         }
         if let Motion::Undetermined { reason } = &o.finding.motion
             && !o.excluded()
-            && o.decay.is_none()
+            && o.drive.is_some()
         {
-            by_reason
-                .entry(format!("motion undetermined: {reason}"))
-                .or_default()
-                .push(&o.record);
+            let why = by_reason.entry("motion undetermined".into()).or_default();
+            why.note(&o.record, reason);
         }
     }
     let mut out: Vec<LeftOut> = by_reason
         .into_iter()
-        .map(|(why, records)| LeftOut {
-            what: names(&records),
-            why,
-            count: (records.len() > 1).then_some(records.len()),
+        .map(|(reason, why)| LeftOut {
+            what: names(&why.records),
+            why: format!("{reason}: {}", why.words()),
+            count: (why.records.len() > 1).then_some(why.records.len()),
         })
         .collect();
     out.extend(gathered.left_out.iter().map(|(what, why)| LeftOut {
@@ -157,6 +182,31 @@ fn left_out(gathered: &Gathered) -> Vec<LeftOut> {
         count: None,
     }));
     out
+}
+
+/// Records of one reason, and its words as they stand at the first of them.
+#[derive(Default)]
+struct Why<'a> {
+    records: Vec<&'a str>,
+    first: &'a str,
+    others: bool,
+}
+
+impl<'a> Why<'a> {
+    fn note(&mut self, record: &'a str, words: &'a str) {
+        if self.records.is_empty() {
+            self.first = words;
+        }
+        self.others |= self.first != words;
+        self.records.push(record);
+    }
+
+    fn words(&self) -> String {
+        match (self.others, self.records.first()) {
+            (true, Some(record)) => format!("{} (so {record}; the others alike)", self.first),
+            _ => self.first.to_owned(),
+        }
+    }
 }
 
 fn names(records: &[&str]) -> String {

@@ -1,12 +1,15 @@
 //! Boundaries and regions of the fitted model in the (η, ρ) plane of the campaign.
 
+use rayon::prelude::*;
+
 use super::{Gathered, rows};
 use crate::atlas::map::even;
-use crate::atlas::{MapGrid, MapSettings, region_map as simulate_map};
+use crate::atlas::{CellMotion, MapGrid, MapSettings, region_map as simulate_map};
 use crate::identify::parameters::Coordinate;
 use crate::identify::solver::Fit;
 use crate::model::boundary::{rho_grazing, rho_s1, rho_s2};
-use crate::model::params::{Initial, Machine};
+use crate::model::orbit::stable_orbit;
+use crate::model::params::{Initial, Machine, Setting};
 use crate::motion::Motion;
 use crate::report::content::{BoundaryCurve, BoundaryKind, RegionMap};
 
@@ -14,6 +17,8 @@ use crate::report::content::{BoundaryCurve, BoundaryKind, RegionMap};
 const MAP: (usize, usize) = (180, 130);
 /// Points of a boundary curve.
 const CURVE_POINTS: usize = 220;
+/// Closing speed, in units of x_st Ω, of the lively start.
+const LIVELY_SPEED: f64 = 3.0;
 /// Largest n whose z = 1/n boundaries are drawn.
 const MOST_PERIODS: u32 = 3;
 
@@ -165,45 +170,68 @@ fn band(
         .collect()
 }
 
-/// Regions of motion: every cell from rest, and again from a lively start where hysteresis lies.
+/// Regions of motion: every cell from rest; where hysteresis lies, the other motion beside it.
 pub(super) fn region_map(gathered: &Gathered) -> Option<RegionMap> {
     let (view, machine) = (View::of(gathered)?, machine(gathered)?);
     let grid = MapGrid::even(
         (view.eta.0, view.eta.1, MAP.0),
         (view.rho.0.max(0.02), view.rho.1, MAP.1),
     );
-    let rest = simulate_map(&machine, &grid, &MapSettings::default()).ok()?;
+    let settings = MapSettings::default();
+    let rest = motions(&simulate_map(&machine, &grid, &settings).ok()?.cells);
     let lively = MapSettings {
-        start: Initial::both(0.0, 3.0),
-        ..MapSettings::default()
+        start: Initial::both(0.0, LIVELY_SPEED),
+        ..settings
     };
-    let second = simulate_map(&machine, &grid, &lively).ok()?;
-    let mut motions = Vec::new();
-    let mut index = |cells: &[crate::atlas::CellMotion]| -> Vec<u16> {
-        cells
-            .iter()
-            .map(|cell| {
-                let motion = Motion::from(*cell);
-                let at = motions
-                    .iter()
-                    .position(|m| *m == motion)
-                    .unwrap_or_else(|| {
-                        motions.push(motion);
-                        motions.len() - 1
-                    });
-                at as u16
-            })
-            .collect()
+    let lively = motions(&simulate_map(&machine, &grid, &lively).ok()?.cells);
+    let other = |i: usize| match rest[i] == lively[i] {
+        true => coexisting(&machine, grid.at(i), &rest[i]).unwrap_or_else(|| rest[i].clone()),
+        false => lively[i].clone(),
     };
-    let (cells, second) = (index(&rest.cells), index(&second.cells));
+    let second: Vec<Motion> = (0..grid.len()).into_par_iter().map(other).collect();
+    let mut met = Vec::new();
+    let (cells, second) = (indices(&rest, &mut met), indices(&second, &mut met));
     Some(RegionMap {
         eta: grid.eta,
         rho: grid.rho,
-        motions,
+        motions: met,
         cells,
         second,
-        note: "every cell simulated from rest, and again from a lively start; where the two \
-               differ, both motions exist"
+        note: "every cell simulated from rest and from a lively start, and the stable orbits \
+               z = 1/n in closed form; where they differ, both motions exist"
             .into(),
     })
+}
+
+fn motions(cells: &[CellMotion]) -> Vec<Motion> {
+    cells.iter().map(|cell| Motion::from(*cell)).collect()
+}
+
+/// A stable z = 1/n motion that exists beside another one.
+fn coexisting(machine: &Machine, (eta, rho): (f64, f64), beside: &Motion) -> Option<Motion> {
+    let setting = Setting {
+        frequency_ratio: eta,
+        clearance: rho,
+        phase: 0.0,
+    };
+    let stable = |n: &u32| {
+        let orbit = stable_orbit(machine, setting, *n).ok().flatten();
+        orbit.is_some()
+    };
+    (1..=MOST_PERIODS)
+        .filter(|n| *beside != Motion::periodic(1, *n))
+        .find(stable)
+        .map(|n| Motion::periodic(1, n))
+}
+
+/// Motions as indices into those met so far.
+fn indices(motions: &[Motion], met: &mut Vec<Motion>) -> Vec<u16> {
+    let mut index = |motion: &Motion| {
+        let known = met.iter().position(|m| m == motion);
+        known.unwrap_or_else(|| {
+            met.push(motion.clone());
+            met.len() - 1
+        }) as u16
+    };
+    motions.iter().map(&mut index).collect()
 }

@@ -1,8 +1,7 @@
 //! The campaign's summary and the rows of records and brackets.
 
-use super::Gathered;
+use super::{ChannelFacts, Gathered};
 use crate::motion::{self, Motion, Observation};
-use crate::record::Role;
 use crate::report::content::{
     BoundaryKind, BracketRow, CampaignSummary, ChannelRow, NominalValue, RecordRow,
 };
@@ -45,19 +44,25 @@ pub(super) fn summary(gathered: &Gathered) -> CampaignSummary {
             })
             .collect(),
         channels: gathered.campaign.channels.iter().map(channel_row).collect(),
+        laboratory: gathered.campaign.laboratory.clone(),
+        dates: gathered.campaign.dates.clone(),
         synthetic: gathered.campaign.name.to_lowercase().contains("synthetic"),
         ..CampaignSummary::default()
     }
 }
 
-fn channel_row((role, name, high_pass_hz): &(Role, String, Option<f64>)) -> ChannelRow {
+fn channel_row(channel: &ChannelFacts) -> ChannelRow {
+    let high_pass = channel.high_pass_hz;
+    let notes = [
+        channel.instrument.clone(),
+        high_pass.map(|c| format!("high-pass at {c} Hz undone")),
+    ];
+    let unit = channel.role.dimension().map_or("", |d| d.si_symbol());
     ChannelRow {
-        role: *role,
-        name: name.clone(),
-        unit: role.dimension().map_or("", |d| d.si_symbol()).to_owned(),
-        note: high_pass_hz
-            .map(|c| format!("high-pass at {c} Hz undone"))
-            .unwrap_or_default(),
+        role: channel.role,
+        name: channel.name.clone(),
+        unit: unit.to_owned(),
+        note: notes.into_iter().flatten().collect::<Vec<_>>().join(", "),
     }
 }
 
@@ -103,6 +108,7 @@ fn record(gathered: &Gathered, o: &Observation) -> RecordRow {
         .map(|f| f.message.clone());
     RecordRow {
         id: o.record.clone(),
+        specimen: o.setting.specimen.clone(),
         frequency_hz: o.frequency_hz(),
         eta,
         clearance_m: o.setting.clearance_m,

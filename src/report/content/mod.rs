@@ -63,6 +63,9 @@ pub struct ReportContent {
     /// What was left out, and why.
     #[serde(default)]
     pub left_out: Vec<LeftOut>,
+    /// Further tables of numbers, printed with the methods.
+    #[serde(default)]
+    pub tables: Vec<DataTable>,
     /// The resolved settings, as text to be printed.
     #[serde(default)]
     pub settings_text: String,
@@ -93,6 +96,7 @@ impl ReportContent {
             profiles: Vec::new(),
             correlation: None,
             left_out: Vec::new(),
+            tables: Vec::new(),
             settings_text: String::new(),
             command_line: String::new(),
             remarks: Vec::new(),
@@ -168,6 +172,9 @@ pub struct ChannelRow {
 pub struct RecordRow {
     /// The record's name.
     pub id: String,
+    /// Rig, mass or bumper, where the campaign holds several.
+    #[serde(default)]
+    pub specimen: Option<String>,
     /// Measured drive frequency, Hz; `None` without a drive.
     pub frequency_hz: Option<f64>,
     /// η = f/f0, where f0 is known.
@@ -198,6 +205,17 @@ pub struct RecordRow {
     /// Why no method used it, where none did.
     #[serde(default)]
     pub left_out: Option<String>,
+}
+
+/// A table of texts and numbers, ready to print; symbols stand in dollars.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct DataTable {
+    /// What it shows.
+    pub caption: String,
+    /// Heads of the columns, with their units.
+    pub heads: Vec<String>,
+    /// The rows, as many cells as heads.
+    pub rows: Vec<Vec<String>>,
 }
 
 /// Something left out, and why.

@@ -38,6 +38,24 @@ fn with_note(text: &str, note: &str) -> String {
     }
 }
 
+/// A finding as a sentence, with the method that it begins with in words.
+pub fn spoken(finding: &str) -> String {
+    const KEYS: [&str; 5] = [
+        "boundaries",
+        "trajectories",
+        "impacts",
+        "resonance",
+        "free_decay",
+    ];
+    match finding.split_once(": ") {
+        Some((key, rest)) if KEYS.contains(&key) => {
+            sentence(&format!("{}: {rest}", method_name(key)))
+        }
+        Some((name, rest)) => format!("{name}: {}", sentence(rest)),
+        None => sentence(finding),
+    }
+}
+
 /// A remark as a sentence: a capital at its start, a full stop at its end.
 pub fn sentence(remark: &str) -> String {
     let remark = remark.trim();
@@ -60,8 +78,14 @@ fn impacts(content: &ReportContent) -> Vec<Captioned> {
     let text = "Speeds at impact: speed of parting over speed of closing (left) and their ratio, \
                 the restitution, over the closing speed (right).";
     let each = content.impacts.iter().enumerate();
-    each.map(|(i, s)| (numbered("impacts", i), with_note(text, &s.note)))
-        .collect()
+    each.map(|(i, s)| {
+        let text = match s.name.as_str() {
+            "" => text.to_owned(),
+            name => format!("{name}. {text}"),
+        };
+        (numbered("impacts", i), with_note(&text, &s.note))
+    })
+    .collect()
 }
 
 fn resonance(content: &ReportContent) -> Vec<Captioned> {
@@ -109,7 +133,7 @@ fn residuals(content: &ReportContent) -> Vec<Captioned> {
 
 #[cfg(test)]
 mod tests {
-    use super::sentence;
+    use super::{sentence, spoken};
 
     #[test]
     fn valid_remarks_become_sentences() {
@@ -117,5 +141,10 @@ mod tests {
         assert_eq!(sentence("x is clipped."), "x is clipped.");
         assert_eq!(sentence("r0012 was left out"), "r0012 was left out.");
         assert_eq!(sentence(""), "");
+        assert_eq!(
+            spoken("free_decay: the fit is poor"),
+            "Free decay: the fit is poor."
+        );
+        assert_eq!(spoken("massa4: it is odd"), "massa4: It is odd.");
     }
 }

@@ -11,18 +11,13 @@ use crate::report::parameters::{self, PARAMETERS, ParameterLook};
 /// Builds the first page.
 pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
     let id = &content.identification;
-    let (verdict, headline) = headline(id.verdict.kind);
+    let verdict = headline(id.verdict.kind).0;
     Front {
         synthetic: content.summary.synthetic,
         verdict,
-        headline,
-        summary: prose(&id.verdict.summary),
-        findings: id
-            .verdict
-            .findings
-            .iter()
-            .map(|f| prose(&captions::sentence(f)))
-            .collect(),
+        headline: campaign_headline(content),
+        summary: prose(&id.verdict.summary).localised(drawn.numbers),
+        findings: localised(findings(content), drawn.numbers),
         answers: answers(content, drawn.numbers),
         specimens: tables::specimens(content, drawn.numbers),
         agree: match id.agreement.agree {
@@ -30,11 +25,58 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
             Some(false) => "no",
             None => "unknown",
         },
-        agreement: prose(&agreement(&id.agreement.summary)),
+        agreement: match id.specimens.is_empty() {
+            true => prose(&agreement(&id.agreement.summary)).localised(drawn.numbers),
+            false => Rich::default(),
+        },
         facts: facts(&content.summary, drawn.numbers),
         map: drawn.figure("map_small", ""),
         estimates: drawn.figure("estimates", ""),
     }
+}
+
+fn localised(texts: Vec<Rich>, numbers: NumberLook) -> Vec<Rich> {
+    texts.into_iter().map(|t| t.localised(numbers)).collect()
+}
+
+/// The headline of the whole campaign.
+fn campaign_headline(content: &ReportContent) -> String {
+    let id = &content.identification;
+    let specimens = id.specimens.len();
+    let identified = id.specimens.values();
+    let identified = identified
+        .filter(|s| s.verdict.kind == VerdictKind::Identified)
+        .count();
+    match specimens - identified {
+        _ if specimens == 0 => {
+            let words = headline(id.verdict.kind).1;
+            match content.records.is_empty() {
+                true => words.trim_end_matches(" the rig").to_owned(),
+                false => words.to_owned(),
+            }
+        }
+        0 => format!("Identified: the model fits each of the {specimens} specimens"),
+        _ => format!("The model fits {identified} of the {specimens} specimens"),
+    }
+}
+
+/// Reasons and findings; where there are specimens, what was found of each in full.
+fn findings(content: &ReportContent) -> Vec<Rich> {
+    let id = &content.identification;
+    let of = |finding: &String| {
+        let specimen = id.specimens.iter().find(|(name, _)| {
+            let rest = finding.strip_prefix(name.as_str());
+            rest.is_some_and(|r| r.starts_with(':'))
+        });
+        let mut words = captions::spoken(finding);
+        if let Some((_, result)) = specimen {
+            for more in &result.verdict.findings {
+                words.push_str(&format!(" {}", captions::spoken(more)));
+            }
+        }
+        prose(&words)
+    };
+    id.verdict.findings.iter().map(of).collect()
 }
 
 /// The parameters' cards; none where only each specimen alone has an answer.
@@ -85,7 +127,9 @@ fn answer(look: &ParameterLook, estimate: Option<&Estimate>, numbers: NumberLook
         unit: look.unit.into(),
         interval: interval.map(|[low, high]| format!("{} to {}", print(low), print(high))),
         status: estimate.map_or("not_asked", |e| parameters::status_name(e.status)),
-        note: estimate.and_then(|e| e.note.as_ref()).map(|n| prose(n)),
+        note: estimate
+            .and_then(|e| e.note.as_ref())
+            .map(|n| prose(n).localised(numbers)),
     }
 }
 
@@ -121,7 +165,7 @@ fn facts(summary: &CampaignSummary, numbers: NumberLook) -> Vec<(Rich, Rich)> {
     }
     facts
         .into_iter()
-        .map(|(l, v)| (Rich::from(l), Rich::from(v)))
+        .map(|(l, v)| (Rich::from(l), Rich::from(v).localised(numbers)))
         .collect()
 }
 

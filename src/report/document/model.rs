@@ -2,6 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
+use crate::report::figures::look::NumberLook;
 use crate::report::figures::richtext::{self, Run};
 
 /// A text with markup, split into runs; serialised as a string where it has none.
@@ -9,6 +10,14 @@ use crate::report::figures::richtext::{self, Run};
 pub struct Rich(pub Vec<Run>);
 
 impl Rich {
+    /// The same with the decimal sign of the reader's choice.
+    pub fn localised(mut self, numbers: NumberLook) -> Self {
+        for run in &mut self.0 {
+            run.text = numbers.words(&run.text);
+        }
+        self
+    }
+
     /// The text without markup.
     pub fn plain(&self) -> String {
         self.0.iter().map(|r| r.text.as_str()).collect()
@@ -56,7 +65,7 @@ pub struct Front {
     /// One word for the verdict: `identified`, `weak`, `not_identifiable`, `does_not_fit`.
     pub verdict: &'static str,
     /// The verdict as a headline.
-    pub headline: &'static str,
+    pub headline: String,
     /// Two sentences.
     pub summary: Rich,
     /// Reasons and findings.
@@ -122,6 +131,8 @@ pub struct Section {
     pub level: u8,
     /// Whether it begins a page.
     pub new_page: bool,
+    /// Whether it is an appendix.
+    pub appendix: bool,
     /// What stands in it.
     pub blocks: Vec<Block>,
 }

@@ -42,6 +42,7 @@ fn files(
 ) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
     let mut data = serde_json::to_value(document).map_err(ReportError::Data)?;
     data["paper"] = options.paper.name().into();
+    data["language"] = options.language.clone().into();
     data["logo"] = options
         .logo
         .as_ref()

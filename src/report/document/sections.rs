@@ -7,16 +7,17 @@ use super::tables;
 use super::{Drawn, captions};
 use crate::report::content::ReportContent;
 use crate::report::figures::comparison;
+use crate::report::figures::look::NumberLook;
 use crate::report::figures::plane::Plane;
 use crate::report::parameters::method_name;
 
 /// All sections in their order.
 pub fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
-    [
+    let mut sections: Vec<Section> = [
         regions(content, drawn),
         comparisons(content, drawn),
-        specimens(content, drawn),
         methods(content, drawn),
+        specimens(content, drawn),
         left_out(content),
         records(content, drawn),
         conventions(content),
@@ -24,7 +25,43 @@ pub fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
     ]
     .into_iter()
     .flatten()
-    .collect()
+    .collect();
+    letter_appendices(&mut sections);
+    for section in &mut sections {
+        localise(&mut section.blocks, drawn.numbers);
+    }
+    sections
+}
+
+/// Paragraphs and captions with the decimal sign of the reader's choice.
+fn localise(blocks: &mut [Block], numbers: NumberLook) {
+    for block in blocks {
+        match block {
+            Block::Paragraph { text } => *text = std::mem::take(text).localised(numbers),
+            Block::Figures { figures } => {
+                for figure in figures {
+                    figure.caption = std::mem::take(&mut figure.caption).localised(numbers);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Letters before the titles of the appendices, in the order in which they come.
+fn letter_appendices(sections: &mut [Section]) {
+    let appendices = sections.iter_mut().filter(|s| s.appendix);
+    for (section, letter) in appendices.zip('A'..='Z') {
+        let title = section.title.plain();
+        section.title = Rich::from(format!("Appendix {letter}. {title}"));
+    }
+}
+
+fn appendix(title: &str, blocks: Vec<Block>) -> Option<Section> {
+    section(title, false, blocks).map(|s| Section {
+        appendix: true,
+        ..s
+    })
 }
 
 fn section(title: &str, new_page: bool, blocks: Vec<Block>) -> Option<Section> {
@@ -32,6 +69,7 @@ fn section(title: &str, new_page: bool, blocks: Vec<Block>) -> Option<Section> {
         title: Rich::from(title),
         level: 1,
         new_page,
+        appendix: false,
         blocks,
     })
 }
@@ -104,24 +142,29 @@ fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     section("Simulated and measured motions", false, blocks)
 }
 
-/// What was found of each specimen, in words and by method.
+/// What was found of each specimen, by method.
 fn specimens(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let table = tables::specimen_methods(content, drawn.numbers).map(Block::Table);
     let mut blocks: Vec<Block> = table.into_iter().collect();
     for (specimen, result) in &content.identification.specimens {
-        let verdict = &result.verdict;
-        let mut words = format!("{specimen}: {}", captions::sentence(&verdict.summary));
-        for finding in &verdict.findings {
-            words.push_str(&format!(" {}", captions::sentence(finding)));
+        for (method, result) in &result.methods {
+            let name = method_name(method).to_lowercase();
+            blocks.extend(
+                result
+                    .remarks
+                    .iter()
+                    .map(|r| remark(&format!("{specimen}, {name}: {}", captions::sentence(r)))),
+            );
         }
-        blocks.push(remark(&words));
     }
     section("Specimen by specimen", false, blocks)
 }
 
 fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
-    blocks.extend(tables::methods(content, drawn.numbers).map(Block::Table));
+    if content.identification.specimens.is_empty() {
+        blocks.extend(tables::methods(content, drawn.numbers).map(Block::Table));
+    }
     blocks.extend(tables::agreement(content, drawn.numbers).map(Block::Table));
     let remarks = content
         .identification
@@ -135,6 +178,7 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
                 .map(move |r| remark(&format!("{name}: {}", captions::sentence(r))))
         });
     blocks.extend(remarks);
+    blocks.extend(tables::further(content).map(Block::Table));
     for group in captions::method_figures(content) {
         let named: Vec<(&str, &str)> = group
             .iter()
@@ -150,17 +194,18 @@ fn left_out(content: &ReportContent) -> Option<Section> {
         .map(Block::Table)
         .into_iter()
         .collect();
-    blocks.extend(content.remarks.iter().map(|r| remark(r)));
-    section("What was left out, and why", false, blocks)
+    let remarks = content.remarks.iter().map(|r| remark(r));
+    let title = match blocks.is_empty() {
+        true => "Remarks",
+        false => "What was left out, and why",
+    };
+    blocks.extend(remarks);
+    section(title, false, blocks)
 }
 
 fn records(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let table = tables::records(content, drawn.numbers).map(Block::Table);
-    section(
-        "Appendix A. All records",
-        false,
-        table.into_iter().collect(),
-    )
+    appendix("All records", table.into_iter().collect())
 }
 
 /// Formula as typst maths, as plain text, what it means, and whether it takes a drive.
@@ -218,7 +263,8 @@ const CONVENTIONS: [Convention; 8] = [
 ];
 
 fn conventions(content: &ReportContent) -> Option<Section> {
-    let driven = content.records.iter().any(|r| r.frequency_hz.is_some());
+    let records = &content.records;
+    let driven = records.is_empty() || records.iter().any(|r| r.frequency_hz.is_some());
     let entries = CONVENTIONS
         .into_iter()
         .filter(|c| driven || !c.3)
@@ -231,7 +277,17 @@ fn conventions(content: &ReportContent) -> Option<Section> {
     let intervals = "Intervals are at 95 % confidence; a number after ± is half of that interval. \
                      All quantities are in SI units.";
     let blocks = vec![Block::Definitions { entries }, paragraph(intervals)];
-    section("Appendix B. Conventions", false, blocks)
+    appendix("Conventions", blocks)
+}
+
+/// Versions of program and formats.
+fn versions(content: &ReportContent) -> Option<Block> {
+    let versions = &content.identification.versions;
+    let each: Vec<String> = versions.iter().map(|(k, v)| format!("{k} {v}")).collect();
+    let text = format!("Versions of program and files: {}.", each.join(", "));
+    (!each.is_empty()).then(|| Block::Paragraph {
+        text: tables::verbatim(text),
+    })
 }
 
 fn provenance(content: &ReportContent) -> Option<Section> {
@@ -243,11 +299,11 @@ fn provenance(content: &ReportContent) -> Option<Section> {
             columns: 1,
         });
     }
-    blocks.extend(tables::versions(content).map(Block::Table));
+    blocks.extend(versions(content));
     blocks.extend(tables::hashes(content).map(Block::Table));
     if !content.settings_text.is_empty() {
         blocks.push(paragraph("Settings, as resolved:"));
         blocks.push(settings(&content.settings_text));
     }
-    section("Appendix C. Settings, versions, inputs", false, blocks)
+    appendix("Settings, versions, inputs", blocks)
 }

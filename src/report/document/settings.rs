@@ -3,12 +3,21 @@
 use serde_json::Value;
 
 use super::model::Block;
+use crate::units::Dimension;
 
 /// From how many lines on the settings stand in columns.
-const MANY_LINES: usize = 24;
+const MANY_LINES: usize = 12;
 
-/// The block of settings. JSON becomes one line a value, `channels[2].unit = "V"`, without what is
-/// not set; other text stays as it is.
+/// What a channel has where nothing was said: not worth a line.
+const DEFAULTS: [&str; 4] = [
+    "offset = 0.0",
+    "sign = 1.0",
+    "scale.factor = 1.0",
+    "ignore_file_unit = false",
+];
+
+/// The block of settings. JSON becomes one line a value, `channels.drive.range = 5.0`, without what
+/// is not set or plain; other text stays as it is.
 pub fn settings(text: &str) -> Block {
     let text = match serde_json::from_str::<Value>(text) {
         Ok(value) => {
@@ -30,22 +39,66 @@ pub fn settings(text: &str) -> Block {
 }
 
 fn flatten(path: &str, value: &Value, lines: &mut Vec<String>) {
+    if let Some(words) = quantity(value).or_else(|| ratio(value)).or_else(|| name(value)) {
+        lines.push(format!("{path} = {words}"));
+        return;
+    }
     match value {
         Value::Null => {}
         Value::Object(fields) => {
-            for (name, field) in fields {
+            for (name, field) in fields.iter().filter(|(name, _)| *name != "role") {
                 let dot = if path.is_empty() { "" } else { "." };
                 flatten(&format!("{path}{dot}{name}"), field, lines);
             }
         }
         Value::Array(items) if items.iter().any(|i| i.is_object() || i.is_array()) => {
             for (i, item) in items.iter().enumerate() {
-                flatten(&format!("{path}[{i}]"), item, lines);
+                flatten(&format!("{path}{}", key(i, item)), item, lines);
             }
         }
         Value::Array(items) if items.is_empty() => {}
-        plain => lines.push(format!("{path} = {plain}")),
+        plain => {
+            let line = format!("{path} = {plain}");
+            if !DEFAULTS.iter().any(|d| line.ends_with(d)) {
+                lines.push(line);
+            }
+        }
     }
+}
+
+/// An item's place in its list: a channel goes by its role.
+fn key(index: usize, item: &Value) -> String {
+    match item.get("role").and_then(Value::as_str) {
+        Some(role) => format!(".{role}"),
+        None => format!("[{index}]"),
+    }
+}
+
+fn symbol(of: &Value) -> Option<&'static str> {
+    let dimension = serde_json::from_value::<Dimension>(of.get("dimension")?.clone());
+    Some(dimension.ok()?.si_symbol())
+}
+
+/// A value with its dimension as number and unit.
+fn quantity(value: &Value) -> Option<String> {
+    let fields = value.as_object().filter(|f| f.len() == 2)?;
+    Some(format!("{} {}", fields.get("si")?, symbol(value)?))
+}
+
+/// A sensor's ratio as it is spoken.
+fn ratio(value: &Value) -> Option<String> {
+    let ratio = value.get("ratio")?;
+    let denominator = ratio.get("denominator")?;
+    let count = denominator.get("to_si").and_then(Value::as_f64)?;
+    let count = if count == 1.0 { String::new() } else { format!("{count} ") };
+    let above = quantity(ratio.get("numerator")?)?;
+    Some(format!("{above} per {count}{}", symbol(denominator)?))
+}
+
+/// The channel of a file by its name.
+fn name(value: &Value) -> Option<String> {
+    let fields = value.as_object().filter(|f| f.len() == 1)?;
+    fields.get("name").filter(|n| n.is_string()).map(Value::to_string)
 }
 
 #[cfg(test)]
@@ -62,6 +115,22 @@ mod tests {
                 text: expected.into(),
                 columns: 1
             }
+        );
+        let block = settings(
+            r#"{"channels": [{"role": "velocity_x", "source": {"name": "laser"}, "sign": 1.0,
+            "scale": {"ratio": {"numerator": {"si": 0.2, "dimension": "velocity"},
+            "denominator": {"dimension": "voltage", "to_si": 1.0}}}}]}"#,
+        );
+        let Block::Verbatim { text, .. } = block else {
+            panic!("not verbatim");
+        };
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(
+            lines,
+            [
+                "channels.velocity_x.scale = 0.2 m/s per V",
+                "channels.velocity_x.source = \"laser\""
+            ]
         );
         let plain = settings("[rig]\nf = 12.6");
         assert_eq!(

@@ -236,6 +236,7 @@ fn row(index: usize, (eta, rho): (f64, f64), sweep: Sweep, motion: Motion) -> Re
     let undetermined = matches!(motion, Motion::Undetermined { .. });
     RecordRow {
         id: format!("r{:04}", index + 1),
+        specimen: None,
         frequency_hz: Some(eta * F0 + 2e-4 * noise.gauss()),
         eta: Some(eta),
         clearance_m: Some(rho * X_ST),

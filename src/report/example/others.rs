@@ -96,6 +96,7 @@ pub fn decays_only() -> ReportContent {
 fn undriven(id: &str, impacts: usize) -> RecordRow {
     RecordRow {
         id: id.into(),
+        specimen: None,
         frequency_hz: None,
         eta: None,
         clearance_m: None,

@@ -44,7 +44,7 @@ impl Csv {
         for field in fields {
             let text = field
                 .filter(|v| v.is_finite())
-                .map_or(String::new(), |v| format!("{v}"));
+                .map_or(String::new(), nine_digits);
             self.field(&text);
         }
         self
@@ -73,9 +73,32 @@ impl Csv {
     }
 }
 
+/// A number with at most nine significant digits, which is more than any figure shows.
+fn nine_digits(value: f64) -> String {
+    let rounded = format!("{value:.8e}").parse::<f64>().unwrap_or(value);
+    if (1e-5..1e15).contains(&rounded.abs()) || rounded == 0.0 {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn valid_numbers_have_nine_digits_at_most() {
+        let cases = [
+            (0.008_929_000_000_000_001, "0.008929"),
+            (-1.0 / 3.0, "-0.333333333"),
+            (3e-9, "3e-9"),
+            (0.0, "0"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(nine_digits(value), text);
+        }
+    }
 
     #[test]
     fn valid_fields_are_quoted_and_rows_filled() {

@@ -55,6 +55,23 @@ pub struct NumberLook {
 }
 
 impl NumberLook {
+    /// Numbers in words of other rooms with the chosen decimal sign.
+    pub fn words(self, text: &str) -> String {
+        if !self.decimal_comma {
+            return text.to_owned();
+        }
+        let letters: Vec<char> = text.chars().collect();
+        let digit = |i: Option<usize>| {
+            let letter = i.and_then(|i| letters.get(i));
+            letter.is_some_and(char::is_ascii_digit)
+        };
+        let each = letters.iter().enumerate().map(|(i, letter)| {
+            let decimal = *letter == '.' && digit(i.checked_sub(1)) && digit(Some(i + 1));
+            if decimal { ',' } else { *letter }
+        });
+        each.collect()
+    }
+
     /// A number with a fixed count of decimals, a true minus and the chosen decimal sign.
     pub fn fixed(self, value: f64, decimals: usize) -> String {
         let text = format!("{value:.decimals$}");

@@ -83,7 +83,12 @@ impl Figure {
     }
 
     /// With points that tell something.
-    pub fn with_spots(self, spots: Vec<Spot>) -> Self {
+    pub fn with_spots(self, mut spots: Vec<Spot>) -> Self {
+        // a hundredth of a point is finer than any screen shows
+        let coarse = |v: f64| (v * 100.0).round() / 100.0;
+        for spot in &mut spots {
+            (spot.x, spot.y) = (coarse(spot.x), coarse(spot.y));
+        }
         Self { spots, ..self }
     }
 }

@@ -48,7 +48,7 @@ impl<'a> Parts<'a> {
         text.push_str(&format!(
             "<div class=\"verdict {}\"><div class=\"headline\">{}</div><p>{}</p></div>\n",
             front.verdict,
-            front.headline,
+            escape(&front.headline),
             rich(&front.summary)
         ));
         let answers: String = front.answers.iter().map(answer).collect();

@@ -197,6 +197,27 @@ pub fn agreement(content: &ReportContent, numbers: NumberLook) -> Option<Table> 
     )
 }
 
+/// Further tables of the content, as they stand.
+pub fn further(content: &ReportContent) -> impl Iterator<Item = Table> + use<'_> {
+    content.tables.iter().filter_map(|t| {
+        let columns: Vec<Column> = t.heads.iter().map(|_| ("", "right", 0)).collect();
+        let rows = t.rows.iter();
+        let rows = rows.map(|row| row.iter().map(Rich::from).collect());
+        let heads = t.heads.iter().map(Rich::from).collect();
+        (!t.rows.is_empty()).then(|| Table {
+            caption: Rich::from(&t.caption),
+            heads,
+            align: columns.iter().map(|c| c.1).collect(),
+            widths: columns.iter().map(|c| c.2).collect(),
+            rows: rows.collect(),
+            size: 8.5,
+            side_by_side: 1,
+            dense: false,
+            columns_text: Vec::new(),
+        })
+    })
+}
+
 fn arrow(sweep: Sweep) -> &'static str {
     match sweep {
         Sweep::Up => "↑",
@@ -220,7 +241,7 @@ pub fn left_out(content: &ReportContent) -> Option<Table> {
 }
 
 /// A cell whose text has no markup, whatever signs it holds.
-fn verbatim(text: String) -> Rich {
+pub fn verbatim(text: String) -> Rich {
     use crate::report::figures::richtext::{Level, Run};
     if text.is_empty() {
         Rich::default()
@@ -231,19 +252,6 @@ fn verbatim(text: String) -> Rich {
             level: Level::Base,
         }])
     }
-}
-
-/// Versions of program and formats.
-pub fn versions(content: &ReportContent) -> Option<Table> {
-    let rows = content.identification.versions.iter();
-    let rows = rows
-        .map(|(k, v)| vec![verbatim(k.clone()), verbatim(v.clone())])
-        .collect();
-    table(
-        "Versions.",
-        &[("what", "left", 1), ("version", "left", 3)],
-        rows,
-    )
 }
 
 /// SHA-256 of the inputs.

@@ -18,7 +18,7 @@ pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
         .records
         .iter()
         .any(|r| r.eta.is_some() && r.rho.is_some());
-    let mut columns: Vec<Column> = vec![("record", "left", 0)];
+    let mut columns: Vec<Column> = vec![("record", "left", 0), ("specimen", "left", 0)];
     columns.extend([
         ("", "center", 0),
         ("$f$ (Hz)", "right", 0),
@@ -27,7 +27,11 @@ pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     if planar {
         columns.extend([("$η$", "right", 0), ("$ρ$", "right", 0)]);
     }
-    columns.extend([("$z$", "center", 0), ("conf.", "right", 0)]);
+    columns.extend([
+        ("$z$", "center", 0),
+        ("conf.", "right", 0),
+        ("impacts", "right", 0),
+    ]);
     columns.push(if many {
         ("", "left", 0)
     } else {
@@ -40,7 +44,10 @@ pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
          ? undetermined; • used in the identification; ! flagged. Reasons and flags in full are in \
          records.parquet."
     } else {
-        "All records: sweep, measured drive frequency, clearance, motion and confidence."
+        match content.records.iter().any(|r| r.frequency_hz.is_some()) {
+            true => "All records: sweep, measured drive frequency, clearance, motion and confidence.",
+            false => "All records, and which methods used them.",
+        }
     };
     let table = table(caption, &columns, rows)?;
     Some(if many {
@@ -103,6 +110,7 @@ fn record_row(r: &RecordRow, planar: bool, many: bool, numbers: NumberLook) -> V
     let number = |v: Option<f64>, decimals| v.map_or("–".into(), |v| numbers.fixed(v, decimals));
     let mut row: Vec<String> = vec![
         r.id.clone(),
+        r.specimen.clone().unwrap_or_default(),
         arrow(r.sweep).into(),
         number(r.frequency_hz, 3),
         r.clearance_m
@@ -111,7 +119,16 @@ fn record_row(r: &RecordRow, planar: bool, many: bool, numbers: NumberLook) -> V
     if planar {
         row.extend([number(r.eta, 4), number(r.rho, 3)]);
     }
-    row.extend([motion_label(r, many), number(r.confidence, 2)]);
+    let driven = r.frequency_hz.is_some();
+    row.extend([
+        motion_label(r, many),
+        number(r.confidence.filter(|_| driven), 2),
+    ]);
+    if !driven && r.impacts > 0 {
+        row.push(r.impacts.to_string());
+    } else {
+        row.push(String::new());
+    }
     row.push(if many {
         short_remark(r)
     } else {

@@ -1,6 +1,7 @@
 //! The map's data: what hovering over a record tells, and all layers as CSV.
 
-use crate::report::content::{RecordRow, ReportContent};
+use crate::motion::Motion;
+use crate::report::content::{RecordRow, RegionMap, ReportContent};
 use crate::report::figures::csv::Csv;
 use crate::report::figures::look::NumberLook;
 
@@ -76,5 +77,30 @@ pub fn csv(content: &ReportContent) -> String {
             row.numbers(&[Some(b[0]), Some(b[1]), None, None, Some(b[0]), Some(b[2])]);
         }
     }
+    if let Some(map) = &content.region_map {
+        regions(&mut csv, "region", &map.cells, map);
+        regions(&mut csv, "region_from_other_start", &map.second, map);
+    }
     csv.finish()
+}
+
+/// The cells of a region map, row by row; neighbours of one motion are one row of the table.
+fn regions(csv: &mut Csv, layer: &str, cells: &[u16], map: &RegionMap) {
+    let columns = map.eta.len();
+    if columns == 0 {
+        return;
+    }
+    for (row, rho) in cells.chunks(columns).zip(&map.rho) {
+        let mut first = 0;
+        for run in row.chunk_by(|a, b| a == b) {
+            let last = first + run.len() - 1;
+            let motion = map.motions.get(usize::from(run[0]));
+            let label = motion.map(Motion::label).unwrap_or_default();
+            let (from, to) = (Some(map.eta[first]), Some(map.eta[last]));
+            csv.row()
+                .texts(&[layer, "", &label, ""])
+                .numbers(&[from, Some(*rho), None, None, to, Some(*rho)]);
+            first = last + 1;
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! What the map says in words and numbers: names of curves, letters of points, axes in laboratory
 //! units.
 
-use super::{Map, STRIP_STEP};
+use super::{Map, STRIP_HALF, STRIP_STEP};
 use crate::report::content::BoundaryCurve;
 use crate::report::figures::axes::Axis;
 use crate::report::figures::canvas::{Anchor, Point, Stroke, TextLook};
@@ -91,7 +91,7 @@ impl Map<'_> {
         let r = self.panel.rect;
         for (i, value) in self.strips.clone().into_iter().enumerate() {
             let middle = self.strip_middle(i);
-            let (top, bottom) = (middle - 5.5, middle + 5.5);
+            let (top, bottom) = (middle - STRIP_HALF, middle + STRIP_HALF);
             let corners = [
                 (r.left, top),
                 (r.right, top),

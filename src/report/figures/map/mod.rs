@@ -30,6 +30,8 @@ pub enum MapSize {
 const BAND: plotters::style::RGBColor = plotters::style::RGBColor(0xbd, 0xc3, 0xca);
 /// Height of a strip with its gap, points.
 const STRIP_STEP: f64 = 15.0;
+/// Half the height of a strip's frame, points.
+const STRIP_HALF: f64 = 5.5;
 const UNUSED: plotters::style::RGBColor = plotters::style::RGBColor(0x9a, 0x9f, 0xa5);
 
 /// Draws the map; `None` where the records have no place in a plane.
@@ -233,6 +235,8 @@ impl<'a> Map<'a> {
         let (x, y) = self.plane.record(record)?;
         let lift = self.lift() * direction(record.sweep);
         if let Some(strip) = self.strips.iter().position(|s| same(*s, y)) {
+            let room = (STRIP_HALF - self.radius - 0.5).max(0.0);
+            let lift = lift.clamp(-room, room);
             return Some((self.panel.at(x, 0.0).0, self.strip_middle(strip) - lift));
         }
         let at = self.panel.at(x, y);

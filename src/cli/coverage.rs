@@ -1,0 +1,86 @@
+//! `impactid study coverage`: what the intervals are worth, over many synthetic campaigns.
+
+use clap::Args;
+
+use super::{Exit, Failure, Progress, Voice};
+use crate::identify::coverage::Score;
+use crate::pipeline::coverage::{self, Tally};
+
+/// Arguments of `impactid study coverage`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLE)]
+pub struct Coverage {
+    /// Number of campaigns; a fifth as many more for each mistake of the laboratory
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    campaigns: usize,
+    /// Seed of everything random
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// Print JSON instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+const EXAMPLE: &str = "\
+Example:
+  impactid study coverage --campaigns 300 --seed 1 --json
+
+Each campaign has a truth, noise and faults of its own. Errors of R are absolute, those of the
+other parameters relative. `bound` is the Cramér–Rao bound: no unbiased estimator errs less.";
+
+impl Coverage {
+    /// Simulate, identify, count.
+    ///
+    /// # Errors
+    /// [`Failure`] where a simulation refuses its parameters.
+    pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
+        let bar = Progress::new(voice, "campaigns", self.campaigns as u64);
+        let found = coverage::study(self.campaigns, self.seed, &|_, done, total| {
+            bar.set(done, total);
+        })?;
+        drop(bar);
+        if self.json {
+            let text = serde_json::to_string_pretty(&found).map_err(|e| {
+                Failure::new(e.to_string(), "please report it with the command line")
+            })?;
+            println!("{text}");
+        } else {
+            print_table(&found);
+        }
+        Ok(Exit::Done)
+    }
+}
+
+fn print_table(found: &coverage::Coverage) {
+    println!(
+        "{:13} {:21} {:>4} {:>7} {:>10} {:>10} {:>10} {:>9} {:>8}",
+        "method", "parameter", "n", "refused", "bias", "rms error", "bound", "rms/bound", "coverage"
+    );
+    for (method, parameters) in &found.methods {
+        for (parameter, score) in parameters {
+            print_score(method, parameter, score);
+        }
+    }
+    print_tally("R refused where nothing touches", found.nothing_touches);
+    for (name, tally) in &found.mistakes {
+        print_tally(&format!("found: {}", name.replace('_', " ")), *tally);
+    }
+    print_tally("false alarms", found.false_alarms);
+}
+
+fn print_score(method: &str, parameter: &str, s: &Score) {
+    println!(
+        "{method:13} {parameter:21} {:>4} {:>7} {:>10.2e} {:>10.2e} {:>10.2e} {:>9.2} {:>6.1} %",
+        s.estimates,
+        s.refused,
+        s.bias,
+        s.rms_error,
+        s.bound,
+        s.rms_error_over_bound,
+        100.0 * s.coverage95
+    );
+}
+
+fn print_tally(what: &str, tally: Tally) {
+    println!("{what}: {} of {}", tally.found, tally.of);
+}

@@ -1,0 +1,81 @@
+//! The Cramér–Rao bound: what noise alone leaves open in the parameters, for each method on the
+//! evidence it has.
+//!
+//! The information is that of the residuals' noise at given parameters; instruments' gains and
+//! asymmetries are nuisances with their priors. Allowances for what the model leaves open do not
+//! enter: no unbiased estimator does better than this.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DMatrix;
+
+use crate::identify::methods::{Blocks, Evidence, wide_priors};
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::{Block, Prior, Problem};
+
+/// Least standard errors of the coordinates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bound {
+    free: Vec<Coordinate>,
+    covariance: DMatrix<f64>,
+}
+
+impl Bound {
+    /// Least standard error of a coordinate: R absolute, the others relative.
+    pub fn error(&self, coordinate: Coordinate) -> Option<f64> {
+        let i = self.free.iter().position(|c| *c == coordinate)?;
+        Some(self.covariance[(i, i)].max(0.0).sqrt())
+    }
+}
+
+/// Bounds of every method on the evidence, `joint` among them, at given parameters.
+pub fn bounds(evidence: &Evidence, at: &Parameters) -> BTreeMap<String, Bound> {
+    let blocks = Blocks::with_noise_alone(evidence);
+    let gain = evidence.nominal.gain_uncertainty;
+    let resonance: &dyn Block = &blocks.resonance;
+    let trajectory: &dyn Block = &blocks.trajectory;
+    let boundary: &dyn Block = &blocks.boundary;
+    let impact: &dyn Block = &blocks.impact;
+    let methods: [(&str, Vec<&dyn Block>); 5] = [
+        ("resonance", vec![resonance]),
+        ("trajectories", vec![trajectory]),
+        ("boundaries", vec![boundary, resonance]),
+        ("impacts", vec![impact]),
+        ("joint", vec![resonance, trajectory, boundary, impact]),
+    ];
+    methods
+        .into_iter()
+        .filter_map(|(name, list)| {
+            let found = bound(&blocks, list, gain, at)?;
+            Some((name.to_owned(), found))
+        })
+        .collect()
+}
+
+fn bound(blocks: &Blocks, list: Vec<&dyn Block>, gain: f64, at: &Parameters) -> Option<Bound> {
+    let list: Vec<(&dyn Block, f64)> = list
+        .into_iter()
+        .filter(|b| b.items() > 0)
+        .map(|b| (b, 1.0))
+        .collect();
+    let mut free: Vec<Coordinate> = Coordinate::PHYSICAL
+        .into_iter()
+        .filter(|c| list.iter().any(|(block, _)| block.touches(*c)))
+        .collect();
+    let mut priors: Vec<Prior> = wide_priors(at, &free);
+    if free.len() > 1 {
+        let (nuisances, more) = blocks.nuisances(gain);
+        free.extend(nuisances);
+        priors.extend(more);
+    }
+    let problem = Problem {
+        blocks: list,
+        priors,
+        free,
+    };
+    let covariance = problem.covariance_at(at)?;
+    Some(Bound {
+        free: problem.free,
+        covariance,
+    })
+}

@@ -1,0 +1,139 @@
+//! How good estimates are over many campaigns with known truth: bias, root-mean-square error
+//! against the Cramér–Rao bound, and coverage of the 95 % intervals.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::identify::bound::Bound;
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::{MethodResult, ParameterSet, Status};
+
+/// How one parameter came out of one method over all campaigns. Errors of R are absolute, those
+/// of the others relative.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Score {
+    /// Campaigns that gave a value.
+    pub estimates: usize,
+    /// Campaigns that called it not identifiable.
+    pub refused: usize,
+    /// Refusals although the bound says that the data tell it well.
+    pub refused_without_reason: usize,
+    /// Values called identified although the bound says that the data cannot tell it.
+    pub claimed_without_reason: usize,
+    /// Mean error.
+    pub bias: f64,
+    /// Root-mean-square error.
+    pub rms_error: f64,
+    /// Root mean square of the Cramér–Rao bounds.
+    pub bound: f64,
+    /// Root mean square of each campaign's error over its own bound.
+    pub rms_error_over_bound: f64,
+    /// Median of |error| over the bound; 0.674 for normal errors at the bound.
+    pub median_error_over_bound: f64,
+    /// Share of the 95 % intervals that hold the truth.
+    pub coverage95: f64,
+}
+
+/// One campaign's outcome: estimates and bounds of each method, `joint` among them.
+#[derive(Debug, Clone)]
+pub struct Trial {
+    /// The true parameters.
+    pub truth: Parameters,
+    /// Estimates by method.
+    pub estimates: BTreeMap<String, ParameterSet>,
+    /// Bounds by method.
+    pub bounds: BTreeMap<String, Bound>,
+}
+
+impl Trial {
+    /// Collect a campaign's results.
+    pub fn new(
+        truth: Parameters,
+        joint: &MethodResult,
+        methods: &BTreeMap<String, MethodResult>,
+        bounds: BTreeMap<String, Bound>,
+    ) -> Self {
+        let mut estimates: BTreeMap<String, ParameterSet> = methods
+            .iter()
+            .map(|(name, m)| (name.clone(), m.parameters.clone()))
+            .collect();
+        estimates.insert("joint".into(), joint.parameters.clone());
+        Self {
+            truth,
+            estimates,
+            bounds,
+        }
+    }
+}
+
+/// Bound below which a refusal has no reason, as a fraction of what counts as weak, and above
+/// which a claim has none, as a multiple.
+const CLEAR: f64 = 3.0;
+
+/// Scores by method and parameter.
+pub fn scores(trials: &[Trial]) -> BTreeMap<String, BTreeMap<String, Score>> {
+    let mut all: BTreeMap<String, BTreeMap<String, Score>> = BTreeMap::new();
+    let names: std::collections::BTreeSet<&String> =
+        trials.iter().flat_map(|t| t.estimates.keys()).collect();
+    for name in names {
+        for coordinate in Coordinate::PHYSICAL {
+            if let Some(score) = score(trials, name, coordinate) {
+                let method = all.entry(name.clone()).or_default();
+                method.insert(coordinate.name().into(), score);
+            }
+        }
+    }
+    all
+}
+
+/// Score of one parameter; `None` where no campaign's method speaks of it.
+fn score(trials: &[Trial], method: &str, coordinate: Coordinate) -> Option<Score> {
+    let (weak, _) = crate::identify::estimate::limits(coordinate);
+    let mut score = Score::default();
+    let (mut errors, mut ratios, mut bounds, mut covered) = (vec![], vec![], vec![], 0);
+    for trial in trials {
+        let Some(estimate) = trial.estimates.get(method).and_then(|p| p.get(coordinate)) else {
+            continue;
+        };
+        let bound = trial.bounds.get(method).and_then(|b| b.error(coordinate));
+        let Some((value, [low, high])) = estimate.value.zip(estimate.interval95) else {
+            score.refused += 1;
+            score.refused_without_reason += usize::from(bound.is_some_and(|b| b < weak / CLEAR));
+            continue;
+        };
+        let (truth, unit) = true_value(&trial.truth, coordinate);
+        let claimed = estimate.status == Status::Identified;
+        score.claimed_without_reason +=
+            usize::from(claimed && bound.is_some_and(|b| b > weak * CLEAR));
+        errors.push((value - truth) / unit);
+        covered += usize::from(low <= truth && truth <= high);
+        if let Some(bound) = bound.filter(|b| *b > 0.0) {
+            ratios.push((value - truth) / unit / bound);
+            bounds.push(bound);
+        }
+    }
+    if errors.is_empty() && score.refused == 0 {
+        return None;
+    }
+    let count = errors.len().max(1) as f64;
+    score.estimates = errors.len();
+    score.bias = errors.iter().sum::<f64>() / count;
+    score.rms_error = crate::signal::robust::rms(&errors);
+    score.bound = crate::signal::robust::rms(&bounds);
+    score.rms_error_over_bound = crate::signal::robust::rms(&ratios);
+    let sizes: Vec<f64> = ratios.iter().map(|r| r.abs()).collect();
+    score.median_error_over_bound = crate::signal::robust::median(&sizes).unwrap_or(0.0);
+    score.coverage95 = covered as f64 / count;
+    Some(score)
+}
+
+/// True value of a parameter and the unit of its errors.
+fn true_value(truth: &Parameters, coordinate: Coordinate) -> (f64, f64) {
+    let value = truth.coordinate(coordinate);
+    if coordinate.is_logarithm() {
+        (value.exp(), value.exp())
+    } else {
+        (value, 1.0)
+    }
+}

@@ -1,0 +1,284 @@
+//! Mistakes of the laboratory that the data give away: a gap stated wrongly, a gain far off, the
+//! channels of the two masses interchanged.
+//!
+//! A gap or an interchange is tested as an alternative: what would change if it were so, and how
+//! much better would all data then fit.
+
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+use crate::identify::methods::{Blocks, Nominal};
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::{Block, Fit};
+use crate::identify::trajectory::{TrajectoryBlock, TrajectoryRecord};
+use crate::record::Role;
+
+/// A mistake that the data give away.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Suspicion {
+    /// `wrong_clearance`, `wrong_gain` or `swapped_channels`.
+    pub kind: String,
+    /// The channel's role, or the clearance as stated.
+    pub subject: String,
+    /// How sure: the deviation over its standard error.
+    pub z_score: f64,
+    /// In words, with the remedy.
+    pub message: String,
+}
+
+/// Standard errors from which a deviation is named.
+const SURE: f64 = 6.0;
+/// Standard uncertainties of gains from which a gain is named.
+const GAIN_LIMIT: f64 = 4.0;
+/// Least relative deviation of a gap that is named.
+const GAP_LIMIT: f64 = 2e-3;
+
+/// Gains that lie far outside what the laboratory states of them.
+pub fn gains(fit: &Fit, factor: f64, nominal: &Nominal) -> Vec<Suspicion> {
+    let gains = fit.free.iter().filter_map(|c| match c {
+        Coordinate::Gain(_) => Some(*c),
+        _ => None,
+    });
+    gains
+        .filter_map(|coordinate| {
+            let off = fit.parameters.coordinate(coordinate);
+            let error = fit.error(coordinate)? * factor.sqrt();
+            let z_score = off / nominal.gain_uncertainty.hypot(error).max(f64::MIN_POSITIVE);
+            let channel = coordinate.name().trim_start_matches("gain_").to_owned();
+            (z_score.abs() > GAIN_LIMIT && off.abs() > SURE * error).then(|| Suspicion {
+                kind: "wrong_gain".into(),
+                message: format!(
+                    "{channel} reads {:.1} % too {}: mend scale in [channels.{channel}], or state \
+                     a larger gain_uncertainty in [rig]",
+                    100.0 * (off.exp() - 1.0).abs(),
+                    if off > 0.0 { "high" } else { "low" },
+                ),
+                subject: channel,
+                z_score,
+            })
+        })
+        .collect()
+}
+
+/// A gap that fits the other records only with another clearance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OddGap {
+    /// The clearance as stated, m.
+    pub stated_m: f64,
+    /// The clearance that fits, m.
+    pub fitting_m: f64,
+    /// Its difference over its standard error.
+    pub z_score: f64,
+}
+
+impl OddGap {
+    /// In words.
+    pub fn suspicion(&self) -> Suspicion {
+        let stated = format!("{:.4} mm", 1e3 * self.stated_m);
+        Suspicion {
+            kind: "wrong_clearance".into(),
+            message: format!(
+                "the gap stated with a clearance of {stated} moves like one of {:.4} mm: measure \
+                 it again and mend the run table; its records stay out of the fit",
+                1e3 * self.fitting_m
+            ),
+            subject: stated,
+            z_score: self.z_score,
+        }
+    }
+}
+
+/// The clearances that records have, each once, in rising order.
+fn stated_gaps(records: &[TrajectoryRecord]) -> Vec<f64> {
+    let mut gaps: Vec<f64> = records.iter().map(|r| r.clearance_m).collect();
+    gaps.sort_by(f64::total_cmp);
+    gaps.dedup();
+    gaps
+}
+
+/// The gap that deviates most from the others: the largest mean shift in units of its error, to
+/// first order about a fit. `weight` is that of the trajectories in the fit.
+///
+/// With the residuals' slopes J over the free coordinates and c over the gap, the shift is
+/// −cᵀr / (cᵀc − cᵀJ(JᵀJ)⁻¹Jᵀc).
+pub fn odd_gap(block: &TrajectoryBlock, weight: f64, fit: &Fit, factor: f64) -> Option<OddGap> {
+    stated_gaps(&block.records)
+        .iter()
+        .filter_map(|gap| shift(block, weight, fit, factor, *gap))
+        .max_by(|a, b| a.z_score.abs().total_cmp(&b.z_score.abs()))
+        .filter(|odd| odd.z_score.abs() > SURE)
+        .filter(|odd| (odd.fitting_m / odd.stated_m - 1.0).abs() > GAP_LIMIT)
+}
+
+fn shift(
+    block: &TrajectoryBlock,
+    weight: f64,
+    fit: &Fit,
+    factor: f64,
+    gap: f64,
+) -> Option<OddGap> {
+    let (mut own, mut score) = (0.0, 0.0);
+    let mut cross = DVector::zeros(fit.free.len());
+    let mut seen = 0;
+    for (item, record) in block.records.iter().enumerate() {
+        if record.clearance_m != gap {
+            continue;
+        }
+        let Some((residuals, slope, jacobian)) = slopes(block, item, fit) else {
+            continue;
+        };
+        own += weight * slope.norm_squared();
+        score += weight * slope.dot(&residuals);
+        cross += weight * jacobian.tr_mul(&slope);
+        seen += 1;
+    }
+    if seen < 2 {
+        return None;
+    }
+    let left = own - cross.dot(&(&fit.covariance * &cross));
+    (left > 1e-9 * own).then(|| {
+        let relative = -score / left;
+        OddGap {
+            stated_m: gap,
+            fitting_m: gap * (1.0 + relative),
+            z_score: relative * (left / factor).sqrt(),
+        }
+    })
+}
+
+/// Residuals of one record, their slope over the relative clearance, and over the coordinates.
+fn slopes(
+    block: &TrajectoryBlock,
+    item: usize,
+    fit: &Fit,
+) -> Option<(DVector<f64>, DVector<f64>, DMatrix<f64>)> {
+    const STEP: f64 = 2e-6;
+    let residuals = DVector::from_vec(block.residuals(item, &fit.parameters)?);
+    let moved = |by: f64| {
+        let mut one = TrajectoryBlock {
+            records: vec![block.records[item].clone()],
+            ..*block
+        };
+        one.records[0].clearance_m *= 1.0 + by;
+        one.residuals(0, &fit.parameters).map(DVector::from_vec)
+    };
+    let slope = (moved(STEP)? - moved(-STEP)?) / (2.0 * STEP);
+    let mut jacobian = DMatrix::zeros(residuals.len(), fit.free.len());
+    for (column, coordinate) in fit.free.iter().enumerate() {
+        let centre = fit.parameters.coordinate(*coordinate);
+        let at = |by: f64| {
+            let shifted = fit.parameters.with(*coordinate, centre + by);
+            block.residuals(item, &shifted).map(DVector::from_vec)
+        };
+        jacobian.set_column(column, &((at(STEP)? - at(-STEP)?) / (2.0 * STEP)));
+    }
+    Some((residuals, slope, jacobian))
+}
+
+/// Records of a gap that the model reaches only with another clearance: of the gaps whose records
+/// a fit mostly lost, the first that another clearance within a third brings back.
+pub fn lost_gap(
+    block: &TrajectoryBlock,
+    lost: &[TrajectoryRecord],
+    parameters: &Parameters,
+    typical: f64,
+) -> Option<OddGap> {
+    stated_gaps(lost).into_iter().find_map(|gap| {
+        let records: Vec<TrajectoryRecord> = lost
+            .iter()
+            .filter(|r| r.clearance_m == gap)
+            .cloned()
+            .collect();
+        let kept = block.records.iter().filter(|r| r.clearance_m == gap).count();
+        if records.len() < 2 || kept > records.len() / 2 {
+            return None;
+        }
+        recover(block, records, parameters, typical)
+    })
+}
+
+/// Mean squares beyond this times the typical one count the same.
+const CAP: f64 = 400.0;
+
+fn recover(
+    block: &TrajectoryBlock,
+    records: Vec<TrajectoryRecord>,
+    parameters: &Parameters,
+    typical: f64,
+) -> Option<OddGap> {
+    let stated = records[0].clearance_m;
+    let cost = |factor: f64| -> f64 {
+        let mut moved = TrajectoryBlock {
+            records: records.clone(),
+            ..*block
+        };
+        for record in &mut moved.records {
+            record.clearance_m *= factor;
+        }
+        let score = |i| {
+            let residuals = moved.residuals(i, parameters)?;
+            let count = residuals.len().max(1) as f64;
+            Some(residuals.iter().map(|r| r * r).sum::<f64>() / count)
+        };
+        let sum: f64 = (0..records.len())
+            .map(|i| score(i).map_or(CAP, |s: f64| (s / typical).min(CAP)))
+            .sum();
+        sum / records.len() as f64
+    };
+    let (mut centre, mut width) = (1.0, 0.34);
+    for _ in 0..4 {
+        let best = (-60..=60)
+            .map(|i| centre + width * f64::from(i) / 60.0)
+            .min_by(|a, b| cost(*a).total_cmp(&cost(*b)))?;
+        (centre, width) = (best, width / 20.0);
+    }
+    let (before, after) = (cost(1.0), cost(centre));
+    let z_score = (before - after).max(0.0).sqrt() * (centre - 1.0).signum();
+    (after < 0.25 * before && after < 0.25 * CAP && (centre - 1.0).abs() > GAP_LIMIT).then(|| {
+        OddGap {
+            stated_m: stated,
+            fitting_m: stated * centre,
+            z_score,
+        }
+    })
+}
+
+/// Whether all data fit far better with the velocities of both masses interchanged.
+pub fn swapped(
+    blocks: &Blocks,
+    problem: &dyn Fn(&Blocks) -> Option<(f64, usize)>,
+) -> Option<Suspicion> {
+    let mut other = blocks.clone();
+    let swap = |role: &mut Role| match role {
+        Role::VelocityX => *role = Role::VelocityY,
+        Role::VelocityY => *role = Role::VelocityX,
+        _ => {}
+    };
+    let mut moved = false;
+    for record in &mut other.trajectory.records {
+        for channel in &mut record.folded.channels {
+            swap(&mut channel.role);
+            moved |= channel.role == Role::VelocityY;
+        }
+    }
+    for point in &mut other.resonance.points {
+        for response in &mut point.responses {
+            swap(&mut response.role);
+            moved |= response.role == Role::VelocityY;
+        }
+    }
+    if !moved {
+        return None;
+    }
+    let ((here, freedom), (there, _)) = (problem(blocks)?, problem(&other)?);
+    let typical = (there / freedom.max(1) as f64).max(1.0);
+    let z_score = ((here - there) / typical).max(0.0).sqrt();
+    (z_score > SURE && here > 1.3 * there).then(|| Suspicion {
+        kind: "swapped_channels".into(),
+        subject: "velocity_x, velocity_y".into(),
+        z_score,
+        message: "all data fit far better with the velocities of both masses interchanged: swap \
+                  [channels.velocity_x] and [channels.velocity_y], or the displacements"
+            .into(),
+    })
+}

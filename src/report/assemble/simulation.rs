@@ -1,0 +1,250 @@
+//! The fitted model's motion at the setting of a record.
+
+use std::f64::consts::TAU;
+
+use super::Gathered;
+use crate::atlas::MapSettings;
+use crate::atlas::map::{End, Start, march_from};
+use crate::event::{Detection, DriveTone};
+use crate::identify::parameters::Parameters;
+use crate::identify::trajectory::channel_value;
+use crate::model::flight::State;
+use crate::model::params::{Initial, Machine, Setting};
+use crate::model::simulate::{Simulator, Trajectory};
+use crate::motion::{Motion, Observation};
+use crate::record::Role;
+use crate::report::content::Signal;
+
+/// Most measured impacts after which a simulation is started.
+const MOST_STARTS: usize = 6;
+
+/// The stretch of a record that is drawn: it begins at a zero phase of the drive.
+pub(super) struct Window {
+    /// Its start, s into the record.
+    pub(super) start_s: f64,
+    /// Its length, s.
+    pub(super) length_s: f64,
+    rate_hz: f64,
+}
+
+impl Window {
+    pub(super) fn new(detection: &Detection, drive: &DriveTone, periods: f64) -> Self {
+        let rate_hz = detection.kinematics.rate_hz;
+        let period = drive.period_s();
+        let start_s = period * (1.0 - drive.phase_at(0.0) / std::f64::consts::TAU);
+        Self {
+            start_s,
+            length_s: periods * period,
+            rate_hz,
+        }
+    }
+
+    fn range(&self, samples: usize) -> std::ops::Range<usize> {
+        let first = (self.start_s * self.rate_hz).ceil() as usize;
+        let last = ((self.start_s + self.length_s) * self.rate_hz).floor() as usize + 1;
+        first.min(samples)..last.min(samples)
+    }
+
+    pub(super) fn signal(&self, values: &[f64]) -> Signal {
+        let range = self.range(values.len());
+        Signal {
+            time_s: range
+                .clone()
+                .map(|i| i as f64 / self.rate_hz - self.start_s)
+                .collect(),
+            values: values[range].to_vec(),
+        }
+    }
+}
+
+/// The fitted model's motion at the setting of a record, in step with the drive.
+pub(super) struct Simulation {
+    /// The motion it settled on.
+    pub(super) motion: Motion,
+    /// Times of its impacts, s from the window's start.
+    pub(super) impacts_s: Vec<f64>,
+    trajectory: Trajectory,
+    start_tau: f64,
+    omega: f64,
+    parameters: Parameters,
+    drive_amplitude: f64,
+}
+
+impl Simulation {
+    pub(super) fn of(
+        gathered: &Gathered,
+        o: &Observation,
+        drive: &DriveTone,
+        window: &Window,
+    ) -> Option<Self> {
+        let parameters = *gathered.parameters()?;
+        let clearance_m = match (o.setting.clearance_m, &o.finding.motion) {
+            (Some(clearance), _) => clearance,
+            // Nothing touches: any wide gap will do.
+            (None, Motion::Impactless) => 1e6 * parameters.static_deflection_m,
+            (None, _) => return None,
+        };
+        let machine = parameters.machine(gathered.campaign.rig);
+        let drive_amplitude = o.setting.drive_amplitude;
+        let setting = parameters.setting(drive.frequency_hz, clearance_m, drive_amplitude);
+        let end = settled(&machine, setting, o, &parameters)?;
+        let start = Setting {
+            phase: end.phase,
+            ..setting
+        };
+        let mut simulator = Simulator::new(&machine, start, end.initial).ok()?;
+        let to_zero = (TAU - simulator.phase().rem_euclid(TAU)) / setting.frequency_ratio;
+        simulator.advance(to_zero, &mut Trajectory::default());
+        let skip = cycle_shift(&simulator, o, (drive, window), setting);
+        simulator.advance(
+            f64::from(skip) * setting.period(),
+            &mut Trajectory::default(),
+        );
+        let start_tau = simulator.tau();
+        let omega = parameters.natural_rate();
+        let mut trajectory = Trajectory::default();
+        simulator.advance(window.length_s * omega, &mut trajectory);
+        let impacts_s = trajectory
+            .impacts
+            .iter()
+            .map(|i| (i.tau - start_tau) / omega)
+            .collect();
+        Some(Self {
+            motion: end.motion.into(),
+            impacts_s,
+            trajectory,
+            start_tau,
+            omega,
+            parameters,
+            drive_amplitude,
+        })
+    }
+
+    pub(super) fn signal(&self, role: Role, times_s: &[f64]) -> Option<Signal> {
+        channel_value(&self.parameters, 1.0, role, &State::default())
+            .is_finite()
+            .then(|| {
+                let values = times_s
+                    .iter()
+                    .map(|t| {
+                        let state = self.trajectory.at(self.start_tau + t * self.omega);
+                        channel_value(&self.parameters, self.drive_amplitude, role, &state)
+                    })
+                    .collect();
+                Signal {
+                    time_s: times_s.to_vec(),
+                    values,
+                }
+            })
+    }
+}
+
+/// Where the model settles on the motion seen, from the first start that leads there; else from
+/// the first start of all.
+fn settled(
+    machine: &Machine,
+    setting: Setting,
+    o: &Observation,
+    parameters: &Parameters,
+) -> Option<End> {
+    let at = (setting.frequency_ratio, setting.clearance);
+    let place = |(initial, phase)| Start { at, initial, phase };
+    let starts: Vec<Start> = starts(machine, setting, o, parameters)
+        .into_iter()
+        .map(place)
+        .collect();
+    let ends = march_from(machine, &starts, &MapSettings::default()).ok()?;
+    let same = |end: &&End| Motion::from(end.motion) == o.finding.motion;
+    ends.iter().find(same).or(ends.first()).copied()
+}
+
+/// Starts to be tried: after each of the first measured impacts, from rest, from a lively state.
+fn starts(
+    machine: &Machine,
+    setting: Setting,
+    o: &Observation,
+    parameters: &Parameters,
+) -> Vec<(Initial, f64)> {
+    let scale =
+        parameters.static_deflection_m * o.setting.drive_amplitude * parameters.natural_rate();
+    let touching = |after: f64| match machine.y {
+        Some(_) => Initial {
+            x: setting.clearance,
+            vx: 0.5 * after,
+            y: setting.clearance,
+            vy: 0.5 * after,
+        },
+        None => Initial {
+            x: setting.clearance,
+            vx: after,
+            y: 0.0,
+            vy: 0.0,
+        },
+    };
+    let measured = o.impacts.iter().filter_map(|i| {
+        let after = i.closing_speed_after_m_s? / scale;
+        Some((touching(after), i.drive_phase_rad?))
+    });
+    let mut starts: Vec<(Initial, f64)> = measured.take(MOST_STARTS).collect();
+    let lively = match machine.y {
+        Some(_) => Initial::both(0.0, 3.0),
+        None => touching(-3.0),
+    };
+    starts.extend([(Initial::rest(), 0.0), (lively, 0.0)]);
+    starts
+}
+
+/// Whole drive periods by which the simulation has to be shifted so that its impacts fall where
+/// the measured ones do (a motion of period n may be met in any of n drive periods).
+fn cycle_shift(
+    simulator: &Simulator,
+    o: &Observation,
+    (drive, window): (&DriveTone, &Window),
+    setting: Setting,
+) -> u32 {
+    let Motion::Periodic { periods_n, .. } = o.finding.motion else {
+        return 0;
+    };
+    if periods_n < 2 {
+        return 0;
+    }
+    let mut ahead = simulator.clone();
+    let mut run = Trajectory::default();
+    let begin = ahead.tau();
+    let span = f64::from(3 * periods_n) * setting.period();
+    ahead.advance(span, &mut run);
+    let simulated: Vec<(f64, f64)> = run
+        .impacts
+        .iter()
+        .map(|i| ((i.tau - begin) / setting.period(), i.closing_before))
+        .collect();
+    let measured: Vec<(f64, f64)> = o
+        .impacts
+        .iter()
+        .filter_map(|i| {
+            let turns = (i.time_s - window.start_s) / drive.period_s();
+            Some((turns, i.closing_speed_before_m_s?))
+        })
+        .filter(|(t, _)| (0.0..f64::from(periods_n)).contains(t))
+        .collect();
+    let scale =
+        |list: &[(f64, f64)]| list.iter().map(|i| i.1).sum::<f64>() / list.len().max(1) as f64;
+    let (of_model, of_record) = (scale(&simulated), scale(&measured));
+    let mismatch = |shift: u32| -> f64 {
+        measured
+            .iter()
+            .map(|m| {
+                simulated
+                    .iter()
+                    .map(|s| {
+                        let apart = s.0 - f64::from(shift) - m.0;
+                        apart.abs() + (s.1 / of_model - m.1 / of_record).abs()
+                    })
+                    .fold(f64::INFINITY, f64::min)
+            })
+            .sum()
+    };
+    (0..periods_n)
+        .min_by(|a, b| mismatch(*a).total_cmp(&mismatch(*b)))
+        .unwrap_or(0)
+}

@@ -1,0 +1,77 @@
+//! Random campaigns: truth, noise and faults drawn from the ranges that laboratories have.
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use super::plan::Plan;
+use super::truth::{Faults, Truth, draw_asymmetry};
+
+/// A campaign to simulate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Draw {
+    /// True parameters.
+    pub truth: Truth,
+    /// Faults of the rig.
+    pub faults: Faults,
+    /// The settings visited.
+    pub plan: Plan,
+    /// Seed of its noise.
+    pub seed: u64,
+}
+
+/// What a campaign visits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reach {
+    /// Several gaps, up and down, and the resonance curve.
+    Full,
+    /// A gap so wide that nothing touches: R cannot be told.
+    NothingTouches,
+}
+
+/// Draw campaign number `index` of a study; the same seed and index always give the same.
+///
+/// R 0.5 to 0.93, β 0.025 to 0.09, f0 8 to 17 Hz, x_st 0.3 to 3 mm, 120 to 260 records, noise 1 to
+/// 8 mV on ±10 V, integrators' corner 0.2 to 0.8 Hz, asymmetry up to 2 %.
+pub fn draw(seed: u64, index: u64, reach: Reach) -> Draw {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream(index);
+    let mut between = |low: f64, high: f64| rng.random_range(low..high);
+    let restitution = between(0.5, 0.93);
+    let damping_ratio = between(0.025f64.ln(), 0.09f64.ln()).exp();
+    let natural_frequency_hz = between(8.0, 17.0);
+    let static_deflection_m = between(0.3e-3f64.ln(), 3e-3f64.ln()).exp();
+    let records = between(120.0, 260.0) as usize;
+    let faults = Faults {
+        noise_v: between(1e-3f64.ln(), 8e-3f64.ln()).exp(),
+        high_pass_hz: Some(between(0.2, 0.8)),
+        asymmetry: between(0.0, 0.02),
+        missed_probability: between(0.0, 0.1),
+        bounce_probability: between(0.0, 0.4),
+        ..Faults::default()
+    };
+    let own_seed = rng.random();
+    let (drive_asymmetry, stiffness_asymmetry) = draw_asymmetry(&faults, own_seed);
+    let mut plan = Plan::for_rig(
+        natural_frequency_hz,
+        damping_ratio,
+        static_deflection_m,
+        records,
+    );
+    if reach == Reach::NothingTouches {
+        let widest = plan.steps[0].clearance_m;
+        plan.steps.retain(|s| s.clearance_m == widest);
+    }
+    Draw {
+        truth: Truth {
+            restitution,
+            natural_frequency_hz,
+            damping_ratio,
+            static_deflection_m,
+            drive_asymmetry,
+            stiffness_asymmetry,
+        },
+        faults,
+        plan,
+        seed: own_seed,
+    }
+}

@@ -1,0 +1,246 @@
+//! The report as a user gets it: its formats, its look, its words, and the finished example.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn impactid(arguments: &[&str]) -> (i32, String) {
+    let done = Command::new(env!("CARGO_BIN_EXE_impactid"))
+        .current_dir(root())
+        .args(arguments)
+        .output()
+        .expect("the program runs");
+    let text = String::from_utf8_lossy(&done.stderr).into_owned();
+    (done.status.code().unwrap_or(-1), text)
+}
+
+/// What another program says; `None`, with a message, where it is not installed.
+fn said(program: &str, arguments: &[&str]) -> Option<String> {
+    match Command::new(program).args(arguments).output() {
+        Ok(done) => Some(String::from_utf8_lossy(&done.stdout).into_owned()),
+        Err(_) => {
+            println!("skipped: {program} is not installed");
+            None
+        }
+    }
+}
+
+fn text(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
+}
+
+/// The sample campaign cut to every `step`-th record, with lines added to campaign.toml.
+fn cut_campaign(folder: &Path, step: usize, more: &str) -> PathBuf {
+    let sample = root().join("data-samples/double-oscillator");
+    let read = |name: &str| fs::read_to_string(sample.join(name)).expect("the sample");
+    let runs = read("runs.csv").replace("records.h5", &text(&sample.join("records.h5")));
+    let kept = |(i, line): (usize, &str)| (i == 0 || i % step == 5).then(|| line.to_owned());
+    let lines: Vec<String> = runs.lines().enumerate().filter_map(kept).collect();
+    fs::write(folder.join("runs.csv"), lines.join("\n") + "\n").expect("written");
+    let campaign = folder.join("campaign.toml");
+    fs::write(&campaign, read("campaign.toml") + more).expect("written");
+    campaign
+}
+
+fn stems(folder: &Path, ending: &str) -> BTreeSet<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let paths = entries.map(|e| e.expect("an entry").path());
+    paths
+        .filter(|p| p.extension().is_some_and(|e| e == ending))
+        .filter_map(|p| p.file_stem().map(|s| s.to_string_lossy().into_owned()))
+        .collect()
+}
+
+#[test]
+fn valid_every_format_is_written_and_every_figure_has_its_data() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let campaign = cut_campaign(folder.path(), 25, "");
+    let out = folder.path().join("out");
+    let arguments = [
+        "-q",
+        "run",
+        &text(&campaign),
+        "--out",
+        &text(&out),
+        "--format",
+        "pdf,html,svg,png",
+    ];
+    assert_eq!(impactid(&arguments).0, 0);
+    assert!(out.join("report.pdf").is_file() && out.join("report.html").is_file());
+    let figures = out.join("figures");
+    let drawn = stems(&figures, "svg");
+    assert!(drawn.contains("map") && drawn.contains("comparison_A"));
+    assert_eq!(drawn, stems(&figures, "png"));
+    assert_eq!(drawn, stems(&figures, "csv"));
+    let map = fs::read_to_string(figures.join("map.csv")).expect("the map's data");
+    for layer in ["record,", "curve,s2,", "curve,grazing,", "region,", "band95,"] {
+        let there = map.lines().any(|l| l.starts_with(layer));
+        assert!(there, "the map's data has no layer {layer}");
+    }
+}
+
+#[test]
+fn valid_the_look_is_the_user_s() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(
+        folder.path().join("logo.svg"),
+        "<svg xmlns='http://www.w3.org/2000/svg' width='40' height='20'><rect width='9' height='9'/></svg>",
+    )
+    .expect("written");
+    let look = "\n[report]\nlogo = \"logo.svg\"\ndecimal_comma = true\npaper = \"us-letter\"\n\
+                points = [\"records/r0078\"]\n";
+    let campaign = cut_campaign(folder.path(), 25, look);
+    let written = fs::read_to_string(&campaign).expect("campaign.toml");
+    let stated = "[campaign]\nlaboratory = \"Laboratory of Mechanics\"\nmeasured = \"May 1971\"";
+    fs::write(&campaign, written.replacen("[campaign]", stated, 1)).expect("written");
+    let out = text(&folder.path().join("out"));
+    assert_eq!(
+        impactid(&["-q", "ingest", &text(&campaign), "--out", &out]).0,
+        0
+    );
+    for stage in ["classify", "identify", "report"] {
+        assert_eq!(impactid(&["-q", stage, &out]).0, 0, "{stage}");
+    }
+    let figures = stems(&Path::new(&out).join("figures"), "csv");
+    let shown: Vec<&String> = figures
+        .iter()
+        .filter(|f| f.starts_with("comparison"))
+        .collect();
+    assert_eq!(shown, ["comparison_A"]);
+    let pdf = format!("{out}/report.pdf");
+    if let Some(words) = said("pdftotext", &["-layout", &pdf, "-"]) {
+        for wanted in [
+            "Laboratory of Mechanics",
+            "May 1971",
+            "R = 0,9",
+            "Point (A)",
+            "impactid ingest",
+            "impactid report",
+        ] {
+            assert!(words.contains(wanted), "'{wanted}' is not in the report");
+        }
+    }
+    if let Some(info) = said("pdfinfo", &[&pdf]) {
+        assert!(info.contains("612 x 792"), "{info}");
+    }
+    let template = folder.path().join("own.typ");
+    fs::write(
+        &template,
+        "#let d = json(\"report.json\")\n= Our own: #d.title\n",
+    )
+    .expect("written");
+    assert_eq!(
+        impactid(&["-q", "report", &out, "--template", &text(&template)]).0,
+        0
+    );
+    if let Some(words) = said("pdftotext", &[&pdf, "-"]) {
+        assert!(words.contains("Our own: Synthetic"), "{words}");
+    }
+    let (code, complaint) = impactid(&["report", &out, "--template", "nowhere.typ"]);
+    assert!(code == 2 && complaint.contains("nowhere.typ"), "{complaint}");
+}
+
+/// What the README's command leaves is what lies in reports/example.
+#[test]
+fn regress_the_example_is_what_the_readme_s_command_leaves() {
+    let readme = fs::read_to_string(root().join("README.md")).expect("README.md");
+    let line = readme
+        .lines()
+        .map(str::trim)
+        .find(|l| l.starts_with("cargo run") && l.contains("--out reports/example"))
+        .expect("the README shows the command");
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let verb = words.iter().position(|w| *w == "run").expect("run") + 1;
+    let arguments: Vec<&str> = words[verb..].iter().copied().filter(|w| *w != "--").collect();
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = text(folder.path());
+    let here: Vec<&str> = arguments
+        .iter()
+        .map(|w| if *w == "reports/example" { out.as_str() } else { w })
+        .collect();
+    assert_eq!(impactid(&here).0, 0);
+    let example = root().join("reports/example");
+    let list = |folder: &Path| -> BTreeSet<String> {
+        let entries = walk(folder);
+        let relative = entries.iter().map(|p| p.strip_prefix(folder).expect("below"));
+        relative.map(text).collect()
+    };
+    assert_eq!(list(folder.path()), list(&example));
+    let words = |folder: &Path| {
+        let pdf = text(&folder.join("report.pdf"));
+        said("pdftotext", &["-layout", &pdf, "-"]).map(|t| without_folder(&t, &out))
+    };
+    assert_eq!(words(folder.path()), words(&example));
+    checked_pdf(&example.join("report.pdf"));
+    checked_page(&example.join("report.html"));
+    assert!(readme.contains("](reports/example/figures/map.png)"));
+}
+
+/// The words of a report, line by line, without the name of the folder that it was written into.
+fn without_folder(words: &str, out: &str) -> String {
+    let words = words.replace(out, "reports/example");
+    let spaced = words.lines().map(|l| {
+        let parts: Vec<&str> = l.split_whitespace().collect();
+        parts.join(" ")
+    });
+    spaced.collect::<Vec<_>>().join("\n")
+}
+
+fn walk(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let paths = entries.map(|e| e.expect("an entry").path());
+    paths
+        .flat_map(|p| if p.is_dir() { walk(&p) } else { vec![p] })
+        .collect()
+}
+
+/// Few pages, fonts embedded, the answer selectable, not too large.
+fn checked_pdf(path: &Path) {
+    assert!(fs::metadata(path).expect("the report").len() < 5_000_000);
+    let pdf = text(path);
+    let Some(words) = said("pdftotext", &["-layout", &pdf, "-"]) else {
+        return;
+    };
+    let pages = words.matches('\u{c}').count();
+    assert!((6..=12).contains(&pages), "{pages} pages");
+    for wanted in ["R = 0.9", "f0 = 12.6", "β = 0.0", "The methods agree"] {
+        assert!(words.contains(wanted), "'{wanted}' is not in the text");
+    }
+    let fonts = said("pdffonts", &[&pdf]).unwrap_or_default();
+    for font in fonts.lines().skip(2) {
+        let fields: Vec<&str> = font.split_whitespace().rev().collect();
+        assert_eq!(fields[4], "yes", "not embedded: {font}");
+    }
+}
+
+/// A browser opens the page, zooms a figure and hovers over a record.
+fn checked_page(path: &Path) {
+    let page = fs::read_to_string(path).expect("the page");
+    for outside in ["src=\"http", "href=\"http", "url(http"] {
+        assert!(!page.contains(outside), "it loads from elsewhere: {outside}");
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let profile = format!("--user-data-dir={}", text(folder.path()));
+    let address = format!("file://{}#check", text(path));
+    let flags = [
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--virtual-time-budget=3000",
+        &profile,
+        "--dump-dom",
+        &address,
+    ];
+    let Some(seen) = said("chromium", &flags) else {
+        return;
+    };
+    let after = seen.split("<body").nth(1).expect("a body");
+    let body = after.split('>').next().expect("its tag");
+    assert!(body.contains("data-hovered=\"records/r0"), "{body}");
+    assert!(body.contains("data-zoomed=\"2.00\""), "{body}");
+}
