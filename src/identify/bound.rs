@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
+use crate::identify::interval::{self, Posterior};
 use crate::identify::methods::{Blocks, Evidence, wide_priors};
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::{Block, Prior, Problem};
@@ -26,11 +27,22 @@ impl Bound {
         let i = self.free.iter().position(|c| *c == coordinate)?;
         Some(self.covariance[(i, i)].max(0.0).sqrt())
     }
+
+    /// Brackets have no information in Fisher's sense (their likelihood is flat inside): for R
+    /// the posterior's deviation stands in.
+    fn take_intervals(&mut self, posterior: Option<Posterior>) {
+        let at = self.free.iter().position(|c| *c == Coordinate::Restitution);
+        if let (Some(i), Some(found)) = (at, posterior) {
+            self.covariance[(i, i)] = found.restitution.1.powi(2);
+        }
+    }
 }
 
 /// Bounds of every method on the evidence, `joint` among them, at given parameters.
 pub fn bounds(evidence: &Evidence, at: &Parameters) -> BTreeMap<String, Bound> {
-    let blocks = Blocks::with_noise_alone(evidence);
+    let mut blocks = Blocks::with_noise_alone(evidence);
+    blocks.trajectory.find_shared_errors(at);
+    let blocks = blocks;
     let gain = evidence.nominal.gain_uncertainty;
     let resonance: &dyn Block = &blocks.resonance;
     let trajectory: &dyn Block = &blocks.trajectory;
@@ -43,13 +55,20 @@ pub fn bounds(evidence: &Evidence, at: &Parameters) -> BTreeMap<String, Bound> {
         ("impacts", vec![impact]),
         ("joint", vec![resonance, trajectory, boundary, impact]),
     ];
-    methods
+    let mut bounds: BTreeMap<String, Bound> = methods
         .into_iter()
         .filter_map(|(name, list)| {
             let found = bound(&blocks, list, gain, at)?;
             Some((name.to_owned(), found))
         })
-        .collect()
+        .collect();
+    let deflection = bounds
+        .get("resonance")
+        .and_then(|b| b.error(Coordinate::Deflection));
+    if let (Some(error), Some(found)) = (deflection, bounds.get_mut("boundaries")) {
+        found.take_intervals(interval::posterior(&blocks.boundary, at, error.min(0.3)));
+    }
+    bounds
 }
 
 fn bound(blocks: &Blocks, list: Vec<&dyn Block>, gain: f64, at: &Parameters) -> Option<Bound> {

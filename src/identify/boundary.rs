@@ -127,6 +127,12 @@ fn normal(x: f64) -> f64 {
     0.5 * crate::identify::agreement::erfc(-x / std::f64::consts::SQRT_2)
 }
 
+/// Probability that a motion jumps within a bracket when its boundary lies at a frequency, for a
+/// scale of early jumps relative to the frequency.
+pub fn bracket_probability(bracket: &Bracket, early_scale: f64, boundary_hz: f64) -> f64 {
+    Jump::of(bracket, early_scale).probability(boundary_hz)
+}
+
 /// Frequency of the boundary of a bracket according to the model, Hz: the crossing nearest to it.
 /// `None` where the boundary does not reach this clearance.
 pub fn predicted_hz(bracket: &Bracket, parameters: &Parameters, rig: Rig) -> Option<f64> {

@@ -4,6 +4,7 @@ use nalgebra::Complex;
 
 use crate::event::Rig;
 use crate::identify::parameters::{Coordinate, Parameters, gain_index};
+use crate::identify::shared_error::whiten;
 use crate::identify::solver::Block;
 use crate::model::flight::{Drive, forced_amplitude};
 use crate::motion::Observation;
@@ -19,6 +20,10 @@ pub struct ResonancePoint {
     pub frequency_hz: f64,
     /// Drive amplitude relative to the nominal one.
     pub drive_amplitude: f64,
+    /// Standard error of the drive's frequency, relative.
+    pub frequency_error: f64,
+    /// Standard error of the drive's phase, rad.
+    pub phase_error_rad: f64,
     /// Responses of the channels.
     pub responses: Vec<Response>,
 }
@@ -42,9 +47,12 @@ impl ResonanceBlock {
             .enumerate()
             .filter(|(_, o)| !o.excluded() && !o.response.is_empty())
             .filter_map(|(i, o)| {
+                let drive = o.drive?;
                 Some(ResonancePoint {
                     observation: i,
-                    frequency_hz: o.drive?.frequency_hz,
+                    frequency_hz: drive.frequency_hz,
+                    frequency_error: drive.frequency_error_hz / drive.frequency_hz,
+                    phase_error_rad: o.drive_phase_error_rad(),
                     drive_amplitude: o.setting.drive_amplitude,
                     responses: o
                         .response
@@ -80,6 +88,9 @@ fn is_of_y(role: Role) -> bool {
     )
 }
 
+/// Relative step of the difference that gives a response's slope over the frequency.
+const FREQUENCY_STEP: f64 = 1e-6;
+
 /// Predicted complex response of a channel, SI, gain included; the drive is cos θ.
 pub fn predicted(
     parameters: &Parameters,
@@ -114,19 +125,29 @@ impl Block for ResonanceBlock {
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let point = &self.points[item];
         let mut out = Vec::with_capacity(2 * point.responses.len());
+        let mut shared = [out.clone(), out.clone()];
         for r in &point.responses {
-            let model = predicted(
-                parameters,
-                self.rig,
-                r.role,
-                point.frequency_hz,
-                point.drive_amplitude,
-            );
+            let at = |factor: f64| {
+                predicted(
+                    parameters,
+                    self.rig,
+                    r.role,
+                    factor * point.frequency_hz,
+                    point.drive_amplitude,
+                )
+            };
+            let model = at(1.0);
             let error = r.error.hypot(self.relative_error * r.amplitude());
             out.push((r.real - model.re) / error);
             out.push((r.imaginary - model.im) / error);
+            let turned = Complex::new(0.0, point.phase_error_rad / error) * model;
+            let shifted = (at(1.0 + FREQUENCY_STEP) - model) / FREQUENCY_STEP
+                * (point.frequency_error / error);
+            for (column, change) in shared.iter_mut().zip([turned, shifted]) {
+                column.extend([change.re, change.im]);
+            }
         }
-        Some(out)
+        Some(whiten(out, &shared))
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {

@@ -2,14 +2,17 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use crate::identify::agreement::agreement;
+use crate::identify::interval::{self, Posterior};
 use crate::identify::methods::{self, Blocks, Evidence, IMPACT_BIAS, MethodFit};
 use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::solver::{Block, Fit, FitError, Problem};
+use crate::identify::solver::{Block, Fit, FitError, Prior, Problem};
 use crate::identify::suspicion::{self, OddGap, Suspicion};
 use crate::identify::trajectory::TrajectoryRecord;
 use crate::identify::verdict::{self, Findings};
-use crate::identify::{Agreement, Estimate, MethodResult, Verdict, decay};
+use crate::identify::{Agreement, Estimate, MethodResult, Verdict, decay, estimate};
 
 /// What an identification leads to; settings, versions and hashes are the caller's to add.
 #[derive(Debug, Clone)]
@@ -103,6 +106,42 @@ fn mean_square(residuals: &[f64]) -> f64 {
     residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len().max(1) as f64
 }
 
+/// Relative error that is always allowed, so that weights stay finite on noiseless data.
+const LEAST_ALLOWANCE: f64 = 1e-6;
+/// Greatest relative error that instruments and model may be allowed.
+const MOST_ALLOWANCE: f64 = 0.1;
+
+/// The least relative error beside the noise with which the residuals at given parameters are of
+/// unit size; next to none where the noise alone explains them. The median of the items' mean squares is
+/// judged, so that a few records that do not belong change nothing.
+fn least_allowance<B: Block>(
+    mut block: B,
+    parameters: &Parameters,
+    allow: impl Fn(&mut B, f64),
+) -> f64 {
+    let mut excess = |allowance: f64| {
+        allow(&mut block, allowance);
+        let scores: Vec<f64> = (0..block.items())
+            .into_par_iter()
+            .filter_map(|i| Some(mean_square(&block.residuals(i, parameters)?)))
+            .collect();
+        crate::signal::robust::median(&scores).unwrap_or(0.0) - 1.0
+    };
+    if excess(LEAST_ALLOWANCE) <= 0.0 {
+        return LEAST_ALLOWANCE;
+    }
+    let (mut low, mut high) = (LEAST_ALLOWANCE, MOST_ALLOWANCE);
+    for _ in 0..14 {
+        let middle = (low * high).sqrt();
+        if excess(middle) > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
 type Attempt = Option<Result<MethodFit, FitError>>;
 
 fn succeeded(attempt: Option<&Result<MethodFit, FitError>>) -> Option<&MethodFit> {
@@ -133,6 +172,8 @@ struct Work<'a> {
     /// Periodic records that the trajectories' fit lost, and the typical mean square of the others.
     lost: Vec<TrajectoryRecord>,
     typical: f64,
+    /// What the brackets say of R where the resonance curve tells the rest.
+    posterior: Option<Posterior>,
 }
 
 impl<'a> Work<'a> {
@@ -143,6 +184,7 @@ impl<'a> Work<'a> {
             left_out: Vec::new(),
             lost: Vec::new(),
             typical: 1.0,
+            posterior: None,
         }
     }
 
@@ -155,10 +197,15 @@ impl<'a> Work<'a> {
         let trajectories = self.trajectories(start);
         let start = best_start(start, trajectories.as_ref());
         let boundaries = self.boundaries(start);
+        self.posterior = succeeded(resonance).and_then(|found| {
+            let error = found.fit.error(Coordinate::Deflection)? * found.factor.sqrt();
+            let about = found.fit.parameters;
+            interval::posterior(&self.blocks.boundary, &about, error.min(0.3))
+        });
         let weights = [
             resonance,
             trajectories.as_ref(),
-            boundaries.as_ref(),
+            boundaries.as_ref().filter(|_| self.posterior.is_none()),
             impacts,
         ]
         .map(|attempt| succeeded(attempt).map(|f| 1.0 / f.factor));
@@ -265,6 +312,10 @@ impl<'a> Work<'a> {
             Ok(first) => first,
             failed => return Some(failed),
         };
+        let block = &mut self.blocks.resonance;
+        block.relative_error = least_allowance(block.clone(), &first.fit.parameters, |b, e| {
+            b.relative_error = e;
+        });
         let block = &self.blocks.resonance;
         let scores: Vec<f64> = (0..block.items())
             .map(|i| {
@@ -278,9 +329,6 @@ impl<'a> Work<'a> {
         let typical = crate::signal::robust::median(&scores)
             .unwrap_or(1.0)
             .max(1.0);
-        if scores.iter().all(|s| *s <= OUTLYING * typical) {
-            return Some(Ok(first));
-        }
         let points = std::mem::take(&mut self.blocks.resonance.points);
         for (point, score) in points.into_iter().zip(scores) {
             if score <= OUTLYING * typical {
@@ -339,6 +387,11 @@ impl<'a> Work<'a> {
             self.left_out.push((self.name(record.observation), reason));
         }
         self.blocks.trajectory.records = kept;
+        let block = &mut self.blocks.trajectory;
+        block.find_shared_errors(&parameters);
+        block.relative_error = least_allowance(block.clone(), &parameters, |b, e| {
+            b.relative_error = e;
+        });
         methods::trajectories(&self.blocks, &self.evidence.nominal, parameters)
     }
 
@@ -411,6 +464,18 @@ impl<'a> Work<'a> {
             .filter(|c| list.iter().any(|(block, _)| block.touches(*c)))
             .collect();
         let mut priors = methods::wide_priors(&start, &free);
+        if let Some(found) = &self.posterior {
+            let (centre, deviation) = found.restitution;
+            let coordinate = Coordinate::Restitution;
+            if !free.contains(&coordinate) {
+                free.insert(0, coordinate);
+            }
+            priors.push(Prior {
+                coordinate,
+                centre,
+                deviation,
+            });
+        }
         let waveforms = resonance.is_some() || trajectories.is_some();
         if waveforms {
             let (nuisances, more) = blocks
@@ -529,7 +594,17 @@ impl<'a> Work<'a> {
             Ok(found) => found.fit.free.clone(),
             Err(_) => Coordinate::PHYSICAL.to_vec(),
         };
-        let result = methods::result(attempt, &tells, brackets, 2 * brackets);
+        let mut result = methods::result(attempt, &tells, brackets, 2 * brackets);
+        if let Some(posterior) = &self.posterior {
+            let (value, error) = posterior.restitution;
+            let mut estimate =
+                estimate::estimate(Coordinate::Restitution, value, error, None);
+            estimate.interval95 = estimate.interval95.map(|_| posterior.interval95);
+            result.parameters.restitution = Some(estimate);
+            let (value, error) = posterior.ln_deflection;
+            result.parameters.static_deflection_m =
+                Some(estimate::estimate(Coordinate::Deflection, value, error, None));
+        }
         found.insert("boundaries".into(), result);
     }
 }
@@ -548,7 +623,7 @@ fn widen(estimate: &mut Estimate, systematic: f64) {
 fn fit_without_lost(
     list: Vec<(&dyn Block, f64)>,
     free: Vec<Coordinate>,
-    priors: Vec<crate::identify::solver::Prior>,
+    priors: Vec<Prior>,
     start: Parameters,
 ) -> Result<MethodFit, FitError> {
     let problem = Problem {

@@ -1,7 +1,10 @@
 //! Periodic records z = 1/n against the closed-form periodic orbit.
 
+use rayon::prelude::*;
+
 use crate::event::Rig;
 use crate::identify::parameters::{Coordinate, Parameters, gain_index};
+use crate::identify::shared_error::whiten;
 use crate::identify::solver::Block;
 use crate::model::flight::State;
 use crate::model::orbit::{Branch, Orbit, orbit_with_speed};
@@ -24,6 +27,13 @@ pub struct TrajectoryRecord {
     pub folded: Folded,
     /// Median closing speed before impacts as measured, m/s.
     pub closing_speed_m_s: f64,
+    /// Standard error of the drive's frequency, relative.
+    pub frequency_error: f64,
+    /// Standard error of the drive's phase, rad.
+    pub phase_error_rad: f64,
+    /// Changes of all points' values, SI, by one standard error of phase and of frequency; empty
+    /// until they are found at good parameters.
+    pub shared: Vec<Vec<f64>>,
 }
 
 /// All periodic records with one impact in n drive periods.
@@ -66,7 +76,14 @@ impl TrajectoryBlock {
     /// The orbit of a record at given parameters: the one whose closing speed is nearer to the
     /// measured one; `None` beyond the saddle-node.
     pub fn orbit(&self, item: usize, parameters: &Parameters) -> Option<Orbit> {
-        let record = &self.records[item];
+        self.orbit_of(&self.records[item], parameters)
+    }
+
+    fn orbit_of(
+        &self,
+        record: &TrajectoryRecord,
+        parameters: &Parameters,
+    ) -> Option<Orbit> {
         let machine = parameters.machine(self.rig);
         let setting = parameters.setting(
             record.frequency_hz,
@@ -86,9 +103,81 @@ impl TrajectoryBlock {
             .min_by(|a, b| (a - measured).abs().total_cmp(&(b - measured).abs()))?;
         Some(orbit_with_speed(&machine, setting, n, speed))
     }
+
+    /// Find at good parameters what phase and frequency of the drive change in every record.
+    pub fn find_shared_errors(&mut self, parameters: &Parameters) {
+        let changes: Vec<Option<Vec<Vec<f64>>>> = self
+            .records
+            .par_iter()
+            .map(|record| self.shared_changes(record, parameters))
+            .collect();
+        for (record, change) in self.records.iter_mut().zip(changes) {
+            record.shared = change.unwrap_or_default();
+        }
+    }
+
+    fn shared_changes(
+        &self,
+        record: &TrajectoryRecord,
+        parameters: &Parameters,
+    ) -> Option<Vec<Vec<f64>>> {
+        let slope = |above: Vec<f64>, below: Vec<f64>, error: f64| -> Vec<f64> {
+            let factor = error / (2.0 * STEP);
+            above
+                .iter()
+                .zip(&below)
+                .map(|(a, b)| (a - b) * factor)
+                .collect()
+        };
+        let turned = |by: f64| self.values(record, parameters, by);
+        let shifted = |by: f64| {
+            let moved = TrajectoryRecord {
+                frequency_hz: record.frequency_hz * (1.0 + by),
+                ..record.clone()
+            };
+            self.values(&moved, parameters, 0.0)
+        };
+        Some(vec![
+            slope(turned(STEP)?, turned(-STEP)?, record.phase_error_rad),
+            slope(shifted(STEP)?, shifted(-STEP)?, record.frequency_error),
+        ])
+    }
+
+    /// The model's values at all points of a record, channel after channel, SI, with the drive's
+    /// phase turned by an angle; `None` where there is no orbit.
+    fn values(
+        &self,
+        record: &TrajectoryRecord,
+        parameters: &Parameters,
+        turn_rad: f64,
+    ) -> Option<Vec<f64>> {
+        let orbit = self.orbit_of(record, parameters)?;
+        let phase = phase_on_fold(&orbit, &record.folded) + turn_rad;
+        let mut out = Vec::new();
+        // Channels of one record share their samples, hence their phases and the orbit's states.
+        let mut shared: (&[FoldedPoint], Vec<[State; 2]>) = (&[], Vec::new());
+        for channel in &record.folded.channels {
+            if !same_phases(shared.0, &channel.points) {
+                let all = channel
+                    .points
+                    .iter()
+                    .map(|p| states(&orbit, p, phase))
+                    .collect();
+                shared = (&channel.points, all);
+            }
+            let value =
+                |s: &State| channel_value(parameters, record.drive_amplitude, channel.role, s);
+            out.extend(shared.1.iter().map(|[a, b]| 0.5 * (value(a) + value(b))));
+        }
+        Some(out)
+    }
 }
 
+/// Step of the differences that give slopes over phase and relative frequency.
+const STEP: f64 = 1e-6;
+
 fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> {
+    let drive = o.drive?;
     let speeds: Vec<f64> = o
         .impacts
         .iter()
@@ -96,7 +185,10 @@ fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> 
         .collect();
     Some(TrajectoryRecord {
         observation: index,
-        frequency_hz: o.drive?.frequency_hz,
+        frequency_hz: drive.frequency_hz,
+        frequency_error: drive.frequency_error_hz / drive.frequency_hz,
+        phase_error_rad: o.drive_phase_error_rad(),
+        shared: Vec::new(),
         clearance_m: o.setting.clearance_m?,
         drive_amplitude: o.setting.drive_amplitude,
         folded: o.folded.clone()?,
@@ -145,30 +237,27 @@ impl Block for TrajectoryBlock {
 
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let record = &self.records[item];
-        let orbit = self.orbit(item, parameters)?;
-        let phase = phase_on_fold(&orbit, &record.folded);
-        let mut out = Vec::new();
-        // Channels of one record share their samples, hence their phases and the orbit's states.
-        let mut shared: (&[FoldedPoint], Vec<[State; 2]>) = (&[], Vec::new());
+        let values = self.values(record, parameters, 0.0)?;
+        let mut out = Vec::with_capacity(values.len());
+        let mut shared = vec![Vec::with_capacity(values.len()); record.shared.len()];
+        let mut first = 0;
         for channel in &record.folded.channels {
-            if !same_phases(shared.0, &channel.points) {
-                let all = channel
-                    .points
-                    .iter()
-                    .map(|p| states(&orbit, p, phase))
-                    .collect();
-                shared = (&channel.points, all);
-            }
-            let value =
-                |s: &State| channel_value(parameters, record.drive_amplitude, channel.role, s);
-            let values: Vec<f64> = shared
-                .1
+            let range = first..first + channel.points.len();
+            first = range.end;
+            let model = &values[range.clone()];
+            let weights = Weights::of(channel, model, self.relative_error);
+            let apart: Vec<f64> = channel
+                .points
                 .iter()
-                .map(|[a, b]| 0.5 * (value(a) + value(b)))
+                .zip(model)
+                .map(|(p, m)| p.value - m)
                 .collect();
-            out.extend(centred_residuals(channel, &values, self.relative_error));
+            out.extend(weights.centred(&apart));
+            for (column, change) in shared.iter_mut().zip(&record.shared) {
+                column.extend(weights.centred(&change[range.clone()]));
+            }
         }
-        Some(out)
+        Some(whiten(out, &shared))
     }
 
     fn touches(&self, _coordinate: Coordinate) -> bool {
@@ -183,30 +272,42 @@ fn same_phases(a: &[FoldedPoint], b: &[FoldedPoint]) -> bool {
             .all(|(p, q)| p.phase_rad == q.phase_rad && p.spread_rad == q.spread_rad)
 }
 
-/// Weighted residuals with the channel's offset, a nuisance, projected out.
-fn centred_residuals(channel: &FoldedChannel, model: &[f64], relative_error: f64) -> Vec<f64> {
-    let scale = relative_error * crate::signal::robust::rms(model);
-    let weights: Vec<f64> = channel
-        .points
-        .iter()
-        .map(|p| 1.0 / (channel.noise.powi(2) / f64::from(p.samples.max(1)) + scale * scale))
-        .collect();
-    let total: f64 = weights.iter().sum();
-    let differences: Vec<f64> = channel
-        .points
-        .iter()
-        .zip(model)
-        .map(|(p, m)| p.value - m)
-        .collect();
-    let offset = differences
-        .iter()
-        .zip(&weights)
-        .map(|(d, w)| d * w)
-        .sum::<f64>()
-        / total.max(1e-300);
-    differences
-        .iter()
-        .zip(&weights)
-        .map(|(d, w)| (d - offset) * w.sqrt())
-        .collect()
+/// Weights of a channel's points, with the channel's offset, a nuisance, projected out.
+struct Weights {
+    roots: Vec<f64>,
+    total: f64,
+}
+
+impl Weights {
+    fn of(channel: &FoldedChannel, model: &[f64], relative_error: f64) -> Self {
+        let scale = relative_error * crate::signal::robust::rms(model);
+        let roots: Vec<f64> = channel
+            .points
+            .iter()
+            .map(|p| {
+                let variance = channel.noise.powi(2) / f64::from(p.samples.max(1)) + scale * scale;
+                1.0 / variance.sqrt()
+            })
+            .collect();
+        let total: f64 = roots.iter().map(|w| w * w).sum();
+        Self {
+            roots,
+            total: total.max(f64::MIN_POSITIVE),
+        }
+    }
+
+    /// Differences less their weighted mean, times the roots of the weights.
+    fn centred(&self, differences: &[f64]) -> Vec<f64> {
+        let sum: f64 = differences
+            .iter()
+            .zip(&self.roots)
+            .map(|(d, w)| d * w * w)
+            .sum();
+        let offset = sum / self.total;
+        differences
+            .iter()
+            .zip(&self.roots)
+            .map(|(d, w)| (d - offset) * w)
+            .collect()
+    }
 }

@@ -66,6 +66,14 @@ impl Observation {
             .or(self.setting.stated_frequency_hz)
     }
 
+    /// Standard error of the measured phase of the drive at the middle of the record, rad: that of
+    /// a tone in as many samples whose rest is noise. Zero where the drive was not recorded.
+    pub fn drive_phase_error_rad(&self) -> f64 {
+        let samples = (self.duration_s * self.sample_rate_hz).max(1.0);
+        self.drive
+            .map_or(0.0, |d| d.residual_ratio * (2.0 / samples).sqrt())
+    }
+
     /// Whether the record must stay out of the identification.
     pub fn excluded(&self) -> bool {
         self.flags.iter().any(|f| f.excludes)

@@ -1,0 +1,166 @@
+//! R from brackets alone: the posterior over R of all brackets as interval observations.
+//!
+//! A bracket says that a boundary lies between two settings and nothing more; its likelihood is
+//! flat inside, so neither a least-squares optimum nor its curvature means anything. The
+//! posterior is therefore summed over a grid of R and x_st (which the resonance curve tells), with
+//! the scale of early jumps summed out; f0 and β are the resonance curve's.
+
+use rayon::prelude::*;
+
+use crate::identify::boundary::{BoundaryBlock, bracket_probability, predicted_hz};
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::motion::bracket::{BoundaryKind, Bracket};
+
+/// What brackets say of R and x_st.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Posterior {
+    /// Posterior mean and standard deviation of R.
+    pub restitution: (f64, f64),
+    /// 95 % interval of R with equal tails.
+    pub interval95: [f64; 2],
+    /// Posterior mean and standard deviation of ln x_st.
+    pub ln_deflection: (f64, f64),
+}
+
+/// Scales of early jumps that are summed over, relative to the frequency; each as likely before.
+const EARLY_SCALES: [f64; 8] = [2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2, 5e-2];
+/// Grid of ln x_st in its standard errors.
+const DEFLECTION_NODES: [f64; 9] = [-3.0, -2.25, -1.5, -0.75, 0.0, 0.75, 1.5, 2.25, 3.0];
+/// Points of the final grid of R.
+const FINE: usize = 61;
+/// Log-likelihood below the greatest at which the grid of R may end.
+const NEGLIGIBLE: f64 = 9.0;
+
+/// Posterior about parameters that the resonance curve tells, with the standard error of
+/// ln x_st; `None` where no bracket tells R.
+pub fn posterior(block: &BoundaryBlock, about: &Parameters, error: f64) -> Option<Posterior> {
+    if !block.tells_restitution() {
+        return None;
+    }
+    let centre = about.coordinate(Coordinate::Deflection);
+    let at = |r: f64, node: f64| {
+        let moved = about.with(Coordinate::Deflection, centre + node * error);
+        likelihood(
+            block,
+            &Parameters {
+                restitution: r,
+                ..moved
+            },
+        )
+    };
+    let (low, high) = support(&|r| at(r, 0.0));
+    let grid: Vec<f64> = (0..FINE)
+        .map(|i| low + (high - low) * i as f64 / (FINE - 1) as f64)
+        .collect();
+    let cells: Vec<Vec<f64>> = grid
+        .par_iter()
+        .map(|r| {
+            DEFLECTION_NODES
+                .iter()
+                .map(|node| at(*r, *node) - 0.5 * node * node)
+                .collect()
+        })
+        .collect();
+    Some(summed(&grid, &cells, (centre, error)))
+}
+
+/// Moments and quantiles of a posterior from its logarithm on the grid.
+fn summed(grid: &[f64], cells: &[Vec<f64>], (centre, error): (f64, f64)) -> Posterior {
+    let most = cells
+        .iter()
+        .flatten()
+        .copied()
+        .fold(f64::NEG_INFINITY, f64::max);
+    let weights: Vec<Vec<f64>> = cells
+        .iter()
+        .map(|row| row.iter().map(|c| (c - most).exp()).collect())
+        .collect();
+    let over_r: Vec<f64> = weights.iter().map(|row| row.iter().sum()).collect();
+    let over_nodes: Vec<f64> = (0..DEFLECTION_NODES.len())
+        .map(|k| weights.iter().map(|row| row[k]).sum())
+        .collect();
+    let step = (grid[grid.len() - 1] - grid[0]) / (grid.len() - 1) as f64;
+    let (mean, spread) = moments(grid, &over_r);
+    let (node, node_spread) = moments(&DEFLECTION_NODES, &over_nodes);
+    Posterior {
+        // A cell of the grid stands for its whole width.
+        restitution: (mean, spread.hypot(step / 12f64.sqrt())),
+        interval95: [quantile(grid, &over_r, 0.025), quantile(grid, &over_r, 0.975)],
+        ln_deflection: (centre + node * error, node_spread * error),
+    }
+}
+
+fn moments(values: &[f64], weights: &[f64]) -> (f64, f64) {
+    let total: f64 = weights.iter().sum();
+    let mean = |f: &dyn Fn(f64) -> f64| {
+        let sum: f64 = values.iter().zip(weights).map(|(v, w)| w * f(*v)).sum();
+        sum / total
+    };
+    let centre = mean(&|v| v);
+    (centre, mean(&|v| (v - centre).powi(2)).sqrt())
+}
+
+/// Quantile of a density on an even grid, each point standing for a cell about it.
+fn quantile(grid: &[f64], weights: &[f64], share: f64) -> f64 {
+    let total: f64 = weights.iter().sum();
+    let step = (grid[grid.len() - 1] - grid[0]) / (grid.len() - 1) as f64;
+    let mut below = 0.0;
+    for (value, weight) in grid.iter().zip(weights) {
+        let next = below + weight / total;
+        if next >= share && *weight > 0.0 {
+            let inside = (share - below) / (next - below);
+            return (value + (inside - 0.5) * step).clamp(0.0, 1.0);
+        }
+        below = next;
+    }
+    grid[grid.len() - 1]
+}
+
+/// The range of R that carries the likelihood: found on a coarse grid, refined, then widened
+/// until it is negligible at both ends.
+fn support(at: &(dyn Fn(f64) -> f64 + Sync)) -> (f64, f64) {
+    let (mut low, mut high) = (0.0f64, 1.0f64);
+    for count in [40u32, 20, 20] {
+        let step = (high - low) / f64::from(count);
+        let values: Vec<(f64, f64)> = (0..=count)
+            .into_par_iter()
+            .map(|i| low + step * f64::from(i))
+            .map(|r| (r, at(r)))
+            .collect();
+        let most = values.iter().map(|v| v.1).fold(f64::NEG_INFINITY, f64::max);
+        let heavy = values.iter().filter(|v| v.1 > most - NEGLIGIBLE);
+        let (first, last) = heavy.fold((1.0f64, 0.0f64), |(a, b), v| (a.min(v.0), b.max(v.0)));
+        (low, high) = ((first - step).max(0.0), (last + step).min(1.0));
+    }
+    (low, high.max(low + 1e-6))
+}
+
+/// Log-likelihood of all brackets, the scale of early jumps of each kind summed out.
+fn likelihood(block: &BoundaryBlock, parameters: &Parameters) -> f64 {
+    let places: Vec<(&Bracket, Option<f64>)> = block
+        .brackets
+        .iter()
+        .map(|b| (b, predicted_hz(b, parameters, block.rig)))
+        .collect();
+    [BoundaryKind::SaddleNode, BoundaryKind::Grazing]
+        .into_iter()
+        .map(|kind| {
+            let logs: Vec<f64> = EARLY_SCALES
+                .iter()
+                .map(|scale| {
+                    places
+                        .iter()
+                        .filter(|(b, _)| b.kind == kind)
+                        .map(|(b, f)| f.map_or(MISSING, |f| bracket_probability(b, *scale, f).ln()))
+                        .sum()
+                })
+                .collect();
+            let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            most + logs.iter().map(|l| (l - most).exp()).sum::<f64>().ln()
+        })
+        .sum()
+}
+
+/// Log-likelihood of a bracket whose boundary does not reach its clearance: as of one that lies
+/// far away.
+const MISSING: f64 = -645.0;
