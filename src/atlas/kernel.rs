@@ -139,6 +139,8 @@ struct Events<V: Lanes> {
     anew: V::Mask,
     never: V::Mask,
     step: V,
+    /// z's imaginary part after an impact.
+    after: V,
 }
 
 impl<V: Lanes> Events<V> {
@@ -274,6 +276,7 @@ fn step<V: Lanes, const DEGREE: usize>(c: &Constants<V>, s: &mut Group<V>) -> Ev
         anew,
         never,
         step: h,
+        after: zi,
     }
 }
 
@@ -291,22 +294,11 @@ fn recurrence<V: Lanes>(s: &mut Group<V>, hit: V::Mask, zi: V, zm: V) -> (V::Mas
 /// The impact with which later ones are compared.
 #[derive(Debug, Clone, Copy)]
 struct Anchor {
-    /// Forced part of the displacement there, a complex number.
-    forced: (f64, f64),
-    /// Velocity after it.
-    after: f64,
     /// Time.
     t: f64,
     /// Number of impacts so far.
     hits: f64,
 }
-
-const NOWHERE: Anchor = Anchor {
-    forced: (f64::INFINITY, 0.0),
-    after: f64::INFINITY,
-    t: 0.0,
-    hits: 0.0,
-};
 
 /// What the slow path knows of a lane beside the vectors.
 #[derive(Clone, Copy)]
@@ -342,7 +334,7 @@ const IDLE: Lane = Lane {
     confirming: false,
     released: None,
     hits_at_watch: 0.0,
-    anchor: NOWHERE,
+    anchor: Anchor { t: 0.0, hits: 0.0 },
 };
 
 /// Lanes of the widest kernel.
@@ -531,7 +523,7 @@ fn park<V: Lanes>(s: &mut Group<V>, lane: usize) {
 /// Start the search for a recurrence anew.
 fn forget<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize, t: f64) {
     let hits = s.hits.get(lane);
-    info.anchor = Anchor { t, hits, ..NOWHERE };
+    info.anchor = Anchor { t, hits };
     s.anchor.set(lane, f64::INFINITY);
     s.reach.set(lane, hits + 1.0);
 }
@@ -668,12 +660,14 @@ fn serve<V: Lanes>(
     let raised = |mask: V::Mask| V::bits(mask) & (1 << lane) != 0;
     let h = e.step.get(lane);
     if raised(e.recurs) || raised(e.anew) {
-        let here = impact_before(course, s, info, lane, h);
-        let again = raised(e.recurs) && is_same(s, info, lane, &here);
-        if again {
+        let here = Anchor {
+            t: s.t.get(lane) - h,
+            hits: s.hits.get(lane),
+        };
+        if raised(e.recurs) && is_same(s, info, lane, &here) {
             recognise(s, info, lane, &here);
         } else if raised(e.anew) {
-            set_anchor(course, s, info, lane, here);
+            set_anchor(s, info, lane, here, e.after.get(lane));
         }
     }
     let mut finished = info.found.is_some() && course.leave_early;
@@ -712,55 +706,21 @@ fn serve<V: Lanes>(
     finished
 }
 
-/// The impact from which a lane has just made a step h.
-fn impact_before<V: Lanes>(
-    course: &Course,
-    s: &Group<V>,
-    info: &Lane,
-    lane: usize,
-    h: f64,
-) -> Anchor {
-    let (beta, eta) = (course.damping_ratio, info.cell.eta);
-    let omega = (1.0 - beta * beta).sqrt();
-    let (grow, (sin, cos)) = ((beta * h).exp(), (omega * h).sin_cos());
-    let (zr, zi) = (s.zr.get(lane), s.zi.get(lane));
-    let (zr, zi) = (grow * (zr * cos + zi * sin), grow * (zi * cos - zr * sin));
-    let (sin, cos) = (eta * h).sin_cos();
-    let (fr, fi) = (s.fr.get(lane), s.fi.get(lane));
-    let (fr, fi) = (fr * cos + fi * sin, fi * cos - fr * sin);
-    Anchor {
-        forced: (fr, fi),
-        after: -beta * zr - omega * zi - eta * fi,
-        t: s.t.get(lane) - h,
-        hits: s.hits.get(lane),
-    }
-}
+/// Least difference of phases, rad, that the times of impacts tell.
+const TIMING: f64 = 1e-9;
 
-/// Whether an impact is the anchor's again.
+/// Whether an impact that looks like the anchor's is: whole drive periods lie between them.
 fn is_same<V: Lanes>(s: &Group<V>, info: &Lane, lane: usize, here: &Anchor) -> bool {
-    let (anchor, tolerance, forced) = (&info.anchor, s.tolerance.get(lane), s.forced.get(lane));
-    let turned = (here.forced.0 - anchor.forced.0)
-        .abs()
-        .max((here.forced.1 - anchor.forced.1).abs());
-    turned <= tolerance * forced
-        && (here.after - anchor.after).abs() <= tolerance * (here.after.abs() + forced)
+    let periods = (here.t - info.anchor.t) / info.period;
+    let turned = std::f64::consts::TAU * (periods - periods.round()).abs();
+    turned <= s.tolerance.get(lane).max(TIMING)
 }
 
 /// Have later impacts compared with this one, until twice as many as since the last anchor.
-fn set_anchor<V: Lanes>(
-    course: &Course,
-    s: &mut Group<V>,
-    info: &mut Lane,
-    lane: usize,
-    here: Anchor,
-) {
-    let beta = course.damping_ratio;
-    let omega = (1.0 - beta * beta).sqrt();
-    let zr = info.cell.rho - here.forced.0;
-    let vh = here.after + info.cell.eta * here.forced.1;
-    s.anchor.set(lane, -(beta * zr + vh) / omega);
-    s.reach
-        .set(lane, here.hits + 2.0 * (here.hits - info.anchor.hits));
+fn set_anchor<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize, here: Anchor, zi: f64) {
+    s.anchor.set(lane, zi);
+    let count = here.hits - info.anchor.hits;
+    s.reach.set(lane, here.hits + 2.0 * count);
     info.anchor = here;
 }
 
