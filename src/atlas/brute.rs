@@ -1,8 +1,11 @@
 //! Brute-force maps: every cell from rest, and carried along from its neighbour in rising and in
 //! falling η, so that coexisting motions show.
 
-use super::map::{End, MapGrid, MapSettings, Start, check, march_from};
-use crate::model::{Machine, ModelError};
+use rayon::prelude::*;
+
+use super::kernel::{Cell, Feed, Outcome};
+use super::map::{End, Kernel, MapGrid, MapSettings, Start, UnitMass, check, march_from, run};
+use crate::model::{Initial, Machine, ModelError};
 
 /// How the cells of a map are started.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,6 +65,89 @@ pub fn brute_map(
     march_from(machine, &starts, settings)
 }
 
+/// Rows that the marching kernel carries from column to column, each on its own: a lane whose
+/// cell is done takes any row that can go on.
+struct Chains<'a> {
+    unit: UnitMass,
+    grid: &'a MapGrid,
+    ways: &'a [Way],
+    ready: Vec<(usize, Cell)>,
+    done: Vec<(usize, Outcome)>,
+}
+
+/// Which way's map, and which cell of it, a numbered step is; steps are numbered
+/// (way · rows + row) · columns + step.
+fn place(grid: &MapGrid, ways: &[Way], number: usize) -> (usize, usize) {
+    let (columns, rows) = (grid.eta.len(), grid.rho.len());
+    let (chain, step) = (number / columns, number % columns);
+    let column = match ways[chain / rows] {
+        Way::Falling => columns - 1 - step,
+        _ => step,
+    };
+    (chain / rows, (chain % rows) * columns + column)
+}
+
+impl Feed for Chains<'_> {
+    fn next(&mut self) -> Option<(usize, Cell)> {
+        self.ready.pop()
+    }
+    fn done(&mut self, number: usize, outcome: Outcome) {
+        self.done.push((number, outcome));
+        let next = number + 1;
+        if !next.is_multiple_of(self.grid.eta.len()) {
+            let end = self.unit.end(&outcome);
+            let start = Start {
+                at: self.grid.at(place(self.grid, self.ways, next).1),
+                initial: end.initial,
+                phase: end.phase,
+            };
+            self.ready.push((next, self.unit.cell(&start)));
+        }
+    }
+}
+
+/// Carry motions from column to column in the marching kernel.
+fn carried_in_lanes(
+    unit: UnitMass,
+    grid: &MapGrid,
+    settings: &MapSettings,
+    ways: &[Way],
+) -> Vec<Vec<End>> {
+    let (columns, course) = (grid.eta.len(), unit.course(settings));
+    let kernel = settings.kernel.filter(|k| k.is_available());
+    let kernel = kernel.unwrap_or_else(Kernel::of_this_machine);
+    let first = |number: usize| Start {
+        at: grid.at(place(grid, ways, number).1),
+        initial: settings.start,
+        phase: 0.0,
+    };
+    let rows: Vec<(usize, Cell)> = (0..ways.len() * grid.rho.len())
+        .map(|chain| (chain * columns, unit.cell(&first(chain * columns))))
+        .collect();
+    let share = rows.len().div_ceil(rayon::current_num_threads()).max(1);
+    let march = |ready: &[(usize, Cell)]| {
+        let mut chains = Chains {
+            unit,
+            grid,
+            ways,
+            ready: ready.to_vec(),
+            done: Vec::new(),
+        };
+        run(kernel, &course, &mut chains);
+        chains.done
+    };
+    let mut done: Vec<(usize, Outcome)> = rows.par_chunks(share).flat_map_iter(march).collect();
+    done.sort_unstable_by_key(|d| place(grid, ways, d.0));
+    let judged = |(_, outcome): &(usize, Outcome)| End {
+        motion: unit.judge(outcome, &settings.watch),
+        ..unit.end(outcome)
+    };
+    let ends: Vec<End> = done.par_iter().map(judged).collect();
+    ends.chunks(grid.len().max(1))
+        .map(<[End]>::to_vec)
+        .collect()
+}
+
 /// Carry motions from column to column, in one or both directions at once.
 fn carried(
     machine: &Machine,
@@ -70,6 +156,10 @@ fn carried(
     ways: &[Way],
 ) -> Result<Vec<Vec<End>>, ModelError> {
     let (columns, rows) = (grid.eta.len(), grid.rho.len());
+    let together = |i: &Initial| machine.y.is_none() || (i.x == i.y && i.vx == i.vy);
+    if let Some(unit) = UnitMass::of(machine).filter(|_| together(&settings.start)) {
+        return Ok(carried_in_lanes(unit, grid, settings, ways));
+    }
     let mut cells: Vec<Vec<Option<End>>> = vec![vec![None; grid.len()]; ways.len()];
     let mut before: Option<Vec<End>> = None;
     for step in 0..columns {
