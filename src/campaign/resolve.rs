@@ -12,6 +12,7 @@ use super::read::{self, Text};
 use super::records;
 use super::resolved::{Analysis, RecordEntry, Report, ResolvedCampaign, Rig};
 use super::written::{self, Flight, Format, Language, Machine, Paper, Placed, WrittenCampaign};
+use crate::identify::uncertainty::Way;
 use crate::units::Dimension;
 
 /// A campaign as far as it could be resolved, and all that is wrong with it.
@@ -206,6 +207,11 @@ fn analysis(written: &written::Analysis, desk: &mut Desk<'_>) -> Analysis {
         longest_period_n: count(&written.longest_period_n, "analysis.longest_period_n", 6),
         most_impacts_p: count(&written.most_impacts_p, "analysis.most_impacts_p", 12),
         seed: written.seed.as_ref().map_or(1, |s| *s.get_ref()),
+        uncertainty: written
+            .uncertainty
+            .as_ref()
+            .map_or(Way::Covariance, |w| *w.get_ref()),
+        replicas: written.replicas.as_ref().map_or(1000, |r| *r.get_ref()).max(2) as usize,
     }
 }
 

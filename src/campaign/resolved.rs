@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::written::{Excitation, Flight, Format, Language, Machine, Paper};
+use crate::identify::uncertainty::Way;
 use crate::record::Setting;
 use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup};
 
@@ -80,6 +81,12 @@ pub struct Analysis {
     pub most_impacts_p: u32,
     /// Seed of everything random.
     pub seed: u64,
+    /// How intervals are found beside the covariance.
+    #[serde(default)]
+    pub uncertainty: Way,
+    /// Replicas of a bootstrap.
+    #[serde(default)]
+    pub replicas: usize,
 }
 
 /// How the report looks.

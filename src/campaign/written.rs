@@ -11,6 +11,7 @@ use serde::{Deserialize, Deserializer, Serialize, de};
 use toml::Spanned;
 
 /// Which oscillator was measured, as the detection of impacts has to know it.
+pub use crate::identify::uncertainty::Way;
 pub use crate::event::Rig as Machine;
 use crate::record::calibrate::ChannelKey;
 
@@ -202,6 +203,10 @@ pub struct Analysis {
     pub most_impacts_p: Placed<u32>,
     /// Seed of everything random (resampling).
     pub seed: Placed<u64>,
+    /// How intervals are found beside the covariance.
+    pub uncertainty: Placed<Way>,
+    /// Replicas of a bootstrap.
+    pub replicas: Placed<u32>,
 }
 
 /// `[report]`.

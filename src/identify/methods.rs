@@ -9,6 +9,7 @@ use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::resonance::ResonanceBlock;
 use crate::identify::solver::{Block, Fit, FitError, Prior, Problem};
 use crate::identify::trajectory::TrajectoryBlock;
+use crate::identify::uncertainty::Asked;
 use crate::motion::{Bracket, Observation};
 
 /// What the laboratory states about its rig.
@@ -37,6 +38,8 @@ pub struct Evidence<'a> {
     pub brackets: &'a [Bracket],
     /// What is stated.
     pub nominal: Nominal,
+    /// What is asked for of the uncertainty.
+    pub uncertainty: Asked,
 }
 
 /// Relative error of instruments and model that noise does not show.

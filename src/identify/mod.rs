@@ -20,7 +20,9 @@ pub mod solver;
 pub mod specimens;
 pub mod suspicion;
 pub mod trajectory;
+pub mod uncertainty;
 pub mod verdict;
+pub mod waveform;
 
 use std::collections::BTreeMap;
 
@@ -168,6 +170,9 @@ pub struct Identification {
     pub methods: BTreeMap<String, MethodResult>,
     /// Whether the methods agree.
     pub agreement: Agreement,
+    /// What each method contributed; profiles and bootstrap where asked for.
+    #[serde(default)]
+    pub uncertainty: uncertainty::Uncertainty,
     /// Mistakes of the laboratory that the data give away.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub suspicions: Vec<suspicion::Suspicion>,

@@ -4,7 +4,7 @@ use nalgebra::Complex;
 
 use crate::event::Rig;
 use crate::identify::parameters::{Coordinate, Parameters, gain_index};
-use crate::identify::shared_error::whiten;
+use crate::identify::shared_error::Whitening;
 use crate::identify::solver::Block;
 use crate::model::flight::{Drive, forced_amplitude};
 use crate::motion::Observation;
@@ -147,7 +147,8 @@ impl Block for ResonanceBlock {
                 column.extend([change.re, change.im]);
             }
         }
-        Some(whiten(out, &shared))
+        Whitening::new(shared.to_vec()).apply(&mut out);
+        Some(out)
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {

@@ -11,6 +11,7 @@ use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::{Block, Fit, FitError, Prior, Problem};
 use crate::identify::suspicion::{self, OddGap, Suspicion};
 use crate::identify::trajectory::TrajectoryRecord;
+use crate::identify::uncertainty::{self, Uncertainty};
 use crate::identify::verdict::{self, Findings};
 use crate::identify::{Agreement, Estimate, MethodResult, Verdict, decay, estimate};
 
@@ -33,6 +34,8 @@ pub struct Outcome {
     pub left_out: Vec<(String, String)>,
     /// Mistakes of the laboratory that the data give away.
     pub suspicions: Vec<Suspicion>,
+    /// What each method contributed, profiles and bootstrap.
+    pub uncertainty: Uncertainty,
 }
 
 /// Identify from observations and brackets.
@@ -53,10 +56,12 @@ pub fn identify(evidence: &Evidence) -> Outcome {
         fits = work.fits(start, first);
     }
     suspicions.extend(work.other_suspicions(&fits));
+    let uncertainty = work.uncertainty(&fits);
     let Fits {
         trajectories,
         boundaries,
         joint,
+        ..
     } = fits;
     let mut found = BTreeMap::new();
     work.store_resonance(&mut found, resonance.as_ref());
@@ -83,6 +88,7 @@ pub fn identify(evidence: &Evidence) -> Outcome {
         factor,
         left_out: work.left_out,
         suspicions,
+        uncertainty,
     }
 }
 
@@ -91,13 +97,24 @@ struct Fits {
     trajectories: Attempt,
     boundaries: Attempt,
     joint: Attempt,
+    /// Where the joint fit started, and the weights of its blocks.
+    start: Parameters,
+    weights: Weights,
 }
+
+/// Weights of resonance curve, trajectories, boundaries and impacts; `None` leaves one out.
+type Weights = [Option<f64>; 4];
+
+/// The blocks' names in the order of their weights.
+const METHODS: [&str; 4] = ["resonance", "trajectories", "boundaries", "impacts"];
 
 /// Gaps that may be found wrong before the campaign as a whole is at fault.
 const MOST_ODD_GAPS: usize = 2;
 
-/// Reduced sum of squares from which an interchange of channels is looked for.
+/// Reduced sum of squares, and allowance beside the noise, from which an interchange of channels
+/// is looked for.
 const POOR_FIT: f64 = 1.5;
+const POOR_ALLOWANCE: f64 = 3e-4;
 
 /// How many times the typical mean square of residuals makes a record an outlier.
 const OUTLYING: f64 = 25.0;
@@ -214,7 +231,31 @@ impl<'a> Work<'a> {
             trajectories,
             boundaries,
             joint,
+            start,
+            weights,
         }
+    }
+
+    /// What is asked for of the joint fit's uncertainty.
+    fn uncertainty(&self, fits: &Fits) -> Uncertainty {
+        let problem = self.joint_problem(&self.blocks, fits.start, fits.weights);
+        let Some((problem, joint)) = problem.zip(succeeded(fits.joint.as_ref())) else {
+            return Uncertainty::default();
+        };
+        let counts = [
+            self.blocks.resonance.items(),
+            self.blocks.trajectory.items(),
+            self.blocks.boundary.items(),
+            self.blocks.impact.items(),
+        ];
+        let names: Vec<&str> = METHODS
+            .into_iter()
+            .zip(fits.weights.iter().zip(counts))
+            .filter(|(_, (weight, count))| weight.is_some() && *count > 0)
+            .map(|(name, _)| name)
+            .collect();
+        let asked = &self.evidence.uncertainty;
+        uncertainty::uncertainty(&problem, &names, &joint.fit, joint.factor, asked)
     }
 
     /// The gap that deviates most from what the others say, if one does.
@@ -256,7 +297,10 @@ impl<'a> Work<'a> {
             return Vec::new();
         };
         let nominal = &self.evidence.nominal;
-        if joint.reduced > POOR_FIT || self.lost.len() > self.blocks.trajectory.records.len() {
+        let allowance = self.blocks.resonance.relative_error;
+        let allowance = allowance.max(self.blocks.trajectory.relative_error);
+        let lost = self.lost.len() > self.blocks.trajectory.records.len();
+        if joint.reduced > POOR_FIT || allowance > POOR_ALLOWANCE || lost {
             let start = joint.fit.parameters;
             let unit = [Some(1.0), Some(1.0), None, None];
             let cost = |blocks: &Blocks| {
@@ -438,14 +482,20 @@ impl<'a> Work<'a> {
     }
 
     /// All blocks in one fit, each with its weight; those without one stay out.
-    fn joint(
+    fn joint(&self, blocks: &Blocks, start: Parameters, weights: Weights) -> Attempt {
+        let problem = self.joint_problem(blocks, start, weights)?;
+        Some(fit_joint(&problem, start))
+    }
+
+    /// The problem of all blocks, each with its weight.
+    fn joint_problem<'b>(
         &self,
-        blocks: &Blocks,
+        blocks: &'b Blocks,
         start: Parameters,
-        [resonance, trajectories, boundaries, impacts]: [Option<f64>; 4],
-    ) -> Attempt {
-        let mut list: Vec<(&dyn Block, f64)> = Vec::new();
-        let candidates: [(&dyn Block, Option<f64>); 4] = [
+        [resonance, trajectories, boundaries, impacts]: Weights,
+    ) -> Option<Problem<'b>> {
+        let mut list: Vec<(&'b dyn Block, f64)> = Vec::new();
+        let candidates: [(&'b dyn Block, Option<f64>); 4] = [
             (&blocks.resonance, resonance),
             (&blocks.trajectory, trajectories),
             (&blocks.boundary, boundaries),
@@ -483,8 +533,11 @@ impl<'a> Work<'a> {
             free.extend(nuisances);
             priors.extend(more);
         }
-        let attempt = fit_without_lost(list, free, priors, start);
-        Some(attempt)
+        Some(Problem {
+            blocks: list,
+            priors,
+            free,
+        })
     }
 
     fn joint_result(
@@ -620,17 +673,7 @@ fn widen(estimate: &mut Estimate, systematic: f64) {
 }
 
 /// Fit all blocks together from a start that each of them accepts.
-fn fit_without_lost(
-    list: Vec<(&dyn Block, f64)>,
-    free: Vec<Coordinate>,
-    priors: Vec<Prior>,
-    start: Parameters,
-) -> Result<MethodFit, FitError> {
-    let problem = Problem {
-        blocks: list,
-        priors,
-        free,
-    };
+fn fit_joint(problem: &Problem<'_>, start: Parameters) -> Result<MethodFit, FitError> {
     let fit = problem.fit(start)?;
     let freedom = fit.residuals.saturating_sub(4).max(1) as f64;
     let reduced = fit.cost / freedom;

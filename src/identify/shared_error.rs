@@ -4,31 +4,65 @@
 //! I + VVᵀ; residuals times its inverse root are independent again, and least squares on them is
 //! the likelihood.
 
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+/// The inverse root of I + VVᵀ, by its few directions: I − Σ kept·d dᵀ with orthonormal d.
+#[derive(Debug, Clone, Default)]
+pub struct Whitening {
+    directions: Vec<(f64, Vec<f64>)>,
+}
 
-/// Make residuals with shared errors independent: r ← (I + VVᵀ)^(−1/2) r. Each column of V is the
-/// change of all residuals by one standard error of what is shared.
-pub fn whiten(residuals: Vec<f64>, shared: &[Vec<f64>]) -> Vec<f64> {
-    if shared.is_empty() || residuals.is_empty() {
-        return residuals;
+impl Whitening {
+    /// Nothing is shared.
+    pub fn none() -> Self {
+        Self::default()
     }
-    let mut r = DVector::from_vec(residuals);
-    let v = DMatrix::from_fn(r.len(), shared.len(), |i, k| shared[k][i]);
-    let eigen = SymmetricEigen::new(v.tr_mul(&v));
-    for (k, size) in eigen.eigenvalues.iter().enumerate() {
-        if !(*size > 1e-12) {
-            continue;
+
+    /// From the columns of V, at most two: each the change of all residuals by one standard error
+    /// of what is shared.
+    pub fn new(columns: Vec<Vec<f64>>) -> Self {
+        let mut columns = columns;
+        if let [a, b] = columns.as_mut_slice() {
+            turn_orthogonal(a, b);
         }
-        let direction = &v * eigen.eigenvectors.column(k) / size.sqrt();
-        let kept = 1.0 - 1.0 / (1.0 + size).sqrt();
-        let along = kept * direction.dot(&r);
-        r.axpy(-along, &direction, 1.0);
+        let directions = columns
+            .into_iter()
+            .filter_map(|mut column| {
+                let size = dot(&column, &column);
+                let length = size.sqrt();
+                column.iter_mut().for_each(|c| *c /= length);
+                (size > 1e-12).then(|| (1.0 - 1.0 / (1.0 + size).sqrt(), column))
+            })
+            .collect();
+        Self { directions }
     }
-    r.as_slice().to_vec()
+
+    /// Make residuals independent, in place.
+    pub fn apply(&self, residuals: &mut [f64]) {
+        for (kept, direction) in &self.directions {
+            let along = kept * dot(direction, residuals);
+            for (r, d) in residuals.iter_mut().zip(direction) {
+                *r -= along * d;
+            }
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// Turn two columns into orthogonal ones with the same VVᵀ (one Jacobi rotation).
+fn turn_orthogonal(a: &mut [f64], b: &mut [f64]) {
+    let angle = 0.5 * (2.0 * dot(a, b)).atan2(dot(a, a) - dot(b, b));
+    let (sin, cos) = angle.sin_cos();
+    for (x, y) in a.iter_mut().zip(b) {
+        (*x, *y) = (cos * *x + sin * *y, cos * *y - sin * *x);
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::{DMatrix, DVector};
+
     use super::*;
 
     #[test]
@@ -37,9 +71,10 @@ mod tests {
         let v = DMatrix::from_fn(3, 2, |i, k| shared[k][i]);
         let covariance = DMatrix::identity(3, 3) + &v * v.transpose();
         let r = vec![1.0, -0.7, 2.5];
-        let white = DVector::from_vec(whiten(r.clone(), &shared));
+        let mut white = r.clone();
+        Whitening::new(shared).apply(&mut white);
         let r = DVector::from_vec(r);
         let want = r.dot(&covariance.lu().solve(&r).unwrap_or_default());
-        assert!((white.norm_squared() - want).abs() < 1e-12);
+        assert!((dot(&white, &white) - want).abs() < 1e-12);
     }
 }

@@ -19,6 +19,24 @@ pub trait Block: Sync {
     /// `None` where the model has no such motion there.
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>>;
 
+    /// Residuals of one item and their slopes over some coordinates, column by column. Without a
+    /// faster way of its own, a block is differenced.
+    fn slopes(
+        &self,
+        item: usize,
+        parameters: &Parameters,
+        coordinates: &[Coordinate],
+    ) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+        let here = self.residuals(item, parameters)?;
+        let columns = coordinates
+            .iter()
+            .map(|coordinate| {
+                difference(parameters, *coordinate, &here, |p| self.residuals(item, p))
+            })
+            .collect::<Option<Vec<_>>>()?;
+        Some((here, columns))
+    }
+
     /// Which coordinates the block depends on.
     fn touches(&self, coordinate: Coordinate) -> bool;
 }
@@ -129,16 +147,22 @@ pub enum FitError {
     Singular,
 }
 
-#[derive(Clone)]
-struct Normal {
-    matrix: DMatrix<f64>,
-    gradient: DVector<f64>,
-    cost: f64,
-    count: usize,
+/// Normal equations of some residuals.
+#[derive(Debug, Clone)]
+pub struct Normal {
+    /// JᵀJ over the free coordinates.
+    pub matrix: DMatrix<f64>,
+    /// Jᵀr.
+    pub gradient: DVector<f64>,
+    /// rᵀr.
+    pub cost: f64,
+    /// Number of residuals.
+    pub count: usize,
 }
 
 impl Normal {
-    fn zeros(n: usize) -> Self {
+    /// Those of no residuals.
+    pub fn zeros(n: usize) -> Self {
         Self {
             matrix: DMatrix::zeros(n, n),
             gradient: DVector::zeros(n),
@@ -147,7 +171,8 @@ impl Normal {
         }
     }
 
-    fn add(&mut self, other: &Self) {
+    /// Add those of other residuals.
+    pub fn add(&mut self, other: &Self) {
         self.matrix += &other.matrix;
         self.gradient += &other.gradient;
         self.cost += other.cost;
@@ -236,6 +261,59 @@ impl Problem<'_> {
         inverse(&self.known_normal(parameters).0.matrix)
     }
 
+    /// Normal equations item by item of each block; items without a model are left out.
+    pub fn item_parts(&self, parameters: &Parameters) -> Vec<Vec<Normal>> {
+        self.blocks
+            .iter()
+            .map(|(block, weight)| {
+                (0..block.items())
+                    .into_par_iter()
+                    .filter_map(|i| self.item_normal(*block, i, *weight, parameters))
+                    .collect()
+            })
+            .collect()
+    }
+
+    /// Normal equations of each block, then those of all priors.
+    pub fn parts(&self, parameters: &Parameters) -> Vec<Normal> {
+        let total = |items: &mut dyn Iterator<Item = Normal>| {
+            let mut sum = Normal::zeros(self.free.len());
+            items.for_each(|item| sum.add(&item));
+            sum
+        };
+        let mut parts: Vec<Normal> = self
+            .item_parts(parameters)
+            .into_iter()
+            .map(|items| total(&mut items.into_iter()))
+            .collect();
+        let mut priors = self.priors.iter().map(|p| self.prior_normal(p, parameters));
+        parts.push(total(&mut priors));
+        parts
+    }
+
+    /// Least cost with one coordinate held at a value, all others fitted anew from where the
+    /// covariance of a fit expects them; `None` where no fit is found.
+    pub fn cost_with(&self, fit: &Fit, coordinate: Coordinate, value: f64) -> Option<f64> {
+        let at = fit.free.iter().position(|c| *c == coordinate)?;
+        let step = value - fit.parameters.coordinate(coordinate);
+        let mut start = fit.parameters;
+        for (i, free) in fit.free.iter().enumerate() {
+            let share = fit.covariance[(i, at)] / fit.covariance[(at, at)];
+            start = start.with(*free, fit.parameters.coordinate(*free) + share * step);
+        }
+        let held = Problem {
+            blocks: self.blocks.clone(),
+            priors: self.priors.clone(),
+            free: fit
+                .free
+                .iter()
+                .copied()
+                .filter(|c| *c != coordinate)
+                .collect(),
+        };
+        Some(held.fit(start).ok()?.cost)
+    }
+
     fn normal(&self, parameters: &Parameters) -> Result<Normal, Vec<(usize, usize)>> {
         let (total, missing) = self.known_normal(parameters);
         if missing.is_empty() {
@@ -274,23 +352,34 @@ impl Problem<'_> {
         weight: f64,
         at: &Parameters,
     ) -> Option<Normal> {
-        let residuals = DVector::from_vec(block.residuals(item, at)?);
-        let mut jacobian = DMatrix::zeros(residuals.len(), self.free.len());
-        for (column, coordinate) in self.free.iter().enumerate() {
-            if block.touches(*coordinate) {
-                let slope = slope(block, item, at, *coordinate, &residuals)?;
-                jacobian.set_column(column, &slope);
+        let touched: Vec<(usize, Coordinate)> = self
+            .free
+            .iter()
+            .copied()
+            .enumerate()
+            .filter(|(_, c)| block.touches(*c))
+            .collect();
+        let coordinates: Vec<Coordinate> = touched.iter().map(|(_, c)| *c).collect();
+        let (residuals, columns) = block.slopes(item, at, &coordinates)?;
+        let mut normal = Normal::zeros(self.free.len());
+        let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
+        for ((i, _), a) in touched.iter().zip(&columns) {
+            normal.gradient[*i] = weight * dot(a, &residuals);
+            for ((k, _), b) in touched.iter().zip(&columns) {
+                if k <= i {
+                    let product = weight * dot(a, b);
+                    normal.matrix[(*i, *k)] = product;
+                    normal.matrix[(*k, *i)] = product;
+                }
             }
         }
-        Some(Normal {
-            matrix: jacobian.tr_mul(&jacobian) * weight,
-            gradient: jacobian.tr_mul(&residuals) * weight,
-            cost: residuals.norm_squared() * weight,
-            count: residuals.len(),
-        })
+        normal.cost = weight * dot(&residuals, &residuals);
+        normal.count = residuals.len();
+        Some(normal)
     }
 
-    fn prior_normal(&self, prior: &Prior, parameters: &Parameters) -> Normal {
+    /// Normal equations of one prior.
+    pub fn prior_normal(&self, prior: &Prior, parameters: &Parameters) -> Normal {
         let mut part = Normal::zeros(self.free.len());
         let residual = prior_residual(prior, parameters);
         part.cost = residual * residual;
@@ -345,33 +434,36 @@ fn prior_residual(prior: &Prior, parameters: &Parameters) -> f64 {
     (parameters.coordinate(prior.coordinate) - prior.centre) / prior.deviation
 }
 
-/// Slope of an item's residuals by central differences; one-sided where the model ends.
-fn slope(
-    block: &dyn Block,
-    item: usize,
+/// Slope of a function of the parameters over one coordinate, by central differences; one-sided
+/// where the model ends. `here` is its value at the parameters.
+pub fn difference(
     at: &Parameters,
     coordinate: Coordinate,
-    here: &DVector<f64>,
-) -> Option<DVector<f64>> {
+    here: &[f64],
+    function: impl Fn(&Parameters) -> Option<Vec<f64>>,
+) -> Option<Vec<f64>> {
     let centre = at.coordinate(coordinate);
     let evaluate = |shift: f64| {
         let shifted = at.with(coordinate, centre + shift);
-        let inside = shifted.in_range();
-        inside
-            .then(|| block.residuals(item, &shifted))
-            .flatten()
-            .map(DVector::from_vec)
+        shifted.in_range().then(|| function(&shifted)).flatten()
+    };
+    let slope = |above: &[f64], below: &[f64], step: f64| {
+        above
+            .iter()
+            .zip(below)
+            .map(|(a, b)| (a - b) / step)
+            .collect()
     };
     match (evaluate(DIFFERENCE), evaluate(-DIFFERENCE)) {
-        (Some(above), Some(below)) => Some((above - below) / (2.0 * DIFFERENCE)),
-        (Some(above), None) => Some((above - here) / DIFFERENCE),
-        (None, Some(below)) => Some((here - below) / DIFFERENCE),
+        (Some(above), Some(below)) => Some(slope(&above, &below, 2.0 * DIFFERENCE)),
+        (Some(above), None) => Some(slope(&above, here, DIFFERENCE)),
+        (None, Some(below)) => Some(slope(here, &below, DIFFERENCE)),
         (None, None) => None,
     }
 }
 
 /// Inverse through a scaled Cholesky factor; `None` where numerically singular.
-fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+pub fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let scale = matrix
         .diagonal()
         .map(|d| if d > 0.0 { d.sqrt().recip() } else { 0.0 });

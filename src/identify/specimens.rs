@@ -113,6 +113,7 @@ fn summary(
             pairs: Vec::new(),
         },
         suspicions: Vec::new(),
+        uncertainty: Default::default(),
         fit: None,
         factor: 1.0,
         left_out,

@@ -4,12 +4,13 @@ use rayon::prelude::*;
 
 use crate::event::Rig;
 use crate::identify::parameters::{Coordinate, Parameters, gain_index};
-use crate::identify::shared_error::whiten;
-use crate::identify::solver::Block;
+use crate::identify::shared_error::Whitening;
+use crate::identify::solver::{Block, difference};
+use crate::identify::waveform::{Phases, Waveform};
 use crate::model::flight::State;
-use crate::model::orbit::{Branch, Orbit, orbit_with_speed};
+use crate::model::orbit::{Branch, Orbit, unjudged_orbit};
 use crate::motion::Observation;
-use crate::motion::fold::{Folded, FoldedChannel, FoldedPoint};
+use crate::motion::fold::{Folded, FoldedChannel};
 use crate::record::Role;
 
 /// One folded record.
@@ -25,6 +26,8 @@ pub struct TrajectoryRecord {
     pub drive_amplitude: f64,
     /// The folded waveform.
     pub folded: Folded,
+    /// Phases of the points: usually one set that all channels share.
+    pub phases: Vec<Phases>,
     /// Median closing speed before impacts as measured, m/s.
     pub closing_speed_m_s: f64,
     /// Standard error of the drive's frequency, relative.
@@ -101,7 +104,7 @@ impl TrajectoryBlock {
             .into_iter()
             .filter(|w| *w > 0.0)
             .min_by(|a, b| (a - measured).abs().total_cmp(&(b - measured).abs()))?;
-        Some(orbit_with_speed(&machine, setting, n, speed))
+        Some(unjudged_orbit(&machine, setting, n, speed))
     }
 
     /// Find at good parameters what phase and frequency of the drive change in every record.
@@ -153,23 +156,45 @@ impl TrajectoryBlock {
     ) -> Option<Vec<f64>> {
         let orbit = self.orbit_of(record, parameters)?;
         let phase = phase_on_fold(&orbit, &record.folded) + turn_rad;
+        let paths = [&orbit.paths().x, &orbit.paths().y];
+        let waves: Vec<[Option<Waveform>; 2]> = record
+            .phases
+            .iter()
+            .map(|phases| {
+                [false, true].map(|of_y| {
+                    let seen = record.folded.channels.iter().any(|c| is_of_y(c.role) == of_y);
+                    seen.then(|| Waveform::new(&orbit, paths[usize::from(of_y)], phases, phase))
+                })
+            })
+            .collect();
         let mut out = Vec::new();
-        // Channels of one record share their samples, hence their phases and the orbit's states.
-        let mut shared: (&[FoldedPoint], Vec<[State; 2]>) = (&[], Vec::new());
         for channel in &record.folded.channels {
-            if !same_phases(shared.0, &channel.points) {
-                let all = channel
-                    .points
-                    .iter()
-                    .map(|p| states(&orbit, p, phase))
-                    .collect();
-                shared = (&channel.points, all);
-            }
-            let value =
-                |s: &State| channel_value(parameters, record.drive_amplitude, channel.role, s);
-            out.extend(shared.1.iter().map(|[a, b]| 0.5 * (value(a) + value(b))));
+            let set = record.phases.iter().position(|p| p.fit(&channel.points))?;
+            let wave = waves[set][usize::from(is_of_y(channel.role))].as_ref()?;
+            let (unit, values) = channel_unit(parameters, record.drive_amplitude, channel.role, wave);
+            out.extend(values.iter().map(|v| unit * v));
         }
         Some(out)
+    }
+}
+
+fn is_of_y(role: Role) -> bool {
+    matches!(role, Role::VelocityY | Role::DisplacementY)
+}
+
+/// SI units of a channel, gain included, in one of the model's, and its values in the model's.
+fn channel_unit<'w>(
+    parameters: &Parameters,
+    drive_amplitude: f64,
+    role: Role,
+    wave: &'w Waveform,
+) -> (f64, &'w [f64]) {
+    let length = parameters.static_deflection_m * drive_amplitude * parameters.gain(role);
+    match role {
+        Role::VelocityX | Role::VelocityY => {
+            (length * parameters.natural_rate(), &wave.velocity)
+        }
+        _ => (length, &wave.displacement),
     }
 }
 
@@ -178,6 +203,7 @@ const STEP: f64 = 1e-6;
 
 fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> {
     let drive = o.drive?;
+    let folded = o.folded.clone()?;
     let speeds: Vec<f64> = o
         .impacts
         .iter()
@@ -191,9 +217,20 @@ fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> 
         shared: Vec::new(),
         clearance_m: o.setting.clearance_m?,
         drive_amplitude: o.setting.drive_amplitude,
-        folded: o.folded.clone()?,
+        phases: distinct_phases(&folded),
+        folded,
         closing_speed_m_s: crate::signal::robust::median(&speeds)?,
     })
+}
+
+fn distinct_phases(folded: &Folded) -> Vec<Phases> {
+    let mut all: Vec<Phases> = Vec::new();
+    for channel in &folded.channels {
+        if !all.iter().any(|p| p.fit(&channel.points)) {
+            all.push(Phases::of(&channel.points));
+        }
+    }
+    all
 }
 
 /// Value of a motion channel in a state, SI, gain included.
@@ -215,14 +252,6 @@ pub fn channel_value(
     value * parameters.gain(role)
 }
 
-/// The orbit's states at the two phases that stand for a folded point: ± its spread, so that
-/// their mean carries the curvature within the bin.
-fn states(orbit: &Orbit, point: &FoldedPoint, impact_phase: f64) -> [State; 2] {
-    let eta = orbit.setting.frequency_ratio;
-    [-1.0, 1.0]
-        .map(|sign| orbit.at((point.phase_rad + sign * point.spread_rad - impact_phase) / eta))
-}
-
 /// The orbit's impact phase on the fold's axis: whole turns put it next to the measured one.
 pub fn phase_on_fold(orbit: &Orbit, folded: &Folded) -> f64 {
     let measured = folded.impact_phase_rad.unwrap_or(orbit.phase_at_impact);
@@ -238,26 +267,34 @@ impl Block for TrajectoryBlock {
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let record = &self.records[item];
         let values = self.values(record, parameters, 0.0)?;
-        let mut out = Vec::with_capacity(values.len());
-        let mut shared = vec![Vec::with_capacity(values.len()); record.shared.len()];
-        let mut first = 0;
-        for channel in &record.folded.channels {
-            let range = first..first + channel.points.len();
-            first = range.end;
-            let model = &values[range.clone()];
-            let weights = Weights::of(channel, model, self.relative_error);
-            let apart: Vec<f64> = channel
-                .points
-                .iter()
-                .zip(model)
-                .map(|(p, m)| p.value - m)
-                .collect();
-            out.extend(weights.centred(&apart));
-            for (column, change) in shared.iter_mut().zip(&record.shared) {
-                column.extend(weights.centred(&change[range.clone()]));
-            }
-        }
-        Some(whiten(out, &shared))
+        let weighing = Weighing::new(record, &values, self.relative_error);
+        Some(weighing.weighted(&weighing.apart(&values)))
+    }
+
+    fn slopes(
+        &self,
+        item: usize,
+        parameters: &Parameters,
+        coordinates: &[Coordinate],
+    ) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+        let record = &self.records[item];
+        let values = self.values(record, parameters, 0.0)?;
+        let weighing = Weighing::new(record, &values, self.relative_error);
+        let columns = coordinates
+            .iter()
+            .map(|coordinate| {
+                let change = match coordinate {
+                    // Values are proportional to their gain.
+                    Coordinate::Gain(gain) => weighing.only(&values, *gain),
+                    _ => difference(parameters, *coordinate, &values, |p| {
+                        self.values(record, p, 0.0)
+                    })?,
+                };
+                let falling: Vec<f64> = change.iter().map(|c| -c).collect();
+                Some(weighing.weighted(&falling))
+            })
+            .collect::<Option<Vec<_>>>()?;
+        Some((weighing.weighted(&weighing.apart(&values)), columns))
     }
 
     fn touches(&self, _coordinate: Coordinate) -> bool {
@@ -265,11 +302,67 @@ impl Block for TrajectoryBlock {
     }
 }
 
-fn same_phases(a: &[FoldedPoint], b: &[FoldedPoint]) -> bool {
-    a.len() == b.len()
-        && a.iter()
-            .zip(b)
-            .all(|(p, q)| p.phase_rad == q.phase_rad && p.spread_rad == q.spread_rad)
+/// How a record's residuals are weighted at given parameters: by the errors of the points, the
+/// channels' offsets projected out, the errors that all points share made independent.
+struct Weighing<'a> {
+    record: &'a TrajectoryRecord,
+    channels: Vec<Weights>,
+    shared: Whitening,
+}
+
+impl<'a> Weighing<'a> {
+    fn new(record: &'a TrajectoryRecord, values: &[f64], relative_error: f64) -> Self {
+        let mut channels = Vec::with_capacity(record.folded.channels.len());
+        let mut rest = values;
+        for channel in &record.folded.channels {
+            let (own, others) = rest.split_at(channel.points.len());
+            channels.push(Weights::of(channel, own, relative_error));
+            rest = others;
+        }
+        let mut weighing = Self {
+            record,
+            channels,
+            shared: Whitening::none(),
+        };
+        let columns: Vec<Vec<f64>> = record.shared.iter().map(|c| weighing.centred(c)).collect();
+        weighing.shared = Whitening::new(columns);
+        weighing
+    }
+
+    /// Measured less modelled values.
+    fn apart(&self, values: &[f64]) -> Vec<f64> {
+        let points = self.record.folded.channels.iter().flat_map(|c| &c.points);
+        points.zip(values).map(|(p, v)| p.value - v).collect()
+    }
+
+    /// Values of the channels that carry one gain, zero for the others.
+    fn only(&self, values: &[f64], gain: usize) -> Vec<f64> {
+        let mut out = Vec::with_capacity(values.len());
+        for channel in &self.record.folded.channels {
+            let range = out.len()..out.len() + channel.points.len();
+            if gain_index(channel.role) == Some(gain) {
+                out.extend_from_slice(&values[range]);
+            } else {
+                out.resize(range.end, 0.0);
+            }
+        }
+        out
+    }
+
+    fn centred(&self, differences: &[f64]) -> Vec<f64> {
+        let mut out = Vec::with_capacity(differences.len());
+        for weights in &self.channels {
+            let end = out.len() + weights.roots.len();
+            weights.centred(&differences[out.len()..end], &mut out);
+        }
+        out
+    }
+
+    fn weighted(&self, differences: &[f64]) -> Vec<f64> {
+        let mut out = self.centred(differences);
+        self.shared.apply(&mut out);
+        out
+    }
 }
 
 /// Weights of a channel's points, with the channel's offset, a nuisance, projected out.
@@ -297,17 +390,9 @@ impl Weights {
     }
 
     /// Differences less their weighted mean, times the roots of the weights.
-    fn centred(&self, differences: &[f64]) -> Vec<f64> {
-        let sum: f64 = differences
-            .iter()
-            .zip(&self.roots)
-            .map(|(d, w)| d * w * w)
-            .sum();
-        let offset = sum / self.total;
-        differences
-            .iter()
-            .zip(&self.roots)
-            .map(|(d, w)| (d - offset) * w)
-            .collect()
+    fn centred(&self, differences: &[f64], out: &mut Vec<f64>) {
+        let pairs = || differences.iter().zip(&self.roots);
+        let offset = pairs().map(|(d, w)| d * w * w).sum::<f64>() / self.total;
+        out.extend(pairs().map(|(d, w)| (d - offset) * w));
     }
 }

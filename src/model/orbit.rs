@@ -59,6 +59,11 @@ impl Orbit {
         self.flight.at(tau_since_impact.rem_euclid(self.period()))
     }
 
+    /// Both displacements in closed form over the flight after the impact.
+    pub fn paths(&self) -> &FlightPaths {
+        &self.flight
+    }
+
     /// Period 2πn/η.
     pub fn period(&self) -> f64 {
         f64::from(self.n) * self.setting.period()
@@ -304,6 +309,15 @@ pub(super) fn bisect(f: impl Fn(f64) -> f64, mut lo: f64, mut hi: f64) -> f64 {
 
 /// The orbit that closes with a speed w solving the quadratic.
 pub fn orbit_with_speed(machine: &Machine, setting: Setting, n: u32, w: f64) -> Orbit {
+    let mut orbit = unjudged_orbit(machine, setting, n, w);
+    orbit.multipliers = multipliers(machine, &orbit);
+    orbit.existence = existence(machine, &orbit);
+    orbit
+}
+
+/// As [`orbit_with_speed`], but neither its multipliers nor its existence are found: it is taken
+/// for a motion of the machine.
+pub fn unjudged_orbit(machine: &Machine, setting: Setting, n: u32, w: f64) -> Orbit {
     let eta = setting.frequency_ratio;
     let branch = Branch::new(machine, eta, n);
     let r = machine.restitution().at(w);
@@ -314,7 +328,7 @@ pub fn orbit_with_speed(machine: &Machine, setting: Setting, n: u32, w: f64) -> 
     (after.ax, after.ay) = free_accelerations(machine, drive, &after);
     let flight = free_flight(machine, drive, &after);
     let setting = Setting { phase, ..setting };
-    let mut orbit = Orbit {
+    Orbit {
         n,
         setting,
         phase_at_impact: phase,
@@ -324,10 +338,7 @@ pub fn orbit_with_speed(machine: &Machine, setting: Setting, n: u32, w: f64) -> 
         multipliers: Vec::new(),
         existence: Existence::Exists,
         flight,
-    };
-    orbit.multipliers = multipliers(machine, &orbit);
-    orbit.existence = existence(machine, &orbit);
-    orbit
+    }
 }
 
 /// State just before the impact: forced response plus Green's functions.

@@ -130,8 +130,21 @@ impl Path {
 
     /// Value, velocity and acceleration: f, f', f''.
     pub fn at(&self, t: f64) -> [f64; 3] {
-        let jet = self.jet(t);
-        [jet.value, jet.d1, jet.d2]
+        let [c0, c1, c2] = self.polynomial;
+        let mut out = [c0 + t * (c1 + t * c2), c1 + 2.0 * c2 * t, 2.0 * c2];
+        let forced = Mode {
+            amplitude: self.force,
+            exponent: C64::new(0.0, self.eta),
+        };
+        let held = (self.force != C64::default()).then_some(&forced);
+        for m in self.modes().iter().chain(held) {
+            let z = m.amplitude * (m.exponent * t).exp();
+            let dz = m.exponent * z;
+            out[0] += z.re;
+            out[1] += dz.re;
+            out[2] += (m.exponent * dz).re;
+        }
+        out
     }
 
     /// Value, derivatives and bounds at a time.

@@ -155,6 +155,7 @@ fn evidence<'a>(
             gain_uncertainty: 5e-3,
             ..Nominal::default()
         },
+        uncertainty: Default::default(),
     }
 }
 

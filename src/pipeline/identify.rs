@@ -9,6 +9,7 @@ use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::Identification;
 use crate::identify::methods::{Evidence, Nominal};
 use crate::identify::solver::Fit;
+use crate::identify::uncertainty::Asked;
 use crate::identify::specimens::identify_campaign;
 use crate::output::write_bytes;
 use crate::pipeline::{Observed, PipelineError, inputs};
@@ -57,6 +58,11 @@ pub fn identify(campaign: &ResolvedCampaign, observed: &Observed) -> Result<Foun
         observations: &observed.observations,
         brackets: &observed.brackets,
         nominal: nominal(campaign),
+        uncertainty: Asked {
+            way: campaign.analysis.uncertainty,
+            replicas: campaign.analysis.replicas,
+            seed: campaign.analysis.seed,
+        },
     });
     let identification = Identification {
         verdict: outcome.verdict,
@@ -64,6 +70,7 @@ pub fn identify(campaign: &ResolvedCampaign, observed: &Observed) -> Result<Foun
         methods: outcome.methods,
         agreement: outcome.agreement,
         suspicions: outcome.suspicions,
+        uncertainty: outcome.uncertainty,
         specimens,
         settings: settings(campaign)?,
         versions: versions(),

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::campaign::written::Published;
 use crate::identify::published::{
-    PublishedOutcome, PublishedSpeed, identify, methods, predicted,
+    PublishedOutcome, PublishedSpeed, Where, identify, methods, predicted,
 };
 use crate::identify::{Identification, Verdict};
 use crate::pipeline::identify::{settings, versions};
@@ -32,6 +32,7 @@ pub fn run(
         methods,
         agreement,
         suspicions: Vec::new(),
+        uncertainty: Default::default(),
         specimens: std::collections::BTreeMap::new(),
         settings: settings(campaign)?,
         versions: versions(),
@@ -62,8 +63,15 @@ fn table(speeds: &[PublishedSpeed], found: Option<f64>, published: &Published) -
     let texts = ["$R$", "$ρ$", "$η$", "published speed"].map(str::to_owned);
     let heads = dampings.iter().map(|b| format!("$β$ = {b:.4}"));
     let row = |s: &PublishedSpeed| {
-        let given = [s.restitution, s.clearance_ratio, s.frequency_ratio];
-        let given = given.map(|v| v.to_string());
+        let eta = match s.place {
+            Where::At => s.frequency_ratio.to_string(),
+            Where::Greatest => format!("greatest near {}", s.frequency_ratio),
+        };
+        let given = [
+            s.restitution.to_string(),
+            s.clearance_ratio.to_string(),
+            eta,
+        ];
         let decimals = (-s.printed_step.log10().floor()).max(0.0) as usize;
         let model = dampings.iter().map(|b| match predicted(s, *b) {
             Some(speed) => format!("{speed:.0$}", decimals + 1),

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
+
 use crate::campaign::resolved::{Report as Look, ResolvedCampaign};
 use crate::campaign::written::{Language, Paper as WrittenPaper};
 use crate::output::{make_folder, write_bytes};
@@ -95,7 +97,7 @@ pub fn content(
 }
 
 fn records(campaign: &ResolvedCampaign, indices: &[usize]) -> Vec<Record> {
-    let entries = indices.iter().filter_map(|i| campaign.records.get(*i));
+    let entries = indices.par_iter().filter_map(|i| campaign.records.get(*i));
     entries.map(|entry| read_one(campaign, entry)).collect()
 }
 
@@ -104,9 +106,8 @@ fn options(look: &Look) -> Result<RenderOptions, PipelineError> {
         path: path.display().to_string(),
         reason: error.to_string(),
     };
-    let template = |path: &PathBuf| {
-        std::fs::read_to_string(path).map_err(|error| unreadable(path, error))
-    };
+    let template =
+        |path: &PathBuf| std::fs::read_to_string(path).map_err(|error| unreadable(path, error));
     let logo = |path: &PathBuf| {
         let bytes = std::fs::read(path).map_err(|error| unreadable(path, error))?;
         let extension = path.extension().unwrap_or_default().to_string_lossy();

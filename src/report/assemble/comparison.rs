@@ -1,5 +1,7 @@
 //! Chosen records beside their simulation with the fitted parameters.
 
+use rayon::prelude::*;
+
 use super::simulation::{Simulation, Window};
 use super::{Gathered, rows};
 use crate::event::detect::DetectSettings;
@@ -10,15 +12,15 @@ use crate::record::{Record, Role};
 use crate::report::content::{Comparison, Portrait, Signal, Trace};
 use crate::units::Dimension;
 
+/// Residual over the signal below which the simulated motion is the measured one.
+const SAME_MOTION: f64 = 0.05;
 /// Drive periods that are drawn at least.
 const SHOWN_PERIODS: u32 = 4;
 
 pub(super) fn comparisons(gathered: &Gathered) -> Vec<Comparison> {
-    let letters = ('A'..='Z').map(String::from);
-    gathered
-        .chosen
-        .iter()
-        .zip(gathered.chosen_records)
+    let letters: Vec<String> = ('A'..='Z').map(String::from).collect();
+    let pairs = gathered.chosen.par_iter().zip(gathered.chosen_records);
+    pairs
         .zip(letters)
         .filter_map(|((index, record), letter)| {
             comparison(gathered, &gathered.observations[*index], record, letter)
@@ -44,8 +46,13 @@ fn comparison(
         .fit
         .and_then(|_| Simulation::of(gathered, o, &drive, &window));
     let (eta, rho) = rows::place(gathered, o);
-    let note = note(&o.finding.motion, simulation.as_ref().map(|s| &s.motion));
     let traces = traces(record, &detection, &window, simulation.as_ref());
+    let motion = &o.finding.motion;
+    let simulated_motion = simulation.as_ref().map(|s| match apart(&traces) {
+        apart if apart < SAME_MOTION => motion.clone(),
+        _ => s.motion.clone(),
+    });
+    let note = note(motion, simulated_motion.as_ref());
     Some(Comparison {
         letter,
         record: o.record.clone(),
@@ -53,7 +60,7 @@ fn comparison(
         rho,
         drive_period_s: Some(drive.period_s()),
         motion: o.finding.motion.clone(),
-        simulated_motion: simulation.as_ref().map(|s| s.motion.clone()),
+        simulated_motion,
         portraits: portraits(&traces),
         traces,
         impacts_s: o
@@ -67,11 +74,28 @@ fn comparison(
     })
 }
 
+/// Greatest residual of a channel over its own size.
+fn apart(traces: &[Trace]) -> f64 {
+    let rms = |signal: &Option<Signal>| {
+        signal
+            .as_ref()
+            .map(|s| crate::signal::robust::rms(&s.values))
+    };
+    traces
+        .iter()
+        .filter_map(|t| Some(rms(&t.residual)? / rms(&t.measured)?))
+        .fold(0.0, f64::max)
+}
+
 /// What is to be said of a simulated motion that is not the measured one.
 fn note(measured: &Motion, simulated: Option<&Motion>) -> String {
     match simulated {
         Some(simulated) if simulated != measured && measured.is_periodic() => {
             "From none of the starts tried does the fitted model settle on the measured motion."
+                .to_owned()
+        }
+        Some(_) if matches!(measured, Motion::Chaotic | Motion::Beat) => {
+            "Two runs of such a motion part from each other: they are alike in kind, not in course."
                 .to_owned()
         }
         _ => String::new(),

@@ -129,10 +129,7 @@ fn thinned(rate_hz: f64, first: usize, values: &[f64]) -> Signal {
     let stride = values.len().div_ceil(MOST_POINTS).max(1);
     let kept = (0..values.len()).step_by(stride);
     Signal {
-        time_s: kept
-            .clone()
-            .map(|i| (first + i) as f64 / rate_hz)
-            .collect(),
+        time_s: kept.clone().map(|i| (first + i) as f64 / rate_hz).collect(),
         values: kept.map(|i| values[i]).collect(),
     }
 }

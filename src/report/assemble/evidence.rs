@@ -96,6 +96,7 @@ fn blocks(gathered: &Gathered) -> Blocks {
         observations: gathered.observations,
         brackets: gathered.brackets,
         nominal: Nominal::default(),
+        uncertainty: Default::default(),
     })
 }
 

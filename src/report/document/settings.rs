@@ -39,7 +39,10 @@ pub fn settings(text: &str) -> Block {
 }
 
 fn flatten(path: &str, value: &Value, lines: &mut Vec<String>) {
-    if let Some(words) = quantity(value).or_else(|| ratio(value)).or_else(|| name(value)) {
+    if let Some(words) = quantity(value)
+        .or_else(|| ratio(value))
+        .or_else(|| name(value))
+    {
         lines.push(format!("{path} = {words}"));
         return;
     }
@@ -90,7 +93,11 @@ fn ratio(value: &Value) -> Option<String> {
     let ratio = value.get("ratio")?;
     let denominator = ratio.get("denominator")?;
     let count = denominator.get("to_si").and_then(Value::as_f64)?;
-    let count = if count == 1.0 { String::new() } else { format!("{count} ") };
+    let count = if count == 1.0 {
+        String::new()
+    } else {
+        format!("{count} ")
+    };
     let above = quantity(ratio.get("numerator")?)?;
     Some(format!("{above} per {count}{}", symbol(denominator)?))
 }
@@ -98,7 +105,10 @@ fn ratio(value: &Value) -> Option<String> {
 /// The channel of a file by its name.
 fn name(value: &Value) -> Option<String> {
     let fields = value.as_object().filter(|f| f.len() == 1)?;
-    fields.get("name").filter(|n| n.is_string()).map(Value::to_string)
+    fields
+        .get("name")
+        .filter(|n| n.is_string())
+        .map(Value::to_string)
 }
 
 #[cfg(test)]
@@ -128,8 +138,8 @@ mod tests {
         assert_eq!(
             lines,
             [
-                "channels.velocity_x.scale = 0.2 m/s per V",
-                "channels.velocity_x.source = \"laser\""
+                "channels.velocity_x.source = \"laser\"",
+                "channels.velocity_x.scale = 0.2 m/s per V"
             ]
         );
         let plain = settings("[rig]\nf = 12.6");

@@ -142,6 +142,7 @@ pub fn identification() -> Identification {
     );
     Identification {
         suspicions: Vec::new(),
+        uncertainty: Default::default(),
         verdict: Verdict {
             kind: VerdictKind::Identified,
             summary: "The bodies rebound with R = 0.9005 ± 0.0018 of their closing speed, and the rig behaves as two damped oscillators that hit each other without any further loss. Four methods, three of them independent of each other, give the same parameters within their errors.".into(),

@@ -4,6 +4,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use super::compact;
 use super::fonts::{FAMILY, Face};
 use super::richtext;
 
@@ -276,9 +277,11 @@ impl Canvas {
             self.width, self.height
         );
         let title = escape(&richtext::plain(title));
-        svg.replacen(&old, &new, 1)
+        let svg = svg
+            .replacen(&old, &new, 1)
             .replacen(">\n", &format!("><title>{title}</title>\n"), 1)
-            .replace(" opacity=\"1\"", "")
+            .replace(" opacity=\"1\"", "");
+        compact::rectangles(&svg)
     }
 }
 

@@ -3,6 +3,7 @@
 pub mod axes;
 pub mod boundary_fit;
 pub mod canvas;
+mod compact;
 pub mod comparison;
 pub mod correlation;
 pub mod csv;
@@ -63,6 +64,9 @@ pub struct Spot {
     pub text: String,
 }
 
+/// Most points of one figure that tell something: more would only swell the page.
+const MOST_SPOTS: usize = 2500;
+
 impl Figure {
     /// A figure from its drawing.
     pub fn new(name: impl Into<String>, title: &str, canvas: Canvas, csv: String) -> Self {
@@ -84,6 +88,12 @@ impl Figure {
 
     /// With points that tell something.
     pub fn with_spots(self, mut spots: Vec<Spot>) -> Self {
+        let stride = spots.len().div_ceil(MOST_SPOTS).max(1);
+        let mut index = 0;
+        spots.retain(|_| {
+            index += 1;
+            (index - 1) % stride == 0
+        });
         // a hundredth of a point is finer than any screen shows
         let coarse = |v: f64| (v * 100.0).round() / 100.0;
         for spot in &mut spots {

@@ -31,6 +31,9 @@ pub struct RegionLabel {
     pub size: f64,
 }
 
+/// A run of cells of one motion: its tint, its lower left and its upper right corner.
+type Run = (Colour, Point, Point);
+
 impl<'a> Regions<'a> {
     /// Lays a map on a panel. `None` where its axes and cells contradict each other.
     pub fn new(map: &'a RegionMap, panel: &'a Panel) -> Option<Self> {
@@ -96,8 +99,13 @@ impl<'a> Regions<'a> {
     /// Draws tints, outlines and the hatching of hysteresis.
     pub fn draw(&self, canvas: &mut Canvas) {
         let (columns, rows) = (self.map.eta.len() as isize, self.map.rho.len() as isize);
+        let mut runs: Vec<Run> = Vec::new();
         for j in -1..rows {
-            self.draw_even_runs(canvas, j, columns);
+            self.even_runs(&mut runs, j, columns);
+        }
+        runs.sort_by_key(|(Colour { 0: r, 1: g, 2: b }, ..)| (*r, *g, *b));
+        for (tint, lower, upper) in runs {
+            self.patch(canvas, lower, upper, tint);
         }
         for j in -1..rows {
             for i in -1..columns {
@@ -137,7 +145,7 @@ impl<'a> Regions<'a> {
     }
 
     /// Squares between four centres of one motion, run by run along a row.
-    fn draw_even_runs(&self, canvas: &mut Canvas, j: isize, columns: isize) {
+    fn even_runs(&self, runs: &mut Vec<Run>, j: isize, columns: isize) {
         let mut i = -1;
         while i < columns {
             let first = self.corners(i, j);
@@ -151,7 +159,7 @@ impl<'a> Regions<'a> {
                 }
             }
             let (lower, upper) = (self.centre(i, j), self.centre(end, j + 1));
-            self.patch(canvas, lower, upper, self.tint(first[0].0));
+            runs.push((self.tint(first[0].0), lower, upper));
             i = end;
         }
     }

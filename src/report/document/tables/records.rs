@@ -45,7 +45,9 @@ pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
          records.parquet."
     } else {
         match content.records.iter().any(|r| r.frequency_hz.is_some()) {
-            true => "All records: sweep, measured drive frequency, clearance, motion and confidence.",
+            true => {
+                "All records: sweep, measured drive frequency, clearance, motion and confidence."
+            }
             false => "All records, and which methods used them.",
         }
     };

@@ -1,6 +1,5 @@
 //! The map's data: what hovering over a record tells, and all layers as CSV.
 
-use crate::motion::Motion;
 use crate::report::content::{RecordRow, RegionMap, ReportContent};
 use crate::report::figures::csv::Csv;
 use crate::report::figures::look::NumberLook;
@@ -79,7 +78,11 @@ pub fn csv(content: &ReportContent) -> String {
     }
     if let Some(map) = &content.region_map {
         regions(&mut csv, "region", &map.cells, map);
-        regions(&mut csv, "region_from_other_start", &map.second, map);
+        let differs = map.second.iter().zip(&map.cells);
+        let differs: Vec<u16> = differs
+            .map(|(second, first)| if second == first { u16::MAX } else { *second })
+            .collect();
+        regions(&mut csv, "region_from_other_start", &differs, map);
     }
     csv.finish()
 }
@@ -95,11 +98,12 @@ fn regions(csv: &mut Csv, layer: &str, cells: &[u16], map: &RegionMap) {
         for run in row.chunk_by(|a, b| a == b) {
             let last = first + run.len() - 1;
             let motion = map.motions.get(usize::from(run[0]));
-            let label = motion.map(Motion::label).unwrap_or_default();
-            let (from, to) = (Some(map.eta[first]), Some(map.eta[last]));
-            csv.row()
-                .texts(&[layer, "", &label, ""])
-                .numbers(&[from, Some(*rho), None, None, to, Some(*rho)]);
+            if let Some(motion) = motion {
+                let (from, to) = (Some(map.eta[first]), Some(map.eta[last]));
+                csv.row()
+                    .texts(&[layer, "", &motion.label(), ""])
+                    .numbers(&[from, Some(*rho), None, None, to, Some(*rho)]);
+            }
             first = last + 1;
         }
     }

@@ -5,7 +5,7 @@ mod keys;
 mod labels;
 
 use crate::record::Sweep;
-use crate::report::content::{BoundaryCurve, RecordRow, ReportContent};
+use crate::report::content::{BoundaryCurve, RecordRow, RegionMap, ReportContent};
 use crate::report::figures::axes::{Panel, Sides};
 use crate::report::figures::canvas::{Anchor, Canvas, Point, TextLook};
 use crate::report::figures::fonts::Face;
@@ -70,6 +70,24 @@ struct Map<'a> {
     spots: Vec<Spot>,
 }
 
+/// Every other column and row of a region map: enough for a small figure.
+fn every_other(map: &RegionMap) -> RegionMap {
+    let columns = map.eta.len().max(1);
+    let kept = |i: usize| (i / columns).is_multiple_of(2) && (i % columns).is_multiple_of(2);
+    let of = |cells: &[u16]| -> Vec<u16> {
+        let cells = cells.iter().enumerate();
+        cells.filter(|(i, _)| kept(*i)).map(|(_, c)| *c).collect()
+    };
+    RegionMap {
+        eta: map.eta.iter().copied().step_by(2).collect(),
+        rho: map.rho.iter().copied().step_by(2).collect(),
+        motions: map.motions.clone(),
+        cells: of(&map.cells),
+        second: of(&map.second),
+        note: String::new(),
+    }
+}
+
 impl<'a> Map<'a> {
     fn new(content: &'a ReportContent, plane: Plane, size: MapSize, keys: &[Key]) -> Self {
         let full = size == MapSize::Full;
@@ -122,6 +140,13 @@ impl<'a> Map<'a> {
             return;
         };
         let panel = self.panel.clone();
+        let coarse;
+        let map = if self.full() {
+            map
+        } else {
+            coarse = every_other(map);
+            &coarse
+        };
         let Some(regions) = Regions::new(map, &panel) else {
             return;
         };

@@ -1,0 +1,261 @@
+//! Uncertainty beyond the covariance: profile likelihoods, a bootstrap over records, and what each
+//! method contributed.
+
+use std::collections::BTreeMap;
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::identify::parameters::Coordinate;
+use crate::identify::solver::{Fit, Normal, Problem, inverse};
+
+/// How intervals are found beside the covariance.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Way {
+    /// The covariance at the optimum alone.
+    #[default]
+    Covariance,
+    /// Profile likelihood of each parameter.
+    Profile,
+    /// Bootstrap over records.
+    Bootstrap,
+}
+
+/// What is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Asked {
+    /// The way.
+    pub way: Way,
+    /// Replicas of a bootstrap.
+    pub replicas: usize,
+    /// Seed of everything random.
+    pub seed: u64,
+}
+
+impl Default for Asked {
+    fn default() -> Self {
+        Self {
+            way: Way::Covariance,
+            replicas: 1000,
+            seed: 1,
+        }
+    }
+}
+
+/// Likelihood of one parameter with all others fitted anew at each of its values.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ProfileCurve {
+    /// The parameter's name, with its unit.
+    pub parameter: String,
+    /// Its values, SI, ascending.
+    pub values: Vec<f64>,
+    /// Rise of χ² over its least value.
+    pub delta_chi2: Vec<f64>,
+    /// Where the rise is 3.84: the 95 % interval.
+    pub interval95: Option<[f64; 2]>,
+}
+
+/// What a bootstrap over records gives for one parameter.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Bootstrapped {
+    /// The parameter's name, with its unit.
+    pub parameter: String,
+    /// Standard deviation over the replicas, SI.
+    pub standard_error: f64,
+    /// 2.5 and 97.5 percentiles over the replicas, SI.
+    pub interval95: [f64; 2],
+}
+
+/// Uncertainty beside the covariance.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Uncertainty {
+    /// Share of each method (and of `stated`, the laboratory's own knowledge of its instruments) in
+    /// what is known of each parameter; the shares of a parameter add up to 1.
+    pub information_share: BTreeMap<String, BTreeMap<String, f64>>,
+    /// Profile likelihoods, where asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub profiles: Vec<ProfileCurve>,
+    /// Bootstrap, where asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub bootstrap: Vec<Bootstrapped>,
+}
+
+/// 95 % point of χ² with one degree of freedom.
+const CHI2_95: f64 = 3.841_458_820_694_124;
+/// Standard errors at which a profile is evaluated.
+const OFFSETS: [f64; 8] = [-3.0, -2.0, -1.4, -0.7, 0.7, 1.4, 2.0, 3.0];
+
+/// All that is asked for, about a joint fit; `names` are those of the problem's blocks.
+pub fn uncertainty(
+    problem: &Problem<'_>,
+    names: &[&str],
+    fit: &Fit,
+    factor: f64,
+    asked: &Asked,
+) -> Uncertainty {
+    let told: Vec<Coordinate> = Coordinate::PHYSICAL
+        .into_iter()
+        .filter(|c| fit.free.contains(c))
+        .collect();
+    Uncertainty {
+        information_share: shares(problem, names, fit, &told),
+        profiles: match asked.way {
+            Way::Profile => told
+                .iter()
+                .filter_map(|c| profile(problem, fit, factor, *c))
+                .collect(),
+            _ => Vec::new(),
+        },
+        bootstrap: match asked.way {
+            Way::Bootstrap => bootstrap(problem, fit, asked, &told),
+            _ => Vec::new(),
+        },
+    }
+}
+
+/// Share of each block in the information on each coordinate: (C F C)ᵢᵢ/Cᵢᵢ with the block's F.
+fn shares(
+    problem: &Problem<'_>,
+    names: &[&str],
+    fit: &Fit,
+    told: &[Coordinate],
+) -> BTreeMap<String, BTreeMap<String, f64>> {
+    let mut all: BTreeMap<String, BTreeMap<String, f64>> = BTreeMap::new();
+    let parts = problem.parts(&fit.parameters);
+    let stated = std::iter::once("stated");
+    for (name, part) in names.iter().copied().chain(stated).zip(&parts) {
+        let spread = &fit.covariance * &part.matrix * &fit.covariance;
+        for coordinate in told {
+            let Some(i) = fit.free.iter().position(|c| c == coordinate) else {
+                continue;
+            };
+            let share = spread[(i, i)] / fit.covariance[(i, i)];
+            all.entry(coordinate.name().into())
+                .or_default()
+                .insert(name.into(), share);
+        }
+    }
+    all
+}
+
+/// Profile of one coordinate; `None` where the fits beside the optimum fail.
+fn profile(
+    problem: &Problem<'_>,
+    fit: &Fit,
+    factor: f64,
+    coordinate: Coordinate,
+) -> Option<ProfileCurve> {
+    let error = fit.error(coordinate)? * factor.sqrt();
+    let best = fit.parameters.coordinate(coordinate);
+    let mut points: Vec<(f64, f64)> = OFFSETS
+        .iter()
+        .filter_map(|k| {
+            let value = best + k * error;
+            let cost = problem.cost_with(fit, coordinate, value)?;
+            Some((value, (cost - fit.cost) / factor))
+        })
+        .collect();
+    points.push((best, 0.0));
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let physical = |v: f64| {
+        if coordinate.is_logarithm() {
+            v.exp()
+        } else {
+            v
+        }
+    };
+    let below: Vec<(f64, f64)> = points.iter().rev().filter(|p| p.0 <= best).copied().collect();
+    let above: Vec<(f64, f64)> = points.iter().filter(|p| p.0 >= best).copied().collect();
+    let ends = reaches(&below).zip(reaches(&above));
+    Some(ProfileCurve {
+        parameter: coordinate.name().into(),
+        values: points.iter().map(|p| physical(p.0)).collect(),
+        delta_chi2: points.iter().map(|p| p.1.max(0.0)).collect(),
+        interval95: ends.map(|(a, b)| [physical(a), physical(b)]),
+    })
+}
+
+/// Where a rise along points away from the optimum reaches [`CHI2_95`]; interpolated in its root,
+/// which is nearly a straight line.
+fn reaches(points: &[(f64, f64)]) -> Option<f64> {
+    points.windows(2).find_map(|w| {
+        let (a, b) = (w[0].1.max(0.0).sqrt(), w[1].1.max(0.0).sqrt());
+        let level = CHI2_95.sqrt();
+        (a <= level && level < b).then(|| w[0].0 + (w[1].0 - w[0].0) * (level - a) / (b - a))
+    })
+}
+
+/// Bootstrap over the items of each block (records, impacts): drawn with replacement, each replica
+/// fitted by one Newton step from the optimum; priors are drawn from their own distributions.
+fn bootstrap(
+    problem: &Problem<'_>,
+    fit: &Fit,
+    asked: &Asked,
+    told: &[Coordinate],
+) -> Vec<Bootstrapped> {
+    let blocks = problem.item_parts(&fit.parameters);
+    let replicas: Vec<Vec<f64>> = (0..asked.replicas as u64)
+        .into_par_iter()
+        .filter_map(|i| replica(problem, fit, &blocks, (asked.seed, i)))
+        .collect();
+    told.iter()
+        .filter_map(|coordinate| {
+            let i = fit.free.iter().position(|c| c == coordinate)?;
+            let best = fit.parameters.coordinate(*coordinate);
+            let mut values: Vec<f64> = replicas.iter().map(|step| best + step[i]).collect();
+            values.sort_by(f64::total_cmp);
+            summary(*coordinate, &values)
+        })
+        .collect()
+}
+
+fn replica(
+    problem: &Problem<'_>,
+    fit: &Fit,
+    blocks: &[Vec<Normal>],
+    (seed, index): (u64, u64),
+) -> Option<Vec<f64>> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream(index);
+    let mut sum = Normal::zeros(fit.free.len());
+    for items in blocks.iter().filter(|b| !b.is_empty()) {
+        for _ in 0..items.len() {
+            sum.add(&items[rng.random_range(0..items.len())]);
+        }
+    }
+    for prior in &problem.priors {
+        let mut part = problem.prior_normal(prior, &fit.parameters);
+        let drawn: f64 = StandardNormal.sample(&mut rng);
+        if let Some(i) = fit.free.iter().position(|c| *c == prior.coordinate) {
+            part.gradient[i] += drawn / prior.deviation;
+        }
+        sum.add(&part);
+    }
+    let step = inverse(&sum.matrix)? * -&sum.gradient;
+    Some(step.as_slice().to_vec())
+}
+
+fn summary(coordinate: Coordinate, sorted: &[f64]) -> Option<Bootstrapped> {
+    let physical = |v: f64| {
+        if coordinate.is_logarithm() {
+            v.exp()
+        } else {
+            v
+        }
+    };
+    let at = |share: f64| {
+        let i = (share * (sorted.len().saturating_sub(1)) as f64).round() as usize;
+        sorted.get(i).copied()
+    };
+    let mean = crate::signal::robust::mean(sorted);
+    let apart: Vec<f64> = sorted.iter().map(|v| physical(*v) - physical(mean)).collect();
+    Some(Bootstrapped {
+        parameter: coordinate.name().into(),
+        standard_error: crate::signal::robust::rms(&apart),
+        interval95: [physical(at(0.025)?), physical(at(0.975)?)],
+    })
+}
