@@ -35,3 +35,6 @@ mod real_data;
 
 /// The report as a user gets it, and the finished example.
 mod report;
+
+/// The verbs of the theory: what they leave, replays, parts and their merge, runs broken off.
+mod theory;

@@ -1,8 +1,11 @@
 //! Brute-force maps: every cell from rest, and carried along from its neighbour in rising and in
 //! falling η, so that coexisting motions show.
 
-use super::map::{End, MapGrid, MapSettings, Start, check, march_from};
-use crate::model::{Machine, ModelError};
+use rayon::prelude::*;
+
+use super::kernel::{Cell, Feed, Outcome};
+use super::map::{End, Kernel, MapGrid, MapSettings, Start, UnitMass, check, march_from, run};
+use crate::model::{Initial, Machine, ModelError};
 
 /// How the cells of a map are started.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,8 +34,12 @@ pub fn brute_maps(
     settings: &MapSettings,
 ) -> Result<Maps, ModelError> {
     check(machine, grid, settings)?;
-    let [start, rising, falling] = WAYS.map(|way| brute_map(machine, grid, settings, way));
-    Ok([start?, rising?, falling?])
+    let start = brute_map(machine, grid, settings, Way::FromStart)?;
+    // both ways in one march, so that all lanes have work
+    let mut carried = carried(machine, grid, settings, &[Way::Rising, Way::Falling])?;
+    let falling = carried.pop().unwrap_or_default();
+    let rising = carried.pop().unwrap_or_default();
+    Ok([start, rising, falling])
 }
 
 /// What every cell settles on, row by row as in `RegionMap`.
@@ -45,42 +52,137 @@ pub fn brute_map(
     settings: &MapSettings,
     way: Way,
 ) -> Result<Vec<End>, ModelError> {
-    let columns = grid.eta.len();
+    if way != Way::FromStart {
+        let mut carried = carried(machine, grid, settings, &[way])?;
+        return Ok(carried.pop().unwrap_or_default());
+    }
     let start = |i: usize| Start {
         at: grid.at(i),
         initial: settings.start,
         phase: 0.0,
     };
-    if way == Way::FromStart {
-        let starts: Vec<Start> = (0..grid.len()).map(start).collect();
-        return march_from(machine, &starts, settings);
+    let starts: Vec<Start> = (0..grid.len()).map(start).collect();
+    march_from(machine, &starts, settings)
+}
+
+/// Rows that the marching kernel carries from column to column, each on its own: a lane whose
+/// cell is done takes any row that can go on.
+struct Chains<'a> {
+    unit: UnitMass,
+    grid: &'a MapGrid,
+    ways: &'a [Way],
+    ready: Vec<(usize, Cell)>,
+    done: Vec<(usize, Outcome)>,
+}
+
+/// Which way's map, and which cell of it, a numbered step is; steps are numbered
+/// (way · rows + row) · columns + step.
+fn place(grid: &MapGrid, ways: &[Way], number: usize) -> (usize, usize) {
+    let (columns, rows) = (grid.eta.len(), grid.rho.len());
+    let (chain, step) = (number / columns, number % columns);
+    let column = match ways[chain / rows] {
+        Way::Falling => columns - 1 - step,
+        _ => step,
+    };
+    (chain / rows, (chain % rows) * columns + column)
+}
+
+impl Feed for Chains<'_> {
+    fn next(&mut self) -> Option<(usize, Cell)> {
+        self.ready.pop()
     }
-    let mut cells: Vec<Option<End>> = vec![None; grid.len()];
+    fn done(&mut self, number: usize, outcome: Outcome) {
+        self.done.push((number, outcome));
+        let next = number + 1;
+        if !next.is_multiple_of(self.grid.eta.len()) {
+            let end = self.unit.end(&outcome);
+            let start = Start {
+                at: self.grid.at(place(self.grid, self.ways, next).1),
+                initial: end.initial,
+                phase: end.phase,
+            };
+            self.ready.push((next, self.unit.cell(&start)));
+        }
+    }
+}
+
+/// Carry motions from column to column in the marching kernel.
+fn carried_in_lanes(
+    unit: UnitMass,
+    grid: &MapGrid,
+    settings: &MapSettings,
+    ways: &[Way],
+) -> Vec<Vec<End>> {
+    let (columns, course) = (grid.eta.len(), unit.course(settings));
+    let kernel = settings.kernel.filter(|k| k.is_available());
+    let kernel = kernel.unwrap_or_else(Kernel::of_this_machine);
+    let first = |number: usize| Start {
+        at: grid.at(place(grid, ways, number).1),
+        initial: settings.start,
+        phase: 0.0,
+    };
+    let rows: Vec<(usize, Cell)> = (0..ways.len() * grid.rho.len())
+        .map(|chain| (chain * columns, unit.cell(&first(chain * columns))))
+        .collect();
+    let share = rows.len().div_ceil(rayon::current_num_threads()).max(1);
+    let march = |ready: &[(usize, Cell)]| {
+        let mut chains = Chains {
+            unit,
+            grid,
+            ways,
+            ready: ready.to_vec(),
+            done: Vec::new(),
+        };
+        run(kernel, &course, &mut chains);
+        chains.done
+    };
+    let mut done: Vec<(usize, Outcome)> = rows.par_chunks(share).flat_map_iter(march).collect();
+    done.sort_unstable_by_key(|d| place(grid, ways, d.0));
+    let judged = |(_, outcome): &(usize, Outcome)| End {
+        motion: unit.judge(outcome, &settings.watch),
+        ..unit.end(outcome)
+    };
+    let ends: Vec<End> = done.par_iter().map(judged).collect();
+    ends.chunks(grid.len().max(1))
+        .map(<[End]>::to_vec)
+        .collect()
+}
+
+/// Carry motions from column to column, in one or both directions at once.
+fn carried(
+    machine: &Machine,
+    grid: &MapGrid,
+    settings: &MapSettings,
+    ways: &[Way],
+) -> Result<Vec<Vec<End>>, ModelError> {
+    let (columns, rows) = (grid.eta.len(), grid.rho.len());
+    let together = |i: &Initial| machine.y.is_none() || (i.x == i.y && i.vx == i.vy);
+    if let Some(unit) = UnitMass::of(machine).filter(|_| together(&settings.start)) {
+        return Ok(carried_in_lanes(unit, grid, settings, ways));
+    }
+    let mut cells: Vec<Vec<Option<End>>> = vec![vec![None; grid.len()]; ways.len()];
     let mut before: Option<Vec<End>> = None;
     for step in 0..columns {
-        let column = if way == Way::Rising {
-            step
-        } else {
-            columns - 1 - step
+        let column = |way: Way| match way {
+            Way::Falling => columns - 1 - step,
+            _ => step,
         };
-        let numbers: Vec<usize> = (0..grid.rho.len()).map(|k| k * columns + column).collect();
-        let starts: Vec<Start> = numbers
-            .iter()
-            .enumerate()
-            .map(|(k, &i)| match &before {
-                None => start(i),
-                Some(ends) => Start {
-                    at: grid.at(i),
-                    initial: ends[k].initial,
-                    phase: ends[k].phase,
-                },
-            })
-            .collect();
+        let number = |k: usize| (k % rows) * columns + column(ways[k / rows]);
+        let start = |k: usize| {
+            let last = before.as_ref().map(|ends| ends[k]);
+            Start {
+                at: grid.at(number(k)),
+                initial: last.map_or(settings.start, |end| end.initial),
+                phase: last.map_or(0.0, |end| end.phase),
+            }
+        };
+        let starts: Vec<Start> = (0..ways.len() * rows).map(start).collect();
         let ends = march_from(machine, &starts, settings)?;
-        for (&i, end) in numbers.iter().zip(&ends) {
-            cells[i] = Some(*end);
+        for (k, end) in ends.iter().enumerate() {
+            cells[k / rows][number(k)] = Some(*end);
         }
         before = Some(ends);
     }
-    Ok(cells.into_iter().flatten().collect())
+    let whole = |map: Vec<Option<End>>| map.into_iter().flatten().collect();
+    Ok(cells.into_iter().map(whole).collect())
 }

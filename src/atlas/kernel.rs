@@ -86,10 +86,11 @@ const RESOLUTION: f64 = 1e-13;
 /// Constants in every lane.
 struct Constants<V> {
     beta: V,
-    two_beta: V,
+    minus_beta: V,
+    minus_two_beta: V,
     omega: V,
-    inverse_omega: V,
-    restitution: V,
+    minus_inverse_omega: V,
+    minus_restitution: V,
     quarter_omega: V,
     quarter_beta: V,
 }
@@ -108,6 +109,7 @@ struct Group<V> {
     /// η⁴|F|
     k4: V,
     longest: V,
+    least: V,
     first: V,
     near: V,
     rest: V,
@@ -120,11 +122,8 @@ struct Group<V> {
     t_next: V,
     hm: V,
     hits: V,
-    anchor_fr: V,
-    anchor_fi: V,
-    anchor_v: V,
-    anchor_t: V,
-    anchor_hits: V,
+    /// z's imaginary part after the anchor's impact.
+    anchor: V,
     /// Impacts at which the anchor is set anew.
     reach: V,
     tolerance: V,
@@ -134,19 +133,22 @@ struct Group<V> {
 struct Events<V: Lanes> {
     due: V::Mask,
     rest: V::Mask,
+    /// An impact that looks like the anchor's.
     recurs: V::Mask,
+    /// An impact that is to be the anchor.
+    anew: V::Mask,
     never: V::Mask,
     step: V,
+    /// z's imaginary part after an impact.
+    after: V,
 }
 
 impl<V: Lanes> Events<V> {
     /// Lanes with any event, a bit each.
     #[inline(always)]
     fn any(&self) -> u32 {
-        V::bits(V::or(
-            V::or(self.due, self.rest),
-            V::or(self.recurs, self.never),
-        ))
+        let impact = V::or(self.rest, V::or(self.recurs, self.anew));
+        V::bits(V::or(impact, V::or(self.due, self.never)))
     }
 }
 
@@ -205,12 +207,10 @@ fn modulus_above<V: Lanes>(re: V, im: V) -> V {
 fn step<V: Lanes, const DEGREE: usize>(c: &Constants<V>, s: &mut Group<V>) -> Events<V> {
     let zero = V::splat(0.0);
     // where the mass is
-    let velocity_h = |zr: V, zi: V| zero.sub(c.beta.mul_add(zr, c.omega.mul(zi)));
-    let vh = velocity_h(s.zr, s.zi);
+    let vh = c.omega.neg_mul_add(s.zi, c.minus_beta.mul(s.zr));
     let v = s.eta.neg_mul_add(s.fi, vh);
     let g = s.rho.sub(s.zr.add(s.fr));
-    let ah = zero.sub(c.two_beta.mul_add(vh, s.zr));
-    let a = s.eta2.neg_mul_add(s.fr, ah);
+    let a = s.eta2.neg_mul_add(s.fr, c.minus_two_beta.mul_sub(vh, s.zr));
     let near = g.le(V::splat(1e-13)
         .mul(v)
         .max(V::splat(4e-15).mul_add(s.zm, s.near)));
@@ -221,13 +221,12 @@ fn step<V: Lanes, const DEGREE: usize>(c: &Constants<V>, s: &mut Group<V>) -> Ev
     let fr_hit = turn.neg_mul_add(s.fi, s.fr);
     let fi_hit = turn.mul_add(s.fr, s.fi);
     let v_hit = a.mul_add(dt, v);
-    let t_hit = s.t.add(dt);
-    let after = zero.sub(c.restitution.mul(v_hit));
+    let after = c.minus_restitution.mul(v_hit);
     let zr_hit = s.rho.sub(fr_hit);
     let vh_hit = s.eta.mul_add(fi_hit, after);
-    let zi_hit = zero.sub(c.beta.mul_add(zr_hit, vh_hit).mul(c.inverse_omega));
+    let zi_hit = c.beta.mul_add(zr_hit, vh_hit).mul(c.minus_inverse_omega);
     let zm_hit = modulus_above(zr_hit, zi_hit);
-    let recurs = recurrence(s, hit, (fr_hit, fi_hit, v_hit, t_hit));
+    let (recurs, anew) = recurrence(s, hit, zi_hit, zm_hit);
     let fr = fr_hit.or_else(hit, s.fr);
     let fi = fi_hit.or_else(hit, s.fi);
     let zr = zr_hit.or_else(hit, s.zr);
@@ -236,21 +235,21 @@ fn step<V: Lanes, const DEGREE: usize>(c: &Constants<V>, s: &mut Group<V>) -> Ev
     let vh = vh_hit.or_else(hit, vh);
     let v = after.or_else(hit, v);
     let g = zero.or_else(hit, g.max(zero));
-    let t = t_hit.or_else(hit, s.t);
+    let t = s.t.add(dt).or_else(hit, s.t);
     let hm = s.first.or_else(hit, s.hm);
-    let ah = zero.sub(c.two_beta.mul_add(vh, zr));
+    let ah = c.minus_two_beta.mul_sub(vh, zr);
     let a = s.eta2.neg_mul_add(fr, ah);
-    let rest = V::and(hit, after.mul(after).le(s.rest.mul(a.abs())));
+    let v2 = v.mul(v);
+    let rest = V::and(hit, v2.le(s.rest.mul(a.abs())));
     // the safe step
-    let j = s.eta3.mul_add(fi, zero.sub(c.two_beta.mul_add(ah, vh)));
+    let j = s.eta3.mul_add(fi, c.minus_two_beta.mul_sub(ah, vh));
     let k = zm.add(s.k4);
-    let bulge = hm.mul(
-        k.mul(hm)
-            .mul_add(V::splat(1.0 / 12.0), j.mul(V::splat(1.0 / 3.0))),
-    );
-    let m = a.add(bulge.max(zero));
+    let bulge = k
+        .mul(hm)
+        .mul_add(V::splat(1.0 / 12.0), j.mul(V::splat(1.0 / 3.0)));
+    let m = hm.mul_add(bulge.max(zero), a);
     let two_g = g.add(g);
-    let d = m.mul_add(two_g, v.mul(v));
+    let d = m.mul_add(two_g, v2);
     let root = d.max(zero).sqrt();
     let closing = zero.lt(v);
     let no_root = V::or(d.lt(zero), V::and_not(m.le(zero), closing));
@@ -262,43 +261,43 @@ fn step<V: Lanes, const DEGREE: usize>(c: &Constants<V>, s: &mut Group<V>) -> Ev
     let (sw, cw) = sin_cos(c.quarter_omega.mul(h));
     let (se, ce) = sin_cos(s.quarter_eta.mul(h));
     let (er, ei) = (e.mul(cw), e.mul(sw));
-    s.zr = er.mul_add(zr, zero.sub(ei.mul(zi)));
+    s.zr = er.mul_sub(zr, ei.mul(zi));
     s.zi = er.mul_add(zi, ei.mul(zr));
     s.zm = zm.mul(e);
-    s.fr = ce.mul_add(fr, zero.sub(se.mul(fi)));
+    s.fr = ce.mul_sub(fr, se.mul(fi));
     s.fi = ce.mul_add(fi, se.mul(fr));
     s.t = t.add(h);
-    let least = s.longest.mul(V::splat(1e-3));
-    s.hm = h.mul(V::splat(1.5)).min(s.longest).max(least);
+    s.hm = h.mul(V::splat(1.5)).min(s.longest).max(s.least);
     let (due, never) = (s.t_next.le(s.t), s.zm.add(s.forced).lt(s.exit_rho));
     Events {
         due,
         rest,
         recurs,
+        anew,
         never,
         step: h,
+        after: zi,
     }
 }
 
-/// Brent's search for a returning (phase, speed) at impacts: compare with an anchor that is set
-/// anew after 1, 2, 4 … impacts.
+/// Brent's search for a returning impact: each is compared with an anchor that is set anew after
+/// 1, 2, 4 … impacts. Here by one number alone, the rest of the comparison and the setting are
+/// the slow path's. Gives which impacts look like the anchor's, and which are to be the anchor.
 #[inline(always)]
-fn recurrence<V: Lanes>(s: &mut Group<V>, hit: V::Mask, at: (V, V, V, V)) -> V::Mask {
-    let (fr, fi, v, t) = at;
-    let turned = fr.sub(s.anchor_fr).abs().max(fi.sub(s.anchor_fi).abs());
-    let same_phase = turned.le(s.tolerance.mul(s.forced));
-    let same_speed = v.sub(s.anchor_v).abs().le(s.tolerance.mul(v.add(s.forced)));
-    let recurs = V::and(hit, V::and(same_phase, same_speed));
+fn recurrence<V: Lanes>(s: &mut Group<V>, hit: V::Mask, zi: V, zm: V) -> (V::Mask, V::Mask) {
     s.hits = s.hits.add(V::splat(1.0)).or_else(hit, s.hits);
-    let anew = V::and_not(V::and(hit, s.reach.le(s.hits)), recurs);
-    s.anchor_fr = fr.or_else(anew, s.anchor_fr);
-    s.anchor_fi = fi.or_else(anew, s.anchor_fi);
-    s.anchor_v = v.or_else(anew, s.anchor_v);
-    s.anchor_t = t.or_else(anew, s.anchor_t);
-    let count = s.hits.sub(s.anchor_hits);
-    s.reach = s.hits.add(count.add(count)).or_else(anew, s.reach);
-    s.anchor_hits = s.hits.or_else(anew, s.anchor_hits);
-    recurs
+    let near = s.tolerance.mul(zm.add(s.forced));
+    let same = zi.sub(s.anchor).abs().le(near);
+    (V::and(hit, same), V::and(hit, s.reach.le(s.hits)))
+}
+
+/// The impact with which later ones are compared.
+#[derive(Debug, Clone, Copy)]
+struct Anchor {
+    /// Time.
+    t: f64,
+    /// Number of impacts so far.
+    hits: f64,
 }
 
 /// What the slow path knows of a lane beside the vectors.
@@ -316,6 +315,7 @@ struct Lane {
     /// Time and impacts at the last release from the stop.
     released: Option<(f64, f64)>,
     hits_at_watch: f64,
+    anchor: Anchor,
 }
 
 const IDLE: Lane = Lane {
@@ -334,6 +334,7 @@ const IDLE: Lane = Lane {
     confirming: false,
     released: None,
     hits_at_watch: 0.0,
+    anchor: Anchor { t: 0.0, hits: 0.0 },
 };
 
 /// Lanes of the widest kernel.
@@ -345,10 +346,11 @@ pub fn march<V: Lanes, const DEGREE: usize>(course: &Course, feed: &mut impl Fee
     let omega = (1.0 - course.damping_ratio * course.damping_ratio).sqrt();
     let c = Constants {
         beta: V::splat(course.damping_ratio),
-        two_beta: V::splat(2.0 * course.damping_ratio),
+        minus_beta: V::splat(-course.damping_ratio),
+        minus_two_beta: V::splat(-2.0 * course.damping_ratio),
         omega: V::splat(omega),
-        inverse_omega: V::splat(1.0 / omega),
-        restitution: V::splat(course.restitution),
+        minus_inverse_omega: V::splat(-1.0 / omega),
+        minus_restitution: V::splat(-course.restitution),
         quarter_omega: V::splat(0.25 * omega),
         quarter_beta: V::splat(0.25 * course.damping_ratio),
     };
@@ -386,6 +388,7 @@ fn empty_group<V: Lanes>() -> Group<V> {
         forced: one,
         k4: one,
         longest: one,
+        least: zero,
         first: one,
         near: zero,
         rest: zero,
@@ -398,11 +401,7 @@ fn empty_group<V: Lanes>() -> Group<V> {
         t_next: far,
         hm: one,
         hits: zero,
-        anchor_fr: far,
-        anchor_fi: far,
-        anchor_v: far,
-        anchor_t: zero,
-        anchor_hits: zero,
+        anchor: far,
         reach: one,
         tolerance: zero,
     }
@@ -475,6 +474,7 @@ fn load<V: Lanes>(
         (&mut s.forced, amplitude),
         (&mut s.k4, eta.powi(4) * amplitude),
         (&mut s.longest, LONGEST / eta.max(1.0)),
+        (&mut s.least, 1e-3 * LONGEST / eta.max(1.0)),
         (&mut s.first, FIRST / eta.max(1.0)),
         (&mut s.near, 4e-15 * (amplitude + 1.0)),
         (
@@ -488,7 +488,7 @@ fn load<V: Lanes>(
     for (vector, value) in values {
         vector.set(lane, value);
     }
-    forget(s, lane, 0.0);
+    forget(s, info, lane, 0.0);
     place(
         course,
         s,
@@ -521,13 +521,10 @@ fn park<V: Lanes>(s: &mut Group<V>, lane: usize) {
 }
 
 /// Start the search for a recurrence anew.
-fn forget<V: Lanes>(s: &mut Group<V>, lane: usize, t: f64) {
-    for vector in [&mut s.anchor_fr, &mut s.anchor_fi, &mut s.anchor_v] {
-        vector.set(lane, f64::INFINITY);
-    }
-    s.anchor_t.set(lane, t);
+fn forget<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize, t: f64) {
     let hits = s.hits.get(lane);
-    s.anchor_hits.set(lane, hits);
+    info.anchor = Anchor { t, hits };
+    s.anchor.set(lane, f64::INFINITY);
     s.reach.set(lane, hits + 1.0);
 }
 
@@ -662,8 +659,16 @@ fn serve<V: Lanes>(
 ) -> bool {
     let raised = |mask: V::Mask| V::bits(mask) & (1 << lane) != 0;
     let h = e.step.get(lane);
-    if raised(e.recurs) {
-        recognise(s, info, lane, h);
+    if raised(e.recurs) || raised(e.anew) {
+        let here = Anchor {
+            t: s.t.get(lane) - h,
+            hits: s.hits.get(lane),
+        };
+        if raised(e.recurs) && is_same(s, info, lane, &here) {
+            recognise(s, info, lane, &here);
+        } else if raised(e.anew) {
+            set_anchor(s, info, lane, here, e.after.get(lane));
+        }
     }
     let mut finished = info.found.is_some() && course.leave_early;
     if raised(e.rest) && !finished {
@@ -701,16 +706,34 @@ fn serve<V: Lanes>(
     finished
 }
 
+/// Least difference of phases, rad, that the times of impacts tell.
+const TIMING: f64 = 1e-9;
+
+/// Whether an impact that looks like the anchor's is: whole drive periods lie between them.
+fn is_same<V: Lanes>(s: &Group<V>, info: &Lane, lane: usize, here: &Anchor) -> bool {
+    let periods = (here.t - info.anchor.t) / info.period;
+    let turned = std::f64::consts::TAU * (periods - periods.round()).abs();
+    turned <= s.tolerance.get(lane).max(TIMING)
+}
+
+/// Have later impacts compared with this one, until twice as many as since the last anchor.
+fn set_anchor<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize, here: Anchor, zi: f64) {
+    s.anchor.set(lane, zi);
+    let count = here.hits - info.anchor.hits;
+    s.reach.set(lane, here.hits + 2.0 * count);
+    info.anchor = here;
+}
+
 /// An orbit has come back to its anchor. With complex multipliers a motion that still converges
 /// comes back first after several turns, so a return of p > 1 impacts is followed once more
 /// with a wider tolerance, and the first return then counts.
-fn recognise<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize, h: f64) {
-    let (anchor_t, hit_t) = (s.anchor_t.get(lane), s.t.get(lane) - h);
-    if info.found.is_some() || info.released.is_some_and(|(t, _)| t >= anchor_t) {
+fn recognise<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize, here: &Anchor) {
+    let anchor = info.anchor;
+    if info.found.is_some() || info.released.is_some_and(|(t, _)| t >= anchor.t) {
         return; // an orbit that rests at the stop is told by its releases
     }
-    let p = s.hits.get(lane) - s.anchor_hits.get(lane);
-    let n = ((hit_t - anchor_t) / info.period).round();
+    let p = here.hits - anchor.hits;
+    let n = ((here.t - anchor.t) / info.period).round();
     if n < 1.0 {
         return;
     }
@@ -722,13 +745,12 @@ fn recognise<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize, h: f64) {
             chatter: false,
         });
         s.tolerance.set(lane, -1.0);
+        s.reach.set(lane, f64::INFINITY);
         return;
     }
     info.confirming = true;
-    let hits = s.hits.get(lane);
-    s.anchor_hits.set(lane, hits);
+    (info.anchor.hits, info.anchor.t) = (here.hits, here.t);
     s.reach.set(lane, f64::INFINITY);
-    s.anchor_t.set(lane, hit_t);
     let wider = s.tolerance.get(lane) * if info.watching { 100.0 } else { 1000.0 };
     s.tolerance.set(lane, wider);
 }
@@ -741,15 +763,13 @@ fn start_watch<V: Lanes>(course: &Course, s: &mut Group<V>, info: &mut Lane, lan
         lane,
         (course.settle_periods + course.watch_periods) * info.period,
     );
-    forget(s, lane, t);
-    s.tolerance.set(
-        lane,
-        if info.found.is_some() {
-            -1.0
-        } else {
-            course.loose
-        },
-    );
+    forget(s, info, lane, t);
+    let known = info.found.is_some();
+    s.tolerance
+        .set(lane, if known { -1.0 } else { course.loose });
+    if known {
+        s.reach.set(lane, f64::INFINITY);
+    }
 }
 
 /// Motion of a cell whose orbit did not recur; chaos is a guess that `map` follows up.

@@ -24,6 +24,8 @@ pub trait Lanes: Copy {
     fn mul_add(self, b: Self, c: Self) -> Self;
     /// c − self · b
     fn neg_mul_add(self, b: Self, c: Self) -> Self;
+    /// self · b − c
+    fn mul_sub(self, b: Self, c: Self) -> Self;
     /// Smaller of both.
     fn min(self, b: Self) -> Self;
     /// Greater of both.
@@ -92,6 +94,10 @@ impl Lanes for f64 {
     #[inline(always)]
     fn neg_mul_add(self, b: Self, c: Self) -> Self {
         c - self * b
+    }
+    #[inline(always)]
+    fn mul_sub(self, b: Self, c: Self) -> Self {
+        self * b - c
     }
     #[inline(always)]
     fn min(self, b: Self) -> Self {
@@ -186,6 +192,10 @@ impl<V: Lanes> Lanes for Two<V> {
     #[inline(always)]
     fn neg_mul_add(self, b: Self, c: Self) -> Self {
         Self(self.0.neg_mul_add(b.0, c.0), self.1.neg_mul_add(b.1, c.1))
+    }
+    #[inline(always)]
+    fn mul_sub(self, b: Self, c: Self) -> Self {
+        Self(self.0.mul_sub(b.0, c.0), self.1.mul_sub(b.1, c.1))
     }
     #[inline(always)]
     fn abs(self) -> Self {
@@ -285,6 +295,10 @@ mod x86 {
             Self(unsafe { _mm256_fnmadd_pd(self.0, b.0, c.0) })
         }
         #[inline(always)]
+        fn mul_sub(self, b: Self, c: Self) -> Self {
+            Self(unsafe { _mm256_fmsub_pd(self.0, b.0, c.0) })
+        }
+        #[inline(always)]
         fn min(self, b: Self) -> Self {
             Self(unsafe { _mm256_min_pd(self.0, b.0) })
         }
@@ -364,6 +378,10 @@ mod x86 {
         #[inline(always)]
         fn neg_mul_add(self, b: Self, c: Self) -> Self {
             Self(unsafe { _mm512_fnmadd_pd(self.0, b.0, c.0) })
+        }
+        #[inline(always)]
+        fn mul_sub(self, b: Self, c: Self) -> Self {
+            Self(unsafe { _mm512_fmsub_pd(self.0, b.0, c.0) })
         }
         #[inline(always)]
         fn min(self, b: Self) -> Self {

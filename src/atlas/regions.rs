@@ -135,11 +135,8 @@ pub fn assemble(
     columns: Vec<Vec<Slice>>,
 ) -> Atlas {
     let grid = &settings.grid;
-    let resting: Vec<Vec<RestingSlice>> = grid
-        .eta
-        .par_iter()
-        .map(|&eta| resting_slices(machine, eta, &grid.rho, settings.largest_n))
-        .collect();
+    let most = (settings.largest_p, settings.largest_n);
+    let resting = resting_slices(machine, grid, most, settings.map.kernel);
     let rows = (grid.rho.first(), grid.rho.last());
     let range = (
         rows.0.copied().unwrap_or(0.0),

@@ -6,8 +6,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::map::UnitMass;
-use crate::model::{ImpactKind, Initial, Machine, ModelImpact, Setting, Simulator};
+use super::kernel::Cell;
+use super::map::{Kernel, MapGrid, MapSettings, Start, UnitMass, march_all};
+use crate::model::{Initial, Machine, SettledMotion, Watch};
 
 /// What bounds a motion with a dead zone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -60,106 +61,196 @@ impl RestingSlice {
     }
 }
 
-/// (p, n) of the motion that starts at the release; `None`: it does not rest again within
-/// `longest` drive periods.
-fn from_release(machine: &Machine, eta: f64, rho: f64, longest: u32) -> Option<(u32, u32)> {
-    if !(-1.0..1.0).contains(&rho) {
-        return None;
-    }
-    let setting = Setting {
-        phase: rho.acos(),
-        ..Setting::new(eta, rho)
-    };
-    let start = Initial {
-        x: rho,
-        ..Initial::rest()
-    };
-    let mut simulator = Simulator::new(machine, setting, start).ok()?;
-    let (mut impacts, mut rested) = (0, None);
-    for _ in 0..longest {
-        simulator.advance(setting.period(), &mut |i: &ModelImpact| {
-            if rested.is_none() {
-                impacts += 1;
-                if i.dead_zone > 0.0 {
-                    rested = Some((i.tau + i.dead_zone, i.kind));
-                }
-            }
-        });
-        if let Some((released, kind)) = rested {
-            let n = (released / setting.period()).round().max(1.0) as u32;
-            let p = if kind == ImpactKind::ChatterEnd {
-                1
-            } else {
-                impacts
-            };
-            return Some((p, n));
-        }
-    }
-    None
+/// p and n.
+type Label = (u32, u32);
+
+/// What the motions that start at the release show, at many (η, ρ) at once.
+struct Releases<'a> {
+    unit: UnitMass,
+    settings: &'a MapSettings,
 }
 
-/// All resting motions of at most `longest` drive periods along ρ at one η, from the rows of a
-/// grid; edges to 1e-7. Empty for
-/// machines whose release is not one state (asymmetric ones).
+impl Releases<'_> {
+    /// (p, n) of each; `None`: it does not rest again and again in the same way.
+    fn labels(&self, points: &[(f64, f64)]) -> Vec<Option<Label>> {
+        let length = self.unit.scales().0;
+        let released = |rho: f64| (-1.0..1.0).contains(&(rho / length));
+        let (numbers, cells): (Vec<usize>, Vec<Cell>) = points
+            .iter()
+            .enumerate()
+            .filter(|(_, at)| released(at.1))
+            .map(|(i, &at)| {
+                let start = Start {
+                    at,
+                    initial: Initial::both(at.1, 0.0),
+                    phase: (at.1 / length).acos(),
+                };
+                (i, self.unit.cell(&start))
+            })
+            .unzip();
+        let course = self.unit.course(self.settings);
+        let outcomes = march_all(&course, &cells, self.settings.kernel);
+        let mut labels = vec![None; points.len()];
+        for (i, outcome) in numbers.into_iter().zip(outcomes) {
+            labels[i] = match outcome.motion {
+                SettledMotion::Periodic {
+                    p,
+                    n,
+                    dead_zone: true,
+                    ..
+                } => Some((p.into(), n.into())),
+                _ => None,
+            };
+        }
+        labels
+    }
+
+    /// Move all ends to where their labels change, to 1e-7.
+    fn bisect(&self, ends: &mut [End]) {
+        let wide = |end: &End| (end.outside - end.inside).abs() > 1e-7;
+        loop {
+            let open: Vec<usize> = (0..ends.len()).filter(|&i| wide(&ends[i])).collect();
+            if open.is_empty() {
+                return;
+            }
+            let middle = |i: &usize| 0.5 * (ends[*i].inside + ends[*i].outside);
+            let points: Vec<(f64, f64)> = open.iter().map(|i| (ends[*i].eta, middle(i))).collect();
+            for (i, (label, at)) in open.iter().zip(self.labels(&points).iter().zip(points)) {
+                let end = &mut ends[*i];
+                if *label == Some(end.label) {
+                    end.inside = at.1;
+                } else {
+                    end.outside = at.1;
+                }
+            }
+        }
+    }
+}
+
+/// An end of a slice between a clearance that shows its label and one that does not.
+struct End {
+    eta: f64,
+    label: Label,
+    inside: f64,
+    outside: f64,
+}
+
+/// All resting motions of at most `most` impacts in at most `longest` drive periods along ρ, for
+/// each column of a grid, told apart at its rows; edges to 1e-7. Empty for machines whose
+/// release is not one state (asymmetric ones).
 pub fn resting_slices(
     machine: &Machine,
-    eta: f64,
-    rows: &[f64],
-    longest: u32,
-) -> Vec<RestingSlice> {
+    grid: &MapGrid,
+    (most, longest): (u32, u32),
+    kernel: Option<Kernel>,
+) -> Vec<Vec<RestingSlice>> {
     let Some(unit) = UnitMass::of(machine) else {
-        return Vec::new();
+        return vec![Vec::new(); grid.eta.len()];
     };
-    let (length, rate) = unit.scales();
-    let single = unit.machine();
-    let label = |rho: f64| from_release(&single, eta / rate, rho / length, longest);
-    let labels: Vec<Option<(u32, u32)>> = rows.iter().map(|&rho| label(rho)).collect();
-    let mut slices = Vec::new();
+    let settings = MapSettings {
+        watch: Watch {
+            settle_periods: f64::from(2 * longest + 1),
+            watch_periods: 1.0,
+            ..Watch::default()
+        },
+        kernel,
+        ..MapSettings::default()
+    };
+    let releases = Releases {
+        unit,
+        settings: &settings,
+    };
+    let points: Vec<(f64, f64)> = (0..grid.len()).map(|i| grid.at(i)).collect();
+    let labels = releases.labels(&points);
+    let (mut slices, mut ends) = (Vec::new(), Vec::new());
+    for column in 0..grid.eta.len() {
+        runs(
+            grid,
+            &labels,
+            column,
+            (most, longest),
+            &mut |label, rows| {
+                slices.push((column, add_ends(grid, column, label, rows, &mut ends)));
+            },
+        );
+    }
+    releases.bisect(&mut ends);
+    let mut columns = vec![Vec::new(); grid.eta.len()];
+    let length = releases.unit.scales().0;
+    for (column, slice) in slices {
+        columns[column].push(finished(slice, &ends, length));
+    }
+    columns
+}
+
+/// Tell every run of rows of one column with the same label.
+fn runs(
+    grid: &MapGrid,
+    labels: &[Option<Label>],
+    column: usize,
+    (most, longest): (u32, u32),
+    told: &mut impl FnMut(Label, (usize, usize)),
+) {
+    let at = |k: usize| labels[k * grid.eta.len() + column];
     let mut first = 0;
-    for k in 1..=rows.len() {
-        if k < rows.len() && labels[k] == labels[first] {
+    for k in 1..=grid.rho.len() {
+        if k < grid.rho.len() && at(k) == at(first) {
             continue;
         }
-        if let Some((p, n)) = labels[first] {
-            let same = |rho: f64| label(rho) == labels[first];
-            let low = (first > 0).then(|| {
-                let rho = edge(&same, rows[first], rows[first - 1]);
-                let joined = rho / length < -1.0 + 1e-6;
-                (
-                    rho,
-                    if joined {
-                        RestingEdge::Joined
-                    } else {
-                        RestingEdge::DeadZone
-                    },
-                )
-            });
-            let high = (k < rows.len())
-                .then(|| (edge(&same, rows[k - 1], rows[k]), RestingEdge::DeadZone));
-            let interval = (rows[first], rows[k - 1]);
-            slices.push(RestingSlice {
-                eta,
-                p,
-                n,
-                interval,
-                low,
-                high,
-            });
+        if let Some(label) = at(first).filter(|l| l.0 <= most && l.1 <= longest) {
+            told(label, (first, k - 1));
         }
         first = k;
     }
-    slices
 }
 
-/// Last argument with a property, between one that has it and one that has not.
-fn edge(same: &impl Fn(f64) -> bool, mut inside: f64, mut outside: f64) -> f64 {
-    while (outside - inside).abs() > 1e-7 {
-        let middle = 0.5 * (inside + outside);
-        if same(middle) {
-            inside = middle;
+/// A slice whose ends are numbers of ends that are still to be moved.
+type Open = (RestingSlice, Option<usize>, Option<usize>);
+
+fn add_ends(
+    grid: &MapGrid,
+    column: usize,
+    label: Label,
+    (first, last): (usize, usize),
+    ends: &mut Vec<End>,
+) -> Open {
+    let (eta, rho) = (grid.eta[column], &grid.rho);
+    let mut add = |inside: usize, outside: usize| {
+        ends.push(End {
+            eta,
+            label,
+            inside: rho[inside],
+            outside: rho[outside],
+        });
+        ends.len() - 1
+    };
+    let low = (first > 0).then(|| add(first, first - 1));
+    let high = (last + 1 < rho.len()).then(|| add(last, last + 1));
+    let slice = RestingSlice {
+        eta,
+        p: label.0,
+        n: label.1,
+        interval: (rho[first], rho[last]),
+        low: None,
+        high: None,
+    };
+    (slice, low, high)
+}
+
+fn finished((slice, low, high): Open, ends: &[End], length: f64) -> RestingSlice {
+    let edge = |i: usize| {
+        let rho = ends[i].inside;
+        let joined = rho / length < -1.0 + 1e-6;
+        let kind = if joined {
+            RestingEdge::Joined
         } else {
-            outside = middle;
-        }
+            RestingEdge::DeadZone
+        };
+        (rho, kind)
+    };
+    RestingSlice {
+        low: low.map(edge),
+        high: high.map(edge),
+        ..slice
     }
-    inside
 }

@@ -275,7 +275,8 @@ fn valid_basins_of_fig5_shrink_with_restitution() {
 fn regress_a_release_near_full_preload_at_resonance_ends() {
     // amplitudes of 250 cancel at the release: gap and speed are rounding there
     let machine = Machine::symmetric(0.002, 0.0);
-    let slices = super::resting::resting_slices(&machine, 1.0, &even((-1.2, 5.0, 90)), 4);
-    let low = slices.first().unwrap().low.unwrap();
+    let grid = MapGrid::even((1.0, 1.0, 1), (-1.2, 5.0, 90));
+    let slices = super::resting::resting_slices(&machine, &grid, (4, 4), None);
+    let low = slices[0].first().unwrap().low.unwrap();
     assert!((low.0 + 1.0).abs() < 1e-6, "{low:?}");
 }

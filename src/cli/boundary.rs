@@ -5,10 +5,13 @@ use serde_json::{Value, json};
 
 use super::machine::{MachineArgs, motion, refused};
 use super::{Exit, Failure, Voice};
-use crate::atlas::continuation::EdgeKind;
+use crate::atlas::continuation::{Edge, EdgeKind};
 use crate::atlas::map::{MapGrid, MapSettings};
 use crate::atlas::regions::{AtlasSettings, slices_at};
-use crate::model::boundary::{BoundaryPoint, eta_s2, rho_grazing, rho_s1, rho_s2};
+use crate::atlas::resting::{RestingEdge, resting_slices};
+use crate::model::boundary::{
+    BoundaryPoint, etas_grazing, etas_s1, etas_s2, rho_grazing, rho_joined, rho_s1, rho_s2,
+};
 use crate::model::{Machine, Setting};
 
 /// Arguments of `impactid boundary`.
@@ -18,15 +21,15 @@ pub struct Boundary {
     /// Which boundary
     #[arg(long, value_enum)]
     kind: Kind,
-    /// The motion z = p/n that it bounds
-    #[arg(long, value_name = "P/N", default_value = "1/1", value_parser = motion)]
-    motion: (u32, u32),
+    /// The motion z = p/n that it bounds; with j behind it where it has a dead zone
+    #[arg(long, value_name = "P/N[j]", default_value = "1/1", value_parser = bounded)]
+    motion: (u32, u32, bool),
     #[command(flatten)]
     machine: MachineArgs,
     /// Frequency ratio η at which the clearance ρ is asked for
     #[arg(long, value_name = "ETA", required_unless_present = "rho")]
     eta: Option<f64>,
-    /// Clearance ρ at which η is asked for (s2 of z = 1/n)
+    /// Clearance ρ at which η is asked for (s2 and s1 of z = 1/n, grazing)
     #[arg(
         long,
         value_name = "RHO",
@@ -46,19 +49,31 @@ enum Kind {
     S2,
     /// Period doubling
     S1,
-    /// ρ': where the impactless motion touches the contact
+    /// ρ': where the impactless motion z = 0 touches the contact
     Grazing,
     /// Where a further impact begins within the motion
     FurtherImpact,
-    /// 1 | 1j: where the masses begin to stay together after an impact
+    /// 1 | 1j, 2 | 2j: where the masses begin to stay together after an impact
     DeadZone,
+    /// ρp: below it the masses stay together for ever (−1 for equal masses)
+    Joined,
+}
+
+/// A motion z = p/n, with or without a dead zone.
+fn bounded(text: &str) -> Result<(u32, u32, bool), String> {
+    let plain = text.trim().trim_end_matches('j');
+    let (p, n) = motion(plain)?;
+    Ok((p, n, plain.len() < text.trim().len()))
 }
 
 const EXAMPLE: &str = "\
 Example:
   impactid boundary --kind s2 --motion 1/1 --restitution 0.9 --damping-ratio 0.07 --eta 1.3 --json
+  impactid boundary --kind dead-zone --motion 1j --restitution 0 --damping-ratio 0.002 --eta 0.8
 
-Exit code 1: the motion has no such boundary there.";
+`valid` tells whether the boundary is one that a machine shows: the marginal orbit closes, meets no
+further contact, opens no dead zone, and no other multiplier has left the unit circle. Exit code 1:
+the motion has no such boundary there.";
 
 impl Boundary {
     /// Print the point.
@@ -82,58 +97,74 @@ impl Boundary {
 
     fn at_eta(&self, machine: &Machine, eta: f64) -> Result<Vec<Value>, Failure> {
         Setting::new(eta, 0.0).check().map_err(|e| refused(&e))?;
-        let closed = |p: Option<BoundaryPoint>| p.map(|p| point(&p)).into_iter().collect();
-        match (self.kind, self.motion) {
-            (Kind::Grazing, _) => {
-                let rho = rho_grazing(machine, eta);
-                Ok(vec![
-                    json!({"rho": rho, "valid": true, "eta": eta, "closing_speed": 0.0}),
-                ])
-            }
-            (Kind::S2, (1, n)) => Ok(closed(rho_s2(machine, eta, n))),
-            (Kind::S1, (1, n)) => Ok(closed(rho_s1(machine, eta, n))),
-            _ => self.followed(machine, eta),
+        let (p, n, _) = self.motion;
+        let closed = |found: Option<BoundaryPoint>| found.map(|p| vec![point(&p)]);
+        let constant = machine.restitution().constant().is_some();
+        let points = match (self.kind, p) {
+            (Kind::Grazing, _) => Some(vec![of_rho(rho_grazing(machine, eta), eta)]),
+            (Kind::Joined, _) => Some(vec![of_rho(rho_joined(machine, eta), eta)]),
+            (Kind::S2, 1) => Some(closed(rho_s2(machine, eta, n)).unwrap_or_default()),
+            (Kind::S1, 1) if constant => Some(closed(rho_s1(machine, eta, n)).unwrap_or_default()),
+            _ => None,
+        };
+        match points {
+            Some(points) => Ok(points),
+            None => self.followed(machine, eta),
         }
     }
 
     /// Edges of a general p/n, by continuation from orbits that simulation finds.
     fn followed(&self, machine: &Machine, eta: f64) -> Result<Vec<Value>, Failure> {
+        let (p, n, dead_zone) = self.motion;
         let wanted = match self.kind {
             Kind::S2 => EdgeKind::SaddleNode,
             Kind::S1 => EdgeKind::PeriodDoubling,
             Kind::FurtherImpact | Kind::Grazing => EdgeKind::Grazing,
-            Kind::DeadZone => EdgeKind::DeadZone,
+            Kind::DeadZone | Kind::Joined => EdgeKind::DeadZone,
         };
+        let bottom = 1.05 * rho_joined(machine, eta);
         let top = 1.1 * (rho_grazing(machine, eta)).max(1.0) + 1.0;
         let settings = AtlasSettings {
-            grid: MapGrid::even((eta, eta, 1), (-0.99, top, 400)),
-            largest_p: self.motion.0,
-            largest_n: self.motion.1,
+            grid: MapGrid::even((eta, eta, 1), (bottom, top, 400)),
+            largest_p: p,
+            largest_n: n,
             map: MapSettings::default(),
         };
-        let slices = slices_at(machine, eta, &settings).map_err(|e| refused(&e))?;
-        let edges = slices
-            .iter()
-            .filter(|s| (s.p, s.n) == self.motion)
-            .flat_map(|s| [(&s.low, "low"), (&s.high, "high")])
-            .filter(|(edge, _)| edge.kind == wanted);
-        Ok(edges
-            .map(|(edge, side)| {
-                let speed = edge.orbit.speeds.iter().fold(0.0, |m: f64, w| m.max(*w));
-                let rho = edge.orbit.rho;
-                json!({"rho": rho, "valid": true, "eta": eta, "closing_speed": speed, "side": side})
-            })
-            .collect())
+        let mut points = Vec::new();
+        if self.kind == Kind::DeadZone {
+            points = resting(machine, &settings, (p, n));
+        }
+        if !dead_zone {
+            let slices = slices_at(machine, eta, &settings).map_err(|e| refused(&e))?;
+            let edges = slices
+                .iter()
+                .filter(|s| (s.p, s.n) == (p, n))
+                .flat_map(|s| [(&s.low, "low"), (&s.high, "high")])
+                .filter(|(edge, _)| edge.kind == wanted);
+            points.extend(edges.map(|(edge, side)| followed_edge(edge, side)));
+        }
+        Ok(points)
     }
 
     fn at_rho(&self, machine: &Machine, rho: f64) -> Result<Vec<Value>, Failure> {
-        match (self.kind, self.motion) {
-            (Kind::S2, (1, n)) => Ok(eta_s2(machine, rho, n).iter().map(point).collect()),
-            _ => Err(Failure::new(
-                "--rho answers for s2 of z = 1/n alone",
-                "give --eta, or --kind s2 with a motion 1/n",
-            )),
-        }
+        let (p, n, _) = self.motion;
+        let mut points: Vec<Value> = match (self.kind, p) {
+            (Kind::S2, 1) => etas_s2(machine, rho, n).iter().map(point).collect(),
+            (Kind::S1, 1) => etas_s1(machine, rho, n).iter().map(point).collect(),
+            (Kind::Grazing, _) => etas_grazing(machine, rho)
+                .into_iter()
+                .map(|eta| of_rho(rho, eta))
+                .collect(),
+            _ => {
+                return Err(Failure::new(
+                    "--rho answers for s2 and s1 of z = 1/n and for grazing",
+                    "give --eta, or --kind s2, s1 or grazing with a motion 1/n",
+                ));
+            }
+        };
+        // the one at the greatest η first: where a rising sweep jumps
+        points.reverse();
+        Ok(points)
     }
 
     /// One object, the further points of the same boundary beside it under `others`.
@@ -142,7 +173,8 @@ impl Boundary {
             .kind
             .to_possible_value()
             .map_or(String::new(), |v| v.get_name().into());
-        let (p, n) = self.motion;
+        let (p, n, dead_zone) = self.motion;
+        let z = format!("{p}/{n}{}", if dead_zone { "j" } else { "" });
         if !self.json {
             for v in points {
                 let valid = if v["valid"] == json!(true) {
@@ -151,12 +183,12 @@ impl Boundary {
                     "  (no motion there)"
                 };
                 println!(
-                    "{name} of z = {p}/{n}: η = {}  ρ = {}{valid}",
+                    "{name} of z = {z}: η = {}  ρ = {}{valid}",
                     v["eta"], v["rho"]
                 );
             }
             if points.is_empty() {
-                println!("{name} of z = {p}/{n}: none");
+                println!("{name} of z = {z}: none");
             }
             return;
         }
@@ -165,12 +197,40 @@ impl Boundary {
             .cloned()
             .unwrap_or_else(|| json!({"rho": null, "valid": false}));
         first["kind"] = json!(name);
-        first["motion"] = json!(format!("{p}/{n}"));
+        first["motion"] = json!(z);
         if points.len() > 1 {
             first["others"] = json!(points[1..]);
         }
         println!("{first}");
     }
+}
+
+/// A point without an orbit; not valid where it lies at infinity (an undamped resonance).
+fn of_rho(rho: f64, eta: f64) -> Value {
+    json!({"rho": rho, "valid": rho.is_finite(), "eta": eta, "closing_speed": 0.0})
+}
+
+fn followed_edge(edge: &Edge, side: &str) -> Value {
+    let speed = edge.orbit.speeds.iter().fold(0.0, |m: f64, w| m.max(*w));
+    let (eta, rho) = (edge.orbit.eta, edge.orbit.rho);
+    json!({"rho": rho, "valid": true, "eta": eta, "closing_speed": speed, "side": side})
+}
+
+/// Edges of the motion p/n that rests in a dead zone.
+fn resting(machine: &Machine, settings: &AtlasSettings, (p, n): (u32, u32)) -> Vec<Value> {
+    let columns = resting_slices(machine, &settings.grid, (p, n), settings.map.kernel);
+    let slices = columns.iter().flatten().filter(|s| s.is(p, n));
+    slices
+        .flat_map(|s| [(s.low, "low", s.eta), (s.high, "high", s.eta)])
+        .filter_map(|(edge, side, eta)| {
+            let (rho, kind) = edge?;
+            let of_resting = json!({
+                "rho": rho, "valid": true, "eta": eta, "closing_speed": 0.0, "side": side,
+                "of": format!("{p}/{n}j"),
+            });
+            (kind == RestingEdge::DeadZone).then_some(of_resting)
+        })
+        .collect()
 }
 
 fn point(p: &BoundaryPoint) -> Value {
@@ -181,5 +241,6 @@ fn point(p: &BoundaryPoint) -> Value {
         "closing_speed": p.closing_speed,
         "phase_at_impact_rad": p.phase,
         "existence": p.existence,
+        "ends_stability": p.ends_stability,
     })
 }

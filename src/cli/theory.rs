@@ -83,6 +83,8 @@ impl Work<'_> {
         what: &'static str,
         work: impl FnOnce(&Desk<'_>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
+        crate::output::make_folder(self.folder)?;
+        crate::output::clear_parts(self.folder);
         let kept = Kept::open(self.folder, self.text, self.resume)?;
         let progress = Progress::new(voice, what, 1);
         let said = Mutex::new(Vec::new());

@@ -5,7 +5,8 @@ use serde::Serialize;
 
 use super::flight::{Drive, exponent, forced_amplitude};
 use super::orbit::{Branch, Existence, Orbit, bisect, orbit_with_speed};
-use super::params::{Flight, Machine, Setting};
+use super::params::{Flight, Machine, Oscillator, Setting};
+use super::path::C64;
 use super::variation::{free_flow, saltation};
 
 /// A point of a boundary, with the orbit that is marginal there.
@@ -21,12 +22,16 @@ pub struct BoundaryPoint {
     pub phase: f64,
     /// Whether the marginal orbit is a motion of the machine.
     pub existence: Existence,
+    /// Whether no other multiplier of the orbit lies outside the unit circle, so that it is a
+    /// stable motion that ends here.
+    pub ends_stability: bool,
 }
 
 impl BoundaryPoint {
-    /// Whether the marginal orbit exists, so that the boundary is one that a machine shows.
+    /// Whether the marginal orbit exists and a stable motion ends there, so that the boundary is
+    /// one that a machine shows.
     pub fn is_valid(&self) -> bool {
-        self.existence == Existence::Exists
+        self.existence == Existence::Exists && self.ends_stability
     }
 }
 
@@ -43,6 +48,24 @@ pub fn rho_grazing(machine: &Machine, eta: f64) -> f64 {
         forced += forced_amplitude(y, drive);
     }
     clearance(machine, forced.norm())
+}
+
+/// ρp(η): clearance below which masses that are together stay together for ever. Joined masses
+/// press with −2k₁k₂ρ/(k₁+k₂) + Re((F₁D₂ + F₂D₁)/(D₁ + D₂) e^{i(ητ+φ)}), Dᵢ = kᵢ − η²mᵢ + iηbᵢ;
+/// ρp is where that just never vanishes. Equal masses, or one of them: −F/k for every η.
+pub fn rho_joined(machine: &Machine, eta: f64) -> f64 {
+    let parts = |o: &Oscillator| {
+        let k = o.stiffness_per_mass() * o.mass;
+        let dynamic = C64::new(k - eta * eta * o.mass, 2.0 * eta * o.decay_rate() * o.mass);
+        (k, o.drive_amplitude, dynamic)
+    };
+    let (k1, f1, d1) = parts(&machine.x);
+    let Some(y) = &machine.y else {
+        return -f1 / k1;
+    };
+    let (k2, f2, d2) = parts(y);
+    let swing = (d2 * f1 + d1 * f2) / (d1 + d2);
+    -swing.norm() * (k1 + k2) / (2.0 * k1 * k2)
 }
 
 /// Clearance and closing speed at s2 for constant R, without a check of existence:
@@ -82,10 +105,13 @@ fn point(machine: &Machine, eta: f64, n: u32, at: (f64, f64)) -> Option<Boundary
         closing_speed,
         phase: 0.0,
         existence: Existence::NotClosing,
+        ends_stability: false,
     };
     if closing_speed > 0.0 {
         let orbit = orbit_with_speed(machine, Setting::new(eta, rho), n, closing_speed);
         (p.phase, p.existence) = (orbit.phase_at_impact, orbit.existence);
+        let within = |m: &C64| m.norm() < 1.0 + 1e-6;
+        p.ends_stability = orbit.multipliers.iter().all(within);
     }
     Some(p)
 }
@@ -130,7 +156,7 @@ pub fn rho_s1(machine: &Machine, eta: f64, n: u32) -> Option<BoundaryPoint> {
     let equal = machine.y.is_none() || machine.is_symmetric();
     match machine.restitution().constant() {
         Some(r) if equal => {
-            let at = marginal(machine, &branch, r, n, -1.0)?;
+            let at = s1_of_branch(machine, &branch, r)?;
             point(machine, eta, n, at)
         }
         Some(r) => s1_along_branch(machine, &branch, r, n),
@@ -138,16 +164,21 @@ pub fn rho_s1(machine: &Machine, eta: f64, n: u32) -> Option<BoundaryPoint> {
     }
 }
 
+/// Clearance and closing speed at s1 of one mass (or of equal ones) for constant R, without a
+/// check of existence.
+pub fn s1_of_branch(machine: &Machine, branch: &Branch, restitution: f64) -> Option<(f64, f64)> {
+    marginal(machine, branch, restitution, -1.0)
+}
+
 /// Clearance and closing speed of one mass (or of equal ones) where a multiplier is `sign`
 /// (±1): trace = sign·(1 + determinant). For +1 it is s2 again.
-fn marginal(machine: &Machine, branch: &Branch, r: f64, n: u32, sign: f64) -> Option<(f64, f64)> {
+fn marginal(machine: &Machine, branch: &Branch, r: f64, sign: f64) -> Option<(f64, f64)> {
     let masses = machine.gap(1.0);
     let (o, eta) = (&machine.x, branch.eta);
     let lambda = exponent(o);
-    let period = f64::from(n) * std::f64::consts::TAU / eta;
-    let (s, c) = (lambda.im * period).sin_cos();
-    let e = (lambda.re * period).exp();
-    let g = (2.0 * r * e * c + sign * (1.0 + (r * e).powi(2))) * lambda.im / (e * s);
+    let C64 { re: ec, im: es } = branch.returned;
+    let determinant = r * r * branch.returned.norm_sqr();
+    let g = (2.0 * r * ec + sign * (1.0 + determinant)) * lambda.im / es;
     let (f, p) = (branch.forced / masses, o.drive_per_mass());
     let (alpha, q) = (branch.alpha(r), branch.q(r) / eta);
     let f2 = f.norm_sqr();
@@ -206,14 +237,41 @@ pub fn etas_s2(machine: &Machine, rho: f64, n: u32) -> Vec<BoundaryPoint> {
     let Some(r) = machine.restitution().constant() else {
         return Vec::new();
     };
-    let top = 2.5 * f64::from(n);
     let miss = |eta: f64| s2_of_branch(&Branch::new(machine, eta, n), r).0 - machine.gap(rho);
+    points_at(rho, n, miss, |eta| rho_s2(machine, eta, n))
+}
+
+/// The same for the period doubling of z = 1/n.
+pub fn etas_s1(machine: &Machine, rho: f64, n: u32) -> Vec<BoundaryPoint> {
+    let miss = |eta: f64| rho_s1(machine, eta, n).map_or(f64::NAN, |p| p.rho - rho);
+    points_at(rho, n, miss, |eta| rho_s1(machine, eta, n))
+}
+
+/// All η at which the impactless motion grazes at a clearance, rising.
+pub fn etas_grazing(machine: &Machine, rho: f64) -> Vec<f64> {
+    roots(2.5, |eta| rho_grazing(machine, eta) - rho)
+}
+
+fn points_at(
+    rho: f64,
+    n: u32,
+    miss: impl Fn(f64) -> f64,
+    point: impl Fn(f64) -> Option<BoundaryPoint>,
+) -> Vec<BoundaryPoint> {
+    roots(2.5 * f64::from(n), miss)
+        .into_iter()
+        .filter_map(point)
+        .filter(|p| p.is_valid() && (p.rho - rho).abs() < 1e-9 * (1.0 + rho.abs()))
+        .collect()
+}
+
+/// Roots of a function over (0, top] that a fixed grid tells apart.
+fn roots(top: f64, f: impl Fn(f64) -> f64) -> Vec<f64> {
     let grid: Vec<f64> = (1..=1000).map(|i| top * f64::from(i) / 1000.0).collect();
-    let values: Vec<f64> = grid.iter().map(|eta| miss(*eta)).collect();
+    let values: Vec<f64> = grid.iter().map(|eta| f(*eta)).collect();
     (1..grid.len())
         .filter(|&i| values[i - 1] * values[i] <= 0.0)
-        .filter_map(|i| rho_s2(machine, bisect(miss, grid[i - 1], grid[i]), n))
-        .filter(|p| p.is_valid() && (p.rho - rho).abs() < 1e-9 * (1.0 + rho.abs()))
+        .map(|i| bisect(&f, grid[i - 1], grid[i]))
         .collect()
 }
 

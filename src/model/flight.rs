@@ -69,7 +69,12 @@ pub fn forced_amplitude(o: &Oscillator, drive: Drive) -> C64 {
         o.stiffness_per_mass() - eta * eta,
         2.0 * o.decay_rate() * eta,
     );
-    C64::from_polar(o.drive_per_mass(), drive.phase) / dynamic
+    let force = if drive.phase == 0.0 {
+        C64::new(o.drive_per_mass(), 0.0)
+    } else {
+        C64::from_polar(o.drive_per_mass(), drive.phase)
+    };
+    force * dynamic.conj() / dynamic.norm_sqr()
 }
 
 /// λ = −δ + i√(Ω² − δ²): the free vibration's exponent.

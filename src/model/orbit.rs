@@ -102,13 +102,23 @@ pub struct Green {
 ///
 /// The response to one jump is Im(e^{λt})/ω; all past ones sum up geometrically.
 pub fn green(o: &Oscillator, period: f64) -> Green {
+    green_of(o, returned(o, period))
+}
+
+/// e^{λT}
+fn returned(o: &Oscillator, period: f64) -> C64 {
     let lambda = exponent(o);
-    let (e, angle) = ((lambda.re * period).exp(), lambda.im * period);
-    let (s, c) = angle.sin_cos();
-    // the sum over all past jumps: G(t) = Im(e^{λt}/(1 − e^{λT}))/ω
-    let one_minus = C64::new(1.0 - e * c, -e * s);
-    let z = C64::new(1.0, 0.0) / one_minus;
-    let before = C64::new(e * c, e * s) * lambda * z;
+    let (sin, cos) = (lambda.im * period).sin_cos();
+    let e = (lambda.re * period).exp();
+    C64::new(e * cos, e * sin)
+}
+
+/// The sum over all past jumps: G(t) = Im(e^{λt}/(1 − e^{λT}))/ω.
+fn green_of(o: &Oscillator, returned: C64) -> Green {
+    let lambda = exponent(o);
+    let one_minus = C64::new(1.0, 0.0) - returned;
+    let z = one_minus.conj() / one_minus.norm_sqr();
+    let before = returned * lambda * z;
     Green {
         position: z.im / lambda.im,
         velocity_before: before.im / lambda.im,
@@ -125,6 +135,8 @@ pub struct Branch {
     pub position: f64,
     /// Σ μᵢ·velocity before.
     pub velocity: f64,
+    /// e^{λT}: what is left of a free vibration of the first mass after the period.
+    pub returned: C64,
     /// η
     pub eta: f64,
 }
@@ -135,19 +147,29 @@ impl Branch {
         let period = f64::from(n) * std::f64::consts::TAU / eta;
         let (mx, my) = machine.mobility();
         let drive = Drive { eta, phase: 0.0 };
-        let gx = green(&machine.x, period);
+        let returned = returned(&machine.x, period);
+        let gx = green_of(&machine.x, returned);
         let mut forced = forced_amplitude(&machine.x, drive);
         let (mut position, mut velocity) = (mx * gx.position, mx * gx.velocity_before);
-        if let Some(y) = &machine.y {
-            let gy = green(y, period);
-            forced += forced_amplitude(y, drive);
-            position += my * gy.position;
-            velocity += my * gy.velocity_before;
+        match &machine.y {
+            // equal masses: the second's part is the first's
+            Some(y) if *y == machine.x => {
+                forced *= 2.0;
+                (position, velocity) = (gx.position, gx.velocity_before);
+            }
+            Some(y) => {
+                let gy = green(y, period);
+                forced += forced_amplitude(y, drive);
+                position += my * gy.position;
+                velocity += my * gy.velocity_before;
+            }
+            None => {}
         }
         Self {
             forced,
             position,
             velocity,
+            returned,
             eta,
         }
     }

@@ -49,6 +49,11 @@ pub struct Path {
     count: usize,
 }
 
+/// |z| without the care for overflow that `norm` takes; displacements are far from it.
+fn modulus(z: C64) -> f64 {
+    z.norm_sqr().sqrt()
+}
+
 impl Path {
     /// A constant.
     pub fn constant(value: f64, eta: f64) -> Self {
@@ -169,7 +174,7 @@ impl Path {
         jet.d1 -= w * f.im;
         jet.d2 -= w2 * f.re;
         jet.d3 += w * w2 * f.im;
-        let a = self.force.norm();
+        let a = modulus(self.force);
         jet.amplitude += a;
         jet.d4_bound += w2 * w2 * a;
     }
@@ -177,14 +182,14 @@ impl Path {
     /// Sum of all amplitudes at t = 0, the polynomial's constant and the height of its
     /// parabola included: the size by which rounding of the value is judged.
     pub fn size(&self) -> f64 {
-        let modes: f64 = self.modes().iter().map(|m| m.amplitude.norm()).sum();
+        let modes: f64 = self.modes().iter().map(|m| modulus(m.amplitude)).sum();
         let [c0, c1, c2] = self.polynomial;
         let height = if c2 == 0.0 {
             0.0
         } else {
             (c1 * c1 / (4.0 * c2)).abs()
         };
-        c0.abs() + height + self.force.norm() + modes
+        c0.abs() + height + modulus(self.force) + modes
     }
 
     /// Fastest angular rate in the path: max(η, |λ|), at least 1e-3.
@@ -196,7 +201,7 @@ impl Path {
         };
         self.modes()
             .iter()
-            .map(|m| m.exponent.norm())
+            .map(|m| modulus(m.exponent))
             .fold(eta, f64::max)
     }
 
@@ -216,7 +221,7 @@ fn add_mode_jet(m: &Mode, t: f64, jet: &mut Jet) {
     jet.d1 += z1.re;
     jet.d2 += z2.re;
     jet.d3 += z3.re;
-    let a = z0.norm();
+    let a = modulus(z0);
     jet.amplitude += a;
     jet.d4_bound += a * m.exponent.norm_sqr().powi(2);
 }

@@ -13,9 +13,9 @@ use super::contact::{ModelImpact, free_accelerations, newton};
 use super::crossing::first_zero;
 use super::flight::{Drive, State, exponent, forced_amplitude, free_flight};
 use super::orbit::Existence;
-use super::variation::{eigenvalues, free_flow, saltation};
 use super::params::{Machine, Setting};
 use super::path::C64;
+use super::variation::{eigenvalues, free_flow, saltation};
 
 /// A periodic orbit with p impacts in n drive periods.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]

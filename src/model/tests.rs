@@ -326,3 +326,104 @@ fn prop_newton_orbits_match_simulated_motions() {
         }
     }
 }
+
+#[test]
+fn valid_masses_stay_together_for_ever_below_rho_p() {
+    let asymmetry = params::Asymmetry {
+        drive_amplitude: 0.8,
+        stiffness: 1.3,
+        mass: 1.5,
+    };
+    let machines = [
+        Machine::single(0.1, 0.0),
+        Machine::symmetric(0.1, 0.0),
+        Machine::asymmetric(0.1, 0.0, asymmetry),
+    ];
+    for (machine, eta) in machines.iter().zip([0.8, 1.3, 0.9]) {
+        let edge = boundary::rho_joined(machine, eta);
+        let stays = |rho: f64| {
+            // in contact and at rest; the joined masses' own vibration has died away
+            let start = Initial::both(rho, 0.0);
+            let mut s = Simulator::new(machine, Setting::new(eta, rho), start).unwrap();
+            s.advance(400.0, &mut |_: &ModelImpact| {});
+            let mut apart = false;
+            for _ in 0..2000 {
+                s.advance(0.01, &mut |_: &ModelImpact| {});
+                apart |= !s.is_joined();
+            }
+            !apart
+        };
+        assert!(stays(edge - 1e-3), "{edge}");
+        assert!(!stays(edge + 1e-3), "{edge}");
+    }
+    assert!((boundary::rho_joined(&machines[1], 2.0) + 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn valid_boundaries_at_a_clearance_are_those_at_their_frequency() {
+    let machine = Machine::symmetric(0.07, 0.9);
+    for p in boundary::etas_s1(&machine, 1.9, 1) {
+        assert!((rho_s1(&machine, p.eta, 1).unwrap().rho - 1.9).abs() < 1e-8);
+    }
+    let grazing = boundary::etas_grazing(&machine, 2.0);
+    assert_eq!(grazing.len(), 2);
+    for eta in grazing {
+        assert!((rho_grazing(&machine, eta) - 2.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn valid_every_impact_follows_the_law_of_its_speed() {
+    let laws = [
+        Restitution::Table(vec![(0.0, 0.95), (2.0, 0.8), (6.0, 0.6)]),
+        Restitution::PowerLaw {
+            coefficient: 0.1,
+            exponent: 0.25,
+            floor: 0.3,
+        },
+        Restitution::Exponential {
+            slow: 0.95,
+            fast: 0.5,
+            speed: 2.0,
+        },
+    ];
+    let asymmetry = Asymmetry {
+        drive_amplitude: 0.95,
+        stiffness: 0.95,
+        mass: 1.2,
+    };
+    for law in laws {
+        let m = Machine::asymmetric(0.05, 0.0, asymmetry).with_restitution(law.clone());
+        let t = simulate(&m, Setting::new(0.9, 0.8), Initial::rest(), 80.0).unwrap();
+        let bounces = t.impacts.iter().filter(|i| i.kind == ImpactKind::Bounce);
+        let mut seen = (f64::MAX, 0.0_f64);
+        for i in bounces {
+            let r = law.at(i.closing_before);
+            close(
+                -i.closing_after,
+                r * i.closing_before,
+                1e-13 * (1.0 + i.closing_before),
+            );
+            seen = (seen.0.min(r), seen.1.max(r));
+        }
+        assert!(seen.1 - seen.0 > 0.02, "{seen:?}: the law was not tried");
+    }
+}
+
+#[test]
+fn valid_a_nearly_elastic_chatter_is_summed_up_not_cut_off() {
+    let m = Machine::single(0.05, 0.99);
+    let setting = Setting::new(0.02, 0.3);
+    let t = simulate(&m, setting, Initial::rest(), 3.0 * setting.period()).unwrap();
+    let before: Vec<usize> = (0..t.impacts.len())
+        .filter(|&i| t.impacts[i].kind == ImpactKind::ChatterEnd)
+        .collect();
+    assert!(!before.is_empty());
+    // R^n = 1e-13 takes some 1500 impacts at half the exponent: far beyond any cap
+    assert!(before[0] > 500, "{before:?}");
+    // the geometric sequence goes on into its end
+    let i = before[0];
+    let [a, b, end] = [i - 2, i - 1, i].map(|k| t.impacts[k].tau);
+    let left = (b - a) * 0.99 / (1.0 - 0.99);
+    assert!((end - b - left).abs() < 0.05 * left, "{} {left}", end - b);
+}

@@ -8,7 +8,8 @@ use crate::support::Lab;
 fn valid_help_of_each_verb_shows_an_example_and_ends_with_0() {
     let lab = Lab::new();
     for verb in [
-        "init", "check", "run", "ingest", "classify", "identify", "report", "simulate",
+        "init", "check", "run", "ingest", "classify", "identify", "report", "simulate", "sweep",
+        "basins", "atlas", "merge", "study", "boundary",
     ] {
         let ran = lab.run(&[verb, "--help"]);
         assert_eq!(ran.code, 0, "{verb}");

@@ -100,7 +100,7 @@ impl Walk<'_> {
         for &at in &steps[walked.points.len()..] {
             walked.points.push(carried.step(at).map_err(&refused)?);
             tick(1);
-            if walked.points.len() % KEEP_EVERY == 0 {
+            if walked.points.len().is_multiple_of(KEEP_EVERY) {
                 walked.at = Some(carried.snapshot());
                 self.desk.kept.save(&block, &walked)?;
             }
