@@ -57,11 +57,7 @@ impl Map<'_> {
             self.letter(at, &format!("({})", comparison.letter), &bounds);
         }
         for (i, proposed) in self.content.proposals.iter().enumerate() {
-            let (x, y) = if self.plane.dimensionless {
-                (proposed.eta, proposed.rho)
-            } else {
-                (proposed.frequency_hz, 1e3 * proposed.clearance_m)
-            };
+            let (x, y) = self.plane.proposed(proposed);
             if self.panel.shows(x, y) {
                 let at = self.panel.at(x, y);
                 self.letter(at, &format!("{}", i + 1), &bounds);
