@@ -83,7 +83,7 @@ impl Part {
             .file_name()
             .map(|n| n.to_string_lossy())
             .unwrap_or_default();
-        let path = target.with_file_name(format!(".{name}.{}{PART_ENDING}", std::process::id()));
+        let path = target.with_file_name(format!(".{name}{}", own_ending()));
         Self {
             path,
             placed: false,
@@ -238,13 +238,27 @@ fn is_still(_: &File, path: &Path) -> bool {
 
 /// Remove what broken-off runs left in a folder under temporary names.
 pub fn clear_parts(folder: &Path) {
+    clear_ending(folder, PART_ENDING);
+}
+
+/// Remove what this process has half-written in a folder; other runs' files stay.
+pub fn clear_own_parts(folder: &Path) {
+    clear_ending(folder, &own_ending());
+}
+
+/// Ending of the temporary names of this process.
+pub fn own_ending() -> String {
+    format!(".{}{PART_ENDING}", std::process::id())
+}
+
+fn clear_ending(folder: &Path, ending: &str) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;
     };
     for entry in entries.filter_map(Result::ok) {
         let name = entry.file_name();
         let name = name.to_string_lossy();
-        if name.starts_with('.') && name.ends_with(PART_ENDING) {
+        if name.starts_with('.') && name.ends_with(ending) {
             let _ = fs::remove_file(entry.path());
         }
     }

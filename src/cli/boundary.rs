@@ -4,6 +4,7 @@ use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
 use super::machine::{MachineArgs, motion, refused};
+use super::voice::print;
 use super::{Exit, Failure, Voice};
 use crate::atlas::continuation::{Edge, EdgeKind};
 use crate::atlas::map::{MapGrid, MapSettings};
@@ -87,7 +88,7 @@ impl Boundary {
             (None, Some(rho)) => self.at_rho(&machine, rho)?,
             (None, None) => Vec::new(),
         };
-        self.print(&points);
+        print(&self.text(&points))?;
         Ok(if points.is_empty() {
             Exit::AnswerIsNo
         } else {
@@ -168,7 +169,7 @@ impl Boundary {
     }
 
     /// One object, the further points of the same boundary beside it under `others`.
-    fn print(&self, points: &[Value]) {
+    fn text(&self, points: &[Value]) -> String {
         let name = self
             .kind
             .to_possible_value()
@@ -176,21 +177,22 @@ impl Boundary {
         let (p, n, dead_zone) = self.motion;
         let z = format!("{p}/{n}{}", if dead_zone { "j" } else { "" });
         if !self.json {
+            let mut text = String::new();
             for v in points {
                 let valid = if v["valid"] == json!(true) {
                     ""
                 } else {
                     "  (no motion there)"
                 };
-                println!(
-                    "{name} of z = {z}: η = {}  ρ = {}{valid}",
+                text += &format!(
+                    "{name} of z = {z}: η = {}  ρ = {}{valid}\n",
                     v["eta"], v["rho"]
                 );
             }
             if points.is_empty() {
-                println!("{name} of z = {z}: none");
+                text = format!("{name} of z = {z}: none\n");
             }
-            return;
+            return text;
         }
         let mut first = points
             .first()
@@ -201,7 +203,7 @@ impl Boundary {
         if points.len() > 1 {
             first["others"] = json!(points[1..]);
         }
-        println!("{first}");
+        format!("{first}\n")
     }
 }
 

@@ -1,11 +1,11 @@
 //! `impactid completions` and `impactid man`: what shells and readers of manuals want.
 
-use std::io::Write;
 use std::path::PathBuf;
 
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 
+use super::voice::print;
 use super::{Cli, Exit, Failure, Voice};
 use crate::output;
 
@@ -22,12 +22,10 @@ Example:
   impactid completions bash > ~/.local/share/bash-completion/completions/impactid";
 
 impl Completions {
-    #[allow(clippy::unnecessary_wraps)] // all verbs look alike
     pub(super) fn go(self, _voice: Voice) -> Result<Exit, Failure> {
         let mut text = Vec::new();
         clap_complete::generate(self.shell, &mut Cli::command(), "impactid", &mut text);
-        // a reader that closes the pipe early is no fault
-        let _ = std::io::stdout().write_all(&text);
+        print(&String::from_utf8_lossy(&text))?;
         Ok(Exit::Done)
     }
 }

@@ -1,10 +1,10 @@
 //! `impactid convert`: records of any format to HDF5, Parquet or CSV.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::{Exit, Failure, Voice};
+use super::{Exit, Failure, Voice, interrupt};
 use crate::record::convert::{self, ConvertError, Options, Target};
 use crate::record::open::open;
 use crate::record::source::ReadError;
@@ -82,6 +82,7 @@ impl Convert {
                 .iter()
                 .for_each(|n| voice.detail(&format!("{}: {n}", source.path().display())));
         }
+        interrupt::watch(self.out.parent().map(Path::to_path_buf).unwrap_or_default());
         let options = Options {
             single_precision: self.single,
             attributes: self.set.into_iter().collect(),

@@ -2,6 +2,7 @@
 
 use clap::Args;
 
+use super::voice::print;
 use super::{Exit, Failure, Progress, Voice};
 use crate::identify::coverage::Score;
 use crate::pipeline::coverage::{self, Tally};
@@ -43,34 +44,43 @@ impl Coverage {
             let text = serde_json::to_string_pretty(&found).map_err(|e| {
                 Failure::new(e.to_string(), "please report it with the command line")
             })?;
-            println!("{text}");
+            print(&format!("{text}\n"))?;
         } else {
-            print_table(&found);
+            print(&table(&found))?;
         }
         Ok(Exit::Done)
     }
 }
 
-fn print_table(found: &coverage::Coverage) {
-    println!(
-        "{:13} {:21} {:>4} {:>7} {:>10} {:>10} {:>10} {:>9} {:>8}",
-        "method", "parameter", "n", "refused", "bias", "rms error", "bound", "rms/bound", "coverage"
+fn table(found: &coverage::Coverage) -> String {
+    let mut text = format!(
+        "{:13} {:21} {:>4} {:>7} {:>10} {:>10} {:>10} {:>9} {:>8}\n",
+        "method",
+        "parameter",
+        "n",
+        "refused",
+        "bias",
+        "rms error",
+        "bound",
+        "rms/bound",
+        "coverage"
     );
     for (method, parameters) in &found.methods {
         for (parameter, score) in parameters {
-            print_score(method, parameter, score);
+            text += &score_line(method, parameter, score);
         }
     }
-    print_tally("R refused where nothing touches", found.nothing_touches);
+    text += &tally_line("R refused where nothing touches", found.nothing_touches);
     for (name, tally) in &found.mistakes {
-        print_tally(&format!("found: {}", name.replace('_', " ")), *tally);
+        text += &tally_line(&format!("found: {}", name.replace('_', " ")), *tally);
     }
-    print_tally("false alarms", found.false_alarms);
+    text += &tally_line("false alarms", found.false_alarms);
+    text
 }
 
-fn print_score(method: &str, parameter: &str, s: &Score) {
-    println!(
-        "{method:13} {parameter:21} {:>4} {:>7} {:>10.2e} {:>10.2e} {:>10.2e} {:>9.2} {:>6.1} %",
+fn score_line(method: &str, parameter: &str, s: &Score) -> String {
+    format!(
+        "{method:13} {parameter:21} {:>4} {:>7} {:>10.2e} {:>10.2e} {:>10.2e} {:>9.2} {:>6.1} %\n",
         s.estimates,
         s.refused,
         s.bias,
@@ -78,9 +88,9 @@ fn print_score(method: &str, parameter: &str, s: &Score) {
         s.bound,
         s.rms_error_over_bound,
         100.0 * s.coverage95
-    );
+    )
 }
 
-fn print_tally(what: &str, tally: Tally) {
-    println!("{what}: {} of {}", tally.found, tally.of);
+fn tally_line(what: &str, tally: Tally) -> String {
+    format!("{what}: {} of {}\n", tally.found, tally.of)
 }

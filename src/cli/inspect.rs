@@ -1,14 +1,14 @@
 //! `impactid inspect`: what record files hold.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::sketch::sketch;
+use super::voice::print;
 use super::{Exit, Failure, Voice};
 use crate::record::open::open;
 use crate::record::source::{DatasetInfo, ReadError, Samples, Source};
@@ -145,16 +145,6 @@ impl Inspect {
             }
         }
         Ok(())
-    }
-}
-
-/// Write to the standard output; a reader that has closed it ends the program quietly.
-fn print(text: &str) -> Result<(), Failure> {
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::io(Path::new("standard output"), &e))
-        }
-        _ => Ok(()),
     }
 }
 

@@ -23,10 +23,14 @@ pub fn watch(folder: PathBuf) {
         while !flag.load(Ordering::Relaxed) {
             std::thread::sleep(Duration::from_millis(20));
         }
-        crate::output::clear_parts(&folder);
+        let folder = match folder.as_os_str().is_empty() {
+            true => PathBuf::from("."),
+            false => folder,
+        };
+        crate::output::clear_own_parts(&folder);
         eprintln!(
-            "\nimpactid: broken off. Nothing half-written is left in {}; the same command with \
-             --resume goes on.",
+            "\nimpactid: broken off. Nothing half-written is left in {}; the same command begins \
+             anew, and with --resume, where it has that, goes on.",
             folder.display()
         );
         #[allow(clippy::exit)] // the working threads need not be waited for: outputs are whole

@@ -2,6 +2,7 @@
 
 use clap::Args;
 
+use super::voice::print;
 use super::{Exit, Failure, Voice};
 use crate::pipeline::selftest::{Check, checks};
 
@@ -25,7 +26,7 @@ impl SelfTest {
             )
         })?;
         if !voice.is_quiet() {
-            print_table(&all);
+            print(&table(&all))?;
         }
         let missed = all.iter().filter(|c| !c.agrees()).count();
         voice.say(&format!(
@@ -41,16 +42,17 @@ impl SelfTest {
     }
 }
 
-fn print_table(all: &[Check]) {
-    println!(
-        "{:44} {:>10} {:>11} {:>9}",
+fn table(all: &[Check]) -> String {
+    let mut text = format!(
+        "{:44} {:>10} {:>11} {:>9}\n",
         "", "published", "computed", "allowed"
     );
     for check in all {
         let mark = if check.agrees() { "" } else { "  MISSED" };
-        println!(
-            "{:44} {:>10} {:>11.5} {:>9.5}{mark}",
+        text += &format!(
+            "{:44} {:>10} {:>11.5} {:>9.5}{mark}\n",
             check.what, check.published, check.computed, check.tolerance
         );
     }
+    text
 }

@@ -1,4 +1,9 @@
-//! How much the program says.
+//! How much the program says, and where.
+
+use std::io::Write;
+use std::path::Path;
+
+use super::Failure;
 
 /// Prints on the standard error stream what `--quiet` and `-v` let through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -32,5 +37,19 @@ impl Voice {
         if self.0 >= 1 {
             eprintln!("{text}");
         }
+    }
+}
+
+/// Write a result to the standard output; a reader that has closed it ends the program quietly.
+///
+/// # Errors
+/// Where it cannot be written, as on a full disk.
+pub fn print(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::io(Path::new("standard output"), &e))
+        }
+        _ => Ok(()),
     }
 }

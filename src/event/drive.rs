@@ -1,6 +1,7 @@
 //! The drive's frequency and phase, measured from its channel.
 
 use crate::event::DriveTone;
+use crate::record::consistency::mistaken;
 use crate::record::{Flag, Record, Role};
 use crate::signal::tone;
 
@@ -58,8 +59,10 @@ fn contradiction(
         code: "drive_frequency_contradicts".into(),
         channel: Some(channel.into()),
         message: format!(
-            "the drive channel shows {:.4} Hz, the campaign states {stated:.4} Hz",
-            drive.frequency_hz
+            "the drive channel shows {:.4} Hz, the campaign states {stated:.4} Hz{}",
+            drive.frequency_hz,
+            mistaken(stated / drive.frequency_hz)
+                .map_or(String::new(), |m| format!(": the factor {m}"))
         ),
         remedy: "the measured frequency is used; correct the run table or the file's name".into(),
         excludes: false,

@@ -18,11 +18,14 @@ use crate::output::{self, OutputError};
 /// Folder of the chunks in the output folder; it is removed when the run is done.
 const FOLDER: &str = ".impactid-observed";
 
-/// Records a chunk holds.
-pub const CHUNK: usize = 256;
-
 /// Campaigns of fewer records are quicker observed anew than kept.
-pub const FEWEST: usize = 1000;
+pub const FEWEST: usize = 64;
+
+/// Records a chunk holds, for a campaign of so many: a sixteenth, so that little is lost, but
+/// enough that keeping takes no time.
+pub fn chunk_of(records: usize) -> usize {
+    (records / 16).clamp(16, 512)
+}
 
 /// Where the chunks of one run lie.
 #[derive(Debug)]

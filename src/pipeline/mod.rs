@@ -132,8 +132,8 @@ impl Observed {
             return Self::of(campaign, progress);
         }
         let kept = Checkpoint::open(campaign, out, resume)?;
-        let observations =
-            observe::observe_in_chunks(campaign, &kept, checkpoint::CHUNK, progress)?;
+        let chunk = checkpoint::chunk_of(campaign.records.len());
+        let observations = observe::observe_in_chunks(campaign, &kept, chunk, progress)?;
         Self::from_observations(observations)
     }
 

@@ -1,6 +1,8 @@
 //! Reading and observing all records, file by file, in parallel; samples are let go at once.
 
+use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
 
 use rayon::prelude::*;
 
@@ -13,7 +15,7 @@ use crate::pipeline::Progress;
 use crate::pipeline::checkpoint::Checkpoint;
 use crate::record::calibrate::{calibrate, unreadable};
 use crate::record::open::open;
-use crate::record::source::Source;
+use crate::record::source::{ReadError, Source};
 use crate::record::{Flag, Record};
 
 /// Settings of the detection as the campaign has them.
@@ -32,11 +34,19 @@ fn classify_settings(campaign: &ResolvedCampaign) -> ClassifySettings {
     }
 }
 
+/// Most records of a campaign whose folded waveforms are kept. Of more records those of every
+/// second, third … are kept, so that memory does not grow with them; each waveform alone tells
+/// the parameters, and ten thousand leave nothing to be told.
+const MOST_WAVEFORMS: usize = 10_000;
+
+/// Records that are read ahead of the one that is worked on.
+const READ_AHEAD: usize = 256;
+
 /// Observe every record, in the order of the campaign.
 pub fn observe_all(campaign: &ResolvedCampaign, progress: Progress) -> Vec<Observation> {
     let total = campaign.records.len() as u64;
     let done = AtomicU64::new(0);
-    observe_some(campaign, &campaign.records, &|| {
+    observe_some(campaign, &campaign.records, &Shelf::default(), &|| {
         progress("observe", done.fetch_add(1, Ordering::Relaxed) + 1, total);
     })
 }
@@ -54,19 +64,15 @@ pub fn observe_in_chunks(
 ) -> Result<Vec<Observation>, OutputError> {
     let total = campaign.records.len() as u64;
     let done = AtomicU64::new(0);
+    let shelf = Shelf::default();
     let mut all = Vec::with_capacity(campaign.records.len());
     for (number, entries) in campaign.records.chunks(chunk.max(1)).enumerate() {
         if let Some(kept) = checkpoint.load(number, entries.len()) {
-            let count = entries.len() as u64;
-            progress(
-                "observe",
-                done.fetch_add(count, Ordering::Relaxed) + count,
-                total,
-            );
+            done.fetch_add(entries.len() as u64, Ordering::Relaxed);
             all.extend(kept);
             continue;
         }
-        let observed = observe_some(campaign, entries, &|| {
+        let observed = observe_some(campaign, entries, &shelf, &|| {
             progress("observe", done.fetch_add(1, Ordering::Relaxed) + 1, total);
         });
         checkpoint.save(number, &observed)?;
@@ -75,19 +81,42 @@ pub fn observe_in_chunks(
     Ok(all)
 }
 
+/// The file that was opened last, so that the next chunk need not open it again.
+#[derive(Default)]
+struct Shelf(Mutex<Option<Arc<dyn Source>>>);
+
+impl Shelf {
+    fn open(&self, path: &Path) -> Result<Arc<dyn Source>, ReadError> {
+        let held = self.0.lock().ok().and_then(|held| held.clone());
+        if let Some(source) = held.filter(|s| s.path() == path) {
+            return Ok(source);
+        }
+        let source: Arc<dyn Source> = Arc::from(open(path)?);
+        if let Ok(mut held) = self.0.lock() {
+            *held = Some(Arc::clone(&source));
+        }
+        Ok(source)
+    }
+}
+
 /// Observe some records, file by file; `each` is called after each.
 fn observe_some(
     campaign: &ResolvedCampaign,
     entries: &[RecordEntry],
+    shelf: &Shelf,
     each: &(dyn Fn() + Sync),
 ) -> Vec<Observation> {
     let settings = classify_settings(campaign);
+    let stride = campaign.records.len().div_ceil(MOST_WAVEFORMS).max(1);
     let parts: Vec<Vec<Observation>> = by_file(entries)
         .into_par_iter()
         .map(|entries| {
-            each_record(campaign, entries, |record| {
+            records_of(campaign, entries, shelf, |entry, record| {
                 let detect = detect_settings(campaign);
-                let observation = observe(&record, campaign.machine, &detect, &settings);
+                let mut observation = observe(&record, campaign.machine, &detect, &settings);
+                if !entry.setting.sequence.is_multiple_of(stride) {
+                    observation.folded = None;
+                }
                 each();
                 observation
             })
@@ -96,16 +125,36 @@ fn observe_some(
     parts.into_iter().flatten().collect()
 }
 
-/// Do something with every record of one file, which is opened once.
-pub fn each_record<T: Send>(
+/// Do something with every record in turn; they are read in parallel, a few hundred at a time.
+///
+/// # Errors
+/// What `act` says.
+pub fn each_record<E>(
+    campaign: &ResolvedCampaign,
+    mut act: impl FnMut(&RecordEntry, Record) -> Result<(), E>,
+) -> Result<(), E> {
+    let shelf = Shelf::default();
+    for group in by_file(&campaign.records) {
+        for entries in group.chunks(READ_AHEAD) {
+            let records = records_of(campaign, entries, &shelf, |_, record| record);
+            for (entry, record) in entries.iter().zip(records) {
+                act(entry, record)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn records_of<T: Send>(
     campaign: &ResolvedCampaign,
     entries: &[RecordEntry],
-    act: impl Fn(Record) -> T + Sync,
+    shelf: &Shelf,
+    act: impl Fn(&RecordEntry, Record) -> T + Sync,
 ) -> Vec<T> {
     let Some(first) = entries.first() else {
         return Vec::new();
     };
-    let source = open(&first.file);
+    let source = shelf.open(&first.file);
     entries
         .par_iter()
         .map(|entry| {
@@ -113,7 +162,7 @@ pub fn each_record<T: Send>(
                 Ok(source) => read(campaign, entry, source.as_ref()),
                 Err(error) => unreadable(&entry.id, &entry.setting, error),
             };
-            act(record)
+            act(entry, record)
         })
         .collect()
 }

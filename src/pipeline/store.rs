@@ -4,7 +4,6 @@
 use std::io::{Read, Write};
 use std::path::Path;
 
-use crate::campaign::check::by_file;
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
 use crate::motion::{Observation, brackets};
 use crate::output::{write_bytes, write_whole};
@@ -72,40 +71,22 @@ pub fn ingest(
     out: &Path,
     progress: Progress,
 ) -> Result<usize, PipelineError> {
-    let path = out.join(INGESTED);
-    let mut writer = CampaignWriter::create(&path);
-    let mut entries = Vec::new();
-    let mut flags = Vec::new();
-    let mut roles: Vec<ChannelSetup> = Vec::new();
+    let mut kept = Keeping::new(out);
     let total = campaign.records.len() as u64;
-    for group in by_file(&campaign.records) {
-        for (entry, record) in group
-            .iter()
-            .zip(each_record(campaign, group, |record| record))
-        {
-            let dataset = entries
-                .iter()
-                .filter(|e: &&RecordEntry| e.dataset.is_some())
-                .count();
-            let kept = record.samples() > 0;
-            if kept {
-                note_roles(&mut roles, &record);
-                writer.add(table(&record))?;
-            }
-            let dataset = kept.then_some(dataset);
-            entries.push(RecordEntry {
-                file: path.clone(),
-                dataset,
-                ..entry.clone()
-            });
-            flags.push(record.flags);
-            progress("ingest", entries.len() as u64, total);
-        }
-    }
+    each_record(campaign, |entry, record| {
+        kept.add(entry, record)?;
+        progress("ingest", kept.entries.len() as u64, total);
+        Ok::<_, PipelineError>(())
+    })?;
+    let Keeping {
+        roles,
+        entries,
+        flags,
+        ..
+    } = kept.finish()?;
     if entries.iter().all(|e| e.dataset.is_none()) {
         return Err(PipelineError::NothingUsable(entries.len()));
     }
-    writer.finish()?;
     write_resolved(campaign, out)?;
     let ingested = Ingested {
         campaign: ResolvedCampaign {
@@ -126,9 +107,76 @@ pub fn ingest(
     Ok(usable)
 }
 
-fn table(record: &Record) -> RecordTable {
+/// Most records of one file of ours: what memory holds of them at a time.
+const RECORDS_A_FILE: usize = 1000;
+
+/// Calibrated records on their way to the disk, file by file.
+struct Keeping<'a> {
+    out: &'a Path,
+    writer: CampaignWriter,
+    file: std::path::PathBuf,
+    /// Records in the file that is being filled.
+    held: usize,
+    files: usize,
+    entries: Vec<RecordEntry>,
+    flags: Vec<Vec<Flag>>,
+    roles: Vec<ChannelSetup>,
+}
+
+impl<'a> Keeping<'a> {
+    fn new(out: &'a Path) -> Self {
+        let file = out.join(INGESTED);
+        Self {
+            out,
+            writer: CampaignWriter::create(&file),
+            file,
+            held: 0,
+            files: 1,
+            entries: Vec::new(),
+            flags: Vec::new(),
+            roles: Vec::new(),
+        }
+    }
+
+    fn add(&mut self, entry: &RecordEntry, record: Record) -> Result<(), PipelineError> {
+        if self.held == RECORDS_A_FILE {
+            self.next_file()?;
+        }
+        let kept = record.samples() > 0;
+        self.entries.push(RecordEntry {
+            file: self.file.clone(),
+            dataset: kept.then_some(self.held),
+            ..entry.clone()
+        });
+        if kept {
+            note_roles(&mut self.roles, &record);
+            self.writer.add(table(self.held, &record))?;
+            self.held += 1;
+        }
+        self.flags.push(record.flags);
+        Ok(())
+    }
+
+    /// The file is full: write it, and begin another.
+    fn next_file(&mut self) -> Result<(), PipelineError> {
+        self.files += 1;
+        self.file = self.out.join(format!("ingested_{}.h5", self.files));
+        self.held = 0;
+        let next = CampaignWriter::create(&self.file);
+        Ok(std::mem::replace(&mut self.writer, next).finish()?)
+    }
+
+    fn finish(mut self) -> Result<Self, PipelineError> {
+        self.next_file()?;
+        Ok(self)
+    }
+}
+
+/// A record as it is kept: named by its place in the file, so that readers, which sort names,
+/// keep the order of acquisition.
+fn table(place: usize, record: &Record) -> RecordTable {
     RecordTable {
-        name: record.id.clone(),
+        name: format!("record{place:04}"),
         sample_rate_hz: Some(record.sample_rate_hz),
         channels: record
             .channels
@@ -137,7 +185,7 @@ fn table(record: &Record) -> RecordTable {
                 ColumnToWrite::numbers(c.role.name(), c.dimension.si_symbol(), c.values.clone())
             })
             .collect(),
-        attributes: Vec::new(),
+        attributes: vec![("record".to_owned(), record.id.as_str().into())],
     }
 }
 

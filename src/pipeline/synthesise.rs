@@ -10,7 +10,7 @@ use crate::pipeline::PipelineError;
 use crate::record::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Stored};
 use crate::synthetic::acquisition::{FULL_SCALE_V, converter_step};
 use crate::synthetic::run::{RATE_HZ, ROLES, sensitivities};
-use crate::synthetic::{Faults, Plan, RawRecord, Truth, records};
+use crate::synthetic::{Faults, Laboratory, Plan, RawRecord, Truth, blocks};
 
 /// What a synthetic campaign is made of.
 #[derive(Debug, Clone, Serialize)]
@@ -27,8 +27,8 @@ pub struct Recipe {
 
 /// One record's truth in truth.json.
 #[derive(Serialize)]
-struct TrueRecord<'a> {
-    record: &'a str,
+struct TrueRecord {
+    record: String,
     frequency_hz: f64,
     clearance_m: f64,
     sweep: &'static str,
@@ -45,14 +45,19 @@ struct TruthFile<'a> {
     damping_ratio: f64,
     static_deflection_m: f64,
     recipe: &'a Recipe,
-    records: Vec<TrueRecord<'a>>,
+    records: Vec<&'a TrueRecord>,
 }
 
+/// The file that holds a campaign's records where one does.
 const RECORDS_FILE: &str = "records.h5";
 const RUN_TABLE: &str = "runs.csv";
 
+/// Most records of one file: what memory holds of a campaign at a time, for each thread.
+const RECORDS_A_FILE: usize = 1000;
+
 /// Simulate a campaign and write it: records.h5 (converter counts), runs.csv, campaign.toml and
-/// truth.json.
+/// truth.json. A campaign of more than a thousand records is written to several files as it is
+/// simulated, records_000000.h5 …, each named by the number of its first record.
 ///
 /// # Errors
 /// Where the truth lies outside the model's range or a file cannot be written.
@@ -63,39 +68,82 @@ pub fn write_campaign(recipe: &Recipe, out: &Path) -> Result<usize, PipelineErro
         recipe.truth.static_deflection_m,
         recipe.records,
     );
-    let raw = records(&recipe.truth, &recipe.faults, &plan, recipe.seed)?;
+    let laboratory = Laboratory {
+        truth: &recipe.truth,
+        faults: &recipe.faults,
+        plan: &plan,
+        seed: recipe.seed,
+    };
     crate::output::make_folder(out)?;
-    write_records(recipe, &raw, &out.join(RECORDS_FILE))?;
-    write_bytes(&out.join(RUN_TABLE), run_table(&raw).as_bytes())?;
+    let keep = |raw| kept(raw, &recipe.faults);
+    let files: Vec<RecordsFile> = if plan.steps.len() <= RECORDS_A_FILE {
+        let whole = |_: usize, block: Vec<KeptRecord>| Ok::<_, PipelineError>(block);
+        let all = blocks(&laboratory, usize::MAX, &keep, &whole)?;
+        let all = all.into_iter().flatten().collect();
+        vec![write_records(recipe, all, out, RECORDS_FILE.to_owned())?]
+    } else {
+        blocks(&laboratory, RECORDS_A_FILE, &keep, &|first, block| {
+            write_records(recipe, block, out, format!("records_{first:06}.h5"))
+        })?
+    };
+    write_bytes(&out.join(RUN_TABLE), run_table(&files).as_bytes())?;
     write_bytes(&out.join("campaign.toml"), campaign_toml(recipe).as_bytes())?;
     write_bytes(
         &out.join("truth.json"),
-        truth_json(recipe, &raw)?.as_bytes(),
+        truth_json(recipe, &files)?.as_bytes(),
     )?;
-    Ok(raw.len())
+    Ok(plan.steps.len())
 }
 
-fn write_records(recipe: &Recipe, raw: &[RawRecord], path: &Path) -> Result<(), PipelineError> {
-    let mut writer = CampaignWriter::create(path);
+/// A record as it is written, and its truth.
+type KeptRecord = (RecordTable, TrueRecord);
+
+/// A file of records and the truth of what it holds.
+struct RecordsFile {
+    name: String,
+    truths: Vec<TrueRecord>,
+}
+
+fn kept(raw: RawRecord, faults: &Faults) -> KeptRecord {
+    let truth = TrueRecord {
+        record: raw.id.clone(),
+        frequency_hz: raw.step.frequency_hz,
+        clearance_m: raw.step.clearance_m,
+        sweep: raw.step.sweep.name(),
+        motion: raw.motion.label(),
+        periodic: raw.motion.is_periodic(),
+        impacts: raw.impacts.len(),
+    };
+    let columns = raw.channels.iter().map(|c| ColumnToWrite {
+        name: c.name.to_owned(),
+        unit: "V".to_owned(),
+        samples: stored(&c.volts, faults),
+    });
+    let table = RecordTable {
+        name: raw.id,
+        sample_rate_hz: Some(RATE_HZ),
+        channels: columns.collect(),
+        attributes: Vec::new(),
+    };
+    (table, truth)
+}
+
+fn write_records(
+    recipe: &Recipe,
+    records: Vec<KeptRecord>,
+    out: &Path,
+    name: String,
+) -> Result<RecordsFile, PipelineError> {
+    let mut writer = CampaignWriter::create(&out.join(&name));
     writer.attribute("origin", "synthetic: simulated by impactid, not measured");
     writer.attribute("seed", recipe.seed as f64);
-    for record in raw {
-        writer.add(RecordTable {
-            name: record.id.clone(),
-            sample_rate_hz: Some(RATE_HZ),
-            channels: record
-                .channels
-                .iter()
-                .map(|c| ColumnToWrite {
-                    name: c.name.to_owned(),
-                    unit: "V".to_owned(),
-                    samples: stored(&c.volts, &recipe.faults),
-                })
-                .collect(),
-            attributes: Vec::new(),
-        })?;
+    let mut truths = Vec::with_capacity(records.len());
+    for (table, truth) in records {
+        writer.add(table)?;
+        truths.push(truth);
     }
-    Ok(writer.finish()?)
+    writer.finish()?;
+    Ok(RecordsFile { name, truths })
 }
 
 fn stored(volts: &[f64], faults: &Faults) -> Stored {
@@ -109,23 +157,23 @@ fn stored(volts: &[f64], faults: &Faults) -> Stored {
     }
 }
 
-fn run_table(raw: &[RawRecord]) -> String {
+fn run_table(files: &[RecordsFile]) -> String {
     let mut text = String::from("file,dataset,drive_frequency_hz,clearance_mm,sweep\n");
-    for r in raw {
-        let clearance_mm = (r.step.clearance_m * 1e6).round() / 1e3;
-        // Writing to a String cannot fail.
-        let _ = writeln!(
-            text,
-            "{RECORDS_FILE},{},{},{clearance_mm},{}",
-            r.id,
-            r.step.frequency_hz,
-            r.step.sweep.name()
-        );
+    for file in files {
+        for r in &file.truths {
+            let clearance_mm = (r.clearance_m * 1e6).round() / 1e3;
+            // Writing to a String cannot fail.
+            let _ = writeln!(
+                text,
+                "{},{},{},{clearance_mm},{}",
+                file.name, r.record, r.frequency_hz, r.sweep
+            );
+        }
     }
     text
 }
 
-fn truth_json(recipe: &Recipe, raw: &[RawRecord]) -> Result<String, PipelineError> {
+fn truth_json(recipe: &Recipe, files: &[RecordsFile]) -> Result<String, PipelineError> {
     let file = TruthFile {
         synthetic: true,
         restitution: recipe.truth.restitution,
@@ -133,18 +181,7 @@ fn truth_json(recipe: &Recipe, raw: &[RawRecord]) -> Result<String, PipelineErro
         damping_ratio: recipe.truth.damping_ratio,
         static_deflection_m: recipe.truth.static_deflection_m,
         recipe,
-        records: raw
-            .iter()
-            .map(|r| TrueRecord {
-                record: &r.id,
-                frequency_hz: r.step.frequency_hz,
-                clearance_m: r.step.clearance_m,
-                sweep: r.step.sweep.name(),
-                motion: r.motion.label(),
-                periodic: r.motion.is_periodic(),
-                impacts: r.impacts.len(),
-            })
-            .collect(),
+        records: files.iter().flat_map(|f| &f.truths).collect(),
     };
     let mut text = serde_json::to_string_pretty(&file).map_err(|e| PipelineError::Table {
         table: "truth.json".into(),

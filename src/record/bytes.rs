@@ -18,6 +18,7 @@ const DAMAGED: &str = "The file is damaged or was cut short: copy or export it a
 #[derive(Debug)]
 pub struct FileBytes {
     path: PathBuf,
+    file: File,
     map: Option<Mmap>,
 }
 
@@ -36,12 +37,14 @@ impl FileBytes {
         let length = file.metadata().map_err(fault)?.len();
         let map = match length {
             0 => None,
-            // SAFETY: the map is only read; a file that another program cuts short meanwhile
-            // ends this program with a bus error, as with every mapped reader.
+            // SAFETY: the map is only read, and readers ask `still_whole` before they do: a file
+            // that another program cuts short in the very moment of reading ends this program
+            // with a bus error, as with every mapped reader.
             _ => Some(unsafe { Mmap::map(&file) }.map_err(fault)?),
         };
         Ok(Self {
             path: path.to_path_buf(),
+            file,
             map,
         })
     }
@@ -49,6 +52,28 @@ impl FileBytes {
     /// The file's path.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Make sure that the file was not cut short since it was opened; one that grew or was
+    /// renamed is read as it was.
+    ///
+    /// # Errors
+    /// Where it was, with the byte at which it now ends.
+    pub fn still_whole(&self) -> Result<(), ReadError> {
+        let length = self
+            .file
+            .metadata()
+            .map_err(|e| ReadError::io(&self.path, &e))?
+            .len();
+        if length >= self.size() {
+            return Ok(());
+        }
+        Err(self.unsupported(
+            length,
+            format!("only {length}: it was cut short while it was read"),
+            format!("the file's {} bytes", self.size()),
+            "Let no other program write the file meanwhile, and run again.",
+        ))
     }
 
     /// All bytes.

@@ -1,5 +1,6 @@
 //! Whether the channels of one record can belong together: the change of a displacement is the
-//! integral of the velocity of the same mass.
+//! integral of the velocity of the same mass, that of a velocity the integral of the
+//! acceleration.
 
 use super::{Flag, Record, Role};
 
@@ -9,6 +10,31 @@ const SAME: f64 = 0.9;
 /// Ratio of scales from which one of them must be wrong.
 const SCALE_RATIO: f64 = 1.5;
 
+/// Factors that lie between two units or conventions that are taken for each other.
+const MISTAKEN: [(f64, &str); 6] = [
+    (1000.0, "between m and mm"),
+    (std::f64::consts::TAU, "between Hz and rad/s"),
+    (crate::units::STANDARD_GRAVITY_M_S2, "between g and m/s²"),
+    (std::f64::consts::SQRT_2, "between RMS and peak"),
+    (25.4, "between inch and mm"),
+    (
+        2.0 * std::f64::consts::SQRT_2,
+        "between RMS and peak to peak",
+    ),
+];
+
+/// How near a ratio must be to such a factor: the gains of a rig are known to a per cent or two.
+const MISTAKEN_WITHIN: f64 = 0.02;
+
+/// The units or conventions that a ratio of two numbers, or its reciprocal, betrays.
+pub fn mistaken(ratio: f64) -> Option<&'static str> {
+    let near = |factor: f64| (ratio.abs() / factor - 1.0).abs() < MISTAKEN_WITHIN;
+    MISTAKEN
+        .iter()
+        .find(|(factor, _)| near(*factor) || near(1.0 / factor))
+        .map(|m| m.1)
+}
+
 /// Look for swapped masses, opposite signs and contradicting scales.
 pub fn inspect(record: &Record) -> Vec<Flag> {
     let x = compare(record, Role::DisplacementX, Role::VelocityX);
@@ -16,9 +42,20 @@ pub fn inspect(record: &Record) -> Vec<Flag> {
     if let Some(flag) = swapped(record, x, y) {
         return vec![flag];
     }
+    let rates = |velocity, acceleration| compare(record, velocity, acceleration);
     let pairs = [
         (x, Role::DisplacementX, Role::VelocityX),
         (y, Role::DisplacementY, Role::VelocityY),
+        (
+            rates(Role::VelocityX, Role::AccelerationX),
+            Role::VelocityX,
+            Role::AccelerationX,
+        ),
+        (
+            rates(Role::VelocityY, Role::AccelerationY),
+            Role::VelocityY,
+            Role::AccelerationY,
+        ),
     ];
     pairs
         .into_iter()
@@ -26,17 +63,17 @@ pub fn inspect(record: &Record) -> Vec<Flag> {
         .collect()
 }
 
-/// How a displacement's change compares with a velocity's integral over the same windows.
+/// How the change of a quantity compares with the integral of its rate over the same windows.
 #[derive(Debug, Clone, Copy)]
 struct Match {
     /// Correlation coefficient.
     correlation: f64,
-    /// Displacement's change over velocity's integral.
+    /// The quantity's change over the rate's integral.
     gain: f64,
 }
 
-fn compare(record: &Record, displacement: Role, velocity: Role) -> Option<Match> {
-    let (d, v) = (record.values(displacement)?, record.values(velocity)?);
+fn compare(record: &Record, quantity: Role, rate: Role) -> Option<Match> {
+    let (d, v) = (record.values(quantity)?, record.values(rate)?);
     let width = (d.len() / 100).clamp(2, 64);
     if d.len() < 8 * width || record.sample_rate_hz <= 0.0 {
         return None;
@@ -111,14 +148,20 @@ fn contradiction(record: &Record, found: Match, d: Role, v: Role) -> Option<Flag
             ),
         ));
     }
-    let off = found.gain > SCALE_RATIO || found.gain < 1.0 / SCALE_RATIO;
+    let betrayed = mistaken(found.gain);
+    let off = found.gain > SCALE_RATIO || found.gain < 1.0 / SCALE_RATIO || betrayed.is_some();
+    let moves = match d {
+        Role::DisplacementX | Role::DisplacementY => "moves",
+        _ => "changes",
+    };
+    let factor = betrayed.map_or(String::new(), |b| format!(": the factor {b}"));
     (found.correlation > SAME && off).then(|| {
         flag(
             record,
             v,
             "scales_contradict",
             format!(
-                "{} moves {:.4} times as far as {} says",
+                "{} {moves} {:.4} times as far as {} says{factor}",
                 d.name(),
                 found.gain,
                 v.name()
@@ -167,6 +210,22 @@ mod tests {
     }
 
     const W: f64 = 80.0;
+
+    #[test]
+    fn valid_factors_between_units_are_named() {
+        for (ratio, named) in [
+            (1000.0, "between m and mm"),
+            (0.001, "between m and mm"),
+            (9.81, "between g and m/s²"),
+            (-0.1592, "between Hz and rad/s"),
+            (1.41, "between RMS and peak"),
+        ] {
+            assert_eq!(mistaken(ratio), Some(named), "{ratio}");
+        }
+        assert_eq!(mistaken(1.0), None);
+        assert_eq!(mistaken(1.2), None);
+        assert_eq!(mistaken(f64::NAN), None);
+    }
 
     fn codes(signals: &[(Role, &dyn Fn(f64) -> f64)]) -> Vec<String> {
         inspect(&record(signals))

@@ -266,8 +266,9 @@ pub fn temporary_beside(path: &Path) -> std::io::Result<tempfile::NamedTempFile>
         .parent()
         .filter(|p| !p.as_os_str().is_empty())
         .unwrap_or(Path::new("."));
+    let ending = crate::output::own_ending();
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".impactid-");
+    builder.prefix(".impactid-").suffix(&ending);
     #[cfg(unix)]
     let builder = {
         use std::os::unix::fs::PermissionsExt;

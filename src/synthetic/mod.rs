@@ -10,5 +10,5 @@ pub mod truth;
 
 pub use draw::{Draw, Reach, draw};
 pub use plan::{Plan, Step};
-pub use run::{RawChannel, RawRecord, records};
+pub use run::{Laboratory, RawChannel, RawRecord, blocks, records};
 pub use truth::{Faults, Truth};

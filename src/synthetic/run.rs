@@ -107,6 +107,19 @@ fn round_up(value: f64) -> f64 {
             .unwrap_or(10.0)
 }
 
+/// What a virtual laboratory is made of and what it visits.
+#[derive(Debug, Clone, Copy)]
+pub struct Laboratory<'a> {
+    /// True parameters.
+    pub truth: &'a Truth,
+    /// Faults of the rig.
+    pub faults: &'a Faults,
+    /// The settings that are visited.
+    pub plan: &'a Plan,
+    /// Seed of everything random.
+    pub seed: u64,
+}
+
 /// All records of a plan, in order. Sweeps run in parallel; the result does not depend on it.
 ///
 /// # Errors
@@ -117,25 +130,72 @@ pub fn records(
     plan: &Plan,
     seed: u64,
 ) -> Result<Vec<RawRecord>, ModelError> {
-    let gains = draw_gains(faults, sensitivities(truth).len(), seed);
-    let mut runs: Vec<(usize, Vec<Step>)> = Vec::new();
-    for (i, step) in plan.steps.iter().enumerate() {
-        match runs.last_mut() {
-            Some(run) if !step.from_rest => run.1.push(*step),
-            _ => runs.push((i, vec![*step])),
-        }
-    }
+    let laboratory = Laboratory {
+        truth,
+        faults,
+        plan,
+        seed,
+    };
+    let whole = |_: usize, block: Vec<RawRecord>| Ok::<_, ModelError>(block);
+    let parts = blocks(&laboratory, usize::MAX, &|raw| raw, &whole)?;
+    Ok(parts.into_iter().flatten().collect())
+}
+
+/// All records of a plan in blocks of at most `most` records of one sweep, for campaigns that
+/// memory does not hold: `keep` turns each record into what is wanted of it, `write` gets a block
+/// with the number of its first record. Gives what `write` gave, in order; sweeps run in
+/// parallel, so `write` does too.
+///
+/// # Errors
+/// [`ModelError`] where the truth or the plan lies outside the model's range; what `write` says.
+pub fn blocks<K: Send, W: Send, E: From<ModelError> + Send>(
+    laboratory: &Laboratory<'_>,
+    most: usize,
+    keep: &(dyn Fn(RawRecord) -> K + Sync),
+    write: &(dyn Fn(usize, Vec<K>) -> Result<W, E> + Sync),
+) -> Result<Vec<W>, E> {
+    let Laboratory {
+        truth,
+        faults,
+        plan,
+        seed,
+    } = *laboratory;
     let rig = VirtualRig {
         truth,
         faults,
-        gains,
+        gains: draw_gains(faults, sensitivities(truth).len(), seed),
         seed,
     };
-    let parts: Result<Vec<Vec<RawRecord>>, ModelError> = runs
+    let parts: Result<Vec<Vec<W>>, E> = sweeps(plan)
         .par_iter()
-        .map(|(first, steps)| rig.sweep(*first, steps))
+        .map(|(first, steps)| {
+            let mut simulator = rig.at_rest(steps)?;
+            let mut first = *first;
+            let mut written = Vec::new();
+            for steps in steps.chunks(most.max(1)) {
+                let block = steps.iter().enumerate();
+                let block =
+                    block.map(|(i, step)| keep(rig.record(&mut simulator, first + i, step)));
+                written.push(write(first, block.collect())?);
+                first += steps.len();
+            }
+            Ok(written)
+        })
         .collect();
     Ok(parts?.into_iter().flatten().collect())
+}
+
+/// The sweeps of a plan, each with the number of its first record: a sweep begins where the
+/// motion starts from rest.
+fn sweeps(plan: &Plan) -> Vec<(usize, Vec<Step>)> {
+    let mut sweeps: Vec<(usize, Vec<Step>)> = Vec::new();
+    for (i, step) in plan.steps.iter().enumerate() {
+        match sweeps.last_mut() {
+            Some(sweep) if !step.from_rest => sweep.1.push(*step),
+            _ => sweeps.push((i, vec![*step])),
+        }
+    }
+    sweeps
 }
 
 struct VirtualRig<'a> {
@@ -153,14 +213,13 @@ impl VirtualRig<'_> {
         )
     }
 
-    fn sweep(&self, first: usize, steps: &[Step]) -> Result<Vec<RawRecord>, ModelError> {
-        let machine = self.truth.machine();
-        let mut simulator = Simulator::new(&machine, self.setting(&steps[0]), Initial::rest())?;
-        Ok(steps
-            .iter()
-            .enumerate()
-            .map(|(i, step)| self.record(&mut simulator, first + i, step))
-            .collect())
+    /// A simulator at the first step of a sweep.
+    fn at_rest(&self, steps: &[Step]) -> Result<Simulator, ModelError> {
+        Simulator::new(
+            &self.truth.machine(),
+            self.setting(&steps[0]),
+            Initial::rest(),
+        )
     }
 
     /// Settle at a step, then record.

@@ -19,6 +19,51 @@ fn instead(lab: &Lab, name: &str, bytes: &[u8]) {
     lab.replace("runs.csv", "r2.csv", name);
 }
 
+/// An RF64 file whose chunk of samples is said to have so many bytes.
+fn wav_of(bytes: u64) -> Vec<u8> {
+    let mut file = b"RF64\xff\xff\xff\xffWAVEds64".to_vec();
+    file.extend(28_u32.to_le_bytes());
+    for number in [bytes + 72, bytes, bytes / 2] {
+        file.extend(number.to_le_bytes());
+    }
+    file.extend([0; 4]);
+    file.extend(b"fmt ");
+    file.extend(16_u32.to_le_bytes());
+    file.extend([1, 0, 1, 0]);
+    file.extend(2000_u32.to_le_bytes());
+    file.extend(4000_u32.to_le_bytes());
+    file.extend([2, 0, 16, 0]);
+    file.extend(b"data\xff\xff\xff\xff");
+    file.extend([7; 100]);
+    file
+}
+
+/// A UFF 58 file whose function is said to have so many points.
+fn uff_of(points: &str) -> String {
+    let axis = "         17    0    0    0 time                 s                   \n";
+    format!(
+        "    -1\n    58\nvx\nNONE\n01-Jan-24 12:00:00\nNONE\nNONE\n\
+             1         0    1         0 NONE         1   1 NONE         1   1\n\
+                  4{points}         1  0.00000e+00  5.00000e-04  0.00000e+00\n\
+         {axis}{axis}{axis}{axis}  1.00000e+00  2.00000e+00\n    -1\n"
+    )
+}
+
+/// An HDF5 file with a record at the bottom of so many groups.
+fn nested_groups(path: &std::path::Path, depth: usize) {
+    use impactid::record::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
+    let mut writer = CampaignWriter::create(path);
+    let column = |name| ColumnToWrite::numbers(name, "V", vec![0.5; 50]);
+    let written = writer.add(RecordTable {
+        name: vec!["g"; depth].join("/"),
+        sample_rate_hz: Some(2000.0),
+        channels: vec![column("a"), column("b")],
+        attributes: Vec::new(),
+    });
+    written.expect("a name");
+    writer.finish().expect("it is written");
+}
+
 /// Files that claim or unfold to more than a machine holds.
 pub fn bombs() -> Vec<Case> {
     vec![
@@ -55,6 +100,34 @@ pub fn bombs() -> Vec<Case> {
                 "copy or export it again",
                 "2 of 3 records can be used",
             ],
+        ),
+        refused(
+            "WAV whose header claims a terabyte of samples",
+            |lab| instead(lab, "r2.wav", &wav_of(1_000_000_000_000)),
+            &["r2.wav", "2 of 3 records can be used"],
+        ),
+        refused(
+            "UFF 58 that claims ten thousand million points",
+            |lab| instead(lab, "r2.uff", uff_of("9999999999").as_bytes()),
+            &["r2.uff", "2 of 3 records can be used"],
+        ),
+        refused(
+            "LVM that claims a million million samples",
+            |lab| {
+                let text = "LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\n\
+                            Channels\t1\nSamples\t1000000000000\nDelta_X\t0.0005\n\
+                            ***End_of_Header***\t\nX_Value\tvx\n0.0\t1.0\n";
+                instead(lab, "r2.lvm", text.as_bytes());
+            },
+            &["r2.lvm", "2 of 3 records can be used"],
+        ),
+        refused(
+            "HDF5 of two thousand nested groups",
+            |lab| {
+                nested_groups(&lab.path("r2.h5"), 2000);
+                lab.replace("runs.csv", "r2.csv", "r2.h5");
+            },
+            &["r2.h5", "2 of 3 records can be used"],
         ),
         refused(
             "CSV of one endless line",

@@ -49,6 +49,7 @@ impl Store {
 
     /// The samples of some channels, in the order asked for; each variable is inflated once.
     pub fn read(&self, wanted: &[Origin]) -> Result<Vec<Samples>, ReadError> {
+        self.file.still_whole()?;
         let variable_of = |slot: usize| self.tree.leaves[wanted[slot].leaf].variable;
         let mut all: Vec<Option<Samples>> = vec![None; wanted.len()];
         let mut order: Vec<usize> = (0..wanted.len()).collect();

@@ -127,6 +127,7 @@ impl Source for TdmsFile {
     }
 
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
+        self.file.still_whole()?;
         channels
             .iter()
             .map(|&channel| self.channel(dataset, channel))

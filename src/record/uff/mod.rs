@@ -94,6 +94,7 @@ impl Source for UniversalFile {
     }
 
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
+        self.file.still_whole()?;
         let origins = self.origins.get(dataset).map_or(&[][..], Vec::as_slice);
         let wanted: Option<Vec<_>> = channels.iter().map(|&c| origins.get(c).copied()).collect();
         match wanted {

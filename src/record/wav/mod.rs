@@ -162,6 +162,7 @@ impl Source for WaveFile {
     }
 
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
+        self.file.still_whole()?;
         let held = self.datasets.get(dataset).map_or(0, |d| d.channels.len());
         if let Some(channel) = channels.iter().find(|&&channel| channel >= held) {
             let found = format!("a request for channel {channel} of dataset {dataset}");

@@ -1,5 +1,7 @@
 //! What each method rests on: resonance curve, speeds at impacts, residuals, correlation.
 
+use std::collections::HashSet;
+
 use super::Gathered;
 use crate::identify::contact_law::Law;
 use crate::identify::impacts::SpeedPair;
@@ -21,6 +23,19 @@ use crate::units::Dimension;
 const CURVE_POINTS: usize = 240;
 /// Most residuals of one method that are drawn.
 const MOST_RESIDUALS: usize = 4000;
+/// Most impacts, and most points of a resonance curve, that are drawn.
+const MOST_POINTS: usize = 20_000;
+
+/// Every second, third … of points that are too many to be drawn.
+fn thinned<T>(points: Vec<T>, most: usize) -> Vec<T> {
+    let stride = points.len().div_ceil(most).max(1);
+    points.into_iter().step_by(stride).collect()
+}
+
+/// Names of the records that a fit left out.
+fn names_left_out<'a>(gathered: &Gathered<'a>) -> HashSet<&'a str> {
+    gathered.left_out.iter().map(|l| l.0.as_str()).collect()
+}
 
 pub(super) fn resonance(gathered: &Gathered) -> Vec<ResonanceCurve> {
     let roles = [
@@ -39,14 +54,12 @@ pub(super) fn resonance(gathered: &Gathered) -> Vec<ResonanceCurve> {
 }
 
 fn curve(gathered: &Gathered, role: Role) -> Option<ResonanceCurve> {
-    let mut points: Vec<ResonancePoint> = gathered
-        .observations
-        .iter()
-        .filter_map(|o| {
-            let response = o.response.iter().find(|r| r.role == role)?;
-            Some(point(gathered, o, response))
-        })
-        .collect();
+    let left = names_left_out(gathered);
+    let points = gathered.observations.iter().filter_map(|o| {
+        let response = o.response.iter().find(|r| r.role == role)?;
+        Some(point(o, response, left.contains(o.record.as_str())))
+    });
+    let mut points = thinned(points.collect(), MOST_POINTS);
     if points.len() < 3 {
         return None;
     }
@@ -63,9 +76,8 @@ fn curve(gathered: &Gathered, role: Role) -> Option<ResonanceCurve> {
     })
 }
 
-fn point(gathered: &Gathered, o: &Observation, response: &Response) -> ResonancePoint {
+fn point(o: &Observation, response: &Response, left: bool) -> ResonancePoint {
     let amplitude = response.amplitude();
-    let left = gathered.left_out.iter().any(|(name, _)| *name == o.record);
     ResonancePoint {
         record: o.record.clone(),
         frequency_hz: o.frequency_hz().unwrap_or(f64::NAN),
@@ -138,7 +150,7 @@ fn scatter(
     });
     (!pairs.is_empty()).then(|| ImpactScatter {
         name: name.to_owned(),
-        points: points.collect(),
+        points: thinned(points.collect(), MOST_POINTS),
         restitution: estimate.and_then(|e| e.value),
         interval95: estimate.and_then(|e| e.interval95),
         restitution_of_speed: method.map(law_curve).unwrap_or_default(),
@@ -150,7 +162,12 @@ fn scatter(
 fn law_curve(method: &MethodResult) -> Vec<[f64; 2]> {
     let law = method.contact_law.as_ref();
     law.filter(|l| l.law != Law::Constant && method.fits == Some(false))
-        .map(|l| l.curve.iter().map(|p| [p.speed_m_s, p.restitution]).collect())
+        .map(|l| {
+            l.curve
+                .iter()
+                .map(|p| [p.speed_m_s, p.restitution])
+                .collect()
+        })
         .unwrap_or_default()
 }
 
@@ -167,13 +184,11 @@ pub(super) fn residuals(gathered: &Gathered) -> Vec<ResidualSet> {
         .map(|r| r.observation)
         .collect();
     let impact: Vec<usize> = all.impact.pairs.iter().map(|p| p.observation).collect();
+    let left = names_left_out(gathered);
     let of = |method: &str, block: &dyn Block, owners: &[usize]| {
         let points: Vec<ResidualPoint> = (0..block.items())
             .filter_map(|i| Some((owners[i], block.residuals(i, parameters)?)))
-            .filter(|(owner, _)| {
-                let name = &gathered.observations[*owner].record;
-                !gathered.left_out.iter().any(|(left, _)| left == name)
-            })
+            .filter(|(owner, _)| !left.contains(gathered.observations[*owner].record.as_str()))
             .flat_map(|(owner, list)| list.into_iter().map(move |r| (owner, r)))
             .map(|(owner, residual)| residual_point(&gathered.observations[owner], residual))
             .collect();
@@ -201,10 +216,9 @@ fn residual_point(o: &Observation, residual: f64) -> ResidualPoint {
 fn set(method: &str, points: Vec<ResidualPoint>) -> ResidualSet {
     let values: Vec<f64> = points.iter().map(|p| p.residual).collect();
     let autocorrelation = autocorrelation(&values, 20);
-    let stride = points.len().div_ceil(MOST_RESIDUALS).max(1);
     ResidualSet {
         method: method.to_owned(),
-        points: points.into_iter().step_by(stride).collect(),
+        points: thinned(points, MOST_RESIDUALS),
         autocorrelation,
         note: String::new(),
     }

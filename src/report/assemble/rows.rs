@@ -1,5 +1,7 @@
 //! The campaign's summary and the rows of records and brackets.
 
+use std::collections::HashMap;
+
 use super::{ChannelFacts, Gathered};
 use crate::motion::{self, Motion, Observation};
 use crate::report::content::{
@@ -84,18 +86,29 @@ pub(super) fn place(gathered: &Gathered, o: &Observation) -> (Option<f64>, Optio
     (eta, o.setting.clearance_m.map(|c| c / scale))
 }
 
+/// Most records that the report lists and draws; of more, every second, third … The chosen ones
+/// are always among them, and records.parquet holds all.
+const MOST_RECORDS: usize = 10_000;
+
 pub(super) fn records(gathered: &Gathered) -> Vec<RecordRow> {
-    gathered
-        .observations
+    let left: HashMap<&str, &str> = gathered
+        .left_out
         .iter()
-        .map(|o| record(gathered, o))
+        .rev()
+        .map(|(name, why)| (name.as_str(), why.as_str()))
+        .collect();
+    let all = gathered.observations;
+    let stride = all.len().div_ceil(MOST_RECORDS).max(1);
+    all.iter()
+        .enumerate()
+        .filter(|(i, _)| i.is_multiple_of(stride) || gathered.chosen.contains(i))
+        .map(|(_, o)| record(gathered, o, left.get(o.record.as_str()).copied()))
         .collect()
 }
 
-fn record(gathered: &Gathered, o: &Observation) -> RecordRow {
+fn record(gathered: &Gathered, o: &Observation, left: Option<&str>) -> RecordRow {
     let (eta, rho) = place(gathered, o);
     let pair = o.finding.impacts_and_periods();
-    let left = gathered.left_out.iter().find(|(name, _)| *name == o.record);
     let used_by = if o.excluded() {
         Vec::new()
     } else {
@@ -121,7 +134,7 @@ fn record(gathered: &Gathered, o: &Observation) -> RecordRow {
         impacts: o.impacts.len(),
         flags: o.flags.iter().map(|f| f.code.replace('_', " ")).collect(),
         left_out: excluded
-            .or_else(|| left.map(|l| l.1.clone()))
+            .or_else(|| left.map(str::to_owned))
             .filter(|_| used_by.is_empty()),
         used_by,
     }

@@ -1,0 +1,137 @@
+//! Disks that are full and folders that cannot be written into.
+#![cfg(unix)]
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use super::{campaign, hidden};
+use crate::support::Lab;
+
+fn shell(lab: &Lab, script: &str) -> (Option<i32>, String) {
+    let program = env!("CARGO_BIN_EXE_impactid");
+    let output = Command::new("sh")
+        .args(["-c", &script.replace("impactid", program)])
+        .current_dir(lab.folder())
+        .output()
+        .expect("a shell");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    (output.status.code(), said)
+}
+
+fn assert_yesterday_is_left(lab: &Lab, said: &str) {
+    assert!(
+        said.contains("could not be written") && said.contains("free space"),
+        "{said}"
+    );
+    assert_eq!(lab.read("out/report.pdf"), "the report of yesterday");
+    let parts = hidden(&lab.path("out"));
+    assert!(parts.iter().all(|p| !p.contains("part")), "{parts:?}");
+}
+
+/// Writes fail beyond a limit of the shell, as on a full disk.
+#[test]
+fn valid_a_failed_write_is_told_and_what_was_there_stays() {
+    let lab = campaign(8);
+    fs::create_dir(lab.path("out")).expect("a folder");
+    lab.write("out/report.pdf", "the report of yesterday");
+    let limited = "trap '' XFSZ; ulimit -f 8; exec impactid -q run campaign.toml --out out";
+    let (code, said) = shell(&lab, limited);
+    assert_eq!(code, Some(2), "{said}");
+    assert_yesterday_is_left(&lab, &said);
+}
+
+/// A disk in memory, unmounted when it goes.
+struct SmallDisk(std::path::PathBuf);
+
+impl SmallDisk {
+    /// A disk of so many KiB at a folder; `None` where this user may not mount one.
+    fn at(folder: &Path, kib: usize) -> Option<Self> {
+        let size = format!("size={kib}k");
+        let mounted = Command::new("mount")
+            .args(["-t", "tmpfs", "-o", &size, "tmpfs"])
+            .arg(folder)
+            .output();
+        mounted
+            .is_ok_and(|o| o.status.success())
+            .then(|| Self(folder.to_path_buf()))
+    }
+}
+
+impl Drop for SmallDisk {
+    fn drop(&mut self) {
+        let _ = Command::new("umount").arg(&self.0).output();
+    }
+}
+
+#[test]
+fn valid_a_full_disk_is_told_and_what_was_there_stays() {
+    let lab = campaign(8);
+    fs::create_dir(lab.path("out")).expect("a folder");
+    let Some(_disk) = SmallDisk::at(&lab.path("out"), 64) else {
+        println!("skipped: this user may not mount a small disk");
+        return;
+    };
+    lab.write("out/report.pdf", "the report of yesterday");
+    for command in [
+        "impactid -q run campaign.toml --out out",
+        "impactid -q ingest campaign.toml --out out",
+    ] {
+        let (code, said) = shell(&lab, command);
+        assert_eq!(code, Some(2), "{said}");
+        assert_yesterday_is_left(&lab, &said);
+    }
+    for target in ["h5", "parquet", "csv"] {
+        let command = format!("impactid -q convert records.h5 --out out/all.{target}");
+        let (code, said) = shell(&lab, &command);
+        assert_eq!(code, Some(2), "{said}");
+        assert!(!lab.path(&format!("out/all.{target}")).exists());
+        let parts = hidden(&lab.path("out"));
+        assert!(parts.is_empty(), "{target}: {parts:?}");
+    }
+}
+
+#[test]
+fn valid_a_standard_output_that_is_full_is_told() {
+    if !Path::new("/dev/full").exists() {
+        println!("skipped: there is no /dev/full");
+        return;
+    }
+    let lab = Lab::new();
+    for command in [
+        "impactid inspect r1.csv",
+        "impactid inspect r1.csv --json",
+        "impactid selftest",
+        "impactid completions bash",
+        "impactid boundary --kind s2 --eta 1.2 --beta 0.07 --restitution 0.9",
+    ] {
+        let (code, said) = shell(&lab, &format!("{command} > /dev/full"));
+        assert_eq!(code, Some(2), "{command}: {said}");
+        assert!(!said.contains("panicked"), "{command}: {said}");
+    }
+    let (code, said) = shell(&lab, "impactid selftest | true");
+    assert!(!said.contains("panicked"), "{code:?}: {said}");
+}
+
+#[test]
+fn valid_a_folder_that_cannot_be_written_into_is_told() {
+    let lab = campaign(8);
+    let (code, said) = shell(&lab, "impactid -q run campaign.toml --out /proc/results");
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("the folder /proc/results cannot be written into"),
+        "{said}"
+    );
+    let closed = "mkdir closed && chmod 555 closed && touch closed/probe 2>/dev/null";
+    if shell(&lab, closed).0 == Some(0) {
+        println!("skipped in part: this user may write everywhere");
+        return;
+    }
+    let (code, said) = shell(&lab, "impactid -q run campaign.toml --out closed");
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("closed cannot be written into") && said.contains("--out"),
+        "{said}"
+    );
+    assert_eq!(fs::read_dir(lab.path("closed")).expect("it").count(), 0);
+}

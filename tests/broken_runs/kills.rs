@@ -1,0 +1,157 @@
+//! SIGKILL at random moments: while records are observed, while the parameters are fitted, and
+//! while the outputs are written.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::time::{Duration, Instant};
+
+use super::{RUN, assert_same, campaign, hidden, outputs, program};
+use crate::support::Lab;
+
+/// Moments at which a run is killed; `IMPACTID_KILLS` sets another number.
+const KILLS: u64 = 104;
+
+/// Kills of the same run, resumed again and again, before it may end.
+const IN_A_ROW: u64 = 4;
+
+fn kills() -> u64 {
+    std::env::var("IMPACTID_KILLS")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(KILLS)
+}
+
+/// What is killed: a campaign with a command, and what an undisturbed run of it leaves.
+struct Victim {
+    lab: Lab,
+    command: Vec<&'static str>,
+    expected: BTreeMap<String, Vec<u8>>,
+    code: i32,
+    time: Duration,
+}
+
+impl Victim {
+    fn new(records: usize, formats: &'static str) -> Self {
+        let lab = campaign(records);
+        let mut command = RUN.to_vec();
+        command.extend(["--format", formats]);
+        let begin = Instant::now();
+        let ran = lab.run(&command);
+        assert!(ran.code == 0 || ran.code == 1, "{}", ran.said);
+        let expected = outputs(&lab.path("out"));
+        assert!(expected.contains_key("identification.json"));
+        fs::remove_dir_all(lab.path("out")).expect("the outputs");
+        Self {
+            lab,
+            command,
+            expected,
+            code: ran.code,
+            time: begin.elapsed(),
+        }
+    }
+
+    /// Run, and kill at a moment; whether it was still running.
+    fn kill(&self, resume: bool, moment: Moment) -> bool {
+        let mut command = self.command.clone();
+        if resume {
+            command.push("--resume");
+        }
+        let mut run = program(&self.lab, &command).spawn().expect("it starts");
+        match moment {
+            Moment::After(part) => std::thread::sleep(self.time.mul_f64(part)),
+            Moment::Writing(files) => {
+                let out = self.lab.path("out");
+                let begin = Instant::now();
+                let ended = |run: &mut std::process::Child| {
+                    !matches!(run.try_wait(), Ok(None)) || begin.elapsed() > Duration::from_secs(60)
+                };
+                while outputs(&out).len() < files && !ended(&mut run) {
+                    std::thread::yield_now();
+                }
+            }
+        }
+        let running = matches!(run.try_wait(), Ok(None));
+        run.kill().expect("it can be killed");
+        run.wait().expect("it ends");
+        running
+    }
+
+    /// Nothing bears a final name that is not whole.
+    fn assert_whole(&self, kill: u64) {
+        for (name, bytes) in outputs(&self.lab.path("out")) {
+            let whole = self.expected.get(&name).is_some_and(|e| *e == bytes);
+            assert!(whole, "{name} is half-written after kill {kill}");
+        }
+    }
+
+    /// What was killed goes on to the bytes of an undisturbed run, and leaves nothing beside.
+    fn assert_resumes(&self) {
+        let out = self.lab.path("out");
+        let mut command = self.command.clone();
+        command.push("--resume");
+        assert_eq!(self.lab.run(&command).code, self.code);
+        assert_same(&outputs(&out), &self.expected);
+        assert_eq!(hidden(&out), Vec::<String>::new());
+        fs::remove_dir_all(&out).expect("the outputs");
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Moment {
+    /// After a part of an undisturbed run's time.
+    After(f64),
+    /// As soon as so many outputs are there.
+    Writing(usize),
+}
+
+/// A reproducible number in 0 … 1 (splitmix64).
+fn random(state: &mut u64) -> f64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+}
+
+fn kill_again_and_again(victim: &Victim, seed: u64, kills: u64) -> u64 {
+    let mut state = seed;
+    let mut killed_running = 0;
+    for kill in 0..kills {
+        let moment = match kill % 3 {
+            0 => {
+                let outputs = victim.expected.len() as f64;
+                Moment::Writing(1 + (random(&mut state) * outputs) as usize)
+            }
+            _ => Moment::After(random(&mut state)),
+        };
+        let resume = kill % IN_A_ROW != 0;
+        killed_running += u64::from(victim.kill(resume, moment));
+        victim.assert_whole(kill);
+        if (kill + 1) % IN_A_ROW == 0 || kill + 1 == kills {
+            victim.assert_resumes();
+        }
+    }
+    killed_running
+}
+
+#[test]
+fn valid_a_killed_run_leaves_nothing_half_written_and_resumes_to_the_same_bytes() {
+    let half = kills() / 2;
+    // one campaign of so many records that observations are kept on the way, one with a document
+    let victims = [(66, "csv", 3), (8, "pdf", 5)];
+    let running: u64 = std::thread::scope(|scope| {
+        let threads = victims.map(|(records, formats, seed)| {
+            scope.spawn(move || {
+                let victim = Victim::new(records, formats);
+                kill_again_and_again(&victim, seed, half)
+            })
+        });
+        threads.map(|t| t.join().expect("no panic")).iter().sum()
+    });
+    assert!(
+        running * 2 > half,
+        "only {running} of {} kills met a running program",
+        2 * half
+    );
+    println!("{running} of {} kills met a running program", 2 * half);
+}

@@ -1,0 +1,119 @@
+//! The same input gives the same bytes on any number of threads, for everything that is written.
+
+use std::fs;
+
+use super::{assert_same, campaign, outputs};
+
+/// Run a command on 1, 2 and 4 threads; what it leaves in `out`, and what it says, is the same.
+fn same_on_any_number_of_threads(lab: &crate::support::Lab, command: &[&str]) {
+    let run = |threads: &str| {
+        let mut args = vec!["-q", "--threads", threads];
+        args.extend(command);
+        let ran = lab.run(&args);
+        assert!(ran.code == 0 || ran.code == 1, "{command:?}: {}", ran.said);
+        let out = lab.path("out");
+        let files = outputs(&out);
+        if out.exists() {
+            fs::remove_dir_all(&out).expect("the outputs");
+        }
+        assert!(!files.is_empty() || !ran.said.is_empty(), "{command:?}");
+        (ran.said, files)
+    };
+    let (said, expected) = run("1");
+    for threads in ["2", "4"] {
+        let (again, files) = run(threads);
+        assert_eq!(again, said, "{command:?} on {threads} threads");
+        assert_same(&files, &expected);
+    }
+}
+
+#[test]
+fn valid_a_run_with_every_format() {
+    let lab = campaign(12);
+    let formats = "pdf,html,svg,png";
+    let run = ["run", "campaign.toml", "--out", "out", "--format", formats];
+    same_on_any_number_of_threads(&lab, &run);
+}
+
+#[test]
+fn valid_a_run_that_keeps_observations_on_the_way() {
+    let lab = campaign(66);
+    let run = ["run", "campaign.toml", "--out", "out", "--format", "csv"];
+    same_on_any_number_of_threads(&lab, &run);
+}
+
+#[test]
+fn valid_stages_and_conversions() {
+    let lab = campaign(8);
+    for command in [
+        &["ingest", "campaign.toml", "--out", "out"][..],
+        &["convert", "records.h5", "--out", "out/a.h5"],
+        &["convert", "records.h5", "--out", "out/a.parquet"],
+        &["convert", "records.h5", "--out", "out/a.csv"],
+        &["inspect", "records.h5", "--json"],
+        &["check", "campaign.toml"],
+    ] {
+        if command[0] == "convert" {
+            // the folder goes with every run
+            for threads in ["1", "2", "4"] {
+                fs::create_dir_all(lab.path("out")).expect("a folder");
+                let mut args = vec!["-q", "--threads", threads];
+                args.extend(command);
+                assert_eq!(lab.run(&args).code, 0, "{command:?}");
+                fs::rename(lab.path("out"), lab.path(threads)).expect("a folder");
+            }
+            let first = outputs(&lab.path("1"));
+            assert!(!first.is_empty());
+            for threads in ["2", "4"] {
+                assert_same(&outputs(&lab.path(threads)), &first);
+            }
+            for threads in ["1", "2", "4"] {
+                fs::remove_dir_all(lab.path(threads)).expect("the outputs");
+            }
+        } else if command[0] == "check" {
+            let said = |threads| {
+                lab.run(&["--threads", threads, "check", "campaign.toml"])
+                    .said
+            };
+            assert_eq!(said("1"), said("4"));
+        } else {
+            same_on_any_number_of_threads(&lab, command);
+        }
+    }
+    same_stages(&lab);
+}
+
+/// `classify`, `identify` and `report`, one after the other, on 1, 2 and 4 threads.
+fn same_stages(lab: &crate::support::Lab) {
+    let all = |threads: &str| {
+        for stage in [
+            &["ingest", "campaign.toml", "--out", "out"][..],
+            &["classify", "out"],
+            &["identify", "out"],
+            &["report", "out"],
+        ] {
+            let mut args = vec!["-q", "--threads", threads];
+            args.extend(stage);
+            let ran = lab.run(&args);
+            assert!(ran.code < 2, "{stage:?}: {}", ran.said);
+        }
+        let files = outputs(&lab.path("out"));
+        fs::remove_dir_all(lab.path("out")).expect("the outputs");
+        files
+    };
+    let expected = all("1");
+    for threads in ["2", "4"] {
+        assert_same(&all(threads), &expected);
+    }
+}
+
+#[test]
+fn valid_simulated_campaigns_and_theory() {
+    let lab = crate::support::Lab::new();
+    for command in [
+        &["simulate", "campaign", "--records", "30", "--out", "out"][..],
+        &["selftest"],
+    ] {
+        same_on_any_number_of_threads(&lab, command);
+    }
+}
