@@ -1,6 +1,6 @@
 //! R from brackets alone: the posterior over R of all brackets as interval observations.
 //!
-//! A bracket says that a boundary lies between two settings and nothing more; its likelihood is
+//! A bracket says that a boundary lies between two settings and nothing more (14); its likelihood is
 //! flat inside, so neither a least-squares optimum nor its curvature means anything. The
 //! posterior is therefore summed over a grid of R and x_st (which the resonance curve tells), with
 //! the scale of early jumps summed out; f0 and β are the resonance curve's.

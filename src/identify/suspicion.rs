@@ -100,7 +100,7 @@ fn stated_gaps(records: &[TrajectoryRecord]) -> Vec<f64> {
 /// first order about a fit. `weight` is that of the trajectories in the fit.
 ///
 /// With the residuals' slopes J over the free coordinates and c over the gap, the shift is
-/// −cᵀr / (cᵀc − cᵀJ(JᵀJ)⁻¹Jᵀc).
+/// −cᵀr / (cᵀc − cᵀJ(JᵀJ)⁻¹Jᵀc), (15).
 pub fn odd_gap(block: &TrajectoryBlock, weight: f64, fit: &Fit, factor: f64) -> Option<OddGap> {
     stated_gaps(&block.records)
         .iter()
