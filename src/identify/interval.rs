@@ -85,7 +85,10 @@ fn summed(grid: &[f64], cells: &[Vec<f64>], (centre, error): (f64, f64)) -> Post
     Posterior {
         // A cell of the grid stands for its whole width.
         restitution: (mean, spread.hypot(step / 12f64.sqrt())),
-        interval95: [quantile(grid, &over_r, 0.025), quantile(grid, &over_r, 0.975)],
+        interval95: [
+            quantile(grid, &over_r, 0.025),
+            quantile(grid, &over_r, 0.975),
+        ],
         ln_deflection: (centre + node * error, node_spread * error),
     }
 }
