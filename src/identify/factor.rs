@@ -127,11 +127,8 @@ impl Factor {
 
     /// |Js|: the length of a step in standard errors, for residuals of unit variance.
     pub fn length(&self, step: &[f64]) -> f64 {
-        let row = |i: usize| -> f64 {
-            (i..self.unknowns)
-                .map(|k| self.entry(i, k) * step[k])
-                .sum()
-        };
+        let row =
+            |i: usize| -> f64 { (i..self.unknowns).map(|k| self.entry(i, k) * step[k]).sum() };
         (0..self.unknowns)
             .map(|i| row(i).powi(2))
             .sum::<f64>()
@@ -151,7 +148,9 @@ impl Factor {
         for k in 0..n {
             inverse[(k, k)] = self.entry(k, k).recip();
             for i in (0..k).rev() {
-                let known: f64 = (i + 1..=k).map(|l| self.entry(i, l) * inverse[(l, k)]).sum();
+                let known: f64 = (i + 1..=k)
+                    .map(|l| self.entry(i, l) * inverse[(l, k)])
+                    .sum();
                 inverse[(i, k)] = -known / self.entry(i, i);
             }
         }

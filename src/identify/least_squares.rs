@@ -35,6 +35,9 @@ pub struct Limits {
     pub negligible: f64,
     /// Variance of the residuals by which standard errors are meant.
     pub variance: Variance,
+    /// Damping of the first step, as a share of the information: the larger, the less the start
+    /// is trusted.
+    pub damping: f64,
     /// Most steps taken.
     pub steps: usize,
 }
@@ -79,6 +82,50 @@ enum Step<Point> {
     None,
 }
 
+/// How strongly steps are held back, and in which measure of the unknowns.
+struct Hold {
+    damping: f64,
+    /// Scales of the unknowns: the norms of their slopes, falling slowly. A slope that vanishes
+    /// suddenly does not set its unknown free (Moré 1978), and an old one is forgotten.
+    scales: Vec<f64>,
+}
+
+/// Share of a scale that the next step remembers.
+const MEMORY: f64 = 0.9;
+const LEAST_DAMPING: f64 = 1e-18;
+/// Damping that a refused step has at least.
+const REFUSED_DAMPING: f64 = 1e-10;
+const MOST_TRIALS: usize = 40;
+
+impl Hold {
+    fn remember(&mut self, factor: &Factor) {
+        for (scale, norm) in self.scales.iter_mut().zip(factor.norms()) {
+            *scale = (MEMORY * *scale).max(norm);
+        }
+    }
+
+    /// Fall in cost that a step promises where the problem is linear.
+    fn promise(&self, step: &[f64], length: f64) -> f64 {
+        let scaled = step.iter().zip(&self.scales);
+        let held: f64 = scaled.map(|(s, d)| (s * d).powi(2)).sum();
+        length * length + 2.0 * self.damping * held
+    }
+
+    /// After a step that kept some share of its promise.
+    fn ease(&mut self, kept: f64) {
+        let factor = match kept {
+            k if k > 0.75 => 0.2,
+            k if k < 0.25 => 4.0,
+            _ => 1.0,
+        };
+        self.damping = (self.damping * factor).max(LEAST_DAMPING);
+    }
+
+    fn tighten(&mut self) {
+        self.damping = (self.damping * 4.0).max(REFUSED_DAMPING);
+    }
+}
+
 /// Least sum of squares from a start.
 ///
 /// # Errors
@@ -94,9 +141,13 @@ pub fn minimise<P: LeastSquares>(
         ending: Ending::TooManySteps,
         steps: 0,
     };
-    let mut damping = 1e-4;
+    let mut hold = Hold {
+        damping: limits.damping,
+        scales: vec![0.0; minimum.factor.unknowns()],
+    };
     while minimum.steps < limits.steps {
-        match step(problem, &minimum, limits, &mut damping) {
+        hold.remember(&minimum.factor);
+        match step(problem, &minimum, limits, &mut hold) {
             Step::Taken { to, negligible } => {
                 minimum.factor = problem.factor(&to)?;
                 minimum.point = to;
@@ -123,30 +174,25 @@ fn step<P: LeastSquares>(
     problem: &P,
     from: &Minimum<P::Point>,
     limits: &Limits,
-    damping: &mut f64,
+    hold: &mut Hold,
 ) -> Step<P::Point> {
     let factor = &from.factor;
     let negligible = limits.negligible * deviation(factor, limits.variance);
-    let diagonal: Vec<f64> = factor
-        .norms()
-        .into_iter()
-        .map(|norm| if norm > 0.0 { norm } else { 1.0 })
-        .collect();
-    for _ in 0..16 {
-        let Some(step) = factor.step(*damping, &diagonal) else {
-            *damping = (*damping * 10.0).max(1e-6);
+    for _ in 0..MOST_TRIALS {
+        let Some(step) = factor.step(hold.damping, &hold.scales) else {
+            hold.tighten();
             continue;
         };
         let to = problem.moved(&from.point, &step);
         let length = factor.length(&step);
         match problem.cost(&to) {
             Some(cost) if cost < factor.cost => {
-                *damping = (*damping * 0.2).max(1e-12);
+                hold.ease((factor.cost - cost) / hold.promise(&step, length));
                 let negligible = length < negligible;
                 return Step::Taken { to, negligible };
             }
             _ if length < negligible => return Step::Negligible,
-            _ => *damping = (*damping * 8.0).max(1e-6),
+            _ => hold.tighten(),
         }
     }
     Step::None
