@@ -123,7 +123,7 @@ struct Digits {
 }
 
 const LIMITS: Limits = Limits {
-    negligible: 1e-7,
+    negligible: 1e-8,
     variance: Variance::Estimated,
     damping: 1e-2,
     steps: 10_000,
