@@ -82,9 +82,7 @@ impl Factor {
                 let head = &mut self.triangle[(j + 1 + k) * width + j];
                 let share = scale * (lead * *head + dot(pivot, column));
                 *head -= share * lead;
-                for (x, v) in column.iter_mut().zip(pivot) {
-                    *x -= share * v;
-                }
+                subtract(column, share, pivot);
             }
         }
     }
@@ -160,14 +158,29 @@ impl Factor {
 
 /// Inner product, in four sums that do not wait for each other.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (fours_a, fours_b) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest = fours_a.remainder().iter().zip(fours_b.remainder());
-    let tail: f64 = rest.map(|(x, y)| x * y).sum();
-    let mut sums = [0.0; 4];
-    for (x, y) in fours_a.zip(fours_b) {
-        for i in 0..4 {
-            sums[i] += x[i] * y[i];
-        }
+    let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    let (mut s, mut t, mut u, mut v) = (0.0, 0.0, 0.0, 0.0);
+    for (x, y) in a.iter().zip(b) {
+        s += x[0] * y[0];
+        t += x[1] * y[1];
+        u += x[2] * y[2];
+        v += x[3] * y[3];
     }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + tail
+    let rest: f64 = rest_a.iter().zip(rest_b).map(|(x, y)| x * y).sum();
+    (s + t) + (u + v) + rest
+}
+
+/// Subtract a multiple of another column.
+fn subtract(from: &mut [f64], share: f64, column: &[f64]) {
+    let (fours, rest) = from.as_chunks_mut::<4>();
+    let (others, other_rest) = column.as_chunks::<4>();
+    for (x, y) in fours.iter_mut().zip(others) {
+        x[0] -= share * y[0];
+        x[1] -= share * y[1];
+        x[2] -= share * y[2];
+        x[3] -= share * y[3];
+    }
+    for (x, y) in rest.iter_mut().zip(other_rest) {
+        *x -= share * y;
+    }
 }
