@@ -1,13 +1,16 @@
-//! Levenberg–Marquardt on the normal equations of blocks of residuals.
+//! Least squares over blocks of residuals.
 //!
 //! A block gives its residuals item by item (a record, a bracket), so that items are evaluated in
-//! parallel and only their normal equations are kept. An item whose model does not exist at a
+//! parallel and only their triangular factors are kept, which are combined in the items' order. An item whose model does not exist at a
 //! trial point makes that trial fail; it never becomes a residual number.
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::identify::factor::Factor;
+pub use crate::identify::least_squares::Ending;
+use crate::identify::least_squares::{LeastSquares, Limits, Variance, minimise};
 use crate::identify::parameters::{Coordinate, Parameters};
 
 /// Weighted residuals of one kind of observation.
@@ -60,18 +63,6 @@ pub struct Problem<'a> {
     pub priors: Vec<Prior>,
     /// Free coordinates.
     pub free: Vec<Coordinate>,
-}
-
-/// How a fit ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Ending {
-    /// The step became negligible.
-    Converged,
-    /// The steps ran out first.
-    TooManySteps,
-    /// No step in any direction lowers the cost further, though the gradient is not yet zero.
-    Stalled,
 }
 
 /// A finished fit.
@@ -142,7 +133,7 @@ pub enum FitError {
     /// Nothing to fit.
     #[error("there are no observations to fit")]
     Empty,
-    /// The normal equations are singular: the data do not tell the coordinates.
+    /// The slopes are dependent: the data do not tell the coordinates.
     #[error("the data do not tell the parameters apart")]
     Singular,
 }
@@ -182,7 +173,14 @@ impl Normal {
 
 /// Relative step of the central differences.
 const DIFFERENCE: f64 = 2e-6;
-const MOST_STEPS: usize = 60;
+/// Least share of a column of slopes that must stand off the others: differences do not tell less.
+const LEAST_SHARE: f64 = 1e-8;
+const LIMITS: Limits = Limits {
+    negligible: 1e-4,
+    variance: Variance::Unit,
+    damping: 1e-4,
+    steps: 60,
+};
 
 impl Problem<'_> {
     /// Fit from a start.
@@ -191,41 +189,15 @@ impl Problem<'_> {
     /// [`FitError`] where there is nothing to fit, where observations have no counterpart in the
     /// model at the start, or where the data do not determine the coordinates.
     pub fn fit(&self, start: Parameters) -> Result<Fit, FitError> {
-        let mut parameters = start;
-        let mut normal = self.normal(&parameters).map_err(FitError::NoModel)?;
-        if normal.count == 0 {
-            return Err(FitError::Empty);
-        }
-        let mut damping = 1e-4;
-        let mut ending = Ending::TooManySteps;
-        for _ in 0..MOST_STEPS {
-            match self.step(&parameters, &normal, &mut damping) {
-                Step::Taken { to, negligible } => {
-                    parameters = to;
-                    normal = self.normal(&parameters).map_err(FitError::NoModel)?;
-                    if negligible {
-                        ending = Ending::Converged;
-                        break;
-                    }
-                }
-                Step::Negligible => {
-                    ending = Ending::Converged;
-                    break;
-                }
-                Step::None => {
-                    ending = Ending::Stalled;
-                    break;
-                }
-            }
-        }
-        let covariance = inverse(&normal.matrix).ok_or(FitError::Singular)?;
+        let minimum = minimise(self, start, &LIMITS)?;
+        let factor = minimum.factor;
         Ok(Fit {
-            parameters,
+            parameters: minimum.point,
             free: self.free.clone(),
-            covariance,
-            cost: normal.cost,
-            residuals: normal.count - self.priors.len(),
-            ending,
+            covariance: factor.covariance(LEAST_SHARE).ok_or(FitError::Singular)?,
+            cost: factor.cost,
+            residuals: factor.count - self.priors.len(),
+            ending: minimum.ending,
         })
     }
 
@@ -258,7 +230,7 @@ impl Problem<'_> {
     /// Inverse of the information at given parameters, over the items that have a model there;
     /// `None` where it is singular.
     pub fn covariance_at(&self, parameters: &Parameters) -> Option<DMatrix<f64>> {
-        inverse(&self.known_normal(parameters).0.matrix)
+        self.known_factor(parameters).0.covariance(LEAST_SHARE)
     }
 
     /// Normal equations item by item of each block; items without a model are left out.
@@ -322,35 +294,44 @@ impl Problem<'_> {
         Some(held.fit(start).ok()?.cost)
     }
 
-    fn normal(&self, parameters: &Parameters) -> Result<Normal, Vec<(usize, usize)>> {
-        let (total, missing) = self.known_normal(parameters);
-        if missing.is_empty() {
-            Ok(total)
-        } else {
-            Err(missing)
-        }
-    }
-
-    /// Normal equations over the items that have a model, and those (block, item) that have none.
-    fn known_normal(&self, parameters: &Parameters) -> (Normal, Vec<(usize, usize)>) {
-        let mut total = Normal::zeros(self.free.len());
+    /// Factor over the items that have a model, and those (block, item) that have none.
+    fn known_factor(&self, parameters: &Parameters) -> (Factor, Vec<(usize, usize)>) {
+        let mut total = Factor::empty(self.free.len());
         let mut missing = Vec::new();
         for (b, (block, weight)) in self.blocks.iter().enumerate() {
-            let parts: Vec<Option<Normal>> = (0..block.items())
+            let (places, coordinates) = self.touched(*block);
+            let parts: Vec<Option<Factor>> = (0..block.items())
                 .into_par_iter()
-                .map(|i| self.item_normal(*block, i, *weight, parameters))
+                .map(|i| {
+                    let (residuals, columns) = block.slopes(i, parameters, &coordinates)?;
+                    Some(Factor::of(&residuals, &columns, *weight))
+                })
                 .collect();
             for (i, part) in parts.iter().enumerate() {
                 match part {
-                    Some(part) => total.add(part),
+                    Some(part) => total.add(part, &places),
                     None => missing.push((b, i)),
                 }
             }
         }
         for prior in &self.priors {
-            total.add(&self.prior_normal(prior, parameters));
+            let place = self.free.iter().position(|c| *c == prior.coordinate);
+            let slopes = place.map(|_| vec![prior.deviation.recip()]);
+            let residual = prior_residual(prior, parameters);
+            let part = Factor::of(&[residual], slopes.as_slice(), 1.0);
+            total.add(&part, place.as_slice());
         }
         (total, missing)
+    }
+
+    /// Places among the free coordinates, and the coordinates, that a block depends on.
+    fn touched(&self, block: &dyn Block) -> (Vec<usize>, Vec<Coordinate>) {
+        self.free
+            .iter()
+            .copied()
+            .enumerate()
+            .filter(|(_, c)| block.touches(*c))
+            .unzip()
     }
 
     fn item_normal(
@@ -360,20 +341,13 @@ impl Problem<'_> {
         weight: f64,
         at: &Parameters,
     ) -> Option<Normal> {
-        let touched: Vec<(usize, Coordinate)> = self
-            .free
-            .iter()
-            .copied()
-            .enumerate()
-            .filter(|(_, c)| block.touches(*c))
-            .collect();
-        let coordinates: Vec<Coordinate> = touched.iter().map(|(_, c)| *c).collect();
+        let (places, coordinates) = self.touched(block);
         let (residuals, columns) = block.slopes(item, at, &coordinates)?;
         let mut normal = Normal::zeros(self.free.len());
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
-        for ((i, _), a) in touched.iter().zip(&columns) {
+        for (i, a) in places.iter().zip(&columns) {
             normal.gradient[*i] = weight * dot(a, &residuals);
-            for ((k, _), b) in touched.iter().zip(&columns) {
+            for (k, b) in places.iter().zip(&columns) {
                 if k <= i {
                     let product = weight * dot(a, b);
                     normal.matrix[(*i, *k)] = product;
@@ -398,44 +372,31 @@ impl Problem<'_> {
         }
         part
     }
-
-    fn step(&self, from: &Parameters, normal: &Normal, damping: &mut f64) -> Step {
-        for _ in 0..16 {
-            let mut matrix = normal.matrix.clone();
-            for i in 0..matrix.nrows() {
-                matrix[(i, i)] += *damping * normal.matrix[(i, i)].max(1e-12);
-            }
-            let Some(step) = matrix.cholesky().map(|c| c.solve(&-&normal.gradient)) else {
-                *damping = (*damping * 10.0).max(1e-6);
-                continue;
-            };
-            let to = self
-                .free
-                .iter()
-                .zip(step.iter())
-                .fold(*from, |p, (c, d)| p.with(*c, p.coordinate(*c) + d));
-            // Size of the step in standard errors.
-            let size = step.dot(&(&normal.matrix * &step)).max(0.0).sqrt();
-            match self.cost(&to) {
-                Some(cost) if cost < normal.cost => {
-                    *damping = (*damping * 0.2).max(1e-12);
-                    return Step::Taken {
-                        to,
-                        negligible: size < 1e-4,
-                    };
-                }
-                _ if size < 1e-4 => return Step::Negligible,
-                _ => *damping = (*damping * 8.0).max(1e-6),
-            }
-        }
-        Step::None
-    }
 }
 
-enum Step {
-    Taken { to: Parameters, negligible: bool },
-    Negligible,
-    None,
+impl LeastSquares for Problem<'_> {
+    type Point = Parameters;
+    type Error = FitError;
+
+    fn factor(&self, at: &Parameters) -> Result<Factor, FitError> {
+        let (factor, missing) = self.known_factor(at);
+        if !missing.is_empty() {
+            return Err(FitError::NoModel(missing));
+        }
+        if factor.count == 0 {
+            return Err(FitError::Empty);
+        }
+        Ok(factor)
+    }
+
+    fn cost(&self, at: &Parameters) -> Option<f64> {
+        Problem::cost(self, at)
+    }
+
+    fn moved(&self, from: &Parameters, step: &[f64]) -> Parameters {
+        let steps = self.free.iter().zip(step);
+        steps.fold(*from, |p, (c, d)| p.with(*c, p.coordinate(*c) + d))
+    }
 }
 
 fn prior_residual(prior: &Prior, parameters: &Parameters) -> f64 {

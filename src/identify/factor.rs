@@ -1,0 +1,186 @@
+//! Triangular factor of weighted residuals and their slopes.
+//!
+//! Information is carried by its square root: the upper triangular R of [J r], of which the normal
+//! equations are RᵀR. Forming JᵀJ would square the condition of the problem and lose half of its
+//! digits. Rows are folded in by Householder reflections (Golub and Van Loan, Matrix Computations,
+//! chapter 5), so that factors of parts stack into that of the whole.
+
+use nalgebra::DMatrix;
+
+/// Upper triangular factor R of the rows [J r] of some residuals, with their cost and number.
+#[derive(Debug, Clone)]
+pub struct Factor {
+    /// Number of unknowns n.
+    unknowns: usize,
+    /// R, (n + 1) × (n + 1), column by column; the last column belongs to the residuals.
+    triangle: Vec<f64>,
+    /// rᵀr.
+    pub cost: f64,
+    /// Number of residuals.
+    pub count: usize,
+}
+
+impl Factor {
+    /// That of no residuals, over n unknowns.
+    pub fn empty(unknowns: usize) -> Self {
+        Self {
+            unknowns,
+            triangle: vec![0.0; (unknowns + 1) * (unknowns + 1)],
+            cost: 0.0,
+            count: 0,
+        }
+    }
+
+    /// That of some residuals with their slopes over n unknowns, column by column, each squared
+    /// residual weighted.
+    pub fn of(residuals: &[f64], slopes: &[Vec<f64>], weight: f64) -> Self {
+        let mut factor = Self::empty(slopes.len());
+        let root = weight.sqrt();
+        let mut rows = Vec::with_capacity(residuals.len() * (slopes.len() + 1));
+        for column in slopes.iter().map(Vec::as_slice).chain([residuals]) {
+            rows.extend(column.iter().map(|x| root * x));
+        }
+        factor.fold(&mut rows, residuals.len());
+        factor.cost = weight * dot(residuals, residuals);
+        factor.count = residuals.len();
+        factor
+    }
+
+    /// Add other residuals, whose unknowns are those at the given places among this factor's.
+    pub fn add(&mut self, other: &Self, places: &[usize]) {
+        let height = other.unknowns + 1;
+        let mut rows = vec![0.0; height * (self.unknowns + 1)];
+        let targets = places.iter().copied().chain([self.unknowns]);
+        for (column, to) in other.triangle.chunks_exact(height).zip(targets) {
+            rows[to * height..(to + 1) * height].copy_from_slice(column);
+        }
+        self.fold(&mut rows, height);
+        self.cost += other.cost;
+        self.count += other.count;
+    }
+
+    /// Fold rows [J r], given column by column, into the triangle; the rows are used up.
+    fn fold(&mut self, rows: &mut [f64], height: usize) {
+        if height == 0 {
+            return;
+        }
+        let width = self.unknowns + 1;
+        for j in 0..width {
+            let (done, rest) = rows.split_at_mut((j + 1) * height);
+            let pivot = &done[j * height..];
+            let below = dot(pivot, pivot);
+            if below == 0.0 {
+                continue;
+            }
+            let top = self.triangle[j * width + j];
+            let end = -(top * top + below).sqrt().copysign(top);
+            self.triangle[j * width + j] = end;
+            // The reflection I − 2vvᵀ/vᵀv with v = (lead, pivot), where vᵀv = −2·end·lead.
+            let lead = top - end;
+            let scale = -(end * lead).recip();
+            for (k, column) in rest.chunks_exact_mut(height).enumerate() {
+                let head = &mut self.triangle[(j + 1 + k) * width + j];
+                let share = scale * (lead * *head + dot(pivot, column));
+                *head -= share * lead;
+                subtract(column, share, pivot);
+            }
+        }
+    }
+
+    /// Number of unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.unknowns
+    }
+
+    fn entry(&self, row: usize, column: usize) -> f64 {
+        self.triangle[column * (self.unknowns + 1) + row]
+    }
+
+    /// Norms of the columns of slopes: the square roots of the diagonal of JᵀJ.
+    pub fn norms(&self) -> Vec<f64> {
+        self.triangle
+            .chunks_exact(self.unknowns + 1)
+            .take(self.unknowns)
+            .map(|column| dot(column, column).sqrt())
+            .collect()
+    }
+
+    /// Step s that makes |Js + r|² + damping·|Ds|² least, D being diagonal; `None` where it is not
+    /// determined.
+    pub fn step(&self, damping: f64, diagonal: &[f64]) -> Option<Vec<f64>> {
+        let n = self.unknowns;
+        let mut damped = self.clone();
+        let mut rows = vec![0.0; n * (n + 1)];
+        for (i, d) in diagonal.iter().enumerate() {
+            rows[i * n + i] = damping.sqrt() * d;
+        }
+        damped.fold(&mut rows, n);
+        let mut step = vec![0.0; n];
+        for i in (0..n).rev() {
+            let known: f64 = (i + 1..n).map(|k| damped.entry(i, k) * step[k]).sum();
+            step[i] = -(damped.entry(i, n) + known) / damped.entry(i, i);
+        }
+        step.iter().all(|s| s.is_finite()).then_some(step)
+    }
+
+    /// |Js|: the length of a step in standard errors, for residuals of unit variance.
+    pub fn length(&self, step: &[f64]) -> f64 {
+        let row =
+            |i: usize| -> f64 { (i..self.unknowns).map(|k| self.entry(i, k) * step[k]).sum() };
+        (0..self.unknowns)
+            .map(|i| row(i).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    }
+
+    /// (JᵀJ)⁻¹; `None` where a column of slopes, as a share of its norm, stands off those before
+    /// it by less than `least`.
+    pub fn covariance(&self, least: f64) -> Option<DMatrix<f64>> {
+        let n = self.unknowns;
+        let norms = self.norms();
+        let determined = (0..n).all(|i| self.entry(i, i).abs() > least * norms[i]);
+        if !determined {
+            return None;
+        }
+        let mut inverse = DMatrix::<f64>::zeros(n, n);
+        for k in 0..n {
+            inverse[(k, k)] = self.entry(k, k).recip();
+            for i in (0..k).rev() {
+                let known: f64 = (i + 1..=k)
+                    .map(|l| self.entry(i, l) * inverse[(l, k)])
+                    .sum();
+                inverse[(i, k)] = -known / self.entry(i, i);
+            }
+        }
+        Some(&inverse * inverse.transpose())
+    }
+}
+
+/// Inner product, in four sums that do not wait for each other.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    let (mut s, mut t, mut u, mut v) = (0.0, 0.0, 0.0, 0.0);
+    for (x, y) in a.iter().zip(b) {
+        s += x[0] * y[0];
+        t += x[1] * y[1];
+        u += x[2] * y[2];
+        v += x[3] * y[3];
+    }
+    let rest: f64 = rest_a.iter().zip(rest_b).map(|(x, y)| x * y).sum();
+    (s + t) + (u + v) + rest
+}
+
+/// Subtract a multiple of another column.
+fn subtract(from: &mut [f64], share: f64, column: &[f64]) {
+    let (fours, rest) = from.as_chunks_mut::<4>();
+    let (others, other_rest) = column.as_chunks::<4>();
+    for (x, y) in fours.iter_mut().zip(others) {
+        x[0] -= share * y[0];
+        x[1] -= share * y[1];
+        x[2] -= share * y[2];
+        x[3] -= share * y[3];
+    }
+    for (x, y) in rest.iter_mut().zip(other_rest) {
+        *x -= share * y;
+    }
+}
