@@ -100,7 +100,7 @@ fn failure(error: ConvertError) -> Failure {
     match error {
         ConvertError::Read(error) => error.into(),
         ConvertError::Write(error) => {
-            Failure::new(error.to_string(), "Name another file or folder with --out.")
+            Failure::new(error.to_string(), error.remedy())
         }
     }
 }
