@@ -15,6 +15,7 @@ mod interrupt;
 mod look;
 mod machine;
 mod merge;
+mod plan;
 mod progress;
 mod run;
 mod selftest;
@@ -86,6 +87,8 @@ enum Verb {
     Identify(stage::Identify),
     /// Fourth stage: write the report
     Report(stage::Report),
+    /// Propose the settings to measure next
+    Plan(plan::Plan),
     /// What record files hold: channels, units, rates, ranges
     Inspect(inspect::Inspect),
     /// Write records of any format as HDF5, Parquet or CSV
@@ -122,6 +125,7 @@ impl Verb {
             Self::Classify(verb) => verb.go(voice),
             Self::Identify(verb) => verb.go(voice),
             Self::Report(verb) => verb.go(voice),
+            Self::Plan(verb) => verb.go(voice),
             Self::Inspect(verb) => verb.go(voice),
             Self::Convert(verb) => verb.go(voice),
             Self::Atlas(verb) => verb.go(voice),

@@ -33,6 +33,8 @@ pub struct Score {
     pub median_error_over_bound: f64,
     /// Share of the 95 % intervals that hold the truth.
     pub coverage95: f64,
+    /// Campaign with the greatest error over its bound, counted from 0.
+    pub worst_campaign: Option<usize>,
 }
 
 /// One campaign's outcome: estimates and bounds of each method, `joint` among them.
@@ -92,7 +94,8 @@ fn score(trials: &[Trial], method: &str, coordinate: Coordinate) -> Option<Score
     let (weak, _) = crate::identify::estimate::limits(coordinate);
     let mut score = Score::default();
     let (mut errors, mut ratios, mut bounds, mut covered) = (vec![], vec![], vec![], 0);
-    for trial in trials {
+    let mut worst = 0.0;
+    for (number, trial) in trials.iter().enumerate() {
         let Some(estimate) = trial.estimates.get(method).and_then(|p| p.get(coordinate)) else {
             continue;
         };
@@ -109,7 +112,11 @@ fn score(trials: &[Trial], method: &str, coordinate: Coordinate) -> Option<Score
         errors.push((value - truth) / unit);
         covered += usize::from(low <= truth && truth <= high);
         if let Some(bound) = bound.filter(|b| *b > 0.0) {
-            ratios.push((value - truth) / unit / bound);
+            let ratio = (value - truth) / unit / bound;
+            if ratio.abs() > worst {
+                (worst, score.worst_campaign) = (ratio.abs(), Some(number));
+            }
+            ratios.push(ratio);
             bounds.push(bound);
         }
     }

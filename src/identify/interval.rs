@@ -23,7 +23,7 @@ pub struct Posterior {
 }
 
 /// Scales of early jumps that are summed over, relative to the frequency; each as likely before.
-const EARLY_SCALES: [f64; 8] = [2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2, 5e-2];
+const EARLY_SCALES: [f64; 8] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2];
 /// Grid of ln x_st in its standard errors.
 const DEFLECTION_NODES: [f64; 9] = [-3.0, -2.25, -1.5, -0.75, 0.0, 0.75, 1.5, 2.25, 3.0];
 /// Points of the final grid of R.

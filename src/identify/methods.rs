@@ -47,7 +47,7 @@ const RELATIVE_ERROR: f64 = 3e-4;
 /// Scatter of single impacts' ratios beside the noise.
 const IMPACT_SCATTER: f64 = 1e-3;
 /// What the extrapolation of speeds to the impact leaves open in R.
-pub const IMPACT_BIAS: f64 = 3e-4;
+pub const IMPACT_BIAS: f64 = 2e-4;
 /// Asymmetry that a well-made rig may have.
 const ASYMMETRY: f64 = 0.05;
 

@@ -13,6 +13,7 @@ pub mod impacts;
 pub mod interval;
 pub mod methods;
 pub mod parameters;
+pub mod plan;
 pub mod published;
 pub mod resonance;
 pub mod run;

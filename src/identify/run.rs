@@ -116,8 +116,22 @@ const MOST_ODD_GAPS: usize = 2;
 const POOR_FIT: f64 = 1.5;
 const POOR_ALLOWANCE: f64 = 3e-4;
 
-/// How many times the typical mean square of residuals makes a record an outlier.
+/// How many times the typical mean square of residuals at most belongs to the bulk.
 const OUTLYING: f64 = 25.0;
+/// And how many times it may always be.
+const SCATTER: f64 = 1.6;
+
+/// Rounds of leaving outlying records out and fitting again.
+const ROUNDS: usize = 2;
+
+/// Mean square from which a record is an outlier: six robust deviations of the scores' logarithm
+/// above their median, so that records of one quality do not hide one that is worse.
+fn outlying(scores: &[f64]) -> f64 {
+    let logs: Vec<f64> = scores.iter().map(|s| s.max(1e-12).ln()).collect();
+    let typical = crate::signal::robust::median(scores).unwrap_or(1.0).max(1.0);
+    let spread = crate::signal::robust::robust_deviation(&logs).unwrap_or(1.0);
+    typical * (6.0 * spread).exp().clamp(SCATTER, OUTLYING)
+}
 
 fn mean_square(residuals: &[f64]) -> f64 {
     residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len().max(1) as f64
@@ -373,9 +387,10 @@ impl<'a> Work<'a> {
         let typical = crate::signal::robust::median(&scores)
             .unwrap_or(1.0)
             .max(1.0);
+        let limit = outlying(&scores);
         let points = std::mem::take(&mut self.blocks.resonance.points);
         for (point, score) in points.into_iter().zip(scores) {
-            if score <= OUTLYING * typical {
+            if score <= limit {
                 self.blocks.resonance.points.push(point);
             } else {
                 let reason = format!(
@@ -404,22 +419,45 @@ impl<'a> Work<'a> {
             Ok(first) => first,
             failed => return Some(failed),
         };
-        let parameters = first.fit.parameters;
-        let scores: Vec<Option<f64>> = self.trajectory_scores(&all, &parameters);
+        let mut found = first;
+        let mut all = all;
+        for _ in 0..ROUNDS {
+            all = self.keep_fitting(all, &found.fit.parameters);
+            found = match methods::trajectories(
+                &self.blocks,
+                &self.evidence.nominal,
+                found.fit.parameters,
+            )? {
+                Ok(found) => found,
+                failed => return Some(failed),
+            };
+        }
+        Some(Ok(found))
+    }
+
+    /// Keep the records that fit like the bulk, name the others, and find again what is allowed
+    /// beside the noise; gives the records kept.
+    fn keep_fitting(
+        &mut self,
+        all: Vec<TrajectoryRecord>,
+        parameters: &Parameters,
+    ) -> Vec<TrajectoryRecord> {
+        let scores = self.trajectory_scores(&all, parameters);
         let known: Vec<f64> = scores.iter().flatten().copied().collect();
         let typical = crate::signal::robust::median(&known)
             .unwrap_or(1.0)
             .max(1.0);
+        let limit = outlying(&known);
         let mut kept = Vec::new();
         self.typical = typical;
-        for (record, score) in all.iter().zip(&scores) {
+        for (record, score) in all.into_iter().zip(&scores) {
             let reason = match score {
-                Some(s) if *s <= OUTLYING * typical => {
-                    kept.push(record.clone());
+                Some(s) if *s <= limit => {
+                    kept.push(record);
                     continue;
                 }
                 Some(s) => format!(
-                    "its waveform fits {:.0} times worse than the others: left out of the \
+                    "its waveform fits {:.1} times worse than the others: left out of the \
                      trajectories",
                     (s / typical).sqrt()
                 ),
@@ -427,16 +465,17 @@ impl<'a> Work<'a> {
                          out of the trajectories"
                     .to_owned(),
             };
-            self.lost.push(record.clone());
             self.left_out.push((self.name(record.observation), reason));
+            self.lost.push(record);
         }
-        self.blocks.trajectory.records = kept;
         let block = &mut self.blocks.trajectory;
-        block.find_shared_errors(&parameters);
-        block.relative_error = least_allowance(block.clone(), &parameters, |b, e| {
+        block.records.clone_from(&kept);
+        block.find_shared_errors(parameters);
+        block.relative_error = least_allowance(block.clone(), parameters, |b, e| {
             b.relative_error = e;
         });
-        methods::trajectories(&self.blocks, &self.evidence.nominal, parameters)
+        kept = block.records.clone();
+        kept
     }
 
     /// Mean squared weighted residual of each record; `None` where there is no orbit.

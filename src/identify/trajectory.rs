@@ -223,7 +223,8 @@ fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> 
     })
 }
 
-fn distinct_phases(folded: &Folded) -> Vec<Phases> {
+/// The sets of phases that a record's channels have, each once.
+pub fn distinct_phases(folded: &Folded) -> Vec<Phases> {
     let mut all: Vec<Phases> = Vec::new();
     for channel in &folded.channels {
         if !all.iter().any(|p| p.fit(&channel.points)) {

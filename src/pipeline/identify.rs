@@ -48,12 +48,9 @@ pub fn nominal(campaign: &ResolvedCampaign) -> Nominal {
     }
 }
 
-/// Identify what was observed.
-///
-/// # Errors
-/// Where the settings cannot be written as JSON.
-pub fn identify(campaign: &ResolvedCampaign, observed: &Observed) -> Result<Found, PipelineError> {
-    let (outcome, specimens) = identify_campaign(&Evidence {
+/// What an identification of a campaign starts from.
+pub fn evidence<'a>(campaign: &ResolvedCampaign, observed: &'a Observed) -> Evidence<'a> {
+    Evidence {
         rig: campaign.machine,
         observations: &observed.observations,
         brackets: &observed.brackets,
@@ -63,7 +60,15 @@ pub fn identify(campaign: &ResolvedCampaign, observed: &Observed) -> Result<Foun
             replicas: campaign.analysis.replicas,
             seed: campaign.analysis.seed,
         },
-    });
+    }
+}
+
+/// Identify what was observed.
+///
+/// # Errors
+/// Where the settings cannot be written as JSON.
+pub fn identify(campaign: &ResolvedCampaign, observed: &Observed) -> Result<Found, PipelineError> {
+    let (outcome, specimens) = identify_campaign(&evidence(campaign, observed));
     let identification = Identification {
         verdict: outcome.verdict,
         joint: outcome.joint,

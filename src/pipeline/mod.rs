@@ -8,6 +8,7 @@ pub mod coverage;
 pub mod identify;
 pub mod inputs;
 pub mod observe;
+pub mod plan;
 pub mod published;
 pub mod report;
 pub mod selftest;

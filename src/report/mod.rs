@@ -12,7 +12,7 @@ pub mod picture;
 mod png;
 pub mod theory;
 
-pub use content::ReportContent;
+pub use content::{ProposedPoint, ReportContent};
 
 use figures::Figure;
 use figures::look::NumberLook;
@@ -221,3 +221,20 @@ pub fn render_pdf(
 mod example;
 #[cfg(test)]
 mod tests;
+
+/// The map of motions by itself, with the settings that are proposed: plan.svg, .png and .pdf.
+/// Nothing where the records have no place in a plane.
+///
+/// # Errors
+/// [`ReportError::Picture`] where a renderer refuses the figure.
+pub fn plan_map(
+    content: &ReportContent,
+    decimal_comma: bool,
+) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
+    let numbers = NumberLook { decimal_comma };
+    let Some(mut figure) = figures::map::draw(content, figures::map::MapSize::Full, numbers) else {
+        return Ok(Vec::new());
+    };
+    figure.name = "plan".into();
+    picture::pictures(&figure)
+}

@@ -42,6 +42,9 @@ pub struct ReportContent {
     /// Records compared with their simulation, trace by trace.
     #[serde(default)]
     pub comparisons: Vec<Comparison>,
+    /// Settings proposed for measuring next, the best first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub proposals: Vec<ProposedPoint>,
     /// Impactless resonance curves.
     #[serde(default)]
     pub resonance: Vec<ResonanceCurve>,
@@ -89,6 +92,7 @@ impl ReportContent {
             curves: Vec::new(),
             region_map: None,
             comparisons: Vec::new(),
+            proposals: Vec::new(),
             resonance: Vec::new(),
             impacts: Vec::new(),
             free_decays: Vec::new(),

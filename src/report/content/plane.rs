@@ -104,3 +104,16 @@ pub struct RegionMap {
     #[serde(default)]
     pub note: String,
 }
+
+/// A setting proposed for measuring next.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ProposedPoint {
+    /// η with the fitted f0.
+    pub eta: f64,
+    /// ρ with the fitted x_st.
+    pub rho: f64,
+    /// Drive frequency, Hz.
+    pub frequency_hz: f64,
+    /// Half the gap, m.
+    pub clearance_m: f64,
+}

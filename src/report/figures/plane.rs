@@ -3,7 +3,7 @@
 use super::axes::{Axis, range};
 use crate::identify::Estimate;
 use crate::motion::Motion;
-use crate::report::content::{BracketRow, RecordRow, ReportContent};
+use crate::report::content::{BracketRow, ProposedPoint, RecordRow, ReportContent};
 
 /// Least and greatest value, where there is any.
 type Range = Option<(f64, f64)>;
@@ -86,13 +86,15 @@ impl Plane {
         );
         let ys: Vec<f64> = records().map(|(_, p)| p.1).collect();
         let busy = records().filter(|(r, _)| busy(&r.motion)).map(|(_, p)| p.1);
-        let busy = range(busy.chain(brackets().map(|b| b.1)));
+        let proposed = || content.proposals.iter().map(|p| self.proposed(p).1);
+        let busy = range(busy.chain(brackets().map(|b| b.1)).chain(proposed()));
         let strips = strips(&ys, busy);
         let below = ys
             .iter()
             .copied()
             .filter(|y| !strips.iter().any(|s| same(*s, *y)));
-        let y = pad(range(below.chain(brackets().map(|b| b.1))), 0.06);
+        let others = brackets().map(|b| b.1).chain(proposed());
+        let y = pad(range(below.chain(others)), 0.06);
         let (x, y) = if self.dimensionless {
             self.with_map(content, x, y)
         } else {
@@ -111,6 +113,15 @@ impl Plane {
             x: Axis::new(x.0, x.1, titles.0).with_ticks(8),
             y: Axis::new(y.0, y.1, titles.1).with_ticks(7),
             strips: strips.into_iter().filter(|s| *s > y.1).collect(),
+        }
+    }
+
+    /// Place of a setting that is proposed.
+    pub fn proposed(&self, point: &ProposedPoint) -> (f64, f64) {
+        if self.dimensionless {
+            (point.eta, point.rho)
+        } else {
+            (point.frequency_hz, 1e3 * point.clearance_m)
         }
     }
 

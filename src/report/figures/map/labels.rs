@@ -54,23 +54,34 @@ impl Map<'_> {
             let Some(at) = self.place(record) else {
                 continue;
             };
-            let text = format!("({})", comparison.letter);
-            let size = (fonts::width(&text, Face::Bold, 8.5) + 2.0, 9.0);
-            let Some((_, place)) = self.occupancy.near(at, size, &bounds) else {
-                continue;
-            };
-            self.canvas.layer(5);
-            self.canvas
-                .ring(at, self.radius + 2.0, Stroke::solid(look::INK, 0.7));
-            self.leader(at, place, size);
-            self.canvas.layer(6);
-            let text_look = TextLook::new(8.5, Anchor::Middle)
-                .face(Face::Bold)
-                .colour(look::INK);
-            self.canvas.text((place.0, place.1 + 2.8), &text, text_look);
-            let rect = Rect::new(place.0 - 0.5 * size.0, place.1 - 4.5, size.0, size.1);
-            self.occupancy.take_rect(&rect);
+            self.letter(at, &format!("({})", comparison.letter), &bounds);
         }
+        for (i, proposed) in self.content.proposals.iter().enumerate() {
+            let (x, y) = self.plane.proposed(proposed);
+            if self.panel.shows(x, y) {
+                let at = self.panel.at(x, y);
+                self.letter(at, &format!("{}", i + 1), &bounds);
+            }
+        }
+    }
+
+    /// A ring about a point and its letter beside it, where there is room.
+    fn letter(&mut self, at: Point, text: &str, bounds: &Rect) {
+        let size = (fonts::width(text, Face::Bold, 8.5) + 2.0, 9.0);
+        let Some((_, place)) = self.occupancy.near(at, size, bounds) else {
+            return;
+        };
+        self.canvas.layer(5);
+        self.canvas
+            .ring(at, self.radius + 2.0, Stroke::solid(look::INK, 0.7));
+        self.leader(at, place, size);
+        self.canvas.layer(6);
+        let text_look = TextLook::new(8.5, Anchor::Middle)
+            .face(Face::Bold)
+            .colour(look::INK);
+        self.canvas.text((place.0, place.1 + 2.8), text, text_look);
+        let rect = Rect::new(place.0 - 0.5 * size.0, place.1 - 4.5, size.0, size.1);
+        self.occupancy.take_rect(&rect);
     }
 
     /// A thin line from a mark to its letter, where they stand apart.

@@ -1,0 +1,274 @@
+//! Which settings to measure next: those whose record would shrink the interval of R most, from
+//! the Fisher information of the closed-form orbit that the fitted rig would show there.
+
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::identify::methods::Evidence;
+use crate::identify::parameters::{Coordinate, Parameters, gain_index};
+use crate::identify::solver::{Fit, Problem, inverse};
+use crate::identify::trajectory::{TrajectoryBlock, TrajectoryRecord, distinct_phases};
+use crate::model::orbit::{Orbit, stable_orbit};
+use crate::motion::Observation;
+use crate::motion::fold::{Folded, FoldedChannel, FoldedPoint};
+use crate::record::Role;
+use crate::signal::robust;
+
+/// A setting to measure, with what a record there would bring.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Proposal {
+    /// Drive frequency, Hz.
+    pub frequency_hz: f64,
+    /// Half the gap, m.
+    pub clearance_m: f64,
+    /// η with the fitted f0.
+    pub frequency_ratio: f64,
+    /// ρ with the fitted x_st.
+    pub clearance_ratio: f64,
+    /// The motion to expect, z = 1/n.
+    pub periods_n: u32,
+    /// Standard error of R once this setting and those before it in the list are measured.
+    pub restitution_error_after: f64,
+}
+
+/// The settings that a rig can reach.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// Lowest and highest drive frequency, Hz.
+    pub frequency_hz: [f64; 2],
+    /// Least and greatest clearance, m.
+    pub clearance_m: [f64; 2],
+}
+
+impl Reach {
+    /// Where the campaign has been; `None` where no record states both.
+    pub fn of(observations: &[Observation]) -> Option<Self> {
+        let range = |values: Vec<f64>| {
+            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            (low <= high).then_some([low, high])
+        };
+        Some(Self {
+            frequency_hz: range(observations.iter().filter_map(Observation::frequency_hz).collect())?,
+            clearance_m: range(
+                observations
+                    .iter()
+                    .filter_map(|o| o.setting.clearance_m)
+                    .collect(),
+            )?,
+        })
+    }
+}
+
+/// Points of the grid of candidates: frequencies and clearances.
+const GRID: [usize; 2] = [40, 24];
+/// Longest motion z = 1/n considered.
+const MOST_PERIODS: u32 = 3;
+
+/// Propose so many settings, the best first; each takes those before it as measured. Empty where
+/// R was not fitted or no velocity or displacement was recorded.
+pub fn propose(
+    evidence: &Evidence,
+    fit: &Fit,
+    factor: f64,
+    reach: Reach,
+    count: usize,
+) -> Vec<Proposal> {
+    let (Some(at), Some(usual)) = (
+        fit.free.iter().position(|c| *c == Coordinate::Restitution),
+        UsualRecord::of(evidence.observations),
+    ) else {
+        return Vec::new();
+    };
+    let candidates = candidates(evidence, fit, reach, &usual);
+    let mut covariance = &fit.covariance * factor;
+    let mut chosen: Vec<Proposal> = Vec::new();
+    while chosen.len() < count {
+        let best = candidates
+            .par_iter()
+            .filter(|(place, _)| !chosen.iter().any(|c| near(c, place, reach)))
+            .filter_map(|(place, information)| {
+                let after = with(&covariance, information)?;
+                Some((place, after[(at, at)], after))
+            })
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((place, variance, after)) = best else {
+            break;
+        };
+        chosen.push(Proposal {
+            restitution_error_after: variance.max(0.0).sqrt(),
+            ..place.clone()
+        });
+        covariance = after;
+    }
+    chosen
+}
+
+/// Whether a candidate lies so near to a chosen setting that it would only repeat it.
+fn near(chosen: &Proposal, place: &Proposal, reach: Reach) -> bool {
+    let [low, high] = reach.frequency_hz;
+    let apart = (chosen.frequency_hz - place.frequency_hz) / (high - low).max(1e-9);
+    let [least, most] = reach.clearance_m;
+    let across = (chosen.clearance_m - place.clearance_m) / (most - least).max(1e-12);
+    apart.hypot(across) < 0.08
+}
+
+/// Covariance once some information is added: (C⁻¹ + F)⁻¹.
+fn with(covariance: &DMatrix<f64>, information: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    inverse(&(inverse(covariance)? + information))
+}
+
+fn candidates(
+    evidence: &Evidence,
+    fit: &Fit,
+    reach: Reach,
+    usual: &UsualRecord,
+) -> Vec<(Proposal, DMatrix<f64>)> {
+    let even = |[low, high]: [f64; 2], count: usize, i: usize| {
+        low + (high - low) * i as f64 / (count - 1) as f64
+    };
+    let grid: Vec<(f64, f64, u32)> = (0..GRID[0])
+        .flat_map(|i| (0..GRID[1]).map(move |k| (i, k)))
+        .map(|(i, k)| {
+            (
+                even(reach.frequency_hz, GRID[0], i),
+                even(reach.clearance_m, GRID[1], k),
+            )
+        })
+        .flat_map(|(f, c)| (1..=MOST_PERIODS).map(move |n| (f, c, n)))
+        .collect();
+    grid.into_par_iter()
+        .filter_map(|(frequency_hz, clearance_m, n)| {
+            let parameters = fit.parameters;
+            let setting = parameters.setting(frequency_hz, clearance_m, 1.0);
+            let machine = parameters.machine(evidence.rig);
+            let orbit = stable_orbit(&machine, setting, n).ok().flatten()?;
+            let record = usual.at(&orbit, &parameters, (frequency_hz, clearance_m));
+            let information = information(evidence, fit, record)?;
+            let place = Proposal {
+                frequency_hz,
+                clearance_m,
+                frequency_ratio: setting.frequency_ratio,
+                clearance_ratio: setting.clearance,
+                periods_n: n,
+                restitution_error_after: f64::NAN,
+            };
+            Some((place, information))
+        })
+        .collect()
+}
+
+fn information(evidence: &Evidence, fit: &Fit, record: TrajectoryRecord) -> Option<DMatrix<f64>> {
+    let mut block = TrajectoryBlock {
+        rig: evidence.rig,
+        records: vec![record],
+        relative_error: 1e-6,
+    };
+    block.find_shared_errors(&fit.parameters);
+    let problem = Problem {
+        blocks: vec![(&block, 1.0)],
+        priors: Vec::new(),
+        free: fit.free.clone(),
+    };
+    let part = problem.item_parts(&fit.parameters).pop()?.pop()?;
+    Some(part.matrix)
+}
+
+/// A record as the campaign has them: length, channels and their noise.
+struct UsualRecord {
+    samples: f64,
+    channels: Vec<(Role, f64)>,
+    frequency_error: f64,
+    phase_error_rad: f64,
+}
+
+/// Bins of phase in one drive period.
+const BINS: usize = 64;
+
+impl UsualRecord {
+    fn of(observations: &[Observation]) -> Option<Self> {
+        let folded: Vec<(&Observation, &Folded)> = observations
+            .iter()
+            .filter(|o| !o.excluded())
+            .filter_map(|o| Some((o, o.folded.as_ref()?)))
+            .collect();
+        let median = |of: &dyn Fn(&Observation) -> f64| {
+            let values: Vec<f64> = folded.iter().map(|(o, _)| of(o)).collect();
+            robust::median(&values)
+        };
+        let roles = [
+            Role::VelocityX,
+            Role::VelocityY,
+            Role::DisplacementX,
+            Role::DisplacementY,
+        ];
+        let noise = |role: Role| {
+            let channels = folded.iter().flat_map(|(_, f)| &f.channels);
+            let values: Vec<f64> = channels
+                .filter(|c| c.role == role)
+                .map(|c| c.noise)
+                .collect();
+            robust::median(&values)
+        };
+        let channels: Vec<(Role, f64)> = roles
+            .into_iter()
+            .filter(|r| gain_index(*r).is_some())
+            .filter_map(|r| Some((r, noise(r)?)))
+            .collect();
+        Some(Self {
+            samples: median(&|o| o.duration_s * o.sample_rate_hz)?,
+            channels,
+            frequency_error: median(&|o| {
+                o.drive
+                    .map_or(0.0, |d| d.frequency_error_hz / d.frequency_hz)
+            })?,
+            phase_error_rad: median(&Observation::drive_phase_error_rad)?,
+        })
+    }
+
+    /// Such a record of an orbit.
+    fn at(
+        &self,
+        orbit: &Orbit,
+        parameters: &Parameters,
+        (frequency_hz, clearance_m): (f64, f64),
+    ) -> TrajectoryRecord {
+        let bins = BINS * orbit.n as usize;
+        let width = std::f64::consts::TAU / BINS as f64;
+        let points: Vec<FoldedPoint> = (0..bins)
+            .map(|i| FoldedPoint {
+                phase_rad: (i as f64 + 0.5) * width,
+                spread_rad: width / 12f64.sqrt(),
+                value: 0.0,
+                samples: (self.samples / bins as f64).max(1.0) as u32,
+            })
+            .collect();
+        let folded = Folded {
+            periods_n: orbit.n,
+            impact_phase_rad: Some(orbit.phase_at_impact),
+            channels: self
+                .channels
+                .iter()
+                .map(|(role, noise)| FoldedChannel {
+                    role: *role,
+                    noise: *noise,
+                    points: points.clone(),
+                })
+                .collect(),
+        };
+        let speed = parameters.static_deflection_m * parameters.natural_rate();
+        TrajectoryRecord {
+            observation: 0,
+            frequency_hz,
+            clearance_m,
+            drive_amplitude: 1.0,
+            phases: distinct_phases(&folded),
+            folded,
+            closing_speed_m_s: orbit.closing_speed * speed,
+            frequency_error: self.frequency_error,
+            phase_error_rad: self.phase_error_rad,
+            shared: Vec::new(),
+        }
+    }
+}

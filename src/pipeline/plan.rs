@@ -1,0 +1,101 @@
+//! What to measure next: proposals from a campaign's own fit, on the map of its motions.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::campaign::resolved::ResolvedCampaign;
+use crate::identify::plan::{Proposal, Reach, propose};
+use crate::output::{make_folder, write_bytes};
+use crate::pipeline::{Observed, PipelineError, Progress, identify, report};
+use crate::report::ProposedPoint;
+
+/// What is written as plan.json.
+#[derive(Debug, Clone, Serialize)]
+pub struct Plan {
+    /// R as identified now; `None` where these data cannot tell it.
+    pub restitution: Option<f64>,
+    /// Its standard error now.
+    pub restitution_error_now: Option<f64>,
+    /// The settings, the best first.
+    pub proposals: Vec<Proposal>,
+}
+
+/// Name of the result.
+pub const FILE: &str = "plan.json";
+
+/// Observe and identify a campaign, propose so many settings, and leave plan.json, plan.csv and the
+/// map as SVG, PNG and PDF in a folder.
+///
+/// # Errors
+/// Where no record can be used or an output cannot be written.
+pub fn plan(
+    campaign: &ResolvedCampaign,
+    count: usize,
+    out: &Path,
+    progress: Progress,
+) -> Result<Plan, PipelineError> {
+    let observed = Observed::of(campaign, progress)?;
+    progress("identify", 0, 1);
+    let found = identify::identify(campaign, &observed)?;
+    let evidence = identify::evidence(campaign, &observed);
+    let reach = Reach::of(&observed.observations);
+    let proposals = match (found.outcome.fit.as_ref(), reach) {
+        (Some(fit), Some(reach)) => propose(&evidence, fit, found.outcome.factor, reach, count),
+        _ => Vec::new(),
+    };
+    let now = found.identification.joint.parameters.restitution.as_ref();
+    let plan = Plan {
+        restitution: now.and_then(|r| r.value),
+        restitution_error_now: now.and_then(|r| r.standard_error),
+        proposals,
+    };
+    progress("map", 0, 1);
+    make_folder(out)?;
+    let mut content = report::content(campaign, &observed, &found, "");
+    content.comparisons.clear();
+    content.proposals = plan.proposals.iter().map(point).collect();
+    for (name, bytes) in crate::report::plan_map(&content, campaign.report.decimal_comma)? {
+        write_bytes(&out.join(name), &bytes)?;
+    }
+    write_bytes(&out.join("plan.csv"), csv(&plan.proposals).as_bytes())?;
+    let text = serde_json::to_string_pretty(&plan).map_err(|e| PipelineError::Table {
+        table: FILE.into(),
+        reason: e.to_string(),
+    })?;
+    write_bytes(&out.join(FILE), format!("{text}\n").as_bytes())?;
+    Ok(plan)
+}
+
+fn point(proposal: &Proposal) -> ProposedPoint {
+    ProposedPoint {
+        eta: proposal.frequency_ratio,
+        rho: proposal.clearance_ratio,
+        frequency_hz: proposal.frequency_hz,
+        clearance_m: proposal.clearance_m,
+    }
+}
+
+fn csv(proposals: &[Proposal]) -> String {
+    let mut text = String::from(
+        "rank,drive_frequency_hz,clearance_m,frequency_ratio,clearance_ratio,motion,\
+         restitution_error_after\n",
+    );
+    for (i, p) in proposals.iter().enumerate() {
+        let motion = if p.periods_n == 1 {
+            "1".to_owned()
+        } else {
+            format!("1/{}", p.periods_n)
+        };
+        text.push_str(&format!(
+            "{},{:.4},{:.7},{:.5},{:.5},{motion},{:.3e}\n",
+            i + 1,
+            p.frequency_hz,
+            p.clearance_m,
+            p.frequency_ratio,
+            p.clearance_ratio,
+            p.restitution_error_after
+        ));
+    }
+    text
+}
