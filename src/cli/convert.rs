@@ -88,10 +88,9 @@ impl Convert {
             attributes: self.set.into_iter().collect(),
         };
         let count = convert::convert(&sources, target, &self.out, &options).map_err(failure)?;
-        voice.say(&format!(
-            "{count} records written to {}",
-            self.out.display()
-        ));
+        let many = target == Target::Csv && count > 1;
+        let written = if many { self.out.with_extension("") } else { self.out };
+        voice.say(&format!("{count} records written to {}", written.display()));
         Ok(Exit::Done)
     }
 }
