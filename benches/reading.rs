@@ -114,7 +114,12 @@ fn make(folder: &Path) -> Result<(), Box<dyn std::error::Error>> {
     writer.finish()?;
     let sources = [open(&packed)?];
     let options = Options::default();
-    convert(&sources, Target::Parquet, &folder.join("long.parquet"), &options)?;
+    convert(
+        &sources,
+        Target::Parquet,
+        &folder.join("long.parquet"),
+        &options,
+    )?;
     convert(&sources, Target::Csv, &folder.join("csv.csv"), &options)?;
     Ok(())
 }

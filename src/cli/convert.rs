@@ -89,7 +89,11 @@ impl Convert {
         };
         let count = convert::convert(&sources, target, &self.out, &options).map_err(failure)?;
         let many = target == Target::Csv && count > 1;
-        let written = if many { self.out.with_extension("") } else { self.out };
+        let written = if many {
+            self.out.with_extension("")
+        } else {
+            self.out
+        };
         voice.say(&format!("{count} records written to {}", written.display()));
         Ok(Exit::Done)
     }
@@ -98,8 +102,6 @@ impl Convert {
 fn failure(error: ConvertError) -> Failure {
     match error {
         ConvertError::Read(error) => error.into(),
-        ConvertError::Write(error) => {
-            Failure::new(error.to_string(), error.remedy())
-        }
+        ConvertError::Write(error) => Failure::new(error.to_string(), error.remedy()),
     }
 }

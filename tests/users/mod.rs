@@ -128,7 +128,10 @@ fn valid_every_verb_has_a_page_and_completions() {
         let page = format!("impactid-{verb}.1");
         assert!(pages.contains(&page), "{page} is not among {pages:?}");
         let text = lab.read(&format!("man/{page}"));
-        assert!(text.contains(".SH NAME") && text.contains("Example"), "{page}");
+        assert!(
+            text.contains(".SH NAME") && text.contains("Example"),
+            "{page}"
+        );
     }
 }
 
