@@ -211,7 +211,11 @@ fn analysis(written: &written::Analysis, desk: &mut Desk<'_>) -> Analysis {
             .uncertainty
             .as_ref()
             .map_or(Way::default(), |w| *w.get_ref()),
-        replicas: written.replicas.as_ref().map_or(1000, |r| *r.get_ref()).max(2) as usize,
+        replicas: written
+            .replicas
+            .as_ref()
+            .map_or(1000, |r| *r.get_ref())
+            .max(2) as usize,
     }
 }
 

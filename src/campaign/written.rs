@@ -10,9 +10,9 @@ use std::fmt;
 use serde::{Deserialize, Deserializer, Serialize, de};
 use toml::Spanned;
 
+pub use crate::event::Rig as Machine;
 /// Which oscillator was measured, as the detection of impacts has to know it.
 pub use crate::identify::uncertainty::Way;
-pub use crate::event::Rig as Machine;
 use crate::record::calibrate::ChannelKey;
 
 /// A value with its place in the file.

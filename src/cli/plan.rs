@@ -59,7 +59,8 @@ impl Plan {
             print_table(&found);
         }
         if found.proposals.is_empty() {
-            voice.say("Nothing can be proposed: R was not fitted from velocities or displacements.");
+            voice
+                .say("Nothing can be proposed: R was not fitted from velocities or displacements.");
             return Ok(Exit::AnswerIsNo);
         }
         Ok(Exit::Done)

@@ -86,9 +86,8 @@ pub fn contact_law(block: &ImpactBlock) -> Option<ContactLaw> {
     let freedom = pairs.len().saturating_sub(knots.len()).max(1) as f64;
     let scale = (fits[2].chi2 / freedom).max(1.0);
     let penalty = (pairs.len() as f64).ln();
-    let criterion = [0, 1, 2].map(|i: usize| {
-        fits[i].chi2 / scale + penalty * fits[i].coefficients.len() as f64
-    });
+    let criterion = [0, 1, 2]
+        .map(|i: usize| fits[i].chi2 / scale + penalty * fits[i].coefficients.len() as f64);
     let least = criterion.iter().copied().fold(f64::INFINITY, f64::min);
     let chosen = fits
         .iter()
@@ -120,10 +119,7 @@ fn fit(block: &ImpactBlock, law: Law, knots: &[f64]) -> Option<Fitted> {
         .collect();
     let columns = rows.first()?.len();
     let design = DMatrix::from_fn(rows.len(), columns, |i, k| rows[i][k]);
-    let target = DVector::from_iterator(
-        pairs.len(),
-        pairs.iter().map(|p| weight(p) * p.after_m_s),
-    );
+    let target = DVector::from_iterator(pairs.len(), pairs.iter().map(|p| weight(p) * p.after_m_s));
     let covariance = crate::identify::solver::inverse(&design.tr_mul(&design))?;
     let coefficients = &covariance * design.tr_mul(&target);
     let chi2 = (&target - &design * &coefficients).norm_squared();

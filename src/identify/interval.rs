@@ -1,6 +1,6 @@
 //! R from brackets alone: the posterior over R of all brackets as interval observations.
 //!
-//! A bracket says that a boundary lies between two settings and nothing more; its likelihood is
+//! A bracket says that a boundary lies between two settings and nothing more (14); its likelihood is
 //! flat inside, so neither a least-squares optimum nor its curvature means anything. The
 //! posterior is therefore summed over a grid of R and x_st (which the resonance curve tells), with
 //! the scale of early jumps summed out; f0 and β are the resonance curve's.
@@ -85,7 +85,10 @@ fn summed(grid: &[f64], cells: &[Vec<f64>], (centre, error): (f64, f64)) -> Post
     Posterior {
         // A cell of the grid stands for its whole width.
         restitution: (mean, spread.hypot(step / 12f64.sqrt())),
-        interval95: [quantile(grid, &over_r, 0.025), quantile(grid, &over_r, 0.975)],
+        interval95: [
+            quantile(grid, &over_r, 0.025),
+            quantile(grid, &over_r, 0.975),
+        ],
         ln_deflection: (centre + node * error, node_spread * error),
     }
 }

@@ -50,7 +50,12 @@ impl Reach {
             (low <= high).then_some([low, high])
         };
         Some(Self {
-            frequency_hz: range(observations.iter().filter_map(Observation::frequency_hz).collect())?,
+            frequency_hz: range(
+                observations
+                    .iter()
+                    .filter_map(Observation::frequency_hz)
+                    .collect(),
+            )?,
             clearance_m: range(
                 observations
                     .iter()

@@ -128,7 +128,9 @@ const ROUNDS: usize = 2;
 /// above their median, so that records of one quality do not hide one that is worse.
 fn outlying(scores: &[f64]) -> f64 {
     let logs: Vec<f64> = scores.iter().map(|s| s.max(1e-12).ln()).collect();
-    let typical = crate::signal::robust::median(scores).unwrap_or(1.0).max(1.0);
+    let typical = crate::signal::robust::median(scores)
+        .unwrap_or(1.0)
+        .max(1.0);
     let spread = crate::signal::robust::robust_deviation(&logs).unwrap_or(1.0);
     typical * (6.0 * spread).exp().clamp(SCATTER, OUTLYING)
 }
@@ -296,7 +298,12 @@ impl<'a> Work<'a> {
             records
                 .iter()
                 .filter(|r| r.clearance_m == clearance_m)
-                .map(|r| (observations[r.observation].record.clone(), reason.to_owned())),
+                .map(|r| {
+                    (
+                        observations[r.observation].record.clone(),
+                        reason.to_owned(),
+                    )
+                }),
         );
         records.retain(|r| r.clearance_m != clearance_m);
         self.lost.retain(|r| r.clearance_m != clearance_m);
@@ -567,8 +574,7 @@ impl<'a> Work<'a> {
         }
         let waveforms = resonance.is_some() || trajectories.is_some();
         if waveforms {
-            let (nuisances, more) = blocks
-                .nuisances(self.evidence.nominal.gain_uncertainty);
+            let (nuisances, more) = blocks.nuisances(self.evidence.nominal.gain_uncertainty);
             free.extend(nuisances);
             priors.extend(more);
         }
@@ -690,13 +696,16 @@ impl<'a> Work<'a> {
         let mut result = methods::result(attempt, &tells, brackets, 2 * brackets);
         if let Some(posterior) = &self.posterior {
             let (value, error) = posterior.restitution;
-            let mut estimate =
-                estimate::estimate(Coordinate::Restitution, value, error, None);
+            let mut estimate = estimate::estimate(Coordinate::Restitution, value, error, None);
             estimate.interval95 = estimate.interval95.map(|_| posterior.interval95);
             result.parameters.restitution = Some(estimate);
             let (value, error) = posterior.ln_deflection;
-            result.parameters.static_deflection_m =
-                Some(estimate::estimate(Coordinate::Deflection, value, error, None));
+            result.parameters.static_deflection_m = Some(estimate::estimate(
+                Coordinate::Deflection,
+                value,
+                error,
+                None,
+            ));
         }
         found.insert("boundaries".into(), result);
     }

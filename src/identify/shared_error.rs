@@ -1,7 +1,7 @@
 //! Errors that all residuals of a record share: phase and frequency of its drive, as measured.
 //!
 //! With independent errors of unit size and shared ones along the columns of V, the covariance is
-//! I + VVᵀ; residuals times its inverse root are independent again, and least squares on them is
+//! I + VVᵀ (13); residuals times its inverse root are independent again, and least squares on them is
 //! the likelihood.
 
 /// The inverse root of I + VVᵀ, by its few directions: I − Σ kept·d dᵀ with orthonormal d.

@@ -100,7 +100,7 @@ fn stated_gaps(records: &[TrajectoryRecord]) -> Vec<f64> {
 /// first order about a fit. `weight` is that of the trajectories in the fit.
 ///
 /// With the residuals' slopes J over the free coordinates and c over the gap, the shift is
-/// −cᵀr / (cᵀc − cᵀJ(JᵀJ)⁻¹Jᵀc).
+/// −cᵀr / (cᵀc − cᵀJ(JᵀJ)⁻¹Jᵀc), (15).
 pub fn odd_gap(block: &TrajectoryBlock, weight: f64, fit: &Fit, factor: f64) -> Option<OddGap> {
     stated_gaps(&block.records)
         .iter()
@@ -110,13 +110,7 @@ pub fn odd_gap(block: &TrajectoryBlock, weight: f64, fit: &Fit, factor: f64) -> 
         .filter(|odd| (odd.fitting_m / odd.stated_m - 1.0).abs() > GAP_LIMIT)
 }
 
-fn shift(
-    block: &TrajectoryBlock,
-    weight: f64,
-    fit: &Fit,
-    factor: f64,
-    gap: f64,
-) -> Option<OddGap> {
+fn shift(block: &TrajectoryBlock, weight: f64, fit: &Fit, factor: f64, gap: f64) -> Option<OddGap> {
     let (mut own, mut score) = (0.0, 0.0);
     let mut cross = DVector::zeros(fit.free.len());
     let mut seen = 0;
@@ -189,7 +183,11 @@ pub fn lost_gap(
             .filter(|r| r.clearance_m == gap)
             .cloned()
             .collect();
-        let kept = block.records.iter().filter(|r| r.clearance_m == gap).count();
+        let kept = block
+            .records
+            .iter()
+            .filter(|r| r.clearance_m == gap)
+            .count();
         if records.len() < 2 || kept > records.len() / 2 {
             return None;
         }
@@ -234,12 +232,11 @@ fn recover(
     }
     let (before, after) = (cost(1.0), cost(centre));
     let z_score = (before - after).max(0.0).sqrt() * (centre - 1.0).signum();
-    (after < 0.25 * before && after < 0.25 * CAP && (centre - 1.0).abs() > GAP_LIMIT).then(|| {
-        OddGap {
-            stated_m: stated,
-            fitting_m: stated * centre,
-            z_score,
-        }
+    let better = after < 0.25 * before && after < 0.25 * CAP;
+    (better && (centre - 1.0).abs() > GAP_LIMIT).then_some(OddGap {
+        stated_m: stated,
+        fitting_m: stated * centre,
+        z_score,
     })
 }
 

@@ -82,11 +82,7 @@ impl TrajectoryBlock {
         self.orbit_of(&self.records[item], parameters)
     }
 
-    fn orbit_of(
-        &self,
-        record: &TrajectoryRecord,
-        parameters: &Parameters,
-    ) -> Option<Orbit> {
+    fn orbit_of(&self, record: &TrajectoryRecord, parameters: &Parameters) -> Option<Orbit> {
         let machine = parameters.machine(self.rig);
         let setting = parameters.setting(
             record.frequency_hz,
@@ -162,7 +158,11 @@ impl TrajectoryBlock {
             .iter()
             .map(|phases| {
                 [false, true].map(|of_y| {
-                    let seen = record.folded.channels.iter().any(|c| is_of_y(c.role) == of_y);
+                    let seen = record
+                        .folded
+                        .channels
+                        .iter()
+                        .any(|c| is_of_y(c.role) == of_y);
                     seen.then(|| Waveform::new(&orbit, paths[usize::from(of_y)], phases, phase))
                 })
             })
@@ -171,7 +171,8 @@ impl TrajectoryBlock {
         for channel in &record.folded.channels {
             let set = record.phases.iter().position(|p| p.fit(&channel.points))?;
             let wave = waves[set][usize::from(is_of_y(channel.role))].as_ref()?;
-            let (unit, values) = channel_unit(parameters, record.drive_amplitude, channel.role, wave);
+            let (unit, values) =
+                channel_unit(parameters, record.drive_amplitude, channel.role, wave);
             out.extend(values.iter().map(|v| unit * v));
         }
         Some(out)
@@ -191,9 +192,7 @@ fn channel_unit<'w>(
 ) -> (f64, &'w [f64]) {
     let length = parameters.static_deflection_m * drive_amplitude * parameters.gain(role);
     match role {
-        Role::VelocityX | Role::VelocityY => {
-            (length * parameters.natural_rate(), &wave.velocity)
-        }
+        Role::VelocityX | Role::VelocityY => (length * parameters.natural_rate(), &wave.velocity),
         _ => (length, &wave.displacement),
     }
 }

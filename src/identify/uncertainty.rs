@@ -168,7 +168,12 @@ fn profile(
             v
         }
     };
-    let below: Vec<(f64, f64)> = points.iter().rev().filter(|p| p.0 <= best).copied().collect();
+    let below: Vec<(f64, f64)> = points
+        .iter()
+        .rev()
+        .filter(|p| p.0 <= best)
+        .copied()
+        .collect();
     let above: Vec<(f64, f64)> = points.iter().filter(|p| p.0 >= best).copied().collect();
     let ends = reaches(&below).zip(reaches(&above));
     Some(ProfileCurve {
@@ -252,7 +257,10 @@ fn summary(coordinate: Coordinate, sorted: &[f64]) -> Option<Bootstrapped> {
         sorted.get(i).copied()
     };
     let mean = crate::signal::robust::mean(sorted);
-    let apart: Vec<f64> = sorted.iter().map(|v| physical(*v) - physical(mean)).collect();
+    let apart: Vec<f64> = sorted
+        .iter()
+        .map(|v| physical(*v) - physical(mean))
+        .collect();
     Some(Bootstrapped {
         parameter: coordinate.name().into(),
         standard_error: crate::signal::robust::rms(&apart),

@@ -38,7 +38,11 @@ impl Phases {
     /// Whether points have these phases.
     pub fn fit(&self, points: &[FoldedPoint]) -> bool {
         self.phase.len() == points.len()
-            && self.phase.iter().zip(points).all(|(a, p)| *a == p.phase_rad)
+            && self
+                .phase
+                .iter()
+                .zip(points)
+                .all(|(a, p)| *a == p.phase_rad)
     }
 }
 
@@ -59,7 +63,8 @@ impl Waveform {
         // The path's harmonic starts at the impact.
         let force = path.force * C64::from_polar(1.0, -impact_phase);
         let count = phases.phase.len();
-        let (mut displacement, mut velocity) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        let (mut displacement, mut velocity) =
+            (Vec::with_capacity(count), Vec::with_capacity(count));
         let [c0, c1, c2] = path.polynomial;
         for i in 0..count {
             let t = (phases.phase[i] - impact_phase).rem_euclid(span) / eta;

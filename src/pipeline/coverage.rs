@@ -97,7 +97,11 @@ impl Mistake {
     fn is_named_by(self, seen: &Seen) -> bool {
         match self {
             Self::SwappedChannels if seen.flag("swapped_masses") => true,
-            _ => seen.outcome.suspicions.iter().any(|s| s.kind == self.name()),
+            _ => seen
+                .outcome
+                .suspicions
+                .iter()
+                .any(|s| s.kind == self.name()),
         }
     }
 }
@@ -219,11 +223,7 @@ pub fn study(campaigns: usize, seed: u64, progress: Progress) -> Result<Coverage
     let total = (campaigns + few * (1 + Mistake::ALL.len())) as u64;
     let done = AtomicU64::new(0);
     let step = || {
-        progress(
-            "campaigns",
-            done.fetch_add(1, Ordering::Relaxed) + 1,
-            total,
-        );
+        progress("campaigns", done.fetch_add(1, Ordering::Relaxed) + 1, total);
     };
     let main: Vec<(bool, Trial)> = (0..campaigns as u64)
         .into_par_iter()
@@ -255,7 +255,9 @@ pub fn study(campaigns: usize, seed: u64, progress: Progress) -> Result<Coverage
     })?;
     let mut mistakes = BTreeMap::new();
     for mistake in Mistake::ALL {
-        let tally = count(Reach::Full, Some(mistake), &|seen| mistake.is_named_by(seen))?;
+        let tally = count(Reach::Full, Some(mistake), &|seen| {
+            mistake.is_named_by(seen)
+        })?;
         mistakes.insert(mistake.name(), tally);
     }
     Ok(Coverage {

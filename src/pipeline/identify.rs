@@ -9,8 +9,8 @@ use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::Identification;
 use crate::identify::methods::{Evidence, Nominal};
 use crate::identify::solver::Fit;
-use crate::identify::uncertainty::Asked;
 use crate::identify::specimens::identify_campaign;
+use crate::identify::uncertainty::Asked;
 use crate::output::write_bytes;
 use crate::pipeline::{Observed, PipelineError, inputs};
 

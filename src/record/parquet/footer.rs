@@ -148,7 +148,11 @@ fn field(bytes: &mut impl Iterator<Item = u8>, mark: u8) -> Option<u64> {
         value |= u64::from(byte & 0x7F) << shift;
         if byte < 0x80 {
             // Zigzag: even numbers are the positive ones, odd ones the negative.
-            return Some(if value.is_multiple_of(2) { value / 2 } else { u64::MAX });
+            return Some(if value.is_multiple_of(2) {
+                value / 2
+            } else {
+                u64::MAX
+            });
         }
     }
     Some(u64::MAX)
