@@ -43,7 +43,7 @@ fn main() {
     let mut paths: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).collect();
     paths.sort();
     for path in paths {
-        match pool.install(|| best(&path)) {
+        match pool.install(|| best(&path).map_err(|e| e.to_string())) {
             Ok((bytes, seconds)) => println!(
                 "{:32} {:8.0} MB/s",
                 path.file_name().unwrap_or_default().to_string_lossy(),
