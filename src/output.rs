@@ -8,6 +8,9 @@ use std::path::{Path, PathBuf};
 /// Name of the lock in an output folder.
 const LOCK_NAME: &str = ".impactid.lock";
 
+/// The folder in an output folder that outputs are written into, too.
+pub const FIGURES: &str = "figures";
+
 /// Ending of files that are being written.
 const PART_ENDING: &str = ".impactid-part";
 
@@ -48,7 +51,8 @@ impl OutputError {
     }
 }
 
-fn remedy_for(kind: io::ErrorKind) -> &'static str {
+/// What the user can do where the system refuses to write.
+pub fn remedy_for(kind: io::ErrorKind) -> &'static str {
     match kind {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded | io::ErrorKind::FileTooLarge => {
             "free space on the disk, then run again; nothing that was there before is lost"
@@ -59,6 +63,7 @@ fn remedy_for(kind: io::ErrorKind) -> &'static str {
         io::ErrorKind::AlreadyExists | io::ErrorKind::NotADirectory => {
             "a file stands where the folder should: name another folder with --out"
         }
+        io::ErrorKind::NotFound => "make the folder first, or name another one",
         _ => "look at the disk and the folder's rights, then run again",
     }
 }
@@ -260,6 +265,8 @@ fn clear_ending(folder: &Path, ending: &str) {
         let name = name.to_string_lossy();
         if name.starts_with('.') && name.ends_with(ending) {
             let _ = fs::remove_file(entry.path());
+        } else if name == FIGURES && entry.path().is_dir() {
+            clear_ending(&entry.path(), ending);
         }
     }
 }

@@ -41,3 +41,6 @@ mod report;
 
 /// The verbs of the theory: what they leave, replays, parts and their merge, runs broken off.
 mod theory;
+
+/// The tutorial as it stands, the script that reads the results, manual pages, completions.
+mod users;

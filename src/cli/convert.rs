@@ -88,10 +88,13 @@ impl Convert {
             attributes: self.set.into_iter().collect(),
         };
         let count = convert::convert(&sources, target, &self.out, &options).map_err(failure)?;
-        voice.say(&format!(
-            "{count} records written to {}",
-            self.out.display()
-        ));
+        let many = target == Target::Csv && count > 1;
+        let written = if many {
+            self.out.with_extension("")
+        } else {
+            self.out
+        };
+        voice.say(&format!("{count} records written to {}", written.display()));
         Ok(Exit::Done)
     }
 }
@@ -99,8 +102,6 @@ impl Convert {
 fn failure(error: ConvertError) -> Failure {
     match error {
         ConvertError::Read(error) => error.into(),
-        ConvertError::Write(error) => {
-            Failure::new(error.to_string(), "Name another file or folder with --out.")
-        }
+        ConvertError::Write(error) => Failure::new(error.to_string(), error.remedy()),
     }
 }

@@ -93,6 +93,7 @@ impl PipelineError {
                 "name the template and the logo as they lie on the disk, or leave them out"
                     .to_owned()
             }
+            Self::Hdf5(error) => error.remedy().to_owned(),
             Self::Report(_) => "mend the template or the logo, or leave them out".to_owned(),
             Self::Model(_) => "choose parameters within the range that the message names".into(),
             _ => "this should not happen: please report it with the command line".to_owned(),

@@ -42,6 +42,9 @@ pub fn inspect(record: &Record) -> Vec<Flag> {
     if let Some(flag) = swapped(record, x, y) {
         return vec![flag];
     }
+    if let Some(flag) = opposite_masses(record) {
+        return vec![flag];
+    }
     let rates = |velocity, acceleration| compare(record, velocity, acceleration);
     let pairs = [
         (x, Role::DisplacementX, Role::VelocityX),
@@ -129,6 +132,52 @@ fn swapped(record: &Record, x: Option<Match>, y: Option<Match>) -> Option<Flag> 
                  rather than that of x ({own_x:.2})"
             ),
             "swap [channels.velocity_x] and [channels.velocity_y], or the displacements".to_owned(),
+        )
+    })
+}
+
+/// Samples before and after a contact's beginning between which velocities are compared.
+const AROUND_CONTACT: usize = 4;
+
+/// Contacts below which nothing is said about them.
+const FEWEST_CONTACTS: usize = 4;
+
+/// An impact takes speed from both masses: where their velocities, counted toward each other,
+/// jump in opposite directions, one of them is counted the wrong way.
+fn opposite_masses(record: &Record) -> Option<Flag> {
+    let contact = record.channel(Role::Contact)?;
+    let level = contact.threshold?;
+    let (x, y) = (
+        record.values(Role::VelocityX)?,
+        record.values(Role::VelocityY)?,
+    );
+    let begins: Vec<usize> = (AROUND_CONTACT..contact.values.len().saturating_sub(AROUND_CONTACT))
+        .filter(|&i| contact.values[i - 1] < level && contact.values[i] >= level)
+        .collect();
+    if begins.len() < FEWEST_CONTACTS {
+        return None;
+    }
+    let jump = |v: &[f64], i: usize| v[i + AROUND_CONTACT] - v[i - AROUND_CONTACT];
+    let jumps: Vec<[f64; 2]> = begins.iter().map(|&i| [jump(x, i), jump(y, i)]).collect();
+    // a velocity that does not jump there more than it moves elsewhere shows no impact
+    let usual = |v: &[f64]| {
+        let all = (AROUND_CONTACT..v.len() - AROUND_CONTACT).map(|i| jump(v, i).powi(2));
+        all.sum::<f64>() / v.len() as f64
+    };
+    let at_contact =
+        |k: usize| jumps.iter().map(|j| j[k].powi(2)).sum::<f64>() / jumps.len() as f64;
+    let seen = at_contact(0) > 4.0 * usual(x) && at_contact(1) > 4.0 * usual(y);
+    let product: f64 = jumps.iter().map(|j| j[0] * j[1]).sum::<f64>() / jumps.len() as f64;
+    let correlation = product / (at_contact(0) * at_contact(1)).sqrt();
+    (seen && correlation < -SAME).then(|| {
+        flag(
+            record,
+            Role::VelocityY,
+            "opposite_sign",
+            "at the contacts velocity_x and velocity_y jump in opposite directions".to_owned(),
+            "set sign = -1 in [channels.velocity_x] or in [channels.velocity_y]: both count toward \
+             the other mass"
+                .to_owned(),
         )
     })
 }

@@ -21,7 +21,7 @@ const DEFLATE_LEVEL: u32 = 4;
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// The file system refused.
-    #[error("{}: {source}. Check that the folder exists, is writable and has room.", path.display())]
+    #[error("{} could not be written: {source}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
@@ -44,6 +44,17 @@ pub enum WriteError {
         /// What the library said.
         reason: String,
     },
+}
+
+impl WriteError {
+    /// What the user can do.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::Io { source, .. } => crate::output::remedy_for(source.kind()),
+            Self::Record { .. } => "mend the record or leave it out",
+            Self::Library { .. } => "this should not happen: please report it with the command",
+        }
+    }
 }
 
 /// An attribute's value.
@@ -249,9 +260,12 @@ impl CampaignWriter {
         let file = temporary_beside(&self.path).map_err(io)?;
         builder
             .finish_to(std::io::BufWriter::new(file.as_file()))
-            .map_err(|e| WriteError::Library {
-                path: self.path.clone(),
-                reason: e.to_string(),
+            .map_err(|e| match e {
+                ::hdf5::Error::Io(source) => io(source),
+                other => WriteError::Library {
+                    path: self.path.clone(),
+                    reason: other.to_string(),
+                },
             })?;
         file.persist(&self.path).map(drop).map_err(|e| io(e.error))
     }

@@ -103,7 +103,7 @@ fn valid_a_standard_output_that_is_full_is_told() {
         "impactid inspect r1.csv --json",
         "impactid selftest",
         "impactid completions bash",
-        "impactid boundary --kind s2 --eta 1.2 --beta 0.07 --restitution 0.9",
+        "impactid boundary --kind s2 --eta 1.2",
     ] {
         let (code, said) = shell(&lab, &format!("{command} > /dev/full"));
         assert_eq!(code, Some(2), "{command}: {said}");

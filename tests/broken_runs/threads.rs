@@ -110,10 +110,26 @@ fn same_stages(lab: &crate::support::Lab) {
 #[test]
 fn valid_simulated_campaigns_and_theory() {
     let lab = crate::support::Lab::new();
-    for command in [
-        &["simulate", "campaign", "--records", "30", "--out", "out"][..],
-        &["selftest"],
-    ] {
-        same_on_any_number_of_threads(&lab, command);
+    let simulate = ["simulate", "campaign", "--records", "30", "--out", "out"];
+    same_on_any_number_of_threads(&lab, &simulate);
+    let said = |threads| lab.run(&["--threads", threads, "selftest"]).said;
+    let expected = said("1");
+    assert!(expected.contains("published"), "{expected}");
+    for threads in ["2", "4"] {
+        assert_eq!(said(threads), expected);
     }
+    let map = [
+        "atlas",
+        "--eta",
+        "0.8..2.4",
+        "--rho",
+        "0.2..2",
+        "--columns",
+        "12",
+        "--rows",
+        "8",
+        "--out",
+        "out",
+    ];
+    same_on_any_number_of_threads(&lab, &map);
 }

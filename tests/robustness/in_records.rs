@@ -52,16 +52,23 @@ fn uff_of(points: &str) -> String {
 /// An HDF5 file with a record at the bottom of so many groups.
 fn nested_groups(path: &std::path::Path, depth: usize) {
     use impactid::record::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
-    let mut writer = CampaignWriter::create(path);
-    let column = |name| ColumnToWrite::numbers(name, "V", vec![0.5; 50]);
-    let written = writer.add(RecordTable {
-        name: vec!["g"; depth].join("/"),
-        sample_rate_hz: Some(2000.0),
-        channels: vec![column("a"), column("b")],
-        attributes: Vec::new(),
-    });
-    written.expect("a name");
-    writer.finish().expect("it is written");
+    // who writes so deep a tree needs a deep stack
+    let path = path.to_path_buf();
+    let write = move || {
+        let mut writer = CampaignWriter::create(&path);
+        let column = |name| ColumnToWrite::numbers(name, "V", vec![0.5; 50]);
+        let written = writer.add(RecordTable {
+            name: vec!["g"; depth].join("/"),
+            sample_rate_hz: Some(2000.0),
+            channels: vec![column("a"), column("b")],
+            attributes: Vec::new(),
+        });
+        written.expect("a name");
+        writer.finish().expect("it is written");
+    };
+    let thread = std::thread::Builder::new().stack_size(1 << 28);
+    let running = thread.spawn(write).expect("a thread");
+    running.join().expect("it is written");
 }
 
 /// Files that claim or unfold to more than a machine holds.

@@ -145,7 +145,7 @@ pub fn cases() -> Vec<Case> {
         refused(
             "a displacement in m that was meant in mm",
             |lab| with_displacement(lab, 1000.0),
-            &["displacement_x moves 1000.", "the factor between m and mm"],
+            &["displacement_x moves 99", "the factor between m and mm"],
         ),
         refused(
             "a displacement's peak that is an RMS",
@@ -185,7 +185,10 @@ pub fn cases() -> Vec<Case> {
         refused(
             "the velocity of one mass counted away from the other",
             |lab| lab.mend("channel = \"vy\"", "channel = \"vy\"\nsign = -1"),
-            &["sign"],
+            &[
+                "velocity_x and velocity_y jump in opposite directions",
+                "set sign = -1 in [channels.velocity_x] or in [channels.velocity_y]",
+            ],
         ),
         refused(
             "the same record under two names",

@@ -1,0 +1,162 @@
+//! What a new user does: the tutorial's commands as they stand, the script that reads the
+//! results, the manual's pages and the shells' completions.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::support::Lab;
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Blocks of a language in a document, without their fences.
+fn blocks<'a>(document: &'a str, language: &str) -> Vec<&'a str> {
+    let fence = format!("```{language}\n");
+    let after = document.split(fence.as_str()).skip(1);
+    after.filter_map(|b| b.split("```").next()).collect()
+}
+
+/// Run a script in a folder with the program on the path; what it printed.
+fn shell(folder: &Path, script: &str) -> String {
+    let program = Path::new(env!("CARGO_BIN_EXE_impactid"));
+    let here = program.parent().expect("a folder").to_string_lossy();
+    let path = std::env::var("PATH").unwrap_or_default();
+    let output = Command::new("sh")
+        .args(["-e", "-c", script])
+        .current_dir(folder)
+        .env("PATH", format!("{here}:{path}"))
+        .output()
+        .expect("a shell");
+    let said = String::from_utf8_lossy(&output.stdout).into_owned()
+        + &String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{script}\n{said}");
+    said
+}
+
+/// A Python that has polars or pandas: `IMPACTID_PYTHON`, else the usual names.
+fn python() -> Option<String> {
+    let named = std::env::var("IMPACTID_PYTHON").ok();
+    let usual = ["python3", "python"].map(String::from);
+    named.into_iter().chain(usual).find(|python| {
+        ["import polars", "import pandas, pyarrow"].iter().any(|c| {
+            let tried = Command::new(python).args(["-c", c]).output();
+            tried.is_ok_and(|o| o.status.success())
+        })
+    })
+}
+
+#[test]
+fn valid_the_tutorial_runs_as_it_stands_and_its_results_are_read() {
+    let tutorial = fs::read_to_string(root().join("docs/tutorial.md")).expect("the tutorial");
+    let lab = tempfile::tempdir().expect("a temporary folder");
+    let campaign = blocks(&tutorial, "toml");
+    let [campaign] = &campaign[..] else {
+        panic!("one campaign.toml")
+    };
+    for script in blocks(&tutorial, "sh") {
+        // the user fills campaign.toml in before it is checked
+        if script.contains("impactid check") {
+            fs::write(lab.path().join("day1/campaign.toml"), campaign).expect("room");
+        }
+        let said = shell(lab.path(), script);
+        if script.contains("impactid check") {
+            assert!(said.contains("40 of 40 records can be used"), "{said}");
+        }
+    }
+    for name in ["report.pdf", "report.html", "identification.json"] {
+        assert!(lab.path().join("results").join(name).exists(), "{name}");
+    }
+    read_with_python(lab.path());
+}
+
+/// docs/read_results.py reads all that the run left.
+fn read_with_python(folder: &Path) {
+    let Some(python) = python() else {
+        println!("skipped: no Python with polars or pandas (IMPACTID_PYTHON names one)");
+        return;
+    };
+    let script = root().join("docs/read_results.py");
+    let output = Command::new(python)
+        .arg(script)
+        .arg("results")
+        .current_dir(folder)
+        .output()
+        .expect("it starts");
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{errors}");
+    for words in [
+        "records: 40 rows",
+        "impacts: ",
+        "boundaries: ",
+        "map: ",
+        "restitution: 0.",
+        "campaign.resolved.json: 40 records",
+    ] {
+        assert!(said.contains(words), "{words} is not in {said}");
+    }
+    let drawn = folder.join("results/records.png").exists();
+    assert!(drawn || said.contains("matplotlib is not installed"));
+}
+
+#[test]
+fn valid_every_verb_has_a_page_and_completions() {
+    let lab = Lab::new();
+    assert_eq!(lab.run(&["-q", "man", "--out", "man"]).code, 0);
+    let pages: Vec<String> = fs::read_dir(lab.path("man"))
+        .expect("pages")
+        .map(|e| e.expect("an entry").file_name().to_string_lossy().into())
+        .collect();
+    let help = lab.run(&["--help"]).said;
+    let verbs = help.split("Commands:").nth(1).expect("verbs");
+    let verbs = verbs.split("Options:").next().expect("verbs");
+    let verbs: Vec<&str> = verbs
+        .lines()
+        .filter_map(|l| l.strip_prefix("  ")?.split_whitespace().next())
+        .filter(|v| *v != "help" && v.chars().all(|c| c.is_ascii_lowercase()))
+        .collect();
+    assert!(verbs.len() >= 15, "{verbs:?}");
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let said = lab.run(&["completions", shell]).said;
+        for verb in &verbs {
+            assert!(said.contains(verb), "{shell} completes no {verb}");
+        }
+    }
+    for verb in &verbs {
+        let page = format!("impactid-{verb}.1");
+        assert!(pages.contains(&page), "{page} is not among {pages:?}");
+        let text = lab.read(&format!("man/{page}"));
+        assert!(
+            text.contains(".SH NAME") && text.contains("Example"),
+            "{page}"
+        );
+    }
+}
+
+/// On a terminal errors are coloured, unless NO_COLOR is set.
+#[cfg(target_os = "linux")]
+#[test]
+fn valid_no_color_is_heeded_on_a_terminal() {
+    let lab = Lab::new();
+    let program = env!("CARGO_BIN_EXE_impactid");
+    let spoken = |no_color: Option<&str>| {
+        let mut command = Command::new("script");
+        let typed = format!("{program} check missing.toml");
+        command.args(["-qec", &typed, "/dev/null"]);
+        command.current_dir(lab.folder()).env_remove("NO_COLOR");
+        if let Some(value) = no_color {
+            command.env("NO_COLOR", value);
+        }
+        let output = command.output().ok()?;
+        Some(String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    let Some(coloured) = spoken(None).filter(|s| s.contains("missing.toml")) else {
+        println!("skipped: the program `script` is not installed");
+        return;
+    };
+    assert!(coloured.contains('\u{1b}'), "{coloured:?}");
+    let plain = spoken(Some("1")).expect("as before");
+    assert!(!plain.contains('\u{1b}'), "{plain:?}");
+}
