@@ -139,6 +139,20 @@ fn mean_square(residuals: &[f64]) -> f64 {
     residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len().max(1) as f64
 }
 
+/// Weigh resonance curve and trajectories as the fit that led to these parameters did: shared
+/// errors found, the least relative error allowed beside the noise.
+pub fn weigh(blocks: &mut Blocks, parameters: &Parameters) {
+    let resonance = &mut blocks.resonance;
+    resonance.relative_error = least_allowance(resonance.clone(), parameters, |b, e| {
+        b.relative_error = e;
+    });
+    let trajectory = &mut blocks.trajectory;
+    trajectory.find_shared_errors(parameters);
+    trajectory.relative_error = least_allowance(trajectory.clone(), parameters, |b, e| {
+        b.relative_error = e;
+    });
+}
+
 /// Relative error that is always allowed, so that weights stay finite on noiseless data.
 const LEAST_ALLOWANCE: f64 = 1e-6;
 /// Greatest relative error that instruments and model may be allowed.

@@ -87,7 +87,9 @@ pub struct Uncertainty {
 /// 95 % point of χ² with one degree of freedom.
 const CHI2_95: f64 = 3.841_458_820_694_124;
 /// Standard errors at which a profile is evaluated.
-const OFFSETS: [f64; 8] = [-3.0, -2.0, -1.4, -0.7, 0.7, 1.4, 2.0, 3.0];
+const OFFSETS: [f64; 12] = [
+    -3.0, -2.5, -2.0, -1.5, -1.0, -0.5, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0,
+];
 
 /// All that is asked for, about a joint fit; `names` are those of the problem's blocks.
 pub fn uncertainty(

@@ -8,6 +8,7 @@ use crate::identify::impacts::SpeedPair;
 use crate::identify::methods::{Blocks, Evidence, Nominal};
 use crate::identify::parameters::Coordinate;
 use crate::identify::resonance::predicted;
+use crate::identify::run::weigh;
 use crate::identify::solver::Block;
 use crate::identify::{MethodResult, SpecimenResult};
 use crate::motion::Observation;
@@ -175,7 +176,8 @@ pub(super) fn residuals(gathered: &Gathered) -> Vec<ResidualSet> {
     let Some(parameters) = gathered.parameters() else {
         return Vec::new();
     };
-    let all = blocks(gathered);
+    let mut all = blocks(gathered);
+    weigh(&mut all, &parameters);
     let resonance: Vec<usize> = all.resonance.points.iter().map(|p| p.observation).collect();
     let trajectory: Vec<usize> = all
         .trajectory
