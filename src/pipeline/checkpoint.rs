@@ -19,12 +19,12 @@ use crate::output::{self, OutputError};
 const FOLDER: &str = ".impactid-observed";
 
 /// Campaigns of fewer records are quicker observed anew than kept.
-pub const FEWEST: usize = 64;
+pub const FEWEST: usize = 24;
 
 /// Records a chunk holds, for a campaign of so many: a sixteenth, so that little is lost, but
 /// enough that keeping takes no time.
 pub fn chunk_of(records: usize) -> usize {
-    (records / 16).clamp(16, 512)
+    (records / 16).clamp(8, 512)
 }
 
 /// Where the chunks of one run lie.
