@@ -121,6 +121,14 @@ const OUTLYING: f64 = 25.0;
 /// And how many times it may always be.
 const SCATTER: f64 = 1.6;
 
+/// Weight of the impacts among the other methods: what the extrapolation of speeds leaves open is
+/// common to all impacts, so that all together tell no more than that.
+fn impact_weight(found: &MethodFit) -> f64 {
+    let error = found.fit.error(Coordinate::Restitution).unwrap_or(0.0);
+    let square = error * error * found.factor;
+    square / (square + IMPACT_BIAS * IMPACT_BIAS) / found.factor
+}
+
 /// Rounds of leaving outlying records out and fitting again.
 const ROUNDS: usize = 2;
 
@@ -249,13 +257,14 @@ impl<'a> Work<'a> {
             let about = found.fit.parameters;
             interval::posterior(&self.blocks.boundary, &about, error.min(0.3))
         });
-        let weights = [
+        let mut weights = [
             resonance,
             trajectories.as_ref(),
             boundaries.as_ref().filter(|_| self.posterior.is_none()),
             impacts,
         ]
         .map(|attempt| succeeded(attempt).map(|f| 1.0 / f.factor));
+        weights[3] = succeeded(impacts).map(impact_weight);
         let joint = self.joint(&self.blocks, start, weights);
         Fits {
             trajectories,
