@@ -19,7 +19,7 @@ use crate::output::{self, OutputError};
 const FOLDER: &str = ".impactid-observed";
 
 /// Campaigns of fewer records are quicker observed anew than kept.
-pub const FEWEST: usize = 24;
+pub const FEWEST: usize = 2000;
 
 /// Records a chunk holds, for a campaign of so many: a sixteenth, so that little is lost, but
 /// enough that keeping takes no time.
