@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::voice::print;
+use super::voice::{print, print_json};
 use super::{Exit, Failure, Progress, Voice};
 use crate::identify::coverage::Score;
 use crate::pipeline::coverage::{self, Tally};
@@ -41,10 +41,7 @@ impl Coverage {
         })?;
         drop(bar);
         if self.json {
-            let text = serde_json::to_string_pretty(&found).map_err(|e| {
-                Failure::new(e.to_string(), "please report it with the command line")
-            })?;
-            print(&format!("{text}\n"))?;
+            print_json(&found)?;
         } else {
             print(&table(&found))?;
         }

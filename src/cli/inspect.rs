@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::sketch::sketch;
-use super::voice::print;
+use super::voice::{print, print_json};
 use super::{Exit, Failure, Voice};
 use crate::record::open::open;
 use crate::record::source::{DatasetInfo, ReadError, Samples, Source};
@@ -74,9 +74,7 @@ impl Inspect {
             print(&std::mem::take(&mut text))?;
         }
         if self.json {
-            let json = serde_json::to_string_pretty(&listed)
-                .map_err(|e| Failure::new(e.to_string(), "Report this as a fault of impactid."))?;
-            print(&format!("{json}\n"))?;
+            print_json(&listed)?;
         }
         Ok(exit)
     }

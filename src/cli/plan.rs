@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::voice::print_json;
 use super::{Exit, Failure, Progress, Voice, interrupt};
+use crate::motion::Motion;
 use crate::output::Lock;
 use crate::pipeline::plan;
 
@@ -51,10 +53,7 @@ impl Plan {
         let found = plan::plan(&campaign, self.settings, &self.out, &told)?;
         drop(bar);
         if self.json {
-            let text = serde_json::to_string_pretty(&found).map_err(|e| {
-                Failure::new(e.to_string(), "please report it with the command line")
-            })?;
-            println!("{text}");
+            print_json(&found)?;
         } else if !voice.is_quiet() {
             print_table(&found);
         }
@@ -76,11 +75,7 @@ fn print_table(found: &plan::Plan) {
         "", "drive, Hz", "clearance, mm", "η", "ρ", "z", "error of R then"
     );
     for (i, p) in found.proposals.iter().enumerate() {
-        let motion = if p.periods_n == 1 {
-            "1".to_owned()
-        } else {
-            format!("1/{}", p.periods_n)
-        };
+        let motion = Motion::periodic(1, p.periods_n).label();
         println!(
             "{:>4} {:>12.3} {:>13.4} {:>8.4} {:>8.4} {motion:>6} {:>15.2e}",
             i + 1,

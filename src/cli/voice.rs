@@ -40,6 +40,16 @@ impl Voice {
     }
 }
 
+/// Write a result as JSON to the standard output.
+///
+/// # Errors
+/// As [`print()`].
+pub fn print_json(result: &impl serde::Serialize) -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(result)
+        .map_err(|e| Failure::new(e.to_string(), "please report it with the command line"))?;
+    print(&format!("{text}\n"))
+}
+
 /// Write a result to the standard output; a reader that has closed it ends the program quietly.
 ///
 /// # Errors

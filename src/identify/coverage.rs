@@ -137,10 +137,11 @@ fn score(trials: &[Trial], method: &str, coordinate: Coordinate) -> Option<Score
 
 /// True value of a parameter and the unit of its errors.
 fn true_value(truth: &Parameters, coordinate: Coordinate) -> (f64, f64) {
-    let value = truth.coordinate(coordinate);
-    if coordinate.is_logarithm() {
-        (value.exp(), value.exp())
+    let value = coordinate.physical(truth.coordinate(coordinate));
+    let unit = if coordinate.is_logarithm() {
+        value
     } else {
-        (value, 1.0)
-    }
+        1.0
+    };
+    (value, unit)
 }

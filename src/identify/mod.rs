@@ -27,6 +27,7 @@ pub mod trajectory;
 pub mod uncertainty;
 pub mod verdict;
 pub mod waveform;
+pub mod weighing;
 
 use std::collections::BTreeMap;
 

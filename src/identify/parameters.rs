@@ -198,4 +198,13 @@ impl Coordinate {
             Self::Restitution | Self::DriveAsymmetry | Self::StiffnessAsymmetry
         )
     }
+
+    /// The physical value of one of this coordinate.
+    pub fn physical(self, value: f64) -> f64 {
+        if self.is_logarithm() {
+            value.exp()
+        } else {
+            value
+        }
+    }
 }

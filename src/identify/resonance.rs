@@ -57,7 +57,7 @@ impl ResonanceBlock {
                     responses: o
                         .response
                         .iter()
-                        .filter(|r| rig == Rig::Double || !is_of_y(r.role))
+                        .filter(|r| rig == Rig::Double || !r.role.is_of_y())
                         .copied()
                         .collect(),
                 })
@@ -81,13 +81,6 @@ impl ResonanceBlock {
     }
 }
 
-fn is_of_y(role: Role) -> bool {
-    matches!(
-        role,
-        Role::VelocityY | Role::DisplacementY | Role::AccelerationY
-    )
-}
-
 /// Relative step of the difference that gives a response's slope over the frequency.
 const FREQUENCY_STEP: f64 = 1e-6;
 
@@ -100,7 +93,7 @@ pub fn predicted(
     drive_amplitude: f64,
 ) -> Complex<f64> {
     let machine = parameters.machine(rig);
-    let mass = if is_of_y(role) {
+    let mass = if role.is_of_y() {
         machine.y.unwrap_or(machine.x)
     } else {
         machine.x
@@ -147,7 +140,7 @@ impl Block for ResonanceBlock {
                 column.extend([change.re, change.im]);
             }
         }
-        Whitening::new(shared.to_vec()).apply(&mut out);
+        Whitening::new(shared.into()).apply(&mut out);
         Some(out)
     }
 

@@ -2,17 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
-
 use crate::identify::agreement::agreement;
 use crate::identify::interval::{self, Posterior};
 use crate::identify::methods::{self, Blocks, Evidence, IMPACT_BIAS, MethodFit};
 use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::solver::{Block, Fit, FitError, Prior, Problem};
+use crate::identify::solver::{Block, Fit, FitError, Prior, Problem, mean_squares};
 use crate::identify::suspicion::{self, OddGap, Suspicion};
 use crate::identify::trajectory::TrajectoryRecord;
 use crate::identify::uncertainty::{self, Uncertainty};
 use crate::identify::verdict::{self, Findings};
+use crate::identify::weighing::Bulk;
 use crate::identify::{Agreement, Estimate, MethodResult, Verdict, contact_law, decay, estimate};
 
 /// What an identification leads to; settings, versions and hashes are the caller's to add.
@@ -116,11 +115,6 @@ const MOST_ODD_GAPS: usize = 2;
 const POOR_FIT: f64 = 1.5;
 const POOR_ALLOWANCE: f64 = 3e-4;
 
-/// How many times the typical mean square of residuals at most belongs to the bulk.
-const OUTLYING: f64 = 25.0;
-/// And how many times it may always be.
-const SCATTER: f64 = 1.6;
-
 /// Weight of the impacts among the other methods: what the extrapolation of speeds leaves open is
 /// common to all impacts, so that all together tell no more than that.
 fn impact_weight(found: &MethodFit) -> f64 {
@@ -131,71 +125,6 @@ fn impact_weight(found: &MethodFit) -> f64 {
 
 /// Rounds of leaving outlying records out and fitting again.
 const ROUNDS: usize = 2;
-
-/// Mean square from which a record is an outlier: six robust deviations of the scores' logarithm
-/// above their median, so that records of one quality do not hide one that is worse.
-fn outlying(scores: &[f64]) -> f64 {
-    let logs: Vec<f64> = scores.iter().map(|s| s.max(1e-12).ln()).collect();
-    let typical = crate::signal::robust::median(scores)
-        .unwrap_or(1.0)
-        .max(1.0);
-    let spread = crate::signal::robust::robust_deviation(&logs).unwrap_or(1.0);
-    typical * (6.0 * spread).exp().clamp(SCATTER, OUTLYING)
-}
-
-fn mean_square(residuals: &[f64]) -> f64 {
-    residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len().max(1) as f64
-}
-
-/// Weigh resonance curve and trajectories as the fit that led to these parameters did: shared
-/// errors found, the least relative error allowed beside the noise.
-pub fn weigh(blocks: &mut Blocks, parameters: &Parameters) {
-    let resonance = &mut blocks.resonance;
-    resonance.relative_error = least_allowance(resonance.clone(), parameters, |b, e| {
-        b.relative_error = e;
-    });
-    let trajectory = &mut blocks.trajectory;
-    trajectory.find_shared_errors(parameters);
-    trajectory.relative_error = least_allowance(trajectory.clone(), parameters, |b, e| {
-        b.relative_error = e;
-    });
-}
-
-/// Relative error that is always allowed, so that weights stay finite on noiseless data.
-const LEAST_ALLOWANCE: f64 = 1e-6;
-/// Greatest relative error that instruments and model may be allowed.
-const MOST_ALLOWANCE: f64 = 0.1;
-
-/// The least relative error beside the noise with which the residuals at given parameters are of
-/// unit size; next to none where the noise alone explains them. The median of the items' mean squares is
-/// judged, so that a few records that do not belong change nothing.
-fn least_allowance<B: Block>(
-    mut block: B,
-    parameters: &Parameters,
-    allow: impl Fn(&mut B, f64),
-) -> f64 {
-    let mut excess = |allowance: f64| {
-        allow(&mut block, allowance);
-        let scores: Vec<f64> = (0..block.items())
-            .into_par_iter()
-            .filter_map(|i| Some(mean_square(&block.residuals(i, parameters)?)))
-            .collect();
-        crate::signal::robust::median(&scores).unwrap_or(0.0) - 1.0
-    };
-    if excess(LEAST_ALLOWANCE) <= 0.0 {
-        return LEAST_ALLOWANCE;
-    }
-    let (mut low, mut high) = (LEAST_ALLOWANCE, MOST_ALLOWANCE);
-    for _ in 0..14 {
-        let middle = (low * high).sqrt();
-        if excess(middle) > 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    high
-}
 
 type Attempt = Option<Result<MethodFit, FitError>>;
 
@@ -400,33 +329,22 @@ impl<'a> Work<'a> {
             Ok(first) => first,
             failed => return Some(failed),
         };
-        let block = &mut self.blocks.resonance;
-        block.relative_error = least_allowance(block.clone(), &first.fit.parameters, |b, e| {
-            b.relative_error = e;
-        });
-        let block = &self.blocks.resonance;
-        let scores: Vec<f64> = (0..block.items())
-            .map(|i| {
-                mean_square(
-                    &block
-                        .residuals(i, &first.fit.parameters)
-                        .unwrap_or_default(),
-                )
-            })
+        let parameters = first.fit.parameters;
+        self.blocks.weigh_resonance(&parameters);
+        let scores: Vec<f64> = mean_squares(&self.blocks.resonance, &parameters)
+            .into_iter()
+            .map(|s| s.unwrap_or(0.0))
             .collect();
-        let typical = crate::signal::robust::median(&scores)
-            .unwrap_or(1.0)
-            .max(1.0);
-        let limit = outlying(&scores);
+        let bulk = Bulk::of(&scores);
         let points = std::mem::take(&mut self.blocks.resonance.points);
         for (point, score) in points.into_iter().zip(scores) {
-            if score <= limit {
+            if score <= bulk.limit {
                 self.blocks.resonance.points.push(point);
             } else {
                 let reason = format!(
                     "its response fits {:.0} times worse than the others (still settling?): left \
                      out of the resonance curve",
-                    (score / typical).sqrt()
+                    bulk.times_worse(score)
                 );
                 self.left_out.push((self.name(point.observation), reason));
             }
@@ -438,26 +356,19 @@ impl<'a> Work<'a> {
     /// and those that fit far worse than the bulk are left out and named.
     fn trajectories(&mut self, start: Parameters) -> Attempt {
         let all = self.blocks.trajectory.records.clone();
-        let at_start = self.trajectory_scores(&all, &start);
-        self.blocks.trajectory.records = all
-            .iter()
-            .zip(at_start)
-            .filter(|(_, s)| s.is_some())
-            .map(|(r, _)| r.clone())
-            .collect();
-        let first = match methods::trajectories(&self.blocks, &self.evidence.nominal, start)? {
+        let at_start = mean_squares(&self.blocks.trajectory, &start);
+        let mut has_orbit = at_start.iter().map(Option::is_some);
+        let records = &mut self.blocks.trajectory.records;
+        records.retain(|_| has_orbit.next().unwrap_or(false));
+        let mut found = match methods::trajectories(&self.blocks, &self.evidence.nominal, start)? {
             Ok(first) => first,
             failed => return Some(failed),
         };
-        let mut found = first;
-        let mut all = all;
+        self.blocks.trajectory.records = all;
         for _ in 0..ROUNDS {
-            all = self.keep_fitting(all, &found.fit.parameters);
-            found = match methods::trajectories(
-                &self.blocks,
-                &self.evidence.nominal,
-                found.fit.parameters,
-            )? {
+            let parameters = found.fit.parameters;
+            self.keep_fitting(&parameters);
+            found = match methods::trajectories(&self.blocks, &self.evidence.nominal, parameters)? {
                 Ok(found) => found,
                 failed => return Some(failed),
             };
@@ -466,30 +377,23 @@ impl<'a> Work<'a> {
     }
 
     /// Keep the records that fit like the bulk, name the others, and find again what is allowed
-    /// beside the noise; gives the records kept.
-    fn keep_fitting(
-        &mut self,
-        all: Vec<TrajectoryRecord>,
-        parameters: &Parameters,
-    ) -> Vec<TrajectoryRecord> {
-        let scores = self.trajectory_scores(&all, parameters);
+    /// beside the noise.
+    fn keep_fitting(&mut self, parameters: &Parameters) {
+        let scores = mean_squares(&self.blocks.trajectory, parameters);
         let known: Vec<f64> = scores.iter().flatten().copied().collect();
-        let typical = crate::signal::robust::median(&known)
-            .unwrap_or(1.0)
-            .max(1.0);
-        let limit = outlying(&known);
-        let mut kept = Vec::new();
-        self.typical = typical;
-        for (record, score) in all.into_iter().zip(&scores) {
+        let bulk = Bulk::of(&known);
+        self.typical = bulk.typical;
+        let records = std::mem::take(&mut self.blocks.trajectory.records);
+        for (record, score) in records.into_iter().zip(scores) {
             let reason = match score {
-                Some(s) if *s <= limit => {
-                    kept.push(record);
+                Some(s) if s <= bulk.limit => {
+                    self.blocks.trajectory.records.push(record);
                     continue;
                 }
                 Some(s) => format!(
                     "its waveform fits {:.1} times worse than the others: left out of the \
                      trajectories",
-                    (s / typical).sqrt()
+                    bulk.times_worse(s)
                 ),
                 None => "the model has no such periodic motion at the fitted parameters: left \
                          out of the trajectories"
@@ -498,27 +402,7 @@ impl<'a> Work<'a> {
             self.left_out.push((self.name(record.observation), reason));
             self.lost.push(record);
         }
-        let block = &mut self.blocks.trajectory;
-        block.records.clone_from(&kept);
-        block.find_shared_errors(parameters);
-        block.relative_error = least_allowance(block.clone(), parameters, |b, e| {
-            b.relative_error = e;
-        });
-        kept = block.records.clone();
-        kept
-    }
-
-    /// Mean squared weighted residual of each record; `None` where there is no orbit.
-    fn trajectory_scores(
-        &self,
-        records: &[crate::identify::trajectory::TrajectoryRecord],
-        parameters: &Parameters,
-    ) -> Vec<Option<f64>> {
-        let mut block = self.blocks.trajectory.clone();
-        block.records = records.to_vec();
-        (0..records.len())
-            .map(|i| block.residuals(i, parameters).map(|r| mean_square(&r)))
-            .collect()
+        self.blocks.weigh_trajectories(parameters);
     }
 
     /// Fit the brackets; those that no boundary reaches, or that lie far from it, are named.

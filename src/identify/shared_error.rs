@@ -4,6 +4,8 @@
 //! I + VVᵀ (13); residuals times its inverse root are independent again, and least squares on them is
 //! the likelihood.
 
+use crate::identify::factor::dot;
+
 /// The inverse root of I + VVᵀ, by its few directions: I − Σ kept·d dᵀ with orthonormal d.
 #[derive(Debug, Clone, Default)]
 pub struct Whitening {
@@ -44,10 +46,6 @@ impl Whitening {
             }
         }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 /// Turn two columns into orthogonal ones with the same VVᵀ (one Jacobi rotation).

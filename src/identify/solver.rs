@@ -44,6 +44,19 @@ pub trait Block: Sync {
     fn touches(&self, coordinate: Coordinate) -> bool;
 }
 
+/// Mean square of each item's weighted residuals at given parameters, in the items' order; `None`
+/// where the model has no such motion.
+pub fn mean_squares(block: &impl Block, parameters: &Parameters) -> Vec<Option<f64>> {
+    (0..block.items())
+        .into_par_iter()
+        .map(|i| {
+            let residuals = block.residuals(i, parameters)?;
+            let sum: f64 = residuals.iter().map(|r| r * r).sum();
+            Some(sum / residuals.len().max(1) as f64)
+        })
+        .collect()
+}
+
 /// Gaussian prior on one coordinate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prior {

@@ -4,12 +4,13 @@
 //! A gap or an interchange is tested as an alternative: what would change if it were so, and how
 //! much better would all data then fit.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
+use crate::identify::factor::dot;
 use crate::identify::methods::{Blocks, Nominal};
 use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::solver::{Block, Fit};
+use crate::identify::solver::{Block, Fit, mean_squares};
 use crate::identify::trajectory::{TrajectoryBlock, TrajectoryRecord};
 use crate::record::Role;
 
@@ -118,12 +119,16 @@ fn shift(block: &TrajectoryBlock, weight: f64, fit: &Fit, factor: f64, gap: f64)
         if record.clearance_m != gap {
             continue;
         }
-        let Some((residuals, slope, jacobian)) = slopes(block, item, fit) else {
+        let over_gap = slope_over_gap(block, item, &fit.parameters);
+        let over_all = block.slopes(item, &fit.parameters, &fit.free);
+        let Some((slope, (residuals, columns))) = over_gap.zip(over_all) else {
             continue;
         };
-        own += weight * slope.norm_squared();
-        score += weight * slope.dot(&residuals);
-        cross += weight * jacobian.tr_mul(&slope);
+        own += weight * dot(&slope, &slope);
+        score += weight * dot(&slope, &residuals);
+        for (sum, column) in cross.iter_mut().zip(&columns) {
+            *sum += weight * dot(column, &slope);
+        }
         seen += 1;
     }
     if seen < 2 {
@@ -140,33 +145,25 @@ fn shift(block: &TrajectoryBlock, weight: f64, fit: &Fit, factor: f64, gap: f64)
     })
 }
 
-/// Residuals of one record, their slope over the relative clearance, and over the coordinates.
-fn slopes(
+/// Slope of one record's residuals over the relative clearance, by central differences.
+fn slope_over_gap(
     block: &TrajectoryBlock,
     item: usize,
-    fit: &Fit,
-) -> Option<(DVector<f64>, DVector<f64>, DMatrix<f64>)> {
+    parameters: &Parameters,
+) -> Option<Vec<f64>> {
     const STEP: f64 = 2e-6;
-    let residuals = DVector::from_vec(block.residuals(item, &fit.parameters)?);
-    let moved = |by: f64| {
-        let mut one = TrajectoryBlock {
-            records: vec![block.records[item].clone()],
-            ..*block
-        };
-        one.records[0].clearance_m *= 1.0 + by;
-        one.residuals(0, &fit.parameters).map(DVector::from_vec)
+    let mut one = TrajectoryBlock {
+        records: vec![block.records[item].clone()],
+        ..*block
     };
-    let slope = (moved(STEP)? - moved(-STEP)?) / (2.0 * STEP);
-    let mut jacobian = DMatrix::zeros(residuals.len(), fit.free.len());
-    for (column, coordinate) in fit.free.iter().enumerate() {
-        let centre = fit.parameters.coordinate(*coordinate);
-        let at = |by: f64| {
-            let shifted = fit.parameters.with(*coordinate, centre + by);
-            block.residuals(item, &shifted).map(DVector::from_vec)
-        };
-        jacobian.set_column(column, &((at(STEP)? - at(-STEP)?) / (2.0 * STEP)));
-    }
-    Some((residuals, slope, jacobian))
+    let stated_m = one.records[0].clearance_m;
+    let mut moved = |by: f64| {
+        one.records[0].clearance_m = stated_m * (1.0 + by);
+        one.residuals(0, parameters)
+    };
+    let (above, below) = (moved(STEP)?, moved(-STEP)?);
+    let difference = above.iter().zip(&below).map(|(a, b)| a - b);
+    Some(difference.map(|d| d / (2.0 * STEP)).collect())
 }
 
 /// Records of a gap that the model reaches only with another clearance: of the gaps whose records
@@ -205,29 +202,23 @@ fn recover(
     typical: f64,
 ) -> Option<OddGap> {
     let stated = records[0].clearance_m;
-    let cost = |factor: f64| -> f64 {
-        let mut moved = TrajectoryBlock {
-            records: records.clone(),
-            ..*block
-        };
+    let mut moved = TrajectoryBlock { records, ..*block };
+    let mut cost = |factor: f64| -> f64 {
         for record in &mut moved.records {
-            record.clearance_m *= factor;
+            record.clearance_m = stated * factor;
         }
-        let score = |i| {
-            let residuals = moved.residuals(i, parameters)?;
-            let count = residuals.len().max(1) as f64;
-            Some(residuals.iter().map(|r| r * r).sum::<f64>() / count)
-        };
-        let sum: f64 = (0..records.len())
-            .map(|i| score(i).map_or(CAP, |s: f64| (s / typical).min(CAP)))
-            .sum();
-        sum / records.len() as f64
+        let scores = mean_squares(&moved, parameters);
+        let capped = scores
+            .iter()
+            .map(|score| score.map_or(CAP, |s| (s / typical).min(CAP)));
+        capped.sum::<f64>() / scores.len() as f64
     };
     let (mut centre, mut width) = (1.0, 0.34);
     for _ in 0..4 {
-        let best = (-60..=60)
+        let (best, _) = (-60..=60)
             .map(|i| centre + width * f64::from(i) / 60.0)
-            .min_by(|a, b| cost(*a).total_cmp(&cost(*b)))?;
+            .map(|factor| (factor, cost(factor)))
+            .min_by(|a, b| a.1.total_cmp(&b.1))?;
         (centre, width) = (best, width / 20.0);
     }
     let (before, after) = (cost(1.0), cost(centre));

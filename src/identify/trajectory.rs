@@ -162,7 +162,7 @@ impl TrajectoryBlock {
                         .folded
                         .channels
                         .iter()
-                        .any(|c| is_of_y(c.role) == of_y);
+                        .any(|c| c.role.is_of_y() == of_y);
                     seen.then(|| Waveform::new(&orbit, paths[usize::from(of_y)], phases, phase))
                 })
             })
@@ -170,17 +170,13 @@ impl TrajectoryBlock {
         let mut out = Vec::new();
         for channel in &record.folded.channels {
             let set = record.phases.iter().position(|p| p.fit(&channel.points))?;
-            let wave = waves[set][usize::from(is_of_y(channel.role))].as_ref()?;
+            let wave = waves[set][usize::from(channel.role.is_of_y())].as_ref()?;
             let (unit, values) =
                 channel_unit(parameters, record.drive_amplitude, channel.role, wave);
             out.extend(values.iter().map(|v| unit * v));
         }
         Some(out)
     }
-}
-
-fn is_of_y(role: Role) -> bool {
-    matches!(role, Role::VelocityY | Role::DisplacementY)
 }
 
 /// SI units of a channel, gain included, in one of the model's, and its values in the model's.

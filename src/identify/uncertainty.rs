@@ -163,13 +163,7 @@ fn profile(
         .collect();
     points.push((best, 0.0));
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let physical = |v: f64| {
-        if coordinate.is_logarithm() {
-            v.exp()
-        } else {
-            v
-        }
-    };
+    let physical = |v: f64| coordinate.physical(v);
     let below: Vec<(f64, f64)> = points
         .iter()
         .rev()
@@ -247,13 +241,7 @@ fn replica(
 }
 
 fn summary(coordinate: Coordinate, sorted: &[f64]) -> Option<Bootstrapped> {
-    let physical = |v: f64| {
-        if coordinate.is_logarithm() {
-            v.exp()
-        } else {
-            v
-        }
-    };
+    let physical = |v: f64| coordinate.physical(v);
     let at = |share: f64| {
         let i = (share * (sorted.len().saturating_sub(1)) as f64).round() as usize;
         sorted.get(i).copied()

@@ -14,7 +14,8 @@ use crate::identify::coverage::{Score, Trial, scores};
 use crate::identify::methods::{Evidence, Nominal};
 use crate::identify::parameters::Parameters;
 use crate::identify::run::{Outcome, identify};
-use crate::motion::{ClassifySettings, Observation, brackets, observe, scale_drives};
+use crate::identify::uncertainty::{Asked, Way};
+use crate::motion::{Bracket, ClassifySettings, Observation, brackets, observe, scale_drives};
 use crate::pipeline::{PipelineError, Progress};
 use crate::record::{Record, Role};
 use crate::synthetic::run::calibrated;
@@ -137,6 +138,7 @@ fn swap_roles(record: &mut Record, a: Role, b: Role) {
 /// A campaign after identification.
 struct Seen {
     observations: Vec<Observation>,
+    brackets: Vec<Bracket>,
     outcome: Outcome,
 }
 
@@ -147,10 +149,7 @@ impl Seen {
     }
 }
 
-fn evidence<'a>(
-    observations: &'a [Observation],
-    brackets: &'a [crate::motion::Bracket],
-) -> Evidence<'a> {
+fn evidence<'a>(observations: &'a [Observation], brackets: &'a [Bracket]) -> Evidence<'a> {
     Evidence {
         rig: Rig::Double,
         observations,
@@ -159,13 +158,16 @@ fn evidence<'a>(
             gain_uncertainty: 5e-3,
             ..Nominal::default()
         },
-        uncertainty: Default::default(),
+        // Nobody reads profiles of hundreds of campaigns.
+        uncertainty: Asked {
+            way: Way::Covariance,
+            ..Asked::default()
+        },
     }
 }
 
-/// Simulate, observe and identify a campaign, with a mistake or without; gives the trial for the
-/// scores beside it.
-fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<(Seen, Trial), PipelineError> {
+/// Simulate, observe and identify a campaign, with a mistake or without.
+fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError> {
     let raw = records(&draw.truth, &draw.faults, &draw.plan, draw.seed)?;
     let mut records: Vec<Record> = raw
         .iter()
@@ -185,20 +187,19 @@ fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<(Seen, Trial), Pipe
         .collect();
     scale_drives(&mut observations);
     let brackets = brackets(&observations);
-    let evidence = evidence(&observations, &brackets);
-    let outcome = identify(&evidence);
-    let truth = parameters(&draw.truth);
-    let trial = Trial::new(
-        truth,
-        &outcome.joint,
-        &outcome.methods,
-        bounds(&evidence, &truth),
-    );
-    let seen = Seen {
+    let outcome = identify(&evidence(&observations, &brackets));
+    Ok(Seen {
         observations,
+        brackets,
         outcome,
-    };
-    Ok((seen, trial))
+    })
+}
+
+/// What a campaign contributes to the scores.
+fn trial(seen: &Seen, truth: &Truth) -> Trial {
+    let truth = parameters(truth);
+    let bounds = bounds(&evidence(&seen.observations, &seen.brackets), &truth);
+    Trial::new(truth, &seen.outcome.joint, &seen.outcome.methods, bounds)
 }
 
 fn parameters(truth: &Truth) -> Parameters {
@@ -228,7 +229,9 @@ pub fn study(campaigns: usize, seed: u64, progress: Progress) -> Result<Coverage
     let main: Vec<(bool, Trial)> = (0..campaigns as u64)
         .into_par_iter()
         .map(|i| {
-            let (seen, trial) = campaign(&draw(seed, i, Reach::Full), None)?;
+            let draw = draw(seed, i, Reach::Full);
+            let seen = campaign(&draw, None)?;
+            let trial = trial(&seen, &draw.truth);
             step();
             Ok((!seen.outcome.suspicions.is_empty(), trial))
         })
@@ -239,7 +242,7 @@ pub fn study(campaigns: usize, seed: u64, progress: Progress) -> Result<Coverage
         let found: Vec<bool> = (0..few as u64)
             .into_par_iter()
             .map(|i| {
-                let (seen, _) = campaign(&draw(seed ^ 0x00FA_0175, i, reach), mistake)?;
+                let seen = campaign(&draw(seed ^ 0x00FA_0175, i, reach), mistake)?;
                 step();
                 Ok(named(&seen))
             })

@@ -11,7 +11,7 @@ use crate::identify::methods::{Evidence, Nominal};
 use crate::identify::solver::Fit;
 use crate::identify::specimens::identify_campaign;
 use crate::identify::uncertainty::Asked;
-use crate::output::write_bytes;
+use crate::pipeline::store::write_json;
 use crate::pipeline::{Observed, PipelineError, inputs};
 
 /// Name of the result's file.
@@ -121,11 +121,5 @@ pub fn versions() -> BTreeMap<String, String> {
 /// # Errors
 /// Where it cannot be written.
 pub fn write(identification: &Identification, out: &Path) -> Result<(), PipelineError> {
-    let mut text =
-        serde_json::to_string_pretty(identification).map_err(|e| PipelineError::Table {
-            table: FILE.into(),
-            reason: e.to_string(),
-        })?;
-    text.push('\n');
-    Ok(write_bytes(&out.join(FILE), text.as_bytes())?)
+    write_json(&out.join(FILE), identification)
 }

@@ -6,7 +6,9 @@ use serde::Serialize;
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::plan::{Proposal, Reach, propose};
+use crate::motion::Motion;
 use crate::output::{make_folder, write_bytes};
+use crate::pipeline::store::write_json;
 use crate::pipeline::{Observed, PipelineError, Progress, identify, report};
 use crate::report::ProposedPoint;
 
@@ -59,11 +61,7 @@ pub fn plan(
         write_bytes(&out.join(name), &bytes)?;
     }
     write_bytes(&out.join("plan.csv"), csv(&plan.proposals).as_bytes())?;
-    let text = serde_json::to_string_pretty(&plan).map_err(|e| PipelineError::Table {
-        table: FILE.into(),
-        reason: e.to_string(),
-    })?;
-    write_bytes(&out.join(FILE), format!("{text}\n").as_bytes())?;
+    write_json(&out.join(FILE), &plan)?;
     Ok(plan)
 }
 
@@ -82,11 +80,7 @@ fn csv(proposals: &[Proposal]) -> String {
          restitution_error_after\n",
     );
     for (i, p) in proposals.iter().enumerate() {
-        let motion = if p.periods_n == 1 {
-            "1".to_owned()
-        } else {
-            format!("1/{}", p.periods_n)
-        };
+        let motion = Motion::periodic(1, p.periods_n).label();
         text.push_str(&format!(
             "{},{:.4},{:.7},{:.5},{:.5},{motion},{:.3e}\n",
             i + 1,

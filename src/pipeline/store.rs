@@ -28,7 +28,8 @@ fn store_error(path: &Path, reason: impl std::fmt::Display) -> PipelineError {
     }
 }
 
-fn write_json<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), PipelineError> {
+/// Write a value as JSON.
+pub(super) fn write_json<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), PipelineError> {
     let mut text = serde_json::to_string_pretty(value).map_err(|e| store_error(path, e))?;
     text.push('\n');
     Ok(write_bytes(path, text.as_bytes())?)

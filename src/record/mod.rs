@@ -91,6 +91,14 @@ impl Role {
         }
     }
 
+    /// Whether a channel of this role watches the second mass.
+    pub fn is_of_y(self) -> bool {
+        matches!(
+            self,
+            Role::VelocityY | Role::DisplacementY | Role::AccelerationY
+        )
+    }
+
     /// The dimension a channel of this role must have once in SI; `None` where several serve
     /// (a drive in V or N, a contact in V or N, a frame in m, m/s or m/s²).
     pub fn dimension(self) -> Option<Dimension> {

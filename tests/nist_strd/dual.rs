@@ -60,11 +60,16 @@ impl Dual {
     /// A positive number to a power that is itself one.
     pub fn to(self, power: Self) -> Self {
         let value = self.value.powf(power.value);
-        let (over_base, over_power) = (power.value * value / self.value, value * self.value.ln());
+        let slopes = [power.value * value / self.value, value * self.value.ln()];
+        self.with(power, value, slopes)
+    }
+
+    /// A function of two numbers, by its value and its slope over each.
+    fn with(self, other: Self, value: f64, [over_self, over_other]: [f64; 2]) -> Self {
         Self {
             value,
             slopes: std::array::from_fn(|i| {
-                over_base * self.slopes[i] + over_power * power.slopes[i]
+                over_self * self.slopes[i] + over_other * other.slopes[i]
             }),
         }
     }
@@ -97,12 +102,7 @@ impl Sub for Dual {
 impl Mul for Dual {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        Self {
-            value: self.value * other.value,
-            slopes: std::array::from_fn(|i| {
-                self.slopes[i] * other.value + self.value * other.slopes[i]
-            }),
-        }
+        self.with(other, self.value * other.value, [other.value, self.value])
     }
 }
 
@@ -110,12 +110,8 @@ impl Div for Dual {
     type Output = Self;
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
-        Self {
-            value,
-            slopes: std::array::from_fn(|i| {
-                (self.slopes[i] - value * other.slopes[i]) / other.value
-            }),
-        }
+        let per_unit = other.value.recip();
+        self.with(other, value, [per_unit, -value * per_unit])
     }
 }
 

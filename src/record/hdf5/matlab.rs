@@ -7,8 +7,8 @@
 use crate::record::hdf5::element::{Element, Stride};
 use crate::record::hdf5::store::{Array, Attr, Attrs, DEEPEST, MOST_OBJECTS, Store, Target, Tree};
 use crate::record::mat::arrange::{Origin, Slice};
-use crate::record::mat::text;
 use crate::record::mat::tree::{Content, Encoding, Leaf, Part, Place, Tree as Variables, Variable};
+use crate::record::mat::{subscript, text};
 use crate::record::numbers::{ByteOrder, Number};
 use crate::record::source::Samples;
 
@@ -117,19 +117,6 @@ impl Way {
             tail.to_owned()
         }
     }
-}
-
-/// `(2)` for a vector, `(2,1)` otherwise, counted from 1.
-fn subscript(dims: &[u64], mut index: u64, [open, close]: [char; 2]) -> String {
-    if dims.iter().filter(|&&d| d != 1).count() <= 1 {
-        return format!("{open}{}{close}", index + 1);
-    }
-    let mut parts = Vec::new();
-    for &dim in dims {
-        parts.push((index % dim.max(1) + 1).to_string());
-        index /= dim.max(1);
-    }
-    format!("{open}{}{close}", parts.join(","))
 }
 
 struct Walk<'a> {

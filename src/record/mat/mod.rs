@@ -24,6 +24,7 @@ mod contents;
 mod element;
 mod inflate;
 mod names;
+pub(super) use names::subscript;
 mod samples;
 #[cfg(test)]
 mod tests;

@@ -8,7 +8,6 @@ use crate::identify::impacts::SpeedPair;
 use crate::identify::methods::{Blocks, Evidence, Nominal};
 use crate::identify::parameters::Coordinate;
 use crate::identify::resonance::predicted;
-use crate::identify::run::weigh;
 use crate::identify::solver::Block;
 use crate::identify::{MethodResult, SpecimenResult};
 use crate::motion::Observation;
@@ -177,7 +176,7 @@ pub(super) fn residuals(gathered: &Gathered) -> Vec<ResidualSet> {
         return Vec::new();
     };
     let mut all = blocks(gathered);
-    weigh(&mut all, &parameters);
+    all.weigh(parameters);
     let resonance: Vec<usize> = all.resonance.points.iter().map(|p| p.observation).collect();
     let trajectory: Vec<usize> = all
         .trajectory

@@ -1,5 +1,6 @@
 //! The map's data: what hovering over a record tells, and all layers as CSV.
 
+use crate::motion::Motion;
 use crate::report::content::{RecordRow, RegionMap, ReportContent};
 use crate::report::figures::csv::Csv;
 use crate::report::figures::look::NumberLook;
@@ -65,7 +66,7 @@ pub fn csv(content: &ReportContent) -> String {
     }
     for c in &content.curves {
         let name = c.kind.name();
-        let motion = format!("1/{}", c.periods_n);
+        let motion = Motion::periodic(1, c.periods_n).label();
         for p in &c.points {
             csv.row()
                 .texts(&["curve", name, &motion, ""])

@@ -1,0 +1,100 @@
+//! How much residuals may be trusted: what is allowed beside the noise, and which records do not
+//! belong to the bulk.
+
+use crate::identify::methods::Blocks;
+use crate::identify::parameters::Parameters;
+use crate::identify::solver::{Block, mean_squares};
+use crate::signal::robust;
+
+impl Blocks {
+    /// Weigh resonance curve and trajectories as the fit that led to these parameters did.
+    pub fn weigh(&mut self, parameters: &Parameters) {
+        self.weigh_resonance(parameters);
+        self.weigh_trajectories(parameters);
+    }
+
+    /// Allow the impactless records the least relative error that explains them.
+    pub fn weigh_resonance(&mut self, parameters: &Parameters) {
+        let block = &mut self.resonance;
+        block.relative_error =
+            least_allowance(block.clone(), parameters, |b, e| b.relative_error = e);
+    }
+
+    /// Find the errors that the points of each periodic record share, and allow all the least
+    /// relative error that explains the rest.
+    pub fn weigh_trajectories(&mut self, parameters: &Parameters) {
+        let block = &mut self.trajectory;
+        block.find_shared_errors(parameters);
+        block.relative_error =
+            least_allowance(block.clone(), parameters, |b, e| b.relative_error = e);
+    }
+}
+
+/// Relative error that is always allowed, so that weights stay finite on noiseless data.
+const LEAST_ALLOWANCE: f64 = 1e-6;
+/// Greatest relative error that instruments and model may be allowed.
+const MOST_ALLOWANCE: f64 = 0.1;
+
+/// The least relative error beside the noise with which the residuals at given parameters are of
+/// unit size; next to none where the noise alone explains them. The median of the items' mean
+/// squares is judged, so that a few records that do not belong change nothing.
+fn least_allowance<B: Block>(
+    mut block: B,
+    parameters: &Parameters,
+    allow: impl Fn(&mut B, f64),
+) -> f64 {
+    let mut excess = |allowance: f64| {
+        allow(&mut block, allowance);
+        let scores: Vec<f64> = mean_squares(&block, parameters)
+            .into_iter()
+            .flatten()
+            .collect();
+        robust::median(&scores).unwrap_or(0.0) - 1.0
+    };
+    if excess(LEAST_ALLOWANCE) <= 0.0 {
+        return LEAST_ALLOWANCE;
+    }
+    let (mut low, mut high) = (LEAST_ALLOWANCE, MOST_ALLOWANCE);
+    for _ in 0..14 {
+        let middle = (low * high).sqrt();
+        if excess(middle) > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
+/// What mean squares of records that belong together look like.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bulk {
+    /// The typical one, at least 1.
+    pub typical: f64,
+    /// The greatest that still belongs.
+    pub limit: f64,
+}
+
+/// How many times the typical mean square a record of the bulk may have at most.
+const OUTLYING: f64 = 25.0;
+/// And how many times it may always have.
+const SCATTER: f64 = 1.6;
+
+impl Bulk {
+    /// The bulk of mean squares: up to six robust deviations of their logarithm above their
+    /// median, so that records of one quality do not hide one that is worse.
+    pub fn of(scores: &[f64]) -> Self {
+        let logs: Vec<f64> = scores.iter().map(|s| s.max(1e-12).ln()).collect();
+        let typical = robust::median(scores).unwrap_or(1.0).max(1.0);
+        let spread = robust::robust_deviation(&logs).unwrap_or(1.0);
+        Self {
+            typical,
+            limit: typical * (6.0 * spread).exp().clamp(SCATTER, OUTLYING),
+        }
+    }
+
+    /// How many times worse than the typical record one fits.
+    pub fn times_worse(self, score: f64) -> f64 {
+        (score / self.typical).sqrt()
+    }
+}
