@@ -7,7 +7,7 @@ use crate::identify::estimate;
 use crate::identify::impacts::ImpactBlock;
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::resonance::ResonanceBlock;
-use crate::identify::solver::{Block, Fit, FitError, Prior, Problem};
+use crate::identify::solver::{Block, Fit, FitError, Prior, Problem, mean_squares};
 use crate::identify::trajectory::TrajectoryBlock;
 use crate::identify::uncertainty::Asked;
 use crate::motion::{Bracket, Observation};
@@ -235,18 +235,13 @@ fn starts(blocks: &Blocks, nominal: &Nominal) -> Vec<Parameters> {
             });
         }
     }
-    out.sort_by(|a, b| {
-        let cost = |p: &Parameters| {
-            (0..blocks.resonance.items())
-                .filter_map(|i| blocks.resonance.residuals(i, p))
-                .flatten()
-                .map(|r| r * r)
-                .sum::<f64>()
-        };
-        cost(a).total_cmp(&cost(b))
-    });
-    out.truncate(3);
-    out
+    let cost = |p: Parameters| {
+        let mean_squares = mean_squares(&blocks.resonance, &p);
+        (mean_squares.into_iter().flatten().sum::<f64>(), p)
+    };
+    let mut costs: Vec<(f64, Parameters)> = out.into_iter().map(cost).collect();
+    costs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    costs.into_iter().take(3).map(|(_, start)| start).collect()
 }
 
 /// Deflection that best scales the unit response to the measured amplitudes.

@@ -3,10 +3,13 @@
 use nalgebra::Complex;
 
 use crate::event::Rig;
+use crate::identify::direction::{change, relative_length};
 use crate::identify::parameters::{Coordinate, Parameters, gain_index};
 use crate::identify::shared_error::Whitening;
 use crate::identify::solver::Block;
 use crate::model::flight::{Drive, forced_amplitude};
+use crate::model::params::{Machine, Oscillator};
+use crate::model::sensitivity::{Change, forced_slope};
 use crate::motion::Observation;
 use crate::motion::response::Response;
 use crate::record::Role;
@@ -81,8 +84,43 @@ impl ResonanceBlock {
     }
 }
 
-/// Relative step of the difference that gives a response's slope over the frequency.
-const FREQUENCY_STEP: f64 = 1e-6;
+/// A channel's response as the model has it.
+struct Predicted {
+    /// Complex response, SI, gain included; the drive is cos θ.
+    value: Complex<f64>,
+    oscillator: Oscillator,
+    /// SI units in one of the model's displacement.
+    unit: Complex<f64>,
+    /// How often the displacement is differentiated.
+    order: f64,
+}
+
+fn respond(
+    parameters: &Parameters,
+    machine: &Machine,
+    role: Role,
+    [frequency_hz, drive_amplitude]: [f64; 2],
+) -> Predicted {
+    let oscillator = match machine.y {
+        Some(y) if role.is_of_y() => y,
+        _ => machine.x,
+    };
+    let eta = frequency_hz / parameters.natural_frequency_hz;
+    let rate = Complex::new(0.0, std::f64::consts::TAU * frequency_hz);
+    let order: u8 = match role {
+        Role::VelocityX | Role::VelocityY => 1,
+        Role::AccelerationX | Role::AccelerationY => 2,
+        _ => 0,
+    };
+    let scale = parameters.gain(role) * parameters.static_deflection_m * drive_amplitude;
+    let unit = rate.powu(u32::from(order)) * scale;
+    Predicted {
+        value: forced_amplitude(&oscillator, Drive { eta, phase: 0.0 }) * unit,
+        oscillator,
+        unit,
+        order: f64::from(order),
+    }
+}
 
 /// Predicted complex response of a channel, SI, gain included; the drive is cos θ.
 pub fn predicted(
@@ -92,22 +130,75 @@ pub fn predicted(
     frequency_hz: f64,
     drive_amplitude: f64,
 ) -> Complex<f64> {
-    let machine = parameters.machine(rig);
-    let mass = if role.is_of_y() {
-        machine.y.unwrap_or(machine.x)
-    } else {
-        machine.x
-    };
-    let eta = frequency_hz / parameters.natural_frequency_hz;
-    let forced = forced_amplitude(&mass, Drive { eta, phase: 0.0 });
-    let rate = Complex::new(0.0, std::f64::consts::TAU * frequency_hz);
-    let power = match role {
-        Role::VelocityX | Role::VelocityY => rate,
-        Role::AccelerationX | Role::AccelerationY => rate * rate,
-        _ => Complex::new(1.0, 0.0),
-    };
-    let scale = parameters.gain(role) * parameters.static_deflection_m * drive_amplitude;
-    Complex::new(forced.re, forced.im) * power * scale
+    let setting = [frequency_hz, drive_amplitude];
+    respond(parameters, &parameters.machine(rig), role, setting).value
+}
+
+impl Predicted {
+    /// Slope where mass and η change; the drive's frequency, and with it the unit, does not.
+    fn along(&self, of_y: bool, change: &Change, eta: f64) -> Complex<f64> {
+        let mass = if of_y { &change.y } else { &change.x };
+        let forced = self.value / self.unit;
+        forced_slope(&self.oscillator, mass, forced, [eta, change.eta]) * self.unit
+    }
+
+    /// Slope over the logarithm of the drive's frequency.
+    fn over_frequency(&self, eta: f64) -> Complex<f64> {
+        let change = Change {
+            eta,
+            ..Change::default()
+        };
+        self.along(false, &change, eta) + self.value * self.order
+    }
+}
+
+impl ResonanceBlock {
+    fn responses(&self, point: &ResonancePoint, parameters: &Parameters) -> Vec<Predicted> {
+        let machine = parameters.machine(self.rig);
+        let setting = [point.frequency_hz, point.drive_amplitude];
+        let responses = point.responses.iter();
+        responses
+            .map(|r| respond(parameters, &machine, r.role, setting))
+            .collect()
+    }
+
+    fn error(&self, response: &Response) -> f64 {
+        response
+            .error
+            .hypot(self.relative_error * response.amplitude())
+    }
+
+    /// Complex changes of a point's responses over their errors, real and imaginary parts in turn.
+    fn weighted(
+        &self,
+        point: &ResonancePoint,
+        changes: impl Iterator<Item = Complex<f64>>,
+    ) -> Vec<f64> {
+        let responses = point.responses.iter().zip(changes);
+        responses
+            .flat_map(|(r, c)| {
+                let error = self.error(r);
+                [c.re / error, c.im / error]
+            })
+            .collect()
+    }
+
+    /// The errors that all responses of a point share: those of the drive's phase and frequency.
+    fn whitening(&self, point: &ResonancePoint, found: &[Predicted], eta: f64) -> Whitening {
+        let turn = Complex::new(0.0, point.phase_error_rad);
+        let turned = found.iter().map(|p| turn * p.value);
+        let shifted = found
+            .iter()
+            .map(|p| p.over_frequency(eta) * point.frequency_error);
+        let columns = [self.weighted(point, turned), self.weighted(point, shifted)];
+        Whitening::new(columns.into())
+    }
+
+    fn apart(&self, point: &ResonancePoint, found: &[Predicted]) -> Vec<f64> {
+        let pairs = point.responses.iter().zip(found);
+        let apart = pairs.map(|(r, p)| Complex::new(r.real, r.imaginary) - p.value);
+        self.weighted(point, apart)
+    }
 }
 
 impl Block for ResonanceBlock {
@@ -117,34 +208,96 @@ impl Block for ResonanceBlock {
 
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let point = &self.points[item];
-        let mut out = Vec::with_capacity(2 * point.responses.len());
-        let mut shared = [out.clone(), out.clone()];
-        for r in &point.responses {
-            let at = |factor: f64| {
-                predicted(
-                    parameters,
-                    self.rig,
-                    r.role,
-                    factor * point.frequency_hz,
-                    point.drive_amplitude,
-                )
-            };
-            let model = at(1.0);
-            let error = r.error.hypot(self.relative_error * r.amplitude());
-            out.push((r.real - model.re) / error);
-            out.push((r.imaginary - model.im) / error);
-            let turned = Complex::new(0.0, point.phase_error_rad / error) * model;
-            let shifted = (at(1.0 + FREQUENCY_STEP) - model) / FREQUENCY_STEP
-                * (point.frequency_error / error);
-            for (column, change) in shared.iter_mut().zip([turned, shifted]) {
-                column.extend([change.re, change.im]);
-            }
-        }
-        Whitening::new(shared.into()).apply(&mut out);
+        let eta = point.frequency_hz / parameters.natural_frequency_hz;
+        let found = self.responses(point, parameters);
+        let mut out = self.apart(point, &found);
+        self.whitening(point, &found, eta).apply(&mut out);
         Some(out)
+    }
+
+    fn slopes(
+        &self,
+        item: usize,
+        parameters: &Parameters,
+        coordinates: &[Coordinate],
+    ) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+        let point = &self.points[item];
+        let eta = point.frequency_hz / parameters.natural_frequency_hz;
+        let machine = parameters.machine(self.rig);
+        let found = self.responses(point, parameters);
+        let whitening = self.whitening(point, &found, eta);
+        let white = |mut column: Vec<f64>| {
+            whitening.apply(&mut column);
+            column
+        };
+        let column = |coordinate: &Coordinate| {
+            let change = change(&machine, eta, 0.0, *coordinate);
+            let pairs = point.responses.iter().zip(&found);
+            let falling = pairs.map(|(r, p)| {
+                let own_gain =
+                    matches!(coordinate, Coordinate::Gain(g) if gain_index(r.role) == Some(*g));
+                let relative = relative_length(*coordinate) + f64::from(u8::from(own_gain));
+                -p.along(r.role.is_of_y(), &change, eta) - p.value * relative
+            });
+            white(self.weighted(point, falling))
+        };
+        let columns = coordinates.iter().map(column).collect();
+        Some((white(self.apart(point, &found)), columns))
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {
         coordinate != Coordinate::Restitution
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::solver::difference;
+
+    #[test]
+    fn valid_slopes_are_those_of_finite_differences() {
+        let roles = [
+            Role::VelocityX,
+            Role::VelocityY,
+            Role::DisplacementX,
+            Role::AccelerationY,
+        ];
+        let block = ResonanceBlock {
+            rig: Rig::Double,
+            points: vec![ResonancePoint {
+                observation: 0,
+                frequency_hz: 14.0,
+                drive_amplitude: 1.2,
+                frequency_error: 0.0,
+                phase_error_rad: 0.0,
+                responses: roles
+                    .map(|role| Response {
+                        role,
+                        real: 1e-3,
+                        imaginary: 2e-3,
+                        error: 1e-4,
+                        residual_rms: 1e-4,
+                    })
+                    .to_vec(),
+            }],
+            relative_error: 1e-3,
+        };
+        let p = Parameters {
+            drive_asymmetry: 0.03,
+            stiffness_asymmetry: -0.02,
+            ..Parameters::symmetric(0.8, 12.6, 0.07, 1e-3)
+        };
+        let mut coordinates = Coordinate::PHYSICAL[1..].to_vec();
+        coordinates.extend([Coordinate::DriveAsymmetry, Coordinate::StiffnessAsymmetry]);
+        coordinates.extend([Coordinate::Gain(0), Coordinate::Gain(2)]);
+        let (here, columns) = block.slopes(0, &p, &coordinates).expect("slopes");
+        for (coordinate, exact) in coordinates.iter().zip(columns) {
+            let found = difference(&p, *coordinate, &here, |p| block.residuals(0, p));
+            let size = crate::signal::robust::rms(&exact);
+            for (e, f) in exact.iter().zip(found.expect("differences")) {
+                assert!((e - f).abs() < 1e-6 * size, "{coordinate:?}: {e} {f}");
+            }
+        }
     }
 }

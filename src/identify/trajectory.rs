@@ -4,11 +4,11 @@ use rayon::prelude::*;
 
 use crate::event::Rig;
 use crate::identify::parameters::{Coordinate, Parameters, gain_index};
+use crate::identify::record_motion::RecordMotion;
 use crate::identify::shared_error::Whitening;
-use crate::identify::solver::{Block, difference};
-use crate::identify::waveform::{Phases, Waveform};
+use crate::identify::solver::Block;
+use crate::identify::waveform::Phases;
 use crate::model::flight::State;
-use crate::model::orbit::{Branch, Orbit, unjudged_orbit};
 use crate::motion::Observation;
 use crate::motion::fold::{Folded, FoldedChannel};
 use crate::record::Role;
@@ -76,33 +76,6 @@ impl TrajectoryBlock {
         roles.any(|r| gain_index(r) == Some(index))
     }
 
-    /// The orbit of a record at given parameters: the one whose closing speed is nearer to the
-    /// measured one; `None` beyond the saddle-node.
-    pub fn orbit(&self, item: usize, parameters: &Parameters) -> Option<Orbit> {
-        self.orbit_of(&self.records[item], parameters)
-    }
-
-    fn orbit_of(&self, record: &TrajectoryRecord, parameters: &Parameters) -> Option<Orbit> {
-        let machine = parameters.machine(self.rig);
-        let setting = parameters.setting(
-            record.frequency_hz,
-            record.clearance_m,
-            record.drive_amplitude,
-        );
-        let n = record.folded.periods_n;
-        let branch = Branch::new(&machine, setting.frequency_ratio, n);
-        let restitution = parameters.restitution.clamp(0.0, 1.0);
-        let speeds = branch.closing_speeds(restitution, machine.gap(setting.clearance))?;
-        let scale =
-            parameters.static_deflection_m * record.drive_amplitude * parameters.natural_rate();
-        let measured = record.closing_speed_m_s / scale;
-        let speed = speeds
-            .into_iter()
-            .filter(|w| *w > 0.0)
-            .min_by(|a, b| (a - measured).abs().total_cmp(&(b - measured).abs()))?;
-        Some(unjudged_orbit(&machine, setting, n, speed))
-    }
-
     /// Find at good parameters what phase and frequency of the drive change in every record.
     pub fn find_shared_errors(&mut self, parameters: &Parameters) {
         let changes: Vec<Option<Vec<Vec<f64>>>> = self
@@ -120,81 +93,15 @@ impl TrajectoryBlock {
         record: &TrajectoryRecord,
         parameters: &Parameters,
     ) -> Option<Vec<Vec<f64>>> {
-        let slope = |above: Vec<f64>, below: Vec<f64>, error: f64| -> Vec<f64> {
-            let factor = error / (2.0 * STEP);
-            above
-                .iter()
-                .zip(&below)
-                .map(|(a, b)| (a - b) * factor)
-                .collect()
-        };
-        let turned = |by: f64| self.values(record, parameters, by);
-        let shifted = |by: f64| {
-            let moved = TrajectoryRecord {
-                frequency_hz: record.frequency_hz * (1.0 + by),
-                ..record.clone()
-            };
-            self.values(&moved, parameters, 0.0)
-        };
+        let motion = RecordMotion::new(self.rig, record, parameters)?;
+        let values = motion.values();
+        let times = |slopes: Vec<f64>, error: f64| slopes.iter().map(|s| error * s).collect();
         Some(vec![
-            slope(turned(STEP)?, turned(-STEP)?, record.phase_error_rad),
-            slope(shifted(STEP)?, shifted(-STEP)?, record.frequency_error),
+            times(motion.over_phase(&values), record.phase_error_rad),
+            times(motion.over_frequency(&values), record.frequency_error),
         ])
     }
-
-    /// The model's values at all points of a record, channel after channel, SI, with the drive's
-    /// phase turned by an angle; `None` where there is no orbit.
-    fn values(
-        &self,
-        record: &TrajectoryRecord,
-        parameters: &Parameters,
-        turn_rad: f64,
-    ) -> Option<Vec<f64>> {
-        let orbit = self.orbit_of(record, parameters)?;
-        let phase = phase_on_fold(&orbit, &record.folded) + turn_rad;
-        let paths = [&orbit.paths().x, &orbit.paths().y];
-        let waves: Vec<[Option<Waveform>; 2]> = record
-            .phases
-            .iter()
-            .map(|phases| {
-                [false, true].map(|of_y| {
-                    let seen = record
-                        .folded
-                        .channels
-                        .iter()
-                        .any(|c| c.role.is_of_y() == of_y);
-                    seen.then(|| Waveform::new(&orbit, paths[usize::from(of_y)], phases, phase))
-                })
-            })
-            .collect();
-        let mut out = Vec::new();
-        for channel in &record.folded.channels {
-            let set = record.phases.iter().position(|p| p.fit(&channel.points))?;
-            let wave = waves[set][usize::from(channel.role.is_of_y())].as_ref()?;
-            let (unit, values) =
-                channel_unit(parameters, record.drive_amplitude, channel.role, wave);
-            out.extend(values.iter().map(|v| unit * v));
-        }
-        Some(out)
-    }
 }
-
-/// SI units of a channel, gain included, in one of the model's, and its values in the model's.
-fn channel_unit<'w>(
-    parameters: &Parameters,
-    drive_amplitude: f64,
-    role: Role,
-    wave: &'w Waveform,
-) -> (f64, &'w [f64]) {
-    let length = parameters.static_deflection_m * drive_amplitude * parameters.gain(role);
-    match role {
-        Role::VelocityX | Role::VelocityY => (length * parameters.natural_rate(), &wave.velocity),
-        _ => (length, &wave.displacement),
-    }
-}
-
-/// Step of the differences that give slopes over phase and relative frequency.
-const STEP: f64 = 1e-6;
 
 fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> {
     let drive = o.drive?;
@@ -248,13 +155,6 @@ pub fn channel_value(
     value * parameters.gain(role)
 }
 
-/// The orbit's impact phase on the fold's axis: whole turns put it next to the measured one.
-pub fn phase_on_fold(orbit: &Orbit, folded: &Folded) -> f64 {
-    let measured = folded.impact_phase_rad.unwrap_or(orbit.phase_at_impact);
-    let turns = ((measured - orbit.phase_at_impact) / std::f64::consts::TAU).round();
-    orbit.phase_at_impact + turns * std::f64::consts::TAU
-}
-
 impl Block for TrajectoryBlock {
     fn items(&self) -> usize {
         self.records.len()
@@ -262,7 +162,7 @@ impl Block for TrajectoryBlock {
 
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let record = &self.records[item];
-        let values = self.values(record, parameters, 0.0)?;
+        let values = RecordMotion::new(self.rig, record, parameters)?.values();
         let weighing = Weighing::new(record, &values, self.relative_error);
         Some(weighing.weighted(&weighing.apart(&values)))
     }
@@ -274,22 +174,21 @@ impl Block for TrajectoryBlock {
         coordinates: &[Coordinate],
     ) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
         let record = &self.records[item];
-        let values = self.values(record, parameters, 0.0)?;
+        let motion = RecordMotion::new(self.rig, record, parameters)?;
+        let values = motion.values();
         let weighing = Weighing::new(record, &values, self.relative_error);
         let columns = coordinates
             .iter()
             .map(|coordinate| {
-                let change = match coordinate {
+                let mut change = match coordinate {
                     // Values are proportional to their gain.
                     Coordinate::Gain(gain) => weighing.only(&values, *gain),
-                    _ => difference(parameters, *coordinate, &values, |p| {
-                        self.values(record, p, 0.0)
-                    })?,
+                    _ => motion.slopes(&values, *coordinate),
                 };
-                let falling: Vec<f64> = change.iter().map(|c| -c).collect();
-                Some(weighing.weighted(&falling))
+                change.iter_mut().for_each(|c| *c = -*c);
+                weighing.weighted(&change)
             })
-            .collect::<Option<Vec<_>>>()?;
+            .collect();
         Some((weighing.weighted(&weighing.apart(&values)), columns))
     }
 

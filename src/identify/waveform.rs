@@ -1,11 +1,11 @@
 //! A periodic orbit at the folded points of a record: means over the points' spread of phase, in
-//! closed form.
+//! closed form, and their exact slopes.
 //!
-//! An orbit is a sum of exponentials of time; the mean of e^{λt} over t ± δ is e^{λt}(1 + λ²δ²/2)
+//! A mass is a sum of exponentials of time; the mean of e^{λt} over t ± δ is e^{λt}(1 + λ²δ²/2)
 //! up to the fourth power of δ. What depends on the drive's phases alone is kept.
 
-use crate::model::orbit::Orbit;
-use crate::model::path::{C64, Path};
+use crate::model::path::C64;
+use crate::model::sensitivity::MassMotion;
 use crate::motion::fold::FoldedPoint;
 
 /// The phases of a channel's points.
@@ -13,7 +13,7 @@ use crate::motion::fold::FoldedPoint;
 pub struct Phases {
     /// Phase, rad in 0 … 2πn.
     phase: Vec<f64>,
-    /// e^{i·phase}.
+    /// Mean of e^{iθ} over the point's phases θ.
     turn: Vec<C64>,
     /// Half the square of the spread, rad².
     half_square: Vec<f64>,
@@ -22,16 +22,14 @@ pub struct Phases {
 impl Phases {
     /// Phases of folded points.
     pub fn of(points: &[FoldedPoint]) -> Self {
+        let half = |p: &FoldedPoint| 0.5 * p.spread_rad * p.spread_rad;
         Self {
             phase: points.iter().map(|p| p.phase_rad).collect(),
             turn: points
                 .iter()
-                .map(|p| C64::from_polar(1.0, p.phase_rad))
+                .map(|p| C64::from_polar(1.0 - half(p), p.phase_rad))
                 .collect(),
-            half_square: points
-                .iter()
-                .map(|p| 0.5 * p.spread_rad * p.spread_rad)
-                .collect(),
+            half_square: points.iter().map(half).collect(),
         }
     }
 
@@ -46,45 +44,128 @@ impl Phases {
     }
 }
 
-/// Displacement and velocity of one mass at all points, dimensionless.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Waveform {
-    /// Displacement.
-    pub displacement: Vec<f64>,
-    /// Velocity.
-    pub velocity: Vec<f64>,
+/// When in an orbit of n drive periods its impact is, and how fast its time runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Timing {
+    /// η
+    pub eta: f64,
+    /// n
+    pub periods_n: u32,
+    /// Phase of the drive at the impact on the points' axis, rad.
+    pub impact_phase: f64,
 }
 
-impl Waveform {
-    /// One mass's path on an orbit; `impact_phase` is the orbit's on the points' axis.
-    pub fn new(orbit: &Orbit, path: &Path, phases: &Phases, impact_phase: f64) -> Self {
-        let eta = orbit.setting.frequency_ratio;
-        let span = f64::from(orbit.n) * std::f64::consts::TAU;
-        // The path's harmonic starts at the impact.
-        let force = path.force * C64::from_polar(1.0, -impact_phase);
-        let count = phases.phase.len();
-        let (mut displacement, mut velocity) =
-            (Vec::with_capacity(count), Vec::with_capacity(count));
-        let [c0, c1, c2] = path.polynomial;
-        for i in 0..count {
-            let t = (phases.phase[i] - impact_phase).rem_euclid(span) / eta;
-            let half = phases.half_square[i];
-            let forced = force * phases.turn[i] * (1.0 - half);
-            let mut x = c0 + t * (c1 + t * c2) + forced.re;
-            let mut v = c1 + 2.0 * c2 * t - eta * forced.im;
-            for mode in path.modes() {
-                let spread = half / (eta * eta);
-                let mean = C64::new(1.0, 0.0) + mode.exponent * mode.exponent * spread;
-                let z = mode.amplitude * (mode.exponent * t).exp() * mean;
-                x += z.re;
-                v += (mode.exponent * z).re;
-            }
-            displacement.push(x);
-            velocity.push(v);
-        }
+/// How a direction changes the timing.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TimingSlope {
+    /// Of η.
+    pub eta: f64,
+    /// Of the impact's phase.
+    pub impact_phase: f64,
+}
+
+/// The free vibration of one mass at all points: t and the mean of e^{λt}.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Vibration<'a> {
+    phases: &'a Phases,
+    timing: Timing,
+    exponent: C64,
+    time: Vec<f64>,
+    /// e^{λt} at the points' middle.
+    decay: Vec<C64>,
+}
+
+/// What is measured of a mass.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Measured {
+    /// X
+    Displacement,
+    /// X'
+    Velocity,
+}
+
+impl<'a> Vibration<'a> {
+    /// Of a mass with an exponent.
+    pub fn new(phases: &'a Phases, timing: Timing, exponent: C64) -> Self {
+        let span = f64::from(timing.periods_n) * std::f64::consts::TAU;
+        let time: Vec<f64> = phases
+            .phase
+            .iter()
+            .map(|phase| (phase - timing.impact_phase).rem_euclid(span) / timing.eta)
+            .collect();
+        let decay = time.iter().map(|t| (exponent * t).exp()).collect();
         Self {
-            displacement,
-            velocity,
+            phases,
+            timing,
+            exponent,
+            time,
+            decay,
         }
     }
+
+    /// λ²/η²: what half the square of a spread of phase is multiplied by in a mean.
+    fn curvature(&self) -> C64 {
+        (self.exponent / self.timing.eta).powu(2)
+    }
+
+    /// Displacement or velocity of the mass at all points, dimensionless.
+    pub fn values(&self, mass: &MassMotion, measured: Measured) -> Vec<f64> {
+        let (force, mode) = match measured {
+            Measured::Displacement => (mass.force, mass.mode),
+            Measured::Velocity => (self.rate() * mass.force, self.exponent * mass.mode),
+        };
+        let bent = mode * self.curvature();
+        let points = self.phases.turn.iter().zip(&self.decay);
+        points
+            .zip(&self.phases.half_square)
+            .map(|((turn, decay), half)| real(force, *turn) + real(mode + bent * *half, *decay))
+            .collect()
+    }
+
+    fn rate(&self) -> C64 {
+        C64::new(0.0, self.timing.eta)
+    }
+
+    /// Slopes of the values in a direction that changes mass and timing.
+    pub fn slopes(
+        &self,
+        mass: &MassMotion,
+        change: &MassMotion,
+        timing: &TimingSlope,
+        measured: Measured,
+    ) -> Vec<f64> {
+        let eta = self.timing.eta;
+        let (force, mode, d_mode) = match measured {
+            Measured::Displacement => (change.force, mass.mode, change.mode),
+            Measured::Velocity => (
+                self.rate() * change.force + C64::new(0.0, timing.eta) * mass.force,
+                self.exponent * mass.mode,
+                self.exponent * change.mode + change.exponent * mass.mode,
+            ),
+        };
+        let curvature = self.curvature();
+        let stretch = timing.eta / eta;
+        let d_curvature =
+            2.0 * self.exponent / (eta * eta) * (change.exponent - self.exponent * stretch);
+        // d(λt) = t(dλ − λ dη/η) − λ dψ/η
+        let constant = d_mode - mode * self.exponent * (timing.impact_phase / eta);
+        let growing = mode * (change.exponent - self.exponent * stretch);
+        let (bent, d_bent) = (
+            constant * curvature + mode * d_curvature,
+            growing * curvature,
+        );
+        let points = self.phases.turn.iter().zip(&self.decay);
+        points
+            .zip(self.time.iter().zip(&self.phases.half_square))
+            .map(|((turn, decay), (t, half))| {
+                let amplitude = constant + bent * *half + (growing + d_bent * *half) * *t;
+                real(force, *turn) + real(amplitude, *decay)
+            })
+            .collect()
+    }
+}
+
+/// Re(ab)
+fn real(a: C64, b: C64) -> f64 {
+    a.re * b.re - a.im * b.im
 }

@@ -14,6 +14,7 @@ pub mod path;
 pub mod periodic;
 pub mod recurrence;
 pub mod restitution;
+pub mod sensitivity;
 pub mod simulate;
 pub mod soft;
 pub mod variation;

@@ -46,6 +46,16 @@ pub struct Folded {
     pub channels: Vec<FoldedChannel>,
 }
 
+impl Folded {
+    /// A phase of the drive at the impact, on the fold's axis: whole turns put it next to the
+    /// measured one.
+    pub fn on_fold(&self, phase_rad: f64) -> f64 {
+        let measured = self.impact_phase_rad.unwrap_or(phase_rad);
+        let turns = ((measured - phase_rad) / std::f64::consts::TAU).round();
+        phase_rad + turns * std::f64::consts::TAU
+    }
+}
+
 /// Fold a record with at most one impact in n drive periods.
 ///
 /// Bins within two samples of an impact are left out. A constant part of each channel is left

@@ -5,7 +5,8 @@ use rayon::prelude::*;
 use super::{Gathered, rows};
 use crate::atlas::map::even;
 use crate::atlas::{CellMotion, MapGrid, MapSettings, region_map as simulate_map};
-use crate::identify::parameters::Coordinate;
+use crate::event::Rig;
+use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::Fit;
 use crate::model::boundary::{rho_grazing, rho_s1, rho_s2};
 use crate::model::orbit::stable_orbit;
@@ -63,16 +64,20 @@ impl View {
     }
 }
 
+/// The fitted machine without its asymmetry: the plane is drawn as the paper does.
 fn machine(gathered: &Gathered) -> Option<Machine> {
     let fitted = gathered.parameters()?;
-    // The plane is drawn for the symmetric machine, as the paper does.
-    let symmetric = crate::identify::parameters::Parameters {
+    (fitted.in_range() && tells_restitution(gathered))
+        .then(|| symmetric(fitted, gathered.campaign.rig))
+}
+
+fn symmetric(parameters: &Parameters, rig: Rig) -> Machine {
+    let parameters = Parameters {
         drive_asymmetry: 0.0,
         stiffness_asymmetry: 0.0,
-        ..*fitted
+        ..*parameters
     };
-    (fitted.in_range() && tells_restitution(gathered))
-        .then(|| symmetric.machine(gathered.campaign.rig))
+    parameters.machine(rig)
 }
 
 /// Without a fitted R there are no regions of impact motion to draw.
@@ -82,7 +87,7 @@ fn tells_restitution(gathered: &Gathered) -> bool {
         .is_some_and(|fit| fit.free.contains(&Coordinate::Restitution))
 }
 
-/// s2 and s1 of z = 1/n and the grazing boundary, each with a 95 % band where R is uncertain.
+/// s2 and s1 of z = 1/n and the grazing boundary, each with its 95 % band.
 pub(super) fn curves(gathered: &Gathered) -> Vec<BoundaryCurve> {
     let (Some(view), Some(machine), Some(fit)) =
         (View::of(gathered), machine(gathered), gathered.fit)
@@ -90,37 +95,39 @@ pub(super) fn curves(gathered: &Gathered) -> Vec<BoundaryCurve> {
         return Vec::new();
     };
     let etas = even((view.eta.0, view.eta.1, CURVE_POINTS));
-    let mut out = vec![BoundaryCurve {
-        kind: BoundaryKind::Grazing,
-        periods_n: 1,
-        points: etas
-            .iter()
-            .map(|eta| [*eta, rho_grazing(&machine, *eta)])
-            .collect(),
-        band95: Vec::new(),
-    }];
+    let spread = Spread::of(fit, gathered.factor, gathered.campaign.rig);
+    let mut wanted = vec![(BoundaryKind::Grazing, 1)];
     for n in 1..=MOST_PERIODS {
-        for kind in [BoundaryKind::S2, BoundaryKind::S1] {
-            let place = |machine: &Machine, eta: f64| {
-                let point = match kind {
-                    BoundaryKind::S2 => rho_s2(machine, eta, n),
-                    _ => rho_s1(machine, eta, n),
-                }?;
-                (point.is_valid() && point.rho > 0.0).then_some(point.rho)
-            };
-            out.extend(
-                pieces(&etas, |eta| place(&machine, eta))
-                    .into_iter()
-                    .map(|points| BoundaryCurve {
-                        kind,
-                        periods_n: n,
-                        band95: band(gathered, fit, &points, &place),
-                        points,
-                    }),
-            );
-        }
+        wanted.extend([(BoundaryKind::S2, n), (BoundaryKind::S1, n)]);
     }
-    out
+    let drawn: Vec<Vec<BoundaryCurve>> = wanted
+        .into_par_iter()
+        .map(|(kind, periods_n)| {
+            let place = |machine: &Machine, eta: f64| place(machine, eta, kind, periods_n);
+            pieces(&etas, |eta| place(&machine, eta))
+                .into_iter()
+                .map(|points| BoundaryCurve {
+                    kind,
+                    periods_n,
+                    band95: spread.band(&points, &place),
+                    points,
+                })
+                .collect()
+        })
+        .collect();
+    drawn.into_iter().flatten().collect()
+}
+
+/// ρ of a boundary at η; `None` where no motion of the machine ends there.
+fn place(machine: &Machine, eta: f64, kind: BoundaryKind, n: u32) -> Option<f64> {
+    let point = match kind {
+        BoundaryKind::S2 => rho_s2(machine, eta, n),
+        BoundaryKind::S1 => rho_s1(machine, eta, n),
+        BoundaryKind::Grazing => return Some(rho_grazing(machine, eta)),
+        // has no closed form
+        BoundaryKind::Edge => None,
+    }?;
+    (point.is_valid() && point.rho > 0.0).then_some(point.rho)
 }
 
 /// Unbroken pieces of a curve: a jump or a missing value ends one.
@@ -145,29 +152,58 @@ fn pieces(etas: &[f64], rho: impl Fn(f64) -> Option<f64>) -> Vec<Vec<[f64; 2]>> 
     out
 }
 
-/// Band of a curve for R at both ends of its 95 % interval.
-fn band(
-    gathered: &Gathered,
-    fit: &Fit,
-    points: &[[f64; 2]],
-    place: &impl Fn(&Machine, f64) -> Option<f64>,
-) -> Vec<[f64; 3]> {
-    let Some(error) = fit.error(Coordinate::Restitution) else {
-        return Vec::new();
-    };
-    let half = 1.96 * error * gathered.factor.sqrt();
-    let ends = [-half, half].map(|shift| {
-        let r = (fit.parameters.restitution + shift).clamp(0.0, 1.0);
-        let parameters = fit.parameters.with(Coordinate::Restitution, r);
-        parameters.machine(gathered.campaign.rig)
-    });
-    points
-        .iter()
-        .filter_map(|[eta, _]| {
-            let (a, b) = (place(&ends[0], *eta)?, place(&ends[1], *eta)?);
-            Some([*eta, a.min(b), a.max(b)])
-        })
-        .collect()
+/// How far the fitted R and β may be off, on which alone the boundaries in the plane depend.
+struct Spread {
+    /// The machine one standard error below and above in each.
+    ends: Vec<[Machine; 2]>,
+    /// Correlation of the two.
+    correlation: f64,
+}
+
+impl Spread {
+    fn of(fit: &Fit, factor: f64, rig: Rig) -> Self {
+        let free = [Coordinate::Restitution, Coordinate::Damping];
+        let ends = free
+            .into_iter()
+            .filter_map(|coordinate| {
+                let error = fit.error(coordinate)? * factor.sqrt();
+                let centre = fit.parameters.coordinate(coordinate);
+                Some([-error, error].map(|by| {
+                    let moved = fit.parameters.with(coordinate, centre + by);
+                    symmetric(&moved, rig)
+                }))
+            })
+            .collect();
+        Self {
+            ends,
+            correlation: fit.correlation(free[0], free[1]).unwrap_or(0.0),
+        }
+    }
+
+    /// Band of a curve, from its slopes; where it ends for a machine nearby, the band ends.
+    fn band(
+        &self,
+        points: &[[f64; 2]],
+        place: &impl Fn(&Machine, f64) -> Option<f64>,
+    ) -> Vec<[f64; 3]> {
+        points
+            .iter()
+            .filter_map(|[eta, rho]| {
+                let per_error: Vec<f64> = self
+                    .ends
+                    .iter()
+                    .map(|[a, b]| Some(0.5 * (place(b, *eta)? - place(a, *eta)?)))
+                    .collect::<Option<_>>()?;
+                let common = match per_error[..] {
+                    [a, b] => 2.0 * self.correlation * a * b,
+                    _ => 0.0,
+                };
+                let variance = per_error.iter().map(|s| s * s).sum::<f64>() + common;
+                let half = 1.96 * variance.max(0.0).sqrt();
+                (half > 0.0).then_some([*eta, rho - half, rho + half])
+            })
+            .collect()
+    }
 }
 
 /// Regions of motion: every cell from rest; where hysteresis lies, the other motion beside it.

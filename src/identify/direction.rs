@@ -1,0 +1,50 @@
+//! What a coordinate of the fit changes in the dimensionless machine, in its setting and in the
+//! units of the channels.
+
+use crate::identify::parameters::Coordinate;
+use crate::model::params::{Machine, Oscillator};
+use crate::model::sensitivity::{Change, MassChange};
+
+/// Change of machine and setting per unit of a coordinate, at η and a gap; a gain changes neither.
+pub fn change(machine: &Machine, eta: f64, gap: f64, coordinate: Coordinate) -> Change {
+    let none = Change::default();
+    let both = |of: &dyn Fn(f64, &Oscillator) -> MassChange| Change {
+        x: of(1.0, &machine.x),
+        y: machine.y.map(|o| of(-1.0, &o)).unwrap_or_default(),
+        ..none
+    };
+    // A single mass carries no asymmetry.
+    let half = if machine.y.is_some() { 0.5 } else { 0.0 };
+    match coordinate {
+        Coordinate::Restitution => Change {
+            restitution: 1.0,
+            ..none
+        },
+        Coordinate::Frequency => Change { eta: -eta, ..none },
+        Coordinate::Deflection => Change { gap: -gap, ..none },
+        Coordinate::Damping => both(&|_, o| MassChange {
+            decay_rate: o.decay_rate(),
+            ..MassChange::default()
+        }),
+        Coordinate::DriveAsymmetry => both(&|sign, o| MassChange {
+            drive_per_mass: sign * half / o.mass,
+            ..MassChange::default()
+        }),
+        Coordinate::StiffnessAsymmetry => both(&|sign, o| MassChange {
+            stiffness_per_mass: sign * half,
+            decay_rate: 0.5 * sign * half * o.decay_rate() / o.stiffness_per_mass(),
+            ..MassChange::default()
+        }),
+        Coordinate::Gain(_) => none,
+    }
+}
+
+/// Relative change of the unit of length per unit of a coordinate.
+pub fn relative_length(coordinate: Coordinate) -> f64 {
+    f64::from(u8::from(coordinate == Coordinate::Deflection))
+}
+
+/// Relative change of the unit of angular frequency per unit of a coordinate.
+pub fn relative_rate(coordinate: Coordinate) -> f64 {
+    f64::from(u8::from(coordinate == Coordinate::Frequency))
+}

@@ -1,0 +1,352 @@
+//! A periodic record as the model has it: the values at all its points, and their exact slopes
+//! over every parameter, over the drive's phase and over its frequency.
+
+use crate::event::Rig;
+use crate::identify::direction::{change, relative_length, relative_rate};
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::trajectory::TrajectoryRecord;
+use crate::identify::waveform::{Measured, Timing, TimingSlope, Vibration};
+use crate::model::orbit::Branch;
+use crate::model::params::{Machine, Setting};
+use crate::model::path::C64;
+use crate::model::sensitivity::{Change, MassMotion, OrbitMotion, Sensitivity};
+use crate::record::Role;
+
+/// The z = 1/n orbit at a record's setting whose closing speed is nearest to the measured one.
+pub struct NearestOrbit {
+    /// The machine.
+    pub machine: Machine,
+    /// η and ρ.
+    pub setting: Setting,
+    /// The orbits at η.
+    pub branch: Branch,
+    /// Its closing speed, dimensionless.
+    pub closing_speed: f64,
+}
+
+impl NearestOrbit {
+    /// At given parameters; `None` beyond the saddle-node.
+    pub fn of(rig: Rig, record: &TrajectoryRecord, parameters: &Parameters) -> Option<Self> {
+        let machine = parameters.machine(rig);
+        let setting = parameters.setting(
+            record.frequency_hz,
+            record.clearance_m,
+            record.drive_amplitude,
+        );
+        let n = record.folded.periods_n;
+        let branch = Branch::new(&machine, setting.frequency_ratio, n);
+        let restitution = parameters.restitution.clamp(0.0, 1.0);
+        let speeds = branch.closing_speeds(restitution, machine.gap(setting.clearance))?;
+        let scale =
+            parameters.static_deflection_m * record.drive_amplitude * parameters.natural_rate();
+        let measured = record.closing_speed_m_s / scale;
+        let closing_speed = speeds
+            .into_iter()
+            .filter(|w| *w > 0.0)
+            .min_by(|a, b| (a - measured).abs().total_cmp(&(b - measured).abs()))?;
+        Some(Self {
+            machine,
+            setting,
+            branch,
+            closing_speed,
+        })
+    }
+}
+
+/// A record's orbit at its points.
+pub struct RecordMotion<'a> {
+    record: &'a TrajectoryRecord,
+    parameters: Parameters,
+    machine: Machine,
+    sensitivity: Sensitivity,
+    orbit: OrbitMotion,
+    eta: f64,
+    gap: f64,
+    /// Of each set of phases, both masses where they are measured.
+    vibrations: Vec<[Option<Vibration<'a>>; 2]>,
+    /// Of each channel, its set of phases.
+    sets: Vec<usize>,
+}
+
+/// A direction in all that a record's values depend on.
+struct Direction {
+    orbit: OrbitMotion,
+    eta: f64,
+    /// The coordinate that may change the channels' units.
+    coordinate: Option<Coordinate>,
+}
+
+impl<'a> RecordMotion<'a> {
+    /// At given parameters; `None` where there is no such orbit.
+    pub fn new(rig: Rig, record: &'a TrajectoryRecord, parameters: &Parameters) -> Option<Self> {
+        let NearestOrbit {
+            machine,
+            setting,
+            branch,
+            closing_speed,
+        } = NearestOrbit::of(rig, record, parameters)?;
+        let periods_n = record.folded.periods_n;
+        let gap = machine.gap(setting.clearance);
+        let sensitivity = Sensitivity::new(&machine, branch, periods_n, gap, closing_speed);
+        let orbit = sensitivity.motion();
+        let timing = Timing {
+            eta: branch.eta,
+            periods_n,
+            impact_phase: record.folded.on_fold(orbit.phase),
+        };
+        let vibrations = record
+            .phases
+            .iter()
+            .map(|phases| {
+                [(false, &orbit.x), (true, &orbit.y)].map(|(of_y, mass)| {
+                    let mut channels = record.folded.channels.iter();
+                    channels
+                        .any(|c| c.role.is_of_y() == of_y)
+                        .then(|| Vibration::new(phases, timing, mass.exponent))
+                })
+            })
+            .collect();
+        let sets = record
+            .folded
+            .channels
+            .iter()
+            .map(|c| record.phases.iter().position(|p| p.fit(&c.points)))
+            .collect::<Option<Vec<usize>>>()?;
+        Some(Self {
+            record,
+            parameters: *parameters,
+            machine,
+            sensitivity,
+            orbit,
+            eta: branch.eta,
+            gap,
+            vibrations,
+            sets,
+        })
+    }
+
+    /// Values at all points, channel after channel, SI, gains included.
+    pub fn values(&self) -> Vec<f64> {
+        self.channel_by_channel(|role, vibration, mass| {
+            let unit = self.unit(role);
+            let mut values = vibration.values(mass(&self.orbit), measured(role));
+            values.iter_mut().for_each(|v| *v *= unit);
+            values
+        })
+    }
+
+    /// Slopes of the values over a parameter of rig or drive; a gain changes no orbit.
+    pub fn slopes(&self, values: &[f64], coordinate: Coordinate) -> Vec<f64> {
+        let change = change(&self.machine, self.eta, self.gap, coordinate);
+        let direction = Direction {
+            orbit: self.sensitivity.slope(&change),
+            eta: change.eta,
+            coordinate: Some(coordinate),
+        };
+        self.along(values, &direction)
+    }
+
+    /// Slopes over the phase of the drive against the points, per rad.
+    pub fn over_phase(&self, values: &[f64]) -> Vec<f64> {
+        let turned = |mass: &MassMotion| MassMotion {
+            force: C64::new(0.0, -1.0) * mass.force,
+            ..MassMotion::default()
+        };
+        let orbit = OrbitMotion {
+            x: turned(&self.orbit.x),
+            y: turned(&self.orbit.y),
+            phase: 1.0,
+            closing_speed: 0.0,
+        };
+        let direction = Direction {
+            orbit,
+            eta: 0.0,
+            coordinate: None,
+        };
+        self.along(values, &direction)
+    }
+
+    /// Slopes over the logarithm of the drive's frequency.
+    pub fn over_frequency(&self, values: &[f64]) -> Vec<f64> {
+        let change = Change {
+            eta: self.eta,
+            ..Change::default()
+        };
+        let direction = Direction {
+            orbit: self.sensitivity.slope(&change),
+            eta: self.eta,
+            coordinate: None,
+        };
+        self.along(values, &direction)
+    }
+
+    fn along(&self, values: &[f64], direction: &Direction) -> Vec<f64> {
+        let timing = TimingSlope {
+            eta: direction.eta,
+            impact_phase: direction.orbit.phase,
+        };
+        let mut slopes = self.channel_by_channel(|role, vibration, mass| {
+            let unit = self.unit(role);
+            let (at, change) = (mass(&self.orbit), mass(&direction.orbit));
+            let mut slopes = vibration.slopes(at, change, &timing, measured(role));
+            slopes.iter_mut().for_each(|s| *s *= unit);
+            slopes
+        });
+        let mut start = 0;
+        for channel in &self.record.folded.channels {
+            let end = start + channel.points.len();
+            let relative = direction
+                .coordinate
+                .map_or(0.0, |c| match measured(channel.role) {
+                    Measured::Velocity => relative_length(c) + relative_rate(c),
+                    Measured::Displacement => relative_length(c),
+                });
+            if relative != 0.0 {
+                let own = slopes[start..end].iter_mut().zip(&values[start..end]);
+                own.for_each(|(s, v)| *s += relative * v);
+            }
+            start = end;
+        }
+        slopes
+    }
+
+    fn channel_by_channel(
+        &self,
+        of: impl Fn(Role, &Vibration<'_>, &dyn Fn(&OrbitMotion) -> &MassMotion) -> Vec<f64>,
+    ) -> Vec<f64> {
+        let channels = &self.record.folded.channels;
+        let mut out = Vec::with_capacity(channels.iter().map(|c| c.points.len()).sum());
+        for (channel, set) in channels.iter().zip(&self.sets) {
+            let of_y = channel.role.is_of_y();
+            if let Some(vibration) = &self.vibrations[*set][usize::from(of_y)] {
+                let mass: fn(&OrbitMotion) -> &MassMotion = if of_y { |o| &o.y } else { |o| &o.x };
+                out.extend(of(channel.role, vibration, &mass));
+            }
+        }
+        out
+    }
+
+    /// SI units of a channel, gain included, in one of the model's.
+    fn unit(&self, role: Role) -> f64 {
+        let p = &self.parameters;
+        let length = p.static_deflection_m * self.record.drive_amplitude * p.gain(role);
+        match measured(role) {
+            Measured::Velocity => length * p.natural_rate(),
+            Measured::Displacement => length,
+        }
+    }
+}
+
+fn measured(role: Role) -> Measured {
+    match role {
+        Role::VelocityX | Role::VelocityY => Measured::Velocity,
+        _ => Measured::Displacement,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::trajectory::distinct_phases;
+    use crate::motion::fold::{Folded, FoldedChannel, FoldedPoint};
+
+    const ROLES: [Role; 4] = [
+        Role::VelocityX,
+        Role::VelocityY,
+        Role::DisplacementX,
+        Role::DisplacementY,
+    ];
+
+    fn parameters() -> Parameters {
+        Parameters {
+            drive_asymmetry: 0.02,
+            stiffness_asymmetry: -0.03,
+            gains: [1.01, 0.99, 1.0, 1.02],
+            ..Parameters::symmetric(0.85, 12.6, 0.06, 1e-3)
+        }
+    }
+
+    fn record(periods_n: u32, frequency_hz: f64) -> TrajectoryRecord {
+        let points: Vec<FoldedPoint> = (0..64 * periods_n)
+            .map(|i| FoldedPoint {
+                phase_rad: 0.1 * (f64::from(i) + 0.37 + 0.2 * f64::from(i % 3)),
+                spread_rad: 0.03,
+                value: 0.0,
+                samples: 5,
+            })
+            .collect();
+        let folded = Folded {
+            periods_n,
+            impact_phase_rad: Some(0.2),
+            channels: ROLES
+                .map(|role| FoldedChannel {
+                    role,
+                    noise: 1.0,
+                    points: points.clone(),
+                })
+                .to_vec(),
+        };
+        TrajectoryRecord {
+            observation: 0,
+            frequency_hz,
+            clearance_m: 0.4e-3,
+            drive_amplitude: 1.1,
+            phases: distinct_phases(&folded),
+            folded,
+            closing_speed_m_s: 1.0,
+            frequency_error: 1e-5,
+            phase_error_rad: 1e-3,
+            shared: Vec::new(),
+        }
+    }
+
+    fn values(record: &TrajectoryRecord, parameters: &Parameters) -> Vec<f64> {
+        RecordMotion::new(Rig::Double, record, parameters)
+            .expect("an orbit")
+            .values()
+    }
+
+    fn agree(exact: &[f64], above: &[f64], below: &[f64], width: f64) {
+        let size = crate::signal::robust::rms(exact);
+        assert!(size > 0.0);
+        for ((e, a), b) in exact.iter().zip(above).zip(below) {
+            let found = (a - b) / width;
+            assert!((e - found).abs() < 1e-6 * size, "{e} {found} of {size}");
+        }
+    }
+
+    #[test]
+    fn valid_slopes_of_a_record_are_those_of_finite_differences() {
+        let (p, step) = (parameters(), 1e-6);
+        for record in [record(1, 15.0), record(2, 31.0)] {
+            let motion = RecordMotion::new(Rig::Double, &record, &p).expect("an orbit");
+            let here = motion.values();
+            let mut coordinates = Coordinate::PHYSICAL.to_vec();
+            coordinates.extend([Coordinate::DriveAsymmetry, Coordinate::StiffnessAsymmetry]);
+            for coordinate in coordinates {
+                let at =
+                    |by: f64| values(&record, &p.with(coordinate, p.coordinate(coordinate) + by));
+                let exact = motion.slopes(&here, coordinate);
+                agree(&exact, &at(step), &at(-step), 2.0 * step);
+            }
+            let driven = |by: f64| {
+                let mut moved = record.clone();
+                moved.frequency_hz *= 1.0 + by;
+                values(&moved, &p)
+            };
+            let exact = motion.over_frequency(&here);
+            agree(&exact, &driven(step), &driven(-step), 2.0 * step);
+            // A drive that is ahead by a phase shows the points at phases that lie before theirs.
+            let turned = |by: f64| {
+                let mut moved = record.clone();
+                for point in moved.folded.channels.iter_mut().flat_map(|c| &mut c.points) {
+                    point.phase_rad -= by;
+                }
+                moved.phases = distinct_phases(&moved.folded);
+                values(&moved, &p)
+            };
+            let exact = motion.over_phase(&here);
+            agree(&exact, &turned(step), &turned(-step), 2.0 * step);
+        }
+    }
+}
