@@ -1,10 +1,13 @@
 //! `impactid study coverage`: what the intervals are worth, over many synthetic campaigns.
 
+use std::path::PathBuf;
+
 use clap::Args;
 
 use super::voice::{print, print_json};
 use super::{Exit, Failure, Progress, Voice};
 use crate::identify::coverage::Score;
+use crate::output::write_bytes;
 use crate::pipeline::coverage::{self, Tally};
 
 /// Arguments of `impactid study coverage`.
@@ -17,6 +20,9 @@ pub struct Coverage {
     /// Seed of everything random
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
+    /// Write every estimate of every campaign beside its truth into a CSV file
+    #[arg(long, value_name = "FILE")]
+    estimates: Option<PathBuf>,
     /// Print JSON instead of a table
     #[arg(long)]
     json: bool,
@@ -40,6 +46,9 @@ impl Coverage {
             bar.set(done, total);
         })?;
         drop(bar);
+        if let Some(path) = &self.estimates {
+            write_bytes(path, found.estimates.as_bytes())?;
+        }
         if self.json {
             print_json(&found)?;
         } else {

@@ -135,6 +135,35 @@ fn score(trials: &[Trial], method: &str, coordinate: Coordinate) -> Option<Score
     Some(score)
 }
 
+/// All estimates as CSV, a line each: campaign, method, parameter, truth, value, interval and bound
+/// (of R absolute, of the others relative); what is not known is left empty.
+pub fn table(trials: &[Trial]) -> String {
+    let mut text =
+        String::from("campaign,method,parameter,truth,value,interval_low,interval_high,bound\n");
+    let number = |v: Option<f64>| v.map(|v| format!("{v:.9e}")).unwrap_or_default();
+    for (campaign, trial) in trials.iter().enumerate() {
+        for (method, estimates) in &trial.estimates {
+            for coordinate in Coordinate::PHYSICAL {
+                let Some(estimate) = estimates.get(coordinate) else {
+                    continue;
+                };
+                let bound = trial.bounds.get(method).and_then(|b| b.error(coordinate));
+                let name = coordinate.name();
+                let known = [
+                    Some(true_value(&trial.truth, coordinate).0),
+                    estimate.value,
+                    estimate.interval95.map(|i| i[0]),
+                    estimate.interval95.map(|i| i[1]),
+                    bound,
+                ]
+                .map(number);
+                text += &format!("{campaign},{method},{name},{}\n", known.join(","));
+            }
+        }
+    }
+    text
+}
+
 /// True value of a parameter and the unit of its errors.
 fn true_value(truth: &Parameters, coordinate: Coordinate) -> (f64, f64) {
     let value = coordinate.physical(truth.coordinate(coordinate));

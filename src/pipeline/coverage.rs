@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::event::Rig;
 use crate::event::detect::DetectSettings;
 use crate::identify::bound::bounds;
-use crate::identify::coverage::{Score, Trial, scores};
+use crate::identify::coverage::{Score, Trial, scores, table};
 use crate::identify::methods::{Evidence, Nominal};
 use crate::identify::parameters::Parameters;
 use crate::identify::run::{Outcome, identify};
@@ -28,6 +28,9 @@ pub struct Coverage {
     pub campaigns: usize,
     /// Seed of everything random.
     pub seed: u64,
+    /// Every estimate of every campaign, as CSV.
+    #[serde(skip)]
+    pub estimates: String,
     /// Scores by method (`joint` among them) and parameter.
     pub methods: BTreeMap<String, BTreeMap<String, Score>>,
     /// Campaigns in which nothing touches: how often R was called not identifiable, as it must.
@@ -267,6 +270,7 @@ pub fn study(campaigns: usize, seed: u64, progress: Progress) -> Result<Coverage
         campaigns,
         seed,
         methods: scores(&trials),
+        estimates: table(&trials),
         nothing_touches,
         mistakes,
         false_alarms: Tally {
