@@ -169,14 +169,18 @@ pub fn fit_blocks(
     priors: Vec<Prior>,
     start: Parameters,
 ) -> Result<MethodFit, FitError> {
-    let prior_count = priors.len();
     let problem = Problem {
         blocks,
         priors,
         free,
     };
+    fit_problem(&problem, start)
+}
+
+/// Fit a problem and find the variance factor.
+fn fit_problem(problem: &Problem, start: Parameters) -> Result<MethodFit, FitError> {
     let fit = problem.fit(start)?;
-    let informed = problem.free.len().saturating_sub(prior_count);
+    let informed = problem.free.len().saturating_sub(problem.priors.len());
     let freedom = fit.residuals.saturating_sub(informed).max(1) as f64;
     let reduced = fit.cost / freedom;
     Ok(MethodFit {
@@ -311,17 +315,28 @@ pub fn trajectories(
     if blocks.trajectory.records.is_empty() {
         return None;
     }
+    Some(fit_problem(
+        &trajectories_problem(blocks, nominal, start),
+        start,
+    ))
+}
+
+/// The problem of the folded waveforms alone.
+pub fn trajectories_problem<'b>(
+    blocks: &'b Blocks,
+    nominal: &Nominal,
+    start: Parameters,
+) -> Problem<'b> {
     let mut free = Coordinate::PHYSICAL.to_vec();
     let mut priors = wide_priors(&start, &free);
     let (nuisances, more) = blocks.nuisances(nominal.gain_uncertainty);
     free.extend(nuisances);
     priors.extend(more);
-    Some(fit_blocks(
-        vec![(&blocks.trajectory, 1.0)],
-        free,
+    Problem {
+        blocks: vec![(&blocks.trajectory, 1.0)],
         priors,
-        start,
-    ))
+        free,
+    }
 }
 
 /// A method's result from its fit.

@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 
 use crate::identify::agreement::agreement;
 use crate::identify::interval::{self, Posterior};
-use crate::identify::methods::{self, Blocks, Evidence, IMPACT_BIAS, MethodFit};
+use crate::identify::joint::{self, METHODS, Weights};
+use crate::identify::methods::{self, Blocks, Evidence};
 use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::solver::{Block, Fit, FitError, Prior, Problem, mean_squares};
+use crate::identify::selection::{Attempt, Selection, succeeded};
+use crate::identify::solver::{Fit, Problem};
 use crate::identify::suspicion::{self, OddGap, Suspicion};
-use crate::identify::trajectory::TrajectoryRecord;
 use crate::identify::uncertainty::{self, Uncertainty};
 use crate::identify::verdict::{self, Findings};
-use crate::identify::weighing::Bulk;
-use crate::identify::{Agreement, Estimate, MethodResult, Verdict, contact_law, decay, estimate};
+use crate::identify::{Agreement, MethodResult, Verdict, decay, results};
 
 /// What an identification leads to; settings, versions and hashes are the caller's to add.
 #[derive(Debug, Clone)]
@@ -39,38 +39,29 @@ pub struct Outcome {
 
 /// Identify from observations and brackets.
 pub fn identify(evidence: &Evidence) -> Outcome {
-    let mut work = Work::new(evidence);
-    let resonance = work.resonance();
-    let start = work.start(resonance.as_ref());
-    let impacts = methods::impacts(&work.blocks, start);
-    let start = with_restitution(start, impacts.as_ref());
-    let first = [resonance.as_ref(), impacts.as_ref()];
-    let mut fits = work.fits(start, first);
+    let mut work = Work {
+        evidence,
+        selection: Selection::new(evidence),
+        posterior: None,
+    };
+    let resonance = work.selection.resonance();
+    let start = start(evidence, &resonance);
+    let impacts = methods::impacts(&work.selection.blocks, start);
+    let start = with_restitution(start, &impacts);
+    let mut fits = work.fits(start, resonance, impacts);
     let mut suspicions = Vec::new();
     while let Some(odd) = work.odd_gap(&fits, suspicions.len()) {
         suspicions.push(odd.suspicion());
-        if !work.leave_out_gap(odd.stated_m) {
+        if !work.selection.leave_out_gap(odd.stated_m) {
             break;
         }
-        fits = work.fits(start, first);
+        fits = work.fits(start, fits.resonance, fits.impacts);
     }
+    fits = work.without_pulling(fits);
     suspicions.extend(work.other_suspicions(&fits));
     let uncertainty = work.uncertainty(&fits);
-    let Fits {
-        trajectories,
-        boundaries,
-        joint,
-        ..
-    } = fits;
-    let mut found = BTreeMap::new();
-    work.store_resonance(&mut found, resonance.as_ref());
-    work.store_impacts(&mut found, impacts.as_ref());
-    work.store_trajectories(&mut found, trajectories.as_ref());
-    work.store_boundaries(&mut found, boundaries.as_ref());
-    if let Some(result) = decay::pooled(evidence.observations) {
-        found.insert("free_decay".into(), result);
-    }
-    let (joint_result, fit, factor) = work.joint_result(joint, &found);
+    let found = work.results(&fits);
+    let (joint_result, fit, factor) = results::joint(evidence, fits.joint, &found);
     let agreement = agreement(&found);
     let verdict = verdict::verdict(&Findings {
         joint: &joint_result,
@@ -85,14 +76,16 @@ pub fn identify(evidence: &Evidence) -> Outcome {
         agreement,
         fit,
         factor,
-        left_out: work.left_out,
+        left_out: work.selection.left_out,
         suspicions,
         uncertainty,
     }
 }
 
-/// The fits that rest on the records of single gaps, and all together.
+/// Every method's fit, and all together.
 struct Fits {
+    resonance: Attempt,
+    impacts: Attempt,
     trajectories: Attempt,
     boundaries: Attempt,
     joint: Attempt,
@@ -100,12 +93,6 @@ struct Fits {
     start: Parameters,
     weights: Weights,
 }
-
-/// Weights of resonance curve, trajectories, boundaries and impacts; `None` leaves one out.
-type Weights = [Option<f64>; 4];
-
-/// The blocks' names in the order of their weights.
-const METHODS: [&str; 4] = ["resonance", "trajectories", "boundaries", "impacts"];
 
 /// Gaps that may be found wrong before the campaign as a whole is at fault.
 const MOST_ODD_GAPS: usize = 2;
@@ -115,27 +102,11 @@ const MOST_ODD_GAPS: usize = 2;
 const POOR_FIT: f64 = 1.5;
 const POOR_ALLOWANCE: f64 = 3e-4;
 
-/// Weight of the impacts among the other methods: what the extrapolation of speeds leaves open is
-/// common to all impacts, so that all together tell no more than that.
-fn impact_weight(found: &MethodFit) -> f64 {
-    let error = found.fit.error(Coordinate::Restitution).unwrap_or(0.0);
-    let square = error * error * found.factor;
-    square / (square + IMPACT_BIAS * IMPACT_BIAS) / found.factor
-}
+/// Rounds of leaving out records that pull the fit.
+const MOST_PULLING: usize = 8;
 
-/// Rounds of leaving outlying records out and fitting again.
-const ROUNDS: usize = 2;
-
-type Attempt = Option<Result<MethodFit, FitError>>;
-
-fn succeeded(attempt: Option<&Result<MethodFit, FitError>>) -> Option<&MethodFit> {
-    attempt.and_then(|a| a.as_ref().ok())
-}
-
-fn with_restitution(
-    start: Parameters,
-    impacts: Option<&Result<MethodFit, FitError>>,
-) -> Parameters {
+/// R as the impacts tell it.
+fn with_restitution(start: Parameters, impacts: &Attempt) -> Parameters {
     match succeeded(impacts) {
         Some(found) => Parameters {
             restitution: found.fit.parameters.restitution.clamp(0.0, 1.0),
@@ -145,57 +116,64 @@ fn with_restitution(
     }
 }
 
-fn best_start(start: Parameters, trajectories: Option<&Result<MethodFit, FitError>>) -> Parameters {
-    succeeded(trajectories).map_or(start, |found| found.fit.parameters)
+/// Starting values: the resonance curve's, else the stated ones, else guesses of scale.
+fn start(evidence: &Evidence, resonance: &Attempt) -> Parameters {
+    if let Some(found) = succeeded(resonance) {
+        return found.fit.parameters;
+    }
+    let nominal = &evidence.nominal;
+    let frequencies: Vec<f64> = evidence
+        .observations
+        .iter()
+        .filter_map(|o| o.frequency_hz())
+        .collect();
+    let clearances: Vec<f64> = evidence
+        .observations
+        .iter()
+        .filter_map(|o| o.setting.clearance_m)
+        .collect();
+    let median = |v: &[f64], default: f64| crate::signal::robust::median(v).unwrap_or(default);
+    Parameters::symmetric(
+        nominal.restitution.unwrap_or(0.8),
+        nominal
+            .natural_frequency_hz
+            .unwrap_or_else(|| median(&frequencies, 10.0) / 1.2),
+        nominal.damping_ratio.unwrap_or(0.05),
+        nominal
+            .static_deflection_m
+            .unwrap_or_else(|| median(&clearances, 1e-3).abs() / 2.0),
+    )
 }
 
 struct Work<'a> {
     evidence: &'a Evidence<'a>,
-    blocks: Blocks,
-    left_out: Vec<(String, String)>,
-    /// Periodic records that the trajectories' fit lost, and the typical mean square of the others.
-    lost: Vec<TrajectoryRecord>,
-    typical: f64,
+    selection: Selection<'a>,
     /// What the brackets say of R where the resonance curve tells the rest.
     posterior: Option<Posterior>,
 }
 
-impl<'a> Work<'a> {
-    fn new(evidence: &'a Evidence<'a>) -> Self {
-        Self {
-            evidence,
-            blocks: Blocks::new(evidence),
-            left_out: Vec::new(),
-            lost: Vec::new(),
-            typical: 1.0,
-            posterior: None,
-        }
-    }
-
+impl Work<'_> {
     /// Trajectories, boundaries and all together, beside the resonance curve and the impacts.
-    fn fits(
-        &mut self,
-        start: Parameters,
-        [resonance, impacts]: [Option<&Result<MethodFit, FitError>>; 2],
-    ) -> Fits {
-        let trajectories = self.trajectories(start);
-        let start = best_start(start, trajectories.as_ref());
-        let boundaries = self.boundaries(start);
-        self.posterior = succeeded(resonance).and_then(|found| {
+    fn fits(&mut self, start: Parameters, resonance: Attempt, impacts: Attempt) -> Fits {
+        let trajectories = self.selection.trajectories(start);
+        let start = succeeded(&trajectories).map_or(start, |f| f.fit.parameters);
+        let boundaries = self.selection.boundaries(start);
+        self.posterior = succeeded(&resonance).and_then(|found| {
             let error = found.fit.error(Coordinate::Deflection)? * found.factor.sqrt();
             let about = found.fit.parameters;
-            interval::posterior(&self.blocks.boundary, &about, error.min(0.3))
+            interval::posterior(&self.selection.blocks.boundary, &about, error.min(0.3))
         });
-        let mut weights = [
-            resonance,
-            trajectories.as_ref(),
-            boundaries.as_ref().filter(|_| self.posterior.is_none()),
-            impacts,
-        ]
-        .map(|attempt| succeeded(attempt).map(|f| 1.0 / f.factor));
-        weights[3] = succeeded(impacts).map(impact_weight);
-        let joint = self.joint(&self.blocks, start, weights);
+        let weight = |attempt: &Attempt| succeeded(attempt).map(|f| 1.0 / f.factor);
+        let weights = [
+            weight(&resonance),
+            weight(&trajectories),
+            weight(&boundaries).filter(|_| self.posterior.is_none()),
+            succeeded(&impacts).map(joint::impact_weight),
+        ];
+        let joint = self.joint(&self.selection.blocks, start, &weights);
         Fits {
+            resonance,
+            impacts,
             trajectories,
             boundaries,
             joint,
@@ -204,23 +182,55 @@ impl<'a> Work<'a> {
         }
     }
 
+    /// The fits without the records that pull them away from what all others say.
+    fn without_pulling(&mut self, mut fits: Fits) -> Fits {
+        for _ in 0..MOST_PULLING {
+            let Some(joint) = succeeded(&fits.joint) else {
+                break;
+            };
+            let start = joint.fit.parameters;
+            let blocks = &self.selection.blocks;
+            let present = joint::present(blocks, &fits.weights);
+            let pulling = self
+                .problem(blocks, fits.start, &fits.weights)
+                .map(|problem| self.selection.pulling(&problem, &present, &start));
+            match pulling {
+                Some(pulling) if !pulling.is_empty() => self.selection.leave_out(&pulling),
+                _ => break,
+            }
+            let resonance = methods::resonance(&self.selection.blocks, &self.evidence.nominal);
+            fits = self.fits(start, resonance, fits.impacts);
+        }
+        fits
+    }
+
+    /// All blocks in one fit, each with its weight; those without one stay out.
+    fn joint(&self, blocks: &Blocks, start: Parameters, weights: &Weights) -> Attempt {
+        let problem = self.problem(blocks, start, weights)?;
+        Some(joint::fit(&problem, start))
+    }
+
+    fn problem<'b>(
+        &self,
+        blocks: &'b Blocks,
+        start: Parameters,
+        weights: &Weights,
+    ) -> Option<Problem<'b>> {
+        let gain_uncertainty = self.evidence.nominal.gain_uncertainty;
+        let posterior = self.posterior.as_ref();
+        joint::problem(blocks, start, weights, gain_uncertainty, posterior)
+    }
+
     /// What is asked for of the joint fit's uncertainty.
     fn uncertainty(&self, fits: &Fits) -> Uncertainty {
-        let problem = self.joint_problem(&self.blocks, fits.start, fits.weights);
-        let Some((problem, joint)) = problem.zip(succeeded(fits.joint.as_ref())) else {
+        let blocks = &self.selection.blocks;
+        let problem = self.problem(blocks, fits.start, &fits.weights);
+        let Some((problem, joint)) = problem.zip(succeeded(&fits.joint)) else {
             return Uncertainty::default();
         };
-        let counts = [
-            self.blocks.resonance.items(),
-            self.blocks.trajectory.items(),
-            self.blocks.boundary.items(),
-            self.blocks.impact.items(),
-        ];
-        let names: Vec<&str> = METHODS
+        let names: Vec<&str> = joint::present(blocks, &fits.weights)
             .into_iter()
-            .zip(fits.weights.iter().zip(counts))
-            .filter(|(_, (weight, count))| weight.is_some() && *count > 0)
-            .map(|(name, _)| name)
+            .map(|i| METHODS[i])
             .collect();
         let asked = &self.evidence.uncertainty;
         uncertainty::uncertainty(&problem, &names, &joint.fit, joint.factor, asked)
@@ -231,411 +241,69 @@ impl<'a> Work<'a> {
         if found >= MOST_ODD_GAPS {
             return None;
         }
-        let joint = succeeded(fits.joint.as_ref())?;
-        let block = &self.blocks.trajectory;
-        let weight = 1.0 / succeeded(fits.trajectories.as_ref())?.factor;
-        suspicion::lost_gap(block, &self.lost, &joint.fit.parameters, self.typical)
-            .or_else(|| suspicion::odd_gap(block, weight, &joint.fit, joint.factor))
-    }
-
-    /// Leave the records and brackets of one gap out; false where nothing would remain.
-    fn leave_out_gap(&mut self, clearance_m: f64) -> bool {
-        let records = &mut self.blocks.trajectory.records;
-        if records.iter().all(|r| r.clearance_m == clearance_m) {
-            return false;
-        }
-        let reason = "its gap is not as stated: left out of trajectories and boundaries";
-        let observations = self.evidence.observations;
-        self.left_out.extend(
-            records
-                .iter()
-                .filter(|r| r.clearance_m == clearance_m)
-                .map(|r| {
-                    (
-                        observations[r.observation].record.clone(),
-                        reason.to_owned(),
-                    )
-                }),
-        );
-        records.retain(|r| r.clearance_m != clearance_m);
-        self.lost.retain(|r| r.clearance_m != clearance_m);
-        let brackets = &mut self.blocks.boundary.brackets;
-        brackets.retain(|b| b.clearance_m != clearance_m);
-        true
+        let joint = succeeded(&fits.joint)?;
+        let Selection {
+            blocks,
+            lost,
+            typical,
+            ..
+        } = &self.selection;
+        let weight = 1.0 / succeeded(&fits.trajectories)?.factor;
+        suspicion::lost_gap(&blocks.trajectory, lost, &joint.fit.parameters, *typical)
+            .or_else(|| suspicion::odd_gap(&blocks.trajectory, weight, &joint.fit, joint.factor))
     }
 
     /// Gains far off and interchanged channels.
     fn other_suspicions(&self, fits: &Fits) -> Vec<Suspicion> {
-        let Some(joint) = succeeded(fits.joint.as_ref()) else {
+        let Some(joint) = succeeded(&fits.joint) else {
             return Vec::new();
         };
+        let blocks = &self.selection.blocks;
         let nominal = &self.evidence.nominal;
-        let allowance = self.blocks.resonance.relative_error;
-        let allowance = allowance.max(self.blocks.trajectory.relative_error);
-        let lost = self.lost.len() > self.blocks.trajectory.records.len();
+        let allowance = blocks.resonance.relative_error;
+        let allowance = allowance.max(blocks.trajectory.relative_error);
+        let lost = self.selection.lost.len() > blocks.trajectory.records.len();
         if joint.reduced > POOR_FIT || allowance > POOR_ALLOWANCE || lost {
             let start = joint.fit.parameters;
             let unit = [Some(1.0), Some(1.0), None, None];
             let cost = |blocks: &Blocks| {
-                let attempt = self.joint(blocks, start, unit);
-                let found = succeeded(attempt.as_ref())?;
+                let attempt = self.joint(blocks, start, &unit);
+                let found = succeeded(&attempt)?;
                 Some((found.fit.cost, found.fit.residuals))
             };
-            if let Some(found) = suspicion::swapped(&self.blocks, &cost) {
+            if let Some(found) = suspicion::swapped(blocks, &cost) {
                 return vec![found];
             }
         }
         suspicion::gains(&joint.fit, joint.factor, nominal)
     }
 
-    /// Starting values: the resonance curve's, else the stated ones, else guesses of scale.
-    fn start(&self, resonance: Option<&Result<MethodFit, FitError>>) -> Parameters {
-        if let Some(found) = succeeded(resonance) {
-            return found.fit.parameters;
-        }
-        let nominal = &self.evidence.nominal;
-        let frequencies: Vec<f64> = self
-            .evidence
-            .observations
-            .iter()
-            .filter_map(|o| o.frequency_hz())
-            .collect();
-        let clearances: Vec<f64> = self
-            .evidence
-            .observations
-            .iter()
-            .filter_map(|o| o.setting.clearance_m)
-            .collect();
-        let median = |v: &[f64], default: f64| crate::signal::robust::median(v).unwrap_or(default);
-        Parameters::symmetric(
-            nominal.restitution.unwrap_or(0.8),
-            nominal
-                .natural_frequency_hz
-                .unwrap_or_else(|| median(&frequencies, 10.0) / 1.2),
-            nominal.damping_ratio.unwrap_or(0.05),
-            nominal
-                .static_deflection_m
-                .unwrap_or_else(|| median(&clearances, 1e-3).abs() / 2.0),
-        )
-    }
-
-    fn name(&self, observation: usize) -> String {
-        self.evidence.observations[observation].record.clone()
-    }
-
-    /// Fit the impactless records; those that fit far worse than the bulk are named and left out.
-    fn resonance(&mut self) -> Attempt {
-        let first = match methods::resonance(&self.blocks, &self.evidence.nominal)? {
-            Ok(first) => first,
-            failed => return Some(failed),
-        };
-        let parameters = first.fit.parameters;
-        self.blocks.weigh_resonance(&parameters);
-        let scores: Vec<f64> = mean_squares(&self.blocks.resonance, &parameters)
-            .into_iter()
-            .map(|s| s.unwrap_or(0.0))
-            .collect();
-        let bulk = Bulk::of(&scores);
-        let points = std::mem::take(&mut self.blocks.resonance.points);
-        for (point, score) in points.into_iter().zip(scores) {
-            if score <= bulk.limit {
-                self.blocks.resonance.points.push(point);
-            } else {
-                let reason = format!(
-                    "its response fits {:.0} times worse than the others (still settling?): left \
-                     out of the resonance curve",
-                    bulk.times_worse(score)
-                );
-                self.left_out.push((self.name(point.observation), reason));
-            }
-        }
-        methods::resonance(&self.blocks, &self.evidence.nominal)
-    }
-
-    /// Fit the folded records; those without an orbit at the start are tried again at the end,
-    /// and those that fit far worse than the bulk are left out and named.
-    fn trajectories(&mut self, start: Parameters) -> Attempt {
-        let all = self.blocks.trajectory.records.clone();
-        let at_start = mean_squares(&self.blocks.trajectory, &start);
-        let mut has_orbit = at_start.iter().map(Option::is_some);
-        let records = &mut self.blocks.trajectory.records;
-        records.retain(|_| has_orbit.next().unwrap_or(false));
-        let mut found = match methods::trajectories(&self.blocks, &self.evidence.nominal, start)? {
-            Ok(first) => first,
-            failed => return Some(failed),
-        };
-        self.blocks.trajectory.records = all;
-        for _ in 0..ROUNDS {
-            let parameters = found.fit.parameters;
-            self.keep_fitting(&parameters);
-            found = match methods::trajectories(&self.blocks, &self.evidence.nominal, parameters)? {
-                Ok(found) => found,
-                failed => return Some(failed),
-            };
-        }
-        Some(Ok(found))
-    }
-
-    /// Keep the records that fit like the bulk, name the others, and find again what is allowed
-    /// beside the noise.
-    fn keep_fitting(&mut self, parameters: &Parameters) {
-        let scores = mean_squares(&self.blocks.trajectory, parameters);
-        let known: Vec<f64> = scores.iter().flatten().copied().collect();
-        let bulk = Bulk::of(&known);
-        self.typical = bulk.typical;
-        let records = std::mem::take(&mut self.blocks.trajectory.records);
-        for (record, score) in records.into_iter().zip(scores) {
-            let reason = match score {
-                Some(s) if s <= bulk.limit => {
-                    self.blocks.trajectory.records.push(record);
-                    continue;
-                }
-                Some(s) => format!(
-                    "its waveform fits {:.1} times worse than the others: left out of the \
-                     trajectories",
-                    bulk.times_worse(s)
-                ),
-                None => "the model has no such periodic motion at the fitted parameters: left \
-                         out of the trajectories"
-                    .to_owned(),
-            };
-            self.left_out.push((self.name(record.observation), reason));
-            self.lost.push(record);
-        }
-        self.blocks.weigh_trajectories(parameters);
-    }
-
-    /// Fit the brackets; those that no boundary reaches, or that lie far from it, are named.
-    fn boundaries(&mut self, start: Parameters) -> Attempt {
-        let rig = self.evidence.rig;
-        let mut kept = Vec::new();
-        for bracket in std::mem::take(&mut self.blocks.boundary.brackets) {
-            let predicted = crate::identify::boundary::predicted_hz(&bracket, &start, rig);
-            let near = predicted.is_some_and(|f| {
-                (f - bracket.middle_hz()).abs() <= 3.0 * bracket.width_hz() + 0.02 * f
-            });
-            if near {
-                kept.push(bracket);
-            } else {
-                let place = format!(
-                    "bracket {} {:.2}–{:.2} Hz at {:.3} mm",
-                    bracket.kind.name(),
-                    bracket.frequency_low_hz,
-                    bracket.frequency_high_hz,
-                    bracket.clearance_m * 1e3
-                );
-                let reason = "the motion changed far from the simulated boundary: a disturbance, \
-                              or another boundary";
-                self.left_out.push((place, reason.into()));
-            }
-        }
-        self.blocks.boundary.brackets = kept;
-        self.blocks.boundary.fit_early_scale(&start);
-        methods::boundaries(&self.blocks, &self.evidence.nominal, start)
-    }
-
-    /// All blocks in one fit, each with its weight; those without one stay out.
-    fn joint(&self, blocks: &Blocks, start: Parameters, weights: Weights) -> Attempt {
-        let problem = self.joint_problem(blocks, start, weights)?;
-        Some(fit_joint(&problem, start))
-    }
-
-    /// The problem of all blocks, each with its weight.
-    fn joint_problem<'b>(
-        &self,
-        blocks: &'b Blocks,
-        start: Parameters,
-        [resonance, trajectories, boundaries, impacts]: Weights,
-    ) -> Option<Problem<'b>> {
-        let mut list: Vec<(&'b dyn Block, f64)> = Vec::new();
-        let candidates: [(&'b dyn Block, Option<f64>); 4] = [
-            (&blocks.resonance, resonance),
-            (&blocks.trajectory, trajectories),
-            (&blocks.boundary, boundaries),
-            (&blocks.impact, impacts),
+    /// What each method found.
+    fn results(&self, fits: &Fits) -> BTreeMap<String, MethodResult> {
+        let blocks = &self.selection.blocks;
+        let posterior = self.posterior.as_ref();
+        let found = [
+            fits.resonance
+                .as_ref()
+                .map(|a| results::resonance(blocks, a)),
+            fits.trajectories
+                .as_ref()
+                .map(|a| results::trajectories(blocks, a)),
+            fits.boundaries
+                .as_ref()
+                .map(|a| results::boundaries(blocks, a, posterior)),
+            fits.impacts
+                .as_ref()
+                .map(|a| results::impacts(blocks, a, self.evidence)),
         ];
-        for (block, weight) in candidates {
-            if let (Some(weight), true) = (weight, block.items() > 0) {
-                list.push((block, weight));
-            }
-        }
-        if list.is_empty() {
-            return None;
-        }
-        let mut free: Vec<Coordinate> = Coordinate::PHYSICAL
+        let mut named: BTreeMap<String, MethodResult> = METHODS
             .into_iter()
-            .filter(|c| list.iter().any(|(block, _)| block.touches(*c)))
+            .zip(found)
+            .filter_map(|(name, result)| Some((name.to_owned(), result?)))
             .collect();
-        let mut priors = methods::wide_priors(&start, &free);
-        if let Some(found) = &self.posterior {
-            let (centre, deviation) = found.restitution;
-            let coordinate = Coordinate::Restitution;
-            if !free.contains(&coordinate) {
-                free.insert(0, coordinate);
-            }
-            priors.push(Prior {
-                coordinate,
-                centre,
-                deviation,
-            });
+        if let Some(result) = decay::pooled(self.evidence.observations) {
+            named.insert("free_decay".into(), result);
         }
-        let waveforms = resonance.is_some() || trajectories.is_some();
-        if waveforms {
-            let (nuisances, more) = blocks.nuisances(self.evidence.nominal.gain_uncertainty);
-            free.extend(nuisances);
-            priors.extend(more);
-        }
-        Some(Problem {
-            blocks: list,
-            priors,
-            free,
-        })
+        named
     }
-
-    fn joint_result(
-        &self,
-        attempt: Attempt,
-        methods: &BTreeMap<String, MethodResult>,
-    ) -> (MethodResult, Option<Fit>, f64) {
-        let Some(attempt) = attempt else {
-            // Only decays, or nothing: the joint answer is the decays' own.
-            let only = methods.get("free_decay").cloned().unwrap_or_default();
-            return (only, None, 1.0);
-        };
-        let tells: Vec<Coordinate> = match &attempt {
-            Ok(found) => found.fit.free.clone(),
-            Err(_) => Coordinate::PHYSICAL.to_vec(),
-        };
-        let records = self
-            .evidence
-            .observations
-            .iter()
-            .filter(|o| !o.excluded())
-            .count();
-        let observations = attempt.as_ref().map_or(0, |f| f.fit.residuals);
-        let result = methods::result(&attempt, &tells, observations, records);
-        match attempt {
-            Ok(found) => (result, Some(found.fit), found.factor),
-            Err(_) => (result, None, 1.0),
-        }
-    }
-
-    fn store_resonance(
-        &self,
-        found: &mut BTreeMap<String, MethodResult>,
-        attempt: Option<&Result<MethodFit, FitError>>,
-    ) {
-        let Some(attempt) = attempt else { return };
-        let tells = [
-            Coordinate::Frequency,
-            Coordinate::Damping,
-            Coordinate::Deflection,
-        ];
-        let block = &self.blocks.resonance;
-        let observations = block.points.iter().map(|p| 2 * p.responses.len()).sum();
-        let mut result = methods::result(attempt, &tells, observations, block.points.len());
-        if let Ok(fit) = attempt {
-            verdict::judge_resonance(&mut result, block, &fit.fit.parameters);
-        }
-        found.insert("resonance".into(), result);
-    }
-
-    fn store_impacts(
-        &self,
-        found: &mut BTreeMap<String, MethodResult>,
-        attempt: Option<&Result<MethodFit, FitError>>,
-    ) {
-        let Some(attempt) = attempt else { return };
-        let block = &self.blocks.impact;
-        let mut records: Vec<usize> = block.pairs.iter().map(|p| p.observation).collect();
-        records.dedup();
-        let mut result = methods::result(
-            attempt,
-            &[Coordinate::Restitution],
-            block.pairs.len(),
-            records.len(),
-        );
-        if let Some(estimate) = &mut result.parameters.restitution {
-            widen(estimate, IMPACT_BIAS);
-        }
-        if self.blocks.impact_outliers > 0 {
-            result.remarks.push(format!(
-                "{} impacts lie far from the bulk and were left out",
-                self.blocks.impact_outliers
-            ));
-        }
-        result.contact_law = contact_law::contact_law(block);
-        verdict::judge_impacts(&mut result, block, self.evidence);
-        found.insert("impacts".into(), result);
-    }
-
-    fn store_trajectories(
-        &self,
-        found: &mut BTreeMap<String, MethodResult>,
-        attempt: Option<&Result<MethodFit, FitError>>,
-    ) {
-        let Some(attempt) = attempt else { return };
-        let block = &self.blocks.trajectory;
-        let observations = attempt.as_ref().map_or(0, |f| f.fit.residuals);
-        let mut result = methods::result(
-            attempt,
-            &Coordinate::PHYSICAL,
-            observations,
-            block.records.len(),
-        );
-        if let Ok(fit) = attempt {
-            verdict::judge_trajectories(&mut result, block, &fit.fit.parameters);
-        }
-        found.insert("trajectories".into(), result);
-    }
-
-    fn store_boundaries(
-        &self,
-        found: &mut BTreeMap<String, MethodResult>,
-        attempt: Option<&Result<MethodFit, FitError>>,
-    ) {
-        let Some(attempt) = attempt else { return };
-        let brackets = self.blocks.boundary.brackets.len();
-        let tells = match attempt {
-            Ok(found) => found.fit.free.clone(),
-            Err(_) => Coordinate::PHYSICAL.to_vec(),
-        };
-        let mut result = methods::result(attempt, &tells, brackets, 2 * brackets);
-        if let Some(posterior) = &self.posterior {
-            let (value, error) = posterior.restitution;
-            let mut estimate = estimate::estimate(Coordinate::Restitution, value, error, None);
-            estimate.interval95 = estimate.interval95.map(|_| posterior.interval95);
-            result.parameters.restitution = Some(estimate);
-            let (value, error) = posterior.ln_deflection;
-            result.parameters.static_deflection_m = Some(estimate::estimate(
-                Coordinate::Deflection,
-                value,
-                error,
-                None,
-            ));
-        }
-        found.insert("boundaries".into(), result);
-    }
-}
-
-/// Add a systematic part to an estimate's standard error.
-fn widen(estimate: &mut Estimate, systematic: f64) {
-    if let (Some(value), Some(error)) = (estimate.value, estimate.standard_error) {
-        let error = error.hypot(systematic);
-        let half = crate::identify::estimate::NORMAL_975 * error;
-        estimate.standard_error = Some(error);
-        estimate.interval95 = Some([(value - half).max(0.0), (value + half).min(1.0)]);
-    }
-}
-
-/// Fit all blocks together from a start that each of them accepts.
-fn fit_joint(problem: &Problem<'_>, start: Parameters) -> Result<MethodFit, FitError> {
-    let fit = problem.fit(start)?;
-    let freedom = fit.residuals.saturating_sub(4).max(1) as f64;
-    let reduced = fit.cost / freedom;
-    Ok(MethodFit {
-        factor: reduced.max(1.0),
-        reduced,
-        fit,
-    })
 }

@@ -4,11 +4,12 @@ use rayon::prelude::*;
 
 use crate::event::Rig;
 use crate::identify::parameters::{Coordinate, Parameters, gain_index};
-use crate::identify::record_motion::RecordMotion;
+use crate::identify::record_motion::{NearestOrbit, RecordMotion};
 use crate::identify::shared_error::Whitening;
 use crate::identify::solver::Block;
 use crate::identify::waveform::Phases;
 use crate::model::flight::State;
+use crate::model::orbit::orbit_with_speed;
 use crate::motion::Observation;
 use crate::motion::fold::{Folded, FoldedChannel};
 use crate::record::Role;
@@ -74,6 +75,15 @@ impl TrajectoryBlock {
             .flat_map(|r| &r.folded.channels)
             .map(|c| c.role);
         roles.any(|r| gain_index(r) == Some(index))
+    }
+
+    /// Greatest modulus of the multipliers of a record's orbit; `None` where there is none.
+    pub fn slowest_multiplier(&self, item: usize, parameters: &Parameters) -> Option<f64> {
+        let record = &self.records[item];
+        let found = NearestOrbit::of(self.rig, record, parameters)?;
+        let n = record.folded.periods_n;
+        let orbit = orbit_with_speed(&found.machine, found.setting, n, found.closing_speed);
+        orbit.multipliers.first().map(|m| m.norm())
     }
 
     /// Find at good parameters what phase and frequency of the drive change in every record.

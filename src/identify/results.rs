@@ -1,0 +1,134 @@
+//! What each method found, as plain results.
+
+use std::collections::BTreeMap;
+
+use crate::identify::interval::Posterior;
+use crate::identify::methods::{self, Blocks, Evidence, IMPACT_BIAS, MethodFit};
+use crate::identify::parameters::Coordinate;
+use crate::identify::selection::Attempt;
+use crate::identify::solver::{Fit, FitError};
+use crate::identify::{Estimate, MethodResult, contact_law, estimate, verdict};
+
+/// f0, β and x_st from the impactless records.
+pub fn resonance(blocks: &Blocks, attempt: &Result<MethodFit, FitError>) -> MethodResult {
+    let tells = [
+        Coordinate::Frequency,
+        Coordinate::Damping,
+        Coordinate::Deflection,
+    ];
+    let block = &blocks.resonance;
+    let observations = block.points.iter().map(|p| 2 * p.responses.len()).sum();
+    let mut result = methods::result(attempt, &tells, observations, block.points.len());
+    if let Ok(fit) = attempt {
+        verdict::judge_resonance(&mut result, block, &fit.fit.parameters);
+    }
+    result
+}
+
+/// R from the speeds at impacts; what their extrapolation leaves open widens it.
+pub fn impacts(
+    blocks: &Blocks,
+    attempt: &Result<MethodFit, FitError>,
+    evidence: &Evidence,
+) -> MethodResult {
+    let block = &blocks.impact;
+    let mut records: Vec<usize> = block.pairs.iter().map(|p| p.observation).collect();
+    records.dedup();
+    let mut result = methods::result(
+        attempt,
+        &[Coordinate::Restitution],
+        block.pairs.len(),
+        records.len(),
+    );
+    if let Some(estimate) = &mut result.parameters.restitution {
+        widen(estimate, IMPACT_BIAS);
+    }
+    if blocks.impact_outliers > 0 {
+        result.remarks.push(format!(
+            "{} impacts lie far from the bulk and were left out",
+            blocks.impact_outliers
+        ));
+    }
+    result.contact_law = contact_law::contact_law(block);
+    verdict::judge_impacts(&mut result, block, evidence);
+    result
+}
+
+/// All four parameters from the waveforms.
+pub fn trajectories(blocks: &Blocks, attempt: &Result<MethodFit, FitError>) -> MethodResult {
+    let block = &blocks.trajectory;
+    let observations = attempt.as_ref().map_or(0, |f| f.fit.residuals);
+    let mut result = methods::result(
+        attempt,
+        &Coordinate::PHYSICAL,
+        observations,
+        block.records.len(),
+    );
+    if let Ok(fit) = attempt {
+        verdict::judge_trajectories(&mut result, block, &fit.fit.parameters);
+    }
+    result
+}
+
+/// R from the brackets, by its posterior where the resonance curve tells the rest.
+pub fn boundaries(
+    blocks: &Blocks,
+    attempt: &Result<MethodFit, FitError>,
+    posterior: Option<&Posterior>,
+) -> MethodResult {
+    let brackets = blocks.boundary.brackets.len();
+    let tells = match attempt {
+        Ok(found) => found.fit.free.clone(),
+        Err(_) => Coordinate::PHYSICAL.to_vec(),
+    };
+    let mut result = methods::result(attempt, &tells, brackets, 2 * brackets);
+    if let Some(posterior) = posterior {
+        let (value, error) = posterior.restitution;
+        let mut estimate = estimate::estimate(Coordinate::Restitution, value, error, None);
+        estimate.interval95 = estimate.interval95.map(|_| posterior.interval95);
+        result.parameters.restitution = Some(estimate);
+        let (value, error) = posterior.ln_deflection;
+        result.parameters.static_deflection_m = Some(estimate::estimate(
+            Coordinate::Deflection,
+            value,
+            error,
+            None,
+        ));
+    }
+    result
+}
+
+/// The joint result with its fit and the factor on its covariance; without one, what the free
+/// decays tell.
+pub fn joint(
+    evidence: &Evidence,
+    attempt: Attempt,
+    methods: &BTreeMap<String, MethodResult>,
+) -> (MethodResult, Option<Fit>, f64) {
+    let Some(attempt) = attempt else {
+        let only = methods.get("free_decay").cloned().unwrap_or_default();
+        return (only, None, 1.0);
+    };
+    let tells: Vec<Coordinate> = match &attempt {
+        Ok(found) => found.fit.free.clone(),
+        Err(_) => Coordinate::PHYSICAL.to_vec(),
+    };
+    let observations = evidence.observations.iter();
+    let records = observations.filter(|o| !o.excluded()).count();
+    let observations = attempt.as_ref().map_or(0, |f| f.fit.residuals);
+    let result = methods::result(&attempt, &tells, observations, records);
+    match attempt {
+        Ok(found) => (result, Some(found.fit), found.factor),
+        Err(_) => (result, None, 1.0),
+    }
+}
+
+/// Add a systematic part to an estimate's standard error.
+fn widen(estimate: &mut Estimate, systematic: f64) {
+    if let (Some(value), Some(error)) = (estimate.value, estimate.standard_error) {
+        let error = error.hypot(systematic);
+        let half = crate::identify::estimate::NORMAL_975 * error;
+        estimate.standard_error = Some(error);
+        estimate.interval95 = Some([(value - half).max(0.0), (value + half).min(1.0)]);
+    }
+}

@@ -1,0 +1,260 @@
+//! Which records and brackets the fits rest on; the others are named with the reason.
+
+use crate::identify::joint::METHODS;
+use crate::identify::methods::{self, Blocks, Evidence, MethodFit};
+use crate::identify::parameters::Parameters;
+use crate::identify::pull;
+use crate::identify::solver::{FitError, Normal, Problem, mean_squares};
+use crate::identify::trajectory::TrajectoryRecord;
+use crate::identify::weighing::Bulk;
+
+/// A fit that was tried; `None` where there was nothing to fit.
+pub type Attempt = Option<Result<MethodFit, FitError>>;
+
+/// The fit, where it was tried and succeeded.
+pub fn succeeded(attempt: &Attempt) -> Option<&MethodFit> {
+    attempt.as_ref().and_then(|a| a.as_ref().ok())
+}
+
+/// Rounds of leaving outlying records out and fitting again.
+const ROUNDS: usize = 2;
+
+/// Records that pull a fit, by their place in the blocks, rising.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Pulling {
+    /// Impactless records.
+    pub resonance: Vec<usize>,
+    /// Periodic records.
+    pub trajectory: Vec<usize>,
+}
+
+impl Pulling {
+    /// Whether none does.
+    pub fn is_empty(&self) -> bool {
+        self.resonance.is_empty() && self.trajectory.is_empty()
+    }
+}
+
+/// What is fitted, and what was left out of it.
+pub struct Selection<'a> {
+    evidence: &'a Evidence<'a>,
+    /// The observations that the fits rest on.
+    pub blocks: Blocks,
+    /// Records or brackets left out, each with the reason.
+    pub left_out: Vec<(String, String)>,
+    /// Periodic records that the trajectories' fit lost.
+    pub lost: Vec<TrajectoryRecord>,
+    /// The typical mean square of the records that it kept.
+    pub typical: f64,
+}
+
+impl<'a> Selection<'a> {
+    /// Everything that may be used.
+    pub fn new(evidence: &'a Evidence<'a>) -> Self {
+        Self {
+            evidence,
+            blocks: Blocks::new(evidence),
+            left_out: Vec::new(),
+            lost: Vec::new(),
+            typical: 1.0,
+        }
+    }
+
+    fn name(&self, observation: usize) -> String {
+        self.evidence.observations[observation].record.clone()
+    }
+
+    /// Fit the impactless records; those that fit far worse than the bulk are named and left out.
+    pub fn resonance(&mut self) -> Attempt {
+        let first = match methods::resonance(&self.blocks, &self.evidence.nominal)? {
+            Ok(first) => first,
+            failed => return Some(failed),
+        };
+        let parameters = first.fit.parameters;
+        self.blocks.weigh_resonance(&parameters);
+        let scores: Vec<f64> = mean_squares(&self.blocks.resonance, &parameters)
+            .into_iter()
+            .map(|s| s.unwrap_or(0.0))
+            .collect();
+        let bulk = Bulk::of(&scores);
+        let points = std::mem::take(&mut self.blocks.resonance.points);
+        for (point, score) in points.into_iter().zip(scores) {
+            if score <= bulk.limit {
+                self.blocks.resonance.points.push(point);
+            } else {
+                let reason = format!(
+                    "its response fits {:.0} times worse than the others (still settling?): left \
+                     out of the resonance curve",
+                    bulk.times_worse(score)
+                );
+                self.left_out.push((self.name(point.observation), reason));
+            }
+        }
+        methods::resonance(&self.blocks, &self.evidence.nominal)
+    }
+
+    /// Fit the folded records; those without an orbit at the start are tried again at the end,
+    /// and those that fit far worse than the bulk are left out and named.
+    pub fn trajectories(&mut self, start: Parameters) -> Attempt {
+        let all = self.blocks.trajectory.records.clone();
+        let at_start = mean_squares(&self.blocks.trajectory, &start);
+        let mut has_orbit = at_start.iter().map(Option::is_some);
+        let records = &mut self.blocks.trajectory.records;
+        records.retain(|_| has_orbit.next().unwrap_or(false));
+        let mut found = match methods::trajectories(&self.blocks, &self.evidence.nominal, start)? {
+            Ok(first) => first,
+            failed => return Some(failed),
+        };
+        self.blocks.trajectory.records = all;
+        for _ in 0..ROUNDS {
+            let parameters = found.fit.parameters;
+            self.keep_fitting(&parameters);
+            found = match methods::trajectories(&self.blocks, &self.evidence.nominal, parameters)? {
+                Ok(found) => found,
+                failed => return Some(failed),
+            };
+        }
+        Some(Ok(found))
+    }
+
+    /// Keep the records that fit like the bulk, name the others, and find again what is allowed
+    /// beside the noise.
+    fn keep_fitting(&mut self, parameters: &Parameters) {
+        let scores = mean_squares(&self.blocks.trajectory, parameters);
+        let known: Vec<f64> = scores.iter().flatten().copied().collect();
+        let bulk = Bulk::of(&known);
+        self.typical = bulk.typical;
+        let records = std::mem::take(&mut self.blocks.trajectory.records);
+        for (record, score) in records.into_iter().zip(scores) {
+            let reason = match score {
+                Some(s) if s <= bulk.limit => {
+                    self.blocks.trajectory.records.push(record);
+                    continue;
+                }
+                Some(s) => format!(
+                    "its waveform fits {:.1} times worse than the others: left out of the \
+                     trajectories",
+                    bulk.times_worse(s)
+                ),
+                None => "the model has no such periodic motion at the fitted parameters: left \
+                         out of the trajectories"
+                    .to_owned(),
+            };
+            self.left_out.push((self.name(record.observation), reason));
+            self.lost.push(record);
+        }
+        self.blocks.weigh_trajectories(parameters);
+    }
+
+    /// Fit the brackets; those that no boundary reaches, or that lie far from it, are named.
+    pub fn boundaries(&mut self, start: Parameters) -> Attempt {
+        let rig = self.evidence.rig;
+        let mut kept = Vec::new();
+        for bracket in std::mem::take(&mut self.blocks.boundary.brackets) {
+            let predicted = crate::identify::boundary::predicted_hz(&bracket, &start, rig);
+            let near = predicted.is_some_and(|f| {
+                (f - bracket.middle_hz()).abs() <= 3.0 * bracket.width_hz() + 0.02 * f
+            });
+            if near {
+                kept.push(bracket);
+            } else {
+                let place = format!(
+                    "bracket {} {:.2}–{:.2} Hz at {:.3} mm",
+                    bracket.kind.name(),
+                    bracket.frequency_low_hz,
+                    bracket.frequency_high_hz,
+                    bracket.clearance_m * 1e3
+                );
+                let reason = "the motion changed far from the simulated boundary: a disturbance, \
+                              or another boundary";
+                self.left_out.push((place, reason.into()));
+            }
+        }
+        self.blocks.boundary.brackets = kept;
+        self.blocks.boundary.fit_early_scale(&start);
+        methods::boundaries(&self.blocks, &self.evidence.nominal, start)
+    }
+
+    /// Leave the records and brackets of one gap out; false where nothing would remain.
+    pub fn leave_out_gap(&mut self, clearance_m: f64) -> bool {
+        let records = &mut self.blocks.trajectory.records;
+        if records.iter().all(|r| r.clearance_m == clearance_m) {
+            return false;
+        }
+        let reason = "its gap is not as stated: left out of trajectories and boundaries";
+        let observations = self.evidence.observations;
+        self.left_out.extend(
+            records
+                .iter()
+                .filter(|r| r.clearance_m == clearance_m)
+                .map(|r| {
+                    (
+                        observations[r.observation].record.clone(),
+                        reason.to_owned(),
+                    )
+                }),
+        );
+        records.retain(|r| r.clearance_m != clearance_m);
+        self.lost.retain(|r| r.clearance_m != clearance_m);
+        let brackets = &mut self.blocks.boundary.brackets;
+        brackets.retain(|b| b.clearance_m != clearance_m);
+        true
+    }
+
+    /// The records that pull a joint fit hardest against all others.
+    pub fn pulling(&self, problem: &Problem, present: &[usize], at: &Parameters) -> Pulling {
+        let (mut items, mut others) = (Vec::new(), Vec::new());
+        for (part, place) in problem.item_parts(at).into_iter().zip(present) {
+            match METHODS[*place] {
+                "resonance" | "trajectories" => items.push((*place, part)),
+                _ => others.extend(part),
+            }
+        }
+        let priors = problem.priors.iter();
+        others.extend(priors.map(|p| problem.prior_normal(p, at)));
+        let owners: Vec<(usize, usize)> = items
+            .iter()
+            .flat_map(|(place, part)| (0..part.len()).map(|i| (*place, i)))
+            .collect();
+        let parts: Vec<Normal> = items.into_iter().flat_map(|(_, part)| part).collect();
+        let doubtful: Vec<bool> = owners
+            .iter()
+            .map(|(place, i)| METHODS[*place] == "trajectories" && self.settles_slowly(*i, at))
+            .collect();
+        let mut pulling = Pulling::default();
+        for i in
+            pull::pulls(&parts, &others).map_or_else(Vec::new, |p| pull::strongest(&p, &doubtful))
+        {
+            match owners[i] {
+                (0, point) => pulling.resonance.push(point),
+                (_, record) => pulling.trajectory.push(record),
+            }
+        }
+        pulling
+    }
+
+    /// Whether a periodic record's motion, once disturbed, decays by less than a factor e while it
+    /// is recorded, as near a boundary: then it need not be settled.
+    fn settles_slowly(&self, item: usize, at: &Parameters) -> bool {
+        let block = &self.blocks.trajectory;
+        let observation = block.records[item].observation;
+        let evidence = &self.evidence.observations[observation].finding.evidence;
+        let slowest = block.slowest_multiplier(item, at).unwrap_or(1.0);
+        slowest.powf(evidence.cycles_observed) > (-1f64).exp()
+    }
+
+    /// Leave records out that pull the fit, and name them.
+    pub fn leave_out(&mut self, pulling: &Pulling) {
+        let reason = "it pulls the fit away from what all other records say";
+        for i in pulling.resonance.iter().rev() {
+            let point = self.blocks.resonance.points.remove(*i);
+            let reason = format!("{reason}: left out of the resonance curve");
+            self.left_out.push((self.name(point.observation), reason));
+        }
+        for i in pulling.trajectory.iter().rev() {
+            let record = self.blocks.trajectory.records.remove(*i);
+            let reason = format!("{reason}: left out of the trajectories");
+            self.left_out.push((self.name(record.observation), reason));
+        }
+    }
+}
