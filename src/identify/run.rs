@@ -97,11 +97,6 @@ struct Fits {
 /// Gaps that may be found wrong before the campaign as a whole is at fault.
 const MOST_ODD_GAPS: usize = 2;
 
-/// Reduced sum of squares, and allowance beside the noise, from which an interchange of channels
-/// is looked for.
-const POOR_FIT: f64 = 1.5;
-const POOR_ALLOWANCE: f64 = 3e-4;
-
 /// Rounds of leaving out records that pull the fit.
 const MOST_PULLING: usize = 8;
 
@@ -258,23 +253,16 @@ impl Work<'_> {
         let Some(joint) = succeeded(&fits.joint) else {
             return Vec::new();
         };
-        let blocks = &self.selection.blocks;
-        let nominal = &self.evidence.nominal;
-        let allowance = blocks.resonance.relative_error;
-        let allowance = allowance.max(blocks.trajectory.relative_error);
-        let lost = self.selection.lost.len() > blocks.trajectory.records.len();
-        if joint.reduced > POOR_FIT || allowance > POOR_ALLOWANCE || lost {
-            let start = joint.fit.parameters;
-            let unit = [Some(1.0), Some(1.0), None, None];
-            let cost = |blocks: &Blocks| {
-                let attempt = self.joint(blocks, start, &unit);
-                let found = succeeded(&attempt)?;
-                Some((found.fit.cost, found.fit.residuals))
-            };
-            if let Some(found) = suspicion::swapped(blocks, &cost) {
-                return vec![found];
-            }
+        let start = joint.fit.parameters;
+        let cost = |blocks: &Blocks, weights: &Weights| {
+            let attempt = self.joint(blocks, start, weights);
+            let found = succeeded(&attempt)?;
+            Some((found.fit.cost, found.fit.residuals))
+        };
+        if let Some(found) = suspicion::swapped(&self.selection.blocks, &cost) {
+            return vec![found];
         }
+        let nominal = &self.evidence.nominal;
         suspicion::gains(&joint.fit, joint.factor, nominal)
     }
 

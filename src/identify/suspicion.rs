@@ -8,10 +8,12 @@ use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
 use crate::identify::factor::dot;
+use crate::identify::joint::Weights;
 use crate::identify::methods::{Blocks, Nominal};
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::{Block, Fit, mean_squares};
 use crate::identify::trajectory::{TrajectoryBlock, TrajectoryRecord};
+use crate::identify::weighing::LEAST_ALLOWANCE;
 use crate::record::Role;
 
 /// A mistake that the data give away.
@@ -231,12 +233,22 @@ fn recover(
     })
 }
 
-/// Whether all data fit far better with the velocities of both masses interchanged.
+/// Relative difference of two sums of squares that errors of the model may make.
+const MODEL_CHANCE: f64 = 0.3;
+
+/// Whether all data fit far better with the velocities of both masses interchanged, by the least
+/// cost and the number of residuals of a joint fit with given weights.
 pub fn swapped(
     blocks: &Blocks,
-    problem: &dyn Fn(&Blocks) -> Option<(f64, usize)>,
+    cost: &dyn Fn(&Blocks, &Weights) -> Option<(f64, usize)>,
 ) -> Option<Suspicion> {
-    let mut other = blocks.clone();
+    // An allowance for what the model leaves open would hide what the interchange explains.
+    let mut here = blocks.clone();
+    (
+        here.resonance.relative_error,
+        here.trajectory.relative_error,
+    ) = (LEAST_ALLOWANCE, LEAST_ALLOWANCE);
+    let mut other = here.clone();
     let swap = |role: &mut Role| match role {
         Role::VelocityX => *role = Role::VelocityY,
         Role::VelocityY => *role = Role::VelocityX,
@@ -258,10 +270,20 @@ pub fn swapped(
     if !moved {
         return None;
     }
-    let ((here, freedom), (there, _)) = (problem(blocks)?, problem(&other)?);
+    // Often the resonance curve alone speaks against it.
+    let alone = [Some(1.0), None, None, None];
+    if let (Some((here, _)), Some((there, _))) = (cost(&here, &alone), cost(&other, &alone))
+        && there > 2.0 * here
+    {
+        return None;
+    }
+    let both = [Some(1.0), Some(1.0), None, None];
+    let ((here, freedom), (there, _)) = (cost(&here, &both)?, cost(&other, &both)?);
     let typical = (there / freedom.max(1) as f64).max(1.0);
     let z_score = ((here - there) / typical).max(0.0).sqrt();
-    (z_score > SURE && here > 1.3 * there).then(|| Suspicion {
+    // Where the model leaves more than noise, chance may favour either by some of it.
+    let clearly = 1.0 + MODEL_CHANCE * (1.0 - typical.recip());
+    (z_score > SURE && here > clearly * there).then(|| Suspicion {
         kind: "swapped_channels".into(),
         subject: "velocity_x, velocity_y".into(),
         z_score,

@@ -31,7 +31,7 @@ impl Blocks {
 }
 
 /// Relative error that is always allowed, so that weights stay finite on noiseless data.
-const LEAST_ALLOWANCE: f64 = 1e-6;
+pub const LEAST_ALLOWANCE: f64 = 1e-6;
 /// Greatest relative error that instruments and model may be allowed.
 const MOST_ALLOWANCE: f64 = 0.1;
 
