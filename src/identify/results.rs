@@ -55,7 +55,11 @@ pub fn impacts(
 }
 
 /// All four parameters from the waveforms.
-pub fn trajectories(blocks: &Blocks, attempt: &Result<MethodFit, FitError>) -> MethodResult {
+pub fn trajectories(
+    blocks: &Blocks,
+    attempt: &Result<MethodFit, FitError>,
+    evidence: &Evidence,
+) -> MethodResult {
     let block = &blocks.trajectory;
     let observations = attempt.as_ref().map_or(0, |f| f.fit.residuals);
     let mut result = methods::result(
@@ -67,7 +71,24 @@ pub fn trajectories(blocks: &Blocks, attempt: &Result<MethodFit, FitError>) -> M
     if let Ok(fit) = attempt {
         verdict::judge_trajectories(&mut result, block, &fit.fit.parameters);
     }
+    result.remarks.extend(thinned(evidence));
     result
+}
+
+/// How many waveforms the trajectories rest on where not all were kept.
+fn thinned(evidence: &Evidence) -> Option<String> {
+    let periodic = evidence.observations.iter().filter(|o| {
+        let pair = o.finding.impacts_and_periods();
+        !o.excluded() && pair.is_some_and(|(impacts_p, _)| impacts_p == 1)
+    });
+    let (kept, let_go): (Vec<_>, Vec<_>) = periodic.partition(|o| o.folded.is_some());
+    (3 * let_go.len() > kept.len()).then(|| {
+        let all = kept.len() + let_go.len();
+        format!(
+            "waveforms of {} of {all} periodic records are fitted, evenly chosen",
+            kept.len()
+        )
+    })
 }
 
 /// R from the brackets, by its posterior where the resonance curve tells the rest.

@@ -276,7 +276,7 @@ impl Work<'_> {
                 .map(|a| results::resonance(blocks, a)),
             fits.trajectories
                 .as_ref()
-                .map(|a| results::trajectories(blocks, a)),
+                .map(|a| results::trajectories(blocks, a, self.evidence)),
             fits.boundaries
                 .as_ref()
                 .map(|a| results::boundaries(blocks, a, posterior)),

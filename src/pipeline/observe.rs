@@ -36,8 +36,8 @@ fn classify_settings(campaign: &ResolvedCampaign) -> ClassifySettings {
 
 /// Most records of a campaign whose folded waveforms are kept. Of more records those of every
 /// second, third … are kept, so that memory does not grow with them; each waveform alone tells
-/// the parameters, and ten thousand leave nothing to be told.
-const MOST_WAVEFORMS: usize = 10_000;
+/// the parameters, and thousands leave nothing to be told.
+const MOST_WAVEFORMS: usize = 4_000;
 
 /// Records that are read ahead of the one that is worked on.
 const READ_AHEAD: usize = 256;

@@ -88,7 +88,7 @@ pub(super) fn place(gathered: &Gathered, o: &Observation) -> (Option<f64>, Optio
 
 /// Most records that the report lists and draws; of more, every second, third … The chosen ones
 /// are always among them, and records.parquet holds all.
-const MOST_RECORDS: usize = 10_000;
+const MOST_RECORDS: usize = 6_000;
 
 pub(super) fn records(gathered: &Gathered) -> Vec<RecordRow> {
     let left: HashMap<&str, &str> = gathered

@@ -40,9 +40,12 @@ pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     let row = |r: &RecordRow| record_row(r, planar, many, numbers);
     let rows = content.records.iter().map(row).collect();
     let caption = if many {
-        "All records: sweep, measured drive frequency, clearance, motion, confidence. \
-         ? undetermined; • used in the identification; ! flagged. Reasons and flags in full are in \
-         records.parquet."
+        format!(
+            "{}: sweep, measured drive frequency, clearance, motion, confidence. \
+             ? undetermined; • used in the identification; ! flagged. Reasons and flags in full \
+             are in records.parquet.",
+            which(content)
+        )
     } else {
         match content.records.iter().any(|r| r.frequency_hz.is_some()) {
             true => {
@@ -50,13 +53,24 @@ pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
             }
             false => "All records, and which methods used them.",
         }
+        .to_owned()
     };
-    let table = table(caption, &columns, rows)?;
+    let table = table(&caption, &columns, rows)?;
     Some(if many {
         crowded(table)
     } else {
         Table { size: 7.5, ..table }
     })
+}
+
+/// Which records the table lists: all, or an even choice of very many.
+fn which(content: &ReportContent) -> String {
+    let (listed, all) = (content.records.len(), content.summary.records_total);
+    if listed < all {
+        format!("{listed} of the {all} records, evenly chosen (records.parquet holds all)")
+    } else {
+        "All records".to_owned()
+    }
 }
 
 /// Many rows: small type, whole columns at once, two tables beside each other where they fit.
