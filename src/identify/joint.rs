@@ -5,11 +5,17 @@ use crate::identify::methods::{self, Blocks, IMPACT_BIAS, MethodFit};
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::{Block, FitError, Prior, Problem};
 
-/// Weights of resonance curve, trajectories, boundaries and impacts; `None` leaves one out.
-pub type Weights = [Option<f64>; 4];
+/// Weights of resonance curve, trajectories, boundaries, impacts and flights; `None` leaves one out.
+pub type Weights = [Option<f64>; 5];
 
 /// The blocks' names in the order of their weights.
-pub const METHODS: [&str; 4] = ["resonance", "trajectories", "boundaries", "impacts"];
+pub const METHODS: [&str; 5] = [
+    "resonance",
+    "trajectories",
+    "boundaries",
+    "impacts",
+    "flights",
+];
 
 /// Weight of the impacts among the other methods: what the extrapolation of speeds leaves open is
 /// common to all impacts, so that all together tell no more than that.
@@ -26,6 +32,7 @@ pub fn present(blocks: &Blocks, weights: &Weights) -> Vec<usize> {
         blocks.trajectory.items(),
         blocks.boundary.items(),
         blocks.impact.items(),
+        blocks.flight.items(),
     ];
     (0..METHODS.len())
         .filter(|i| weights[*i].is_some() && items[*i] > 0)
@@ -41,11 +48,12 @@ pub fn problem<'b>(
     gain_uncertainty: f64,
     posterior: Option<&Posterior>,
 ) -> Option<Problem<'b>> {
-    let all: [&'b dyn Block; 4] = [
+    let all: [&'b dyn Block; 5] = [
         &blocks.resonance,
         &blocks.trajectory,
         &blocks.boundary,
         &blocks.impact,
+        &blocks.flight,
     ];
     let list: Vec<(&'b dyn Block, f64)> = present(blocks, weights)
         .into_iter()
@@ -71,7 +79,7 @@ pub fn problem<'b>(
             deviation,
         });
     }
-    let waveforms = weights[0].is_some() || weights[1].is_some();
+    let waveforms = [0, 1, 4].into_iter().any(|i| weights[i].is_some());
     if waveforms {
         let (nuisances, more) = blocks.nuisances(gain_uncertainty);
         free.extend(nuisances);

@@ -4,6 +4,7 @@ use crate::event::Rig;
 use crate::identify::MethodResult;
 use crate::identify::boundary::BoundaryBlock;
 use crate::identify::estimate;
+use crate::identify::flights::FlightBlock;
 use crate::identify::impacts::ImpactBlock;
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::resonance::ResonanceBlock;
@@ -62,6 +63,8 @@ pub struct Blocks {
     pub boundary: BoundaryBlock,
     /// Speeds at impacts.
     pub impact: ImpactBlock,
+    /// Records that are shot from impact to impact.
+    pub flight: FlightBlock,
     /// Impacts left out as outliers.
     pub impact_outliers: usize,
 }
@@ -91,6 +94,7 @@ impl Blocks {
             trajectory: TrajectoryBlock::new(rig, observations, relative_error),
             boundary: BoundaryBlock::new(rig, brackets),
             impact,
+            flight: FlightBlock::new(rig, observations),
             impact_outliers,
         }
     }
@@ -337,6 +341,32 @@ pub fn trajectories_problem<'b>(
         priors,
         free,
     }
+}
+
+/// Variance of what flights tell over that of independent innovations: an impact's errors of time
+/// and extrapolation act on several of them. Over forty simulated campaigns the errors of R and β
+/// came out 1.4 times as large as independence has it.
+const SHARED_IN_FLIGHTS: f64 = 2.0;
+
+/// All four parameters from the states at the impacts of records without a closed-form orbit.
+pub fn flights(
+    blocks: &Blocks,
+    nominal: &Nominal,
+    start: Parameters,
+) -> Option<Result<MethodFit, FitError>> {
+    if blocks.flight.records.is_empty() {
+        return None;
+    }
+    let mut free = Coordinate::PHYSICAL.to_vec();
+    let mut priors = wide_priors(&start, &free);
+    let (nuisances, more) = blocks.nuisances(nominal.gain_uncertainty);
+    free.extend(nuisances);
+    priors.extend(more);
+    let found = fit_blocks(vec![(&blocks.flight, 1.0)], free, priors, start);
+    Some(found.map(|found| MethodFit {
+        factor: found.factor * SHARED_IN_FLIGHTS,
+        ..found
+    }))
 }
 
 /// A method's result from its fit.

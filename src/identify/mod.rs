@@ -11,6 +11,7 @@ pub mod decay;
 pub mod direction;
 pub mod estimate;
 pub mod factor;
+pub mod flights;
 pub mod impacts;
 pub mod interval;
 pub mod joint;

@@ -75,6 +75,19 @@ pub fn trajectories(
     result
 }
 
+/// All four parameters from records that are shot from impact to impact.
+pub fn flights(blocks: &Blocks, attempt: &Result<MethodFit, FitError>) -> MethodResult {
+    let records = &blocks.flight.records;
+    let impacts = records.iter().map(|r| r.nodes.len()).sum();
+    let mut result = methods::result(attempt, &Coordinate::PHYSICAL, impacts, records.len());
+    if let Some(reduced) = result.reduced_residual {
+        result.remarks.push(format!(
+            "from impact to impact, the states deviate {reduced:.1} times their errors"
+        ));
+    }
+    result
+}
+
 /// How many waveforms the trajectories rest on where not all were kept.
 fn thinned(evidence: &Evidence) -> Option<String> {
     let periodic = evidence.observations.iter().filter(|o| {

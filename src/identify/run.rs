@@ -88,6 +88,7 @@ struct Fits {
     impacts: Attempt,
     trajectories: Attempt,
     boundaries: Attempt,
+    flights: Attempt,
     joint: Attempt,
     /// Where the joint fit started, and the weights of its blocks.
     start: Parameters,
@@ -158,12 +159,18 @@ impl Work<'_> {
             let about = found.fit.parameters;
             interval::posterior(&self.selection.blocks.boundary, &about, error.min(0.3))
         });
+        let flights = self.selection.flights(start);
         let weight = |attempt: &Attempt| succeeded(attempt).map(|f| 1.0 / f.factor);
+        // Flights rest on the speeds at impacts; waveforms tell the same better than either.
+        let flown = weight(&flights).filter(|_| succeeded(&trajectories).is_none());
         let weights = [
             weight(&resonance),
             weight(&trajectories),
             weight(&boundaries).filter(|_| self.posterior.is_none()),
-            succeeded(&impacts).map(joint::impact_weight),
+            succeeded(&impacts)
+                .map(joint::impact_weight)
+                .filter(|_| flown.is_none()),
+            flown,
         ];
         let joint = self.joint(&self.selection.blocks, start, &weights);
         Fits {
@@ -171,6 +178,7 @@ impl Work<'_> {
             impacts,
             trajectories,
             boundaries,
+            flights,
             joint,
             start,
             weights,
@@ -283,6 +291,7 @@ impl Work<'_> {
             fits.impacts
                 .as_ref()
                 .map(|a| results::impacts(blocks, a, self.evidence)),
+            fits.flights.as_ref().map(|a| results::flights(blocks, a)),
         ];
         let mut named: BTreeMap<String, MethodResult> = METHODS
             .into_iter()

@@ -201,6 +201,33 @@ impl<'a> Selection<'a> {
         true
     }
 
+    /// Fit the records that are shot from impact to impact; those that fit far worse than the bulk,
+    /// as where an impact was missed, are left out and named.
+    pub fn flights(&mut self, start: Parameters) -> Attempt {
+        let mut parameters = start;
+        for _ in 0..ROUNDS {
+            let scores = mean_squares(&self.blocks.flight, &parameters);
+            let known: Vec<f64> = scores.iter().flatten().copied().collect();
+            let limit = Bulk::of(&known).limit;
+            let records = std::mem::take(&mut self.blocks.flight.records);
+            for (record, score) in records.into_iter().zip(scores) {
+                if score.is_some_and(|s| s <= limit) {
+                    self.blocks.flight.records.push(record);
+                } else {
+                    let reason = "its impacts do not follow from each other (one missed?): left \
+                                  out of the flights";
+                    self.left_out
+                        .push((self.name(record.observation), reason.into()));
+                }
+            }
+            match methods::flights(&self.blocks, &self.evidence.nominal, parameters)? {
+                Ok(found) => parameters = found.fit.parameters,
+                failed => return Some(failed),
+            }
+        }
+        methods::flights(&self.blocks, &self.evidence.nominal, parameters)
+    }
+
     /// The records that pull a joint fit hardest against all others.
     pub fn pulling(&self, problem: &Problem, present: &[usize], at: &Parameters) -> Pulling {
         let (mut items, mut others) = (Vec::new(), Vec::new());

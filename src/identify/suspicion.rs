@@ -271,13 +271,13 @@ pub fn swapped(
         return None;
     }
     // Often the resonance curve alone speaks against it.
-    let alone = [Some(1.0), None, None, None];
+    let alone = [Some(1.0), None, None, None, None];
     if let (Some((here, _)), Some((there, _))) = (cost(&here, &alone), cost(&other, &alone))
         && there > 2.0 * here
     {
         return None;
     }
-    let both = [Some(1.0), Some(1.0), None, None];
+    let both = [Some(1.0), Some(1.0), None, None, None];
     let ((here, freedom), (there, _)) = (cost(&here, &both)?, cost(&other, &both)?);
     let typical = (there / freedom.max(1) as f64).max(1.0);
     let z_score = ((here - there) / typical).max(0.0).sqrt();

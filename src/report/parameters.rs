@@ -67,6 +67,7 @@ pub fn method_name(key: &str) -> String {
         "boundaries" => "Boundaries".into(),
         "trajectories" => "Trajectories".into(),
         "impacts" => "Speeds at impact".into(),
+        "flights" => "Impact to impact".into(),
         "resonance" => "Resonance curve".into(),
         "free_decay" => "Free decay".into(),
         "joint" => "Joint".into(),

@@ -1,0 +1,364 @@
+//! Records without a closed-form orbit (transient, chaotic, several impacts a period): multiple
+//! shooting from impact to impact.
+//!
+//! The nodes are the states at the impacts, as measured there: each mass's speed before and after,
+//! and the gap closed. Between them the flight is exact and linear, and so is Newton's law; the
+//! nodes are therefore eliminated by a Kalman filter along the record, and its innovations over
+//! their deviations are the residuals. An impact's time is known as well as it was measured: what
+//! it may be off moves the gap at it by the closing speed, and the flight after it by the jump of
+//! the velocities.
+
+use nalgebra::{Matrix4, Vector4};
+
+use crate::event::{Impact, Rig};
+use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::solver::Block;
+use crate::model::flight::{Drive, State, free_flight};
+use crate::model::params::Machine;
+use crate::model::variation::free_flow;
+use crate::motion::{Motion, Observation};
+use crate::record::Role;
+
+/// One impact as it was measured, SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Node {
+    /// Time since the record's first sample, s.
+    pub time_s: f64,
+    /// Its standard error, s.
+    pub time_error_s: f64,
+    /// Phase of the drive, rad.
+    pub drive_phase_rad: f64,
+    /// Speeds of x and y before, m/s.
+    pub before_m_s: [f64; 2],
+    /// Speeds of x and y after, m/s.
+    pub after_m_s: [f64; 2],
+    /// Standard error of each speed, m/s.
+    pub error_m_s: f64,
+}
+
+/// The impacts of one record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlightRecord {
+    /// Index among the observations.
+    pub observation: usize,
+    /// Drive frequency, Hz.
+    pub frequency_hz: f64,
+    /// Half the gap, m.
+    pub clearance_m: f64,
+    /// Drive amplitude relative to the nominal one.
+    pub drive_amplitude: f64,
+    /// Its impacts, in their order, none missing between them.
+    pub nodes: Vec<Node>,
+}
+
+/// All records that are shot from impact to impact.
+#[derive(Debug, Clone)]
+pub struct FlightBlock {
+    /// One or two masses.
+    pub rig: Rig,
+    /// The records.
+    pub records: Vec<FlightRecord>,
+}
+
+/// Fewest impacts of a record: fewer tell nothing but where they began.
+const FEWEST_IMPACTS: usize = 4;
+/// Relative error of a speed beside the noise: what its extrapolation to the impact leaves open.
+const SPEED_SCATTER: f64 = 1e-3;
+/// Deviation of the state before the first impact, in units of x_st and x_st Ω: nothing is known.
+const UNKNOWN: f64 = 30.0;
+
+impl FlightBlock {
+    /// Collect the records with impacts that have no closed-form orbit.
+    pub fn new(rig: Rig, observations: &[Observation]) -> Self {
+        let records = observations
+            .iter()
+            .enumerate()
+            .filter(|(_, o)| !o.excluded() && has_no_closed_form(&o.finding.motion))
+            .filter_map(|(i, o)| flight_record(rig, i, o))
+            .collect();
+        Self { rig, records }
+    }
+}
+
+fn has_no_closed_form(motion: &Motion) -> bool {
+    match motion {
+        Motion::Periodic {
+            impacts_p,
+            dead_zone,
+            ..
+        } => *impacts_p > 1 && !dead_zone,
+        Motion::Chaotic | Motion::Undetermined { .. } => true,
+        _ => false,
+    }
+}
+
+fn flight_record(rig: Rig, index: usize, o: &Observation) -> Option<FlightRecord> {
+    let drive = o.drive?;
+    let sound = o.impacts.iter().all(|i| i.dead_zone_s == 0.0);
+    if !sound || o.unsupported_pulses > 0 || o.impacts.len() < FEWEST_IMPACTS {
+        return None;
+    }
+    let nodes: Vec<Node> = o
+        .impacts
+        .iter()
+        .map(|impact| node(rig, impact, o.frequency_hz()?))
+        .collect::<Option<_>>()?;
+    Some(FlightRecord {
+        observation: index,
+        frequency_hz: drive.frequency_hz,
+        clearance_m: o.setting.clearance_m?,
+        drive_amplitude: o.setting.drive_amplitude,
+        nodes,
+    })
+}
+
+fn node(rig: Rig, impact: &Impact, frequency_hz: f64) -> Option<Node> {
+    let (before_m_s, after_m_s, masses) = match rig {
+        Rig::Double => {
+            let (x, y) = (impact.x?, impact.y?);
+            (
+                [x.before_m_s, y.before_m_s],
+                [x.after_m_s, y.after_m_s],
+                2.0f64,
+            )
+        }
+        Rig::Single => (
+            [impact.closing_speed_before_m_s?, 0.0],
+            [impact.closing_speed_after_m_s?, 0.0],
+            1.0,
+        ),
+    };
+    let closing = impact.closing_speed_before_m_s?;
+    let noise = impact.speed_error_m_s? / masses.sqrt();
+    (closing > 6.0 * noise && frequency_hz > 0.0).then_some(Node {
+        time_s: impact.time_s,
+        time_error_s: impact.time_error_s,
+        drive_phase_rad: impact.drive_phase_rad?,
+        before_m_s,
+        after_m_s,
+        error_m_s: noise.hypot(SPEED_SCATTER * closing),
+    })
+}
+
+/// Mean and covariance of (X, X', Y, Y'), dimensionless.
+#[derive(Debug, Clone, Copy)]
+struct Belief {
+    mean: Vector4<f64>,
+    covariance: Matrix4<f64>,
+}
+
+impl Belief {
+    fn unknown() -> Self {
+        Self {
+            mean: Vector4::zeros(),
+            covariance: Matrix4::identity() * (UNKNOWN * UNKNOWN),
+        }
+    }
+
+    /// Take a measurement of h·state with a variance in; gives its innovation over its deviation.
+    fn learn(&mut self, h: Vector4<f64>, value: f64, variance: f64) -> f64 {
+        let gain = self.covariance * h;
+        let spread = h.dot(&gain) + variance;
+        let innovation = value - h.dot(&self.mean);
+        self.mean += gain * (innovation / spread);
+        // Joseph's form, which rounding cannot make indefinite.
+        let gain = gain / spread;
+        let kept = Matrix4::identity() - gain * h.transpose();
+        self.covariance =
+            kept * self.covariance * kept.transpose() + gain * gain.transpose() * variance;
+        innovation / spread.sqrt()
+    }
+
+    /// Newton's law at an impact whose time is off by a deviation.
+    fn bounce(&mut self, machine: &Machine, time_error: f64) {
+        let before = self.mean;
+        let r = machine.restitution().at((before[1] + before[3]).max(0.0));
+        let (mx, my) = machine.mobility();
+        let mut jump = Matrix4::identity();
+        for (row, mobility) in [(1, mx), (3, my)] {
+            jump[(row, 1)] -= mobility * (1.0 + r);
+            jump[(row, 3)] -= mobility * (1.0 + r);
+        }
+        self.mean = jump * before;
+        let change = self.mean - before;
+        let moved = Vector4::new(change[1], 0.0, change[3], 0.0) * time_error;
+        self.covariance = jump * self.covariance * jump.transpose() + moved * moved.transpose();
+    }
+
+    /// Fly on for a time.
+    fn fly(&mut self, machine: &Machine, drive: Drive, time: f64) {
+        let start = State {
+            x: self.mean[0],
+            vx: self.mean[1],
+            y: self.mean[2],
+            vy: self.mean[3],
+            ..State::default()
+        };
+        let end = free_flight(machine, drive, &start).at(time);
+        self.mean = Vector4::new(end.x, end.vx, end.y, end.vy);
+        let flow = free_flow(machine, time);
+        self.covariance = flow * self.covariance * flow.transpose();
+    }
+}
+
+/// Deviations from which an innovation counts less than its square.
+const USUAL: f64 = 1.5;
+
+/// A residual whose square is the pseudo-Huber loss: as it is where small, its root where large.
+fn bounded(residual: f64) -> f64 {
+    let square = USUAL * USUAL;
+    let loss = 2.0 * square * ((residual * residual / square).ln_1p() * 0.5).exp_m1();
+    loss.sqrt().copysign(residual)
+}
+
+impl Block for FlightBlock {
+    fn items(&self) -> usize {
+        self.records.len()
+    }
+
+    fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
+        let record = &self.records[item];
+        let machine = parameters.machine(self.rig);
+        let setting = parameters.setting(
+            record.frequency_hz,
+            record.clearance_m,
+            record.drive_amplitude,
+        );
+        let gap = machine.gap(setting.clearance);
+        let rate = parameters.natural_rate();
+        let speed = parameters.static_deflection_m * record.drive_amplitude * rate;
+        let gains = [Role::VelocityX, Role::VelocityY].map(|role| parameters.gain(role) * speed);
+        let masses = if machine.y.is_some() { 2 } else { 1 };
+        let mut belief = Belief::unknown();
+        if masses == 1 {
+            belief.covariance[(2, 2)] = 0.0;
+            belief.covariance[(3, 3)] = 0.0;
+        }
+        let mut out = Vec::with_capacity(record.nodes.len() * (1 + 2 * masses));
+        for (k, node) in record.nodes.iter().enumerate() {
+            let closing = (node.before_m_s[0] + node.before_m_s[1]) / speed;
+            let time_error = node.time_error_s * rate;
+            let apart = Vector4::new(1.0, 0.0, 1.0, 0.0);
+            out.push(belief.learn(apart, gap, (closing * time_error).powi(2)));
+            let measure = |belief: &mut Belief, speeds: [f64; 2], out: &mut Vec<f64>| {
+                for (m, gain) in gains.iter().enumerate().take(masses) {
+                    let mut h = Vector4::zeros();
+                    h[2 * m + 1] = 1.0;
+                    let deviation = node.error_m_s / gain;
+                    out.push(belief.learn(h, speeds[m] / gain, deviation * deviation));
+                }
+            };
+            measure(&mut belief, node.before_m_s, &mut out);
+            belief.bounce(&machine, time_error);
+            measure(&mut belief, node.after_m_s, &mut out);
+            if let Some(next) = record.nodes.get(k + 1) {
+                let drive = Drive {
+                    eta: setting.frequency_ratio,
+                    phase: node.drive_phase_rad,
+                };
+                belief.fly(&machine, drive, (next.time_s - node.time_s) * rate);
+            }
+        }
+        out.iter_mut().for_each(|r| *r = bounded(*r));
+        out.iter().all(|r| r.is_finite()).then_some(out)
+    }
+
+    fn touches(&self, coordinate: Coordinate) -> bool {
+        !matches!(coordinate, Coordinate::Gain(2 | 3))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::methods::wide_priors;
+    use crate::identify::solver::Problem;
+    use crate::model::params::Initial;
+    use crate::model::simulate::simulate;
+
+    fn truth() -> Parameters {
+        Parameters {
+            drive_asymmetry: 0.03,
+            ..Parameters::symmetric(0.75, 12.0, 0.05, 1e-3)
+        }
+    }
+
+    /// Impacts of irregular motions, exact but for the stated errors.
+    fn block(rig: Rig) -> FlightBlock {
+        let p = truth();
+        let speed = p.static_deflection_m * p.natural_rate();
+        let records = [(24.0, 0.2e-3), (20.0, 0.1e-3), (29.0, 0.15e-3)]
+            .map(|(frequency_hz, clearance_m)| {
+                let setting = p.setting(frequency_hz, clearance_m, 1.0);
+                let machine = p.machine(rig);
+                let motion = simulate(&machine, setting, Initial::rest(), 90.0).expect("a motion");
+                let nodes = motion.impacts.iter().skip(3).take(14);
+                let nodes = nodes.map(|i| Node {
+                    time_s: i.tau / p.natural_rate(),
+                    time_error_s: 1e-7,
+                    drive_phase_rad: i.phase,
+                    before_m_s: [i.vx_before * speed, i.vy_before * speed],
+                    after_m_s: [i.vx_after * speed, i.vy_after * speed],
+                    error_m_s: 1e-4,
+                });
+                FlightRecord {
+                    observation: 0,
+                    frequency_hz,
+                    clearance_m,
+                    drive_amplitude: 1.0,
+                    nodes: nodes.collect(),
+                }
+            })
+            .to_vec();
+        FlightBlock { rig, records }
+    }
+
+    #[test]
+    fn valid_exact_impacts_follow_from_each_other() {
+        for rig in [Rig::Double, Rig::Single] {
+            let block = block(rig);
+            for item in 0..block.items() {
+                assert!(block.records[item].nodes.len() >= 10);
+                let residuals = block.residuals(item, &truth()).expect("residuals");
+                // The first node's own measurements meet a state of which nothing is known.
+                let first = if rig == Rig::Double { 3 } else { 2 };
+                let later = residuals[first..].iter();
+                let worst = later.fold(0.0f64, |m, r| m.max(r.abs()));
+                assert!(worst < 0.01, "{worst}");
+            }
+        }
+    }
+
+    #[test]
+    fn valid_irregular_motions_alone_tell_all_four_parameters() {
+        let block = block(Rig::Double);
+        let start = Parameters {
+            restitution: 0.77,
+            natural_frequency_hz: 12.03,
+            damping_ratio: 0.052,
+            static_deflection_m: 1.01e-3,
+            ..truth()
+        };
+        let mut free = Coordinate::PHYSICAL.to_vec();
+        free.push(Coordinate::DriveAsymmetry);
+        let problem = Problem {
+            blocks: vec![(&block, 1.0)],
+            priors: wide_priors(&start, &free),
+            free,
+        };
+        let found = problem.fit(start).expect("a fit").parameters;
+        for coordinate in Coordinate::PHYSICAL {
+            let apart = found.coordinate(coordinate) - truth().coordinate(coordinate);
+            assert!(apart.abs() < 1e-5, "{coordinate:?}: {apart}");
+        }
+    }
+
+    #[test]
+    fn prop_a_bounded_residual_keeps_its_sign_and_never_grows() {
+        for r in [-50.0, -3.0, -1e-9, 0.0, 1e-6, 0.7, 8.0] {
+            let b = bounded(r);
+            assert!(b.abs() <= r.abs() * (1.0 + 1e-12) && b * r >= 0.0);
+            assert!(r.abs() > 0.1 || (b - r).abs() <= 1e-3 * r.abs());
+        }
+    }
+}
