@@ -102,7 +102,8 @@ def uff(folder, records, pyuff):
                 prepared = pyuff.prepare_58(
                     binary=1 if kind else 0, func_type=1, rsp_node=c + 1, rsp_dir=1, ref_node=0,
                     ref_dir=0, x=x, data=record[:, c], id1=f"c{c}", rsp_ent_name="NONE",
-                    ref_ent_name="NONE", abscissa_spec_data_type=17, ordinate_spec_data_type=12)
+                    ref_ent_name="NONE", abscissa_spec_data_type=17, ordinate_spec_data_type=12,
+                    orddenom_spec_data_type=0, z_axis_spec_data_type=0)
                 file.write_sets(prepared, "add")
         read = best(lambda path=path: pyuff.UFF(path).read_sets())
         yield f"{name}.uff", read * count / RECORDS
