@@ -9,8 +9,8 @@
 pub const MOST_DIGITS: usize = 19;
 /// Greatest power of five whose square fits 128 bits, and for which the algorithm is exact.
 const GREATEST_POWER: i64 = 27;
-/// The greatest integer below which binary64 holds every integer.
-const EXACT_INTEGER: u64 = 1 << 53;
+/// Most digits whose integer binary64 holds in any case.
+const EXACT_DIGITS: usize = 15;
 /// Explicit bits of a binary64 mantissa.
 const MANTISSA_BITS: u64 = 52;
 
@@ -51,32 +51,47 @@ const fn reciprocal(power: u128) -> u128 {
     quotient + 1
 }
 
-/// The value of eight digits; `None` where another character is among them.
+/// Powers of ten by which fewer than eight digits move a mantissa.
+const TENS: [u64; 8] = [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000];
+
+/// How many of eight characters, the first in the lowest byte, are digits before another one.
 #[inline]
-pub fn eight_digits(text: [u8; 8]) -> Option<u64> {
-    let word = u64::from_le_bytes(text);
-    let high = word & 0xf0f0_f0f0_f0f0_f0f0;
-    let carried = word.wrapping_add(0x0606_0606_0606_0606) & 0xf0f0_f0f0_f0f0_f0f0;
-    if high != 0x3030_3030_3030_3030 || carried != 0x3030_3030_3030_3030 {
-        return None;
-    }
-    // Pairs, then fours, then all eight digits at once.
+fn leading_digits(word: u64) -> u32 {
+    let values = word ^ 0x3030_3030_3030_3030;
+    let others = values.wrapping_add(0x7676_7676_7676_7676) | values;
+    (others & 0x8080_8080_8080_8080).trailing_zeros() / 8
+}
+
+/// The value of eight digits: pairs, then fours, then all at once.
+#[inline]
+fn eight_digits(word: u64) -> u64 {
     let pairs = (word & 0x0f0f_0f0f_0f0f_0f0f).wrapping_mul((10 << 8) + 1) >> 8;
     let fours = (pairs & 0x00ff_00ff_00ff_00ff).wrapping_mul((100 << 16) + 1) >> 16;
-    Some((fours & 0x0000_ffff_0000_ffff).wrapping_mul((10_000 << 32) + 1) >> 32)
+    (fours & 0x0000_ffff_0000_ffff).wrapping_mul((10_000 << 32) + 1) >> 32
 }
 
 /// Add the digits from `i` on to a mantissa, eight at a time; the place behind them.
 #[inline]
 pub fn digits_from(bytes: &[u8], mut i: usize, mantissa: &mut u64) -> usize {
     while let Some(eight) = bytes.get(i..).and_then(|rest| rest.first_chunk::<8>()) {
-        let Some(value) = eight_digits(*eight) else {
-            break;
-        };
-        *mantissa = mantissa.wrapping_mul(100_000_000).wrapping_add(value);
+        let word = u64::from_le_bytes(*eight);
+        let count = leading_digits(word);
+        if count < 8 {
+            // The digits move to the end, behind zeros.
+            let value = eight_digits((word << 8) << (56 - 8 * count));
+            let moved = mantissa.wrapping_mul(TENS[count as usize]);
+            *mantissa = moved.wrapping_add(value);
+            return i + count as usize;
+        }
+        let moved = mantissa.wrapping_mul(100_000_000);
+        *mantissa = moved.wrapping_add(eight_digits(word));
         i += 8;
     }
-    while let Some(digit) = bytes.get(i).map(|b| b.wrapping_sub(b'0')).filter(|d| *d < 10) {
+    while let Some(digit) = bytes
+        .get(i)
+        .map(|b| b.wrapping_sub(b'0'))
+        .filter(|d| *d < 10)
+    {
         *mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
         i += 1;
     }
@@ -90,7 +105,8 @@ pub fn nearest(mantissa: u64, digits: usize, exponent: i64) -> Option<f64> {
     if digits > MOST_DIGITS {
         return None;
     }
-    if mantissa <= EXACT_INTEGER && (-22..=22).contains(&exponent) {
+    let short = digits <= EXACT_DIGITS || mantissa == 0;
+    if short && (-22..=22).contains(&exponent) {
         let power = EXACT_POWERS[exponent.unsigned_abs() as usize];
         return Some(match exponent < 0 {
             true => mantissa as f64 / power,
@@ -107,7 +123,10 @@ pub fn nearest(mantissa: u64, digits: usize, exponent: i64) -> Option<f64> {
 #[inline]
 fn long(mantissa: u64, exponent: i64) -> f64 {
     let shift = mantissa.leading_zeros();
-    let (high, low) = product(mantissa << shift, FIVES[(exponent + GREATEST_POWER) as usize]);
+    let (high, low) = product(
+        mantissa << shift,
+        FIVES[(exponent + GREATEST_POWER) as usize],
+    );
     let upper = high >> 63;
     let drop = upper + 64 - MANTISSA_BITS - 3;
     let mut bits = high >> drop;
@@ -144,14 +163,15 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn valid_eight_digits_and_nothing_else() {
-        assert_eq!(eight_digits(*b"12345678"), Some(12_345_678));
-        assert_eq!(eight_digits(*b"00000000"), Some(0));
+    fn valid_digits_end_at_any_other_character() {
         for byte in (0..=255u8).filter(|b| !b.is_ascii_digit()) {
-            for place in 0..8 {
-                let mut text = *b"99999999";
+            for place in 0..19 {
+                let mut text = *b"1234567890987654321x";
                 text[place] = byte;
-                assert_eq!(eight_digits(text), None, "{byte} at {place}");
+                let mut mantissa = 0;
+                assert_eq!(digits_from(&text, 0, &mut mantissa), place);
+                let expected = std::str::from_utf8(&text[..place]).unwrap();
+                assert_eq!(mantissa, expected.parse().unwrap_or(0), "{byte} at {place}");
             }
         }
     }

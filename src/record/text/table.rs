@@ -93,10 +93,11 @@ impl<'a> Iterator for Cells<'a> {
             let inner = cell.trim_ascii();
             return Some(inner[1..].strip_suffix(b"\"").unwrap_or(&inner[1..]));
         }
-        let end = rest
-            .iter()
-            .position(|&b| is_separator(b))
-            .unwrap_or(rest.len());
+        let end = match self.separator {
+            Separator::Byte(separator) => memchr::memchr(separator, rest),
+            Separator::Blanks => memchr::memchr2(b' ', b'\t', rest),
+        };
+        let end = end.unwrap_or(rest.len());
         Some(self.cut(rest, end).trim_ascii())
     }
 }

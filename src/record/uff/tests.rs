@@ -390,24 +390,40 @@ fn valid_channels_over_the_same_uneven_times_are_one_record() {
 #[test]
 fn valid_uneven_times_are_refused_by_name_and_equal_steps_give_the_rate() {
     use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
-    use crate::record::{Role, Setting};
+    use crate::record::{Excitation, Role, Setting, Sweep};
+    let setting = Setting {
+        stated_frequency_hz: None,
+        clearance_m: None,
+        sweep: Sweep::Unknown,
+        drive_amplitude: 1.0,
+        sequence: 0,
+        specimen: None,
+        excitation: Excitation::default(),
+    };
     let record = |written: &Written| {
         let source = opened(&written.ascii()).unwrap();
-        let channels = [ChannelSetup::plain(Role::Drive, ChannelKey::Name("x".into()))];
+        let channels = [ChannelSetup::plain(
+            Role::Drive,
+            ChannelKey::Name("x".into()),
+        )];
         let setup = RecordSetup {
             id: "run",
             dataset: 0,
             channels: &channels,
             time: None,
             sample_rate_hz: None,
-            setting: &Setting::default(),
+            setting: &setting,
             driven: false,
             skip_s: 0.0,
         };
         calibrate(source.as_ref(), &setup)
     };
     let codes = |written: &Written| -> Vec<String> {
-        record(written).flags.iter().map(|f| f.code.clone()).collect()
+        record(written)
+            .flags
+            .iter()
+            .map(|f| f.code.clone())
+            .collect()
     };
     let mut written = Written {
         even: false,
@@ -416,7 +432,10 @@ fn valid_uneven_times_are_refused_by_name_and_equal_steps_give_the_rate() {
     written.abscissa.1 = "ms";
     assert!((record(&written).sample_rate_hz - 4000.0).abs() < 1e-6);
     assert!(!codes(&written).contains(&"time_not_uniform".to_owned()));
-    written.points.iter_mut().for_each(|point| point[0] *= point[0]);
+    written
+        .points
+        .iter_mut()
+        .for_each(|point| point[0] *= point[0]);
     assert!(codes(&written).contains(&"time_not_uniform".to_owned()));
     let even = Written {
         even: true,
