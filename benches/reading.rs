@@ -11,6 +11,7 @@ use std::time::Instant;
 use impactid::record::convert::{Options, Target, convert};
 use impactid::record::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
 use impactid::record::open::open;
+use impactid::record::source::Samples;
 
 const RECORDS: usize = 200;
 const CHANNELS: usize = 16;
@@ -58,33 +59,36 @@ fn main() {
 fn best(path: &Path) -> Result<(usize, f64), Box<dyn std::error::Error>> {
     let mut shortest = f64::INFINITY;
     let mut bytes = 0;
+    // A program keeps something of what it read, so that its memory is not handed back to the
+    // system after every file and taken again, page by page, for the next.
+    let mut kept = Vec::new();
     for _ in 0..=REPETITIONS {
         let begin = Instant::now();
         bytes = 8 * if path.is_dir() {
             let mut samples = 0;
             for entry in std::fs::read_dir(path)? {
-                samples += read(&entry?.path())?;
+                samples += read(&entry?.path(), &mut kept)?;
             }
             samples
         } else {
-            read(path)?
+            read(path, &mut kept)?
         };
         shortest = shortest.min(begin.elapsed().as_secs_f64());
     }
     Ok((bytes, shortest))
 }
 
-/// Read all of a file; how many samples it holds.
-fn read(path: &Path) -> Result<usize, Box<dyn std::error::Error>> {
+/// Read all of a file, of which the last channel is kept; how many samples it holds.
+fn read(path: &Path, kept: &mut Vec<Samples>) -> Result<usize, Box<dyn std::error::Error>> {
     let source = open(path)?;
     let mut samples = 0;
     for (dataset, info) in source.datasets().iter().enumerate() {
         let all: Vec<usize> = (0..info.channels.len()).collect();
-        let read = source.read(dataset, &all)?;
-        samples += read
-            .iter()
-            .map(impactid::record::source::Samples::len)
-            .sum::<usize>();
+        let mut read = source.read(dataset, &all)?;
+        samples += read.iter().map(Samples::len).sum::<usize>();
+        if dataset + 1 == source.datasets().len() {
+            kept.extend(read.pop());
+        }
     }
     Ok(samples)
 }

@@ -7,7 +7,18 @@ use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 use crate::campaign::faults::{Fault, Faults, Severity};
 use crate::output::OutputError;
 use crate::pipeline::PipelineError;
+use crate::record::parquet::guard;
 use crate::record::source::ReadError;
+
+/// Print no text for a panic of a library that a reader turns into an error: the error says it.
+pub fn hush_caught_panics() {
+    let print = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !guard::is_caught() {
+            print(panic);
+        }
+    }));
+}
 
 /// Why a verb could not do its work.
 #[derive(Debug)]

@@ -144,6 +144,7 @@ impl Verb {
 
 /// Run the program on the process's own arguments.
 pub fn main() -> ExitCode {
+    fail::hush_caught_panics();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {

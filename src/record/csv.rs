@@ -20,7 +20,7 @@ use crate::record::text::{TextFile, decode, number};
 const HEAD_BYTES: usize = 1 << 16;
 
 /// Rows at the front of a file from which kinds and time axis are told.
-pub(crate) type HeadRows = Vec<Vec<Vec<u8>>>;
+pub(crate) type HeadRows<'a> = Vec<Vec<&'a [u8]>>;
 
 struct CsvSource {
     text: TextFile,
@@ -105,18 +105,14 @@ impl Front {
     }
 
     /// The rows of the head, cell by cell.
-    fn rows(&self, head: &[u8], quotes: bool) -> HeadRows {
+    fn rows<'a>(&self, head: &'a [u8], quotes: bool) -> HeadRows<'a> {
         Lines::new(&head[self.offset..], quotes)
             .filter(|(_, l)| table::is_row(l, dialect::COMMENTS))
-            .map(|(_, l)| {
-                Cells::new(l, self.dialect.separator)
-                    .map(<[u8]>::to_vec)
-                    .collect()
-            })
+            .map(|(_, l)| Cells::new(l, self.dialect.separator).collect())
             .collect()
     }
 
-    fn layout(&self, text: &TextFile, rows: &HeadRows, quotes: bool) -> Layout {
+    fn layout(&self, text: &TextFile, rows: &HeadRows<'_>, quotes: bool) -> Layout {
         let kinds = (0..self.dialect.columns).map(|i| kind_of(rows, i, self.dialect.decimal));
         Layout {
             separator: self.dialect.separator,
@@ -133,17 +129,19 @@ impl Front {
 }
 
 /// The kind of a column by its filled cells in the head.
-fn kind_of(rows: &HeadRows, column: usize, decimal: u8) -> Kind {
+fn kind_of(rows: &HeadRows<'_>, column: usize, decimal: u8) -> Kind {
     let cells: Vec<&[u8]> = rows
         .iter()
-        .filter_map(|r| r.get(column).map(Vec::as_slice))
+        .filter_map(|r| r.get(column).copied())
         .filter(|c| !c.is_empty())
         .collect();
-    let numbers = cells
+    let others: Vec<&[u8]> = cells
         .iter()
-        .filter(|c| number::parse_cell(c, decimal).is_some())
-        .count();
-    let times = cells.iter().filter(|c| dialect::is_time(c)).count();
+        .copied()
+        .filter(|c| number::parse_cell(c, decimal).is_none())
+        .collect();
+    let numbers = cells.len() - others.len();
+    let times = others.iter().filter(|c| dialect::is_time(c)).count();
     if 2 * times > cells.len() {
         Kind::Time
     } else if 2 * numbers >= cells.len() {
@@ -154,8 +152,9 @@ fn kind_of(rows: &HeadRows, column: usize, decimal: u8) -> Kind {
 }
 
 /// Whether dates are written month first: only where one has its second number above 12.
-fn month_first(rows: &HeadRows) -> bool {
-    rows.iter().flatten().any(|cell| {
+fn month_first(rows: &HeadRows<'_>) -> bool {
+    let mut dates = rows.iter().flatten().filter(|cell| cell.contains(&b'/'));
+    dates.any(|cell| {
         let text = decode(cell);
         let date = text.split([' ', 'T']).next().unwrap_or_default();
         let mut parts = date.split('/').map(str::parse::<u32>);

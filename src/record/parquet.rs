@@ -4,6 +4,7 @@
 pub mod columns;
 pub mod field;
 pub mod footer;
+pub mod guard;
 pub mod shape;
 
 use std::collections::BTreeMap;

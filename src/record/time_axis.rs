@@ -5,6 +5,9 @@ use super::calibrate::ChannelKey;
 use super::source::DatasetInfo;
 use crate::units;
 
+/// Most steps by which a time axis without gaps may stray from equal steps.
+const MOST_STRAY_STEPS: f64 = 2.0;
+
 /// What a time axis says.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TimeAxis {
@@ -129,25 +132,29 @@ fn backward_at(times: &[f64], at: usize) -> TimeAxis {
 
 /// An axis whose steps scatter: rounded stamps of a uniform axis, or no uniform axis.
 fn coarse(times: &[f64], mean: f64, spread: f64) -> TimeAxis {
-    let strayed = times
-        .iter()
-        .enumerate()
-        .map(|(i, t)| (t - times[0] - i as f64 * mean).abs())
-        .fold(0.0, f64::max);
     let mut flags = Vec::new();
-    if strayed > 1.05 * spread.max(mean) {
-        flags.push(fault(
-            "time_not_uniform",
-            format!(
-                "the time axis is not uniform: steps scatter by {spread:.3e} s about {mean:.3e} s"
-            ),
-            "resample the record to a uniform rate before, or export it with its true rate",
-        ));
+    if strays(times, mean) > 1.05 * spread.max(mean) {
+        let what = format!("steps scatter by {spread:.3e} s about {mean:.3e} s");
+        flags.push(not_uniform(&what));
     }
     TimeAxis {
         sample_rate_hz: Some(1.0 / mean),
         flags,
     }
+}
+
+/// How far times are at most from a straight line through the first, s.
+fn strays(times: &[f64], step: f64) -> f64 {
+    let stray = |(i, t): (usize, &f64)| (t - times[0] - i as f64 * step).abs();
+    times.iter().enumerate().map(stray).fold(0.0, f64::max)
+}
+
+fn not_uniform(what: &str) -> Flag {
+    fault(
+        "time_not_uniform",
+        format!("the time axis is not uniform: {what}"),
+        "resample the record to a uniform rate before, or export it with its true rate",
+    )
 }
 
 /// An axis of equal steps but for gaps and repetitions.
@@ -175,6 +182,12 @@ fn regular(times: &[f64], steps: &[f64], step: f64) -> TimeAxis {
             format!("{repeated} time stamps are repeated"),
             "remove the repetitions where the record was exported; it is left out",
         ));
+    }
+    let whole = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
+    let strayed = strays(times, whole);
+    if flags.is_empty() && strayed > MOST_STRAY_STEPS * whole {
+        let what = format!("it strays by {strayed:.3e} s from equal steps of {whole:.3e} s");
+        flags.push(not_uniform(&what));
     }
     let good: Vec<f64> = steps
         .iter()
@@ -242,5 +255,15 @@ mod tests {
     fn valid_an_irregular_axis_is_told() {
         let t: Vec<f64> = uniform(1000, 1e-3).iter().map(|t| t * t).collect();
         assert_eq!(codes(&inspect(&t)), ["time_not_uniform"]);
+    }
+
+    #[test]
+    fn valid_a_clock_that_drifts_is_told() {
+        let drift = |by: f64| -> Vec<f64> {
+            let t = uniform(2000, 1e-3);
+            t.iter().map(|t| t * (1.0 + by * t)).collect()
+        };
+        assert!(inspect(&drift(1e-4)).flags.is_empty());
+        assert_eq!(codes(&inspect(&drift(0.02))), ["time_not_uniform"]);
     }
 }

@@ -121,3 +121,27 @@ fn valid_convert_refuses_what_it_cannot_write() {
     assert_eq!(ran.code, 2);
     assert!(!lab.path("out.h5").exists() && !lab.path("out.xyz").exists());
 }
+
+#[test]
+fn valid_a_library_that_panics_on_a_broken_file_prints_nothing() {
+    let lab = Lab::new();
+    let whole = std::fs::read(own("wide_uncompressed.parquet")).expect("a file of the tests");
+    // A page that claims another length, and a footer that contradicts itself.
+    for (at, byte) in [(16, 1), (2142, 0x83)] {
+        let mut bytes = whole.clone();
+        bytes[at] = byte;
+        lab.write_bytes("broken.parquet", &bytes);
+        for args in [
+            &["inspect", "broken.parquet"][..],
+            &["convert", "broken.parquet", "--out", "out.h5"],
+        ] {
+            let ran = lab.run(args);
+            assert_eq!(ran.code, 2, "{}", ran.said);
+            assert!(ran.said.contains("broken.parquet"), "{}", ran.said);
+            assert!(ran.said.contains("contradict each other"), "{}", ran.said);
+            for word in ["panicked at", "RUST_BACKTRACE"] {
+                assert!(!ran.said.contains(word), "{}", ran.said);
+            }
+        }
+    }
+}

@@ -28,7 +28,7 @@ pub struct TimeAxis {
 pub fn find(
     header: &Header,
     layout: &Layout,
-    rows: &HeadRows,
+    rows: &HeadRows<'_>,
     last: Option<&[Vec<u8>]>,
     count: u64,
 ) -> Option<TimeAxis> {
@@ -96,7 +96,7 @@ fn unit_in_name(name: &str) -> Option<String> {
 fn unnamed(
     header: &Header,
     layout: &Layout,
-    rows: &HeadRows,
+    rows: &HeadRows<'_>,
 ) -> Option<(usize, Option<String>, Option<String>, Vec<f64>)> {
     if header.names.first()? != "column_1"
         || layout.kinds[0] != Kind::Number
@@ -116,14 +116,14 @@ fn unnamed(
     })
 }
 
-fn column(layout: &Layout, rows: &HeadRows, i: usize) -> Vec<f64> {
+fn column(layout: &Layout, rows: &HeadRows<'_>, i: usize) -> Vec<f64> {
     rows.iter()
         .filter_map(|r| cell_value(layout, r.get(i)?, i, rows))
         .filter(|v| v.is_finite())
         .collect()
 }
 
-fn cell_value(layout: &Layout, cell: &[u8], i: usize, rows: &HeadRows) -> Option<f64> {
+fn cell_value(layout: &Layout, cell: &[u8], i: usize, rows: &HeadRows<'_>) -> Option<f64> {
     match layout.kinds[i] {
         Kind::Number => number::parse_cell(cell, layout.decimal),
         Kind::Time => Some(stamp(layout, cell)?.since(stamp(layout, rows.first()?.get(i)?)?)),

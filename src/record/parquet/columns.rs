@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Cursor;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
@@ -15,7 +14,7 @@ use polars_parquet::read::PageReader;
 
 use crate::record::parquet::field::{Field, samples};
 use crate::record::parquet::shape::Range;
-use crate::record::parquet::{SIGNATURE, footer};
+use crate::record::parquet::{SIGNATURE, footer, guard};
 use crate::record::source::{ReadError, Samples, StoredType};
 use crate::record::text::clock::Stamp;
 use crate::record::text::read_exact_at;
@@ -322,9 +321,9 @@ const REMEDY: &str = "Copy the file anew, or write it again with the program tha
 /// Run the library; its errors, and its panics on damaged files, become errors of ours.
 fn guarded<T>(path: &Path, run: impl FnOnce() -> PolarsResult<T>) -> Result<T, ReadError> {
     let damaged = |found: String| ReadError::new(path, "a complete Parquet file", found, REMEDY);
-    match catch_unwind(AssertUnwindSafe(run)) {
-        Ok(result) => result.map_err(|e| damaged(e.to_string())),
-        Err(_) => Err(damaged("pages that contradict each other".to_owned())),
+    match guard::caught(run) {
+        Some(result) => result.map_err(|e| damaged(e.to_string())),
+        None => Err(damaged("pages that contradict each other".to_owned())),
     }
 }
 

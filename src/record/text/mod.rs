@@ -3,6 +3,7 @@
 //! A file is never held whole, except one in UTF-16, which is transcoded once.
 
 pub mod clock;
+pub mod decimal;
 pub mod number;
 pub mod table;
 

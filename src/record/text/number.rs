@@ -1,19 +1,13 @@
 //! Decimal numbers from bytes, exactly rounded, fast for the lengths that instruments print.
 
-/// Powers of ten that binary64 holds exactly.
-const EXACT_POWERS: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
-    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
-];
-/// The greatest integer below which binary64 holds every integer.
-const EXACT_INTEGER: u64 = 1 << 53;
+use crate::record::text::decimal::{self, digits_from};
 
 /// A decimal number at the front of `bytes`: its value and the number of bytes it takes.
 ///
-/// `decimal` is the decimal mark. Exponents are written with e, E, d or D. The value is the
+/// `mark` is the decimal mark. Exponents are written with e, E, d or D. The value is the
 /// binary64 number nearest to the decimal one. `None`: no number stands there.
 #[inline]
-pub fn parse_prefix(bytes: &[u8], decimal: u8) -> Option<(f64, usize)> {
+pub fn parse_prefix(bytes: &[u8], mark: u8) -> Option<(f64, usize)> {
     let mut i = 0;
     let negative = match bytes.first() {
         Some(b'-') => {
@@ -28,30 +22,30 @@ pub fn parse_prefix(bytes: &[u8], decimal: u8) -> Option<(f64, usize)> {
     };
     let mut mantissa = 0u64;
     let first = i;
-    while let Some(digit) = digit_at(bytes, i) {
-        mantissa = mantissa.wrapping_mul(10).wrapping_add(digit);
-        i += 1;
-    }
+    i = digits_from(bytes, i, &mut mantissa);
     let mut digits = i - first;
     let mut exponent = 0i64;
-    if bytes.get(i) == Some(&decimal) {
+    if bytes.get(i) == Some(&mark) {
         let fraction = i + 1;
-        i = fraction;
-        while let Some(digit) = digit_at(bytes, i) {
-            mantissa = mantissa.wrapping_mul(10).wrapping_add(digit);
-            i += 1;
-        }
-        digits += i - fraction;
+        let whole = mantissa;
+        i = digits_from(bytes, fraction, &mut mantissa);
+        // Zeros before the first digit that counts do not lengthen the mantissa.
+        digits = match whole == 0 && digits <= decimal::MOST_DIGITS {
+            true => significant(bytes, fraction, i),
+            false => digits + i - fraction,
+        };
         exponent = -((i - fraction) as i64);
-    }
-    if digits == 0 {
+        if i == fraction && fraction == first + 1 {
+            return None;
+        }
+    } else if digits == 0 {
         return None;
     }
     if let Some((power, end)) = exponent_at(bytes, i) {
         exponent += power;
         i = end;
     }
-    let value = match exact(mantissa, digits, exponent) {
+    let value = match decimal::nearest(mantissa, digits, exponent) {
         Some(value) => {
             if negative {
                 -value
@@ -59,9 +53,19 @@ pub fn parse_prefix(bytes: &[u8], decimal: u8) -> Option<(f64, usize)> {
                 value
             }
         }
-        None => slow(&bytes[..i], decimal)?,
+        None => slow(&bytes[..i], mark)?,
     };
     Some((value, i))
+}
+
+/// Digits of a fraction from the first that is not 0.
+#[inline]
+fn significant(bytes: &[u8], from: usize, to: usize) -> usize {
+    if to - from <= decimal::MOST_DIGITS {
+        return to - from;
+    }
+    let zeros = bytes[from..to].iter().take_while(|&&b| b == b'0').count();
+    to - from - zeros
 }
 
 #[inline]
@@ -85,20 +89,6 @@ fn exponent_at(bytes: &[u8], i: usize) -> Option<(i64, usize)> {
         end += 1;
     }
     Some((if *sign == b'-' { -power } else { power }, end))
-}
-
-/// mantissa · 10^exponent where one rounding gives the nearest number.
-#[inline]
-fn exact(mantissa: u64, digits: usize, exponent: i64) -> Option<f64> {
-    if digits > 19 || mantissa > EXACT_INTEGER || !(-22..=22).contains(&exponent) {
-        return None;
-    }
-    let power = EXACT_POWERS[exponent.unsigned_abs() as usize];
-    Some(if exponent < 0 {
-        mantissa as f64 / power
-    } else {
-        mantissa as f64 * power
-    })
 }
 
 /// The standard library's conversion, for long mantissas and great exponents.

@@ -93,10 +93,11 @@ impl<'a> Iterator for Cells<'a> {
             let inner = cell.trim_ascii();
             return Some(inner[1..].strip_suffix(b"\"").unwrap_or(&inner[1..]));
         }
-        let end = rest
-            .iter()
-            .position(|&b| is_separator(b))
-            .unwrap_or(rest.len());
+        let end = match self.separator {
+            Separator::Byte(separator) => memchr::memchr(separator, rest),
+            Separator::Blanks => memchr::memchr2(b' ', b'\t', rest),
+        };
+        let end = end.unwrap_or(rest.len());
         Some(self.cut(rest, end).trim_ascii())
     }
 }
@@ -291,14 +292,17 @@ fn read_row(
     columns: &mut [Column],
     last: usize,
 ) -> Result<(), Fault> {
-    let done = match layout.separator {
+    let (done, ended) = match layout.separator {
         Separator::Byte(separator) => {
             fast_row(line, separator, layout.decimal, &mut columns[..last])
         }
-        Separator::Blanks => 0,
+        Separator::Blanks => (0, false),
     };
     let mut cells = Cells::new(line, layout.separator);
     if done > 0 && done == last {
+        if ended {
+            return Ok(());
+        }
         return extra_cells(line, layout);
     }
     for (i, column) in columns[..last].iter_mut().enumerate() {
@@ -314,14 +318,16 @@ fn read_row(
     extra_cells(line, layout)
 }
 
-/// Read leading number cells without looking for their ends first; the count of columns done.
+/// Read leading number cells without looking for their ends first; the count of columns done,
+/// and whether the line ends with them.
 #[inline]
-fn fast_row(line: &[u8], separator: u8, decimal: u8, columns: &mut [Column]) -> usize {
+fn fast_row(line: &[u8], separator: u8, decimal: u8, columns: &mut [Column]) -> (usize, bool) {
     let mut at = 0;
+    let mut ended = false;
     let count = columns.len();
     for (i, column) in columns.iter_mut().enumerate() {
         let Column::Number(values) = column else {
-            return i;
+            return (i, false);
         };
         while line.get(at) == Some(&b' ') {
             at += 1;
@@ -330,16 +336,16 @@ fn fast_row(line: &[u8], separator: u8, decimal: u8, columns: &mut [Column]) -> 
             .get(at..)
             .and_then(|l| number::parse_prefix(l, decimal))
         else {
-            return i;
+            return (i, false);
         };
         match line.get(at + taken) {
             Some(&b) if b == separator => at += taken + 1,
-            None if i + 1 == count => {}
-            _ => return i,
+            None if i + 1 == count => ended = true,
+            _ => return (i, false),
         }
         values.push(value);
     }
-    count
+    (count, ended)
 }
 
 /// Refuse a row with more filled cells than the table has columns.

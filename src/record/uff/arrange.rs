@@ -3,7 +3,9 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::header::Header;
+use super::samples;
 use super::sets::{Function, Sets};
+use crate::record::bytes::FileBytes;
 use crate::record::source::{ChannelInfo, DatasetInfo, StoredType};
 
 /// What a channel is of its function.
@@ -53,17 +55,47 @@ fn identity(header: &Header) -> Identity<'_> {
     )
 }
 
-/// Whether two functions share their abscissa; uneven ones are not compared.
-fn same_abscissa(a: &Function, b: &Function) -> bool {
-    let (x, y) = (&a.header, &b.header);
-    let even = x.even && y.even && a.samples == b.samples;
-    even && x.start == y.start && x.increment == y.increment && x.axes[0] == y.axes[0]
+/// Compares the abscissae of functions: even ones by their headers, uneven ones value by value.
+struct Comparison<'a> {
+    file: &'a FileBytes,
+    functions: &'a [Function],
+    /// Abscissa of the uneven function that others were compared with last.
+    known: Option<(usize, Vec<f64>)>,
+}
+
+impl Comparison<'_> {
+    fn same(&mut self, first: usize, other: usize) -> bool {
+        let (a, b) = (&self.functions[first], &self.functions[other]);
+        let (x, y) = (&a.header, &b.header);
+        if x.even != y.even || a.samples != b.samples || x.axes[0] != y.axes[0] {
+            return false;
+        }
+        if x.even {
+            return x.start == y.start && x.increment == y.increment;
+        }
+        self.same_values(first, other)
+    }
+
+    /// Whether two uneven abscissae hold the same; not where one cannot be read.
+    fn same_values(&mut self, first: usize, other: usize) -> bool {
+        let read = |index: usize| samples::abscissa(self.file, &self.functions[index]).ok();
+        if self.known.as_ref().is_none_or(|(index, _)| *index != first) {
+            self.known = read(first).map(|values| (first, values));
+        }
+        let known = self.known.as_ref().map(|(_, values)| values);
+        known.is_some_and(|values| read(other).is_some_and(|others| *values == others))
+    }
 }
 
 /// Group functions that follow each other with the same abscissa; a channel that comes again with
 /// the same names, or at another time or load case, begins the next record.
-fn group(functions: &[Function]) -> Vec<Vec<usize>> {
+fn group(file: &FileBytes, functions: &[Function]) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
+    let mut abscissae = Comparison {
+        file,
+        functions,
+        known: None,
+    };
     let mut seen: HashMap<Identity<'_>, Vec<usize>> = HashMap::new();
     for (index, function) in functions.iter().enumerate() {
         let header = &function.header;
@@ -73,10 +105,8 @@ fn group(functions: &[Function]) -> Vec<Vec<usize>> {
             let moved = other.lines[2] != header.lines[2] || other.load_case != header.load_case;
             moved || other.lines == header.lines
         });
-        let fits = groups
-            .last()
-            .is_some_and(|group| same_abscissa(&functions[group[0]], function));
-        if !fits || again {
+        let last = groups.last().filter(|_| !again);
+        if !last.is_some_and(|group| abscissae.same(group[0], index)) {
             groups.push(Vec::new());
             seen.clear();
         }
@@ -113,8 +143,8 @@ fn names(headers: &[&Header]) -> Vec<String> {
 }
 
 /// Arrange the functions of a file as datasets.
-pub fn arrange(sets: &Sets) -> Arranged {
-    let groups = group(&sets.functions);
+pub fn arrange(file: &FileBytes, sets: &Sets) -> Arranged {
+    let groups = group(file, &sets.functions);
     let single = groups.len() == 1;
     let mut arranged: Arranged = (Vec::new(), Vec::new());
     for (number, members) in groups.iter().enumerate() {
@@ -187,7 +217,7 @@ fn ordinate(sets: &Sets, function: &Function, name: String) -> ChannelInfo {
         (Some(numerator), Some(denominator)) => Some(format!("({numerator})/({denominator})")),
         (numerator, _) => numerator,
     };
-    let rate = header.increment.recip();
+    let rate = header.sample_rate_hz();
     let timed = header.even && header.over_time() && rate.is_finite() && rate > 0.0;
     ChannelInfo {
         name,

@@ -1,17 +1,7 @@
 //! Numbers written as text, read fast and exactly.
-//!
-//! A number of at most 15 digits and a small power of ten is the quotient or product of two
-//! numbers that doubles hold exactly, so that one division or multiplication rounds it as
-//! correctly as the standard library's parser does (W. D. Clinger, "How to read floating point
-//! numbers accurately", PLDI 1990). All others go to the standard library.
 
-/// Powers of ten that doubles hold exactly.
-const POWERS: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
-    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
-];
-/// Most digits whose integer is below 2^53.
-const EXACT_DIGITS: usize = 15;
+use crate::record::text::decimal::{self, digits_from};
+
 /// Longest number that is believed, bytes.
 const LONGEST: usize = 64;
 
@@ -57,15 +47,8 @@ impl<'a> Numbers<'a> {
 
     /// Add the digits at `at` to a mantissa; gives the place behind them.
     #[inline]
-    fn digits(&self, mut at: usize, mantissa: &mut u64) -> usize {
-        loop {
-            let digit = self.peek(at).wrapping_sub(b'0');
-            if digit > 9 {
-                return at;
-            }
-            *mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
-            at += 1;
-        }
+    fn digits(&self, at: usize, mantissa: &mut u64) -> usize {
+        digits_from(self.text, at, mantissa)
     }
 
     /// The exponent at `at`, of up to four digits, and the place behind it.
@@ -126,15 +109,8 @@ impl<'a> Numbers<'a> {
             return Err(NoNumber { at: after });
         }
         self.at = after;
-        let power = exponent - places as i32;
-        if digits <= EXACT_DIGITS && (-22..=22).contains(&power) {
-            let value = mantissa as f64;
-            let scale = POWERS[power.unsigned_abs() as usize];
-            let value = if power < 0 {
-                value / scale
-            } else {
-                value * scale
-            };
+        let power = i64::from(exponent) - places as i64;
+        if let Some(value) = decimal::nearest(mantissa, digits, power) {
             return Ok(if first == b'-' { -value } else { value });
         }
         self.slowly(start, end, exponent)

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::record::bytes::decode_text;
+use crate::units::{Dimension, parse_unit};
 
 /// One axis of a function: records 8 to 11.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -184,6 +185,13 @@ impl Header {
     pub fn over_time(&self) -> bool {
         let axis = &self.axes[0];
         axis.kind == 17 || (axis.kind == 0 && axis.unit.as_deref() == Some("s"))
+    }
+
+    /// Samples per second, Hz, of an even abscissa of time; in s where it states no other unit.
+    pub fn sample_rate_hz(&self) -> f64 {
+        let unit = self.axes[0].unit.as_deref().and_then(parse_unit);
+        let unit = unit.filter(|u| u.dimension == Dimension::Time);
+        (self.increment * unit.map_or(1.0, |u| u.to_si)).recip()
     }
 
     /// The third line as ISO 8601, where it is a date such as `18-Apr-16 13:49:58`.

@@ -2,15 +2,15 @@
 //!
 //! How a file maps to datasets and channels:
 //!
-//! - Every function is a channel. Functions that follow each other with the same even abscissa
-//!   form one dataset; a channel that comes again with the same names, or at another time (third
-//!   line) or load case, begins the next. A file of one record has a dataset without a name,
-//!   else datasets are numbered from 1. A function of uneven abscissa is a dataset of its own.
+//! - Every function is a channel. Functions that follow each other with the same abscissa (an
+//!   uneven one is compared value by value) form one dataset; a channel that comes again with the
+//!   same names, or at another time (third line) or load case, begins the next. A file of one
+//!   record has a dataset without a name, else datasets are numbered from 1.
 //! - A channel is named by the response's entity name, else node and direction (`3:+Z`), else the
 //!   first line, else the ordinate's label: the first of these that tells the channels of the
 //!   dataset apart. All header fields are properties.
-//! - An even abscissa of time gives the sample rate. Any other abscissa (frequency, or uneven
-//!   time) is the dataset's first channel.
+//! - An even abscissa of time gives the sample rate, in its unit where it states one. Any other
+//!   abscissa (frequency, or uneven time) is the dataset's first channel.
 //! - The unit is that of the ordinate (`(numerator)/(denominator)` of a frequency response);
 //!   where it is missing and a set 164 names the unit system, it follows from the data type.
 //! - Sets 151 and 164 give attributes. All other sets are skipped with a note.
@@ -39,7 +39,8 @@ pub fn recognises(head: &[u8]) -> bool {
     sets::is_mark(line)
 }
 
-/// Open a universal file: headers are read and the ends of sets found, no samples are read.
+/// Open a universal file: headers are read and the ends of sets found; of the samples only uneven
+/// abscissae are read, which tell what belongs to one record.
 pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let file = FileBytes::open(path)?;
     if !recognises(file.all()) {
@@ -47,7 +48,7 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         return Err(file.refuse(0, "the line '    -1' that begins a set", found));
     }
     let sets = sets::scan(&file)?;
-    let (datasets, origins) = arrange::arrange(&sets);
+    let (datasets, origins) = arrange::arrange(&file, &sets);
     let mut notes = sets.notes.clone();
     if !sets.skipped.is_empty() {
         let each = sets

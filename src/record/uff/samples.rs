@@ -48,6 +48,11 @@ pub fn read(
     Ok(all.into_iter().flatten().collect())
 }
 
+/// The abscissa of an uneven function.
+pub fn abscissa(file: &FileBytes, function: &Function) -> Result<Vec<f64>, ReadError> {
+    Ok(columns(file, function)?.abscissa)
+}
+
 fn pick(function: &Function, columns: Columns, side: Side) -> Samples {
     let header = &function.header;
     match side {

@@ -76,11 +76,35 @@ impl Written {
 
     fn ascii(&self) -> Vec<u8> {
         let double = matches!(self.kind, 4 | 6);
-        let (per_line, width, digits) = if double { (4, 20, 12) } else { (6, 13, 5) };
+        self.lines(if double { 4 } else { 6 }, |_| double)
+    }
+
+    /// As the format's description has uneven functions: abscissae in single precision, too,
+    /// where the ordinate is in double precision.
+    fn ascii_of_narrow_abscissae(&self) -> Vec<u8> {
+        let double = matches!(self.kind, 4 | 6);
+        let width = if self.kind >= 5 { 3 } else { 2 };
+        let per_line = match (double, width) {
+            (true, 3) => 3,
+            (true, _) => 4,
+            _ => 6,
+        };
+        self.lines(per_line, |index| double && index % width != 0)
+    }
+
+    fn lines(&self, per_line: usize, wide: impl Fn(usize) -> bool) -> Vec<u8> {
         let mut out = format!("    -1\n    58\n{}", self.header());
-        for line in self.numbers().chunks(per_line) {
-            line.iter()
-                .for_each(|v| out.push_str(&format!("{:>width$}", format!("{v:.digits$E}"))));
+        for (index, value) in self.numbers().into_iter().enumerate() {
+            let number = match wide(index) {
+                true => format!("{:>20}", format!("{value:.12E}")),
+                false => format!("{:>13}", format!("{value:.5E}")),
+            };
+            out.push_str(&number);
+            if (index + 1) % per_line == 0 {
+                out.push('\n');
+            }
+        }
+        if !out.ends_with('\n') {
             out.push('\n');
         }
         out.push_str("    -1\n");
@@ -299,6 +323,125 @@ fn valid_every_form_of_numbers_holds_the_same() {
             }
         }
     }
+}
+
+/// Points at uneven times: steps of 0.1 to 0.4.
+fn uneven(name: &'static str, kind: i64) -> Written {
+    let values = [1.5, -2.5, 3.5, -4.5, 5.5, -6.5, 7.5];
+    let mut written = Written {
+        kind,
+        even: false,
+        ..sweep(name, &values)
+    };
+    let times = [0.0, 0.125, 0.5, 0.625, 1.0, 1.125, 1.5];
+    let points = written.points.iter_mut().zip(times);
+    points.for_each(|(point, time)| point[0] = time);
+    written
+}
+
+#[test]
+fn valid_uneven_abscissae_are_read_as_they_stand() {
+    for kind in [2, 4, 5, 6] {
+        let written = uneven("x", kind);
+        let times: Vec<f64> = written.points.iter().map(|point| point[0]).collect();
+        let files = [
+            written.ascii_of_narrow_abscissae(),
+            written.ascii(),
+            written.binary(false, true),
+            written.binary(true, true),
+            written.binary(false, false),
+        ];
+        for bytes in files {
+            let source = opened(&bytes).unwrap();
+            let dataset = &source.datasets()[0];
+            assert_eq!(dataset.time_axis, Some(0));
+            assert_eq!(dataset.channels[1].sample_rate_hz, None);
+            let time = source.read(0, &[0]).unwrap().remove(0);
+            assert_eq!(time, Samples::Real(times.clone()), "type {kind}");
+        }
+    }
+}
+
+#[test]
+fn valid_channels_over_the_same_uneven_times_are_one_record() {
+    let mut late = uneven("z", 2);
+    late.points[3][0] += 0.0625;
+    let all = [uneven("x", 2), uneven("y", 2), late];
+    let forms: [fn(&Written) -> Vec<u8>; 2] = [Written::ascii, |w| w.binary(false, true)];
+    for form in forms {
+        let bytes: Vec<u8> = all.iter().flat_map(form).collect();
+        let source = opened(&bytes).unwrap();
+        let names = |d: usize| -> Vec<&str> {
+            let channels = source.datasets()[d].channels.iter();
+            channels.map(|c| c.name.as_str()).collect()
+        };
+        assert_eq!(source.datasets().len(), 2);
+        assert_eq!(names(0), ["time", "x", "y"]);
+        assert_eq!(names(1), ["time", "z"]);
+        let all = source.read(0, &[0, 2]).unwrap();
+        assert_eq!(all[1], source.read(0, &[2]).unwrap()[0]);
+        let Samples::Real(times) = &source.read(1, &[0]).unwrap()[0] else {
+            panic!()
+        };
+        assert_eq!(times[3], 0.6875);
+    }
+}
+
+#[test]
+fn valid_uneven_times_are_refused_by_name_and_equal_steps_give_the_rate() {
+    use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
+    use crate::record::{Excitation, Role, Setting, Sweep};
+    let setting = Setting {
+        stated_frequency_hz: None,
+        clearance_m: None,
+        sweep: Sweep::Unknown,
+        drive_amplitude: 1.0,
+        sequence: 0,
+        specimen: None,
+        excitation: Excitation::default(),
+    };
+    let record = |written: &Written| {
+        let source = opened(&written.ascii()).unwrap();
+        let channels = [ChannelSetup::plain(
+            Role::Drive,
+            ChannelKey::Name("x".into()),
+        )];
+        let setup = RecordSetup {
+            id: "run",
+            dataset: 0,
+            channels: &channels,
+            time: None,
+            sample_rate_hz: None,
+            setting: &setting,
+            driven: false,
+            skip_s: 0.0,
+        };
+        calibrate(source.as_ref(), &setup)
+    };
+    let codes = |written: &Written| -> Vec<String> {
+        record(written)
+            .flags
+            .iter()
+            .map(|f| f.code.clone())
+            .collect()
+    };
+    let mut written = Written {
+        even: false,
+        ..sweep("x", &[1.0, -2.0].repeat(100))
+    };
+    written.abscissa.1 = "ms";
+    assert!((record(&written).sample_rate_hz - 4000.0).abs() < 1e-6);
+    assert!(!codes(&written).contains(&"time_not_uniform".to_owned()));
+    written
+        .points
+        .iter_mut()
+        .for_each(|point| point[0] *= point[0]);
+    assert!(codes(&written).contains(&"time_not_uniform".to_owned()));
+    let even = Written {
+        even: true,
+        ..written
+    };
+    assert!((record(&even).sample_rate_hz - 4000.0).abs() < 1e-6);
 }
 
 #[test]

@@ -1,0 +1,210 @@
+//! From a decimal mantissa and exponent to the nearest binary64 number, without a detour by text.
+//!
+//! Short mantissas are divided or multiplied by a power of ten that binary64 holds (W. D.
+//! Clinger, "How to read floating point numbers accurately", PLDI 1990); longer ones, of up to
+//! 19 digits, are multiplied by a power of five in 128 bits (D. Lemire, "Number parsing at a
+//! gigabyte per second", Software: Practice and Experience 51, 2021, algorithm 1).
+
+/// Most digits whose integer 64 bits hold.
+pub const MOST_DIGITS: usize = 19;
+/// Greatest power of five whose square fits 128 bits, and for which the algorithm is exact.
+const GREATEST_POWER: i64 = 27;
+/// Most digits whose integer binary64 holds in any case.
+const EXACT_DIGITS: usize = 15;
+/// Explicit bits of a binary64 mantissa.
+const MANTISSA_BITS: u64 = 52;
+
+/// Powers of ten that binary64 holds exactly.
+const EXACT_POWERS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
+    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+];
+
+/// Powers of five from 5^-27 to 5^27, shifted so that the top bit of 128 is set; those below 1
+/// are rounded up.
+static FIVES: [u128; 2 * GREATEST_POWER as usize + 1] = fives();
+
+const fn fives() -> [u128; 2 * GREATEST_POWER as usize + 1] {
+    let mut all = [0; 2 * GREATEST_POWER as usize + 1];
+    let (mut power, mut k) = (1u128, 0);
+    while k <= GREATEST_POWER as usize {
+        if k > 0 {
+            all[GREATEST_POWER as usize - k] = reciprocal(power);
+        }
+        all[GREATEST_POWER as usize + k] = power << power.leading_zeros();
+        (power, k) = (power * 5, k + 1);
+    }
+    all
+}
+
+/// 2^b / power rounded up (no power of five divides one of two), with b such that it fills 128 bits, by long division.
+const fn reciprocal(power: u128) -> u128 {
+    let (mut quotient, mut rest) = (0u128, 1u128);
+    while quotient >> 127 == 0 {
+        rest <<= 1;
+        quotient <<= 1;
+        if rest >= power {
+            rest -= power;
+            quotient |= 1;
+        }
+    }
+    quotient + 1
+}
+
+/// Powers of ten by which fewer than eight digits move a mantissa.
+const TENS: [u64; 8] = [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000];
+
+/// How many of eight characters, the first in the lowest byte, are digits before another one.
+#[inline]
+fn leading_digits(word: u64) -> u32 {
+    let values = word ^ 0x3030_3030_3030_3030;
+    let others = values.wrapping_add(0x7676_7676_7676_7676) | values;
+    (others & 0x8080_8080_8080_8080).trailing_zeros() / 8
+}
+
+/// The value of eight digits: pairs, then fours, then all at once.
+#[inline]
+fn eight_digits(word: u64) -> u64 {
+    let pairs = (word & 0x0f0f_0f0f_0f0f_0f0f).wrapping_mul((10 << 8) + 1) >> 8;
+    let fours = (pairs & 0x00ff_00ff_00ff_00ff).wrapping_mul((100 << 16) + 1) >> 16;
+    (fours & 0x0000_ffff_0000_ffff).wrapping_mul((10_000 << 32) + 1) >> 32
+}
+
+/// Add the digits from `i` on to a mantissa, eight at a time; the place behind them.
+#[inline]
+pub fn digits_from(bytes: &[u8], mut i: usize, mantissa: &mut u64) -> usize {
+    while let Some(eight) = bytes.get(i..).and_then(|rest| rest.first_chunk::<8>()) {
+        let word = u64::from_le_bytes(*eight);
+        let count = leading_digits(word);
+        if count < 8 {
+            // The digits move to the end, behind zeros.
+            let value = eight_digits((word << 8) << (56 - 8 * count));
+            let moved = mantissa.wrapping_mul(TENS[count as usize]);
+            *mantissa = moved.wrapping_add(value);
+            return i + count as usize;
+        }
+        let moved = mantissa.wrapping_mul(100_000_000);
+        *mantissa = moved.wrapping_add(eight_digits(word));
+        i += 8;
+    }
+    while let Some(digit) = bytes
+        .get(i)
+        .map(|b| b.wrapping_sub(b'0'))
+        .filter(|d| *d < 10)
+    {
+        *mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
+        i += 1;
+    }
+    i
+}
+
+/// The binary64 number nearest to mantissa · 10^exponent; `None` where another way must be
+/// taken: `digits` are more than 64 bits hold, or the exponent is great.
+#[inline]
+pub fn nearest(mantissa: u64, digits: usize, exponent: i64) -> Option<f64> {
+    if digits > MOST_DIGITS {
+        return None;
+    }
+    let short = digits <= EXACT_DIGITS || mantissa == 0;
+    if short && (-22..=22).contains(&exponent) {
+        let power = EXACT_POWERS[exponent.unsigned_abs() as usize];
+        return Some(match exponent < 0 {
+            true => mantissa as f64 / power,
+            false => mantissa as f64 * power,
+        });
+    }
+    match (-GREATEST_POWER..=GREATEST_POWER).contains(&exponent) && mantissa > 0 {
+        true => Some(long(mantissa, exponent)),
+        false => None,
+    }
+}
+
+/// Algorithm 1 of the paper, for exponents at which it needs no further case.
+#[inline]
+fn long(mantissa: u64, exponent: i64) -> f64 {
+    let shift = mantissa.leading_zeros();
+    let (high, low) = product(
+        mantissa << shift,
+        FIVES[(exponent + GREATEST_POWER) as usize],
+    );
+    let upper = high >> 63;
+    let drop = upper + 64 - MANTISSA_BITS - 3;
+    let mut bits = high >> drop;
+    // 217706 / 2^16 is log2(10) from below, near enough for these exponents.
+    let power = ((exponent * 217_706) >> 16) + 63 + upper as i64 - i64::from(shift) + 1023;
+    // Half-way between two numbers: to the even one.
+    let between = low <= 1 && (-4..=23).contains(&exponent) && bits & 3 == 1;
+    if between && bits << drop == high {
+        bits &= !1;
+    }
+    bits = (bits + (bits & 1)) >> 1;
+    let carry = bits >> (MANTISSA_BITS + 1);
+    let fraction = (bits >> carry) & ((1 << MANTISSA_BITS) - 1);
+    f64::from_bits(((power as u64 + carry) << MANTISSA_BITS) | fraction)
+}
+
+/// The upper 128 of the 192 bits of a product, as far as they are needed.
+#[inline]
+fn product(word: u64, five: u128) -> (u64, u64) {
+    const UNSURE: u64 = u64::MAX >> (MANTISSA_BITS + 3);
+    let first = u128::from(word) * (five >> 64);
+    let high = (first >> 64) as u64;
+    if high & UNSURE != UNSURE {
+        return (high, first as u64);
+    }
+    let second = u128::from(word) * u128::from(five as u64);
+    let sum = first + (second >> 64);
+    ((sum >> 64) as u64, sum as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn valid_digits_end_at_any_other_character() {
+        for byte in (0..=255u8).filter(|b| !b.is_ascii_digit()) {
+            for place in 0..19 {
+                let mut text = *b"1234567890987654321x";
+                text[place] = byte;
+                let mut mantissa = 0;
+                assert_eq!(digits_from(&text, 0, &mut mantissa), place);
+                let expected = std::str::from_utf8(&text[..place]).unwrap();
+                assert_eq!(mantissa, expected.parse().unwrap_or(0), "{byte} at {place}");
+            }
+        }
+    }
+
+    #[test]
+    fn valid_numbers_half_way_go_to_the_even_one() {
+        for (mantissa, exponent) in [
+            (9_007_199_254_740_993, 0),
+            (9_007_199_254_740_995, 0),
+            (90_071_992_547_409_930, -1),
+            (u64::MAX, 0),
+            (10_000_000_000_000_000_000, 27),
+            (9_007_199_254_740_994, 22),
+        ] {
+            let text = format!("{mantissa}e{exponent}");
+            let expected: f64 = text.parse().unwrap();
+            assert_eq!(nearest(mantissa, 19, exponent), Some(expected), "{text}");
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4096))]
+
+        #[test]
+        fn prop_long_mantissas_equal_the_standard_parsers(mantissa: u64, drop in 0u32..40, exponent in -27i64..=27) {
+            let mantissa = mantissa >> drop;
+            let expected: f64 = format!("{mantissa}e{exponent}").parse().unwrap();
+            if let Some(value) = nearest(mantissa, 19, exponent) {
+                prop_assert_eq!(value.to_bits(), expected.to_bits());
+            }
+            if mantissa > 0 {
+                prop_assert_eq!(long(mantissa, exponent).to_bits(), expected.to_bits());
+            }
+        }
+    }
+}
