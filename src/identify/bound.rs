@@ -48,11 +48,12 @@ pub fn bounds(evidence: &Evidence, at: &Parameters) -> BTreeMap<String, Bound> {
     let trajectory: &dyn Block = &blocks.trajectory;
     let boundary: &dyn Block = &blocks.boundary;
     let impact: &dyn Block = &blocks.impact;
-    let methods: [(&str, Vec<&dyn Block>); 5] = [
+    let methods: [(&str, Vec<&dyn Block>); 6] = [
         ("resonance", vec![resonance]),
         ("trajectories", vec![trajectory]),
         ("boundaries", vec![boundary, resonance]),
         ("impacts", vec![impact]),
+        ("flights", vec![&blocks.flight]),
         ("joint", vec![resonance, trajectory, boundary, impact]),
     ];
     let mut bounds: BTreeMap<String, Bound> = methods
