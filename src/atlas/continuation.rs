@@ -242,12 +242,17 @@ impl Follower<'_> {
                 None => (too_far, kind) = (middle, EdgeKind::Lost),
             }
         }
-        // at the doubling where it was born an orbit is twice its half
-        if kind == EdgeKind::SaddleNode && orbit.reduced_within(1e-3).n < orbit.n {
-            kind = EdgeKind::PeriodDoubling;
-        }
-        Edge { kind, orbit }
+        named(kind, orbit)
     }
+}
+
+/// An edge by what it is: at the doubling where it was born an orbit is twice its half, and
+/// neither the multiplier +1 nor a continuation that breaks off there is more than that.
+fn named(kind: EdgeKind, orbit: PeriodicOrbit) -> Edge {
+    let unclear = matches!(kind, EdgeKind::SaddleNode | EdgeKind::Lost);
+    let born = unclear && orbit.reduced_within(1e-3).n < orbit.n;
+    let kind = if born { EdgeKind::PeriodDoubling } else { kind };
+    Edge { kind, orbit }
 }
 
 /// Continue a stable orbit in one direction (+1: rising parameter) to its edge.
@@ -266,10 +271,7 @@ pub fn follow(
     let n = 2 * seed.p() + 1;
     let mut towards = DVector::zeros(n);
     towards[n - 1] = direction;
-    let lost = |orbit: &PeriodicOrbit| Edge {
-        kind: EdgeKind::Lost,
-        orbit: orbit.clone(),
-    };
+    let lost = |orbit: &PeriodicOrbit| named(EdgeKind::Lost, orbit.clone());
     let Some(tangent) = follower.tangent(seed, &towards) else {
         return lost(seed);
     };
