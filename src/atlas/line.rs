@@ -23,6 +23,26 @@ pub struct Span {
     pub low: Edge,
     /// Its upper edge.
     pub high: Edge,
+    /// The line's parameter and the greatest closing speed of its orbits, the parameter rising.
+    pub branch: Vec<(f64, f64)>,
+}
+
+impl Span {
+    /// Greatest closing speed at a value of the parameter, between the orbits that were followed.
+    fn speed_at(&self, value: f64) -> f64 {
+        let k = self.branch.partition_point(|b| b.0 < value);
+        match (self.branch.get(k.wrapping_sub(1)), self.branch.get(k)) {
+            (Some(a), Some(b)) => a.1 + (b.1 - a.1) * (value - a.0) / (b.0 - a.0),
+            (Some(a), None) | (None, Some(a)) => a.1,
+            (None, None) => f64::NAN,
+        }
+    }
+
+    /// Whether an orbit of a greatest closing speed at a value lies on this branch. Branches of
+    /// the same p/n that coexist differ in speed but where they meet.
+    fn is_at(&self, value: f64, speed: f64) -> bool {
+        (speed - self.speed_at(value)).abs() <= 0.05 * (1.0 + speed)
+    }
 }
 
 /// A line of the settings' grid.
@@ -38,8 +58,17 @@ pub struct Line<'a> {
     pub number: usize,
 }
 
-/// A periodic cell: p, n, its place along the line, and its end.
-type CellSeed = (u32, u32, usize, End);
+/// A periodic cell of a line.
+#[derive(Debug, Clone, Copy)]
+struct CellSeed {
+    /// p and n.
+    motion: (u32, u32),
+    /// Its place along the line.
+    k: usize,
+    end: End,
+    /// Whether its speed is compared with that of the known branches at its place.
+    told_apart: bool,
+}
 
 impl Line<'_> {
     /// All motions: from closed forms, from the maps' cells, from period doublings.
@@ -49,29 +78,58 @@ impl Line<'_> {
         let mut spans: Vec<Span> = Vec::new();
         loop {
             let seed = match seeds.pop_front() {
-                Some(seed) => seed,
+                Some(seed) => Some(seed),
                 None => match cells.next() {
-                    Some((p, n, k, end)) => {
-                        if self.known(&spans, (p, n), self.values()[k]) {
-                            continue;
-                        }
-                        match self.stable_orbit_of(k, &end, (p, n)) {
-                            Some(orbit) => orbit,
-                            None => continue,
-                        }
-                    }
+                    Some(cell) => self.seed_of(&cell, &spans),
                     None => return spans,
                 },
             };
-            let motion = (seed.p() as u32, seed.n);
-            if self.known(&spans, motion, self.along.of(&seed)) {
+            let Some(span) = seed.and_then(|seed| self.new_span(&seed, &spans)) else {
                 continue;
+            };
+            seeds.extend(self.doubled(&span));
+            spans.push(span);
+        }
+    }
+
+    /// The orbit of a cell that lies on no known branch.
+    fn seed_of(&self, cell: &CellSeed, spans: &[Span]) -> Option<PeriodicOrbit> {
+        let value = self.values()[cell.k];
+        let mut there = self.spans_at(spans, cell.motion, value).peekable();
+        if there.peek().is_some() {
+            if !cell.told_apart {
+                return None;
             }
-            if let Some(span) = self.span(&seed) {
-                seeds.extend(self.doubled(&span));
-                spans.push(span);
+            let at = self.settings.grid.at(self.cell(cell.k));
+            let impacts = last_impacts(self.machine, at, &cell.end, cell.motion)?;
+            let speeds = impacts.iter().map(|i| i.closing_before);
+            let speed = speeds.fold(0.0, f64::max);
+            if there.any(|s| s.is_at(value, speed)) {
+                return None;
             }
         }
+        self.stable_orbit_of(cell.k, &cell.end, cell.motion)
+    }
+
+    /// The span of a seed that lies on no known branch.
+    fn new_span(&self, seed: &PeriodicOrbit, spans: &[Span]) -> Option<Span> {
+        let (motion, value) = ((seed.p() as u32, seed.n), self.along.of(seed));
+        let speed = seed.greatest_speed();
+        if self
+            .spans_at(spans, motion, value)
+            .any(|s| s.is_at(value, speed))
+        {
+            return None;
+        }
+        let span = self.span(seed)?;
+        let ends = |s: &Span| (self.along.of(&s.low.orbit), self.along.of(&s.high.orbit));
+        let (low, high) = ends(&span);
+        let same = |s: &&Span| {
+            let (other_low, other_high) = ends(s);
+            (low - other_low).abs() < 1e-5 && (high - other_high).abs() < 1e-5
+        };
+        let mut alike = spans.iter().filter(|s| (s.p, s.n) == motion);
+        (!alike.any(|s| same(&s))).then_some(span)
     }
 
     /// The parameter's values along the line.
@@ -91,10 +149,18 @@ impl Line<'_> {
         }
     }
 
-    fn known(&self, spans: &[Span], motion: (u32, u32), value: f64) -> bool {
-        let at = |edge: &Edge| self.along.of(&edge.orbit);
-        let holds = |s: &Span| at(&s.low) <= value && value <= at(&s.high);
-        spans.iter().any(|s| (s.p, s.n) == motion && holds(s))
+    /// The spans of a motion that hold a value.
+    fn spans_at<'s>(
+        &self,
+        spans: &'s [Span],
+        motion: (u32, u32),
+        value: f64,
+    ) -> impl Iterator<Item = &'s Span> + use<'s> {
+        let along = self.along;
+        let at = move |edge: &Edge| along.of(&edge.orbit);
+        let holds = move |s: &&Span| at(&s.low) <= value && value <= at(&s.high);
+        let alike = spans.iter().filter(move |s| (s.p, s.n) == motion);
+        alike.filter(holds)
     }
 
     /// Orbits of doubled period where a motion ends in a doubling.
@@ -140,8 +206,8 @@ impl Line<'_> {
     }
 
     /// The periodic cells of each map: the middle one of every run of equal ones first, which
-    /// mostly lies in the region of all, then the others, for a run may pass from one branch of
-    /// p/n orbits into another.
+    /// mostly lies in the region of all, then the others: a run may pass from one branch of p/n
+    /// orbits into another, so its ends are told apart from the known ones by their speed.
     fn cell_seeds(&self, maps: &[Vec<End>]) -> Vec<CellSeed> {
         let count = self.values().len();
         let (mut middles, mut others) = (Vec::new(), Vec::new());
@@ -152,11 +218,16 @@ impl Line<'_> {
                 if k < count && at(k).motion == at(first).motion {
                     continue;
                 }
-                let middle = (first + k - 1) / 2;
-                if let Some((p, n)) = self.sought(at(first).motion) {
-                    middles.push((p, n, middle, at(middle)));
-                    let rest = (first..k).filter(|&i| i != middle);
-                    others.extend(rest.map(|i| (p, n, i, at(i))));
+                if let Some(motion) = self.sought(at(first).motion) {
+                    let middle = (first + k - 1) / 2;
+                    let seed = |i: usize| CellSeed {
+                        motion,
+                        k: i,
+                        end: at(i),
+                        told_apart: i == first || i == middle || i + 1 == k,
+                    };
+                    middles.push(seed(middle));
+                    others.extend((first..k).filter(|&i| i != middle).map(seed));
                 }
                 first = k;
             }
@@ -197,11 +268,19 @@ impl Line<'_> {
         };
         let edge = |direction| follow(self.machine, seed, self.along, direction, &walk);
         let (mut low, mut high) = (edge(-1.0), edge(1.0));
-        if self.along.of(&low.orbit) > self.along.of(&high.orbit) {
+        if self.along.of(&low.edge.orbit) > self.along.of(&high.edge.orbit) {
             std::mem::swap(&mut low, &mut high);
         }
-        let (p, n) = (seed.p() as u32, seed.n);
-        Some(Span { p, n, low, high })
+        let mut branch = [low.passed, high.passed].concat();
+        branch.sort_by(|a, b| a.0.total_cmp(&b.0));
+        branch.dedup_by(|a, b| a.0 == b.0);
+        Some(Span {
+            p: seed.p() as u32,
+            n: seed.n,
+            low: low.edge,
+            high: high.edge,
+            branch,
+        })
     }
 }
 
@@ -219,14 +298,13 @@ fn single_impact(machine: &Machine, setting: Setting, n: u32) -> Option<Periodic
     .solve(machine)
 }
 
-/// The orbit on which a cell's last impacts close, stable or not, with the fewest p and n that it
-/// is. `None`: Newton's method finds none near them.
-pub fn orbit_of_cell(
+/// The p impacts that follow n drive periods after a cell's end.
+fn last_impacts(
     machine: &Machine,
     (eta, rho): (f64, f64),
     end: &End,
     (p, n): (u32, u32),
-) -> Option<PeriodicOrbit> {
+) -> Option<Vec<ModelImpact>> {
     let setting = Setting {
         phase: end.phase,
         ..Setting::new(eta, rho)
@@ -239,6 +317,22 @@ pub fn orbit_of_cell(
         impacts.push(*i);
     });
     let last = impacts.len().checked_sub(p as usize)?;
-    let orbit = PeriodicOrbit::from_impacts(&impacts[last..], setting, n)?.solve(machine)?;
+    Some(impacts.split_off(last))
+}
+
+/// The orbit on which a cell's last impacts close, stable or not, with the fewest p and n that it
+/// is. `None`: Newton's method finds none near them.
+pub fn orbit_of_cell(
+    machine: &Machine,
+    (eta, rho): (f64, f64),
+    end: &End,
+    motion: (u32, u32),
+) -> Option<PeriodicOrbit> {
+    let impacts = last_impacts(machine, (eta, rho), end, motion)?;
+    let setting = Setting {
+        phase: end.phase,
+        ..Setting::new(eta, rho)
+    };
+    let orbit = PeriodicOrbit::from_impacts(&impacts, setting, motion.1)?.solve(machine)?;
     Some(orbit.reduced())
 }
