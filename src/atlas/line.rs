@@ -210,6 +210,9 @@ impl Line<'_> {
     /// orbits into another, so its ends are told apart from the known ones by their speed.
     fn cell_seeds(&self, maps: &[Vec<End>]) -> Vec<CellSeed> {
         let count = self.values().len();
+        let grid = &self.settings.grid;
+        // a line by itself affords it for each cell
+        let alone = grid.eta.len() == 1 || grid.rho.len() == 1;
         let (mut middles, mut others) = (Vec::new(), Vec::new());
         for map in maps {
             let at = |k: usize| map[self.cell(k)];
@@ -224,7 +227,7 @@ impl Line<'_> {
                         motion,
                         k: i,
                         end: at(i),
-                        told_apart: i == first || i == middle || i + 1 == k,
+                        told_apart: alone || i == first || i == middle || i + 1 == k,
                     };
                     middles.push(seed(middle));
                     others.extend((first..k).filter(|&i| i != middle).map(seed));
