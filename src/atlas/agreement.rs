@@ -1,25 +1,112 @@
-//! Curves against brute force: every cell of the maps is looked up in the regions of the curves.
+//! Curves against brute force: every cell of the maps is looked up in the regions of the curves,
+//! and each that lies in none is told why.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::brute::{WAYS, Way};
+use super::line::orbit_of_cell;
 use super::map::{CellMotion, End};
 use super::regions::{AtlasSettings, Slice};
 use super::resting::RestingSlice;
-use crate::model::{Machine, rho_grazing};
+use crate::model::{Existence, Machine, rho_grazing};
 
 /// How well the curves and the brute-force maps agree.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Agreement {
     /// Cells whose motion the curves can judge.
     pub compared: usize,
-    /// Cells whose motion lies in no region of the curves: (η, ρ, motion).
-    pub differing: Vec<(f64, f64, CellMotion)>,
+    /// Cells whose motion lies in no region of the curves.
+    pub differing: Vec<Differing>,
     /// Periodic cells beyond the largest p or n.
     pub beyond: usize,
     /// Cells without a period.
     pub aperiodic: usize,
+}
+
+/// A cell whose motion lies in no region of the curves.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Differing {
+    /// η
+    pub eta: f64,
+    /// ρ
+    pub rho: f64,
+    /// The map that it belongs to.
+    pub way: Way,
+    /// What brute force took it for.
+    pub motion: CellMotion,
+    /// Why.
+    pub cause: Cause,
+}
+
+/// Why a cell's motion lies in no region of the curves.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Cause {
+    /// The motion is there and stable: the curves miss a region.
+    NoRegion,
+    /// The motion converges to one of fewer impacts, too slowly for its watch: it lies just
+    /// before that one's period doubling.
+    Converges {
+        /// Impacts in a period of the motion that it converges to.
+        p: u32,
+        /// Drive periods in it.
+        n: u32,
+    },
+    /// The orbit on which the cell closes is unstable: a transient that stays near it for longer
+    /// than the watch.
+    Unstable {
+        /// Largest modulus of its multipliers.
+        multiplier: f64,
+    },
+    /// No orbit lies where the cell closes: a transient.
+    NoOrbit,
+}
+
+/// The slices by the bits of their η.
+type ByEta<'a, T> = BTreeMap<u64, Vec<&'a T>>;
+
+fn by_eta<T>(all: &[T], eta: impl Fn(&T) -> f64) -> ByEta<'_, T> {
+    let mut sorted: ByEta<'_, T> = BTreeMap::new();
+    for s in all {
+        sorted.entry(eta(s).to_bits()).or_default().push(s);
+    }
+    sorted
+}
+
+/// All regions of the curves.
+struct Regions<'a> {
+    machine: &'a Machine,
+    moving: ByEta<'a, Slice>,
+    resting: ByEta<'a, RestingSlice>,
+}
+
+impl Regions<'_> {
+    /// Whether a motion lies in one of its regions; `None`: the curves do not judge it.
+    fn hold(&self, (eta, rho): (f64, f64), motion: CellMotion) -> Option<bool> {
+        let (column, grazing) = (eta.to_bits(), rho_grazing(self.machine, eta));
+        match motion {
+            CellMotion::Impactless => Some(rho >= grazing * (1.0 - 1e-9)),
+            CellMotion::Joined => Some(rho < 0.0),
+            CellMotion::Beat | CellMotion::Chaotic => None,
+            CellMotion::Periodic {
+                p,
+                n,
+                dead_zone: true,
+                ..
+            } => {
+                let there = self.resting.get(&column).into_iter().flatten();
+                let (p, n) = (p.into(), n.into());
+                Some(there.into_iter().any(|s| s.is(p, n) && s.holds(rho)))
+            }
+            CellMotion::Periodic { p, n, .. } => {
+                let there = self.moving.get(&column).into_iter().flatten();
+                let is = |s: &Slice| (s.p, s.n) == (p.into(), n.into());
+                Some(there.into_iter().any(|s| is(s) && s.holds(rho)))
+            }
+        }
+    }
 }
 
 /// Look every cell of the maps up in the regions of the curves.
@@ -30,47 +117,74 @@ pub fn compare(
     slices: &[Slice],
     resting: &[RestingSlice],
 ) -> Agreement {
-    let mut by_eta: BTreeMap<u64, Vec<&Slice>> = BTreeMap::new();
-    for s in slices {
-        by_eta.entry(s.eta.to_bits()).or_default().push(s);
-    }
-    let mut rest_by_eta: BTreeMap<u64, Vec<&RestingSlice>> = BTreeMap::new();
-    for s in resting {
-        rest_by_eta.entry(s.eta.to_bits()).or_default().push(s);
-    }
+    let regions = Regions {
+        machine,
+        moving: by_eta(slices, |s| s.eta),
+        resting: by_eta(resting, |s| s.eta),
+    };
     let mut agreement = Agreement::default();
-    for (i, end) in maps.iter().flat_map(|map| map.iter().enumerate()) {
-        let (eta, rho) = settings.grid.at(i);
-        let found = match end.motion {
-            CellMotion::Impactless => rho >= rho_grazing(machine, eta) * (1.0 - 1e-9),
-            CellMotion::Joined => rho < 0.0,
-            CellMotion::Beat | CellMotion::Chaotic => {
-                agreement.aperiodic += 1;
-                continue;
-            }
-            CellMotion::Periodic { p, n, .. }
-                if u32::from(p) > settings.largest_p || u32::from(n) > settings.largest_n =>
-            {
+    for (map, way) in maps.iter().zip(WAYS) {
+        for (i, end) in map.iter().enumerate() {
+            if is_beyond(settings, end.motion) {
                 agreement.beyond += 1;
                 continue;
             }
-            CellMotion::Periodic {
-                p,
-                n,
-                dead_zone: true,
-                ..
-            } => rest_by_eta
-                .get(&eta.to_bits())
-                .is_some_and(|l| l.iter().any(|s| s.is(p.into(), n.into()) && s.holds(rho))),
-            CellMotion::Periodic { p, n, .. } => by_eta.get(&eta.to_bits()).is_some_and(|l| {
-                l.iter()
-                    .any(|s| s.p == u32::from(p) && s.n == u32::from(n) && s.holds(rho))
-            }),
-        };
-        agreement.compared += 1;
-        if !found {
-            agreement.differing.push((eta, rho, end.motion));
+            let (eta, rho) = settings.grid.at(i);
+            let Some(held) = regions.hold((eta, rho), end.motion) else {
+                agreement.aperiodic += 1;
+                continue;
+            };
+            agreement.compared += 1;
+            if !held {
+                agreement.differing.push(Differing {
+                    eta,
+                    rho,
+                    way,
+                    motion: end.motion,
+                    cause: cause(machine, (eta, rho), end),
+                });
+            }
         }
     }
     agreement
+}
+
+fn is_beyond(settings: &AtlasSettings, motion: CellMotion) -> bool {
+    match motion {
+        CellMotion::Periodic { p, n, .. } => {
+            u32::from(p) > settings.largest_p || u32::from(n) > settings.largest_n
+        }
+        _ => false,
+    }
+}
+
+/// Why a cell lies in no region, by the orbit on which its last impacts close.
+fn cause(machine: &Machine, at: (f64, f64), end: &End) -> Cause {
+    let CellMotion::Periodic {
+        p,
+        n,
+        dead_zone: false,
+        ..
+    } = end.motion
+    else {
+        return Cause::NoRegion;
+    };
+    let motion = (u32::from(p), u32::from(n));
+    let orbit = orbit_of_cell(machine, at, end, motion);
+    let Some(orbit) = orbit.filter(|o| o.existence(machine) == Existence::Exists) else {
+        return Cause::NoOrbit;
+    };
+    let multiplier = orbit
+        .multipliers(machine)
+        .first()
+        .map_or(f64::NAN, |m| m.norm());
+    let found = (orbit.p() as u32, orbit.n);
+    if !(multiplier < 1.0) {
+        Cause::Unstable { multiplier }
+    } else if found != motion {
+        let (p, n) = found;
+        Cause::Converges { p, n }
+    } else {
+        Cause::NoRegion
+    }
 }

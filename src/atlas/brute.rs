@@ -2,13 +2,15 @@
 //! falling η, so that coexisting motions show.
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
-use super::kernel::{Cell, Feed, Outcome};
-use super::map::{End, Kernel, MapGrid, MapSettings, Start, UnitMass, check, march_from, run};
+use super::kernel::{Cell, Feed, Outcome, run};
+use super::map::{End, Kernel, MapGrid, MapSettings, Start, UnitMass, check, march_from};
 use crate::model::{Initial, Machine, ModelError};
 
 /// How the cells of a map are started.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Way {
     /// Every cell from the settings' start.
     FromStart,
@@ -16,6 +18,17 @@ pub enum Way {
     Rising,
     /// Each from its neighbour of higher η.
     Falling,
+}
+
+impl Way {
+    /// The name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::FromStart => "from_start",
+            Self::Rising => "rising",
+            Self::Falling => "falling",
+        }
+    }
 }
 
 /// All ways, in the order of [`brute_maps`].

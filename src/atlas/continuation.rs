@@ -242,12 +242,26 @@ impl Follower<'_> {
                 None => (too_far, kind) = (middle, EdgeKind::Lost),
             }
         }
-        // at the doubling where it was born an orbit is twice its half
-        if kind == EdgeKind::SaddleNode && orbit.reduced_within(1e-3).n < orbit.n {
-            kind = EdgeKind::PeriodDoubling;
-        }
-        Edge { kind, orbit }
+        named(kind, orbit)
     }
+}
+
+/// An edge by what it is: at the doubling where it was born an orbit is twice its half, and
+/// neither the multiplier +1 nor a continuation that breaks off there is more than that.
+fn named(kind: EdgeKind, orbit: PeriodicOrbit) -> Edge {
+    let unclear = matches!(kind, EdgeKind::SaddleNode | EdgeKind::Lost);
+    let born = unclear && orbit.reduced_within(1e-3).n < orbit.n;
+    let kind = if born { EdgeKind::PeriodDoubling } else { kind };
+    Edge { kind, orbit }
+}
+
+/// An edge and the branch up to it.
+#[derive(Debug, Clone)]
+pub struct Followed {
+    /// What ends the motion, and where.
+    pub edge: Edge,
+    /// The parameter and the greatest closing speed of the orbits on the way, the edge's last.
+    pub passed: Vec<(f64, f64)>,
 }
 
 /// Continue a stable orbit in one direction (+1: rising parameter) to its edge.
@@ -257,61 +271,70 @@ pub fn follow(
     along: Along,
     direction: f64,
     walk: &Walk,
-) -> Edge {
+) -> Followed {
     let follower = Follower {
         machine,
         along,
         direction,
     };
-    let n = 2 * seed.p() + 1;
-    let mut towards = DVector::zeros(n);
-    towards[n - 1] = direction;
-    let lost = |orbit: &PeriodicOrbit| Edge {
-        kind: EdgeKind::Lost,
-        orbit: orbit.clone(),
-    };
-    let Some(tangent) = follower.tangent(seed, &towards) else {
-        return lost(seed);
-    };
-    let mut point = Point {
-        orbit: seed.clone(),
-        tangent,
-    };
-    let mut ds = 0.1 * walk.longest;
-    for _ in 0..walk.steps {
-        let Some(next) = follower.at(&point, ds) else {
-            ds *= 0.4;
-            if ds < walk.resolution {
-                return lost(&point.orbit);
-            }
-            continue;
+    let mut passed = Vec::new();
+    let edge = follower.walk(seed, walk, &mut passed);
+    passed.push((along.of(&edge.orbit), edge.orbit.greatest_speed()));
+    Followed { edge, passed }
+}
+
+impl Follower<'_> {
+    /// The branch's edge; parameter and greatest closing speed of every orbit on the way.
+    fn walk(&self, seed: &PeriodicOrbit, walk: &Walk, passed: &mut Vec<(f64, f64)>) -> Edge {
+        let n = 2 * seed.p() + 1;
+        let mut towards = DVector::zeros(n);
+        towards[n - 1] = self.direction;
+        let lost = |orbit: &PeriodicOrbit| named(EdgeKind::Lost, orbit.clone());
+        let Some(tangent) = self.tangent(seed, &towards) else {
+            return lost(seed);
         };
-        if let Some(kind) = follower.ends(&point, &next) {
-            return follower.locate(&point, ds, kind, walk.resolution);
-        }
-        let value = along.of(&next);
-        if value <= walk.least || value >= walk.greatest {
-            return Edge {
-                kind: EdgeKind::Bound,
-                orbit: next,
-            };
-        }
-        let Some(tangent) = follower.tangent(&next, &point.tangent) else {
-            return lost(&next);
-        };
-        // a sharp turn asks for shorter steps
-        let turn = tangent.dot(&point.tangent);
-        ds = if turn < 0.9 {
-            0.5 * ds
-        } else {
-            (1.5 * ds).min(walk.longest)
-        };
-        point = Point {
-            orbit: next,
+        let mut point = Point {
+            orbit: seed.clone(),
             tangent,
         };
+        let mut ds = 0.1 * walk.longest;
+        for _ in 0..walk.steps {
+            passed.push((self.along.of(&point.orbit), point.orbit.greatest_speed()));
+            let Some(next) = self.at(&point, ds) else {
+                passed.pop();
+                ds *= 0.4;
+                if ds < walk.resolution {
+                    return lost(&point.orbit);
+                }
+                continue;
+            };
+            if let Some(kind) = self.ends(&point, &next) {
+                return self.locate(&point, ds, kind, walk.resolution);
+            }
+            let value = self.along.of(&next);
+            if value <= walk.least || value >= walk.greatest {
+                return Edge {
+                    kind: EdgeKind::Bound,
+                    orbit: next,
+                };
+            }
+            let Some(tangent) = self.tangent(&next, &point.tangent) else {
+                return lost(&next);
+            };
+            // a sharp turn asks for shorter steps
+            let turn = tangent.dot(&point.tangent);
+            ds = if turn < 0.9 {
+                0.5 * ds
+            } else {
+                (1.5 * ds).min(walk.longest)
+            };
+            point = Point {
+                orbit: next,
+                tangent,
+            };
+        }
+        lost(&point.orbit)
     }
-    lost(&point.orbit)
 }
 
 /// The stable orbit of doubled period that branches from an orbit at its period doubling (in

@@ -7,6 +7,7 @@ pub mod continuation;
 pub mod curves;
 pub mod kernel;
 pub mod lanes;
+pub mod line;
 pub mod lyapunov;
 pub mod map;
 pub mod portrait;

@@ -2,21 +2,19 @@
 //! plane, column by column, each followed to both its edges; with the boundaries as curves and
 //! a brute-force map beside it.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::agreement::{Agreement, compare};
 use super::brute::{Maps, Way, brute_map, brute_maps};
-use super::continuation::{Along, Edge, EdgeKind, Walk, branch_at_doubling, follow};
+use super::continuation::{Along, Edge};
 use super::curves::{Curve, curves};
-use super::map::{CellMotion, End, MapGrid, MapSettings, clear_of};
+use super::line::{Line, Span};
+use super::map::{CellMotion, End, MapGrid, MapSettings};
 use super::resting::{RestingSlice, resting_slices};
-use crate::model::orbit::stable_orbit;
-use crate::model::{
-    Existence, Initial, Machine, ModelError, ModelImpact, PeriodicOrbit, Setting, Simulator, rho_s2,
-};
+use crate::model::{Machine, ModelError};
 
 /// What an atlas covers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -172,153 +170,42 @@ pub fn slices_at(
     Ok(column(machine, &settings, &[map], 0))
 }
 
-/// All slices of one column: from closed forms, from the maps' cells, from period doublings.
+/// All slices of one column.
 fn column(machine: &Machine, settings: &AtlasSettings, maps: &[Vec<End>], i: usize) -> Vec<Slice> {
+    let line = Line {
+        machine,
+        settings,
+        along: Along::Clearance,
+        number: i,
+    };
     let eta = settings.grid.eta[i];
-    let mut seeds: VecDeque<PeriodicOrbit> = closed_form_seeds(machine, eta, settings.largest_n);
-    let cells = cell_seeds(settings, maps, i);
-    let mut slices: Vec<Slice> = Vec::new();
-    let mut cells = cells.into_iter();
-    loop {
-        let seed = match seeds.pop_front() {
-            Some(seed) => seed,
-            None => match cells.next() {
-                Some((p, n, rho, end)) => {
-                    if known(&slices, p, n, rho) {
-                        continue;
-                    }
-                    match orbit_of_cell(machine, (eta, rho), &end, (p, n)) {
-                        Some(orbit) => orbit,
-                        None => continue,
-                    }
-                }
-                None => return slices,
-            },
-        };
-        if known(&slices, seed.p() as u32, seed.n, seed.rho) {
-            continue;
-        }
-        if let Some(slice) = slice(machine, settings, &seed) {
-            for edge in [&slice.low, &slice.high] {
-                let fits = 2 * slice.p <= settings.largest_p && 2 * slice.n <= settings.largest_n;
-                if edge.kind == EdgeKind::PeriodDoubling && fits {
-                    seeds.extend(branch_at_doubling(machine, &edge.orbit, Along::Clearance));
-                }
-            }
-            slices.push(slice);
-        }
-    }
-}
-
-fn known(slices: &[Slice], p: u32, n: u32, rho: f64) -> bool {
-    slices.iter().any(|s| s.p == p && s.n == n && s.holds(rho))
-}
-
-/// z = 1/n just inside its saddle-node.
-fn closed_form_seeds(machine: &Machine, eta: f64, largest_n: u32) -> VecDeque<PeriodicOrbit> {
-    let seed = |n: u32| {
-        let s2 = rho_s2(machine, eta, n)?;
-        let setting = Setting::new(eta, s2.rho - 1e-4 * (0.1 + s2.rho.abs()));
-        let orbit = stable_orbit(machine, setting, n).ok()??;
-        let t = orbit.phase_at_impact / eta;
-        let (times, speeds) = (vec![t], vec![orbit.closing_speed]);
-        PeriodicOrbit {
-            n,
-            eta,
-            rho: setting.clearance,
-            times,
-            speeds,
-        }
-        .solve(machine)
+    let slice = |span: Span| Slice {
+        eta,
+        p: span.p,
+        n: span.n,
+        low: span.low,
+        high: span.high,
     };
-    (1..=largest_n).filter_map(seed).collect()
+    line.spans(maps).into_iter().map(slice).collect()
 }
 
-type CellSeed = (u32, u32, f64, End);
-
-/// The middle cell of every run of equal periodic cells in a column of each map.
-fn cell_seeds(settings: &AtlasSettings, maps: &[Vec<End>], i: usize) -> Vec<CellSeed> {
-    let (columns, rho) = (settings.grid.eta.len(), &settings.grid.rho);
-    let mut seeds = Vec::new();
-    for map in maps {
-        let at = |k: usize| map[k * columns + i];
-        let mut first = 0;
-        for k in 1..=rho.len() {
-            if k < rho.len() && at(k).motion == at(first).motion {
-                continue;
-            }
-            let middle = (first + k - 1) / 2;
-            if let CellMotion::Periodic {
-                p,
-                n,
-                dead_zone: false,
-                ..
-            } = at(middle).motion
-            {
-                let (p, n) = (u32::from(p), u32::from(n));
-                if p <= settings.largest_p && n <= settings.largest_n {
-                    seeds.push((p, n, rho[middle], at(middle)));
-                }
-            }
-            first = k;
-        }
-    }
-    seeds
-}
-
-/// The orbit that a cell's end lies on.
-fn orbit_of_cell(
+/// All motions at one ρ with their edges along η: see [`atlas`]; the settings' rows are ignored.
+///
+/// # Errors
+/// [`ModelError`] where a parameter is out of range.
+pub fn spans_at_clearance(
     machine: &Machine,
-    (eta, rho): (f64, f64),
-    end: &End,
-    (p, n): (u32, u32),
-) -> Option<PeriodicOrbit> {
-    let setting = Setting {
-        phase: end.phase,
-        ..Setting::new(eta, rho)
+    rho: f64,
+    settings: &AtlasSettings,
+) -> Result<Vec<Span>, ModelError> {
+    let mut settings = settings.clone();
+    settings.grid.rho = vec![rho];
+    let maps = brute_maps(machine, &settings.grid, &settings.map)?;
+    let line = Line {
+        machine,
+        settings: &settings,
+        along: Along::FrequencyRatio,
+        number: 0,
     };
-    let initial: Initial = clear_of(machine, rho, end.initial);
-    let mut simulator = Simulator::new(machine, setting, initial).ok()?;
-    let mut impacts: Vec<ModelImpact> = Vec::new();
-    let periods = f64::from(2 * n + 1);
-    simulator.advance(periods * setting.period(), &mut |i: &ModelImpact| {
-        impacts.push(*i);
-    });
-    let last = impacts.len().checked_sub(p as usize)?;
-    let orbit = PeriodicOrbit::from_impacts(&impacts[last..], setting, n)?
-        .solve(machine)?
-        .reduced();
-    let good = orbit.existence(machine) == Existence::Exists && orbit.is_stable(machine);
-    good.then_some(orbit)
-}
-
-fn slice(machine: &Machine, settings: &AtlasSettings, seed: &PeriodicOrbit) -> Option<Slice> {
-    let rho = &settings.grid.rho;
-    let (first, last) = (rho.first()?, rho.last()?);
-    let walk = Walk {
-        least: *first,
-        greatest: *last,
-        resolution: 1e-7,
-        ..Walk::default()
-    };
-    let edge = |direction| follow(machine, seed, Along::Clearance, direction, &walk);
-    let (low, high) = (edge(-1.0), edge(1.0));
-    let (eta, p, n) = (seed.eta, seed.p() as u32, seed.n);
-    Some(if low.orbit.rho <= high.orbit.rho {
-        Slice {
-            eta,
-            p,
-            n,
-            low,
-            high,
-        }
-    } else {
-        Slice {
-            eta,
-            p,
-            n,
-            low: high,
-            high: low,
-        }
-    })
+    Ok(line.spans(&maps))
 }

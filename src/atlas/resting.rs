@@ -147,15 +147,7 @@ pub fn resting_slices(
     let Some(unit) = UnitMass::of(machine) else {
         return vec![Vec::new(); grid.eta.len()];
     };
-    let settings = MapSettings {
-        watch: Watch {
-            settle_periods: f64::from(2 * longest + 1),
-            watch_periods: 1.0,
-            ..Watch::default()
-        },
-        kernel,
-        ..MapSettings::default()
-    };
+    let settings = release_settings(longest, kernel);
     let releases = Releases {
         unit,
         settings: &settings,
@@ -181,6 +173,59 @@ pub fn resting_slices(
         columns[column].push(finished(slice, &ends, length));
     }
     columns
+}
+
+/// The η between the first and the last of a rising list at which the resting motion of p impacts
+/// in n drive periods begins or ends at a clearance, to 1e-7, and whether it lies below that η.
+pub fn resting_etas(
+    machine: &Machine,
+    rho: f64,
+    (p, n): (u32, u32),
+    etas: &[f64],
+    kernel: Option<Kernel>,
+) -> Vec<(f64, bool)> {
+    let Some(unit) = UnitMass::of(machine) else {
+        return Vec::new();
+    };
+    let settings = release_settings(n, kernel);
+    let releases = Releases {
+        unit,
+        settings: &settings,
+    };
+    let shows = |etas: &[f64]| -> Vec<bool> {
+        let points: Vec<(f64, f64)> = etas.iter().map(|&eta| (eta, rho)).collect();
+        let labels = releases.labels(&points);
+        labels.iter().map(|label| *label == Some((p, n))).collect()
+    };
+    let there = shows(etas);
+    let change = |k: &usize| there[*k - 1] != there[*k];
+    let edge = |k: usize| {
+        let (mut low, mut high) = (etas[k - 1], etas[k]);
+        while high - low > 1e-7 {
+            let middle = 0.5 * (low + high);
+            let side = if shows(&[middle])[0] == there[k - 1] {
+                &mut low
+            } else {
+                &mut high
+            };
+            *side = middle;
+        }
+        (if there[k - 1] { low } else { high }, there[k - 1])
+    };
+    (1..etas.len()).filter(change).map(edge).collect()
+}
+
+/// How a motion is marched from its release: settled after at most `longest` drive periods.
+fn release_settings(longest: u32, kernel: Option<Kernel>) -> MapSettings {
+    MapSettings {
+        watch: Watch {
+            settle_periods: f64::from(2 * longest + 1),
+            watch_periods: 1.0,
+            ..Watch::default()
+        },
+        kernel,
+        ..MapSettings::default()
+    }
 }
 
 /// Tell every run of rows of one column with the same label.

@@ -36,6 +36,8 @@ pub struct AtlasPart {
     pub version: String,
     /// The whole atlas' request.
     pub request: AtlasRequest,
+    /// The whole as a study to be replayed, as it is written; empty where there is none.
+    pub study: String,
     /// This part's number, 0 ≤ number < of.
     pub number: usize,
     /// Number of parts.
@@ -90,7 +92,7 @@ fn rows(count: usize, number: usize, of: usize) -> Vec<usize> {
     (number..count).step_by(of.max(1)).collect()
 }
 
-/// Compute one part.
+/// Compute one part; what study it belongs to is left to the caller.
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range, or the part's number is not below `of`.
@@ -114,6 +116,7 @@ pub fn part(request: &AtlasRequest, number: usize, of: usize) -> Result<AtlasPar
     Ok(AtlasPart {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         request: request.clone(),
+        study: String::new(),
         number,
         of,
         maps: brute_maps(&request.machine, &own, map)?,
@@ -132,7 +135,8 @@ pub fn merge(parts: &[AtlasPart]) -> Result<Maps, MergeError> {
     let mut seen = vec![false; of];
     for part in parts {
         let number = part.number;
-        let same = part.request == first.request && part.version == first.version;
+        let alike = part.request == first.request && part.study == first.study;
+        let same = alike && part.version == first.version;
         if !same || part.of != of || number >= of {
             return Err(MergeError::Foreign {
                 number,

@@ -4,10 +4,10 @@
 use clap::{Args, ValueEnum};
 
 use super::machine::{MachineArgs, WatchArgs, range, refused};
-use super::theory::OutArgs;
+use super::theory::{OutArgs, written};
 use super::{Exit, Failure, Voice, interrupt};
 use crate::atlas::map::{Kernel, MapSettings};
-use crate::atlas::shard::{AtlasRequest, part};
+use crate::atlas::shard::{AtlasPart, AtlasRequest, part};
 use crate::output::{Lock, write_bytes};
 use crate::pipeline::theory::Study;
 use crate::pipeline::theory::plan::RegionsPlan;
@@ -45,9 +45,16 @@ pub struct Atlas {
     /// Compute only part I of N, I from 0, for `impactid merge`
     #[arg(long, value_name = "I/N", value_parser = shard)]
     shard: Option<(usize, usize)>,
+    /// Share the work among the ranks of `mpirun`; the first leaves the results
+    #[cfg(feature = "mpi")]
+    #[arg(long, conflicts_with_all = ["shard", "resume"])]
+    mpi: bool,
     #[command(flatten)]
     out: OutArgs,
 }
+
+/// The atlas' name in its study and in its files.
+pub const NAME: &str = "atlas";
 
 /// Instruction sets of the marching kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -89,10 +96,14 @@ impl Atlas {
         let title = "Regions of existence and stability of all motions";
         let mut study = self.machine.study(title)?;
         let plan = self.plan()?;
+        study.regions.insert(NAME.into(), plan.clone());
         if let Some(shard) = self.shard {
             return self.part(&study, &plan, shard, voice);
         }
-        study.regions.insert("atlas".into(), plan);
+        #[cfg(feature = "mpi")]
+        if self.mpi {
+            return super::ranks::go(&study, &plan, &self.out, voice);
+        }
         self.out.study(&study, "atlas", voice)
     }
 
@@ -136,12 +147,28 @@ impl Atlas {
         // many parts of an array of jobs may share the folder: the lock is the part's own
         let _lock = Lock::take(&self.out.folder().join(format!(".part-{number}")))?;
         interrupt::watch(self.out.folder().to_path_buf());
-        let request = AtlasRequest::new(study.machine(), plan.settings());
-        let part = part(&request, number, of).map_err(|e| refused(&e))?;
+        let part = computed(study, plan, (number, of))?;
         write_bytes(&file, &serde_json::to_vec(&part).unwrap_or_default())?;
         drop(_lock);
         let _ = std::fs::remove_dir(self.out.folder().join(format!(".part-{number}")));
         voice.say(&format!("{}; next: impactid merge", file.display()));
         Ok(Exit::Done)
     }
+}
+
+/// A part of an atlas, with the study of the whole.
+///
+/// # Errors
+/// [`Failure`] where a parameter is out of range.
+pub fn computed(
+    study: &Study,
+    plan: &RegionsPlan,
+    (number, of): (usize, usize),
+) -> Result<AtlasPart, Failure> {
+    let request = AtlasRequest::new(study.machine(), plan.settings());
+    let part = part(&request, number, of).map_err(|e| refused(&e))?;
+    Ok(AtlasPart {
+        study: written(study)?,
+        ..part
+    })
 }

@@ -8,10 +8,11 @@ use super::voice::print;
 use super::{Exit, Failure, Voice};
 use crate::atlas::continuation::{Edge, EdgeKind};
 use crate::atlas::map::{MapGrid, MapSettings};
-use crate::atlas::regions::{AtlasSettings, slices_at};
-use crate::atlas::resting::{RestingEdge, resting_slices};
+use crate::atlas::regions::{AtlasSettings, slices_at, spans_at_clearance};
+use crate::atlas::resting::{RestingEdge, resting_etas, resting_slices};
 use crate::model::boundary::{
-    BoundaryPoint, etas_grazing, etas_s1, etas_s2, rho_grazing, rho_joined, rho_s1, rho_s2,
+    BoundaryPoint, etas_grazing, etas_joined, etas_s1, etas_s2, rho_grazing, rho_joined, rho_s1,
+    rho_s2,
 };
 use crate::model::{Machine, Setting};
 
@@ -30,7 +31,7 @@ pub struct Boundary {
     /// Frequency ratio η at which the clearance ρ is asked for
     #[arg(long, value_name = "ETA", required_unless_present = "rho")]
     eta: Option<f64>,
-    /// Clearance ρ at which η is asked for (s2 and s1 of z = 1/n, grazing)
+    /// Clearance ρ at which η is asked for, up to η = 2.5 n
     #[arg(
         long,
         value_name = "RHO",
@@ -71,10 +72,16 @@ const EXAMPLE: &str = "\
 Example:
   impactid boundary --kind s2 --motion 1/1 --restitution 0.9 --damping-ratio 0.07 --eta 1.3 --json
   impactid boundary --kind dead-zone --motion 1j --restitution 0 --damping-ratio 0.002 --eta 0.8
+  impactid boundary --kind s1 --motion 2/1 --restitution 0.9 --damping-ratio 0.07 --rho=-0.3
 
 `valid` tells whether the boundary is one that a machine shows: the marginal orbit closes, meets no
 further contact, opens no dead zone, and no other multiplier has left the unit circle. Exit code 1:
 the motion has no such boundary there.";
+
+/// Least η that is searched for a point at a clearance.
+const LEAST_ETA: f64 = 0.05;
+/// Places between it and the greatest at which motions are simulated.
+const COLUMNS: usize = 600;
 
 impl Boundary {
     /// Print the point.
@@ -117,55 +124,102 @@ impl Boundary {
     /// Edges of a general p/n, by continuation from orbits that simulation finds.
     fn followed(&self, machine: &Machine, eta: f64) -> Result<Vec<Value>, Failure> {
         let (p, n, dead_zone) = self.motion;
-        let wanted = match self.kind {
-            Kind::S2 => EdgeKind::SaddleNode,
-            Kind::S1 => EdgeKind::PeriodDoubling,
-            Kind::FurtherImpact | Kind::Grazing => EdgeKind::Grazing,
-            Kind::DeadZone | Kind::Joined => EdgeKind::DeadZone,
-        };
         let bottom = 1.05 * rho_joined(machine, eta);
         let top = 1.1 * (rho_grazing(machine, eta)).max(1.0) + 1.0;
-        let settings = AtlasSettings {
-            grid: MapGrid::even((eta, eta, 1), (bottom, top, 400)),
-            largest_p: p,
-            largest_n: n,
-            map: MapSettings::default(),
-        };
+        let settings = self.settings(MapGrid::even((eta, eta, 1), (bottom, top, 400)));
         let mut points = Vec::new();
         if self.kind == Kind::DeadZone {
             points = resting(machine, &settings, (p, n));
         }
         if !dead_zone {
             let slices = slices_at(machine, eta, &settings).map_err(|e| refused(&e))?;
-            let edges = slices
-                .iter()
-                .filter(|s| (s.p, s.n) == (p, n))
-                .flat_map(|s| [(&s.low, "low"), (&s.high, "high")])
-                .filter(|(edge, _)| edge.kind == wanted);
-            points.extend(edges.map(|(edge, side)| followed_edge(edge, side)));
+            let own = slices.iter().filter(|s| (s.p, s.n) == (p, n));
+            points.extend(self.edges(own.map(|s| (&s.low, &s.high))));
         }
         Ok(points)
     }
 
+    /// The same along η.
+    fn followed_at_rho(&self, machine: &Machine, rho: f64) -> Result<Vec<Value>, Failure> {
+        let (p, n, dead_zone) = self.motion;
+        let grid = MapGrid::even((LEAST_ETA, self.greatest_eta(), COLUMNS), (rho, rho, 1));
+        let mut points = Vec::new();
+        if self.kind == Kind::DeadZone {
+            let etas = resting_etas(machine, rho, (p, n), &grid.eta, None);
+            points.extend(etas.into_iter().map(|(eta, below)| {
+                let side = if below { "high" } else { "low" };
+                of_resting((rho, eta), side, (p, n))
+            }));
+        }
+        if !dead_zone {
+            let settings = self.settings(grid);
+            let spans = spans_at_clearance(machine, rho, &settings).map_err(|e| refused(&e))?;
+            let own = spans.iter().filter(|s| (s.p, s.n) == (p, n));
+            points.extend(self.edges(own.map(|s| (&s.low, &s.high))));
+        }
+        let eta = |v: &Value| v["eta"].as_f64().unwrap_or(f64::NAN);
+        points.sort_by(|a, b| eta(a).total_cmp(&eta(b)));
+        Ok(points)
+    }
+
+    /// The greatest η that is searched for a point at a clearance.
+    fn greatest_eta(&self) -> f64 {
+        2.5 * f64::from(self.motion.1)
+    }
+
+    fn settings(&self, grid: MapGrid) -> AtlasSettings {
+        AtlasSettings {
+            grid,
+            largest_p: self.motion.0,
+            largest_n: self.motion.1,
+            map: MapSettings::default(),
+        }
+    }
+
+    /// The edges of the kind asked for.
+    fn edges<'a>(&self, all: impl Iterator<Item = (&'a Edge, &'a Edge)>) -> Vec<Value> {
+        let wanted = match self.kind {
+            Kind::S2 => EdgeKind::SaddleNode,
+            Kind::S1 => EdgeKind::PeriodDoubling,
+            Kind::FurtherImpact | Kind::Grazing => EdgeKind::Grazing,
+            Kind::DeadZone | Kind::Joined => EdgeKind::DeadZone,
+        };
+        all.flat_map(|(low, high)| [(low, "low"), (high, "high")])
+            .filter(|(edge, _)| edge.kind == wanted)
+            .map(|(edge, side)| followed_edge(edge, side))
+            .collect()
+    }
+
     fn at_rho(&self, machine: &Machine, rho: f64) -> Result<Vec<Value>, Failure> {
+        Setting::new(1.0, rho).check().map_err(|e| refused(&e))?;
         let (p, n, _) = self.motion;
+        let constant = machine.restitution().constant().is_some();
+        let plain = |etas: Vec<f64>| etas.into_iter().map(|eta| of_rho(rho, eta)).collect();
         let mut points: Vec<Value> = match (self.kind, p) {
-            (Kind::S2, 1) => etas_s2(machine, rho, n).iter().map(point).collect(),
-            (Kind::S1, 1) => etas_s1(machine, rho, n).iter().map(point).collect(),
-            (Kind::Grazing, _) => etas_grazing(machine, rho)
-                .into_iter()
-                .map(|eta| of_rho(rho, eta))
-                .collect(),
-            _ => {
-                return Err(Failure::new(
-                    "--rho answers for s2 and s1 of z = 1/n and for grazing",
-                    "give --eta, or --kind s2, s1 or grazing with a motion 1/n",
-                ));
-            }
+            (Kind::S2, 1) if constant => etas_s2(machine, rho, n).iter().map(point).collect(),
+            (Kind::S1, 1) if constant => etas_s1(machine, rho, n).iter().map(point).collect(),
+            (Kind::Grazing, _) => plain(etas_grazing(machine, rho)),
+            (Kind::Joined, _) => plain(etas_joined(machine, rho)),
+            _ => self.followed_at_rho(machine, rho)?,
         };
         // the one at the greatest η first: where a rising sweep jumps
         points.reverse();
         Ok(points)
+    }
+
+    /// That the motion has no such boundary there.
+    fn none(&self, name: &str, z: &str) -> String {
+        match (self.eta, self.rho, self.kind) {
+            (Some(eta), _, _) => format!("{name} of z = {z}: none at η = {eta}"),
+            (_, Some(rho), Kind::Joined) => {
+                format!("{name}: no single η at ρ = {rho}; with equal masses ρp is −1 at every η")
+            }
+            (_, Some(rho), Kind::Grazing) => format!("{name}: none at ρ = {rho} up to η = 2.5"),
+            (_, rho, _) => {
+                let (rho, top) = (rho.unwrap_or(f64::NAN), self.greatest_eta());
+                format!("{name} of z = {z}: none at ρ = {rho} up to η = {top}")
+            }
+        }
     }
 
     /// One object, the further points of the same boundary beside it under `others`.
@@ -190,14 +244,14 @@ impl Boundary {
                 );
             }
             if points.is_empty() {
-                text = format!("{name} of z = {z}: none\n");
+                text = format!("{}\n", self.none(&name, &z));
             }
             return text;
         }
-        let mut first = points
-            .first()
-            .cloned()
-            .unwrap_or_else(|| json!({"rho": null, "valid": false}));
+        let mut first = points.first().cloned().unwrap_or_else(|| {
+            let reason = self.none(&name, &z);
+            json!({"rho": self.rho, "valid": false, "eta": self.eta, "reason": reason})
+        });
         first["kind"] = json!(name);
         first["motion"] = json!(z);
         if points.len() > 1 {
@@ -226,13 +280,17 @@ fn resting(machine: &Machine, settings: &AtlasSettings, (p, n): (u32, u32)) -> V
         .flat_map(|s| [(s.low, "low", s.eta), (s.high, "high", s.eta)])
         .filter_map(|(edge, side, eta)| {
             let (rho, kind) = edge?;
-            let of_resting = json!({
-                "rho": rho, "valid": true, "eta": eta, "closing_speed": 0.0, "side": side,
-                "of": format!("{p}/{n}j"),
-            });
-            (kind == RestingEdge::DeadZone).then_some(of_resting)
+            let edge = of_resting((rho, eta), side, (p, n));
+            (kind == RestingEdge::DeadZone).then_some(edge)
         })
         .collect()
+}
+
+fn of_resting((rho, eta): (f64, f64), side: &str, (p, n): (u32, u32)) -> Value {
+    json!({
+        "rho": rho, "valid": true, "eta": eta, "closing_speed": 0.0, "side": side,
+        "of": format!("{p}/{n}j"),
+    })
 }
 
 fn point(p: &BoundaryPoint) -> Value {

@@ -57,6 +57,13 @@ impl Failure {
         }])
     }
 
+    /// All messages in one line.
+    #[cfg(feature = "mpi")]
+    pub fn text(&self) -> String {
+        let messages: Vec<&str> = self.0.iter().map(|t| t.message.as_str()).collect();
+        messages.join("; ")
+    }
+
     /// A file that could not be read or written.
     pub fn io(path: &Path, error: &std::io::Error) -> Self {
         Self::new(

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::atlas::NAME;
 use super::theory::{OutArgs, Work};
 use super::{Exit, Failure, Voice, interrupt};
 use crate::atlas::shard::{AtlasPart, merge};
@@ -29,7 +30,7 @@ Example:
   impactid merge parts/part-*.json --out atlas/
 
 A part that is missing, there twice, damaged or of another atlas is refused. The result is bit for
-bit that of `impactid atlas` without --shard.";
+bit that of `impactid atlas` without --shard, with the study.toml that replays it.";
 
 impl Merge {
     /// Put the parts together and leave the atlas.
@@ -42,31 +43,40 @@ impl Merge {
             .iter()
             .map(|path| read(path))
             .collect::<Result<_, _>>()?;
-        let maps = merge(&parts).map_err(|e| {
-            let remedy = "give every part of one atlas once, all of one --shard …/N";
-            Failure::new(e.to_string(), remedy)
-        })?;
-        let Some(first) = parts.first() else {
-            return Ok(Exit::Done);
-        };
-        let _lock = Lock::take(self.out.folder())?;
-        interrupt::watch(self.out.folder().to_path_buf());
-        voice.say(&format!(
-            "{} parts make {} cells",
-            parts.len(),
-            maps[0].len()
-        ));
-        let text = serde_json::to_string(&first.request).unwrap_or_default();
-        let work = Work {
-            folder: self.out.folder(),
-            text: &text,
-            resume: self.out.resume,
-        };
-        work.go(voice, "merge", |desk| {
-            Ok(leave(&first.request, &maps, "atlas", desk)?)
-        })?;
-        Ok(Exit::Done)
+        whole(&parts, &self.out, voice)
     }
+}
+
+/// Put parts together and leave the atlas with its study.
+///
+/// # Errors
+/// As [`Merge::go`].
+pub fn whole(parts: &[AtlasPart], out: &OutArgs, voice: Voice) -> Result<Exit, Failure> {
+    let maps = merge(parts).map_err(|e| {
+        let remedy = "give every part of one atlas once, all of one --shard …/N";
+        Failure::new(e.to_string(), remedy)
+    })?;
+    let Some(first) = parts.first() else {
+        return Ok(Exit::Done);
+    };
+    let _lock = Lock::take(out.folder())?;
+    interrupt::watch(out.folder().to_path_buf());
+    voice.say(&format!(
+        "{} parts make {} cells",
+        parts.len(),
+        maps[0].len()
+    ));
+    let text = serde_json::to_string(&first.request).unwrap_or_default();
+    let work = Work {
+        folder: out.folder(),
+        text: &text,
+        resume: out.resume,
+    };
+    work.go(voice, "merge", |desk| {
+        Ok(leave(&first.request, &maps, NAME, desk)?)
+    })?;
+    out.leave_copy(&first.study, voice)?;
+    Ok(Exit::Done)
 }
 
 fn read(path: &Path) -> Result<AtlasPart, Failure> {

@@ -17,6 +17,8 @@ mod machine;
 mod merge;
 mod plan;
 mod progress;
+#[cfg(feature = "mpi")]
+mod ranks;
 mod run;
 mod selftest;
 mod simulate;

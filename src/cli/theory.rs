@@ -42,8 +42,7 @@ impl OutArgs {
     /// # Errors
     /// [`Failure`] where a parameter is out of range or an output cannot be written.
     pub fn study(&self, study: &Study, what: &'static str, voice: Voice) -> Result<Exit, Failure> {
-        let text = toml::to_string(study)
-            .map_err(|e| Failure::new(e.to_string(), "give numbers that can be written as TOML"))?;
+        let text = written(study)?;
         let _lock = Lock::take(self.folder())?;
         interrupt::watch(self.folder().to_path_buf());
         let work = Work {
@@ -52,14 +51,32 @@ impl OutArgs {
             resume: self.resume,
         };
         work.go(voice, what, |desk| Ok(run(study, desk)?))?;
+        self.leave_copy(&text, voice)?;
+        Ok(Exit::Done)
+    }
+
+    /// Leave the study beside its results and say so.
+    ///
+    /// # Errors
+    /// [`Failure`] where it cannot be written.
+    pub fn leave_copy(&self, text: &str, voice: Voice) -> Result<(), Failure> {
         write_bytes(&self.folder().join(COPY), text.as_bytes())?;
         voice.say(&format!(
             "{} holds the results; impactid study {} --out DIR replays them",
             self.folder().display(),
             self.folder().join(COPY).display()
         ));
-        Ok(Exit::Done)
+        Ok(())
     }
+}
+
+/// A study as it is written.
+///
+/// # Errors
+/// [`Failure`] where a number has no place in TOML.
+pub fn written(study: &Study) -> Result<String, Failure> {
+    toml::to_string(study)
+        .map_err(|e| Failure::new(e.to_string(), "give numbers that can be written as TOML"))
 }
 
 /// Work in a folder, of which a text says all.

@@ -252,6 +252,15 @@ pub fn etas_grazing(machine: &Machine, rho: f64) -> Vec<f64> {
     roots(2.5, |eta| rho_grazing(machine, eta) - rho)
 }
 
+/// All η at which masses that are together begin to stay so for ever at a clearance, rising; none
+/// where ρp does not depend on η, as with equal masses.
+pub fn etas_joined(machine: &Machine, rho: f64) -> Vec<f64> {
+    if machine.y.is_none() || machine.is_symmetric() {
+        return Vec::new();
+    }
+    roots(2.5, |eta| rho_joined(machine, eta) - rho)
+}
+
 fn points_at(
     rho: f64,
     n: u32,

@@ -176,6 +176,11 @@ impl PeriodicOrbit {
         self.times.len()
     }
 
+    /// Greatest closing speed.
+    pub fn greatest_speed(&self) -> f64 {
+        self.speeds.iter().fold(0.0, |m: f64, w| m.max(*w))
+    }
+
     /// Period 2πn/η.
     pub fn period(&self) -> f64 {
         f64::from(self.n) * TAU / self.eta

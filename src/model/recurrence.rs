@@ -3,8 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::boundary::rho_grazing;
 use super::contact::{ImpactKind, ModelImpact};
-use super::params::{Initial, Machine, ModelError, Setting};
+use super::params::{Flight, Initial, Machine, ModelError, Setting};
 use super::simulate::{Simulator, Sink};
 use crate::motion::Motion;
 
@@ -138,8 +139,10 @@ pub fn observe(
         let still = joined_before && simulator.is_joined();
         if still {
             SettledMotion::Joined
-        } else {
+        } else if stays_clear(simulator.machine(), setting) {
             SettledMotion::Impactless
+        } else {
+            SettledMotion::Beat
         }
     } else if simulator.is_joined() && impacts.last().is_some_and(|i| i.dead_zone.is_infinite()) {
         SettledMotion::Joined
@@ -148,6 +151,12 @@ pub fn observe(
             .unwrap_or_else(|| irregular(&impacts, start, simulator.tau(), setting.period()))
     };
     (motion, impacts)
+}
+
+/// Whether the impactless motion never strikes: else a watch without impacts lay between two.
+fn stays_clear(machine: &Machine, setting: Setting) -> bool {
+    let reach = rho_grazing(machine, setting.frequency_ratio);
+    machine.flight != Flight::Harmonic || setting.clearance >= reach * (1.0 - 1e-9)
 }
 
 /// Impacts that matter for recurrence: with complete chatters only their ends.

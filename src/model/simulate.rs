@@ -133,6 +133,11 @@ impl Simulator {
         })
     }
 
+    /// The machine.
+    pub fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
     /// τ reached.
     pub fn tau(&self) -> f64 {
         self.tau

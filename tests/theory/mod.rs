@@ -82,9 +82,11 @@ fn valid_merged_parts_are_the_whole_atlas_byte_for_byte() {
     }
     let all = "parts/part-0-of-3.json parts/part-1-of-3.json parts/part-2-of-3.json";
     run(&lab, &format!("merge {all} --out merged"));
-    let mut whole = files(&lab.path("whole"));
-    whole.remove("study.toml");
+    let whole = files(&lab.path("whole"));
+    assert!(whole.contains_key("study.toml"));
     assert!(whole == files(&lab.path("merged")));
+    run(&lab, "study merged/study.toml --out again");
+    assert!(whole == files(&lab.path("again/merged")));
     run(
         &lab,
         &format!("{atlas} --restitution 0.8 --shard 1/3 --out other"),
@@ -162,5 +164,53 @@ fn valid_single_boundary_points_are_json() {
         lab.run(&["boundary", "--kind", "s2", "--motion", "5/1", "--eta", "4"])
             .code,
         1
+    );
+}
+
+fn boundary(lab: &Lab, words: &str) -> serde_json::Value {
+    let said = run(
+        lab,
+        &format!("boundary --restitution 0.9 --damping-ratio 0.07 --json {words}"),
+    );
+    serde_json::from_str(&said).expect("JSON")
+}
+
+#[test]
+fn valid_boundaries_at_a_clearance_are_those_at_their_frequency_ratio() {
+    let lab = Lab::new();
+    for (kind, rho) in [
+        ("s1 --motion 2/1", "-0.3"),
+        ("s2 --motion 3/2", "0.13"),
+        ("s2 --motion 2/1", "-0.4"),
+        ("further-impact --motion 1/2", "1.9"),
+        ("further-impact --motion 2/1", "-0.45"),
+        ("s1 --motion 3/2", "0"),
+        ("dead-zone --motion 1j", "-0.875"),
+    ] {
+        let at_rho = boundary(&lab, &format!("--kind {kind} --rho={rho}"));
+        let eta = at_rho["eta"].as_f64().expect("a number");
+        let at_eta = boundary(&lab, &format!("--kind {kind} --eta {eta}"));
+        let others = at_eta["others"].as_array().cloned().unwrap_or_default();
+        let rho: f64 = rho.parse().expect("a number");
+        let nearest = others
+            .iter()
+            .chain([&at_eta])
+            .filter_map(|v| v["rho"].as_f64())
+            .map(|found| (found - rho).abs())
+            .fold(f64::INFINITY, f64::min);
+        assert!(nearest < 2e-5, "{kind}: η = {eta}, {nearest} away");
+    }
+}
+
+#[test]
+fn valid_a_motion_without_a_boundary_at_a_clearance_is_named() {
+    let lab = Lab::new();
+    let words = ["boundary", "--kind", "s2", "--motion", "7/5", "--rho", "30"];
+    let ran = lab.run(&words);
+    assert_eq!(ran.code, 1);
+    assert!(
+        ran.said.contains("s2 of z = 7/5: none at ρ = 30"),
+        "{}",
+        ran.said
     );
 }

@@ -6,6 +6,7 @@ use serde_json::json;
 use super::plan::RegionsPlan;
 use super::table::Table;
 use super::{Desk, StudyError};
+use crate::atlas::agreement::Cause;
 use crate::atlas::brute::{Maps, brute_maps};
 use crate::atlas::curves::{Curve, CurvePoint};
 use crate::atlas::map::{CellMotion, MapGrid};
@@ -119,12 +120,38 @@ fn tell(atlas: &Atlas, desk: &Desk<'_>) {
         a.aperiodic,
         a.beyond
     ));
-    for (eta, rho, motion) in a.differing.iter().take(TOLD) {
-        let z = Motion::from(*motion).label();
-        (desk.say)(&format!("  η = {eta:.4}  ρ = {rho:.4}  z = {z}"));
+    for d in a.differing.iter().take(TOLD) {
+        let (z, way) = (Motion::from(d.motion).label(), d.way.name());
+        (desk.say)(&format!(
+            "  η = {:.4}  ρ = {:.4}  {way}  z = {z}: {}",
+            d.eta,
+            d.rho,
+            why(d.cause)
+        ));
     }
     if a.differing.len() > TOLD {
         (desk.say)("  … all of them in the JSON file");
+    }
+}
+
+/// A cause in words.
+fn why(cause: Cause) -> String {
+    match cause {
+        Cause::NoRegion => "stable there, the curves miss it".into(),
+        Cause::Converges { p, n } => {
+            let (impacts_p, periods_n) = (p, n);
+            let dead_zone = false;
+            let motion = Motion::Periodic {
+                impacts_p,
+                periods_n,
+                dead_zone,
+            };
+            format!("still converging to z = {}", motion.label())
+        }
+        Cause::Unstable { multiplier } => {
+            format!("a transient near an unstable orbit, multiplier {multiplier:.4}")
+        }
+        Cause::NoOrbit => "a transient, no orbit there".into(),
     }
 }
 
