@@ -1,0 +1,97 @@
+//! What an identification costs on this machine: all fits of a campaign of 846 records with and
+//! without profiles, and with 1,000 bootstrap replicas.
+//!
+//! `cargo bench --bench identification`. Times are by the clock on all processors, the least and
+//! the median of several runs; simulating and observing the records is not counted.
+
+use std::time::Instant;
+
+use rayon::prelude::*;
+
+use impactid::event::Rig;
+use impactid::event::detect::DetectSettings;
+use impactid::identify::methods::{Evidence, Nominal};
+use impactid::identify::run::identify;
+use impactid::identify::uncertainty::{Asked, Way};
+use impactid::model::params::ModelError;
+use impactid::motion::{ClassifySettings, Observation, brackets, observe, scale_drives};
+use impactid::synthetic::run::calibrated;
+use impactid::synthetic::{Faults, Plan, Truth, records};
+
+const RECORDS: usize = 846;
+
+fn main() -> Result<(), ModelError> {
+    // `cargo test --benches` passes --test: nothing is measured then
+    if std::env::args().any(|a| a == "--test") {
+        return Ok(());
+    }
+    let observations = campaign()?;
+    let brackets = brackets(&observations);
+    println!(
+        "{} records, {} brackets",
+        observations.len(),
+        brackets.len()
+    );
+    for (name, way, runs) in [
+        ("all fits", Way::Covariance, 9),
+        ("all fits and profiles", Way::Profile, 5),
+        ("all fits and 1,000 bootstrap replicas", Way::Bootstrap, 3),
+    ] {
+        let evidence = Evidence {
+            rig: Rig::Double,
+            observations: &observations,
+            brackets: &brackets,
+            nominal: Nominal {
+                gain_uncertainty: 5e-3,
+                ..Nominal::default()
+            },
+            uncertainty: Asked {
+                way,
+                ..Asked::default()
+            },
+        };
+        let mut seconds: Vec<f64> = (0..runs).map(|_| time(&evidence)).collect();
+        seconds.sort_by(f64::total_cmp);
+        let (least, median) = (seconds[0], seconds[runs / 2]);
+        println!("{name:40} {least:7.3} s least, {median:7.3} s median");
+    }
+    Ok(())
+}
+
+fn time(evidence: &Evidence) -> f64 {
+    let start = Instant::now();
+    let outcome = identify(evidence);
+    let seconds = start.elapsed().as_secs_f64();
+    assert!(outcome.fit.is_some(), "nothing was fitted");
+    seconds
+}
+
+/// A campaign as `simulate campaign` makes it, observed.
+fn campaign() -> Result<Vec<Observation>, ModelError> {
+    let truth = Truth {
+        restitution: 0.9,
+        natural_frequency_hz: 12.6,
+        damping_ratio: 0.07,
+        static_deflection_m: 1e-3,
+        drive_asymmetry: 0.01,
+        stiffness_asymmetry: -0.01,
+    };
+    let faults = Faults::default();
+    let plan = Plan::for_rig(
+        truth.natural_frequency_hz,
+        truth.damping_ratio,
+        truth.static_deflection_m,
+        RECORDS,
+    );
+    let raw = records(&truth, &faults, &plan, 1)?;
+    let mut observations: Vec<Observation> = raw
+        .par_iter()
+        .map(|raw| {
+            let record = calibrated(raw, &truth, &faults);
+            let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
+            observe(&record, Rig::Double, &detect, &classify)
+        })
+        .collect();
+    scale_drives(&mut observations);
+    Ok(observations)
+}
