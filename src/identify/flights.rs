@@ -80,6 +80,11 @@ impl FlightBlock {
     }
 }
 
+/// Whether a record is shot from impact to impact.
+pub fn is_flown(rig: Rig, o: &Observation) -> bool {
+    has_no_closed_form(&o.finding.motion) && flight_record(rig, 0, o).is_some()
+}
+
 fn has_no_closed_form(motion: &Motion) -> bool {
     match motion {
         Motion::Periodic {

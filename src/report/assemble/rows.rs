@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 
 use super::{ChannelFacts, Gathered};
+use crate::event::Rig;
+use crate::identify::flights::is_flown;
 use crate::motion::{self, Motion, Observation};
 use crate::report::content::{
     BoundaryKind, BracketRow, CampaignSummary, ChannelRow, NominalValue, RecordRow,
@@ -112,7 +114,7 @@ fn record(gathered: &Gathered, o: &Observation, left: Option<&str>) -> RecordRow
     let used_by = if o.excluded() {
         Vec::new()
     } else {
-        used_by(o, left.is_some())
+        used_by(gathered.campaign.rig, o, left.is_some())
     };
     let excluded = o
         .flags
@@ -140,7 +142,7 @@ fn record(gathered: &Gathered, o: &Observation, left: Option<&str>) -> RecordRow
     }
 }
 
-fn used_by(o: &Observation, left_out: bool) -> Vec<String> {
+fn used_by(rig: Rig, o: &Observation, left_out: bool) -> Vec<String> {
     let mut out = Vec::new();
     let mut add = |name: &str, used: bool| {
         if used {
@@ -155,6 +157,7 @@ fn used_by(o: &Observation, left_out: bool) -> Vec<String> {
             .iter()
             .any(|i| i.closing_speed_before_m_s.is_some()),
     );
+    add("flights", is_flown(rig, o) && !left_out);
     add("free_decay", o.decay.is_some());
     out
 }
