@@ -178,11 +178,6 @@ pub fn fit_blocks(
         priors,
         free,
     };
-    fit_problem(&problem, start)
-}
-
-/// Fit a problem and find the variance factor.
-fn fit_problem(problem: &Problem, start: Parameters) -> Result<MethodFit, FitError> {
     let fit = problem.fit(start)?;
     let informed = problem.free.len().saturating_sub(problem.priors.len());
     let freedom = fit.residuals.saturating_sub(informed).max(1) as f64;
@@ -319,28 +314,22 @@ pub fn trajectories(
     if blocks.trajectory.records.is_empty() {
         return None;
     }
-    Some(fit_problem(
-        &trajectories_problem(blocks, nominal, start),
-        start,
-    ))
+    Some(all_four(&blocks.trajectory, blocks, nominal, start))
 }
 
-/// The problem of the folded waveforms alone.
-pub fn trajectories_problem<'b>(
-    blocks: &'b Blocks,
+/// R, f0, β and x_st from one block alone, with gains and asymmetries as nuisances.
+fn all_four(
+    block: &dyn Block,
+    blocks: &Blocks,
     nominal: &Nominal,
     start: Parameters,
-) -> Problem<'b> {
+) -> Result<MethodFit, FitError> {
     let mut free = Coordinate::PHYSICAL.to_vec();
     let mut priors = wide_priors(&start, &free);
     let (nuisances, more) = blocks.nuisances(nominal.gain_uncertainty);
     free.extend(nuisances);
     priors.extend(more);
-    Problem {
-        blocks: vec![(&blocks.trajectory, 1.0)],
-        priors,
-        free,
-    }
+    fit_blocks(vec![(block, 1.0)], free, priors, start)
 }
 
 /// Variance of what flights tell over that of independent innovations: an impact's errors of time
@@ -357,12 +346,7 @@ pub fn flights(
     if blocks.flight.records.is_empty() {
         return None;
     }
-    let mut free = Coordinate::PHYSICAL.to_vec();
-    let mut priors = wide_priors(&start, &free);
-    let (nuisances, more) = blocks.nuisances(nominal.gain_uncertainty);
-    free.extend(nuisances);
-    priors.extend(more);
-    let found = fit_blocks(vec![(&blocks.flight, 1.0)], free, priors, start);
+    let found = all_four(&blocks.flight, blocks, nominal, start);
     Some(found.map(|found| MethodFit {
         factor: found.factor * SHARED_IN_FLIGHTS,
         ..found

@@ -197,11 +197,15 @@ impl Work<'_> {
             let pulling = self
                 .problem(blocks, fits.start, &fits.weights)
                 .map(|problem| self.selection.pulling(&problem, &present, &start));
-            match pulling {
-                Some(pulling) if !pulling.is_empty() => self.selection.leave_out(&pulling),
-                _ => break,
-            }
-            let resonance = methods::resonance(&self.selection.blocks, &self.evidence.nominal);
+            let Some(pulling) = pulling.filter(|p| !p.is_empty()) else {
+                break;
+            };
+            self.selection.leave_out(&pulling);
+            let resonance = if pulling.resonance.is_empty() {
+                fits.resonance
+            } else {
+                methods::resonance(&self.selection.blocks, &self.evidence.nominal)
+            };
             fits = self.fits(start, resonance, fits.impacts);
         }
         fits

@@ -60,8 +60,10 @@ impl<'a> Selection<'a> {
         }
     }
 
-    fn name(&self, observation: usize) -> String {
-        self.evidence.observations[observation].record.clone()
+    /// Name a record that is left out, with the reason.
+    fn name(&mut self, observation: usize, reason: impl Into<String>) {
+        let record = self.evidence.observations[observation].record.clone();
+        self.left_out.push((record, reason.into()));
     }
 
     /// Fit the impactless records; those that fit far worse than the bulk are named and left out.
@@ -87,7 +89,7 @@ impl<'a> Selection<'a> {
                      out of the resonance curve",
                     bulk.times_worse(score)
                 );
-                self.left_out.push((self.name(point.observation), reason));
+                self.name(point.observation, reason);
             }
         }
         methods::resonance(&self.blocks, &self.evidence.nominal)
@@ -140,7 +142,7 @@ impl<'a> Selection<'a> {
                          out of the trajectories"
                     .to_owned(),
             };
-            self.left_out.push((self.name(record.observation), reason));
+            self.name(record.observation, reason);
             self.lost.push(record);
         }
         self.blocks.weigh_trajectories(parameters);
@@ -182,19 +184,13 @@ impl<'a> Selection<'a> {
             return false;
         }
         let reason = "its gap is not as stated: left out of trajectories and boundaries";
-        let observations = self.evidence.observations;
-        self.left_out.extend(
-            records
-                .iter()
-                .filter(|r| r.clearance_m == clearance_m)
-                .map(|r| {
-                    (
-                        observations[r.observation].record.clone(),
-                        reason.to_owned(),
-                    )
-                }),
-        );
-        records.retain(|r| r.clearance_m != clearance_m);
+        let (gone, kept): (Vec<_>, Vec<_>) = std::mem::take(records)
+            .into_iter()
+            .partition(|r| r.clearance_m == clearance_m);
+        *records = kept;
+        for record in gone {
+            self.name(record.observation, reason);
+        }
         self.lost.retain(|r| r.clearance_m != clearance_m);
         let brackets = &mut self.blocks.boundary.brackets;
         brackets.retain(|b| b.clearance_m != clearance_m);
@@ -216,8 +212,7 @@ impl<'a> Selection<'a> {
                 } else {
                     let reason = "its impacts do not follow from each other (one missed?): left \
                                   out of the flights";
-                    self.left_out
-                        .push((self.name(record.observation), reason.into()));
+                    self.name(record.observation, reason);
                 }
             }
             match methods::flights(&self.blocks, &self.evidence.nominal, parameters)? {
@@ -249,9 +244,8 @@ impl<'a> Selection<'a> {
             .map(|(place, i)| METHODS[*place] == "trajectories" && self.settles_slowly(*i, at))
             .collect();
         let mut pulling = Pulling::default();
-        for i in
-            pull::pulls(&parts, &others).map_or_else(Vec::new, |p| pull::strongest(&p, &doubtful))
-        {
+        let pulls = pull::pulls(&parts, &others).unwrap_or_default();
+        for i in pull::strongest(&pulls, &doubtful) {
             match owners[i] {
                 (0, point) => pulling.resonance.push(point),
                 (_, record) => pulling.trajectory.push(record),
@@ -276,12 +270,12 @@ impl<'a> Selection<'a> {
         for i in pulling.resonance.iter().rev() {
             let point = self.blocks.resonance.points.remove(*i);
             let reason = format!("{reason}: left out of the resonance curve");
-            self.left_out.push((self.name(point.observation), reason));
+            self.name(point.observation, reason);
         }
         for i in pulling.trajectory.iter().rev() {
             let record = self.blocks.trajectory.records.remove(*i);
             let reason = format!("{reason}: left out of the trajectories");
-            self.left_out.push((self.name(record.observation), reason));
+            self.name(record.observation, reason);
         }
     }
 }
