@@ -233,6 +233,6 @@ impl Block for BoundaryBlock {
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {
-        !matches!(coordinate, Coordinate::Gain(_))
+        !matches!(coordinate, Coordinate::Gain(_) | Coordinate::Corner(_))
     }
 }

@@ -5,7 +5,8 @@ use crate::identify::parameters::Coordinate;
 use crate::model::params::{Machine, Oscillator};
 use crate::model::sensitivity::{Change, MassChange};
 
-/// Change of machine and setting per unit of a coordinate, at η and a gap; a gain changes neither.
+/// Change of machine and setting per unit of a coordinate, at η and a gap; a channel's gain
+/// and corner change neither.
 pub fn change(machine: &Machine, eta: f64, gap: f64, coordinate: Coordinate) -> Change {
     let none = Change::default();
     let both = |of: &dyn Fn(f64, &Oscillator) -> MassChange| Change {
@@ -35,7 +36,7 @@ pub fn change(machine: &Machine, eta: f64, gap: f64, coordinate: Coordinate) -> 
             decay_rate: 0.5 * sign * half * o.decay_rate() / o.stiffness_per_mass(),
             ..MassChange::default()
         }),
-        Coordinate::Gain(_) => none,
+        Coordinate::Gain(_) | Coordinate::Corner(_) => none,
     }
 }
 

@@ -269,7 +269,7 @@ impl Block for FlightBlock {
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {
-        !matches!(coordinate, Coordinate::Gain(2 | 3))
+        !matches!(coordinate, Coordinate::Gain(2 | 3) | Coordinate::Corner(_))
     }
 }
 

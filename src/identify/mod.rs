@@ -12,6 +12,7 @@ pub mod direction;
 pub mod estimate;
 pub mod factor;
 pub mod flights;
+pub mod high_pass;
 pub mod impacts;
 pub mod interval;
 pub mod joint;

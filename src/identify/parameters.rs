@@ -23,6 +23,8 @@ pub struct Parameters {
     pub stiffness_asymmetry: f64,
     /// Gain of the channels over the stated one: velocity x, y, displacement x, y.
     pub gains: [f64; 4],
+    /// Corner of the channels' high-pass over the stated one, in the same order.
+    pub corners: [f64; 4],
 }
 
 impl Parameters {
@@ -41,6 +43,7 @@ impl Parameters {
             drive_asymmetry: 0.0,
             stiffness_asymmetry: 0.0,
             gains: [1.0; 4],
+            corners: [1.0; 4],
         }
     }
 
@@ -85,6 +88,11 @@ impl Parameters {
         gain_index(role).map_or(1.0, |i| self.gains[i])
     }
 
+    /// Corner of a channel's high-pass over the stated one; 1 for channels that have none.
+    pub fn corner(&self, role: Role) -> f64 {
+        gain_index(role).map_or(1.0, |i| self.corners[i])
+    }
+
     /// Value of one coordinate.
     pub fn coordinate(&self, coordinate: Coordinate) -> f64 {
         match coordinate {
@@ -95,6 +103,7 @@ impl Parameters {
             Coordinate::DriveAsymmetry => self.drive_asymmetry,
             Coordinate::StiffnessAsymmetry => self.stiffness_asymmetry,
             Coordinate::Gain(i) => self.gains[i].ln(),
+            Coordinate::Corner(i) => self.corners[i].ln(),
         }
     }
 
@@ -108,6 +117,7 @@ impl Parameters {
             Coordinate::DriveAsymmetry => self.drive_asymmetry = value,
             Coordinate::StiffnessAsymmetry => self.stiffness_asymmetry = value,
             Coordinate::Gain(i) => self.gains[i] = value.exp(),
+            Coordinate::Corner(i) => self.corners[i] = value.exp(),
         }
         self
     }
@@ -123,7 +133,7 @@ impl Parameters {
     }
 }
 
-/// Position of a motion channel among the gains.
+/// Position of a motion channel among the gains and among the corners.
 pub fn gain_index(role: Role) -> Option<usize> {
     match role {
         Role::VelocityX => Some(0),
@@ -134,8 +144,8 @@ pub fn gain_index(role: Role) -> Option<usize> {
     }
 }
 
-/// One coordinate of the fit: R itself, the logarithms of f0, β, x_st and the gains, the
-/// asymmetries themselves.
+/// One coordinate of the fit: R itself, the logarithms of f0, β, x_st, the gains and the
+/// corners, the asymmetries themselves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Coordinate {
@@ -153,6 +163,8 @@ pub enum Coordinate {
     StiffnessAsymmetry,
     /// ln of a channel's gain, by its index in [`Parameters::gains`]
     Gain(usize),
+    /// ln of a channel's corner, by its index in [`Parameters::corners`]
+    Corner(usize),
 }
 
 impl Coordinate {
@@ -177,6 +189,10 @@ impl Coordinate {
             Self::Gain(1) => "gain_velocity_y",
             Self::Gain(2) => "gain_displacement_x",
             Self::Gain(_) => "gain_displacement_y",
+            Self::Corner(0) => "corner_velocity_x",
+            Self::Corner(1) => "corner_velocity_y",
+            Self::Corner(2) => "corner_displacement_x",
+            Self::Corner(_) => "corner_displacement_y",
         }
     }
 

@@ -258,6 +258,7 @@ impl UsualRecord {
                 .map(|(role, noise)| FoldedChannel {
                     role: *role,
                     noise: *noise,
+                    high_pass_hz: None,
                     points: points.clone(),
                 })
                 .collect(),

@@ -3,13 +3,17 @@
 
 use crate::event::Rig;
 use crate::identify::direction::{change, relative_length, relative_rate};
-use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::high_pass::{HighPass, HighPassSlope, Passed, Tail};
+use crate::identify::parameters::{Coordinate, Parameters, gain_index};
 use crate::identify::trajectory::TrajectoryRecord;
-use crate::identify::waveform::{Measured, Timing, TimingSlope, Vibration};
+use crate::identify::waveform::{
+    Phases, Timing, TimingSlope, Vibration, velocity, velocity_slope,
+};
 use crate::model::orbit::Branch;
 use crate::model::params::{Machine, Setting};
 use crate::model::path::C64;
 use crate::model::sensitivity::{Change, MassMotion, OrbitMotion, Sensitivity};
+use crate::motion::fold::FoldedChannel;
 use crate::record::Role;
 
 /// The z = 1/n orbit at a record's setting whose closing speed is nearest to the measured one.
@@ -64,8 +68,25 @@ pub struct RecordMotion<'a> {
     gap: f64,
     /// Of each set of phases, both masses where they are measured.
     vibrations: Vec<[Option<Vibration<'a>>; 2]>,
-    /// Of each channel, its set of phases.
-    sets: Vec<usize>,
+    channels: Vec<ChannelMotion>,
+}
+
+/// What one channel shows of the orbit, dimensionless.
+struct ChannelMotion {
+    role: Role,
+    points: usize,
+    /// Its set of phases.
+    set: usize,
+    /// The mass's displacement or velocity.
+    motion: MassMotion,
+    filter: Option<Filter>,
+}
+
+/// The high-pass that a channel has passed, and what it makes of the motion.
+struct Filter {
+    high_pass: HighPass,
+    passed: Passed,
+    tail: Tail,
 }
 
 /// A direction in all that a record's values depend on.
@@ -94,25 +115,7 @@ impl<'a> RecordMotion<'a> {
             periods_n,
             impact_phase: record.folded.on_fold(orbit.phase),
         };
-        let vibrations = record
-            .phases
-            .iter()
-            .map(|phases| {
-                [(false, &orbit.x), (true, &orbit.y)].map(|(of_y, mass)| {
-                    let mut channels = record.folded.channels.iter();
-                    channels
-                        .any(|c| c.role.is_of_y() == of_y)
-                        .then(|| Vibration::new(phases, timing, mass.exponent))
-                })
-            })
-            .collect();
-        let sets = record
-            .folded
-            .channels
-            .iter()
-            .map(|c| record.phases.iter().position(|p| p.fit(&c.points)))
-            .collect::<Option<Vec<usize>>>()?;
-        Some(Self {
+        let mut motion = Self {
             record,
             parameters: *parameters,
             machine,
@@ -120,18 +123,58 @@ impl<'a> RecordMotion<'a> {
             orbit,
             eta: branch.eta,
             gap,
-            vibrations,
-            sets,
+            vibrations: vibrations(record, &orbit, timing),
+            channels: Vec::with_capacity(record.folded.channels.len()),
+        };
+        for channel in &record.folded.channels {
+            let found = motion.channel(channel)?;
+            motion.channels.push(found);
+        }
+        Some(motion)
+    }
+
+    fn channel(&self, channel: &FoldedChannel) -> Option<ChannelMotion> {
+        let phases = &self.record.phases;
+        let set = phases.iter().position(|p| p.fit(&channel.points))?;
+        let role = channel.role;
+        let mass = of_role(&self.orbit, role);
+        let motion = match measured(role) {
+            Measured::Displacement => *mass,
+            Measured::Velocity => velocity(mass, self.eta),
+        };
+        let vibration = self.vibrations[set][usize::from(role.is_of_y())].as_ref()?;
+        let filter = channel.high_pass_hz.map(|corner_hz| {
+            let corner_hz = corner_hz * self.parameters.corner(role);
+            let turns = f64::from(self.record.folded.periods_n);
+            let high_pass = HighPass {
+                corner: corner_hz / self.parameters.natural_frequency_hz,
+                eta: self.eta,
+                period: turns * std::f64::consts::TAU / self.eta,
+            };
+            Filter {
+                high_pass,
+                passed: high_pass.pass(&motion),
+                tail: Tail::new(high_pass, vibration),
+            }
+        });
+        Some(ChannelMotion {
+            role,
+            points: channel.points.len(),
+            set,
+            motion,
+            filter,
         })
     }
 
     /// Values at all points, channel after channel, SI, gains included.
     pub fn values(&self) -> Vec<f64> {
-        self.channel_by_channel(|role, vibration, mass| {
-            let unit = self.unit(role);
-            let mut values = vibration.values(mass(&self.orbit), measured(role));
-            values.iter_mut().for_each(|v| *v *= unit);
-            values
+        self.channel_by_channel(|channel, vibration| match &channel.filter {
+            None => vibration.values(&channel.motion),
+            Some(filter) => {
+                let mut values = vibration.values(&filter.passed.motion);
+                filter.tail.add(&mut values, filter.passed.tail);
+                values
+            }
         })
     }
 
@@ -181,26 +224,19 @@ impl<'a> RecordMotion<'a> {
     }
 
     fn along(&self, values: &[f64], direction: &Direction) -> Vec<f64> {
-        let timing = TimingSlope {
-            eta: direction.eta,
-            impact_phase: direction.orbit.phase,
-        };
-        let mut slopes = self.channel_by_channel(|role, vibration, mass| {
-            let unit = self.unit(role);
-            let (at, change) = (mass(&self.orbit), mass(&direction.orbit));
-            let mut slopes = vibration.slopes(at, change, &timing, measured(role));
-            slopes.iter_mut().for_each(|s| *s *= unit);
-            slopes
+        let mut slopes = self.channel_by_channel(|channel, vibration| {
+            self.channel_slopes(channel, vibration, direction)
         });
         let mut start = 0;
-        for channel in &self.record.folded.channels {
-            let end = start + channel.points.len();
-            let relative = direction
-                .coordinate
-                .map_or(0.0, |c| match measured(channel.role) {
-                    Measured::Velocity => relative_length(c) + relative_rate(c),
-                    Measured::Displacement => relative_length(c),
-                });
+        for channel in &self.channels {
+            let end = start + channel.points;
+            let relative =
+                direction
+                    .coordinate
+                    .map_or(0.0, |c| match measured(channel.role) {
+                        Measured::Velocity => relative_length(c) + relative_rate(c),
+                        Measured::Displacement => relative_length(c),
+                    });
             if relative != 0.0 {
                 let own = slopes[start..end].iter_mut().zip(&values[start..end]);
                 own.for_each(|(s, v)| *s += relative * v);
@@ -210,17 +246,55 @@ impl<'a> RecordMotion<'a> {
         slopes
     }
 
+    fn channel_slopes(
+        &self,
+        channel: &ChannelMotion,
+        vibration: &Vibration<'_>,
+        direction: &Direction,
+    ) -> Vec<f64> {
+        let timing = TimingSlope {
+            eta: direction.eta,
+            impact_phase: direction.orbit.phase,
+        };
+        let (mass, d_mass) = (
+            of_role(&self.orbit, channel.role),
+            of_role(&direction.orbit, channel.role),
+        );
+        let change = match measured(channel.role) {
+            Measured::Displacement => *d_mass,
+            Measured::Velocity => velocity_slope(mass, d_mass, [self.eta, direction.eta]),
+        };
+        let Some(filter) = &channel.filter else {
+            return vibration.slopes(&channel.motion, &change, &timing);
+        };
+        let own_corner = gain_index(channel.role).map(Coordinate::Corner);
+        let relative = match direction.coordinate {
+            Some(Coordinate::Frequency) => -1.0,
+            coordinate if coordinate == own_corner => 1.0,
+            _ => 0.0,
+        };
+        let moved = HighPassSlope {
+            corner: relative * filter.high_pass.corner,
+            eta: direction.eta,
+        };
+        let passed = filter.high_pass.pass_slope(&channel.motion, &change, &moved);
+        let mut slopes = vibration.slopes(&filter.passed.motion, &passed.motion, &timing);
+        let tails = [filter.passed.tail, passed.tail];
+        filter.tail.add_slopes(&mut slopes, tails, &moved, vibration, &timing);
+        slopes
+    }
+
+    /// Of every channel, its points in SI from dimensionless ones.
     fn channel_by_channel(
         &self,
-        of: impl Fn(Role, &Vibration<'_>, &dyn Fn(&OrbitMotion) -> &MassMotion) -> Vec<f64>,
+        of: impl Fn(&ChannelMotion, &Vibration<'_>) -> Vec<f64>,
     ) -> Vec<f64> {
-        let channels = &self.record.folded.channels;
-        let mut out = Vec::with_capacity(channels.iter().map(|c| c.points.len()).sum());
-        for (channel, set) in channels.iter().zip(&self.sets) {
-            let of_y = channel.role.is_of_y();
-            if let Some(vibration) = &self.vibrations[*set][usize::from(of_y)] {
-                let mass: fn(&OrbitMotion) -> &MassMotion = if of_y { |o| &o.y } else { |o| &o.x };
-                out.extend(of(channel.role, vibration, &mass));
+        let mut out = Vec::with_capacity(self.channels.iter().map(|c| c.points).sum());
+        for channel in &self.channels {
+            let vibration = &self.vibrations[channel.set][usize::from(channel.role.is_of_y())];
+            if let Some(vibration) = vibration {
+                let unit = self.unit(channel.role);
+                out.extend(of(channel, vibration).into_iter().map(|v| v * unit));
             }
         }
         out
@@ -237,6 +311,34 @@ impl<'a> RecordMotion<'a> {
     }
 }
 
+/// Of each set of phases, the free vibrations of the masses that are measured.
+fn vibrations<'a>(
+    record: &'a TrajectoryRecord,
+    orbit: &OrbitMotion,
+    timing: Timing,
+) -> Vec<[Option<Vibration<'a>>; 2]> {
+    let of = |phases: &'a Phases, of_y: bool, mass: &MassMotion| {
+        let mut channels = record.folded.channels.iter();
+        channels
+            .any(|c| c.role.is_of_y() == of_y)
+            .then(|| Vibration::new(phases, timing, mass.exponent))
+    };
+    let sets = record.phases.iter();
+    sets.map(|phases| [of(phases, false, &orbit.x), of(phases, true, &orbit.y)])
+        .collect()
+}
+
+fn of_role(orbit: &OrbitMotion, role: Role) -> &MassMotion {
+    if role.is_of_y() { &orbit.y } else { &orbit.x }
+}
+
+/// What a channel measures of a mass.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Measured {
+    Displacement,
+    Velocity,
+}
+
 fn measured(role: Role) -> Measured {
     match role {
         Role::VelocityX | Role::VelocityY => Measured::Velocity,
@@ -248,7 +350,7 @@ fn measured(role: Role) -> Measured {
 mod tests {
     use super::*;
     use crate::identify::trajectory::distinct_phases;
-    use crate::motion::fold::{Folded, FoldedChannel, FoldedPoint};
+    use crate::motion::fold::{Folded, FoldedPoint};
 
     const ROLES: [Role; 4] = [
         Role::VelocityX,
@@ -262,6 +364,7 @@ mod tests {
             drive_asymmetry: 0.02,
             stiffness_asymmetry: -0.03,
             gains: [1.01, 0.99, 1.0, 1.02],
+            corners: [1.0, 1.03, 0.97, 1.0],
             ..Parameters::symmetric(0.85, 12.6, 0.06, 1e-3)
         }
     }
@@ -282,6 +385,7 @@ mod tests {
                 .map(|role| FoldedChannel {
                     role,
                     noise: 1.0,
+                    high_pass_hz: (role != Role::VelocityX).then_some(0.5),
                     points: points.clone(),
                 })
                 .to_vec(),
@@ -323,6 +427,7 @@ mod tests {
             let here = motion.values();
             let mut coordinates = Coordinate::PHYSICAL.to_vec();
             coordinates.extend([Coordinate::DriveAsymmetry, Coordinate::StiffnessAsymmetry]);
+            coordinates.extend([Coordinate::Corner(1), Coordinate::Corner(2)]);
             for coordinate in coordinates {
                 let at =
                     |by: f64| values(&record, &p.with(coordinate, p.coordinate(coordinate) + by));

@@ -75,15 +75,6 @@ pub struct Vibration<'a> {
     decay: Vec<C64>,
 }
 
-/// What is measured of a mass.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Measured {
-    /// X
-    Displacement,
-    /// X'
-    Velocity,
-}
-
 impl<'a> Vibration<'a> {
     /// Of a mass with an exponent.
     pub fn new(phases: &'a Phases, timing: Timing, exponent: C64) -> Self {
@@ -108,12 +99,14 @@ impl<'a> Vibration<'a> {
         (self.exponent / self.timing.eta).powu(2)
     }
 
-    /// Displacement or velocity of the mass at all points, dimensionless.
-    pub fn values(&self, mass: &MassMotion, measured: Measured) -> Vec<f64> {
-        let (force, mode) = match measured {
-            Measured::Displacement => (mass.force, mass.mode),
-            Measured::Velocity => (self.rate() * mass.force, self.exponent * mass.mode),
-        };
+    /// Time since the impact at the points' middle.
+    pub fn time(&self) -> &[f64] {
+        &self.time
+    }
+
+    /// A motion with this vibration's exponent at all points, dimensionless.
+    pub fn values(&self, motion: &MassMotion) -> Vec<f64> {
+        let (force, mode) = (motion.force, motion.mode);
         let bent = mode * self.curvature();
         let points = self.phases.turn.iter().zip(&self.decay);
         points
@@ -122,33 +115,21 @@ impl<'a> Vibration<'a> {
             .collect()
     }
 
-    fn rate(&self) -> C64 {
-        C64::new(0.0, self.timing.eta)
-    }
-
-    /// Slopes of the values in a direction that changes mass and timing.
+    /// Slopes of the values in a direction that changes motion and timing.
     pub fn slopes(
         &self,
-        mass: &MassMotion,
+        motion: &MassMotion,
         change: &MassMotion,
         timing: &TimingSlope,
-        measured: Measured,
     ) -> Vec<f64> {
         let eta = self.timing.eta;
-        let (force, mode, d_mode) = match measured {
-            Measured::Displacement => (change.force, mass.mode, change.mode),
-            Measured::Velocity => (
-                self.rate() * change.force + C64::new(0.0, timing.eta) * mass.force,
-                self.exponent * mass.mode,
-                self.exponent * change.mode + change.exponent * mass.mode,
-            ),
-        };
+        let mode = motion.mode;
         let curvature = self.curvature();
         let stretch = timing.eta / eta;
         let d_curvature =
             2.0 * self.exponent / (eta * eta) * (change.exponent - self.exponent * stretch);
         // d(λt) = t(dλ − λ dη/η) − λ dψ/η
-        let constant = d_mode - mode * self.exponent * (timing.impact_phase / eta);
+        let constant = change.mode - mode * self.exponent * (timing.impact_phase / eta);
         let growing = mode * (change.exponent - self.exponent * stretch);
         let (bent, d_bent) = (
             constant * curvature + mode * d_curvature,
@@ -159,9 +140,31 @@ impl<'a> Vibration<'a> {
             .zip(self.time.iter().zip(&self.phases.half_square))
             .map(|((turn, decay), (t, half))| {
                 let amplitude = constant + bent * *half + (growing + d_bent * *half) * *t;
-                real(force, *turn) + real(amplitude, *decay)
+                real(change.force, *turn) + real(amplitude, *decay)
             })
             .collect()
+    }
+}
+
+/// Velocity of a motion Re(F e^{iθ}) + Re(A e^{λt}), θ' = η, as a motion of the same kind.
+pub fn velocity(motion: &MassMotion, eta: f64) -> MassMotion {
+    MassMotion {
+        force: C64::new(0.0, eta) * motion.force,
+        mode: motion.exponent * motion.mode,
+        exponent: motion.exponent,
+    }
+}
+
+/// Differential of [`velocity`].
+pub fn velocity_slope(
+    motion: &MassMotion,
+    change: &MassMotion,
+    [eta, d_eta]: [f64; 2],
+) -> MassMotion {
+    MassMotion {
+        force: C64::new(0.0, eta) * change.force + C64::new(0.0, d_eta) * motion.force,
+        mode: motion.exponent * change.mode + change.exponent * motion.mode,
+        exponent: change.exponent,
     }
 }
 

@@ -3,8 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::event::kinematics::Series;
 use crate::event::{Detection, DriveTone};
-use crate::record::Role;
+use crate::record::{Channel, Record, Role};
 use crate::signal::drift;
 
 /// Bins in one drive period.
@@ -31,6 +32,10 @@ pub struct FoldedChannel {
     pub role: Role,
     /// Noise of a single sample, SI.
     pub noise: f64,
+    /// Corner of the first-order high-pass that the values have passed, Hz, its settling removed;
+    /// `None`: none.
+    #[serde(default)]
+    pub high_pass_hz: Option<f64>,
     /// Points that keep clear of impacts, by phase.
     pub points: Vec<FoldedPoint>,
 }
@@ -59,8 +64,10 @@ impl Folded {
 /// Fold a record with at most one impact in n drive periods.
 ///
 /// Bins within two samples of an impact are left out. A constant part of each channel is left
-/// in: an offset is a nuisance that a fit must carry.
-pub fn fold(detection: &Detection, drive: &DriveTone, periods_n: u32) -> Folded {
+/// in: an offset is a nuisance that a fit must carry. A high-pass is left in too, for the model
+/// to pass: to undo it takes the integral of all noise, and of jumps whose instants are known but
+/// roughly.
+pub fn fold(record: &Record, detection: &Detection, drive: &DriveTone, periods_n: u32) -> Folded {
     let rate_hz = detection.kinematics.rate_hz;
     let span = std::f64::consts::TAU * f64::from(periods_n);
     let first = detection.impacts.first().map(|i| i.time_s);
@@ -90,7 +97,7 @@ pub fn fold(detection: &Detection, drive: &DriveTone, periods_n: u32) -> Folded 
     Folded {
         periods_n,
         impact_phase_rad,
-        channels: channels(detection, &axis),
+        channels: channels(record, detection, &axis),
     }
 }
 
@@ -139,29 +146,36 @@ struct Axis {
 }
 
 impl Axis {
-    /// Ramp per sample that an undone high-pass left: what a periodic signal gains in one period.
-    fn ramp(&self, values: &[f64]) -> f64 {
+    /// How a shape in time stands in values whose motion is periodic: the amplitude by which it
+    /// explains, in least squares, that values a period apart differ. `shape`: its value at a
+    /// sample.
+    fn amplitude(&self, values: &[f64], shape: impl Fn(f64) -> f64) -> f64 {
         let step = if self.phases.len() < 2 {
             return 0.0;
         } else {
             (self.phases[1] - self.phases[0]).rem_euclid(self.span)
         };
         let lag = self.span / step;
-        let (mut sum, mut count) = (0.0, 0.0);
+        let (mut product, mut square) = (0.0, 0.0);
         for i in 0..values.len() {
             let partner = i as f64 + lag;
             let Some(later) = drift::interpolate(values, partner) else {
                 break;
             };
             if !self.blocked[i] && !self.blocked[partner.round() as usize] {
-                sum += later - values[i];
-                count += 1.0;
+                let gained = shape(partner) - shape(i as f64);
+                product += (later - values[i]) * gained;
+                square += gained * gained;
             }
         }
-        if count > 0.0 {
-            sum / (count * lag)
-        } else {
-            0.0
+        if square > 0.0 { product / square } else { 0.0 }
+    }
+
+    /// Take a shape in time out of values whose motion is periodic.
+    fn remove(&self, values: &mut [f64], shape: impl Fn(f64) -> f64) {
+        let amplitude = self.amplitude(values, &shape);
+        for (i, value) in values.iter_mut().enumerate() {
+            *value -= amplitude * shape(i as f64);
         }
     }
 
@@ -174,7 +188,7 @@ impl Axis {
     }
 }
 
-fn channels(detection: &Detection, axis: &Axis) -> Vec<FoldedChannel> {
+fn channels(record: &Record, detection: &Detection, axis: &Axis) -> Vec<FoldedChannel> {
     let k = &detection.kinematics;
     [
         (Role::VelocityX, &k.x.velocity),
@@ -185,18 +199,37 @@ fn channels(detection: &Detection, axis: &Axis) -> Vec<FoldedChannel> {
     .into_iter()
     .filter_map(|(role, series)| {
         let series = series.as_ref()?;
-        let mut values = series.values.clone();
-        if series.high_pass_hz.is_some() {
-            let slope = axis.ramp(&values);
-            drift::remove_line(&mut values, 0.0, slope);
-        }
+        let channel = record.channel(role);
+        let filtered = channel.and_then(|c| Some((c, c.high_pass_hz.filter(|f| *f > 0.0)?)));
+        let values = match filtered {
+            Some((channel, corner_hz)) => settled(channel, corner_hz / record.sample_rate_hz, axis),
+            None => level(series, axis),
+        };
         Some(FoldedChannel {
             role,
             noise: series.noise,
+            high_pass_hz: filtered.map(|(_, corner_hz)| corner_hz),
             points: points(&values, axis),
         })
     })
     .collect()
+}
+
+/// A channel as it was measured behind its high-pass, without the filter's settling; the corner
+/// in turns a sample.
+fn settled(channel: &Channel, corner: f64, axis: &Axis) -> Vec<f64> {
+    let mut values = channel.values.clone();
+    axis.remove(&mut values, |i| (-std::f64::consts::TAU * corner * i).exp());
+    values
+}
+
+/// A signal without the ramp that integrating it left.
+fn level(series: &Series, axis: &Axis) -> Vec<f64> {
+    let mut values = series.values.clone();
+    if series.high_pass_hz.is_some() {
+        axis.remove(&mut values, |i| i);
+    }
+    values
 }
 
 fn points(values: &[f64], axis: &Axis) -> Vec<FoldedPoint> {

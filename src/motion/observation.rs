@@ -143,7 +143,7 @@ pub fn observe(
         if observation.has_no_impact() {
             observation.response = responses(record, drive);
         } else if let Some(n) = observation.one_impact_in() {
-            observation.folded = Some(fold(&detection, drive, n));
+            observation.folded = Some(fold(record, &detection, drive, n));
         }
     }
     observation

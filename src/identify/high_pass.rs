@@ -1,0 +1,187 @@
+//! A periodic motion behind a first-order high-pass, in closed form: what an integrator's channel
+//! shows of it, and the exact slopes.
+//!
+//! The filter takes x to y by y' + cy = x'. Of x = Re(F e^{iθ}) + Re(A e^{λt}) with θ' = η it makes
+//! Re(F e^{iθ} iη/(iη + c)) + Re(A e^{λt} λ/(λ + c)) + K e^{−ct}; K follows as y must come back
+//! after a period T, but for the jump that x makes at the impact, which passes whole:
+//! K = Re(A (1 − e^{λT}) c/(λ + c)) / (1 − e^{−cT}).
+
+use crate::identify::waveform::{TimingSlope, Vibration};
+use crate::model::path::C64;
+use crate::model::sensitivity::MassMotion;
+
+/// A motion behind its filter: two terms of the same kind as before, and K. Of a change: the
+/// differentials.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Passed {
+    /// What was there before, as the filter leaves it.
+    pub motion: MassMotion,
+    /// K
+    pub tail: f64,
+}
+
+/// A first-order high-pass that a periodic motion passes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HighPass {
+    /// c, its corner over the natural frequency.
+    pub corner: f64,
+    /// η
+    pub eta: f64,
+    /// T
+    pub period: f64,
+}
+
+/// A direction in which the filter changes.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct HighPassSlope {
+    /// Of c.
+    pub corner: f64,
+    /// Of η.
+    pub eta: f64,
+}
+
+impl HighPass {
+    /// What a pole passes of e^{pole·t}.
+    fn kept(&self, pole: C64) -> C64 {
+        pole / (pole + self.corner)
+    }
+
+    fn kept_slope(&self, pole: C64, d_pole: C64, d_corner: f64) -> C64 {
+        (d_pole * self.corner - pole * d_corner) / (pole + self.corner).powi(2)
+    }
+
+    /// 1 − e^{−cT}
+    fn closing(&self) -> f64 {
+        -(-self.corner * self.period).exp_m1()
+    }
+
+    /// A motion behind the filter.
+    pub fn pass(&self, motion: &MassMotion) -> Passed {
+        let lambda = motion.exponent;
+        let kept = self.kept(lambda);
+        let jump = motion.mode * (C64::new(1.0, 0.0) - (lambda * self.period).exp());
+        Passed {
+            motion: MassMotion {
+                force: motion.force * self.kept(C64::new(0.0, self.eta)),
+                mode: motion.mode * kept,
+                exponent: lambda,
+            },
+            tail: (jump * (C64::new(1.0, 0.0) - kept)).re / self.closing(),
+        }
+    }
+
+    /// Its differential where the motion and the filter change.
+    pub fn pass_slope(
+        &self,
+        motion: &MassMotion,
+        change: &MassMotion,
+        filter: &HighPassSlope,
+    ) -> Passed {
+        let one = C64::new(1.0, 0.0);
+        let d_period = -self.period * filter.eta / self.eta;
+        let (rate, d_rate) = (C64::new(0.0, self.eta), C64::new(0.0, filter.eta));
+        let kept_rate = self.kept(rate);
+        let lambda = motion.exponent;
+        let kept = self.kept(lambda);
+        let d_kept = self.kept_slope(lambda, change.exponent, filter.corner);
+        let returned = (lambda * self.period).exp();
+        let d_returned = returned * (change.exponent * self.period + lambda * d_period);
+        let jump = motion.mode * (one - returned);
+        let d_jump = change.mode * (one - returned) - motion.mode * d_returned;
+        let closing = self.closing();
+        let d_closing = (1.0 - closing) * (filter.corner * self.period + self.corner * d_period);
+        let tail = (jump * (one - kept)).re / closing;
+        let d_lost = (d_jump * (one - kept) - jump * d_kept).re;
+        Passed {
+            motion: MassMotion {
+                force: change.force * kept_rate
+                    + motion.force * self.kept_slope(rate, d_rate, filter.corner),
+                mode: change.mode * kept + motion.mode * d_kept,
+                exponent: change.exponent,
+            },
+            tail: (d_lost - tail * d_closing) / closing,
+        }
+    }
+}
+
+/// e^{−ct} at the points of a vibration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tail {
+    filter: HighPass,
+    decay: Vec<f64>,
+}
+
+impl Tail {
+    /// Of a filter; the little that a point's spread makes of it is left out.
+    pub fn new(filter: HighPass, vibration: &Vibration<'_>) -> Self {
+        let decay = vibration.time().iter().map(|t| (-filter.corner * t).exp());
+        Self {
+            filter,
+            decay: decay.collect(),
+        }
+    }
+
+    /// Add K e^{−ct} to values.
+    pub fn add(&self, values: &mut [f64], tail: f64) {
+        for (value, decay) in values.iter_mut().zip(&self.decay) {
+            *value += tail * decay;
+        }
+    }
+
+    /// Add its differential: K, filter and timing change.
+    pub fn add_slopes(
+        &self,
+        slopes: &mut [f64],
+        [tail, d_tail]: [f64; 2],
+        filter: &HighPassSlope,
+        vibration: &Vibration<'_>,
+        timing: &TimingSlope,
+    ) {
+        let HighPass { corner, eta, .. } = self.filter;
+        // d(ct) = t(dc − c dη/η) − c dψ/η
+        let constant = d_tail + tail * corner * timing.impact_phase / eta;
+        let growing = tail * (corner * timing.eta / eta - filter.corner);
+        let points = self.decay.iter().zip(vibration.time());
+        for (slope, (decay, t)) in slopes.iter_mut().zip(points) {
+            *slope += (constant + growing * t) * decay;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_a_periodic_motion_comes_back_behind_the_filter() {
+        let filter = HighPass {
+            corner: 0.04,
+            eta: 1.2,
+            period: std::f64::consts::TAU / 1.2,
+        };
+        let motion = MassMotion {
+            force: C64::new(0.7, -1.3),
+            mode: C64::new(-0.4, 0.9),
+            exponent: C64::new(-0.07, 0.998),
+        };
+        let psi = 0.3;
+        let x = |t: f64| {
+            (motion.force * C64::from_polar(1.0, psi + filter.eta * t)).re
+                + (motion.mode * (motion.exponent * t).exp()).re
+        };
+        let passed = filter.pass(&motion);
+        let y = |t: f64| {
+            (passed.motion.force * C64::from_polar(1.0, psi + filter.eta * t)).re
+                + (passed.motion.mode * (motion.exponent * t).exp()).re
+                + passed.tail * (-filter.corner * t).exp()
+        };
+        // The jump passes whole, and y' + cy = x' between.
+        let jump = |f: &dyn Fn(f64) -> f64| f(0.0) - f(filter.period);
+        assert!((jump(&x) - jump(&y)).abs() < 1e-12);
+        let slope = |f: &dyn Fn(f64) -> f64, t: f64| (f(t + 1e-5) - f(t - 1e-5)) / 2e-5;
+        for t in [0.1, 1.7, 4.4] {
+            let left = slope(&y, t) + filter.corner * y(t);
+            assert!((left - slope(&x, t)).abs() < 1e-9, "{t}");
+        }
+    }
+}
