@@ -168,6 +168,7 @@ fn rig(rig: &written::Rig, desk: &mut Desk<'_>) -> Rig {
     let damping_ratio = part(&rig.damping_ratio, "damping_ratio", [0.0, 0.999]);
     let restitution = part(&rig.restitution, "restitution", [0.0, 1.0]);
     let gain = part(&rig.gain_uncertainty, "gain_uncertainty", [0.0, 0.5]);
+    let corner = part(&rig.corner_uncertainty, "corner_uncertainty", [0.0, 0.5]);
     let clearance = desk.within(
         &rig.clearance_uncertainty,
         "rig.clearance_uncertainty",
@@ -182,6 +183,7 @@ fn rig(rig: &written::Rig, desk: &mut Desk<'_>) -> Rig {
         mass_x_kg,
         mass_y_kg,
         gain_uncertainty: gain.unwrap_or(0.005),
+        corner_uncertainty: corner.unwrap_or(0.05),
         clearance_uncertainty_m: clearance.unwrap_or(1e-5),
     }
 }

@@ -66,6 +66,8 @@ pub struct Rig {
     pub mass_y_kg: Option<f64>,
     /// Standard uncertainty of the channels' scales, relative.
     pub gain_uncertainty: f64,
+    /// Standard uncertainty of the corners of the channels' high-pass, relative.
+    pub corner_uncertainty: f64,
     /// Standard uncertainty of the clearances, m.
     pub clearance_uncertainty_m: f64,
 }

@@ -250,6 +250,7 @@ const RIG: &str = "\
 # static_deflection = \"1.0 mm\"   # x_st = F0/k
 # restitution = 0.9
 gain_uncertainty = \"0.5 %\"       # of the channels' scales
+corner_uncertainty = \"5 %\"       # of the corners of the channels' high-pass
 clearance_uncertainty = \"10 um\"
 
 ";

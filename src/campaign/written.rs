@@ -141,6 +141,8 @@ pub struct Rig {
     pub mass_y: Placed<Quantity>,
     /// Standard uncertainty of the channels' scales, relative.
     pub gain_uncertainty: Placed<Quantity>,
+    /// Standard uncertainty of the corners of the channels' high-pass, relative.
+    pub corner_uncertainty: Placed<Quantity>,
     /// Standard uncertainty of the clearances.
     pub clearance_uncertainty: Placed<Quantity>,
 }

@@ -2,7 +2,7 @@
 //! evidence it has.
 //!
 //! The information is that of the residuals' noise at given parameters; instruments' gains and
-//! asymmetries are nuisances with their priors. Allowances for what the model leaves open do not
+//! corners and the asymmetries are nuisances with their priors. Allowances for what the model leaves open do not
 //! enter: no unbiased estimator does better than this.
 
 use std::collections::BTreeMap;
@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use nalgebra::DMatrix;
 
 use crate::identify::interval::{self, Posterior};
-use crate::identify::methods::{Blocks, Evidence, wide_priors};
+use crate::identify::methods::{Blocks, Evidence, Nominal, wide_priors};
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::{Block, Prior, Problem};
 
@@ -43,7 +43,6 @@ pub fn bounds(evidence: &Evidence, at: &Parameters) -> BTreeMap<String, Bound> {
     let mut blocks = Blocks::with_noise_alone(evidence);
     blocks.trajectory.find_shared_errors(at);
     let blocks = blocks;
-    let gain = evidence.nominal.gain_uncertainty;
     let resonance: &dyn Block = &blocks.resonance;
     let trajectory: &dyn Block = &blocks.trajectory;
     let boundary: &dyn Block = &blocks.boundary;
@@ -59,7 +58,7 @@ pub fn bounds(evidence: &Evidence, at: &Parameters) -> BTreeMap<String, Bound> {
     let mut bounds: BTreeMap<String, Bound> = methods
         .into_iter()
         .filter_map(|(name, list)| {
-            let found = bound(&blocks, list, gain, at)?;
+            let found = bound(&blocks, list, &evidence.nominal, at)?;
             Some((name.to_owned(), found))
         })
         .collect();
@@ -72,7 +71,12 @@ pub fn bounds(evidence: &Evidence, at: &Parameters) -> BTreeMap<String, Bound> {
     bounds
 }
 
-fn bound(blocks: &Blocks, list: Vec<&dyn Block>, gain: f64, at: &Parameters) -> Option<Bound> {
+fn bound(
+    blocks: &Blocks,
+    list: Vec<&dyn Block>,
+    nominal: &Nominal,
+    at: &Parameters,
+) -> Option<Bound> {
     let list: Vec<(&dyn Block, f64)> = list
         .into_iter()
         .filter(|b| b.items() > 0)
@@ -84,7 +88,7 @@ fn bound(blocks: &Blocks, list: Vec<&dyn Block>, gain: f64, at: &Parameters) -> 
         .collect();
     let mut priors: Vec<Prior> = wide_priors(at, &free);
     if free.len() > 1 {
-        let (nuisances, more) = blocks.nuisances(gain);
+        let (nuisances, more) = blocks.nuisances(nominal);
         free.extend(nuisances);
         priors.extend(more);
     }

@@ -4,7 +4,7 @@
 //! The filter takes x to y by y' + cy = x'. Of x = Re(F e^{iθ}) + Re(A e^{λt}) with θ' = η it makes
 //! Re(F e^{iθ} iη/(iη + c)) + Re(A e^{λt} λ/(λ + c)) + K e^{−ct}; K follows as y must come back
 //! after a period T, but for the jump that x makes at the impact, which passes whole:
-//! K = Re(A (1 − e^{λT}) c/(λ + c)) / (1 − e^{−cT}).
+//! K = Re(A (1 − e^{λT}) c/(λ + c)) / (1 − e^{−cT}), (17).
 
 use crate::identify::waveform::{TimingSlope, Vibration};
 use crate::model::path::C64;

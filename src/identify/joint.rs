@@ -1,7 +1,7 @@
 //! All methods in one likelihood: each block with the weight that its noise gives.
 
 use crate::identify::interval::Posterior;
-use crate::identify::methods::{self, Blocks, IMPACT_BIAS, MethodFit};
+use crate::identify::methods::{self, Blocks, IMPACT_BIAS, MethodFit, Nominal};
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::{Block, FitError, Prior, Problem};
 
@@ -45,7 +45,7 @@ pub fn problem<'b>(
     blocks: &'b Blocks,
     start: Parameters,
     weights: &Weights,
-    gain_uncertainty: f64,
+    nominal: &Nominal,
     posterior: Option<&Posterior>,
 ) -> Option<Problem<'b>> {
     let all: [&'b dyn Block; 5] = [
@@ -81,7 +81,7 @@ pub fn problem<'b>(
     }
     let waveforms = [0, 1, 4].into_iter().any(|i| weights[i].is_some());
     if waveforms {
-        let (nuisances, more) = blocks.nuisances(gain_uncertainty);
+        let (nuisances, more) = blocks.nuisances(nominal);
         free.extend(nuisances);
         priors.extend(more);
     }

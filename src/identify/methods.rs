@@ -26,6 +26,8 @@ pub struct Nominal {
     pub static_deflection_m: Option<f64>,
     /// Standard uncertainty of the channels' gains, relative.
     pub gain_uncertainty: f64,
+    /// Standard uncertainty of the corners of the channels' high-pass, relative.
+    pub corner_uncertainty: f64,
 }
 
 /// Everything an identification starts from.
@@ -100,11 +102,17 @@ impl Blocks {
     }
 
     /// Gains of which any channel is measured.
-    fn gains(&self) -> Vec<Coordinate> {
+    fn gains(&self) -> impl Iterator<Item = Coordinate> {
         (0..4)
             .filter(|i| self.resonance.has_gain(*i) || self.trajectory.has_gain(*i))
             .map(Coordinate::Gain)
-            .collect()
+    }
+
+    /// Corners of the channels that have passed a high-pass.
+    fn corners(&self) -> impl Iterator<Item = Coordinate> {
+        (0..4)
+            .filter(|i| self.resonance.has_corner(*i) || self.trajectory.has_corner(*i))
+            .map(Coordinate::Corner)
     }
 
     /// Whether both masses are measured, so that asymmetries can be told.
@@ -113,26 +121,22 @@ impl Blocks {
         self.resonance.rig == Rig::Double && (has(0) || has(2)) && (has(1) || has(3))
     }
 
-    /// Nuisance coordinates of gains and asymmetry, with their priors.
-    pub fn nuisances(&self, gain_uncertainty: f64) -> (Vec<Coordinate>, Vec<Prior>) {
-        let mut free = self.gains();
-        let gain = |coordinate| Prior {
+    /// Nuisance coordinates of the channels' gains and corners and of asymmetry, with their priors.
+    pub fn nuisances(&self, nominal: &Nominal) -> (Vec<Coordinate>, Vec<Prior>) {
+        let gains = self.gains().map(|c| (c, nominal.gain_uncertainty));
+        let corners = self.corners().map(|c| (c, nominal.corner_uncertainty));
+        let asymmetries = [Coordinate::DriveAsymmetry, Coordinate::StiffnessAsymmetry];
+        let asymmetries = asymmetries.into_iter().filter(|_| self.sees_both());
+        let prior = |(coordinate, deviation): (Coordinate, f64)| Prior {
             coordinate,
             centre: 0.0,
-            deviation: gain_uncertainty.max(1e-6),
+            deviation: deviation.max(1e-6),
         };
-        let mut priors: Vec<Prior> = free.iter().map(|c| gain(*c)).collect();
-        if self.sees_both() {
-            for coordinate in [Coordinate::DriveAsymmetry, Coordinate::StiffnessAsymmetry] {
-                free.push(coordinate);
-                priors.push(Prior {
-                    coordinate,
-                    centre: 0.0,
-                    deviation: ASYMMETRY,
-                });
-            }
-        }
-        (free, priors)
+        gains
+            .chain(corners)
+            .chain(asymmetries.map(|c| (c, ASYMMETRY)))
+            .map(|named| (named.0, prior(named)))
+            .unzip()
     }
 }
 
@@ -199,7 +203,7 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<Result<MethodFit,
         Coordinate::Damping,
         Coordinate::Deflection,
     ];
-    let (nuisances, priors) = blocks.nuisances(nominal.gain_uncertainty);
+    let (nuisances, priors) = blocks.nuisances(nominal);
     free.extend(nuisances);
     let best = starts(blocks, nominal)
         .into_iter()
@@ -297,7 +301,7 @@ pub fn boundaries(
     let mut priors = wide_priors(&start, &free);
     let mut list: Vec<(&dyn Block, f64)> = vec![(&blocks.boundary, 1.0)];
     if !blocks.resonance.points.is_empty() {
-        let (nuisances, more) = blocks.nuisances(nominal.gain_uncertainty);
+        let (nuisances, more) = blocks.nuisances(nominal);
         free.extend(nuisances);
         priors.extend(more);
         list.push((&blocks.resonance, 1.0));
@@ -326,7 +330,7 @@ fn all_four(
 ) -> Result<MethodFit, FitError> {
     let mut free = Coordinate::PHYSICAL.to_vec();
     let mut priors = wide_priors(&start, &free);
-    let (nuisances, more) = blocks.nuisances(nominal.gain_uncertainty);
+    let (nuisances, more) = blocks.nuisances(nominal);
     free.extend(nuisances);
     priors.extend(more);
     fit_blocks(vec![(block, 1.0)], free, priors, start)

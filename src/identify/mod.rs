@@ -14,6 +14,7 @@ pub mod factor;
 pub mod flights;
 pub mod high_pass;
 pub mod impacts;
+pub mod interchange;
 pub mod interval;
 pub mod joint;
 pub mod least_squares;

@@ -6,9 +6,7 @@ use crate::identify::direction::{change, relative_length, relative_rate};
 use crate::identify::high_pass::{HighPass, HighPassSlope, Passed, Tail};
 use crate::identify::parameters::{Coordinate, Parameters, gain_index};
 use crate::identify::trajectory::TrajectoryRecord;
-use crate::identify::waveform::{
-    Phases, Timing, TimingSlope, Vibration, velocity, velocity_slope,
-};
+use crate::identify::waveform::{Phases, Timing, TimingSlope, Vibration, velocity, velocity_slope};
 use crate::model::orbit::Branch;
 use crate::model::params::{Machine, Setting};
 use crate::model::path::C64;
@@ -230,13 +228,12 @@ impl<'a> RecordMotion<'a> {
         let mut start = 0;
         for channel in &self.channels {
             let end = start + channel.points;
-            let relative =
-                direction
-                    .coordinate
-                    .map_or(0.0, |c| match measured(channel.role) {
-                        Measured::Velocity => relative_length(c) + relative_rate(c),
-                        Measured::Displacement => relative_length(c),
-                    });
+            let relative = direction
+                .coordinate
+                .map_or(0.0, |c| match measured(channel.role) {
+                    Measured::Velocity => relative_length(c) + relative_rate(c),
+                    Measured::Displacement => relative_length(c),
+                });
             if relative != 0.0 {
                 let own = slopes[start..end].iter_mut().zip(&values[start..end]);
                 own.for_each(|(s, v)| *s += relative * v);
@@ -277,10 +274,14 @@ impl<'a> RecordMotion<'a> {
             corner: relative * filter.high_pass.corner,
             eta: direction.eta,
         };
-        let passed = filter.high_pass.pass_slope(&channel.motion, &change, &moved);
+        let passed = filter
+            .high_pass
+            .pass_slope(&channel.motion, &change, &moved);
         let mut slopes = vibration.slopes(&filter.passed.motion, &passed.motion, &timing);
         let tails = [filter.passed.tail, passed.tail];
-        filter.tail.add_slopes(&mut slopes, tails, &moved, vibration, &timing);
+        filter
+            .tail
+            .add_slopes(&mut slopes, tails, &moved, vibration, &timing);
         slopes
     }
 

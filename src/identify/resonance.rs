@@ -73,6 +73,13 @@ impl ResonanceBlock {
         }
     }
 
+    /// Whether any channel of a corner's index has passed a high-pass.
+    pub fn has_corner(&self, index: usize) -> bool {
+        let responses = self.points.iter().flat_map(|p| &p.responses);
+        let mut filtered = responses.filter(|r| r.high_pass_hz.is_some());
+        filtered.any(|r| gain_index(r.role) == Some(index))
+    }
+
     /// Whether any channel of a gain's index is present.
     pub fn has_gain(&self, index: usize) -> bool {
         let mut roles = self
@@ -93,6 +100,8 @@ struct Predicted {
     unit: Complex<f64>,
     /// How often the displacement is differentiated.
     order: f64,
+    /// Relative change of the value per unit of the corner's logarithm.
+    over_corner: Complex<f64>,
 }
 
 fn respond(
@@ -119,6 +128,7 @@ fn respond(
         oscillator,
         unit,
         order: f64::from(order),
+        over_corner: Complex::new(0.0, 0.0),
     }
 }
 
@@ -135,6 +145,19 @@ pub fn predicted(
 }
 
 impl Predicted {
+    /// With a high-pass of a corner other than the stated one, which was divided out.
+    fn behind(self, stated_hz: f64, corner: f64, frequency_hz: f64) -> Self {
+        let divided = Complex::new(stated_hz, frequency_hz);
+        let passed = Complex::new(corner * stated_hz, frequency_hz);
+        let off = divided / passed;
+        Self {
+            value: self.value * off,
+            unit: self.unit * off,
+            over_corner: -corner * stated_hz / passed,
+            ..self
+        }
+    }
+
     /// Slope where mass and η change; the drive's frequency, and with it the unit, does not.
     fn along(&self, of_y: bool, change: &Change, eta: f64) -> Complex<f64> {
         let mass = if of_y { &change.y } else { &change.x };
@@ -158,7 +181,16 @@ impl ResonanceBlock {
         let setting = [point.frequency_hz, point.drive_amplitude];
         let responses = point.responses.iter();
         responses
-            .map(|r| respond(parameters, &machine, r.role, setting))
+            .map(|r| {
+                let found = respond(parameters, &machine, r.role, setting);
+                match r.high_pass_hz {
+                    Some(stated_hz) => {
+                        let corner = parameters.corner(r.role);
+                        found.behind(stated_hz, corner, point.frequency_hz)
+                    }
+                    None => found,
+                }
+            })
             .collect()
     }
 
@@ -234,9 +266,12 @@ impl Block for ResonanceBlock {
             let change = change(&machine, eta, 0.0, *coordinate);
             let pairs = point.responses.iter().zip(&found);
             let falling = pairs.map(|(r, p)| {
-                let own_gain =
-                    matches!(coordinate, Coordinate::Gain(g) if gain_index(r.role) == Some(*g));
-                let relative = relative_length(*coordinate) + f64::from(u8::from(own_gain));
+                let own = gain_index(r.role);
+                let relative = match coordinate {
+                    Coordinate::Gain(gain) if own == Some(*gain) => Complex::new(1.0, 0.0),
+                    Coordinate::Corner(corner) if own == Some(*corner) => p.over_corner,
+                    _ => relative_length(*coordinate).into(),
+                };
                 -p.along(r.role.is_of_y(), &change, eta) - p.value * relative
             });
             white(self.weighted(point, falling))
@@ -278,6 +313,7 @@ mod tests {
                         imaginary: 2e-3,
                         error: 1e-4,
                         residual_rms: 1e-4,
+                        high_pass_hz: role.is_of_y().then_some(0.5),
                     })
                     .to_vec(),
             }],
@@ -286,11 +322,16 @@ mod tests {
         let p = Parameters {
             drive_asymmetry: 0.03,
             stiffness_asymmetry: -0.02,
+            corners: [1.0, 1.1, 1.0, 0.9],
             ..Parameters::symmetric(0.8, 12.6, 0.07, 1e-3)
         };
         let mut coordinates = Coordinate::PHYSICAL[1..].to_vec();
         coordinates.extend([Coordinate::DriveAsymmetry, Coordinate::StiffnessAsymmetry]);
-        coordinates.extend([Coordinate::Gain(0), Coordinate::Gain(2)]);
+        coordinates.extend([
+            Coordinate::Gain(0),
+            Coordinate::Gain(2),
+            Coordinate::Corner(1),
+        ]);
         let (here, columns) = block.slopes(0, &p, &coordinates).expect("slopes");
         for (coordinate, exact) in coordinates.iter().zip(columns) {
             let found = difference(&p, *coordinate, &here, |p| block.residuals(0, p));

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::identify::agreement::agreement;
+use crate::identify::interchange;
 use crate::identify::interval::{self, Posterior};
 use crate::identify::joint::{self, METHODS, Weights};
 use crate::identify::methods::{self, Blocks, Evidence};
@@ -223,9 +224,8 @@ impl Work<'_> {
         start: Parameters,
         weights: &Weights,
     ) -> Option<Problem<'b>> {
-        let gain_uncertainty = self.evidence.nominal.gain_uncertainty;
         let posterior = self.posterior.as_ref();
-        joint::problem(blocks, start, weights, gain_uncertainty, posterior)
+        joint::problem(blocks, start, weights, &self.evidence.nominal, posterior)
     }
 
     /// What is asked for of the joint fit's uncertainty.
@@ -260,7 +260,7 @@ impl Work<'_> {
             .or_else(|| suspicion::odd_gap(&blocks.trajectory, weight, &joint.fit, joint.factor))
     }
 
-    /// Gains far off and interchanged channels.
+    /// Gains and corners far off, and interchanged channels.
     fn other_suspicions(&self, fits: &Fits) -> Vec<Suspicion> {
         let Some(joint) = succeeded(&fits.joint) else {
             return Vec::new();
@@ -271,11 +271,11 @@ impl Work<'_> {
             let found = succeeded(&attempt)?;
             Some((found.fit.cost, found.fit.residuals))
         };
-        if let Some(found) = suspicion::swapped(&self.selection.blocks, &cost) {
+        if let Some(found) = interchange::swapped(&self.selection.blocks, &cost) {
             return vec![found];
         }
         let nominal = &self.evidence.nominal;
-        suspicion::gains(&joint.fit, joint.factor, nominal)
+        suspicion::channels(&joint.fit, joint.factor, nominal)
     }
 
     /// What each method found.

@@ -1,5 +1,5 @@
-//! Mistakes of the laboratory that the data give away: a gap stated wrongly, a gain far off, the
-//! channels of the two masses interchanged.
+//! Mistakes of the laboratory that the data give away: a gap stated wrongly, a gain or a corner
+//! far off, the channels of the two masses interchanged.
 //!
 //! A gap or an interchange is tested as an alternative: what would change if it were so, and how
 //! much better would all data then fit.
@@ -8,18 +8,15 @@ use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
 use crate::identify::factor::dot;
-use crate::identify::joint::Weights;
-use crate::identify::methods::{Blocks, Nominal};
+use crate::identify::methods::Nominal;
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::{Block, Fit, mean_squares};
 use crate::identify::trajectory::{TrajectoryBlock, TrajectoryRecord};
-use crate::identify::weighing::LEAST_ALLOWANCE;
-use crate::record::Role;
 
 /// A mistake that the data give away.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Suspicion {
-    /// `wrong_clearance`, `wrong_gain` or `swapped_channels`.
+    /// `wrong_clearance`, `wrong_gain`, `wrong_corner` or `swapped_channels`.
     pub kind: String,
     /// The channel's role, or the clearance as stated.
     pub subject: String,
@@ -30,37 +27,58 @@ pub struct Suspicion {
 }
 
 /// Standard errors from which a deviation is named.
-const SURE: f64 = 6.0;
-/// Standard uncertainties of gains from which a gain is named.
-const GAIN_LIMIT: f64 = 4.0;
+pub(super) const SURE: f64 = 6.0;
+/// Standard uncertainties of gains and corners from which one is named.
+const CHANNEL_LIMIT: f64 = 4.0;
 /// Least relative deviation of a gap that is named.
 const GAP_LIMIT: f64 = 2e-3;
 
-/// Gains that lie far outside what the laboratory states of them.
-pub fn gains(fit: &Fit, factor: f64, nominal: &Nominal) -> Vec<Suspicion> {
-    let gains = fit.free.iter().filter_map(|c| match c {
-        Coordinate::Gain(_) => Some(*c),
-        _ => None,
-    });
-    gains
-        .filter_map(|coordinate| {
-            let off = fit.parameters.coordinate(coordinate);
-            let error = fit.error(coordinate)? * factor.sqrt();
-            let z_score = off / nominal.gain_uncertainty.hypot(error).max(f64::MIN_POSITIVE);
-            let channel = coordinate.name().trim_start_matches("gain_").to_owned();
-            (z_score.abs() > GAIN_LIMIT && off.abs() > SURE * error).then(|| Suspicion {
-                kind: "wrong_gain".into(),
-                message: format!(
-                    "{channel} reads {:.1} % too {}: mend scale in [channels.{channel}], or state \
-                     a larger gain_uncertainty in [rig]",
-                    100.0 * (off.exp() - 1.0).abs(),
-                    if off > 0.0 { "high" } else { "low" },
-                ),
-                subject: channel,
-                z_score,
-            })
-        })
-        .collect()
+/// Gains and corners of channels that lie far outside what the laboratory states of them.
+pub fn channels(fit: &Fit, factor: f64, nominal: &Nominal) -> Vec<Suspicion> {
+    let of = |coordinate: &Coordinate| {
+        let allowed = match coordinate {
+            Coordinate::Gain(_) => nominal.gain_uncertainty,
+            Coordinate::Corner(_) => nominal.corner_uncertainty,
+            _ => return None,
+        };
+        let off = fit.parameters.coordinate(*coordinate);
+        let error = fit.error(*coordinate)? * factor.sqrt();
+        let z_score = off / allowed.hypot(error).max(f64::MIN_POSITIVE);
+        let odd = z_score.abs() > CHANNEL_LIMIT && off.abs() > SURE * error;
+        odd.then(|| odd_channel(*coordinate, off, z_score))
+    };
+    fit.free.iter().filter_map(of).collect()
+}
+
+/// A gain or a corner that deviates; `off`: its logarithm over the stated one.
+fn odd_channel(coordinate: Coordinate, off: f64, z_score: f64) -> Suspicion {
+    let percent = 100.0 * (off.exp() - 1.0).abs();
+    let way = if off > 0.0 { "high" } else { "low" };
+    let name = coordinate.name();
+    let (kind, channel, message) = match name.strip_prefix("corner_") {
+        Some(channel) => {
+            let message = format!(
+                "the high-pass of {channel} has its corner {percent:.0} % too {way} for the \
+                 stated one: mend high_pass in [channels.{channel}], or state a larger \
+                 corner_uncertainty in [rig]"
+            );
+            ("wrong_corner", channel, message)
+        }
+        None => {
+            let channel = name.trim_start_matches("gain_");
+            let message = format!(
+                "{channel} reads {percent:.1} % too {way}: mend scale in [channels.{channel}], \
+                 or state a larger gain_uncertainty in [rig]"
+            );
+            ("wrong_gain", channel, message)
+        }
+    };
+    Suspicion {
+        kind: kind.into(),
+        message,
+        subject: channel.to_owned(),
+        z_score,
+    }
 }
 
 /// A gap that fits the other records only with another clearance.
@@ -230,65 +248,5 @@ fn recover(
         stated_m: stated,
         fitting_m: stated * centre,
         z_score,
-    })
-}
-
-/// Relative difference of two sums of squares that errors of the model may make.
-const MODEL_CHANCE: f64 = 0.3;
-
-/// Whether all data fit far better with the velocities of both masses interchanged, by the least
-/// cost and the number of residuals of a joint fit with given weights.
-pub fn swapped(
-    blocks: &Blocks,
-    cost: &dyn Fn(&Blocks, &Weights) -> Option<(f64, usize)>,
-) -> Option<Suspicion> {
-    // An allowance for what the model leaves open would hide what the interchange explains.
-    let mut here = blocks.clone();
-    (
-        here.resonance.relative_error,
-        here.trajectory.relative_error,
-    ) = (LEAST_ALLOWANCE, LEAST_ALLOWANCE);
-    let mut other = here.clone();
-    let swap = |role: &mut Role| match role {
-        Role::VelocityX => *role = Role::VelocityY,
-        Role::VelocityY => *role = Role::VelocityX,
-        _ => {}
-    };
-    let mut moved = false;
-    for record in &mut other.trajectory.records {
-        for channel in &mut record.folded.channels {
-            swap(&mut channel.role);
-            moved |= channel.role == Role::VelocityY;
-        }
-    }
-    for point in &mut other.resonance.points {
-        for response in &mut point.responses {
-            swap(&mut response.role);
-            moved |= response.role == Role::VelocityY;
-        }
-    }
-    if !moved {
-        return None;
-    }
-    // Often the resonance curve alone speaks against it.
-    let alone = [Some(1.0), None, None, None, None];
-    if let (Some((here, _)), Some((there, _))) = (cost(&here, &alone), cost(&other, &alone))
-        && there > 2.0 * here
-    {
-        return None;
-    }
-    let both = [Some(1.0), Some(1.0), None, None, None];
-    let ((here, freedom), (there, _)) = (cost(&here, &both)?, cost(&other, &both)?);
-    let typical = (there / freedom.max(1) as f64).max(1.0);
-    let z_score = ((here - there) / typical).max(0.0).sqrt();
-    // Where the model leaves more than noise, chance may favour either by some of it.
-    let clearly = 1.0 + MODEL_CHANCE * (1.0 - typical.recip());
-    (z_score > SURE && here > clearly * there).then(|| Suspicion {
-        kind: "swapped_channels".into(),
-        subject: "velocity_x, velocity_y".into(),
-        z_score,
-        message: "all data fit far better with the velocities of both masses interchanged: swap \
-                  [channels.velocity_x] and [channels.velocity_y], or the displacements"
-            .into(),
     })
 }

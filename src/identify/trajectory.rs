@@ -77,6 +77,13 @@ impl TrajectoryBlock {
         roles.any(|r| gain_index(r) == Some(index))
     }
 
+    /// Whether any channel of a corner's index has passed a high-pass.
+    pub fn has_corner(&self, index: usize) -> bool {
+        let channels = self.records.iter().flat_map(|r| &r.folded.channels);
+        let mut filtered = channels.filter(|c| c.high_pass_hz.is_some());
+        filtered.any(|c| gain_index(c.role) == Some(index))
+    }
+
     /// Greatest modulus of the multipliers of a record's orbit; `None` where there is none.
     pub fn slowest_multiplier(&self, item: usize, parameters: &Parameters) -> Option<f64> {
         let record = &self.records[item];

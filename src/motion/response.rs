@@ -1,7 +1,7 @@
 //! Response of an impactless record at the drive's frequency: complex amplitude of each motion
 //! channel relative to the drive's phase, the integrators' high-pass divided out.
 
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{Complex, Matrix4, Vector4};
 use serde::{Deserialize, Serialize};
 
 use crate::event::DriveTone;
@@ -21,12 +21,29 @@ pub struct Response {
     pub error: f64,
     /// Root mean square of what the tone leaves over, SI.
     pub residual_rms: f64,
+    /// Corner of the first-order high-pass that was divided out, Hz; `None`: none.
+    #[serde(default)]
+    pub high_pass_hz: Option<f64>,
 }
 
 impl Response {
     /// Amplitude, SI.
     pub fn amplitude(&self) -> f64 {
         self.real.hypot(self.imaginary)
+    }
+
+    /// The same measured values where the channel has passed another high-pass than was taken.
+    pub fn behind(&self, high_pass_hz: Option<f64>, frequency_hz: f64) -> Self {
+        let ratio = |corner_hz: Option<f64>| corner_hz.unwrap_or(0.0) / frequency_hz;
+        let taken = Complex::new(1.0, -ratio(self.high_pass_hz));
+        let passed = Complex::new(1.0, -ratio(high_pass_hz));
+        let value = Complex::new(self.real, self.imaginary) * passed / taken;
+        Self {
+            real: value.re,
+            imaginary: value.im,
+            high_pass_hz,
+            ..*self
+        }
     }
 }
 
@@ -54,6 +71,7 @@ pub fn responses(record: &Record, drive: &DriveTone) -> Vec<Response> {
                 imaginary,
                 error,
                 residual_rms: raw.3,
+                high_pass_hz: c.high_pass_hz,
             })
         })
         .collect()

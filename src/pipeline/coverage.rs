@@ -159,6 +159,7 @@ fn evidence<'a>(observations: &'a [Observation], brackets: &'a [Bracket]) -> Evi
         brackets,
         nominal: Nominal {
             gain_uncertainty: 5e-3,
+            corner_uncertainty: 2e-2,
             ..Nominal::default()
         },
         // Nobody reads profiles of hundreds of campaigns.

@@ -45,6 +45,7 @@ pub fn nominal(campaign: &ResolvedCampaign) -> Nominal {
         damping_ratio: campaign.rig.damping_ratio,
         static_deflection_m: campaign.rig.static_deflection_m,
         gain_uncertainty: campaign.rig.gain_uncertainty,
+        corner_uncertainty: campaign.rig.corner_uncertainty,
     }
 }
 

@@ -203,7 +203,8 @@ fn campaign_toml(recipe: &Recipe) -> String {
          [records]\n\
          run_table = \"runs.csv\"\n\n\
          [rig]\n\
-         gain_uncertainty = \"0.5 %\"\n",
+         gain_uncertainty = \"0.5 %\"\n\
+         corner_uncertainty = \"2 %\"\n",
     );
     for (sensitivity, (role, dimension, filtered)) in sensitivities(&recipe.truth).iter().zip(ROLES)
     {

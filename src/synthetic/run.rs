@@ -11,7 +11,7 @@ use crate::motion::Motion;
 use crate::record::{self, Channel, Record, Role};
 use crate::synthetic::acquisition::{self, HighPass};
 use crate::synthetic::plan::{Plan, Step};
-use crate::synthetic::truth::{Faults, Truth, draw_gains};
+use crate::synthetic::truth::{Faults, Truth, draw_corners, draw_gains};
 use crate::units::Dimension;
 
 /// Samples per second, Hz.
@@ -164,6 +164,7 @@ pub fn blocks<K: Send, W: Send, E: From<ModelError> + Send>(
         truth,
         faults,
         gains: draw_gains(faults, sensitivities(truth).len(), seed),
+        corners: draw_corners(faults, seed),
         seed,
     };
     let parts: Result<Vec<Vec<W>>, E> = sweeps(plan)
@@ -202,6 +203,8 @@ struct VirtualRig<'a> {
     truth: &'a Truth,
     faults: &'a Faults,
     gains: Vec<f64>,
+    /// Of the three integrators, over the stated corner.
+    corners: [f64; 3],
     seed: u64,
 }
 
@@ -314,8 +317,10 @@ impl VirtualRig<'_> {
         let step_s = 1.0 / (RATE_HZ * FINE as f64);
         let count = pre + (SAMPLES - 1) * FINE + 1;
         let taus = (0..count).map(|i| start_tau + i as f64 * step_s * omega);
-        let mut filters =
-            [(); 3].map(|()| self.faults.high_pass_hz.map(|c| HighPass::new(c, step_s)));
+        let mut filters = self.corners.map(|corner| {
+            let stated_hz = self.faults.high_pass_hz;
+            stated_hz.map(|c| HighPass::new(corner * c, step_s))
+        });
         let mut out = [(); 4].map(|()| Vec::with_capacity(SAMPLES));
         let mut before: Option<[f64; 4]> = None;
         for (i, state) in trajectory.sample(taus).into_iter().enumerate() {

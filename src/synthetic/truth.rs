@@ -58,6 +58,8 @@ pub struct Faults {
     pub gain_deviation: f64,
     /// Corner of the integrators' high-pass, Hz; `None`: none.
     pub high_pass_hz: Option<f64>,
+    /// Standard deviation of those corners about the stated one, relative.
+    pub corner_deviation: f64,
     /// Length of a contact pulse, s.
     pub contact_pulse_s: f64,
     /// Probability that a contact bounces (a second pulse 0.7 to 1.5 ms later).
@@ -75,6 +77,7 @@ impl Default for Faults {
             noise_v: 2.5e-3,
             gain_deviation: 5e-3,
             high_pass_hz: Some(0.5),
+            corner_deviation: 2e-2,
             contact_pulse_s: 0.3e-3,
             bounce_probability: 0.25,
             missed_probability: 0.05,
@@ -91,6 +94,7 @@ impl Faults {
             noise_v: 0.0,
             gain_deviation: 0.0,
             high_pass_hz: None,
+            corner_deviation: 0.0,
             contact_pulse_s: 0.3e-3,
             bounce_probability: 0.0,
             missed_probability: 0.0,
@@ -108,11 +112,21 @@ pub fn draw_asymmetry(faults: &Faults, seed: u64) -> (f64, f64) {
 
 /// Draw the gain error of every channel of a campaign.
 pub fn draw_gains(faults: &Faults, channels: usize, seed: u64) -> Vec<f64> {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed ^ 0x5EED);
-    (0..channels)
+    about_one(faults.gain_deviation, channels, seed ^ 0x5EED)
+}
+
+/// Draw the corners of the integrators of a campaign, over the stated one.
+pub fn draw_corners(faults: &Faults, seed: u64) -> [f64; 3] {
+    let drawn = about_one(faults.corner_deviation, 3, seed ^ 0xC0FE);
+    std::array::from_fn(|i| drawn[i])
+}
+
+fn about_one(deviation: f64, count: usize, seed: u64) -> Vec<f64> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    (0..count)
         .map(|_| {
             let normal: f64 = StandardNormal.sample(&mut rng);
-            1.0 + faults.gain_deviation * normal
+            1.0 + deviation * normal
         })
         .collect()
 }
