@@ -336,6 +336,7 @@ fn without_speeds(
                 speed_error_m_s: None,
                 x: None,
                 y: None,
+                corner_shifts: [None, None],
                 dead_zone_s: c.dead_samples / rate_hz,
                 seen: c.seen,
             }

@@ -8,6 +8,8 @@ use crate::signal::{drift, robust};
 /// A signal in SI with its noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
+    /// The channel that it comes from; of a closing motion, the first.
+    pub role: Role,
     /// Samples, SI.
     pub values: Vec<f64>,
     /// Standard deviation of the white noise, SI; at least the converter's step over √12.
@@ -171,6 +173,7 @@ fn series(record: &Record, role: Role) -> Option<Series> {
         None => channel.values.clone(),
     };
     let mut series = Series {
+        role,
         values,
         noise,
         high_pass_hz: channel.high_pass_hz,
@@ -215,6 +218,7 @@ fn differentiated(displacement: &Series, rate_hz: f64) -> Series {
         })
         .collect();
     Series {
+        role: displacement.role,
         values,
         noise: displacement.noise * rate_hz / 2f64.sqrt(),
         high_pass_hz: displacement.high_pass_hz,
@@ -236,6 +240,7 @@ fn integrated(acceleration: &Series, rate_hz: f64) -> Series {
     remove_mean(&mut values);
     let high_pass_hz = Some(acceleration.high_pass_hz.unwrap_or(0.0));
     Series {
+        role: acceleration.role,
         noise: acceleration.noise / rate_hz,
         values,
         high_pass_hz,
@@ -255,6 +260,7 @@ fn closing(
             let high_pass_hz = x.high_pass_hz.or(y.high_pass_hz);
             (
                 Some(Series {
+                    role: x.role,
                     values,
                     noise,
                     high_pass_hz,
@@ -265,6 +271,7 @@ fn closing(
         (Some(one), None, Rig::Double) | (None, Some(one), Rig::Double) => {
             let values = one.values.iter().map(|v| 2.0 * v).collect();
             let series = Series {
+                role: one.role,
                 values,
                 noise: 2.0 * one.noise,
                 high_pass_hz: one.high_pass_hz,

@@ -3,6 +3,7 @@
 
 pub mod bounce;
 pub mod contact;
+pub mod corner;
 pub mod detect;
 pub mod drift;
 pub mod drive;
@@ -56,6 +57,8 @@ pub struct MassSpeeds {
     pub after_m_s: f64,
 }
 
+pub use corner::CornerShift;
+
 /// One impact: when, at which phase of the drive, how fast before and after, how it was seen.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Impact {
@@ -75,6 +78,9 @@ pub struct Impact {
     pub x: Option<MassSpeeds>,
     /// Mass y alone.
     pub y: Option<MassSpeeds>,
+    /// What corners other than the stated ones would change of both closing speeds.
+    #[serde(default)]
+    pub corner_shifts: [Option<CornerShift>; 2],
     /// How long the bodies stayed together after it, s; zero without a dead zone.
     pub dead_zone_s: f64,
     /// How it was seen.

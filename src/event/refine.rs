@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::event::corner::Shifts;
 use crate::event::drift::integral;
 use crate::event::jumps::Jump;
 use crate::event::kinematics::{Body, Kinematics, Series};
@@ -279,6 +280,7 @@ pub fn impacts(
         let velocity = body.velocity.as_ref()?;
         speeds(velocity, candidates, i, instants[i], arc)
     };
+    let shifts = Shifts::of(kinematics);
     (0..candidates.len())
         .map(|i| {
             let time_s = instants[i].time / kinematics.rate_hz;
@@ -292,6 +294,7 @@ pub fn impacts(
                 speed_error_m_s: closing.map(|c| c.1),
                 x: of(&kinematics.x, i).map(|s| s.0),
                 y: of(&kinematics.y, i).map(|s| s.0),
+                corner_shifts: shifts.at(instants[i].time),
                 dead_zone_s: candidates[i].dead_samples / kinematics.rate_hz,
                 seen: candidates[i].seen,
             }

@@ -87,11 +87,9 @@ fn bound(
         .filter(|c| list.iter().any(|(block, _)| block.touches(*c)))
         .collect();
     let mut priors: Vec<Prior> = wide_priors(at, &free);
-    if free.len() > 1 {
-        let (nuisances, more) = blocks.nuisances(nominal);
-        free.extend(nuisances);
-        priors.extend(more);
-    }
+    let (nuisances, more) = blocks.nuisances(nominal, &list);
+    free.extend(nuisances);
+    priors.extend(more);
     let problem = Problem {
         blocks: list,
         priors,

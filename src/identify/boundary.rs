@@ -1,9 +1,9 @@
-//! Brackets of boundaries against the closed-form s2 and ρ'.
+//! Brackets of boundaries against the closed-form s2, s1 and ρ'.
 
 use crate::event::Rig;
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::Block;
-use crate::model::boundary::s2_of_branch;
+use crate::model::boundary::{s1_of_branch, s2_of_branch};
 use crate::model::orbit::Branch;
 use crate::model::params::Machine;
 use crate::motion::bracket::{BoundaryKind, Bracket};
@@ -13,7 +13,7 @@ use crate::motion::bracket::{BoundaryKind, Bracket};
 pub struct BoundaryBlock {
     /// One or two masses.
     pub rig: Rig,
-    /// The brackets: s2 and grazing.
+    /// The brackets: s2, s1 and grazing.
     pub brackets: Vec<Bracket>,
     /// Typical distance of an early jump from the boundary, as a fraction of the frequency.
     pub early_scale: f64,
@@ -24,7 +24,7 @@ impl BoundaryBlock {
     pub fn new(rig: Rig, brackets: &[Bracket]) -> Self {
         let brackets = brackets
             .iter()
-            .filter(|b| matches!(b.kind, BoundaryKind::SaddleNode | BoundaryKind::Grazing))
+            .filter(|b| b.kind != BoundaryKind::Other)
             .cloned()
             .collect();
         Self {
@@ -38,7 +38,7 @@ impl BoundaryBlock {
     pub fn tells_restitution(&self) -> bool {
         self.brackets
             .iter()
-            .any(|b| b.kind == BoundaryKind::SaddleNode)
+            .any(|b| b.kind != BoundaryKind::Grazing)
     }
 
     /// Set the scale of early jumps to the one that makes the brackets most likely at given
@@ -136,7 +136,11 @@ pub fn bracket_probability(bracket: &Bracket, early_scale: f64, boundary_hz: f64
 /// Frequency of the boundary of a bracket according to the model, Hz: the crossing nearest to it.
 /// `None` where the boundary does not reach this clearance.
 pub fn predicted_hz(bracket: &Bracket, parameters: &Parameters, rig: Rig) -> Option<f64> {
-    let machine = parameters.machine(rig);
+    let machine = match bracket.kind {
+        // Exchanged masses double at the same place: an asymmetry changes it in second order only.
+        BoundaryKind::PeriodDoubling => parameters.without_asymmetry().machine(rig),
+        _ => parameters.machine(rig),
+    };
     let middle = parameters.setting(
         bracket.middle_hz(),
         bracket.clearance_m,
@@ -144,6 +148,9 @@ pub fn predicted_hz(bracket: &Bracket, parameters: &Parameters, rig: Rig) -> Opt
     );
     let rho = |eta: f64| match bracket.kind {
         BoundaryKind::Grazing => grazing(&machine, eta),
+        BoundaryKind::PeriodDoubling => {
+            doubling(&machine, parameters.restitution, eta, bracket.periods_n)
+        }
         _ => saddle_node(&machine, parameters.restitution, eta, bracket.periods_n),
     };
     let eta = nearest_crossing(rho, middle.clearance, middle.frequency_ratio)?;
@@ -163,6 +170,13 @@ fn saddle_node(machine: &Machine, restitution: f64, eta: f64, n: u32) -> f64 {
     )
 }
 
+/// ρ of s1; not a number where the orbits do not double.
+fn doubling(machine: &Machine, restitution: f64, eta: f64, n: u32) -> f64 {
+    let branch = Branch::new(machine, eta, n);
+    let found = s1_of_branch(machine, &branch, restitution.clamp(0.0, 1.0));
+    found.map_or(f64::NAN, |at| at.0)
+}
+
 /// Clearance ρ that belongs to a whole gap.
 fn half_gap(machine: &Machine, gap: f64) -> f64 {
     gap / machine.gap(1.0)
@@ -173,20 +187,27 @@ fn nearest_crossing(rho: impl Fn(f64) -> f64, level: f64, eta0: f64) -> Option<f
     let excess = |eta: f64| rho(eta) - level;
     let here = excess(eta0);
     let step = 0.01;
+    // Between two points of opposite sign; where the curve leaps there instead, it crosses nothing.
+    let crossing = |low: (f64, f64), high: (f64, f64)| {
+        let finite = low.1.is_finite() && high.1.is_finite();
+        let root = (finite && low.1.signum() != high.1.signum())
+            .then(|| bisected(&excess, low.0, high.0))?;
+        (excess(root).abs() < 1e-6 * (1.0 + level.abs())).then_some(root)
+    };
     let (mut low, mut high) = ((eta0, here), (eta0, here));
     for _ in 0..60 {
         let below = low.0 - step;
         if below > 0.05 {
             let next = (below, excess(below));
-            if next.1.signum() != low.1.signum() {
-                return Some(bisected(&excess, next.0, low.0));
+            if let Some(root) = crossing(next, low) {
+                return Some(root);
             }
             low = next;
         }
         let above = high.0 + step;
         let next = (above, excess(above));
-        if next.1.signum() != high.1.signum() {
-            return Some(bisected(&excess, high.0, next.0));
+        if let Some(root) = crossing(high, next) {
+            return Some(root);
         }
         high = next;
     }
@@ -234,5 +255,73 @@ impl Block for BoundaryBlock {
 
     fn touches(&self, coordinate: Coordinate) -> bool {
         !matches!(coordinate, Coordinate::Gain(_) | Coordinate::Corner(_))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::middles;
+    use crate::model::boundary::{rho_grazing, rho_s1, rho_s2};
+    use crate::record::Sweep;
+
+    /// A bracket about the boundary of a kind at η, as the model itself has it.
+    fn bracket(kind: BoundaryKind, eta: f64, p: &Parameters, off_middle: f64) -> Bracket {
+        let machine = p.machine(Rig::Double);
+        let rho = match kind {
+            BoundaryKind::SaddleNode => rho_s2(&machine, eta, 1).expect("an s2").rho,
+            BoundaryKind::PeriodDoubling => rho_s1(&machine, eta, 1).expect("an s1").rho,
+            _ => rho_grazing(&machine, eta),
+        };
+        let frequency_hz = eta * p.natural_frequency_hz;
+        Bracket {
+            kind,
+            periods_n: 1,
+            clearance_m: rho * p.static_deflection_m,
+            drive_amplitude: 1.0,
+            frequency_low_hz: frequency_hz * (1.0 - 0.01 * (1.0 + off_middle)),
+            frequency_high_hz: frequency_hz * (1.0 + 0.01 * (1.0 - off_middle)),
+            sweep: Sweep::Up,
+            from: "1".into(),
+            to: "0".into(),
+            records: ["a".into(), "b".into()],
+        }
+    }
+
+    #[test]
+    fn valid_boundaries_lie_where_the_model_has_them() {
+        let p = Parameters::symmetric(0.9, 12.6, 0.07, 1e-3);
+        let cases = [
+            (BoundaryKind::SaddleNode, 1.3),
+            (BoundaryKind::Grazing, 1.2),
+            (BoundaryKind::PeriodDoubling, 0.85),
+        ];
+        for (kind, eta) in cases {
+            let found = predicted_hz(&bracket(kind, eta, &p, 0.0), &p, Rig::Double);
+            let found = found.expect("a boundary") / p.natural_frequency_hz;
+            assert!((found - eta).abs() < 1e-9, "{kind:?} {found}");
+        }
+    }
+
+    #[test]
+    fn valid_a_doubling_tells_restitution_and_middles_tell_it_where_they_are_the_boundary() {
+        let p = Parameters::symmetric(0.7, 12.6, 0.05, 1e-3);
+        let etas = [1.15, 1.25, 1.35];
+        let of = |kind, off: f64| {
+            BoundaryBlock::new(Rig::Double, &etas.map(|eta| bracket(kind, eta, &p, off)))
+        };
+        let wrong = Parameters {
+            restitution: 0.62,
+            ..p
+        };
+        let r = |off| {
+            let found = middles::restitution(&of(BoundaryKind::SaddleNode, off), &wrong);
+            found.and_then(|e| e.value).expect("R")
+        };
+        assert!((r(0.0) - 0.7).abs() < 1e-6);
+        // Jumps earlier than s2 by a fifth of a bracket take R down with them.
+        assert!(r(0.4) < 0.695);
+        assert!(of(BoundaryKind::PeriodDoubling, 0.0).tells_restitution());
+        assert!(!of(BoundaryKind::Grazing, 0.0).tells_restitution());
     }
 }

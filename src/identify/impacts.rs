@@ -1,6 +1,7 @@
 //! R from the speeds after over before each impact.
 
-use crate::identify::parameters::{Coordinate, Parameters};
+use crate::event::CornerShift;
+use crate::identify::parameters::{Coordinate, Parameters, gain_index};
 use crate::identify::solver::Block;
 use crate::motion::Observation;
 
@@ -15,6 +16,18 @@ pub struct SpeedPair {
     pub after_m_s: f64,
     /// Standard error of either, m/s.
     pub error_m_s: f64,
+    /// What the channels' corners would change of the speeds, toward each other.
+    pub corner_shifts: [Option<CornerShift>; 2],
+}
+
+impl SpeedPair {
+    /// Change of the closing speed, m/s, by corners other than the stated ones.
+    fn shift(&self, parameters: &Parameters) -> f64 {
+        let shifts = self.corner_shifts.iter().flatten();
+        shifts
+            .map(|s| parameters.corner(s.role).ln() * s.speed_m_s)
+            .sum()
+    }
 }
 
 /// All impacts with measured speeds.
@@ -51,6 +64,7 @@ impl ImpactBlock {
                     before_m_s: impact.closing_speed_before_m_s?,
                     after_m_s: -impact.closing_speed_after_m_s?,
                     error_m_s: impact.speed_error_m_s?,
+                    corner_shifts: impact.corner_shifts,
                 })
             })
             .filter(|p| p.after_m_s > -4.0 * p.error_m_s)
@@ -59,6 +73,15 @@ impl ImpactBlock {
             pairs,
             relative_error,
         }
+    }
+
+    /// Whether the speeds depend on a corner, by its index.
+    pub fn has_corner(&self, index: usize) -> bool {
+        let mut shifts = self
+            .pairs
+            .iter()
+            .flat_map(|p| p.corner_shifts.iter().flatten());
+        shifts.any(|s| gain_index(s.role) == Some(index))
     }
 
     /// Keep only pairs that lie within `limit` robust deviations of the bulk; gives the number
@@ -88,6 +111,18 @@ impl ImpactBlock {
         (self, dropped)
     }
 
+    /// The speeds as they are with the corners that a fit found.
+    pub fn corrected(&self, parameters: &Parameters) -> Self {
+        let mut block = self.clone();
+        for pair in &mut block.pairs {
+            let shift = pair.shift(parameters);
+            pair.before_m_s += shift;
+            pair.after_m_s -= shift;
+            pair.corner_shifts = [None, None];
+        }
+        block
+    }
+
     /// Standard error of after − R·before.
     pub fn error(&self, pair: &SpeedPair, restitution: f64) -> f64 {
         let noise = pair.error_m_s * 1f64.hypot(restitution);
@@ -103,12 +138,15 @@ impl Block for ImpactBlock {
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let pair = &self.pairs[item];
         let r = parameters.restitution;
-        Some(vec![
-            (pair.after_m_s - r * pair.before_m_s) / self.error(pair, r),
-        ])
+        let shift = pair.shift(parameters);
+        let (before, after) = (pair.before_m_s + shift, pair.after_m_s - shift);
+        Some(vec![(after - r * before) / self.error(pair, r)])
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {
-        coordinate == Coordinate::Restitution
+        match coordinate {
+            Coordinate::Corner(index) => self.has_corner(index),
+            _ => coordinate == Coordinate::Restitution,
+        }
     }
 }

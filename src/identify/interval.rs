@@ -145,7 +145,12 @@ fn likelihood(block: &BoundaryBlock, parameters: &Parameters) -> f64 {
         .iter()
         .map(|b| (b, predicted_hz(b, parameters, block.rig)))
         .collect();
-    [BoundaryKind::SaddleNode, BoundaryKind::Grazing]
+    let kinds = [
+        BoundaryKind::SaddleNode,
+        BoundaryKind::PeriodDoubling,
+        BoundaryKind::Grazing,
+    ];
+    kinds
         .into_iter()
         .map(|kind| {
             let logs: Vec<f64> = EARLY_SCALES

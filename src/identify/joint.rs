@@ -20,8 +20,8 @@ pub const METHODS: [&str; 5] = [
 /// Weight of the impacts among the other methods: what the extrapolation of speeds leaves open is
 /// common to all impacts, so that all together tell no more than that.
 pub fn impact_weight(found: &MethodFit) -> f64 {
-    let error = found.fit.error(Coordinate::Restitution).unwrap_or(0.0);
-    let square = error * error * found.factor;
+    let square = found.fit.conditional_variance(Coordinate::Restitution);
+    let square = square.unwrap_or(0.0) * found.factor;
     square / (square + IMPACT_BIAS * IMPACT_BIAS) / found.factor
 }
 
@@ -79,12 +79,9 @@ pub fn problem<'b>(
             deviation,
         });
     }
-    let waveforms = [0, 1, 4].into_iter().any(|i| weights[i].is_some());
-    if waveforms {
-        let (nuisances, more) = blocks.nuisances(nominal);
-        free.extend(nuisances);
-        priors.extend(more);
-    }
+    let (nuisances, more) = blocks.nuisances(nominal, &list);
+    free.extend(nuisances);
+    priors.extend(more);
     Some(Problem {
         blocks: list,
         priors,

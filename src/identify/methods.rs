@@ -111,7 +111,11 @@ impl Blocks {
     /// Corners of the channels that have passed a high-pass.
     fn corners(&self) -> impl Iterator<Item = Coordinate> {
         (0..4)
-            .filter(|i| self.resonance.has_corner(*i) || self.trajectory.has_corner(*i))
+            .filter(|i| {
+                self.resonance.has_corner(*i)
+                    || self.trajectory.has_corner(*i)
+                    || self.impact.has_corner(*i)
+            })
             .map(Coordinate::Corner)
     }
 
@@ -121,8 +125,14 @@ impl Blocks {
         self.resonance.rig == Rig::Double && (has(0) || has(2)) && (has(1) || has(3))
     }
 
-    /// Nuisance coordinates of the channels' gains and corners and of asymmetry, with their priors.
-    pub fn nuisances(&self, nominal: &Nominal) -> (Vec<Coordinate>, Vec<Prior>) {
+    /// Nuisance coordinates on which a fit of some blocks depends, with their priors: the
+    /// channels' gains and corners, and asymmetry.
+    pub fn nuisances(
+        &self,
+        nominal: &Nominal,
+        fitted: &[(&dyn Block, f64)],
+    ) -> (Vec<Coordinate>, Vec<Prior>) {
+        let touched = |c: &Coordinate| fitted.iter().any(|(block, _)| block.touches(*c));
         let gains = self.gains().map(|c| (c, nominal.gain_uncertainty));
         let corners = self.corners().map(|c| (c, nominal.corner_uncertainty));
         let asymmetries = [Coordinate::DriveAsymmetry, Coordinate::StiffnessAsymmetry];
@@ -135,6 +145,7 @@ impl Blocks {
         gains
             .chain(corners)
             .chain(asymmetries.map(|c| (c, ASYMMETRY)))
+            .filter(|(c, _)| touched(c))
             .map(|named| (named.0, prior(named)))
             .unzip()
     }
@@ -203,14 +214,15 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<Result<MethodFit,
         Coordinate::Damping,
         Coordinate::Deflection,
     ];
-    let (nuisances, priors) = blocks.nuisances(nominal);
+    let list: [(&dyn Block, f64); 1] = [(&blocks.resonance, 1.0)];
+    let (nuisances, priors) = blocks.nuisances(nominal, &list);
     free.extend(nuisances);
     let best = starts(blocks, nominal)
         .into_iter()
         .filter_map(|start| {
             let mut priors = priors.clone();
             priors.extend(wide_priors(&start, &free));
-            fit_blocks(vec![(&blocks.resonance, 1.0)], free.clone(), priors, start).ok()
+            fit_blocks(list.to_vec(), free.clone(), priors, start).ok()
         })
         .min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
     Some(best.ok_or(FitError::Singular))
@@ -271,18 +283,19 @@ fn deflection_guess(blocks: &Blocks, unit: &Parameters) -> f64 {
     if square > 0.0 { product / square } else { 1e-3 }
 }
 
-/// R alone from the speeds at impacts.
-pub fn impacts(blocks: &Blocks, start: Parameters) -> Option<Result<MethodFit, FitError>> {
+/// R alone from the speeds at impacts, with the corners of the velocities' high-pass as nuisances.
+pub fn impacts(
+    blocks: &Blocks,
+    nominal: &Nominal,
+    start: Parameters,
+) -> Option<Result<MethodFit, FitError>> {
     if blocks.impact.pairs.len() < 3 {
         return None;
     }
-    let free = vec![Coordinate::Restitution];
-    Some(fit_blocks(
-        vec![(&blocks.impact, 1.0)],
-        free,
-        Vec::new(),
-        start,
-    ))
+    let list: Vec<(&dyn Block, f64)> = vec![(&blocks.impact, 1.0)];
+    let (mut free, priors) = blocks.nuisances(nominal, &list);
+    free.insert(0, Coordinate::Restitution);
+    Some(fit_blocks(list, free, priors, start))
 }
 
 /// s2 and grazing brackets, with f0, β and x_st from the impactless records beside them.
@@ -301,10 +314,10 @@ pub fn boundaries(
     let mut priors = wide_priors(&start, &free);
     let mut list: Vec<(&dyn Block, f64)> = vec![(&blocks.boundary, 1.0)];
     if !blocks.resonance.points.is_empty() {
-        let (nuisances, more) = blocks.nuisances(nominal);
+        list.push((&blocks.resonance, 1.0));
+        let (nuisances, more) = blocks.nuisances(nominal, &list);
         free.extend(nuisances);
         priors.extend(more);
-        list.push((&blocks.resonance, 1.0));
     }
     Some(fit_blocks(list, free, priors, start))
 }
@@ -330,10 +343,11 @@ fn all_four(
 ) -> Result<MethodFit, FitError> {
     let mut free = Coordinate::PHYSICAL.to_vec();
     let mut priors = wide_priors(&start, &free);
-    let (nuisances, more) = blocks.nuisances(nominal);
+    let list = vec![(block, 1.0)];
+    let (nuisances, more) = blocks.nuisances(nominal, &list);
     free.extend(nuisances);
     priors.extend(more);
-    fit_blocks(vec![(block, 1.0)], free, priors, start)
+    fit_blocks(list, free, priors, start)
 }
 
 /// Variance of what flights tell over that of independent innovations: an impact's errors of time

@@ -19,6 +19,7 @@ pub mod interval;
 pub mod joint;
 pub mod least_squares;
 pub mod methods;
+pub mod middles;
 pub mod parameters;
 pub mod plan;
 pub mod published;

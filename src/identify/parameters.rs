@@ -70,6 +70,15 @@ impl Parameters {
         }
     }
 
+    /// Of a machine whose masses are alike.
+    pub fn without_asymmetry(self) -> Self {
+        Self {
+            drive_asymmetry: 0.0,
+            stiffness_asymmetry: 0.0,
+            ..self
+        }
+    }
+
     /// η and ρ of a setting; the drive amplitude scales the static deflection.
     pub fn setting(&self, frequency_hz: f64, clearance_m: f64, drive_amplitude: f64) -> Setting {
         Setting::new(

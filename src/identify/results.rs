@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use crate::identify::interval::Posterior;
 use crate::identify::methods::{self, Blocks, Evidence, IMPACT_BIAS, MethodFit};
-use crate::identify::parameters::Coordinate;
+use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::selection::Attempt;
 use crate::identify::solver::{Fit, FitError};
-use crate::identify::{Estimate, MethodResult, contact_law, estimate, verdict};
+use crate::identify::{Estimate, MethodResult, contact_law, estimate, middles, verdict};
 
 /// f0, β and x_st from the impactless records.
 pub fn resonance(blocks: &Blocks, attempt: &Result<MethodFit, FitError>) -> MethodResult {
@@ -25,13 +25,19 @@ pub fn resonance(blocks: &Blocks, attempt: &Result<MethodFit, FitError>) -> Meth
     result
 }
 
-/// R from the speeds at impacts; what their extrapolation leaves open widens it.
+/// R from the speeds at impacts; what their extrapolation leaves open widens it. The contact law is
+/// judged with the corners of the velocities' high-pass as all data together have them.
 pub fn impacts(
     blocks: &Blocks,
     attempt: &Result<MethodFit, FitError>,
     evidence: &Evidence,
+    together: Option<&Fit>,
 ) -> MethodResult {
-    let block = &blocks.impact;
+    let fit = together.or(attempt.as_ref().ok().map(|a| &a.fit));
+    let block = &match fit {
+        Some(fit) => blocks.impact.corrected(&fit.parameters),
+        None => blocks.impact.clone(),
+    };
     let mut records: Vec<usize> = block.pairs.iter().map(|p| p.observation).collect();
     records.dedup();
     let mut result = methods::result(
@@ -128,8 +134,24 @@ pub fn boundaries(
             error,
             None,
         ));
+        let about = attempt.as_ref().ok().map(|found| Parameters {
+            restitution: posterior.restitution.0,
+            ..found.fit.parameters
+        });
+        let middles = about.and_then(|at| middles::restitution(&blocks.boundary, &at));
+        result.remarks.extend(middles.as_ref().and_then(in_words));
+        let named = middles.map(|estimate| ("restitution_by_middles".to_owned(), estimate));
+        result.further.extend(named);
     }
     result
+}
+
+fn in_words(middles: &Estimate) -> Option<String> {
+    let (value, error) = (middles.value?, middles.standard_error?);
+    Some(format!(
+        "plain least squares on the middles of the s2 brackets: R = {value:.3} ± {:.3}",
+        estimate::NORMAL_975 * error
+    ))
 }
 
 /// The joint result with its fit and the factor on its covariance; without one, what the free

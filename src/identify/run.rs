@@ -47,7 +47,7 @@ pub fn identify(evidence: &Evidence) -> Outcome {
     };
     let resonance = work.selection.resonance();
     let start = start(evidence, &resonance);
-    let impacts = methods::impacts(&work.selection.blocks, start);
+    let impacts = methods::impacts(&work.selection.blocks, &evidence.nominal, start);
     let start = with_restitution(start, &impacts);
     let mut fits = work.fits(start, resonance, impacts);
     let mut suspicions = Vec::new();
@@ -282,6 +282,7 @@ impl Work<'_> {
     fn results(&self, fits: &Fits) -> BTreeMap<String, MethodResult> {
         let blocks = &self.selection.blocks;
         let posterior = self.posterior.as_ref();
+        let together = succeeded(&fits.joint).map(|j| &j.fit);
         let found = [
             fits.resonance
                 .as_ref()
@@ -294,7 +295,7 @@ impl Work<'_> {
                 .map(|a| results::boundaries(blocks, a, posterior)),
             fits.impacts
                 .as_ref()
-                .map(|a| results::impacts(blocks, a, self.evidence)),
+                .map(|a| results::impacts(blocks, a, self.evidence, together)),
             fits.flights.as_ref().map(|a| results::flights(blocks, a)),
         ];
         let mut named: BTreeMap<String, MethodResult> = METHODS

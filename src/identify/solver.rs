@@ -103,6 +103,12 @@ impl Fit {
         Some(self.covariance[(i, i)].max(0.0).sqrt())
     }
 
+    /// Variance of a coordinate where all others are known; `None` where it was not free.
+    pub fn conditional_variance(&self, coordinate: Coordinate) -> Option<f64> {
+        let i = self.free.iter().position(|c| *c == coordinate)?;
+        Some(inverse(&self.covariance)?[(i, i)].recip())
+    }
+
     /// Correlation of two free coordinates.
     pub fn correlation(&self, a: Coordinate, b: Coordinate) -> Option<f64> {
         let i = self.free.iter().position(|c| *c == a)?;

@@ -103,6 +103,34 @@ fn valid_parameters_of_synthetic_campaigns_come_back() {
 }
 
 #[test]
+fn valid_a_corner_stated_wrongly_is_named_and_r_comes_out_right() {
+    let truth = [
+        ("--restitution", "0.7"),
+        ("--damping-ratio", "0.05"),
+        ("--natural-frequency-hz", "12"),
+    ];
+    let study = Study::new(6, truth, 60);
+    let file = study.campaign.join("campaign.toml");
+    let stated = std::fs::read_to_string(&file).expect("campaign.toml");
+    let at = stated.find("[channels.displacement_y]").expect("the channel");
+    let (head, tail) = stated.split_at(at);
+    let wrong = format!("{head}{}", tail.replacen("0.5 Hz", "0.65 Hz", 1));
+    std::fs::write(&file, wrong).expect("campaign.toml again");
+    let out = study.campaign.join("again");
+    assert_eq!(
+        impactid(&["-q", "run", &text(&file), "--out", &text(&out)]),
+        0
+    );
+    let found = json(&out.join("identification.json"));
+    let named = found["suspicions"].as_array().expect("suspicions");
+    assert_eq!(named.len(), 1, "{named:?}");
+    assert_eq!(named[0]["kind"], "wrong_corner");
+    assert_eq!(named[0]["subject"], "displacement_y");
+    let r = value(&found["joint"], "restitution");
+    assert!((r - 0.7).abs() < 1e-3, "{r}");
+}
+
+#[test]
 fn valid_stages_alone_give_what_run_gives() {
     let truth = [
         ("--restitution", "0.8"),

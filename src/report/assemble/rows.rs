@@ -59,7 +59,7 @@ fn channel_row(channel: &ChannelFacts) -> ChannelRow {
     let high_pass = channel.high_pass_hz;
     let notes = [
         channel.instrument.clone(),
-        high_pass.map(|c| format!("high-pass at {c} Hz undone")),
+        high_pass.map(|c| format!("high-pass at {c} Hz")),
     ];
     let unit = channel.role.dimension().map_or("", |d| d.si_symbol());
     ChannelRow {

@@ -1,0 +1,77 @@
+//! What the corner of an integrator's high-pass has to do with the speeds at impacts.
+//!
+//! With the corner ω_c(1 + ε) in place of the stated ω_c, undoing the high-pass leaves the velocity
+//! short by ε ω_c times the displacement (less its mean, which no such channel tells). At impacts
+//! the displacement is far from its mean, and the speeds before and after are off by the same.
+
+use serde::{Deserialize, Serialize};
+
+use crate::event::kinematics::{Body, ClosingFrom, Kinematics};
+use crate::record::Role;
+use crate::signal::{drift, robust};
+
+/// Change of both closing speeds at an impact per unit of the logarithm of a corner.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct CornerShift {
+    /// The channel whose corner it is.
+    pub role: Role,
+    /// m/s, toward each other.
+    pub speed_m_s: f64,
+}
+
+/// A body's shift at all times.
+struct Shift {
+    role: Role,
+    speeds_m_s: Vec<f64>,
+}
+
+/// The shifts of the closing velocity of a record.
+pub struct Shifts([Option<Shift>; 2]);
+
+impl Shifts {
+    /// Of a record whose velocities are free of drift.
+    pub fn of(kinematics: &Kinematics) -> Self {
+        let rate_hz = kinematics.rate_hz;
+        let of = |body: &Body, times: f64| shift(body, times / rate_hz);
+        let Kinematics { x, y, .. } = kinematics;
+        Self(match kinematics.closing_from {
+            Some(ClosingFrom::Both) => [of(x, 1.0), of(y, 1.0)],
+            Some(ClosingFrom::One) => [of(x, 1.0), None],
+            Some(ClosingFrom::Doubled) => [of(x, 2.0), of(y, 2.0)],
+            None => [None, None],
+        })
+    }
+
+    /// At a time in samples.
+    pub fn at(&self, time: f64) -> [Option<CornerShift>; 2] {
+        [0, 1].map(|i| {
+            let shift = self.0[i].as_ref()?;
+            Some(CornerShift {
+                role: shift.role,
+                speed_m_s: drift::interpolate(&shift.speeds_m_s, time)?,
+            })
+        })
+    }
+}
+
+/// ω_c times the displacement by integration, in steps of a time.
+fn shift(body: &Body, step_s: f64) -> Option<Shift> {
+    let velocity = body.velocity.as_ref()?;
+    let corner_hz = velocity.high_pass_hz.filter(|c| *c > 0.0)?;
+    let mut sum = 0.0;
+    let mut speeds_m_s: Vec<f64> = velocity
+        .values
+        .windows(2)
+        .map(|pair| {
+            sum += 0.5 * (pair[0] + pair[1]) * step_s * std::f64::consts::TAU * corner_hz;
+            sum
+        })
+        .collect();
+    speeds_m_s.insert(0, 0.0);
+    let mean = robust::mean(&speeds_m_s);
+    drift::remove_line(&mut speeds_m_s, mean, 0.0);
+    Some(Shift {
+        role: velocity.role,
+        speeds_m_s,
+    })
+}
