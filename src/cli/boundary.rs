@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 use super::machine::{MachineArgs, motion, refused};
 use super::voice::print;
 use super::{Exit, Failure, Voice};
+use crate::atlas::brute::{Way, brute_map};
 use crate::atlas::continuation::{Edge, EdgeKind};
 use crate::atlas::map::{MapGrid, MapSettings};
 use crate::atlas::regions::{AtlasSettings, slices_at, spans_at_clearance};
@@ -129,7 +130,7 @@ impl Boundary {
         let settings = self.settings(MapGrid::even((eta, eta, 1), (bottom, top, 400)));
         let mut points = Vec::new();
         if self.kind == Kind::DeadZone {
-            points = resting(machine, &settings, (p, n));
+            points = resting(machine, &settings, (p, n))?;
         }
         if !dead_zone {
             let slices = slices_at(machine, eta, &settings).map_err(|e| refused(&e))?;
@@ -273,17 +274,23 @@ fn followed_edge(edge: &Edge, side: &str) -> Value {
 }
 
 /// Edges of the motion p/n that rests in a dead zone.
-fn resting(machine: &Machine, settings: &AtlasSettings, (p, n): (u32, u32)) -> Vec<Value> {
-    let columns = resting_slices(machine, &settings.grid, (p, n), settings.map.kernel);
+fn resting(
+    machine: &Machine,
+    settings: &AtlasSettings,
+    (p, n): (u32, u32),
+) -> Result<Vec<Value>, Failure> {
+    let (grid, map) = (&settings.grid, &settings.map);
+    let starts = brute_map(machine, grid, map, Way::FromStart).map_err(|e| refused(&e))?;
+    let columns = resting_slices(machine, grid, (p, n), map.kernel, &[starts]);
     let slices = columns.iter().flatten().filter(|s| s.is(p, n));
-    slices
+    Ok(slices
         .flat_map(|s| [(s.low, "low", s.eta), (s.high, "high", s.eta)])
         .filter_map(|(edge, side, eta)| {
             let (rho, kind) = edge?;
             let edge = of_resting((rho, eta), side, (p, n));
             (kind == RestingEdge::DeadZone).then_some(edge)
         })
-        .collect()
+        .collect())
 }
 
 fn of_resting((rho, eta): (f64, f64), side: &str, (p, n): (u32, u32)) -> Value {

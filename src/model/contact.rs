@@ -108,6 +108,11 @@ pub fn free_accelerations(machine: &Machine, drive: Drive, s: &State) -> (f64, f
     )
 }
 
+/// Whether an impact at a closing speed is plastic: R = 0 but for rounding.
+pub fn is_plastic(machine: &Machine, closing_speed: f64) -> bool {
+    machine.restitution().at(closing_speed) <= 1e-15
+}
+
 /// What the impact of a state at contact leads to. `size` is the motion's displacement scale.
 ///
 /// A rebound that would not rise above the resolution while the masses are pressed together is
@@ -119,7 +124,7 @@ pub fn impact(machine: &Machine, drive: Drive, before: &State, size: f64) -> Out
     (after.ax, after.ay) = (ax, ay);
     let press = ax + ay;
     let parting = -(after.vx + after.vy);
-    let plastic = parting <= 1e-15 * (before.vx + before.vy);
+    let plastic = is_plastic(machine, before.vx + before.vy) || parting <= 0.0;
     let (kind, until_rest) = if plastic {
         (
             if press > 0.0 {
