@@ -431,3 +431,16 @@ fn valid_dead_zones_of_uneven_machines_hold_what_brute_force_finds() {
         assert!(edges.clone().any(|c| c.kind == "joined"));
     }
 }
+
+#[test]
+fn regress_a_release_at_full_preload_but_for_rounding_ends() {
+    // the bisection of the edges meets ρ = −1 + 1e-16: what lets go there is rounding alone
+    let machine = Machine::symmetric(0.07, 0.7);
+    for kernel in KERNELS.into_iter().filter(|k| k.is_available()) {
+        let grid = MapGrid::even((0.8, 1.6, 9), (-1.2, 2.0, 9));
+        let columns = super::resting::resting_slices(&machine, &grid, (2, 2), Some(kernel), &[]);
+        for low in columns.iter().flatten().filter_map(|s| s.low) {
+            assert!((low.0 + 1.0).abs() < 1e-6, "{low:?}");
+        }
+    }
+}

@@ -208,8 +208,31 @@ impl Boundary {
         Ok(points)
     }
 
+    /// What the law of restitution says of dead zones, where there is none.
+    fn never_rests(&self) -> Option<&'static str> {
+        let machine = self.machine.machine().ok()?;
+        let law = machine.restitution();
+        if self.kind != Kind::DeadZone {
+            None
+        } else if law.constant() == Some(1.0) {
+            Some("with R = 1 the masses never come to rest against each other")
+        } else if !law.is_plastic_somewhere() {
+            Some("R > 0 at every speed, so the masses rest only after a complete chatter")
+        } else {
+            None
+        }
+    }
+
     /// That the motion has no such boundary there.
     fn none(&self, name: &str, z: &str) -> String {
+        let none = self.none_there(name, z);
+        match self.never_rests() {
+            Some(why) => format!("{none}; {why}"),
+            None => none,
+        }
+    }
+
+    fn none_there(&self, name: &str, z: &str) -> String {
         match (self.eta, self.rho, self.kind) {
             (Some(eta), _, _) => format!("{name} of z = {z}: none at η = {eta}"),
             (_, Some(rho), Kind::Joined) => {

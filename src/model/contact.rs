@@ -149,7 +149,8 @@ pub fn impact(machine: &Machine, drive: Drive, before: &State, size: f64) -> Out
 /// Sum of the flights of a chatter that starts with parting speed v under relative
 /// acceleration a: Σ 2vₖ/a with vₖ₊₁ = R vₖ; on an incline each flight also loses to friction.
 fn rest_after(machine: &Machine, v: f64, a: f64) -> f64 {
-    let r = machine.restitution().at(v);
+    let law = machine.restitution();
+    let (r, stretch) = (law.at(v), law.chatter_stretch());
     if let Flight::ConstantForce {
         acceleration,
         friction,
@@ -157,9 +158,11 @@ fn rest_after(machine: &Machine, v: f64, a: f64) -> f64 {
     {
         let (up, down) = (acceleration + friction, acceleration - friction);
         let kept = (down / up).sqrt();
-        return v * (1.0 / up + kept / down) / (1.0 - r * kept);
+        // friction makes the sequence geometric again
+        let stretch = if friction > 0.0 { 1.0 } else { stretch };
+        return stretch * v * (1.0 / up + kept / down) / (1.0 - r * kept);
     }
-    2.0 * v / (a * (1.0 - r))
+    stretch * 2.0 * v / (a * (1.0 - r))
 }
 
 /// The state with the masses exactly in contact; what rounding left over is shared by mobility.
