@@ -296,6 +296,14 @@ fn valid_two_branches_of_one_motion_in_a_column_are_both_followed() {
     let slices = slices_at(&Machine::symmetric(0.07, 0.9), 1.2211, &settings).unwrap();
     let two: Vec<&Slice> = slices.iter().filter(|s| (s.p, s.n) == (2, 1)).collect();
     assert_eq!(two.len(), 2, "{two:?}");
+    // in a map of many columns as well, each cell of a run being told apart
+    let many = AtlasSettings {
+        grid: MapGrid::even((1.1911, 1.2511, 3), (-0.6, 0.2, 41)),
+        ..settings
+    };
+    let all = atlas(&Machine::symmetric(0.07, 0.9), &many).unwrap().slices;
+    let middle = all.iter().filter(|s| (s.eta - 1.2211).abs() < 1e-9);
+    assert_eq!(middle.filter(|s| (s.p, s.n) == (2, 1)).count(), 2);
 }
 
 #[test]

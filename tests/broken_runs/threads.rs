@@ -139,11 +139,7 @@ fn valid_sweeps_basins_and_replayed_studies() {
     let lab = crate::support::Lab::new();
     let short = "--settle-periods 40 --watch-periods 15";
     for command in [
-        format!("sweep --eta 1.1..1.7 --rho 2 --steps 19 {short} --out out"),
         format!("sweep --eta 0.9..1.2 --rho 1 --steps 9 --drive-ratio 0.9 {short} --out out"),
-        format!(
-            "basins --eta 1.4 --rho 2 --x=-6..2 --vx=-6..6 --columns 9 --rows 11 {short} --out out"
-        ),
         format!(
             "basins --eta 1.4 --rho 2 --x=-6..2 --vx=-6..6 --columns 7 --rows 9 --mass-ratio 1.1 {short} --out out"
         ),
