@@ -53,7 +53,8 @@ pub fn curves(
     curves.extend(closed_forms(machine, &fine, largest_n, range));
     let marks = columns.iter().map(|slices| {
         let followed = slices.iter().flat_map(slice_marks);
-        followed.filter(|m| !is_closed_form(&m.key)).collect()
+        let more = |m: &Mark| !is_closed_form(machine, &m.key);
+        followed.filter(more).collect()
     });
     curves.extend(chains(marks.collect()));
     let marks = resting
@@ -78,9 +79,10 @@ fn refined(etas: &[f64]) -> Vec<f64> {
     fine
 }
 
-/// Whether a boundary is one that closed forms give.
-fn is_closed_form((p, _, dead_zone, _, kind): &Key) -> bool {
-    *p == 1 && !dead_zone && (kind == "s1" || kind == "s2")
+/// Whether a boundary is one that closed forms give: s2 of z = 1/n, with constant R s1 too.
+fn is_closed_form(machine: &Machine, (p, _, dead_zone, _, kind): &Key) -> bool {
+    let constant = machine.restitution().constant().is_some();
+    *p == 1 && !dead_zone && (kind == "s2" || kind == "s1" && constant)
 }
 
 /// s2 and s1 of z = 1/n: pieces along which the marginal orbit exists.

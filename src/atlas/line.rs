@@ -66,8 +66,6 @@ struct CellSeed {
     /// Its place along the line.
     k: usize,
     end: End,
-    /// Whether its speed is compared with that of the known branches at its place.
-    told_apart: bool,
 }
 
 impl Line<'_> {
@@ -97,13 +95,8 @@ impl Line<'_> {
         let value = self.values()[cell.k];
         let mut there = self.spans_at(spans, cell.motion, value).peekable();
         if there.peek().is_some() {
-            if !cell.told_apart {
-                return None;
-            }
             let at = self.settings.grid.at(self.cell(cell.k));
-            let impacts = last_impacts(self.machine, at, &cell.end, cell.motion)?;
-            let speeds = impacts.iter().map(|i| i.closing_before);
-            let speed = speeds.fold(0.0, f64::max);
+            let speed = greatest_speed(self.machine, at, &cell.end, cell.motion.1)?;
             if there.any(|s| s.is_at(value, speed)) {
                 return None;
             }
@@ -206,13 +199,10 @@ impl Line<'_> {
     }
 
     /// The periodic cells of each map: the middle one of every run of equal ones first, which
-    /// mostly lies in the region of all, then the others: a run may pass from one branch of p/n
-    /// orbits into another, so its ends are told apart from the known ones by their speed.
+    /// mostly lies in the region of all, then the others: a run may hold several branches of p/n
+    /// orbits, so all are told apart from the known ones by their speed.
     fn cell_seeds(&self, maps: &[Vec<End>]) -> Vec<CellSeed> {
         let count = self.values().len();
-        let grid = &self.settings.grid;
-        // a line by itself affords it for each cell
-        let alone = grid.eta.len() == 1 || grid.rho.len() == 1;
         let (mut middles, mut others) = (Vec::new(), Vec::new());
         for map in maps {
             let at = |k: usize| map[self.cell(k)];
@@ -227,7 +217,6 @@ impl Line<'_> {
                         motion,
                         k: i,
                         end: at(i),
-                        told_apart: alone || i == first || i == middle || i + 1 == k,
                     };
                     middles.push(seed(middle));
                     others.extend((first..k).filter(|&i| i != middle).map(seed));
@@ -301,19 +290,35 @@ fn single_impact(machine: &Machine, setting: Setting, n: u32) -> Option<Periodic
     .solve(machine)
 }
 
+/// Greatest closing speed in the n drive periods after a cell's end.
+fn greatest_speed(machine: &Machine, at: (f64, f64), end: &End, n: u32) -> Option<f64> {
+    let (mut simulator, setting) = from_end(machine, at, end)?;
+    let mut greatest: Option<f64> = None;
+    simulator.advance(f64::from(n) * setting.period(), &mut |i: &ModelImpact| {
+        let speed = i.closing_before;
+        greatest = Some(greatest.map_or(speed, |g| g.max(speed)));
+    });
+    greatest
+}
+
+/// The motion of a cell where it ended.
+fn from_end(machine: &Machine, at: (f64, f64), end: &End) -> Option<(Simulator, Setting)> {
+    let setting = Setting {
+        phase: end.phase,
+        ..Setting::new(at.0, at.1)
+    };
+    let initial: Initial = clear_of(machine, at.1, end.initial);
+    Some((Simulator::new(machine, setting, initial).ok()?, setting))
+}
+
 /// The p impacts that follow n drive periods after a cell's end.
 fn last_impacts(
     machine: &Machine,
-    (eta, rho): (f64, f64),
+    at: (f64, f64),
     end: &End,
     (p, n): (u32, u32),
 ) -> Option<Vec<ModelImpact>> {
-    let setting = Setting {
-        phase: end.phase,
-        ..Setting::new(eta, rho)
-    };
-    let initial: Initial = clear_of(machine, rho, end.initial);
-    let mut simulator = Simulator::new(machine, setting, initial).ok()?;
+    let (mut simulator, setting) = from_end(machine, at, end)?;
     let mut impacts: Vec<ModelImpact> = Vec::new();
     let periods = f64::from(2 * n + 1);
     simulator.advance(periods * setting.period(), &mut |i: &ModelImpact| {

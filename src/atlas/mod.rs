@@ -12,6 +12,7 @@ pub mod lyapunov;
 pub mod map;
 pub mod portrait;
 pub mod regions;
+pub mod release;
 pub mod resting;
 pub mod shard;
 pub mod sweep;

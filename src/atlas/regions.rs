@@ -134,7 +134,7 @@ pub fn assemble(
 ) -> Atlas {
     let grid = &settings.grid;
     let most = (settings.largest_p, settings.largest_n);
-    let resting = resting_slices(machine, grid, most, settings.map.kernel);
+    let resting = resting_slices(machine, grid, most, settings.map.kernel, maps);
     let rows = (grid.rho.first(), grid.rho.last());
     let range = (
         rows.0.copied().unwrap_or(0.0),

@@ -2,13 +2,19 @@
 //! same, so they are found by one flight from the release, and their edges by bisection.
 //!
 //! At the release of one mass (or of two equal ones) the displacement is ρ, the velocity 0 and
-//! the drive's phase arccos ρ, falling; one such start at every ρ in (−1, 1).
+//! the drive's phase arccos ρ, falling; one such start at every ρ in (−1, 1). With constant R
+//! all of them are marched in the vector kernel; other machines are followed exactly
+//! (`atlas::release`).
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::kernel::Cell;
-use super::map::{Kernel, MapGrid, MapSettings, Start, UnitMass, march_all};
-use crate::model::{Initial, Machine, SettledMotion, Watch};
+use super::map::{
+    End as MapEnd, Kernel, MapGrid, MapSettings, Start, UnitMass, clear_of, march_all,
+};
+use super::release::{Releases as ExactReleases, RestingStart, Run, RunEnd, label};
+use crate::model::{Initial, Machine, Watch};
 
 /// What bounds a motion with a dead zone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -18,6 +24,8 @@ pub enum RestingEdge {
     Joined,
     /// The dead zone closes, or the number of impacts between two of them changes.
     DeadZone,
+    /// The motion loses its stability (asymmetric machines).
+    Unstable,
 }
 
 impl RestingEdge {
@@ -26,6 +34,7 @@ impl RestingEdge {
         match self {
             Self::Joined => "joined",
             Self::DeadZone => "dead_zone",
+            Self::Unstable => "stability_lost",
         }
     }
 }
@@ -62,7 +71,7 @@ impl RestingSlice {
 }
 
 /// p and n.
-type Label = (u32, u32);
+pub type Label = (u32, u32);
 
 /// What the motions that start at the release show, at many (η, ρ) at once.
 struct Releases<'a> {
@@ -92,15 +101,7 @@ impl Releases<'_> {
         let outcomes = march_all(&course, &cells, self.settings.kernel);
         let mut labels = vec![None; points.len()];
         for (i, outcome) in numbers.into_iter().zip(outcomes) {
-            labels[i] = match outcome.motion {
-                SettledMotion::Periodic {
-                    p,
-                    n,
-                    dead_zone: true,
-                    ..
-                } => Some((p.into(), n.into())),
-                _ => None,
-            };
+            labels[i] = label(outcome.motion);
         }
         labels
     }
@@ -136,16 +137,17 @@ struct End {
 }
 
 /// All resting motions of at most `most` impacts in at most `longest` drive periods along ρ, for
-/// each column of a grid, told apart at its rows; edges to 1e-7. Empty for machines whose
-/// release is not one state (asymmetric ones).
+/// each column of a grid, told apart at its rows; edges to 1e-7. Cells of the grid's brute-force
+/// maps that rest are starts for machines that the kernel cannot march; there may be none.
 pub fn resting_slices(
     machine: &Machine,
     grid: &MapGrid,
     (most, longest): (u32, u32),
     kernel: Option<Kernel>,
+    maps: &[Vec<MapEnd>],
 ) -> Vec<Vec<RestingSlice>> {
     let Some(unit) = UnitMass::of(machine) else {
-        return vec![Vec::new(); grid.eta.len()];
+        return exact_slices(machine, grid, (most, longest), maps);
     };
     let settings = release_settings(longest, kernel);
     let releases = Releases {
@@ -185,7 +187,7 @@ pub fn resting_etas(
     kernel: Option<Kernel>,
 ) -> Vec<(f64, bool)> {
     let Some(unit) = UnitMass::of(machine) else {
-        return Vec::new();
+        return exact_etas(machine, rho, (p, n), etas);
     };
     let settings = release_settings(n, kernel);
     let releases = Releases {
@@ -213,6 +215,71 @@ pub fn resting_etas(
         (if there[k - 1] { low } else { high }, there[k - 1])
     };
     (1..etas.len()).filter(change).map(edge).collect()
+}
+
+/// [`resting_slices`] of machines that the kernel cannot march.
+fn exact_slices(
+    machine: &Machine,
+    grid: &MapGrid,
+    (most, longest): (u32, u32),
+    maps: &[Vec<MapEnd>],
+) -> Vec<Vec<RestingSlice>> {
+    let Some(releases) = ExactReleases::new(machine, longest) else {
+        return vec![Vec::new(); grid.eta.len()];
+    };
+    let column = |(i, &eta): (usize, &f64)| {
+        let points: Vec<(f64, f64)> = grid.rho.iter().map(|&rho| (eta, rho)).collect();
+        let starts = |k: usize| resting_starts(machine, grid.rho[k], maps, k * grid.eta.len() + i);
+        let slice = |run: Run| RestingSlice {
+            eta,
+            p: run.label.0,
+            n: run.label.1,
+            interval: (grid.rho[run.points.0], grid.rho[run.points.1]),
+            low: run.low.map(|end| (end.at.1, end.kind)),
+            high: run.high.map(|end| (end.at.1, end.kind)),
+        };
+        let sought = |s: &RestingSlice| s.p <= most && s.n <= longest;
+        let runs = releases.runs(&points, starts);
+        runs.into_iter().map(slice).filter(sought).collect()
+    };
+    grid.eta.par_iter().enumerate().map(column).collect()
+}
+
+/// The ends of a cell's motions that rest, as starts.
+fn resting_starts(
+    machine: &Machine,
+    rho: f64,
+    maps: &[Vec<MapEnd>],
+    cell: usize,
+) -> Vec<RestingStart> {
+    let start = |end: &MapEnd| {
+        let initial = clear_of(machine, rho, end.initial);
+        Some((label(end.motion)?, initial, end.phase))
+    };
+    maps.iter()
+        .filter_map(|map| start(map.get(cell)?))
+        .collect()
+}
+
+/// [`resting_etas`] of machines that the kernel cannot march.
+fn exact_etas(machine: &Machine, rho: f64, label: Label, etas: &[f64]) -> Vec<(f64, bool)> {
+    let Some(releases) = ExactReleases::new(machine, label.1) else {
+        return Vec::new();
+    };
+    let points: Vec<(f64, f64)> = etas.iter().map(|&eta| (eta, rho)).collect();
+    let runs = releases.runs(&points, |_| Vec::new());
+    let told = |end: Option<RunEnd>| {
+        end.filter(|e| e.kind == RestingEdge::DeadZone)
+            .map(|e| e.at.0)
+    };
+    let ends = |run: Run| {
+        let (low, high) = (told(run.low), told(run.high));
+        low.map(|eta| (eta, false))
+            .into_iter()
+            .chain(high.map(|eta| (eta, true)))
+    };
+    let own = runs.into_iter().filter(|run| run.label == label);
+    own.flat_map(ends).collect()
 }
 
 /// How a motion is marched from its release: settled after at most `longest` drive periods.

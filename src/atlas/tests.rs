@@ -279,7 +279,7 @@ fn regress_a_release_near_full_preload_at_resonance_ends() {
     // amplitudes of 250 cancel at the release: gap and speed are rounding there
     let machine = Machine::symmetric(0.002, 0.0);
     let grid = MapGrid::even((1.0, 1.0, 1), (-1.2, 5.0, 90));
-    let slices = super::resting::resting_slices(&machine, &grid, (4, 4), None);
+    let slices = super::resting::resting_slices(&machine, &grid, (4, 4), None, &[]);
     let low = slices[0].first().unwrap().low.unwrap();
     assert!((low.0 + 1.0).abs() < 1e-6, "{low:?}");
 }
@@ -296,6 +296,14 @@ fn valid_two_branches_of_one_motion_in_a_column_are_both_followed() {
     let slices = slices_at(&Machine::symmetric(0.07, 0.9), 1.2211, &settings).unwrap();
     let two: Vec<&Slice> = slices.iter().filter(|s| (s.p, s.n) == (2, 1)).collect();
     assert_eq!(two.len(), 2, "{two:?}");
+    // in a map of many columns as well, each cell of a run being told apart
+    let many = AtlasSettings {
+        grid: MapGrid::even((1.1911, 1.2511, 3), (-0.6, 0.2, 41)),
+        ..settings
+    };
+    let all = atlas(&Machine::symmetric(0.07, 0.9), &many).unwrap().slices;
+    let middle = all.iter().filter(|s| (s.eta - 1.2211).abs() < 1e-9);
+    assert_eq!(middle.filter(|s| (s.p, s.n) == (2, 1)).count(), 2);
 }
 
 #[test]
@@ -314,4 +322,133 @@ fn regress_a_beat_longer_than_the_watch_is_not_impactless() {
     let grid = MapGrid::even((eta, eta, 1), (rho, rho, 1));
     let map = region_map(&machine, &grid, &settings).unwrap();
     assert_eq!(map.at(0, 0), SettledMotion::Beat);
+}
+
+/// Asymmetric machines: drive, stiffness, mass.
+fn uneven(damping_ratio: f64, restitution: f64) -> [Machine; 3] {
+    let ratios = [(0.9, 1.0, 1.0), (1.0, 0.9, 1.0), (1.0, 1.0, 1.3)];
+    ratios.map(|(drive_amplitude, stiffness, mass)| {
+        let asymmetry = crate::model::params::Asymmetry {
+            drive_amplitude,
+            stiffness,
+            mass,
+        };
+        Machine::asymmetric(damping_ratio, restitution, asymmetry)
+    })
+}
+
+fn resting_at(machine: &Machine, eta: f64, rows: usize) -> Vec<super::resting::RestingSlice> {
+    let grid = MapGrid::even((eta, eta, 1), (-1.3, 1.5, rows));
+    super::resting::resting_slices(machine, &grid, (3, 3), None, &[]).remove(0)
+}
+
+#[test]
+fn valid_dead_zones_of_the_exact_search_are_those_of_the_kernel() {
+    for (beta, r) in [(0.07, 0.0), (0.02, 0.5), (0.07, 0.8)] {
+        let machine = Machine::symmetric(beta, r);
+        for eta in [0.55, 0.8, 1.05] {
+            let (kernel, exact) = (
+                resting_at(&machine, eta, 57),
+                resting_at(&slow_path(&machine), eta, 57),
+            );
+            assert!(!kernel.is_empty());
+            assert_eq!(kernel.len(), exact.len(), "{kernel:?} {exact:?}");
+            for (a, b) in kernel.iter().zip(&exact) {
+                assert_eq!((a.p, a.n), (b.p, b.n));
+                for (a, b) in [(a.low, b.low), (a.high, b.high)] {
+                    let (a, b) = (a.unwrap(), b.unwrap());
+                    assert!(a.1 == b.1 && (a.0 - b.0).abs() < 3e-6, "{a:?} {b:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn valid_dead_zones_of_nearly_equal_masses_are_those_of_equal_ones() {
+    let asymmetry = crate::model::params::Asymmetry {
+        drive_amplitude: 1.0 + 1e-9,
+        ..Default::default()
+    };
+    for (eta, r) in [(0.7, 0.0), (0.9, 0.4)] {
+        let (near, equal) = (
+            resting_at(&Machine::asymmetric(0.07, r, asymmetry), eta, 41),
+            resting_at(&Machine::symmetric(0.07, r), eta, 41),
+        );
+        assert_eq!(near.len(), equal.len(), "{near:?} {equal:?}");
+        for (a, b) in near.iter().zip(&equal) {
+            assert_eq!((a.p, a.n), (b.p, b.n));
+            let (a, b) = (a.high.unwrap(), b.high.unwrap());
+            assert!(a.1 == b.1 && (a.0 - b.0).abs() < 3e-6, "{a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
+fn valid_one_and_one_with_a_dead_zone_share_their_edge() {
+    // 1 | 1j from both sides: Newton on the impact's time, and the map from release to release
+    for machine in uneven(0.07, 0.0) {
+        let mut shared = 0;
+        for eta in even((0.9, 2.0, 12)) {
+            let settings = AtlasSettings {
+                grid: MapGrid::even((eta, eta, 1), (-1.3, 1.5, 41)),
+                largest_p: 1,
+                largest_n: 1,
+                map: MapSettings::default(),
+            };
+            let moving = slices_at(&machine, eta, &settings).unwrap();
+            let Some(moving) = moving.iter().find(|s| s.low.kind == EdgeKind::DeadZone) else {
+                continue;
+            };
+            let resting = resting_at(&machine, eta, 41);
+            let resting = resting.iter().find(|s| s.is(1, 1)).unwrap();
+            let (rho, kind) = resting.high.unwrap();
+            assert_eq!(kind, super::resting::RestingEdge::DeadZone);
+            let other = moving.low.orbit.rho;
+            assert!((rho - other).abs() < 1e-6, "{eta}: {rho} {other}");
+            shared += 1;
+        }
+        assert!(shared >= 3, "{shared}");
+    }
+}
+
+#[test]
+fn valid_dead_zones_of_uneven_machines_hold_what_brute_force_finds() {
+    let settings = AtlasSettings {
+        grid: MapGrid::even((0.5, 1.3, 5), (-1.3, 1.5, 15)),
+        largest_p: 3,
+        largest_n: 3,
+        map: MapSettings::default(),
+    };
+    for machine in uneven(0.07, 0.0).iter().chain(&uneven(0.07, 0.6)) {
+        let atlas = atlas(machine, &settings).unwrap();
+        let rests = |m: &&SettledMotion| {
+            matches!(
+                m,
+                SettledMotion::Periodic {
+                    dead_zone: true,
+                    ..
+                }
+            )
+        };
+        assert!(atlas.maps[0].iter().filter(rests).count() > 5);
+        let differing = &atlas.agreement.differing;
+        assert!(differing.is_empty(), "{differing:#?}");
+        let edges = atlas.curves.iter().filter(|c| c.dead_zone);
+        assert!(edges.clone().any(|c| c.kind == "dead_zone"));
+        assert!(edges.clone().any(|c| c.kind == "joined"));
+    }
+}
+
+#[test]
+fn regress_a_release_at_full_preload_but_for_rounding_ends() {
+    // the bisection of the edges meets ρ = −1 + 1e-16: what lets go there is rounding alone
+    let machine = Machine::symmetric(0.07, 0.7);
+    for kernel in KERNELS.into_iter().filter(|k| k.is_available()) {
+        let grid = MapGrid::even((0.8, 1.6, 9), (-1.2, 2.0, 9));
+        let columns = super::resting::resting_slices(&machine, &grid, (2, 2), Some(kernel), &[]);
+        for low in columns.iter().flatten().filter_map(|s| s.low) {
+            assert!((low.0 + 1.0).abs() < 1e-6, "{low:?}");
+        }
+    }
 }

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 use super::machine::{MachineArgs, motion, refused};
 use super::voice::print;
 use super::{Exit, Failure, Voice};
+use crate::atlas::brute::{Way, brute_map};
 use crate::atlas::continuation::{Edge, EdgeKind};
 use crate::atlas::map::{MapGrid, MapSettings};
 use crate::atlas::regions::{AtlasSettings, slices_at, spans_at_clearance};
@@ -129,7 +130,7 @@ impl Boundary {
         let settings = self.settings(MapGrid::even((eta, eta, 1), (bottom, top, 400)));
         let mut points = Vec::new();
         if self.kind == Kind::DeadZone {
-            points = resting(machine, &settings, (p, n));
+            points = resting(machine, &settings, (p, n))?;
         }
         if !dead_zone {
             let slices = slices_at(machine, eta, &settings).map_err(|e| refused(&e))?;
@@ -207,8 +208,31 @@ impl Boundary {
         Ok(points)
     }
 
+    /// What the law of restitution says of dead zones, where there is none.
+    fn never_rests(&self) -> Option<&'static str> {
+        let machine = self.machine.machine().ok()?;
+        let law = machine.restitution();
+        if self.kind != Kind::DeadZone {
+            None
+        } else if law.constant() == Some(1.0) {
+            Some("with R = 1 the masses never come to rest against each other")
+        } else if !law.is_plastic_somewhere() {
+            Some("R > 0 at every speed, so the masses rest only after a complete chatter")
+        } else {
+            None
+        }
+    }
+
     /// That the motion has no such boundary there.
     fn none(&self, name: &str, z: &str) -> String {
+        let none = self.none_there(name, z);
+        match self.never_rests() {
+            Some(why) => format!("{none}; {why}"),
+            None => none,
+        }
+    }
+
+    fn none_there(&self, name: &str, z: &str) -> String {
         match (self.eta, self.rho, self.kind) {
             (Some(eta), _, _) => format!("{name} of z = {z}: none at η = {eta}"),
             (_, Some(rho), Kind::Joined) => {
@@ -273,17 +297,23 @@ fn followed_edge(edge: &Edge, side: &str) -> Value {
 }
 
 /// Edges of the motion p/n that rests in a dead zone.
-fn resting(machine: &Machine, settings: &AtlasSettings, (p, n): (u32, u32)) -> Vec<Value> {
-    let columns = resting_slices(machine, &settings.grid, (p, n), settings.map.kernel);
+fn resting(
+    machine: &Machine,
+    settings: &AtlasSettings,
+    (p, n): (u32, u32),
+) -> Result<Vec<Value>, Failure> {
+    let (grid, map) = (&settings.grid, &settings.map);
+    let starts = brute_map(machine, grid, map, Way::FromStart).map_err(|e| refused(&e))?;
+    let columns = resting_slices(machine, grid, (p, n), map.kernel, &[starts]);
     let slices = columns.iter().flatten().filter(|s| s.is(p, n));
-    slices
+    Ok(slices
         .flat_map(|s| [(s.low, "low", s.eta), (s.high, "high", s.eta)])
         .filter_map(|(edge, side, eta)| {
             let (rho, kind) = edge?;
             let edge = of_resting((rho, eta), side, (p, n));
             (kind == RestingEdge::DeadZone).then_some(edge)
         })
-        .collect()
+        .collect())
 }
 
 fn of_resting((rho, eta): (f64, f64), side: &str, (p, n): (u32, u32)) -> Value {

@@ -108,6 +108,11 @@ pub fn free_accelerations(machine: &Machine, drive: Drive, s: &State) -> (f64, f
     )
 }
 
+/// Whether an impact at a closing speed is plastic: R = 0 but for rounding.
+pub fn is_plastic(machine: &Machine, closing_speed: f64) -> bool {
+    machine.restitution().at(closing_speed) <= 1e-15
+}
+
 /// What the impact of a state at contact leads to. `size` is the motion's displacement scale.
 ///
 /// A rebound that would not rise above the resolution while the masses are pressed together is
@@ -119,7 +124,7 @@ pub fn impact(machine: &Machine, drive: Drive, before: &State, size: f64) -> Out
     (after.ax, after.ay) = (ax, ay);
     let press = ax + ay;
     let parting = -(after.vx + after.vy);
-    let plastic = parting <= 1e-15 * (before.vx + before.vy);
+    let plastic = is_plastic(machine, before.vx + before.vy) || parting <= 0.0;
     let (kind, until_rest) = if plastic {
         (
             if press > 0.0 {
@@ -144,7 +149,8 @@ pub fn impact(machine: &Machine, drive: Drive, before: &State, size: f64) -> Out
 /// Sum of the flights of a chatter that starts with parting speed v under relative
 /// acceleration a: Σ 2vₖ/a with vₖ₊₁ = R vₖ; on an incline each flight also loses to friction.
 fn rest_after(machine: &Machine, v: f64, a: f64) -> f64 {
-    let r = machine.restitution().at(v);
+    let law = machine.restitution();
+    let (r, stretch) = (law.at(v), law.chatter_stretch());
     if let Flight::ConstantForce {
         acceleration,
         friction,
@@ -152,9 +158,11 @@ fn rest_after(machine: &Machine, v: f64, a: f64) -> f64 {
     {
         let (up, down) = (acceleration + friction, acceleration - friction);
         let kept = (down / up).sqrt();
-        return v * (1.0 / up + kept / down) / (1.0 - r * kept);
+        // friction makes the sequence geometric again
+        let stretch = if friction > 0.0 { 1.0 } else { stretch };
+        return stretch * v * (1.0 / up + kept / down) / (1.0 - r * kept);
     }
-    2.0 * v / (a * (1.0 - r))
+    stretch * 2.0 * v / (a * (1.0 - r))
 }
 
 /// The state with the masses exactly in contact; what rounding left over is shared by mobility.

@@ -10,7 +10,7 @@
 //! a quadratic for w. With Pᵢ, Dᵢ the Green's functions' position and velocity just before the
 //! impact, α = −(1+R)Σ μᵢPᵢ and Q = 1 + (1+R)Σ μᵢDᵢ.
 
-use super::contact::{ImpactKind, free_accelerations, newton};
+use super::contact::{free_accelerations, is_plastic, newton};
 use super::crossing::first_zero;
 use super::flight::{Drive, FlightPaths, State, exponent, forced_amplitude, free_flight};
 use super::params::{Flight, Machine, ModelError, Oscillator, Setting};
@@ -370,8 +370,8 @@ fn existence(machine: &Machine, orbit: &Orbit) -> Existence {
     if orbit.closing_speed <= 0.0 {
         return Existence::NotClosing;
     }
-    let parting = -(orbit.after.vx + orbit.after.vy);
-    if parting <= 1e-15 * orbit.closing_speed && orbit.after.ax + orbit.after.ay > 0.0 {
+    let pressed = orbit.after.ax + orbit.after.ay > 0.0;
+    if is_plastic(machine, orbit.closing_speed) && pressed {
         return Existence::DeadZone;
     }
     let gap = orbit.flight.gap(machine.gap(orbit.setting.clearance));
@@ -387,14 +387,4 @@ fn multipliers(machine: &Machine, orbit: &Orbit) -> Vec<C64> {
         machine,
         &(saltation(machine, &orbit.before, &orbit.after) * flow),
     )
-}
-
-/// The kind of impact an orbit has: plastic or a bounce.
-pub fn impact_kind(orbit: &Orbit) -> ImpactKind {
-    let parting = -(orbit.after.vx + orbit.after.vy);
-    if parting <= 1e-15 * orbit.closing_speed {
-        ImpactKind::Plastic
-    } else {
-        ImpactKind::Bounce
-    }
 }

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector, Matrix4};
 
-use super::contact::{ModelImpact, free_accelerations, newton};
+use super::contact::{ModelImpact, free_accelerations, is_plastic, newton};
 use super::crossing::first_zero;
 use super::flight::{Drive, State, exponent, forced_amplitude, free_flight};
 use super::orbit::Existence;
@@ -324,8 +324,7 @@ impl PeriodicOrbit {
         }
         let states = self.impact_states(machine);
         for (k, (before, after)) in states.iter().enumerate() {
-            let (parting, closing) = (-(after.vx + after.vy), before.vx + before.vy);
-            if parting <= 1e-15 * closing && after.ax + after.ay > 0.0 {
+            if is_plastic(machine, before.vx + before.vy) && after.ax + after.ay > 0.0 {
                 return Existence::DeadZone;
             }
             let drive = Drive {

@@ -75,6 +75,27 @@ impl Restitution {
         }
     }
 
+    /// Whether an impact at some speed is plastic, R = 0.
+    pub fn is_plastic_somewhere(&self) -> bool {
+        match self {
+            Self::Constant(r) => *r <= 0.0,
+            Self::Table(pairs) => pairs.iter().any(|p| p.1 <= 0.0),
+            Self::PowerLaw {
+                coefficient, floor, ..
+            } => *coefficient > 0.0 && *floor <= 0.0,
+            Self::Exponential { slow, fast, .. } => slow.max(*fast) <= 0.0,
+        }
+    }
+
+    /// By how much the flights of a chatter last longer than those of a geometric sequence: with
+    /// 1 − R = c v^e, 0 < e < 1, the speeds fall like k^(−1/e) and the sum is that over 1 − e.
+    pub(super) fn chatter_stretch(&self) -> f64 {
+        match self {
+            Self::PowerLaw { exponent, .. } if *exponent < 1.0 => 1.0 / (1.0 - exponent),
+            _ => 1.0,
+        }
+    }
+
     pub(super) fn check(&self) -> Result<(), ModelError> {
         let unit = |name, r: f64| range(name, r, (0.0..=1.0).contains(&r), "0 ≤ R ≤ 1");
         match self {

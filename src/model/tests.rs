@@ -427,3 +427,28 @@ fn valid_a_nearly_elastic_chatter_is_summed_up_not_cut_off() {
     let left = (b - a) * 0.99 / (1.0 - 0.99);
     assert!((end - b - left).abs() < 0.05 * left, "{} {left}", end - b);
 }
+
+#[test]
+fn valid_a_chatter_whose_restitution_tends_to_one_is_summed_up() {
+    let (coefficient, exponent) = (0.3, 0.2);
+    let law = Restitution::PowerLaw {
+        coefficient,
+        exponent,
+        floor: 0.0,
+    };
+    let machine = Machine::on_incline(1.0, 0.0, 0.0).with_restitution(law.clone());
+    let start = Initial {
+        x: -0.5,
+        ..Initial::rest()
+    };
+    let motion = simulate(&machine, Setting::new(1.0, 0.0), start, 40.0).unwrap();
+    let rest = motion.impacts.last().unwrap();
+    assert_eq!(rest.kind, ImpactKind::ChatterEnd);
+    // the first impact at τ = 1 with speed 1, then flights of 2v
+    let (mut tau, mut v) = (1.0, 1.0);
+    for _ in 0..1_000_000 {
+        v *= law.at(v);
+        tau += 2.0 * v;
+    }
+    assert!((rest.tau - tau).abs() < 1e-6, "{} {tau}", rest.tau);
+}

@@ -133,3 +133,52 @@ fn valid_simulated_campaigns_and_theory() {
     ];
     same_on_any_number_of_threads(&lab, &map);
 }
+
+#[test]
+fn valid_sweeps_basins_and_replayed_studies() {
+    let lab = crate::support::Lab::new();
+    let short = "--settle-periods 40 --watch-periods 15";
+    for command in [
+        format!("sweep --eta 0.9..1.2 --rho 1 --steps 9 --drive-ratio 0.9 {short} --out out"),
+        format!(
+            "basins --eta 1.4 --rho 2 --x=-6..2 --vx=-6..6 --columns 7 --rows 9 --mass-ratio 1.1 {short} --out out"
+        ),
+        "atlas --eta 0.7..1.3 --rho=-1.2..1.4 --columns 9 --rows 9 --restitution 0.6 \
+         --drive-ratio 0.9 --largest-p 2 --largest-n 2 --out out"
+            .to_owned(),
+    ] {
+        let words: Vec<&str> = command.split_whitespace().collect();
+        same_on_any_number_of_threads(&lab, &words);
+    }
+    std::fs::write(lab.path("mine.toml"), STUDY).expect("a study");
+    same_on_any_number_of_threads(&lab, &["study", "mine.toml", "--out", "out"]);
+}
+
+/// Every kind of work that a study may hold.
+const STUDY: &str = r#"
+title = "all kinds"
+damping_ratio = 0.07
+restitution = 0.7
+
+[time_series.motion]
+setting = { frequency_ratio = 0.95, clearance = 0.7 }
+start = { x = -1.0, vx = 1.5, y = -3.0, vy = 2.5 }
+periods = 4
+
+[sweep.there]
+eta = [0.9, 1.3]
+rho = [1.0, 1.0]
+steps = 9
+watch = { settle_periods = 40, watch_periods = 15 }
+
+[basins.starts]
+setting = { frequency_ratio = 1.4, clearance = 2.0 }
+grid = { x = [-4.0, 2.0, 9], vx = [-4.0, 4.0, 9], starts = "both_masses" }
+watch = { settle_periods = 40, watch_periods = 15 }
+
+[regions.plane]
+eta = [0.8, 1.6, 9]
+rho = [-1.2, 2.0, 9]
+largest_p = 2
+largest_n = 2
+"#;

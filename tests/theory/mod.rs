@@ -203,6 +203,56 @@ fn valid_boundaries_at_a_clearance_are_those_at_their_frequency_ratio() {
 }
 
 #[test]
+fn valid_dead_zones_of_uneven_machines_and_of_speed_dependent_restitution() {
+    let lab = Lab::new();
+    let point = |words: &str| -> serde_json::Value {
+        let said = run(&lab, &format!("boundary --kind dead-zone --json {words}"));
+        serde_json::from_str(&said).expect("JSON")
+    };
+    for (words, eta) in [
+        (
+            "--restitution 0 --drive-ratio 0.9 --damping-ratio 0.07",
+            1.3,
+        ),
+        ("--restitution 0 --mass-ratio 1.2 --damping-ratio 0.05", 1.1),
+        (
+            "--restitution table=[[0,0.6],[4,0.5]] --damping-ratio 0.07",
+            0.9,
+        ),
+        (
+            "--restitution 0.5 --stiffness-ratio 0.9 --damping-ratio 0.07",
+            0.7,
+        ),
+    ] {
+        let at_eta = point(&format!("--motion 1j {words} --eta {eta}"));
+        let rho = at_eta["rho"].as_f64().expect("a number");
+        let at_rho = point(&format!("--motion 1j {words} --rho={rho}"));
+        let others = at_rho["others"].as_array().cloned().unwrap_or_default();
+        let nearest = others
+            .iter()
+            .chain([&at_rho])
+            .filter_map(|v| v["eta"].as_f64())
+            .map(|found| (found - eta).abs())
+            .fold(f64::INFINITY, f64::min);
+        assert!(nearest < 1e-5, "{words}: {at_eta} {at_rho}");
+        if words.contains("--restitution 0 ") {
+            let moving = point(&format!("--motion 1/1 {words} --eta {eta}"));
+            let other = moving["rho"].as_f64().expect("a number");
+            assert!((other - rho).abs() < 1e-6, "{words}: {rho} {other}");
+        }
+    }
+    for (words, why) in [
+        ("--motion 3/1 --restitution 0.9", "after a complete chatter"),
+        ("--motion 1j --restitution 1", "never come to rest"),
+    ] {
+        let words = format!("boundary --kind dead-zone {words} --eta 0.8");
+        let ran = lab.run(&words.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(ran.code, 1);
+        assert!(ran.said.contains(why), "{}", ran.said);
+    }
+}
+
+#[test]
 fn valid_a_motion_without_a_boundary_at_a_clearance_is_named() {
     let lab = Lab::new();
     let words = ["boundary", "--kind", "s2", "--motion", "7/5", "--rho", "30"];

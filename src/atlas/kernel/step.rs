@@ -120,6 +120,9 @@ fn decay<V: Lanes, const DEGREE: usize>(y: V) -> V {
     p2.mul(p2)
 }
 
+/// Far below rounding: at a contact that is all but left the next step is still not nothing.
+const LEAST_GAP: f64 = 1e-21;
+
 /// (−1)^k/k!
 const SERIES: [f64; 18] = {
     let mut c = [1.0; 18];
@@ -170,7 +173,7 @@ pub(super) fn step<V: Lanes, const DEGREE: usize>(c: &Constants<V>, s: &mut Grou
     let zm = zm_hit.or_else(hit, s.zm);
     let vh = vh_hit.or_else(hit, vh);
     let v = after.or_else(hit, v);
-    let g = zero.or_else(hit, g.max(zero));
+    let g = zero.or_else(hit, g.max(V::splat(LEAST_GAP)));
     let t = s.t.add(dt).or_else(hit, s.t);
     let hm = s.first.or_else(hit, s.hm);
     let ah = c.minus_two_beta.mul_sub(vh, zr);

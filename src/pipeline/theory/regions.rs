@@ -120,6 +120,9 @@ fn tell(atlas: &Atlas, desk: &Desk<'_>) {
         a.aperiodic,
         a.beyond
     ));
+    if atlas.resting.is_empty() {
+        (desk.say)("no motion rests in a dead zone here");
+    }
     for d in a.differing.iter().take(TOLD) {
         let (z, way) = (Motion::from(d.motion).label(), d.way.name());
         (desk.say)(&format!(

@@ -12,7 +12,7 @@ use crate::report::figures::look::{self, NumberLook};
 use crate::report::figures::marks::{MotionLook, Shape};
 use crate::report::figures::path::Rect;
 
-const LEFT: f64 = 38.0;
+const LEFT: f64 = 42.0;
 const GAP: f64 = 7.0;
 
 /// A sweep in both directions.
@@ -140,7 +140,7 @@ impl Drawing<'_> {
 
     fn panel(&self, top: f64, height: f64, y: Axis, titled: bool) -> Panel {
         let rect = Rect::new(LEFT, top, look::FULL_WIDTH - LEFT - 5.0, height);
-        Panel::new(rect, self.axis(titled), y).with_title_reach(22.0)
+        Panel::new(rect, self.axis(titled), y).with_title_reach(26.0)
     }
 
     fn row(&self, canvas: &mut Canvas, top: f64, row: &Row, amplitude: bool) {
