@@ -112,7 +112,9 @@ fn valid_a_corner_stated_wrongly_is_named_and_r_comes_out_right() {
     let study = Study::new(6, truth, 60);
     let file = study.campaign.join("campaign.toml");
     let stated = std::fs::read_to_string(&file).expect("campaign.toml");
-    let at = stated.find("[channels.displacement_y]").expect("the channel");
+    let at = stated
+        .find("[channels.displacement_y]")
+        .expect("the channel");
     let (head, tail) = stated.split_at(at);
     let wrong = format!("{head}{}", tail.replacen("0.5 Hz", "0.65 Hz", 1));
     std::fs::write(&file, wrong).expect("campaign.toml again");
