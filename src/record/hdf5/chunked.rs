@@ -127,38 +127,57 @@ impl Grid {
 
     /// Copy the part of an unpacked chunk that lies in the rows to its place.
     fn lay(&self, chunk: &Chunk, bytes: &[u8], rows: &Range<u64>, out: &mut [u8]) {
-        let last = self.shape.len() - 1;
-        let range = |axis: usize| {
-            let (from, end) = (
-                chunk.offset[axis],
-                self.shape[axis].min(chunk.offset[axis].saturating_add(self.chunk[axis])),
-            );
-            match axis {
-                0 => from.max(rows.start)..end.min(rows.end),
-                _ => from..end,
-            }
-        };
-        let ranges: Vec<Range<u64>> = (0..=last).map(range).collect();
-        let run = (ranges[last].end - ranges[last].start) as usize * self.element;
-        let mut at: Vec<u64> = ranges.iter().map(|r| r.start).collect();
-        loop {
-            let (mut from, mut to) = (0, 0);
-            for axis in 0..=last {
-                from = from * self.chunk[axis] + (at[axis] - chunk.offset[axis]);
-                let start = if axis == 0 { rows.start } else { 0 };
-                to = to * self.shape[axis] + (at[axis] - start);
-            }
-            let (from, to) = (from as usize * self.element, to as usize * self.element);
-            out[to..to + run].copy_from_slice(&bytes[from..from + run]);
-            // The next run: the last axis but one counts fastest.
-            let Some(axis) = (0..last).rev().find(|&a| at[a] + 1 < ranges[a].end) else {
-                return;
-            };
-            at[axis] += 1;
-            for after in axis + 1..last {
-                at[after] = ranges[after].start;
+        let mut window = self.shape.clone();
+        window[0] = rows.end - rows.start;
+        let mut axes: Vec<Axis> = Vec::with_capacity(window.len());
+        let (mut from_step, mut to_step) = (self.element, self.element);
+        for axis in (0..window.len()).rev() {
+            let first = if axis == 0 { rows.start } else { 0 };
+            let begin = chunk.offset[axis].max(first);
+            let end = (chunk.offset[axis] + self.chunk[axis]).min(first + window[axis]);
+            axes.push(Axis {
+                count: (end - begin) as usize,
+                from: (begin - chunk.offset[axis]) as usize * from_step,
+                to: (begin - first) as usize * to_step,
+                from_step,
+                to_step,
+            });
+            from_step *= self.chunk[axis] as usize;
+            to_step *= window[axis] as usize;
+        }
+        let from = axes.iter().map(|a| a.from).sum();
+        let to = axes.iter().map(|a| a.to).sum();
+        copy(&axes, &bytes[from..], &mut out[to..]);
+    }
+}
+
+/// How a chunk's part runs along one dimension: where it begins and its steps, bytes, in the
+/// chunk and in its dataset.
+struct Axis {
+    count: usize,
+    from: usize,
+    to: usize,
+    from_step: usize,
+    to_step: usize,
+}
+
+/// Copy a block whose dimensions are given from the fastest on.
+fn copy(axes: &[Axis], from: &[u8], to: &mut [u8]) {
+    match axes {
+        [run, rest @ ..] if rest.is_empty() => {
+            let length = run.count * run.from_step;
+            to[..length].copy_from_slice(&from[..length]);
+        }
+        [inner @ .., outer] => {
+            for i in 0..outer.count {
+                copy(
+                    inner,
+                    &from[i * outer.from_step..],
+                    &mut to[i * outer.to_step..],
+                );
             }
         }
+        [] => {}
     }
 }
 
@@ -215,7 +234,53 @@ fn transposed(mut rows: [u64; 8]) -> [u64; 8] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ::hdf5::FileBuilder;
     use proptest::prelude::*;
+    use std::io::Write;
+
+    /// A file with one packed dataset `d` of counted numbers.
+    fn packed(shape: &[u64], chunk: &[u64], shuffled: bool) -> tempfile::NamedTempFile {
+        let count = shape.iter().product::<u64>() as i32;
+        let mut builder = FileBuilder::new();
+        let dataset = builder.create_dataset("d");
+        let values: Vec<f64> = (0..count).map(|i| f64::from(i).sqrt()).collect();
+        dataset.with_f64_data(&values).with_shape(shape);
+        dataset.with_chunks(chunk).with_deflate(4);
+        if shuffled {
+            dataset.with_shuffle();
+        }
+        let mut file = tempfile::NamedTempFile::new().unwrap();
+        file.write_all(&builder.finish().unwrap()).unwrap();
+        file
+    }
+
+    #[test]
+    fn valid_chunks_land_where_the_library_puts_them() {
+        for (shape, chunk) in [
+            (vec![37], vec![8]),
+            (vec![5], vec![50]),
+            (vec![10, 7], vec![4, 3]),
+            (vec![9, 4], vec![9, 4]),
+            (vec![3, 5, 7], vec![2, 2, 4]),
+        ] {
+            for shuffled in [false, true] {
+                let temporary = packed(&shape, &chunk, shuffled);
+                let dataset = ::hdf5::File::open(temporary.path()).unwrap();
+                let dataset = dataset.dataset("d").unwrap();
+                let all = rows(temporary.as_file(), &dataset, 8, None);
+                assert_eq!(all, Some(dataset.read_raw().unwrap()), "{shape:?}");
+                for start in 0..shape[0] {
+                    let count = (shape[0] - start).min(3);
+                    let some = start..start + count;
+                    let some = rows(temporary.as_file(), &dataset, 8, Some(some));
+                    let expected = dataset.read_raw_rows(start, count).unwrap();
+                    assert_eq!(some, Some(expected), "{shape:?} from {start}");
+                }
+                let behind = Some(shape[0]..shape[0] + 1);
+                assert_eq!(rows(temporary.as_file(), &dataset, 8, behind), None);
+            }
+        }
+    }
 
     proptest! {
         #[test]
