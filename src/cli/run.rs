@@ -9,7 +9,7 @@ use super::progress::Progress;
 use super::{Exit, Failure, Voice, interrupt};
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::output::Lock;
-use crate::pipeline::{self, Destination};
+use crate::pipeline::{self, Destination, checkpoint};
 use crate::report::Format;
 
 /// Arguments of `impactid run`.
@@ -53,6 +53,14 @@ pub(super) fn say_report(campaign: &ResolvedCampaign, out: &Path, voice: Voice) 
     }
 }
 
+/// From how many records on observations are kept; `IMPACTID_KEEP_FROM` sets another number, so
+/// that small campaigns can be tried.
+fn keep_from() -> usize {
+    let set = std::env::var("IMPACTID_KEEP_FROM").ok();
+    set.and_then(|n| n.parse().ok())
+        .unwrap_or(checkpoint::FEWEST)
+}
+
 impl Run {
     pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
         let mut campaign = super::stage::load_campaign(&self.campaign, voice)?;
@@ -74,6 +82,7 @@ impl Run {
         let destination = Destination {
             out: &self.out,
             resume: self.resume,
+            keep_from: keep_from(),
             command_line: &command,
         };
         let found = pipeline::run(&campaign, &destination, &told)?;
