@@ -164,7 +164,7 @@ struct Axis {
 /// Copy a block whose dimensions are given from the fastest on.
 fn copy(axes: &[Axis], from: &[u8], to: &mut [u8]) {
     match axes {
-        [run, rest @ ..] if rest.is_empty() => {
+        [run] => {
             let length = run.count * run.from_step;
             to[..length].copy_from_slice(&from[..length]);
         }
