@@ -80,14 +80,13 @@ impl Item<'_> {
         channels.map(|c| once(&c.name, ' ', &mut taken)).collect()
     }
 
-    /// The channels' headings with their units: `velocity_x [mm/s]`.
-    fn headings(&self) -> Vec<String> {
+    /// What stands above the channels in a table.
+    fn headings(&self) -> impl Iterator<Item = Heading<'_>> {
         let named = self.names().into_iter().zip(self.channels());
-        let headed = named.map(|(name, channel)| match &channel.unit {
-            Some(unit) => format!("{name} [{unit}]"),
-            None => name,
-        });
-        headed.collect()
+        named.map(|(name, channel)| Heading {
+            name,
+            unit: channel.unit.as_deref(),
+        })
     }
 
     fn read(&self) -> Result<Vec<Samples>, ReadError> {
@@ -132,6 +131,27 @@ pub struct Converted {
     pub records: usize,
     /// What the output cannot hold, for the user.
     pub notes: Vec<String>,
+}
+
+/// What stands above a channel in a table.
+struct Heading<'a> {
+    name: String,
+    unit: Option<&'a str>,
+}
+
+impl Heading<'_> {
+    /// The name with its unit: `velocity_x [mm/s]`.
+    fn whole(&self) -> String {
+        self.part("")
+    }
+
+    /// The name of a part with its unit: `force.re [N]`.
+    fn part(&self, part: &str) -> String {
+        match self.unit {
+            Some(unit) => format!("{}{part} [{unit}]", self.name),
+            None => format!("{}{part}", self.name),
+        }
+    }
 }
 
 /// Convert all records of the sources to one output.

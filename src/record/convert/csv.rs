@@ -40,12 +40,12 @@ fn rows(item: &Item, samples: &[Samples], mut out: impl Write) -> std::io::Resul
         writeln!(out, "# start_time = {start}")?;
     }
     let mut headings = Vec::new();
-    for (heading, samples) in item.headings().into_iter().zip(samples) {
+    for (heading, samples) in item.headings().zip(samples) {
         match samples {
             Samples::Complex(_) => {
-                headings.extend(["re", "im"].map(|p| quoted(&format!("{heading}.{p}"))));
+                headings.extend([".re", ".im"].map(|p| quoted(&heading.part(p))));
             }
-            _ => headings.push(quoted(&heading)),
+            _ => headings.push(quoted(&heading.whole())),
         }
     }
     writeln!(out, "{}", headings.join(","))?;

@@ -61,11 +61,11 @@ fn kind(text: bool, single: bool) -> DataType {
 fn columns(items: &[Item]) -> Vec<(String, bool)> {
     let mut seen = BTreeMap::new();
     let mut all = Vec::new();
-    let headed = |item: &Item| item.headings().into_iter().zip(item.channels().to_vec());
-    for (heading, channel) in items.iter().flat_map(headed) {
+    let headed = items.iter().flat_map(|i| i.headings().zip(i.channels()));
+    for (heading, channel) in headed {
         let names = match channel.stored {
-            StoredType::Complex(_) => vec![format!("{heading}.re"), format!("{heading}.im")],
-            _ => vec![heading],
+            StoredType::Complex(_) => vec![heading.part(".re"), heading.part(".im")],
+            _ => vec![heading.whole()],
         };
         for name in names {
             if seen.insert(name.clone(), ()).is_none() {
@@ -114,15 +114,15 @@ fn frame(
     single: bool,
 ) -> Result<Framed, ConvertError> {
     let mut own: BTreeMap<String, Samples> = BTreeMap::new();
-    for (heading, samples) in item.headings().into_iter().zip(item.read()?) {
+    for (heading, samples) in item.headings().zip(item.read()?) {
         match samples {
             Samples::Complex(values) => {
                 let (re, im) = values.into_iter().unzip();
-                own.insert(format!("{heading}.re"), Samples::Real(re));
-                own.insert(format!("{heading}.im"), Samples::Real(im));
+                own.insert(heading.part(".re"), Samples::Real(re));
+                own.insert(heading.part(".im"), Samples::Real(im));
             }
             other => {
-                own.insert(heading, other);
+                own.insert(heading.whole(), other);
             }
         }
     }

@@ -188,3 +188,26 @@ fn valid_a_file_without_numbers_is_not_converted() {
         assert!(!out.exists());
     }
 }
+
+#[test]
+fn valid_parts_of_complex_numbers_keep_their_unit() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../shared/data/uff_conformance/non_ascii_header.uff");
+    if !path.exists() {
+        println!("skipped: ../shared/data is absent");
+        return;
+    }
+    let sources = [open(&path).unwrap()];
+    let channel = &sources[0].datasets()[0].channels[1];
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["out.h5", "out.parquet", "out.csv"] {
+        let out = dir.path().join(name);
+        let target = Target::of(&out).unwrap();
+        convert(&sources, target, &out, &Options::default()).unwrap();
+        let back = open(&out).unwrap();
+        for (part, written) in [".re", ".im"].iter().zip(&back.datasets()[0].channels[1..]) {
+            let expected = (format!("{}{part}", channel.name), &channel.unit);
+            assert_eq!((written.name.clone(), &written.unit), expected, "{name}");
+        }
+    }
+}
