@@ -87,14 +87,20 @@ impl Convert {
             single_precision: self.single,
             attributes: self.set.into_iter().collect(),
         };
-        let count = convert::convert(&sources, target, &self.out, &options).map_err(failure)?;
+        let done = convert::convert(&sources, target, &self.out, &options).map_err(failure)?;
+        done.notes.iter().for_each(|note| voice.say(note));
+        let count = done.records;
         let many = target == Target::Csv && count > 1;
         let written = if many {
             self.out.with_extension("")
         } else {
             self.out
         };
-        voice.say(&format!("{count} records written to {}", written.display()));
+        let records = if count == 1 { "record" } else { "records" };
+        voice.say(&format!(
+            "{count} {records} written to {}",
+            written.display()
+        ));
         Ok(Exit::Done)
     }
 }

@@ -104,13 +104,16 @@ impl From<OutputError> for Failure {
 
 impl From<ReadError> for Failure {
     fn from(error: ReadError) -> Self {
-        Self::new(error.to_string(), error.remedy)
+        Self::new(error.fault(), error.remedy)
     }
 }
 
 impl From<PipelineError> for Failure {
     fn from(error: PipelineError) -> Self {
-        Self::new(error.to_string(), error.remedy())
+        match error {
+            PipelineError::Read(error) => Self::from(error),
+            error => Self::new(error.to_string(), error.remedy()),
+        }
     }
 }
 

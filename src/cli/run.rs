@@ -1,15 +1,16 @@
 //! `impactid run`: all stages, from campaign.toml to the report.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use clap::Args;
 
 use super::look::{Look, quoted};
-use super::progress::Progress;
+use super::progress::{Later, Progress};
 use super::{Exit, Failure, Voice, interrupt};
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::output::Lock;
-use crate::pipeline::{self, Destination};
+use crate::pipeline::{self, Destination, checkpoint};
 use crate::report::Format;
 
 /// Arguments of `impactid run`.
@@ -53,6 +54,21 @@ pub(super) fn say_report(campaign: &ResolvedCampaign, out: &Path, voice: Voice) 
     }
 }
 
+/// What fitting, report and writing take, measured on campaigns of 846 to 100,000 records
+/// (docs/validation.md).
+pub(super) const LATER: Later = Later {
+    part: 0.65,
+    fixed: Duration::from_secs(2),
+};
+
+/// From how many records on observations are kept; `IMPACTID_KEEP_FROM` sets another number, so
+/// that small campaigns can be tried.
+fn keep_from() -> usize {
+    let set = std::env::var("IMPACTID_KEEP_FROM").ok();
+    set.and_then(|n| n.parse().ok())
+        .unwrap_or(checkpoint::FEWEST)
+}
+
 impl Run {
     pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
         let mut campaign = super::stage::load_campaign(&self.campaign, voice)?;
@@ -60,7 +76,8 @@ impl Run {
         let _lock = Lock::take(&self.out)?;
         interrupt::watch(self.out.clone());
         voice.detail(&format!("{} records", campaign.records.len()));
-        let progress = Progress::new(voice, "observe", campaign.records.len() as u64);
+        let records = campaign.records.len() as u64;
+        let progress = Progress::new(voice, "observe", records).with_later(LATER);
         let told = |stage: &'static str, done: u64, total: u64| {
             progress.stage(stage);
             progress.set(done, total);
@@ -74,6 +91,7 @@ impl Run {
         let destination = Destination {
             out: &self.out,
             resume: self.resume,
+            keep_from: keep_from(),
             command_line: &command,
         };
         let found = pipeline::run(&campaign, &destination, &told)?;

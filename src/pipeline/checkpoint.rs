@@ -18,7 +18,8 @@ use crate::output::{self, OutputError};
 /// Folder of the chunks in the output folder; it is removed when the run is done.
 const FOLDER: &str = ".impactid-observed";
 
-/// Campaigns of fewer records are quicker observed anew than kept.
+/// Campaigns of fewer records are quicker observed anew than kept: the usual
+/// [`Destination::keep_from`](crate::pipeline::Destination::keep_from).
 pub const FEWEST: usize = 2000;
 
 /// Records a chunk holds, for a campaign of so many: a sixteenth, so that little is lost, but

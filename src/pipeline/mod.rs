@@ -119,20 +119,19 @@ impl Observed {
         Self::from_observations(observe::observe_all(campaign, progress))
     }
 
-    /// Observe all records of a campaign, keeping what is done in `out` where they are many.
+    /// Observe all records of a campaign, keeping what is done where they are many.
     ///
     /// # Errors
     /// As [`Observed::of`], and where a checkpoint cannot be written.
     fn resumable(
         campaign: &ResolvedCampaign,
-        out: &Path,
-        resume: bool,
+        destination: &Destination<'_>,
         progress: Progress,
     ) -> Result<Self, PipelineError> {
-        if campaign.records.len() < checkpoint::FEWEST {
+        if campaign.records.len() < destination.keep_from {
             return Self::of(campaign, progress);
         }
-        let kept = Checkpoint::open(campaign, out, resume)?;
+        let kept = Checkpoint::open(campaign, destination.out, destination.resume)?;
         let chunk = checkpoint::chunk_of(campaign.records.len());
         let observations = observe::observe_in_chunks(campaign, &kept, chunk, progress)?;
         Self::from_observations(observations)
@@ -158,6 +157,9 @@ pub struct Destination<'a> {
     pub out: &'a Path,
     /// Whether to take over what a run that was broken off left there.
     pub resume: bool,
+    /// Campaigns of so many records or more keep their observations while they are made;
+    /// [`checkpoint::FEWEST`] is where that pays.
+    pub keep_from: usize,
     /// The command as the report states it.
     pub command_line: &'a str,
 }
@@ -173,14 +175,12 @@ pub fn run(
     progress: Progress,
 ) -> Result<Verdict, PipelineError> {
     let Destination {
-        out,
-        resume,
-        command_line,
+        out, command_line, ..
     } = *destination;
     if let Some(published) = &campaign.published {
         return published::run(campaign, published, out, command_line);
     }
-    let observed = Observed::resumable(campaign, out, resume, progress)?;
+    let observed = Observed::resumable(campaign, destination, progress)?;
     progress("identify", 0, 1);
     let found = identify::identify(campaign, &observed)?;
     progress("report", 0, 1);

@@ -4,12 +4,12 @@ mod csv;
 mod hdf5;
 mod parquet;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use crate::record::attribute;
 use crate::record::hdf5_write::WriteError;
-use crate::record::source::{ChannelInfo, ReadError, Samples, Source};
+use crate::record::source::{ChannelInfo, ReadError, Samples, Source, StoredType};
 
 /// What to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,8 +64,29 @@ pub struct Item<'a> {
 }
 
 impl Item<'_> {
+    fn has_numbers(&self) -> bool {
+        let mut channels = self.channels().iter();
+        channels.any(|c| c.stored != StoredType::Text)
+    }
+
     fn channels(&self) -> &[ChannelInfo] {
         &self.source.datasets()[self.dataset].channels
+    }
+
+    /// The channels' names, each once: the second `X_Value` becomes `X_Value 2`.
+    fn names(&self) -> Vec<String> {
+        let mut taken = BTreeSet::new();
+        let channels = self.channels().iter();
+        channels.map(|c| once(&c.name, ' ', &mut taken)).collect()
+    }
+
+    /// What stands above the channels in a table.
+    fn headings(&self) -> impl Iterator<Item = Heading<'_>> {
+        let named = self.names().into_iter().zip(self.channels());
+        named.map(|(name, channel)| Heading {
+            name,
+            unit: channel.unit.as_deref(),
+        })
     }
 
     fn read(&self) -> Result<Vec<Samples>, ReadError> {
@@ -103,29 +124,97 @@ impl Item<'_> {
     }
 }
 
+/// What a conversion has written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Converted {
+    /// Number of records.
+    pub records: usize,
+    /// What the output cannot hold, for the user.
+    pub notes: Vec<String>,
+}
+
+/// What stands above a channel in a table.
+struct Heading<'a> {
+    name: String,
+    unit: Option<&'a str>,
+}
+
+impl Heading<'_> {
+    /// The name with its unit: `velocity_x [mm/s]`.
+    fn whole(&self) -> String {
+        self.part("")
+    }
+
+    /// The name of a part with its unit: `force.re [N]`.
+    fn part(&self, part: &str) -> String {
+        match self.unit {
+            Some(unit) => format!("{}{part} [{unit}]", self.name),
+            None => format!("{}{part}", self.name),
+        }
+    }
+}
+
 /// Convert all records of the sources to one output.
 ///
 /// # Errors
-/// Where a record cannot be read or the output cannot be written; nothing is left then.
+/// Where a record cannot be read, no record holds numbers or the output cannot be written;
+/// nothing is left then.
 pub fn convert(
     sources: &[Box<dyn Source>],
     target: Target,
     out: &Path,
     options: &Options,
-) -> Result<usize, ConvertError> {
-    let items = items(sources, options);
+) -> Result<Converted, ConvertError> {
+    let mut items = items(sources, options);
+    let notes = match target {
+        Target::Hdf5 => items.iter().flat_map(texts_left_out).collect(),
+        Target::Parquet | Target::Csv => Vec::new(),
+    };
+    if target == Target::Hdf5 {
+        items.retain(Item::has_numbers);
+    }
+    if !items.iter().any(Item::has_numbers) {
+        return Err(ConvertError::Read(without_numbers(sources)));
+    }
     match target {
         Target::Hdf5 => hdf5::write(&items, out, options)?,
         Target::Parquet => parquet::write(&items, out, options)?,
         Target::Csv => csv::write(&items, out)?,
     }
-    Ok(items.len())
+    Ok(Converted {
+        records: items.len(),
+        notes,
+    })
+}
+
+/// A note where a record has texts, which the layout of the HDF5 file has no place for.
+fn texts_left_out(item: &Item) -> Option<String> {
+    let texts = item.channels().iter();
+    let texts = texts.filter(|c| c.stored == StoredType::Text);
+    let names: Vec<&str> = texts.map(|c| c.name.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        let names = names.join(", ");
+        format!(
+            "record '{}': texts are left out ({names}); Parquet and CSV keep them",
+            item.name
+        )
+    })
+}
+
+fn without_numbers(sources: &[Box<dyn Source>]) -> ReadError {
+    let path = sources.first().map_or(Path::new(""), |s| s.path());
+    ReadError::new(
+        path,
+        "a channel of numbers to convert",
+        "none",
+        "Look at the file with `impactid inspect`; the measurement may lie in another one.",
+    )
 }
 
 /// The records with names that are unique: the file's where it holds one, `file/dataset` where
 /// there are several files, the dataset's where there is one file.
 fn items<'a>(sources: &'a [Box<dyn Source>], options: &Options) -> Vec<Item<'a>> {
-    let mut taken = std::collections::BTreeSet::new();
+    let mut taken = BTreeSet::new();
     let mut items = Vec::new();
     for source in sources {
         let stem = source
@@ -152,7 +241,7 @@ fn items<'a>(sources: &'a [Box<dyn Source>], options: &Options) -> Vec<Item<'a>>
     items
 }
 
-fn unique(plain: &str, taken: &mut std::collections::BTreeSet<String>) -> String {
+fn unique(plain: &str, taken: &mut BTreeSet<String>) -> String {
     let parts: Vec<&str> = plain
         .split('/')
         .filter(|p| !p.is_empty() && *p != ".")
@@ -162,21 +251,18 @@ fn unique(plain: &str, taken: &mut std::collections::BTreeSet<String>) -> String
     } else {
         parts.join("/")
     };
-    let mut name = plain.clone();
+    once(&plain, '_', taken)
+}
+
+/// A name that is not taken yet: itself, or itself with a number behind the mark.
+fn once(plain: &str, mark: char, taken: &mut BTreeSet<String>) -> String {
+    let mut name = plain.to_owned();
     let mut number = 2;
     while !taken.insert(name.clone()) {
-        name = format!("{plain}_{number}");
+        name = format!("{plain}{mark}{number}");
         number += 1;
     }
     name
-}
-
-/// A channel's heading with its unit: `velocity_x [mm/s]`.
-fn heading(channel: &ChannelInfo) -> String {
-    match &channel.unit {
-        Some(unit) => format!("{} [{unit}]", channel.name),
-        None => channel.name.clone(),
-    }
 }
 
 fn io(path: &Path) -> impl Fn(std::io::Error) -> WriteError {

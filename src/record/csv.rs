@@ -36,7 +36,7 @@ struct CsvSource {
 pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let text = TextFile::open(path)?;
     let head = text.head(HEAD_BYTES)?;
-    let quotes = head.contains(&b'"');
+    let quotes = memchr::memchr(b'"', &head).is_some();
     let front = Front::read(&text, &head, quotes)?;
     let rows = front.rows(&head, quotes);
     let mut layout = front.layout(&text, &rows, quotes);
@@ -66,7 +66,7 @@ struct Front {
 
 impl Front {
     fn read(text: &TextFile, head: &[u8], quotes: bool) -> Result<Self, ReadError> {
-        if head.contains(&0) {
+        if memchr::memchr(0, head).is_some() {
             return Err(no_table(text, "bytes that are no text"));
         }
         let all: Vec<(usize, &[u8])> = Lines::new(head, quotes)
@@ -114,26 +114,31 @@ impl Front {
 
     fn layout(&self, text: &TextFile, rows: &HeadRows<'_>, quotes: bool) -> Layout {
         let kinds = (0..self.dialect.columns).map(|i| kind_of(rows, i, self.dialect.decimal));
+        let kinds: Vec<Kind> = kinds.collect();
         Layout {
             separator: self.dialect.separator,
             decimal: self.dialect.decimal,
-            kinds: kinds.collect(),
             names: Vec::new(),
             start: text.start() + self.offset as u64,
             end: text.length(),
             quotes,
-            month_first: month_first(rows),
+            month_first: kinds.contains(&Kind::Time) && month_first(rows),
+            kinds,
             comments: dialect::COMMENTS,
         }
     }
 }
 
-/// The kind of a column by its filled cells in the head.
+/// Filled cells by which the kind of a column is judged.
+const JUDGED_CELLS: usize = 64;
+
+/// The kind of a column by its first filled cells in the head.
 fn kind_of(rows: &HeadRows<'_>, column: usize, decimal: u8) -> Kind {
     let cells: Vec<&[u8]> = rows
         .iter()
         .filter_map(|r| r.get(column).copied())
         .filter(|c| !c.is_empty())
+        .take(JUDGED_CELLS)
         .collect();
     let others: Vec<&[u8]> = cells
         .iter()

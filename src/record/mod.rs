@@ -16,6 +16,7 @@ pub mod convert;
 pub mod csv;
 pub mod hdf5;
 pub mod hdf5_write;
+pub mod inflate;
 pub mod lvm;
 pub mod mat;
 pub mod numbers;

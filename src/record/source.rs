@@ -72,7 +72,7 @@ pub enum Samples {
 
 /// Why a file could not be read: what was expected, what was found, where, and the remedy.
 #[derive(Debug, Clone, thiserror::Error, PartialEq)]
-#[error("{}{}: {found}; expected {expected}{}. {remedy}", path.display(), .channel.as_ref().map(|c| format!(", channel '{c}'")).unwrap_or_default(), .byte.map(|b| format!(" (at byte {b})")).unwrap_or_default())]
+#[error("{}. {remedy}", self.fault())]
 pub struct ReadError {
     /// The file.
     pub path: PathBuf,
@@ -127,6 +127,21 @@ impl ReadError {
             byte: None,
             remedy: remedy.into(),
         }
+    }
+
+    /// What is wrong and where, without the remedy.
+    pub fn fault(&self) -> String {
+        let channel = self.channel.as_ref();
+        let channel = channel.map(|c| format!(", channel '{c}'"));
+        let byte = self.byte.map(|b| format!(" (at byte {b})"));
+        format!(
+            "{}{}: {}; expected {}{}",
+            self.path.display(),
+            channel.unwrap_or_default(),
+            self.found,
+            self.expected,
+            byte.unwrap_or_default()
+        )
     }
 
     /// The same error with the offset in the file at which it was found.

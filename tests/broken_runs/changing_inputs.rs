@@ -8,7 +8,7 @@ use impactid::pipeline::Observed;
 use impactid::record::open::open;
 use impactid::record::source::{Samples, Source};
 
-use crate::support::Lab;
+use crate::support::{Lab, wav_format};
 
 /// A good campaign listed, one of its files changed, then observed.
 fn observed_after(change: impl Fn(&Path)) -> Observed {
@@ -64,12 +64,8 @@ fn in_formats(lab: &Lab) -> Vec<String> {
 fn wav() -> Vec<u8> {
     let mut bytes = b"RIFF".to_vec();
     bytes.extend(4036_u32.to_le_bytes());
-    bytes.extend(b"WAVEfmt ");
-    bytes.extend(16_u32.to_le_bytes());
-    bytes.extend([1, 0, 1, 0]);
-    bytes.extend(2000_u32.to_le_bytes());
-    bytes.extend(4000_u32.to_le_bytes());
-    bytes.extend([2, 0, 16, 0]);
+    bytes.extend(b"WAVE");
+    bytes.extend(wav_format());
     bytes.extend(b"data");
     bytes.extend(4000_u32.to_le_bytes());
     bytes.extend((0..2000_i16).flat_map(i16::to_le_bytes));

@@ -1,5 +1,5 @@
-//! SIGKILL at random moments: while records are observed, while the parameters are fitted, and
-//! while the outputs are written.
+//! SIGKILL at random moments: while records are observed and observations are kept, while the
+//! parameters are fitted, and while the outputs are written.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -30,8 +30,7 @@ struct Victim {
     time: Duration,
 }
 
-/// The records of a campaign at its widest gap, where nothing touches: a run that is soon done,
-/// and of so many records that observations are kept on the way.
+/// The records of a campaign at its widest gap, where nothing touches: a run that is soon done.
 fn resonance_curve() -> Lab {
     let lab = campaign(240);
     let rows: Vec<String> = lab
@@ -63,24 +62,41 @@ impl Victim {
         }
     }
 
-    /// Run, and kill at a moment; whether it was still running.
-    fn kill(&self, resume: bool, moment: Moment) -> bool {
+    /// The program, keeping the observations of however few records.
+    fn run(&self, resume: bool) -> std::process::Command {
         let mut command = self.command.clone();
         if resume {
             command.push("--resume");
         }
-        let mut run = program(&self.lab, &command).spawn().expect("it starts");
+        let mut run = program(&self.lab, &command);
+        run.env("IMPACTID_KEEP_FROM", "1");
+        run
+    }
+
+    /// Chunks of observations that a run has kept.
+    fn kept(&self) -> usize {
+        let folder = self.lab.path("out").join(".impactid-observed");
+        let names = fs::read_dir(folder).into_iter().flatten().flatten();
+        names
+            .filter(|e| e.file_name().to_string_lossy().ends_with(".json.gz"))
+            .count()
+    }
+
+    /// Run, and kill at a moment; whether it was still running.
+    fn kill(&self, resume: bool, moment: Moment) -> bool {
+        let mut run = self.run(resume).spawn().expect("it starts");
+        let begin = Instant::now();
+        let mut wait_for = |reached: &dyn Fn() -> bool| {
+            let late = || begin.elapsed() > Duration::from_secs(60);
+            while !reached() && matches!(run.try_wait(), Ok(None)) && !late() {
+                std::thread::yield_now();
+            }
+        };
         match moment {
             Moment::After(part) => std::thread::sleep(self.time.mul_f64(part)),
+            Moment::Keeping(chunks) => wait_for(&|| self.kept() >= chunks),
             Moment::Writing(files) => {
-                let out = self.lab.path("out");
-                let begin = Instant::now();
-                let ended = |run: &mut std::process::Child| {
-                    !matches!(run.try_wait(), Ok(None)) || begin.elapsed() > Duration::from_secs(60)
-                };
-                while outputs(&out).len() < files && !ended(&mut run) {
-                    std::thread::yield_now();
-                }
+                wait_for(&|| outputs(&self.lab.path("out")).len() >= files);
             }
         }
         let running = matches!(run.try_wait(), Ok(None));
@@ -100,9 +116,8 @@ impl Victim {
     /// What was killed goes on to the bytes of an undisturbed run, and leaves nothing beside.
     fn assert_resumes(&self) {
         let out = self.lab.path("out");
-        let mut command = self.command.clone();
-        command.push("--resume");
-        assert_eq!(self.lab.run(&command).code, self.code);
+        let ended = self.run(true).status().expect("it runs");
+        assert_eq!(ended.code(), Some(self.code));
         assert_same(&outputs(&out), &self.expected);
         assert_eq!(hidden(&out), Vec::<String>::new());
         fs::remove_dir_all(&out).expect("the outputs");
@@ -113,6 +128,8 @@ impl Victim {
 enum Moment {
     /// After a part of an undisturbed run's time.
     After(f64),
+    /// As soon as so many chunks of observations are kept.
+    Keeping(usize),
     /// As soon as so many outputs are there.
     Writing(usize),
 }
@@ -126,25 +143,36 @@ fn random(state: &mut u64) -> f64 {
     ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
 }
 
-fn kill_again_and_again(victim: &Victim, seed: u64, kills: u64) -> u64 {
+/// What kills met.
+#[derive(Default, Clone, Copy)]
+struct Met {
+    /// Those that met a running program.
+    running: u64,
+    /// Those that left observations to take over.
+    kept: u64,
+}
+
+fn kill_again_and_again(victim: &Victim, seed: u64, kills: u64) -> Met {
     let mut state = seed;
-    let mut killed_running = 0;
+    let mut met = Met::default();
     for kill in 0..kills {
         let moment = match kill % 3 {
             0 => {
                 let outputs = victim.expected.len() as f64;
                 Moment::Writing(1 + (random(&mut state) * outputs) as usize)
             }
+            1 => Moment::Keeping(1 + (random(&mut state) * 3.0) as usize),
             _ => Moment::After(random(&mut state)),
         };
         let resume = kill % IN_A_ROW != 0;
-        killed_running += u64::from(victim.kill(resume, moment));
+        met.running += u64::from(victim.kill(resume, moment));
+        met.kept += u64::from(victim.kept() > 0);
         victim.assert_whole(kill);
         if (kill + 1) % IN_A_ROW == 0 || kill + 1 == kills {
             victim.assert_resumes();
         }
     }
-    killed_running
+    met
 }
 
 #[test]
@@ -154,18 +182,20 @@ fn valid_a_killed_run_leaves_nothing_half_written_and_resumes_to_the_same_bytes(
         (resonance_curve(), "csv", 3, all - all / 4),
         (campaign(8), "pdf", 5, all / 4),
     ];
-    let running: u64 = std::thread::scope(|scope| {
+    let met: Vec<Met> = std::thread::scope(|scope| {
         let threads = victims.map(|(lab, formats, seed, kills)| {
             scope.spawn(move || {
                 let victim = Victim::new(lab, formats);
                 kill_again_and_again(&victim, seed, kills)
             })
         });
-        threads.map(|t| t.join().expect("no panic")).iter().sum()
+        threads.map(|t| t.join().expect("no panic")).to_vec()
     });
-    assert!(
-        running * 2 > all,
-        "only {running} of {all} kills met a running program"
+    let running: u64 = met.iter().map(|m| m.running).sum();
+    let kept: u64 = met.iter().map(|m| m.kept).sum();
+    let said = format!(
+        "of {all} kills {running} met a running program and {kept} left observations to take over"
     );
-    println!("{running} of {all} kills met a running program");
+    assert!(running * 2 > all && kept * 4 > all, "{said}");
+    println!("{said}");
 }

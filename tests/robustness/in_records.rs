@@ -1,7 +1,7 @@
 //! Faults in the record files.
 
 use super::{Case, noted, refused};
-use crate::support::{Lab, SAMPLES};
+use crate::support::{Lab, SAMPLES, wav_format};
 
 /// The cases.
 pub fn cases() -> Vec<Case> {
@@ -27,12 +27,7 @@ fn wav_of(bytes: u64) -> Vec<u8> {
         file.extend(number.to_le_bytes());
     }
     file.extend([0; 4]);
-    file.extend(b"fmt ");
-    file.extend(16_u32.to_le_bytes());
-    file.extend([1, 0, 1, 0]);
-    file.extend(2000_u32.to_le_bytes());
-    file.extend(4000_u32.to_le_bytes());
-    file.extend([2, 0, 16, 0]);
+    file.extend(wav_format());
     file.extend(b"data\xff\xff\xff\xff");
     file.extend([7; 100]);
     file

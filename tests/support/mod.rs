@@ -166,6 +166,17 @@ impl Lab {
     }
 }
 
+/// The format chunk of a WAV file: one channel of 16 bits, 2,000 samples a second.
+pub fn wav_format() -> Vec<u8> {
+    let mut chunk = b"fmt ".to_vec();
+    chunk.extend(16_u32.to_le_bytes());
+    chunk.extend([1, 0, 1, 0]);
+    chunk.extend(2000_u32.to_le_bytes());
+    chunk.extend(4000_u32.to_le_bytes());
+    chunk.extend([2, 0, 16, 0]);
+    chunk
+}
+
 /// Velocity of a mass in one period of a motion with one impact: from -0.9 v up to v.
 fn velocity(phase: f64) -> f64 {
     let s = phase.rem_euclid(1.0);

@@ -3,7 +3,7 @@
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use crate::record::convert::{ConvertError, Item, heading, io};
+use crate::record::convert::{ConvertError, Item, io};
 use crate::record::hdf5_write::temporary_beside;
 use crate::record::source::Samples;
 
@@ -40,12 +40,12 @@ fn rows(item: &Item, samples: &[Samples], mut out: impl Write) -> std::io::Resul
         writeln!(out, "# start_time = {start}")?;
     }
     let mut headings = Vec::new();
-    for (info, samples) in item.channels().iter().zip(samples) {
+    for (heading, samples) in item.headings().zip(samples) {
         match samples {
             Samples::Complex(_) => {
-                headings.extend(["re", "im"].map(|p| quoted(&format!("{}.{p}", heading(info)))));
+                headings.extend([".re", ".im"].map(|p| quoted(&heading.part(p))));
             }
-            _ => headings.push(quoted(&heading(info))),
+            _ => headings.push(quoted(&heading.whole())),
         }
     }
     writeln!(out, "{}", headings.join(","))?;

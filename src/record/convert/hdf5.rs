@@ -23,24 +23,21 @@ pub fn write(items: &[Item], out: &Path, options: &Options) -> Result<(), Conver
 
 fn record(item: &Item) -> Result<RecordTable, ConvertError> {
     let mut channels = Vec::new();
-    for (info, samples) in item.channels().iter().zip(item.read()?) {
+    let named = item.names().into_iter().zip(item.channels());
+    for ((name, info), samples) in named.zip(item.read()?) {
         let unit = info.unit.clone().unwrap_or_default();
         match samples {
             Samples::Real(values) => {
-                channels.push(ColumnToWrite::numbers(&info.name, unit, values));
+                channels.push(ColumnToWrite::numbers(name, unit, values));
             }
             Samples::Complex(values) => {
                 let (re, im) = values.into_iter().unzip();
                 channels.push(ColumnToWrite::numbers(
-                    format!("{}.re", info.name),
+                    format!("{name}.re"),
                     unit.clone(),
                     re,
                 ));
-                channels.push(ColumnToWrite::numbers(
-                    format!("{}.im", info.name),
-                    unit,
-                    im,
-                ));
+                channels.push(ColumnToWrite::numbers(format!("{name}.im"), unit, im));
             }
             Samples::Text(_) => {}
         }

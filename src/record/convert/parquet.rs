@@ -7,7 +7,7 @@ use std::path::Path;
 use polars::prelude::{Column, DataFrame, DataType, Schema};
 use polars_io::parquet::write::{KeyValueMetadata, ParquetCompression, ParquetWriter};
 
-use crate::record::convert::{ConvertError, Item, Options, heading, io};
+use crate::record::convert::{ConvertError, Item, Options, io};
 use crate::record::hdf5_write::{WriteError, temporary_beside};
 use crate::record::parquet::RECORDS_KEY;
 use crate::record::source::{Samples, StoredType};
@@ -61,13 +61,11 @@ fn kind(text: bool, single: bool) -> DataType {
 fn columns(items: &[Item]) -> Vec<(String, bool)> {
     let mut seen = BTreeMap::new();
     let mut all = Vec::new();
-    for channel in items.iter().flat_map(|i| i.channels()) {
+    let headed = items.iter().flat_map(|i| i.headings().zip(i.channels()));
+    for (heading, channel) in headed {
         let names = match channel.stored {
-            StoredType::Complex(_) => vec![
-                format!("{}.re", heading(channel)),
-                format!("{}.im", heading(channel)),
-            ],
-            _ => vec![heading(channel)],
+            StoredType::Complex(_) => vec![heading.part(".re"), heading.part(".im")],
+            _ => vec![heading.whole()],
         };
         for name in names {
             if seen.insert(name.clone(), ()).is_none() {
@@ -116,15 +114,15 @@ fn frame(
     single: bool,
 ) -> Result<Framed, ConvertError> {
     let mut own: BTreeMap<String, Samples> = BTreeMap::new();
-    for (info, samples) in item.channels().iter().zip(item.read()?) {
+    for (heading, samples) in item.headings().zip(item.read()?) {
         match samples {
             Samples::Complex(values) => {
                 let (re, im) = values.into_iter().unzip();
-                own.insert(format!("{}.re", heading(info)), Samples::Real(re));
-                own.insert(format!("{}.im", heading(info)), Samples::Real(im));
+                own.insert(heading.part(".re"), Samples::Real(re));
+                own.insert(heading.part(".im"), Samples::Real(im));
             }
             other => {
-                own.insert(heading(info), other);
+                own.insert(heading.whole(), other);
             }
         }
     }

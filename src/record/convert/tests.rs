@@ -43,7 +43,9 @@ fn valid_records_come_back_from_every_target() {
     for name in ["out.h5", "out.parquet", "out.csv"] {
         let out = dir.path().join(name);
         assert_eq!(
-            convert(&sources, Target::of(&out).unwrap(), &out, &options).unwrap(),
+            convert(&sources, Target::of(&out).unwrap(), &out, &options)
+                .unwrap()
+                .records,
             3
         );
         let back: Vec<Box<dyn Source>> = match name {
@@ -131,4 +133,81 @@ fn valid_nothing_is_left_where_a_record_cannot_be_read() {
         assert!(error.to_string().contains("claims_too_much.h5"), "{error}");
     }
     assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn valid_channels_of_one_name_are_all_kept() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("in.lvm");
+    let head = "LabVIEW Measurement\nSeparator\tTab\nDecimal_Separator\t.\nX_Columns\tMulti\n";
+    let ends = "***End_of_Header***\n";
+    let channels = "Channels\t2\t\t\nSamples\t2\t\t2\nY_Unit_Label\tV\t\tV\n";
+    let rows = "X_Value\tx\tX_Value\tx\tComment\n0\t1\t0.5\t2\ta\n1\t3\t1.5\t4\tb\n";
+    std::fs::write(&path, format!("{head}{ends}{channels}{ends}{rows}")).unwrap();
+    let sources = [open(&path).unwrap()];
+    for name in ["out.h5", "out.parquet", "out.csv"] {
+        let out = dir.path().join(name);
+        let target = Target::of(&out).unwrap();
+        let done = convert(&sources, target, &out, &Options::default()).unwrap();
+        assert_eq!(done.records, 1);
+        assert_eq!(
+            done.notes.len(),
+            usize::from(name == "out.h5"),
+            "{:?}",
+            done.notes
+        );
+        let back = open(&out).unwrap();
+        for (channel, values) in [
+            ("X_Value", [0.0, 1.0]),
+            ("x", [1.0, 3.0]),
+            ("X_Value 2", [0.5, 1.5]),
+            ("x 2", [2.0, 4.0]),
+        ] {
+            assert_eq!(
+                samples(&*back, 0, channel),
+                Samples::Real(values.to_vec()),
+                "{name}"
+            );
+        }
+    }
+}
+
+#[test]
+fn valid_a_file_without_numbers_is_not_converted() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("text.mat");
+    // A level 4 file of one text.
+    let words = [51u32, 1, 2, 0, 2].map(u32::to_le_bytes).concat();
+    std::fs::write(&path, [&words[..], b"a\0hi"].concat()).unwrap();
+    let sources = [open(&path).unwrap()];
+    for name in ["out.h5", "out.parquet", "out.csv"] {
+        let out = dir.path().join(name);
+        let target = Target::of(&out).unwrap();
+        let error = convert(&sources, target, &out, &Options::default()).unwrap_err();
+        assert!(error.to_string().contains("channel of numbers"), "{error}");
+        assert!(!out.exists());
+    }
+}
+
+#[test]
+fn valid_parts_of_complex_numbers_keep_their_unit() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../shared/data/uff_conformance/non_ascii_header.uff");
+    if !path.exists() {
+        println!("skipped: ../shared/data is absent");
+        return;
+    }
+    let sources = [open(&path).unwrap()];
+    let channel = &sources[0].datasets()[0].channels[1];
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["out.h5", "out.parquet", "out.csv"] {
+        let out = dir.path().join(name);
+        let target = Target::of(&out).unwrap();
+        convert(&sources, target, &out, &Options::default()).unwrap();
+        let back = open(&out).unwrap();
+        for (part, written) in [".re", ".im"].iter().zip(&back.datasets()[0].channels[1..]) {
+            let expected = (format!("{}{part}", channel.name), &channel.unit);
+            assert_eq!((written.name.clone(), &written.unit), expected, "{name}");
+        }
+    }
 }

@@ -8,6 +8,9 @@ pub const COMMENTS: &[u8] = b"#%!";
 /// Lines at the end of the head by which the dialect is judged.
 const JUDGED_LINES: usize = 60;
 
+/// The longest cell that may hold a point in time, bytes.
+const LONGEST_TIME: usize = 80;
+
 /// How a table is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dialect {
@@ -45,6 +48,7 @@ pub fn detect(lines: &[&[u8]]) -> Option<Dialect> {
         let Some((score, columns)) = score(judged, separator, decimal) else {
             continue;
         };
+        let certain = score > 1.0;
         if best.is_none_or(|(b, _)| score > b + 1e-9) {
             best = Some((
                 score,
@@ -54,6 +58,9 @@ pub fn detect(lines: &[&[u8]]) -> Option<Dialect> {
                     columns,
                 },
             ));
+        }
+        if certain {
+            break;
         }
     }
     best.map(|(_, dialect)| dialect)
@@ -101,7 +108,7 @@ pub fn is_value(cell: &[u8], decimal: u8) -> bool {
 
 /// Whether a cell holds a point in time.
 pub fn is_time(cell: &[u8]) -> bool {
-    clock::parse(&decode(cell), false).is_some()
+    cell.len() <= LONGEST_TIME && clock::parse(&decode(cell), false).is_some()
 }
 
 /// Whether a line is a row of values: some filled cells, most of them values, the first of

@@ -1,13 +1,14 @@
 //! HDF5 files through `hdf5-pure`, read at offsets on demand.
 
 use std::fs::File;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 use ::hdf5::{
     AttrValue, ChunkCacheConfig, Dataset, Datatype, DatatypeByteOrder, FileAccessProperties,
     FloatingPointLayout, FormatError, Group, MetadataCacheConfig, Object, ReferenceType,
 };
 
+use crate::record::hdf5::chunked;
 use crate::record::hdf5::element::Element;
 use crate::record::hdf5::legacy::{self, Patch};
 use crate::record::hdf5::store::{
@@ -23,7 +24,7 @@ const FILTER_LZF: u16 = 32000;
 
 /// A file read at offsets, shared by threads.
 struct Positional {
-    file: File,
+    file: Arc<File>,
     length: u64,
     patches: Vec<Patch>,
 }
@@ -53,6 +54,7 @@ impl ::hdf5::Source for Positional {
 
 /// An open file.
 pub struct PureStore {
+    file: Arc<File>,
     datasets: Mutex<Vec<Dataset>>,
     length: u64,
 }
@@ -62,18 +64,18 @@ pub struct PureStore {
 /// # Errors
 /// The library's words where it cannot read the structure.
 pub fn open(file: File, length: u64) -> Result<(PureStore, Tree), String> {
-    let again = file.try_clone().map_err(|e| e.to_string())?;
+    let file = Arc::new(file);
     let (store, tree, old) = walk(Positional {
-        file,
+        file: Arc::clone(&file),
         length,
         patches: Vec::new(),
     })?;
     if !old {
         return Ok((store, tree));
     }
-    let patches = legacy::patches(&again, length).map_err(|e| e.to_string())?;
+    let patches = legacy::patches(&file, length).map_err(|e| e.to_string())?;
     let (store, tree, _) = walk(Positional {
-        file: again,
+        file,
         length,
         patches,
     })?;
@@ -85,7 +87,7 @@ fn walk(source: Positional) -> Result<(PureStore, Tree, bool), String> {
     let access = FileAccessProperties::new()
         .with_metadata_cache(MetadataCacheConfig::new(METADATA_CACHE_BYTES))
         .with_chunk_cache(ChunkCacheConfig::disabled());
-    let length = source.length;
+    let (length, shared) = (source.length, Arc::clone(&source.file));
     let file = ::hdf5::File::from_source_with_options(source, access).map_err(|e| e.to_string())?;
     let mut walk = Walk {
         datasets: Vec::new(),
@@ -95,6 +97,7 @@ fn walk(source: Positional) -> Result<(PureStore, Tree, bool), String> {
     let old = walk.datasets.iter().any(has_old_layout);
     Ok((
         PureStore {
+            file: shared,
             datasets: Mutex::new(walk.datasets),
             length,
         },
@@ -333,13 +336,22 @@ impl PureStore {
 
 impl Store for PureStore {
     fn raw(&self, array: &Array) -> Result<Vec<u8>, String> {
-        self.dataset(array)?.read_raw().map_err(|e| e.to_string())
+        let dataset = self.dataset(array)?;
+        match chunked::rows(&self.file, &dataset, array.element.bytes(), None) {
+            Some(bytes) => Ok(bytes),
+            None => dataset.read_raw().map_err(|e| e.to_string()),
+        }
     }
 
     fn rows(&self, array: &Array, start: u64, count: u64) -> Result<Vec<u8>, String> {
-        self.dataset(array)?
-            .read_raw_rows(start, count)
-            .map_err(|e| e.to_string())
+        let dataset = self.dataset(array)?;
+        let range = start..start.saturating_add(count);
+        match chunked::rows(&self.file, &dataset, array.element.bytes(), Some(range)) {
+            Some(bytes) => Ok(bytes),
+            None => dataset
+                .read_raw_rows(start, count)
+                .map_err(|e| e.to_string()),
+        }
     }
 
     fn texts(&self, array: &Array) -> Result<Vec<String>, String> {

@@ -6,6 +6,7 @@ use flate2::bufread::ZlibDecoder;
 
 use super::tree::Place;
 use crate::record::bytes::FileBytes;
+use crate::record::inflate::zlib_into;
 use crate::record::source::ReadError;
 
 /// Deflate cannot expand a byte into more than this many.
@@ -126,6 +127,10 @@ pub fn inflate(file: &FileBytes, place: Place) -> Result<Vec<u8>, ReadError> {
     let mut stream = Stream::open(file, at, packed)?;
     stream.check_claim(inflated)?;
     let mut bytes = vec![0; inflated as usize];
+    if zlib_into(file.slice(at, packed, "a compressed variable")?, &mut bytes).is_ok() {
+        return Ok(bytes);
+    }
+    // Read forward, the stream tells where it fails.
     stream.read_at(0, &mut bytes, "the variable")?;
     stream.finish()?;
     Ok(bytes)

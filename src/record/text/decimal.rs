@@ -51,15 +51,12 @@ const fn reciprocal(power: u128) -> u128 {
     quotient + 1
 }
 
-/// Powers of ten by which fewer than eight digits move a mantissa.
-const TENS: [u64; 8] = [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000];
-
-/// How many of eight characters, the first in the lowest byte, are digits before another one.
+/// Whether eight characters are digits: each becomes 0 to 9 by the exclusive or, and 6 more stay
+/// below 16.
 #[inline]
-fn leading_digits(word: u64) -> u32 {
+fn are_digits(word: u64) -> bool {
     let values = word ^ 0x3030_3030_3030_3030;
-    let others = values.wrapping_add(0x7676_7676_7676_7676) | values;
-    (others & 0x8080_8080_8080_8080).trailing_zeros() / 8
+    (values.wrapping_add(0x0606_0606_0606_0606) | values) & 0xf0f0_f0f0_f0f0_f0f0 == 0
 }
 
 /// The value of eight digits: pairs, then fours, then all at once.
@@ -70,23 +67,25 @@ fn eight_digits(word: u64) -> u64 {
     (fours & 0x0000_ffff_0000_ffff).wrapping_mul((10_000 << 32) + 1) >> 32
 }
 
-/// Add the digits from `i` on to a mantissa, eight at a time; the place behind them.
+/// Add the digits from `i` on to a mantissa, eight at a time while there are so many; the place
+/// behind them.
 #[inline]
-pub fn digits_from(bytes: &[u8], mut i: usize, mantissa: &mut u64) -> usize {
+pub fn many_digits(bytes: &[u8], mut i: usize, mantissa: &mut u64) -> usize {
     while let Some(eight) = bytes.get(i..).and_then(|rest| rest.first_chunk::<8>()) {
         let word = u64::from_le_bytes(*eight);
-        let count = leading_digits(word);
-        if count < 8 {
-            // The digits move to the end, behind zeros.
-            let value = eight_digits((word << 8) << (56 - 8 * count));
-            let moved = mantissa.wrapping_mul(TENS[count as usize]);
-            *mantissa = moved.wrapping_add(value);
-            return i + count as usize;
+        if !are_digits(word) {
+            break;
         }
         let moved = mantissa.wrapping_mul(100_000_000);
         *mantissa = moved.wrapping_add(eight_digits(word));
         i += 8;
     }
+    few_digits(bytes, i, mantissa)
+}
+
+/// Add the digits from `i` on to a mantissa; the place behind them.
+#[inline]
+pub fn few_digits(bytes: &[u8], mut i: usize, mantissa: &mut u64) -> usize {
     while let Some(digit) = bytes
         .get(i)
         .map(|b| b.wrapping_sub(b'0'))
@@ -169,7 +168,7 @@ mod tests {
                 let mut text = *b"1234567890987654321x";
                 text[place] = byte;
                 let mut mantissa = 0;
-                assert_eq!(digits_from(&text, 0, &mut mantissa), place);
+                assert_eq!(many_digits(&text, 0, &mut mantissa), place);
                 let expected = std::str::from_utf8(&text[..place]).unwrap();
                 assert_eq!(mantissa, expected.parse().unwrap_or(0), "{byte} at {place}");
             }

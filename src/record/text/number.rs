@@ -1,6 +1,6 @@
 //! Decimal numbers from bytes, exactly rounded, fast for the lengths that instruments print.
 
-use crate::record::text::decimal::{self, digits_from};
+use crate::record::text::decimal::{self, few_digits, many_digits};
 
 /// A decimal number at the front of `bytes`: its value and the number of bytes it takes.
 ///
@@ -22,13 +22,13 @@ pub fn parse_prefix(bytes: &[u8], mark: u8) -> Option<(f64, usize)> {
     };
     let mut mantissa = 0u64;
     let first = i;
-    i = digits_from(bytes, i, &mut mantissa);
+    i = few_digits(bytes, i, &mut mantissa);
     let mut digits = i - first;
     let mut exponent = 0i64;
     if bytes.get(i) == Some(&mark) {
         let fraction = i + 1;
         let whole = mantissa;
-        i = digits_from(bytes, fraction, &mut mantissa);
+        i = many_digits(bytes, fraction, &mut mantissa);
         // Zeros before the first digit that counts do not lengthen the mantissa.
         digits = match whole == 0 && digits <= decimal::MOST_DIGITS {
             true => significant(bytes, fraction, i),
@@ -118,6 +118,9 @@ const MISSING: [&str; 14] = [
     "", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---", "?", "*", "1.#qnan", "1.#ind",
 ];
 
+/// The longest of the words that stand for a number, bytes.
+const LONGEST_WORD: usize = 10;
+
 /// A whole cell as a number: a decimal number, an infinity, or NaN for a cell that says that
 /// there is none. `None`: the cell holds something else.
 pub fn parse_cell(cell: &[u8], decimal: u8) -> Option<f64> {
@@ -126,6 +129,9 @@ pub fn parse_cell(cell: &[u8], decimal: u8) -> Option<f64> {
         && end == cell.len()
     {
         return Some(value);
+    }
+    if cell.len() > LONGEST_WORD {
+        return None;
     }
     let text = std::str::from_utf8(cell).ok()?.to_ascii_lowercase();
     if MISSING.contains(&text.as_str()) {

@@ -221,7 +221,11 @@ pub fn read_columns(
             if !is_row(line, layout.comments) {
                 continue;
             }
-            read_row(line, layout, &mut columns, last)
+            let row = Row {
+                line,
+                rest: &block[at..],
+            };
+            read_row(row, layout, &mut columns, last)
                 .map_err(|fault| fault.error(text, layout, read, position))?;
             read += 1;
         }
@@ -285,16 +289,26 @@ impl Fault {
     }
 }
 
+/// A row of a block.
+#[derive(Clone, Copy)]
+struct Row<'a> {
+    /// The row.
+    line: &'a [u8],
+    /// The row and what follows it: digits are looked for some at a time.
+    rest: &'a [u8],
+}
+
 /// Append one row to the columns; cells that the row lacks become NaN or empty.
 fn read_row(
-    line: &[u8],
+    row: Row<'_>,
     layout: &Layout,
     columns: &mut [Column],
     last: usize,
 ) -> Result<(), Fault> {
+    let line = row.line;
     let (done, ended) = match layout.separator {
         Separator::Byte(separator) => {
-            fast_row(line, separator, layout.decimal, &mut columns[..last])
+            fast_row(row, separator, layout.decimal, &mut columns[..last])
         }
         Separator::Blanks => (0, false),
     };
@@ -321,7 +335,8 @@ fn read_row(
 /// Read leading number cells without looking for their ends first; the count of columns done,
 /// and whether the line ends with them.
 #[inline]
-fn fast_row(line: &[u8], separator: u8, decimal: u8, columns: &mut [Column]) -> (usize, bool) {
+fn fast_row(row: Row<'_>, separator: u8, decimal: u8, columns: &mut [Column]) -> (usize, bool) {
+    let Row { line, rest } = row;
     let mut at = 0;
     let mut ended = false;
     let count = columns.len();
@@ -332,7 +347,7 @@ fn fast_row(line: &[u8], separator: u8, decimal: u8, columns: &mut [Column]) -> 
         while line.get(at) == Some(&b' ') {
             at += 1;
         }
-        let Some((value, taken)) = line
+        let Some((value, taken)) = rest
             .get(at..)
             .and_then(|l| number::parse_prefix(l, decimal))
         else {

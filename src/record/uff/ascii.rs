@@ -1,6 +1,6 @@
 //! Numbers written as text, read fast and exactly.
 
-use crate::record::text::decimal::{self, digits_from};
+use crate::record::text::decimal::{self, few_digits, many_digits};
 
 /// Longest number that is believed, bytes.
 const LONGEST: usize = 64;
@@ -45,12 +45,6 @@ impl<'a> Numbers<'a> {
         }
     }
 
-    /// Add the digits at `at` to a mantissa; gives the place behind them.
-    #[inline]
-    fn digits(&self, at: usize, mantissa: &mut u64) -> usize {
-        digits_from(self.text, at, mantissa)
-    }
-
     /// The exponent at `at`, of up to four digits, and the place behind it.
     #[inline]
     fn exponent(&self, mut at: usize) -> Option<(i32, usize)> {
@@ -58,9 +52,12 @@ impl<'a> Numbers<'a> {
         let signed = |at| matches!(self.peek(at), b'+' | b'-');
         if !letter {
             // A sign is an exponent's only before three digits (`1.5-100`); else a number begins.
+            if !signed(at) {
+                return Some((0, at));
+            }
             let mut digits = 0;
-            let end = self.digits(at + 1, &mut digits);
-            let bare = signed(at) && end == at + 4 && !matches!(self.peek(end), b'.');
+            let end = few_digits(self.text, at + 1, &mut digits);
+            let bare = end == at + 4 && !matches!(self.peek(end), b'.');
             return Some(match bare {
                 true if self.peek(at) == b'-' => (-(digits as i32), end),
                 true => (digits as i32, end),
@@ -71,7 +68,7 @@ impl<'a> Numbers<'a> {
         let negative = self.peek(at) == b'-';
         at += usize::from(signed(at));
         let mut value = 0;
-        let end = self.digits(at, &mut value);
+        let end = few_digits(self.text, at, &mut value);
         if end == at || end > at + 4 {
             return None;
         }
@@ -92,10 +89,10 @@ impl<'a> Numbers<'a> {
         let first = self.peek(start);
         let begin = start + usize::from(matches!(first, b'-' | b'+'));
         let mut mantissa = 0;
-        let whole = self.digits(begin, &mut mantissa);
+        let whole = few_digits(self.text, begin, &mut mantissa);
         let (mut end, mut places) = (whole, 0);
         if self.peek(whole) == b'.' {
-            end = self.digits(whole + 1, &mut mantissa);
+            end = many_digits(self.text, whole + 1, &mut mantissa);
             places = end - whole - 1;
         }
         let digits = whole - begin + places;
