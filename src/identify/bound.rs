@@ -9,8 +9,9 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
+use crate::identify::blocks::{Blocks, Evidence, Nominal};
 use crate::identify::interval::{self, Posterior};
-use crate::identify::methods::{Blocks, Evidence, Nominal, wide_priors};
+use crate::identify::methods::wide_priors;
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::{Block, Prior, Problem};
 

@@ -1,8 +1,8 @@
 //! Whether the velocities of both masses were interchanged: all data are fitted once more as if
 //! they were.
 
+use crate::identify::blocks::Blocks;
 use crate::identify::joint::Weights;
-use crate::identify::methods::Blocks;
 use crate::identify::suspicion::{SURE, Suspicion};
 use crate::identify::weighing::LEAST_ALLOWANCE;
 use crate::record::Role;

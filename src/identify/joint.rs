@@ -1,7 +1,8 @@
 //! All methods in one likelihood: each block with the weight that its noise gives.
 
+use crate::identify::blocks::{Blocks, IMPACT_BIAS, Nominal};
 use crate::identify::interval::Posterior;
-use crate::identify::methods::{self, Blocks, IMPACT_BIAS, MethodFit, Nominal};
+use crate::identify::methods::{self, MethodFit};
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::{Block, FitError, Prior, Problem};
 

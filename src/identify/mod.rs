@@ -3,6 +3,7 @@
 //! The result is plain data ([`Identification`]), written as `identification.json`.
 
 pub mod agreement;
+pub mod blocks;
 pub mod bound;
 pub mod boundary;
 pub mod contact_law;

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::identify::methods::Evidence;
+use crate::identify::blocks::Evidence;
 use crate::identify::parameters::{Coordinate, Parameters, gain_index};
 use crate::identify::solver::{Fit, Problem, inverse};
 use crate::identify::trajectory::{TrajectoryBlock, TrajectoryRecord, distinct_phases};

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::identify::blocks::{Blocks, Evidence, IMPACT_BIAS};
 use crate::identify::interval::Posterior;
-use crate::identify::methods::{self, Blocks, Evidence, IMPACT_BIAS, MethodFit};
+use crate::identify::methods::{self, MethodFit};
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::selection::Attempt;
 use crate::identify::solver::{Fit, FitError};

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use crate::identify::agreement::agreement;
+use crate::identify::blocks::{Blocks, Evidence};
 use crate::identify::interchange;
 use crate::identify::interval::{self, Posterior};
 use crate::identify::joint::{self, METHODS, Weights};
-use crate::identify::methods::{self, Blocks, Evidence};
+use crate::identify::methods;
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::selection::{Attempt, Selection, succeeded};
 use crate::identify::solver::{Fit, Problem};

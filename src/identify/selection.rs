@@ -1,7 +1,8 @@
 //! Which records and brackets the fits rest on; the others are named with the reason.
 
+use crate::identify::blocks::{Blocks, Evidence};
 use crate::identify::joint::METHODS;
-use crate::identify::methods::{self, Blocks, Evidence, MethodFit};
+use crate::identify::methods::{self, MethodFit};
 use crate::identify::parameters::Parameters;
 use crate::identify::pull;
 use crate::identify::solver::{FitError, Normal, Problem, mean_squares};

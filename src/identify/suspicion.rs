@@ -7,8 +7,8 @@
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
+use crate::identify::blocks::Nominal;
 use crate::identify::factor::dot;
-use crate::identify::methods::Nominal;
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::{Block, Fit, mean_squares};
 use crate::identify::trajectory::{TrajectoryBlock, TrajectoryRecord};

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::identify::blocks::Evidence;
 use crate::identify::impacts::ImpactBlock;
-use crate::identify::methods::Evidence;
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::resonance::{self, ResonanceBlock};
 use crate::identify::solver::Block;

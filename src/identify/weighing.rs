@@ -1,7 +1,7 @@
 //! How much residuals may be trusted: what is allowed beside the noise, and which records do not
 //! belong to the bulk.
 
-use crate::identify::methods::Blocks;
+use crate::identify::blocks::Blocks;
 use crate::identify::parameters::Parameters;
 use crate::identify::solver::{Block, mean_squares};
 use crate::signal::robust;

@@ -9,9 +9,9 @@ use serde::Serialize;
 
 use crate::event::Rig;
 use crate::event::detect::DetectSettings;
+use crate::identify::blocks::{Evidence, Nominal};
 use crate::identify::bound::bounds;
 use crate::identify::coverage::{Score, Trial, scores, table};
-use crate::identify::methods::{Evidence, Nominal};
 use crate::identify::parameters::Parameters;
 use crate::identify::run::{Outcome, identify};
 use crate::identify::uncertainty::{Asked, Way};

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::Identification;
-use crate::identify::methods::{Evidence, Nominal};
+use crate::identify::blocks::{Evidence, Nominal};
 use crate::identify::solver::Fit;
 use crate::identify::specimens::identify_campaign;
 use crate::identify::uncertainty::Asked;

@@ -3,9 +3,9 @@
 use std::collections::HashSet;
 
 use super::Gathered;
+use crate::identify::blocks::{Blocks, Evidence, Nominal};
 use crate::identify::contact_law::Law;
 use crate::identify::impacts::SpeedPair;
-use crate::identify::methods::{Blocks, Evidence, Nominal};
 use crate::identify::parameters::Coordinate;
 use crate::identify::resonance::predicted;
 use crate::identify::solver::Block;
