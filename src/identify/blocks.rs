@@ -113,6 +113,7 @@ impl Blocks {
                 self.resonance.has_corner(*i)
                     || self.trajectory.has_corner(*i)
                     || self.impact.has_corner(*i)
+                    || self.flight.has_corner(*i)
             })
             .map(Coordinate::Corner)
     }

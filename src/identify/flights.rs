@@ -10,8 +10,8 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-use crate::event::{Impact, Rig};
-use crate::identify::parameters::{Coordinate, Parameters};
+use crate::event::{CornerShift, Impact, Rig};
+use crate::identify::parameters::{Coordinate, Parameters, gain_index};
 use crate::identify::solver::Block;
 use crate::model::flight::{Drive, State, free_flight};
 use crate::model::params::Machine;
@@ -34,6 +34,20 @@ pub struct Node {
     pub after_m_s: [f64; 2],
     /// Standard error of each speed, m/s.
     pub error_m_s: f64,
+    /// What the channels' corners would change of the speeds of x and of y.
+    pub corner_shifts: [Option<CornerShift>; 2],
+}
+
+impl Node {
+    /// Speeds of x and y before and after, m/s, with the corners that the channels have.
+    fn speeds_m_s(&self, parameters: &Parameters) -> [[f64; 2]; 2] {
+        let shift = |mass: usize| {
+            let shift = self.corner_shifts[mass];
+            shift.map_or(0.0, |s| parameters.corner(s.role).ln() * s.speed_m_s)
+        };
+        let shifts = [shift(0), shift(1)];
+        [self.before_m_s, self.after_m_s].map(|speeds| [0, 1].map(|m| speeds[m] + shifts[m]))
+    }
 }
 
 /// The impacts of one record.
@@ -77,6 +91,13 @@ impl FlightBlock {
             .filter_map(|(i, o)| flight_record(rig, i, o))
             .collect();
         Self { rig, records }
+    }
+
+    /// Whether the speeds depend on a corner, by its index.
+    pub fn has_corner(&self, index: usize) -> bool {
+        let nodes = self.records.iter().flat_map(|r| &r.nodes);
+        let mut shifts = nodes.flat_map(|n| n.corner_shifts.iter().flatten());
+        shifts.any(|s| gain_index(s.role) == Some(index))
     }
 }
 
@@ -142,6 +163,7 @@ fn node(rig: Rig, impact: &Impact, frequency_hz: f64) -> Option<Node> {
         before_m_s,
         after_m_s,
         error_m_s: noise.hypot(SPEED_SCATTER * closing),
+        corner_shifts: impact.corner_shifts,
     })
 }
 
@@ -241,7 +263,8 @@ impl Block for FlightBlock {
         }
         let mut out = Vec::with_capacity(record.nodes.len() * (1 + 2 * masses));
         for (k, node) in record.nodes.iter().enumerate() {
-            let closing = (node.before_m_s[0] + node.before_m_s[1]) / speed;
+            let [before, after] = node.speeds_m_s(parameters);
+            let closing = (before[0] + before[1]) / speed;
             let time_error = node.time_error_s * rate;
             let apart = Vector4::new(1.0, 0.0, 1.0, 0.0);
             out.push(belief.learn(apart, gap, (closing * time_error).powi(2)));
@@ -253,9 +276,9 @@ impl Block for FlightBlock {
                     out.push(belief.learn(h, speeds[m] / gain, deviation * deviation));
                 }
             };
-            measure(&mut belief, node.before_m_s, &mut out);
+            measure(&mut belief, before, &mut out);
             belief.bounce(&machine, time_error);
-            measure(&mut belief, node.after_m_s, &mut out);
+            measure(&mut belief, after, &mut out);
             if let Some(next) = record.nodes.get(k + 1) {
                 let drive = Drive {
                     eta: setting.frequency_ratio,
@@ -269,7 +292,10 @@ impl Block for FlightBlock {
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {
-        !matches!(coordinate, Coordinate::Gain(2 | 3) | Coordinate::Corner(_))
+        match coordinate {
+            Coordinate::Corner(index) => self.has_corner(index),
+            _ => !matches!(coordinate, Coordinate::Gain(2 | 3)),
+        }
     }
 }
 
@@ -305,6 +331,7 @@ mod tests {
                     before_m_s: [i.vx_before * speed, i.vy_before * speed],
                     after_m_s: [i.vx_after * speed, i.vy_after * speed],
                     error_m_s: 1e-4,
+                    corner_shifts: [None, None],
                 });
                 FlightRecord {
                     observation: 0,

@@ -103,10 +103,14 @@ pub fn remove(out: &Path) {
     let _ = std::fs::remove_dir_all(out.join(FOLDER));
 }
 
+/// Number of the layout of kept observations; another one is not taken over.
+const LAYOUT: u32 = 2;
+
 /// A number for everything that observations depend on.
 fn key(campaign: &ResolvedCampaign) -> String {
     let mut hash = Sha256::new();
     hash.update(env!("CARGO_PKG_VERSION"));
+    hash.update(LAYOUT.to_le_bytes());
     hash.update(format!("{campaign:?}"));
     let mut files: Vec<&PathBuf> = campaign.records.iter().map(|r| &r.file).collect();
     files.sort();
