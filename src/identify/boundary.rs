@@ -71,8 +71,15 @@ struct Jump {
     early: f64,
     setting: f64,
     rising: bool,
+    /// Probability that the bracket holds no such boundary at all, over its width.
+    stray: f64,
 }
 
+/// How often a change between z = 1/n and 2/2n is not that of the nearest s1: near a doubling motions
+/// settle slowly and show the doubled one for long, and other doubled motions lie beside it.
+const STRAY_DOUBLINGS: f64 = 0.2;
+/// Frequencies over which such a change may lie, relative.
+const STRAY_RANGE: f64 = 0.6;
 /// Relative error of a frequency setting.
 const SETTING_ERROR: f64 = 2e-4;
 
@@ -85,17 +92,25 @@ impl Jump {
             early: early_scale * middle,
             setting: (SETTING_ERROR * middle).max(0.02 * bracket.width_hz()),
             rising: bracket.sweep != crate::record::Sweep::Down,
+            stray: match bracket.kind {
+                BoundaryKind::PeriodDoubling => STRAY_DOUBLINGS,
+                _ => 0.0,
+            },
         }
     }
 
-    /// Probability that the jump falls into the bracket when the boundary lies at a frequency.
+    /// Probability that the jump falls into the bracket when the boundary lies at a frequency, or
+    /// is none of this boundary.
     fn probability(&self, boundary: f64) -> f64 {
         let (near, far) = if self.rising {
             (self.low - boundary, self.high - boundary)
         } else {
             (boundary - self.high, boundary - self.low)
         };
-        (self.cumulative(far) - self.cumulative(near)).max(1e-280)
+        let held = self.cumulative(far) - self.cumulative(near);
+        let middle = 0.5 * (self.low + self.high);
+        let anywhere = (self.high - self.low) / (STRAY_RANGE * middle);
+        ((1.0 - self.stray) * held + self.stray * anywhere).max(1e-280)
     }
 
     /// Distribution function of (jump − boundary) for a rising sweep: a normal error less an

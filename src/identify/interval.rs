@@ -159,7 +159,11 @@ fn likelihood(block: &BoundaryBlock, parameters: &Parameters) -> f64 {
                     places
                         .iter()
                         .filter(|(b, _)| b.kind == kind)
-                        .map(|(b, f)| f.map_or(MISSING, |f| bracket_probability(b, *scale, f).ln()))
+                        .map(|(b, f)| {
+                            // A boundary that does not reach the clearance is as one far away.
+                            let place = f.unwrap_or(f64::INFINITY);
+                            bracket_probability(b, *scale, place).ln()
+                        })
                         .sum()
                 })
                 .collect();
@@ -168,7 +172,3 @@ fn likelihood(block: &BoundaryBlock, parameters: &Parameters) -> f64 {
         })
         .sum()
 }
-
-/// Log-likelihood of a bracket whose boundary does not reach its clearance: as of one that lies
-/// far away.
-const MISSING: f64 = -645.0;
