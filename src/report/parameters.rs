@@ -114,7 +114,7 @@ pub fn short(look: &ParameterLook, estimate: Option<&Estimate>, numbers: NumberL
         return "–".into();
     };
     let Some(value) = estimate.value else {
-        return "not identifiable".into();
+        return numbers.say("not identifiable");
     };
     let half = half_width(estimate).map(|h| h * look.factor);
     let decimals = decimals_for(half.unwrap_or(0.0));

@@ -300,7 +300,8 @@ impl Panel {
         if labels {
             let middle = 0.5 * (self.rect.left + self.rect.right);
             let text_look = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::INK);
-            canvas.text((middle, bottom + 19.5), &self.x.title, text_look);
+            let title = numbers.say_title(&self.x.title);
+            canvas.text((middle, bottom + 19.5), &title, text_look);
         }
     }
 
@@ -332,7 +333,8 @@ impl Panel {
             upward: true,
             ..TextLook::new(look::TITLE_SIZE, Anchor::Middle)
         };
-        let lines: Vec<&str> = self.y.title.lines().collect();
+        let title = numbers.say_title(&self.y.title);
+        let lines: Vec<&str> = title.lines().collect();
         for (i, line) in lines.iter().enumerate() {
             let x = self.rect.left - reach - 8.5 * (lines.len() - 1 - i) as f64;
             canvas.text((x, middle), line, title_look.colour(look::INK));

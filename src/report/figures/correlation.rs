@@ -18,7 +18,7 @@ pub fn draw(correlation: &Correlation, numbers: NumberLook) -> Option<Figure> {
     if n < 2 || !square {
         return None;
     }
-    let names: Vec<String> = correlation.parameters.iter().map(|p| name(p)).collect();
+    let names: Vec<String> = correlation.parameters.iter().map(|p| name(p, numbers)).collect();
     let widths = names
         .iter()
         .map(|t| richtext::width(t, Face::Regular, look::TITLE_SIZE));
@@ -57,7 +57,7 @@ pub fn draw(correlation: &Correlation, numbers: NumberLook) -> Option<Figure> {
     }
     Some(Figure::new(
         "correlation",
-        "Correlation of the parameters",
+        &numbers.say("Correlation of the parameters"),
         canvas,
         csv(correlation),
     ))
@@ -72,8 +72,17 @@ fn head(canvas: &mut Canvas, at: (f64, f64), name: &str, upward: bool) {
     canvas.text(at, name, text_look.colour(look::INK));
 }
 
-fn name(key: &str) -> String {
-    parameter(key).map_or_else(|| key.replace('_', " "), |p| p.symbol.to_owned())
+fn name(key: &str, numbers: NumberLook) -> String {
+    if let Some(shown) = parameter(key) {
+        return shown.symbol.to_owned();
+    }
+    match key.split_once('_') {
+        Some((what @ ("gain" | "corner"), role)) => {
+            let of = numbers.say(&role.replace('_', " "));
+            numbers.say_with(&format!("{what} of {{channel}}"), &[("channel", &of)])
+        }
+        _ => numbers.say(&key.replace('_', " ")),
+    }
 }
 
 /// Blue for positive, vermilion for negative, deeper for stronger.

@@ -107,7 +107,7 @@ fn heading(canvas: &mut Canvas, decay: &FreeDecay, rect: &Rect, numbers: NumberL
         )
     });
     let lines = match (frequency, damping) {
-        (None, None) => vec!["no fit".to_owned()],
+        (None, None) => vec![numbers.say("no fit")],
         (frequency, damping) => frequency.into_iter().chain(damping).collect(),
     };
     for (i, line) in lines.iter().enumerate() {

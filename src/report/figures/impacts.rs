@@ -38,9 +38,10 @@ pub fn draw(scatter: &ImpactScatter, name: &str, numbers: NumberLook) -> Option<
         (36.0, 0.0),
         look::FULL_WIDTH - 36.0,
         &keys(scatter, numbers),
+        numbers,
     );
-    let title = "Speeds after over before impact";
-    Some(Figure::new(name, title, canvas, csv(scatter)).with_spots(spots))
+    let title = numbers.say("Speeds after over before impact");
+    Some(Figure::new(name, &title, canvas, csv(scatter)).with_spots(spots))
 }
 
 /// The two panels: speed after, and restitution, over speed before.

@@ -14,7 +14,7 @@ const HEIGHT: f64 = 84.0;
 const TOP: f64 = 3.0;
 
 /// Draws the diagnostics of one method; `None` where it has no residuals.
-pub fn draw(set: &ResidualSet, name: &str, numbers: NumberLook) -> Option<Figure> {
+pub fn draw<'a>(set: &'a ResidualSet, name: &str, numbers: NumberLook<'a>) -> Option<Figure> {
     if set.points.is_empty() {
         return None;
     }
@@ -42,13 +42,13 @@ pub fn draw(set: &ResidualSet, name: &str, numbers: NumberLook) -> Option<Figure
             Rect::new(31.0 + i as f64 * step, TOP, step - 36.0, HEIGHT),
         );
     }
-    let title = "Residual diagnostics";
-    Some(Figure::new(name, title, sheet.canvas, csv(set)).with_spots(sheet.spots))
+    let title = numbers.say("Residual diagnostics");
+    Some(Figure::new(name, &title, sheet.canvas, csv(set)).with_spots(sheet.spots))
 }
 
 struct Sheet<'a> {
     set: &'a ResidualSet,
-    numbers: NumberLook,
+    numbers: NumberLook<'a>,
     canvas: Canvas,
     spots: Vec<Spot>,
 }
@@ -155,7 +155,7 @@ impl Sheet<'_> {
                 self.spots.push(Spot {
                     x,
                     y,
-                    text: format!("{}\nresidual {r}", p.record),
+                    text: format!("{}\n{}", p.record, self.numbers.say_with("residual {value}", &[("value", &r)])),
                 });
             }
         }

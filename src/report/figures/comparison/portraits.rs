@@ -19,7 +19,7 @@ impl Sheet<'_> {
         let title = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::QUIET);
         let middle = PORTRAIT_LEFT + 0.5 * PORTRAIT_WIDTH;
         self.canvas
-            .text((middle, TOP - 4.0), "phase portraits", title);
+            .text((middle, TOP - 4.0), &self.numbers.say("phase portraits"), title);
         let count = shown.len() as f64;
         let height = ((stack - (count - 1.0) * 24.0) / count).min(PORTRAIT_WIDTH);
         for (i, portrait) in shown.into_iter().enumerate() {

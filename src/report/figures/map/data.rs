@@ -7,7 +7,7 @@ use crate::report::figures::look::NumberLook;
 
 /// What hovering over a record tells.
 pub fn describe(record: &RecordRow, numbers: NumberLook) -> String {
-    let mut parts = vec![record.id.clone(), format!("z = {}", record.motion.label())];
+    let mut parts = vec![record.id.clone(), format!("z = {}", numbers.say(&record.motion.label()))];
     if let Some(f) = record.frequency_hz {
         parts.push(format!("f = {} Hz", numbers.fixed(f, 3)));
     }
@@ -21,9 +21,9 @@ pub fn describe(record: &RecordRow, numbers: NumberLook) -> String {
             numbers.fixed(rho, 3)
         ));
     }
-    parts.push(format!("sweep {}", record.sweep.name()));
+    parts.push(numbers.say(&format!("sweep {}", record.sweep.name())));
     if let Some(c) = record.confidence {
-        parts.push(format!("confidence {}", numbers.fixed(c, 2)));
+        parts.push(numbers.say_with("confidence {share}", &[("share", &numbers.fixed(c, 2))]));
     }
     parts.join("\n")
 }

@@ -42,10 +42,10 @@ pub fn draw(content: &ReportContent, size: MapSize, numbers: NumberLook) -> Opti
     } else {
         keys::motions(content)
     };
-    let mut map = Map::new(content, plane, size, &keys);
+    let mut map = Map::new(content, plane, size, (&keys, numbers));
     // Labels go where records and curves leave room.
     map.take_records_and_curves();
-    map.regions();
+    map.regions(numbers);
     map.curves();
     map.brackets();
     map.records(numbers);
@@ -53,7 +53,7 @@ pub fn draw(content: &ReportContent, size: MapSize, numbers: NumberLook) -> Opti
         map.letters();
     }
     map.frame(numbers, &keys);
-    Some(map.finish())
+    Some(map.finish(numbers))
 }
 
 struct Map<'a> {
@@ -89,7 +89,12 @@ fn every_other(map: &RegionMap) -> RegionMap {
 }
 
 impl<'a> Map<'a> {
-    fn new(content: &'a ReportContent, plane: Plane, size: MapSize, keys: &[Key]) -> Self {
+    fn new(
+        content: &'a ReportContent,
+        plane: Plane,
+        size: MapSize,
+        (keys, numbers): (&[Key], NumberLook),
+    ) -> Self {
         let full = size == MapSize::Full;
         let flat = content.region_map.is_none() && heights(content, plane) <= 3;
         let (width, height) = match (full, flat) {
@@ -98,7 +103,7 @@ impl<'a> Map<'a> {
             (false, false) => (236.0, 235.0),
             (false, true) => (236.0, 130.0),
         };
-        let keys_height = legend::height(keys, width) + if keys.is_empty() { 0.0 } else { 3.0 };
+        let keys_height = legend::height(keys, width, numbers) + if keys.is_empty() { 0.0 } else { 3.0 };
         let both_units = full && plane.dimensionless;
         let (left, right) = (33.0, if both_units { 30.0 } else { 4.0 });
         let View { x, y, strips } = plane.view(content);
@@ -130,7 +135,7 @@ impl<'a> Map<'a> {
         self.size == MapSize::Full
     }
 
-    fn regions(&mut self) {
+    fn regions(&mut self, numbers: NumberLook) {
         let Some(map) = self
             .content
             .region_map
@@ -154,7 +159,7 @@ impl<'a> Map<'a> {
         regions.draw(&mut self.canvas);
         let size = if self.full() { 10.0 } else { 8.0 };
         self.canvas.layer(6);
-        for label in regions.labels(&mut self.occupancy, size) {
+        for label in regions.labels(&mut self.occupancy, size, numbers) {
             let text_look = TextLook::new(label.size, Anchor::Middle).face(Face::Bold);
             let (x, y) = label.at;
             let baseline = (x, y + 0.33 * label.size);
@@ -307,16 +312,16 @@ impl<'a> Map<'a> {
         }
         self.strip_frames(numbers);
         let width = self.canvas.width;
-        legend::draw(&mut self.canvas, (0.0, 0.0), width, keys);
+        legend::draw(&mut self.canvas, (0.0, 0.0), width, keys, numbers);
     }
 
-    fn finish(self) -> Figure {
+    fn finish(self, numbers: NumberLook) -> Figure {
         let csv = data::csv(self.content);
         let (name, title) = match self.size {
             MapSize::Full => ("map", "Regions of motion, simulated and measured"),
             MapSize::Small => ("map_small", "Measured motions and boundaries"),
         };
-        Figure::new(name, title, self.canvas, csv).with_spots(self.spots)
+        Figure::new(name, &numbers.say(title), self.canvas, csv).with_spots(self.spots)
     }
 }
 
