@@ -127,13 +127,14 @@ mod tests {
         let look = Look {
             format: vec![Format::Pdf, Format::Html],
             template: Some("my template.typ".into()),
+            words: Some("de.toml".into()),
             logo: None,
             paper: Some(Paper::UsLetter),
             decimal_comma: true,
         };
         assert_eq!(
             look.typed(),
-            " --format pdf,html --template 'my template.typ' --paper letter --decimal-comma"
+            " --format pdf,html --template 'my template.typ' --words de.toml --paper letter --decimal-comma"
         );
         assert_eq!(Look::default().typed(), "");
     }

@@ -154,6 +154,7 @@ mod tests {
         );
         let comma = NumberLook {
             decimal_comma: true,
+            table: None,
         };
         assert_eq!(short(&PARAMETERS[0], Some(&r), comma), "0,9013 ± 0,0024");
     }

@@ -108,7 +108,7 @@ impl Words {
 }
 
 /// The names in braces.
-fn places(phrase: &str) -> BTreeSet<&str> {
+pub(super) fn places(phrase: &str) -> BTreeSet<&str> {
     // between dollars braces belong to the symbol
     let text = phrase.split('$').step_by(2);
     text.flat_map(|part| part.split('{').skip(1).filter_map(|p| p.split_once('}')))

@@ -278,7 +278,9 @@ fn nominal(summary: &CampaignSummary, numbers: NumberLook) -> String {
         };
         let space = if unit.is_empty() { "" } else { "\u{2009}" };
         let value = trimmed(&numbers.significant(value, 4));
-        format!("{} {value}{space}{unit}", numbers.say(&n.name))
+        let equals = if n.name.ends_with('$') { " =" } else { "" };
+        let name = numbers.say(&n.name);
+        format!("{name}{equals} {value}{space}{unit}")
     });
     each.collect::<Vec<_>>().join(", ")
 }

@@ -36,7 +36,7 @@ pub fn draw(decays: &[FreeDecay], name: &str, numbers: NumberLook) -> Option<Fig
     }
     Some(Figure::new(
         name,
-        "Free decays and their fits",
+        &numbers.say("Free decays and their fits"),
         canvas,
         csv(decays),
     ))

@@ -23,6 +23,13 @@ struct Line<'a> {
     estimates: [Option<&'a Estimate>; 4],
 }
 
+impl Line<'_> {
+    /// In which its name is set.
+    fn face(&self) -> Face {
+        if self.joint { Face::Bold } else { Face::Regular }
+    }
+}
+
 /// Draws the estimates; `None` where no parameter has a value.
 pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
     let lines = lines(content, numbers);
@@ -34,7 +41,7 @@ pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
     }
     let names = lines
         .iter()
-        .map(|l| fonts::width(&l.name, Face::Regular, look::TICK_SIZE));
+        .map(|l| fonts::width(&l.name, l.face(), look::TICK_SIZE));
     let left = names.fold(0.0, f64::max) + 6.0;
     let columns = if shown.len() > 1 { 2 } else { 1 };
     let gap = 15.0;
@@ -191,13 +198,8 @@ fn labels(canvas: &mut Canvas, rect: &Rect, lines: &[Line<'_>]) {
     let step = rect.height() / lines.len() as f64;
     for (i, line) in lines.iter().enumerate() {
         let y = rect.top + (i as f64 + 0.5) * step + 2.3;
-        let face = if line.joint {
-            Face::Bold
-        } else {
-            Face::Regular
-        };
         let text_look = TextLook::new(look::TICK_SIZE, Anchor::Right)
-            .face(face)
+            .face(line.face())
             .colour(look::INK);
         canvas.text((rect.left - 4.0, y), &line.name, text_look);
     }

@@ -85,12 +85,13 @@ impl NumberLook<'_> {
 
     /// A title whose end in brackets, a unit or a count, is no part of the phrase.
     pub fn say_title(self, title: &str) -> String {
+        let whole = self.say(title);
         match title.rfind('(') {
-            Some(at) if title.ends_with(')') => {
+            Some(at) if title.ends_with(')') && whole == title => {
                 let phrase = title[..at].trim_end();
                 format!("{}{}", self.say(phrase), &title[phrase.len()..])
             }
-            _ => self.say(title),
+            _ => whole,
         }
     }
 

@@ -1,6 +1,7 @@
 //! The map's data: what hovering over a record tells, and all layers as CSV.
 
 use crate::motion::Motion;
+use crate::record::Sweep;
 use crate::report::content::{RecordRow, RegionMap, ReportContent};
 use crate::report::figures::csv::Csv;
 use crate::report::figures::look::NumberLook;
@@ -21,7 +22,12 @@ pub fn describe(record: &RecordRow, numbers: NumberLook) -> String {
             numbers.fixed(rho, 3)
         ));
     }
-    parts.push(numbers.say(&format!("sweep {}", record.sweep.name())));
+    let sweep = match record.sweep {
+        Sweep::Up => "sweep up",
+        Sweep::Down => "sweep down",
+        Sweep::Unknown => "sweep unknown",
+    };
+    parts.push(numbers.say(sweep));
     if let Some(c) = record.confidence {
         parts.push(numbers.say_with("confidence {share}", &[("share", &numbers.fixed(c, 2))]));
     }
