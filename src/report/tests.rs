@@ -376,7 +376,10 @@ fn valid_no_phrase_of_the_words_is_idle() {
             said.extend(figure.spots.iter().map(|s| s.text.as_str()));
         }
     }
-    let source = plainly(&source(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/src"))));
+    let source = plainly(&source(Path::new(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/src"
+    ))));
     let (mut unsaid, mut idle) = (Vec::new(), Vec::new());
     for (i, phrase) in words::Words::phrases().enumerate() {
         if !said.contains(&format!("⟦{i}⟧")) {
@@ -387,7 +390,11 @@ fn valid_no_phrase_of_the_words_is_idle() {
         }
     }
     assert!(idle.is_empty(), "nothing says {idle:#?}");
-    assert!(unsaid.len() < 40, "{} are not said: {unsaid:#?}", unsaid.len());
+    assert!(
+        unsaid.len() < 40,
+        "{} are not said: {unsaid:#?}",
+        unsaid.len()
+    );
 }
 
 /// Texts of a drawing.
@@ -398,9 +405,7 @@ fn texts_of(svg: &str) -> impl Iterator<Item = &str> {
 
 /// Whether a text says something in letters: more than symbols, units and names of records.
 fn speaks(text: &str) -> bool {
-    const DATA: [&str; 4] = [
-        "kHz", "spring", "bumper", "xst",
-    ];
+    const DATA: [&str; 4] = ["kHz", "spring", "bumper", "xst"];
     let mut words = text.split(|c: char| c.is_whitespace() || "(),:;=±⟦⟧".contains(c));
     words.any(|w| {
         let letters = w.chars().all(|c| c.is_ascii_alphabetic());
@@ -444,7 +449,11 @@ fn valid_a_german_report_speaks_german() {
         }
         if let Some(map) = report.figures.iter().find(|f| f.name == "map") {
             let texts: Vec<&str> = texts_of(&map.svg).collect();
-            let has = |word: &str| texts.iter().any(|t| t.replace('\u{a0}', " ").contains(word));
+            let has = |word: &str| {
+                texts
+                    .iter()
+                    .any(|t| t.replace('\u{a0}', " ").contains(word))
+            };
             assert!(has("Spiel") && has("Erregerfrequenz") && has("gemessen"));
             assert!(!has("clearance") && !has("drive frequency") && !has("measured"));
         }

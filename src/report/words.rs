@@ -21,10 +21,14 @@ pub struct Words {
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 pub enum WordsError {
     /// It is no TOML, or has other tables.
-    #[error("it is no table of words: {0}; it holds language = \"de\" and below [words] \"phrase\" = \"its translation\"")]
+    #[error(
+        "it is no table of words: {0}; it holds language = \"de\" and below [words] \"phrase\" = \"its translation\""
+    )]
     Form(String),
     /// A number or name that the phrase carries would be lost, or one is wanted that it has not.
-    #[error("\"{phrase}\" carries {wanted}, its translation carries {found}; write the same names in braces")]
+    #[error(
+        "\"{phrase}\" carries {wanted}, its translation carries {found}; write the same names in braces"
+    )]
     Places {
         /// The English phrase.
         phrase: String,
@@ -92,18 +96,25 @@ impl Words {
     pub fn remarks(&self) -> Vec<String> {
         let known: BTreeSet<&str> = Self::phrases().collect();
         let here: BTreeSet<&str> = self.words.keys().map(String::as_str).collect();
-        let told = |phrases: Vec<&str>, what: &str| {
-            let first = phrases.first()?;
-            let count = phrases.len();
-            Some(format!("{count} {what}: \"{first}\"{}", if count > 1 { " …" } else { "" }))
-        };
-        [
-            told(known.difference(&here).copied().collect(), "phrases are not in the table of words and stay English"),
-            told(here.difference(&known).copied().collect(), "entries of the table of words are phrases that no report says (impactid report --list-words lists those it does)"),
-        ]
-        .into_iter()
-        .flatten()
-        .collect()
+        let lacking: Vec<&str> = known.difference(&here).copied().collect();
+        let idle: Vec<&str> = here.difference(&known).copied().collect();
+        let mut remarks = Vec::new();
+        if !lacking.is_empty() {
+            remarks.push(format!(
+                "the table of words lacks {} of a report's phrases, which stay English: {}",
+                lacking.len(),
+                some(&lacking)
+            ));
+        }
+        if !idle.is_empty() {
+            remarks.push(format!(
+                "no report says {} of the phrases in the table of words (impactid report \
+                 --list-words prints those it says): {}",
+                idle.len(),
+                some(&idle)
+            ));
+        }
+        remarks
     }
 }
 
@@ -116,9 +127,25 @@ pub(super) fn places(phrase: &str) -> BTreeSet<&str> {
         .collect()
 }
 
+/// The first few phrases.
+fn some(phrases: &[&str]) -> String {
+    const FEW: usize = 3;
+    let first: Vec<String> = phrases
+        .iter()
+        .take(FEW)
+        .map(|p| format!("\"{p}\""))
+        .collect();
+    let more = if phrases.len() > FEW { " …" } else { "" };
+    format!("{}{more}", first.join(", "))
+}
+
 fn listed(names: &BTreeSet<&str>) -> String {
     let each: Vec<String> = names.iter().map(|n| format!("{{{n}}}")).collect();
-    if each.is_empty() { "nothing in braces".into() } else { each.join(", ") }
+    if each.is_empty() {
+        "nothing in braces".into()
+    } else {
+        each.join(", ")
+    }
 }
 
 #[cfg(test)]
@@ -139,7 +166,11 @@ mod tests {
         let read = |line: &str| Words::read(&format!("[words]\n{line}\n"));
         assert!(read("\"{a} of {b}\" = \"{b}: {a}\"").is_ok());
         let lost = read("\"{a} of {b}\" = \"{a}\"").expect_err("b is lost");
-        assert!(lost.to_string().contains("carries {a}, {b}, its translation carries {a}"), "{lost}");
+        assert!(
+            lost.to_string()
+                .contains("carries {a}, {b}, its translation carries {a}"),
+            "{lost}"
+        );
         assert!(read("\"$x_{st}$ (mm)\" = \"$x_{st}$ in mm\"").is_ok());
         assert!(matches!(read("\"a\" = \"$b\""), Err(WordsError::Symbol(_))));
         assert!(matches!(Words::read("words = 3"), Err(WordsError::Form(_))));

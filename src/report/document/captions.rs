@@ -3,14 +3,14 @@
 use crate::report::content::ReportContent;
 use crate::report::figures::look::NumberLook;
 use crate::report::figures::{decays, numbered};
-use crate::report::parameters::method_name;
+use crate::report::parameters::{method_name, parameter};
 
 /// A figure's name and its caption.
 type Captioned = (String, String);
 
 /// Groups of figures; those of one group stand side by side where they are narrow.
 pub fn method_figures(content: &ReportContent, numbers: NumberLook) -> Vec<Vec<Captioned>> {
-    let mut groups = vec![narrow(numbers)];
+    let mut groups = vec![narrow(content, numbers)];
     let alone = |captioned: Vec<Captioned>| captioned.into_iter().map(|c| vec![c]);
     groups.extend(alone(impacts(content, numbers)));
     groups.extend(alone(resonance(content, numbers)));
@@ -20,15 +20,23 @@ pub fn method_figures(content: &ReportContent, numbers: NumberLook) -> Vec<Vec<C
     groups
 }
 
-fn narrow(numbers: NumberLook) -> Vec<Captioned> {
+fn narrow(content: &ReportContent, numbers: NumberLook) -> Vec<Captioned> {
     let boundary = "Boundary fit: each bracket, measured less simulated. A bracket that crosses \
                     zero agrees with the fit. Brackets of an upward sweep stand a little above \
                     their clearance, those of a downward sweep below.";
     let correlation = "Correlation of the joint estimates. Strong correlation means that the data \
                        tell a combination of the two better than either.";
+    let others = "How the quantities that are fitted beside them hang together among themselves is \
+                  in correlation.csv.";
+    let shown = content.correlation.as_ref();
+    let beside = shown.is_some_and(|c| c.parameters.iter().any(|p| parameter(p).is_none()));
+    let correlation = match beside {
+        true => format!("{} {}", numbers.say(correlation), numbers.say(others)),
+        false => numbers.say(correlation),
+    };
     vec![
         ("boundary_fit".into(), numbers.say(boundary)),
-        ("correlation".into(), numbers.say(correlation)),
+        ("correlation".into(), correlation),
     ]
 }
 

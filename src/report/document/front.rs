@@ -229,9 +229,12 @@ fn sampling(summary: &CampaignSummary, numbers: NumberLook) -> String {
             format!("{}\u{2009}Hz", numbers.significant(r, 4))
         }
     });
-    let length = summary
-        .record_length_s
-        .map(|l| numbers.say_with("{length}\u{2009}s a record", &[("length", &numbers.significant(l, 3))]));
+    let length = summary.record_length_s.map(|l| {
+        numbers.say_with(
+            "{length}\u{2009}s a record",
+            &[("length", &numbers.significant(l, 3))],
+        )
+    });
     [rate, length]
         .into_iter()
         .flatten()

@@ -50,11 +50,7 @@ impl Drawn<'_> {
 }
 
 /// Builds the document's data.
-pub fn document(
-    content: &ReportContent,
-    figures: &[Figure],
-    numbers: NumberLook<'_>,
-) -> Document {
+pub fn document(content: &ReportContent, figures: &[Figure], numbers: NumberLook<'_>) -> Document {
     let drawn = Drawn { figures, numbers };
     Document {
         title: content.title.clone(),

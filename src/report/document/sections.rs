@@ -285,7 +285,10 @@ fn conventions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let entries = entries.collect();
     let intervals = "Intervals are at 95 % confidence; a number after ± is half of that interval. \
                      All quantities are in SI units.";
-    let blocks = vec![Block::Definitions { entries }, paragraph(drawn.numbers.say(intervals))];
+    let blocks = vec![
+        Block::Definitions { entries },
+        paragraph(drawn.numbers.say(intervals)),
+    ];
     appendix(drawn.numbers.say("Conventions"), blocks)
 }
 

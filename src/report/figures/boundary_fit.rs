@@ -67,13 +67,7 @@ pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
         legend::bracket(&mut canvas, (from, to), y - lift, shade);
     }
     panel.frame(&mut canvas, Sides::BOTH, numbers);
-    legend::draw(
-        &mut canvas,
-        (rect.left, 0.0),
-        rect.width(),
-        &keys,
-        numbers,
-    );
+    legend::draw(&mut canvas, (rect.left, 0.0), rect.width(), &keys, numbers);
     Some(Figure::new(
         "boundary_fit",
         &numbers.say("Measured brackets against the fitted boundary"),

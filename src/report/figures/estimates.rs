@@ -26,7 +26,11 @@ struct Line<'a> {
 impl Line<'_> {
     /// In which its name is set.
     fn face(&self) -> Face {
-        if self.joint { Face::Bold } else { Face::Regular }
+        if self.joint {
+            Face::Bold
+        } else {
+            Face::Regular
+        }
     }
 }
 

@@ -133,11 +133,7 @@ fn jobs<'a>(content: &'a ReportContent, numbers: NumberLook<'a>) -> Vec<Job<'a>>
 }
 
 /// Figures of which there may be several.
-fn method_jobs<'a>(
-    content: &'a ReportContent,
-    numbers: NumberLook<'a>,
-    jobs: &mut Vec<Job<'a>>,
-) {
+fn method_jobs<'a>(content: &'a ReportContent, numbers: NumberLook<'a>, jobs: &mut Vec<Job<'a>>) {
     for (i, scatter) in content.impacts.iter().enumerate() {
         jobs.push(Box::new(move || {
             impacts::draw(scatter, &numbered("impacts", i), numbers)

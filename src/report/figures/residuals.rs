@@ -130,7 +130,7 @@ impl Sheet<'_> {
     /// Residuals over a quantity, with lines at ±1.96.
     fn over(&mut self, rect: Rect, title: &str, of: fn(&ResidualPoint) -> Option<f64>) {
         let reach = self.reach();
-        let x = Axis::around(self.set.points.iter().filter_map(of), 0.05, title).with_ticks(4);
+        let x = over_axis(self.set.points.iter().filter_map(of), title);
         let panel = Panel::new(
             rect,
             x,
@@ -155,12 +155,29 @@ impl Sheet<'_> {
                 self.spots.push(Spot {
                     x,
                     y,
-                    text: format!("{}\n{}", p.record, self.numbers.say_with("residual {value}", &[("value", &r)])),
+                    text: format!(
+                        "{}\n{}",
+                        p.record,
+                        self.numbers.say_with("residual {value}", &[("value", &r)])
+                    ),
                 });
             }
         }
         panel.frame(&mut self.canvas, Sides::BOTH, self.numbers);
     }
+}
+
+/// An axis over values as they are set on a rig: what differs by less than one can set is one.
+fn over_axis(values: impl Iterator<Item = f64> + Clone, title: &str) -> Axis {
+    const SAME: f64 = 1e-3;
+    let axis = Axis::around(values.clone(), 0.05, title);
+    let (low, high) = range(values).unwrap_or((0.0, 1.0));
+    let axis = if high - low < SAME * high.abs() {
+        Axis::around([0.5 * (low + high)], 0.05, title)
+    } else {
+        axis
+    };
+    axis.with_ticks(4)
 }
 
 fn csv(set: &ResidualSet) -> String {

@@ -292,9 +292,14 @@ impl Sheet<'_> {
             let values = [("name", name), ("value", &value), ("share", &share)];
             Some(self.numbers.say_with(text, &values))
         });
+        // up to the two lines of the residual's title
+        let room = self.column + COLUMN_GAP - TITLE_REACH - 2.0 * look::TITLE_SIZE;
         for (i, line) in lines.collect::<Vec<_>>().iter().enumerate() {
             let y = top + 24.0 + 9.5 * i as f64;
-            self.canvas.text((LEFT, y), line, quiet);
+            let width = richtext::width(line, Face::Regular, look::NOTE_SIZE);
+            let size = look::NOTE_SIZE * (room / width).min(1.0);
+            self.canvas
+                .text((LEFT, y), line, TextLook { size, ..quiet });
         }
     }
 }

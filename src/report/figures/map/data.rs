@@ -8,7 +8,10 @@ use crate::report::figures::look::NumberLook;
 
 /// What hovering over a record tells.
 pub fn describe(record: &RecordRow, numbers: NumberLook) -> String {
-    let mut parts = vec![record.id.clone(), format!("z = {}", numbers.say(&record.motion.label()))];
+    let mut parts = vec![
+        record.id.clone(),
+        format!("z = {}", numbers.say(&record.motion.label())),
+    ];
     if let Some(f) = record.frequency_hz {
         parts.push(format!("f = {} Hz", numbers.fixed(f, 3)));
     }

@@ -5,7 +5,7 @@ mod keys;
 mod labels;
 
 use crate::record::Sweep;
-use crate::report::content::{BoundaryCurve, RecordRow, RegionMap, ReportContent};
+use crate::report::content::{BoundaryCurve, BracketRow, RecordRow, RegionMap, ReportContent};
 use crate::report::figures::axes::{Panel, Sides};
 use crate::report::figures::canvas::{Anchor, Canvas, Point, TextLook};
 use crate::report::figures::fonts::Face;
@@ -45,9 +45,10 @@ pub fn draw(content: &ReportContent, size: MapSize, numbers: NumberLook) -> Opti
     let mut map = Map::new(content, plane, size, (&keys, numbers));
     // Labels go where records and curves leave room.
     map.take_records_and_curves();
+    map.take_brackets();
     map.regions(numbers);
     map.curves();
-    map.brackets();
+    map.draw_brackets();
     map.records(numbers);
     if size == MapSize::Full {
         map.letters();
@@ -103,7 +104,8 @@ impl<'a> Map<'a> {
             (false, false) => (236.0, 235.0),
             (false, true) => (236.0, 130.0),
         };
-        let keys_height = legend::height(keys, width, numbers) + if keys.is_empty() { 0.0 } else { 3.0 };
+        let keys_height =
+            legend::height(keys, width, numbers) + if keys.is_empty() { 0.0 } else { 3.0 };
         let both_units = full && plane.dimensionless;
         let (left, right) = (33.0, if both_units { 30.0 } else { 4.0 });
         let View { x, y, strips } = plane.view(content);
@@ -216,26 +218,37 @@ impl<'a> Map<'a> {
         }
     }
 
-    fn brackets(&mut self) {
+    /// The brackets that the panel shows, with their ends and their height on paper.
+    fn brackets(&self) -> Vec<(&'a BracketRow, (f64, f64), f64)> {
         let lift = self.lift();
-        for bracket in &self.content.brackets {
-            let Some(((low, high), height)) = self.plane.bracket(bracket) else {
-                continue;
-            };
+        let shown = self.content.brackets.iter().filter_map(|bracket| {
+            let ((low, high), height) = self.plane.bracket(bracket)?;
             if !self.panel.shows(low, height) || !self.panel.shows(high, height) {
-                continue;
+                return None;
             }
             let (from, to) = (self.panel.at(low, height), self.panel.at(high, height));
             let y = from.1 - lift * direction(bracket.direction);
+            Some((bracket, (from.0, to.0), y))
+        });
+        shown.collect()
+    }
+
+    fn take_brackets(&mut self) {
+        for (_, (from, to), y) in self.brackets() {
+            let rect = Rect::new(from, y - 2.5, to - from, 5.0);
+            self.occupancy.take_rect(&rect);
+        }
+    }
+
+    fn draw_brackets(&mut self) {
+        for (bracket, ends, y) in self.brackets() {
             let colour = if bracket.left_out.is_none() {
                 look::INK
             } else {
                 UNUSED
             };
             self.canvas.layer(3);
-            legend::bracket(&mut self.canvas, (from.0, to.0), y, colour);
-            self.occupancy
-                .take_rect(&Rect::new(from.0, y - 2.5, to.0 - from.0, 5.0));
+            legend::bracket(&mut self.canvas, ends, y, colour);
         }
     }
 
