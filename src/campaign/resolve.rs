@@ -13,6 +13,7 @@ use super::records;
 use super::resolved::{Analysis, RecordEntry, Report, ResolvedCampaign, Rig};
 use super::written::{self, Flight, Format, Language, Machine, Paper, Placed, WrittenCampaign};
 use crate::identify::uncertainty::Way;
+use crate::report::words::Words;
 use crate::units::Dimension;
 
 /// A campaign as far as it could be resolved, and all that is wrong with it.
@@ -255,8 +256,22 @@ fn report(
             _ => vec![Format::Pdf],
         },
         template: beside(&written.template, "report.template", folder, desk),
+        words: words_file(&written.words, folder, desk),
         logo: beside(&written.logo, "report.logo", folder, desk),
     }
+}
+
+/// A table of words that campaign.toml names; a fault where it cannot be used.
+fn words_file(placed: &Placed<String>, folder: &Path, desk: &mut Desk<'_>) -> Option<PathBuf> {
+    let key = "report.words";
+    let path = beside(placed, key, folder, desk)?;
+    if let (Some(placed), Ok(text)) = (placed, std::fs::read_to_string(&path))
+        && let Err(error) = Words::read(&text)
+    {
+        let what = format!("{}: {error}", path.display());
+        desk.fault(placed, key, what, "mend the table, or remove the line");
+    }
+    Some(path)
 }
 
 /// A file that campaign.toml names; a fault where it is not there.

@@ -110,6 +110,9 @@ pub struct Report {
     /// A typst template instead of the built-in one.
     #[serde(default)]
     pub template: Option<PathBuf>,
+    /// A table of the report's words in another language.
+    #[serde(default)]
+    pub words: Option<PathBuf>,
     /// An image for the first page.
     #[serde(default)]
     pub logo: Option<PathBuf>,

@@ -276,4 +276,5 @@ formats = [\"pdf\"]            # any of pdf, html, svg, png; the figures' data c
 # points = [\"record_12\"]     # records to draw; chosen by the program where not given
 # logo = \"logo.svg\"          # an image for the first page (svg, png or jpg)
 # template = \"report.typ\"    # a typst template instead of the built-in one
+# words = \"words.toml\"       # the report's words in another language
 ";

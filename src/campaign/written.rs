@@ -229,6 +229,8 @@ pub struct Report {
     pub formats: Placed<Vec<Format>>,
     /// A typst template instead of the built-in one, relative to campaign.toml's folder.
     pub template: Placed<String>,
+    /// A table of the report's words in another language, relative to campaign.toml's folder.
+    pub words: Placed<String>,
     /// An image for the first page, relative to campaign.toml's folder.
     pub logo: Placed<String>,
 }

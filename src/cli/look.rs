@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::Failure;
+use super::{Failure, Voice};
 use crate::campaign::resolved::Report;
 use crate::campaign::written::Paper;
+use crate::pipeline;
 use crate::report::Format;
 
 /// Options of the report's look.
@@ -20,6 +21,9 @@ pub struct Look {
     /// A typst template instead of the built-in one
     #[arg(long, value_name = "FILE")]
     template: Option<PathBuf>,
+    /// A table of the report's words in another language (report --list-words prints them)
+    #[arg(long, value_name = "FILE")]
+    words: Option<PathBuf>,
     /// An image for the first page: svg, png or jpg
     #[arg(long, value_name = "FILE")]
     logo: Option<PathBuf>,
@@ -41,12 +45,14 @@ fn paper(name: &str) -> Result<Paper, String> {
 
 impl Look {
     /// Put these options before those of campaign.toml.
-    pub(super) fn apply(&self, report: &mut Report) -> Result<(), Failure> {
-        for file in self.template.iter().chain(&self.logo) {
+    pub(super) fn apply(&self, report: &mut Report, voice: Voice) -> Result<(), Failure> {
+        let files = [&self.template, &self.words, &self.logo];
+        for file in files.into_iter().flatten() {
             if !file.is_file() {
                 return Err(Failure::new(
                     format!("{} is no file", file.display()),
-                    "name the template and the logo as they lie on the disk, or leave them out",
+                    "name the template, the words and the logo as they lie on the disk, or leave them \
+                     out",
                 ));
             }
         }
@@ -56,6 +62,9 @@ impl Look {
         if self.template.is_some() {
             report.template.clone_from(&self.template);
         }
+        if self.words.is_some() {
+            report.words.clone_from(&self.words);
+        }
         if self.logo.is_some() {
             report.logo.clone_from(&self.logo);
         }
@@ -63,6 +72,11 @@ impl Look {
             report.paper = paper;
         }
         report.decimal_comma |= self.decimal_comma;
+        if let Some(words) = pipeline::report::words(report)? {
+            for remark in words.remarks() {
+                voice.say(&format!("note: {remark}"));
+            }
+        }
         Ok(())
     }
 
@@ -76,6 +90,9 @@ impl Look {
         }
         if let Some(file) = &self.template {
             add("template", &quoted(file));
+        }
+        if let Some(file) = &self.words {
+            add("words", &quoted(file));
         }
         if let Some(file) = &self.logo {
             add("logo", &quoted(file));
@@ -110,13 +127,14 @@ mod tests {
         let look = Look {
             format: vec![Format::Pdf, Format::Html],
             template: Some("my template.typ".into()),
+            words: Some("de.toml".into()),
             logo: None,
             paper: Some(Paper::UsLetter),
             decimal_comma: true,
         };
         assert_eq!(
             look.typed(),
-            " --format pdf,html --template 'my template.typ' --paper letter --decimal-comma"
+            " --format pdf,html --template 'my template.typ' --words de.toml --paper letter --decimal-comma"
         );
         assert_eq!(Look::default().typed(), "");
     }

@@ -72,7 +72,7 @@ fn keep_from() -> usize {
 impl Run {
     pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
         let mut campaign = super::stage::load_campaign(&self.campaign, voice)?;
-        self.look.apply(&mut campaign.report)?;
+        self.look.apply(&mut campaign.report, voice)?;
         let _lock = Lock::take(&self.out)?;
         interrupt::watch(self.out.clone());
         voice.detail(&format!("{} records", campaign.records.len()));

@@ -10,6 +10,7 @@ use super::fail::rendered_fault;
 use super::look::{Look, quoted};
 use super::progress::Progress;
 use super::run::say_report;
+use super::voice::print;
 use super::{Exit, Failure, Voice, interrupt};
 use crate::campaign::faults::Severity;
 use crate::campaign::load;
@@ -17,6 +18,7 @@ use crate::campaign::resolved::ResolvedCampaign;
 use crate::output::Lock;
 use crate::pipeline::{self, store};
 use crate::record::open::open;
+use crate::report::words::Words;
 
 /// Arguments of `impactid ingest`.
 #[derive(Debug, Args)]
@@ -99,7 +101,10 @@ Exit codes: 0 done; 1 done, but the answer is \"does not fit\" or \"not identifi
 #[command(after_help = REPORT)]
 pub struct Report {
     #[command(flatten)]
-    folder: Folder,
+    folder: Option<Folder>,
+    /// Print every phrase of a report as a table of words to be filled in, and do nothing else
+    #[arg(long, exclusive = true)]
+    list_words: bool,
     #[command(flatten)]
     look: Look,
 }
@@ -108,6 +113,8 @@ const REPORT: &str = "\
 Example:
   impactid report results/
   impactid report results/ --format html,png --template mine.typ
+  impactid report --list-words > words.toml
+  impactid report results/ --words words.toml
 
 It reads what `impactid identify` left there and writes report.pdf and the figures' data.";
 
@@ -172,9 +179,13 @@ impl Identify {
 
 impl Report {
     pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
-        let (folder, _lock) = self.folder.take()?;
+        let Some(folder) = self.folder.filter(|_| !self.list_words) else {
+            print(&Words::blank())?;
+            return Ok(Exit::Done);
+        };
+        let (folder, _lock) = folder.take()?;
         let mut campaign = store::read_resolved(&folder)?;
-        self.look.apply(&mut campaign.report)?;
+        self.look.apply(&mut campaign.report, voice)?;
         let observed = store::read_observed(&folder)?;
         let found = store::read_found(&folder)?;
         let command = commands(&campaign.file, &folder, &self.look);

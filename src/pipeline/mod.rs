@@ -90,7 +90,8 @@ impl PipelineError {
                     .to_owned()
             }
             Self::Look { .. } => {
-                "name the template and the logo as they lie on the disk, or leave them out"
+                "name the template, the words and the logo as they lie on the disk, mend them, or \
+                 leave them out"
                     .to_owned()
             }
             Self::Hdf5(error) => error.remedy().to_owned(),

@@ -15,6 +15,7 @@ use crate::record::open::open;
 use crate::report::assemble::{
     CampaignFacts, ChannelFacts, Gathered, assemble, chosen_records, shown_decays,
 };
+use crate::report::words::Words;
 use crate::report::{Format, Logo, Paper, RenderOptions, Report, ReportContent};
 
 /// Name of the report's file.
@@ -101,6 +102,25 @@ fn records(campaign: &ResolvedCampaign, indices: &[usize]) -> Vec<Record> {
     entries.map(|entry| read_one(campaign, entry)).collect()
 }
 
+/// The words of the report: of the table that is named, else of the language where the program
+/// has them.
+///
+/// # Errors
+/// Where the table cannot be read, or is none.
+pub fn words(look: &Look) -> Result<Option<Words>, PipelineError> {
+    let Some(path) = &look.words else {
+        let german = look.language == Language::De;
+        return Ok(german.then(|| Words::german().clone()));
+    };
+    let unusable = |reason: String| PipelineError::Look {
+        path: path.display().to_string(),
+        reason,
+    };
+    let text = std::fs::read_to_string(path).map_err(|error| unusable(error.to_string()))?;
+    let words = Words::read(&text).map_err(|error| unusable(error.to_string()))?;
+    Ok(Some(words))
+}
+
 fn options(look: &Look) -> Result<RenderOptions, PipelineError> {
     let unreadable = |path: &Path, error: std::io::Error| PipelineError::Look {
         path: path.display().to_string(),
@@ -117,6 +137,7 @@ fn options(look: &Look) -> Result<RenderOptions, PipelineError> {
         })
     };
     Ok(RenderOptions {
+        words: words(look)?,
         paper: match look.paper {
             WrittenPaper::A4 => Paper::A4,
             WrittenPaper::UsLetter => Paper::Letter,

@@ -11,12 +11,14 @@ pub mod parameters;
 pub mod picture;
 mod png;
 pub mod theory;
+pub mod words;
 
 pub use content::{ProposedPoint, ReportContent};
 
 use figures::Figure;
 use figures::look::NumberLook;
 use rayon::prelude::*;
+use words::Words;
 
 /// Paper of the document.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -99,9 +101,10 @@ pub struct Logo {
 pub struct RenderOptions {
     /// Paper.
     pub paper: Paper,
-    /// Language that a template of the user's own may go by, as ISO 639-1 writes it; the built-in
-    /// template speaks English.
+    /// Language that a template of the user's own may go by, as ISO 639-1 writes it.
     pub language: String,
+    /// The report's own words in another language than English.
+    pub words: Option<Words>,
     /// Whether numbers have a decimal comma.
     pub decimal_comma: bool,
     /// A typst template instead of the built-in one; it reads `report.json` and the figures.
@@ -115,6 +118,7 @@ impl Default for RenderOptions {
         Self {
             paper: Paper::default(),
             language: "en".to_owned(),
+            words: None,
             decimal_comma: false,
             template: None,
             logo: None,
@@ -123,10 +127,17 @@ impl Default for RenderOptions {
 }
 
 impl RenderOptions {
-    fn numbers(&self) -> NumberLook {
+    fn numbers(&self) -> NumberLook<'_> {
         NumberLook {
             decimal_comma: self.decimal_comma,
+            table: self.words.as_ref(),
         }
+    }
+
+    /// The language that the report's own words are in.
+    fn spoken(&self) -> &str {
+        let words = self.words.as_ref();
+        words.map_or("en", |w| w.language.as_deref().unwrap_or(&self.language))
     }
 }
 
@@ -231,7 +242,10 @@ pub fn plan_map(
     content: &ReportContent,
     decimal_comma: bool,
 ) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
-    let numbers = NumberLook { decimal_comma };
+    let numbers = NumberLook {
+        decimal_comma,
+        table: None,
+    };
     let Some(mut figure) = figures::map::draw(content, figures::map::MapSize::Full, numbers) else {
         return Ok(Vec::new());
     };

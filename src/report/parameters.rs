@@ -114,7 +114,7 @@ pub fn short(look: &ParameterLook, estimate: Option<&Estimate>, numbers: NumberL
         return "–".into();
     };
     let Some(value) = estimate.value else {
-        return "not identifiable".into();
+        return numbers.say("not identifiable");
     };
     let half = half_width(estimate).map(|h| h * look.factor);
     let decimals = decimals_for(half.unwrap_or(0.0));
@@ -154,6 +154,7 @@ mod tests {
         );
         let comma = NumberLook {
             decimal_comma: true,
+            table: None,
         };
         assert_eq!(short(&PARAMETERS[0], Some(&r), comma), "0,9013 ± 0,0024");
     }

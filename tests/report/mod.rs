@@ -158,6 +158,52 @@ fn valid_the_look_is_the_user_s() {
     );
 }
 
+/// The words are those of a table that campaign.toml or the command line names.
+#[test]
+fn valid_the_words_are_the_user_s() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let german = root().join("src/report/words-de.toml");
+    let line = format!("\n[report]\nwords = {:?}\n", text(&german));
+    let campaign = cut_campaign(folder.path(), 25, &line);
+    let out = text(&folder.path().join("out"));
+    let formats = ["--format", "html,svg"];
+    let run = ["run", &text(&campaign), "--out", &out];
+    let (code, told) = impactid(&[&run[..], &formats].concat());
+    assert!(code == 0 && !told.contains("note:"), "{told}");
+    let map = fs::read_to_string(format!("{out}/figures/map.svg")).expect("the map");
+    assert!(map.contains("Erregerfrequenz") && map.contains("Spielverhältnis"));
+    assert!(!map.contains("drive") && !map.contains("clearance"));
+    let page = fs::read_to_string(format!("{out}/report.html")).expect("the page");
+    assert!(page.contains("<html lang=\"de\">") && page.contains("Bewegungsgebiete"));
+
+    for stage in ["ingest", "classify", "identify"] {
+        let from = [stage, &text(&campaign), "--out", &out];
+        let given = if stage == "ingest" {
+            &from[..]
+        } else {
+            &[stage, &out]
+        };
+        assert_eq!(impactid(&[&["-q"], given].concat()).0, 0, "{stage}");
+    }
+    let own = folder.path().join("own.toml");
+    let table =
+        "[words]\n\"clearance ratio $ρ$ = $r$/$x_st$\" = \"my $ρ$\"\n\"no phrase\" = \"x\"\n";
+    fs::write(&own, table).expect("written");
+    let report = ["report", &out, "--words", &text(&own)];
+    let (code, told) = impactid(&[&report[..], &formats].concat());
+    assert!(code == 0 && told.contains("stay English"), "{told}");
+    assert!(told.contains("\"no phrase\""), "{told}");
+    let map = fs::read_to_string(format!("{out}/figures/map.svg")).expect("the map");
+    assert!(map.contains("my\u{a0}") && map.contains("frequency"));
+
+    fs::write(&own, "[words]\n\"{first} to {last}\" = \"until\"\n").expect("written");
+    let (code, told) = impactid(&report);
+    assert!(code == 2 && told.contains("{first}"), "{told}");
+    let wrong = cut_campaign(folder.path(), 25, "\n[report]\nwords = \"own.toml\"\n");
+    let (code, told) = impactid(&["check", &text(&wrong)]);
+    assert!(code == 2 && told.contains("{first}"), "{told}");
+}
+
 /// What the README's command leaves is what lies in reports/example.
 #[test]
 fn regress_the_example_is_what_the_readme_s_command_leaves() {

@@ -56,7 +56,13 @@ impl View {
         if touching.is_empty() {
             return None;
         }
-        let rho = span(touching, 0.12);
+        let (low, high) = span(touching.clone(), 0.0);
+        // A single clearance is shown with as much of the plane about it as a figure shows.
+        let rho = if high - low < 0.1 * high {
+            (0.8 * low, 1.2 * high)
+        } else {
+            span(touching, 0.12)
+        };
         Some(Self {
             eta: (eta.0.max(0.05), eta.1),
             rho: (rho.0.min(0.05).max(rho.0 - 0.1).max(0.0), rho.1),

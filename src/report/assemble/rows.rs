@@ -56,17 +56,13 @@ pub(super) fn summary(gathered: &Gathered) -> CampaignSummary {
 }
 
 fn channel_row(channel: &ChannelFacts) -> ChannelRow {
-    let high_pass = channel.high_pass_hz;
-    let notes = [
-        channel.instrument.clone(),
-        high_pass.map(|c| format!("high-pass at {c} Hz")),
-    ];
     let unit = channel.role.dimension().map_or("", |d| d.si_symbol());
     ChannelRow {
         role: channel.role,
         name: channel.name.clone(),
         unit: unit.to_owned(),
-        note: notes.into_iter().flatten().collect::<Vec<_>>().join(", "),
+        note: channel.instrument.clone().unwrap_or_default(),
+        high_pass_hz: channel.high_pass_hz,
     }
 }
 

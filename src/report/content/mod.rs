@@ -166,9 +166,12 @@ pub struct ChannelRow {
     pub name: String,
     /// The unit in which the files hold it.
     pub unit: String,
-    /// Instrument, high-pass corner, threshold and the like, in words.
+    /// Instrument, threshold and the like, in words.
     #[serde(default)]
     pub note: String,
+    /// Corner of the high-pass that it carries, Hz.
+    #[serde(default)]
+    pub high_pass_hz: Option<f64>,
 }
 
 /// One record as the table and the map show it.

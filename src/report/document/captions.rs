@@ -1,32 +1,42 @@
 //! Which figures the methods' section shows, in order, and what stands under each.
 
 use crate::report::content::ReportContent;
+use crate::report::figures::look::NumberLook;
 use crate::report::figures::{decays, numbered};
-use crate::report::parameters::method_name;
+use crate::report::parameters::{method_name, parameter};
 
 /// A figure's name and its caption.
 type Captioned = (String, String);
 
 /// Groups of figures; those of one group stand side by side where they are narrow.
-pub fn method_figures(content: &ReportContent) -> Vec<Vec<Captioned>> {
-    let mut groups = vec![narrow()];
-    groups.extend(impacts(content).into_iter().map(|c| vec![c]));
-    groups.extend(resonance(content).into_iter().map(|c| vec![c]));
-    groups.extend(free_decays(content).into_iter().map(|c| vec![c]));
-    groups.push(vec![profiles()]);
-    groups.extend(residuals(content).into_iter().map(|c| vec![c]));
+pub fn method_figures(content: &ReportContent, numbers: NumberLook) -> Vec<Vec<Captioned>> {
+    let mut groups = vec![narrow(content, numbers)];
+    let alone = |captioned: Vec<Captioned>| captioned.into_iter().map(|c| vec![c]);
+    groups.extend(alone(impacts(content, numbers)));
+    groups.extend(alone(resonance(content, numbers)));
+    groups.extend(alone(free_decays(content, numbers)));
+    groups.push(vec![profiles(numbers)]);
+    groups.extend(alone(residuals(content, numbers)));
     groups
 }
 
-fn narrow() -> Vec<Captioned> {
+fn narrow(content: &ReportContent, numbers: NumberLook) -> Vec<Captioned> {
     let boundary = "Boundary fit: each bracket, measured less simulated. A bracket that crosses \
                     zero agrees with the fit. Brackets of an upward sweep stand a little above \
                     their clearance, those of a downward sweep below.";
     let correlation = "Correlation of the joint estimates. Strong correlation means that the data \
                        tell a combination of the two better than either.";
+    let others = "How the quantities that are fitted beside them hang together among themselves is \
+                  in correlation.csv.";
+    let shown = content.correlation.as_ref();
+    let beside = shown.is_some_and(|c| c.parameters.iter().any(|p| parameter(p).is_none()));
+    let correlation = match beside {
+        true => format!("{} {}", numbers.say(correlation), numbers.say(others)),
+        false => numbers.say(correlation),
+    };
     vec![
-        ("boundary_fit".into(), boundary.into()),
-        ("correlation".into(), correlation.into()),
+        ("boundary_fit".into(), numbers.say(boundary)),
+        ("correlation".into(), correlation),
     ]
 }
 
@@ -39,7 +49,7 @@ fn with_note(text: &str, note: &str) -> String {
 }
 
 /// A finding as a sentence, with the method that it begins with in words.
-pub fn spoken(finding: &str) -> String {
+pub fn spoken(finding: &str, numbers: NumberLook) -> String {
     const KEYS: [&str; 5] = [
         "boundaries",
         "trajectories",
@@ -49,7 +59,8 @@ pub fn spoken(finding: &str) -> String {
     ];
     match finding.split_once(": ") {
         Some((key, rest)) if KEYS.contains(&key) => {
-            sentence(&format!("{}: {rest}", method_name(key)))
+            let method = numbers.say(&method_name(key));
+            sentence(&format!("{method}: {rest}"))
         }
         Some((name, rest)) => format!("{name}: {}", sentence(rest)),
         None => sentence(finding),
@@ -74,13 +85,14 @@ pub fn sentence(remark: &str) -> String {
     }
 }
 
-fn impacts(content: &ReportContent) -> Vec<Captioned> {
+fn impacts(content: &ReportContent, numbers: NumberLook) -> Vec<Captioned> {
     let text = "Speeds at impact: speed of parting over speed of closing (left) and their ratio, \
                 the restitution, over the closing speed (right).";
+    let text = numbers.say(text);
     let each = content.impacts.iter().enumerate();
     each.map(|(i, s)| {
         let text = match s.name.as_str() {
-            "" => text.to_owned(),
+            "" => text.clone(),
             name => format!("{name}. {text}"),
         };
         (numbered("impacts", i), with_note(&text, &s.note))
@@ -88,14 +100,15 @@ fn impacts(content: &ReportContent) -> Vec<Captioned> {
     .collect()
 }
 
-fn resonance(content: &ReportContent) -> Vec<Captioned> {
+fn resonance(content: &ReportContent, numbers: NumberLook) -> Vec<Captioned> {
     let text = "Resonance curve of the motion without impacts, measured and fitted.";
+    let text = numbers.say(text);
     let each = content.resonance.iter().enumerate();
-    each.map(|(i, c)| (numbered("resonance", i), with_note(text, &c.note)))
+    each.map(|(i, c)| (numbered("resonance", i), with_note(&text, &c.note)))
         .collect()
 }
 
-fn free_decays(content: &ReportContent) -> Vec<Captioned> {
+fn free_decays(content: &ReportContent, numbers: NumberLook) -> Vec<Captioned> {
     let each = content.free_decays.chunks(decays::PER_FIGURE).enumerate();
     each.map(|(i, few)| {
         let notes = few.iter().filter(|d| !d.note.is_empty());
@@ -104,28 +117,27 @@ fn free_decays(content: &ReportContent) -> Vec<Captioned> {
                     damping ratio ± standard error.";
         (
             numbered("free_decays", i),
-            with_note(text, &notes.join(" ")),
+            with_note(&numbers.say(text), &notes.join(" ")),
         )
     })
     .collect()
 }
 
-fn profiles() -> Captioned {
+fn profiles(numbers: NumberLook) -> Captioned {
     let text = "Profile likelihoods: the rise of $χ$² when one parameter is held and the others \
                 are fitted again. Tinted: 95 % intervals; dashed: the rise of 3.84 that bounds them.";
-    ("profiles".into(), text.into())
+    ("profiles".into(), numbers.say(text))
 }
 
-fn residuals(content: &ReportContent) -> Vec<Captioned> {
+fn residuals(content: &ReportContent, numbers: NumberLook) -> Vec<Captioned> {
     let each = content.residuals.iter().enumerate();
     each.map(|(i, set)| {
-        let text = format!(
-            "{}, residual diagnostics ({} residuals over their standard errors): histogram with the \
-             normal curve, autocorrelation with the 95 % band of white noise, over frequency and \
-             over gap.",
-            method_name(&set.method),
-            set.points.len()
-        );
+        let text = "{method}, residual diagnostics ({count} residuals over their standard errors): \
+                    histogram with the normal curve, autocorrelation with the 95 % band of white \
+                    noise, over frequency and over gap.";
+        let method = numbers.say(&method_name(&set.method));
+        let count = set.points.len().to_string();
+        let text = numbers.say_with(text, &[("method", &method), ("count", &count)]);
         (numbered("residuals", i), with_note(&text, &set.note))
     })
     .collect()
@@ -133,7 +145,7 @@ fn residuals(content: &ReportContent) -> Vec<Captioned> {
 
 #[cfg(test)]
 mod tests {
-    use super::{sentence, spoken};
+    use super::{NumberLook, sentence, spoken};
 
     #[test]
     fn valid_remarks_become_sentences() {
@@ -142,9 +154,10 @@ mod tests {
         assert_eq!(sentence("r0012 was left out"), "r0012 was left out.");
         assert_eq!(sentence(""), "");
         assert_eq!(
-            spoken("free_decay: the fit is poor"),
+            spoken("free_decay: the fit is poor", NumberLook::default()),
             "Free decay: the fit is poor."
         );
-        assert_eq!(spoken("massa4: it is odd"), "massa4: It is odd.");
+        let odd = spoken("massa4: it is odd", NumberLook::default());
+        assert_eq!(odd, "massa4: It is odd.");
     }
 }

@@ -15,9 +15,9 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
     Front {
         synthetic: content.summary.synthetic,
         verdict,
-        headline: campaign_headline(content),
+        headline: campaign_headline(content, drawn.numbers),
         summary: prose(&id.verdict.summary).localised(drawn.numbers),
-        findings: localised(findings(content), drawn.numbers),
+        findings: localised(findings(content, drawn.numbers), drawn.numbers),
         answers: answers(content, drawn.numbers),
         specimens: tables::specimens(content, drawn.numbers),
         agree: match id.agreement.agree {
@@ -40,7 +40,7 @@ fn localised(texts: Vec<Rich>, numbers: NumberLook) -> Vec<Rich> {
 }
 
 /// The headline of the whole campaign.
-fn campaign_headline(content: &ReportContent) -> String {
+fn campaign_headline(content: &ReportContent, numbers: NumberLook) -> String {
     let id = &content.identification;
     let specimens = id.specimens.len();
     let identified = id.specimens.values();
@@ -51,27 +51,36 @@ fn campaign_headline(content: &ReportContent) -> String {
         _ if specimens == 0 => {
             let words = headline(id.verdict.kind).1;
             match content.records.is_empty() {
-                true => words.trim_end_matches(" the rig").to_owned(),
-                false => words.to_owned(),
+                true => numbers.say(words.trim_end_matches(" the rig")),
+                false => numbers.say(words),
             }
         }
-        0 => format!("Identified: the model fits each of the {specimens} specimens"),
-        _ => format!("The model fits {identified} of the {specimens} specimens"),
+        0 => numbers.say_with(
+            "Identified: the model fits each of the {count} specimens",
+            &[("count", &specimens.to_string())],
+        ),
+        _ => numbers.say_with(
+            "The model fits {some} of the {count} specimens",
+            &[
+                ("some", &identified.to_string()),
+                ("count", &specimens.to_string()),
+            ],
+        ),
     }
 }
 
 /// Reasons and findings; where there are specimens, what was found of each in full.
-fn findings(content: &ReportContent) -> Vec<Rich> {
+fn findings(content: &ReportContent, numbers: NumberLook) -> Vec<Rich> {
     let id = &content.identification;
     let of = |finding: &String| {
         let specimen = id.specimens.iter().find(|(name, _)| {
             let rest = finding.strip_prefix(name.as_str());
             rest.is_some_and(|r| r.starts_with(':'))
         });
-        let mut words = captions::spoken(finding);
+        let mut words = captions::spoken(finding, numbers);
         if let Some((_, result)) = specimen {
             for more in &result.verdict.findings {
-                words.push_str(&format!(" {}", captions::spoken(more)));
+                words.push_str(&format!(" {}", captions::spoken(more, numbers)));
             }
         }
         prose(&words)
@@ -119,13 +128,13 @@ fn answer(look: &ParameterLook, estimate: Option<&Estimate>, numbers: NumberLook
         .filter(|_| value.is_some());
     Answer {
         symbol: Rich::from(look.symbol),
-        name: Rich::from(look.name),
+        name: Rich::from(numbers.say(look.name)),
         value: value.map(print),
         plus_minus: half
             .filter(|_| value.is_some())
             .map(|h| numbers.fixed(h, decimals)),
         unit: look.unit.into(),
-        interval: interval.map(|[low, high]| format!("{} to {}", print(low), print(high))),
+        interval: interval.map(|[low, high]| from_to(&print(low), &print(high), numbers)),
         status: estimate.map_or("not_asked", |e| parameters::status_name(e.status)),
         note: estimate
             .and_then(|e| e.note.as_ref())
@@ -147,19 +156,19 @@ fn facts(summary: &CampaignSummary, numbers: NumberLook) -> Vec<(Rich, Rich)> {
     let mut facts: Vec<(String, String)> = Vec::new();
     let mut add = |label: &str, value: String| {
         if !value.is_empty() {
-            facts.push((label.into(), value));
+            facts.push((numbers.say(label), value));
         }
     };
     add("campaign", summary.name.clone());
-    add("rig", summary.rig.clone());
+    add("rig", numbers.say(&summary.rig));
     add("laboratory", summary.laboratory.clone().unwrap_or_default());
-    add("measured", dates(summary));
-    add("records", records(summary));
+    add("measured", dates(summary, numbers));
+    add("records", records(summary, numbers));
     add("sampling", sampling(summary, numbers));
     add("drive", drive(summary, numbers));
     add("clearances", clearances(summary, numbers));
     add("nominal values", nominal(summary, numbers));
-    add("channels", channels(summary));
+    add("channels", channels(summary, numbers));
     for note in &summary.notes {
         add("note", note.clone());
     }
@@ -169,33 +178,40 @@ fn facts(summary: &CampaignSummary, numbers: NumberLook) -> Vec<(Rich, Rich)> {
         .collect()
 }
 
-fn dates(summary: &CampaignSummary) -> String {
+/// A range in words.
+fn from_to(first: &str, last: &str, numbers: NumberLook) -> String {
+    numbers.say_with("{first} to {last}", &[("first", first), ("last", last)])
+}
+
+/// When it was measured.
+pub fn dates(summary: &CampaignSummary, numbers: NumberLook) -> String {
     match &summary.dates {
         Some([first, last]) if first == last => first.clone(),
-        Some([first, last]) => format!("{first} to {last}"),
+        Some([first, last]) => from_to(first, last, numbers),
         None => String::new(),
     }
 }
 
-fn records(summary: &CampaignSummary) -> String {
+fn records(summary: &CampaignSummary, numbers: NumberLook) -> String {
     if summary.records_total == 0 {
         return String::new();
     }
-    let mut text = format!(
-        "{} read, {} used",
-        summary.records_total, summary.records_used
+    let read = summary.records_total.to_string();
+    let used = summary.records_used.to_string();
+    let mut text = numbers.say_with(
+        "{read} read, {used} used",
+        &[("read", &read), ("used", &used)],
     );
-    if summary.files_total > 0 {
-        let plural = if summary.files_total == 1 {
-            "file"
-        } else {
-            "files"
-        };
-        text.push_str(&format!(", from {} {plural}", summary.files_total));
+    let mut add = |phrase: &str, count: usize| {
+        if count > 0 {
+            text.push_str(&numbers.say_with(phrase, &[("count", &count.to_string())]));
+        }
+    };
+    match summary.files_total {
+        1 => add(", from {count} file", 1),
+        files => add(", from {count} files", files),
     }
-    if summary.impacts_total > 0 {
-        text.push_str(&format!("; {} impacts detected", summary.impacts_total));
-    }
+    add("; {count} impacts detected", summary.impacts_total);
     text
 }
 
@@ -213,9 +229,12 @@ fn sampling(summary: &CampaignSummary, numbers: NumberLook) -> String {
             format!("{}\u{2009}Hz", numbers.significant(r, 4))
         }
     });
-    let length = summary
-        .record_length_s
-        .map(|l| format!("{}\u{2009}s a record", numbers.significant(l, 3)));
+    let length = summary.record_length_s.map(|l| {
+        numbers.say_with(
+            "{length}\u{2009}s a record",
+            &[("length", &numbers.significant(l, 3))],
+        )
+    });
     [rate, length]
         .into_iter()
         .flatten()
@@ -228,7 +247,8 @@ fn drive(summary: &CampaignSummary, numbers: NumberLook) -> String {
         .frequency_range_hz
         .map_or(String::new(), |[low, high]| {
             let (low, high) = (numbers.fixed(low, 2), numbers.fixed(high, 2));
-            format!("{low} to {high}\u{2009}Hz, as measured")
+            let values = [("low", low.as_str()), ("high", high.as_str())];
+            numbers.say_with("{low} to {high}\u{2009}Hz, as measured", &values)
         })
 }
 
@@ -244,9 +264,10 @@ fn clearances(summary: &CampaignSummary, numbers: NumberLook) -> String {
         few if few.len() <= 8 => format!("$r$ = {}\u{2009}mm", few.join("; ")),
         many => {
             let (first, last) = (&many[0], &many[many.len() - 1]);
-            format!(
-                "{} values of $r$ from {first} to {last}\u{2009}mm",
-                many.len()
+            let count = many.len().to_string();
+            numbers.say_with(
+                "{count} values of $r$ from {first} to {last}\u{2009}mm",
+                &[("count", &count), ("first", first), ("last", last)],
             )
         }
     }
@@ -260,7 +281,9 @@ fn nominal(summary: &CampaignSummary, numbers: NumberLook) -> String {
         };
         let space = if unit.is_empty() { "" } else { "\u{2009}" };
         let value = trimmed(&numbers.significant(value, 4));
-        format!("{} {value}{space}{unit}", n.name)
+        let equals = if n.name.ends_with('$') { " =" } else { "" };
+        let name = numbers.say(&n.name);
+        format!("{name}{equals} {value}{space}{unit}")
     });
     each.collect::<Vec<_>>().join(", ")
 }
@@ -277,19 +300,21 @@ fn trimmed(number: &str) -> String {
     }
 }
 
-fn channels(summary: &CampaignSummary) -> String {
+fn channels(summary: &CampaignSummary, numbers: NumberLook) -> String {
     let each = summary.channels.iter().map(|c| {
-        let role = c.role.name().replace('_', " ");
+        let role = numbers.say(&c.role.name().replace('_', " "));
         let unit = if c.unit.is_empty() {
             String::new()
         } else {
             format!(" ({})", c.unit)
         };
-        if c.note.is_empty() {
-            format!("{role}{unit}")
-        } else {
-            format!("{role}{unit}, {}", c.note)
-        }
+        let corner = c.high_pass_hz.map(|f| {
+            let value = [("frequency", &*f.to_string())];
+            numbers.say_with("high-pass at {frequency} Hz", &value)
+        });
+        let note = Some(c.note.clone()).filter(|n| !n.is_empty());
+        let parts = [Some(format!("{role}{unit}")), note, corner];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
     });
     each.collect::<Vec<_>>().join("; ")
 }

@@ -1,6 +1,7 @@
 //! The document: from content and figures to plain document data, and from there to PDF.
 
 mod captions;
+mod fixed;
 mod front;
 pub mod model;
 mod pdf;
@@ -22,7 +23,7 @@ use crate::report::figures::{Figure, richtext};
 pub struct Drawn<'a> {
     figures: &'a [Figure],
     /// How numbers are printed.
-    pub numbers: NumberLook,
+    pub numbers: NumberLook<'a>,
 }
 
 impl Drawn<'_> {
@@ -49,30 +50,25 @@ impl Drawn<'_> {
 }
 
 /// Builds the document's data.
-pub fn document(content: &ReportContent, figures: &[Figure], numbers: NumberLook) -> Document {
+pub fn document(content: &ReportContent, figures: &[Figure], numbers: NumberLook<'_>) -> Document {
     let drawn = Drawn { figures, numbers };
     Document {
         title: content.title.clone(),
-        subtitle: Rich::from(subtitle(content)),
+        subtitle: Rich::from(subtitle(content, numbers)),
         footer: Rich::from(footer(content)),
         front: front::front(content, &drawn),
         sections: sections::sections(content, &drawn),
+        words: fixed::words(numbers),
     }
 }
 
-fn subtitle(content: &ReportContent) -> String {
+fn subtitle(content: &ReportContent, numbers: NumberLook) -> String {
     let summary = &content.summary;
-    let dates = summary.dates.as_ref().map(|[first, last]| {
-        if first == last {
-            first.clone()
-        } else {
-            format!("{first} to {last}")
-        }
-    });
+    let dates = front::dates(summary, numbers);
     let parts = [
         Some(summary.name.clone()),
         summary.laboratory.clone(),
-        dates,
+        Some(dates),
     ];
     let parts: Vec<String> = parts
         .into_iter()

@@ -1,5 +1,7 @@
 //! The document as plain data: what the template and the HTML page lay out.
 
+use std::collections::BTreeMap;
+
 use serde::{Serialize, Serializer};
 
 use crate::report::figures::look::NumberLook;
@@ -55,6 +57,15 @@ pub struct Document {
     pub front: Front,
     /// All that follows.
     pub sections: Vec<Section>,
+    /// Phrases that the layout says itself, and what is printed for them.
+    pub words: BTreeMap<&'static str, String>,
+}
+
+impl Document {
+    /// What is printed for a phrase of the layout.
+    pub fn say<'a>(&'a self, phrase: &'a str) -> &'a str {
+        self.words.get(phrase).map_or(phrase, String::as_str)
+    }
 }
 
 /// The first page: the answer.

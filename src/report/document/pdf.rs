@@ -43,6 +43,7 @@ fn files(
     let mut data = serde_json::to_value(document).map_err(ReportError::Data)?;
     data["paper"] = options.paper.name().into();
     data["language"] = options.language.clone().into();
+    data["spoken"] = options.spoken().into();
     data["logo"] = options
         .logo
         .as_ref()

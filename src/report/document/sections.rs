@@ -18,15 +18,15 @@ pub fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
         comparisons(content, drawn),
         methods(content, drawn),
         specimens(content, drawn),
-        left_out(content),
+        left_out(content, drawn),
         records(content, drawn),
-        conventions(content),
-        provenance(content),
+        conventions(content, drawn),
+        provenance(content, drawn),
     ]
     .into_iter()
     .flatten()
     .collect();
-    letter_appendices(&mut sections);
+    letter_appendices(&mut sections, drawn.numbers);
     for section in &mut sections {
         localise(&mut section.blocks, drawn.numbers);
     }
@@ -49,22 +49,23 @@ fn localise(blocks: &mut [Block], numbers: NumberLook) {
 }
 
 /// Letters before the titles of the appendices, in the order in which they come.
-fn letter_appendices(sections: &mut [Section]) {
+fn letter_appendices(sections: &mut [Section], numbers: NumberLook) {
     let appendices = sections.iter_mut().filter(|s| s.appendix);
     for (section, letter) in appendices.zip('A'..='Z') {
-        let title = section.title.plain();
-        section.title = Rich::from(format!("Appendix {letter}. {title}"));
+        let (letter, title) = (letter.to_string(), section.title.plain());
+        let values = [("letter", letter.as_str()), ("title", title.as_str())];
+        section.title = Rich::from(numbers.say_with("Appendix {letter}. {title}", &values));
     }
 }
 
-fn appendix(title: &str, blocks: Vec<Block>) -> Option<Section> {
+fn appendix(title: String, blocks: Vec<Block>) -> Option<Section> {
     section(title, false, blocks).map(|s| Section {
         appendix: true,
         ..s
     })
 }
 
-fn section(title: &str, new_page: bool, blocks: Vec<Block>) -> Option<Section> {
+fn section(title: String, new_page: bool, blocks: Vec<Block>) -> Option<Section> {
     (!blocks.is_empty()).then(|| Section {
         title: Rich::from(title),
         level: 1,
@@ -87,40 +88,41 @@ fn remark(text: &str) -> Block {
 
 fn regions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
-    blocks.extend(drawn.figures_block(&[("map", &map_caption(content))]));
+    blocks.extend(drawn.figures_block(&[("map", &map_caption(content, drawn.numbers))]));
     blocks.extend(tables::brackets(content, drawn.numbers).map(Block::Table));
-    section("Regions of motion", true, blocks)
+    section(drawn.numbers.say("Regions of motion"), true, blocks)
 }
 
-fn map_caption(content: &ReportContent) -> String {
-    let mut text = String::from(
+fn map_caption(content: &ReportContent, numbers: NumberLook) -> String {
+    let mut text = numbers.say(
         "Measured motions in the plane of frequency and clearance. Each mark is a record; marks of \
          an upward sweep stand a little above their clearance, those of a downward sweep a little \
          below.",
     );
+    let mut add = |sentence: &str| text.push_str(&format!(" {sentence}"));
     let strips = Plane::of(content).map(|p| p.view(content).strips);
     if strips.is_some_and(|s| !s.is_empty()) {
-        text.push_str(" Clearances far above all impacts stand in a strip of their own.");
+        add(&numbers.say("Clearances far above all impacts stand in a strip of their own."));
     }
     if let Some(map) = &content.region_map {
-        text.push_str(
-            " Tinted regions: simulated with the fitted parameters, labelled by $z$ = $p$/$n$",
-        );
-        if !map.second.is_empty() {
-            text.push_str(
-                "; hatched, with two labels, where two motions are possible (hysteresis)",
-            );
-        }
-        text.push('.');
+        add(&numbers.say(match map.second.is_empty() {
+            true => {
+                "Tinted regions: simulated with the fitted parameters, labelled by $z$ = $p$/$n$."
+            }
+            false => {
+                "Tinted regions: simulated with the fitted parameters, labelled by $z$ = $p$/$n$; \
+                 hatched, with two labels, where two motions are possible (hysteresis)."
+            }
+        }));
         if !map.note.is_empty() {
-            text.push_str(&format!(" {}", captions::sentence(&map.note)));
+            add(&numbers.say(&captions::sentence(&map.note)));
         }
     }
     if content.curves.iter().any(|c| !c.band95.is_empty()) {
-        text.push_str(" Grey bands: 95 % bands of the simulated boundaries.");
+        add(&numbers.say("Grey bands: 95 % bands of the simulated boundaries."));
     }
     if !content.comparisons.is_empty() {
-        text.push_str(" Letters: the points compared in the next figures.");
+        add(&numbers.say("Letters: the points compared in the next figures."));
     }
     text
 }
@@ -137,9 +139,13 @@ fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
                     (middle), on the same scales, with the residual (measured less simulated) and \
                     the phase portraits (simulated: broad and pale; measured: thin and dark). Mass \
                     $x$ is blue, mass $y$ vermilion; dotted lines are impacts.";
-        blocks.insert(0, paragraph(keys));
+        blocks.insert(0, paragraph(drawn.numbers.say(keys)));
     }
-    section("Simulated and measured motions", false, blocks)
+    section(
+        drawn.numbers.say("Simulated and measured motions"),
+        false,
+        blocks,
+    )
 }
 
 /// What was found of each specimen, by method.
@@ -148,7 +154,7 @@ fn specimens(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks: Vec<Block> = table.into_iter().collect();
     for (specimen, result) in &content.identification.specimens {
         for (method, result) in &result.methods {
-            let name = method_name(method).to_lowercase();
+            let name = drawn.numbers.say(&method_name(method).to_lowercase());
             blocks.extend(
                 result
                     .remarks
@@ -157,7 +163,7 @@ fn specimens(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
             );
         }
     }
-    section("Specimen by specimen", false, blocks)
+    section(drawn.numbers.say("Specimen by specimen"), false, blocks)
 }
 
 fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
@@ -171,26 +177,26 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
         .methods
         .iter()
         .flat_map(|(name, method)| {
-            let name = method_name(name);
+            let name = drawn.numbers.say(&method_name(name));
             method
                 .remarks
                 .iter()
                 .map(move |r| remark(&format!("{name}: {}", captions::sentence(r))))
         });
     blocks.extend(remarks);
-    blocks.extend(tables::further(content).map(Block::Table));
-    for group in captions::method_figures(content) {
+    blocks.extend(tables::further(content, drawn.numbers).map(Block::Table));
+    for group in captions::method_figures(content, drawn.numbers) {
         let named: Vec<(&str, &str)> = group
             .iter()
             .map(|(n, c)| (n.as_str(), c.as_str()))
             .collect();
         blocks.extend(drawn.figures_block(&named));
     }
-    section("Method by method", false, blocks)
+    section(drawn.numbers.say("Method by method"), false, blocks)
 }
 
-fn left_out(content: &ReportContent) -> Option<Section> {
-    let mut blocks: Vec<Block> = tables::left_out(content)
+fn left_out(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let mut blocks: Vec<Block> = tables::left_out(content, drawn.numbers)
         .map(Block::Table)
         .into_iter()
         .collect();
@@ -200,12 +206,15 @@ fn left_out(content: &ReportContent) -> Option<Section> {
         false => "What was left out, and why",
     };
     blocks.extend(remarks);
-    section(title, false, blocks)
+    section(drawn.numbers.say(title), false, blocks)
 }
 
 fn records(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let table = tables::records(content, drawn.numbers).map(Block::Table);
-    appendix("All records", table.into_iter().collect())
+    appendix(
+        drawn.numbers.say("All records"),
+        table.into_iter().collect(),
+    )
 }
 
 /// Formula as typst maths, as plain text, what it means, and whether it takes a drive.
@@ -262,7 +271,7 @@ const CONVENTIONS: [Convention; 8] = [
     ),
 ];
 
-fn conventions(content: &ReportContent) -> Option<Section> {
+fn conventions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let records = &content.records;
     let driven = records.is_empty() || records.iter().any(|r| r.frequency_hz.is_some());
     let entries = CONVENTIONS
@@ -271,39 +280,47 @@ fn conventions(content: &ReportContent) -> Option<Section> {
         .map(|c| Definition {
             formula: c.0,
             plain: c.1,
-            meaning: Rich::from(c.2),
+            meaning: Rich::from(drawn.numbers.say(c.2)),
         });
     let entries = entries.collect();
     let intervals = "Intervals are at 95 % confidence; a number after ± is half of that interval. \
                      All quantities are in SI units.";
-    let blocks = vec![Block::Definitions { entries }, paragraph(intervals)];
-    appendix("Conventions", blocks)
+    let blocks = vec![
+        Block::Definitions { entries },
+        paragraph(drawn.numbers.say(intervals)),
+    ];
+    appendix(drawn.numbers.say("Conventions"), blocks)
 }
 
 /// Versions of program and formats.
-fn versions(content: &ReportContent) -> Option<Block> {
+fn versions(content: &ReportContent, numbers: NumberLook) -> Option<Block> {
     let versions = &content.identification.versions;
     let each: Vec<String> = versions.iter().map(|(k, v)| format!("{k} {v}")).collect();
-    let text = format!("Versions of program and files: {}.", each.join(", "));
+    let list = each.join(", ");
+    let text = numbers.say_with("Versions of program and files: {list}.", &[("list", &list)]);
     (!each.is_empty()).then(|| Block::Paragraph {
         text: tables::verbatim(text),
     })
 }
 
-fn provenance(content: &ReportContent) -> Option<Section> {
+fn provenance(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
     if !content.command_line.is_empty() {
-        blocks.push(paragraph("The command that makes this report again:"));
+        blocks.push(paragraph(
+            drawn
+                .numbers
+                .say("The command that makes this report again:"),
+        ));
         blocks.push(Block::Verbatim {
             text: content.command_line.clone(),
             columns: 1,
         });
     }
-    blocks.extend(versions(content));
-    blocks.extend(tables::hashes(content).map(Block::Table));
+    blocks.extend(versions(content, drawn.numbers));
+    blocks.extend(tables::hashes(content, drawn.numbers).map(Block::Table));
     if !content.settings_text.is_empty() {
-        blocks.push(paragraph("Settings, as resolved:"));
+        blocks.push(paragraph(drawn.numbers.say("Settings, as resolved:")));
         blocks.push(settings(&content.settings_text));
     }
-    appendix("Settings, versions, inputs", blocks)
+    appendix(drawn.numbers.say("Settings, versions, inputs"), blocks)
 }

@@ -416,6 +416,7 @@ fn summary(content: &ReportContent) -> CampaignSummary {
         name: name.into(),
         unit: unit.into(),
         note: note.into(),
+        high_pass_hz: None,
     };
     CampaignSummary {
         name: "peterka-like, seed 20240611".into(),
@@ -435,8 +436,8 @@ fn summary(content: &ReportContent) -> CampaignSummary {
         frequency_range_hz: Some([10.332, 36.792]),
         clearances_m: clearances,
         nominal: vec![
-            nominal("natural frequency $f_0$ =", 12.6, "Hz"),
-            nominal("damping ratio $β$ =", 0.07, ""),
+            nominal("natural frequency $f_0$", 12.6, "Hz"),
+            nominal("damping ratio $β$", 0.07, ""),
         ],
         channels: vec![
             channel(Role::Drive, "gen", "V", ""),

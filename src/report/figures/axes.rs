@@ -4,6 +4,7 @@ use super::canvas::{Anchor, Canvas, Point, Stroke, TextLook};
 use super::fonts::{self, Face};
 use super::look::{self, NumberLook};
 use super::path::{self, Rect};
+use super::richtext;
 
 /// How far in points a number below may reach beyond the panel's sides.
 const MOST_OVERHANG: f64 = 5.5;
@@ -300,7 +301,8 @@ impl Panel {
         if labels {
             let middle = 0.5 * (self.rect.left + self.rect.right);
             let text_look = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::INK);
-            canvas.text((middle, bottom + 19.5), &self.x.title, text_look);
+            let title = numbers.say_title(&self.x.title);
+            canvas.text((middle, bottom + 19.5), &title, text_look);
         }
     }
 
@@ -310,10 +312,11 @@ impl Panel {
         }
         let (ticks, decimals) = self.y.major();
         let left = self.rect.left;
+        let stride = self.label_stride(&ticks);
         for v in ticks {
             let (_, y) = self.at(self.x.low, v);
             canvas.segment((left, y), (left + 2.5, y), look::FRAME_STROKE);
-            if labels {
+            if labels && stride.is_none_or(|s| (v / s - (v / s).round()).abs() < 1e-6) {
                 let text = self.y.label(v, decimals, numbers);
                 let text_look = TextLook::new(look::TICK_SIZE, Anchor::Right).colour(look::INK);
                 canvas.text((left - 3.0, y + 0.33 * look::TICK_SIZE), &text, text_look);
@@ -324,18 +327,45 @@ impl Panel {
         }
     }
 
+    /// Where numbers on the left would stand on each other: those that are multiples of this are
+    /// printed.
+    fn label_stride(&self, ticks: &[f64]) -> Option<f64> {
+        let [first, second, ..] = ticks else {
+            return None;
+        };
+        let apart = self.rect.height() * (self.y.share(*second) - self.y.share(*first));
+        // digits are lower than their type is high
+        let fold = (0.8 * look::TICK_SIZE / apart).ceil();
+        (!self.y.log && fold > 1.0).then_some(fold * (second - first))
+    }
+
     /// The title of the upward axis; line feeds part it into lines.
     fn title_left(&self, canvas: &mut Canvas, numbers: NumberLook) {
         let reach = self.title_reach.unwrap_or(7.0 + self.widest_label(numbers));
         let middle = 0.5 * (self.rect.top + self.rect.bottom);
+        let title = numbers.say_title(&self.y.title);
+        let lines: Vec<&str> = title.lines().collect();
         let title_look = TextLook {
             upward: true,
-            ..TextLook::new(look::TITLE_SIZE, Anchor::Middle)
+            ..TextLook::new(self.title_size(&lines), Anchor::Middle)
         };
-        let lines: Vec<&str> = self.y.title.lines().collect();
         for (i, line) in lines.iter().enumerate() {
             let x = self.rect.left - reach - 8.5 * (lines.len() - 1 - i) as f64;
             canvas.text((x, middle), line, title_look.colour(look::INK));
+        }
+    }
+
+    /// Size of the title of the upward axis: that of a low panel, whose title is in lines, may not
+    /// reach into the next one's.
+    fn title_size(&self, lines: &[&str]) -> f64 {
+        const SLACK: f64 = 3.5;
+        let room = self.rect.height() + SLACK;
+        let widths = lines
+            .iter()
+            .map(|l| richtext::width(l, Face::Regular, look::TITLE_SIZE));
+        match widths.fold(0.0, f64::max) {
+            widest if lines.len() > 1 && widest > room => look::TITLE_SIZE * room / widest,
+            _ => look::TITLE_SIZE,
         }
     }
 

@@ -28,7 +28,7 @@ pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
         return None;
     }
     let keys = keys(&rows);
-    let top = legend::height(&keys, look::HALF_WIDTH - 34.0) + 4.0;
+    let top = legend::height(&keys, look::HALF_WIDTH - 34.0, numbers) + 4.0;
     let rect = Rect::new(34.0, top, look::HALF_WIDTH - 38.0, 132.0);
     let x = Axis::around(
         rows.iter().flat_map(|r| [r.1, r.2, 0.0]),
@@ -67,10 +67,10 @@ pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
         legend::bracket(&mut canvas, (from, to), y - lift, shade);
     }
     panel.frame(&mut canvas, Sides::BOTH, numbers);
-    legend::draw(&mut canvas, (rect.left, 0.0), rect.width(), &keys);
+    legend::draw(&mut canvas, (rect.left, 0.0), rect.width(), &keys, numbers);
     Some(Figure::new(
         "boundary_fit",
-        "Measured brackets against the fitted boundary",
+        &numbers.say("Measured brackets against the fitted boundary"),
         canvas,
         csv(&rows),
     ))

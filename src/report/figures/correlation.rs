@@ -1,4 +1,7 @@
 //! Correlation of the jointly estimated parameters as a matrix of tinted squares with numbers.
+//!
+//! The columns are the parameters that are asked for; how the others hang together among
+//! themselves is in the figure's data.
 
 use plotters::style::RGBColor;
 
@@ -7,9 +10,12 @@ use super::canvas::{Anchor, Canvas, Colour, TextLook};
 use super::csv::Csv;
 use super::fonts::Face;
 use super::look::{self, NumberLook};
+use super::path::Rect;
 use super::richtext;
 use crate::report::content::Correlation;
 use crate::report::parameters::parameter;
+
+const TOP: f64 = 14.0;
 
 /// Draws the matrix; `None` where it is empty or not square.
 pub fn draw(correlation: &Correlation, numbers: NumberLook) -> Option<Figure> {
@@ -18,62 +24,85 @@ pub fn draw(correlation: &Correlation, numbers: NumberLook) -> Option<Figure> {
     if n < 2 || !square {
         return None;
     }
-    let names: Vec<String> = correlation.parameters.iter().map(|p| name(p)).collect();
+    let names: Vec<String> = correlation
+        .parameters
+        .iter()
+        .map(|p| name(p, numbers))
+        .collect();
+    let columns = columns(correlation);
     let widths = names
         .iter()
         .map(|t| richtext::width(t, Face::Regular, look::TITLE_SIZE));
     let left = widths.fold(0.0, f64::max) + 8.0;
-    let side = ((look::HALF_WIDTH - left - 4.0) / n as f64).min(34.0);
-    let rotated = n > 5;
-    let top = if rotated { left } else { 14.0 };
-    let mut canvas = Canvas::new(look::HALF_WIDTH, top + side * n as f64 + 2.0);
+    let wide = ((look::HALF_WIDTH - left - 4.0) / columns.len() as f64).min(34.0);
+    let high = if columns.len() < n { 14.5 } else { wide };
+    let mut canvas = Canvas::new(look::HALF_WIDTH, TOP + high * n as f64 + 2.0);
+    for (i, &column) in columns.iter().enumerate() {
+        let text_look = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::INK);
+        let at = (left + (i as f64 + 0.5) * wide, TOP - 4.5);
+        canvas.text(at, &names[column], text_look);
+    }
     for (j, row) in correlation.matrix.iter().enumerate() {
-        let y = top + j as f64 * side;
+        let y = TOP + j as f64 * high;
         let label = TextLook::new(look::TITLE_SIZE, Anchor::Right).colour(look::INK);
-        canvas.text((left - 5.0, y + 0.5 * side + 2.7), &names[j], label);
-        head(
-            &mut canvas,
-            (left + (j as f64 + 0.5) * side, top - 4.5),
-            &names[j],
-            rotated,
-        );
-        for (i, value) in row.iter().enumerate().take(j + 1) {
-            let x = left + i as f64 * side;
-            canvas.rectangle(
-                (x + 0.5, y + 0.5),
-                (x + side - 0.5, y + side - 0.5),
-                tint(*value),
-            );
-            let dark = value.abs() > 0.75;
-            let text_look = TextLook::new((0.34 * side).min(look::TICK_SIZE), Anchor::Middle)
-                .colour(if dark { look::PAPER } else { look::INK });
-            let text = if i == j {
-                "1".into()
-            } else {
-                numbers.fixed(*value, 2)
-            };
-            canvas.text((x + 0.5 * side, y + 0.5 * side + 2.4), &text, text_look);
+        canvas.text((left - 5.0, y + 0.5 * high + 2.7), &names[j], label);
+        // each pair once
+        let once = columns.iter().enumerate();
+        for (i, &column) in once.filter(|(_, c)| **c <= j || !columns.contains(&j)) {
+            let x = left + i as f64 * wide;
+            let rect = Rect::new(x, y, wide, high);
+            let value = (column != j).then_some(row[column]);
+            cell(&mut canvas, &rect, value, numbers);
         }
     }
     Some(Figure::new(
         "correlation",
-        "Correlation of the parameters",
+        &numbers.say("Correlation of the parameters"),
         canvas,
         csv(correlation),
     ))
 }
 
-fn head(canvas: &mut Canvas, at: (f64, f64), name: &str, upward: bool) {
-    let anchor = if upward { Anchor::Left } else { Anchor::Middle };
-    let text_look = TextLook {
-        upward,
-        ..TextLook::new(look::TITLE_SIZE, anchor)
-    };
-    canvas.text(at, name, text_look.colour(look::INK));
+/// The columns of the matrix: the parameters that are asked for.
+fn columns(correlation: &Correlation) -> Vec<usize> {
+    let all = 0..correlation.parameters.len();
+    let asked = |i: &usize| parameter(&correlation.parameters[*i]).is_some();
+    let main: Vec<usize> = all.clone().filter(asked).collect();
+    if main.is_empty() { all.collect() } else { main }
 }
 
-fn name(key: &str) -> String {
-    parameter(key).map_or_else(|| key.replace('_', " "), |p| p.symbol.to_owned())
+/// A tinted cell with its number; `None` for a parameter with itself.
+fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, numbers: NumberLook) {
+    let (from, to) = (
+        (rect.left + 0.5, rect.top + 0.5),
+        (rect.right - 0.5, rect.bottom - 0.5),
+    );
+    canvas.rectangle(from, to, tint(value.unwrap_or(1.0)));
+    let dark = value.is_none_or(|v| v.abs() > 0.75);
+    let size = (0.34 * rect.width()).min(look::TICK_SIZE);
+    let text_look =
+        TextLook::new(size, Anchor::Middle).colour(if dark { look::PAPER } else { look::INK });
+    let text = value.map_or("1".into(), |v| numbers.fixed(v, 2));
+    let middle = (
+        0.5 * (rect.left + rect.right),
+        0.5 * (rect.top + rect.bottom) + 2.4,
+    );
+    canvas.text(middle, &text, text_look);
+}
+
+fn name(key: &str, numbers: NumberLook) -> String {
+    if let Some(shown) = parameter(key) {
+        return shown.symbol.to_owned();
+    }
+    let of = |phrase: &str, role: &str| {
+        let channel = numbers.say(&role.replace('_', " "));
+        numbers.say_with(phrase, &[("channel", &channel)])
+    };
+    match key.split_once('_') {
+        Some(("gain", role)) => of("gain of {channel}", role),
+        Some(("corner", role)) => of("corner of {channel}", role),
+        _ => numbers.say(&key.replace('_', " ")),
+    }
 }
 
 /// Blue for positive, vermilion for negative, deeper for stronger.

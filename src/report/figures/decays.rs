@@ -36,7 +36,7 @@ pub fn draw(decays: &[FreeDecay], name: &str, numbers: NumberLook) -> Option<Fig
     }
     Some(Figure::new(
         name,
-        "Free decays and their fits",
+        &numbers.say("Free decays and their fits"),
         canvas,
         csv(decays),
     ))
@@ -107,7 +107,7 @@ fn heading(canvas: &mut Canvas, decay: &FreeDecay, rect: &Rect, numbers: NumberL
         )
     });
     let lines = match (frequency, damping) {
-        (None, None) => vec!["no fit".to_owned()],
+        (None, None) => vec![numbers.say("no fit")],
         (frequency, damping) => frequency.into_iter().chain(damping).collect(),
     };
     for (i, line) in lines.iter().enumerate() {

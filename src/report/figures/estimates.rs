@@ -17,14 +17,26 @@ const ROW: f64 = 14.5;
 
 /// One method's estimates by their names.
 struct Line<'a> {
+    key: String,
     name: String,
     joint: bool,
     estimates: [Option<&'a Estimate>; 4],
 }
 
+impl Line<'_> {
+    /// In which its name is set.
+    fn face(&self) -> Face {
+        if self.joint {
+            Face::Bold
+        } else {
+            Face::Regular
+        }
+    }
+}
+
 /// Draws the estimates; `None` where no parameter has a value.
 pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
-    let lines = lines(content);
+    let lines = lines(content, numbers);
     let shown: Vec<usize> = (0..PARAMETERS.len())
         .filter(|&k| lines.iter().any(|l| value(l.estimates[k]).is_some()))
         .collect();
@@ -33,7 +45,7 @@ pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
     }
     let names = lines
         .iter()
-        .map(|l| fonts::width(&l.name, Face::Regular, look::TICK_SIZE));
+        .map(|l| fonts::width(&l.name, l.face(), look::TICK_SIZE));
     let left = names.fold(0.0, f64::max) + 6.0;
     let columns = if shown.len() > 1 { 2 } else { 1 };
     let gap = 15.0;
@@ -52,21 +64,22 @@ pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
     }
     Some(Figure::new(
         "estimates",
-        "Estimates of all methods",
+        &numbers.say("Estimates of all methods"),
         canvas,
         csv(&lines),
     ))
 }
 
-fn lines(content: &ReportContent) -> Vec<Line<'_>> {
+fn lines<'a>(content: &'a ReportContent, numbers: NumberLook) -> Vec<Line<'a>> {
     let id = &content.identification;
     let methods = id
         .methods
         .iter()
         .map(|(key, m)| (method_name(key), false, &m.parameters));
     let all = methods.chain([(method_name("joint"), true, &id.joint.parameters)]);
-    all.map(|(name, joint, parameters)| Line {
-        name,
+    all.map(|(key, joint, parameters)| Line {
+        name: numbers.say(&key),
+        key,
         joint,
         estimates: std::array::from_fn(|k| (PARAMETERS[k].pick)(parameters)),
     })
@@ -125,7 +138,8 @@ fn parameter(
     for (i, line) in lines.iter().enumerate() {
         let y = (lines.len() - i) as f64 - 0.5;
         if let Some(estimate) = line.estimates[k] {
-            mark(canvas, &panel, (estimate, shown.factor), y, line.joint);
+            let place = (y, line.joint);
+            mark(canvas, &panel, (estimate, shown.factor), place, numbers);
         }
     }
     panel.frame(
@@ -153,12 +167,18 @@ fn view(ends: &[f64]) -> Vec<f64> {
     ends.iter().map(|e| e.clamp(least, most)).collect()
 }
 
-fn mark(canvas: &mut Canvas, panel: &Panel, (e, factor): (&Estimate, f64), y: f64, joint: bool) {
+fn mark(
+    canvas: &mut Canvas,
+    panel: &Panel,
+    (e, factor): (&Estimate, f64),
+    (y, joint): (f64, bool),
+    numbers: NumberLook,
+) {
     let colour = if joint { look::BLUE } else { look::INK };
     let Some((low, high)) = interval(e) else {
         let (x, y) = panel.at(0.5 * (panel.x.low + panel.x.high), y);
         let quiet = TextLook::new(6.5, Anchor::Middle).colour(look::QUIET);
-        canvas.text((x, y + 2.2), "not identifiable", quiet);
+        canvas.text((x, y + 2.2), &numbers.say("not identifiable"), quiet);
         return;
     };
     let ends = [(low * factor, y), (high * factor, y)];
@@ -182,13 +202,8 @@ fn labels(canvas: &mut Canvas, rect: &Rect, lines: &[Line<'_>]) {
     let step = rect.height() / lines.len() as f64;
     for (i, line) in lines.iter().enumerate() {
         let y = rect.top + (i as f64 + 0.5) * step + 2.3;
-        let face = if line.joint {
-            Face::Bold
-        } else {
-            Face::Regular
-        };
         let text_look = TextLook::new(look::TICK_SIZE, Anchor::Right)
-            .face(face)
+            .face(line.face())
             .colour(look::INK);
         canvas.text((rect.left - 4.0, y), &line.name, text_look);
     }
@@ -201,7 +216,7 @@ fn csv(lines: &[Line<'_>]) -> String {
             let Some(e) = estimate else { continue };
             let (low, high) = (interval(e).map(|i| i.0), interval(e).map(|i| i.1));
             csv.row()
-                .texts(&[&line.name, shown.key])
+                .texts(&[&line.key, shown.key])
                 .numbers(&[e.value, low, high]);
         }
     }

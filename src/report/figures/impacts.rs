@@ -29,7 +29,7 @@ pub fn draw(scatter: &ImpactScatter, name: &str, numbers: NumberLook) -> Option<
     let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + 24.0);
     let panels = panels(scatter, unit);
     lines(&mut canvas, &panels, scatter, unit);
-    let spots = points(&mut canvas, &panels, scatter, unit);
+    let spots = points(&mut canvas, &panels, scatter, (unit, numbers));
     for panel in &panels {
         panel.frame(&mut canvas, Sides::BOTH, numbers);
     }
@@ -38,9 +38,10 @@ pub fn draw(scatter: &ImpactScatter, name: &str, numbers: NumberLook) -> Option<
         (36.0, 0.0),
         look::FULL_WIDTH - 36.0,
         &keys(scatter, numbers),
+        numbers,
     );
-    let title = "Speeds after over before impact";
-    Some(Figure::new(name, title, canvas, csv(scatter)).with_spots(spots))
+    let title = numbers.say("Speeds after over before impact");
+    Some(Figure::new(name, &title, canvas, csv(scatter)).with_spots(spots))
 }
 
 /// The two panels: speed after, and restitution, over speed before.
@@ -114,7 +115,7 @@ fn points(
     canvas: &mut Canvas,
     panels: &[Panel; 2],
     scatter: &ImpactScatter,
-    unit: PrintUnit,
+    (unit, numbers): (PrintUnit, NumberLook),
 ) -> Vec<Spot> {
     const MOST_SPOTS: usize = 4000;
     let mut spots = Vec::new();
@@ -138,7 +139,7 @@ fn points(
                 spots.push(Spot {
                     x,
                     y,
-                    text: format!("{}\nR = {ratio:.3}", p.record),
+                    text: format!("{}\nR = {}", p.record, numbers.fixed(ratio, 3)),
                 });
             }
         }

@@ -2,7 +2,7 @@
 
 use super::canvas::{Anchor, Canvas, Colour, Stroke, TextLook};
 use super::fonts::Face;
-use super::look;
+use super::look::{self, NumberLook};
 use super::marks::{self, MotionLook};
 use super::richtext;
 
@@ -51,8 +51,9 @@ impl Key {
         }
     }
 
-    fn width(&self) -> f64 {
-        self.sign.width() + 3.0 + richtext::width(&self.text, Face::Regular, look::NOTE_SIZE)
+    fn width(&self, numbers: NumberLook) -> f64 {
+        let text = numbers.say_title(&self.text);
+        self.sign.width() + 3.0 + richtext::width(&text, Face::Regular, look::NOTE_SIZE)
     }
 }
 
@@ -60,31 +61,38 @@ const LINE_HEIGHT: f64 = 11.0;
 const GAP: f64 = 11.0;
 
 /// Lays keys in lines of a width: (key, left, line).
-fn flow(keys: &[Key], width: f64) -> Vec<(&Key, f64, usize)> {
+fn flow<'a>(keys: &'a [Key], width: f64, numbers: NumberLook) -> Vec<(&'a Key, f64, usize)> {
     let (mut x, mut line) = (0.0, 0);
     keys.iter()
         .map(|key| {
-            if x > 0.0 && x + key.width() > width {
+            let wide = key.width(numbers);
+            if x > 0.0 && x + wide > width {
                 x = 0.0;
                 line += 1;
             }
             let place = (key, x, line);
-            x += key.width() + GAP;
+            x += wide + GAP;
             place
         })
         .collect()
 }
 
 /// Height that the keys need at a width.
-pub fn height(keys: &[Key], width: f64) -> f64 {
-    flow(keys, width)
+pub fn height(keys: &[Key], width: f64, numbers: NumberLook) -> f64 {
+    flow(keys, width, numbers)
         .last()
         .map_or(0.0, |(_, _, line)| (*line + 1) as f64 * LINE_HEIGHT)
 }
 
 /// Draws the keys from an upper left corner.
-pub fn draw(canvas: &mut Canvas, (left, top): (f64, f64), width: f64, keys: &[Key]) {
-    for (key, x, line) in flow(keys, width) {
+pub fn draw(
+    canvas: &mut Canvas,
+    (left, top): (f64, f64),
+    width: f64,
+    keys: &[Key],
+    numbers: NumberLook,
+) {
+    for (key, x, line) in flow(keys, width, numbers) {
         let y = top + (line as f64 + 0.5) * LINE_HEIGHT;
         sign(canvas, (left + x, y), key.sign);
         let at = (
@@ -92,7 +100,7 @@ pub fn draw(canvas: &mut Canvas, (left, top): (f64, f64), width: f64, keys: &[Ke
             y + 0.33 * look::NOTE_SIZE,
         );
         let text_look = TextLook::new(look::NOTE_SIZE, Anchor::Left).colour(look::INK);
-        canvas.text(at, &key.text, text_look);
+        canvas.text(at, &numbers.say_title(&key.text), text_look);
     }
 }
 

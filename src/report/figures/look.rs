@@ -3,6 +3,7 @@
 use plotters::style::RGBColor;
 
 use super::canvas::{Colour, Stroke};
+use crate::report::words::Words;
 
 /// Width of the text block, points (170 mm).
 pub const FULL_WIDTH: f64 = 481.9;
@@ -47,14 +48,53 @@ pub const GRID_STROKE: Stroke = Stroke::solid(GRID, THIN_WIDTH);
 /// A line at zero.
 pub const ZERO_STROKE: Stroke = Stroke::solid(RGBColor(0xb5, 0xb9, 0xbe), 0.4);
 
-/// What the reader chose about numbers.
+/// What the reader chose about numbers and words.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct NumberLook {
+pub struct NumberLook<'a> {
     /// Whether numbers have a decimal comma.
     pub decimal_comma: bool,
+    /// The reader's words for the English phrases.
+    pub table: Option<&'a Words>,
 }
 
-impl NumberLook {
+impl NumberLook<'_> {
+    /// A phrase in the reader's words.
+    pub fn say(self, phrase: &str) -> String {
+        let words = self.table.map_or(phrase, |words| words.get(phrase));
+        words.to_owned()
+    }
+
+    /// A phrase in the reader's words, with values for the names in braces.
+    pub fn say_with(self, phrase: &str, values: &[(&str, &str)]) -> String {
+        let mut rest = self.say(phrase);
+        let mut text = String::new();
+        while let Some((before, after)) = rest.split_once('{') {
+            let Some((name, after)) = after.split_once('}') else {
+                break;
+            };
+            text.push_str(before);
+            match values.iter().find(|v| v.0 == name) {
+                Some((_, value)) => text.push_str(value),
+                None => text.push_str(&format!("{{{name}}}")),
+            }
+            rest = after.to_owned();
+        }
+        text.push_str(&rest);
+        text
+    }
+
+    /// A title whose end in brackets, a unit or a count, is no part of the phrase.
+    pub fn say_title(self, title: &str) -> String {
+        let whole = self.say(title);
+        match title.rfind('(') {
+            Some(at) if title.ends_with(')') && whole == title => {
+                let phrase = title[..at].trim_end();
+                format!("{}{}", self.say(phrase), &title[phrase.len()..])
+            }
+            _ => whole,
+        }
+    }
+
     /// Numbers in words of other rooms with the chosen decimal sign.
     pub fn words(self, text: &str) -> String {
         if !self.decimal_comma {
@@ -144,10 +184,24 @@ mod tests {
         assert_eq!(point.significant(1.5e-7, 2), "1.5\u{2009}·\u{2009}10⁻⁷");
         assert_eq!(
             NumberLook {
-                decimal_comma: true
+                decimal_comma: true,
+                table: None
             }
             .fixed(1.5, 1),
             "1,5"
         );
+    }
+    #[test]
+    fn valid_words_stand_for_phrases_and_units_stay() {
+        let words = "[words]\n\"clearance $r$\" = \"Spiel $r$\"\n\"{a} of {b}\" = \"von {b} {a}\"";
+        let words = Words::read(words).expect("a table of words");
+        let look = NumberLook {
+            table: Some(&words),
+            ..NumberLook::default()
+        };
+        assert_eq!(look.say_title("clearance $r$ (mm)"), "Spiel $r$ (mm)");
+        assert_eq!(look.say_title("residual\n(mm)"), "residual\n(mm)");
+        let values = [("a", "two {b}"), ("b", "three")];
+        assert_eq!(look.say_with("{a} of {b}", &values), "von three two {b}");
     }
 }

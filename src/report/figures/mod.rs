@@ -114,7 +114,7 @@ pub fn draw_all(content: &ReportContent, numbers: NumberLook) -> Vec<Figure> {
         .collect()
 }
 
-fn jobs<'a>(content: &'a ReportContent, numbers: NumberLook) -> Vec<Job<'a>> {
+fn jobs<'a>(content: &'a ReportContent, numbers: NumberLook<'a>) -> Vec<Job<'a>> {
     let mut jobs: Vec<Job<'a>> = vec![
         Box::new(move || map::draw(content, map::MapSize::Full, numbers)),
         Box::new(move || map::draw(content, map::MapSize::Small, numbers)),
@@ -133,7 +133,7 @@ fn jobs<'a>(content: &'a ReportContent, numbers: NumberLook) -> Vec<Job<'a>> {
 }
 
 /// Figures of which there may be several.
-fn method_jobs<'a>(content: &'a ReportContent, numbers: NumberLook, jobs: &mut Vec<Job<'a>>) {
+fn method_jobs<'a>(content: &'a ReportContent, numbers: NumberLook<'a>, jobs: &mut Vec<Job<'a>>) {
     for (i, scatter) in content.impacts.iter().enumerate() {
         jobs.push(Box::new(move || {
             impacts::draw(scatter, &numbered("impacts", i), numbers)

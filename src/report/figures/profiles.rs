@@ -38,15 +38,15 @@ pub fn draw(profiles: &[Profile], numbers: NumberLook) -> Option<Figure> {
             numbers,
         );
     }
-    let title = "Profile likelihoods";
-    Some(Figure::new("profiles", title, canvas, csv(&drawn)))
+    let title = numbers.say("Profile likelihoods");
+    Some(Figure::new("profiles", &title, canvas, csv(&drawn)))
 }
 
 fn one(canvas: &mut Canvas, profile: &Profile, rect: Rect, numbers: NumberLook) {
     let shown = parameter(&profile.parameter);
     let factor = shown.map_or(1.0, |p| p.factor);
     let title = shown.map_or_else(
-        || profile.parameter.replace('_', " "),
+        || numbers.say(&profile.parameter.replace('_', " ")),
         |p| {
             format!(
                 "{} ({})",
@@ -89,7 +89,7 @@ fn one(canvas: &mut Canvas, profile: &Profile, rect: Rect, numbers: NumberLook) 
     let quiet = TextLook::new(look::NOTE_SIZE, Anchor::Middle).colour(look::QUIET);
     canvas.text(
         (0.5 * (rect.left + rect.right), rect.top - 3.5),
-        &heading,
+        &numbers.say(&heading),
         quiet,
     );
 }

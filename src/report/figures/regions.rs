@@ -2,7 +2,7 @@
 
 use super::axes::Panel;
 use super::canvas::{Canvas, Colour, Point, Stroke};
-use super::look;
+use super::look::{self, NumberLook};
 use super::marks;
 use super::path::{self, Rect};
 use super::placing::Occupancy;
@@ -276,7 +276,12 @@ impl<'a> Regions<'a> {
     }
 
     /// A label for each region that is large enough, where its text stands free.
-    pub fn labels(&self, occupancy: &mut Occupancy, size: f64) -> Vec<RegionLabel> {
+    pub fn labels(
+        &self,
+        occupancy: &mut Occupancy,
+        size: f64,
+        numbers: NumberLook,
+    ) -> Vec<RegionLabel> {
         let mut order: Vec<usize> = (0..self.areas.len()).collect();
         order.sort_by_key(|&r| std::cmp::Reverse(self.areas[r]));
         let least = LEAST_SHARE * self.region.len() as f64;
@@ -286,14 +291,19 @@ impl<'a> Regions<'a> {
         let place = |r| {
             [size, 0.8 * size]
                 .into_iter()
-                .find_map(|s| self.label(r, occupancy, s))
+                .find_map(|s| self.label((r, numbers), occupancy, s))
         };
         large.filter_map(place).collect()
     }
 
-    fn label(&self, region: usize, occupancy: &mut Occupancy, size: f64) -> Option<RegionLabel> {
+    fn label(
+        &self,
+        (region, numbers): (usize, NumberLook),
+        occupancy: &mut Occupancy,
+        size: f64,
+    ) -> Option<RegionLabel> {
         let first_cell = self.region.iter().position(|&r| r == region)?;
-        let text = self.name(first_cell);
+        let text = self.name(first_cell, numbers);
         let half = (
             0.5 * super::fonts::width(&text, super::fonts::Face::Bold, size) + 3.0,
             0.5 * size + 1.5,
@@ -323,9 +333,9 @@ impl<'a> Regions<'a> {
         })
     }
 
-    fn name(&self, cell: usize) -> String {
+    fn name(&self, cell: usize, numbers: NumberLook) -> String {
         let (first, second) = self.kind(cell);
-        let label = |k: u16| self.map.motions[usize::from(k)].label();
+        let label = |k: u16| numbers.say(&self.map.motions[usize::from(k)].label());
         if first == second {
             label(first)
         } else {

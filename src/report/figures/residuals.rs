@@ -14,7 +14,7 @@ const HEIGHT: f64 = 84.0;
 const TOP: f64 = 3.0;
 
 /// Draws the diagnostics of one method; `None` where it has no residuals.
-pub fn draw(set: &ResidualSet, name: &str, numbers: NumberLook) -> Option<Figure> {
+pub fn draw<'a>(set: &'a ResidualSet, name: &str, numbers: NumberLook<'a>) -> Option<Figure> {
     if set.points.is_empty() {
         return None;
     }
@@ -42,13 +42,13 @@ pub fn draw(set: &ResidualSet, name: &str, numbers: NumberLook) -> Option<Figure
             Rect::new(31.0 + i as f64 * step, TOP, step - 36.0, HEIGHT),
         );
     }
-    let title = "Residual diagnostics";
-    Some(Figure::new(name, title, sheet.canvas, csv(set)).with_spots(sheet.spots))
+    let title = numbers.say("Residual diagnostics");
+    Some(Figure::new(name, &title, sheet.canvas, csv(set)).with_spots(sheet.spots))
 }
 
 struct Sheet<'a> {
     set: &'a ResidualSet,
-    numbers: NumberLook,
+    numbers: NumberLook<'a>,
     canvas: Canvas,
     spots: Vec<Spot>,
 }
@@ -130,7 +130,7 @@ impl Sheet<'_> {
     /// Residuals over a quantity, with lines at ±1.96.
     fn over(&mut self, rect: Rect, title: &str, of: fn(&ResidualPoint) -> Option<f64>) {
         let reach = self.reach();
-        let x = Axis::around(self.set.points.iter().filter_map(of), 0.05, title).with_ticks(4);
+        let x = over_axis(self.set.points.iter().filter_map(of), title);
         let panel = Panel::new(
             rect,
             x,
@@ -155,12 +155,29 @@ impl Sheet<'_> {
                 self.spots.push(Spot {
                     x,
                     y,
-                    text: format!("{}\nresidual {r}", p.record),
+                    text: format!(
+                        "{}\n{}",
+                        p.record,
+                        self.numbers.say_with("residual {value}", &[("value", &r)])
+                    ),
                 });
             }
         }
         panel.frame(&mut self.canvas, Sides::BOTH, self.numbers);
     }
+}
+
+/// An axis over values as they are set on a rig: what differs by less than one can set is one.
+fn over_axis(values: impl Iterator<Item = f64> + Clone, title: &str) -> Axis {
+    const SAME: f64 = 1e-3;
+    let axis = Axis::around(values.clone(), 0.05, title);
+    let (low, high) = range(values).unwrap_or((0.0, 1.0));
+    let axis = if high - low < SAME * high.abs() {
+        Axis::around([0.5 * (low + high)], 0.05, title)
+    } else {
+        axis
+    };
+    axis.with_ticks(4)
 }
 
 fn csv(set: &ResidualSet) -> String {

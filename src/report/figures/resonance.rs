@@ -54,9 +54,10 @@ pub fn draw(curve: &ResonanceCurve, name: &str, numbers: NumberLook) -> Option<F
         (36.0, 0.0),
         look::FULL_WIDTH - 36.0,
         &keys(curve),
+        numbers,
     );
-    let title = "Resonance curve without impacts";
-    Some(Figure::new(name, title, canvas, csv(curve)).with_spots(spots))
+    let title = numbers.say("Resonance curve without impacts");
+    Some(Figure::new(name, &title, canvas, csv(curve)).with_spots(spots))
 }
 
 /// Factor and symbol of the amplitude's unit as printed.

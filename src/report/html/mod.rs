@@ -19,8 +19,10 @@ pub fn html(
     figures: &[Figure],
     options: &RenderOptions,
 ) -> Result<String, ReportError> {
-    let mut page =
-        String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+    let mut page = format!(
+        "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n",
+        escape(options.spoken())
+    );
     page.push_str("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
     page.push_str(&format!(
         "<title>{}</title>\n<style>\n",
@@ -32,9 +34,14 @@ pub fn html(
     page.push_str(STYLE);
     page.push_str("</style>\n</head>\n<body>\n");
     page.push_str(&logo(options));
-    let mut parts = parts::Parts::new(figures);
-    page.push_str(&parts.document(document)?);
-    page.push_str("<div id=\"tip\" role=\"status\"></div>\n<script>\n");
+    let mut parts = parts::Parts::new(document, figures);
+    page.push_str(&parts.body()?);
+    let words = serde_json::to_string(&document.words).map_err(ReportError::Data)?;
+    page.push_str(&format!(
+        "<div id=\"tip\" role=\"status\"></div>\n\
+         <script id=\"words\" type=\"application/json\">{}</script>\n<script>\n",
+        words.replace("</", "<\\/")
+    ));
     page.push_str(SCRIPT);
     page.push_str("</script>\n</body>\n</html>\n");
     Ok(page)

@@ -8,21 +8,24 @@ use crate::report::figures::richtext::Level;
 
 /// Writes the parts, numbering the captions of figures.
 pub struct Parts<'a> {
+    document: &'a Document,
     figures: &'a [Figure],
     numbered: usize,
 }
 
 impl<'a> Parts<'a> {
     /// With the figures that may be referred to.
-    pub fn new(figures: &'a [Figure]) -> Self {
+    pub fn new(document: &'a Document, figures: &'a [Figure]) -> Self {
         Self {
+            document,
             figures,
             numbered: 0,
         }
     }
 
     /// The whole body.
-    pub fn document(&mut self, document: &Document) -> Result<String, ReportError> {
+    pub fn body(&mut self) -> Result<String, ReportError> {
+        let document = self.document;
         let mut body = format!(
             "<header>\n<h1>{}</h1>\n<div class=\"subtitle\">{}</div>\n</header>\n",
             escape(&document.title),
@@ -43,7 +46,9 @@ impl<'a> Parts<'a> {
     fn front(&mut self, front: &Front) -> Result<String, ReportError> {
         let mut text = String::new();
         if front.synthetic {
-            text.push_str("<p class=\"synthetic\">Synthetic data: simulated records, not a measurement.</p>\n");
+            let synthetic = "Synthetic data: simulated records, not a measurement.";
+            let synthetic = escape(self.document.say(synthetic));
+            text.push_str(&format!("<p class=\"synthetic\">{synthetic}</p>\n"));
         }
         text.push_str(&format!(
             "<div class=\"verdict {}\"><div class=\"headline\">{}</div><p>{}</p></div>\n",
@@ -51,7 +56,11 @@ impl<'a> Parts<'a> {
             escape(&front.headline),
             rich(&front.summary)
         ));
-        let answers: String = front.answers.iter().map(answer).collect();
+        let answers: String = front
+            .answers
+            .iter()
+            .map(|a| answer(a, self.document))
+            .collect();
         if !answers.is_empty() {
             text.push_str(&format!("<div class=\"answers\">\n{answers}</div>\n"));
         }
@@ -64,7 +73,7 @@ impl<'a> Parts<'a> {
             .cloned()
             .collect();
         text.push_str(&self.figures(&pair)?);
-        text.push_str(&agreement(front));
+        text.push_str(&agreement(front, self.document));
         let findings: String = front
             .findings
             .iter()
@@ -74,7 +83,8 @@ impl<'a> Parts<'a> {
             text.push_str(&format!("<ul>\n{findings}</ul>\n"));
         }
         if !front.facts.is_empty() {
-            text.push_str("<h2>What was measured</h2>\n");
+            let title = escape(self.document.say("What was measured"));
+            text.push_str(&format!("<h2>{title}</h2>\n"));
             text.push_str(&pairs(
                 "facts",
                 front.facts.iter().map(|(a, b)| (rich(a), rich(b))),
@@ -134,8 +144,9 @@ impl<'a> Parts<'a> {
         if !caption.is_empty() {
             self.numbered += 1;
             let number = self.numbered;
+            let word = escape(self.document.say("Figure"));
             text.push_str(&format!(
-                "<figcaption><b>Figure {number}.</b> {caption}</figcaption>\n"
+                "<figcaption><b>{word} {number}.</b> {caption}</figcaption>\n"
             ));
         }
         text.push_str("</figure>\n");
@@ -161,7 +172,8 @@ fn rich(text: &Rich) -> String {
     text.0.iter().map(run).collect()
 }
 
-fn answer(a: &Answer) -> String {
+fn answer(a: &Answer, document: &Document) -> String {
+    let say = |phrase| escape(document.say(phrase));
     let mut text = format!(
         "<div class=\"answer\"><div class=\"label\">{}</div>",
         rich(&a.name)
@@ -182,7 +194,8 @@ fn answer(a: &Answer) -> String {
                 ));
             }
             if a.status == "weak" {
-                text.push_str("<div class=\"warn\">weakly identified</div>");
+                let weak = say("weakly identified");
+                text.push_str(&format!("<div class=\"warn\">{weak}</div>"));
             }
         }
         None => {
@@ -190,11 +203,11 @@ fn answer(a: &Answer) -> String {
                 "<div class=\"value label\">{}</div>",
                 rich(&a.symbol)
             ));
-            text.push_str(if a.status == "not_identifiable" {
-                "<div class=\"bad\">not identifiable</div>"
-            } else {
-                "<div class=\"label\">not determined by these data</div>"
-            });
+            let (class, phrase) = match a.status {
+                "not_identifiable" => ("bad", "not identifiable"),
+                _ => ("label", "not determined by these data"),
+            };
+            text.push_str(&format!("<div class=\"{class}\">{}</div>", say(phrase)));
         }
     }
     if let Some(note) = a.note.as_ref().filter(|_| a.status != "identified") {
@@ -204,7 +217,7 @@ fn answer(a: &Answer) -> String {
     text
 }
 
-fn agreement(front: &Front) -> String {
+fn agreement(front: &Front, document: &Document) -> String {
     let text = rich(&front.agreement);
     if text.is_empty() {
         return text;
@@ -214,6 +227,7 @@ fn agreement(front: &Front) -> String {
         "no" => "The methods disagree.",
         _ => "Agreement cannot be judged.",
     };
+    let word = escape(document.say(word));
     format!("<p><b class=\"{}\">{word}</b> {text}</p>\n", front.agree)
 }
 

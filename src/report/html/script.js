@@ -3,6 +3,7 @@
 (() => {
   const tip = document.getElementById("tip");
   const reach = 9;
+  const words = JSON.parse(document.getElementById("words").textContent);
 
   function point(svg, event) {
     const matrix = svg.getScreenCTM();
@@ -65,7 +66,7 @@
       ["⟲", "whole figure", () => setBox(drawing, drawing.full)], ["SVG", "save as SVG", () => save(drawing)]];
     for (const [text, title, action] of actions) {
       const button = document.createElement("button");
-      Object.assign(button, { type: "button", textContent: text, title, onclick: action });
+      Object.assign(button, { type: "button", textContent: text, title: words[title] ?? title, onclick: action });
       bar.append(button);
     }
     element.append(bar);

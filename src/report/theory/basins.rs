@@ -26,9 +26,9 @@ pub fn draw(basins: &Basins, name: &str, title: &str, numbers: NumberLook) -> Op
     let cells: Vec<Motion> = basins.cells.iter().map(motion).collect();
     let map = plane_of(&basins.x, &basins.vx, &cells, &[]);
     let keys = tint_keys(&map, MOST_KEYS);
-    let top = keys_height(LEFT, &keys);
+    let top = keys_height(LEFT, &keys, numbers);
     let mut canvas = Canvas::new(look::FULL_WIDTH, top + HEIGHT + 26.0);
-    keys_on_top(&mut canvas, LEFT, &keys);
+    keys_on_top(&mut canvas, LEFT, &keys, numbers);
     let axis = |v: &[f64], title: &str| {
         let half = 0.5 * (v.get(1)? - v.first()?);
         Some(Axis::new(v.first()? - half, v.last()? + half, title).with_ticks(7))

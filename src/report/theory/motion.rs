@@ -19,12 +19,12 @@ const SQUARE: f64 = 126.0;
 const MOST_SAMPLES: usize = 200_000;
 
 /// Draws a portrait.
-pub fn draw(portrait: &Portrait, name: &str, title: &str, numbers: NumberLook) -> Figure {
+pub fn draw(portrait: &Portrait, name: &str, title: &str, numbers: NumberLook<'_>) -> Figure {
     let keys = keys(portrait);
-    let top = keys_height(LEFT, &keys);
+    let top = keys_height(LEFT, &keys, numbers);
     let squares = top + SERIES_HEIGHT + 8.0 + SPEED_HEIGHT + 40.0;
     let mut canvas = Canvas::new(look::FULL_WIDTH, squares + SQUARE + 26.0);
-    keys_on_top(&mut canvas, LEFT, &keys);
+    keys_on_top(&mut canvas, LEFT, &keys, numbers);
     let drawing = Drawing {
         portrait,
         samples: with_impacts(portrait),
@@ -113,7 +113,7 @@ const JOINED: Colour = plotters::style::RGBColor(0xd9, 0xdd, 0xe2);
 struct Drawing<'a> {
     portrait: &'a Portrait,
     samples: Vec<Sample>,
-    numbers: NumberLook,
+    numbers: NumberLook<'a>,
 }
 
 impl Drawing<'_> {

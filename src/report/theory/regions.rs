@@ -40,10 +40,10 @@ pub fn draw(plane: &Plane<'_>, name: &str, title: &str, numbers: NumberLook) -> 
     let (first, second) = (motions(plane.first), motions(plane.second));
     let map = plane_of(&plane.grid.eta, &plane.grid.rho, &first, &second);
     let keys = keys(plane.curves, first != second);
-    let top = keys_height(LEFT, &keys);
+    let top = keys_height(LEFT, &keys, numbers);
     let size = (look::FULL_WIDTH, top + HEIGHT + 26.0);
     let mut canvas = Canvas::new(size.0, size.1);
-    keys_on_top(&mut canvas, LEFT, &keys);
+    keys_on_top(&mut canvas, LEFT, &keys, numbers);
     let axis = |v: &[f64], title: &str, ticks| {
         Some(Axis::new(*v.first()?, *v.last()?, title).with_ticks(ticks))
     };
@@ -58,7 +58,7 @@ pub fn draw(plane: &Plane<'_>, name: &str, title: &str, numbers: NumberLook) -> 
     let mut occupancy = Occupancy::new(size.0, size.1);
     curves(&mut canvas, &panel, plane.curves, &mut occupancy);
     canvas.layer(5);
-    for label in regions.labels(&mut occupancy, 9.5) {
+    for label in regions.labels(&mut occupancy, 9.5, numbers) {
         let text_look = TextLook::new(label.size, Anchor::Middle).face(Face::Bold);
         let at = (label.at.0, label.at.1 + 0.33 * label.size);
         canvas.text(at, &label.text, text_look.colour(look::INK));

@@ -72,10 +72,10 @@ const PHASE_HEIGHT: f64 = 62.0;
 /// Draws the characteristics over the quantity that moves.
 pub fn draw(data: &Characteristics<'_>, name: &str, title: &str, numbers: NumberLook) -> Figure {
     let keys = keys(data.two_masses);
-    let top = keys_height(LEFT, &keys);
+    let top = keys_height(LEFT, &keys, numbers);
     let rows: f64 = ROWS.iter().map(|r| r.height + GAP).sum();
     let mut canvas = Canvas::new(look::FULL_WIDTH, top + rows + PHASE_HEIGHT + 26.0);
-    keys_on_top(&mut canvas, LEFT, &keys);
+    keys_on_top(&mut canvas, LEFT, &keys, numbers);
     let drawing = Drawing { data, numbers };
     let mut y = top;
     for (i, row) in ROWS.iter().enumerate() {
@@ -113,7 +113,7 @@ const IMPACTLESS: Colour = look::QUIET;
 
 struct Drawing<'a> {
     data: &'a Characteristics<'a>,
-    numbers: NumberLook,
+    numbers: NumberLook<'a>,
 }
 
 impl Drawing<'_> {

@@ -32,7 +32,7 @@ pub fn brackets(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     } else {
         "Measured brackets of the boundaries, and the boundary of the fitted model."
     };
-    let table = table(caption, &columns, rows)?;
+    let table = table(caption, &columns, rows, numbers)?;
     Some(if many {
         Table {
             size: 6.8,
@@ -47,8 +47,8 @@ pub fn brackets(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
 fn bracket_row(b: &BracketRow, many: bool, numbers: NumberLook) -> Vec<Rich> {
     let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
     vec![
-        Rich::from(b.kind.symbol()),
-        Rich::from(b.motion.label()),
+        Rich::from(numbers.say(b.kind.symbol())),
+        Rich::from(numbers.say(&b.motion.label())),
         Rich::from(numbers.significant(1e3 * b.clearance_m, 3)),
         Rich::from(b.rho.map_or("–".into(), |r| numbers.fixed(r, 3))),
         Rich::from(arrow(b.direction)),
@@ -77,12 +77,15 @@ fn bracket_sign(b: &BracketRow) -> &'static str {
 }
 
 fn bracket_remark(b: &BracketRow, numbers: NumberLook) -> String {
+    let by = |phrase: &str, distance: f64| {
+        numbers.say_with(phrase, &[("distance", &numbers.fixed(distance, 3))])
+    };
     let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
     match (&b.left_out, b.simulated_hz) {
-        (Some(why), _) => format!("not used: {why}"),
-        (None, Some(f)) if f < low => format!("below by {} Hz", numbers.fixed(low - f, 3)),
-        (None, Some(f)) if f > high => format!("above by {} Hz", numbers.fixed(f - high, 3)),
-        (None, Some(_)) => "within".into(),
+        (Some(why), _) => numbers.say_with("not used: {why}", &[("why", why)]),
+        (None, Some(f)) if f < low => by("below by {distance} Hz", low - f),
+        (None, Some(f)) if f > high => by("above by {distance} Hz", f - high),
+        (None, Some(_)) => numbers.say("within"),
         (None, None) => String::new(),
     }
 }

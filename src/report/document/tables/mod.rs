@@ -19,10 +19,18 @@ use crate::report::parameters::{self, PARAMETERS, method_name};
 /// A column: head, alignment, relative width (0: as wide as its content).
 type Column = (&'static str, &'static str, u16);
 
-fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>) -> Option<Table> {
+fn table(
+    caption: &str,
+    columns: &[Column],
+    rows: Vec<Vec<Rich>>,
+    numbers: NumberLook,
+) -> Option<Table> {
     let table = (!rows.is_empty()).then(|| Table {
-        caption: Rich::from(caption),
-        heads: columns.iter().map(|c| Rich::from(c.0)).collect(),
+        caption: Rich::from(numbers.say(caption)),
+        heads: columns
+            .iter()
+            .map(|c| Rich::from(numbers.say_title(c.0)))
+            .collect(),
         align: columns.iter().map(|c| c.1).collect(),
         widths: columns.iter().map(|c| c.2).collect(),
         rows,
@@ -77,7 +85,7 @@ const METHODS_CAPTION: &str = "Estimates with half their 95 % interval, number o
 pub fn methods(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     let id = &content.identification;
     let rows = method_rows(&id.methods, &id.joint, numbers);
-    table(METHODS_CAPTION, &METHOD_COLUMNS, rows).map(|t| Table { size: 7.5, ..t })
+    table(METHODS_CAPTION, &METHOD_COLUMNS, rows, numbers).map(|t| Table { size: 7.5, ..t })
 }
 
 /// The same for each specimen of a campaign that holds several.
@@ -96,7 +104,7 @@ pub fn specimen_methods(content: &ReportContent, numbers: NumberLook) -> Option<
     });
     let mut columns: Vec<Column> = vec![("specimen", "left", 0)];
     columns.extend(METHOD_COLUMNS);
-    table(METHODS_CAPTION, &columns, rows.collect()).map(|t| Table { size: 7.5, ..t })
+    table(METHODS_CAPTION, &columns, rows.collect(), numbers).map(|t| Table { size: 7.5, ..t })
 }
 
 /// The answer for each specimen of a campaign that holds several.
@@ -108,7 +116,8 @@ pub fn specimens(content: &ReportContent, numbers: NumberLook) -> Option<Table> 
         .map(|(specimen, result)| {
             let mut row = vec![verbatim(specimen.clone())];
             row.extend(estimate_cells(&result.joint.parameters, numbers));
-            row.push(Rich::from(super::front::headline(result.verdict.kind).1));
+            let headline = super::front::headline(result.verdict.kind).1;
+            row.push(Rich::from(numbers.say(headline)));
             row
         });
     let columns: [Column; 6] = [
@@ -119,12 +128,12 @@ pub fn specimens(content: &ReportContent, numbers: NumberLook) -> Option<Table> 
         ("$x_st$", "left", 1),
         ("verdict", "left", 2),
     ];
-    table("", &columns, rows.collect()).map(|t| Table { size: 8.5, ..t })
+    table("", &columns, rows.collect(), numbers).map(|t| Table { size: 8.5, ..t })
 }
 
-fn estimate_cells(set: &ParameterSet, numbers: NumberLook) -> impl Iterator<Item = Rich> + use<'_> {
-    let cell = move |look| Rich::from(parameters::short(look, (look.pick)(set), numbers));
-    PARAMETERS.iter().map(cell)
+fn estimate_cells(set: &ParameterSet, numbers: NumberLook) -> Vec<Rich> {
+    let cell = |look| Rich::from(parameters::short(look, (look.pick)(set), numbers));
+    PARAMETERS.iter().map(cell).collect()
 }
 
 /// Rows of the methods that say anything, the joint estimate last.
@@ -137,7 +146,7 @@ fn method_rows(
     let all = all.chain([(method_name("joint"), joint)]);
     let says = |m: &MethodResult| PARAMETERS.iter().any(|p| (p.pick)(&m.parameters).is_some());
     all.filter(|(_, m)| says(m))
-        .map(|(name, m)| method_row(name, m, numbers))
+        .map(|(name, m)| method_row(numbers.say(&name), m, numbers))
         .collect()
 }
 
@@ -160,7 +169,7 @@ fn method_row(name: String, method: &MethodResult, numbers: NumberLook) -> Vec<R
     row.extend([
         Rich::from(observations),
         Rich::from(residual),
-        Rich::from(fits),
+        Rich::from(numbers.say(fits)),
     ]);
     row
 }
@@ -177,8 +186,8 @@ pub fn agreement(content: &ReportContent, numbers: NumberLook) -> Option<Table> 
         };
         vec![
             Rich::from(symbol),
-            Rich::from(method_name(&pair.methods[0])),
-            Rich::from(method_name(&pair.methods[1])),
+            Rich::from(numbers.say(&method_name(&pair.methods[0]))),
+            Rich::from(numbers.say(&method_name(&pair.methods[1]))),
             Rich::from(numbers.fixed(pair.z_score, 2)),
             Rich::from(p),
         ]
@@ -194,19 +203,23 @@ pub fn agreement(content: &ReportContent, numbers: NumberLook) -> Option<Table> 
         "Agreement of the methods, pair by pair.",
         &columns,
         rows.collect(),
+        numbers,
     )
 }
 
 /// Further tables of the content, as they stand.
-pub fn further(content: &ReportContent) -> impl Iterator<Item = Table> + use<'_> {
-    content.tables.iter().filter_map(|t| {
+pub fn further<'a>(
+    content: &'a ReportContent,
+    numbers: NumberLook<'a>,
+) -> impl Iterator<Item = Table> + 'a {
+    content.tables.iter().filter_map(move |t| {
         let columns: Vec<Column> = t.heads.iter().map(|_| ("", "right", 0)).collect();
         let rows = t.rows.iter();
         let rows = rows.map(|row| row.iter().map(Rich::from).collect());
-        let heads = t.heads.iter().map(Rich::from).collect();
+        let heads = t.heads.iter().map(|h| Rich::from(numbers.say_title(h)));
         (!t.rows.is_empty()).then(|| Table {
-            caption: Rich::from(&t.caption),
-            heads,
+            caption: Rich::from(numbers.say(&t.caption)),
+            heads: heads.collect(),
             align: columns.iter().map(|c| c.1).collect(),
             widths: columns.iter().map(|c| c.2).collect(),
             rows: rows.collect(),
@@ -227,7 +240,7 @@ fn arrow(sweep: Sweep) -> &'static str {
 }
 
 /// What was left out and why.
-pub fn left_out(content: &ReportContent) -> Option<Table> {
+pub fn left_out(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     let rows = content.left_out.iter().map(|l| {
         let count = l.count.map_or(String::new(), |c| c.to_string());
         vec![verbatim(l.what.clone()), Rich::from(count), prose(&l.why)]
@@ -237,7 +250,7 @@ pub fn left_out(content: &ReportContent) -> Option<Table> {
         ("count", "right", 0),
         ("why", "left", 5),
     ];
-    table("", &columns, rows.collect())
+    table("", &columns, rows.collect(), numbers)
 }
 
 /// A cell whose text has no markup, whatever signs it holds.
@@ -255,7 +268,7 @@ pub fn verbatim(text: String) -> Rich {
 }
 
 /// SHA-256 of the inputs.
-pub fn hashes(content: &ReportContent) -> Option<Table> {
+pub fn hashes(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     let inputs = &content.identification.inputs_sha256;
     let rows = inputs
         .iter()
@@ -266,6 +279,7 @@ pub fn hashes(content: &ReportContent) -> Option<Table> {
         caption,
         &[("input", "left", 2), ("SHA-256", "left", 0)],
         rows,
+        numbers,
     )
     .map(|t| Table { size: 6.2, ..t })
 }

@@ -40,12 +40,10 @@ pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     let row = |r: &RecordRow| record_row(r, planar, many, numbers);
     let rows = content.records.iter().map(row).collect();
     let caption = if many {
-        format!(
-            "{}: sweep, measured drive frequency, clearance, motion, confidence. \
-             ? undetermined; • used in the identification; ! flagged. Reasons and flags in full \
-             are in records.parquet.",
-            which(content)
-        )
+        let signs = "{records}: sweep, measured drive frequency, clearance, motion, confidence. \
+                     ? undetermined; • used in the identification; ! flagged. Reasons and flags \
+                     in full are in records.parquet.";
+        numbers.say_with(signs, &[("records", &which(content, numbers))])
     } else {
         match content.records.iter().any(|r| r.frequency_hz.is_some()) {
             true => {
@@ -55,7 +53,7 @@ pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
         }
         .to_owned()
     };
-    let table = table(&caption, &columns, rows)?;
+    let table = table(&caption, &columns, rows, numbers)?;
     Some(if many {
         crowded(table)
     } else {
@@ -64,12 +62,15 @@ pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
 }
 
 /// Which records the table lists: all, or an even choice of very many.
-fn which(content: &ReportContent) -> String {
+fn which(content: &ReportContent, numbers: NumberLook) -> String {
     let (listed, all) = (content.records.len(), content.summary.records_total);
     if listed < all {
-        format!("{listed} of the {all} records, evenly chosen (records.parquet holds all)")
+        numbers.say_with(
+            "{some} of the {count} records, evenly chosen (records.parquet holds all)",
+            &[("some", &listed.to_string()), ("count", &all.to_string())],
+        )
     } else {
-        "All records".to_owned()
+        numbers.say("All records")
     }
 }
 
@@ -137,7 +138,7 @@ fn record_row(r: &RecordRow, planar: bool, many: bool, numbers: NumberLook) -> V
     }
     let driven = r.frequency_hz.is_some();
     row.extend([
-        motion_label(r, many),
+        motion_label(r, many, numbers),
         number(r.confidence.filter(|_| driven), 2),
     ]);
     if !driven && r.impacts > 0 {
@@ -148,16 +149,16 @@ fn record_row(r: &RecordRow, planar: bool, many: bool, numbers: NumberLook) -> V
     row.push(if many {
         short_remark(r)
     } else {
-        long_remark(r)
+        long_remark(r, numbers)
     });
     row.into_iter().map(verbatim).collect()
 }
 
-fn motion_label(r: &RecordRow, many: bool) -> String {
+fn motion_label(r: &RecordRow, many: bool, numbers: NumberLook) -> String {
     match &r.motion {
         Motion::Undetermined { .. } if r.frequency_hz.is_none() => "–".into(),
         Motion::Undetermined { .. } if many => "?".into(),
-        motion => motion.label(),
+        motion => numbers.say(&motion.label()),
     }
 }
 
@@ -167,14 +168,15 @@ fn short_remark(r: &RecordRow) -> String {
     format!("{used}{flagged}")
 }
 
-fn long_remark(r: &RecordRow) -> String {
+fn long_remark(r: &RecordRow, numbers: NumberLook) -> String {
     let used = if r.used_by.is_empty() {
-        r.left_out.as_ref().map(|why| format!("not used: {why}"))
+        let not_used = |why| numbers.say_with("not used: {why}", &[("why", why)]);
+        r.left_out.as_deref().map(not_used)
     } else {
         Some(
             r.used_by
                 .iter()
-                .map(|m| method_name(m).to_lowercase())
+                .map(|m| numbers.say(&method_name(m).to_lowercase()))
                 .collect::<Vec<_>>()
                 .join(", "),
         )

@@ -31,7 +31,7 @@ const BOTTOM: f64 = 22.0;
 const BACK_WIDTH: f64 = 1.7;
 
 /// Draws one comparison; `None` where it has no trace at all.
-pub fn draw(comparison: &Comparison, numbers: NumberLook) -> Option<Figure> {
+pub fn draw<'a>(comparison: &'a Comparison, numbers: NumberLook<'a>) -> Option<Figure> {
     let rows = rows(comparison);
     if rows.is_empty() && comparison.portraits.is_empty() {
         return None;
@@ -53,7 +53,8 @@ pub fn draw(comparison: &Comparison, numbers: NumberLook) -> Option<Figure> {
     sheet.columns(&rows);
     sheet.portraits(stack);
     let name = name(comparison);
-    let title = format!("Point ({}): simulated and measured", comparison.letter);
+    let letter = [("letter", comparison.letter.as_str())];
+    let title = numbers.say_with("Point ({letter}): simulated and measured", &letter);
     Some(Figure::new(
         name,
         &title,
@@ -121,7 +122,7 @@ enum Side {
 
 struct Sheet<'a> {
     comparison: &'a Comparison,
-    numbers: NumberLook,
+    numbers: NumberLook<'a>,
     canvas: Canvas,
     time: TimeAxis,
     column: f64,
@@ -157,13 +158,10 @@ impl Sheet<'_> {
         let title = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::QUIET);
         let middle = |sheet: &Self, side: Side| sheet.left(side) + 0.5 * sheet.column;
         if !rows.is_empty() {
-            self.canvas.text(
-                (middle(self, Side::Simulated), TOP - 4.0),
-                "simulated",
-                title,
-            );
-            self.canvas
-                .text((middle(self, Side::Measured), TOP - 4.0), "measured", title);
+            for (side, word) in [(Side::Simulated, "simulated"), (Side::Measured, "measured")] {
+                let at = (middle(self, side), TOP - 4.0);
+                self.canvas.text(at, &self.numbers.say(word), title);
+            }
         }
         let last_plain = rows.iter().rposition(|r| !r.residual);
         let mut top = TOP;
@@ -267,7 +265,7 @@ impl Sheet<'_> {
         let r = panel.rect;
         let at = (0.5 * (r.left + r.right), 0.5 * (r.top + r.bottom) + 2.5);
         let quiet = TextLook::new(look::NOTE_SIZE, Anchor::Middle).colour(look::QUIET);
-        self.canvas.text(at, text, quiet);
+        self.canvas.text(at, &self.numbers.say(text), quiet);
     }
 
     /// The impacts of the simulation as stems on a level line.
@@ -289,14 +287,19 @@ impl Sheet<'_> {
             let value = self.numbers.significant(rms * row.unit.factor, 2);
             let share = self.numbers.significant(100.0 * rms / whole, 2);
             let name = symbol(trace.role);
-            Some(format!(
-                "{name}: rms residual {value} {} = {share} % of rms",
-                row.unit.symbol
-            ))
+            let text = "{name}: rms residual {value} = {share} % of rms";
+            let value = format!("{value} {}", row.unit.symbol);
+            let values = [("name", name), ("value", &value), ("share", &share)];
+            Some(self.numbers.say_with(text, &values))
         });
+        // up to the two lines of the residual's title
+        let room = self.column + COLUMN_GAP - TITLE_REACH - 2.0 * look::TITLE_SIZE;
         for (i, line) in lines.collect::<Vec<_>>().iter().enumerate() {
             let y = top + 24.0 + 9.5 * i as f64;
-            self.canvas.text((LEFT, y), line, quiet);
+            let width = richtext::width(line, Face::Regular, look::NOTE_SIZE);
+            let size = look::NOTE_SIZE * (room / width).min(1.0);
+            self.canvas
+                .text((LEFT, y), line, TextLook { size, ..quiet });
         }
     }
 }

@@ -5,9 +5,23 @@ use crate::report::content::Portrait;
 use crate::report::figures::axes::{Axis, Panel, Sides};
 use crate::report::figures::canvas::{Anchor, Stroke, TextLook};
 use crate::report::figures::path::Rect;
-use crate::report::figures::units::print_unit;
+use crate::report::figures::units::{PrintUnit, print_unit};
 use crate::report::figures::{look, marks};
 use crate::units::Dimension;
+
+/// Units of length and velocity that suit all portraits, so that they compare.
+fn units(shown: &[&Portrait]) -> [PrintUnit; 2] {
+    let all = || {
+        shown
+            .iter()
+            .flat_map(|p| p.measured.iter().chain(&p.simulated))
+    };
+    let peak = |k: usize| all().map(|p| p[k].abs()).fold(0.0, f64::max);
+    [
+        print_unit(Dimension::Length, peak(0)),
+        print_unit(Dimension::Velocity, peak(1)),
+    ]
+}
 
 impl Sheet<'_> {
     /// Velocity over displacement of each mass, one above the other.
@@ -18,8 +32,12 @@ impl Sheet<'_> {
         }
         let title = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::QUIET);
         let middle = PORTRAIT_LEFT + 0.5 * PORTRAIT_WIDTH;
-        self.canvas
-            .text((middle, TOP - 4.0), "phase portraits", title);
+        self.canvas.text(
+            (middle, TOP - 4.0),
+            &self.numbers.say("phase portraits"),
+            title,
+        );
+        let units = units(&shown);
         let count = shown.len() as f64;
         let height = ((stack - (count - 1.0) * 24.0) / count).min(PORTRAIT_WIDTH);
         for (i, portrait) in shown.into_iter().enumerate() {
@@ -27,17 +45,13 @@ impl Sheet<'_> {
             self.portrait(
                 portrait,
                 Rect::new(PORTRAIT_LEFT, top, PORTRAIT_WIDTH, height),
+                units,
             );
         }
     }
 
-    fn portrait(&mut self, portrait: &Portrait, rect: Rect) {
+    fn portrait(&mut self, portrait: &Portrait, rect: Rect, [length, speed]: [PrintUnit; 2]) {
         let all = || portrait.measured.iter().chain(&portrait.simulated);
-        let peak = |k: usize| all().map(|p| p[k].abs()).fold(0.0, f64::max);
-        let (length, speed) = (
-            print_unit(Dimension::Length, peak(0)),
-            print_unit(Dimension::Velocity, peak(1)),
-        );
         let mass = &portrait.mass;
         let x = Axis::around(
             all().map(|p| p[0] * length.factor),

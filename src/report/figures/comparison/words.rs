@@ -6,21 +6,26 @@ use crate::report::figures::look::NumberLook;
 
 /// What stands under a comparison, with markup.
 pub fn caption(comparison: &Comparison, numbers: NumberLook) -> String {
-    let mut text = format!("Point ({})", comparison.letter);
+    let mut text = numbers.say_with("Point ({letter})", &[("letter", &comparison.letter)]);
     if comparison.drive_period_s.is_some() {
-        text.push_str(&format!(", $z$ = {}", comparison.motion.label()));
+        let label = numbers.say(&comparison.motion.label());
+        text.push_str(&format!(", $z$ = {label}"));
     }
     if let (Some(eta), Some(rho)) = (comparison.eta, comparison.rho) {
         let (eta, rho) = (numbers.fixed(eta, 3), numbers.fixed(rho, 3));
-        text.push_str(&format!(", at $η$ = {eta}, $ρ$ = {rho}"));
+        let values = [("eta", eta.as_str()), ("rho", rho.as_str())];
+        text.push_str(&numbers.say_with(", at $η$ = {eta}, $ρ$ = {rho}", &values));
     }
-    text.push_str(&format!("; record {}.", comparison.record));
+    let record = [("record", comparison.record.as_str())];
+    text.push_str(&numbers.say_with("; record {record}.", &record));
     let simulated = comparison.simulated_motion.as_ref();
     if let Some(other) = simulated.filter(|m| **m != comparison.motion) {
-        text.push_str(&format!(" The simulated motion is {}.", other.label()));
+        let label = numbers.say(&other.label());
+        let said = numbers.say_with("The simulated motion is {motion}.", &[("motion", &label)]);
+        text.push_str(&format!(" {said}"));
     }
     if !comparison.note.is_empty() {
-        text.push_str(&format!(" {}", comparison.note));
+        text.push_str(&format!(" {}", numbers.say(&comparison.note)));
     }
     text
 }

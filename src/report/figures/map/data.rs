@@ -1,13 +1,17 @@
 //! The map's data: what hovering over a record tells, and all layers as CSV.
 
 use crate::motion::Motion;
+use crate::record::Sweep;
 use crate::report::content::{RecordRow, RegionMap, ReportContent};
 use crate::report::figures::csv::Csv;
 use crate::report::figures::look::NumberLook;
 
 /// What hovering over a record tells.
 pub fn describe(record: &RecordRow, numbers: NumberLook) -> String {
-    let mut parts = vec![record.id.clone(), format!("z = {}", record.motion.label())];
+    let mut parts = vec![
+        record.id.clone(),
+        format!("z = {}", numbers.say(&record.motion.label())),
+    ];
     if let Some(f) = record.frequency_hz {
         parts.push(format!("f = {} Hz", numbers.fixed(f, 3)));
     }
@@ -21,9 +25,14 @@ pub fn describe(record: &RecordRow, numbers: NumberLook) -> String {
             numbers.fixed(rho, 3)
         ));
     }
-    parts.push(format!("sweep {}", record.sweep.name()));
+    let sweep = match record.sweep {
+        Sweep::Up => "sweep up",
+        Sweep::Down => "sweep down",
+        Sweep::Unknown => "sweep unknown",
+    };
+    parts.push(numbers.say(sweep));
     if let Some(c) = record.confidence {
-        parts.push(format!("confidence {}", numbers.fixed(c, 2)));
+        parts.push(numbers.say_with("confidence {share}", &[("share", &numbers.fixed(c, 2))]));
     }
     parts.join("\n")
 }

@@ -145,7 +145,8 @@ impl Map<'_> {
                     .text((x, top - 3.0), &numbers.fixed(v, decimals), small);
             }
             let at = (0.5 * (r.left + r.right), top - 14.0);
-            self.canvas.text(at, "drive frequency $f$ (Hz)", title);
+            let name = numbers.say_title("drive frequency $f$ (Hz)");
+            self.canvas.text(at, &name, title);
         }
         if let Some(x_st) = self.plane.static_deflection_m.map(|x| 1e3 * x) {
             let axis =
@@ -165,7 +166,7 @@ impl Map<'_> {
             let at = (r.right + 24.0, 0.5 * (r.top + r.bottom));
             self.canvas.text(
                 at,
-                "clearance $r$ (mm)",
+                &numbers.say_title("clearance $r$ (mm)"),
                 TextLook {
                     upward: true,
                     ..title

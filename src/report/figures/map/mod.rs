@@ -5,7 +5,7 @@ mod keys;
 mod labels;
 
 use crate::record::Sweep;
-use crate::report::content::{BoundaryCurve, RecordRow, RegionMap, ReportContent};
+use crate::report::content::{BoundaryCurve, BracketRow, RecordRow, RegionMap, ReportContent};
 use crate::report::figures::axes::{Panel, Sides};
 use crate::report::figures::canvas::{Anchor, Canvas, Point, TextLook};
 use crate::report::figures::fonts::Face;
@@ -42,18 +42,19 @@ pub fn draw(content: &ReportContent, size: MapSize, numbers: NumberLook) -> Opti
     } else {
         keys::motions(content)
     };
-    let mut map = Map::new(content, plane, size, &keys);
+    let mut map = Map::new(content, plane, size, (&keys, numbers));
     // Labels go where records and curves leave room.
     map.take_records_and_curves();
-    map.regions();
+    map.take_brackets();
+    map.regions(numbers);
     map.curves();
-    map.brackets();
+    map.draw_brackets();
     map.records(numbers);
     if size == MapSize::Full {
         map.letters();
     }
     map.frame(numbers, &keys);
-    Some(map.finish())
+    Some(map.finish(numbers))
 }
 
 struct Map<'a> {
@@ -89,7 +90,12 @@ fn every_other(map: &RegionMap) -> RegionMap {
 }
 
 impl<'a> Map<'a> {
-    fn new(content: &'a ReportContent, plane: Plane, size: MapSize, keys: &[Key]) -> Self {
+    fn new(
+        content: &'a ReportContent,
+        plane: Plane,
+        size: MapSize,
+        (keys, numbers): (&[Key], NumberLook),
+    ) -> Self {
         let full = size == MapSize::Full;
         let flat = content.region_map.is_none() && heights(content, plane) <= 3;
         let (width, height) = match (full, flat) {
@@ -98,7 +104,8 @@ impl<'a> Map<'a> {
             (false, false) => (236.0, 235.0),
             (false, true) => (236.0, 130.0),
         };
-        let keys_height = legend::height(keys, width) + if keys.is_empty() { 0.0 } else { 3.0 };
+        let keys_height =
+            legend::height(keys, width, numbers) + if keys.is_empty() { 0.0 } else { 3.0 };
         let both_units = full && plane.dimensionless;
         let (left, right) = (33.0, if both_units { 30.0 } else { 4.0 });
         let View { x, y, strips } = plane.view(content);
@@ -130,7 +137,7 @@ impl<'a> Map<'a> {
         self.size == MapSize::Full
     }
 
-    fn regions(&mut self) {
+    fn regions(&mut self, numbers: NumberLook) {
         let Some(map) = self
             .content
             .region_map
@@ -154,7 +161,7 @@ impl<'a> Map<'a> {
         regions.draw(&mut self.canvas);
         let size = if self.full() { 10.0 } else { 8.0 };
         self.canvas.layer(6);
-        for label in regions.labels(&mut self.occupancy, size) {
+        for label in regions.labels(&mut self.occupancy, size, numbers) {
             let text_look = TextLook::new(label.size, Anchor::Middle).face(Face::Bold);
             let (x, y) = label.at;
             let baseline = (x, y + 0.33 * label.size);
@@ -211,26 +218,37 @@ impl<'a> Map<'a> {
         }
     }
 
-    fn brackets(&mut self) {
+    /// The brackets that the panel shows, with their ends and their height on paper.
+    fn brackets(&self) -> Vec<(&'a BracketRow, (f64, f64), f64)> {
         let lift = self.lift();
-        for bracket in &self.content.brackets {
-            let Some(((low, high), height)) = self.plane.bracket(bracket) else {
-                continue;
-            };
+        let shown = self.content.brackets.iter().filter_map(|bracket| {
+            let ((low, high), height) = self.plane.bracket(bracket)?;
             if !self.panel.shows(low, height) || !self.panel.shows(high, height) {
-                continue;
+                return None;
             }
             let (from, to) = (self.panel.at(low, height), self.panel.at(high, height));
             let y = from.1 - lift * direction(bracket.direction);
+            Some((bracket, (from.0, to.0), y))
+        });
+        shown.collect()
+    }
+
+    fn take_brackets(&mut self) {
+        for (_, (from, to), y) in self.brackets() {
+            let rect = Rect::new(from, y - 2.5, to - from, 5.0);
+            self.occupancy.take_rect(&rect);
+        }
+    }
+
+    fn draw_brackets(&mut self) {
+        for (bracket, ends, y) in self.brackets() {
             let colour = if bracket.left_out.is_none() {
                 look::INK
             } else {
                 UNUSED
             };
             self.canvas.layer(3);
-            legend::bracket(&mut self.canvas, (from.0, to.0), y, colour);
-            self.occupancy
-                .take_rect(&Rect::new(from.0, y - 2.5, to.0 - from.0, 5.0));
+            legend::bracket(&mut self.canvas, ends, y, colour);
         }
     }
 
@@ -307,16 +325,16 @@ impl<'a> Map<'a> {
         }
         self.strip_frames(numbers);
         let width = self.canvas.width;
-        legend::draw(&mut self.canvas, (0.0, 0.0), width, keys);
+        legend::draw(&mut self.canvas, (0.0, 0.0), width, keys, numbers);
     }
 
-    fn finish(self) -> Figure {
+    fn finish(self, numbers: NumberLook) -> Figure {
         let csv = data::csv(self.content);
         let (name, title) = match self.size {
             MapSize::Full => ("map", "Regions of motion, simulated and measured"),
             MapSize::Small => ("map_small", "Measured motions and boundaries"),
         };
-        Figure::new(name, title, self.canvas, csv).with_spots(self.spots)
+        Figure::new(name, &numbers.say(title), self.canvas, csv).with_spots(self.spots)
     }
 }
 

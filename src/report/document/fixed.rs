@@ -1,0 +1,27 @@
+//! Phrases that the template and the page say themselves, in the reader's words.
+
+use std::collections::BTreeMap;
+
+use crate::report::figures::look::NumberLook;
+
+const PHRASES: [&str; 13] = [
+    "Synthetic data: simulated records, not a measurement.",
+    "The methods agree.",
+    "The methods disagree.",
+    "Agreement cannot be judged.",
+    "What was measured",
+    "Figure",
+    "weakly identified",
+    "not identifiable",
+    "not determined by these data",
+    "zoom in",
+    "zoom out",
+    "whole figure",
+    "save as SVG",
+];
+
+/// From each phrase to what is printed for it.
+pub fn words(numbers: NumberLook) -> BTreeMap<&'static str, String> {
+    let each = PHRASES.into_iter();
+    each.map(|phrase| (phrase, numbers.say(phrase))).collect()
+}
