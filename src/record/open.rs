@@ -72,7 +72,7 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     }
 }
 
-/// HDF5's mark stands at the front, or behind a user block of 512, 1024, 2048 … bytes.
+/// HDF5's mark stands at the front, or behind a user block of 512, 1024 or 2048 bytes.
 fn is_hdf5(front: &[u8]) -> bool {
     [0usize, 512, 1024, 2048].iter().any(|&at| {
         front
