@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 const LOCK_NAME: &str = ".impactid.lock";
 
 /// The folder in an output folder that outputs are written into, too.
-pub const FIGURES: &str = "figures";
+const FIGURES: &str = "figures";
 
 /// Ending of files that are being written.
 const PART_ENDING: &str = ".impactid-part";

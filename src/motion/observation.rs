@@ -81,7 +81,7 @@ impl Observation {
 
     /// Whether nothing touched: no impact was seen, and none of the evidence speaks of one. What
     /// is not harmonic in such a record widens the error of its response.
-    pub fn has_no_impact(&self) -> bool {
+    fn has_no_impact(&self) -> bool {
         self.impacts.is_empty()
             && self.unsupported_pulses == 0
             && matches!(

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use ::hdf5::{AttrValue, DatasetBuilder, FileBuilder, FinishedGroup, GroupBuilder};
 
 /// Version of the layout, written as `impactid_layout` into the file.
-pub const LAYOUT_VERSION: i64 = 1;
+const LAYOUT_VERSION: i64 = 1;
 /// Rows of a chunk.
 const CHUNK_ROWS: u64 = 4096;
 /// Effort of packing: higher ones gain little on noisy signals.

@@ -118,7 +118,7 @@ fn remark(text: &str, attributes: &mut BTreeMap<String, String>) {
 }
 
 /// Whether a text is the symbol of a unit.
-pub fn is_unit(text: &str) -> bool {
+fn is_unit(text: &str) -> bool {
     parse_unit(text).is_some() || FURTHER_UNITS.contains(&text.trim())
 }
 
