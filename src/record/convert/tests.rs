@@ -1,19 +1,7 @@
 use super::*;
+use crate::record::conformance::{named as samples, own, shared_data};
 use crate::record::open::open;
 use crate::record::source::DatasetInfo;
-
-fn own(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/data/formats")
-        .join(name)
-}
-
-fn samples(source: &dyn Source, dataset: usize, name: &str) -> Samples {
-    let channel = source.datasets()[dataset]
-        .channel_index(name)
-        .unwrap_or_else(|| panic!("no {name}"));
-    source.read(dataset, &[channel]).unwrap().remove(0)
-}
 
 fn same(a: &DatasetInfo, b: &DatasetInfo) {
     assert_eq!(
@@ -191,13 +179,8 @@ fn valid_a_file_without_numbers_is_not_converted() {
 
 #[test]
 fn valid_parts_of_complex_numbers_keep_their_unit() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../shared/data/uff_conformance/non_ascii_header.uff");
-    if !path.exists() {
-        println!("skipped: ../shared/data is absent");
-        return;
-    }
-    let sources = [open(&path).unwrap()];
+    let Some(dir) = shared_data() else { return };
+    let sources = [open(&dir.join("uff_conformance/non_ascii_header.uff")).unwrap()];
     let channel = &sources[0].datasets()[0].channels[1];
     let dir = tempfile::tempdir().unwrap();
     for name in ["out.h5", "out.parquet", "out.csv"] {

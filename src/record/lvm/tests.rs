@@ -1,14 +1,5 @@
 use super::*;
-use std::path::PathBuf;
-
-fn shared_data() -> Option<PathBuf> {
-    let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
-    if !dir.is_dir() {
-        println!("skipped: ../shared/data is absent");
-        return None;
-    }
-    Some(dir)
-}
+use crate::record::conformance::shared_data;
 
 fn sum_of_numbers(samples: &Samples) -> f64 {
     match samples {
