@@ -140,7 +140,8 @@ fn days_of_civil(year: i64, month: i64, day: i64) -> i64 {
 
 /// Year, month and day of a count of days since 1970-01-01.
 pub fn civil_of_days(days: i64) -> (i64, i64, i64) {
-    let mut year = 1970 + days.div_euclid(366);
+    // Never later than the year itself: as if years were short before 1970, and long after.
+    let mut year = 1970 + days.div_euclid(if days < 0 { 365 } else { 366 });
     while days_of_civil(year + 1, 1, 1) <= days {
         year += 1;
     }
@@ -192,6 +193,7 @@ mod tests {
         fn prop_dates_come_back(days in -700_000i64..700_000) {
             let (y, m, d) = civil_of_days(days);
             prop_assert_eq!(days_of_civil(y, m, d), days);
+            prop_assert!((1..=12).contains(&m) && (1..=31).contains(&d), "{}-{}-{}", y, m, d);
         }
 
         #[test]
