@@ -246,7 +246,7 @@ impl Walk<'_> {
     fn leaf(&mut self, array: &Array, way: &Way) -> Result<(), String> {
         let name = class(&array.attributes);
         let at = self.found.arrays.len() as u64;
-        let dims = self.dims(array)?;
+        let dims = dimensions(array);
         let Some(content) = content(array, &name, at) else {
             let note = format!(
                 "'{}' left out: {:?} of class '{name}'",
@@ -267,26 +267,40 @@ impl Walk<'_> {
             value: None,
         };
         if leaf.count() == 1 || (!leaf.is_numeric() && leaf.count() > 0) {
-            let store = self.store;
-            leaf.value = text::short_value(&leaf, ByteOrder::Little, |_| {
-                Ok(little(array, store.raw(array).unwrap_or_default()))
-            })
-            .unwrap_or(None);
+            leaf.value = self.value(array, &leaf);
         }
         self.found.arrays.push(array.clone());
         self.found.variables.leaves.push(leaf);
         Ok(())
     }
 
-    /// MATLAB's dimensions; an empty array's data are its dimensions.
-    fn dims(&self, array: &Array) -> Result<Vec<u64>, String> {
-        if !array.attributes.contains_key("MATLAB_empty") {
-            let mut dims = reversed(&array.shape);
-            dims.resize(dims.len().max(2), 1);
-            return Ok(dims);
+    /// The value of a short array as text; one that cannot be read is noted.
+    fn value(&mut self, array: &Array, leaf: &Leaf) -> Option<String> {
+        let (store, mut fault) = (self.store, None);
+        let value = text::short_value(leaf, ByteOrder::Little, |_| {
+            let raw = store.raw(array).map_err(|e| fault = Some(e));
+            Ok(little(array, raw.unwrap_or_default()))
+        });
+        match fault {
+            None => value.ok().flatten(),
+            Some(fault) => {
+                let note = format!("the value of '{}' cannot be read: {fault}", leaf.name);
+                self.found.variables.notes.push(note);
+                None
+            }
         }
-        Ok(vec![0, 0])
     }
+}
+
+/// MATLAB's dimensions; an empty array (what it holds are its dimensions, not its elements) is
+/// taken for one of 0 × 0.
+fn dimensions(array: &Array) -> Vec<u64> {
+    if array.attributes.contains_key("MATLAB_empty") {
+        return vec![0, 0];
+    }
+    let mut dims = reversed(&array.shape);
+    dims.resize(dims.len().max(2), 1);
+    dims
 }
 
 fn class(attributes: &Attrs) -> String {

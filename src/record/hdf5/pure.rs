@@ -8,13 +8,13 @@ use ::hdf5::{
     FloatingPointLayout, FormatError, Group, MetadataCacheConfig, Object, ReferenceType,
 };
 
+use crate::record::bytes::read_exact_at;
 use crate::record::hdf5::chunked;
 use crate::record::hdf5::element::Element;
 use crate::record::hdf5::legacy::{self, Patch};
 use crate::record::hdf5::store::{
     Array, Attr, Attrs, DEEPEST, MOST_OBJECTS, Store, Target, Tree, join,
 };
-use crate::record::text::read_exact_at;
 
 /// Bytes of metadata that the library may keep.
 const METADATA_CACHE_BYTES: usize = 4 << 20;
