@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::path::Path;
 
+use crate::record::bytes::read_exact_at;
 use crate::record::csv;
 use crate::record::hdf5;
 use crate::record::lvm;
@@ -10,7 +11,6 @@ use crate::record::mat;
 use crate::record::parquet;
 use crate::record::source::{ReadError, Source};
 use crate::record::tdms;
-use crate::record::text::read_exact_at;
 use crate::record::uff;
 use crate::record::wav;
 
