@@ -162,6 +162,14 @@ pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     write_whole(path, |writer| writer.write_all(bytes))
 }
 
+/// Write a value as JSON on one line, as [`write_whole`] does.
+///
+/// # Errors
+/// As [`write_whole`]; also where the value has no place in JSON.
+pub fn write_json_line<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), OutputError> {
+    write_whole(path, |writer| Ok(serde_json::to_writer(writer, value)?))
+}
+
 /// Make an output folder with all folders above it.
 ///
 /// # Errors
