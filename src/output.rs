@@ -170,6 +170,26 @@ pub fn write_json_line<T: serde::Serialize>(path: &Path, value: &T) -> Result<()
     write_whole(path, |writer| Ok(serde_json::to_writer(writer, value)?))
 }
 
+/// A temporary file in the folder of a path, to be renamed to it; readable as new files are.
+///
+/// # Errors
+/// Where the folder is absent or not writable.
+pub fn temporary_beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let folder = path
+        .parent()
+        .filter(|p| !p.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    let ending = own_ending();
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".impactid-").suffix(&ending);
+    #[cfg(unix)]
+    let builder = {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666))
+    };
+    builder.tempfile_in(folder)
+}
+
 /// Make an output folder with all folders above it.
 ///
 /// # Errors

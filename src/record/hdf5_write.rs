@@ -10,6 +10,8 @@ use std::path::{Path, PathBuf};
 
 use ::hdf5::{AttrValue, DatasetBuilder, FileBuilder, FinishedGroup, GroupBuilder};
 
+use crate::output::temporary_beside;
+
 /// Version of the layout, written as `impactid_layout` into the file.
 const LAYOUT_VERSION: i64 = 1;
 /// Rows of a chunk.
@@ -269,26 +271,6 @@ impl CampaignWriter {
             })?;
         file.persist(&self.path).map(drop).map_err(|e| io(e.error))
     }
-}
-
-/// A temporary file in the folder of a path, to be renamed to it; readable as new files are.
-///
-/// # Errors
-/// Where the folder is absent or not writable.
-pub fn temporary_beside(path: &Path) -> std::io::Result<tempfile::NamedTempFile> {
-    let folder = path
-        .parent()
-        .filter(|p| !p.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
-    let ending = crate::output::own_ending();
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".impactid-").suffix(&ending);
-    #[cfg(unix)]
-    let builder = {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(std::fs::Permissions::from_mode(0o666))
-    };
-    builder.tempfile_in(folder)
 }
 
 /// Put a folder's records and folders into a group.

@@ -1,5 +1,6 @@
 use super::*;
 use crate::record::conformance::{named as samples, own, shared_data};
+use crate::record::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
 use crate::record::open::open;
 use crate::record::source::DatasetInfo;
 
@@ -103,6 +104,34 @@ fn valid_mixed_types_and_lengths_survive() {
     assert_eq!(x[7], f64::from(x[7] as f32));
     let text = samples(&*open(&single).unwrap(), 0, "note");
     assert_eq!(text, samples(&*sources[0], 0, "note"));
+}
+
+#[test]
+fn valid_channels_filled_up_with_empty_cells_are_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let made = dir.path().join("made.h5");
+    let mut writer = CampaignWriter::create(&made);
+    writer
+        .add(RecordTable {
+            name: "run".to_owned(),
+            sample_rate_hz: Some(1000.0),
+            channels: vec![
+                ColumnToWrite::numbers("long", "V", vec![1.0, 2.0, 3.0]),
+                ColumnToWrite::numbers("short", "V", vec![1.0]),
+            ],
+            attributes: Vec::new(),
+        })
+        .unwrap();
+    writer.finish().unwrap();
+    let sources = [open(&made).unwrap()];
+    for (name, notes) in [("out.h5", 0), ("out.parquet", 1), ("out.csv", 1)] {
+        let out = dir.path().join(name);
+        let target = Target::of(&out).unwrap();
+        let done = convert(&sources, target, &out, &Options::default()).unwrap();
+        assert_eq!(done.notes.len(), notes, "{name}: {:?}", done.notes);
+        let named = |note: &String| note.contains("3 rows (short)");
+        assert!(done.notes.iter().all(named), "{:?}", done.notes);
+    }
 }
 
 #[test]
