@@ -10,7 +10,8 @@ use crate::pipeline::PipelineError;
 use crate::pipeline::store::RECORDS_A_FILE;
 use crate::record::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Stored};
 use crate::synthetic::acquisition::{FULL_SCALE_V, converter_step};
-use crate::synthetic::run::{RATE_HZ, ROLES, sensitivities};
+use crate::synthetic::rig::{ROLES, sensitivities};
+use crate::synthetic::run::RATE_HZ;
 use crate::synthetic::{Faults, Laboratory, Plan, RawRecord, Truth, blocks};
 
 /// What a synthetic campaign is made of.
