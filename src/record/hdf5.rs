@@ -3,6 +3,7 @@
 //! `hdf5-pure` reads them at offsets on demand; what it refuses `rust-hdf5` reads.
 
 pub mod chunked;
+mod datatype;
 pub mod element;
 pub mod fallback;
 pub mod guard;
