@@ -67,7 +67,7 @@ fn meets(source: &dyn Source, d: usize, golden: &serde_json::Value, file: &str) 
         .iter()
         .filter(|c| c.name != "X_Value" && c.stored != StoredType::Text);
     for (channel, step) in signals.zip(steps) {
-        let stated: f64 = decimal_any(&channel.properties["Delta_X"]).unwrap();
+        let stated: f64 = header::decimal_any(&channel.properties["Delta_X"]).unwrap();
         assert_eq!(stated, step.as_f64().unwrap(), "{file}");
     }
 }

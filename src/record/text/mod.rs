@@ -2,6 +2,7 @@
 //!
 //! A file is never held whole, except one in UTF-16, which is transcoded once.
 
+pub mod cells;
 pub mod clock;
 pub mod decimal;
 pub mod number;
