@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 const LOCK_NAME: &str = ".impactid.lock";
 
 /// The folder in an output folder that outputs are written into, too.
-pub const FIGURES: &str = "figures";
+const FIGURES: &str = "figures";
 
 /// Ending of files that are being written.
 const PART_ENDING: &str = ".impactid-part";
@@ -160,6 +160,34 @@ pub fn write_whole(
 /// As [`write_whole`].
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     write_whole(path, |writer| writer.write_all(bytes))
+}
+
+/// Write a value as JSON on one line, as [`write_whole`] does.
+///
+/// # Errors
+/// As [`write_whole`]; also where the value has no place in JSON.
+pub fn write_json_line<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), OutputError> {
+    write_whole(path, |writer| Ok(serde_json::to_writer(writer, value)?))
+}
+
+/// A temporary file in the folder of a path, to be renamed to it; readable as new files are.
+///
+/// # Errors
+/// Where the folder is absent or not writable.
+pub fn temporary_beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let folder = path
+        .parent()
+        .filter(|p| !p.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    let ending = own_ending();
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".impactid-").suffix(&ending);
+    #[cfg(unix)]
+    let builder = {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666))
+    };
+    builder.tempfile_in(folder)
 }
 
 /// Make an output folder with all folders above it.

@@ -139,7 +139,7 @@ pub fn parse_unit(symbol: &str) -> Option<Unit> {
         .map(|&(_, dimension, to_si)| Unit { dimension, to_si })
 }
 
-/// The symbol of a unit.
+/// The symbol of a unit, the first where it has several; `None` for a factor that has none.
 pub fn symbol_of(unit: Unit) -> Option<&'static str> {
     UNITS
         .iter()
@@ -384,9 +384,7 @@ fn suffix_unit(suffix: &str) -> Option<Unit> {
     let slashed = suffix.to_lowercase().replace('_', "/");
     UNITS
         .iter()
-        .filter(|(symbol, dimension, _)| {
-            *dimension != Dimension::Number && (symbol.len() > 1 || *symbol != "°")
-        })
+        .filter(|(_, dimension, _)| *dimension != Dimension::Number)
         .find(|(symbol, _, _)| symbol.to_lowercase() == slashed)
         .map(|&(_, dimension, to_si)| Unit { dimension, to_si })
 }

@@ -55,7 +55,7 @@ pub fn brute_maps(
     Ok([start, rising, falling])
 }
 
-/// What every cell settles on, row by row as in `RegionMap`.
+/// What every cell settles on, row by row as in [`RegionMap`](super::RegionMap).
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range.

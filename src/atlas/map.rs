@@ -131,7 +131,7 @@ pub fn region_map(
 ///
 /// # Errors
 /// As [`region_map`].
-pub fn map_cells(
+fn map_cells(
     machine: &Machine,
     grid: &MapGrid,
     settings: &MapSettings,

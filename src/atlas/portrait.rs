@@ -1,5 +1,5 @@
 //! One motion in full: time series, impacts, Poincaré map at a phase of the drive, and
-//! autocorrelation (procedure G of NON-1-SIM).
+//! autocorrelation.
 
 use std::f64::consts::TAU;
 

@@ -32,7 +32,7 @@ pub fn resolve(channels: &Channels, machine: Machine, desk: &mut Desk<'_>) -> Ve
         let Some(placed) = channels.of(role) else {
             continue;
         };
-        if machine == Machine::Single && of_mass_y(role) {
+        if machine == Machine::Single && role.is_on_y_side() {
             desk.fault(
                 placed,
                 &format!("channels.{}", role.name()),
@@ -48,15 +48,8 @@ pub fn resolve(channels: &Channels, machine: Machine, desk: &mut Desk<'_>) -> Ve
     setups
 }
 
-fn of_mass_y(role: Role) -> bool {
-    matches!(
-        role,
-        Role::VelocityY | Role::DisplacementY | Role::AccelerationY | Role::FrameY
-    )
-}
-
 fn demand_motion(setups: &[ChannelSetup], desk: &mut Desk<'_>) {
-    if setups.iter().any(|s| s.role.dimension().is_some()) {
+    if setups.iter().any(|s| s.role.is_motion()) {
         return;
     }
     desk.book.fault(

@@ -206,12 +206,7 @@ fn cut_short(prints: &[Print]) -> Vec<Fault> {
 }
 
 /// Codes that the listing of the records tells already.
-const LISTED: [&str; 4] = [
-    "missing_channel",
-    "wrong_unit",
-    "unit_missing",
-    "unreadable_file",
-];
+const LISTED: [&str; 3] = ["missing_channel", "wrong_unit", "unit_missing"];
 
 fn fault_of(flag: &Flag, record: &Record, file: &Path) -> Fault {
     Fault {

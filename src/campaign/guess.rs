@@ -289,15 +289,12 @@ fn score(channel: &Seen, role: Role, two_sided: bool) -> u32 {
         Role::AccelerationX | Role::AccelerationY => kind == Kind::Acceleration,
         Role::FrameX | Role::FrameY => kind == Kind::Frame,
     };
-    let of_y = matches!(
-        role,
-        Role::VelocityY | Role::DisplacementY | Role::AccelerationY | Role::FrameY
-    );
+    let of_y = role.is_on_y_side();
     let alive = channel.range.is_some_and(|[low, high]| high > low);
     let base = 1 + 4 * u32::from(alive) + u32::from(channel.unit.is_some());
     match (
         fits,
-        role.dimension().is_some() || kind == Kind::Frame,
+        role.is_motion() || kind == Kind::Frame,
         side(&channel.name),
     ) {
         (false, _, _) => 0,

@@ -5,7 +5,7 @@ use super::listing::Listed;
 use super::quantity::Desk;
 use super::resolved::RecordEntry;
 use super::run_table::SWEEPS;
-use super::written::{Attributes, Excitation, Placed, Records, WrittenSweep};
+use super::written::{Attributes, Excitation, Placed, Records};
 use crate::record::{Setting, Sweep};
 use crate::units::{self, Dimension};
 
@@ -43,7 +43,10 @@ pub(super) fn defaults(records: &Records, desk: &mut Desk<'_>) -> Defaults {
         setting: Setting {
             stated_frequency_hz: frequency,
             clearance_m: clearance,
-            sweep: sweep(&records.sweep),
+            sweep: records
+                .sweep
+                .as_ref()
+                .map_or(Sweep::Unknown, |s| *s.get_ref()),
             drive_amplitude: amplitude.unwrap_or(1.0),
             sequence: 0,
             specimen: None,
@@ -52,14 +55,6 @@ pub(super) fn defaults(records: &Records, desk: &mut Desk<'_>) -> Defaults {
                 .as_ref()
                 .map_or(Excitation::Harmonic, |e| *e.get_ref()),
         },
-    }
-}
-
-fn sweep(written: &Placed<WrittenSweep>) -> Sweep {
-    match written.as_ref().map(|s| *s.get_ref()) {
-        Some(WrittenSweep::Up) => Sweep::Up,
-        Some(WrittenSweep::Down) => Sweep::Down,
-        Some(WrittenSweep::Unknown) | None => Sweep::Unknown,
     }
 }
 

@@ -11,9 +11,11 @@ use serde::{Deserialize, Deserializer, Serialize, de};
 use toml::Spanned;
 
 pub use crate::event::Rig as Machine;
-/// Which oscillator was measured, as the detection of impacts has to know it.
+pub use crate::event::detect::FlightKind as Flight;
 pub use crate::identify::uncertainty::Way;
 use crate::record::calibrate::ChannelKey;
+pub use crate::record::{Excitation, Sweep};
+pub use crate::report::Format;
 
 /// A value with its place in the file.
 pub type Placed<T> = Option<Spanned<T>>;
@@ -65,9 +67,6 @@ pub struct About {
     pub measured: Placed<String>,
 }
 
-pub use crate::event::detect::FlightKind as Flight;
-pub use crate::record::Excitation;
-
 /// `[records]`.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -87,7 +86,7 @@ pub struct Records {
     /// Drive amplitude, relative to the nominal one, of the records that state none.
     pub drive_amplitude: Placed<f64>,
     /// Sweep direction of the records that state none: up, down or unknown.
-    pub sweep: Placed<WrittenSweep>,
+    pub sweep: Placed<Sweep>,
     /// Excitation of the records that state none.
     pub excitation: Placed<Excitation>,
     /// Which attributes of the files hold the setting.
@@ -109,18 +108,6 @@ pub struct Attributes {
     pub sweep: Placed<String>,
     /// Attribute that names the rig, mass or bumper, where the campaign holds several.
     pub specimen: Placed<String>,
-}
-
-/// Sweep direction as written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum WrittenSweep {
-    /// Frequency stepped upward.
-    Up,
-    /// Frequency stepped downward.
-    Down,
-    /// Not known.
-    Unknown,
 }
 
 /// `[rig]`: nominal values, all optional.
@@ -234,8 +221,6 @@ pub struct Report {
     /// An image for the first page, relative to campaign.toml's folder.
     pub logo: Placed<String>,
 }
-
-pub use crate::report::Format;
 
 /// Paper size of the report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -8,7 +8,7 @@ use super::theory::{OutArgs, written};
 use super::{Exit, Failure, Voice, interrupt};
 use crate::atlas::map::{Kernel, MapSettings};
 use crate::atlas::shard::{AtlasPart, AtlasRequest, part};
-use crate::output::{Lock, write_bytes};
+use crate::output::{Lock, write_json_line};
 use crate::pipeline::theory::Study;
 use crate::pipeline::theory::plan::RegionsPlan;
 
@@ -148,7 +148,7 @@ impl Atlas {
         let _lock = Lock::take(&self.out.folder().join(format!(".part-{number}")))?;
         interrupt::watch(self.out.folder().to_path_buf());
         let part = computed(study, plan, (number, of))?;
-        write_bytes(&file, &serde_json::to_vec(&part).unwrap_or_default())?;
+        write_json_line(&file, &part)?;
         drop(_lock);
         let _ = std::fs::remove_dir(self.out.folder().join(format!(".part-{number}")));
         voice.say(&format!("{}; next: impactid merge", file.display()));

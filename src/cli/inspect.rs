@@ -50,10 +50,10 @@ const PICTURE: (usize, usize) = (72, 6);
 
 /// A channel in the list for programs.
 #[derive(Serialize)]
-struct Listed<'a> {
+struct Listed {
     #[serde(flatten)]
     summary: Summary,
-    dataset: &'a str,
+    dataset: String,
     file: String,
 }
 
@@ -102,25 +102,20 @@ impl Inspect {
         Ok(found)
     }
 
-    fn list(
-        &self,
-        source: &dyn Source,
-        listed: &mut Vec<serde_json::Value>,
-    ) -> Result<(), ReadError> {
+    fn list(&self, source: &dyn Source, listed: &mut Vec<Listed>) -> Result<(), ReadError> {
         let chosen = self.chosen(source)?;
         let read: Vec<Vec<Summary>> = chosen
             .par_iter()
             .map(|&d| summaries(source, d).map(|(s, _)| s))
             .collect::<Result<_, _>>()?;
         for (&d, summaries) in chosen.iter().zip(read) {
-            let dataset = source.datasets()[d].name.as_str();
+            let dataset = &source.datasets()[d].name;
             let file = source.path().display().to_string();
-            let rows = summaries.into_iter().map(|summary| Listed {
+            listed.extend(summaries.into_iter().map(|summary| Listed {
                 summary,
-                dataset,
+                dataset: dataset.clone(),
                 file: file.clone(),
-            });
-            listed.extend(rows.filter_map(|row| serde_json::to_value(row).ok()));
+            }));
         }
         Ok(())
     }

@@ -66,7 +66,8 @@ pub fn whole(parts: &[AtlasPart], out: &OutArgs, voice: Voice) -> Result<Exit, F
         parts.len(),
         maps[0].len()
     ));
-    let text = serde_json::to_string(&first.request).unwrap_or_default();
+    let text = serde_json::to_string(&first.request)
+        .map_err(|e| Failure::new(e.to_string(), "please report it with the command line"))?;
     let work = Work {
         folder: out.folder(),
         text: &text,

@@ -81,9 +81,9 @@ enum Verb {
     Check(check::Check),
     /// All stages: from campaign.toml to identification.json and report.pdf
     Run(run::Run),
-    /// First stage: read the records, measure the drive, find the impacts
+    /// First stage: read the records and keep them calibrated
     Ingest(stage::Ingest),
-    /// Second stage: tell the type of motion of each record
+    /// Second stage: measure the drive, find the impacts, tell the motion of each record
     Classify(stage::Classify),
     /// Third stage: fit the parameters
     Identify(stage::Identify),

@@ -79,7 +79,8 @@ const CLASSIFY: &str = "\
 Example:
   impactid classify results/
 
-It reads what `impactid ingest` left there and writes records.parquet and boundaries.csv.";
+It reads what `impactid ingest` left there and writes records.parquet, impacts.parquet and
+boundaries.csv.";
 
 /// Arguments of `impactid identify`.
 #[derive(Debug, Args)]

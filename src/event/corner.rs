@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::event::kinematics::{Body, ClosingFrom, Kinematics};
 use crate::record::Role;
+use crate::signal::interpolation::interpolate;
 use crate::signal::{drift, robust};
 
 /// Change of both closing speeds at an impact per unit of the logarithm of a corner.
@@ -48,7 +49,7 @@ impl Shifts {
             let shift = self.0[i].as_ref()?;
             Some(CornerShift {
                 role: shift.role,
-                speed_m_s: drift::interpolate(&shift.speeds_m_s, time)?,
+                speed_m_s: interpolate(&shift.speeds_m_s, time)?,
             })
         })
     }

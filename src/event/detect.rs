@@ -173,12 +173,19 @@ fn refined(
     refine::impacts(kinematics, candidates, &instants, drive, arc)
 }
 
+/// Where impacts may be, and what speaks for and against them.
+#[derive(Default)]
 struct Fused {
     candidates: Vec<Candidate>,
+    /// Samples that a jump takes.
     jump_samples: usize,
+    /// Contact pulses without a jump of the velocity.
     unsupported: usize,
+    /// Jumps without a contact pulse.
     missed: usize,
+    /// Jumps upward, as the closing velocity has none at an impact.
     upward: usize,
+    /// Jumps downward, as impacts make them.
     downward: usize,
 }
 
@@ -190,10 +197,7 @@ fn bounces(velocity: &Series) -> Fused {
     Fused {
         candidates,
         jump_samples,
-        unsupported: 0,
-        missed: 0,
-        upward: 0,
-        downward: 0,
+        ..Fused::default()
     }
 }
 
@@ -311,10 +315,7 @@ fn from_contact_alone(closed: &[Closed], dead_from: usize) -> Fused {
     Fused {
         candidates,
         jump_samples: 1,
-        unsupported: 0,
-        missed: 0,
-        upward: 0,
-        downward: 0,
+        ..Fused::default()
     }
 }
 

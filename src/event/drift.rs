@@ -3,6 +3,7 @@
 
 use crate::event::DriveTone;
 use crate::event::kinematics::Series;
+use crate::signal::interpolation::interpolate;
 use crate::signal::{drift, robust};
 
 /// Remove offset (and, where a high-pass was undone, ramp) from a closing velocity.
@@ -93,7 +94,7 @@ fn period_line(velocity: &Series, drive: Option<&DriveTone>, rate_hz: f64) -> Op
 
 fn strobed_slope(values: &[f64], period: f64) -> f64 {
     let differences: Vec<f64> = (0..values.len())
-        .map_while(|i| drift::interpolate(values, i as f64 + period).map(|v| v - values[i]))
+        .map_while(|i| interpolate(values, i as f64 + period).map(|v| v - values[i]))
         .collect();
     robust::median(&differences).unwrap_or(0.0) / period
 }

@@ -11,6 +11,7 @@ pub mod jumps;
 pub mod kinematics;
 pub mod refine;
 
+pub use corner::CornerShift;
 pub use detect::{Detection, detect};
 
 use serde::{Deserialize, Serialize};
@@ -56,8 +57,6 @@ pub struct MassSpeeds {
     /// Extrapolated from the arc after to the impact's time.
     pub after_m_s: f64,
 }
-
-pub use corner::CornerShift;
 
 /// One impact: when, at which phase of the drive, how fast before and after, how it was seen.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

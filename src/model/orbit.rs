@@ -78,14 +78,6 @@ impl Orbit {
     pub fn exists(&self) -> bool {
         self.existence == Existence::Exists
     }
-
-    /// The motion at a drive phase within the first drive period after the impact; whole
-    /// periods are added by `period_index`.
-    pub fn at_phase(&self, phase: f64, period_index: u32) -> State {
-        let lead = (phase - self.phase_at_impact).rem_euclid(std::f64::consts::TAU);
-        let tau = lead / self.setting.frequency_ratio;
-        self.at(tau + f64::from(period_index) * self.setting.period())
-    }
 }
 
 /// Periodic response of one mass to a unit velocity jump once per period T: the free mode just

@@ -57,19 +57,6 @@ impl Oscillator {
         }
     }
 
-    /// A mass whose spring stiffness is `stiffness` times the nominal one while mass and
-    /// dashpot stay: the frequency ratio becomes √stiffness and β = b/(2√(km)) falls to
-    /// β/√stiffness, so that X'' + 2βX' + stiffness·X = … as in eq. (15) of the paper.
-    pub fn with_stiffness(damping_ratio: f64, stiffness: f64, drive_amplitude: f64) -> Self {
-        let ratio = stiffness.sqrt();
-        Self {
-            mass: 1.0,
-            natural_frequency_ratio: ratio,
-            damping_ratio: damping_ratio / ratio,
-            drive_amplitude,
-        }
-    }
-
     /// Coefficient of X' in X'' + 2δX' + Ω²X = …: δ = β_i Ω_i.
     pub fn decay_rate(&self) -> f64 {
         self.damping_ratio * self.natural_frequency_ratio
@@ -200,7 +187,9 @@ impl Machine {
     }
 
     /// The double oscillator whose second mass differs: X nominal with β, Y with the same
-    /// dashpot b and the given ratios of drive, stiffness and mass.
+    /// dashpot b and the given ratios of drive, stiffness and mass. With another stiffness alone
+    /// β = b/(2√(km)) becomes β/√stiffness, so that Y'' + 2βY' + stiffness·Y = … as in eq. (15) of
+    /// the paper.
     pub fn asymmetric(damping_ratio: f64, restitution: f64, asymmetry: Asymmetry) -> Self {
         let Asymmetry {
             drive_amplitude,

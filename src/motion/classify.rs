@@ -76,11 +76,6 @@ impl Finding {
             _ => None,
         }
     }
-
-    /// Whether the program is sure of it.
-    pub fn is_sure(&self) -> bool {
-        self.confidence >= 0.9
-    }
 }
 
 fn undetermined(reason: impl Into<String>, evidence: Evidence) -> Finding {

@@ -1,7 +1,8 @@
 //! Closure of a motion after n drive periods: of its waveform and of its impacts.
 
 use crate::event::Impact;
-use crate::signal::{drift, robust};
+use crate::signal::interpolation::{interpolate, noise_gain};
+use crate::signal::robust;
 
 /// How well a waveform closes after n drive periods.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,7 +42,7 @@ pub fn waveform(
             let differences: Vec<f64> = (0..values.len())
                 .map_while(|i| {
                     let partner = i as f64 + lag;
-                    drift::interpolate(values, partner).map(|v| (i, partner, v))
+                    interpolate(values, partner).map(|v| (i, partner, v))
                 })
                 .filter(|(i, partner, _)| !blocked[*i] && !blocked[partner.round() as usize])
                 .map(|(i, _, v)| v - values[i])
@@ -50,7 +51,7 @@ pub fn waveform(
             let square: f64 = differences.iter().map(|d| (d - centre).powi(2)).sum();
             let samples = differences.len();
             // Interpolation smooths the noise of one of the two: make lags comparable.
-            let square = square * 2.0 / (1.0 + drift::interpolation_noise(lag.fract()));
+            let square = square * 2.0 / (1.0 + noise_gain(lag.fract()));
             (samples >= 16 && scale > 0.0).then(|| WaveformClosure {
                 periods_n: n,
                 ratio: (0.5 * square / samples as f64).sqrt() / scale,

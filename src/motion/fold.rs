@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::event::kinematics::Series;
 use crate::event::{Detection, DriveTone};
 use crate::record::{Channel, Record, Role};
-use crate::signal::drift;
+use crate::signal::interpolation::interpolate;
 
 /// Bins in one drive period.
 const BINS_PER_PERIOD: usize = 64;
@@ -159,7 +159,7 @@ impl Axis {
         let (mut product, mut square) = (0.0, 0.0);
         for i in 0..values.len() {
             let partner = i as f64 + lag;
-            let Some(later) = drift::interpolate(values, partner) else {
+            let Some(later) = interpolate(values, partner) else {
                 break;
             };
             if !self.blocked[i] && !self.blocked[partner.round() as usize] {

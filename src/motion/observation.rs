@@ -81,7 +81,7 @@ impl Observation {
 
     /// Whether nothing touched: no impact was seen, and none of the evidence speaks of one. What
     /// is not harmonic in such a record widens the error of its response.
-    pub fn has_no_impact(&self) -> bool {
+    fn has_no_impact(&self) -> bool {
         self.impacts.is_empty()
             && self.unsupported_pulses == 0
             && matches!(
@@ -221,15 +221,9 @@ const DRIVE_CHANGES: f64 = 5e-3;
 
 /// Free decay of the first motion channel that shows one.
 fn free_decay(record: &Record) -> Option<Decay> {
-    let motion = |role: &Role| {
-        !matches!(
-            role,
-            Role::Drive | Role::Contact | Role::FrameX | Role::FrameY
-        )
-    };
     Role::ALL
         .into_iter()
-        .filter(motion)
+        .filter(|role| role.is_motion())
         .filter_map(|role| record.values(role))
         .filter(|values| values.iter().all(|v| v.is_finite()))
         .find_map(|values| decay::fit(values, record.sample_rate_hz))

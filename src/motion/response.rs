@@ -52,12 +52,7 @@ pub fn responses(record: &Record, drive: &DriveTone) -> Vec<Response> {
     record
         .channels
         .iter()
-        .filter(|c| {
-            !matches!(
-                c.role,
-                Role::Drive | Role::Contact | Role::FrameX | Role::FrameY
-            )
-        })
+        .filter(|c| c.role.is_motion())
         .filter_map(|c| {
             let raw = tone_at_drive(&c.values, record.sample_rate_hz, drive)?;
             let (real, imaginary, gain) = match c.high_pass_hz {

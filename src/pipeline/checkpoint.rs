@@ -5,7 +5,6 @@
 //! and time of change of every file. A chunk of another key, or one that cannot be read, is
 //! observed anew, so a resumed run gives the bytes of an undisturbed one.
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
@@ -14,6 +13,8 @@ use sha2::{Digest, Sha256};
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::motion::Observation;
 use crate::output::{self, OutputError};
+use crate::pipeline::inputs::hexadecimal;
+use crate::pipeline::packed;
 
 /// Folder of the chunks in the output folder; it is removed when the run is done.
 const FOLDER: &str = ".impactid-observed";
@@ -70,12 +71,7 @@ impl Checkpoint {
 
     /// The observations of a chunk; `None` where it is not there, of another run or unreadable.
     pub fn load(&self, number: usize, records: usize) -> Option<Vec<Observation>> {
-        let file = std::fs::File::open(self.path(number)).ok()?;
-        let mut text = String::new();
-        flate2::read::GzDecoder::new(file)
-            .read_to_string(&mut text)
-            .ok()?;
-        let chunk: Chunk<Vec<Observation>> = serde_json::from_str(&text).ok()?;
+        let chunk: Chunk<Vec<Observation>> = packed::read(&self.path(number)).ok()?;
         (chunk.key == self.key && chunk.observations.len() == records).then_some(chunk.observations)
     }
 
@@ -88,12 +84,7 @@ impl Checkpoint {
             key: self.key.clone(),
             observations,
         };
-        output::write_whole(&self.path(number), |writer| {
-            let mut gzip = flate2::write::GzEncoder::new(writer, flate2::Compression::fast());
-            serde_json::to_writer(&mut gzip, &chunk)?;
-            gzip.finish()?;
-            Ok(())
-        })
+        packed::write(&self.path(number), &chunk)
     }
 }
 
@@ -119,10 +110,7 @@ fn key(campaign: &ResolvedCampaign) -> String {
         hash.update(file.to_string_lossy().as_bytes());
         hash.update(state(file).as_bytes());
     }
-    hash.finalize()
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    hexadecimal(hash)
 }
 
 /// Length and time of the last change of a file.

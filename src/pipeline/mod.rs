@@ -8,6 +8,7 @@ pub mod coverage;
 pub mod identify;
 pub mod inputs;
 pub mod observe;
+mod packed;
 pub mod plan;
 pub mod published;
 pub mod report;

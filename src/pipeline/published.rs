@@ -10,6 +10,7 @@ use crate::identify::published::{
 use crate::identify::{Identification, Verdict};
 use crate::pipeline::identify::{settings, versions};
 use crate::pipeline::{PipelineError, inputs, report, store};
+use crate::record::source::ReadError;
 use crate::report::ReportContent;
 use crate::report::content::DataTable;
 
@@ -42,8 +43,7 @@ pub fn run(
     content.summary.name = campaign.name.clone();
     content.summary.rig = "closing speeds as published; nothing was measured here".into();
     content.tables = vec![table(&speeds, found_damping(&found), published)];
-    content.settings_text =
-        serde_json::to_string_pretty(&content.identification.settings).unwrap_or_default();
+    content.settings_text = format!("{:#}", content.identification.settings);
     content.command_line = command_line.to_owned();
     let report = report::render(&content, campaign)?;
     store::write_resolved(campaign, out)?;
@@ -91,9 +91,13 @@ fn table(speeds: &[PublishedSpeed], found: Option<f64>, published: &Published) -
 
 /// Read the table of speeds.
 fn read(path: &Path) -> Result<Vec<PublishedSpeed>, PipelineError> {
-    let wrong = |reason: String| PipelineError::Table {
-        table: path.display().to_string(),
-        reason,
+    let wrong = |found: String| {
+        ReadError::new(
+            path,
+            "a CSV table of published speeds, one row a speed",
+            found,
+            "Write its columns as docs/campaign.md lists them under [published].",
+        )
     };
     let mut reader = csv::ReaderBuilder::new()
         .comment(Some(b'#'))
@@ -103,7 +107,7 @@ fn read(path: &Path) -> Result<Vec<PublishedSpeed>, PipelineError> {
     let rows: Result<Vec<PublishedSpeed>, csv::Error> = reader.deserialize().collect();
     let rows = rows.map_err(|e| wrong(e.to_string()))?;
     if rows.is_empty() {
-        return Err(wrong("it holds no speeds; write one row a speed".into()));
+        return Err(wrong("no row".into()).into());
     }
     Ok(rows)
 }

@@ -35,7 +35,7 @@ pub fn files(
     found: &Found,
     command_line: &str,
 ) -> Result<Vec<ReportFile>, PipelineError> {
-    render(&content(campaign, observed, found, command_line), campaign)
+    render(&content(campaign, observed, found, command_line)?, campaign)
 }
 
 /// Draw a content as the campaign asks for it.
@@ -73,16 +73,19 @@ pub fn write(files: &[ReportFile], out: &Path) -> Result<(), PipelineError> {
 }
 
 /// What the report shows, as plain data.
+///
+/// # Errors
+/// Where the settings cannot be written as text.
 pub fn content(
     campaign: &ResolvedCampaign,
     observed: &Observed,
     found: &Found,
     command_line: &str,
-) -> ReportContent {
+) -> Result<ReportContent, PipelineError> {
     let chosen = chosen_records(&observed.observations, &campaign.report.points);
     let decays = shown_decays(&observed.observations);
-    assemble(&Gathered {
-        campaign: &facts(campaign),
+    Ok(assemble(&Gathered {
+        campaign: &facts(campaign)?,
         observations: &observed.observations,
         brackets: &observed.brackets,
         identification: &found.identification,
@@ -94,7 +97,7 @@ pub fn content(
         decays: &decays,
         decay_records: &records(campaign, &decays),
         command_line,
-    })
+    }))
 }
 
 fn records(campaign: &ResolvedCampaign, indices: &[usize]) -> Vec<Record> {
@@ -155,8 +158,8 @@ fn options(look: &Look) -> Result<RenderOptions, PipelineError> {
 }
 
 /// What the report says of the campaign itself.
-fn facts(campaign: &ResolvedCampaign) -> CampaignFacts {
-    CampaignFacts {
+fn facts(campaign: &ResolvedCampaign) -> Result<CampaignFacts, PipelineError> {
+    Ok(CampaignFacts {
         title: campaign.report.title.clone(),
         name: campaign.name.clone(),
         rig: campaign.machine,
@@ -183,8 +186,11 @@ fn facts(campaign: &ResolvedCampaign) -> CampaignFacts {
             records: Vec::new(),
             ..campaign.clone()
         })
-        .unwrap_or_default(),
-    }
+        .map_err(|e| PipelineError::Table {
+            table: "the settings".to_owned(),
+            reason: e.to_string(),
+        })?,
+    })
 }
 
 fn nominal(campaign: &ResolvedCampaign) -> Vec<(String, f64, String)> {

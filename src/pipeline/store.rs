@@ -1,15 +1,14 @@
 //! What the stages leave for each other: the resolved campaign, the calibrated records, the
 //! observations.
 
-use std::io::{Read, Write};
 use std::path::Path;
 
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
 use crate::motion::{Observation, brackets};
-use crate::output::{write_bytes, write_whole};
+use crate::output::write_bytes;
 use crate::pipeline::identify::{Found, Kept};
 use crate::pipeline::observe::each_record;
-use crate::pipeline::{Observed, PipelineError, Progress};
+use crate::pipeline::{Observed, PipelineError, Progress, packed};
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
 use crate::record::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
 use crate::record::{Flag, Record, Role};
@@ -108,8 +107,8 @@ pub fn ingest(
     Ok(usable)
 }
 
-/// Most records of one file of ours: what memory holds of them at a time.
-const RECORDS_A_FILE: usize = 1000;
+/// Most records of one file of ours: what memory holds of them at a time, for each thread.
+pub(super) const RECORDS_A_FILE: usize = 1000;
 
 /// Calibrated records on their way to the disk, file by file.
 struct Keeping<'a> {
@@ -231,17 +230,8 @@ pub fn classify(out: &Path, progress: Progress) -> Result<Observed, PipelineErro
     }
     observed.brackets = brackets(&observed.observations);
     super::tables::write_all(&observed, out)?;
-    write_observations(&observed.observations, out)?;
+    packed::write(&out.join(OBSERVATIONS), &observed.observations)?;
     Ok(observed)
-}
-
-fn write_observations(observations: &[Observation], out: &Path) -> Result<(), PipelineError> {
-    let path = out.join(OBSERVATIONS);
-    Ok(write_whole(&path, |writer| {
-        let mut gzip = flate2::write::GzEncoder::new(writer, flate2::Compression::fast());
-        serde_json::to_writer(&mut gzip, observations)?;
-        gzip.finish()?.flush()
-    })?)
 }
 
 /// Keep what the report needs of stage three beside identification.json.
@@ -269,13 +259,7 @@ pub fn read_found(out: &Path) -> Result<Found, PipelineError> {
 /// Where it is missing or unreadable.
 pub fn read_observed(out: &Path) -> Result<Observed, PipelineError> {
     let path = out.join(OBSERVATIONS);
-    let file = std::fs::File::open(&path).map_err(|e| store_error(&path, e))?;
-    let mut text = String::new();
-    flate2::read::GzDecoder::new(file)
-        .read_to_string(&mut text)
-        .map_err(|e| store_error(&path, e))?;
-    let observations: Vec<Observation> =
-        serde_json::from_str(&text).map_err(|e| store_error(&path, e))?;
+    let observations: Vec<Observation> = packed::read(&path).map_err(|e| store_error(&path, e))?;
     let brackets = brackets(&observations);
     Ok(Observed {
         observations,

@@ -7,9 +7,11 @@ use serde::Serialize;
 
 use crate::output::write_bytes;
 use crate::pipeline::PipelineError;
+use crate::pipeline::store::RECORDS_A_FILE;
 use crate::record::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Stored};
 use crate::synthetic::acquisition::{FULL_SCALE_V, converter_step};
-use crate::synthetic::run::{RATE_HZ, ROLES, sensitivities};
+use crate::synthetic::rig::{ROLES, sensitivities};
+use crate::synthetic::run::RATE_HZ;
 use crate::synthetic::{Faults, Laboratory, Plan, RawRecord, Truth, blocks};
 
 /// What a synthetic campaign is made of.
@@ -51,9 +53,6 @@ struct TruthFile<'a> {
 /// The file that holds a campaign's records where one does.
 const RECORDS_FILE: &str = "records.h5";
 const RUN_TABLE: &str = "runs.csv";
-
-/// Most records of one file: what memory holds of a campaign at a time, for each thread.
-const RECORDS_A_FILE: usize = 1000;
 
 /// Simulate a campaign and write it: records.h5 (converter counts), runs.csv, campaign.toml and
 /// truth.json. A campaign of more than a thousand records is written to several files as it is

@@ -103,7 +103,7 @@ fn quantity(attributes: &BTreeMap<String, String>, key: &str, wanted: Dimension)
 }
 
 /// `2000 Hz` as a number and a unit (empty where none is written).
-pub fn number_and_unit(text: &str) -> Option<(f64, &str)> {
+fn number_and_unit(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     let (number, taken) = crate::record::text::number::parse_prefix(text.as_bytes(), b'.')
         .filter(|&(_, n)| text.as_bytes().get(n) != Some(&b','))

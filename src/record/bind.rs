@@ -156,7 +156,7 @@ pub(super) fn flag(
         channel: Some(channel.to_owned()),
         message,
         remedy: remedy.to_owned(),
-        excludes: !matches!(setup.role, Role::FrameX | Role::FrameY),
+        excludes: !setup.role.is_frame(),
     }
 }
 

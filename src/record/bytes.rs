@@ -24,15 +24,11 @@ pub struct FileBytes {
 
 impl FileBytes {
     /// Map a file. An empty file is a valid, empty sequence of bytes.
+    ///
+    /// # Errors
+    /// Where the system does not open or map it.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
-        let fault = |error: std::io::Error| ReadError {
-            path: path.to_path_buf(),
-            channel: None,
-            expected: "a readable file".into(),
-            found: error.to_string(),
-            byte: None,
-            remedy: "Check the path and the permission to read it.".into(),
-        };
+        let fault = |error: std::io::Error| ReadError::io(path, &error);
         let file = File::open(path).map_err(fault)?;
         let length = file.metadata().map_err(fault)?.len();
         let map = match length {
@@ -232,6 +228,26 @@ impl<'a> Cursor<'a> {
     pub fn refuse(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
         self.file.refuse(self.at, expected, found)
     }
+}
+
+/// Read at an offset without moving a position that threads would share.
+#[cfg(unix)]
+pub fn read_exact_at(file: &File, into: &mut [u8], offset: u64) -> std::io::Result<()> {
+    std::os::unix::fs::FileExt::read_exact_at(file, into, offset)
+}
+
+/// Read at an offset without relying on a position that threads share.
+#[cfg(windows)]
+pub fn read_exact_at(file: &File, mut into: &mut [u8], mut offset: u64) -> std::io::Result<()> {
+    while !into.is_empty() {
+        let n = std::os::windows::fs::FileExt::seek_read(file, into, offset)?;
+        if n == 0 {
+            return Err(std::io::ErrorKind::UnexpectedEof.into());
+        }
+        into = &mut into[n..];
+        offset += n as u64;
+    }
+    Ok(())
 }
 
 /// Text of unknown encoding: UTF-8 where it is valid, else Windows-1252 (of which every byte

@@ -137,7 +137,7 @@ pub fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool) {
 
 /// What is wrong with a frame's channel leaves no record out.
 fn lenient(role: Role, mut flag: Flag) -> Flag {
-    flag.excludes &= !matches!(role, Role::FrameX | Role::FrameY);
+    flag.excludes &= !role.is_frame();
     flag
 }
 

@@ -60,6 +60,40 @@ pub fn peak_bytes<T>(work: impl FnOnce() -> T) -> (T, usize) {
     (result, (PEAK.with(Cell::get) - before).max(0) as usize)
 }
 
+/// A file of the repository's own folder of formats.
+pub fn own(name: &str) -> PathBuf {
+    own_folder().join(name)
+}
+
+fn own_folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/formats")
+}
+
+/// The sine that the repository's own files hold, at a sample.
+pub fn wave(i: usize) -> f64 {
+    (std::f64::consts::TAU * 12.6 * i as f64 / 2000.0).sin()
+}
+
+/// The samples of a channel by its name.
+#[track_caller]
+pub fn named(source: &dyn Source, dataset: usize, name: &str) -> Samples {
+    let channel = source.datasets()[dataset]
+        .channel_index(name)
+        .unwrap_or_else(|| panic!("no {name}"));
+    source.read(dataset, &[channel]).unwrap().remove(0)
+}
+
+/// The real numbers of a channel by its name.
+#[track_caller]
+pub fn real(source: &dyn Source, dataset: usize, name: &str) -> Vec<f64> {
+    named(source, dataset, name).into_real().unwrap()
+}
+
+/// The folder of the laboratories' data, or `None` with a line where it is absent.
+pub fn shared_data() -> Option<PathBuf> {
+    folder("")
+}
+
 /// The folder of conformance files, or `None` with a line where it is absent.
 pub fn folder(name: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -325,8 +359,7 @@ pub fn mutate_text(random: &mut Random, bytes: &mut Vec<u8>) {
 
 /// Files of the repository's own folder of formats with these endings, as seeds of mutations.
 pub fn own_seeds(endings: &[&str]) -> Vec<Vec<u8>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/formats");
-    let entries = std::fs::read_dir(folder)
+    let entries = std::fs::read_dir(own_folder())
         .unwrap()
         .map(|e| e.unwrap().path());
     let fits = |p: &PathBuf| {

@@ -167,8 +167,8 @@ pub fn convert(
 ) -> Result<Converted, ConvertError> {
     let mut items = items(sources, options);
     let notes = match target {
-        Target::Hdf5 => items.iter().flat_map(texts_left_out).collect(),
-        Target::Parquet | Target::Csv => Vec::new(),
+        Target::Hdf5 => items.iter().filter_map(texts_left_out).collect(),
+        Target::Parquet | Target::Csv => items.iter().filter_map(filled_up).collect(),
     };
     if target == Target::Hdf5 {
         items.retain(Item::has_numbers);
@@ -196,6 +196,22 @@ fn texts_left_out(item: &Item) -> Option<String> {
         let names = names.join(", ");
         format!(
             "record '{}': texts are left out ({names}); Parquet and CSV keep them",
+            item.name
+        )
+    })
+}
+
+/// A note where a record has channels of several lengths, which the columns of a table cannot be.
+fn filled_up(item: &Item) -> Option<String> {
+    let channels = item.channels();
+    let longest = channels.iter().map(|c| c.samples).max()?;
+    let shorter = channels.iter().filter(|c| c.samples < longest);
+    let names: Vec<&str> = shorter.map(|c| c.name.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        let names = names.join(", ");
+        format!(
+            "record '{}': empty cells fill shorter channels up to {longest} rows ({names}); HDF5 \
+             keeps their lengths",
             item.name
         )
     })

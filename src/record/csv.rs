@@ -13,7 +13,8 @@ use crate::record::csv::dialect::Dialect;
 use crate::record::csv::header::Header;
 use crate::record::csv::time_axis::TimeAxis;
 use crate::record::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType};
-use crate::record::text::table::{self, Cells, Kind, Layout, Lines};
+use crate::record::text::cells::{Cells, Lines, is_row};
+use crate::record::text::table::{self, Kind, Layout};
 use crate::record::text::{TextFile, decode, number};
 
 /// Bytes at the front of a file from which its dialect is told.
@@ -75,7 +76,7 @@ impl Front {
         let plain: Vec<&[u8]> = all
             .iter()
             .map(|&(_, l)| l)
-            .filter(|l| table::is_row(l, dialect::COMMENTS))
+            .filter(|l| is_row(l, dialect::COMMENTS))
             .collect();
         if plain.is_empty() {
             return Err(no_table(
@@ -91,9 +92,7 @@ impl Front {
             dialect::detect(&plain).ok_or_else(|| no_table(text, "no column of numbers"))?;
         let first = all
             .iter()
-            .position(|(_, l)| {
-                table::is_row(l, dialect::COMMENTS) && dialect::is_value_row(l, &dialect)
-            })
+            .position(|(_, l)| is_row(l, dialect::COMMENTS) && dialect::is_value_row(l, &dialect))
             .ok_or_else(|| no_table(text, "no row of numbers"))?;
         let before: Vec<&[u8]> = all[..first].iter().map(|&(_, l)| l).collect();
         let header = header::read(&before, &dialect);
@@ -107,7 +106,7 @@ impl Front {
     /// The rows of the head, cell by cell.
     fn rows<'a>(&self, head: &'a [u8], quotes: bool) -> HeadRows<'a> {
         Lines::new(&head[self.offset..], quotes)
-            .filter(|(_, l)| table::is_row(l, dialect::COMMENTS))
+            .filter(|(_, l)| is_row(l, dialect::COMMENTS))
             .map(|(_, l)| Cells::new(l, self.dialect.separator).collect())
             .collect()
     }

@@ -3,6 +3,7 @@
 //! `hdf5-pure` reads them at offsets on demand; what it refuses `rust-hdf5` reads.
 
 pub mod chunked;
+mod datatype;
 pub mod element;
 pub mod fallback;
 pub mod guard;
@@ -17,18 +18,19 @@ pub mod store;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
+
 use crate::record::hdf5::element::{Element, Stride};
 use crate::record::hdf5::guard::Guarded;
 use crate::record::hdf5::plan::{Locator, Part, Plan, Plans};
 use crate::record::hdf5::store::{Array, Store, Tree};
-use rayon::prelude::*;
-
 use crate::record::rate;
 use crate::record::source::{self, DatasetInfo, ReadError, Samples, Source};
 use crate::units::parse_unit;
 
 /// The first bytes of an HDF5 file.
 pub const SIGNATURE: [u8; 8] = [0x89, b'H', b'D', b'F', b'\r', b'\n', 0x1A, b'\n'];
+
 struct Hdf5Source {
     path: PathBuf,
     store: Box<dyn Store>,
@@ -123,7 +125,7 @@ impl Hdf5Source {
         .channel(&array.path)
     }
 
-    /// The bytes of an array, once its size is known to be earnest.
+    /// The bytes of an array, or of its entry where the record is one of many in it.
     fn bytes(&self, plan: &Plan, array: &Array) -> Result<Vec<u8>, ReadError> {
         match plan.slab {
             Some(slab) => self.store.rows(array, slab, 1),
@@ -160,9 +162,7 @@ impl Hdf5Source {
         }
         Ok(())
     }
-}
 
-impl Hdf5Source {
     /// Take the rates that no attribute states from the ends of the time axes.
     fn measure_rates(&mut self) {
         let open = |(d, info): (usize, &DatasetInfo)| {
@@ -335,10 +335,8 @@ impl Source for Hdf5Source {
                 self.read_array(plan, number, channels, &mut out)?;
             }
         }
-        Ok(out
-            .into_iter()
-            .map(|s| s.unwrap_or(Samples::Real(Vec::new())))
-            .collect())
+        // every channel lies in one of the plan's arrays
+        Ok(out.into_iter().flatten().collect())
     }
 }
 

@@ -1,5 +1,6 @@
 //! LabVIEW measurement files (LVM): a header, then one or more tables with headers of their own.
 
+mod header;
 pub mod scan;
 
 use std::collections::BTreeMap;
@@ -10,7 +11,8 @@ use crate::record::rate;
 use crate::record::source::{
     self, ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType,
 };
-use crate::record::text::table::{self, Cells, Kind, Layout, Lines, Separator};
+use crate::record::text::cells::{Cells, Lines, Separator};
+use crate::record::text::table::{self, Kind, Layout};
 use crate::record::text::{TextFile, number};
 
 /// Bytes of a table's head from which its rate is told.
@@ -109,12 +111,12 @@ impl LvmSource {
             name,
             time_axis: shown
                 .iter()
-                .position(|&i| columns[i] == Column::X(0) && x_is_time(segment, 0)),
+                .position(|&i| columns[i] == Column::X(0) && header::x_is_time(segment, 0)),
             channels: shown
                 .iter()
                 .map(|&i| channel(keys, segment, &layout, columns[i], i))
                 .collect(),
-            attributes: attributes(keys, segment),
+            attributes: header::attributes(keys, segment),
         };
         let made = Made {
             layout: &layout,
@@ -181,36 +183,15 @@ impl LvmSource {
                 continue;
             };
             let own = measured.range(..=n).next_back().and_then(|(_, r)| *r);
-            let step = nth(&segment.keys, "Delta_X", n).and_then(|s| decimal_any(&s));
+            let step = header::value_for(&segment.keys, "Delta_X", n)
+                .and_then(|s| header::decimal_any(&s));
             let rate = own
                 .or(step.map(|s| 1.0 / s))
                 .filter(|r| r.is_finite() && *r > 0.0);
-            channel.sample_rate_hz = rate.filter(|_| x_is_time(segment, n));
+            channel.sample_rate_hz = rate.filter(|_| header::x_is_time(segment, n));
         }
         Ok(())
     }
-}
-
-/// The value of a header key for a channel; a single value holds for all.
-fn nth(keys: &Keys, key: &str, n: usize) -> Option<String> {
-    let values: Vec<&String> = keys.get(key)?.iter().collect();
-    let packed: Vec<&String> = values.iter().copied().filter(|v| !v.is_empty()).collect();
-    // With an X column for each channel the header has an empty cell for each of them.
-    let sparse = values.iter().filter(|v| !v.is_empty()).count() * 2 <= values.len() + 1;
-    let found = if sparse { packed.get(n) } else { values.get(n) };
-    found
-        .or(packed.first().filter(|_| packed.len() == 1))
-        .map(|v| (*v).clone())
-        .filter(|v| !v.is_empty())
-}
-
-/// A number with either decimal mark.
-fn decimal_any(text: &str) -> Option<f64> {
-    number::parse_cell(text.as_bytes(), b'.').or_else(|| number::parse_cell(text.as_bytes(), b','))
-}
-
-fn x_is_time(segment: &Segment, n: usize) -> bool {
-    nth(&segment.keys, "X_Dimension", n).is_none_or(|d| d.trim() == "Time")
 }
 
 /// The columns that the headings, or else the number of channels, make.
@@ -226,7 +207,7 @@ fn columns(keys: &Keys, segment: &Segment, head: &[u8], separator: Separator) ->
         .iter()
         .rposition(|h| !h.is_empty())
         .map_or(0, |i| i + 1);
-    let stated = keys_channels(segment).map_or(0, |n| if multi { 2 * n } else { n + 1 });
+    let stated = header::stated_channels(segment).map_or(0, |n| if multi { 2 * n } else { n + 1 });
     let comment = filled > 0 && segment.headings[filled - 1] == "Comment";
     let numbers = if filled > 0 {
         filled - usize::from(comment)
@@ -243,13 +224,6 @@ fn columns(keys: &Keys, segment: &Segment, head: &[u8], separator: Separator) ->
         .collect();
     columns.push(Column::Comment);
     columns
-}
-
-fn keys_channels(segment: &Segment) -> Option<usize> {
-    let stated: usize = segment.keys.get("Channels")?.first()?.trim().parse().ok()?;
-    // More channels than the header has cells for are no channels.
-    let cells = segment.keys.values().map(Vec::len).max().unwrap_or(0);
-    Some(stated.min(cells))
 }
 
 fn layout(
@@ -269,7 +243,7 @@ fn layout(
     let names = (0..columns.len()).map(|i| segment.headings.get(i).cloned().unwrap_or_default());
     Layout {
         separator,
-        decimal: decimal(keys, separator, head),
+        decimal: header::decimal(keys, separator, head),
         kinds: kinds.collect(),
         names: names.collect(),
         start: segment.start,
@@ -277,23 +251,6 @@ fn layout(
         quotes: false,
         month_first: false,
         comments: b"",
-    }
-}
-
-/// The decimal mark that the header states; a header without it leaves it to the rows.
-fn decimal(keys: &Keys, separator: Separator, head: &[u8]) -> u8 {
-    let stated = keys
-        .get("Decimal_Separator")
-        .and_then(|v| v.iter().find(|v| !v.is_empty()));
-    match stated.and_then(|v| v.bytes().next()) {
-        Some(mark @ (b'.' | b',')) => mark,
-        _ if separator != Separator::Byte(b',')
-            && head.contains(&b',')
-            && !head.contains(&b'.') =>
-        {
-            b','
-        }
-        _ => b'.',
     }
 }
 
@@ -325,9 +282,9 @@ fn channel(
     column: Column,
     i: usize,
 ) -> ChannelInfo {
-    let own = |key: &str, n: usize| nth(&segment.keys, key, n);
+    let own = |key: &str, n: usize| header::value_for(&segment.keys, key, n);
     let (unit, stored, n) = match column {
-        Column::X(n) => (x_unit(segment, n), StoredType::Float(64), Some(n)),
+        Column::X(n) => (header::x_unit(segment, n), StoredType::Float(64), Some(n)),
         Column::Y(n) => (own("Y_Unit_Label", n), StoredType::Float(64), Some(n)),
         Column::Comment => (None, StoredType::Text, None),
     };
@@ -342,8 +299,8 @@ fn channel(
         .filter_map(|k| Some(((*k).to_owned(), own(k, n?)?)))
         .collect();
     let start = n
-        .and_then(|n| start_time(&segment.keys, n))
-        .or_else(|| start_time(keys, 0));
+        .and_then(|n| header::start_time(&segment.keys, n))
+        .or_else(|| header::start_time(keys, 0));
     ChannelInfo {
         name,
         unit,
@@ -353,49 +310,6 @@ fn channel(
         start_time: start,
         properties,
     }
-}
-
-fn x_unit(segment: &Segment, n: usize) -> Option<String> {
-    match nth(&segment.keys, "X_Dimension", n)?.trim() {
-        "Time" => Some("s".to_owned()),
-        "Frequency" => Some("Hz".to_owned()),
-        _ => None,
-    }
-}
-
-/// Date and time of a header as ISO 8601.
-fn start_time(keys: &Keys, n: usize) -> Option<String> {
-    let date = nth(keys, "Date", n)?.replace('/', "-");
-    let time = nth(keys, "Time", n)?.replace(',', ".");
-    Some(format!("{date}T{time}"))
-}
-
-/// What the headers say of the whole table.
-fn attributes(keys: &Keys, segment: &Segment) -> BTreeMap<String, String> {
-    let own = [
-        "Notes",
-        "Test_Name",
-        "Test_Numbers",
-        "Test_Series",
-        "UUT_Name",
-        "UUT_M/N",
-        "UUT_S/N",
-    ];
-    let of_segment = segment
-        .keys
-        .iter()
-        .filter(|(k, _)| own.contains(&k.as_str()));
-    keys.iter()
-        .filter(|(k, _)| {
-            !matches!(
-                k.as_str(),
-                scan::FIRST_WORDS | "Separator" | "Decimal_Separator"
-            )
-        })
-        .chain(of_segment)
-        .map(|(k, v)| (k.clone(), v.join(" ").trim().to_owned()))
-        .filter(|(_, v)| !v.is_empty())
-        .collect()
 }
 
 impl Source for LvmSource {

@@ -100,6 +100,21 @@ impl Role {
         )
     }
 
+    /// Whether a channel of this role lies on the side of the second mass: that mass or its frame.
+    pub fn is_on_y_side(self) -> bool {
+        self.is_of_y() || self == Role::FrameY
+    }
+
+    /// Whether a channel of this role watches a frame.
+    pub fn is_frame(self) -> bool {
+        matches!(self, Role::FrameX | Role::FrameY)
+    }
+
+    /// Whether a channel of this role watches the motion of a mass.
+    pub fn is_motion(self) -> bool {
+        self.dimension().is_some()
+    }
+
     /// The dimension a channel of this role must have once in SI; `None` where several serve
     /// (a drive in V or N, a contact in V or N, a frame in m, m/s or m/s²).
     pub fn dimension(self) -> Option<Dimension> {

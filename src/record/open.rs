@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::path::Path;
 
+use crate::record::bytes::read_exact_at;
 use crate::record::csv;
 use crate::record::hdf5;
 use crate::record::lvm;
@@ -10,7 +11,6 @@ use crate::record::mat;
 use crate::record::parquet;
 use crate::record::source::{ReadError, Source};
 use crate::record::tdms;
-use crate::record::text::read_exact_at;
 use crate::record::uff;
 use crate::record::wav;
 
@@ -72,7 +72,7 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     }
 }
 
-/// HDF5's mark stands at the front, or behind a user block of 512, 1024, 2048 … bytes.
+/// HDF5's mark stands at the front, or behind a user block of 512, 1024 or 2048 bytes.
 fn is_hdf5(front: &[u8]) -> bool {
     [0usize, 512, 1024, 2048].iter().any(|&at| {
         front

@@ -195,7 +195,7 @@ impl Tally {
 }
 
 /// The usual name of a stored type.
-pub fn type_name(stored: StoredType) -> String {
+fn type_name(stored: StoredType) -> String {
     match stored {
         StoredType::Int(bits) => format!("int{bits}"),
         StoredType::UInt(bits) => format!("uint{bits}"),

@@ -4,6 +4,7 @@
 
 pub mod decay;
 pub mod drift;
+pub mod interpolation;
 pub mod local_fit;
 pub mod robust;
 pub mod spectrum;

@@ -6,7 +6,7 @@ use rustfft::{Fft, FftDirection};
 
 /// One-sided amplitude spectrum of the samples, mean removed, Hann window, zero-padded to twice
 /// the next power of two: (frequency step in units of the sample rate, amplitudes of sines).
-pub fn amplitude_spectrum(samples: &[f64]) -> (f64, Vec<f64>) {
+fn amplitude_spectrum(samples: &[f64]) -> (f64, Vec<f64>) {
     let count = samples.len();
     let padded = (2 * count.max(2)).next_power_of_two();
     let mut bins = vec![Complex64::new(0.0, 0.0); padded];

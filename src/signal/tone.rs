@@ -23,7 +23,7 @@ pub struct Tone {
 }
 
 /// Fit a tone of known frequency; `None` with fewer than four samples.
-pub fn fit_known_frequency(samples: &[f64], rate_hz: f64, frequency_hz: f64) -> Option<Tone> {
+fn fit_known_frequency(samples: &[f64], rate_hz: f64, frequency_hz: f64) -> Option<Tone> {
     let mut normal = Matrix3::zeros();
     let mut right = Vector3::zeros();
     for (sample, (c, s)) in samples.iter().zip(Phasor::new(frequency_hz / rate_hz)) {

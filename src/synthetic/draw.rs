@@ -31,7 +31,7 @@ pub enum Reach {
 /// Draw campaign number `index` of a study; the same seed and index always give the same.
 ///
 /// R 0.5 to 0.93, β 0.025 to 0.09, f0 8 to 17 Hz, x_st 0.3 to 3 mm, 120 to 260 records, noise 1 to
-/// 8 mV on ±10 V, integrators' corner 0.2 to 0.8 Hz, asymmetry up to 2 %.
+/// 8 mV on ±5 V, integrators' corner 0.2 to 0.8 Hz, asymmetry up to 2 %.
 pub fn draw(seed: u64, index: u64, reach: Reach) -> Draw {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(index);

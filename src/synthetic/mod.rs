@@ -5,6 +5,7 @@
 pub mod acquisition;
 pub mod draw;
 pub mod plan;
+pub mod rig;
 pub mod run;
 pub mod truth;
 

@@ -11,8 +11,8 @@ use crate::motion::Motion;
 use crate::record::{self, Channel, Record, Role};
 use crate::synthetic::acquisition::{self, HighPass};
 use crate::synthetic::plan::{Plan, Step};
+use crate::synthetic::rig::{ROLES, sensitivities};
 use crate::synthetic::truth::{Faults, Truth, draw_corners, draw_gains};
-use crate::units::Dimension;
 
 /// Samples per second, Hz.
 pub const RATE_HZ: f64 = 2000.0;
@@ -47,64 +47,6 @@ pub struct RawRecord {
     pub motion: Motion,
     /// True impacts within the record: time since its first sample, s, and closing speed, m/s.
     pub impacts: Vec<(f64, f64)>,
-}
-
-/// Sensitivity of a channel: what one volt stands for nominally.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sensitivity {
-    /// Name of the channel in the file.
-    pub name: &'static str,
-    /// SI units per volt.
-    pub si_per_volt: f64,
-}
-
-/// The channels of the virtual rig with their nominal sensitivities, for a rig of this truth:
-/// round numbers that put the largest motions well within the converter's range.
-pub fn sensitivities(truth: &Truth) -> [Sensitivity; 7] {
-    // The resonance amplitude x_st/(2β) must stay below four fifths of full scale.
-    let reach = (0.5 / truth.damping_ratio / (0.8 * acquisition::FULL_SCALE_V)).max(2.0);
-    let length = round_up(truth.static_deflection_m * reach);
-    let speed = round_up(truth.static_deflection_m * truth.natural_rate() * reach);
-    [
-        Sensitivity {
-            name: "generator",
-            si_per_volt: 1.0,
-        },
-        Sensitivity {
-            name: "contact",
-            si_per_volt: 1.0,
-        },
-        Sensitivity {
-            name: "laser_x",
-            si_per_volt: speed,
-        },
-        Sensitivity {
-            name: "integrator_vy",
-            si_per_volt: speed,
-        },
-        Sensitivity {
-            name: "integrator_x",
-            si_per_volt: length,
-        },
-        Sensitivity {
-            name: "integrator_y",
-            si_per_volt: length,
-        },
-        Sensitivity {
-            name: "frame_x",
-            si_per_volt: 1e-2 * length,
-        },
-    ]
-}
-
-fn round_up(value: f64) -> f64 {
-    let power = 10f64.powf(value.log10().floor());
-    let leading = value / power;
-    power
-        * [1.0, 2.0, 5.0, 10.0]
-            .into_iter()
-            .find(|s| *s >= leading)
-            .unwrap_or(10.0)
 }
 
 /// What a virtual laboratory is made of and what it visits.
@@ -442,14 +384,3 @@ pub fn calibrated(raw: &RawRecord, truth: &Truth, faults: &Faults) -> Record {
         flags: Vec::new(),
     }
 }
-
-/// Role, dimension and whether an integrator filters it, of each channel of the virtual rig.
-pub const ROLES: [(Role, Dimension, bool); 7] = [
-    (Role::Drive, Dimension::Voltage, false),
-    (Role::Contact, Dimension::Voltage, false),
-    (Role::VelocityX, Dimension::Velocity, false),
-    (Role::VelocityY, Dimension::Velocity, true),
-    (Role::DisplacementX, Dimension::Length, true),
-    (Role::DisplacementY, Dimension::Length, true),
-    (Role::FrameX, Dimension::Length, true),
-];

@@ -8,6 +8,7 @@ use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
 
 use crate::output::{self, OutputError};
+use crate::pipeline::inputs::hexadecimal;
 
 /// Folder of the blocks in the output folder; it is removed when the work is done.
 const FOLDER: &str = ".impactid-blocks";
@@ -39,10 +40,9 @@ impl Kept {
             crate::atlas::map::Kernel::of_this_machine()
         ));
         hash.update(work);
-        let key = hash.finalize().iter().map(|b| format!("{b:02x}")).collect();
         let kept = Self {
             folder: out.join(FOLDER),
-            key,
+            key: hexadecimal(hash),
         };
         if !resume {
             kept.remove();
@@ -68,8 +68,7 @@ impl Kept {
             key: self.key.clone(),
             content,
         };
-        let bytes = serde_json::to_vec(&block).unwrap_or_default();
-        output::write_bytes(&self.path(name), &bytes)
+        output::write_json_line(&self.path(name), &block)
     }
 
     /// Remove all blocks: the work is done.

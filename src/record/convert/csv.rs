@@ -3,8 +3,8 @@
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
+use crate::output::temporary_beside;
 use crate::record::convert::{ConvertError, Item, io};
-use crate::record::hdf5_write::temporary_beside;
 use crate::record::source::Samples;
 
 /// Write one record to a file, or several to the files of a folder.

@@ -7,8 +7,9 @@ use std::path::Path;
 use polars::prelude::{Column, DataFrame, DataType, Schema};
 use polars_io::parquet::write::{KeyValueMetadata, ParquetCompression, ParquetWriter};
 
+use crate::output::temporary_beside;
 use crate::record::convert::{ConvertError, Item, Options, io};
-use crate::record::hdf5_write::{WriteError, temporary_beside};
+use crate::record::hdf5_write::WriteError;
 use crate::record::parquet::RECORDS_KEY;
 use crate::record::source::{Samples, StoredType};
 

@@ -1,19 +1,8 @@
 use super::*;
+use crate::record::conformance::{named as samples, own, shared_data};
+use crate::record::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
 use crate::record::open::open;
 use crate::record::source::DatasetInfo;
-
-fn own(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/data/formats")
-        .join(name)
-}
-
-fn samples(source: &dyn Source, dataset: usize, name: &str) -> Samples {
-    let channel = source.datasets()[dataset]
-        .channel_index(name)
-        .unwrap_or_else(|| panic!("no {name}"));
-    source.read(dataset, &[channel]).unwrap().remove(0)
-}
 
 fn same(a: &DatasetInfo, b: &DatasetInfo) {
     assert_eq!(
@@ -118,6 +107,34 @@ fn valid_mixed_types_and_lengths_survive() {
 }
 
 #[test]
+fn valid_channels_filled_up_with_empty_cells_are_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let made = dir.path().join("made.h5");
+    let mut writer = CampaignWriter::create(&made);
+    writer
+        .add(RecordTable {
+            name: "run".to_owned(),
+            sample_rate_hz: Some(1000.0),
+            channels: vec![
+                ColumnToWrite::numbers("long", "V", vec![1.0, 2.0, 3.0]),
+                ColumnToWrite::numbers("short", "V", vec![1.0]),
+            ],
+            attributes: Vec::new(),
+        })
+        .unwrap();
+    writer.finish().unwrap();
+    let sources = [open(&made).unwrap()];
+    for (name, notes) in [("out.h5", 0), ("out.parquet", 1), ("out.csv", 1)] {
+        let out = dir.path().join(name);
+        let target = Target::of(&out).unwrap();
+        let done = convert(&sources, target, &out, &Options::default()).unwrap();
+        assert_eq!(done.notes.len(), notes, "{name}: {:?}", done.notes);
+        let named = |note: &String| note.contains("3 rows (short)");
+        assert!(done.notes.iter().all(named), "{:?}", done.notes);
+    }
+}
+
+#[test]
 fn valid_nothing_is_left_where_a_record_cannot_be_read() {
     let sources = [open(&own("claims_too_much.h5")).unwrap()];
     let dir = tempfile::tempdir().unwrap();
@@ -191,13 +208,8 @@ fn valid_a_file_without_numbers_is_not_converted() {
 
 #[test]
 fn valid_parts_of_complex_numbers_keep_their_unit() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../shared/data/uff_conformance/non_ascii_header.uff");
-    if !path.exists() {
-        println!("skipped: ../shared/data is absent");
-        return;
-    }
-    let sources = [open(&path).unwrap()];
+    let Some(dir) = shared_data() else { return };
+    let sources = [open(&dir.join("uff_conformance/non_ascii_header.uff")).unwrap()];
     let channel = &sources[0].datasets()[0].channels[1];
     let dir = tempfile::tempdir().unwrap();
     for name in ["out.h5", "out.parquet", "out.csv"] {

@@ -1,6 +1,6 @@
 //! How a text table is written, told from its first lines.
 
-use crate::record::text::table::{Cells, Separator};
+use crate::record::text::cells::{Cells, Separator};
 use crate::record::text::{clock, decode, number};
 
 /// First characters that make a line a comment.

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::record::csv::dialect::{COMMENTS, Dialect, is_value};
+use crate::record::text::cells::Cells;
 use crate::record::text::decode;
-use crate::record::text::table::Cells;
 use crate::units::parse_unit;
 
 /// What the lines before the first row say.
@@ -118,7 +118,7 @@ fn remark(text: &str, attributes: &mut BTreeMap<String, String>) {
 }
 
 /// Whether a text is the symbol of a unit.
-pub fn is_unit(text: &str) -> bool {
+fn is_unit(text: &str) -> bool {
     parse_unit(text).is_some() || FURTHER_UNITS.contains(&text.trim())
 }
 
@@ -181,7 +181,7 @@ fn name_columns(header: &mut Header, units: &[Option<String>], columns: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::text::table::Separator;
+    use crate::record::text::cells::Separator;
 
     const SEMICOLON: Dialect = Dialect {
         separator: Separator::Byte(b';'),

@@ -1,4 +1,5 @@
 use super::*;
+use crate::record::conformance::shared_data;
 use std::io::Write;
 
 fn file(bytes: &[u8]) -> tempfile::NamedTempFile {
@@ -135,15 +136,6 @@ fn valid_blocks_join_without_a_seam() {
     assert!(y.iter().enumerate().all(|(i, v)| *v == i as f64 * 0.25));
     assert_eq!(all[1], all[2]);
     assert!((s.datasets()[0].sample_rate_hz().unwrap() - 1e4).abs() < 1e-6);
-}
-
-fn shared_data() -> Option<std::path::PathBuf> {
-    let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
-    if !dir.is_dir() {
-        println!("skipped: ../shared/data is absent");
-        return None;
-    }
-    Some(dir)
 }
 
 #[test]

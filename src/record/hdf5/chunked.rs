@@ -9,8 +9,8 @@ use std::ops::Range;
 
 use ::hdf5::{Chunk, Dataset};
 
+use crate::record::bytes::read_exact_at;
 use crate::record::inflate::zlib_into;
-use crate::record::text::read_exact_at;
 
 const DEFLATE: u16 = 1;
 const SHUFFLE: u16 = 2;

@@ -214,6 +214,43 @@ fn half(bits: u16) -> f64 {
     }
 }
 
+/// Fields, or a complex number where they are its two parts.
+pub fn compound(fields: Vec<(String, usize, Element)>, bytes: usize) -> Element {
+    if let [(re, first, part), (im, imaginary, second)] = fields.as_slice() {
+        let pair = [re.to_ascii_lowercase(), im.to_ascii_lowercase()];
+        let named = [
+            ["r", "i"],
+            ["re", "im"],
+            ["real", "imag"],
+            ["real", "imaginary"],
+        ];
+        let plain = matches!(part, Element::Float { .. } | Element::Int { .. });
+        if named.iter().any(|n| pair[0] == n[0] && pair[1] == n[1])
+            && part == second
+            && plain
+            && *first == 0
+        {
+            return Element::Complex {
+                part: Box::new(part.clone()),
+                imaginary: *imaginary,
+                bytes,
+            };
+        }
+    }
+    Element::Fields { fields, bytes }
+}
+
+/// An enumeration: of false and true, or else its integers.
+pub fn boolean<'a>(base: Element, names: impl Iterator<Item = &'a str>) -> Element {
+    let names: Vec<String> = names.map(str::to_ascii_lowercase).collect();
+    if names.len() == 2 && names.iter().all(|n| n == "false" || n == "true") {
+        return Element::Bool {
+            base: Box::new(base),
+        };
+    }
+    base
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

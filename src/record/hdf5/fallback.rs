@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use rust_hdf5::{DatatypeMessage, H5Dataset, H5File, H5Group};
 
 use crate::record::hdf5::element::Element;
-use crate::record::hdf5::pure::{PureStore, boolean, compound};
+use crate::record::hdf5::element::{boolean, compound};
+use crate::record::hdf5::pure::PureStore;
 use crate::record::hdf5::store::{
     Array, Attr, Attrs, DEEPEST, MOST_OBJECTS, Store, Target, Tree, join,
 };

@@ -6,7 +6,7 @@
 
 use std::fs::File;
 
-use crate::record::text::read_exact_at;
+use crate::record::bytes::read_exact_at;
 
 /// Bytes that stand in for those of the file at an offset.
 pub type Patch = (u64, Vec<u8>);

@@ -4,13 +4,14 @@
 //! An array lies in the file with its dimensions reversed, so that its bytes are MATLAB's own
 //! order, column by column. Structs are groups, cells and struct arrays are arrays of references.
 
-use crate::record::hdf5::element::{Element, Stride};
+pub mod values;
+
+use crate::record::hdf5::element::Element;
+use crate::record::hdf5::matlab::values::{content, little, static_class};
 use crate::record::hdf5::store::{Array, Attr, Attrs, DEEPEST, MOST_OBJECTS, Store, Target, Tree};
-use crate::record::mat::arrange::{Origin, Slice};
-use crate::record::mat::tree::{Content, Encoding, Leaf, Part, Place, Tree as Variables, Variable};
+use crate::record::mat::tree::{Leaf, Place, Tree as Variables, Variable};
 use crate::record::mat::{subscript, text};
-use crate::record::numbers::{ByteOrder, Number};
-use crate::record::source::Samples;
+use crate::record::numbers::ByteOrder;
 
 /// Groups at the root that are MATLAB's own.
 const OWN_GROUPS: [&str; 2] = ["#refs#", "#subsystem#"];
@@ -246,7 +247,7 @@ impl Walk<'_> {
     fn leaf(&mut self, array: &Array, way: &Way) -> Result<(), String> {
         let name = class(&array.attributes);
         let at = self.found.arrays.len() as u64;
-        let dims = self.dims(array)?;
+        let dims = dimensions(array);
         let Some(content) = content(array, &name, at) else {
             let note = format!(
                 "'{}' left out: {:?} of class '{name}'",
@@ -267,26 +268,40 @@ impl Walk<'_> {
             value: None,
         };
         if leaf.count() == 1 || (!leaf.is_numeric() && leaf.count() > 0) {
-            let store = self.store;
-            leaf.value = text::short_value(&leaf, ByteOrder::Little, |_| {
-                Ok(little(array, store.raw(array).unwrap_or_default()))
-            })
-            .unwrap_or(None);
+            leaf.value = self.value(array, &leaf);
         }
         self.found.arrays.push(array.clone());
         self.found.variables.leaves.push(leaf);
         Ok(())
     }
 
-    /// MATLAB's dimensions; an empty array's data are its dimensions.
-    fn dims(&self, array: &Array) -> Result<Vec<u64>, String> {
-        if !array.attributes.contains_key("MATLAB_empty") {
-            let mut dims = reversed(&array.shape);
-            dims.resize(dims.len().max(2), 1);
-            return Ok(dims);
+    /// The value of a short array as text; one that cannot be read is noted.
+    fn value(&mut self, array: &Array, leaf: &Leaf) -> Option<String> {
+        let (store, mut fault) = (self.store, None);
+        let value = text::short_value(leaf, ByteOrder::Little, |_| {
+            let raw = store.raw(array).map_err(|e| fault = Some(e));
+            Ok(little(array, raw.unwrap_or_default()))
+        });
+        match fault {
+            None => value.ok().flatten(),
+            Some(fault) => {
+                let note = format!("the value of '{}' cannot be read: {fault}", leaf.name);
+                self.found.variables.notes.push(note);
+                None
+            }
         }
-        Ok(vec![0, 0])
     }
+}
+
+/// MATLAB's dimensions; an empty array (what it holds are its dimensions, not its elements) is
+/// taken for one of 0 × 0.
+fn dimensions(array: &Array) -> Vec<u64> {
+    if array.attributes.contains_key("MATLAB_empty") {
+        return vec![0, 0];
+    }
+    let mut dims = reversed(&array.shape);
+    dims.resize(dims.len().max(2), 1);
+    dims
 }
 
 fn class(attributes: &Attrs) -> String {
@@ -314,127 +329,4 @@ fn field_order(group: &Tree) -> Vec<String> {
         names.sort_by_key(|n| stated.iter().position(|s| s == n).unwrap_or(usize::MAX));
     }
     names
-}
-
-/// What an array holds: numbers, or characters of 16 bits.
-fn content(array: &Array, class: &str, at: u64) -> Option<Content> {
-    let bytes = array.count()?.checked_mul(array.element.bytes() as u64)?;
-    match (&array.element, class) {
-        (element, "char") => {
-            let part = Part {
-                at,
-                bytes,
-                number: number(element)?,
-            };
-            Some(Content::Text(part, Encoding::Utf16))
-        }
-        (Element::Complex { part, .. }, _) => {
-            let bits = 8 * part.bytes() as u8;
-            let part = Part {
-                at,
-                bytes,
-                number: number(part)?,
-            };
-            Some(Content::Complex(part, part, bits))
-        }
-        (element, _) => Some(Content::Real(Part {
-            at,
-            bytes,
-            number: number(element)?,
-        })),
-    }
-}
-
-fn number(element: &Element) -> Option<Number> {
-    Some(match element {
-        Element::Int {
-            bytes: 1,
-            signed: true,
-            ..
-        } => Number::I8,
-        Element::Int {
-            bytes: 2,
-            signed: true,
-            ..
-        } => Number::I16,
-        Element::Int {
-            bytes: 4,
-            signed: true,
-            ..
-        } => Number::I32,
-        Element::Int {
-            bytes: 8,
-            signed: true,
-            ..
-        } => Number::I64,
-        Element::Int { bytes: 1, .. } => Number::U8,
-        Element::Int { bytes: 2, .. } => Number::U16,
-        Element::Int { bytes: 4, .. } => Number::U32,
-        Element::Int { bytes: 8, .. } => Number::U64,
-        Element::Float { bytes: 4, .. } => Number::F32,
-        Element::Float { bytes: 8, .. } => Number::F64,
-        _ => return None,
-    })
-}
-
-fn static_class(name: &str) -> &'static str {
-    const CLASSES: [&str; 12] = [
-        "char", "double", "single", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64",
-        "uint64", "logical",
-    ];
-    CLASSES
-        .iter()
-        .find(|c| **c == name)
-        .copied()
-        .unwrap_or("array")
-}
-
-/// An array's bytes with the least significant byte of each number first.
-fn little(array: &Array, mut raw: Vec<u8>) -> Vec<u8> {
-    if let Element::Int {
-        bytes, big: true, ..
-    }
-    | Element::Float { bytes, big: true } = array.element
-    {
-        raw.chunks_exact_mut(bytes).for_each(<[u8]>::reverse);
-    }
-    raw
-}
-
-/// The samples that an origin names, from its array's bytes. `None`: the bytes are too few.
-pub fn extract(leaf: &Leaf, array: &Array, origin: Origin, raw: &[u8]) -> Option<Samples> {
-    if leaf.count() == 0 {
-        return Some(if leaf.is_numeric() {
-            Samples::Real(Vec::new())
-        } else {
-            Samples::Text(Vec::new())
-        });
-    }
-    if !leaf.is_numeric() {
-        return Some(Samples::Text(text::rows(
-            leaf,
-            &little(array, raw.to_vec()),
-            ByteOrder::Little,
-        )));
-    }
-    let size = array.element.bytes();
-    let (rows, count) = (leaf.dims[0] as usize, leaf.count() as usize);
-    let stride = match origin.slice {
-        Slice::Whole => Stride {
-            first: 0,
-            step: size,
-            count,
-        },
-        Slice::Column(c) => Stride {
-            first: c as usize * rows * size,
-            step: size,
-            count: rows,
-        },
-        Slice::Row(r) => Stride {
-            first: r as usize * size,
-            step: rows * size,
-            count: count / rows.max(1),
-        },
-    };
-    array.element.decode(raw, stride)
 }

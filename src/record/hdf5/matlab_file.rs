@@ -120,7 +120,7 @@ impl Source for MatlabSource {
                 Some((leaf, raw)) if leaf == origin.leaf => raw,
                 _ => self.raw(leaf)?,
             };
-            let samples = matlab::extract(leaf, self.array(leaf), origin, &raw);
+            let samples = matlab::values::extract(leaf, self.array(leaf), origin, &raw);
             all.push(
                 samples.ok_or_else(|| self.error(leaf, format!("{} bytes, too few", raw.len())))?,
             );

@@ -42,10 +42,10 @@ impl Orientation {
         }
     }
 
-    /// Number of channels.
+    /// Number of channels; of a table wider than [`MOST_CHANNELS`], an image or a matrix, the
+    /// first alone.
     pub fn channels(self, table: &Array) -> u64 {
         let [rows, columns] = dimensions(&table.shape);
-        // A table as wide as this is an image or a matrix, and is described as one channel less.
         if self == Self::Columns { columns } else { rows }.min(MOST_CHANNELS)
     }
 
@@ -57,7 +57,7 @@ impl Orientation {
 }
 
 /// The most channels of a table.
-const MOST_CHANNELS: u64 = 4096;
+pub const MOST_CHANNELS: u64 = 4096;
 
 /// The two dimensions of a table that may have further ones of one entry.
 fn dimensions(shape: &[u64]) -> [u64; 2] {

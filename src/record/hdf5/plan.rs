@@ -8,12 +8,20 @@
 use std::collections::BTreeMap;
 
 use crate::record::attribute;
-use crate::record::hdf5::element::Element;
+use crate::record::hdf5::element::{Element, Stride};
 use crate::record::hdf5::naming::{
-    NAME_KEYS, Orientation, UNIT_KEYS, merged, names, natural, scaling, squeezed, units,
+    MOST_CHANNELS, NAME_KEYS, Orientation, UNIT_KEYS, merged, names, natural, scaling, squeezed,
+    units,
 };
 use crate::record::hdf5::store::{Array, Attr, Attrs, Store, Tree};
 use crate::record::source::{ChannelInfo, DatasetInfo, StoredType};
+
+/// The stride of a single element.
+const ONE: Stride = Stride {
+    first: 0,
+    step: 8,
+    count: 1,
+};
 
 /// Where the samples of a channel are.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,20 +117,16 @@ impl Plans {
                         || NAME_KEYS.contains(&array.name.as_str())
                         || UNIT_KEYS.contains(&array.name.as_str()) =>
                 {
-                    if let Ok(texts) = store.texts(array) {
-                        attributes.insert(array.name.clone(), Attr::Text(texts));
+                    match store.texts(array) {
+                        Ok(texts) => {
+                            attributes.insert(array.name.clone(), Attr::Text(texts));
+                        }
+                        Err(e) => self.unread(array, &e),
                     }
                 }
                 (e, _) if e.is_number() && small => {
-                    let raw = store.raw(array).ok();
-                    let stride = crate::record::hdf5::element::Stride {
-                        first: 0,
-                        step: 8,
-                        count: 1,
-                    };
-                    let value = raw
-                        .and_then(|r| e.decode(&r, stride))
-                        .and_then(|s| s.into_real());
+                    let raw = store.raw(array).map_err(|fault| self.unread(array, &fault));
+                    let value = raw.ok().and_then(|r| e.decode(&r, ONE)?.into_real());
                     attributes.extend(value.map(|v| (array.name.clone(), Attr::Numbers(v))));
                 }
                 (Element::Text, 0 | 1) => sorted.columns.push(array),
@@ -138,6 +142,12 @@ impl Plans {
         }
         sorted.tables.sort_by(|a, b| natural(&a.path, &b.path));
         sorted
+    }
+
+    /// Note that an array which would be an attribute cannot be read.
+    fn unread(&mut self, array: &Array, fault: &str) {
+        let note = format!("dataset '{}' left out: {fault}", array.path);
+        self.notes.push(note);
     }
 
     /// Records of a group's tables and columns; a column as long as a table's rows that says
@@ -159,6 +169,7 @@ impl Plans {
             return self.push(record);
         }
         for table in tables {
+            self.note_width(table, attributes);
             let mut record =
                 Record::new(table.path.clone(), &merged(attributes, &table.attributes));
             let rows = Orientation::of(table, attributes).samples(table);
@@ -173,6 +184,19 @@ impl Plans {
             let mut record = Record::new(tree.path.clone(), attributes);
             columns.iter().for_each(|c| record.column(c));
             self.push(record);
+        }
+    }
+
+    /// Note that a table has more channels than are read.
+    fn note_width(&mut self, table: &Array, attributes: &Attrs) {
+        let of = Orientation::of(table, attributes);
+        let cells = table.count().unwrap_or(u64::MAX);
+        let channels = cells.checked_div(of.samples(table)).unwrap_or(0);
+        if channels > of.channels(table) {
+            self.notes.push(format!(
+                "dataset '{}' has {channels} channels: the first {MOST_CHANNELS} are read",
+                table.path
+            ));
         }
     }
 

@@ -4,17 +4,17 @@ use std::fs::File;
 use std::sync::{Arc, Mutex};
 
 use ::hdf5::{
-    AttrValue, ChunkCacheConfig, Dataset, Datatype, DatatypeByteOrder, FileAccessProperties,
-    FloatingPointLayout, FormatError, Group, MetadataCacheConfig, Object, ReferenceType,
+    AttrValue, ChunkCacheConfig, Dataset, FileAccessProperties, FormatError, Group,
+    MetadataCacheConfig, Object,
 };
 
+use crate::record::bytes::read_exact_at;
 use crate::record::hdf5::chunked;
-use crate::record::hdf5::element::Element;
+use crate::record::hdf5::datatype::element;
 use crate::record::hdf5::legacy::{self, Patch};
 use crate::record::hdf5::store::{
     Array, Attr, Attrs, DEEPEST, MOST_OBJECTS, Store, Target, Tree, join,
 };
-use crate::record::text::read_exact_at;
 
 /// Bytes of metadata that the library may keep.
 const METADATA_CACHE_BYTES: usize = 4 << 20;
@@ -195,129 +195,6 @@ fn attr(value: &AttrValue) -> Option<Attr> {
         .map(Attr::Numbers)
 }
 
-/// The library's type as ours.
-fn element(datatype: &Datatype) -> Element {
-    let other = || Element::Other(kind(datatype).to_owned());
-    match datatype {
-        Datatype::FixedPoint {
-            size,
-            byte_order,
-            layout,
-        } => {
-            let whole = layout.bit_offset == 0
-                && size.checked_mul(8) == Some(u32::from(layout.bit_precision));
-            match (*size, byte_order, whole) {
-                (
-                    1 | 2 | 4 | 8,
-                    DatatypeByteOrder::LittleEndian | DatatypeByteOrder::BigEndian,
-                    true,
-                ) => {
-                    let big = matches!(byte_order, DatatypeByteOrder::BigEndian);
-                    Element::Int {
-                        bytes: *size as usize,
-                        signed: layout.signed,
-                        big,
-                    }
-                }
-                _ => other(),
-            }
-        }
-        Datatype::FloatingPoint {
-            size,
-            byte_order,
-            layout,
-        } => {
-            let half = (
-                layout.exponent_size,
-                layout.mantissa_size,
-                layout.exponent_bias,
-            ) == (5, 10, 15);
-            let ieee = match size {
-                2 => half,
-                4 => *layout == FloatingPointLayout::IEEE754_BINARY32,
-                8 => *layout == FloatingPointLayout::IEEE754_BINARY64,
-                _ => false,
-            };
-            match (byte_order, ieee) {
-                (DatatypeByteOrder::Vax, _) | (_, false) => other(),
-                (order, true) => Element::Float {
-                    bytes: *size as usize,
-                    big: matches!(order, DatatypeByteOrder::BigEndian),
-                },
-            }
-        }
-        Datatype::Compound { size, members } => {
-            let fields = members
-                .iter()
-                .map(|m| (m.name.clone(), m.byte_offset as usize, element(&m.datatype)));
-            compound(fields.collect(), *size as usize)
-        }
-        Datatype::Enumeration {
-            base_type, members, ..
-        } => boolean(element(base_type), members.iter().map(|m| m.name.as_str())),
-        Datatype::String { .. }
-        | Datatype::VariableLength {
-            is_string: true, ..
-        } => Element::Text,
-        Datatype::Reference {
-            ref_type: ReferenceType::Object,
-            ..
-        } => Element::Reference,
-        _ => other(),
-    }
-}
-
-/// Fields, or a complex number where they are its two parts.
-pub fn compound(fields: Vec<(String, usize, Element)>, bytes: usize) -> Element {
-    if let [(re, first, part), (im, imaginary, second)] = fields.as_slice() {
-        let pair = [re.to_ascii_lowercase(), im.to_ascii_lowercase()];
-        let named = [
-            ["r", "i"],
-            ["re", "im"],
-            ["real", "imag"],
-            ["real", "imaginary"],
-        ];
-        let plain = matches!(part, Element::Float { .. } | Element::Int { .. });
-        if named.iter().any(|n| pair[0] == n[0] && pair[1] == n[1])
-            && part == second
-            && plain
-            && *first == 0
-        {
-            return Element::Complex {
-                part: Box::new(part.clone()),
-                imaginary: *imaginary,
-                bytes,
-            };
-        }
-    }
-    Element::Fields { fields, bytes }
-}
-
-/// An enumeration: of false and true, or else its integers.
-pub fn boolean<'a>(base: Element, names: impl Iterator<Item = &'a str>) -> Element {
-    let names: Vec<String> = names.map(str::to_ascii_lowercase).collect();
-    if names.len() == 2 && names.iter().all(|n| n == "false" || n == "true") {
-        return Element::Bool {
-            base: Box::new(base),
-        };
-    }
-    base
-}
-
-fn kind(datatype: &Datatype) -> &'static str {
-    match datatype {
-        Datatype::FixedPoint { .. } => "integer of unusual width",
-        Datatype::FloatingPoint { .. } => "floating point of unusual width",
-        Datatype::Time { .. } => "time",
-        Datatype::BitField { .. } => "bit field",
-        Datatype::Opaque { .. } => "opaque",
-        Datatype::VariableLength { .. } => "variable length",
-        Datatype::Array { .. } => "array",
-        Datatype::Reference { .. } => "region reference",
-        _ => "unknown",
-    }
-}
-
 impl PureStore {
     fn dataset(&self, array: &Array) -> Result<Dataset, String> {
         let datasets = self.datasets.lock().map_err(|e| e.to_string())?;
@@ -331,6 +208,22 @@ impl PureStore {
         let mut datasets = self.datasets.lock().map_err(|e| e.to_string())?;
         datasets.push(dataset);
         Ok(datasets.len() - 1)
+    }
+
+    /// Take over the arrays of a walk of its own.
+    fn adopt(&self, mut tree: Tree, datasets: Vec<Dataset>) -> Result<Tree, String> {
+        let first = {
+            let mut all = self.datasets.lock().map_err(|e| e.to_string())?;
+            let first = all.len();
+            all.extend(datasets);
+            first
+        };
+        fn shift(tree: &mut Tree, by: usize) {
+            tree.arrays.iter_mut().for_each(|a| a.handle += by);
+            tree.groups.iter_mut().for_each(|g| shift(g, by));
+        }
+        shift(&mut tree, first);
+        Ok(tree)
     }
 }
 
@@ -428,23 +321,5 @@ impl Store for PureStore {
             }
             _ => None,
         }
-    }
-}
-
-impl PureStore {
-    /// Take over the arrays of a walk of its own.
-    fn adopt(&self, mut tree: Tree, datasets: Vec<Dataset>) -> Result<Tree, String> {
-        let first = {
-            let mut all = self.datasets.lock().map_err(|e| e.to_string())?;
-            let first = all.len();
-            all.extend(datasets);
-            first
-        };
-        fn shift(tree: &mut Tree, by: usize) {
-            tree.arrays.iter_mut().for_each(|a| a.handle += by);
-            tree.groups.iter_mut().for_each(|g| shift(g, by));
-        }
-        shift(&mut tree, first);
-        Ok(tree)
     }
 }

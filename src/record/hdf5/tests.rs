@@ -1,24 +1,5 @@
 use super::*;
-
-fn own(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/data/formats")
-        .join(name)
-}
-
-fn real(source: &dyn Source, dataset: usize, name: &str) -> Vec<f64> {
-    let channel = source.datasets()[dataset].channel_index(name).unwrap();
-    source
-        .read(dataset, &[channel])
-        .unwrap()
-        .remove(0)
-        .into_real()
-        .unwrap()
-}
-
-fn wave(i: usize) -> f64 {
-    (std::f64::consts::TAU * 12.6 * i as f64 / 2000.0).sin()
-}
+use crate::record::conformance::{own, real, wave};
 
 #[test]
 fn valid_tables_of_counts_with_scale_and_offset() {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::record::source::ReadError;
-use crate::record::text::table::{Cells, Lines, Separator};
+use crate::record::text::cells::{Cells, Lines, Separator};
 use crate::record::text::{TextFile, decode, number};
 
 /// The first words of a LabVIEW measurement file.

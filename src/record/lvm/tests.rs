@@ -1,14 +1,5 @@
 use super::*;
-use std::path::PathBuf;
-
-fn shared_data() -> Option<PathBuf> {
-    let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
-    if !dir.is_dir() {
-        println!("skipped: ../shared/data is absent");
-        return None;
-    }
-    Some(dir)
-}
+use crate::record::conformance::shared_data;
 
 fn sum_of_numbers(samples: &Samples) -> f64 {
     match samples {
@@ -76,7 +67,7 @@ fn meets(source: &dyn Source, d: usize, golden: &serde_json::Value, file: &str) 
         .iter()
         .filter(|c| c.name != "X_Value" && c.stored != StoredType::Text);
     for (channel, step) in signals.zip(steps) {
-        let stated: f64 = decimal_any(&channel.properties["Delta_X"]).unwrap();
+        let stated: f64 = header::decimal_any(&channel.properties["Delta_X"]).unwrap();
         assert_eq!(stated, step.as_f64().unwrap(), "{file}");
     }
 }

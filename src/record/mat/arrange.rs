@@ -313,8 +313,10 @@ impl<'t> Builder<'t> {
         ];
         candidates
             .iter()
-            .find_map(|c| self.texts.get(c.as_str()))
-            .map(|u| (*u).to_owned())
+            .filter_map(|c| self.texts.get(c.as_str()))
+            .map(|unit| unit.trim())
+            .find(|unit| !unit.is_empty())
+            .map(str::to_owned)
     }
 
     /// The channels of an array: suffix of the name, samples and slice of each.

@@ -40,7 +40,7 @@ use arrange::Arranged;
 use tree::Tree;
 
 use super::bytes::FileBytes;
-use super::source::{DatasetInfo, ReadError, Samples, Source};
+use super::source::{DatasetInfo, ReadError, Samples, Source, requested};
 
 /// Whether a file's first bytes (128 or more) are those of a MATLAB file of level 4 or 5.
 pub fn recognises(head: &[u8]) -> bool {
@@ -132,18 +132,8 @@ impl Source for MatFile {
     }
 
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
-        let origins = self.origins.get(dataset).map_or(&[][..], Vec::as_slice);
-        let wanted: Option<Vec<_>> = channels.iter().map(|&c| origins.get(c).copied()).collect();
-        match wanted {
-            Some(wanted) => self.store.read(&wanted),
-            None => Err(ReadError {
-                path: self.path().to_path_buf(),
-                channel: None,
-                expected: format!("channels of dataset {dataset} (it has {})", origins.len()),
-                found: format!("a request for channels {channels:?}"),
-                byte: None,
-                remedy: "Ask for channels that the file lists.".into(),
-            }),
-        }
+        requested(self, dataset, channels)?;
+        let wanted: Vec<_> = channels.iter().map(|&c| self.origins[dataset][c]).collect();
+        self.store.read(&wanted)
     }
 }

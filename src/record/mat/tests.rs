@@ -352,6 +352,20 @@ fn valid_array_of_records_gives_datasets() {
 }
 
 #[test]
+fn valid_a_blank_unit_is_none() {
+    let units = [
+        string("x_unit", ""),
+        string("y_unit", " "),
+        string("y_units", "mm "),
+    ];
+    let vectors = ["x", "y"].map(|name| matrix(name, 2, 1, &[0.5, 1.5]));
+    let source = opened(&file(&[vectors.concat(), units.concat()], false)).unwrap();
+    let channels = &source.datasets()[0].channels;
+    assert_eq!(channels[0].unit, None);
+    assert_eq!(channels[1].unit.as_deref(), Some("mm"));
+}
+
+#[test]
 fn valid_cell_of_matrices_gives_datasets() {
     let record = |k: f64| matrix("", 3, 2, &[k, k, k, 2.0 * k, 2.0 * k, 2.0 * k]);
     let bytes = file(

@@ -12,12 +12,12 @@ use polars_io::parquet::read::{_internal::to_deserializer, FileMetadata, Parquet
 use polars_parquet::parquet::page::CompressedPage;
 use polars_parquet::read::PageReader;
 
+use crate::record::bytes::read_exact_at;
 use crate::record::parquet::field::{Field, samples};
 use crate::record::parquet::shape::Range;
 use crate::record::parquet::{SIGNATURE, footer, guard};
 use crate::record::source::{ReadError, Samples, StoredType};
 use crate::record::text::clock::Stamp;
-use crate::record::text::read_exact_at;
 
 /// A column that is asked for in parts is kept whole up to this size.
 const KEPT_BYTES: u64 = 1 << 28;

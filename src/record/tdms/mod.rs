@@ -35,7 +35,7 @@ use scale::Scaling;
 use value::{Kind, Value};
 
 use super::bytes::FileBytes;
-use super::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType};
+use super::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType, requested};
 
 /// The scaling of a channel, or what of it is not done; shared by channels that inherit it.
 type Scale = Arc<Result<Scaling, String>>;
@@ -76,16 +76,9 @@ struct TdmsFile {
 }
 
 impl TdmsFile {
+    /// The samples of a channel that exists.
     fn channel(&self, dataset: usize, channel: usize) -> Result<Samples, ReadError> {
-        let Some((object, scale)) = self.channels.get(dataset).and_then(|all| all.get(channel))
-        else {
-            let found = format!("a request for channel {channel} of dataset {dataset}");
-            return Err(ReadError {
-                byte: None,
-                remedy: "Ask for channels that the file lists.".into(),
-                ..self.file.refuse(0, "a channel of the file", found)
-            });
-        };
+        let (object, scale) = &self.channels[dataset][channel];
         let object = &self.content.objects[*object];
         let name = || Some(object.path.join("/"));
         let scaling = scale.as_ref().as_ref().map_err(|found| ReadError {
@@ -128,6 +121,7 @@ impl Source for TdmsFile {
 
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
         self.file.still_whole()?;
+        requested(self, dataset, channels)?;
         channels
             .iter()
             .map(|&channel| self.channel(dataset, channel))

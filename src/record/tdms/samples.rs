@@ -193,11 +193,11 @@ impl<'a> Reader<'a> {
             None => Some(0).filter(|_| device.scalers.len() == 1),
         };
         let Some(index) = index else {
-            let found = format!(
-                "{} scalers, none of which is scale {:?}",
-                device.scalers.len(),
-                scaling.scaler
-            );
+            let count = device.scalers.len();
+            let found = match scaling.scaler {
+                Some(scale) => format!("{count} scalers, none of which is scale {scale}"),
+                None => format!("{count} scalers, and no scaling that names one"),
+            };
             return Err(ReadError {
                 byte: None,
                 ..self.file.refuse(

@@ -3,6 +3,7 @@
 use crate::record::bytes::{Cursor, decode_text};
 use crate::record::numbers::Number;
 use crate::record::source::{ReadError, StoredType};
+use crate::record::text::clock::civil_of_days;
 
 /// What a channel's samples or a property are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -111,42 +112,22 @@ impl Stamp {
             self.seconds.div_euclid(86_400),
             self.seconds.rem_euclid(86_400),
         );
-        let (year, month, day) = civil(days.checked_add(DAYS_TO_1904)?)?;
+        let days = days.checked_sub(DAYS_TO_1970)?;
+        if !YEARS_OF_FOUR_DIGITS.contains(&days) {
+            return None;
+        }
+        let (year, month, day) = civil_of_days(days);
         let (hour, minute, second) = (second / 3600, second / 60 % 60, second % 60);
         let date = format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}");
         Some(format!("{date}.{nanoseconds:09}Z"))
     }
 }
 
-/// Days from 0000-03-01 of the proleptic Gregorian calendar to 1904-01-01.
-const DAYS_TO_1904: i64 = 695_361;
+/// Days from 1904-01-01 to 1970-01-01.
+const DAYS_TO_1970: i64 = 24_107;
 
-/// Year, month and day of a day counted from 0000-03-01, by cycles of 400, 100, 4 and 1 years
-/// that begin in March, so that the leap day comes last.
-fn civil(days: i64) -> Option<(i64, i64, i64)> {
-    if !(0..3_652_000).contains(&days) {
-        return None;
-    }
-    let (era, rest) = (days / 146_097, days % 146_097);
-    let century = (rest / 36_524).min(3);
-    let rest = rest - century * 36_524;
-    let (quad, rest) = (rest / 1461, rest % 1461);
-    let one = (rest / 365).min(3);
-    let mut day = rest - one * 365;
-    let mut year = 400 * era + 100 * century + 4 * quad + one;
-    let mut month = 3;
-    for length in [31, 30, 31, 30, 31, 31, 30, 31, 30, 31, 31, 29] {
-        if day < length {
-            break;
-        }
-        day -= length;
-        month += 1;
-    }
-    if month > 12 {
-        (month, year) = (month - 12, year + 1);
-    }
-    Some((year, month, day + 1))
-}
+/// Days since 1970-01-01 of the years 0000 (from March on) to 9999.
+const YEARS_OF_FOUR_DIGITS: std::ops::Range<i64> = -719_468..2_932_897;
 
 /// The value of a property.
 #[derive(Debug, Clone, PartialEq)]

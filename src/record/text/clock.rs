@@ -64,7 +64,7 @@ pub fn parse(cell: &str, month_first: bool) -> Option<Stamp> {
 }
 
 /// Days since 1970-01-01 of a date in any of the usual orders.
-pub fn parse_date(text: &str, month_first: bool) -> Option<i64> {
+fn parse_date(text: &str, month_first: bool) -> Option<i64> {
     let mark = text.bytes().find(|b| matches!(b, b'-' | b'/' | b'.'))? as char;
     let mut parts = text.split(mark);
     let [a, b, c] = [parts.next()?, parts.next()?, parts.next()?];
@@ -87,7 +87,7 @@ fn is_digits(text: &str, longest: usize) -> bool {
 
 /// Seconds of `h:mm:ss.fff`, `mm:ss.fff`, either with AM or PM, `Z` or an offset (left out:
 /// all stamps of a file share it).
-pub fn parse_time(text: &str) -> Option<f64> {
+fn parse_time(text: &str) -> Option<f64> {
     let upper = text.to_ascii_uppercase();
     let half_day = if upper.ends_with("PM") { 12.0 } else { 0.0 };
     let twelve = upper.ends_with("AM") || upper.ends_with("PM");
@@ -130,7 +130,7 @@ fn without_zone(text: &str) -> &str {
 
 /// Days from 1970-01-01 to a date of the Gregorian calendar, counted in years that begin in
 /// March so that leap days fall at their ends.
-pub fn days_of_civil(year: i64, month: i64, day: i64) -> i64 {
+fn days_of_civil(year: i64, month: i64, day: i64) -> i64 {
     let shifted = if month > 2 { year } else { year - 1 };
     let month_from_march = (month + 9) % 12;
     let leap_days = shifted.div_euclid(4) - shifted.div_euclid(100) + shifted.div_euclid(400);
@@ -140,7 +140,8 @@ pub fn days_of_civil(year: i64, month: i64, day: i64) -> i64 {
 
 /// Year, month and day of a count of days since 1970-01-01.
 pub fn civil_of_days(days: i64) -> (i64, i64, i64) {
-    let mut year = 1970 + days.div_euclid(366);
+    // Never later than the year itself: as if years were short before 1970, and long after.
+    let mut year = 1970 + days.div_euclid(if days < 0 { 365 } else { 366 });
     while days_of_civil(year + 1, 1, 1) <= days {
         year += 1;
     }
@@ -192,6 +193,7 @@ mod tests {
         fn prop_dates_come_back(days in -700_000i64..700_000) {
             let (y, m, d) = civil_of_days(days);
             prop_assert_eq!(days_of_civil(y, m, d), days);
+            prop_assert!((1..=12).contains(&m) && (1..=31).contains(&d), "{}-{}-{}", y, m, d);
         }
 
         #[test]

@@ -2,6 +2,7 @@
 //!
 //! A file is never held whole, except one in UTF-16, which is transcoded once.
 
+pub mod cells;
 pub mod clock;
 pub mod decimal;
 pub mod number;
@@ -10,6 +11,7 @@ pub mod table;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
+use crate::record::bytes::{decode_text, read_exact_at};
 use crate::record::source::ReadError;
 
 /// Bytes read at a time.
@@ -174,33 +176,7 @@ fn utf16_of(head: &[u8]) -> Option<&'static encoding_rs::Encoding> {
     }
 }
 
-/// Text of a cell: UTF-8, or else Windows-1252, in which every byte is a letter.
+/// Text of a cell; see [`decode_text`].
 pub fn decode(bytes: &[u8]) -> String {
-    match std::str::from_utf8(bytes) {
-        Ok(text) => text.to_owned(),
-        Err(_) => encoding_rs::WINDOWS_1252
-            .decode_without_bom_handling(bytes)
-            .0
-            .into_owned(),
-    }
-}
-
-/// Read at an offset without moving a position that threads would share.
-#[cfg(unix)]
-pub fn read_exact_at(file: &File, into: &mut [u8], offset: u64) -> std::io::Result<()> {
-    std::os::unix::fs::FileExt::read_exact_at(file, into, offset)
-}
-
-/// Read at an offset without relying on a position that threads share.
-#[cfg(windows)]
-pub fn read_exact_at(file: &File, mut into: &mut [u8], mut offset: u64) -> std::io::Result<()> {
-    while !into.is_empty() {
-        let n = std::os::windows::fs::FileExt::seek_read(file, into, offset)?;
-        if n == 0 {
-            return Err(std::io::ErrorKind::UnexpectedEof.into());
-        }
-        into = &mut into[n..];
-        offset += n as u64;
-    }
-    Ok(())
+    decode_text(bytes).into_owned()
 }

@@ -31,7 +31,7 @@ use arrange::Origin;
 use sets::Sets;
 
 use super::bytes::FileBytes;
-use super::source::{DatasetInfo, ReadError, Samples, Source};
+use super::source::{DatasetInfo, ReadError, Samples, Source, requested};
 
 /// Whether a file's first line is the mark that begins a set: `    -1`.
 pub fn recognises(head: &[u8]) -> bool {
@@ -96,19 +96,8 @@ impl Source for UniversalFile {
 
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
         self.file.still_whole()?;
-        let origins = self.origins.get(dataset).map_or(&[][..], Vec::as_slice);
-        let wanted: Option<Vec<_>> = channels.iter().map(|&c| origins.get(c).copied()).collect();
-        match wanted {
-            Some(wanted) => samples::read(&self.file, &self.sets.functions, &wanted),
-            None => Err(ReadError {
-                byte: None,
-                remedy: "Ask for channels that the file lists.".into(),
-                ..self.file.refuse(
-                    0,
-                    format!("channels of dataset {dataset} (it has {})", origins.len()),
-                    format!("a request for channels {channels:?}"),
-                )
-            }),
-        }
+        requested(self, dataset, channels)?;
+        let wanted: Vec<_> = channels.iter().map(|&c| self.origins[dataset][c]).collect();
+        samples::read(&self.file, &self.sets.functions, &wanted)
     }
 }

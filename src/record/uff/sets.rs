@@ -274,7 +274,8 @@ impl<'a> Scanner<'a> {
             let found = match words.get(1) {
                 Some(1) => "DEC VMS numbers".to_owned(),
                 Some(3) => "IBM 5/370 numbers".to_owned(),
-                other => format!("floating point format {other:?}"),
+                Some(other) => format!("numbers of the unknown format {other}"),
+                None => "no format of the numbers".to_owned(),
             };
             let remedy = "Export the file again with IEEE numbers or as text (58).";
             return Err(self

@@ -21,7 +21,7 @@ use chunks::{Format, Wave};
 
 use super::bytes::FileBytes;
 use super::numbers::{self, ByteOrder, Number, Spacing};
-use super::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType};
+use super::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType, requested};
 
 /// Whether a file's first bytes are those of a WAV file.
 pub fn recognises(head: &[u8]) -> bool {
@@ -163,15 +163,7 @@ impl Source for WaveFile {
 
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
         self.file.still_whole()?;
-        let held = self.datasets.get(dataset).map_or(0, |d| d.channels.len());
-        if let Some(channel) = channels.iter().find(|&&channel| channel >= held) {
-            let found = format!("a request for channel {channel} of dataset {dataset}");
-            return Err(ReadError {
-                byte: None,
-                remedy: "Ask for channels that the file lists.".into(),
-                ..self.file.refuse(0, "a channel of the file", found)
-            });
-        }
+        requested(self, dataset, channels)?;
         channels
             .iter()
             .map(|&channel| self.channel(channel))

@@ -1,0 +1,75 @@
+//! The virtual rig's channels: what each watches, and what a volt of it stands for.
+
+use crate::record::Role;
+use crate::synthetic::acquisition;
+use crate::synthetic::truth::Truth;
+use crate::units::Dimension;
+
+/// Role, dimension and whether an integrator filters it, of each channel of the virtual rig.
+pub const ROLES: [(Role, Dimension, bool); 7] = [
+    (Role::Drive, Dimension::Voltage, false),
+    (Role::Contact, Dimension::Voltage, false),
+    (Role::VelocityX, Dimension::Velocity, false),
+    (Role::VelocityY, Dimension::Velocity, true),
+    (Role::DisplacementX, Dimension::Length, true),
+    (Role::DisplacementY, Dimension::Length, true),
+    (Role::FrameX, Dimension::Length, true),
+];
+
+/// Sensitivity of a channel: what one volt stands for nominally.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sensitivity {
+    /// Name of the channel in the file.
+    pub name: &'static str,
+    /// SI units per volt.
+    pub si_per_volt: f64,
+}
+
+/// The channels of the virtual rig with their nominal sensitivities, for a rig of this truth:
+/// round numbers that put the largest motions well within the converter's range.
+pub fn sensitivities(truth: &Truth) -> [Sensitivity; 7] {
+    // The resonance amplitude x_st/(2β) must stay below four fifths of full scale.
+    let reach = (0.5 / truth.damping_ratio / (0.8 * acquisition::FULL_SCALE_V)).max(2.0);
+    let length = round_up(truth.static_deflection_m * reach);
+    let speed = round_up(truth.static_deflection_m * truth.natural_rate() * reach);
+    [
+        Sensitivity {
+            name: "generator",
+            si_per_volt: 1.0,
+        },
+        Sensitivity {
+            name: "contact",
+            si_per_volt: 1.0,
+        },
+        Sensitivity {
+            name: "laser_x",
+            si_per_volt: speed,
+        },
+        Sensitivity {
+            name: "integrator_vy",
+            si_per_volt: speed,
+        },
+        Sensitivity {
+            name: "integrator_x",
+            si_per_volt: length,
+        },
+        Sensitivity {
+            name: "integrator_y",
+            si_per_volt: length,
+        },
+        Sensitivity {
+            name: "frame_x",
+            si_per_volt: 1e-2 * length,
+        },
+    ]
+}
+
+fn round_up(value: f64) -> f64 {
+    let power = 10f64.powf(value.log10().floor());
+    let leading = value / power;
+    power
+        * [1.0, 2.0, 5.0, 10.0]
+            .into_iter()
+            .find(|s| *s >= leading)
+            .unwrap_or(10.0)
+}
