@@ -330,14 +330,86 @@ fn marks_for_phrases() -> words::Words {
     words::Words::read(&text).expect("a table of words")
 }
 
+/// A campaign to which all happened that the others were spared.
+fn unlucky() -> ReportContent {
+    use crate::motion::Motion;
+    use crate::record::{Role, Sweep};
+    let mut content = kind("small").clone();
+    let summary = &mut content.summary;
+    summary.files_total = 1;
+    summary.rig = "one mass against a stop".into();
+    summary.notes.push("a remark".into());
+    let channel = summary.channels[0].clone();
+    let roles = [
+        Role::VelocityY,
+        Role::DisplacementY,
+        Role::AccelerationX,
+        Role::AccelerationY,
+        Role::FrameX,
+        Role::FrameY,
+    ];
+    summary
+        .channels
+        .extend(roles.map(|role| content::ChannelRow {
+            role,
+            high_pass_hz: Some(0.5),
+            ..channel.clone()
+        }));
+    for name in ["static deflection $x_st$", "uncertainty of the gains"] {
+        let mut value = summary.nominal[0].clone();
+        value.name = name.into();
+        summary.nominal.push(value);
+    }
+    let fitted = ["restitution", "gain_velocity_x", "corner_velocity_y"];
+    let others = ["drive_asymmetry", "stiffness_asymmetry"];
+    content.correlation = Some(content::Correlation {
+        parameters: fitted.iter().chain(&others).map(|p| (*p).into()).collect(),
+        matrix: vec![vec![0.5; 5]; 5],
+    });
+    for (record, motion) in content
+        .records
+        .iter_mut()
+        .zip([Motion::Beat, Motion::Joined])
+    {
+        record.motion = motion;
+        record.sweep = Sweep::Unknown;
+        record.used_by = ["boundaries", "resonance", "impacts", "flights"]
+            .map(String::from)
+            .into();
+    }
+    content.records[2].used_by.clear();
+    content.records[2].left_out = Some("it is short".into());
+    for (bracket, off) in content.brackets.iter_mut().zip([-1.0, 1.0]) {
+        bracket.left_out = None;
+        let middle = 0.5 * (bracket.frequency_low_hz + bracket.frequency_high_hz);
+        bracket.simulated_hz = Some(middle + off * bracket.frequency_low_hz);
+    }
+    content.brackets.push(content::BracketRow {
+        left_out: Some("it jumped".into()),
+        ..content.brackets[0].clone()
+    });
+    content.comparisons[0].simulated_motion = Some(Motion::Beat);
+    content.resonance[0].fits = Some(false);
+    content.free_decays = kind("decays").free_decays.clone();
+    content.free_decays[0].natural_frequency_hz = None;
+    content.free_decays[0].damping_ratio = None;
+    if let Some(map) = &mut content.region_map {
+        map.second.clear();
+    }
+    content.remarks.push("a remark".into());
+    content.left_out.clear();
+    content
+}
+
 /// All kinds of report with a mark for each phrase.
 fn marked() -> Vec<Report> {
     let options = RenderOptions {
         words: Some(marks_for_phrases()),
         ..RenderOptions::default()
     };
-    let each = kinds().iter();
-    each.map(|(_, content)| Report::new(content, &options))
+    let each = kinds().iter().map(|(_, content)| content);
+    each.chain([&unlucky()])
+        .map(|content| Report::new(content, &options))
         .collect()
 }
 
@@ -391,7 +463,7 @@ fn valid_no_phrase_of_the_words_is_idle() {
     }
     assert!(idle.is_empty(), "nothing says {idle:#?}");
     assert!(
-        unsaid.len() <= 45,
+        unsaid.len() < 15,
         "{} are not said: {unsaid:#?}",
         unsaid.len()
     );
