@@ -244,46 +244,7 @@ impl Follower<'_> {
         }
         named(kind, orbit)
     }
-}
 
-/// An edge by what it is: at the doubling where it was born an orbit is twice its half, and
-/// neither the multiplier +1 nor a continuation that breaks off there is more than that.
-fn named(kind: EdgeKind, orbit: PeriodicOrbit) -> Edge {
-    let unclear = matches!(kind, EdgeKind::SaddleNode | EdgeKind::Lost);
-    let born = unclear && orbit.reduced_within(1e-3).n < orbit.n;
-    let kind = if born { EdgeKind::PeriodDoubling } else { kind };
-    Edge { kind, orbit }
-}
-
-/// An edge and the branch up to it.
-#[derive(Debug, Clone)]
-pub struct Followed {
-    /// What ends the motion, and where.
-    pub edge: Edge,
-    /// The parameter and the greatest closing speed of the orbits on the way, the edge's last.
-    pub passed: Vec<(f64, f64)>,
-}
-
-/// Continue a stable orbit in one direction (+1: rising parameter) to its edge.
-pub fn follow(
-    machine: &Machine,
-    seed: &PeriodicOrbit,
-    along: Along,
-    direction: f64,
-    walk: &Walk,
-) -> Followed {
-    let follower = Follower {
-        machine,
-        along,
-        direction,
-    };
-    let mut passed = Vec::new();
-    let edge = follower.walk(seed, walk, &mut passed);
-    passed.push((along.of(&edge.orbit), edge.orbit.greatest_speed()));
-    Followed { edge, passed }
-}
-
-impl Follower<'_> {
     /// The branch's edge; parameter and greatest closing speed of every orbit on the way.
     fn walk(&self, seed: &PeriodicOrbit, walk: &Walk, passed: &mut Vec<(f64, f64)>) -> Edge {
         let n = 2 * seed.p() + 1;
@@ -335,6 +296,43 @@ impl Follower<'_> {
         }
         lost(&point.orbit)
     }
+}
+
+/// An edge by what it is: at the doubling where it was born an orbit is twice its half, and
+/// neither the multiplier +1 nor a continuation that breaks off there is more than that.
+fn named(kind: EdgeKind, orbit: PeriodicOrbit) -> Edge {
+    let unclear = matches!(kind, EdgeKind::SaddleNode | EdgeKind::Lost);
+    let born = unclear && orbit.reduced_within(1e-3).n < orbit.n;
+    let kind = if born { EdgeKind::PeriodDoubling } else { kind };
+    Edge { kind, orbit }
+}
+
+/// An edge and the branch up to it.
+#[derive(Debug, Clone)]
+pub struct Followed {
+    /// What ends the motion, and where.
+    pub edge: Edge,
+    /// The parameter and the greatest closing speed of the orbits on the way, the edge's last.
+    pub passed: Vec<(f64, f64)>,
+}
+
+/// Continue a stable orbit in one direction (+1: rising parameter) to its edge.
+pub fn follow(
+    machine: &Machine,
+    seed: &PeriodicOrbit,
+    along: Along,
+    direction: f64,
+    walk: &Walk,
+) -> Followed {
+    let follower = Follower {
+        machine,
+        along,
+        direction,
+    };
+    let mut passed = Vec::new();
+    let edge = follower.walk(seed, walk, &mut passed);
+    passed.push((along.of(&edge.orbit), edge.orbit.greatest_speed()));
+    Followed { edge, passed }
 }
 
 /// The stable orbit of doubled period that branches from an orbit at its period doubling (in

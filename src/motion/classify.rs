@@ -13,6 +13,8 @@ use crate::motion::closure::{self, Count, ImpactClosure, WaveformClosure};
 pub struct ClassifySettings {
     /// Largest n of z = p/n that is looked for.
     pub most_periods: u32,
+    /// Largest p of z = p/n that is believed.
+    pub most_impacts: u32,
     /// Waveform closure (relative) up to which a motion counts as periodic, beside its noise.
     pub closed_ratio: f64,
     /// Waveform closure from which on a motion counts as not periodic.
@@ -23,6 +25,7 @@ impl Default for ClassifySettings {
     fn default() -> Self {
         Self {
             most_periods: 8,
+            most_impacts: 12,
             closed_ratio: 0.02,
             open_ratio: 0.10,
         }
@@ -260,6 +263,14 @@ impl Case<'_> {
         if count.impacts_p == 0 {
             return self.impactless(periods_n, count, quality, evidence);
         }
+        if count.impacts_p > self.settings.most_impacts {
+            let reason = format!(
+                "the waveform closes after {periods_n} drive periods with {} impacts, more than \
+                 the {} that are looked for (analysis.most_impacts_p)",
+                count.impacts_p, self.settings.most_impacts
+            );
+            return undetermined(reason, evidence);
+        }
         let closure = closure::impacts(
             &self.detection.impacts,
             self.period_s,
@@ -361,5 +372,66 @@ fn shorter_factor(evidence: &Evidence) -> f64 {
             ((shorter / chosen.max(1e-12) - 1.0) / 0.6).clamp(0.3, 1.0)
         }
         _ => 1.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::event::Rig;
+    use crate::event::detect::{DetectSettings, detect};
+    use crate::record::{Channel, Record, Role, Setting, Sweep};
+    use crate::units::Dimension;
+
+    /// A second of a contact that closes twice in each of ten drive periods.
+    fn two_pulses_a_period() -> Record {
+        let voltage = |role: Role, values: Vec<f64>| Channel {
+            role,
+            name: role.name().to_owned(),
+            dimension: Dimension::Voltage,
+            values,
+            high_pass_hz: None,
+            threshold: (role == Role::Contact).then_some(2.5),
+        };
+        let phase = |i: usize| std::f64::consts::TAU * i as f64 / 200.0;
+        let drive = (0..2000).map(|i| phase(i).cos()).collect();
+        let closed = |i: usize| matches!(i % 200, 20..23 | 95..98);
+        let contact = (0..2000).map(|i| if closed(i) { 5.0 } else { 0.0 });
+        Record {
+            id: "two pulses".to_owned(),
+            sample_rate_hz: 2000.0,
+            channels: vec![
+                voltage(Role::Drive, drive),
+                voltage(Role::Contact, contact.collect()),
+            ],
+            setting: Setting {
+                stated_frequency_hz: None,
+                clearance_m: None,
+                sweep: Sweep::Unknown,
+                drive_amplitude: 1.0,
+                sequence: 0,
+                specimen: None,
+                excitation: Default::default(),
+            },
+            flags: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn valid_more_impacts_than_are_looked_for_are_not_believed() {
+        let record = two_pulses_a_period();
+        let detection = detect(&record, Rig::Double, &DetectSettings::default());
+        let looked_for = |most_impacts: u32| {
+            let settings = ClassifySettings {
+                most_impacts,
+                ..ClassifySettings::default()
+            };
+            classify(&detection, record.duration_s(), &settings)
+        };
+        assert_eq!(looked_for(2).impacts_and_periods(), Some((2, 1)));
+        let Motion::Undetermined { reason } = looked_for(1).motion else {
+            panic!("believed");
+        };
+        assert!(reason.contains("most_impacts_p"), "{reason}");
     }
 }

@@ -30,6 +30,7 @@ fn detect_settings(campaign: &ResolvedCampaign) -> DetectSettings {
 fn classify_settings(campaign: &ResolvedCampaign) -> ClassifySettings {
     ClassifySettings {
         most_periods: campaign.analysis.longest_period_n,
+        most_impacts: campaign.analysis.most_impacts_p,
         ..ClassifySettings::default()
     }
 }

@@ -117,7 +117,7 @@ fn valid_channels_filled_up_with_empty_cells_are_named() {
             sample_rate_hz: Some(1000.0),
             channels: vec![
                 ColumnToWrite::numbers("long", "V", vec![1.0, 2.0, 3.0]),
-                ColumnToWrite::numbers("short", "V", vec![1.0]),
+                ColumnToWrite::numbers("short", "V", vec![1.0, 2.0]),
             ],
             attributes: Vec::new(),
         })

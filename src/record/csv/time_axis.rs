@@ -33,11 +33,10 @@ pub fn find(
     count: u64,
 ) -> Option<TimeAxis> {
     let candidates = (0..layout.kinds.len()).filter_map(|i| candidate(header, layout, i));
-    let mut found = candidates.filter_map(|(i, unit, note)| {
-        let head = column(layout, rows, i);
-        climbs(&head).then_some((i, unit, note, head))
-    });
-    let (column, unit, note, head) = found.next().or_else(|| unnamed(header, layout, rows))?;
+    let mut found = candidates.filter(|c| climbs(&head_of(layout, rows, c.column)));
+    let Candidate { column, unit, note } =
+        found.next().or_else(|| unnamed(header, layout, rows))?;
+    let head = head_of(layout, rows, column);
     let end = last.and_then(|cells| cell_value(layout, cells.get(column)?, column, rows));
     let factor = unit
         .as_deref()
@@ -57,28 +56,36 @@ pub fn find(
     })
 }
 
-/// Whether a column's kind, name or unit says time: its index, its unit, what was assumed.
-fn candidate(
-    header: &Header,
-    layout: &Layout,
-    i: usize,
-) -> Option<(usize, Option<String>, Option<String>)> {
-    match layout.kinds[i] {
+/// A column that may be the time axis.
+struct Candidate {
+    column: usize,
+    /// Its unit, where it is a number.
+    unit: Option<String>,
+    /// What was assumed.
+    note: Option<String>,
+}
+
+/// A column whose kind, name or unit says time.
+fn candidate(header: &Header, layout: &Layout, column: usize) -> Option<Candidate> {
+    let sure = |unit| Candidate {
+        column,
+        unit,
+        note: None,
+    };
+    match layout.kinds[column] {
         Kind::Text => None,
-        Kind::Time => Some((i, None, None)),
+        Kind::Time => Some(sure(None)),
         Kind::Number => {
-            let name = &header.names[i];
-            let unit = header.units[i].clone().or_else(|| unit_in_name(name));
+            let name = &header.names[column];
+            let unit = header.units[column].clone().or_else(|| unit_in_name(name));
             let known = unit.as_deref().and_then(parse_unit);
             if known.is_some_and(|u| u.dimension == Dimension::Time) {
-                return Some((i, unit, None));
+                return Some(sure(unit));
             }
-            (unit.is_none() && says_time(name)).then(|| {
-                (
-                    i,
-                    Some("s".to_owned()),
-                    Some(format!("time axis '{name}' has no unit: taken as seconds")),
-                )
+            (unit.is_none() && says_time(name)).then(|| Candidate {
+                column,
+                unit: Some("s".to_owned()),
+                note: Some(format!("time axis '{name}' has no unit: taken as seconds")),
             })
         }
     }
@@ -92,19 +99,14 @@ fn unit_in_name(name: &str) -> Option<String> {
 }
 
 /// A first column without a name that climbs evenly and is no mere count of rows.
-#[allow(clippy::type_complexity)]
-fn unnamed(
-    header: &Header,
-    layout: &Layout,
-    rows: &HeadRows<'_>,
-) -> Option<(usize, Option<String>, Option<String>, Vec<f64>)> {
+fn unnamed(header: &Header, layout: &Layout, rows: &HeadRows<'_>) -> Option<Candidate> {
     if header.names.first()? != "column_1"
         || layout.kinds[0] != Kind::Number
         || layout.kinds.len() < 2
     {
         return None;
     }
-    let head = column(layout, rows, 0);
+    let head = head_of(layout, rows, 0);
     let step = rate::median_step(&head)?;
     let even = head
         .windows(2)
@@ -112,11 +114,16 @@ fn unnamed(
     let counts = head.iter().all(|v| v.fract() == 0.0);
     (head.len() > 2 && even && !counts).then(|| {
         let note = "first column climbs evenly and has no name: taken as time in seconds";
-        (0, Some("s".to_owned()), Some(note.to_owned()), head)
+        Candidate {
+            column: 0,
+            unit: Some("s".to_owned()),
+            note: Some(note.to_owned()),
+        }
     })
 }
 
-fn column(layout: &Layout, rows: &HeadRows<'_>, i: usize) -> Vec<f64> {
+/// The values of a column in the rows seen.
+fn head_of(layout: &Layout, rows: &HeadRows<'_>, i: usize) -> Vec<f64> {
     rows.iter()
         .filter_map(|r| cell_value(layout, r.get(i)?, i, rows))
         .filter(|v| v.is_finite())

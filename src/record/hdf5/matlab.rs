@@ -249,10 +249,7 @@ impl Walk<'_> {
         let at = self.found.arrays.len() as u64;
         let dims = dimensions(array);
         let Some(content) = content(array, &name, at) else {
-            let note = format!(
-                "'{}' left out: {:?} of class '{name}'",
-                way.name, array.element
-            );
+            let note = format!("'{}' left out: class '{name}' is not read", way.name);
             self.found.variables.notes.push(note);
             return Ok(());
         };

@@ -254,9 +254,7 @@ impl Columns {
             ))),
         }
     }
-}
 
-impl Columns {
     /// Refuse pages that claim to unpack to far more than the file, or to hold more values than
     /// the row group has rows, before they are unpacked.
     fn check_pages(&self, pages: PageReader, rows: usize) -> PolarsResult<()> {
