@@ -3,7 +3,7 @@
 use crate::event::Rig;
 use crate::identify::boundary::BoundaryBlock;
 use crate::identify::flights::FlightBlock;
-use crate::identify::impacts::ImpactBlock;
+use crate::identify::impacts::{ImpactBlock, SpeedPair};
 use crate::identify::parameters::Coordinate;
 use crate::identify::resonance::ResonanceBlock;
 use crate::identify::solver::{Block, Prior};
@@ -66,7 +66,7 @@ pub struct Blocks {
     /// Records that are shot from impact to impact.
     pub flight: FlightBlock,
     /// Impacts left out as outliers.
-    pub impact_outliers: usize,
+    pub impact_outliers: Vec<SpeedPair>,
 }
 
 impl Blocks {

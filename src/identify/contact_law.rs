@@ -176,6 +176,7 @@ mod tests {
                 let v = 0.05 + 0.01 * i as f64;
                 SpeedPair {
                     observation: i,
+                    time_s: 0.0,
                     before_m_s: v,
                     after_m_s: law(v) * v + 2e-3 * scatter(i),
                     error_m_s: 2e-3 / 1f64.hypot(0.8),

@@ -10,6 +10,8 @@ use crate::motion::Observation;
 pub struct SpeedPair {
     /// Index of the record among the observations.
     pub observation: usize,
+    /// Time since the record's first sample, s.
+    pub time_s: f64,
     /// Closing speed before, m/s.
     pub before_m_s: f64,
     /// Parting speed after, m/s (positive).
@@ -61,6 +63,7 @@ impl ImpactBlock {
             .filter_map(|(i, impact)| {
                 Some(SpeedPair {
                     observation: i,
+                    time_s: impact.time_s,
                     before_m_s: impact.closing_speed_before_m_s?,
                     after_m_s: -impact.closing_speed_after_m_s?,
                     error_m_s: impact.speed_error_m_s?,
@@ -84,16 +87,16 @@ impl ImpactBlock {
         shifts.any(|s| gain_index(s.role) == Some(index))
     }
 
-    /// Keep only pairs that lie within `limit` robust deviations of the bulk; gives the number
-    /// left out.
-    pub fn without_outliers(mut self, limit: f64) -> (Self, usize) {
+    /// Keep only pairs that lie within `limit` robust deviations of the bulk; gives those
+    /// left out too.
+    pub fn without_outliers(mut self, limit: f64) -> (Self, Vec<SpeedPair>) {
         let ratios: Vec<f64> = self
             .pairs
             .iter()
             .map(|p| p.after_m_s / p.before_m_s)
             .collect();
         let Some(centre) = crate::signal::robust::median(&ratios) else {
-            return (self, 0);
+            return (self, Vec::new());
         };
         let scores: Vec<f64> = self
             .pairs
@@ -103,12 +106,10 @@ impl ImpactBlock {
         let spread = crate::signal::robust::robust_deviation(&scores)
             .unwrap_or(1.0)
             .max(0.5);
-        let before = self.pairs.len();
-        let mut scores = scores.into_iter();
-        self.pairs
-            .retain(|_| scores.next().is_some_and(|s| s.abs() <= limit * spread));
-        let dropped = before - self.pairs.len();
-        (self, dropped)
+        let scored = self.pairs.drain(..).zip(scores);
+        let (kept, odd): (Vec<_>, Vec<_>) = scored.partition(|(_, s)| s.abs() <= limit * spread);
+        self.pairs = kept.into_iter().map(|(pair, _)| pair).collect();
+        (self, odd.into_iter().map(|(pair, _)| pair).collect())
     }
 
     /// The speeds as they are with the corners that a fit found.

@@ -108,12 +108,28 @@ pub struct MethodResult {
     /// Remarks in words a user understands.
     #[serde(default)]
     pub remarks: Vec<String>,
+    /// Impacts that lie far from the bulk and were left out; of impacts alone.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub outlying_impacts: Vec<OutlyingImpact>,
     /// How R depends on the closing speed; of impacts alone.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub contact_law: Option<contact_law::ContactLaw>,
     /// Further numbers of the method (gains, asymmetries …), named with their unit.
     #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
     pub further: BTreeMap<String, Estimate>,
+}
+
+/// An impact whose speeds lie far from those of the others.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct OutlyingImpact {
+    /// The record's name.
+    pub record: String,
+    /// Time since the record's first sample, s.
+    pub time_s: f64,
+    /// Closing speed before, m/s.
+    pub before_m_s: f64,
+    /// Parting speed after, m/s.
+    pub after_m_s: f64,
 }
 
 /// Whether two methods agree on a parameter.

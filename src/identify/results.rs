@@ -8,7 +8,9 @@ use crate::identify::methods::{self, MethodFit};
 use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::selection::Attempt;
 use crate::identify::solver::{Fit, FitError};
-use crate::identify::{Estimate, MethodResult, contact_law, estimate, middles, verdict};
+use crate::identify::{
+    Estimate, MethodResult, OutlyingImpact, contact_law, estimate, middles, verdict,
+};
 
 /// f0, β and x_st from the impactless records.
 pub fn resonance(blocks: &Blocks, attempt: &Result<MethodFit, FitError>) -> MethodResult {
@@ -50,15 +52,50 @@ pub fn impacts(
     if let Some(estimate) = &mut result.parameters.restitution {
         widen(estimate, IMPACT_BIAS);
     }
-    if blocks.impact_outliers > 0 {
-        result.remarks.push(format!(
-            "{} impacts lie far from the bulk and were left out",
-            blocks.impact_outliers
-        ));
-    }
+    result.outlying_impacts = outlying(blocks, evidence);
+    result.remarks.extend(told(&result.outlying_impacts));
     result.contact_law = contact_law::contact_law(block);
     verdict::judge_impacts(&mut result, block, evidence);
     result
+}
+
+/// Impacts that were left out, by their records' names.
+fn outlying(blocks: &Blocks, evidence: &Evidence) -> Vec<OutlyingImpact> {
+    let pairs = blocks.impact_outliers.iter();
+    pairs
+        .map(|pair| OutlyingImpact {
+            record: evidence.observations[pair.observation].record.clone(),
+            time_s: pair.time_s,
+            before_m_s: pair.before_m_s,
+            after_m_s: pair.after_m_s,
+        })
+        .collect()
+}
+
+/// Outlying impacts that a remark names; `identification.json` names all.
+const NAMED: usize = 3;
+
+fn told(outlying: &[OutlyingImpact]) -> Option<String> {
+    let named: Vec<String> = outlying
+        .iter()
+        .take(NAMED)
+        .map(|i| format!("{} at {:.3} s", i.record, i.time_s))
+        .collect();
+    let count = outlying.len();
+    if count == 0 {
+        return None;
+    }
+    let more = if count > NAMED {
+        ", … (all in identification.json)"
+    } else {
+        ""
+    };
+    let which = named.join(", ");
+    let lie = match count {
+        1 => "1 impact lies far from the bulk and was left out".to_owned(),
+        _ => format!("{count} impacts lie far from the bulk and were left out"),
+    };
+    Some(format!("{lie}: {which}{more}"))
 }
 
 /// All four parameters from the waveforms.
