@@ -184,10 +184,7 @@ mod tests {
                 }
             })
             .collect();
-        ImpactBlock {
-            pairs,
-            relative_error: 0.0,
-        }
+        ImpactBlock::of_pairs(pairs, 0.0)
     }
 
     #[test]

@@ -11,7 +11,8 @@
 use nalgebra::{Matrix4, Vector4};
 
 use crate::event::{CornerShift, Impact, Rig};
-use crate::identify::parameters::{Coordinate, Parameters, gain_index};
+use crate::identify::impacts::corners_in;
+use crate::identify::parameters::{Coordinate, Parameters};
 use crate::identify::solver::Block;
 use crate::model::flight::{Drive, State, free_flight};
 use crate::model::params::Machine;
@@ -72,6 +73,8 @@ pub struct FlightBlock {
     pub rig: Rig,
     /// The records.
     pub records: Vec<FlightRecord>,
+    /// On which corners the speeds depend, by their index.
+    corners: [bool; 4],
 }
 
 /// Fewest impacts of a record: fewer tell nothing but where they began.
@@ -90,14 +93,23 @@ impl FlightBlock {
             .filter(|(_, o)| !o.excluded() && has_no_closed_form(&o.finding.motion))
             .filter_map(|(i, o)| flight_record(rig, i, o))
             .collect();
-        Self { rig, records }
+        Self::of_records(rig, records)
+    }
+
+    /// Of given records.
+    fn of_records(rig: Rig, records: Vec<FlightRecord>) -> Self {
+        let nodes = records.iter().flat_map(|r| &r.nodes);
+        let corners = corners_in(nodes.flat_map(|n| &n.corner_shifts));
+        Self {
+            rig,
+            records,
+            corners,
+        }
     }
 
     /// Whether the speeds depend on a corner, by its index.
     pub fn has_corner(&self, index: usize) -> bool {
-        let nodes = self.records.iter().flat_map(|r| &r.nodes);
-        let mut shifts = nodes.flat_map(|n| n.corner_shifts.iter().flatten());
-        shifts.any(|s| gain_index(s.role) == Some(index))
+        self.corners[index]
     }
 }
 
@@ -342,7 +354,7 @@ mod tests {
                 }
             })
             .to_vec();
-        FlightBlock { rig, records }
+        FlightBlock::of_records(rig, records)
     }
 
     #[test]

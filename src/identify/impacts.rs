@@ -32,6 +32,15 @@ impl SpeedPair {
     }
 }
 
+/// On which corners speeds depend, by their index.
+pub fn corners_in<'a>(shifts: impl Iterator<Item = &'a Option<CornerShift>>) -> [bool; 4] {
+    let mut corners = [false; 4];
+    for index in shifts.flatten().filter_map(|s| gain_index(s.role)) {
+        corners[index] = true;
+    }
+    corners
+}
+
 /// All impacts with measured speeds.
 #[derive(Debug, Clone)]
 pub struct ImpactBlock {
@@ -39,6 +48,8 @@ pub struct ImpactBlock {
     pub pairs: Vec<SpeedPair>,
     /// Relative error of each ratio beside the noise: what the extrapolation leaves open.
     pub relative_error: f64,
+    /// On which corners the speeds depend, by their index.
+    corners: [bool; 4],
 }
 
 impl ImpactBlock {
@@ -72,19 +83,22 @@ impl ImpactBlock {
             })
             .filter(|p| p.after_m_s > -4.0 * p.error_m_s)
             .collect();
+        Self::of_pairs(pairs, relative_error)
+    }
+
+    /// Of given pairs.
+    pub fn of_pairs(pairs: Vec<SpeedPair>, relative_error: f64) -> Self {
+        let corners = corners_in(pairs.iter().flat_map(|p| &p.corner_shifts));
         Self {
             pairs,
             relative_error,
+            corners,
         }
     }
 
     /// Whether the speeds depend on a corner, by its index.
     pub fn has_corner(&self, index: usize) -> bool {
-        let mut shifts = self
-            .pairs
-            .iter()
-            .flat_map(|p| p.corner_shifts.iter().flatten());
-        shifts.any(|s| gain_index(s.role) == Some(index))
+        self.corners[index]
     }
 
     /// Keep only pairs that lie within `limit` robust deviations of the bulk; gives those
