@@ -60,15 +60,11 @@ fn shift(body: &Body, step_s: f64) -> Option<Shift> {
     let velocity = body.velocity.as_ref()?;
     let corner_hz = velocity.high_pass_hz.filter(|c| *c > 0.0)?;
     let mut sum = 0.0;
-    let mut speeds_m_s: Vec<f64> = velocity
-        .values
-        .windows(2)
-        .map(|pair| {
-            sum += 0.5 * (pair[0] + pair[1]) * step_s * std::f64::consts::TAU * corner_hz;
-            sum
-        })
-        .collect();
-    speeds_m_s.insert(0, 0.0);
+    let steps = velocity.values.windows(2).map(|pair| {
+        sum += 0.5 * (pair[0] + pair[1]) * step_s * std::f64::consts::TAU * corner_hz;
+        sum
+    });
+    let mut speeds_m_s: Vec<f64> = std::iter::once(0.0).chain(steps).collect();
     let mean = robust::mean(&speeds_m_s);
     drift::remove_line(&mut speeds_m_s, mean, 0.0);
     Some(Shift {

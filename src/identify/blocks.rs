@@ -59,7 +59,7 @@ pub struct Blocks {
     pub resonance: ResonanceBlock,
     /// z = 1/n records.
     pub trajectory: TrajectoryBlock,
-    /// Brackets of s2 and grazing.
+    /// Brackets of s2, s1 and grazing.
     pub boundary: BoundaryBlock,
     /// Speeds at impacts.
     pub impact: ImpactBlock,
@@ -124,28 +124,29 @@ impl Blocks {
         self.resonance.rig == Rig::Double && (has(0) || has(2)) && (has(1) || has(3))
     }
 
-    /// Nuisance coordinates on which a fit of some blocks depends, with their priors: the
+    /// Add the nuisance coordinates on which a fit of some blocks depends, with their priors: the
     /// channels' gains and corners, and asymmetry.
-    pub fn nuisances(
+    pub fn add_nuisances(
         &self,
         nominal: &Nominal,
         fitted: &[(&dyn Block, f64)],
-    ) -> (Vec<Coordinate>, Vec<Prior>) {
+        (free, priors): (&mut Vec<Coordinate>, &mut Vec<Prior>),
+    ) {
         let touched = |c: &Coordinate| fitted.iter().any(|(block, _)| block.touches(*c));
         let gains = self.gains().map(|c| (c, nominal.gain_uncertainty));
         let corners = self.corners().map(|c| (c, nominal.corner_uncertainty));
         let asymmetries = [Coordinate::DriveAsymmetry, Coordinate::StiffnessAsymmetry];
         let asymmetries = asymmetries.into_iter().filter(|_| self.sees_both());
-        let prior = |(coordinate, deviation): (Coordinate, f64)| Prior {
-            coordinate,
-            centre: 0.0,
-            deviation: deviation.max(1e-6),
-        };
-        gains
+        let all = gains
             .chain(corners)
-            .chain(asymmetries.map(|c| (c, ASYMMETRY)))
-            .filter(|(c, _)| touched(c))
-            .map(|named| (named.0, prior(named)))
-            .unzip()
+            .chain(asymmetries.map(|c| (c, ASYMMETRY)));
+        for (coordinate, deviation) in all.filter(|(c, _)| touched(c)) {
+            free.push(coordinate);
+            priors.push(Prior {
+                coordinate,
+                centre: 0.0,
+                deviation: deviation.max(1e-6),
+            });
+        }
     }
 }

@@ -2,8 +2,8 @@
 //! evidence it has.
 //!
 //! The information is that of the residuals' noise at given parameters; instruments' gains and
-//! corners and the asymmetries are nuisances with their priors. Allowances for what the model leaves open do not
-//! enter: no unbiased estimator does better than this.
+//! corners and the asymmetries are nuisances with their priors. Allowances for what the model
+//! leaves open do not enter: no unbiased estimator does better than this.
 
 use std::collections::BTreeMap;
 
@@ -88,9 +88,7 @@ fn bound(
         .filter(|c| list.iter().any(|(block, _)| block.touches(*c)))
         .collect();
     let mut priors: Vec<Prior> = wide_priors(at, &free);
-    let (nuisances, more) = blocks.nuisances(nominal, &list);
-    free.extend(nuisances);
-    priors.extend(more);
+    blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
     let problem = Problem {
         blocks: list,
         priors,

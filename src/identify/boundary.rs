@@ -78,30 +78,28 @@ struct Jump {
 /// How often a change between z = 1/n and 2/2n is not that of the nearest s1: other doubled motions
 /// lie beside it.
 const STRAY_DOUBLINGS: f64 = 0.3;
+/// Frequencies over which such a change may lie, relative.
+const STRAY_RANGE: f64 = 0.6;
 /// How far from s1, relative to the frequency, a record may still show the motion of the other side:
 /// it settles there as slowly as a multiplier near −1 lets it.
 const SLOW_DOUBLING: f64 = 5e-3;
-/// Frequencies over which such a change may lie, relative.
-const STRAY_RANGE: f64 = 0.6;
 /// Relative error of a frequency setting.
 const SETTING_ERROR: f64 = 2e-4;
 
 impl Jump {
     fn of(bracket: &Bracket, early_scale: f64) -> Self {
         let middle = bracket.middle_hz();
+        let (setting, stray) = match bracket.kind {
+            BoundaryKind::PeriodDoubling => (SLOW_DOUBLING * middle, STRAY_DOUBLINGS),
+            _ => ((SETTING_ERROR * middle).max(0.02 * bracket.width_hz()), 0.0),
+        };
         Self {
             low: bracket.frequency_low_hz,
             high: bracket.frequency_high_hz,
             early: early_scale * middle,
-            setting: match bracket.kind {
-                BoundaryKind::PeriodDoubling => SLOW_DOUBLING * middle,
-                _ => (SETTING_ERROR * middle).max(0.02 * bracket.width_hz()),
-            },
+            setting,
             rising: bracket.sweep != crate::record::Sweep::Down,
-            stray: match bracket.kind {
-                BoundaryKind::PeriodDoubling => STRAY_DOUBLINGS,
-                _ => 0.0,
-            },
+            stray,
         }
     }
 

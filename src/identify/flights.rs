@@ -42,11 +42,9 @@ pub struct Node {
 impl Node {
     /// Speeds of x and y before and after, m/s, with the corners that the channels have.
     fn speeds_m_s(&self, parameters: &Parameters) -> [[f64; 2]; 2] {
-        let shift = |mass: usize| {
-            let shift = self.corner_shifts[mass];
-            shift.map_or(0.0, |s| parameters.corner(s.role).ln() * s.speed_m_s)
-        };
-        let shifts = [shift(0), shift(1)];
+        let shifts = self
+            .corner_shifts
+            .map(|shift| shift.map_or(0.0, |s| parameters.corner_shift_m_s(&s)));
         [self.before_m_s, self.after_m_s].map(|speeds| [0, 1].map(|m| speeds[m] + shifts[m]))
     }
 }

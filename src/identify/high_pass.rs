@@ -20,15 +20,20 @@ pub struct Passed {
     pub tail: f64,
 }
 
-/// A first-order high-pass that a periodic motion passes.
+/// A first-order high-pass that a periodic motion of one exponent passes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HighPass {
-    /// c, its corner over the natural frequency.
-    pub corner: f64,
-    /// η
-    pub eta: f64,
-    /// T
-    pub period: f64,
+    corner: f64,
+    eta: f64,
+    period: f64,
+    lambda: C64,
+    /// What is kept of the drive's term and of the free vibration's.
+    kept_rate: C64,
+    kept: C64,
+    /// e^{λT}
+    returned: C64,
+    /// 1 − e^{−cT}
+    closing: f64,
 }
 
 /// A direction in which the filter changes.
@@ -41,65 +46,72 @@ pub struct HighPassSlope {
 }
 
 impl HighPass {
-    /// What a pole passes of e^{pole·t}.
-    fn kept(&self, pole: C64) -> C64 {
-        pole / (pole + self.corner)
+    /// Of a corner c (over the natural frequency), for a motion of period T driven at η whose free
+    /// vibration is e^{λt}.
+    pub fn new(corner: f64, eta: f64, period: f64, lambda: C64) -> Self {
+        let kept = |pole: C64| pole / (pole + corner);
+        Self {
+            corner,
+            eta,
+            period,
+            lambda,
+            kept_rate: kept(C64::new(0.0, eta)),
+            kept: kept(lambda),
+            returned: (lambda * period).exp(),
+            closing: -(-corner * period).exp_m1(),
+        }
+    }
+
+    /// c
+    pub fn corner(&self) -> f64 {
+        self.corner
     }
 
     fn kept_slope(&self, pole: C64, d_pole: C64, d_corner: f64) -> C64 {
         (d_pole * self.corner - pole * d_corner) / (pole + self.corner).powi(2)
     }
 
-    /// 1 − e^{−cT}
-    fn closing(&self) -> f64 {
-        -(-self.corner * self.period).exp_m1()
-    }
-
     /// A motion behind the filter.
     pub fn pass(&self, motion: &MassMotion) -> Passed {
-        let lambda = motion.exponent;
-        let kept = self.kept(lambda);
-        let jump = motion.mode * (C64::new(1.0, 0.0) - (lambda * self.period).exp());
+        let one = C64::new(1.0, 0.0);
+        let jump = motion.mode * (one - self.returned);
         Passed {
             motion: MassMotion {
-                force: motion.force * self.kept(C64::new(0.0, self.eta)),
-                mode: motion.mode * kept,
-                exponent: lambda,
+                force: motion.force * self.kept_rate,
+                mode: motion.mode * self.kept,
+                exponent: self.lambda,
             },
-            tail: (jump * (C64::new(1.0, 0.0) - kept)).re / self.closing(),
+            tail: (jump * (one - self.kept)).re / self.closing,
         }
     }
 
-    /// Its differential where the motion and the filter change.
+    /// Its differential where the motion and the filter change; `tail` is K.
     pub fn pass_slope(
         &self,
         motion: &MassMotion,
+        tail: f64,
         change: &MassMotion,
         filter: &HighPassSlope,
     ) -> Passed {
         let one = C64::new(1.0, 0.0);
         let d_period = -self.period * filter.eta / self.eta;
         let (rate, d_rate) = (C64::new(0.0, self.eta), C64::new(0.0, filter.eta));
-        let kept_rate = self.kept(rate);
-        let lambda = motion.exponent;
-        let kept = self.kept(lambda);
-        let d_kept = self.kept_slope(lambda, change.exponent, filter.corner);
-        let returned = (lambda * self.period).exp();
-        let d_returned = returned * (change.exponent * self.period + lambda * d_period);
-        let jump = motion.mode * (one - returned);
-        let d_jump = change.mode * (one - returned) - motion.mode * d_returned;
-        let closing = self.closing();
-        let d_closing = (1.0 - closing) * (filter.corner * self.period + self.corner * d_period);
-        let tail = (jump * (one - kept)).re / closing;
-        let d_lost = (d_jump * (one - kept) - jump * d_kept).re;
+        let (lambda, d_lambda) = (self.lambda, change.exponent);
+        let d_kept = self.kept_slope(lambda, d_lambda, filter.corner);
+        let d_returned = self.returned * (d_lambda * self.period + lambda * d_period);
+        let jump = motion.mode * (one - self.returned);
+        let d_jump = change.mode * (one - self.returned) - motion.mode * d_returned;
+        let d_closing =
+            (1.0 - self.closing) * (filter.corner * self.period + self.corner * d_period);
+        let d_lost = (d_jump * (one - self.kept) - jump * d_kept).re;
         Passed {
             motion: MassMotion {
-                force: change.force * kept_rate
+                force: change.force * self.kept_rate
                     + motion.force * self.kept_slope(rate, d_rate, filter.corner),
-                mode: change.mode * kept + motion.mode * d_kept,
-                exponent: change.exponent,
+                mode: change.mode * self.kept + motion.mode * d_kept,
+                exponent: d_lambda,
             },
-            tail: (d_lost - tail * d_closing) / closing,
+            tail: (d_lost - tail * d_closing) / self.closing,
         }
     }
 }
@@ -154,16 +166,13 @@ mod tests {
 
     #[test]
     fn valid_a_periodic_motion_comes_back_behind_the_filter() {
-        let filter = HighPass {
-            corner: 0.04,
-            eta: 1.2,
-            period: std::f64::consts::TAU / 1.2,
-        };
         let motion = MassMotion {
             force: C64::new(0.7, -1.3),
             mode: C64::new(-0.4, 0.9),
             exponent: C64::new(-0.07, 0.998),
         };
+        let period = std::f64::consts::TAU / 1.2;
+        let filter = HighPass::new(0.04, 1.2, period, motion.exponent);
         let psi = 0.3;
         let x = |t: f64| {
             (motion.force * C64::from_polar(1.0, psi + filter.eta * t)).re

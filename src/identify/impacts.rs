@@ -26,9 +26,7 @@ impl SpeedPair {
     /// Change of the closing speed, m/s, by corners other than the stated ones.
     fn shift(&self, parameters: &Parameters) -> f64 {
         let shifts = self.corner_shifts.iter().flatten();
-        shifts
-            .map(|s| parameters.corner(s.role).ln() * s.speed_m_s)
-            .sum()
+        shifts.map(|s| parameters.corner_shift_m_s(s)).sum()
     }
 }
 

@@ -23,14 +23,12 @@ pub fn swapped(
         here.trajectory.relative_error,
     ) = (LEAST_ALLOWANCE, LEAST_ALLOWANCE);
     // What was recorded under the other's name came through its own filter, or the filters too
-    // are stated the wrong way round.
-    let others: Vec<Blocks> = [Filters::OfTheData, Filters::OfTheName]
-        .into_iter()
-        .filter_map(|filters| interchanged(&here, filters))
-        .collect();
+    // are stated the wrong way round. One after the other: each is a copy of all waveforms.
     let best = |weights: &Weights| {
-        let costs = others.iter().filter_map(|other| cost(other, weights));
-        costs.min_by(|a, b| a.0.total_cmp(&b.0))
+        [Filters::OfTheData, Filters::OfTheName]
+            .into_iter()
+            .filter_map(|filters| cost(&interchanged(&here, filters)?, weights))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
     };
     // Often the resonance curve alone speaks against it.
     let alone = [Some(1.0), None, None, None, None];
@@ -64,48 +62,47 @@ enum Filters {
     OfTheName,
 }
 
-/// The blocks with the velocities of both masses interchanged; `None` where that changes nothing.
+/// The blocks with the velocities of both masses interchanged; `None` where that changes nothing, or
+/// nothing beside what [`Filters::OfTheData`] does.
 fn interchanged(blocks: &Blocks, filters: Filters) -> Option<Blocks> {
     let mut other = blocks.clone();
-    let swap = |role: Role| match role {
-        Role::VelocityX => Role::VelocityY,
-        Role::VelocityY => Role::VelocityX,
-        other => other,
-    };
     let mut moved = false;
+    // New name and corner of what was recorded under one name, by the corners of all.
+    let mut renamed = |stated: &[Passed], (role, own): Passed| {
+        let name = match role {
+            Role::VelocityX => Role::VelocityY,
+            Role::VelocityY => Role::VelocityX,
+            other => other,
+        };
+        let of_name = stated.iter().find(|s| s.0 == name).map_or(own, |s| s.1);
+        let (corner_hz, changed) = match filters {
+            Filters::OfTheData => (own, name != role),
+            Filters::OfTheName => (of_name, of_name != own),
+        };
+        moved |= changed;
+        (name, corner_hz)
+    };
     for record in &mut other.trajectory.records {
-        let stated: Vec<(Role, Option<f64>)> = record
-            .folded
-            .channels
-            .iter()
-            .map(|c| (c.role, c.high_pass_hz))
-            .collect();
-        for channel in &mut record.folded.channels {
-            let role = swap(channel.role);
-            moved |= role != channel.role;
-            channel.role = role;
-            if filters == Filters::OfTheName {
-                let of_role = stated.iter().find(|s| s.0 == role);
-                channel.high_pass_hz = of_role.map_or(channel.high_pass_hz, |s| s.1);
-            }
+        let channels = &mut record.folded.channels;
+        let stated: Vec<Passed> = channels.iter().map(|c| (c.role, c.high_pass_hz)).collect();
+        for channel in channels {
+            let now = (channel.role, channel.high_pass_hz);
+            (channel.role, channel.high_pass_hz) = renamed(&stated, now);
         }
     }
     for point in &mut other.resonance.points {
-        let stated: Vec<(Role, Option<f64>)> = point
-            .responses
-            .iter()
-            .map(|r| (r.role, r.high_pass_hz))
-            .collect();
-        for response in &mut point.responses {
-            let role = swap(response.role);
-            moved |= role != response.role;
-            response.role = role;
-            if filters == Filters::OfTheName
-                && let Some((_, corner_hz)) = stated.iter().find(|s| s.0 == role)
-            {
-                *response = response.behind(*corner_hz, point.frequency_hz);
+        let responses = &mut point.responses;
+        let stated: Vec<Passed> = responses.iter().map(|r| (r.role, r.high_pass_hz)).collect();
+        for response in responses {
+            let (role, corner_hz) = renamed(&stated, (response.role, response.high_pass_hz));
+            if corner_hz != response.high_pass_hz {
+                *response = response.behind(corner_hz, point.frequency_hz);
             }
+            response.role = role;
         }
     }
     moved.then_some(other)
 }
+
+/// A channel and the corner of the high-pass that it has passed, Hz.
+type Passed = (Role, Option<f64>);

@@ -80,9 +80,7 @@ pub fn problem<'b>(
             deviation,
         });
     }
-    let (nuisances, more) = blocks.nuisances(nominal, &list);
-    free.extend(nuisances);
-    priors.extend(more);
+    blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
     Some(Problem {
         blocks: list,
         priors,

@@ -70,8 +70,8 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<Result<MethodFit,
         Coordinate::Deflection,
     ];
     let list: [(&dyn Block, f64); 1] = [(&blocks.resonance, 1.0)];
-    let (nuisances, priors) = blocks.nuisances(nominal, &list);
-    free.extend(nuisances);
+    let mut priors = Vec::new();
+    blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
     let best = starts(blocks, nominal)
         .into_iter()
         .filter_map(|start| {
@@ -148,12 +148,12 @@ pub fn impacts(
         return None;
     }
     let list: Vec<(&dyn Block, f64)> = vec![(&blocks.impact, 1.0)];
-    let (mut free, priors) = blocks.nuisances(nominal, &list);
-    free.insert(0, Coordinate::Restitution);
+    let (mut free, mut priors) = (vec![Coordinate::Restitution], Vec::new());
+    blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
     Some(fit_blocks(list, free, priors, start))
 }
 
-/// s2 and grazing brackets, with f0, β and x_st from the impactless records beside them.
+/// s2, s1 and grazing brackets, with f0, β and x_st from the impactless records beside them.
 pub fn boundaries(
     blocks: &Blocks,
     nominal: &Nominal,
@@ -170,9 +170,7 @@ pub fn boundaries(
     let mut list: Vec<(&dyn Block, f64)> = vec![(&blocks.boundary, 1.0)];
     if !blocks.resonance.points.is_empty() {
         list.push((&blocks.resonance, 1.0));
-        let (nuisances, more) = blocks.nuisances(nominal, &list);
-        free.extend(nuisances);
-        priors.extend(more);
+        blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
     }
     Some(fit_blocks(list, free, priors, start))
 }
@@ -189,7 +187,7 @@ pub fn trajectories(
     Some(all_four(&blocks.trajectory, blocks, nominal, start))
 }
 
-/// R, f0, β and x_st from one block alone, with gains and asymmetries as nuisances.
+/// R, f0, β and x_st from one block alone, with the nuisances beside them.
 fn all_four(
     block: &dyn Block,
     blocks: &Blocks,
@@ -199,9 +197,7 @@ fn all_four(
     let mut free = Coordinate::PHYSICAL.to_vec();
     let mut priors = wide_priors(&start, &free);
     let list = vec![(block, 1.0)];
-    let (nuisances, more) = blocks.nuisances(nominal, &list);
-    free.extend(nuisances);
-    priors.extend(more);
+    blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
     fit_blocks(list, free, priors, start)
 }
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::event::Rig;
+use crate::event::{CornerShift, Rig};
 use crate::model::params::{Contact, Flight, Machine, Oscillator, Restitution, Setting};
 use crate::record::Role;
 
@@ -100,6 +100,11 @@ impl Parameters {
     /// Corner of a channel's high-pass over the stated one; 1 for channels that have none.
     pub fn corner(&self, role: Role) -> f64 {
         gain_index(role).map_or(1.0, |i| self.corners[i])
+    }
+
+    /// What a corner other than the stated one changes of a speed at an impact, m/s.
+    pub fn corner_shift_m_s(&self, shift: &CornerShift) -> f64 {
+        self.corner(shift.role).ln() * shift.speed_m_s
     }
 
     /// Value of one coordinate.

@@ -144,11 +144,9 @@ impl<'a> RecordMotion<'a> {
         let filter = channel.high_pass_hz.map(|corner_hz| {
             let corner_hz = corner_hz * self.parameters.corner(role);
             let turns = f64::from(self.record.folded.periods_n);
-            let high_pass = HighPass {
-                corner: corner_hz / self.parameters.natural_frequency_hz,
-                eta: self.eta,
-                period: turns * std::f64::consts::TAU / self.eta,
-            };
+            let corner = corner_hz / self.parameters.natural_frequency_hz;
+            let period = turns * std::f64::consts::TAU / self.eta;
+            let high_pass = HighPass::new(corner, self.eta, period, motion.exponent);
             Filter {
                 high_pass,
                 passed: high_pass.pass(&motion),
@@ -249,6 +247,11 @@ impl<'a> RecordMotion<'a> {
         vibration: &Vibration<'_>,
         direction: &Direction,
     ) -> Vec<f64> {
+        let own_corner = gain_index(channel.role).map(Coordinate::Corner);
+        let is_own = direction.coordinate == own_corner;
+        if matches!(direction.coordinate, Some(Coordinate::Corner(_))) && !is_own {
+            return vec![0.0; channel.points];
+        }
         let timing = TimingSlope {
             eta: direction.eta,
             impact_phase: direction.orbit.phase,
@@ -264,21 +267,21 @@ impl<'a> RecordMotion<'a> {
         let Some(filter) = &channel.filter else {
             return vibration.slopes(&channel.motion, &change, &timing);
         };
-        let own_corner = gain_index(channel.role).map(Coordinate::Corner);
         let relative = match direction.coordinate {
             Some(Coordinate::Frequency) => -1.0,
-            coordinate if coordinate == own_corner => 1.0,
+            Some(Coordinate::Corner(_)) => 1.0,
             _ => 0.0,
         };
         let moved = HighPassSlope {
-            corner: relative * filter.high_pass.corner,
+            corner: relative * filter.high_pass.corner(),
             eta: direction.eta,
         };
+        let tail = filter.passed.tail;
         let passed = filter
             .high_pass
-            .pass_slope(&channel.motion, &change, &moved);
+            .pass_slope(&channel.motion, tail, &change, &moved);
         let mut slopes = vibration.slopes(&filter.passed.motion, &passed.motion, &timing);
-        let tails = [filter.passed.tail, passed.tail];
+        let tails = [tail, passed.tail];
         filter
             .tail
             .add_slopes(&mut slopes, tails, &moved, vibration, &timing);

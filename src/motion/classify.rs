@@ -380,7 +380,7 @@ mod tests {
     use super::*;
     use crate::event::Rig;
     use crate::event::detect::{DetectSettings, detect};
-    use crate::record::{Channel, Record, Role, Setting, Sweep};
+    use crate::record::{Channel, Record, Role, Setting};
     use crate::units::Dimension;
 
     /// A second of a contact that closes twice in each of ten drive periods.
@@ -404,15 +404,7 @@ mod tests {
                 voltage(Role::Drive, drive),
                 voltage(Role::Contact, contact.collect()),
             ],
-            setting: Setting {
-                stated_frequency_hz: None,
-                clearance_m: None,
-                sweep: Sweep::Unknown,
-                drive_amplitude: 1.0,
-                sequence: 0,
-                specimen: None,
-                excitation: Default::default(),
-            },
+            setting: Setting::unstated(),
             flags: Vec::new(),
         }
     }

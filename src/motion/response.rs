@@ -34,13 +34,15 @@ impl Response {
 
     /// The same measured values where the channel has passed another high-pass than was taken.
     pub fn behind(&self, high_pass_hz: Option<f64>, frequency_hz: f64) -> Self {
-        let ratio = |corner_hz: Option<f64>| corner_hz.unwrap_or(0.0) / frequency_hz;
-        let taken = Complex::new(1.0, -ratio(self.high_pass_hz));
-        let passed = Complex::new(1.0, -ratio(high_pass_hz));
-        let value = Complex::new(self.real, self.imaginary) * passed / taken;
+        // To divide by iω/(iω + ω_c) is to multiply by 1 − iω_c/ω.
+        let undoing =
+            |corner_hz: Option<f64>| Complex::new(1.0, -corner_hz.unwrap_or(0.0) / frequency_hz);
+        let factor = undoing(high_pass_hz) / undoing(self.high_pass_hz);
+        let value = Complex::new(self.real, self.imaginary) * factor;
         Self {
             real: value.re,
             imaginary: value.im,
+            error: self.error * factor.norm(),
             high_pass_hz,
             ..*self
         }
@@ -55,28 +57,17 @@ pub fn responses(record: &Record, drive: &DriveTone) -> Vec<Response> {
         .filter(|c| c.role.is_motion())
         .filter_map(|c| {
             let raw = tone_at_drive(&c.values, record.sample_rate_hz, drive)?;
-            let (real, imaginary, gain) = match c.high_pass_hz {
-                Some(corner) => undo(raw.0, raw.1, corner / drive.frequency_hz),
-                None => (raw.0, raw.1, 1.0),
-            };
-            let error = raw.2 / gain;
-            Some(Response {
+            let measured = Response {
                 role: c.role,
-                real,
-                imaginary,
-                error,
+                real: raw.0,
+                imaginary: raw.1,
+                error: raw.2,
                 residual_rms: raw.3,
-                high_pass_hz: c.high_pass_hz,
-            })
+                high_pass_hz: None,
+            };
+            Some(measured.behind(c.high_pass_hz, drive.frequency_hz))
         })
         .collect()
-}
-
-/// Divide by iω/(iω + ω_c); `ratio` = ω_c/ω. Returns the parts and the filter's gain.
-fn undo(real: f64, imaginary: f64, ratio: f64) -> (f64, f64, f64) {
-    // (a + ib)(1 − i r), with r = ω_c/ω.
-    let gain = 1.0 / 1f64.hypot(ratio);
-    (real + ratio * imaginary, imaginary - ratio * real, gain)
 }
 
 /// Least squares of 1, t, cos θ, sin θ: (real, imaginary, error, residual rms).

@@ -227,7 +227,7 @@ fn contradiction(record: &Record, found: Match, d: Role, v: Role) -> Option<Flag
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::{Channel, Setting, Sweep};
+    use crate::record::{Channel, Setting};
 
     fn record(signals: &[(Role, &dyn Fn(f64) -> f64)]) -> Record {
         let channels = signals
@@ -245,15 +245,7 @@ mod tests {
             id: "r".into(),
             sample_rate_hz: 2000.0,
             channels,
-            setting: Setting {
-                stated_frequency_hz: None,
-                clearance_m: None,
-                sweep: Sweep::Unknown,
-                drive_amplitude: 1.0,
-                sequence: 0,
-                specimen: None,
-                excitation: Default::default(),
-            },
+            setting: Setting::unstated(),
             flags: Vec::new(),
         }
     }

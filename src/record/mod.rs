@@ -200,6 +200,22 @@ pub struct Setting {
     pub excitation: Excitation,
 }
 
+#[cfg(test)]
+impl Setting {
+    /// Nothing is stated but the usual drive.
+    pub(crate) fn unstated() -> Self {
+        Self {
+            stated_frequency_hz: None,
+            clearance_m: None,
+            sweep: Sweep::Unknown,
+            drive_amplitude: 1.0,
+            sequence: 0,
+            specimen: None,
+            excitation: Excitation::default(),
+        }
+    }
+}
+
 /// Something wrong or noteworthy with a record: what, where, and what to do about it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Flag {

@@ -390,16 +390,8 @@ fn valid_channels_over_the_same_uneven_times_are_one_record() {
 #[test]
 fn valid_uneven_times_are_refused_by_name_and_equal_steps_give_the_rate() {
     use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
-    use crate::record::{Excitation, Role, Setting, Sweep};
-    let setting = Setting {
-        stated_frequency_hz: None,
-        clearance_m: None,
-        sweep: Sweep::Unknown,
-        drive_amplitude: 1.0,
-        sequence: 0,
-        specimen: None,
-        excitation: Excitation::default(),
-    };
+    use crate::record::{Role, Setting};
+    let setting = Setting::unstated();
     let record = |written: &Written| {
         let source = opened(&written.ascii()).unwrap();
         let channels = [ChannelSetup::plain(
