@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use impactid::event::Rig;
 use impactid::event::detect::DetectSettings;
-use impactid::identify::blocks::{Evidence, Nominal};
+use impactid::identify::evidence::{Evidence, Nominal};
 use impactid::identify::run::identify;
 use impactid::identify::uncertainty::{Asked, Way};
 use impactid::model::params::ModelError;

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::voice::{print, print_json};
 use super::{Exit, Failure, Progress, Voice};
-use crate::identify::coverage::Score;
+use crate::identify::uncertainty::coverage::Score;
 use crate::output::write_bytes;
 use crate::pipeline::coverage::{self, Tally};
 

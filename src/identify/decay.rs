@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::identify::MethodResult;
 use crate::identify::estimate;
-use crate::identify::parameters::Coordinate;
+use crate::identify::fit::parameters::Coordinate;
 use crate::motion::Observation;
 use crate::signal::decay::Decay;
 use crate::signal::robust;

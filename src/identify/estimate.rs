@@ -1,7 +1,7 @@
 //! From a fit's covariance to estimates with intervals and a status.
 
-use crate::identify::parameters::Coordinate;
-use crate::identify::solver::Fit;
+use crate::identify::fit::Fit;
+use crate::identify::fit::parameters::Coordinate;
 use crate::identify::{Estimate, ParameterSet, Status};
 
 /// 97.5 % point of the normal distribution.

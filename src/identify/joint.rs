@@ -1,22 +1,61 @@
 //! All methods in one likelihood: each block with the weight that its noise gives.
 
-use crate::identify::blocks::{Blocks, IMPACT_BIAS, Nominal};
-use crate::identify::interval::Posterior;
+use crate::identify::evidence::{Blocks, IMPACT_BIAS, Nominal};
+use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::{Block, FitError, Prior, Problem};
 use crate::identify::methods::{self, MethodFit};
-use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::solver::{Block, FitError, Prior, Problem};
+use crate::identify::uncertainty::interval::Posterior;
 
-/// Weights of resonance curve, trajectories, boundaries, impacts and flights; `None` leaves one out.
+/// A method that the joint fit may rest on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// The resonance curve of the impactless records.
+    Resonance,
+    /// Waveforms of periodic records.
+    Trajectories,
+    /// Brackets of s2, s1 and grazing.
+    Boundaries,
+    /// Speeds at impacts.
+    Impacts,
+    /// Records followed from impact to impact.
+    Flights,
+}
+
+impl Method {
+    /// All, in the order of their weights.
+    pub const ALL: [Self; 5] = [
+        Self::Resonance,
+        Self::Trajectories,
+        Self::Boundaries,
+        Self::Impacts,
+        Self::Flights,
+    ];
+
+    /// Name in `identification.json`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Resonance => "resonance",
+            Self::Trajectories => "trajectories",
+            Self::Boundaries => "boundaries",
+            Self::Impacts => "impacts",
+            Self::Flights => "flights",
+        }
+    }
+
+    /// What it fits.
+    fn block(self, blocks: &Blocks) -> &dyn Block {
+        match self {
+            Self::Resonance => &blocks.resonance,
+            Self::Trajectories => &blocks.trajectory,
+            Self::Boundaries => &blocks.boundary,
+            Self::Impacts => &blocks.impact,
+            Self::Flights => &blocks.flight,
+        }
+    }
+}
+
+/// Weights of the methods, as [`Method::ALL`] has them; `None` leaves one out.
 pub type Weights = [Option<f64>; 5];
-
-/// The blocks' names in the order of their weights.
-pub const METHODS: [&str; 5] = [
-    "resonance",
-    "trajectories",
-    "boundaries",
-    "impacts",
-    "flights",
-];
 
 /// Weight of the impacts among the other methods: what the extrapolation of speeds leaves open is
 /// common to all impacts, so that all together tell no more than that.
@@ -26,17 +65,12 @@ pub fn impact_weight(found: &MethodFit) -> f64 {
     square / (square + IMPACT_BIAS * IMPACT_BIAS) / found.factor
 }
 
-/// The places among [`METHODS`] of those that a joint fit rests on, in its problem's order.
-pub fn present(blocks: &Blocks, weights: &Weights) -> Vec<usize> {
-    let items = [
-        blocks.resonance.items(),
-        blocks.trajectory.items(),
-        blocks.boundary.items(),
-        blocks.impact.items(),
-        blocks.flight.items(),
-    ];
-    (0..METHODS.len())
-        .filter(|i| weights[*i].is_some() && items[*i] > 0)
+/// The methods that a joint fit rests on, in its problem's order.
+pub fn present(blocks: &Blocks, weights: &Weights) -> Vec<Method> {
+    let weighted = Method::ALL.into_iter().zip(weights);
+    weighted
+        .filter(|(method, weight)| weight.is_some() && method.block(blocks).items() > 0)
+        .map(|(method, _)| method)
         .collect()
 }
 
@@ -49,16 +83,9 @@ pub fn problem<'b>(
     nominal: &Nominal,
     posterior: Option<&Posterior>,
 ) -> Option<Problem<'b>> {
-    let all: [&'b dyn Block; 5] = [
-        &blocks.resonance,
-        &blocks.trajectory,
-        &blocks.boundary,
-        &blocks.impact,
-        &blocks.flight,
-    ];
     let list: Vec<(&'b dyn Block, f64)> = present(blocks, weights)
         .into_iter()
-        .filter_map(|i| Some((all[i], weights[i]?)))
+        .filter_map(|method| Some((method.block(blocks), weights[method as usize]?)))
         .collect();
     if list.is_empty() {
         return None;

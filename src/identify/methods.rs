@@ -1,10 +1,10 @@
 //! The methods, each alone: boundaries, trajectories, impacts, resonance.
 
 use crate::identify::MethodResult;
-use crate::identify::blocks::{Blocks, Nominal};
 use crate::identify::estimate;
-use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::solver::{Block, Fit, FitError, Prior, Problem, mean_squares};
+use crate::identify::evidence::{Blocks, Nominal};
+use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::{Block, Fit, FitError, Prior, Problem, mean_squares};
 
 /// Very wide priors that keep the equations regular where the data say nothing.
 pub fn wide_priors(start: &Parameters, free: &[Coordinate]) -> Vec<Prior> {
@@ -36,13 +36,24 @@ pub struct MethodFit {
     pub reduced: f64,
 }
 
+/// A fit that was tried.
+pub type Tried = Result<MethodFit, FitError>;
+
+/// A fit where there may have been nothing to fit: `None`.
+pub type Attempt = Option<Tried>;
+
+/// The fit, where it was tried and succeeded.
+pub fn succeeded(attempt: &Attempt) -> Option<&MethodFit> {
+    attempt.as_ref().and_then(|a| a.as_ref().ok())
+}
+
 /// Fit blocks over free coordinates and find the variance factor.
 pub fn fit_blocks(
     blocks: Vec<(&dyn Block, f64)>,
     free: Vec<Coordinate>,
     priors: Vec<Prior>,
     start: Parameters,
-) -> Result<MethodFit, FitError> {
+) -> Tried {
     let problem = Problem {
         blocks,
         priors,
@@ -60,7 +71,7 @@ pub fn fit_blocks(
 }
 
 /// f0, β and x_st from the impactless records; the gains' uncertainty enters x_st.
-pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<Result<MethodFit, FitError>> {
+pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Attempt {
     if blocks.resonance.points.len() < 3 {
         return None;
     }
@@ -123,7 +134,7 @@ fn deflection_guess(blocks: &Blocks, unit: &Parameters) -> f64 {
     let (mut product, mut square) = (0.0, 0.0);
     for point in &blocks.resonance.points {
         for r in &point.responses {
-            let model = crate::identify::resonance::predicted(
+            let model = crate::identify::evidence::resonance::predicted(
                 unit,
                 blocks.resonance.rig,
                 r.role,
@@ -139,11 +150,7 @@ fn deflection_guess(blocks: &Blocks, unit: &Parameters) -> f64 {
 }
 
 /// R alone from the speeds at impacts, with the corners of the velocities' high-pass as nuisances.
-pub fn impacts(
-    blocks: &Blocks,
-    nominal: &Nominal,
-    start: Parameters,
-) -> Option<Result<MethodFit, FitError>> {
+pub fn impacts(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt {
     if blocks.impact.pairs.len() < 3 {
         return None;
     }
@@ -154,11 +161,7 @@ pub fn impacts(
 }
 
 /// s2, s1 and grazing brackets, with f0, β and x_st from the impactless records beside them.
-pub fn boundaries(
-    blocks: &Blocks,
-    nominal: &Nominal,
-    start: Parameters,
-) -> Option<Result<MethodFit, FitError>> {
+pub fn boundaries(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt {
     if blocks.boundary.brackets.is_empty() {
         return None;
     }
@@ -176,11 +179,7 @@ pub fn boundaries(
 }
 
 /// All four parameters from the folded waveforms.
-pub fn trajectories(
-    blocks: &Blocks,
-    nominal: &Nominal,
-    start: Parameters,
-) -> Option<Result<MethodFit, FitError>> {
+pub fn trajectories(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt {
     if blocks.trajectory.records.is_empty() {
         return None;
     }
@@ -188,12 +187,7 @@ pub fn trajectories(
 }
 
 /// R, f0, β and x_st from one block alone, with the nuisances beside them.
-fn all_four(
-    block: &dyn Block,
-    blocks: &Blocks,
-    nominal: &Nominal,
-    start: Parameters,
-) -> Result<MethodFit, FitError> {
+fn all_four(block: &dyn Block, blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Tried {
     let mut free = Coordinate::PHYSICAL.to_vec();
     let mut priors = wide_priors(&start, &free);
     let list = vec![(block, 1.0)];
@@ -207,11 +201,7 @@ fn all_four(
 const SHARED_IN_FLIGHTS: f64 = 2.0;
 
 /// All four parameters from the states at the impacts of records without a closed-form orbit.
-pub fn flights(
-    blocks: &Blocks,
-    nominal: &Nominal,
-    start: Parameters,
-) -> Option<Result<MethodFit, FitError>> {
+pub fn flights(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt {
     if blocks.flight.records.is_empty() {
         return None;
     }
@@ -224,12 +214,12 @@ pub fn flights(
 
 /// A method's result from its fit.
 pub fn result(
-    outcome: &Result<MethodFit, FitError>,
+    tried: &Tried,
     tells: &[Coordinate],
     observations: usize,
     records: usize,
 ) -> MethodResult {
-    match outcome {
+    match tried {
         Ok(found) => {
             let mut result = MethodResult {
                 parameters: estimate::parameter_set(&found.fit, found.factor, tells),

@@ -2,10 +2,10 @@
 //! printed beside the posterior, which takes the brackets as the intervals that they are.
 
 use crate::event::Rig;
-use crate::identify::boundary::{BoundaryBlock, predicted_hz};
+use crate::identify::evidence::boundary::{BoundaryBlock, predicted_hz};
+use crate::identify::fit::Block;
+use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::methods::fit_blocks;
-use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::solver::Block;
 use crate::identify::{Estimate, estimate};
 use crate::motion::bracket::{BoundaryKind, Bracket};
 

@@ -1,48 +1,32 @@
 //! Identification: parameters fitted to what was measured, with uncertainty and a verdict.
 //!
-//! The result is plain data ([`Identification`]), written as `identification.json`.
+//! The result is plain data ([`Identification`]), written as `identification.json`. [`run`] leads from
+//! [`evidence`] (what was measured, as residuals of the model) over [`fit`] (least squares) to
+//! [`uncertainty`] and [`judgement`] (does the model fit, do the methods agree, was there a mistake).
 
-pub mod agreement;
-pub mod blocks;
-pub mod bound;
-pub mod boundary;
-pub mod contact_law;
-pub mod coverage;
 pub mod decay;
-pub mod direction;
 pub mod estimate;
-pub mod factor;
-pub mod flights;
-pub mod high_pass;
-pub mod impacts;
-pub mod interchange;
-pub mod interval;
+pub mod evidence;
+pub mod fit;
 pub mod joint;
-pub mod least_squares;
+pub mod judgement;
 pub mod methods;
 pub mod middles;
-pub mod parameters;
 pub mod plan;
 pub mod published;
-pub mod pull;
-pub mod record_motion;
-pub mod resonance;
 pub mod results;
 pub mod run;
 pub mod selection;
-pub mod shared_error;
-pub mod solver;
 pub mod specimens;
-pub mod suspicion;
-pub mod trajectory;
 pub mod uncertainty;
-pub mod verdict;
-pub mod waveform;
-pub mod weighing;
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+
+use crate::identify::judgement::contact_law::ContactLaw;
+use crate::identify::judgement::suspicion::Suspicion;
+use crate::identify::uncertainty::Uncertainty;
 
 /// How well the data tell a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -113,7 +97,7 @@ pub struct MethodResult {
     pub outlying_impacts: Vec<OutlyingImpact>,
     /// How R depends on the closing speed; of impacts alone.
     #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub contact_law: Option<contact_law::ContactLaw>,
+    pub contact_law: Option<ContactLaw>,
     /// Further numbers of the method (gains, asymmetries …), named with their unit.
     #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
     pub further: BTreeMap<String, Estimate>,
@@ -207,10 +191,10 @@ pub struct Identification {
     pub agreement: Agreement,
     /// What each method contributed; profiles and bootstrap where asked for.
     #[serde(default)]
-    pub uncertainty: uncertainty::Uncertainty,
+    pub uncertainty: Uncertainty,
     /// Mistakes of the laboratory that the data give away.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
-    pub suspicions: Vec<suspicion::Suspicion>,
+    pub suspicions: Vec<Suspicion>,
     /// Results for each specimen, where the campaign holds several.
     #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
     pub specimens: BTreeMap<String, SpecimenResult>,

@@ -5,10 +5,11 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::identify::blocks::Evidence;
-use crate::identify::parameters::{Coordinate, Parameters, gain_index};
-use crate::identify::solver::{Fit, Problem, inverse};
-use crate::identify::trajectory::{TrajectoryBlock, TrajectoryRecord, distinct_phases};
+use crate::identify::evidence::Evidence;
+use crate::identify::evidence::trajectory::{TrajectoryBlock, TrajectoryRecord, distinct_phases};
+use crate::identify::fit::normal::inverse;
+use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
+use crate::identify::fit::{Fit, Problem};
 use crate::model::orbit::{Orbit, stable_orbit};
 use crate::motion::Observation;
 use crate::motion::fold::{Folded, FoldedChannel, FoldedPoint};

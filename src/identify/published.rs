@@ -3,10 +3,12 @@
 
 use std::collections::BTreeMap;
 
+use argmin::core::{CostFunction, Executor};
+use argmin::solver::brent::BrentOpt;
 use serde::Deserialize;
 
 use crate::identify::estimate::{NORMAL_975, estimate};
-use crate::identify::parameters::Coordinate;
+use crate::identify::fit::parameters::Coordinate;
 use crate::identify::{Agreement, MethodResult, Verdict, VerdictKind};
 use crate::model::orbit::Branch;
 use crate::model::params::Machine;
@@ -82,28 +84,43 @@ fn cost(speeds: &[PublishedSpeed], damping_ratio: f64) -> Option<f64> {
         .sum()
 }
 
-/// Damping ratio with the least cost: a logarithmic grid, then golden section.
+/// The cost over ln β.
+struct OverLogDamping<'a>(&'a [PublishedSpeed]);
+
+impl CostFunction for OverLogDamping<'_> {
+    type Param = f64;
+    type Output = f64;
+
+    fn cost(&self, log: &f64) -> Result<f64, argmin::core::Error> {
+        Ok(cost(self.0, log.exp()).unwrap_or(NO_MOTION))
+    }
+}
+
+/// Cost where a speed has no motion: finite, so that a parabola through it means something.
+const NO_MOTION: f64 = 1e30;
+/// Damping ratios that are searched, and how finely.
+const DAMPING_RATIOS: [f64; 2] = [1e-4, 0.3];
+const DAMPING_POINTS: u32 = 160;
+/// Steps of Brent's method at most; it takes about ten.
+const BRENT_STEPS: u64 = 100;
+/// How far from the optimum it may end, in ln β.
+const BRENT_TOLERANCE: f64 = 1e-9;
+
+/// Damping ratio with the least cost: a logarithmic grid, then Brent's method.
 fn best(speeds: &[PublishedSpeed]) -> Option<f64> {
-    let at = |log: f64| cost(speeds, log.exp()).unwrap_or(f64::INFINITY);
-    let (first, last, count) = (1e-4f64.ln(), 0.3f64.ln(), 160);
-    let step = (last - first) / f64::from(count);
-    let start = (0..=count)
-        .map(|i| first + step * f64::from(i))
-        .min_by(|a, b| at(*a).total_cmp(&at(*b)))?;
-    if !at(start).is_finite() {
-        return None;
-    }
-    let ratio = 0.5 * (5f64.sqrt() - 1.0);
-    let (mut low, mut high) = (start - step, start + step);
-    for _ in 0..60 {
-        let (a, b) = (high - ratio * (high - low), low + ratio * (high - low));
-        if at(a) <= at(b) {
-            high = b;
-        } else {
-            low = a;
-        }
-    }
-    Some((0.5 * (low + high)).exp())
+    let [first, last] = DAMPING_RATIOS.map(f64::ln);
+    let step = (last - first) / f64::from(DAMPING_POINTS);
+    let grid = (0..=DAMPING_POINTS).map(|i| first + step * f64::from(i));
+    let (start, _) = grid
+        .filter_map(|log| Some((log, cost(speeds, log.exp())?)))
+        .min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let brent = BrentOpt::new(start - step, start + step).set_tolerance(0.0, BRENT_TOLERANCE);
+    let found = Executor::new(OverLogDamping(speeds), brent)
+        .configure(|state| state.max_iters(BRENT_STEPS))
+        .timer(false)
+        .run();
+    let log = found.ok()?.state.best_param?;
+    Some(log.exp())
 }
 
 /// What the published speeds tell, and whether printed damping ratios fit them.

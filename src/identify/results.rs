@@ -2,18 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::blocks::{Blocks, Evidence, IMPACT_BIAS};
-use crate::identify::interval::Posterior;
-use crate::identify::methods::{self, MethodFit};
-use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::selection::Attempt;
-use crate::identify::solver::{Fit, FitError};
-use crate::identify::{
-    Estimate, MethodResult, OutlyingImpact, contact_law, estimate, middles, verdict,
-};
+use crate::identify::evidence::{Blocks, Evidence, IMPACT_BIAS};
+use crate::identify::fit::Fit;
+use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::judgement::{contact_law, verdict};
+use crate::identify::methods::{self, Attempt, Tried};
+use crate::identify::uncertainty::interval::Posterior;
+use crate::identify::{Estimate, MethodResult, OutlyingImpact, estimate, middles};
 
 /// f0, β and x_st from the impactless records.
-pub fn resonance(blocks: &Blocks, attempt: &Result<MethodFit, FitError>) -> MethodResult {
+pub fn resonance(blocks: &Blocks, tried: &Tried) -> MethodResult {
     let tells = [
         Coordinate::Frequency,
         Coordinate::Damping,
@@ -21,8 +19,8 @@ pub fn resonance(blocks: &Blocks, attempt: &Result<MethodFit, FitError>) -> Meth
     ];
     let block = &blocks.resonance;
     let observations = block.points.iter().map(|p| 2 * p.responses.len()).sum();
-    let mut result = methods::result(attempt, &tells, observations, block.points.len());
-    if let Ok(fit) = attempt {
+    let mut result = methods::result(tried, &tells, observations, block.points.len());
+    if let Ok(fit) = tried {
         verdict::judge_resonance(&mut result, block, &fit.fit.parameters);
     }
     result
@@ -32,11 +30,11 @@ pub fn resonance(blocks: &Blocks, attempt: &Result<MethodFit, FitError>) -> Meth
 /// judged with the corners of the velocities' high-pass as all data together have them.
 pub fn impacts(
     blocks: &Blocks,
-    attempt: &Result<MethodFit, FitError>,
+    tried: &Tried,
     evidence: &Evidence,
     together: Option<&Fit>,
 ) -> MethodResult {
-    let fit = together.or(attempt.as_ref().ok().map(|a| &a.fit));
+    let fit = together.or(tried.as_ref().ok().map(|a| &a.fit));
     let block = &match fit {
         Some(fit) => blocks.impact.corrected(&fit.parameters),
         None => blocks.impact.clone(),
@@ -44,7 +42,7 @@ pub fn impacts(
     let mut records: Vec<usize> = block.pairs.iter().map(|p| p.observation).collect();
     records.dedup();
     let mut result = methods::result(
-        attempt,
+        tried,
         &[Coordinate::Restitution],
         block.pairs.len(),
         records.len(),
@@ -99,20 +97,16 @@ fn told(outlying: &[OutlyingImpact]) -> Option<String> {
 }
 
 /// All four parameters from the waveforms.
-pub fn trajectories(
-    blocks: &Blocks,
-    attempt: &Result<MethodFit, FitError>,
-    evidence: &Evidence,
-) -> MethodResult {
+pub fn trajectories(blocks: &Blocks, tried: &Tried, evidence: &Evidence) -> MethodResult {
     let block = &blocks.trajectory;
-    let observations = attempt.as_ref().map_or(0, |f| f.fit.residuals);
+    let observations = tried.as_ref().map_or(0, |f| f.fit.residuals);
     let mut result = methods::result(
-        attempt,
+        tried,
         &Coordinate::PHYSICAL,
         observations,
         block.records.len(),
     );
-    if let Ok(fit) = attempt {
+    if let Ok(fit) = tried {
         verdict::judge_trajectories(&mut result, block, &fit.fit.parameters);
     }
     result.remarks.extend(thinned(evidence));
@@ -120,10 +114,10 @@ pub fn trajectories(
 }
 
 /// All four parameters from records that are shot from impact to impact.
-pub fn flights(blocks: &Blocks, attempt: &Result<MethodFit, FitError>) -> MethodResult {
+pub fn flights(blocks: &Blocks, tried: &Tried) -> MethodResult {
     let records = &blocks.flight.records;
     let impacts = records.iter().map(|r| r.nodes.len()).sum();
-    let mut result = methods::result(attempt, &Coordinate::PHYSICAL, impacts, records.len());
+    let mut result = methods::result(tried, &Coordinate::PHYSICAL, impacts, records.len());
     if let Some(reduced) = result.reduced_residual {
         result.remarks.push(format!(
             "from impact to impact, the states deviate {reduced:.1} times their errors"
@@ -149,17 +143,13 @@ fn thinned(evidence: &Evidence) -> Option<String> {
 }
 
 /// R from the brackets, by its posterior where the resonance curve tells the rest.
-pub fn boundaries(
-    blocks: &Blocks,
-    attempt: &Result<MethodFit, FitError>,
-    posterior: Option<&Posterior>,
-) -> MethodResult {
+pub fn boundaries(blocks: &Blocks, tried: &Tried, posterior: Option<&Posterior>) -> MethodResult {
     let brackets = blocks.boundary.brackets.len();
-    let tells = match attempt {
+    let tells = match tried {
         Ok(found) => found.fit.free.clone(),
         Err(_) => Coordinate::PHYSICAL.to_vec(),
     };
-    let mut result = methods::result(attempt, &tells, brackets, 2 * brackets);
+    let mut result = methods::result(tried, &tells, brackets, 2 * brackets);
     if let Some(posterior) = posterior {
         let (value, error) = posterior.restitution;
         let mut estimate = estimate::estimate(Coordinate::Restitution, value, error, None);
@@ -172,7 +162,7 @@ pub fn boundaries(
             error,
             None,
         ));
-        let about = attempt.as_ref().ok().map(|found| Parameters {
+        let about = tried.as_ref().ok().map(|found| Parameters {
             restitution: posterior.restitution.0,
             ..found.fit.parameters
         });
@@ -217,12 +207,12 @@ pub fn joint(
     }
 }
 
-/// Add a systematic part to an estimate's standard error.
-fn widen(estimate: &mut Estimate, systematic: f64) {
-    if let (Some(value), Some(error)) = (estimate.value, estimate.standard_error) {
+/// Add a systematic part to the standard error of R.
+fn widen(restitution: &mut Estimate, systematic: f64) {
+    if let (Some(value), Some(error)) = (restitution.value, restitution.standard_error) {
         let error = error.hypot(systematic);
-        let half = crate::identify::estimate::NORMAL_975 * error;
-        estimate.standard_error = Some(error);
-        estimate.interval95 = Some([(value - half).max(0.0), (value + half).min(1.0)]);
+        let half = estimate::NORMAL_975 * error;
+        restitution.standard_error = Some(error);
+        restitution.interval95 = Some([(value - half).max(0.0), (value + half).min(1.0)]);
     }
 }

@@ -2,18 +2,18 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::agreement::agreement;
-use crate::identify::blocks::{Blocks, Evidence};
-use crate::identify::interchange;
-use crate::identify::interval::{self, Posterior};
-use crate::identify::joint::{self, METHODS, Weights};
-use crate::identify::methods;
-use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::selection::{Attempt, Selection, succeeded};
-use crate::identify::solver::{Fit, Problem};
-use crate::identify::suspicion::{self, OddGap, Suspicion};
+use crate::identify::evidence::{Blocks, Evidence};
+use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::{Fit, Problem};
+use crate::identify::joint::{self, Method, Weights};
+use crate::identify::judgement::agreement::agreement;
+use crate::identify::judgement::interchange;
+use crate::identify::judgement::suspicion::{self, OddGap, Suspicion};
+use crate::identify::judgement::verdict::{self, Findings};
+use crate::identify::methods::{self, Attempt, succeeded};
+use crate::identify::selection::Selection;
+use crate::identify::uncertainty::interval::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
-use crate::identify::verdict::{self, Findings};
 use crate::identify::{Agreement, MethodResult, Verdict, decay, results};
 
 /// What an identification leads to; settings, versions and hashes are the caller's to add.
@@ -236,10 +236,8 @@ impl Work<'_> {
         let Some((problem, joint)) = problem.zip(succeeded(&fits.joint)) else {
             return Uncertainty::default();
         };
-        let names: Vec<&str> = joint::present(blocks, &fits.weights)
-            .into_iter()
-            .map(|i| METHODS[i])
-            .collect();
+        let present = joint::present(blocks, &fits.weights);
+        let names: Vec<&str> = present.into_iter().map(Method::name).collect();
         let asked = &self.evidence.uncertainty;
         uncertainty::uncertainty(&problem, &names, &joint.fit, joint.factor, asked)
     }
@@ -299,10 +297,10 @@ impl Work<'_> {
                 .map(|a| results::impacts(blocks, a, self.evidence, together)),
             fits.flights.as_ref().map(|a| results::flights(blocks, a)),
         ];
-        let mut named: BTreeMap<String, MethodResult> = METHODS
+        let mut named: BTreeMap<String, MethodResult> = Method::ALL
             .into_iter()
             .zip(found)
-            .filter_map(|(name, result)| Some((name.to_owned(), result?)))
+            .filter_map(|(method, result)| Some((method.name().to_owned(), result?)))
             .collect();
         if let Some(result) = decay::pooled(self.evidence.observations) {
             named.insert("free_decay".into(), result);

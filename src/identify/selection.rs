@@ -1,21 +1,14 @@
 //! Which records and brackets the fits rest on; the others are named with the reason.
 
-use crate::identify::blocks::{Blocks, Evidence};
-use crate::identify::joint::METHODS;
-use crate::identify::methods::{self, MethodFit};
-use crate::identify::parameters::Parameters;
-use crate::identify::pull;
-use crate::identify::solver::{FitError, Normal, Problem, mean_squares};
-use crate::identify::trajectory::TrajectoryRecord;
-use crate::identify::weighing::Bulk;
-
-/// A fit that was tried; `None` where there was nothing to fit.
-pub type Attempt = Option<Result<MethodFit, FitError>>;
-
-/// The fit, where it was tried and succeeded.
-pub fn succeeded(attempt: &Attempt) -> Option<&MethodFit> {
-    attempt.as_ref().and_then(|a| a.as_ref().ok())
-}
+use crate::identify::evidence::trajectory::TrajectoryRecord;
+use crate::identify::evidence::weighing::Bulk;
+use crate::identify::evidence::{Blocks, Evidence};
+use crate::identify::fit::normal::Normal;
+use crate::identify::fit::parameters::Parameters;
+use crate::identify::fit::{Problem, mean_squares};
+use crate::identify::joint::Method;
+use crate::identify::judgement::pull;
+use crate::identify::methods::{self, Attempt};
 
 /// Rounds of leaving outlying records out and fitting again.
 const ROUNDS: usize = 2;
@@ -154,7 +147,8 @@ impl<'a> Selection<'a> {
         let rig = self.evidence.rig;
         let mut kept = Vec::new();
         for bracket in std::mem::take(&mut self.blocks.boundary.brackets) {
-            let predicted = crate::identify::boundary::predicted_hz(&bracket, &start, rig);
+            let predicted =
+                crate::identify::evidence::boundary::predicted_hz(&bracket, &start, rig);
             let near = predicted.is_some_and(|f| {
                 (f - bracket.middle_hz()).abs() <= 3.0 * bracket.width_hz() + 0.02 * f
             });
@@ -225,30 +219,30 @@ impl<'a> Selection<'a> {
     }
 
     /// The records that pull a joint fit hardest against all others.
-    pub fn pulling(&self, problem: &Problem, present: &[usize], at: &Parameters) -> Pulling {
+    pub fn pulling(&self, problem: &Problem, present: &[Method], at: &Parameters) -> Pulling {
         let (mut items, mut others) = (Vec::new(), Vec::new());
-        for (part, place) in problem.item_parts(at).into_iter().zip(present) {
-            match METHODS[*place] {
-                "resonance" | "trajectories" => items.push((*place, part)),
-                _ => others.extend(part),
+        for (part, method) in problem.item_parts(at).into_iter().zip(present) {
+            match method {
+                Method::Resonance | Method::Trajectories => items.push((*method, part)),
+                Method::Boundaries | Method::Impacts | Method::Flights => others.extend(part),
             }
         }
         let priors = problem.priors.iter();
         others.extend(priors.map(|p| problem.prior_normal(p, at)));
-        let owners: Vec<(usize, usize)> = items
+        let owners: Vec<(Method, usize)> = items
             .iter()
-            .flat_map(|(place, part)| (0..part.len()).map(|i| (*place, i)))
+            .flat_map(|(method, part)| (0..part.len()).map(|i| (*method, i)))
             .collect();
         let parts: Vec<Normal> = items.into_iter().flat_map(|(_, part)| part).collect();
         let doubtful: Vec<bool> = owners
             .iter()
-            .map(|(place, i)| METHODS[*place] == "trajectories" && self.settles_slowly(*i, at))
+            .map(|(method, i)| *method == Method::Trajectories && self.settles_slowly(*i, at))
             .collect();
         let mut pulling = Pulling::default();
         let pulls = pull::pulls(&parts, &others).unwrap_or_default();
         for i in pull::strongest(&pulls, &doubtful) {
             match owners[i] {
-                (0, point) => pulling.resonance.push(point),
+                (Method::Resonance, point) => pulling.resonance.push(point),
                 (_, record) => pulling.trajectory.push(record),
             }
         }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::blocks::Evidence;
+use crate::identify::evidence::Evidence;
 use crate::identify::run::{Outcome, identify};
 use crate::identify::{
     Agreement, MethodResult, SpecimenResult, Verdict, VerdictKind, decay, estimate,

@@ -9,11 +9,11 @@ use serde::Serialize;
 
 use crate::event::Rig;
 use crate::event::detect::DetectSettings;
-use crate::identify::blocks::{Evidence, Nominal};
-use crate::identify::bound::bounds;
-use crate::identify::coverage::{Score, Trial, scores, table};
-use crate::identify::parameters::Parameters;
+use crate::identify::evidence::{Evidence, Nominal};
+use crate::identify::fit::parameters::Parameters;
 use crate::identify::run::{Outcome, identify};
+use crate::identify::uncertainty::bound::bounds;
+use crate::identify::uncertainty::coverage::{Score, Trial, scores, table};
 use crate::identify::uncertainty::{Asked, Way};
 use crate::motion::{Bracket, ClassifySettings, Observation, brackets, observe, scale_drives};
 use crate::pipeline::{PipelineError, Progress};

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::Identification;
-use crate::identify::blocks::{Evidence, Nominal};
-use crate::identify::solver::Fit;
+use crate::identify::evidence::{Evidence, Nominal};
+use crate::identify::fit::Fit;
 use crate::identify::specimens::identify_campaign;
 use crate::identify::uncertainty::Asked;
 use crate::pipeline::store::write_json;

@@ -169,3 +169,29 @@ fn valid_a_library_user_of_a_foreign_crate_stays_in_its_room() {
         }
     }
 }
+
+/// What is built is used: a library in Cargo.toml that no source names only costs time.
+#[test]
+fn valid_every_dependency_is_used() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let manifest = fs::read_to_string(root.join("Cargo.toml")).expect("Cargo.toml");
+    let manifest: toml::Table = manifest.parse().expect("TOML");
+    let mut paths = Vec::new();
+    for folder in ["src", "tests", "benches"] {
+        sources(&root.join(folder), &mut paths);
+    }
+    let read = |path: &PathBuf| fs::read_to_string(path).expect("a source");
+    let all: Vec<String> = paths.iter().map(read).collect();
+    let named = |name: &str| {
+        let uses = [format!("{name}::"), format!("use {name};")];
+        let of = |text: &String| uses.iter().any(|u| text.contains(u.as_str()));
+        all.iter().any(of)
+    };
+    for table in ["dependencies", "dev-dependencies"] {
+        let listed = manifest[table].as_table().expect("a table");
+        for name in listed.keys() {
+            let name = name.replace('-', "_");
+            assert!(named(&name), "{name} stands in [{table}] and is not used");
+        }
+    }
+}

@@ -7,8 +7,8 @@ mod models;
 use std::path::Path;
 
 use dual::Dual;
-use impactid::identify::factor::Factor;
-use impactid::identify::least_squares::{LeastSquares, Limits, Variance, minimise};
+use impactid::identify::fit::factor::Factor;
+use impactid::identify::fit::least_squares::{LeastSquares, Limits, Variance, minimise};
 
 /// One set: what its file says.
 struct Set {

@@ -3,12 +3,12 @@
 use std::collections::HashSet;
 
 use super::Gathered;
-use crate::identify::blocks::{Blocks, Evidence, Nominal};
-use crate::identify::contact_law::Law;
-use crate::identify::impacts::SpeedPair;
-use crate::identify::parameters::Coordinate;
-use crate::identify::resonance::predicted;
-use crate::identify::solver::Block;
+use crate::identify::evidence::impacts::SpeedPair;
+use crate::identify::evidence::resonance::predicted;
+use crate::identify::evidence::{Blocks, Evidence, Nominal};
+use crate::identify::fit::Block;
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::judgement::contact_law::Law;
 use crate::identify::{MethodResult, SpecimenResult};
 use crate::motion::Observation;
 use crate::motion::response::Response;

@@ -13,8 +13,8 @@ pub use decays::shown_decays;
 
 use crate::event::Rig;
 use crate::identify::Identification;
-use crate::identify::parameters::Parameters;
-use crate::identify::solver::Fit;
+use crate::identify::fit::Fit;
+use crate::identify::fit::parameters::Parameters;
 use crate::motion::{Bracket, Motion, Observation};
 use crate::record::{Record, Role};
 use crate::report::content::{LeftOut, ReportContent};

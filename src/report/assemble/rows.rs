@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::{ChannelFacts, Gathered};
 use crate::event::Rig;
-use crate::identify::flights::is_flown;
+use crate::identify::evidence::flights::is_flown;
 use crate::motion::{self, Motion, Observation};
 use crate::report::content::{
     BoundaryKind, BracketRow, CampaignSummary, ChannelRow, NominalValue, RecordRow,
@@ -197,9 +197,9 @@ fn bracket(gathered: &Gathered, b: &motion::Bracket) -> BracketRow {
         eta_low: eta(b.frequency_low_hz),
         eta_high: eta(b.frequency_high_hz),
         direction: b.sweep,
-        simulated_hz: parameters
-            .filter(|_| closed_form)
-            .and_then(|p| crate::identify::boundary::predicted_hz(b, p, gathered.campaign.rig)),
+        simulated_hz: parameters.filter(|_| closed_form).and_then(|p| {
+            crate::identify::evidence::boundary::predicted_hz(b, p, gathered.campaign.rig)
+        }),
         records: Some(b.records.clone()),
         left_out: gathered
             .left_out

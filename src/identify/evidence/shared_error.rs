@@ -4,7 +4,7 @@
 //! I + VVᵀ (13); residuals times its inverse root are independent again, and least squares on them is
 //! the likelihood.
 
-use crate::identify::factor::dot;
+use crate::identify::fit::factor::dot;
 
 /// The inverse root of I + VVᵀ, by its few directions: I − Σ kept·d dᵀ with orthonormal d.
 #[derive(Debug, Clone, Default)]

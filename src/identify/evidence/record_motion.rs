@@ -2,11 +2,13 @@
 //! over every parameter, over the drive's phase and over its frequency.
 
 use crate::event::Rig;
-use crate::identify::direction::{change, relative_length, relative_rate};
-use crate::identify::high_pass::{HighPass, HighPassSlope, Passed, Tail};
-use crate::identify::parameters::{Coordinate, Parameters, gain_index};
-use crate::identify::trajectory::TrajectoryRecord;
-use crate::identify::waveform::{Phases, Timing, TimingSlope, Vibration, velocity, velocity_slope};
+use crate::identify::evidence::direction::{change, relative_length, relative_rate};
+use crate::identify::evidence::high_pass::{HighPass, HighPassSlope, Passed, Tail};
+use crate::identify::evidence::trajectory::TrajectoryRecord;
+use crate::identify::evidence::waveform::{
+    Phases, Timing, TimingSlope, Vibration, velocity, velocity_slope,
+};
+use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::model::orbit::Branch;
 use crate::model::params::{Machine, Setting};
 use crate::model::path::C64;
@@ -353,7 +355,7 @@ fn measured(role: Role) -> Measured {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::trajectory::distinct_phases;
+    use crate::identify::evidence::trajectory::distinct_phases;
     use crate::motion::fold::{Folded, FoldedPoint};
 
     const ROLES: [Role; 4] = [

@@ -7,11 +7,11 @@
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
-use crate::identify::blocks::Nominal;
-use crate::identify::factor::dot;
-use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::solver::{Block, Fit, mean_squares};
-use crate::identify::trajectory::{TrajectoryBlock, TrajectoryRecord};
+use crate::identify::evidence::Nominal;
+use crate::identify::evidence::trajectory::{TrajectoryBlock, TrajectoryRecord};
+use crate::identify::fit::factor::dot;
+use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::{Block, Fit, mean_squares};
 
 /// A mistake that the data give away.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -1,13 +1,29 @@
 //! The evidence of a campaign sorted by what it tells, and the nuisances that come with it.
+//!
+//! Each kind is a block of residuals of its own: impactless records ([`resonance`]), periodic ones
+//! ([`trajectory`]), brackets of boundaries ([`boundary`]), speeds at impacts ([`impacts`]) and records
+//! that are followed from impact to impact ([`flights`]).
+
+pub mod boundary;
+pub mod direction;
+pub mod flights;
+pub mod high_pass;
+pub mod impacts;
+pub mod record_motion;
+pub mod resonance;
+pub mod shared_error;
+pub mod trajectory;
+pub mod waveform;
+pub mod weighing;
 
 use crate::event::Rig;
-use crate::identify::boundary::BoundaryBlock;
-use crate::identify::flights::FlightBlock;
-use crate::identify::impacts::{ImpactBlock, SpeedPair};
-use crate::identify::parameters::Coordinate;
-use crate::identify::resonance::ResonanceBlock;
-use crate::identify::solver::{Block, Prior};
-use crate::identify::trajectory::TrajectoryBlock;
+use crate::identify::evidence::boundary::BoundaryBlock;
+use crate::identify::evidence::flights::FlightBlock;
+use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
+use crate::identify::evidence::resonance::ResonanceBlock;
+use crate::identify::evidence::trajectory::TrajectoryBlock;
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::fit::{Block, Prior};
 use crate::identify::uncertainty::Asked;
 use crate::motion::{Bracket, Observation};
 

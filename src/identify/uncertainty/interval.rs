@@ -7,8 +7,8 @@
 
 use rayon::prelude::*;
 
-use crate::identify::boundary::{BoundaryBlock, bracket_probability, predicted_hz};
-use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::evidence::boundary::{BoundaryBlock, bracket_probability, predicted_hz};
+use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::motion::bracket::{BoundaryKind, Bracket};
 
 /// What brackets say of R and x_st.

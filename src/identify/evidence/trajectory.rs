@@ -3,11 +3,11 @@
 use rayon::prelude::*;
 
 use crate::event::Rig;
-use crate::identify::parameters::{Coordinate, Parameters, gain_index};
-use crate::identify::record_motion::{NearestOrbit, RecordMotion};
-use crate::identify::shared_error::Whitening;
-use crate::identify::solver::Block;
-use crate::identify::waveform::Phases;
+use crate::identify::evidence::record_motion::{NearestOrbit, RecordMotion};
+use crate::identify::evidence::shared_error::Whitening;
+use crate::identify::evidence::waveform::Phases;
+use crate::identify::fit::Block;
+use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::model::flight::State;
 use crate::model::orbit::orbit_with_speed;
 use crate::motion::Observation;

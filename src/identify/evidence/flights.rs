@@ -11,9 +11,9 @@
 use nalgebra::{Matrix4, Vector4};
 
 use crate::event::{CornerShift, Impact, Rig};
-use crate::identify::impacts::corners_in;
-use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::solver::Block;
+use crate::identify::evidence::impacts::corners_in;
+use crate::identify::fit::Block;
+use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::model::flight::{Drive, State, free_flight};
 use crate::model::params::Machine;
 use crate::model::variation::free_flow;
@@ -312,8 +312,8 @@ impl Block for FlightBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identify::fit::Problem;
     use crate::identify::methods::wide_priors;
-    use crate::identify::solver::Problem;
     use crate::model::params::Initial;
     use crate::model::simulate::simulate;
 

@@ -9,11 +9,11 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
-use crate::identify::blocks::{Blocks, Evidence, Nominal};
-use crate::identify::interval::{self, Posterior};
+use crate::identify::evidence::{Blocks, Evidence, Nominal};
+use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::{Block, Prior, Problem};
 use crate::identify::methods::wide_priors;
-use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::solver::{Block, Prior, Problem};
+use crate::identify::uncertainty::interval::{self, Posterior};
 
 /// Least standard errors of the coordinates.
 #[derive(Debug, Clone, PartialEq)]

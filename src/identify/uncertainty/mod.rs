@@ -1,5 +1,10 @@
 //! Uncertainty beyond the covariance: profile likelihoods, a bootstrap over records, and what each
-//! method contributed.
+//! method contributed. Beside it: the posterior of brackets ([`interval`]), the least error that any
+//! estimator can have ([`bound`]), and how often intervals hold the truth ([`coverage`]).
+
+pub mod bound;
+pub mod coverage;
+pub mod interval;
 
 use std::collections::BTreeMap;
 
@@ -9,8 +14,9 @@ use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::identify::parameters::Coordinate;
-use crate::identify::solver::{Fit, Normal, Problem, inverse};
+use crate::identify::fit::normal::{Normal, inverse};
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::fit::{Fit, Problem};
 
 /// How intervals are found beside the covariance.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,61 +1,17 @@
 //! Least squares over blocks of residuals.
 //!
-//! A block gives its residuals item by item (a record, a bracket), so that items are evaluated in
-//! parallel and only their triangular factors are kept, which are combined in the items' order. An item whose model does not exist at a
-//! trial point makes that trial fail; it never becomes a residual number.
+//! Of each item only the triangular factor is kept, and the factors are combined in the items' order,
+//! so that the same bytes come out on any number of threads.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
-use crate::identify::factor::Factor;
-pub use crate::identify::least_squares::Ending;
-use crate::identify::least_squares::{LeastSquares, Limits, Variance, minimise};
-use crate::identify::parameters::{Coordinate, Parameters};
-
-/// Weighted residuals of one kind of observation.
-pub trait Block: Sync {
-    /// Number of items.
-    fn items(&self) -> usize;
-
-    /// Weighted residuals of one item at given parameters, always the same number for an item;
-    /// `None` where the model has no such motion there.
-    fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>>;
-
-    /// Residuals of one item and their slopes over some coordinates, column by column. Without a
-    /// faster way of its own, a block is differenced.
-    fn slopes(
-        &self,
-        item: usize,
-        parameters: &Parameters,
-        coordinates: &[Coordinate],
-    ) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
-        let here = self.residuals(item, parameters)?;
-        let columns = coordinates
-            .iter()
-            .map(|coordinate| {
-                difference(parameters, *coordinate, &here, |p| self.residuals(item, p))
-            })
-            .collect::<Option<Vec<_>>>()?;
-        Some((here, columns))
-    }
-
-    /// Which coordinates the block depends on.
-    fn touches(&self, coordinate: Coordinate) -> bool;
-}
-
-/// Mean square of each item's weighted residuals at given parameters, in the items' order; `None`
-/// where the model has no such motion.
-pub fn mean_squares(block: &impl Block, parameters: &Parameters) -> Vec<Option<f64>> {
-    (0..block.items())
-        .into_par_iter()
-        .map(|i| {
-            let residuals = block.residuals(i, parameters)?;
-            let sum: f64 = residuals.iter().map(|r| r * r).sum();
-            Some(sum / residuals.len().max(1) as f64)
-        })
-        .collect()
-}
+use crate::identify::fit::block::Block;
+use crate::identify::fit::factor::Factor;
+use crate::identify::fit::least_squares::{LeastSquares, Limits, Variance, minimise};
+use crate::identify::fit::normal::Normal;
+use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::{Fit, FitError};
 
 /// Gaussian prior on one coordinate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,120 +34,6 @@ pub struct Problem<'a> {
     pub free: Vec<Coordinate>,
 }
 
-/// A finished fit.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Fit {
-    /// Best parameters.
-    pub parameters: Parameters,
-    /// Free coordinates, in the order of the covariance.
-    pub free: Vec<Coordinate>,
-    /// Covariance of the free coordinates for unit variance of the weighted residuals.
-    #[serde(with = "rows")]
-    pub covariance: DMatrix<f64>,
-    /// Sum of squared weighted residuals, priors included.
-    pub cost: f64,
-    /// Number of residuals, priors not counted.
-    pub residuals: usize,
-    /// How it ended.
-    pub ending: Ending,
-}
-
-impl Fit {
-    /// Standard error of a coordinate; `None` where it was not free.
-    pub fn error(&self, coordinate: Coordinate) -> Option<f64> {
-        let i = self.free.iter().position(|c| *c == coordinate)?;
-        Some(self.covariance[(i, i)].max(0.0).sqrt())
-    }
-
-    /// Variance of a coordinate where all others are known; `None` where it was not free.
-    pub fn conditional_variance(&self, coordinate: Coordinate) -> Option<f64> {
-        let i = self.free.iter().position(|c| *c == coordinate)?;
-        Some(inverse(&self.covariance)?[(i, i)].recip())
-    }
-
-    /// Correlation of two free coordinates.
-    pub fn correlation(&self, a: Coordinate, b: Coordinate) -> Option<f64> {
-        let i = self.free.iter().position(|c| *c == a)?;
-        let k = self.free.iter().position(|c| *c == b)?;
-        let scale = (self.covariance[(i, i)] * self.covariance[(k, k)]).sqrt();
-        (scale > 0.0).then(|| self.covariance[(i, k)] / scale)
-    }
-}
-
-/// A square matrix as a list of rows.
-mod rows {
-    use nalgebra::DMatrix;
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    pub fn serialize<S: Serializer>(matrix: &DMatrix<f64>, to: S) -> Result<S::Ok, S::Error> {
-        let rows: Vec<Vec<f64>> = matrix
-            .row_iter()
-            .map(|row| row.iter().copied().collect())
-            .collect();
-        rows.serialize(to)
-    }
-
-    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<DMatrix<f64>, D::Error> {
-        let rows: Vec<Vec<f64>> = Deserialize::deserialize(from)?;
-        let width = rows.first().map_or(0, Vec::len);
-        if rows.iter().any(|row| row.len() != width) {
-            return Err(serde::de::Error::custom(
-                "the rows of a matrix differ in length",
-            ));
-        }
-        Ok(DMatrix::from_fn(rows.len(), width, |i, k| rows[i][k]))
-    }
-}
-
-/// Why a fit could not be made.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum FitError {
-    /// The model has no such motion at the start, for these items (block, item).
-    #[error("the model has no such motion at the starting values for {} observations", .0.len())]
-    NoModel(Vec<(usize, usize)>),
-    /// Nothing to fit.
-    #[error("there are no observations to fit")]
-    Empty,
-    /// The slopes are dependent: the data do not tell the coordinates.
-    #[error("the data do not tell the parameters apart")]
-    Singular,
-}
-
-/// Normal equations of some residuals.
-#[derive(Debug, Clone)]
-pub struct Normal {
-    /// JᵀJ over the free coordinates.
-    pub matrix: DMatrix<f64>,
-    /// Jᵀr.
-    pub gradient: DVector<f64>,
-    /// rᵀr.
-    pub cost: f64,
-    /// Number of residuals.
-    pub count: usize,
-}
-
-impl Normal {
-    /// Those of no residuals.
-    pub fn zeros(n: usize) -> Self {
-        Self {
-            matrix: DMatrix::zeros(n, n),
-            gradient: DVector::zeros(n),
-            cost: 0.0,
-            count: 0,
-        }
-    }
-
-    /// Add those of other residuals.
-    pub fn add(&mut self, other: &Self) {
-        self.matrix += &other.matrix;
-        self.gradient += &other.gradient;
-        self.cost += other.cost;
-        self.count += other.count;
-    }
-}
-
-/// Relative step of the central differences.
-const DIFFERENCE: f64 = 2e-6;
 /// Least share of a column of slopes that must stand off the others: differences do not tell less.
 const LEAST_SHARE: f64 = 1e-8;
 const LIMITS: Limits = Limits {
@@ -420,49 +262,4 @@ impl LeastSquares for Problem<'_> {
 
 fn prior_residual(prior: &Prior, parameters: &Parameters) -> f64 {
     (parameters.coordinate(prior.coordinate) - prior.centre) / prior.deviation
-}
-
-/// Slope of a function of the parameters over one coordinate, by central differences; one-sided
-/// where the model ends. `here` is its value at the parameters.
-pub fn difference(
-    at: &Parameters,
-    coordinate: Coordinate,
-    here: &[f64],
-    function: impl Fn(&Parameters) -> Option<Vec<f64>>,
-) -> Option<Vec<f64>> {
-    let centre = at.coordinate(coordinate);
-    let evaluate = |shift: f64| {
-        let shifted = at.with(coordinate, centre + shift);
-        shifted.in_range().then(|| function(&shifted)).flatten()
-    };
-    let slope = |above: &[f64], below: &[f64], step: f64| {
-        above
-            .iter()
-            .zip(below)
-            .map(|(a, b)| (a - b) / step)
-            .collect()
-    };
-    match (evaluate(DIFFERENCE), evaluate(-DIFFERENCE)) {
-        (Some(above), Some(below)) => Some(slope(&above, &below, 2.0 * DIFFERENCE)),
-        (Some(above), None) => Some(slope(&above, here, DIFFERENCE)),
-        (None, Some(below)) => Some(slope(here, &below, DIFFERENCE)),
-        (None, None) => None,
-    }
-}
-
-/// Inverse through a scaled Cholesky factor; `None` where numerically singular.
-pub fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let scale = matrix
-        .diagonal()
-        .map(|d| if d > 0.0 { d.sqrt().recip() } else { 0.0 });
-    if scale.iter().any(|s| *s == 0.0) {
-        return None;
-    }
-    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, k| {
-        matrix[(i, k)] * scale[i] * scale[k]
-    });
-    let inverse = scaled.cholesky()?.inverse();
-    Some(DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, k| {
-        inverse[(i, k)] * scale[i] * scale[k]
-    }))
 }

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::blocks::Evidence;
-use crate::identify::impacts::ImpactBlock;
-use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::resonance::{self, ResonanceBlock};
-use crate::identify::solver::Block;
-use crate::identify::suspicion::Suspicion;
-use crate::identify::trajectory::TrajectoryBlock;
+use crate::identify::evidence::Evidence;
+use crate::identify::evidence::impacts::ImpactBlock;
+use crate::identify::evidence::resonance::{self, ResonanceBlock};
+use crate::identify::evidence::trajectory::TrajectoryBlock;
+use crate::identify::fit::Block;
+use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::judgement::suspicion::Suspicion;
 use crate::identify::{Agreement, Estimate, MethodResult, Status, Verdict, VerdictKind};
 use crate::signal::robust;
 
@@ -101,7 +101,7 @@ pub fn restitution_trend(block: &ImpactBlock) -> Option<RestitutionTrend> {
     }
     let weight: f64 = pairs.iter().map(|p| p.before_m_s.powi(2)).sum();
     let mean = |f: &dyn Fn(f64, f64) -> f64| {
-        let each = |p: &crate::identify::impacts::SpeedPair| {
+        let each = |p: &crate::identify::evidence::impacts::SpeedPair| {
             p.before_m_s.powi(2) * f(p.before_m_s, p.after_m_s / p.before_m_s)
         };
         pairs.iter().map(each).sum::<f64>() / weight

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::factor::Factor;
+use crate::identify::fit::factor::Factor;
 
 /// What is to be made least: a sum of squared residuals over some unknowns.
 pub trait LeastSquares {

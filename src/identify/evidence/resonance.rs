@@ -3,10 +3,10 @@
 use nalgebra::Complex;
 
 use crate::event::Rig;
-use crate::identify::direction::{change, relative_length};
-use crate::identify::parameters::{Coordinate, Parameters, gain_index};
-use crate::identify::shared_error::Whitening;
-use crate::identify::solver::Block;
+use crate::identify::evidence::direction::{change, relative_length};
+use crate::identify::evidence::shared_error::Whitening;
+use crate::identify::fit::Block;
+use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::model::flight::{Drive, forced_amplitude};
 use crate::model::params::{Machine, Oscillator};
 use crate::model::sensitivity::{Change, forced_slope};
@@ -288,7 +288,7 @@ impl Block for ResonanceBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::solver::difference;
+    use crate::identify::fit::block::difference;
 
     #[test]
     fn valid_slopes_are_those_of_finite_differences() {

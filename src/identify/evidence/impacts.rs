@@ -1,8 +1,8 @@
 //! R from the speeds after over before each impact.
 
 use crate::event::CornerShift;
-use crate::identify::parameters::{Coordinate, Parameters, gain_index};
-use crate::identify::solver::Block;
+use crate::identify::fit::Block;
+use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
 
 /// One impact's speeds.

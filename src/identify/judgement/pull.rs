@@ -8,7 +8,7 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
-use crate::identify::solver::Normal;
+use crate::identify::fit::normal::Normal;
 use crate::signal::robust;
 
 /// A record's pull.

@@ -4,7 +4,8 @@
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use crate::identify::impacts::{ImpactBlock, SpeedPair};
+use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
+use crate::identify::fit::normal::inverse;
 use crate::signal::robust;
 
 /// How R depends on the closing speed.
@@ -120,7 +121,7 @@ fn fit(block: &ImpactBlock, law: Law, knots: &[f64]) -> Option<Fitted> {
     let columns = rows.first()?.len();
     let design = DMatrix::from_fn(rows.len(), columns, |i, k| rows[i][k]);
     let target = DVector::from_iterator(pairs.len(), pairs.iter().map(|p| weight(p) * p.after_m_s));
-    let covariance = crate::identify::solver::inverse(&design.tr_mul(&design))?;
+    let covariance = inverse(&design.tr_mul(&design))?;
     let coefficients = &covariance * design.tr_mul(&target);
     let chi2 = (&target - &design * &coefficients).norm_squared();
     Some(Fitted {

@@ -1,9 +1,9 @@
 //! How much residuals may be trusted: what is allowed beside the noise, and which records do not
 //! belong to the bulk.
 
-use crate::identify::blocks::Blocks;
-use crate::identify::parameters::Parameters;
-use crate::identify::solver::{Block, mean_squares};
+use crate::identify::evidence::Blocks;
+use crate::identify::fit::parameters::Parameters;
+use crate::identify::fit::{Block, mean_squares};
 use crate::signal::robust;
 
 impl Blocks {

@@ -1,7 +1,7 @@
 //! What a coordinate of the fit changes in the dimensionless machine, in its setting and in the
 //! units of the channels.
 
-use crate::identify::parameters::Coordinate;
+use crate::identify::fit::parameters::Coordinate;
 use crate::model::params::{Machine, Oscillator};
 use crate::model::sensitivity::{Change, MassChange};
 

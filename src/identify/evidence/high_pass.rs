@@ -6,7 +6,7 @@
 //! after a period T, but for the jump that x makes at the impact, which passes whole:
 //! K = Re(A (1 − e^{λT}) c/(λ + c)) / (1 − e^{−cT}), (17).
 
-use crate::identify::waveform::{TimingSlope, Vibration};
+use crate::identify::evidence::waveform::{TimingSlope, Vibration};
 use crate::model::path::C64;
 use crate::model::sensitivity::MassMotion;
 

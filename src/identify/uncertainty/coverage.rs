@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::bound::Bound;
-use crate::identify::parameters::{Coordinate, Parameters};
+use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::uncertainty::bound::Bound;
 use crate::identify::{MethodResult, ParameterSet, Status};
 
 /// How one parameter came out of one method over all campaigns. Errors of R are absolute, those

@@ -1,8 +1,8 @@
 //! Brackets of boundaries against the closed-form s2, s1 and ρ'.
 
 use crate::event::Rig;
-use crate::identify::parameters::{Coordinate, Parameters};
-use crate::identify::solver::Block;
+use crate::identify::fit::Block;
+use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::model::boundary::{s1_of_branch, s2_of_branch};
 use crate::model::orbit::Branch;
 use crate::model::params::Machine;
@@ -143,7 +143,7 @@ impl Jump {
 }
 
 fn normal(x: f64) -> f64 {
-    0.5 * crate::identify::agreement::erfc(-x / std::f64::consts::SQRT_2)
+    0.5 * libm::erfc(-x / std::f64::consts::SQRT_2)
 }
 
 /// Probability that a motion jumps within a bracket when its boundary lies at a frequency, for a

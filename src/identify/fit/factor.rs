@@ -157,7 +157,7 @@ impl Factor {
 }
 
 /// Inner product, in four sums that do not wait for each other.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(in crate::identify) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
     let (mut s, mut t, mut u, mut v) = (0.0, 0.0, 0.0, 0.0);
     for (x, y) in a.iter().zip(b) {

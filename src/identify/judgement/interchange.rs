@@ -1,10 +1,10 @@
 //! Whether the velocities of both masses were interchanged: all data are fitted once more as if
 //! they were.
 
-use crate::identify::blocks::Blocks;
+use crate::identify::evidence::Blocks;
+use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
 use crate::identify::joint::Weights;
-use crate::identify::suspicion::{SURE, Suspicion};
-use crate::identify::weighing::LEAST_ALLOWANCE;
+use crate::identify::judgement::suspicion::{SURE, Suspicion};
 use crate::record::Role;
 
 /// Relative difference of two sums of squares that errors of the model may make.

@@ -1,0 +1,97 @@
+//! Least squares: parameters as the coordinates of a fit, blocks of residuals, and the fit that makes
+//! them least.
+
+pub mod block;
+pub mod factor;
+pub mod least_squares;
+pub mod normal;
+pub mod parameters;
+pub mod problem;
+
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+
+pub use block::{Block, mean_squares};
+use least_squares::Ending;
+use normal::inverse;
+use parameters::{Coordinate, Parameters};
+pub use problem::{Prior, Problem};
+
+/// A finished fit.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Fit {
+    /// Best parameters.
+    pub parameters: Parameters,
+    /// Free coordinates, in the order of the covariance.
+    pub free: Vec<Coordinate>,
+    /// Covariance of the free coordinates for unit variance of the weighted residuals.
+    #[serde(with = "rows")]
+    pub covariance: DMatrix<f64>,
+    /// Sum of squared weighted residuals, priors included.
+    pub cost: f64,
+    /// Number of residuals, priors not counted.
+    pub residuals: usize,
+    /// How it ended.
+    pub ending: Ending,
+}
+
+impl Fit {
+    /// Standard error of a coordinate; `None` where it was not free.
+    pub fn error(&self, coordinate: Coordinate) -> Option<f64> {
+        let i = self.free.iter().position(|c| *c == coordinate)?;
+        Some(self.covariance[(i, i)].max(0.0).sqrt())
+    }
+
+    /// Variance of a coordinate where all others are known; `None` where it was not free.
+    pub fn conditional_variance(&self, coordinate: Coordinate) -> Option<f64> {
+        let i = self.free.iter().position(|c| *c == coordinate)?;
+        Some(inverse(&self.covariance)?[(i, i)].recip())
+    }
+
+    /// Correlation of two free coordinates.
+    pub fn correlation(&self, a: Coordinate, b: Coordinate) -> Option<f64> {
+        let i = self.free.iter().position(|c| *c == a)?;
+        let k = self.free.iter().position(|c| *c == b)?;
+        let scale = (self.covariance[(i, i)] * self.covariance[(k, k)]).sqrt();
+        (scale > 0.0).then(|| self.covariance[(i, k)] / scale)
+    }
+}
+
+/// A square matrix as a list of rows.
+mod rows {
+    use nalgebra::DMatrix;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(matrix: &DMatrix<f64>, to: S) -> Result<S::Ok, S::Error> {
+        let rows: Vec<Vec<f64>> = matrix
+            .row_iter()
+            .map(|row| row.iter().copied().collect())
+            .collect();
+        rows.serialize(to)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<DMatrix<f64>, D::Error> {
+        let rows: Vec<Vec<f64>> = Deserialize::deserialize(from)?;
+        let width = rows.first().map_or(0, Vec::len);
+        if rows.iter().any(|row| row.len() != width) {
+            return Err(serde::de::Error::custom(
+                "the rows of a matrix differ in length",
+            ));
+        }
+        Ok(DMatrix::from_fn(rows.len(), width, |i, k| rows[i][k]))
+    }
+}
+
+/// Why a fit could not be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FitError {
+    /// The model has no such motion at the start, for these items (block, item).
+    #[error("the model has no such motion at the starting values for {} observations", .0.len())]
+    NoModel(Vec<(usize, usize)>),
+    /// Nothing to fit.
+    #[error("there are no observations to fit")]
+    Empty,
+    /// The slopes are dependent: the data do not tell the coordinates.
+    #[error("the data do not tell the parameters apart")]
+    Singular,
+}
