@@ -1,5 +1,8 @@
 //! What the house promises: a room never imports from a room to its right.
 
+mod licences;
+mod links;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -1,0 +1,128 @@
+//! What the documents point to is there: the file and the heading of a link, the module or the item
+//! of a path like `model::orbit`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn documents() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let entries = [root.to_path_buf(), root.join("docs")].map(|folder| fs::read_dir(folder));
+    entries
+        .into_iter()
+        .flat_map(|folder| folder.expect("a folder"))
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.extension().is_some_and(|e| e == "md"))
+        .collect()
+}
+
+/// Lines outside fenced code.
+fn prose(text: &str) -> impl Iterator<Item = &str> {
+    let mut fenced = false;
+    text.lines().filter(move |line| {
+        let fence = line.trim_start().starts_with("```");
+        fenced ^= fence;
+        !fenced && !fence
+    })
+}
+
+/// Targets of `[text](target)`.
+fn targets(text: &str) -> Vec<&str> {
+    let after = prose(text).flat_map(|line| line.split("](").skip(1));
+    after.filter_map(|rest| rest.split(')').next()).collect()
+}
+
+/// Anchors of the headings, as the usual viewers make them.
+fn anchors(text: &str) -> Vec<String> {
+    let headings = prose(text).filter(|line| line.starts_with('#'));
+    headings
+        .map(|line| {
+            let words = line.trim_start_matches('#').trim().to_lowercase();
+            let kept = words
+                .chars()
+                .filter(|c| c.is_alphanumeric() || "-_ ".contains(*c));
+            kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+        })
+        .collect()
+}
+
+/// What is wrong with a link from a document; `None` where it leads somewhere.
+fn fault(document: &Path, target: &str) -> Option<String> {
+    if target.contains("://") || target.starts_with("mailto:") {
+        return None;
+    }
+    let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
+    let path = match file {
+        "" => document.to_path_buf(),
+        _ => document.parent().expect("a folder").join(file),
+    };
+    if !path.exists() {
+        return Some(format!("{target} is not there"));
+    }
+    let known = || anchors(&fs::read_to_string(&path).expect("a document"));
+    (!anchor.is_empty() && !known().contains(&anchor.to_owned()))
+        .then(|| format!("{target}: no such heading"))
+}
+
+#[test]
+fn valid_every_link_of_the_documents_leads_somewhere() {
+    let mut seen = 0;
+    for document in documents() {
+        let text = fs::read_to_string(&document).expect("a document");
+        for target in targets(&text) {
+            seen += 1;
+            let fault = fault(&document, target);
+            assert_eq!(fault, None, "in {}", document.display());
+        }
+    }
+    assert!(seen > 10, "{seen} links only");
+}
+
+#[test]
+fn valid_a_broken_link_is_seen() {
+    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
+    assert!(fault(&readme, "docs/none.md").is_some());
+    assert!(fault(&readme, "docs/theory.md#no-such-heading").is_some());
+    assert_eq!(
+        targets("a [b](c) d [e](f#g)\n```\n[h](i)\n```\n"),
+        ["c", "f#g"]
+    );
+    assert_eq!(anchors("## How good: R, f0\n"), ["how-good-r-f0"]);
+}
+
+/// Whether the source has what a path like `room::module::Item` names.
+fn is_in_source(path: &str) -> bool {
+    let mut at = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let parts: Vec<&str> = path.split("::").collect();
+    for (i, part) in parts.iter().enumerate() {
+        let (folder, file) = (at.join(part), at.join(format!("{part}.rs")));
+        if !folder.is_dir() && !file.is_file() {
+            // An item of the module so far.
+            let module = [at.with_extension("rs"), at.join("mod.rs")];
+            let text = module.iter().find_map(|m| fs::read_to_string(m).ok());
+            return i > 0 && text.is_some_and(|t| t.contains(&format!(" {}", parts[i])));
+        }
+        at = folder;
+    }
+    true
+}
+
+#[test]
+fn valid_modules_that_the_documents_name_are_there() {
+    let mut seen = 0;
+    for document in documents() {
+        let text = fs::read_to_string(&document).expect("a document");
+        let quoted = prose(&text).flat_map(|line| line.split('`').skip(1).step_by(2));
+        let paths = quoted.filter(|q| {
+            let named =
+                |p: &str| !p.is_empty() && p.chars().all(|c| c.is_alphanumeric() || c == '_');
+            q.contains("::") && q.split("::").all(named)
+        });
+        let ours = paths.filter(|p| super::room(p.split("::").next().unwrap_or(p)).is_some());
+        for path in ours {
+            seen += 1;
+            assert!(is_in_source(path), "{path} in {}", document.display());
+        }
+    }
+    assert!(seen > 20, "{seen} paths only");
+    assert!(!is_in_source("model::nothing_of_the_kind"));
+}
