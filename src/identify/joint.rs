@@ -4,7 +4,7 @@ use crate::identify::evidence::{Blocks, IMPACT_BIAS, Nominal};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, FitError, Prior, Problem};
 use crate::identify::methods::{self, MethodFit};
-use crate::identify::uncertainty::interval::Posterior;
+use crate::identify::uncertainty::posterior::Posterior;
 
 /// A method that the joint fit may rest on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

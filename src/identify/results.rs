@@ -7,7 +7,7 @@ use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::judgement::{contact_law, verdict};
 use crate::identify::methods::{self, Attempt, Tried};
-use crate::identify::uncertainty::interval::Posterior;
+use crate::identify::uncertainty::posterior::Posterior;
 use crate::identify::{Estimate, MethodResult, OutlyingImpact, estimate, middles};
 
 /// f0, β and x_st from the impactless records.

@@ -12,7 +12,7 @@ use crate::identify::judgement::suspicion::{self, OddGap, Suspicion};
 use crate::identify::judgement::verdict::{self, Findings};
 use crate::identify::methods::{self, Attempt, succeeded};
 use crate::identify::selection::Selection;
-use crate::identify::uncertainty::interval::{self, Posterior};
+use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
 use crate::identify::{Agreement, MethodResult, Verdict, decay, results};
 
@@ -159,7 +159,7 @@ impl Work<'_> {
         self.posterior = succeeded(&resonance).and_then(|found| {
             let error = found.fit.error(Coordinate::Deflection)? * found.factor.sqrt();
             let about = found.fit.parameters;
-            interval::posterior(&self.selection.blocks.boundary, &about, error.min(0.3))
+            posterior::of_brackets(&self.selection.blocks.boundary, &about, error.min(0.3))
         });
         let flights = self.selection.flights(start);
         let weight = |attempt: &Attempt| succeeded(attempt).map(|f| 1.0 / f.factor);

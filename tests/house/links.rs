@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 fn documents() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let entries = [root.to_path_buf(), root.join("docs")].map(|folder| fs::read_dir(folder));
+    let entries = [root.to_path_buf(), root.join("docs")].map(fs::read_dir);
     entries
         .into_iter()
         .flat_map(|folder| folder.expect("a folder"))

@@ -56,8 +56,27 @@ pub struct ContactLaw {
     pub curve: Vec<CurvePoint>,
 }
 
+impl ContactLaw {
+    /// Whether a constant R is ruled out: its criterion lies so far above the least that the evidence
+    /// counts as very strong (Kass and Raftery 1995).
+    pub fn is_not_constant(&self) -> bool {
+        self.criterion[0] > VERY_STRONG
+    }
+
+    /// Where R is least and greatest, the slower first; `None` of a law without a curve.
+    pub fn extremes(&self) -> Option<[CurvePoint; 2]> {
+        let by = |a: &&CurvePoint, b: &&CurvePoint| a.restitution.total_cmp(&b.restitution);
+        let low = *self.curve.iter().min_by(by)?;
+        let high = *self.curve.iter().max_by(by)?;
+        let rising = low.speed_m_s <= high.speed_m_s;
+        Some(if rising { [low, high] } else { [high, low] })
+    }
+}
+
 /// Fewest impacts from which a law is chosen.
-const FEWEST: usize = 20;
+const FEWEST: usize = 15;
+/// Difference of Bayes' criterion from which evidence is very strong.
+const VERY_STRONG: f64 = 10.0;
 /// Points of the curve.
 const POINTS: usize = 21;
 
@@ -68,7 +87,7 @@ struct Fitted {
     chi2: f64,
 }
 
-/// Choose the law of a block's impacts; `None` with fewer than twenty.
+/// Choose the law of a block's impacts; `None` with fewer than fifteen.
 pub fn contact_law(block: &ImpactBlock) -> Option<ContactLaw> {
     let pairs = &block.pairs;
     if pairs.len() < FEWEST {

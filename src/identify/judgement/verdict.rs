@@ -1,7 +1,8 @@
 //! Whether the model fits each method's data, and the verdict in plain words.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
+use crate::identify::estimate::NORMAL_975;
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::impacts::ImpactBlock;
 use crate::identify::evidence::resonance::{self, ResonanceBlock};
@@ -81,78 +82,41 @@ pub fn judge_trajectories(result: &mut MethodResult, block: &TrajectoryBlock, fi
     ));
 }
 
-/// How R changes with the closing speed: a straight line through after/before over before,
-/// weighted by the speed squared (the error of a ratio falls with it).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RestitutionTrend {
-    /// Slowest speed, m/s, and R there on the line.
-    pub slow: (f64, f64),
-    /// Fastest speed, m/s, and R there on the line.
-    pub fast: (f64, f64),
-    /// Slope over its standard error.
-    pub z_score: f64,
-}
-
-/// Trend of R over the closing speed; `None` with fewer than fifteen impacts.
-pub fn restitution_trend(block: &ImpactBlock) -> Option<RestitutionTrend> {
-    let pairs = &block.pairs;
-    if pairs.len() < 15 {
-        return None;
-    }
-    let weight: f64 = pairs.iter().map(|p| p.before_m_s.powi(2)).sum();
-    let mean = |f: &dyn Fn(f64, f64) -> f64| {
-        let each = |p: &crate::identify::evidence::impacts::SpeedPair| {
-            p.before_m_s.powi(2) * f(p.before_m_s, p.after_m_s / p.before_m_s)
-        };
-        pairs.iter().map(each).sum::<f64>() / weight
-    };
-    let (speed, ratio) = (mean(&|v, _| v), mean(&|_, r| r));
-    let spread = mean(&|v, _| (v - speed).powi(2));
-    let slope = mean(&|v, r| (v - speed) * (r - ratio)) / spread;
-    let square = mean(&|v, r| (r - ratio - slope * (v - speed)).powi(2));
-    let error = (square / spread / (pairs.len() - 2) as f64).sqrt();
-    let at = |v: f64| (v, ratio + slope * (v - speed));
-    let speeds = pairs.iter().map(|p| p.before_m_s);
-    Some(RestitutionTrend {
-        slow: at(speeds.clone().fold(f64::INFINITY, f64::min)),
-        fast: at(speeds.fold(0.0, f64::max)),
-        z_score: slope / error,
-    })
-}
-
-/// Judge whether impacts are instantaneous with one R.
+/// Judge by the contact law whether impacts are instantaneous with one R; the records of the impacts
+/// that it rests on say how long a contact lasts.
 pub fn judge_impacts(result: &mut MethodResult, block: &ImpactBlock, evidence: &Evidence) {
-    let used: std::collections::BTreeSet<usize> =
-        block.pairs.iter().map(|p| p.observation).collect();
-    let gaps: Vec<f64> = used
-        .iter()
-        .map(|i| evidence.observations[*i].jump_samples as f64)
-        .collect();
-    let gap = robust::median(&gaps).unwrap_or(1.0);
-    let long = gap > 1.5;
-    let Some(trend) = restitution_trend(block) else {
+    let Some(law) = &result.contact_law else {
         return;
     };
-    let change = trend.fast.1 - trend.slow.1;
-    let changes = change.abs() > RESTITUTION_CHANGE && trend.z_score.abs() > 4.0;
+    let (Some([a, b]), [Some(slow), Some(fast)]) =
+        (law.extremes(), [law.curve.first(), law.curve.last()])
+    else {
+        return;
+    };
+    let change = (a.restitution - b.restitution).abs();
+    let changes = law.is_not_constant() && change > RESTITUTION_CHANGE;
+    let speeds = match changes {
+        true => format!(
+            "R goes from {:.3} at {:.3} m/s to {:.3} at {:.3} m/s",
+            a.restitution, a.speed_m_s, b.restitution, b.speed_m_s
+        ),
+        false => format!(
+            "R is the same from {:.3} to {:.3} m/s within {:.3}",
+            slow.speed_m_s,
+            fast.speed_m_s,
+            change.max(NORMAL_975 * a.standard_error).max(1e-3)
+        ),
+    };
     result.fits = Some(!changes);
     if !changes {
-        result.remarks.push(format!(
-            "R is the same from {:.3} to {:.3} m/s within {:.3}",
-            trend.slow.0,
-            trend.fast.0,
-            change.abs().max(1e-3)
-        ));
+        result.remarks.push(speeds);
         return;
     }
-    let speeds = format!(
-        "R goes from {:.3} at {:.3} m/s to {:.3} at {:.3} m/s",
-        trend.slow.1, trend.slow.0, trend.fast.1, trend.fast.0
-    );
-    result.remarks.push(if long {
+    let samples = contact_samples(block, evidence);
+    result.remarks.push(if samples > 1.5 {
         format!(
-            "{speeds}, and a contact lasts {gap:.0} samples: it is not an instantaneous impact, \
-             so one coefficient of restitution does not describe it"
+            "{speeds}, and a contact lasts {samples:.0} samples: it is not an instantaneous \
+             impact, so one coefficient of restitution does not describe it"
         )
     } else {
         format!("{speeds}: R depends on the speed, one constant does not describe it")
@@ -161,6 +125,16 @@ pub fn judge_impacts(result: &mut MethodResult, block: &ImpactBlock, evidence: &
         estimate.status = Status::Weak;
         estimate.note = Some("R is not one number here: see the remark on its change".into());
     }
+}
+
+/// Samples over which a velocity jumps at the impacts, in the median record.
+fn contact_samples(block: &ImpactBlock, evidence: &Evidence) -> f64 {
+    let used: BTreeSet<usize> = block.pairs.iter().map(|p| p.observation).collect();
+    let samples: Vec<f64> = used
+        .into_iter()
+        .map(|i| evidence.observations[i].jump_samples as f64)
+        .collect();
+    robust::median(&samples).unwrap_or(1.0)
 }
 
 /// What the verdict rests on.

@@ -13,7 +13,7 @@ use crate::identify::evidence::{Blocks, Evidence, Nominal};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Prior, Problem};
 use crate::identify::methods::wide_priors;
-use crate::identify::uncertainty::interval::{self, Posterior};
+use crate::identify::uncertainty::posterior::{self, Posterior};
 
 /// Least standard errors of the coordinates.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,7 +67,7 @@ pub fn bounds(evidence: &Evidence, at: &Parameters) -> BTreeMap<String, Bound> {
         .get("resonance")
         .and_then(|b| b.error(Coordinate::Deflection));
     if let (Some(error), Some(found)) = (deflection, bounds.get_mut("boundaries")) {
-        found.take_intervals(interval::posterior(&blocks.boundary, at, error.min(0.3)));
+        found.take_intervals(posterior::of_brackets(&blocks.boundary, at, error.min(0.3)));
     }
     bounds
 }

@@ -1,10 +1,10 @@
 //! Uncertainty beyond the covariance: profile likelihoods, a bootstrap over records, and what each
-//! method contributed. Beside it: the posterior of brackets ([`interval`]), the least error that any
+//! method contributed. Beside it: the posterior of brackets ([`posterior`]), the least error that any
 //! estimator can have ([`bound`]), and how often intervals hold the truth ([`coverage`]).
 
 pub mod bound;
 pub mod coverage;
-pub mod interval;
+pub mod posterior;
 
 use std::collections::BTreeMap;
 

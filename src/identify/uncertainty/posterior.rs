@@ -33,7 +33,7 @@ const NEGLIGIBLE: f64 = 9.0;
 
 /// Posterior about parameters that the resonance curve tells, with the standard error of
 /// ln x_st; `None` where no bracket tells R.
-pub fn posterior(block: &BoundaryBlock, about: &Parameters, error: f64) -> Option<Posterior> {
+pub fn of_brackets(block: &BoundaryBlock, about: &Parameters, error: f64) -> Option<Posterior> {
     if !block.tells_restitution() {
         return None;
     }
