@@ -76,19 +76,44 @@ fn tell(faults: &Faults, usable: Option<(usize, usize)>, voice: Voice) {
     ));
 }
 
-/// One fault for many of the same words; all their places in it.
+/// Places that a gathered fault names; `--verbose` tells each fault by itself.
+const NAMED: usize = 6;
+
+/// One fault for many of the same words; the first of their places in it.
 fn gathered(group: &[&Fault]) -> Fault {
-    let keys: Vec<&str> = group.iter().map(|f| f.key.as_str()).collect();
     let first = group[0];
+    let places: Vec<(&str, Option<&str>)> = group.iter().map(|f| place(&f.key)).collect();
+    let channel = places[0]
+        .1
+        .filter(|c| places.iter().all(|p| p.1 == Some(c)));
+    let named = group.iter().zip(&places).take(NAMED).map(|(fault, place)| {
+        // A channel that all share is said once.
+        if channel.is_some() {
+            place.0
+        } else {
+            fault.key.as_str()
+        }
+    });
+    let named: Vec<&str> = named.collect();
+    let more = if group.len() > NAMED { ", …" } else { "" };
     Fault {
         what: format!(
-            "{} (in {} records: {})",
+            "{} ({}in {} records: {}{more})",
             first.what,
-            keys.len(),
-            keys.join(", ")
+            channel.map(|c| format!("{c}, ")).unwrap_or_default(),
+            group.len(),
+            named.join(", ")
         ),
         key: String::new(),
         ..first.clone()
+    }
+}
+
+/// Record and channel of a key.
+fn place(key: &str) -> (&str, Option<&str>) {
+    match key.split_once(": ") {
+        Some((record, channel)) => (record, Some(channel)),
+        None => (key, None),
     }
 }
 

@@ -175,8 +175,8 @@ fn opposite_masses(record: &Record) -> Option<Flag> {
             Role::VelocityY,
             "opposite_sign",
             "at the contacts velocity_x and velocity_y jump in opposite directions".to_owned(),
-            "set sign = -1 in [channels.velocity_x] or in [channels.velocity_y]: both count toward \
-             the other mass"
+            "turn the sign in [channels.velocity_x] or in [channels.velocity_y] (sign = -1, or 1 \
+             where it is -1): both count toward the other mass"
                 .to_owned(),
         )
     })
@@ -190,8 +190,8 @@ fn contradiction(record: &Record, found: Match, d: Role, v: Role) -> Option<Flag
             "opposite_sign",
             format!("{} and {} have opposite signs", d.name(), v.name()),
             format!(
-                "set sign = -1 in [channels.{}] or in [channels.{}]: both count toward the other \
-                 mass",
+                "turn the sign in [channels.{}] or in [channels.{}] (sign = -1, or 1 where it is \
+                 -1): both count toward the other mass",
                 v.name(),
                 d.name()
             ),

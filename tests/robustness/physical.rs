@@ -187,7 +187,7 @@ pub fn cases() -> Vec<Case> {
             |lab| lab.mend("channel = \"vy\"", "channel = \"vy\"\nsign = -1"),
             &[
                 "velocity_x and velocity_y jump in opposite directions",
-                "set sign = -1 in [channels.velocity_x] or in [channels.velocity_y]",
+                "turn the sign in [channels.velocity_x] or in [channels.velocity_y]",
             ],
         ),
         refused(

@@ -75,9 +75,9 @@ struct Jump {
     stray: f64,
 }
 
-/// How often a change between z = 1/n and 2/2n is not that of the nearest s1: other doubled motions
-/// lie beside it.
-const STRAY_DOUBLINGS: f64 = 0.3;
+/// How often a change of z = 1/n is not that of the nearest s1 (other doubled motions lie beside it)
+/// or, for n > 1, not that of the nearest s2 (an impact more may end it first).
+const STRAY: f64 = 0.3;
 /// Frequencies over which such a change may lie, relative.
 const STRAY_RANGE: f64 = 0.6;
 /// How far from s1, relative to the frequency, a record may still show the motion of the other side:
@@ -89,9 +89,11 @@ const SETTING_ERROR: f64 = 2e-4;
 impl Jump {
     fn of(bracket: &Bracket, early_scale: f64) -> Self {
         let middle = bracket.middle_hz();
-        let (setting, stray) = match bracket.kind {
-            BoundaryKind::PeriodDoubling => (SLOW_DOUBLING * middle, STRAY_DOUBLINGS),
-            _ => ((SETTING_ERROR * middle).max(0.02 * bracket.width_hz()), 0.0),
+        let known = (SETTING_ERROR * middle).max(0.02 * bracket.width_hz());
+        let (setting, stray) = match (bracket.kind, bracket.periods_n) {
+            (BoundaryKind::PeriodDoubling, _) => (SLOW_DOUBLING * middle, STRAY),
+            (BoundaryKind::SaddleNode, 2..) => (known, STRAY),
+            _ => (known, 0.0),
         };
         Self {
             low: bracket.frequency_low_hz,

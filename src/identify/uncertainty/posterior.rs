@@ -5,11 +5,13 @@
 //! posterior is therefore summed over a grid of R and x_st (which the resonance curve tells), with
 //! the scale of early jumps summed out; f0 and β are the resonance curve's.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 
 use crate::identify::evidence::boundary::{BoundaryBlock, bracket_probability, predicted_hz};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::motion::bracket::{BoundaryKind, Bracket};
+use crate::motion::bracket::Bracket;
 
 /// What brackets say of R and x_st.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,14 +84,18 @@ fn summed(grid: &[f64], cells: &[Vec<f64>], (centre, error): (f64, f64)) -> Post
     let step = (grid[grid.len() - 1] - grid[0]) / (grid.len() - 1) as f64;
     let (mean, spread) = moments(grid, &over_r);
     let (node, node_spread) = moments(&DEFLECTION_NODES, &over_nodes);
+    let node_step = DEFLECTION_NODES[1] - DEFLECTION_NODES[0];
     Posterior {
-        // A cell of the grid stands for its whole width.
+        // A cell of a grid stands for its whole width.
         restitution: (mean, spread.hypot(step / 12f64.sqrt())),
         interval95: [
             quantile(grid, &over_r, 0.025),
             quantile(grid, &over_r, 0.975),
         ],
-        ln_deflection: (centre + node * error, node_spread * error),
+        ln_deflection: (
+            centre + node * error,
+            node_spread.hypot(node_step / 12f64.sqrt()) * error,
+        ),
     }
 }
 
@@ -138,37 +144,31 @@ fn support(at: &(dyn Fn(f64) -> f64 + Sync)) -> (f64, f64) {
     (low, high.max(low + 1e-6))
 }
 
-/// Log-likelihood of all brackets, the scale of early jumps of each kind summed out.
+/// Log-likelihood of all brackets. Each family of boundaries has its own scale of early jumps, which is
+/// summed out: the end of z = 1, that of longer motions, doublings, grazing.
 fn likelihood(block: &BoundaryBlock, parameters: &Parameters) -> f64 {
-    let places: Vec<(&Bracket, Option<f64>)> = block
-        .brackets
-        .iter()
-        .map(|b| (b, predicted_hz(b, parameters, block.rig)))
-        .collect();
-    let kinds = [
-        BoundaryKind::SaddleNode,
-        BoundaryKind::PeriodDoubling,
-        BoundaryKind::Grazing,
-    ];
-    kinds
-        .into_iter()
-        .map(|kind| {
-            let logs: Vec<f64> = EARLY_SCALES
-                .iter()
-                .map(|scale| {
-                    places
-                        .iter()
-                        .filter(|(b, _)| b.kind == kind)
-                        .map(|(b, f)| {
-                            // A boundary that does not reach the clearance is as one far away.
-                            let place = f.unwrap_or(f64::INFINITY);
-                            bracket_probability(b, *scale, place).ln()
-                        })
-                        .sum()
-                })
-                .collect();
-            let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            most + logs.iter().map(|l| (l - most).exp()).sum::<f64>().ln()
-        })
+    let mut families: BTreeMap<(&str, bool), Vec<(&Bracket, f64)>> = BTreeMap::new();
+    for bracket in &block.brackets {
+        // A boundary that does not reach the clearance is as one far away.
+        let place = predicted_hz(bracket, parameters, block.rig).unwrap_or(f64::INFINITY);
+        let family = (bracket.kind.name(), bracket.periods_n > 1);
+        families.entry(family).or_default().push((bracket, place));
+    }
+    families
+        .values()
+        .map(|places| summed_over_scales(places))
         .sum()
+}
+
+/// Log-likelihood of brackets whose boundaries lie at given frequencies, Hz.
+fn summed_over_scales(places: &[(&Bracket, f64)]) -> f64 {
+    let of_scale = |scale: &f64| -> f64 {
+        let probabilities = places
+            .iter()
+            .map(|(b, f)| bracket_probability(b, *scale, *f));
+        probabilities.map(f64::ln).sum()
+    };
+    let logs: Vec<f64> = EARLY_SCALES.iter().map(of_scale).collect();
+    let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    most + logs.iter().map(|l| (l - most).exp()).sum::<f64>().ln()
 }
