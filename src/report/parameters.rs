@@ -1,6 +1,6 @@
 //! Parameters and methods as printed: names, symbols, units, digits.
 
-use super::figures::look::{NumberLook, decimal_exponent};
+use super::speech::{Speech, decimal_exponent};
 use crate::identify::{Estimate, ParameterSet, Status};
 
 /// How a parameter is named and printed.
@@ -109,18 +109,18 @@ pub fn half_width(estimate: &Estimate) -> Option<f64> {
 
 /// `value ± half width` with unit, `not identifiable` where there is no value, `–` where the
 /// parameter was not asked for.
-pub fn short(look: &ParameterLook, estimate: Option<&Estimate>, numbers: NumberLook) -> String {
+pub fn short(look: &ParameterLook, estimate: Option<&Estimate>, speech: Speech) -> String {
     let Some(estimate) = estimate else {
         return "–".into();
     };
     let Some(value) = estimate.value else {
-        return numbers.say("not identifiable");
+        return speech.say("not identifiable");
     };
     let half = half_width(estimate).map(|h| h * look.factor);
     let decimals = decimals_for(half.unwrap_or(0.0));
-    let mut text = numbers.fixed(value * look.factor, decimals);
+    let mut text = speech.fixed(value * look.factor, decimals);
     if let Some(half) = half {
-        text.push_str(&format!(" ± {}", numbers.fixed(half, decimals)));
+        text.push_str(&format!(" ± {}", speech.fixed(half, decimals)));
     }
     if !look.unit.is_empty() {
         text.push_str(&format!("\u{2009}{}", look.unit));
@@ -144,17 +144,17 @@ mod tests {
 
     #[test]
     fn valid_estimates_show_two_digits_of_their_uncertainty() {
-        let numbers = NumberLook::default();
+        let speech = Speech::default();
         let r = estimate(0.901_34, 0.002_41);
-        assert_eq!(short(&PARAMETERS[0], Some(&r), numbers), "0.9013 ± 0.0024");
+        assert_eq!(short(&PARAMETERS[0], Some(&r), speech), "0.9013 ± 0.0024");
         let x = estimate(0.001_234_5, 0.000_009_96);
         assert_eq!(
-            short(&PARAMETERS[3], Some(&x), numbers),
+            short(&PARAMETERS[3], Some(&x), speech),
             "1.234 ± 0.010\u{2009}mm"
         );
-        let comma = NumberLook {
+        let comma = Speech {
             decimal_comma: true,
-            table: None,
+            words: None,
         };
         assert_eq!(short(&PARAMETERS[0], Some(&r), comma), "0,9013 ± 0,0024");
     }

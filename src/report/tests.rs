@@ -27,6 +27,10 @@ fn kind(name: &str) -> &'static ReportContent {
     &found.expect("one of the kinds").1
 }
 
+fn pdf_of(content: &ReportContent, options: &RenderOptions) -> Result<Vec<u8>, ReportError> {
+    Report::new(content, options).pdf()
+}
+
 /// Output of a program; `None`, with a message, where it is not installed.
 fn output(program: &str, arguments: &[&str]) -> Option<String> {
     match Command::new(program).args(arguments).output() {
@@ -156,7 +160,7 @@ fn valid_no_text_of_a_figure_is_overfull() {
 #[test]
 fn valid_pdf_has_its_pages_fonts_and_selectable_answer() {
     let folder = tempfile::tempdir().expect("a folder");
-    let pdf = render_pdf(kind("small"), &RenderOptions::default()).expect("a PDF");
+    let pdf = pdf_of(kind("small"), &RenderOptions::default()).expect("a PDF");
     assert!(pdf.len() < 5_000_000);
     let path = written(folder.path(), "report.pdf", &pdf);
     let Some(text) = output("pdftotext", &["-layout", &path, "-"]) else {
@@ -195,7 +199,7 @@ fn valid_no_word_leaves_the_page_s_margins() {
             paper,
             ..RenderOptions::default()
         };
-        let pdf = render_pdf(content, &options).expect("a PDF");
+        let pdf = pdf_of(content, &options).expect("a PDF");
         assert!(pdf.len() < 5_000_000, "{name}: {} bytes", pdf.len());
         let path = written(folder.path(), "report.pdf", &pdf);
         let Some(boxes) = output("pdftotext", &["-bbox", &path, "-"]) else {
@@ -235,7 +239,7 @@ fn words_within_margins(name: &str, boxes: &str) {
 fn prop_same_content_gives_same_bytes() {
     let content = kind("cart");
     let options = RenderOptions::default();
-    let pdf = || render_pdf(content, &options).ok();
+    let pdf = || pdf_of(content, &options).ok();
     assert!(pdf().is_some() && pdf() == pdf());
     let page = || Report::new(content, &options).html().ok();
     assert!(page().is_some() && page() == page());
@@ -279,12 +283,12 @@ fn valid_own_template_and_logo_are_used() {
         }),
         ..RenderOptions::default()
     };
-    assert!(render_pdf(kind("cart"), &options).is_ok());
+    assert!(pdf_of(kind("cart"), &options).is_ok());
     let plain = RenderOptions {
         template: None,
         ..options
     };
-    assert!(render_pdf(kind("cart"), &plain).is_ok());
+    assert!(pdf_of(kind("cart"), &plain).is_ok());
 }
 
 #[test]
@@ -293,7 +297,7 @@ fn valid_wrong_template_is_named_with_its_line() {
         template: Some("text\n#unknown-thing".into()),
         ..RenderOptions::default()
     };
-    let error = render_pdf(kind("cart"), &options).expect_err("a wrong template");
+    let error = pdf_of(kind("cart"), &options).expect_err("a wrong template");
     let text = error.to_string();
     assert!(
         text.contains("unknown variable: unknown-thing") && text.contains("line 2"),

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Serialize, Serializer};
 
-use crate::report::figures::look::NumberLook;
 use crate::report::figures::richtext::{self, Run};
+use crate::report::speech::Speech;
 
 /// A text with markup, split into runs; serialised as a string where it has none.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -13,9 +13,9 @@ pub struct Rich(pub Vec<Run>);
 
 impl Rich {
     /// The same with the decimal sign of the reader's choice.
-    pub fn localised(mut self, numbers: NumberLook) -> Self {
+    pub fn localised(mut self, speech: Speech) -> Self {
         for run in &mut self.0 {
-            run.text = numbers.words(&run.text);
+            run.text = speech.localised(&run.text);
         }
         self
     }

@@ -1,22 +1,24 @@
 //! Speeds after over before each impact, and their ratio over the closing speed.
 
-use super::axes::{Axis, Panel, Sides, range};
+use super::axis::{Axis, range};
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
 use super::legend::{self, Key, Sign};
-use super::look::{self, NumberLook};
+use super::look;
+use super::panel::{Panel, Sides};
 use super::path::Rect;
 use super::units::{PrintUnit, print_unit};
 use super::{Figure, Spot};
 use crate::report::content::ImpactScatter;
+use crate::report::speech::Speech;
 use crate::units::Dimension;
 
 const HEIGHT: f64 = 150.0;
 const TOP: f64 = 15.0;
 
 /// Draws one group of impacts; `None` where it is empty.
-pub fn draw(scatter: &ImpactScatter, name: &str, numbers: NumberLook) -> Option<Figure> {
+pub fn draw(scatter: &ImpactScatter, name: &str, speech: Speech) -> Option<Figure> {
     let peak = scatter
         .points
         .iter()
@@ -29,18 +31,18 @@ pub fn draw(scatter: &ImpactScatter, name: &str, numbers: NumberLook) -> Option<
     let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + 24.0);
     let panels = panels(scatter, unit);
     lines(&mut canvas, &panels, scatter, unit);
-    let spots = points(&mut canvas, &panels, scatter, (unit, numbers));
+    let spots = points(&mut canvas, &panels, scatter, (unit, speech));
     for panel in &panels {
-        panel.frame(&mut canvas, Sides::BOTH, numbers);
+        panel.frame(&mut canvas, Sides::BOTH, speech);
     }
     legend::draw(
         &mut canvas,
         (36.0, 0.0),
         look::FULL_WIDTH - 36.0,
-        &keys(scatter, numbers),
-        numbers,
+        &keys(scatter, speech),
+        speech,
     );
-    let title = numbers.say("Speeds after over before impact");
+    let title = speech.say("Speeds after over before impact");
     Some(Figure::new(name, &title, canvas, csv(scatter)).with_spots(spots))
 }
 
@@ -115,7 +117,7 @@ fn points(
     canvas: &mut Canvas,
     panels: &[Panel; 2],
     scatter: &ImpactScatter,
-    (unit, numbers): (PrintUnit, NumberLook),
+    (unit, speech): (PrintUnit, Speech),
 ) -> Vec<Spot> {
     const MOST_SPOTS: usize = 4000;
     let mut spots = Vec::new();
@@ -139,7 +141,7 @@ fn points(
                 spots.push(Spot {
                     x,
                     y,
-                    text: format!("{}\nR = {}", p.record, numbers.fixed(ratio, 3)),
+                    text: format!("{}\nR = {}", p.record, speech.fixed(ratio, 3)),
                 });
             }
         }
@@ -148,7 +150,7 @@ fn points(
     spots
 }
 
-fn keys(scatter: &ImpactScatter, numbers: NumberLook) -> Vec<Key> {
+fn keys(scatter: &ImpactScatter, speech: Speech) -> Vec<Key> {
     let mut keys = Vec::new();
     if !scatter.name.is_empty() {
         keys.push(Key::new(Sign::Nothing, scatter.name.clone()));
@@ -173,7 +175,7 @@ fn keys(scatter: &ImpactScatter, numbers: NumberLook) -> Vec<Key> {
         let stroke = Stroke::solid(look::VERMILION, 1.0);
         keys.push(Key::new(
             Sign::Line(stroke),
-            format!("$R$ = {}", numbers.fixed(r, 4)),
+            format!("$R$ = {}", speech.fixed(r, 4)),
         ));
     }
     if scatter.interval95.is_some() {

@@ -1,6 +1,6 @@
 //! The plane of the map: (η, ρ) where f0 and x_st are known, else frequency and clearance.
 
-use super::axes::{Axis, range};
+use super::axis::{Axis, range};
 use crate::identify::Estimate;
 use crate::motion::Motion;
 use crate::report::content::{BracketRow, ProposedPoint, RecordRow, ReportContent};

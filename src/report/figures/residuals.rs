@@ -1,26 +1,28 @@
 //! Residual diagnostics of one method: histogram, autocorrelation, over frequency, over gap.
 
-use super::axes::{Axis, Panel, Sides, range};
+use super::axis::{Axis, range};
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
-use super::look::{self, NumberLook};
+use super::look;
 use super::marks;
+use super::panel::{Panel, Sides};
 use super::path::Rect;
 use super::{Figure, Spot};
 use crate::report::content::{ResidualPoint, ResidualSet};
+use crate::report::speech::Speech;
 
 const HEIGHT: f64 = 84.0;
 const TOP: f64 = 3.0;
 
 /// Draws the diagnostics of one method; `None` where it has no residuals.
-pub fn draw<'a>(set: &'a ResidualSet, name: &str, numbers: NumberLook<'a>) -> Option<Figure> {
+pub fn draw<'a>(set: &'a ResidualSet, name: &str, speech: Speech<'a>) -> Option<Figure> {
     if set.points.is_empty() {
         return None;
     }
     let mut sheet = Sheet {
         set,
-        numbers,
+        speech,
         canvas: Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + 24.0),
         spots: Vec::new(),
     };
@@ -42,13 +44,13 @@ pub fn draw<'a>(set: &'a ResidualSet, name: &str, numbers: NumberLook<'a>) -> Op
             Rect::new(31.0 + i as f64 * step, TOP, step - 36.0, HEIGHT),
         );
     }
-    let title = numbers.say("Residual diagnostics");
+    let title = speech.say("Residual diagnostics");
     Some(Figure::new(name, &title, sheet.canvas, csv(set)).with_spots(sheet.spots))
 }
 
 struct Sheet<'a> {
     set: &'a ResidualSet,
-    numbers: NumberLook<'a>,
+    speech: Speech<'a>,
     canvas: Canvas,
     spots: Vec<Spot>,
 }
@@ -98,7 +100,7 @@ impl Sheet<'_> {
             normal,
             Stroke::solid(look::VERMILION, 0.9),
         );
-        panel.frame(&mut self.canvas, Sides::BOTH, self.numbers);
+        panel.frame(&mut self.canvas, Sides::BOTH, self.speech);
     }
 
     /// Stems from lag 1, with the band in which white residuals stay.
@@ -124,7 +126,7 @@ impl Sheet<'_> {
                 Stroke::solid(look::INK, 0.9),
             );
         }
-        panel.frame(&mut self.canvas, Sides::BOTH, self.numbers);
+        panel.frame(&mut self.canvas, Sides::BOTH, self.speech);
     }
 
     /// Residuals over a quantity, with lines at ±1.96.
@@ -151,19 +153,19 @@ impl Sheet<'_> {
             let Some(value) = of(p) else { continue };
             let shown = p.residual.clamp(-reach, reach);
             if let Some((x, y)) = taken.put(&mut self.canvas, &panel, (value, shown), dot) {
-                let r = self.numbers.fixed(p.residual, 2);
+                let r = self.speech.fixed(p.residual, 2);
                 self.spots.push(Spot {
                     x,
                     y,
                     text: format!(
                         "{}\n{}",
                         p.record,
-                        self.numbers.say_with("residual {value}", &[("value", &r)])
+                        self.speech.say_with("residual {value}", &[("value", &r)])
                     ),
                 });
             }
         }
-        panel.frame(&mut self.canvas, Sides::BOTH, self.numbers);
+        panel.frame(&mut self.canvas, Sides::BOTH, self.speech);
     }
 }
 

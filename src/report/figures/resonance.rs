@@ -1,21 +1,23 @@
 //! The impactless resonance curve: amplitude and phase, measured with errors, and the fit.
 
-use super::axes::{Axis, Panel, Sides};
+use super::axis::Axis;
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
 use super::legend::{self, Key, Sign};
-use super::look::{self, NumberLook};
+use super::look;
+use super::panel::{Panel, Sides};
 use super::path::Rect;
 use super::units::{PrintUnit, print_unit};
 use super::{Figure, Spot};
 use crate::report::content::{ResonanceCurve, ResonancePoint};
+use crate::report::speech::Speech;
 
 const HEIGHT: f64 = 128.0;
 const TOP: f64 = 15.0;
 
 /// Draws one curve; `None` where it has no points.
-pub fn draw(curve: &ResonanceCurve, name: &str, numbers: NumberLook) -> Option<Figure> {
+pub fn draw(curve: &ResonanceCurve, name: &str, speech: Speech) -> Option<Figure> {
     if curve.points.is_empty() {
         return None;
     }
@@ -33,7 +35,7 @@ pub fn draw(curve: &ResonanceCurve, name: &str, numbers: NumberLook) -> Option<F
         panel: amplitude,
         fit,
     }
-    .draw(&mut canvas, value, numbers, &mut spots);
+    .draw(&mut canvas, value, speech, &mut spots);
     if has_phase {
         let panel = phase_panel(curve, Rect::new(280.0, TOP, 198.0, HEIGHT));
         let value = |p: &ResonancePoint| {
@@ -47,16 +49,16 @@ pub fn draw(curve: &ResonanceCurve, name: &str, numbers: NumberLook) -> Option<F
             .iter()
             .map(|f| (f[0], f[2].to_degrees()))
             .collect();
-        Series { curve, panel, fit }.draw(&mut canvas, value, numbers, &mut spots);
+        Series { curve, panel, fit }.draw(&mut canvas, value, speech, &mut spots);
     }
     legend::draw(
         &mut canvas,
         (36.0, 0.0),
         look::FULL_WIDTH - 36.0,
         &keys(curve),
-        numbers,
+        speech,
     );
-    let title = numbers.say("Resonance curve without impacts");
+    let title = speech.say("Resonance curve without impacts");
     Some(Figure::new(name, &title, canvas, csv(curve)).with_spots(spots))
 }
 
@@ -94,7 +96,7 @@ fn amplitude_panel(curve: &ResonanceCurve, unit: &(f64, String), rect: Rect) -> 
         .chain(within)
         .collect();
     let title = format!("amplitude ({})", unit.1);
-    let (low, high) = super::axes::range(values.iter().copied()).unwrap_or((0.0, 1.0));
+    let (low, high) = super::axis::range(values.iter().copied()).unwrap_or((0.0, 1.0));
     let y = if low > 0.0 && high / low > 12.0 {
         Axis::new(0.8 * low * unit.0, 1.25 * high * unit.0, title).logarithmic()
     } else {
@@ -123,7 +125,7 @@ impl Series<'_> {
         &self,
         canvas: &mut Canvas,
         value: impl Fn(&ResonancePoint) -> Option<(f64, Option<f64>)>,
-        numbers: NumberLook,
+        speech: Speech,
         spots: &mut Vec<Spot>,
     ) {
         let radius = dots::radius(self.curve.points.len()) + 0.2;
@@ -150,7 +152,7 @@ impl Series<'_> {
                 open: !point.used,
             };
             if let Some((x, y)) = taken.put(canvas, &self.panel, (point.frequency_hz, y), dot) {
-                let f = numbers.fixed(point.frequency_hz, 3);
+                let f = speech.fixed(point.frequency_hz, 3);
                 spots.push(Spot {
                     x,
                     y,
@@ -165,7 +167,7 @@ impl Series<'_> {
             Stroke::solid(look::VERMILION, 1.0),
         );
         canvas.layer(3);
-        self.panel.frame(canvas, Sides::BOTH, numbers);
+        self.panel.frame(canvas, Sides::BOTH, speech);
     }
 }
 

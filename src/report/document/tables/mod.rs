@@ -13,23 +13,18 @@ use crate::record::Sweep;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
 use crate::report::document::prose::prose;
-use crate::report::figures::look::NumberLook;
 use crate::report::parameters::{self, PARAMETERS, method_name};
+use crate::report::speech::Speech;
 
 /// A column: head, alignment, relative width (0: as wide as its content).
 type Column = (&'static str, &'static str, u16);
 
-fn table(
-    caption: &str,
-    columns: &[Column],
-    rows: Vec<Vec<Rich>>,
-    numbers: NumberLook,
-) -> Option<Table> {
+fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>, speech: Speech) -> Option<Table> {
     let table = (!rows.is_empty()).then(|| Table {
-        caption: Rich::from(numbers.say(caption)),
+        caption: Rich::from(speech.say(caption)),
         heads: columns
             .iter()
-            .map(|c| Rich::from(numbers.say_title(c.0)))
+            .map(|c| Rich::from(speech.say_title(c.0)))
             .collect(),
         align: columns.iter().map(|c| c.1).collect(),
         widths: columns.iter().map(|c| c.2).collect(),
@@ -82,17 +77,17 @@ const METHODS_CAPTION: &str = "Estimates with half their 95 % interval, number o
      fits.";
 
 /// What each method found, and the joint estimate.
-pub fn methods(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
+pub fn methods(content: &ReportContent, speech: Speech) -> Option<Table> {
     let id = &content.identification;
-    let rows = method_rows(&id.methods, &id.joint, numbers);
-    table(METHODS_CAPTION, &METHOD_COLUMNS, rows, numbers).map(|t| Table { size: 7.5, ..t })
+    let rows = method_rows(&id.methods, &id.joint, speech);
+    table(METHODS_CAPTION, &METHOD_COLUMNS, rows, speech).map(|t| Table { size: 7.5, ..t })
 }
 
 /// The same for each specimen of a campaign that holds several.
-pub fn specimen_methods(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
+pub fn specimen_methods(content: &ReportContent, speech: Speech) -> Option<Table> {
     let specimens = content.identification.specimens.iter();
     let rows = specimens.flat_map(|(specimen, result)| {
-        let rows = method_rows(&result.methods, &result.joint, numbers);
+        let rows = method_rows(&result.methods, &result.joint, speech);
         rows.into_iter().enumerate().map(move |(i, row)| {
             let name = if i == 0 {
                 verbatim(specimen.clone())
@@ -104,20 +99,20 @@ pub fn specimen_methods(content: &ReportContent, numbers: NumberLook) -> Option<
     });
     let mut columns: Vec<Column> = vec![("specimen", "left", 0)];
     columns.extend(METHOD_COLUMNS);
-    table(METHODS_CAPTION, &columns, rows.collect(), numbers).map(|t| Table { size: 7.5, ..t })
+    table(METHODS_CAPTION, &columns, rows.collect(), speech).map(|t| Table { size: 7.5, ..t })
 }
 
 /// The answer for each specimen of a campaign that holds several.
-pub fn specimens(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
+pub fn specimens(content: &ReportContent, speech: Speech) -> Option<Table> {
     let rows = content
         .identification
         .specimens
         .iter()
         .map(|(specimen, result)| {
             let mut row = vec![verbatim(specimen.clone())];
-            row.extend(estimate_cells(&result.joint.parameters, numbers));
+            row.extend(estimate_cells(&result.joint.parameters, speech));
             let headline = super::front::headline(result.verdict.kind).1;
-            row.push(Rich::from(numbers.say(headline)));
+            row.push(Rich::from(speech.say(headline)));
             row
         });
     let columns: [Column; 6] = [
@@ -128,11 +123,11 @@ pub fn specimens(content: &ReportContent, numbers: NumberLook) -> Option<Table> 
         ("$x_st$", "left", 1),
         ("verdict", "left", 2),
     ];
-    table("", &columns, rows.collect(), numbers).map(|t| Table { size: 8.5, ..t })
+    table("", &columns, rows.collect(), speech).map(|t| Table { size: 8.5, ..t })
 }
 
-fn estimate_cells(set: &ParameterSet, numbers: NumberLook) -> Vec<Rich> {
-    let cell = |look| Rich::from(parameters::short(look, (look.pick)(set), numbers));
+fn estimate_cells(set: &ParameterSet, speech: Speech) -> Vec<Rich> {
+    let cell = |look| Rich::from(parameters::short(look, (look.pick)(set), speech));
     PARAMETERS.iter().map(cell).collect()
 }
 
@@ -140,19 +135,19 @@ fn estimate_cells(set: &ParameterSet, numbers: NumberLook) -> Vec<Rich> {
 fn method_rows(
     methods: &BTreeMap<String, MethodResult>,
     joint: &MethodResult,
-    numbers: NumberLook,
+    speech: Speech,
 ) -> Vec<Vec<Rich>> {
     let all = methods.iter().map(|(k, m)| (method_name(k), m));
     let all = all.chain([(method_name("joint"), joint)]);
     let says = |m: &MethodResult| PARAMETERS.iter().any(|p| (p.pick)(&m.parameters).is_some());
     all.filter(|(_, m)| says(m))
-        .map(|(name, m)| method_row(numbers.say(&name), m, numbers))
+        .map(|(name, m)| method_row(speech.say(&name), m, speech))
         .collect()
 }
 
-fn method_row(name: String, method: &MethodResult, numbers: NumberLook) -> Vec<Rich> {
+fn method_row(name: String, method: &MethodResult, speech: Speech) -> Vec<Rich> {
     let mut row = vec![Rich::from(name)];
-    row.extend(estimate_cells(&method.parameters, numbers));
+    row.extend(estimate_cells(&method.parameters, speech));
     let observations = method.observations;
     let observations = if observations == 0 {
         "–".into()
@@ -160,7 +155,7 @@ fn method_row(name: String, method: &MethodResult, numbers: NumberLook) -> Vec<R
         observations.to_string()
     };
     let residual = method.reduced_residual;
-    let residual = residual.map_or("–".into(), |r| numbers.significant(r, 2));
+    let residual = residual.map_or("–".into(), |r| speech.significant(r, 2));
     let fits = match method.fits {
         Some(true) => "yes",
         Some(false) => "no",
@@ -169,26 +164,26 @@ fn method_row(name: String, method: &MethodResult, numbers: NumberLook) -> Vec<R
     row.extend([
         Rich::from(observations),
         Rich::from(residual),
-        Rich::from(numbers.say(fits)),
+        Rich::from(speech.say(fits)),
     ]);
     row
 }
 
 /// Whether the methods agree, pair by pair.
-pub fn agreement(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
+pub fn agreement(content: &ReportContent, speech: Speech) -> Option<Table> {
     let rows = content.identification.agreement.pairs.iter().map(|pair| {
         let symbol =
             parameters::parameter(&pair.parameter).map_or(pair.parameter.as_str(), |p| p.symbol);
         let p = if pair.p_value < 1e-3 {
-            format!("< {}", numbers.fixed(1e-3, 3))
+            format!("< {}", speech.fixed(1e-3, 3))
         } else {
-            numbers.fixed(pair.p_value, 3)
+            speech.fixed(pair.p_value, 3)
         };
         vec![
             Rich::from(symbol),
-            Rich::from(numbers.say(&method_name(&pair.methods[0]))),
-            Rich::from(numbers.say(&method_name(&pair.methods[1]))),
-            Rich::from(numbers.fixed(pair.z_score, 2)),
+            Rich::from(speech.say(&method_name(&pair.methods[0]))),
+            Rich::from(speech.say(&method_name(&pair.methods[1]))),
+            Rich::from(speech.fixed(pair.z_score, 2)),
             Rich::from(p),
         ]
     });
@@ -203,22 +198,22 @@ pub fn agreement(content: &ReportContent, numbers: NumberLook) -> Option<Table> 
         "Agreement of the methods, pair by pair.",
         &columns,
         rows.collect(),
-        numbers,
+        speech,
     )
 }
 
 /// Further tables of the content, as they stand.
 pub fn further<'a>(
     content: &'a ReportContent,
-    numbers: NumberLook<'a>,
+    speech: Speech<'a>,
 ) -> impl Iterator<Item = Table> + 'a {
     content.tables.iter().filter_map(move |t| {
         let columns: Vec<Column> = t.heads.iter().map(|_| ("", "right", 0)).collect();
         let rows = t.rows.iter();
         let rows = rows.map(|row| row.iter().map(Rich::from).collect());
-        let heads = t.heads.iter().map(|h| Rich::from(numbers.say_title(h)));
+        let heads = t.heads.iter().map(|h| Rich::from(speech.say_title(h)));
         (!t.rows.is_empty()).then(|| Table {
-            caption: Rich::from(numbers.say(&t.caption)),
+            caption: Rich::from(speech.say(&t.caption)),
             heads: heads.collect(),
             align: columns.iter().map(|c| c.1).collect(),
             widths: columns.iter().map(|c| c.2).collect(),
@@ -240,7 +235,7 @@ fn arrow(sweep: Sweep) -> &'static str {
 }
 
 /// What was left out and why.
-pub fn left_out(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
+pub fn left_out(content: &ReportContent, speech: Speech) -> Option<Table> {
     let rows = content.left_out.iter().map(|l| {
         let count = l.count.map_or(String::new(), |c| c.to_string());
         vec![verbatim(l.what.clone()), Rich::from(count), prose(&l.why)]
@@ -250,7 +245,7 @@ pub fn left_out(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
         ("count", "right", 0),
         ("why", "left", 5),
     ];
-    table("", &columns, rows.collect(), numbers)
+    table("", &columns, rows.collect(), speech)
 }
 
 /// A cell whose text has no markup, whatever signs it holds.
@@ -268,7 +263,7 @@ pub fn verbatim(text: String) -> Rich {
 }
 
 /// SHA-256 of the inputs.
-pub fn hashes(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
+pub fn hashes(content: &ReportContent, speech: Speech) -> Option<Table> {
     let inputs = &content.identification.inputs_sha256;
     let rows = inputs
         .iter()
@@ -279,7 +274,7 @@ pub fn hashes(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
         caption,
         &[("input", "left", 2), ("SHA-256", "left", 0)],
         rows,
-        numbers,
+        speech,
     )
     .map(|t| Table { size: 6.2, ..t })
 }

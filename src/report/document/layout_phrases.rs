@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::report::figures::look::NumberLook;
+use crate::report::speech::Speech;
 
 const PHRASES: [&str; 13] = [
     "Synthetic data: simulated records, not a measurement.",
@@ -21,7 +21,7 @@ const PHRASES: [&str; 13] = [
 ];
 
 /// From each phrase to what is printed for it.
-pub fn words(numbers: NumberLook) -> BTreeMap<&'static str, String> {
+pub fn words(speech: Speech) -> BTreeMap<&'static str, String> {
     let each = PHRASES.into_iter();
-    each.map(|phrase| (phrase, numbers.say(phrase))).collect()
+    each.map(|phrase| (phrase, speech.say(phrase))).collect()
 }
