@@ -231,18 +231,14 @@ pub(super) fn region_map(gathered: &Gathered) -> Option<RegionMap> {
         false => lively[i].clone(),
     };
     let second: Vec<Motion> = (0..grid.len()).into_par_iter().map(other).collect();
-    let mut met = Vec::new();
-    let (cells, second) = (indices(&rest, &mut met), indices(&second, &mut met));
-    Some(RegionMap {
-        eta: grid.eta,
-        rho: grid.rho,
-        motions: met,
-        cells,
-        second,
-        note: "every cell simulated from rest and from a lively start, and the stable orbits \
-               z = 1/n in closed form; where they differ, both motions exist"
-            .into(),
-    })
+    Some(RegionMap::of_motions(
+        grid.eta,
+        grid.rho,
+        &rest,
+        &second,
+        "every cell simulated from rest and from a lively start, and the stable orbits z = 1/n in \
+         closed form; where they differ, both motions exist",
+    ))
 }
 
 fn motions(cells: &[CellMotion]) -> Vec<Motion> {
@@ -264,16 +260,4 @@ fn coexisting(machine: &Machine, (eta, rho): (f64, f64), beside: &Motion) -> Opt
         .filter(|n| *beside != Motion::periodic(1, *n))
         .find(stable)
         .map(|n| Motion::periodic(1, n))
-}
-
-/// Motions as indices into those met so far.
-fn indices(motions: &[Motion], met: &mut Vec<Motion>) -> Vec<u16> {
-    let mut index = |motion: &Motion| {
-        let known = met.iter().position(|m| m == motion);
-        known.unwrap_or_else(|| {
-            met.push(motion.clone());
-            met.len() - 1
-        }) as u16
-    };
-    motions.iter().map(&mut index).collect()
 }

@@ -1,8 +1,9 @@
 //! Basins of attraction in the plane of the starts.
 
-use super::{keys_height, keys_on_top, plane_of, tint_keys};
+use super::{keys_height, keys_on_top, tint_keys};
 use crate::atlas::basins::Basins;
 use crate::motion::Motion;
+use crate::report::content::RegionMap;
 use crate::report::figures::Figure;
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::Canvas;
@@ -26,7 +27,7 @@ pub fn draw(basins: &Basins, name: &str, title: &str, speech: Speech) -> Option<
         },
     };
     let cells: Vec<Motion> = basins.cells.iter().map(motion).collect();
-    let map = plane_of(&basins.x, &basins.vx, &cells, &[]);
+    let map = RegionMap::of_motions(basins.x.clone(), basins.vx.clone(), &cells, &[], "");
     let keys = tint_keys(&map, MOST_KEYS);
     let top = keys_height(LEFT, &keys, speech);
     let mut canvas = Canvas::new(look::FULL_WIDTH, top + HEIGHT + 26.0);

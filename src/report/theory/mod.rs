@@ -25,28 +25,6 @@ fn keys_height(left: f64, keys: &[Key], speech: Speech) -> f64 {
     legend::height(keys, look::FULL_WIDTH - left, speech) + 4.0
 }
 
-/// A map of motions over a plane from each cell's motion and, where there is one, from a second.
-fn plane_of(across: &[f64], up: &[f64], cells: &[Motion], second: &[Motion]) -> RegionMap {
-    let mut motions: Vec<Motion> = Vec::new();
-    let mut index = |m: &Motion| {
-        let found = motions.iter().position(|k| k == m);
-        found.unwrap_or_else(|| {
-            motions.push(m.clone());
-            motions.len() - 1
-        }) as u16
-    };
-    let cells = cells.iter().map(&mut index).collect();
-    let second = second.iter().map(&mut index).collect();
-    RegionMap {
-        eta: across.to_vec(),
-        rho: up.to_vec(),
-        motions,
-        cells,
-        second,
-        note: String::new(),
-    }
-}
-
 /// Keys of the motions that a map shows, each with its tint; the rare ones last and left out
 /// beyond a number.
 fn tint_keys(map: &RegionMap, most: usize) -> Vec<Key> {

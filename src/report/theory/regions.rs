@@ -1,10 +1,11 @@
 //! Regions of existence and stability of all motions in the (η, ρ) plane: the brute-force maps as
 //! tints (hatched where they differ), the boundaries as curves.
 
-use super::{keys_height, keys_on_top, plane_of};
+use super::{keys_height, keys_on_top};
 use crate::atlas::curves::Curve;
 use crate::atlas::map::{CellMotion, MapGrid};
 use crate::motion::Motion;
+use crate::report::content::RegionMap;
 use crate::report::figures::Figure;
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
@@ -40,7 +41,13 @@ pub fn draw(plane: &Plane<'_>, name: &str, title: &str, speech: Speech) -> Optio
     let motions =
         |cells: &[CellMotion]| -> Vec<Motion> { cells.iter().map(|c| Motion::from(*c)).collect() };
     let (first, second) = (motions(plane.first), motions(plane.second));
-    let map = plane_of(&plane.grid.eta, &plane.grid.rho, &first, &second);
+    let map = RegionMap::of_motions(
+        plane.grid.eta.clone(),
+        plane.grid.rho.clone(),
+        &first,
+        &second,
+        "",
+    );
     let keys = keys(plane.curves, first != second);
     let top = keys_height(LEFT, &keys, speech);
     let size = (look::FULL_WIDTH, top + HEIGHT + 26.0);
