@@ -26,6 +26,7 @@ pub mod plan;
 pub mod published;
 pub mod pull;
 pub mod record_motion;
+pub mod residuals;
 pub mod resonance;
 pub mod results;
 pub mod run;

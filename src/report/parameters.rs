@@ -98,13 +98,29 @@ pub fn decimals_for(uncertainty: f64) -> usize {
     (1 - decimal_exponent(uncertainty, 2)).clamp(0, 9) as usize
 }
 
-/// Half the 95 % interval: from the interval, else from the standard error.
+/// Standard errors from the middle of a normal distribution to either end of its 95 % interval.
+pub const NORMAL_95: f64 = 1.96;
+
+/// Half the 95 % interval, SI: from the interval, else from the standard error.
 pub fn half_width(estimate: &Estimate) -> Option<f64> {
     match (estimate.interval95, estimate.standard_error) {
         (Some([low, high]), _) => Some(0.5 * (high - low)),
-        (None, Some(error)) => Some(1.96 * error),
+        (None, Some(error)) => Some(NORMAL_95 * error),
         (None, None) => None,
     }
+}
+
+/// The 95 % interval of an estimate that has a value, SI: as stated, else about the value from the
+/// standard error, else the value alone.
+pub fn interval95(estimate: &Estimate) -> Option<(f64, f64)> {
+    let value = estimate.value?;
+    Some(match estimate.interval95 {
+        Some([low, high]) => (low, high),
+        None => {
+            let half = half_width(estimate).unwrap_or(0.0);
+            (value - half, value + half)
+        }
+    })
 }
 
 /// `value ± half width` with unit, `not identifiable` where there is no value, `–` where the

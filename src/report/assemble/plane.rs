@@ -13,6 +13,7 @@ use crate::model::orbit::stable_orbit;
 use crate::model::params::{Initial, Machine, Setting};
 use crate::motion::Motion;
 use crate::report::content::{BoundaryCurve, BoundaryKind, RegionMap};
+use crate::report::parameters::NORMAL_95;
 
 /// Columns and rows of the region map.
 const MAP: (usize, usize) = (180, 130);
@@ -205,7 +206,7 @@ impl Spread {
                     _ => 0.0,
                 };
                 let variance = per_error.iter().map(|s| s * s).sum::<f64>() + common;
-                let half = 1.96 * variance.max(0.0).sqrt();
+                let half = NORMAL_95 * variance.max(0.0).sqrt();
                 (half > 0.0).then_some([*eta, rho - half, rho + half])
             })
             .collect()

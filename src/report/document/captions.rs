@@ -126,7 +126,7 @@ fn residuals(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
                     histogram with the normal curve, autocorrelation with the 95 % band of white \
                     noise, over frequency and over gap.";
         let method = speech.say(&method_name(&set.method));
-        let count = set.points.len().to_string();
+        let count = set.count().to_string();
         let text = speech.say_with(text, &[("method", &method), ("count", &count)]);
         (numbered("residuals", i), with_note(&text, &set.note))
     })

@@ -11,7 +11,7 @@ use super::panel::{Panel, Sides};
 use super::path::Rect;
 use crate::identify::{Estimate, Status};
 use crate::report::content::ReportContent;
-use crate::report::parameters::{PARAMETERS, ParameterLook, method_name};
+use crate::report::parameters::{PARAMETERS, ParameterLook, interval95, method_name};
 use crate::report::speech::Speech;
 
 const WIDTH: f64 = 236.0;
@@ -93,15 +93,6 @@ fn value(estimate: Option<&Estimate>) -> Option<f64> {
     estimate.and_then(|e| e.value)
 }
 
-fn interval(estimate: &Estimate) -> Option<(f64, f64)> {
-    let value = estimate.value?;
-    match (estimate.interval95, estimate.standard_error) {
-        (Some([low, high]), _) => Some((low, high)),
-        (None, Some(e)) => Some((value - 1.96 * e, value + 1.96 * e)),
-        (None, None) => Some((value, value)),
-    }
-}
-
 fn parameter(
     canvas: &mut Canvas,
     rect: Rect,
@@ -109,7 +100,7 @@ fn parameter(
     lines: &[Line<'_>],
     speech: Speech,
 ) {
-    let ends = lines.iter().filter_map(|l| interval(l.estimates[k]?));
+    let ends = lines.iter().filter_map(|l| interval95(l.estimates[k]?));
     let ends: Vec<f64> = ends
         .flat_map(|(a, b)| [a * shown.factor, b * shown.factor])
         .collect();
@@ -127,7 +118,7 @@ fn parameter(
     if let Some((low, high)) = lines
         .iter()
         .filter(|l| l.joint)
-        .find_map(|l| interval(l.estimates[k]?))
+        .find_map(|l| interval95(l.estimates[k]?))
     {
         let low = panel.at((low * shown.factor).max(panel.x.low), 0.0).0;
         let high = panel.at((high * shown.factor).min(panel.x.high), 0.0).0;
@@ -177,7 +168,7 @@ fn mark(
     speech: Speech,
 ) {
     let colour = if joint { look::BLUE } else { look::INK };
-    let Some((low, high)) = interval(e) else {
+    let Some((low, high)) = interval95(e) else {
         let (x, y) = panel.at(0.5 * (panel.x.low + panel.x.high), y);
         let quiet = TextLook::new(6.5, Anchor::Middle).colour(look::QUIET);
         canvas.text((x, y + 2.2), &speech.say("not identifiable"), quiet);
@@ -216,7 +207,7 @@ fn csv(lines: &[Line<'_>]) -> String {
     for line in lines {
         for (shown, estimate) in PARAMETERS.iter().zip(line.estimates) {
             let Some(e) = estimate else { continue };
-            let (low, high) = (interval(e).map(|i| i.0), interval(e).map(|i| i.1));
+            let (low, high) = (interval95(e).map(|i| i.0), interval95(e).map(|i| i.1));
             csv.row()
                 .texts(&[&line.key, shown.key])
                 .numbers(&[e.value, low, high]);

@@ -155,21 +155,16 @@ fn keys(scatter: &ImpactScatter, speech: Speech) -> Vec<Key> {
     if !scatter.name.is_empty() {
         keys.push(Key::new(Sign::Nothing, scatter.name.clone()));
     }
-    let count = scatter.points.iter().filter(|p| p.used).count();
-    let dot = super::marks::MotionLook {
-        shape: super::marks::Shape::Dot,
-        colour: look::BLUE,
-        tint: look::PAPER,
-    };
-    keys.push(Key::new(Sign::Mark(dot), format!("impacts used ({count})")));
-    let unused = scatter.points.len() - count;
+    let unused = scatter.points.iter().filter(|p| !p.used).count();
+    keys.push(Key::new(
+        Sign::dot(look::BLUE),
+        format!("impacts used ({})", scatter.used()),
+    ));
     if unused > 0 {
-        let ring = super::marks::MotionLook {
-            shape: super::marks::Shape::Circle,
-            colour: look::QUIET,
-            tint: look::PAPER,
-        };
-        keys.push(Key::new(Sign::Mark(ring), format!("not used ({unused})")));
+        keys.push(Key::new(
+            Sign::ring(look::QUIET),
+            format!("not used ({unused})"),
+        ));
     }
     if let Some(r) = scatter.restitution {
         let stroke = Stroke::solid(look::VERMILION, 1.0);

@@ -3,7 +3,7 @@
 use super::canvas::{Anchor, Canvas, Colour, Stroke, TextLook};
 use super::fonts::Face;
 use super::look;
-use super::marks::{self, MotionLook};
+use super::marks::{self, MotionLook, Shape};
 use super::richtext;
 use crate::report::speech::Speech;
 
@@ -23,13 +23,32 @@ pub enum Sign {
 }
 
 impl Sign {
+    /// A filled dot.
+    pub fn dot(colour: Colour) -> Self {
+        Self::shape(Shape::Dot, colour)
+    }
+
+    /// An open circle.
+    pub fn ring(colour: Colour) -> Self {
+        Self::shape(Shape::Circle, colour)
+    }
+
+    fn shape(shape: Shape, colour: Colour) -> Self {
+        Self::Mark(MotionLook {
+            shape,
+            colour,
+            tint: look::PAPER,
+        })
+    }
+
+    /// Its width, points; a heading takes back the room that signs are given.
     fn width(self) -> f64 {
         match self {
             Sign::Mark(_) => 7.0,
             Sign::Line(_) => 15.0,
             Sign::Patch(_) => 10.0,
             Sign::Bracket(_) => 11.0,
-            Sign::Nothing => -3.0,
+            Sign::Nothing => -SIGN_GAP,
         }
     }
 }
@@ -54,12 +73,16 @@ impl Key {
 
     fn width(&self, speech: Speech) -> f64 {
         let text = speech.say_title(&self.text);
-        self.sign.width() + 3.0 + richtext::width(&text, Face::Regular, look::NOTE_SIZE)
+        self.sign.width() + SIGN_GAP + richtext::width(&text, Face::Regular, look::NOTE_SIZE)
     }
 }
 
+/// Distance of the keys' lines, points.
 const LINE_HEIGHT: f64 = 11.0;
+/// Room between two keys of a line, points.
 const GAP: f64 = 11.0;
+/// Room between a key's sign and its text, points.
+const SIGN_GAP: f64 = 3.0;
 
 /// Lays keys in lines of a width: (key, left, line).
 fn flow<'a>(keys: &'a [Key], width: f64, speech: Speech) -> Vec<(&'a Key, f64, usize)> {
@@ -97,7 +120,7 @@ pub fn draw(
         let y = top + (line as f64 + 0.5) * LINE_HEIGHT;
         sign(canvas, (left + x, y), key.sign);
         let at = (
-            left + x + key.sign.width() + 3.0,
+            left + x + key.sign.width() + SIGN_GAP,
             y + 0.33 * look::NOTE_SIZE,
         );
         let text_look = TextLook::new(look::NOTE_SIZE, Anchor::Left).colour(look::INK);

@@ -10,6 +10,7 @@ use super::panel::{Panel, Sides};
 use super::path::Rect;
 use super::{Figure, Spot};
 use crate::report::content::{ResidualPoint, ResidualSet};
+use crate::report::parameters::NORMAL_95;
 use crate::report::speech::Speech;
 
 const HEIGHT: f64 = 84.0;
@@ -106,7 +107,7 @@ impl Sheet<'_> {
     /// Stems from lag 1, with the band in which white residuals stay.
     fn autocorrelation(&mut self, rect: Rect) {
         let rho = &self.set.autocorrelation;
-        let limit = 1.96 / (self.set.points.len() as f64).sqrt();
+        let limit = NORMAL_95 / (self.set.count() as f64).sqrt();
         let (low, high) = range(rho[1..].iter().copied()).unwrap_or((0.0, 0.0));
         let x = Axis::new(0.0, rho.len() as f64, "lag (observations)").with_ticks(4);
         let reach = (1.2 * low.abs().max(high.abs())).max(2.0 * limit).min(1.0);
@@ -139,7 +140,7 @@ impl Sheet<'_> {
             Axis::new(-reach, reach, "weighted residual (1)").with_ticks(4),
         );
         panel.level(&mut self.canvas, 0.0, look::ZERO_STROKE);
-        for level in [-1.96, 1.96] {
+        for level in [-NORMAL_95, NORMAL_95] {
             let stroke = Stroke::dashed(look::ZERO_STROKE.colour, 0.5, &[2.0, 2.0]);
             panel.level(&mut self.canvas, level, stroke);
         }

@@ -172,24 +172,16 @@ impl Series<'_> {
 }
 
 fn keys(curve: &ResonanceCurve) -> Vec<Key> {
-    use super::marks::{MotionLook, Shape};
     let mut keys = Vec::new();
     if !curve.name.is_empty() {
         keys.push(Key::new(Sign::Nothing, curve.name.clone()));
     }
-    let dot = |shape, colour| {
-        Sign::Mark(MotionLook {
-            shape,
-            colour,
-            tint: look::PAPER,
-        })
-    };
     keys.push(Key::new(
-        dot(Shape::Dot, look::BLUE),
+        Sign::dot(look::BLUE),
         "measured, with standard error",
     ));
     if curve.points.iter().any(|p| !p.used) {
-        keys.push(Key::new(dot(Shape::Circle, look::QUIET), "not used"));
+        keys.push(Key::new(Sign::ring(look::QUIET), "not used"));
     }
     if !curve.fitted.is_empty() {
         let text = match curve.fits {

@@ -241,7 +241,7 @@ fn pairs(class: &str, entries: impl Iterator<Item = (String, String)>) -> String
 fn table(table: &Table) -> String {
     let rows = html_rows(table);
     let cell = |tag: &str, i: usize, text: &str| {
-        let align = table.align.get(i).copied().unwrap_or("left");
+        let align = table.align.get(i).map_or("left", |a| a.name());
         format!("<{tag} class=\"{align}\">{text}</{tag}>")
     };
     let heads = table.heads.iter().enumerate();

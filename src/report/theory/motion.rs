@@ -95,14 +95,7 @@ fn keys(portrait: &Portrait) -> Vec<Key> {
         keys.push(Key::new(line(look::INK), "stop at $ρ$"));
     }
     if !portrait.impacts.is_empty() {
-        keys.push(Key::new(
-            Sign::Mark(crate::report::figures::marks::MotionLook {
-                shape: crate::report::figures::marks::Shape::Dot,
-                colour: look::INK,
-                tint: look::PAPER,
-            }),
-            "impact",
-        ));
+        keys.push(Key::new(Sign::dot(look::INK), "impact"));
     }
     if portrait.samples.iter().any(|s| s.joined) {
         keys.push(Key::new(Sign::Patch(look::PALE), "masses together"));

@@ -9,7 +9,6 @@ use crate::report::figures::canvas::{Canvas, Colour, Stroke};
 use crate::report::figures::dots::{self, DotLook, Dots};
 use crate::report::figures::legend::{Key, Sign};
 use crate::report::figures::look;
-use crate::report::figures::marks::{MotionLook, Shape};
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
 use crate::report::speech::Speech;
@@ -89,16 +88,12 @@ pub fn draw(data: &Characteristics<'_>, name: &str, title: &str, speech: Speech)
 }
 
 fn keys(two: bool) -> Vec<Key> {
-    let dot = |colour| {
-        Sign::Mark(MotionLook {
-            shape: Shape::Dot,
-            colour,
-            tint: look::PAPER,
-        })
-    };
     let mut keys = vec![
-        Key::new(dot(look::BLUE), "there (in the sweep's own direction)"),
-        Key::new(dot(look::VERMILION), "back"),
+        Key::new(
+            Sign::dot(look::BLUE),
+            "there (in the sweep's own direction)",
+        ),
+        Key::new(Sign::dot(look::VERMILION), "back"),
         Key::new(
             Sign::Line(Stroke::solid(IMPACTLESS, 0.8)),
             "impactless motion of $X$",

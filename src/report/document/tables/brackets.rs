@@ -17,14 +17,14 @@ pub fn brackets(content: &ReportContent, speech: Speech) -> Option<Table> {
         .map(|b| bracket_row(b, many, speech))
         .collect();
     let columns: [Column; 8] = [
-        (if many { "" } else { "boundary" }, "left", 0),
-        ("$z$", "left", 0),
-        ("$r$ (mm)", "right", 0),
-        ("$ρ$", "right", 0),
-        (if many { "" } else { "sweep" }, "center", 0),
-        ("measured between (Hz)", "center", 0),
-        ("simulated (Hz)", "right", 0),
-        (if many { "" } else { "remark" }, "left", 1),
+        Column::left(if many { "" } else { "boundary" }),
+        Column::left("$z$"),
+        Column::right("$r$ (mm)"),
+        Column::right("$ρ$"),
+        Column::center(if many { "" } else { "sweep" }),
+        Column::center("measured between (Hz)"),
+        Column::right("simulated (Hz)"),
+        Column::wide(if many { "" } else { "remark" }, 1),
     ];
     let caption = if many {
         "Measured brackets of the boundaries, and the boundary of the fitted model: = within the \

@@ -19,24 +19,24 @@ pub fn records(content: &ReportContent, speech: Speech) -> Option<Table> {
         .records
         .iter()
         .any(|r| r.eta.is_some() && r.rho.is_some());
-    let mut columns: Vec<Column> = vec![("record", "left", 0), ("specimen", "left", 0)];
+    let mut columns: Vec<Column> = vec![Column::left("record"), Column::left("specimen")];
     columns.extend([
-        ("", "center", 0),
-        ("$f$ (Hz)", "right", 0),
-        ("$r$ (mm)", "right", 0),
+        Column::center(""),
+        Column::right("$f$ (Hz)"),
+        Column::right("$r$ (mm)"),
     ]);
     if planar {
-        columns.extend([("$η$", "right", 0), ("$ρ$", "right", 0)]);
+        columns.extend([Column::right("$η$"), Column::right("$ρ$")]);
     }
     columns.extend([
-        ("$z$", "center", 0),
-        ("conf.", "right", 0),
-        ("impacts", "right", 0),
+        Column::center("$z$"),
+        Column::right("conf."),
+        Column::right("impacts"),
     ]);
     columns.push(if many {
-        ("", "left", 0)
+        Column::left("")
     } else {
-        ("used by; flags", "left", 1)
+        Column::wide("used by; flags", 1)
     });
     let row = |r: &RecordRow| record_row(r, planar, many, speech);
     let rows = content.records.iter().map(row).collect();
