@@ -4,15 +4,15 @@
 
 pub mod assemble;
 pub mod content;
-pub mod document;
-pub mod figures;
+mod document;
+pub(crate) mod figures;
 mod html;
 mod options;
-pub mod parameters;
-pub mod picture;
+mod parameters;
+pub(crate) mod picture;
 mod png;
-pub mod speech;
-pub mod theory;
+pub(crate) mod speech;
+pub(crate) mod theory;
 pub mod words;
 
 pub use content::{ProposedPoint, ReportContent};
@@ -52,9 +52,9 @@ pub enum ReportError {
 /// A report with its figures drawn, ready for every format.
 pub struct Report {
     /// The document's data.
-    pub document: document::model::Document,
+    document: document::model::Document,
     /// The figures.
-    pub figures: Vec<Figure>,
+    figures: Vec<Figure>,
     options: RenderOptions,
 }
 

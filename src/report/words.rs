@@ -129,6 +129,7 @@ pub(super) fn places(phrase: &str) -> BTreeSet<&str> {
 
 /// The first few phrases.
 fn some(phrases: &[&str]) -> String {
+    /// Phrases that are named at most.
     const FEW: usize = 3;
     let first: Vec<String> = phrases
         .iter()

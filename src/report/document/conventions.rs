@@ -15,6 +15,7 @@ struct Convention {
     driven: bool,
 }
 
+/// In the order in which they are printed.
 const CONVENTIONS: [Convention; 8] = [
     Convention {
         formula: "R = - (X'_+ + Y'_+) / (X'_- + Y'_-)",

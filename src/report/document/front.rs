@@ -12,10 +12,9 @@ use crate::report::speech::Speech;
 /// Builds the first page.
 pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
     let id = &content.identification;
-    let verdict = headline(id.verdict.kind).0;
     Front {
         synthetic: content.summary.synthetic,
-        verdict,
+        verdict: verdict_name(id.verdict.kind),
         headline: campaign_headline(content, drawn.speech),
         summary: prose(&id.verdict.summary).localised(drawn.speech),
         findings: localised(findings(content, drawn.speech), drawn.speech),
@@ -49,13 +48,7 @@ fn campaign_headline(content: &ReportContent, speech: Speech) -> String {
         .filter(|s| s.verdict.kind == VerdictKind::Identified)
         .count();
     match specimens - identified {
-        _ if specimens == 0 => {
-            let words = headline(id.verdict.kind).1;
-            match content.records.is_empty() {
-                true => speech.say(words.trim_end_matches(" the rig")),
-                false => speech.say(words),
-            }
-        }
+        _ if specimens == 0 => speech.say(headline(id.verdict.kind, !content.records.is_empty())),
         0 => speech.say_with(
             "Identified: the model fits each of the {count} specimens",
             &[("count", &specimens.to_string())],
@@ -141,13 +134,25 @@ fn answer(look: &ParameterLook, estimate: Option<&Estimate>, speech: Speech) -> 
     }
 }
 
-/// Name of a verdict in the document, and its headline.
-pub fn headline(kind: VerdictKind) -> (&'static str, &'static str) {
+/// Name of a verdict in the document.
+fn verdict_name(kind: VerdictKind) -> &'static str {
     match kind {
-        VerdictKind::Identified => ("identified", "Identified: the model fits the rig"),
-        VerdictKind::Weak => ("weak", "Identified in part"),
-        VerdictKind::NotIdentifiable => ("not_identifiable", "Not identifiable from these data"),
-        VerdictKind::DoesNotFit => ("does_not_fit", "The model does not fit the rig"),
+        VerdictKind::Identified => "identified",
+        VerdictKind::Weak => "weak",
+        VerdictKind::NotIdentifiable => "not_identifiable",
+        VerdictKind::DoesNotFit => "does_not_fit",
+    }
+}
+
+/// A verdict as a headline, a phrase; of a rig where records of one were measured.
+pub(super) fn headline(kind: VerdictKind, of_a_rig: bool) -> &'static str {
+    match (kind, of_a_rig) {
+        (VerdictKind::Identified, true) => "Identified: the model fits the rig",
+        (VerdictKind::Identified, false) => "Identified: the model fits",
+        (VerdictKind::Weak, _) => "Identified in part",
+        (VerdictKind::NotIdentifiable, _) => "Not identifiable from these data",
+        (VerdictKind::DoesNotFit, true) => "The model does not fit the rig",
+        (VerdictKind::DoesNotFit, false) => "The model does not fit",
     }
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::report::speech::Speech;
 
+/// Those of template.typ, of the page and of its script.
 const PHRASES: [&str; 13] = [
     "Synthetic data: simulated records, not a measurement.",
     "The methods agree.",

@@ -5,6 +5,7 @@ use super::world::{MemoryWorld, Unset};
 use crate::report::figures::Figure;
 use crate::report::{RenderOptions, ReportError};
 
+/// The built-in layout.
 const TEMPLATE: &str = include_str!("../template.typ");
 
 /// Sets the document and exports it. The same input gives the same bytes.

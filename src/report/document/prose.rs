@@ -46,6 +46,7 @@ pub fn prose(text: &str) -> Rich {
 
 /// A finding as a sentence, with the method that it begins with in words.
 pub fn spoken(finding: &str, speech: Speech) -> String {
+    /// Methods as a finding names them at its start.
     const KEYS: [&str; 5] = [
         "boundaries",
         "trajectories",

@@ -13,6 +13,10 @@ use super::plane::same;
 use crate::report::content::{BoundaryKind, BracketRow, ReportContent};
 use crate::report::speech::Speech;
 
+/// Height of the panel, points.
+const HEIGHT: f64 = 132.0;
+/// Room left of the panel, points.
+const LEFT: f64 = 34.0;
 /// Distance of brackets at one clearance, points.
 const STACK_STEP: f64 = 4.4;
 
@@ -30,8 +34,8 @@ pub fn draw(content: &ReportContent, speech: Speech) -> Option<Figure> {
         return None;
     }
     let keys = keys(&rows);
-    let top = legend::height(&keys, look::HALF_WIDTH - 34.0, speech) + 4.0;
-    let rect = Rect::new(34.0, top, look::HALF_WIDTH - 38.0, 132.0);
+    let top = legend::height(&keys, look::HALF_WIDTH - LEFT, speech) + 4.0;
+    let rect = Rect::new(LEFT, top, look::HALF_WIDTH - LEFT - 4.0, HEIGHT);
     let x = Axis::around(
         rows.iter().flat_map(|r| [r.1, r.2, 0.0]),
         0.08,
@@ -43,7 +47,7 @@ pub fn draw(content: &ReportContent, speech: Speech) -> Option<Figure> {
         "clearance $r$ (mm)",
     );
     let panel = Panel::new(rect, x, y);
-    let mut canvas = Canvas::new(look::HALF_WIDTH, top + 132.0 + 24.0);
+    let mut canvas = Canvas::new(look::HALF_WIDTH, top + HEIGHT + look::BELOW_PANEL);
     panel.upright(&mut canvas, 0.0, look::ZERO_STROKE);
     let mut order: Vec<usize> = (0..rows.len()).collect();
     order.sort_by_key(|&i| (rows[i].0.kind, rows[i].0.direction));

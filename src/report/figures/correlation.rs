@@ -15,6 +15,7 @@ use crate::report::content::Correlation;
 use crate::report::parameters::parameter;
 use crate::report::speech::Speech;
 
+/// Room above the cells for the columns' symbols, points.
 const TOP: f64 = 14.0;
 
 /// Draws the matrix; `None` where it is empty or not square.

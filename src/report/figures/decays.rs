@@ -15,8 +15,11 @@ use crate::report::speech::Speech;
 /// How many decays one figure holds.
 pub const PER_FIGURE: usize = 12;
 
+/// Panels in a row.
 const COLUMNS: usize = 3;
+/// Height of a panel, points.
 const PANEL_HEIGHT: f64 = 74.0;
+/// Height of a row with the words above and the numbers below its panels, points.
 const ROW_HEIGHT: f64 = PANEL_HEIGHT + 48.0;
 
 /// Draws up to [`PER_FIGURE`] decays; `None` for none.

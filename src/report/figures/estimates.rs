@@ -14,7 +14,7 @@ use crate::report::content::ReportContent;
 use crate::report::parameters::{PARAMETERS, ParameterLook, interval95, method_name};
 use crate::report::speech::Speech;
 
-const WIDTH: f64 = 236.0;
+/// Height of a method's line, points.
 const ROW: f64 = 14.5;
 
 /// One method's estimates by their names.
@@ -51,10 +51,10 @@ pub fn draw(content: &ReportContent, speech: Speech) -> Option<Figure> {
     let left = names.fold(0.0, f64::max) + 6.0;
     let columns = if shown.len() > 1 { 2 } else { 1 };
     let gap = 15.0;
-    let width = (WIDTH - left - 9.0 - gap * (columns - 1) as f64) / columns as f64;
+    let width = (look::FRONT_WIDTH - left - 9.0 - gap * (columns - 1) as f64) / columns as f64;
     let height = ROW * lines.len() as f64 + 4.0;
     let rows = shown.len().div_ceil(columns);
-    let mut canvas = Canvas::new(WIDTH, rows as f64 * (height + 27.0) + 1.0);
+    let mut canvas = Canvas::new(look::FRONT_WIDTH, rows as f64 * (height + 27.0) + 1.0);
     for (i, &k) in shown.iter().enumerate() {
         let (column, row) = (i % columns, i / columns);
         let x = left + column as f64 * (width + gap);

@@ -6,15 +6,16 @@ use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
 use super::legend::{self, Key, Sign};
 use super::look;
-use super::panel::{Panel, Sides};
-use super::path::Rect;
+use super::panel::{PAIR_LEFT, Panel, Sides, pair};
 use super::units::{PrintUnit, print_unit};
 use super::{Figure, Spot};
 use crate::report::content::ImpactScatter;
 use crate::report::speech::Speech;
 use crate::units::Dimension;
 
+/// Height of the panels, points.
 const HEIGHT: f64 = 150.0;
+/// Room above the panels for the keys, points.
 const TOP: f64 = 15.0;
 
 /// Draws one group of impacts; `None` where it is empty.
@@ -28,7 +29,7 @@ pub fn draw(scatter: &ImpactScatter, name: &str, speech: Speech) -> Option<Figur
         return None;
     }
     let unit = print_unit(Dimension::Velocity, peak);
-    let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + 24.0);
+    let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + look::BELOW_PANEL);
     let panels = panels(scatter, unit);
     lines(&mut canvas, &panels, scatter, unit);
     let spots = points(&mut canvas, &panels, scatter, (unit, speech));
@@ -37,8 +38,8 @@ pub fn draw(scatter: &ImpactScatter, name: &str, speech: Speech) -> Option<Figur
     }
     legend::draw(
         &mut canvas,
-        (36.0, 0.0),
-        look::FULL_WIDTH - 36.0,
+        (PAIR_LEFT, 0.0),
+        look::FULL_WIDTH - PAIR_LEFT,
         &keys(scatter, speech),
         speech,
     );
@@ -61,8 +62,7 @@ fn panels(scatter: &ImpactScatter, unit: PrintUnit) -> [Panel; 2] {
         format!("parting speed after ({})", unit.symbol),
     );
     let ratio = ratio_axis(scatter);
-    let left = Rect::new(36.0, TOP, 196.0, HEIGHT);
-    let right = Rect::new(280.0, TOP, 198.0, HEIGHT);
+    let [left, right] = pair(TOP, HEIGHT);
     [
         Panel::new(left, before(), after),
         Panel::new(right, before(), ratio),
@@ -101,7 +101,7 @@ fn lines(canvas: &mut Canvas, panels: &[Panel; 2], scatter: &ImpactScatter, unit
         speeds.curve(canvas, [(0.0, 0.0), (end, r * end)], stroke);
         ratios.level(canvas, r, stroke);
     }
-    let dashed = Stroke::dashed(look::VERMILION, 1.0, &[4.0, 2.0]);
+    let dashed = Stroke::dashed(look::VERMILION, 1.0, look::DASH);
     let of_speed = || {
         scatter
             .restitution_of_speed
@@ -119,7 +119,6 @@ fn points(
     scatter: &ImpactScatter,
     (unit, speech): (PrintUnit, Speech),
 ) -> Vec<Spot> {
-    const MOST_SPOTS: usize = 4000;
     let mut spots = Vec::new();
     canvas.layer(1);
     let radius = dots::radius(scatter.points.len());
@@ -134,9 +133,7 @@ fn points(
         let before = p.before_m_s * unit.factor;
         let values = [p.after_m_s * unit.factor, p.after_m_s / p.before_m_s];
         for ((panel, dots), value) in panels.iter().zip(&mut taken).zip(values) {
-            if let Some((x, y)) = dots.put(canvas, panel, (before, value), dot)
-                && spots.len() < MOST_SPOTS
-            {
+            if let Some((x, y)) = dots.put(canvas, panel, (before, value), dot) {
                 let ratio = p.after_m_s / p.before_m_s;
                 spots.push(Spot {
                     x,
@@ -177,7 +174,7 @@ fn keys(scatter: &ImpactScatter, speech: Speech) -> Vec<Key> {
         keys.push(Key::new(Sign::Patch(look::BAND), "95 % interval"));
     }
     if !scatter.restitution_of_speed.is_empty() {
-        let stroke = Stroke::dashed(look::VERMILION, 1.0, &[4.0, 2.0]);
+        let stroke = Stroke::dashed(look::VERMILION, 1.0, look::DASH);
         keys.push(Key::new(Sign::Line(stroke), "$R$ over speed"));
     }
     keys

@@ -8,6 +8,14 @@ use super::canvas::{Colour, Stroke};
 pub const FULL_WIDTH: f64 = 481.9;
 /// Width of one of two columns, points.
 pub const HALF_WIDTH: f64 = 234.0;
+/// Width of the two figures of the first page, points.
+pub const FRONT_WIDTH: f64 = 236.0;
+/// Room below a panel for its numbers and title, points.
+pub const BELOW_PANEL: f64 = 24.0;
+/// Figures narrower than this stand two in a row, points.
+pub const NARROW: f64 = 300.0;
+/// Dashes of a fitted or simulated line, points.
+pub const DASH: &[f64] = &[4.0, 2.0];
 /// Size of tick labels, points.
 pub const TICK_SIZE: f64 = 7.0;
 /// Size of axis titles, points.
@@ -15,11 +23,9 @@ pub const TITLE_SIZE: f64 = 8.0;
 /// Size of notes inside a figure, points.
 pub const NOTE_SIZE: f64 = 7.5;
 /// Width of frames and ticks, points.
-pub const FRAME_WIDTH: f64 = 0.5;
+const FRAME_WIDTH: f64 = 0.5;
 /// Width of curves, points.
 pub const CURVE_WIDTH: f64 = 1.0;
-/// Width of thin lines, points.
-pub const THIN_WIDTH: f64 = 0.35;
 
 /// Near black, for text and measured lines.
 pub const INK: Colour = RGBColor(0x1a, 0x1a, 0x1a);
@@ -27,8 +33,6 @@ pub const INK: Colour = RGBColor(0x1a, 0x1a, 0x1a);
 pub const FRAME: Colour = RGBColor(0x55, 0x55, 0x55);
 /// Second text.
 pub const QUIET: Colour = RGBColor(0x5f, 0x66, 0x6d);
-/// Lines of a grid.
-pub const GRID: Colour = RGBColor(0xe3, 0xe5, 0xe8);
 /// Paper.
 pub const PAPER: Colour = RGBColor(0xff, 0xff, 0xff);
 /// Okabe and Ito's blue: mass x, first series.
@@ -66,7 +70,5 @@ pub const BAND: Colour = RGBColor(0xc9, 0xdd, 0xee);
 
 /// Frame lines.
 pub const FRAME_STROKE: Stroke = Stroke::solid(FRAME, FRAME_WIDTH);
-/// Lines of a grid.
-pub const GRID_STROKE: Stroke = Stroke::solid(GRID, THIN_WIDTH);
 /// A line at zero.
 pub const ZERO_STROKE: Stroke = Stroke::solid(RGBColor(0xb5, 0xb9, 0xbe), 0.4);

@@ -11,6 +11,17 @@ use crate::report::speech::Speech;
 /// How far in points a number below may reach beyond the panel's sides.
 const MOST_OVERHANG: f64 = 5.5;
 
+/// Room left of the first panel of two beside each other, points.
+pub const PAIR_LEFT: f64 = 36.0;
+
+/// Two panels beside each other over the whole width.
+pub fn pair(top: f64, height: f64) -> [Rect; 2] {
+    [
+        Rect::new(PAIR_LEFT, top, 196.0, height),
+        Rect::new(280.0, top, 198.0, height),
+    ]
+}
+
 /// Which sides of a panel carry ticks and labels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sides {
@@ -38,7 +49,7 @@ pub struct Panel {
     /// Upward.
     pub y: Axis,
     /// How far left of the frame the title of the upward axis stands; `None`: beside its numbers.
-    pub title_reach: Option<f64>,
+    title_reach: Option<f64>,
 }
 
 impl Panel {
@@ -104,16 +115,6 @@ impl Panel {
     /// An error bar: upright from low to high at x.
     pub fn error_bar(&self, canvas: &mut Canvas, x: f64, (low, high): (f64, f64), stroke: Stroke) {
         self.curve(canvas, [(x, low), (x, high)], stroke);
-    }
-
-    /// A pale grid at the labelled ticks.
-    pub fn grid(&self, canvas: &mut Canvas) {
-        for v in self.x.major().0 {
-            self.upright(canvas, v, look::GRID_STROKE);
-        }
-        for v in self.y.major().0 {
-            self.level(canvas, v, look::GRID_STROKE);
-        }
     }
 
     /// Frame, ticks, numbers and titles.
@@ -212,6 +213,7 @@ impl Panel {
     /// Size of the title of the upward axis: that of a low panel, whose title is in lines, may not
     /// reach into the next one's.
     fn title_size(&self, lines: &[&str]) -> f64 {
+        /// How far a title may reach beyond its panel, points.
         const SLACK: f64 = 3.5;
         let room = self.rect.height() + SLACK;
         let widths = lines
@@ -224,7 +226,7 @@ impl Panel {
     }
 
     /// Width of the widest number on the left.
-    pub fn widest_label(&self, speech: Speech) -> f64 {
+    fn widest_label(&self, speech: Speech) -> f64 {
         let (ticks, decimals) = self.y.major();
         ticks
             .iter()

@@ -13,8 +13,11 @@ use crate::report::speech::Speech;
 
 /// Rise of χ² at the ends of a 95 % interval of one parameter.
 const RISE_95: f64 = 3.841_458_820_694_124;
+/// Panels in a row.
 const COLUMNS: usize = 4;
+/// Height of a panel, points.
 const HEIGHT: f64 = 80.0;
+/// Height of a row with its headings and numbers, points.
 const ROW: f64 = HEIGHT + 36.0;
 
 /// Draws all profiles; `None` for none.

@@ -13,7 +13,9 @@ use crate::report::content::{ResidualPoint, ResidualSet};
 use crate::report::parameters::NORMAL_95;
 use crate::report::speech::Speech;
 
+/// Height of the panels, points.
 const HEIGHT: f64 = 84.0;
+/// Room above the panels, points.
 const TOP: f64 = 3.0;
 
 /// Draws the diagnostics of one method; `None` where it has no residuals.
@@ -24,7 +26,7 @@ pub fn draw<'a>(set: &'a ResidualSet, name: &str, speech: Speech<'a>) -> Option<
     let mut sheet = Sheet {
         set,
         speech,
-        canvas: Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + 24.0),
+        canvas: Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + look::BELOW_PANEL),
         spots: Vec::new(),
     };
     let mut drawers: Vec<fn(&mut Sheet<'_>, Rect)> = vec![|s, r| s.histogram(r)];
@@ -172,6 +174,7 @@ impl Sheet<'_> {
 
 /// An axis over values as they are set on a rig: what differs by less than one can set is one.
 fn over_axis(values: impl Iterator<Item = f64> + Clone, title: &str) -> Axis {
+    /// Relative difference of settings that are one.
     const SAME: f64 = 1e-3;
     let axis = Axis::around(values.clone(), 0.05, title);
     let (low, high) = range(values).unwrap_or((0.0, 1.0));

@@ -6,14 +6,16 @@ use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
 use super::legend::{self, Key, Sign};
 use super::look;
-use super::panel::{Panel, Sides};
+use super::panel::{PAIR_LEFT, Panel, Sides, pair};
 use super::path::Rect;
 use super::units::{PrintUnit, print_unit};
 use super::{Figure, Spot};
 use crate::report::content::{ResonanceCurve, ResonancePoint};
 use crate::report::speech::Speech;
 
+/// Height of the panels, points.
 const HEIGHT: f64 = 128.0;
+/// Room above the panels for the keys, points.
 const TOP: f64 = 15.0;
 
 /// Draws one curve; `None` where it has no points.
@@ -21,11 +23,12 @@ pub fn draw(curve: &ResonanceCurve, name: &str, speech: Speech) -> Option<Figure
     if curve.points.is_empty() {
         return None;
     }
-    let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + 24.0);
+    let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + look::BELOW_PANEL);
     let has_phase = curve.points.iter().any(|p| p.phase_rad.is_some());
-    let width = if has_phase { 196.0 } else { 441.0 };
+    let [left, right] = pair(TOP, HEIGHT);
+    let whole = Rect::new(PAIR_LEFT, TOP, look::FULL_WIDTH - PAIR_LEFT - 4.9, HEIGHT);
     let unit = amplitude_unit(curve);
-    let amplitude = amplitude_panel(curve, &unit, Rect::new(36.0, TOP, width, HEIGHT));
+    let amplitude = amplitude_panel(curve, &unit, if has_phase { left } else { whole });
     let mut spots = Vec::new();
     let value =
         |p: &ResonancePoint| Some((p.amplitude * unit.0, p.amplitude_error.map(|e| e * unit.0)));
@@ -37,7 +40,7 @@ pub fn draw(curve: &ResonanceCurve, name: &str, speech: Speech) -> Option<Figure
     }
     .draw(&mut canvas, value, speech, &mut spots);
     if has_phase {
-        let panel = phase_panel(curve, Rect::new(280.0, TOP, 198.0, HEIGHT));
+        let panel = phase_panel(curve, right);
         let value = |p: &ResonancePoint| {
             Some((
                 p.phase_rad?.to_degrees(),
@@ -53,8 +56,8 @@ pub fn draw(curve: &ResonanceCurve, name: &str, speech: Speech) -> Option<Figure
     }
     legend::draw(
         &mut canvas,
-        (36.0, 0.0),
-        look::FULL_WIDTH - 36.0,
+        (PAIR_LEFT, 0.0),
+        look::FULL_WIDTH - PAIR_LEFT,
         &keys(curve),
         speech,
     );

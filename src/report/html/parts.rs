@@ -4,7 +4,11 @@ use crate::report::ReportError;
 use crate::report::document::model::*;
 use crate::report::figures::Figure;
 use crate::report::figures::canvas::escape;
+use crate::report::figures::look;
 use crate::report::figures::richtext::Level;
+
+/// Longer tables can be scrolled.
+const MOST_ROWS: usize = 40;
 
 /// Writes the parts, numbering the captions of figures.
 pub struct Parts<'a> {
@@ -121,7 +125,7 @@ impl<'a> Parts<'a> {
     }
 
     fn figure(&mut self, reference: &FigureRef, figure: &Figure) -> Result<String, ReportError> {
-        let class = if figure.width > 300.0 {
+        let class = if figure.width > look::NARROW {
             " class=\"wide\""
         } else {
             ""
@@ -262,7 +266,7 @@ fn table(table: &Table) -> String {
         text.push_str(&format!("<tr>{cells}</tr>\n"));
     }
     text.push_str("</tbody>\n</table>\n");
-    if rows.len() > 40 {
+    if rows.len() > MOST_ROWS {
         format!("<div class=\"scroll\">\n{text}</div>\n")
     } else {
         text

@@ -13,7 +13,9 @@ use crate::report::figures::path::Rect;
 use crate::report::figures::regions::Regions;
 use crate::report::speech::Speech;
 
+/// Room left of the panel, points.
 const LEFT: f64 = 36.0;
+/// Height of the panel, points.
 const HEIGHT: f64 = 300.0;
 /// Motions named in the keys at most.
 const MOST_KEYS: usize = 12;

@@ -13,9 +13,13 @@ use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
 use crate::report::speech::Speech;
 
+/// Room left of the panels, points.
 const LEFT: f64 = 36.0;
+/// Height of the displacements' panel, points.
 const SERIES_HEIGHT: f64 = 96.0;
+/// Height of the velocities' panel, points.
 const SPEED_HEIGHT: f64 = 74.0;
+/// Height of the three panels below, points.
 const SQUARE: f64 = 126.0;
 /// Times drawn at most; longer series are drawn from their end.
 const MOST_SAMPLES: usize = 200_000;

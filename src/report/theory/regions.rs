@@ -18,7 +18,9 @@ use crate::report::figures::placing::Occupancy;
 use crate::report::figures::regions::Regions;
 use crate::report::speech::Speech;
 
+/// Room left of the panel, points.
 const LEFT: f64 = 34.0;
+/// Height of the panel, points.
 const HEIGHT: f64 = 380.0;
 /// Shorter pieces of boundaries are told in the table alone.
 const FEWEST_POINTS: usize = 3;

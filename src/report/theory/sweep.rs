@@ -13,7 +13,9 @@ use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
 use crate::report::speech::Speech;
 
+/// Room left of the panels, points.
 const LEFT: f64 = 42.0;
+/// Room between the panels, points.
 const GAP: f64 = 7.0;
 
 /// A sweep in both directions.
@@ -38,6 +40,7 @@ struct Row {
     ticks: usize,
 }
 
+/// The characteristics from above.
 const ROWS: [Row; 4] = [
     Row {
         title: "greatest\n$X_m$ (1)",
@@ -68,6 +71,7 @@ const ROWS: [Row; 4] = [
         ticks: 3,
     },
 ];
+/// Height of the last panel, the phase of the impactless motion, points.
 const PHASE_HEIGHT: f64 = 62.0;
 
 /// Draws the characteristics over the quantity that moves.
@@ -100,12 +104,13 @@ fn keys(two: bool) -> Vec<Key> {
         ),
     ];
     if two {
-        let stroke = Stroke::dashed(IMPACTLESS, 0.8, &[4.0, 2.0]);
+        let stroke = Stroke::dashed(IMPACTLESS, 0.8, look::DASH);
         keys.push(Key::new(Sign::Line(stroke), "of $Y$"));
     }
     keys
 }
 
+/// Colour of the impactless motion.
 const IMPACTLESS: Colour = look::QUIET;
 
 struct Drawing<'a> {
@@ -185,7 +190,7 @@ impl Drawing<'_> {
         let y: Vec<(f64, f64)> = pairs()
             .filter_map(|(p, i)| Some((self.at(p), of(i.y?))))
             .collect();
-        let dashed = Stroke::dashed(IMPACTLESS, 0.8, &[4.0, 2.0]);
+        let dashed = Stroke::dashed(IMPACTLESS, 0.8, look::DASH);
         panel.curve(canvas, y, dashed);
         let x: Vec<(f64, f64)> = pairs().map(|(p, i)| (self.at(p), of(i.x))).collect();
         panel.curve(canvas, x, Stroke::solid(IMPACTLESS, 0.8));

@@ -35,6 +35,7 @@ const METHOD: [Column; 8] = [
     Column::center("fits"),
 ];
 
+/// What the columns of the methods hold.
 const METHODS_CAPTION: &str = "Estimates with half their 95 % interval, number of observations, \
      root mean square of the weighted residuals (1: as the stated noise), and whether the model \
      fits.";
@@ -74,7 +75,7 @@ pub fn specimens(content: &ReportContent, speech: Speech) -> Option<Table> {
         .map(|(specimen, result)| {
             let mut row = vec![verbatim(specimen.clone())];
             row.extend(estimate_cells(&result.joint.parameters, speech));
-            let headline = headline(result.verdict.kind).1;
+            let headline = headline(result.verdict.kind, true);
             row.push(Rich::from(speech.say(headline)));
             row
         });

@@ -77,8 +77,11 @@ fn which(content: &ReportContent, speech: Speech) -> String {
 
 /// Many rows: small type, whole columns at once, two tables beside each other where they fit.
 fn crowded(table: Table) -> Table {
+    /// Size of the type, points.
     const SIZE: f64 = 6.2;
+    /// Room that a cell takes beside its text, points.
     const PADDING: f64 = 0.9 * SIZE;
+    /// Room between the two tables, points, as the template has it.
     const GUTTER: f64 = 14.0;
     let mut table = table;
     let width = |cell: &Rich| fonts::width(&cell.plain(), Face::Bold, SIZE);

@@ -19,17 +19,25 @@ use crate::report::figures::{Figure, richtext};
 use crate::report::speech::Speech;
 use rows::{Row, root_mean_square, rows, shown, symbol};
 
+/// Room left of the first column, for numbers and titles, points.
 const LEFT: f64 = 40.0;
 /// Width of a column of panels beside phase portraits, and without them.
 const COLUMNS: [f64; 2] = [136.0, 201.0];
+/// Room between the columns of panels, points.
 const COLUMN_GAP: f64 = 35.0;
+/// Left edge of the phase portraits, points.
 const PORTRAIT_LEFT: f64 = 387.0;
 /// Distance of the titles of upward axes from their frames.
 const TITLE_REACH: f64 = 22.0;
+/// Width of a phase portrait, points.
 const PORTRAIT_WIDTH: f64 = look::FULL_WIDTH - PORTRAIT_LEFT - 2.0;
+/// Room between the rows of panels, points.
 const ROW_GAP: f64 = 5.0;
+/// Room above the panels, for letter and titles, points.
 const TOP: f64 = 13.0;
+/// Room below the panels, for numbers and title, points.
 const BOTTOM: f64 = 22.0;
+/// Width of the simulated curve behind the measured one, points.
 const BACK_WIDTH: f64 = 1.7;
 
 /// Draws one comparison; `None` where it has no trace at all.

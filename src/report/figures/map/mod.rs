@@ -100,8 +100,8 @@ impl<'a> Map<'a> {
         let (width, height) = match (full, flat) {
             (true, false) => (look::FULL_WIDTH, 370.0),
             (true, true) => (look::FULL_WIDTH, 200.0),
-            (false, false) => (236.0, 235.0),
-            (false, true) => (236.0, 130.0),
+            (false, false) => (look::FRONT_WIDTH, 235.0),
+            (false, true) => (look::FRONT_WIDTH, 130.0),
         };
         let keys_height =
             legend::height(keys, width, speech) + if keys.is_empty() { 0.0 } else { 3.0 };
@@ -110,7 +110,7 @@ impl<'a> Map<'a> {
         let View { x, y, strips } = plane.view(content);
         let strips_height = STRIP_STEP * strips.len() as f64;
         let top = keys_height + strips_height + if both_units { 26.0 } else { 3.0 };
-        let rect = Rect::new(left, top, width - left - right, height - 24.0);
+        let rect = Rect::new(left, top, width - left - right, height - look::BELOW_PANEL);
         let total = top + height;
         let (x, y) = if full {
             (x, y)
