@@ -48,23 +48,14 @@ fn written(folder: &Path, name: &str, bytes: &[u8]) -> String {
     path.display().to_string()
 }
 
-/// Renders the examples into the folder named by IMPACTID_REPORT_LOOKS, to be looked at.
+/// Renders the examples into the folder named by IMPACTID_REPORT_LOOKS.
 #[test]
+#[ignore = "leaves reports to be looked at; IMPACTID_REPORT_LOOKS names their folder"]
 fn regress_examples_can_be_looked_at() {
-    let Ok(folder) = std::env::var("IMPACTID_REPORT_LOOKS") else {
-        println!("skipped: IMPACTID_REPORT_LOOKS names no folder");
-        return;
-    };
+    let folder = std::env::var("IMPACTID_REPORT_LOOKS").expect("IMPACTID_REPORT_LOOKS");
     for (name, content) in kinds() {
-        let start = std::time::Instant::now();
         let report = Report::new(content, &RenderOptions::default());
-        let drawn = start.elapsed();
         let pdf = report.pdf().expect("a PDF");
-        println!(
-            "{name}: figures {drawn:?}, all {:?}, {} bytes",
-            start.elapsed(),
-            pdf.len()
-        );
         written(Path::new(&folder), &format!("{name}.pdf"), &pdf);
         let page = report.html().expect("a page");
         written(Path::new(&folder), &format!("{name}.html"), page.as_bytes());
@@ -158,39 +149,6 @@ fn valid_no_text_of_a_figure_is_overfull() {
 }
 
 #[test]
-fn valid_pdf_has_its_pages_fonts_and_selectable_answer() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let pdf = pdf_of(kind("small"), &RenderOptions::default()).expect("a PDF");
-    assert!(pdf.len() < 5_000_000);
-    let path = written(folder.path(), "report.pdf", &pdf);
-    let Some(text) = output("pdftotext", &["-layout", &path, "-"]) else {
-        return;
-    };
-    let pages = text.matches('\u{c}').count();
-    assert!((4..=9).contains(&pages), "{pages} pages");
-    for wanted in [
-        "R = 0.9005",
-        "± 0.0018",
-        "Identified",
-        "Regions of motion",
-        "12.5996",
-        "η",
-    ] {
-        assert!(text.contains(wanted), "'{wanted}' is not in the text");
-    }
-    let Some(fonts) = output("pdffonts", &[&path]) else {
-        return;
-    };
-    let fonts: Vec<&str> = fonts.lines().skip(2).collect();
-    assert!(!fonts.is_empty());
-    for font in fonts {
-        let fields: Vec<&str> = font.split_whitespace().rev().collect();
-        let (embedded, subset) = (fields[4], fields[3]);
-        assert_eq!((embedded, subset), ("yes", "yes"), "{font}");
-    }
-}
-
-#[test]
 fn valid_no_word_leaves_the_page_s_margins() {
     let folder = tempfile::tempdir().expect("a folder");
     let papers = [Paper::A4, Paper::Letter];
@@ -221,6 +179,7 @@ fn words_within_margins(name: &str, boxes: &str) {
             .expect("a number")
     };
     let (mut width, mut height) = (0.0, 0.0);
+    assert!(boxes.contains("<word "), "{name} has no words");
     for line in boxes.lines() {
         if line.contains("<page ") {
             (width, height) = (number(line, "width"), number(line, "height"));
@@ -283,12 +242,18 @@ fn valid_own_template_and_logo_are_used() {
         }),
         ..RenderOptions::default()
     };
-    assert!(pdf_of(kind("cart"), &options).is_ok());
-    let plain = RenderOptions {
+    let own = pdf_of(kind("cart"), &options).expect("a PDF");
+    let with_logo = RenderOptions {
         template: None,
         ..options
     };
-    assert!(pdf_of(kind("cart"), &plain).is_ok());
+    let ours = pdf_of(kind("cart"), &with_logo).expect("a PDF");
+    let plain = pdf_of(kind("cart"), &RenderOptions::default()).expect("a PDF");
+    assert!(
+        own.len() < plain.len(),
+        "the own template holds a title and a logo alone"
+    );
+    assert!(ours != plain, "the logo is not in the report");
 }
 
 #[test]
@@ -537,46 +502,4 @@ fn valid_a_german_report_speaks_german() {
         assert!(page.contains("<html lang=\"de\">") && page.contains("Was gemessen wurde"));
         assert!(!page.contains("<h2>What was measured"));
     }
-}
-
-/// A browser opens the page, zooms a figure and hovers over a record.
-#[test]
-fn valid_page_works_in_a_browser() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let report = Report::new(kind("unidentified"), &RenderOptions::default());
-    let page = report.html().expect("a page");
-    for outside in ["src=\"http", "href=\"http", "url(http"] {
-        assert!(
-            !page.contains(outside),
-            "the page loads from elsewhere: {outside}"
-        );
-    }
-    let path = written(folder.path(), "report.html", page.as_bytes());
-    let profile = format!(
-        "--user-data-dir={}",
-        folder.path().join("profile").display()
-    );
-    let flags = [
-        "--headless",
-        "--no-sandbox",
-        "--disable-gpu",
-        "--virtual-time-budget=3000",
-        &profile,
-        "--dump-dom",
-    ];
-    let address = format!("file://{path}#check");
-    let Some(seen) = output("chromium", &[&flags[..], &[address.as_str()]].concat()) else {
-        return;
-    };
-    let body = seen
-        .split("<body")
-        .nth(1)
-        .and_then(|b| b.split('>').next())
-        .expect("a body");
-    assert!(
-        body.contains(&format!("data-figures=\"{}\"", report.figures.len())),
-        "{body}"
-    );
-    assert!(body.contains("data-hovered=\"r0001"), "{body}");
-    assert!(body.contains("data-zoomed=\"2.00\""), "{body}");
 }

@@ -322,6 +322,11 @@ fn checked_page(path: &Path) {
     };
     let after = seen.split("<body").nth(1).expect("a body");
     let body = after.split('>').next().expect("its tag");
+    let figures = page.matches("class=\"drawing\"").count();
+    assert!(
+        body.contains(&format!("data-figures=\"{figures}\"")),
+        "{body}"
+    );
     assert!(body.contains("data-hovered=\"r0"), "{body}");
     assert!(body.contains("data-zoomed=\"2.00\""), "{body}");
 }

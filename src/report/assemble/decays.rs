@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::Gathered;
+use super::{Gathered, moves};
 use crate::motion::Observation;
-use crate::record::{Channel, Record, Role};
+use crate::record::{Channel, Record};
 use crate::report::content::{FreeDecay, Signal};
 use crate::signal::decay::Decay;
 
@@ -52,7 +52,7 @@ fn free_decay(gathered: &Gathered, o: &Observation, record: &Record) -> Option<F
     let channel = record
         .channels
         .iter()
-        .filter(|c| moves(c) && c.values.len() >= decay.first + decay.samples)
+        .filter(|c| moves(c.role) && c.values.len() >= decay.first + decay.samples)
         .min_by(|a, b| apart(a, &decay, &fitted).total_cmp(&apart(b, &decay, &fitted)))?;
     let left = gathered.left_out.iter().find(|(name, _)| *name == o.record);
     let name = match &o.setting.specimen {
@@ -73,12 +73,6 @@ fn free_decay(gathered: &Gathered, o: &Observation, record: &Record) -> Option<F
         damping_ratio_error: Some(decay.damping_ratio_error),
         note: left.map(|(_, why)| why.clone()).unwrap_or_default(),
     })
-}
-
-/// Whether a channel measures the motion of a mass.
-fn moves(channel: &Channel) -> bool {
-    let still = [Role::Drive, Role::Contact, Role::FrameX, Role::FrameY];
-    !still.contains(&channel.role)
 }
 
 /// Squares that a fitted decay leaves of a channel, over the channel's own.

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::Gathered;
+use super::{Gathered, moves};
 use crate::identify::blocks::{Blocks, Evidence, Nominal};
 use crate::identify::contact_law::Law;
 use crate::identify::impacts::SpeedPair;
@@ -42,16 +42,8 @@ fn names_left_out<'a>(gathered: &Gathered<'a>) -> HashSet<&'a str> {
 
 /// Impactless resonance curves of the channels that have one, velocities first.
 pub(super) fn resonance(gathered: &Gathered) -> Vec<ResonanceCurve> {
-    let roles = [
-        Role::VelocityX,
-        Role::VelocityY,
-        Role::DisplacementX,
-        Role::DisplacementY,
-        Role::AccelerationX,
-        Role::AccelerationY,
-    ];
+    let roles = Role::ALL.into_iter().filter(|r| moves(*r));
     roles
-        .into_iter()
         .filter_map(|role| curve(gathered, role))
         .take(MOST_CURVES)
         .collect()

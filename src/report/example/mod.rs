@@ -100,22 +100,28 @@ fn set(
     }
 }
 
+/// All four parameters: value and standard error of each.
+fn all(told: [[f64; 2]; 4]) -> ParameterSet {
+    let [r, f0, beta, x] = told.map(|[value, error]| estimate(value, error));
+    set(r, f0, beta, x)
+}
+
 /// The example's answer.
 pub fn identification() -> Identification {
     let mut methods = BTreeMap::new();
-    let boundaries = set(
-        estimate(0.897, 0.0052),
-        estimate(12.602, 0.006),
-        estimate(0.0697, 0.0009),
-        estimate(1.254e-3, 6e-6),
-    );
+    let boundaries = all([
+        [0.897, 0.0052],
+        [12.602, 0.006],
+        [0.0697, 0.0009],
+        [1.254e-3, 6e-6],
+    ]);
     methods.insert("boundaries".into(), method(boundaries, 27, 0.93));
-    let trajectories = set(
-        estimate(0.9006, 0.0011),
-        estimate(12.5991, 0.0021),
-        estimate(0.0702, 0.0003),
-        estimate(1.249e-3, 3e-6),
-    );
+    let trajectories = all([
+        [0.9006, 0.0011],
+        [12.5991, 0.0021],
+        [0.0702, 0.0003],
+        [1.249e-3, 3e-6],
+    ]);
     methods.insert("trajectories".into(), method(trajectories, 48_212, 1.04));
     methods.insert(
         "impacts".into(),
@@ -134,12 +140,12 @@ pub fn identification() -> Identification {
         z_score: z,
         p_value: p,
     };
-    let joint = set(
-        estimate(0.9005, 0.0009),
-        estimate(12.5996, 0.0018),
-        estimate(0.0702, 0.0003),
-        estimate(1.2503e-3, 2.4e-6),
-    );
+    let joint = all([
+        [0.9005, 0.0009],
+        [12.5996, 0.0018],
+        [0.0702, 0.0003],
+        [1.2503e-3, 2.4e-6],
+    ]);
     Identification {
         suspicions: Vec::new(),
         uncertainty: Default::default(),
