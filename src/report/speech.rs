@@ -37,6 +37,12 @@ impl Speech<'_> {
         text
     }
 
+    /// What another room says, in the reader's words as far as their table knows its sentences.
+    pub fn tell(self, text: &str) -> String {
+        self.words
+            .map_or_else(|| text.to_owned(), |words| words.tell(text))
+    }
+
     /// A range in words.
     pub fn range(self, first: &str, last: &str) -> String {
         self.say_with("{first} to {last}", &[("first", first), ("last", last)])

@@ -67,11 +67,12 @@ fn narrow(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
     ]
 }
 
-fn with_note(text: &str, note: &str) -> String {
+/// A caption with what was found, in the reader's words.
+fn with_note(text: &str, note: &str, speech: Speech) -> String {
     if note.is_empty() {
         text.to_owned()
     } else {
-        format!("{text} {}", sentence(note))
+        format!("{text} {}", sentence(&speech.tell(note)))
     }
 }
 
@@ -85,7 +86,7 @@ fn impacts(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
             "" => text.clone(),
             name => format!("{name}. {text}"),
         };
-        (numbered("impacts", i), with_note(&text, &s.note))
+        (numbered("impacts", i), with_note(&text, &s.note, speech))
     })
     .collect()
 }
@@ -94,7 +95,7 @@ fn resonance(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
     let text = "Resonance curve of the motion without impacts, measured and fitted.";
     let text = speech.say(text);
     let each = content.resonance.iter().enumerate();
-    each.map(|(i, c)| (numbered("resonance", i), with_note(&text, &c.note)))
+    each.map(|(i, c)| (numbered("resonance", i), with_note(&text, &c.note, speech)))
         .collect()
 }
 
@@ -107,7 +108,7 @@ fn free_decays(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
                     damping ratio ± standard error.";
         (
             numbered("free_decays", i),
-            with_note(&speech.say(text), &notes.join(" ")),
+            with_note(&speech.say(text), &notes.join(" "), speech),
         )
     })
     .collect()
@@ -128,7 +129,10 @@ fn residuals(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
         let method = speech.say(&method_name(&set.method));
         let count = set.count().to_string();
         let text = speech.say_with(text, &[("method", &method), ("count", &count)]);
-        (numbered("residuals", i), with_note(&text, &set.note))
+        (
+            numbered("residuals", i),
+            with_note(&text, &set.note, speech),
+        )
     })
     .collect()
 }

@@ -13,7 +13,7 @@ pub(super) fn facts(summary: &CampaignSummary, speech: Speech) -> Vec<(Rich, Ric
         }
     };
     add("campaign", summary.name.clone());
-    add("rig", speech.say(&summary.rig));
+    add("rig", speech.tell(&speech.say(&summary.rig)));
     add("laboratory", summary.laboratory.clone().unwrap_or_default());
     add("measured", dates(summary, speech));
     add("records", records(summary, speech));
@@ -23,7 +23,7 @@ pub(super) fn facts(summary: &CampaignSummary, speech: Speech) -> Vec<(Rich, Ric
     add("nominal values", nominal(summary, speech));
     add("channels", channels(summary, speech));
     for note in &summary.notes {
-        add("note", note.clone());
+        add("note", speech.tell(note));
     }
     facts
         .into_iter()

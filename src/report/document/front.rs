@@ -16,7 +16,7 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
         synthetic: content.summary.synthetic,
         verdict: verdict_name(id.verdict.kind),
         headline: campaign_headline(content, drawn.speech),
-        summary: prose(&id.verdict.summary).localised(drawn.speech),
+        summary: prose(&drawn.speech.tell(&id.verdict.summary)).localised(drawn.speech),
         findings: localised(findings(content, drawn.speech), drawn.speech),
         answers: answers(content, drawn.speech),
         specimens: tables::specimens(content, drawn.speech),
@@ -26,7 +26,7 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
             None => "unknown",
         },
         agreement: match id.specimens.is_empty() {
-            true => prose(&agreement(&id.agreement.summary)).localised(drawn.speech),
+            true => prose(&agreement(&id.agreement.summary, drawn.speech)).localised(drawn.speech),
             false => Rich::default(),
         },
         facts: facts(&content.summary, drawn.speech),
@@ -98,13 +98,13 @@ fn answers(content: &ReportContent, speech: Speech) -> Vec<Answer> {
 }
 
 /// The words on agreement without the headline that stands before them.
-fn agreement(summary: &str) -> String {
+fn agreement(summary: &str, speech: Speech) -> String {
     if let Some(rest) = summary.strip_prefix("The methods do not agree on ") {
-        return sentence(&format!("This concerns {rest}"));
+        return sentence(&speech.tell(&format!("This concerns {rest}")));
     }
     let rest = summary.strip_prefix("The methods agree");
     let rest = rest.map_or(summary, |r| r.trim_start_matches([':', '.', ';', ',', ' ']));
-    sentence(rest)
+    sentence(&speech.tell(rest))
 }
 
 /// A parameter ready to print.
@@ -130,7 +130,7 @@ fn answer(look: &ParameterLook, estimate: Option<&Estimate>, speech: Speech) -> 
         status: estimate.map_or("not_asked", |e| parameters::status_name(e.status)),
         note: estimate
             .and_then(|e| e.note.as_ref())
-            .map(|n| prose(n).localised(speech)),
+            .map(|n| prose(&speech.tell(n)).localised(speech)),
     }
 }
 

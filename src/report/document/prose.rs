@@ -44,7 +44,7 @@ pub fn prose(text: &str) -> Rich {
     Rich::from(marked)
 }
 
-/// A finding as a sentence, with the method that it begins with in words.
+/// A finding as a sentence in the reader's words, with the method that it begins with by its name.
 pub fn spoken(finding: &str, speech: Speech) -> String {
     /// Methods as a finding names them at its start.
     const KEYS: [&str; 5] = [
@@ -57,10 +57,15 @@ pub fn spoken(finding: &str, speech: Speech) -> String {
     match finding.split_once(": ") {
         Some((key, rest)) if KEYS.contains(&key) => {
             let method = speech.say(&method_name(key));
-            sentence(&format!("{method}: {rest}"))
+            sentence(&format!("{method}: {}", speech.tell(rest)))
         }
-        Some((name, rest)) => format!("{name}: {}", sentence(rest)),
-        None => sentence(finding),
+        _ => {
+            let told = speech.tell(finding);
+            match told.split_once(": ") {
+                Some((name, rest)) => format!("{name}: {}", sentence(rest)),
+                None => sentence(&told),
+            }
+        }
     }
 }
 
@@ -70,7 +75,7 @@ pub fn sentence(remark: &str) -> String {
     let mut chars = remark.chars();
     // A symbol or a record's name keeps its small letter.
     let word = remark.split_whitespace().next().unwrap_or("");
-    let plain = word.chars().count() > 1 && word.chars().all(|c| c.is_ascii_lowercase());
+    let plain = word.chars().count() > 1 && word.chars().all(char::is_lowercase);
     let start = match chars.next() {
         Some(first) if plain => first.to_uppercase().chain(chars).collect(),
         _ => remark.to_owned(),

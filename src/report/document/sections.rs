@@ -150,6 +150,7 @@ fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
 
 /// What was found of each specimen, by method.
 fn specimens(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let told = |remark: &String| sentence(&drawn.speech.tell(remark));
     let table = tables::specimen_methods(content, drawn.speech).map(Block::Table);
     let mut blocks: Vec<Block> = table.into_iter().collect();
     for (specimen, result) in &content.identification.specimens {
@@ -159,7 +160,7 @@ fn specimens(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
                 result
                     .remarks
                     .iter()
-                    .map(|r| remark(&format!("{specimen}, {name}: {}", sentence(r)))),
+                    .map(|r| remark(&format!("{specimen}, {name}: {}", told(r)))),
             );
         }
     }
@@ -167,6 +168,7 @@ fn specimens(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
 }
 
 fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let told = |remark: &String| sentence(&drawn.speech.tell(remark));
     let mut blocks = Vec::new();
     if content.identification.specimens.is_empty() {
         blocks.extend(tables::methods(content, drawn.speech).map(Block::Table));
@@ -181,7 +183,7 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
             method
                 .remarks
                 .iter()
-                .map(move |r| remark(&format!("{name}: {}", sentence(r))))
+                .map(move |r| remark(&format!("{name}: {}", told(r))))
         });
     blocks.extend(remarks);
     blocks.extend(tables::further(content, drawn.speech).map(Block::Table));
@@ -200,7 +202,8 @@ fn left_out(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
         .map(Block::Table)
         .into_iter()
         .collect();
-    let remarks = content.remarks.iter().map(|r| remark(r));
+    let remarks = content.remarks.iter();
+    let remarks = remarks.map(|r| remark(&drawn.speech.tell(r)));
     let title = match blocks.is_empty() {
         true => "Remarks",
         false => "What was left out, and why",

@@ -82,7 +82,10 @@ fn bracket_remark(b: &BracketRow, speech: Speech) -> String {
     };
     let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
     match (&b.left_out, b.simulated_hz) {
-        (Some(why), _) => speech.say_with("not used: {why}", &[("why", why)]),
+        (Some(why), _) => {
+            let why = speech.tell(why);
+            speech.say_with("not used: {why}", &[("why", &why)])
+        }
         (None, Some(f)) if f < low => by("below by {distance} Hz", low - f),
         (None, Some(f)) if f > high => by("above by {distance} Hz", f - high),
         (None, Some(_)) => speech.say("within"),

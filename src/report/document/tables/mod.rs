@@ -121,7 +121,8 @@ fn arrow(sweep: Sweep) -> &'static str {
 pub fn left_out(content: &ReportContent, speech: Speech) -> Option<Table> {
     let rows = content.left_out.iter().map(|l| {
         let count = l.count.map_or(String::new(), |c| c.to_string());
-        vec![verbatim(l.what.clone()), Rich::from(count), prose(&l.why)]
+        let (what, why) = (speech.tell(&l.what), speech.tell(&l.why));
+        vec![verbatim(what), Rich::from(count), prose(&why)]
     });
     let columns: [Column; 3] = [
         Column::wide("left out", 2),

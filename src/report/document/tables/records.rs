@@ -174,7 +174,8 @@ fn short_remark(r: &RecordRow) -> String {
 
 fn long_remark(r: &RecordRow, speech: Speech) -> String {
     let used = if r.used_by.is_empty() {
-        let not_used = |why| speech.say_with("not used: {why}", &[("why", why)]);
+        let not_used =
+            |why: &str| speech.say_with("not used: {why}", &[("why", &speech.tell(why))]);
         r.left_out.as_deref().map(not_used)
     } else {
         Some(
@@ -185,7 +186,10 @@ fn long_remark(r: &RecordRow, speech: Speech) -> String {
                 .join(", "),
         )
     };
-    let flags = (!r.flags.is_empty()).then(|| r.flags.join(", "));
+    let flags = (!r.flags.is_empty()).then(|| {
+        let told = r.flags.iter().map(|f| speech.tell(f));
+        told.collect::<Vec<_>>().join(", ")
+    });
     [used, flags]
         .into_iter()
         .flatten()
