@@ -175,6 +175,13 @@ fn valid_the_words_are_the_user_s() {
     assert!(!map.contains("drive") && !map.contains("clearance"));
     let page = fs::read_to_string(format!("{out}/report.html")).expect("the page");
     assert!(page.contains("<html lang=\"de\">") && page.contains("Bewegungsgebiete"));
+    for (german, english) in [
+        ("Der Prüfstand hat", "The rig has"),
+        ("Die Antworten folgen", "The responses follow"),
+        ("Die Verfahren stimmen überein", "methods agree.</b>"),
+    ] {
+        assert!(page.contains(german) && !page.contains(english), "{german}");
+    }
 
     for stage in ["ingest", "classify", "identify"] {
         let from = [stage, &text(&campaign), "--out", &out];
