@@ -1,6 +1,6 @@
 //! Parameters and methods as printed: names, symbols, units, digits.
 
-use super::figures::look::{NumberLook, decimal_exponent};
+use super::speech::{Speech, decimal_exponent};
 use crate::identify::{Estimate, ParameterSet, Status};
 
 /// How a parameter is named and printed.
@@ -98,29 +98,45 @@ pub fn decimals_for(uncertainty: f64) -> usize {
     (1 - decimal_exponent(uncertainty, 2)).clamp(0, 9) as usize
 }
 
-/// Half the 95 % interval: from the interval, else from the standard error.
+/// Standard errors from the middle of a normal distribution to either end of its 95 % interval.
+pub const NORMAL_95: f64 = 1.96;
+
+/// Half the 95 % interval, SI: from the interval, else from the standard error.
 pub fn half_width(estimate: &Estimate) -> Option<f64> {
     match (estimate.interval95, estimate.standard_error) {
         (Some([low, high]), _) => Some(0.5 * (high - low)),
-        (None, Some(error)) => Some(1.96 * error),
+        (None, Some(error)) => Some(NORMAL_95 * error),
         (None, None) => None,
     }
 }
 
+/// The 95 % interval of an estimate that has a value, SI: as stated, else about the value from the
+/// standard error, else the value alone.
+pub fn interval95(estimate: &Estimate) -> Option<(f64, f64)> {
+    let value = estimate.value?;
+    Some(match estimate.interval95 {
+        Some([low, high]) => (low, high),
+        None => {
+            let half = half_width(estimate).unwrap_or(0.0);
+            (value - half, value + half)
+        }
+    })
+}
+
 /// `value ± half width` with unit, `not identifiable` where there is no value, `–` where the
 /// parameter was not asked for.
-pub fn short(look: &ParameterLook, estimate: Option<&Estimate>, numbers: NumberLook) -> String {
+pub fn short(look: &ParameterLook, estimate: Option<&Estimate>, speech: Speech) -> String {
     let Some(estimate) = estimate else {
         return "–".into();
     };
     let Some(value) = estimate.value else {
-        return numbers.say("not identifiable");
+        return speech.say("not identifiable");
     };
     let half = half_width(estimate).map(|h| h * look.factor);
     let decimals = decimals_for(half.unwrap_or(0.0));
-    let mut text = numbers.fixed(value * look.factor, decimals);
+    let mut text = speech.fixed(value * look.factor, decimals);
     if let Some(half) = half {
-        text.push_str(&format!(" ± {}", numbers.fixed(half, decimals)));
+        text.push_str(&format!(" ± {}", speech.fixed(half, decimals)));
     }
     if !look.unit.is_empty() {
         text.push_str(&format!("\u{2009}{}", look.unit));
@@ -144,17 +160,17 @@ mod tests {
 
     #[test]
     fn valid_estimates_show_two_digits_of_their_uncertainty() {
-        let numbers = NumberLook::default();
+        let speech = Speech::default();
         let r = estimate(0.901_34, 0.002_41);
-        assert_eq!(short(&PARAMETERS[0], Some(&r), numbers), "0.9013 ± 0.0024");
+        assert_eq!(short(&PARAMETERS[0], Some(&r), speech), "0.9013 ± 0.0024");
         let x = estimate(0.001_234_5, 0.000_009_96);
         assert_eq!(
-            short(&PARAMETERS[3], Some(&x), numbers),
+            short(&PARAMETERS[3], Some(&x), speech),
             "1.234 ± 0.010\u{2009}mm"
         );
-        let comma = NumberLook {
+        let comma = Speech {
             decimal_comma: true,
-            table: None,
+            words: None,
         };
         assert_eq!(short(&PARAMETERS[0], Some(&r), comma), "0,9013 ± 0,0024");
     }

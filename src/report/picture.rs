@@ -1,10 +1,7 @@
 //! One figure by itself, as SVG, PNG and PDF.
 
-use typst_layout::PagedDocument;
-use typst_pdf::PdfOptions;
-
 use super::ReportError;
-use super::document::world::MemoryWorld;
+use super::document::world::{MemoryWorld, Unset};
 use super::figures::Figure;
 
 /// A page as large as the figure.
@@ -26,27 +23,13 @@ pub fn pictures(figure: &Figure) -> Result<Vec<(String, Vec<u8>)>, ReportError> 
 }
 
 /// A figure as a PDF of one page. The same figure gives the same bytes.
-///
-/// # Errors
-/// As [`pictures`].
-pub fn pdf(figure: &Figure) -> Result<Vec<u8>, ReportError> {
-    let failed = |why: &str| ReportError::Picture {
-        name: figure.name.clone(),
-        why: why.to_owned(),
-    };
+fn pdf(figure: &Figure) -> Result<Vec<u8>, ReportError> {
     let files = [("figure.svg".to_owned(), figure.svg.clone().into_bytes())];
     let world = MemoryWorld::new(PAGE, files).ok_or(ReportError::FileName)?;
-    let first = |errors: &[typst::diag::SourceDiagnostic]| {
-        let message = errors.first().map(|e| e.message.to_string());
-        failed(&message.unwrap_or_default())
-    };
-    let paged: PagedDocument = typst::compile(&world).output.map_err(|e| first(&e))?;
-    let options = PdfOptions {
-        ident: typst::foundations::Smart::Custom(figure.title.clone()),
-        creator: typst::foundations::Smart::Custom(Some("impactid".into())),
-        ..PdfOptions::default()
-    };
-    let bytes = typst_pdf::pdf(&paged, &options).map_err(|e| first(&e))?;
-    typst::comemo::evict(0);
-    Ok(bytes)
+    world.pdf(&figure.title).map_err(|e| match e {
+        Unset::Template(why) | Unset::Pages(why) => ReportError::Picture {
+            name: figure.name.clone(),
+            why,
+        },
+    })
 }

@@ -8,6 +8,8 @@ use super::content::ReportContent;
 use super::example::{self, others};
 use super::*;
 
+mod languages;
+
 /// All kinds of campaign that the examples know.
 fn kinds() -> &'static [(&'static str, ReportContent)] {
     static KINDS: OnceLock<Vec<(&'static str, ReportContent)>> = OnceLock::new();
@@ -27,6 +29,10 @@ fn kind(name: &str) -> &'static ReportContent {
     &found.expect("one of the kinds").1
 }
 
+fn pdf_of(content: &ReportContent, options: &RenderOptions) -> Result<Vec<u8>, ReportError> {
+    Report::new(content, options).pdf()
+}
+
 /// Output of a program; `None`, with a message, where it is not installed.
 fn output(program: &str, arguments: &[&str]) -> Option<String> {
     match Command::new(program).args(arguments).output() {
@@ -44,23 +50,14 @@ fn written(folder: &Path, name: &str, bytes: &[u8]) -> String {
     path.display().to_string()
 }
 
-/// Renders the examples into the folder named by IMPACTID_REPORT_LOOKS, to be looked at.
+/// Renders the examples into the folder named by IMPACTID_REPORT_LOOKS.
 #[test]
+#[ignore = "leaves reports to be looked at; IMPACTID_REPORT_LOOKS names their folder"]
 fn regress_examples_can_be_looked_at() {
-    let Ok(folder) = std::env::var("IMPACTID_REPORT_LOOKS") else {
-        println!("skipped: IMPACTID_REPORT_LOOKS names no folder");
-        return;
-    };
+    let folder = std::env::var("IMPACTID_REPORT_LOOKS").expect("IMPACTID_REPORT_LOOKS");
     for (name, content) in kinds() {
-        let start = std::time::Instant::now();
         let report = Report::new(content, &RenderOptions::default());
-        let drawn = start.elapsed();
         let pdf = report.pdf().expect("a PDF");
-        println!(
-            "{name}: figures {drawn:?}, all {:?}, {} bytes",
-            start.elapsed(),
-            pdf.len()
-        );
         written(Path::new(&folder), &format!("{name}.pdf"), &pdf);
         let page = report.html().expect("a page");
         written(Path::new(&folder), &format!("{name}.html"), page.as_bytes());
@@ -154,39 +151,6 @@ fn valid_no_text_of_a_figure_is_overfull() {
 }
 
 #[test]
-fn valid_pdf_has_its_pages_fonts_and_selectable_answer() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let pdf = render_pdf(kind("small"), &RenderOptions::default()).expect("a PDF");
-    assert!(pdf.len() < 5_000_000);
-    let path = written(folder.path(), "report.pdf", &pdf);
-    let Some(text) = output("pdftotext", &["-layout", &path, "-"]) else {
-        return;
-    };
-    let pages = text.matches('\u{c}').count();
-    assert!((4..=9).contains(&pages), "{pages} pages");
-    for wanted in [
-        "R = 0.9005",
-        "± 0.0018",
-        "Identified",
-        "Regions of motion",
-        "12.5996",
-        "η",
-    ] {
-        assert!(text.contains(wanted), "'{wanted}' is not in the text");
-    }
-    let Some(fonts) = output("pdffonts", &[&path]) else {
-        return;
-    };
-    let fonts: Vec<&str> = fonts.lines().skip(2).collect();
-    assert!(!fonts.is_empty());
-    for font in fonts {
-        let fields: Vec<&str> = font.split_whitespace().rev().collect();
-        let (embedded, subset) = (fields[4], fields[3]);
-        assert_eq!((embedded, subset), ("yes", "yes"), "{font}");
-    }
-}
-
-#[test]
 fn valid_no_word_leaves_the_page_s_margins() {
     let folder = tempfile::tempdir().expect("a folder");
     let papers = [Paper::A4, Paper::Letter];
@@ -195,7 +159,7 @@ fn valid_no_word_leaves_the_page_s_margins() {
             paper,
             ..RenderOptions::default()
         };
-        let pdf = render_pdf(content, &options).expect("a PDF");
+        let pdf = pdf_of(content, &options).expect("a PDF");
         assert!(pdf.len() < 5_000_000, "{name}: {} bytes", pdf.len());
         let path = written(folder.path(), "report.pdf", &pdf);
         let Some(boxes) = output("pdftotext", &["-bbox", &path, "-"]) else {
@@ -217,6 +181,7 @@ fn words_within_margins(name: &str, boxes: &str) {
             .expect("a number")
     };
     let (mut width, mut height) = (0.0, 0.0);
+    assert!(boxes.contains("<word "), "{name} has no words");
     for line in boxes.lines() {
         if line.contains("<page ") {
             (width, height) = (number(line, "width"), number(line, "height"));
@@ -235,7 +200,7 @@ fn words_within_margins(name: &str, boxes: &str) {
 fn prop_same_content_gives_same_bytes() {
     let content = kind("cart");
     let options = RenderOptions::default();
-    let pdf = || render_pdf(content, &options).ok();
+    let pdf = || pdf_of(content, &options).ok();
     assert!(pdf().is_some() && pdf() == pdf());
     let page = || Report::new(content, &options).html().ok();
     assert!(page().is_some() && page() == page());
@@ -279,12 +244,18 @@ fn valid_own_template_and_logo_are_used() {
         }),
         ..RenderOptions::default()
     };
-    assert!(render_pdf(kind("cart"), &options).is_ok());
-    let plain = RenderOptions {
+    let own = pdf_of(kind("cart"), &options).expect("a PDF");
+    let with_logo = RenderOptions {
         template: None,
         ..options
     };
-    assert!(render_pdf(kind("cart"), &plain).is_ok());
+    let ours = pdf_of(kind("cart"), &with_logo).expect("a PDF");
+    let plain = pdf_of(kind("cart"), &RenderOptions::default()).expect("a PDF");
+    assert!(
+        own.len() < plain.len(),
+        "the own template holds a title and a logo alone"
+    );
+    assert!(ours != plain, "the logo is not in the report");
 }
 
 #[test]
@@ -293,7 +264,7 @@ fn valid_wrong_template_is_named_with_its_line() {
         template: Some("text\n#unknown-thing".into()),
         ..RenderOptions::default()
     };
-    let error = render_pdf(kind("cart"), &options).expect_err("a wrong template");
+    let error = pdf_of(kind("cart"), &options).expect_err("a wrong template");
     let text = error.to_string();
     assert!(
         text.contains("unknown variable: unknown-thing") && text.contains("line 2"),
@@ -314,265 +285,4 @@ fn valid_every_format_has_its_files() {
             }
         }
     }
-}
-
-/// A table that prints each phrase as its number in brackets, with the values that it carries.
-fn marks_for_phrases() -> words::Words {
-    let mut text = String::from("[words]\n");
-    for (i, phrase) in words::Words::phrases().enumerate() {
-        let values: String = words::places(phrase)
-            .iter()
-            .map(|n| format!("{{{n}}}"))
-            .collect();
-        let key = toml::Value::from(phrase);
-        text.push_str(&format!("{key} = \"⟦{i}⟧{values}\"\n"));
-    }
-    words::Words::read(&text).expect("a table of words")
-}
-
-/// A campaign to which all happened that the others were spared.
-fn unlucky() -> ReportContent {
-    use crate::motion::Motion;
-    use crate::record::{Role, Sweep};
-    let mut content = kind("small").clone();
-    let summary = &mut content.summary;
-    summary.files_total = 1;
-    summary.rig = "one mass against a stop".into();
-    summary.notes.push("a remark".into());
-    let channel = summary.channels[0].clone();
-    let roles = [
-        Role::VelocityY,
-        Role::DisplacementY,
-        Role::AccelerationX,
-        Role::AccelerationY,
-        Role::FrameX,
-        Role::FrameY,
-    ];
-    summary
-        .channels
-        .extend(roles.map(|role| content::ChannelRow {
-            role,
-            high_pass_hz: Some(0.5),
-            ..channel.clone()
-        }));
-    for name in ["static deflection $x_st$", "uncertainty of the gains"] {
-        let mut value = summary.nominal[0].clone();
-        value.name = name.into();
-        summary.nominal.push(value);
-    }
-    let fitted = ["restitution", "gain_velocity_x", "corner_velocity_y"];
-    let others = ["drive_asymmetry", "stiffness_asymmetry"];
-    content.correlation = Some(content::Correlation {
-        parameters: fitted.iter().chain(&others).map(|p| (*p).into()).collect(),
-        matrix: vec![vec![0.5; 5]; 5],
-    });
-    for (record, motion) in content
-        .records
-        .iter_mut()
-        .zip([Motion::Beat, Motion::Joined])
-    {
-        record.motion = motion;
-        record.sweep = Sweep::Unknown;
-        record.used_by = ["boundaries", "resonance", "impacts", "flights"]
-            .map(String::from)
-            .into();
-    }
-    content.records[2].used_by.clear();
-    content.records[2].left_out = Some("it is short".into());
-    for (bracket, off) in content.brackets.iter_mut().zip([-1.0, 1.0]) {
-        bracket.left_out = None;
-        let middle = 0.5 * (bracket.frequency_low_hz + bracket.frequency_high_hz);
-        bracket.simulated_hz = Some(middle + off * bracket.frequency_low_hz);
-    }
-    content.brackets.push(content::BracketRow {
-        left_out: Some("it jumped".into()),
-        ..content.brackets[0].clone()
-    });
-    content.comparisons[0].simulated_motion = Some(Motion::Beat);
-    content.resonance[0].fits = Some(false);
-    content.free_decays = kind("decays").free_decays.clone();
-    content.free_decays[0].natural_frequency_hz = None;
-    content.free_decays[0].damping_ratio = None;
-    if let Some(map) = &mut content.region_map {
-        map.second.clear();
-    }
-    content.remarks.push("a remark".into());
-    content.left_out.clear();
-    content
-}
-
-/// All kinds of report with a mark for each phrase.
-fn marked() -> Vec<Report> {
-    let options = RenderOptions {
-        words: Some(marks_for_phrases()),
-        ..RenderOptions::default()
-    };
-    let each = kinds().iter().map(|(_, content)| content);
-    each.chain([&unlucky()])
-        .map(|content| Report::new(content, &options))
-        .collect()
-}
-
-/// The source of the report's rooms with every text on one line.
-fn source(folder: &Path) -> String {
-    let entries = std::fs::read_dir(folder).expect("a folder");
-    let mut text = String::new();
-    for path in entries.map(|e| e.expect("an entry").path()) {
-        if path.is_dir() {
-            text.push_str(&source(&path));
-        } else if path.extension().is_some_and(|e| e == "rs") {
-            text.push_str(&std::fs::read_to_string(&path).expect("a source file"));
-        }
-    }
-    let mut pieces = text.split("\\\n");
-    let first = pieces.next().unwrap_or_default().to_owned();
-    pieces.fold(first, |all, piece| all + piece.trim_start())
-}
-
-/// A phrase and the source as they can be compared: a remark gets its capital and full stop, and a
-/// name loses its underscores, only when it is said.
-fn plainly(text: &str) -> String {
-    let text = text.replace('\u{2009}', "\\u{2009}").replace('_', " ");
-    text.trim_end_matches('.').to_lowercase()
-}
-
-/// Every phrase is said by one of the examples, or at least stands in the source.
-#[test]
-fn valid_no_phrase_of_the_words_is_idle() {
-    let mut said = String::new();
-    for report in marked() {
-        let document = serde_json::to_string(&report.document).expect("JSON");
-        said.push_str(&document);
-        for figure in &report.figures {
-            said.push_str(&figure.svg);
-            said.extend(figure.spots.iter().map(|s| s.text.as_str()));
-        }
-    }
-    let source = plainly(&source(Path::new(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/src"
-    ))));
-    let (mut unsaid, mut idle) = (Vec::new(), Vec::new());
-    for (i, phrase) in words::Words::phrases().enumerate() {
-        if !said.contains(&format!("⟦{i}⟧")) {
-            unsaid.push(phrase);
-            if !source.contains(&plainly(phrase)) {
-                idle.push(phrase);
-            }
-        }
-    }
-    assert!(idle.is_empty(), "nothing says {idle:#?}");
-    assert!(
-        unsaid.len() < 15,
-        "{} are not said: {unsaid:#?}",
-        unsaid.len()
-    );
-}
-
-/// Texts of a drawing.
-fn texts_of(svg: &str) -> impl Iterator<Item = &str> {
-    let texts = svg.split("<text").skip(1);
-    texts.filter_map(|t| Some(t.split_once('>')?.1.split("</text>").next()?.trim()))
-}
-
-/// Whether a text says something in letters: more than symbols, units and names of records.
-fn speaks(text: &str) -> bool {
-    const DATA: [&str; 4] = ["kHz", "spring", "bumper", "xst"];
-    let mut words = text.split(|c: char| c.is_whitespace() || "(),:;=±⟦⟧".contains(c));
-    words.any(|w| {
-        let letters = w.chars().all(|c| c.is_ascii_alphabetic());
-        letters && w.len() > 2 && !DATA.contains(&w)
-    })
-}
-
-/// With a mark for each phrase no English is left in figures, headings, heads and captions.
-#[test]
-fn valid_all_words_of_figures_and_headings_are_the_reader_s() {
-    let mut english = std::collections::BTreeSet::new();
-    for report in marked() {
-        for figure in &report.figures {
-            let texts = texts_of(&figure.svg).filter(|t| speaks(t));
-            english.extend(texts.map(|t| format!("{}: {t}", figure.name)));
-        }
-        for section in &report.document.sections {
-            let mut heads = vec![section.title.plain()];
-            for block in &section.blocks {
-                if let document::model::Block::Table(t) = block {
-                    heads.extend(t.heads.iter().map(document::model::Rich::plain));
-                    heads.push(t.caption.plain());
-                }
-            }
-            english.extend(heads.into_iter().filter(|h| speaks(h)));
-        }
-    }
-    assert!(english.is_empty(), "{english:#?}");
-}
-
-#[test]
-fn valid_a_german_report_speaks_german() {
-    let options = RenderOptions {
-        words: Some(words::Words::german().clone()),
-        ..RenderOptions::default()
-    };
-    for (name, content) in kinds().iter().filter(|k| k.0 != "large") {
-        let report = Report::new(content, &options);
-        for figure in &report.figures {
-            assert!(figure.overfull.is_empty(), "{name}: {:?}", figure.overfull);
-        }
-        if let Some(map) = report.figures.iter().find(|f| f.name == "map") {
-            let texts: Vec<&str> = texts_of(&map.svg).collect();
-            let has = |word: &str| {
-                texts
-                    .iter()
-                    .any(|t| t.replace('\u{a0}', " ").contains(word))
-            };
-            assert!(has("Spiel") && has("Erregerfrequenz") && has("gemessen"));
-            assert!(!has("clearance") && !has("drive frequency") && !has("measured"));
-        }
-        let page = report.html().expect("a page");
-        assert!(page.contains("<html lang=\"de\">") && page.contains("Was gemessen wurde"));
-        assert!(!page.contains("<h2>What was measured"));
-    }
-}
-
-/// A browser opens the page, zooms a figure and hovers over a record.
-#[test]
-fn valid_page_works_in_a_browser() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let report = Report::new(kind("unidentified"), &RenderOptions::default());
-    let page = report.html().expect("a page");
-    for outside in ["src=\"http", "href=\"http", "url(http"] {
-        assert!(
-            !page.contains(outside),
-            "the page loads from elsewhere: {outside}"
-        );
-    }
-    let path = written(folder.path(), "report.html", page.as_bytes());
-    let profile = format!(
-        "--user-data-dir={}",
-        folder.path().join("profile").display()
-    );
-    let flags = [
-        "--headless",
-        "--no-sandbox",
-        "--disable-gpu",
-        "--virtual-time-budget=3000",
-        &profile,
-        "--dump-dom",
-    ];
-    let address = format!("file://{path}#check");
-    let Some(seen) = output("chromium", &[&flags[..], &[address.as_str()]].concat()) else {
-        return;
-    };
-    let body = seen
-        .split("<body")
-        .nth(1)
-        .and_then(|b| b.split('>').next())
-        .expect("a body");
-    assert!(
-        body.contains(&format!("data-figures=\"{}\"", report.figures.len())),
-        "{body}"
-    );
-    assert!(body.contains("data-hovered=\"r0001"), "{body}");
-    assert!(body.contains("data-zoomed=\"2.00\""), "{body}");
 }

@@ -27,6 +27,21 @@ pub struct Decay {
     pub samples: usize,
 }
 
+impl Decay {
+    /// The fitted decay at each of its samples, from the first fitted one on.
+    pub fn values(&self, rate_hz: f64) -> Vec<f64> {
+        let natural = std::f64::consts::TAU * self.natural_frequency_hz / rate_hz;
+        let sigma = self.damping_ratio * natural;
+        let omega = natural * (1.0 - self.damping_ratio.powi(2)).max(0.0).sqrt();
+        let at = |i: usize| {
+            let t = i as f64;
+            let envelope = self.amplitude * (-sigma * t).exp();
+            self.offset + envelope * (omega * t + self.phase_rad).cos()
+        };
+        (0..self.samples).map(at).collect()
+    }
+}
+
 /// Earliest start of a fit, s from the first sample: records of blows are triggered by them.
 const FROM_S: f64 = 0.1;
 /// Least time between the blow and the start of a fit, s.
@@ -244,5 +259,9 @@ mod tests {
         assert!((decay.natural_frequency_hz / f0 - 1.0).abs() < 1e-8);
         assert!((decay.damping_ratio / beta - 1.0).abs() < 1e-6);
         assert!((decay.offset - 0.2).abs() < 1e-8);
+        let fitted = decay.values(rate);
+        assert_eq!(fitted.len(), decay.samples);
+        let measured = samples[decay.first..].iter().zip(&fitted);
+        assert!(measured.clone().all(|(m, f)| (m - f).abs() < 1e-7));
     }
 }

@@ -19,6 +19,19 @@ pub fn undo_high_pass(samples: &[f64], rate_hz: f64, corner_hz: f64) -> Vec<f64>
         .collect()
 }
 
+/// Offset and slope of the straight line through values over times, by least squares; the slope is
+/// zero where all times are one.
+pub fn fitted_line(times: &[f64], values: &[f64]) -> (f64, f64) {
+    let (mean_time, mean) = (super::robust::mean(times), super::robust::mean(values));
+    let (mut shear, mut spread) = (0.0, 0.0);
+    for (t, v) in times.iter().zip(values) {
+        shear += (t - mean_time) * (v - mean);
+        spread += (t - mean_time).powi(2);
+    }
+    let slope = if spread > 0.0 { shear / spread } else { 0.0 };
+    (mean - slope * mean_time, slope)
+}
+
 /// Subtract `offset + slope · i` from sample i.
 pub fn remove_line(samples: &mut [f64], offset: f64, slope_per_sample: f64) {
     for (i, sample) in samples.iter_mut().enumerate() {
@@ -29,6 +42,14 @@ pub fn remove_line(samples: &mut [f64], offset: f64, slope_per_sample: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn valid_a_line_is_found_again() {
+        let times = [0.0, 0.5, 1.5, 4.0];
+        let (offset, slope) = fitted_line(&times, &times.map(|t| 2.0 - 3.0 * t));
+        assert!((offset - 2.0).abs() < 1e-12 && (slope + 3.0).abs() < 1e-12);
+        assert_eq!(fitted_line(&[1.0, 1.0], &[2.0, 4.0]), (3.0, 0.0));
+    }
 
     #[test]
     fn valid_high_pass_of_a_sine_is_undone() {

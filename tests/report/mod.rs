@@ -175,6 +175,13 @@ fn valid_the_words_are_the_user_s() {
     assert!(!map.contains("drive") && !map.contains("clearance"));
     let page = fs::read_to_string(format!("{out}/report.html")).expect("the page");
     assert!(page.contains("<html lang=\"de\">") && page.contains("Bewegungsgebiete"));
+    for (german, english) in [
+        ("Der Prüfstand hat", "The rig has"),
+        ("Die Antworten folgen", "The responses follow"),
+        ("Die Verfahren stimmen überein", "methods agree.</b>"),
+    ] {
+        assert!(page.contains(german) && !page.contains(english), "{german}");
+    }
 
     for stage in ["ingest", "classify", "identify"] {
         let from = [stage, &text(&campaign), "--out", &out];
@@ -322,6 +329,11 @@ fn checked_page(path: &Path) {
     };
     let after = seen.split("<body").nth(1).expect("a body");
     let body = after.split('>').next().expect("its tag");
+    let figures = page.matches("class=\"drawing\"").count();
+    assert!(
+        body.contains(&format!("data-figures=\"{figures}\"")),
+        "{body}"
+    );
     assert!(body.contains("data-hovered=\"r0"), "{body}");
     assert!(body.contains("data-zoomed=\"2.00\""), "{body}");
 }

@@ -7,7 +7,7 @@ use crate::atlas::basins::{Basins, basin_rows};
 use crate::atlas::map::{CellMotion, MapSettings, even};
 use crate::model::{Machine, Restitution};
 use crate::motion::Motion;
-use crate::report::figures::look::NumberLook;
+use crate::report::speech::Speech;
 use crate::report::theory::basins::draw;
 
 /// Rows of a block.
@@ -35,7 +35,7 @@ pub fn run(
     desk.table(name, &table(&basins))?;
     (desk.say)(&shares(name, &basins));
     let title = format!("Basins of attraction at {}", setting(plan));
-    match draw(&basins, name, &title, NumberLook::default()) {
+    match draw(&basins, name, &title, Speech::default()) {
         Some(figure) => desk.figure(&figure),
         None => Ok(()),
     }

@@ -14,7 +14,7 @@ use crate::atlas::regions::{Atlas, Slice, assemble, columns};
 use crate::atlas::shard::AtlasRequest;
 use crate::model::Machine;
 use crate::motion::Motion;
-use crate::report::figures::look::NumberLook;
+use crate::report::speech::Speech;
 use crate::report::theory::regions::{Plane, draw};
 
 /// Columns of a block.
@@ -77,7 +77,7 @@ pub fn leave(
         curves: &atlas.curves,
     };
     let title = "Regions of existence and stability of all motions";
-    match draw(&plane, name, title, NumberLook::default()) {
+    match draw(&plane, name, title, Speech::default()) {
         Some(figure) => desk.figure(&figure),
         None => Ok(()),
     }

@@ -12,7 +12,7 @@ use crate::atlas::sweep::{Carried, Impactless, LONGEST_LAG, SweepPoint, impactle
 use crate::model::Machine;
 use crate::model::simulate::Snapshot;
 use crate::motion::Motion;
-use crate::report::figures::look::NumberLook;
+use crate::report::speech::Speech;
 use crate::report::theory::sweep::{Characteristics, draw};
 
 /// Steps after which a sweep keeps what it has.
@@ -66,7 +66,7 @@ pub fn run(
         two_masses: machine.y.is_some(),
     };
     let title = "Quasi-stationary characteristics";
-    desk.figure(&draw(&data, name, title, NumberLook::default()))
+    desk.figure(&draw(&data, name, title, Speech::default()))
 }
 
 struct Walk<'a> {

@@ -4,7 +4,7 @@ use super::table::Table;
 use super::{Desk, StudyError};
 use crate::atlas::portrait::{Portrait, PortraitPlan, Strike, portrait};
 use crate::model::Machine;
-use crate::report::figures::look::NumberLook;
+use crate::report::speech::Speech;
 use crate::report::theory::motion::draw;
 
 /// Simulate and leave everything.
@@ -29,7 +29,7 @@ pub fn run(
     )?;
     let s = &plan.setting;
     let title = format!("Motion at η = {}, ρ = {}", s.frequency_ratio, s.clearance);
-    desk.figure(&draw(&portrait, name, &title, NumberLook::default()))?;
+    desk.figure(&draw(&portrait, name, &title, Speech::default()))?;
     (desk.progress)(2, 2);
     Ok(())
 }

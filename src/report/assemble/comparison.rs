@@ -5,11 +5,12 @@ use rayon::prelude::*;
 use super::simulation::{Simulation, Window};
 use super::{Gathered, rows};
 use crate::event::detect::DetectSettings;
-use crate::event::kinematics::{Body, Series};
 use crate::event::{Detection, detect};
 use crate::motion::{Motion, Observation};
 use crate::record::{Record, Role};
 use crate::report::content::{Comparison, Portrait, Signal, Trace};
+use crate::signal::drift::fitted_line;
+use crate::signal::robust::rms;
 use crate::units::Dimension;
 
 /// Residual over the signal below which the simulated motion is the measured one.
@@ -17,6 +18,10 @@ const SAME_MOTION: f64 = 0.05;
 /// Drive periods that are drawn at least.
 const SHOWN_PERIODS: u32 = 4;
 
+/// Drive periods that are drawn of a motion without a period.
+const IRREGULAR_PERIODS: u32 = 10;
+
+/// The chosen records, lettered in their order; none for a record without a drive.
 pub(super) fn comparisons(gathered: &Gathered) -> Vec<Comparison> {
     let letters: Vec<String> = ('A'..='Z').map(String::from).collect();
     let pairs = gathered.chosen.par_iter().zip(gathered.chosen_records);
@@ -39,7 +44,7 @@ fn comparison(
     let periods = match o.finding.motion {
         Motion::Periodic { periods_n, .. } => (2 * periods_n).max(SHOWN_PERIODS),
         Motion::Impactless => SHOWN_PERIODS,
-        _ => 10,
+        _ => IRREGULAR_PERIODS,
     };
     let window = Window::new(&detection, &drive, f64::from(periods));
     let simulation = gathered
@@ -76,14 +81,10 @@ fn comparison(
 
 /// Greatest residual of a channel over its own size.
 fn apart(traces: &[Trace]) -> f64 {
-    let rms = |signal: &Option<Signal>| {
-        signal
-            .as_ref()
-            .map(|s| crate::signal::robust::rms(&s.values))
-    };
+    let size = |signal: &Option<Signal>| Some(rms(&signal.as_ref()?.values));
     traces
         .iter()
-        .filter_map(|t| Some(rms(&t.residual)? / rms(&t.measured)?))
+        .filter_map(|t| Some(size(&t.residual)? / size(&t.measured)?))
         .fold(0.0, f64::max)
 }
 
@@ -120,16 +121,8 @@ fn traces(
             Dimension::Length,
             k.y.displacement.as_ref(),
         ),
-        (
-            Role::VelocityX,
-            Dimension::Velocity,
-            measured_velocity(&k.x),
-        ),
-        (
-            Role::VelocityY,
-            Dimension::Velocity,
-            measured_velocity(&k.y),
-        ),
+        (Role::VelocityX, Dimension::Velocity, k.x.velocity.as_ref()),
+        (Role::VelocityY, Dimension::Velocity, k.y.velocity.as_ref()),
     ];
     let mut out: Vec<Trace> = moving
         .into_iter()
@@ -152,12 +145,8 @@ fn traces(
     out
 }
 
-fn measured_velocity(body: &Body) -> Option<&Series> {
-    body.velocity.as_ref()
-}
-
-/// One channel beside its simulation; the measured constant part, which no channel knows, is set
-/// so that both have the same mean.
+/// One channel beside its simulation. The measured constant part, which no channel knows, and its
+/// slow drift are taken out: the straight line through measured less simulated.
 fn compared(
     role: Role,
     dimension: Dimension,
@@ -166,18 +155,14 @@ fn compared(
 ) -> Trace {
     let simulated = simulation.and_then(|s| s.signal(role, &measured.time_s));
     let residual = simulated.as_ref().map(|s| {
-        let line = fitted_line(&measured, s);
+        let apart = difference(&measured.values, &s.values);
+        let (offset, slope) = fitted_line(&measured.time_s, &apart);
         for (t, value) in measured.time_s.iter().zip(&mut measured.values) {
-            *value -= line.0 + line.1 * t;
+            *value -= offset + slope * t;
         }
         Signal {
             time_s: s.time_s.clone(),
-            values: measured
-                .values
-                .iter()
-                .zip(&s.values)
-                .map(|(m, s)| m - s)
-                .collect(),
+            values: difference(&measured.values, &s.values),
         }
     });
     Trace {
@@ -189,24 +174,8 @@ fn compared(
     }
 }
 
-/// Offset and slope of measured − simulated over time, by least squares.
-fn fitted_line(measured: &Signal, simulated: &Signal) -> (f64, f64) {
-    let count = measured.values.len().max(1) as f64;
-    let difference: Vec<f64> = measured
-        .values
-        .iter()
-        .zip(&simulated.values)
-        .map(|(m, s)| m - s)
-        .collect();
-    let mean_t = measured.time_s.iter().sum::<f64>() / count;
-    let mean_d = difference.iter().sum::<f64>() / count;
-    let (mut shear, mut spread) = (0.0, 0.0);
-    for (t, d) in measured.time_s.iter().zip(&difference) {
-        shear += (t - mean_t) * (d - mean_d);
-        spread += (t - mean_t).powi(2);
-    }
-    let slope = if spread > 0.0 { shear / spread } else { 0.0 };
-    (mean_d - slope * mean_t, slope)
+fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
 fn portraits(traces: &[Trace]) -> Vec<Portrait> {

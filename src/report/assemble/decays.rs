@@ -1,11 +1,10 @@
 //! Free decays with their fits.
 
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
 
-use super::Gathered;
+use super::{Gathered, moves};
 use crate::motion::Observation;
-use crate::record::{Channel, Record, Role};
+use crate::record::{Channel, Record};
 use crate::report::content::{FreeDecay, Signal};
 use crate::signal::decay::Decay;
 
@@ -49,12 +48,12 @@ pub(super) fn free_decays(gathered: &Gathered) -> Vec<FreeDecay> {
 
 fn free_decay(gathered: &Gathered, o: &Observation, record: &Record) -> Option<FreeDecay> {
     let decay = o.decay?;
-    let curve = Curve::new(&decay, record.sample_rate_hz);
+    let fitted = decay.values(record.sample_rate_hz);
     let channel = record
         .channels
         .iter()
-        .filter(|c| moves(c) && c.values.len() >= decay.first + decay.samples)
-        .min_by(|a, b| curve.apart(a).total_cmp(&curve.apart(b)))?;
+        .filter(|c| moves(c.role) && c.values.len() >= decay.first + decay.samples)
+        .min_by(|a, b| apart(a, &decay, &fitted).total_cmp(&apart(b, &decay, &fitted)))?;
     let left = gathered.left_out.iter().find(|(name, _)| *name == o.record);
     let name = match &o.setting.specimen {
         Some(specimen) => format!("{specimen}: {}", o.record),
@@ -67,11 +66,7 @@ fn free_decay(gathered: &Gathered, o: &Observation, record: &Record) -> Option<F
         record: name,
         dimension: channel.dimension,
         measured: thinned(record.sample_rate_hz, shown, &channel.values[shown..]),
-        fitted: Some(thinned(
-            record.sample_rate_hz,
-            decay.first,
-            &curve.values(decay.samples),
-        )),
+        fitted: Some(thinned(record.sample_rate_hz, decay.first, &fitted)),
         natural_frequency_hz: Some(decay.natural_frequency_hz),
         natural_frequency_error_hz: Some(decay.natural_frequency_error_hz),
         damping_ratio: Some(decay.damping_ratio),
@@ -80,48 +75,11 @@ fn free_decay(gathered: &Gathered, o: &Observation, record: &Record) -> Option<F
     })
 }
 
-/// Whether a channel measures the motion of a mass.
-fn moves(channel: &Channel) -> bool {
-    let still = [Role::Drive, Role::Contact, Role::FrameX, Role::FrameY];
-    !still.contains(&channel.role)
-}
-
-/// The fitted decay, sample by sample from its first.
-struct Curve<'a> {
-    decay: &'a Decay,
-    /// Decay and phase per sample.
-    sigma: f64,
-    omega: f64,
-}
-
-impl<'a> Curve<'a> {
-    fn new(decay: &'a Decay, rate_hz: f64) -> Self {
-        let natural = TAU * decay.natural_frequency_hz / rate_hz;
-        let sigma = decay.damping_ratio * natural;
-        let omega = natural * (1.0 - decay.damping_ratio.powi(2)).max(0.0).sqrt();
-        Self {
-            decay,
-            sigma,
-            omega,
-        }
-    }
-
-    fn values(&self, samples: usize) -> Vec<f64> {
-        let at = |i: usize| {
-            let t = i as f64;
-            let envelope = self.decay.amplitude * (-self.sigma * t).exp();
-            self.decay.offset + envelope * (self.omega * t + self.decay.phase_rad).cos()
-        };
-        (0..samples).map(at).collect()
-    }
-
-    /// Squares left of a channel over its own.
-    fn apart(&self, channel: &Channel) -> f64 {
-        let tail = &channel.values[self.decay.first..][..self.decay.samples];
-        let fitted = self.values(self.decay.samples);
-        let left: f64 = tail.iter().zip(fitted).map(|(m, f)| (m - f).powi(2)).sum();
-        left / tail.iter().map(|m| m * m).sum::<f64>()
-    }
+/// Squares that a fitted decay leaves of a channel, over the channel's own.
+fn apart(channel: &Channel, decay: &Decay, fitted: &[f64]) -> f64 {
+    let tail = &channel.values[decay.first..][..decay.samples];
+    let left: f64 = tail.iter().zip(fitted).map(|(m, f)| (m - f).powi(2)).sum();
+    left / tail.iter().map(|m| m * m).sum::<f64>()
 }
 
 /// Samples from an index on as a signal of few enough points.

@@ -2,13 +2,13 @@
 
 use std::collections::HashSet;
 
-use super::Gathered;
+use super::{Gathered, moves};
 use crate::identify::evidence::impacts::SpeedPair;
 use crate::identify::evidence::resonance::predicted;
 use crate::identify::evidence::{Blocks, Evidence, Nominal};
-use crate::identify::fit::Block;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::judgement::contact_law::Law;
+use crate::identify::residuals::{MethodResiduals, residuals as methods_residuals};
 use crate::identify::{MethodResult, SpecimenResult};
 use crate::motion::Observation;
 use crate::motion::response::Response;
@@ -21,15 +21,18 @@ use crate::units::Dimension;
 
 /// Points of a fitted resonance curve.
 const CURVE_POINTS: usize = 240;
+/// Fewer points make no resonance curve.
+const FEWEST_POINTS: usize = 3;
+/// Most resonance curves: one for each mass.
+const MOST_CURVES: usize = 2;
 /// Most residuals of one method that are drawn.
 const MOST_RESIDUALS: usize = 4000;
 /// Most impacts, and most points of a resonance curve, that are drawn.
 const MOST_POINTS: usize = 20_000;
 
 /// Every second, third … of points that are too many to be drawn.
-fn thinned<T>(points: Vec<T>, most: usize) -> Vec<T> {
-    let stride = points.len().div_ceil(most).max(1);
-    points.into_iter().step_by(stride).collect()
+fn thinned<T>(points: &[T], most: usize) -> impl Iterator<Item = &T> {
+    points.iter().step_by(points.len().div_ceil(most).max(1))
 }
 
 /// Names of the records that a fit left out.
@@ -37,19 +40,12 @@ fn names_left_out<'a>(gathered: &Gathered<'a>) -> HashSet<&'a str> {
     gathered.left_out.iter().map(|l| l.0.as_str()).collect()
 }
 
+/// Impactless resonance curves of the channels that have one, velocities first.
 pub(super) fn resonance(gathered: &Gathered) -> Vec<ResonanceCurve> {
-    let roles = [
-        Role::VelocityX,
-        Role::VelocityY,
-        Role::DisplacementX,
-        Role::DisplacementY,
-        Role::AccelerationX,
-        Role::AccelerationY,
-    ];
+    let roles = Role::ALL.into_iter().filter(|r| moves(*r));
     roles
-        .into_iter()
         .filter_map(|role| curve(gathered, role))
-        .take(2)
+        .take(MOST_CURVES)
         .collect()
 }
 
@@ -59,8 +55,9 @@ fn curve(gathered: &Gathered, role: Role) -> Option<ResonanceCurve> {
         let response = o.response.iter().find(|r| r.role == role)?;
         Some(point(o, response, left.contains(o.record.as_str())))
     });
-    let mut points = thinned(points.collect(), MOST_POINTS);
-    if points.len() < 3 {
+    let points: Vec<ResonancePoint> = points.collect();
+    let mut points: Vec<ResonancePoint> = thinned(&points, MOST_POINTS).cloned().collect();
+    if points.len() < FEWEST_POINTS {
         return None;
     }
     points.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
@@ -104,19 +101,20 @@ fn fitted(gathered: &Gathered, role: Role, points: &[ResonancePoint]) -> Vec<[f6
         .collect()
 }
 
-fn blocks(gathered: &Gathered) -> Blocks {
-    Blocks::new(&Evidence {
+/// What the methods' own blocks are made of; nominal values weigh nothing here.
+fn evidence<'a>(gathered: &Gathered<'a>) -> Evidence<'a> {
+    Evidence {
         rig: gathered.campaign.rig,
         observations: gathered.observations,
         brackets: gathered.brackets,
         nominal: Nominal::default(),
         uncertainty: Default::default(),
-    })
+    }
 }
 
 /// Speeds before and after impact; each specimen by itself where there are several.
 pub(super) fn impacts(gathered: &Gathered) -> Vec<ImpactScatter> {
-    let block = blocks(gathered).impact;
+    let block = Blocks::new(&evidence(gathered)).impact;
     let specimens = &gathered.identification.specimens;
     if specimens.is_empty() {
         let method = gathered.identification.methods.get("impacts");
@@ -141,16 +139,17 @@ fn scatter(
     method: Option<&MethodResult>,
 ) -> Option<ImpactScatter> {
     let estimate = method.and_then(|m| m.parameters.restitution.as_ref());
-    let points = pairs.iter().map(|p| ImpactPoint {
+    let point = |p: &&SpeedPair| ImpactPoint {
         record: gathered.observations[p.observation].record.clone(),
         before_m_s: p.before_m_s,
         after_m_s: p.after_m_s,
         error_m_s: Some(p.error_m_s),
         used: true,
-    });
+    };
     (!pairs.is_empty()).then(|| ImpactScatter {
         name: name.to_owned(),
-        points: thinned(points.collect(), MOST_POINTS),
+        total: pairs.len(),
+        points: thinned(pairs, MOST_POINTS).map(point).collect(),
         restitution: estimate.and_then(|e| e.value),
         interval95: estimate.and_then(|e| e.interval95),
         restitution_of_speed: method.map(law_curve).unwrap_or_default(),
@@ -171,76 +170,39 @@ fn law_curve(method: &MethodResult) -> Vec<[f64; 2]> {
         .unwrap_or_default()
 }
 
+/// The residuals of each method at the fitted parameters.
 pub(super) fn residuals(gathered: &Gathered) -> Vec<ResidualSet> {
     let Some(parameters) = gathered.parameters() else {
         return Vec::new();
     };
-    let mut all = blocks(gathered);
-    all.weigh(parameters);
-    let resonance: Vec<usize> = all.resonance.points.iter().map(|p| p.observation).collect();
-    let trajectory: Vec<usize> = all
-        .trajectory
-        .records
-        .iter()
-        .map(|r| r.observation)
-        .collect();
-    let impact: Vec<usize> = all.impact.pairs.iter().map(|p| p.observation).collect();
     let left = names_left_out(gathered);
-    let of = |method: &str, block: &dyn Block, owners: &[usize]| {
-        let points: Vec<ResidualPoint> = (0..block.items())
-            .filter_map(|i| Some((owners[i], block.residuals(i, parameters)?)))
-            .filter(|(owner, _)| !left.contains(gathered.observations[*owner].record.as_str()))
-            .flat_map(|(owner, list)| list.into_iter().map(move |r| (owner, r)))
-            .map(|(owner, residual)| residual_point(&gathered.observations[owner], residual))
-            .collect();
-        set(method, points)
+    let left_out = |i: usize| left.contains(gathered.observations[i].record.as_str());
+    let found = methods_residuals(&evidence(gathered), parameters, left_out);
+    found.into_iter().map(|m| set(gathered, m)).collect()
+}
+
+fn set(gathered: &Gathered, found: MethodResiduals) -> ResidualSet {
+    let point = |(owner, residual): &(usize, f64)| {
+        let o = &gathered.observations[*owner];
+        ResidualPoint {
+            record: o.record.clone(),
+            residual: *residual,
+            frequency_hz: o.frequency_hz(),
+            clearance_m: o.setting.clearance_m,
+        }
     };
-    [
-        of("resonance", &all.resonance, &resonance),
-        of("trajectories", &all.trajectory, &trajectory),
-        of("impacts", &all.impact, &impact),
-    ]
-    .into_iter()
-    .filter(|set| set.points.len() > 4)
-    .collect()
-}
-
-fn residual_point(o: &Observation, residual: f64) -> ResidualPoint {
-    ResidualPoint {
-        record: o.record.clone(),
-        residual,
-        frequency_hz: o.frequency_hz(),
-        clearance_m: o.setting.clearance_m,
-    }
-}
-
-fn set(method: &str, points: Vec<ResidualPoint>) -> ResidualSet {
-    let values: Vec<f64> = points.iter().map(|p| p.residual).collect();
-    let autocorrelation = autocorrelation(&values, 20);
     ResidualSet {
-        method: method.to_owned(),
-        points: thinned(points, MOST_RESIDUALS),
-        autocorrelation,
+        method: found.method.to_owned(),
+        total: found.residuals.len(),
+        points: thinned(&found.residuals, MOST_RESIDUALS)
+            .map(point)
+            .collect(),
+        autocorrelation: found.autocorrelation,
         note: String::new(),
     }
 }
 
-fn autocorrelation(values: &[f64], most: usize) -> Vec<f64> {
-    let mean = crate::signal::robust::mean(values);
-    let centred: Vec<f64> = values.iter().map(|v| v - mean).collect();
-    let total: f64 = centred.iter().map(|v| v * v).sum();
-    (0..=most.min(values.len().saturating_sub(1)))
-        .map(|lag| {
-            let product: f64 = centred
-                .iter()
-                .zip(&centred[lag..])
-                .map(|(a, b)| a * b)
-                .sum();
-            if total > 0.0 { product / total } else { 0.0 }
-        })
-        .collect()
-}
-
+/// Correlation of the parameters that were fitted together.
 pub(super) fn correlation(gathered: &Gathered) -> Option<Correlation> {
     let fit = gathered.fit?;
     let matrix = fit

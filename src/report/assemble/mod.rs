@@ -2,22 +2,25 @@
 //!
 //! Nothing is identified here; the fitted model is only drawn beside the measurement.
 
+mod chosen;
 mod comparison;
 mod decays;
 mod evidence;
+mod left_out;
 mod plane;
 mod rows;
 mod simulation;
 
+pub use chosen::chosen_records;
 pub use decays::shown_decays;
 
 use crate::event::Rig;
 use crate::identify::Identification;
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::Parameters;
-use crate::motion::{Bracket, Motion, Observation};
+use crate::motion::{Bracket, Observation};
 use crate::record::{Record, Role};
-use crate::report::content::{LeftOut, ReportContent};
+use crate::report::content::ReportContent;
 
 /// What the report says of the campaign itself.
 #[derive(Debug, Clone)]
@@ -90,39 +93,9 @@ impl Gathered<'_> {
     }
 }
 
-/// Most comparisons in one report.
-const MOST_COMPARISONS: usize = 8;
-
-/// Records to compare with their simulation: those named, else the surest of each type of motion
-/// that the campaign shows, periodic motions with impacts first.
-pub fn chosen_records(observations: &[Observation], named: &[String]) -> Vec<usize> {
-    let find = |name: &String| observations.iter().position(|o| o.record == *name);
-    let by_name: Vec<usize> = named.iter().filter_map(find).collect();
-    if !by_name.is_empty() {
-        return by_name;
-    }
-    let mut best: std::collections::BTreeMap<(u8, String), usize> = Default::default();
-    for (i, o) in observations.iter().enumerate() {
-        let rank = match &o.finding.motion {
-            _ if o.excluded() || o.drive.is_none() => continue,
-            Motion::Periodic { .. } => 0,
-            Motion::Impactless => 1,
-            Motion::Beat | Motion::Chaotic => 2,
-            _ => continue,
-        };
-        let key = (rank, o.finding.motion.label());
-        let better = |k: &usize| quality(o) > quality(&observations[*k]);
-        if best.get(&key).is_none_or(better) {
-            best.insert(key, i);
-        }
-    }
-    best.into_values().take(MOST_COMPARISONS).collect()
-}
-
-/// Sureness first, then the strength of the motion over its noise.
-fn quality(o: &Observation) -> f64 {
-    let noise = o.finding.evidence.noise_ratio.unwrap_or(1.0);
-    o.finding.confidence.min(0.95) - noise
+/// Whether a channel of a role measures the motion of a mass.
+fn moves(role: Role) -> bool {
+    !matches!(role, Role::Drive | Role::Contact) && !role.is_frame()
 }
 
 /// Gather the report's content.
@@ -141,78 +114,8 @@ pub fn assemble(gathered: &Gathered) -> ReportContent {
     content.residuals = evidence::residuals(gathered);
     content.correlation = evidence::correlation(gathered);
     content.profiles = evidence::profiles(gathered);
-    content.left_out = left_out(gathered);
+    content.left_out = left_out::left_out(gathered);
     content.settings_text = gathered.campaign.settings.clone();
     content.command_line = gathered.command_line.to_owned();
     content
-}
-
-/// Records that no method could use, by reason, and what the fits left out.
-fn left_out(gathered: &Gathered) -> Vec<LeftOut> {
-    let mut by_reason: std::collections::BTreeMap<String, Why> = Default::default();
-    for o in gathered.observations {
-        for flag in o.flags.iter().filter(|f| f.excludes) {
-            let channel = flag
-                .channel
-                .as_ref()
-                .map(|c| format!(" ({c})"))
-                .unwrap_or_default();
-            let reason = format!("{}{channel}", flag.code.replace('_', " "));
-            let why = by_reason.entry(reason).or_default();
-            why.note(&o.record, &flag.message);
-        }
-        if let Motion::Undetermined { reason } = &o.finding.motion
-            && !o.excluded()
-            && o.drive.is_some()
-        {
-            let why = by_reason.entry("motion undetermined".into()).or_default();
-            why.note(&o.record, reason);
-        }
-    }
-    let mut out: Vec<LeftOut> = by_reason
-        .into_iter()
-        .map(|(reason, why)| LeftOut {
-            what: names(&why.records),
-            why: format!("{reason}: {}", why.words()),
-            count: (why.records.len() > 1).then_some(why.records.len()),
-        })
-        .collect();
-    out.extend(gathered.left_out.iter().map(|(what, why)| LeftOut {
-        what: what.clone(),
-        why: why.clone(),
-        count: None,
-    }));
-    out
-}
-
-/// Records of one reason, and its words as they stand at the first of them.
-#[derive(Default)]
-struct Why<'a> {
-    records: Vec<&'a str>,
-    first: &'a str,
-    others: bool,
-}
-
-impl<'a> Why<'a> {
-    fn note(&mut self, record: &'a str, words: &'a str) {
-        if self.records.is_empty() {
-            self.first = words;
-        }
-        self.others |= self.first != words;
-        self.records.push(record);
-    }
-
-    fn words(&self) -> String {
-        match (self.others, self.records.first()) {
-            (true, Some(record)) => format!("{} (so {record}; the others alike)", self.first),
-            _ => self.first.to_owned(),
-        }
-    }
-}
-
-fn names(records: &[&str]) -> String {
-    match records {
-        [a, b, c, _, ..] => format!("{a}, {b}, {c} …"),
-        few => few.join(", "),
-    }
 }

@@ -13,6 +13,7 @@ use crate::model::orbit::stable_orbit;
 use crate::model::params::{Initial, Machine, Setting};
 use crate::motion::Motion;
 use crate::report::content::{BoundaryCurve, BoundaryKind, RegionMap};
+use crate::report::parameters::NORMAL_95;
 
 /// Columns and rows of the region map.
 const MAP: (usize, usize) = (180, 130);
@@ -205,7 +206,7 @@ impl Spread {
                     _ => 0.0,
                 };
                 let variance = per_error.iter().map(|s| s * s).sum::<f64>() + common;
-                let half = 1.96 * variance.max(0.0).sqrt();
+                let half = NORMAL_95 * variance.max(0.0).sqrt();
                 (half > 0.0).then_some([*eta, rho - half, rho + half])
             })
             .collect()
@@ -231,18 +232,14 @@ pub(super) fn region_map(gathered: &Gathered) -> Option<RegionMap> {
         false => lively[i].clone(),
     };
     let second: Vec<Motion> = (0..grid.len()).into_par_iter().map(other).collect();
-    let mut met = Vec::new();
-    let (cells, second) = (indices(&rest, &mut met), indices(&second, &mut met));
-    Some(RegionMap {
-        eta: grid.eta,
-        rho: grid.rho,
-        motions: met,
-        cells,
-        second,
-        note: "every cell simulated from rest and from a lively start, and the stable orbits \
-               z = 1/n in closed form; where they differ, both motions exist"
-            .into(),
-    })
+    Some(RegionMap::of_motions(
+        grid.eta,
+        grid.rho,
+        &rest,
+        &second,
+        "every cell simulated from rest and from a lively start, and the stable orbits z = 1/n in \
+         closed form; where they differ, both motions exist",
+    ))
 }
 
 fn motions(cells: &[CellMotion]) -> Vec<Motion> {
@@ -264,16 +261,4 @@ fn coexisting(machine: &Machine, (eta, rho): (f64, f64), beside: &Motion) -> Opt
         .filter(|n| *beside != Motion::periodic(1, *n))
         .find(stable)
         .map(|n| Motion::periodic(1, n))
-}
-
-/// Motions as indices into those met so far.
-fn indices(motions: &[Motion], met: &mut Vec<Motion>) -> Vec<u16> {
-    let mut index = |motion: &Motion| {
-        let known = met.iter().position(|m| m == motion);
-        known.unwrap_or_else(|| {
-            met.push(motion.clone());
-            met.len() - 1
-        }) as u16
-    };
-    motions.iter().map(&mut index).collect()
 }

@@ -147,8 +147,10 @@ pub struct ImpactPoint {
 pub struct ImpactScatter {
     /// Which records, where there are several groups.
     pub name: String,
-    /// The impacts.
+    /// The impacts; of very many every second, third …
     pub points: Vec<ImpactPoint>,
+    /// Number of impacts, where `points` holds not all of them.
+    pub total: usize,
     /// The fitted constant R.
     pub restitution: Option<f64>,
     /// Its 95 % interval.
@@ -157,6 +159,14 @@ pub struct ImpactScatter {
     pub restitution_of_speed: Vec<[f64; 2]>,
     /// What was found, in words.
     pub note: String,
+}
+
+impl ImpactScatter {
+    /// Number of impacts that were used, drawn or not.
+    pub fn used(&self) -> usize {
+        let drawn = self.points.iter().filter(|p| p.used).count();
+        drawn + self.total.saturating_sub(self.points.len())
+    }
 }
 
 /// A free decay with its fit.
@@ -206,12 +216,21 @@ pub struct ResidualPoint {
 pub struct ResidualSet {
     /// The method: `boundaries`, `trajectories`, `impacts`, `resonance`, `free_decay`.
     pub method: String,
-    /// The residuals, in the order of the observations.
+    /// The residuals, in the order of the observations; of very many every second, third …
     pub points: Vec<ResidualPoint>,
+    /// Number of residuals, where `points` holds not all of them.
+    pub total: usize,
     /// Autocorrelation at lags 0, 1, 2 …
     pub autocorrelation: Vec<f64>,
     /// What the residuals say, in words.
     pub note: String,
+}
+
+impl ResidualSet {
+    /// Number of residuals, drawn or not.
+    pub fn count(&self) -> usize {
+        self.total.max(self.points.len())
+    }
 }
 
 /// Profile likelihood of one parameter.

@@ -105,6 +105,41 @@ pub struct RegionMap {
     pub note: String,
 }
 
+impl RegionMap {
+    /// A map from the motion of each cell, row by row as in `cells`, and, where `second` is not
+    /// empty, from its motion from other initial conditions.
+    pub fn of_motions(
+        eta: Vec<f64>,
+        rho: Vec<f64>,
+        first: &[Motion],
+        second: &[Motion],
+        note: &str,
+    ) -> Self {
+        let mut motions = Vec::new();
+        let (cells, second) = (indices(first, &mut motions), indices(second, &mut motions));
+        Self {
+            eta,
+            rho,
+            motions,
+            cells,
+            second,
+            note: note.to_owned(),
+        }
+    }
+}
+
+/// Motions as indices into those met so far.
+fn indices(motions: &[Motion], met: &mut Vec<Motion>) -> Vec<u16> {
+    let mut index = |motion: &Motion| {
+        let known = met.iter().position(|m| m == motion);
+        known.unwrap_or_else(|| {
+            met.push(motion.clone());
+            met.len() - 1
+        }) as u16
+    };
+    motions.iter().map(&mut index).collect()
+}
+
 /// A setting proposed for measuring next.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ProposedPoint {

@@ -1,8 +1,10 @@
 //! The document: from content and figures to plain document data, and from there to PDF.
 
 mod captions;
-mod fixed;
+mod conventions;
+mod facts;
 mod front;
+mod layout_phrases;
 pub mod model;
 mod pdf;
 mod prose;
@@ -16,14 +18,14 @@ pub use pdf::pdf;
 use model::{Block, Document, FigureRef, Rich};
 
 use crate::report::content::ReportContent;
-use crate::report::figures::look::NumberLook;
 use crate::report::figures::{Figure, richtext};
+use crate::report::speech::Speech;
 
 /// The figures as drawn, to be referred to by name.
 pub struct Drawn<'a> {
     figures: &'a [Figure],
     /// How numbers are printed.
-    pub numbers: NumberLook<'a>,
+    pub speech: Speech<'a>,
 }
 
 impl Drawn<'_> {
@@ -50,21 +52,21 @@ impl Drawn<'_> {
 }
 
 /// Builds the document's data.
-pub fn document(content: &ReportContent, figures: &[Figure], numbers: NumberLook<'_>) -> Document {
-    let drawn = Drawn { figures, numbers };
+pub fn document(content: &ReportContent, figures: &[Figure], speech: Speech<'_>) -> Document {
+    let drawn = Drawn { figures, speech };
     Document {
         title: content.title.clone(),
-        subtitle: Rich::from(subtitle(content, numbers)),
+        subtitle: Rich::from(subtitle(content, speech)),
         footer: Rich::from(footer(content)),
         front: front::front(content, &drawn),
         sections: sections::sections(content, &drawn),
-        words: fixed::words(numbers),
+        words: layout_phrases::words(speech),
     }
 }
 
-fn subtitle(content: &ReportContent, numbers: NumberLook) -> String {
+fn subtitle(content: &ReportContent, speech: Speech) -> String {
     let summary = &content.summary;
-    let dates = front::dates(summary, numbers);
+    let dates = facts::dates(summary, speech);
     let parts = [
         Some(summary.name.clone()),
         summary.laboratory.clone(),

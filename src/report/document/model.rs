@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Serialize, Serializer};
 
-use crate::report::figures::look::NumberLook;
 use crate::report::figures::richtext::{self, Run};
+use crate::report::speech::Speech;
 
 /// A text with markup, split into runs; serialised as a string where it has none.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -13,9 +13,9 @@ pub struct Rich(pub Vec<Run>);
 
 impl Rich {
     /// The same with the decimal sign of the reader's choice.
-    pub fn localised(mut self, numbers: NumberLook) -> Self {
+    pub fn localised(mut self, speech: Speech) -> Self {
         for run in &mut self.0 {
-            run.text = numbers.words(&run.text);
+            run.text = speech.localised(&run.text);
         }
         self
     }
@@ -189,6 +189,29 @@ pub struct Definition {
     pub meaning: Rich,
 }
 
+/// Where the cells of a column stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Align {
+    /// At the left.
+    Left,
+    /// At the right.
+    Right,
+    /// In the middle.
+    Center,
+}
+
+impl Align {
+    /// The name that the template and the page know.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+            Self::Center => "center",
+        }
+    }
+}
+
 /// A table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Table {
@@ -196,8 +219,8 @@ pub struct Table {
     pub caption: Rich,
     /// Heads of the columns.
     pub heads: Vec<Rich>,
-    /// `left`, `right` or `center` of each column.
-    pub align: Vec<&'static str>,
+    /// Where the cells of each column stand.
+    pub align: Vec<Align>,
     /// Relative width of each column; 0: as wide as its content.
     pub widths: Vec<u16>,
     /// The cells, row by row.
@@ -212,7 +235,25 @@ pub struct Table {
     pub columns_text: Vec<String>,
 }
 
+/// Size of the type of a table where nothing else is said, points.
+const TABLE_SIZE: f64 = 8.5;
+
 impl Table {
+    /// A table of some rows, without caption and heads, set once and in the usual size.
+    pub fn of(rows: Vec<Vec<Rich>>) -> Self {
+        Self {
+            caption: Rich::default(),
+            heads: Vec::new(),
+            align: Vec::new(),
+            widths: Vec::new(),
+            rows,
+            size: TABLE_SIZE,
+            side_by_side: 1,
+            dense: false,
+            columns_text: Vec::new(),
+        }
+    }
+
     /// The same table with its columns as text, which is set far faster and drops all markup.
     pub fn densely(self) -> Self {
         let column = |i: usize| {

@@ -1,6 +1,8 @@
-//! Words of other rooms as they should be printed: their symbols set as symbols.
+//! Words of other rooms as they should be printed: as sentences, their symbols set as symbols.
 
 use super::model::Rich;
+use crate::report::parameters::method_name;
+use crate::report::speech::Speech;
 
 /// Symbols as other rooms write them, and their markup.
 const SYMBOLS: [(&str, &str); 13] = [
@@ -42,6 +44,49 @@ pub fn prose(text: &str) -> Rich {
     Rich::from(marked)
 }
 
+/// A finding as a sentence in the reader's words, with the method that it begins with by its name.
+pub fn spoken(finding: &str, speech: Speech) -> String {
+    /// Methods as a finding names them at its start.
+    const KEYS: [&str; 5] = [
+        "boundaries",
+        "trajectories",
+        "impacts",
+        "resonance",
+        "free_decay",
+    ];
+    match finding.split_once(": ") {
+        Some((key, rest)) if KEYS.contains(&key) => {
+            let method = speech.say(&method_name(key));
+            sentence(&format!("{method}: {}", speech.tell(rest)))
+        }
+        _ => {
+            let told = speech.tell(finding);
+            match told.split_once(": ") {
+                Some((name, rest)) => format!("{name}: {}", sentence(rest)),
+                None => sentence(&told),
+            }
+        }
+    }
+}
+
+/// A remark as a sentence: a capital at its start, a full stop at its end.
+pub fn sentence(remark: &str) -> String {
+    let remark = remark.trim();
+    let mut chars = remark.chars();
+    // A symbol or a record's name keeps its small letter.
+    let word = remark.split_whitespace().next().unwrap_or("");
+    let plain = word.chars().count() > 1 && word.chars().all(char::is_lowercase);
+    let start = match chars.next() {
+        Some(first) if plain => first.to_uppercase().chain(chars).collect(),
+        _ => remark.to_owned(),
+    };
+    if start.ends_with(['.', '!', '?']) || start.is_empty() {
+        start
+    } else {
+        format!("{start}.")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -57,5 +102,19 @@ mod tests {
             .collect();
         assert_eq!(slanted, ["R", "x", "f"]);
         assert_eq!(rich.plain(), "R = 0.9, xst = 1 mm; for Rosa's rig, f0 (Hz)");
+    }
+
+    #[test]
+    fn valid_remarks_become_sentences() {
+        assert_eq!(sentence("the responses follow"), "The responses follow.");
+        assert_eq!(sentence("x is clipped."), "x is clipped.");
+        assert_eq!(sentence("r0012 was left out"), "r0012 was left out.");
+        assert_eq!(sentence(""), "");
+        assert_eq!(
+            spoken("free_decay: the fit is poor", Speech::default()),
+            "Free decay: the fit is poor."
+        );
+        let odd = spoken("massa4: it is odd", Speech::default());
+        assert_eq!(odd, "massa4: It is odd.");
     }
 }

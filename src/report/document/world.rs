@@ -1,14 +1,17 @@
-//! The world in which the document is set: a template, its data, its figures, the embedded fonts.
+//! The world in which a document is set: a template, its data, its figures, the embedded fonts; and
+//! its pages as PDF.
 
 use std::collections::HashMap;
 use std::sync::OnceLock;
 
-use typst::diag::{FileError, FileResult};
-use typst::foundations::{Bytes, Datetime, Duration};
+use typst::diag::{FileError, FileResult, SourceDiagnostic};
+use typst::foundations::{Bytes, Datetime, Duration, Smart};
 use typst::syntax::{FileId, RootedPath, Source, VirtualPath, VirtualRoot};
 use typst::text::{Font, FontBook};
 use typst::utils::LazyHash;
-use typst::{Library, LibraryExt, World};
+use typst::{Library, LibraryExt, World, WorldExt};
+use typst_layout::PagedDocument;
+use typst_pdf::PdfOptions;
 
 use crate::report::figures::fonts;
 
@@ -30,15 +33,45 @@ impl MemoryWorld {
     }
 }
 
+/// Why a world gives no pages.
+pub enum Unset {
+    /// The template is wrong, or a file that it names is.
+    Template(String),
+    /// The pages cannot be exported.
+    Pages(String),
+}
+
 impl MemoryWorld {
-    /// Number of line feeds in the template before a byte.
-    pub fn lines_before(&self, byte: usize) -> usize {
-        self.main
-            .text()
-            .bytes()
-            .take(byte)
-            .filter(|b| *b == b'\n')
-            .count()
+    /// The template set and exported as PDF. The same world gives the same bytes.
+    pub fn pdf(&self, title: &str) -> Result<Vec<u8>, Unset> {
+        let pages: PagedDocument = typst::compile(self)
+            .output
+            .map_err(|e| Unset::Template(self.first(&e)))?;
+        let options = PdfOptions {
+            ident: Smart::Custom(title.to_owned()),
+            creator: Smart::Custom(Some("impactid".into())),
+            ..PdfOptions::default()
+        };
+        let bytes = typst_pdf::pdf(&pages, &options).map_err(|e| Unset::Pages(self.first(&e)))?;
+        typst::comemo::evict(0);
+        Ok(bytes)
+    }
+
+    /// The first complaint with its line in the template and its hints.
+    fn first(&self, errors: &[SourceDiagnostic]) -> String {
+        let Some(error) = errors.first() else {
+            return String::new();
+        };
+        let mut text = error.message.to_string();
+        if let Some(range) = self.range(error.span) {
+            let before = self.main.text().bytes().take(range.start);
+            let line = before.filter(|b| *b == b'\n').count() + 1;
+            text.push_str(&format!(", line {line}"));
+        }
+        for hint in &error.hints {
+            text.push_str(&format!("; {}", hint.v));
+        }
+        text
     }
 }
 

@@ -294,6 +294,7 @@ fn residuals(content: &ReportContent) -> Vec<ResidualSet> {
             });
         ResidualSet {
             method: method.into(),
+            total: 0,
             points: points.collect(),
             autocorrelation: (0..25)
                 .map(|k| if k == 0 { 1.0 } else { 0.05 * noise.next() })

@@ -3,10 +3,12 @@
 mod evidence;
 pub mod oscillator;
 pub mod others;
+mod plane;
+mod records;
 
 use std::collections::BTreeMap;
 
-use oscillator::{Parameters, State};
+use oscillator::Parameters;
 
 use super::content::*;
 use crate::identify::*;
@@ -19,6 +21,7 @@ pub const TRUTH: Parameters = Parameters {
 };
 pub const F0: f64 = 12.6;
 pub const X_ST: f64 = 1.25e-3;
+/// Drive periods of a settled stretch.
 const PERIODS: usize = 30;
 
 /// How large an example is.
@@ -26,7 +29,6 @@ const PERIODS: usize = 30;
 pub struct Extent {
     pub clearances: usize,
     pub frequencies: usize,
-    pub both_sweeps: bool,
     pub map: (usize, usize),
 }
 
@@ -34,14 +36,12 @@ pub struct Extent {
 pub const LARGE: Extent = Extent {
     clearances: 9,
     frequencies: 47,
-    both_sweeps: true,
     map: (96, 64),
 };
 /// 8 records: one clearance, four frequencies up and down.
 pub const SMALL: Extent = Extent {
     clearances: 1,
     frequencies: 4,
-    both_sweeps: true,
     map: (48, 32),
 };
 
@@ -100,22 +100,28 @@ fn set(
     }
 }
 
+/// All four parameters: value and standard error of each.
+fn all(told: [[f64; 2]; 4]) -> ParameterSet {
+    let [r, f0, beta, x] = told.map(|[value, error]| estimate(value, error));
+    set(r, f0, beta, x)
+}
+
 /// The example's answer.
 pub fn identification() -> Identification {
     let mut methods = BTreeMap::new();
-    let boundaries = set(
-        estimate(0.897, 0.0052),
-        estimate(12.602, 0.006),
-        estimate(0.0697, 0.0009),
-        estimate(1.254e-3, 6e-6),
-    );
+    let boundaries = all([
+        [0.897, 0.0052],
+        [12.602, 0.006],
+        [0.0697, 0.0009],
+        [1.254e-3, 6e-6],
+    ]);
     methods.insert("boundaries".into(), method(boundaries, 27, 0.93));
-    let trajectories = set(
-        estimate(0.9006, 0.0011),
-        estimate(12.5991, 0.0021),
-        estimate(0.0702, 0.0003),
-        estimate(1.249e-3, 3e-6),
-    );
+    let trajectories = all([
+        [0.9006, 0.0011],
+        [12.5991, 0.0021],
+        [0.0702, 0.0003],
+        [1.249e-3, 3e-6],
+    ]);
     methods.insert("trajectories".into(), method(trajectories, 48_212, 1.04));
     methods.insert(
         "impacts".into(),
@@ -134,12 +140,12 @@ pub fn identification() -> Identification {
         z_score: z,
         p_value: p,
     };
-    let joint = set(
-        estimate(0.9005, 0.0009),
-        estimate(12.5996, 0.0018),
-        estimate(0.0702, 0.0003),
-        estimate(1.2503e-3, 2.4e-6),
-    );
+    let joint = all([
+        [0.9005, 0.0009],
+        [12.5996, 0.0018],
+        [0.0702, 0.0003],
+        [1.2503e-3, 2.4e-6],
+    ]);
     Identification {
         suspicions: Vec::new(),
         uncertainty: Default::default(),
@@ -180,223 +186,13 @@ pub fn identification() -> Identification {
 pub fn content(extent: Extent) -> ReportContent {
     let id = identification();
     let mut content = ReportContent::new("Double impact oscillator, gap and frequency sweep", id);
-    content.records = records(extent);
-    content.brackets = brackets(&content.records);
-    content.curves = curves();
-    content.region_map = Some(region_map(extent.map));
+    content.records = records::records(extent);
+    content.brackets = records::brackets(&content.records);
+    content.curves = plane::curves();
+    content.region_map = Some(plane::region_map(extent.map));
     content.summary = summary(&content);
     evidence::fill(&mut content);
     content
-}
-
-fn records(extent: Extent) -> Vec<RecordRow> {
-    let mut rows = Vec::new();
-    for g in 0..extent.clearances {
-        let rho = 0.35 + 0.32 * g as f64 + if extent.clearances == 1 { 0.9 } else { 0.0 };
-        let mut state = State::default();
-        let up = (0..extent.frequencies).map(|i| (i, Sweep::Up));
-        let down = (0..extent.frequencies).rev().map(|i| (i, Sweep::Down));
-        let steps: Vec<_> = if extent.both_sweeps {
-            up.chain(down).collect()
-        } else {
-            up.collect()
-        };
-        for (i, sweep) in steps {
-            let eta = 0.82 + 2.1 * i as f64 / (extent.frequencies - 1) as f64;
-            state.phase = state.phase.rem_euclid(std::f64::consts::TAU);
-            let (end, hits, _) = oscillator::march(&TRUTH, (eta, rho), state, 2 * PERIODS, 40);
-            state = end;
-            rows.push(row(
-                rows.len(),
-                (eta, rho),
-                sweep,
-                oscillator::classify(&hits, end.phase, PERIODS),
-            ));
-        }
-    }
-    rows
-}
-
-fn row(index: usize, (eta, rho): (f64, f64), sweep: Sweep, motion: Motion) -> RecordRow {
-    let mut noise = Noise::new(index as u64 + 1);
-    let motion = if index % 97 == 41 {
-        Motion::Undetermined {
-            reason: "the record ends before the motion settled".into(),
-        }
-    } else {
-        motion
-    };
-    let (impacts_p, periods_n) = match &motion {
-        Motion::Impactless => (Some(0), Some(1)),
-        Motion::Periodic {
-            impacts_p,
-            periods_n,
-            ..
-        } => (Some(*impacts_p), Some(*periods_n)),
-        _ => (None, None),
-    };
-    let undetermined = matches!(motion, Motion::Undetermined { .. });
-    RecordRow {
-        id: format!("r{:04}", index + 1),
-        specimen: None,
-        frequency_hz: Some(eta * F0 + 2e-4 * noise.gauss()),
-        eta: Some(eta),
-        clearance_m: Some(rho * X_ST),
-        rho: Some(rho),
-        sweep,
-        impacts: if motion == Motion::Impactless { 0 } else { 13 },
-        motion,
-        impacts_p,
-        periods_n,
-        confidence: Some(if undetermined {
-            0.31
-        } else {
-            0.93 + 0.06 * noise.next()
-        }),
-        flags: if index % 61 == 7 {
-            vec!["dropped samples".into()]
-        } else {
-            vec![]
-        },
-        used_by: if undetermined {
-            vec![]
-        } else {
-            vec!["trajectories".into()]
-        },
-        left_out: undetermined.then(|| "motion not settled".into()),
-    }
-}
-
-fn brackets(records: &[RecordRow]) -> Vec<BracketRow> {
-    let impactless = |r: &RecordRow| r.motion == Motion::Impactless;
-    let mut found = Vec::new();
-    for pair in records.windows(2) {
-        let (a, b) = (&pair[0], &pair[1]);
-        let told = |r: &RecordRow| !matches!(r.motion, Motion::Undetermined { .. });
-        if a.rho != b.rho
-            || a.sweep != b.sweep
-            || impactless(a) == impactless(b)
-            || !told(a)
-            || !told(b)
-        {
-            continue;
-        }
-        let (low, high) = if a.eta < b.eta { (a, b) } else { (b, a) };
-        let kind = if b.sweep == Sweep::Up && impactless(b) {
-            BoundaryKind::S2
-        } else if impactless(a) {
-            BoundaryKind::Grazing
-        } else {
-            BoundaryKind::Edge
-        };
-        let n = if low.eta.unwrap_or(0.0) > 2.05 { 2 } else { 1 };
-        found.push(BracketRow {
-            kind,
-            motion: Motion::periodic(1, n),
-            clearance_m: a.clearance_m.unwrap_or(0.0),
-            rho: a.rho,
-            frequency_low_hz: low.frequency_hz.unwrap_or(0.0),
-            frequency_high_hz: high.frequency_hz.unwrap_or(0.0),
-            eta_low: low.eta,
-            eta_high: high.eta,
-            direction: a.sweep,
-            simulated_hz: Some(
-                0.5 * (low.frequency_hz.unwrap_or(0.0) + high.frequency_hz.unwrap_or(0.0)),
-            ),
-            records: Some([low.id.clone(), high.id.clone()]),
-            left_out: (found.len() % 9 == 4).then(|| "jumped early".into()),
-        });
-    }
-    found
-}
-
-fn curves() -> Vec<BoundaryCurve> {
-    let etas =
-        |low: f64, high: f64| (0..=160).map(move |i| low + (high - low) * f64::from(i) / 160.0);
-    let mut curves = vec![BoundaryCurve {
-        kind: BoundaryKind::Grazing,
-        periods_n: 1,
-        points: etas(0.75, 3.05)
-            .map(|e| [e, oscillator::grazing(&TRUTH, e)])
-            .collect(),
-        band95: etas(0.75, 3.05)
-            .map(|e| {
-                let rho = oscillator::grazing(&TRUTH, e);
-                [e, rho * 0.985, rho * 1.015]
-            })
-            .collect(),
-    }];
-    for (n, low, high) in [(1, 1.02, 1.995), (2, 2.02, 3.05)] {
-        let s2 = |p: &Parameters, e: f64| oscillator::boundaries(p, e, n).0;
-        let more = Parameters {
-            restitution: 0.915,
-            ..TRUTH
-        };
-        let less = Parameters {
-            restitution: 0.885,
-            ..TRUTH
-        };
-        curves.push(BoundaryCurve {
-            kind: BoundaryKind::S2,
-            periods_n: n,
-            points: etas(low, high).map(|e| [e, s2(&TRUTH, e)]).collect(),
-            band95: etas(low, high)
-                .map(|e| [e, s2(&less, e), s2(&more, e)])
-                .collect(),
-        });
-    }
-    curves.push(BoundaryCurve {
-        kind: BoundaryKind::S1,
-        periods_n: 1,
-        points: etas(0.78, 0.98)
-            .map(|e| [e, oscillator::boundaries(&TRUTH, e, 1).1])
-            .filter(|p| p[1].is_finite() && p[1] > 0.0)
-            .collect(),
-        band95: Vec::new(),
-    });
-    curves
-}
-
-fn region_map((columns, rows): (usize, usize)) -> RegionMap {
-    let eta: Vec<f64> = (0..columns)
-        .map(|i| 0.76 + 2.24 * (i as f64 + 0.5) / columns as f64)
-        .collect();
-    let rho: Vec<f64> = (0..rows)
-        .map(|j| 0.05 + 3.3 * (j as f64 + 0.5) / rows as f64)
-        .collect();
-    let mut map = RegionMap {
-        eta,
-        rho,
-        motions: Vec::new(),
-        cells: Vec::new(),
-        second: Vec::new(),
-        note: "From rest and from the z = 1/n motions; 120 drive periods.".into(),
-    };
-    let kick = State {
-        x: 0.0,
-        v: -6.0,
-        phase: 3.0,
-    };
-    for start in [State::default(), kick] {
-        for j in 0..rows {
-            for i in 0..columns {
-                let at = (map.eta[i], map.rho[j]);
-                let (end, hits, _) = oscillator::march(&TRUTH, at, start, 70, 30);
-                let motion = oscillator::classify(&hits, end.phase, PERIODS);
-                let known = map.motions.iter().position(|m| *m == motion);
-                let index = known.unwrap_or_else(|| {
-                    map.motions.push(motion);
-                    map.motions.len() - 1
-                });
-                if map.cells.len() < columns * rows {
-                    map.cells.push(index as u16);
-                } else {
-                    map.second.push(index as u16);
-                }
-            }
-        }
-    }
-    map
 }
 
 fn summary(content: &ReportContent) -> CampaignSummary {

@@ -1,21 +1,27 @@
 //! The boundary fit: measured brackets less the simulated boundary, over the clearance.
 
 use super::Figure;
-use super::axes::{Axis, Panel, Sides};
+use super::axis::Axis;
 use super::canvas::{Canvas, Colour};
 use super::csv::Csv;
 use super::legend::{self, Key, Sign};
-use super::look::{self, NumberLook};
+use super::look;
 use super::marks;
+use super::panel::{Panel, Sides};
 use super::path::Rect;
 use super::plane::same;
 use crate::report::content::{BoundaryKind, BracketRow, ReportContent};
+use crate::report::speech::Speech;
 
+/// Height of the panel, points.
+const HEIGHT: f64 = 132.0;
+/// Room left of the panel, points.
+const LEFT: f64 = 34.0;
 /// Distance of brackets at one clearance, points.
 const STACK_STEP: f64 = 4.4;
 
 /// Draws the brackets against the fit; `None` where none has a simulated value.
-pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
+pub fn draw(content: &ReportContent, speech: Speech) -> Option<Figure> {
     let rows: Vec<(&BracketRow, f64, f64)> = content
         .brackets
         .iter()
@@ -28,8 +34,8 @@ pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
         return None;
     }
     let keys = keys(&rows);
-    let top = legend::height(&keys, look::HALF_WIDTH - 34.0, numbers) + 4.0;
-    let rect = Rect::new(34.0, top, look::HALF_WIDTH - 38.0, 132.0);
+    let top = legend::height(&keys, look::HALF_WIDTH - LEFT, speech) + 4.0;
+    let rect = Rect::new(LEFT, top, look::HALF_WIDTH - LEFT - 4.0, HEIGHT);
     let x = Axis::around(
         rows.iter().flat_map(|r| [r.1, r.2, 0.0]),
         0.08,
@@ -41,7 +47,7 @@ pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
         "clearance $r$ (mm)",
     );
     let panel = Panel::new(rect, x, y);
-    let mut canvas = Canvas::new(look::HALF_WIDTH, top + 132.0 + 24.0);
+    let mut canvas = Canvas::new(look::HALF_WIDTH, top + HEIGHT + look::BELOW_PANEL);
     panel.upright(&mut canvas, 0.0, look::ZERO_STROKE);
     let mut order: Vec<usize> = (0..rows.len()).collect();
     order.sort_by_key(|&i| (rows[i].0.kind, rows[i].0.direction));
@@ -66,11 +72,11 @@ pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
         };
         legend::bracket(&mut canvas, (from, to), y - lift, shade);
     }
-    panel.frame(&mut canvas, Sides::BOTH, numbers);
-    legend::draw(&mut canvas, (rect.left, 0.0), rect.width(), &keys, numbers);
+    panel.frame(&mut canvas, Sides::BOTH, speech);
+    legend::draw(&mut canvas, (rect.left, 0.0), rect.width(), &keys, speech);
     Some(Figure::new(
         "boundary_fit",
-        &numbers.say("Measured brackets against the fitted boundary"),
+        &speech.say("Measured brackets against the fitted boundary"),
         canvas,
         csv(&rows),
     ))

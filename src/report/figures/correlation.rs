@@ -3,22 +3,23 @@
 //! The columns are the parameters that are asked for; how the others hang together among
 //! themselves is in the figure's data.
 
-use plotters::style::RGBColor;
-
 use super::Figure;
 use super::canvas::{Anchor, Canvas, Colour, TextLook};
 use super::csv::Csv;
 use super::fonts::Face;
-use super::look::{self, NumberLook};
+use super::look;
+use super::marks::mix;
 use super::path::Rect;
 use super::richtext;
 use crate::report::content::Correlation;
 use crate::report::parameters::parameter;
+use crate::report::speech::Speech;
 
+/// Room above the cells for the columns' symbols, points.
 const TOP: f64 = 14.0;
 
 /// Draws the matrix; `None` where it is empty or not square.
-pub fn draw(correlation: &Correlation, numbers: NumberLook) -> Option<Figure> {
+pub fn draw(correlation: &Correlation, speech: Speech) -> Option<Figure> {
     let n = correlation.parameters.len();
     let square = correlation.matrix.len() == n && correlation.matrix.iter().all(|r| r.len() == n);
     if n < 2 || !square {
@@ -27,7 +28,7 @@ pub fn draw(correlation: &Correlation, numbers: NumberLook) -> Option<Figure> {
     let names: Vec<String> = correlation
         .parameters
         .iter()
-        .map(|p| name(p, numbers))
+        .map(|p| name(p, speech))
         .collect();
     let columns = columns(correlation);
     let widths = names
@@ -52,12 +53,12 @@ pub fn draw(correlation: &Correlation, numbers: NumberLook) -> Option<Figure> {
             let x = left + i as f64 * wide;
             let rect = Rect::new(x, y, wide, high);
             let value = (column != j).then_some(row[column]);
-            cell(&mut canvas, &rect, value, numbers);
+            cell(&mut canvas, &rect, value, speech);
         }
     }
     Some(Figure::new(
         "correlation",
-        &numbers.say("Correlation of the parameters"),
+        &speech.say("Correlation of the parameters"),
         canvas,
         csv(correlation),
     ))
@@ -72,7 +73,7 @@ fn columns(correlation: &Correlation) -> Vec<usize> {
 }
 
 /// A tinted cell with its number; `None` for a parameter with itself.
-fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, numbers: NumberLook) {
+fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, speech: Speech) {
     let (from, to) = (
         (rect.left + 0.5, rect.top + 0.5),
         (rect.right - 0.5, rect.bottom - 0.5),
@@ -82,7 +83,7 @@ fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, numbers: NumberLoo
     let size = (0.34 * rect.width()).min(look::TICK_SIZE);
     let text_look =
         TextLook::new(size, Anchor::Middle).colour(if dark { look::PAPER } else { look::INK });
-    let text = value.map_or("1".into(), |v| numbers.fixed(v, 2));
+    let text = value.map_or("1".into(), |v| speech.fixed(v, 2));
     let middle = (
         0.5 * (rect.left + rect.right),
         0.5 * (rect.top + rect.bottom) + 2.4,
@@ -90,18 +91,18 @@ fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, numbers: NumberLoo
     canvas.text(middle, &text, text_look);
 }
 
-fn name(key: &str, numbers: NumberLook) -> String {
+fn name(key: &str, speech: Speech) -> String {
     if let Some(shown) = parameter(key) {
         return shown.symbol.to_owned();
     }
     let of = |phrase: &str, role: &str| {
-        let channel = numbers.say(&role.replace('_', " "));
-        numbers.say_with(phrase, &[("channel", &channel)])
+        let channel = speech.say(&role.replace('_', " "));
+        speech.say_with(phrase, &[("channel", &channel)])
     };
     match key.split_once('_') {
         Some(("gain", role)) => of("gain of {channel}", role),
         Some(("corner", role)) => of("corner of {channel}", role),
-        _ => numbers.say(&key.replace('_', " ")),
+        _ => speech.say(&key.replace('_', " ")),
     }
 }
 
@@ -113,9 +114,9 @@ fn tint(value: f64) -> Colour {
         look::VERMILION
     };
     if !value.is_finite() {
-        return RGBColor(0xee, 0xee, 0xee);
+        return look::BLANK;
     }
-    super::marks::mix(end, value.abs().min(1.0) * 0.9 + 0.04)
+    mix(end, value.abs().min(1.0) * 0.9 + 0.04)
 }
 
 fn csv(correlation: &Correlation) -> String {

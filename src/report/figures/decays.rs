@@ -1,24 +1,29 @@
 //! Free decays with their fits, three to a row.
 
 use super::Figure;
-use super::axes::{Axis, Panel, Sides, range};
+use super::axis::{Axis, range};
 use super::canvas::{Anchor, Canvas, Stroke, TextLook};
 use super::csv::Csv;
 use super::fonts::Face;
-use super::look::{self, NumberLook};
+use super::look;
+use super::panel::{Panel, Sides};
 use super::path::Rect;
 use super::units::print_unit;
 use crate::report::content::{FreeDecay, Signal};
+use crate::report::speech::Speech;
 
 /// How many decays one figure holds.
 pub const PER_FIGURE: usize = 12;
 
+/// Panels in a row.
 const COLUMNS: usize = 3;
+/// Height of a panel, points.
 const PANEL_HEIGHT: f64 = 74.0;
+/// Height of a row with the words above and the numbers below its panels, points.
 const ROW_HEIGHT: f64 = PANEL_HEIGHT + 48.0;
 
 /// Draws up to [`PER_FIGURE`] decays; `None` for none.
-pub fn draw(decays: &[FreeDecay], name: &str, numbers: NumberLook) -> Option<Figure> {
+pub fn draw(decays: &[FreeDecay], name: &str, speech: Speech) -> Option<Figure> {
     if decays.is_empty() {
         return None;
     }
@@ -31,18 +36,18 @@ pub fn draw(decays: &[FreeDecay], name: &str, numbers: NumberLook) -> Option<Fig
             &mut canvas,
             decay,
             Rect::new(left, top, 122.0, PANEL_HEIGHT),
-            numbers,
+            speech,
         );
     }
     Some(Figure::new(
         name,
-        &numbers.say("Free decays and their fits"),
+        &speech.say("Free decays and their fits"),
         canvas,
         csv(decays),
     ))
 }
 
-fn one(canvas: &mut Canvas, decay: &FreeDecay, rect: Rect, numbers: NumberLook) {
+fn one(canvas: &mut Canvas, decay: &FreeDecay, rect: Rect, speech: Speech) {
     let peak = decay
         .measured
         .values
@@ -81,8 +86,8 @@ fn one(canvas: &mut Canvas, decay: &FreeDecay, rect: Rect, numbers: NumberLook) 
         );
     }
     canvas.layer(2);
-    panel.frame(canvas, Sides::BOTH, numbers);
-    heading(canvas, decay, &rect, numbers);
+    panel.frame(canvas, Sides::BOTH, speech);
+    heading(canvas, decay, &rect, speech);
 }
 
 fn signal(canvas: &mut Canvas, panel: &Panel, signal: &Signal, factor: f64, stroke: Stroke) {
@@ -90,24 +95,21 @@ fn signal(canvas: &mut Canvas, panel: &Panel, signal: &Signal, factor: f64, stro
     panel.curve(canvas, data.map(|(t, v)| (*t, v * factor)), stroke);
 }
 
-fn heading(canvas: &mut Canvas, decay: &FreeDecay, rect: &Rect, numbers: NumberLook) {
+fn heading(canvas: &mut Canvas, decay: &FreeDecay, rect: &Rect, speech: Speech) {
     let bold = TextLook::new(look::NOTE_SIZE, Anchor::Left)
         .face(Face::Bold)
         .colour(look::INK);
     canvas.text((rect.left, rect.top - 13.5), &decay.record, bold);
     let plain = TextLook::new(look::TICK_SIZE, Anchor::Right).colour(look::QUIET);
     let frequency = decay.natural_frequency_hz.map(|f| {
-        let value = with_error(f, decay.natural_frequency_error_hz, numbers);
+        let value = with_error(f, decay.natural_frequency_error_hz, speech);
         format!("$f_0$ = {value}\u{2009}Hz")
     });
-    let damping = decay.damping_ratio.map(|b| {
-        format!(
-            "$β$ = {}",
-            with_error(b, decay.damping_ratio_error, numbers)
-        )
-    });
+    let damping = decay
+        .damping_ratio
+        .map(|b| format!("$β$ = {}", with_error(b, decay.damping_ratio_error, speech)));
     let lines = match (frequency, damping) {
-        (None, None) => vec![numbers.say("no fit")],
+        (None, None) => vec![speech.say("no fit")],
         (frequency, damping) => frequency.into_iter().chain(damping).collect(),
     };
     for (i, line) in lines.iter().enumerate() {
@@ -115,17 +117,17 @@ fn heading(canvas: &mut Canvas, decay: &FreeDecay, rect: &Rect, numbers: NumberL
     }
 }
 
-fn with_error(value: f64, error: Option<f64>, numbers: NumberLook) -> String {
+fn with_error(value: f64, error: Option<f64>, speech: Speech) -> String {
     match error.filter(|e| *e > 0.0) {
         Some(e) => {
             let decimals = crate::report::parameters::decimals_for(e);
             format!(
                 "{} ± {}",
-                numbers.fixed(value, decimals),
-                numbers.fixed(e, decimals)
+                speech.fixed(value, decimals),
+                speech.fixed(e, decimals)
             )
         }
-        None => numbers.significant(value, 4),
+        None => speech.significant(value, 4),
     }
 }
 

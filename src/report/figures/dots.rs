@@ -2,9 +2,9 @@
 
 use std::collections::HashSet;
 
-use super::axes::Panel;
 use super::canvas::{Canvas, Colour, Stroke};
 use super::look;
+use super::panel::Panel;
 
 /// Side in points of the squares that hold at most one dot.
 const CELL: f64 = 0.55;

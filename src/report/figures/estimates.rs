@@ -1,18 +1,20 @@
 //! The estimates of all methods beside the joint one, a panel for each parameter.
 
 use super::Figure;
-use super::axes::{Axis, Panel, Sides, range};
+use super::axis::{Axis, range};
 use super::canvas::{Anchor, Canvas, Stroke, TextLook};
 use super::csv::Csv;
 use super::dots::{DotLook, Dots};
 use super::fonts::{self, Face};
-use super::look::{self, NumberLook};
+use super::look;
+use super::panel::{Panel, Sides};
 use super::path::Rect;
 use crate::identify::{Estimate, Status};
 use crate::report::content::ReportContent;
-use crate::report::parameters::{PARAMETERS, ParameterLook, method_name};
+use crate::report::parameters::{PARAMETERS, ParameterLook, interval95, method_name};
+use crate::report::speech::Speech;
 
-const WIDTH: f64 = 236.0;
+/// Height of a method's line, points.
 const ROW: f64 = 14.5;
 
 /// One method's estimates by their names.
@@ -35,8 +37,8 @@ impl Line<'_> {
 }
 
 /// Draws the estimates; `None` where no parameter has a value.
-pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
-    let lines = lines(content, numbers);
+pub fn draw(content: &ReportContent, speech: Speech) -> Option<Figure> {
+    let lines = lines(content, speech);
     let shown: Vec<usize> = (0..PARAMETERS.len())
         .filter(|&k| lines.iter().any(|l| value(l.estimates[k]).is_some()))
         .collect();
@@ -49,28 +51,28 @@ pub fn draw(content: &ReportContent, numbers: NumberLook) -> Option<Figure> {
     let left = names.fold(0.0, f64::max) + 6.0;
     let columns = if shown.len() > 1 { 2 } else { 1 };
     let gap = 15.0;
-    let width = (WIDTH - left - 9.0 - gap * (columns - 1) as f64) / columns as f64;
+    let width = (look::FRONT_WIDTH - left - 9.0 - gap * (columns - 1) as f64) / columns as f64;
     let height = ROW * lines.len() as f64 + 4.0;
     let rows = shown.len().div_ceil(columns);
-    let mut canvas = Canvas::new(WIDTH, rows as f64 * (height + 27.0) + 1.0);
+    let mut canvas = Canvas::new(look::FRONT_WIDTH, rows as f64 * (height + 27.0) + 1.0);
     for (i, &k) in shown.iter().enumerate() {
         let (column, row) = (i % columns, i / columns);
         let x = left + column as f64 * (width + gap);
         let rect = Rect::new(x, 2.0 + row as f64 * (height + 27.0), width, height);
-        parameter(&mut canvas, rect, (&PARAMETERS[k], k), &lines, numbers);
+        parameter(&mut canvas, rect, (&PARAMETERS[k], k), &lines, speech);
         if column == 0 {
             labels(&mut canvas, &rect, &lines);
         }
     }
     Some(Figure::new(
         "estimates",
-        &numbers.say("Estimates of all methods"),
+        &speech.say("Estimates of all methods"),
         canvas,
         csv(&lines),
     ))
 }
 
-fn lines<'a>(content: &'a ReportContent, numbers: NumberLook) -> Vec<Line<'a>> {
+fn lines<'a>(content: &'a ReportContent, speech: Speech) -> Vec<Line<'a>> {
     let id = &content.identification;
     let methods = id
         .methods
@@ -78,7 +80,7 @@ fn lines<'a>(content: &'a ReportContent, numbers: NumberLook) -> Vec<Line<'a>> {
         .map(|(key, m)| (method_name(key), false, &m.parameters));
     let all = methods.chain([(method_name("joint"), true, &id.joint.parameters)]);
     all.map(|(key, joint, parameters)| Line {
-        name: numbers.say(&key),
+        name: speech.say(&key),
         key,
         joint,
         estimates: std::array::from_fn(|k| (PARAMETERS[k].pick)(parameters)),
@@ -91,23 +93,14 @@ fn value(estimate: Option<&Estimate>) -> Option<f64> {
     estimate.and_then(|e| e.value)
 }
 
-fn interval(estimate: &Estimate) -> Option<(f64, f64)> {
-    let value = estimate.value?;
-    match (estimate.interval95, estimate.standard_error) {
-        (Some([low, high]), _) => Some((low, high)),
-        (None, Some(e)) => Some((value - 1.96 * e, value + 1.96 * e)),
-        (None, None) => Some((value, value)),
-    }
-}
-
 fn parameter(
     canvas: &mut Canvas,
     rect: Rect,
     (shown, k): (&ParameterLook, usize),
     lines: &[Line<'_>],
-    numbers: NumberLook,
+    speech: Speech,
 ) {
-    let ends = lines.iter().filter_map(|l| interval(l.estimates[k]?));
+    let ends = lines.iter().filter_map(|l| interval95(l.estimates[k]?));
     let ends: Vec<f64> = ends
         .flat_map(|(a, b)| [a * shown.factor, b * shown.factor])
         .collect();
@@ -125,7 +118,7 @@ fn parameter(
     if let Some((low, high)) = lines
         .iter()
         .filter(|l| l.joint)
-        .find_map(|l| interval(l.estimates[k]?))
+        .find_map(|l| interval95(l.estimates[k]?))
     {
         let low = panel.at((low * shown.factor).max(panel.x.low), 0.0).0;
         let high = panel.at((high * shown.factor).min(panel.x.high), 0.0).0;
@@ -139,7 +132,7 @@ fn parameter(
         let y = (lines.len() - i) as f64 - 0.5;
         if let Some(estimate) = line.estimates[k] {
             let place = (y, line.joint);
-            mark(canvas, &panel, (estimate, shown.factor), place, numbers);
+            mark(canvas, &panel, (estimate, shown.factor), place, speech);
         }
     }
     panel.frame(
@@ -148,7 +141,7 @@ fn parameter(
             below: true,
             left: false,
         },
-        numbers,
+        speech,
     );
 }
 
@@ -172,13 +165,13 @@ fn mark(
     panel: &Panel,
     (e, factor): (&Estimate, f64),
     (y, joint): (f64, bool),
-    numbers: NumberLook,
+    speech: Speech,
 ) {
     let colour = if joint { look::BLUE } else { look::INK };
-    let Some((low, high)) = interval(e) else {
+    let Some((low, high)) = interval95(e) else {
         let (x, y) = panel.at(0.5 * (panel.x.low + panel.x.high), y);
         let quiet = TextLook::new(6.5, Anchor::Middle).colour(look::QUIET);
-        canvas.text((x, y + 2.2), &numbers.say("not identifiable"), quiet);
+        canvas.text((x, y + 2.2), &speech.say("not identifiable"), quiet);
         return;
     };
     let ends = [(low * factor, y), (high * factor, y)];
@@ -214,7 +207,7 @@ fn csv(lines: &[Line<'_>]) -> String {
     for line in lines {
         for (shown, estimate) in PARAMETERS.iter().zip(line.estimates) {
             let Some(e) = estimate else { continue };
-            let (low, high) = (interval(e).map(|i| i.0), interval(e).map(|i| i.1));
+            let (low, high) = (interval95(e).map(|i| i.0), interval95(e).map(|i| i.1));
             csv.row()
                 .texts(&[&line.key, shown.key])
                 .numbers(&[e.value, low, high]);

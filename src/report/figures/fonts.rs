@@ -37,6 +37,7 @@ pub fn width(text: &str, face: Face, size: f64) -> f64 {
 
 /// Advance of a character in its face, in em; half an em where the face lacks it.
 fn advance_em(c: char, face: Face) -> f64 {
+    /// Advance of a character that the face lacks, em.
     const UNKNOWN: f64 = 0.5;
     let Some(font) = instance(face) else {
         return UNKNOWN;

@@ -1,22 +1,25 @@
 //! Speeds after over before each impact, and their ratio over the closing speed.
 
-use super::axes::{Axis, Panel, Sides, range};
+use super::axis::{Axis, range};
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
 use super::legend::{self, Key, Sign};
-use super::look::{self, NumberLook};
-use super::path::Rect;
+use super::look;
+use super::panel::{PAIR_LEFT, Panel, Sides, pair};
 use super::units::{PrintUnit, print_unit};
 use super::{Figure, Spot};
 use crate::report::content::ImpactScatter;
+use crate::report::speech::Speech;
 use crate::units::Dimension;
 
+/// Height of the panels, points.
 const HEIGHT: f64 = 150.0;
+/// Room above the panels for the keys, points.
 const TOP: f64 = 15.0;
 
 /// Draws one group of impacts; `None` where it is empty.
-pub fn draw(scatter: &ImpactScatter, name: &str, numbers: NumberLook) -> Option<Figure> {
+pub fn draw(scatter: &ImpactScatter, name: &str, speech: Speech) -> Option<Figure> {
     let peak = scatter
         .points
         .iter()
@@ -26,21 +29,21 @@ pub fn draw(scatter: &ImpactScatter, name: &str, numbers: NumberLook) -> Option<
         return None;
     }
     let unit = print_unit(Dimension::Velocity, peak);
-    let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + 24.0);
+    let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + look::BELOW_PANEL);
     let panels = panels(scatter, unit);
     lines(&mut canvas, &panels, scatter, unit);
-    let spots = points(&mut canvas, &panels, scatter, (unit, numbers));
+    let spots = points(&mut canvas, &panels, scatter, (unit, speech));
     for panel in &panels {
-        panel.frame(&mut canvas, Sides::BOTH, numbers);
+        panel.frame(&mut canvas, Sides::BOTH, speech);
     }
     legend::draw(
         &mut canvas,
-        (36.0, 0.0),
-        look::FULL_WIDTH - 36.0,
-        &keys(scatter, numbers),
-        numbers,
+        (PAIR_LEFT, 0.0),
+        look::FULL_WIDTH - PAIR_LEFT,
+        &keys(scatter, speech),
+        speech,
     );
-    let title = numbers.say("Speeds after over before impact");
+    let title = speech.say("Speeds after over before impact");
     Some(Figure::new(name, &title, canvas, csv(scatter)).with_spots(spots))
 }
 
@@ -59,8 +62,7 @@ fn panels(scatter: &ImpactScatter, unit: PrintUnit) -> [Panel; 2] {
         format!("parting speed after ({})", unit.symbol),
     );
     let ratio = ratio_axis(scatter);
-    let left = Rect::new(36.0, TOP, 196.0, HEIGHT);
-    let right = Rect::new(280.0, TOP, 198.0, HEIGHT);
+    let [left, right] = pair(TOP, HEIGHT);
     [
         Panel::new(left, before(), after),
         Panel::new(right, before(), ratio),
@@ -99,7 +101,7 @@ fn lines(canvas: &mut Canvas, panels: &[Panel; 2], scatter: &ImpactScatter, unit
         speeds.curve(canvas, [(0.0, 0.0), (end, r * end)], stroke);
         ratios.level(canvas, r, stroke);
     }
-    let dashed = Stroke::dashed(look::VERMILION, 1.0, &[4.0, 2.0]);
+    let dashed = Stroke::dashed(look::VERMILION, 1.0, look::DASH);
     let of_speed = || {
         scatter
             .restitution_of_speed
@@ -115,9 +117,8 @@ fn points(
     canvas: &mut Canvas,
     panels: &[Panel; 2],
     scatter: &ImpactScatter,
-    (unit, numbers): (PrintUnit, NumberLook),
+    (unit, speech): (PrintUnit, Speech),
 ) -> Vec<Spot> {
-    const MOST_SPOTS: usize = 4000;
     let mut spots = Vec::new();
     canvas.layer(1);
     let radius = dots::radius(scatter.points.len());
@@ -132,14 +133,12 @@ fn points(
         let before = p.before_m_s * unit.factor;
         let values = [p.after_m_s * unit.factor, p.after_m_s / p.before_m_s];
         for ((panel, dots), value) in panels.iter().zip(&mut taken).zip(values) {
-            if let Some((x, y)) = dots.put(canvas, panel, (before, value), dot)
-                && spots.len() < MOST_SPOTS
-            {
+            if let Some((x, y)) = dots.put(canvas, panel, (before, value), dot) {
                 let ratio = p.after_m_s / p.before_m_s;
                 spots.push(Spot {
                     x,
                     y,
-                    text: format!("{}\nR = {}", p.record, numbers.fixed(ratio, 3)),
+                    text: format!("{}\nR = {}", p.record, speech.fixed(ratio, 3)),
                 });
             }
         }
@@ -148,39 +147,34 @@ fn points(
     spots
 }
 
-fn keys(scatter: &ImpactScatter, numbers: NumberLook) -> Vec<Key> {
+fn keys(scatter: &ImpactScatter, speech: Speech) -> Vec<Key> {
     let mut keys = Vec::new();
     if !scatter.name.is_empty() {
         keys.push(Key::new(Sign::Nothing, scatter.name.clone()));
     }
-    let count = scatter.points.iter().filter(|p| p.used).count();
-    let dot = super::marks::MotionLook {
-        shape: super::marks::Shape::Dot,
-        colour: look::BLUE,
-        tint: look::PAPER,
-    };
-    keys.push(Key::new(Sign::Mark(dot), format!("impacts used ({count})")));
-    let unused = scatter.points.len() - count;
+    let unused = scatter.points.iter().filter(|p| !p.used).count();
+    keys.push(Key::new(
+        Sign::dot(look::BLUE),
+        format!("impacts used ({})", scatter.used()),
+    ));
     if unused > 0 {
-        let ring = super::marks::MotionLook {
-            shape: super::marks::Shape::Circle,
-            colour: look::QUIET,
-            tint: look::PAPER,
-        };
-        keys.push(Key::new(Sign::Mark(ring), format!("not used ({unused})")));
+        keys.push(Key::new(
+            Sign::ring(look::QUIET),
+            format!("not used ({unused})"),
+        ));
     }
     if let Some(r) = scatter.restitution {
         let stroke = Stroke::solid(look::VERMILION, 1.0);
         keys.push(Key::new(
             Sign::Line(stroke),
-            format!("$R$ = {}", numbers.fixed(r, 4)),
+            format!("$R$ = {}", speech.fixed(r, 4)),
         ));
     }
     if scatter.interval95.is_some() {
         keys.push(Key::new(Sign::Patch(look::BAND), "95 % interval"));
     }
     if !scatter.restitution_of_speed.is_empty() {
-        let stroke = Stroke::dashed(look::VERMILION, 1.0, &[4.0, 2.0]);
+        let stroke = Stroke::dashed(look::VERMILION, 1.0, look::DASH);
         keys.push(Key::new(Sign::Line(stroke), "$R$ over speed"));
     }
     keys

@@ -2,9 +2,10 @@
 
 use super::canvas::{Anchor, Canvas, Colour, Stroke, TextLook};
 use super::fonts::Face;
-use super::look::{self, NumberLook};
-use super::marks::{self, MotionLook};
+use super::look;
+use super::marks::{self, MotionLook, Shape};
 use super::richtext;
+use crate::report::speech::Speech;
 
 /// What stands before a key's text.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,13 +23,32 @@ pub enum Sign {
 }
 
 impl Sign {
+    /// A filled dot.
+    pub fn dot(colour: Colour) -> Self {
+        Self::shape(Shape::Dot, colour)
+    }
+
+    /// An open circle.
+    pub fn ring(colour: Colour) -> Self {
+        Self::shape(Shape::Circle, colour)
+    }
+
+    fn shape(shape: Shape, colour: Colour) -> Self {
+        Self::Mark(MotionLook {
+            shape,
+            colour,
+            tint: look::PAPER,
+        })
+    }
+
+    /// Its width, points; a heading takes back the room that signs are given.
     fn width(self) -> f64 {
         match self {
             Sign::Mark(_) => 7.0,
             Sign::Line(_) => 15.0,
             Sign::Patch(_) => 10.0,
             Sign::Bracket(_) => 11.0,
-            Sign::Nothing => -3.0,
+            Sign::Nothing => -SIGN_GAP,
         }
     }
 }
@@ -51,21 +71,25 @@ impl Key {
         }
     }
 
-    fn width(&self, numbers: NumberLook) -> f64 {
-        let text = numbers.say_title(&self.text);
-        self.sign.width() + 3.0 + richtext::width(&text, Face::Regular, look::NOTE_SIZE)
+    fn width(&self, speech: Speech) -> f64 {
+        let text = speech.say_title(&self.text);
+        self.sign.width() + SIGN_GAP + richtext::width(&text, Face::Regular, look::NOTE_SIZE)
     }
 }
 
+/// Distance of the keys' lines, points.
 const LINE_HEIGHT: f64 = 11.0;
+/// Room between two keys of a line, points.
 const GAP: f64 = 11.0;
+/// Room between a key's sign and its text, points.
+const SIGN_GAP: f64 = 3.0;
 
 /// Lays keys in lines of a width: (key, left, line).
-fn flow<'a>(keys: &'a [Key], width: f64, numbers: NumberLook) -> Vec<(&'a Key, f64, usize)> {
+fn flow<'a>(keys: &'a [Key], width: f64, speech: Speech) -> Vec<(&'a Key, f64, usize)> {
     let (mut x, mut line) = (0.0, 0);
     keys.iter()
         .map(|key| {
-            let wide = key.width(numbers);
+            let wide = key.width(speech);
             if x > 0.0 && x + wide > width {
                 x = 0.0;
                 line += 1;
@@ -78,8 +102,8 @@ fn flow<'a>(keys: &'a [Key], width: f64, numbers: NumberLook) -> Vec<(&'a Key, f
 }
 
 /// Height that the keys need at a width.
-pub fn height(keys: &[Key], width: f64, numbers: NumberLook) -> f64 {
-    flow(keys, width, numbers)
+pub fn height(keys: &[Key], width: f64, speech: Speech) -> f64 {
+    flow(keys, width, speech)
         .last()
         .map_or(0.0, |(_, _, line)| (*line + 1) as f64 * LINE_HEIGHT)
 }
@@ -90,17 +114,17 @@ pub fn draw(
     (left, top): (f64, f64),
     width: f64,
     keys: &[Key],
-    numbers: NumberLook,
+    speech: Speech,
 ) {
-    for (key, x, line) in flow(keys, width, numbers) {
+    for (key, x, line) in flow(keys, width, speech) {
         let y = top + (line as f64 + 0.5) * LINE_HEIGHT;
         sign(canvas, (left + x, y), key.sign);
         let at = (
-            left + x + key.sign.width() + 3.0,
+            left + x + key.sign.width() + SIGN_GAP,
             y + 0.33 * look::NOTE_SIZE,
         );
         let text_look = TextLook::new(look::NOTE_SIZE, Anchor::Left).colour(look::INK);
-        canvas.text(at, &numbers.say_title(&key.text), text_look);
+        canvas.text(at, &speech.say_title(&key.text), text_look);
     }
 }
 

@@ -3,12 +3,19 @@
 use plotters::style::RGBColor;
 
 use super::canvas::{Colour, Stroke};
-use crate::report::words::Words;
 
 /// Width of the text block, points (170 mm).
 pub const FULL_WIDTH: f64 = 481.9;
 /// Width of one of two columns, points.
 pub const HALF_WIDTH: f64 = 234.0;
+/// Width of the two figures of the first page, points.
+pub const FRONT_WIDTH: f64 = 236.0;
+/// Room below a panel for its numbers and title, points.
+pub const BELOW_PANEL: f64 = 24.0;
+/// Figures narrower than this stand two in a row, points.
+pub const NARROW: f64 = 300.0;
+/// Dashes of a fitted or simulated line, points.
+pub const DASH: &[f64] = &[4.0, 2.0];
 /// Size of tick labels, points.
 pub const TICK_SIZE: f64 = 7.0;
 /// Size of axis titles, points.
@@ -16,11 +23,9 @@ pub const TITLE_SIZE: f64 = 8.0;
 /// Size of notes inside a figure, points.
 pub const NOTE_SIZE: f64 = 7.5;
 /// Width of frames and ticks, points.
-pub const FRAME_WIDTH: f64 = 0.5;
+const FRAME_WIDTH: f64 = 0.5;
 /// Width of curves, points.
 pub const CURVE_WIDTH: f64 = 1.0;
-/// Width of thin lines, points.
-pub const THIN_WIDTH: f64 = 0.35;
 
 /// Near black, for text and measured lines.
 pub const INK: Colour = RGBColor(0x1a, 0x1a, 0x1a);
@@ -28,8 +33,6 @@ pub const INK: Colour = RGBColor(0x1a, 0x1a, 0x1a);
 pub const FRAME: Colour = RGBColor(0x55, 0x55, 0x55);
 /// Second text.
 pub const QUIET: Colour = RGBColor(0x5f, 0x66, 0x6d);
-/// Lines of a grid.
-pub const GRID: Colour = RGBColor(0xe3, 0xe5, 0xe8);
 /// Paper.
 pub const PAPER: Colour = RGBColor(0xff, 0xff, 0xff);
 /// Okabe and Ito's blue: mass x, first series.
@@ -38,170 +41,34 @@ pub const BLUE: Colour = RGBColor(0x00, 0x5f, 0xa3);
 pub const VERMILION: Colour = RGBColor(0xd5, 0x5e, 0x00);
 /// Okabe and Ito's bluish green: third series.
 pub const GREEN: Colour = RGBColor(0x00, 0x8a, 0x66);
+/// Sky blue, for motions.
+pub const SKY: Colour = RGBColor(0x2f, 0x9b, 0xd8);
+/// Orange, for motions.
+pub const ORANGE: Colour = RGBColor(0xc9, 0x86, 0x00);
+/// Purple, for motions.
+pub const PURPLE: Colour = RGBColor(0xb0, 0x52, 0x8a);
+/// Plum, for motions and for boundaries that none of the others is.
+pub const PLUM: Colour = RGBColor(0x6f, 0x4a, 0x9e);
+/// Brown, for motions.
+pub const BROWN: Colour = RGBColor(0x7a, 0x50, 0x30);
+/// Dark red: chaos.
+pub const DARK_RED: Colour = RGBColor(0x8c, 0x1d, 0x1d);
+/// Slate: motions without impacts.
+pub const SLATE: Colour = RGBColor(0x44, 0x4a, 0x50);
+/// Grey, for what no motion could be told of.
+pub const GREY: Colour = RGBColor(0x77, 0x77, 0x77);
+/// Pale grey, for times at which masses are together.
+pub const PALE: Colour = RGBColor(0xd9, 0xdd, 0xe2);
+/// Grey of what was measured and not used.
+pub const UNUSED: Colour = RGBColor(0x9a, 0x9f, 0xa5);
+/// Grey of the bands of simulated boundaries.
+pub const BOUNDARY_BAND: Colour = RGBColor(0xbd, 0xc3, 0xca);
+/// Where a number is none.
+pub const BLANK: Colour = RGBColor(0xee, 0xee, 0xee);
 /// A pale blue for 95 % bands.
 pub const BAND: Colour = RGBColor(0xc9, 0xdd, 0xee);
 
 /// Frame lines.
 pub const FRAME_STROKE: Stroke = Stroke::solid(FRAME, FRAME_WIDTH);
-/// Lines of a grid.
-pub const GRID_STROKE: Stroke = Stroke::solid(GRID, THIN_WIDTH);
 /// A line at zero.
 pub const ZERO_STROKE: Stroke = Stroke::solid(RGBColor(0xb5, 0xb9, 0xbe), 0.4);
-
-/// What the reader chose about numbers and words.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct NumberLook<'a> {
-    /// Whether numbers have a decimal comma.
-    pub decimal_comma: bool,
-    /// The reader's words for the English phrases.
-    pub table: Option<&'a Words>,
-}
-
-impl NumberLook<'_> {
-    /// A phrase in the reader's words.
-    pub fn say(self, phrase: &str) -> String {
-        let words = self.table.map_or(phrase, |words| words.get(phrase));
-        words.to_owned()
-    }
-
-    /// A phrase in the reader's words, with values for the names in braces.
-    pub fn say_with(self, phrase: &str, values: &[(&str, &str)]) -> String {
-        let mut rest = self.say(phrase);
-        let mut text = String::new();
-        while let Some((before, after)) = rest.split_once('{') {
-            let Some((name, after)) = after.split_once('}') else {
-                break;
-            };
-            text.push_str(before);
-            match values.iter().find(|v| v.0 == name) {
-                Some((_, value)) => text.push_str(value),
-                None => text.push_str(&format!("{{{name}}}")),
-            }
-            rest = after.to_owned();
-        }
-        text.push_str(&rest);
-        text
-    }
-
-    /// A title whose end in brackets, a unit or a count, is no part of the phrase.
-    pub fn say_title(self, title: &str) -> String {
-        let whole = self.say(title);
-        match title.rfind('(') {
-            Some(at) if title.ends_with(')') && whole == title => {
-                let phrase = title[..at].trim_end();
-                format!("{}{}", self.say(phrase), &title[phrase.len()..])
-            }
-            _ => whole,
-        }
-    }
-
-    /// Numbers in words of other rooms with the chosen decimal sign.
-    pub fn words(self, text: &str) -> String {
-        if !self.decimal_comma {
-            return text.to_owned();
-        }
-        let letters: Vec<char> = text.chars().collect();
-        let digit = |i: Option<usize>| {
-            let letter = i.and_then(|i| letters.get(i));
-            letter.is_some_and(char::is_ascii_digit)
-        };
-        let each = letters.iter().enumerate().map(|(i, letter)| {
-            let decimal = *letter == '.' && digit(i.checked_sub(1)) && digit(Some(i + 1));
-            if decimal { ',' } else { *letter }
-        });
-        each.collect()
-    }
-
-    /// A number with a fixed count of decimals, a true minus and the chosen decimal sign.
-    pub fn fixed(self, value: f64, decimals: usize) -> String {
-        let text = format!("{value:.decimals$}");
-        let is_zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
-        let text = if is_zero {
-            text.replace('-', "")
-        } else {
-            text.replace('-', "\u{2212}")
-        };
-        self.sign(&text)
-    }
-
-    /// A number with a count of significant digits; powers of ten where it is very large or small.
-    pub fn significant(self, value: f64, digits: usize) -> String {
-        if value == 0.0 || !value.is_finite() {
-            return if value == 0.0 {
-                "0".into()
-            } else {
-                "–".into()
-            };
-        }
-        let exponent = decimal_exponent(value, digits);
-        if (-4..6).contains(&exponent) {
-            let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
-            self.fixed(value, decimals)
-        } else {
-            let mantissa = self.fixed(value / 10f64.powi(exponent), digits.saturating_sub(1));
-            format!("{mantissa}\u{2009}·\u{2009}10{}", superscript(exponent))
-        }
-    }
-
-    /// Puts the chosen decimal sign.
-    pub fn sign(self, text: &str) -> String {
-        if self.decimal_comma {
-            text.replace('.', ",")
-        } else {
-            text.to_owned()
-        }
-    }
-}
-
-/// Exponent of ten of a number once rounded to some digits (0.99996 to four digits is 1.000).
-pub fn decimal_exponent(value: f64, digits: usize) -> i32 {
-    let exponent = value.abs().log10().floor() as i32;
-    let rounded = (value.abs() / 10f64.powi(exponent - digits as i32 + 1)).round();
-    exponent + i32::from(rounded >= 10f64.powi(digits as i32))
-}
-
-/// An exponent in raised digits.
-fn superscript(exponent: i32) -> String {
-    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    exponent
-        .to_string()
-        .chars()
-        .map(|c| c.to_digit(10).map_or('⁻', |d| DIGITS[d as usize]))
-        .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn valid_numbers_are_printed_as_books_do() {
-        let point = NumberLook::default();
-        assert_eq!(point.fixed(-0.0004, 2), "0.00");
-        assert_eq!(point.fixed(-1.25, 2), "\u{2212}1.25");
-        assert_eq!(point.significant(0.999_96, 4), "1.000");
-        assert_eq!(point.significant(12.3456, 3), "12.3");
-        assert_eq!(point.significant(1.5e-7, 2), "1.5\u{2009}·\u{2009}10⁻⁷");
-        assert_eq!(
-            NumberLook {
-                decimal_comma: true,
-                table: None
-            }
-            .fixed(1.5, 1),
-            "1,5"
-        );
-    }
-    #[test]
-    fn valid_words_stand_for_phrases_and_units_stay() {
-        let words = "[words]\n\"clearance $r$\" = \"Spiel $r$\"\n\"{a} of {b}\" = \"von {b} {a}\"";
-        let words = Words::read(words).expect("a table of words");
-        let look = NumberLook {
-            table: Some(&words),
-            ..NumberLook::default()
-        };
-        assert_eq!(look.say_title("clearance $r$ (mm)"), "Spiel $r$ (mm)");
-        assert_eq!(look.say_title("residual\n(mm)"), "residual\n(mm)");
-        let values = [("a", "two {b}"), ("b", "three")];
-        assert_eq!(look.say_with("{a} of {b}", &values), "von three two {b}");
-    }
-}

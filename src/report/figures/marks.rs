@@ -53,60 +53,56 @@ pub struct MotionLook {
     pub tint: Colour,
 }
 
-const BLUE: Colour = RGBColor(0x00, 0x5f, 0xa3);
-const SKY: Colour = RGBColor(0x2f, 0x9b, 0xd8);
-const VERMILION: Colour = RGBColor(0xd5, 0x5e, 0x00);
-const ORANGE: Colour = RGBColor(0xc9, 0x86, 0x00);
-const GREEN: Colour = RGBColor(0x00, 0x8a, 0x66);
-const PURPLE: Colour = RGBColor(0xb0, 0x52, 0x8a);
-const PLUM: Colour = RGBColor(0x6f, 0x4a, 0x9e);
-const BROWN: Colour = RGBColor(0x7a, 0x50, 0x30);
-const GREY: Colour = RGBColor(0x77, 0x77, 0x77);
-
 /// The look of a motion: the common ones by name, all others by their p and n.
 pub fn of(motion: &Motion) -> MotionLook {
     match motion {
-        Motion::Impactless => look(Shape::Circle, RGBColor(0x44, 0x4a, 0x50), 0.0),
+        Motion::Impactless => looks(Shape::Circle, look::SLATE, 0.0),
         Motion::Periodic {
             impacts_p,
             periods_n,
             dead_zone,
         } => periodic(*impacts_p, *periods_n, *dead_zone),
-        Motion::Beat => look(Shape::Plus, BROWN, 0.16),
-        Motion::Chaotic => look(Shape::Cross, RGBColor(0x8c, 0x1d, 0x1d), 0.16),
-        Motion::Joined => look(Shape::Bar, GREY, 0.22),
-        Motion::Undetermined { .. } => look(Shape::Dot, GREY, 0.10),
+        Motion::Beat => looks(Shape::Plus, look::BROWN, 0.16),
+        Motion::Chaotic => looks(Shape::Cross, look::DARK_RED, 0.16),
+        Motion::Joined => looks(Shape::Bar, look::GREY, 0.22),
+        Motion::Undetermined { .. } => looks(Shape::Dot, look::GREY, 0.10),
     }
 }
 
 fn periodic(p: u32, n: u32, dead_zone: bool) -> MotionLook {
     match (p, n, dead_zone) {
-        (1, 1, false) => look(Shape::Disc, BLUE, 0.17),
-        (_, 1, true) => look(Shape::Target, SKY, 0.26),
-        (1, 2, _) => look(Shape::Square, VERMILION, 0.17),
-        (2, 2, _) => look(Shape::Box, ORANGE, 0.26),
-        (2, 1, _) => look(Shape::Triangle, GREEN, 0.17),
-        (1, 3, _) => look(Shape::Diamond, PURPLE, 0.20),
-        (1, 4, _) => look(Shape::Wedge, PLUM, 0.17),
-        (1, 5, _) => look(Shape::Star, BROWN, 0.14),
-        (2, 3 | 4, _) => look(Shape::Lozenge, PURPLE, 0.10),
-        (_, 1, _) => look(Shape::Delta, GREEN, 0.10),
+        (1, 1, false) => looks(Shape::Disc, look::BLUE, 0.17),
+        (_, 1, true) => looks(Shape::Target, look::SKY, 0.26),
+        (1, 2, _) => looks(Shape::Square, look::VERMILION, 0.17),
+        (2, 2, _) => looks(Shape::Box, look::ORANGE, 0.26),
+        (2, 1, _) => looks(Shape::Triangle, look::GREEN, 0.17),
+        (1, 3, _) => looks(Shape::Diamond, look::PURPLE, 0.20),
+        (1, 4, _) => looks(Shape::Wedge, look::PLUM, 0.17),
+        (1, 5, _) => looks(Shape::Star, look::BROWN, 0.14),
+        (2, 3 | 4, _) => looks(Shape::Lozenge, look::PURPLE, 0.10),
+        (_, 1, _) => looks(Shape::Delta, look::GREEN, 0.10),
         _ => other(p, n),
     }
 }
 
 fn other(p: u32, n: u32) -> MotionLook {
     const SHAPES: [Shape; 4] = [Shape::Lozenge, Shape::Delta, Shape::Star, Shape::Wedge];
-    const COLOURS: [Colour; 5] = [PLUM, ORANGE, BROWN, SKY, GREEN];
+    const COLOURS: [Colour; 5] = [
+        look::PLUM,
+        look::ORANGE,
+        look::BROWN,
+        look::SKY,
+        look::GREEN,
+    ];
     let shape = SHAPES[(p as usize + 2 * n as usize) % SHAPES.len()];
-    look(
+    looks(
         shape,
         COLOURS[(2 * p as usize + n as usize) % COLOURS.len()],
         0.12,
     )
 }
 
-fn look(shape: Shape, colour: Colour, depth: f64) -> MotionLook {
+fn looks(shape: Shape, colour: Colour, depth: f64) -> MotionLook {
     MotionLook {
         shape,
         colour,

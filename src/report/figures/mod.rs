@@ -1,33 +1,34 @@
 //! The figures, one file each: from content to SVG, its data as CSV, its points for hovering.
 
-pub mod axes;
-pub mod boundary_fit;
-pub mod canvas;
+pub(super) mod axis;
+pub(super) mod boundary_fit;
+pub(super) mod canvas;
 mod compact;
-pub mod comparison;
-pub mod correlation;
-pub mod csv;
-pub mod decays;
-pub mod dots;
-pub mod estimates;
-pub mod fonts;
-pub mod impacts;
-pub mod legend;
-pub mod look;
-pub mod map;
-pub mod marks;
-pub mod path;
-pub mod placing;
-pub mod plane;
-pub mod profiles;
-pub mod regions;
-pub mod residuals;
-pub mod resonance;
-pub mod richtext;
-pub mod units;
+pub(super) mod comparison;
+pub(super) mod correlation;
+pub(super) mod csv;
+pub(super) mod decays;
+pub(super) mod dots;
+pub(super) mod estimates;
+pub(super) mod fonts;
+pub(super) mod impacts;
+pub(super) mod legend;
+pub(super) mod look;
+pub(super) mod map;
+pub(super) mod marks;
+pub(super) mod panel;
+pub(super) mod path;
+pub(super) mod placing;
+pub(super) mod plane;
+pub(super) mod profiles;
+pub(super) mod regions;
+pub(super) mod residuals;
+pub(super) mod resonance;
+pub(super) mod richtext;
+pub(super) mod units;
 
+use crate::report::speech::Speech;
 use canvas::Canvas;
-use look::NumberLook;
 use rayon::prelude::*;
 
 use crate::report::content::ReportContent;
@@ -107,51 +108,51 @@ impl Figure {
 type Job<'a> = Box<dyn Fn() -> Option<Figure> + Send + Sync + 'a>;
 
 /// Draws all figures that the content allows, side by side on all cores, in a fixed order.
-pub fn draw_all(content: &ReportContent, numbers: NumberLook) -> Vec<Figure> {
-    jobs(content, numbers)
+pub fn draw_all(content: &ReportContent, speech: Speech) -> Vec<Figure> {
+    jobs(content, speech)
         .par_iter()
         .filter_map(|job| job())
         .collect()
 }
 
-fn jobs<'a>(content: &'a ReportContent, numbers: NumberLook<'a>) -> Vec<Job<'a>> {
+fn jobs<'a>(content: &'a ReportContent, speech: Speech<'a>) -> Vec<Job<'a>> {
     let mut jobs: Vec<Job<'a>> = vec![
-        Box::new(move || map::draw(content, map::MapSize::Full, numbers)),
-        Box::new(move || map::draw(content, map::MapSize::Small, numbers)),
+        Box::new(move || map::draw(content, map::MapSize::Full, speech)),
+        Box::new(move || map::draw(content, map::MapSize::Small, speech)),
     ];
     for comparison in &content.comparisons {
-        jobs.push(Box::new(move || comparison::draw(comparison, numbers)));
+        jobs.push(Box::new(move || comparison::draw(comparison, speech)));
     }
-    jobs.push(Box::new(move || estimates::draw(content, numbers)));
-    jobs.push(Box::new(move || boundary_fit::draw(content, numbers)));
-    jobs.push(Box::new(move || profiles::draw(&content.profiles, numbers)));
+    jobs.push(Box::new(move || estimates::draw(content, speech)));
+    jobs.push(Box::new(move || boundary_fit::draw(content, speech)));
+    jobs.push(Box::new(move || profiles::draw(&content.profiles, speech)));
     if let Some(correlation) = &content.correlation {
-        jobs.push(Box::new(move || correlation::draw(correlation, numbers)));
+        jobs.push(Box::new(move || correlation::draw(correlation, speech)));
     }
-    method_jobs(content, numbers, &mut jobs);
+    method_jobs(content, speech, &mut jobs);
     jobs
 }
 
 /// Figures of which there may be several.
-fn method_jobs<'a>(content: &'a ReportContent, numbers: NumberLook<'a>, jobs: &mut Vec<Job<'a>>) {
+fn method_jobs<'a>(content: &'a ReportContent, speech: Speech<'a>, jobs: &mut Vec<Job<'a>>) {
     for (i, scatter) in content.impacts.iter().enumerate() {
         jobs.push(Box::new(move || {
-            impacts::draw(scatter, &numbered("impacts", i), numbers)
+            impacts::draw(scatter, &numbered("impacts", i), speech)
         }));
     }
     for (i, curve) in content.resonance.iter().enumerate() {
         jobs.push(Box::new(move || {
-            resonance::draw(curve, &numbered("resonance", i), numbers)
+            resonance::draw(curve, &numbered("resonance", i), speech)
         }));
     }
     for (i, few) in content.free_decays.chunks(decays::PER_FIGURE).enumerate() {
         jobs.push(Box::new(move || {
-            decays::draw(few, &numbered("free_decays", i), numbers)
+            decays::draw(few, &numbered("free_decays", i), speech)
         }));
     }
     for (i, set) in content.residuals.iter().enumerate() {
         jobs.push(Box::new(move || {
-            residuals::draw(set, &numbered("residuals", i), numbers)
+            residuals::draw(set, &numbered("residuals", i), speech)
         }));
     }
 }

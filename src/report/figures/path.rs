@@ -158,7 +158,7 @@ fn farthest(points: &[Point], from: usize, to: usize) -> Option<usize> {
 }
 
 /// Distance of a point from the segment between two others.
-pub fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
+fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     let square = dx * dx + dy * dy;
     let t = if square > 0.0 {

@@ -1,6 +1,6 @@
 //! The plane of the map: (η, ρ) where f0 and x_st are known, else frequency and clearance.
 
-use super::axes::{Axis, range};
+use super::axis::{Axis, range};
 use crate::identify::Estimate;
 use crate::motion::Motion;
 use crate::report::content::{BracketRow, ProposedPoint, RecordRow, ReportContent};
@@ -145,7 +145,9 @@ pub fn same(a: f64, b: f64) -> bool {
 
 /// The clearances, ascending, that lie far above all that happens; none where they are many.
 fn strips(all: &[f64], busy: Range) -> Vec<f64> {
+    /// More strips than this make a plane of their own.
     const MOST: usize = 3;
+    /// Over the highest busy clearance; nearer ones stay in the plane.
     const FAR: f64 = 1.3;
     let Some((_, high)) = busy else {
         return Vec::new();

@@ -1,22 +1,27 @@
 //! Profile likelihoods of the parameters, four to a row.
 
 use super::Figure;
-use super::axes::{Axis, Panel, Sides};
+use super::axis::Axis;
 use super::canvas::{Anchor, Canvas, Stroke, TextLook};
 use super::csv::Csv;
-use super::look::{self, NumberLook};
+use super::look;
+use super::panel::{Panel, Sides};
 use super::path::Rect;
 use crate::report::content::Profile;
 use crate::report::parameters::{method_name, parameter};
+use crate::report::speech::Speech;
 
 /// Rise of χ² at the ends of a 95 % interval of one parameter.
 const RISE_95: f64 = 3.841_458_820_694_124;
+/// Panels in a row.
 const COLUMNS: usize = 4;
+/// Height of a panel, points.
 const HEIGHT: f64 = 80.0;
+/// Height of a row with its headings and numbers, points.
 const ROW: f64 = HEIGHT + 36.0;
 
 /// Draws all profiles; `None` for none.
-pub fn draw(profiles: &[Profile], numbers: NumberLook) -> Option<Figure> {
+pub fn draw(profiles: &[Profile], speech: Speech) -> Option<Figure> {
     let drawn: Vec<&Profile> = profiles
         .iter()
         .filter(|p| p.values.len() > 2 && p.values.len() == p.delta_chi2.len())
@@ -35,18 +40,18 @@ pub fn draw(profiles: &[Profile], numbers: NumberLook) -> Option<Figure> {
             &mut canvas,
             profile,
             Rect::new(left, top, step - 36.0, HEIGHT),
-            numbers,
+            speech,
         );
     }
-    let title = numbers.say("Profile likelihoods");
+    let title = speech.say("Profile likelihoods");
     Some(Figure::new("profiles", &title, canvas, csv(&drawn)))
 }
 
-fn one(canvas: &mut Canvas, profile: &Profile, rect: Rect, numbers: NumberLook) {
+fn one(canvas: &mut Canvas, profile: &Profile, rect: Rect, speech: Speech) {
     let shown = parameter(&profile.parameter);
     let factor = shown.map_or(1.0, |p| p.factor);
     let title = shown.map_or_else(
-        || numbers.say(&profile.parameter.replace('_', " ")),
+        || speech.say(&profile.parameter.replace('_', " ")),
         |p| {
             format!(
                 "{} ({})",
@@ -80,7 +85,7 @@ fn one(canvas: &mut Canvas, profile: &Profile, rect: Rect, numbers: NumberLook) 
     if let Some(best) = profile.best {
         panel.upright(canvas, best * factor, Stroke::solid(look::INK, 0.5));
     }
-    panel.frame(canvas, Sides::BOTH, numbers);
+    panel.frame(canvas, Sides::BOTH, speech);
     let heading = if profile.method.is_empty() {
         "joint".into()
     } else {
@@ -89,7 +94,7 @@ fn one(canvas: &mut Canvas, profile: &Profile, rect: Rect, numbers: NumberLook) 
     let quiet = TextLook::new(look::NOTE_SIZE, Anchor::Middle).colour(look::QUIET);
     canvas.text(
         (0.5 * (rect.left + rect.right), rect.top - 3.5),
-        &numbers.say(&heading),
+        &speech.say(&heading),
         quiet,
     );
 }

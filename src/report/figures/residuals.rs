@@ -1,27 +1,32 @@
 //! Residual diagnostics of one method: histogram, autocorrelation, over frequency, over gap.
 
-use super::axes::{Axis, Panel, Sides, range};
+use super::axis::{Axis, range};
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
-use super::look::{self, NumberLook};
+use super::look;
 use super::marks;
+use super::panel::{Panel, Sides};
 use super::path::Rect;
 use super::{Figure, Spot};
 use crate::report::content::{ResidualPoint, ResidualSet};
+use crate::report::parameters::NORMAL_95;
+use crate::report::speech::Speech;
 
+/// Height of the panels, points.
 const HEIGHT: f64 = 84.0;
+/// Room above the panels, points.
 const TOP: f64 = 3.0;
 
 /// Draws the diagnostics of one method; `None` where it has no residuals.
-pub fn draw<'a>(set: &'a ResidualSet, name: &str, numbers: NumberLook<'a>) -> Option<Figure> {
+pub fn draw<'a>(set: &'a ResidualSet, name: &str, speech: Speech<'a>) -> Option<Figure> {
     if set.points.is_empty() {
         return None;
     }
     let mut sheet = Sheet {
         set,
-        numbers,
-        canvas: Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + 24.0),
+        speech,
+        canvas: Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + look::BELOW_PANEL),
         spots: Vec::new(),
     };
     let mut drawers: Vec<fn(&mut Sheet<'_>, Rect)> = vec![|s, r| s.histogram(r)];
@@ -42,13 +47,13 @@ pub fn draw<'a>(set: &'a ResidualSet, name: &str, numbers: NumberLook<'a>) -> Op
             Rect::new(31.0 + i as f64 * step, TOP, step - 36.0, HEIGHT),
         );
     }
-    let title = numbers.say("Residual diagnostics");
+    let title = speech.say("Residual diagnostics");
     Some(Figure::new(name, &title, sheet.canvas, csv(set)).with_spots(sheet.spots))
 }
 
 struct Sheet<'a> {
     set: &'a ResidualSet,
-    numbers: NumberLook<'a>,
+    speech: Speech<'a>,
     canvas: Canvas,
     spots: Vec<Spot>,
 }
@@ -98,13 +103,13 @@ impl Sheet<'_> {
             normal,
             Stroke::solid(look::VERMILION, 0.9),
         );
-        panel.frame(&mut self.canvas, Sides::BOTH, self.numbers);
+        panel.frame(&mut self.canvas, Sides::BOTH, self.speech);
     }
 
     /// Stems from lag 1, with the band in which white residuals stay.
     fn autocorrelation(&mut self, rect: Rect) {
         let rho = &self.set.autocorrelation;
-        let limit = 1.96 / (self.set.points.len() as f64).sqrt();
+        let limit = NORMAL_95 / (self.set.count() as f64).sqrt();
         let (low, high) = range(rho[1..].iter().copied()).unwrap_or((0.0, 0.0));
         let x = Axis::new(0.0, rho.len() as f64, "lag (observations)").with_ticks(4);
         let reach = (1.2 * low.abs().max(high.abs())).max(2.0 * limit).min(1.0);
@@ -124,7 +129,7 @@ impl Sheet<'_> {
                 Stroke::solid(look::INK, 0.9),
             );
         }
-        panel.frame(&mut self.canvas, Sides::BOTH, self.numbers);
+        panel.frame(&mut self.canvas, Sides::BOTH, self.speech);
     }
 
     /// Residuals over a quantity, with lines at ±1.96.
@@ -137,7 +142,7 @@ impl Sheet<'_> {
             Axis::new(-reach, reach, "weighted residual (1)").with_ticks(4),
         );
         panel.level(&mut self.canvas, 0.0, look::ZERO_STROKE);
-        for level in [-1.96, 1.96] {
+        for level in [-NORMAL_95, NORMAL_95] {
             let stroke = Stroke::dashed(look::ZERO_STROKE.colour, 0.5, &[2.0, 2.0]);
             panel.level(&mut self.canvas, level, stroke);
         }
@@ -151,24 +156,25 @@ impl Sheet<'_> {
             let Some(value) = of(p) else { continue };
             let shown = p.residual.clamp(-reach, reach);
             if let Some((x, y)) = taken.put(&mut self.canvas, &panel, (value, shown), dot) {
-                let r = self.numbers.fixed(p.residual, 2);
+                let r = self.speech.fixed(p.residual, 2);
                 self.spots.push(Spot {
                     x,
                     y,
                     text: format!(
                         "{}\n{}",
                         p.record,
-                        self.numbers.say_with("residual {value}", &[("value", &r)])
+                        self.speech.say_with("residual {value}", &[("value", &r)])
                     ),
                 });
             }
         }
-        panel.frame(&mut self.canvas, Sides::BOTH, self.numbers);
+        panel.frame(&mut self.canvas, Sides::BOTH, self.speech);
     }
 }
 
 /// An axis over values as they are set on a rig: what differs by less than one can set is one.
 fn over_axis(values: impl Iterator<Item = f64> + Clone, title: &str) -> Axis {
+    /// Relative difference of settings that are one.
     const SAME: f64 = 1e-3;
     let axis = Axis::around(values.clone(), 0.05, title);
     let (low, high) = range(values).unwrap_or((0.0, 1.0));

@@ -1,29 +1,34 @@
 //! The impactless resonance curve: amplitude and phase, measured with errors, and the fit.
 
-use super::axes::{Axis, Panel, Sides};
+use super::axis::Axis;
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
 use super::legend::{self, Key, Sign};
-use super::look::{self, NumberLook};
+use super::look;
+use super::panel::{PAIR_LEFT, Panel, Sides, pair};
 use super::path::Rect;
 use super::units::{PrintUnit, print_unit};
 use super::{Figure, Spot};
 use crate::report::content::{ResonanceCurve, ResonancePoint};
+use crate::report::speech::Speech;
 
+/// Height of the panels, points.
 const HEIGHT: f64 = 128.0;
+/// Room above the panels for the keys, points.
 const TOP: f64 = 15.0;
 
 /// Draws one curve; `None` where it has no points.
-pub fn draw(curve: &ResonanceCurve, name: &str, numbers: NumberLook) -> Option<Figure> {
+pub fn draw(curve: &ResonanceCurve, name: &str, speech: Speech) -> Option<Figure> {
     if curve.points.is_empty() {
         return None;
     }
-    let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + 24.0);
+    let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + look::BELOW_PANEL);
     let has_phase = curve.points.iter().any(|p| p.phase_rad.is_some());
-    let width = if has_phase { 196.0 } else { 441.0 };
+    let [left, right] = pair(TOP, HEIGHT);
+    let whole = Rect::new(PAIR_LEFT, TOP, look::FULL_WIDTH - PAIR_LEFT - 4.9, HEIGHT);
     let unit = amplitude_unit(curve);
-    let amplitude = amplitude_panel(curve, &unit, Rect::new(36.0, TOP, width, HEIGHT));
+    let amplitude = amplitude_panel(curve, &unit, if has_phase { left } else { whole });
     let mut spots = Vec::new();
     let value =
         |p: &ResonancePoint| Some((p.amplitude * unit.0, p.amplitude_error.map(|e| e * unit.0)));
@@ -33,9 +38,9 @@ pub fn draw(curve: &ResonanceCurve, name: &str, numbers: NumberLook) -> Option<F
         panel: amplitude,
         fit,
     }
-    .draw(&mut canvas, value, numbers, &mut spots);
+    .draw(&mut canvas, value, speech, &mut spots);
     if has_phase {
-        let panel = phase_panel(curve, Rect::new(280.0, TOP, 198.0, HEIGHT));
+        let panel = phase_panel(curve, right);
         let value = |p: &ResonancePoint| {
             Some((
                 p.phase_rad?.to_degrees(),
@@ -47,16 +52,16 @@ pub fn draw(curve: &ResonanceCurve, name: &str, numbers: NumberLook) -> Option<F
             .iter()
             .map(|f| (f[0], f[2].to_degrees()))
             .collect();
-        Series { curve, panel, fit }.draw(&mut canvas, value, numbers, &mut spots);
+        Series { curve, panel, fit }.draw(&mut canvas, value, speech, &mut spots);
     }
     legend::draw(
         &mut canvas,
-        (36.0, 0.0),
-        look::FULL_WIDTH - 36.0,
+        (PAIR_LEFT, 0.0),
+        look::FULL_WIDTH - PAIR_LEFT,
         &keys(curve),
-        numbers,
+        speech,
     );
-    let title = numbers.say("Resonance curve without impacts");
+    let title = speech.say("Resonance curve without impacts");
     Some(Figure::new(name, &title, canvas, csv(curve)).with_spots(spots))
 }
 
@@ -94,7 +99,7 @@ fn amplitude_panel(curve: &ResonanceCurve, unit: &(f64, String), rect: Rect) -> 
         .chain(within)
         .collect();
     let title = format!("amplitude ({})", unit.1);
-    let (low, high) = super::axes::range(values.iter().copied()).unwrap_or((0.0, 1.0));
+    let (low, high) = super::axis::range(values.iter().copied()).unwrap_or((0.0, 1.0));
     let y = if low > 0.0 && high / low > 12.0 {
         Axis::new(0.8 * low * unit.0, 1.25 * high * unit.0, title).logarithmic()
     } else {
@@ -123,7 +128,7 @@ impl Series<'_> {
         &self,
         canvas: &mut Canvas,
         value: impl Fn(&ResonancePoint) -> Option<(f64, Option<f64>)>,
-        numbers: NumberLook,
+        speech: Speech,
         spots: &mut Vec<Spot>,
     ) {
         let radius = dots::radius(self.curve.points.len()) + 0.2;
@@ -150,7 +155,7 @@ impl Series<'_> {
                 open: !point.used,
             };
             if let Some((x, y)) = taken.put(canvas, &self.panel, (point.frequency_hz, y), dot) {
-                let f = numbers.fixed(point.frequency_hz, 3);
+                let f = speech.fixed(point.frequency_hz, 3);
                 spots.push(Spot {
                     x,
                     y,
@@ -165,29 +170,21 @@ impl Series<'_> {
             Stroke::solid(look::VERMILION, 1.0),
         );
         canvas.layer(3);
-        self.panel.frame(canvas, Sides::BOTH, numbers);
+        self.panel.frame(canvas, Sides::BOTH, speech);
     }
 }
 
 fn keys(curve: &ResonanceCurve) -> Vec<Key> {
-    use super::marks::{MotionLook, Shape};
     let mut keys = Vec::new();
     if !curve.name.is_empty() {
         keys.push(Key::new(Sign::Nothing, curve.name.clone()));
     }
-    let dot = |shape, colour| {
-        Sign::Mark(MotionLook {
-            shape,
-            colour,
-            tint: look::PAPER,
-        })
-    };
     keys.push(Key::new(
-        dot(Shape::Dot, look::BLUE),
+        Sign::dot(look::BLUE),
         "measured, with standard error",
     ));
     if curve.points.iter().any(|p| !p.used) {
-        keys.push(Key::new(dot(Shape::Circle, look::QUIET), "not used"));
+        keys.push(Key::new(Sign::ring(look::QUIET), "not used"));
     }
     if !curve.fitted.is_empty() {
         let text = match curve.fits {

@@ -26,6 +26,7 @@ pub struct Run {
     pub level: Level,
 }
 
+/// Size of what is lowered or raised, over that of its text.
 const SCRIPT_SIZE: f64 = 0.72;
 
 /// Splits a marked-up text into runs.

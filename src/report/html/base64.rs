@@ -1,5 +1,6 @@
 //! Bytes as base64 text (RFC 4648, section 4), for fonts and images inside a page.
 
+/// The sixty-four signs, by their values.
 const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 /// Encodes with padding.

@@ -10,7 +10,9 @@ use super::figures::canvas::escape;
 use super::figures::fonts::{self, FAMILY, Face};
 use super::{RenderOptions, ReportError};
 
+/// The page's look.
 const STYLE: &str = include_str!("style.css");
+/// What the page does: zooming, hovering, saving.
 const SCRIPT: &str = include_str!("script.js");
 
 /// The page. The same input gives the same bytes; nothing is loaded from elsewhere.
@@ -47,6 +49,7 @@ pub fn html(
     Ok(page)
 }
 
+/// The faces that the page carries, with their CSS style and weight.
 const FACES: [(Face, &str, &str); 3] = [
     (Face::Regular, "normal", "400"),
     (Face::Italic, "italic", "400"),

@@ -4,7 +4,11 @@ use crate::report::ReportError;
 use crate::report::document::model::*;
 use crate::report::figures::Figure;
 use crate::report::figures::canvas::escape;
+use crate::report::figures::look;
 use crate::report::figures::richtext::Level;
+
+/// Longer tables can be scrolled.
+const MOST_ROWS: usize = 40;
 
 /// Writes the parts, numbering the captions of figures.
 pub struct Parts<'a> {
@@ -121,7 +125,7 @@ impl<'a> Parts<'a> {
     }
 
     fn figure(&mut self, reference: &FigureRef, figure: &Figure) -> Result<String, ReportError> {
-        let class = if figure.width > 300.0 {
+        let class = if figure.width > look::NARROW {
             " class=\"wide\""
         } else {
             ""
@@ -241,7 +245,7 @@ fn pairs(class: &str, entries: impl Iterator<Item = (String, String)>) -> String
 fn table(table: &Table) -> String {
     let rows = html_rows(table);
     let cell = |tag: &str, i: usize, text: &str| {
-        let align = table.align.get(i).copied().unwrap_or("left");
+        let align = table.align.get(i).map_or("left", |a| a.name());
         format!("<{tag} class=\"{align}\">{text}</{tag}>")
     };
     let heads = table.heads.iter().enumerate();
@@ -262,7 +266,7 @@ fn table(table: &Table) -> String {
         text.push_str(&format!("<tr>{cells}</tr>\n"));
     }
     text.push_str("</tbody>\n</table>\n");
-    if rows.len() > 40 {
+    if rows.len() > MOST_ROWS {
         format!("<div class=\"scroll\">\n{text}</div>\n")
     } else {
         text

@@ -9,41 +9,20 @@ pub mod sweep;
 use super::content::RegionMap;
 use super::figures::canvas::Canvas;
 use super::figures::legend::{self, Key, Sign};
-use super::figures::look::{self, NumberLook};
+use super::figures::look;
 use super::figures::marks;
+use super::speech::Speech;
 use crate::motion::Motion;
 
 /// Draws keys over the whole width of the figure's top; gives the height they take.
-fn keys_on_top(canvas: &mut Canvas, left: f64, keys: &[Key], numbers: NumberLook) {
+fn keys_on_top(canvas: &mut Canvas, left: f64, keys: &[Key], speech: Speech) {
     let width = look::FULL_WIDTH - left;
-    legend::draw(canvas, (left, 1.0), width, keys, numbers);
+    legend::draw(canvas, (left, 1.0), width, keys, speech);
 }
 
 /// Height of keys on the figure's top.
-fn keys_height(left: f64, keys: &[Key], numbers: NumberLook) -> f64 {
-    legend::height(keys, look::FULL_WIDTH - left, numbers) + 4.0
-}
-
-/// A map of motions over a plane from each cell's motion and, where there is one, from a second.
-fn plane_of(across: &[f64], up: &[f64], cells: &[Motion], second: &[Motion]) -> RegionMap {
-    let mut motions: Vec<Motion> = Vec::new();
-    let mut index = |m: &Motion| {
-        let found = motions.iter().position(|k| k == m);
-        found.unwrap_or_else(|| {
-            motions.push(m.clone());
-            motions.len() - 1
-        }) as u16
-    };
-    let cells = cells.iter().map(&mut index).collect();
-    let second = second.iter().map(&mut index).collect();
-    RegionMap {
-        eta: across.to_vec(),
-        rho: up.to_vec(),
-        motions,
-        cells,
-        second,
-        note: String::new(),
-    }
+fn keys_height(left: f64, keys: &[Key], speech: Speech) -> f64 {
+    legend::height(keys, look::FULL_WIDTH - left, speech) + 4.0
 }
 
 /// Keys of the motions that a map shows, each with its tint; the rare ones last and left out

@@ -3,32 +3,38 @@
 use super::{keys_height, keys_on_top};
 use crate::atlas::portrait::{Portrait, Sample};
 use crate::report::figures::Figure;
-use crate::report::figures::axes::{Axis, Panel, Sides, range};
-use crate::report::figures::canvas::{Canvas, Colour, Stroke};
+use crate::report::figures::axis::{Axis, range};
+use crate::report::figures::canvas::{Canvas, Stroke};
 use crate::report::figures::dots::{self, DotLook, Dots};
 use crate::report::figures::legend::{Key, Sign};
-use crate::report::figures::look::{self, NumberLook};
+use crate::report::figures::look;
 use crate::report::figures::marks::mix;
+use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
+use crate::report::speech::Speech;
 
+/// Room left of the panels, points.
 const LEFT: f64 = 36.0;
+/// Height of the displacements' panel, points.
 const SERIES_HEIGHT: f64 = 96.0;
+/// Height of the velocities' panel, points.
 const SPEED_HEIGHT: f64 = 74.0;
+/// Height of the three panels below, points.
 const SQUARE: f64 = 126.0;
 /// Times drawn at most; longer series are drawn from their end.
 const MOST_SAMPLES: usize = 200_000;
 
 /// Draws a portrait.
-pub fn draw(portrait: &Portrait, name: &str, title: &str, numbers: NumberLook<'_>) -> Figure {
+pub fn draw(portrait: &Portrait, name: &str, title: &str, speech: Speech<'_>) -> Figure {
     let keys = keys(portrait);
-    let top = keys_height(LEFT, &keys, numbers);
+    let top = keys_height(LEFT, &keys, speech);
     let squares = top + SERIES_HEIGHT + 8.0 + SPEED_HEIGHT + 40.0;
     let mut canvas = Canvas::new(look::FULL_WIDTH, squares + SQUARE + 26.0);
-    keys_on_top(&mut canvas, LEFT, &keys, numbers);
+    keys_on_top(&mut canvas, LEFT, &keys, speech);
     let drawing = Drawing {
         portrait,
         samples: with_impacts(portrait),
-        numbers,
+        speech,
     };
     drawing.series(&mut canvas, top);
     drawing.speeds(&mut canvas, top + SERIES_HEIGHT + 8.0);
@@ -93,27 +99,18 @@ fn keys(portrait: &Portrait) -> Vec<Key> {
         keys.push(Key::new(line(look::INK), "stop at $ρ$"));
     }
     if !portrait.impacts.is_empty() {
-        keys.push(Key::new(
-            Sign::Mark(crate::report::figures::marks::MotionLook {
-                shape: crate::report::figures::marks::Shape::Dot,
-                colour: look::INK,
-                tint: look::PAPER,
-            }),
-            "impact",
-        ));
+        keys.push(Key::new(Sign::dot(look::INK), "impact"));
     }
     if portrait.samples.iter().any(|s| s.joined) {
-        keys.push(Key::new(Sign::Patch(JOINED), "masses together"));
+        keys.push(Key::new(Sign::Patch(look::PALE), "masses together"));
     }
     keys
 }
 
-const JOINED: Colour = plotters::style::RGBColor(0xd9, 0xdd, 0xe2);
-
 struct Drawing<'a> {
     portrait: &'a Portrait,
     samples: Vec<Sample>,
-    numbers: NumberLook<'a>,
+    speech: Speech<'a>,
 }
 
 impl Drawing<'_> {
@@ -170,7 +167,7 @@ impl Drawing<'_> {
             below: false,
             left: true,
         };
-        panel.frame(canvas, sides, self.numbers);
+        panel.frame(canvas, sides, self.speech);
     }
 
     /// Shades the times at which the masses are together.
@@ -179,7 +176,7 @@ impl Drawing<'_> {
         let mut first: Option<f64> = None;
         let mut band = |from: f64, to: f64| {
             let (a, b) = (panel.at(from, panel.y.low), panel.at(to, panel.y.high));
-            canvas.rectangle((a.0, b.1), (b.0, a.1), JOINED);
+            canvas.rectangle((a.0, b.1), (b.0, a.1), look::PALE);
         };
         for s in &self.samples {
             match (s.joined, first) {
@@ -214,7 +211,7 @@ impl Drawing<'_> {
         let data: Vec<_> = self.samples.iter().map(|s| (s.periods, s.vx)).collect();
         panel.curve(canvas, data, Stroke::solid(look::BLUE, 0.8));
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.numbers);
+        panel.frame(canvas, Sides::BOTH, self.speech);
     }
 
     fn phase_plane(&self, canvas: &mut Canvas, rect: Rect) {
@@ -241,12 +238,12 @@ impl Drawing<'_> {
         let data: Vec<_> = self.samples.iter().map(|s| (s.x, s.vx)).collect();
         panel.curve(canvas, data, Stroke::solid(look::BLUE, 0.6));
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.numbers);
+        panel.frame(canvas, Sides::BOTH, self.speech);
     }
 
     fn poincare(&self, canvas: &mut Canvas, rect: Rect) {
         let points = &self.portrait.poincare;
-        let phase = self.numbers.fixed(self.portrait.poincare_phase, 2);
+        let phase = self.speech.fixed(self.portrait.poincare_phase, 2);
         let title = format!("$X$ at drive phase {phase} (1)");
         let wide = |values: Vec<f64>| {
             let (low, high) = range(values).unwrap_or((0.0, 1.0));
@@ -271,7 +268,7 @@ impl Drawing<'_> {
             taken.put(canvas, &panel, (p[0], p[1]), dot);
         }
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.numbers);
+        panel.frame(canvas, Sides::BOTH, self.speech);
     }
 
     fn autocorrelation(&self, canvas: &mut Canvas, rect: Rect) {
@@ -284,6 +281,6 @@ impl Drawing<'_> {
         let stroke = Stroke::solid(mix(look::BLUE, 0.9), 0.6);
         panel.curve(canvas, values.iter().copied(), stroke);
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.numbers);
+        panel.frame(canvas, Sides::BOTH, self.speech);
     }
 }

@@ -1,21 +1,26 @@
 //! Regions of existence and stability of all motions in the (η, ρ) plane: the brute-force maps as
 //! tints (hatched where they differ), the boundaries as curves.
 
-use super::{keys_height, keys_on_top, plane_of};
+use super::{keys_height, keys_on_top};
 use crate::atlas::curves::Curve;
 use crate::atlas::map::{CellMotion, MapGrid};
 use crate::motion::Motion;
+use crate::report::content::RegionMap;
 use crate::report::figures::Figure;
-use crate::report::figures::axes::{Axis, Panel, Sides};
+use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
 use crate::report::figures::fonts::Face;
 use crate::report::figures::legend::{Key, Sign};
-use crate::report::figures::look::{self, NumberLook};
+use crate::report::figures::look;
+use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::{self, Rect};
 use crate::report::figures::placing::Occupancy;
 use crate::report::figures::regions::Regions;
+use crate::report::speech::Speech;
 
+/// Room left of the panel, points.
 const LEFT: f64 = 34.0;
+/// Height of the panel, points.
 const HEIGHT: f64 = 380.0;
 /// Shorter pieces of boundaries are told in the table alone.
 const FEWEST_POINTS: usize = 3;
@@ -34,16 +39,22 @@ pub struct Plane<'a> {
 }
 
 /// Draws the plane; `None` where the grid has no area.
-pub fn draw(plane: &Plane<'_>, name: &str, title: &str, numbers: NumberLook) -> Option<Figure> {
+pub fn draw(plane: &Plane<'_>, name: &str, title: &str, speech: Speech) -> Option<Figure> {
     let motions =
         |cells: &[CellMotion]| -> Vec<Motion> { cells.iter().map(|c| Motion::from(*c)).collect() };
     let (first, second) = (motions(plane.first), motions(plane.second));
-    let map = plane_of(&plane.grid.eta, &plane.grid.rho, &first, &second);
+    let map = RegionMap::of_motions(
+        plane.grid.eta.clone(),
+        plane.grid.rho.clone(),
+        &first,
+        &second,
+        "",
+    );
     let keys = keys(plane.curves, first != second);
-    let top = keys_height(LEFT, &keys, numbers);
+    let top = keys_height(LEFT, &keys, speech);
     let size = (look::FULL_WIDTH, top + HEIGHT + 26.0);
     let mut canvas = Canvas::new(size.0, size.1);
-    keys_on_top(&mut canvas, LEFT, &keys, numbers);
+    keys_on_top(&mut canvas, LEFT, &keys, speech);
     let axis = |v: &[f64], title: &str, ticks| {
         Some(Axis::new(*v.first()?, *v.last()?, title).with_ticks(ticks))
     };
@@ -58,13 +69,13 @@ pub fn draw(plane: &Plane<'_>, name: &str, title: &str, numbers: NumberLook) -> 
     let mut occupancy = Occupancy::new(size.0, size.1);
     curves(&mut canvas, &panel, plane.curves, &mut occupancy);
     canvas.layer(5);
-    for label in regions.labels(&mut occupancy, 9.5, numbers) {
+    for label in regions.labels(&mut occupancy, 9.5, speech) {
         let text_look = TextLook::new(label.size, Anchor::Middle).face(Face::Bold);
         let at = (label.at.0, label.at.1 + 0.33 * label.size);
         canvas.text(at, &label.text, text_look.colour(look::INK));
     }
     canvas.layer(6);
-    panel.frame(&mut canvas, Sides::BOTH, numbers);
+    panel.frame(&mut canvas, Sides::BOTH, speech);
     Some(Figure::new(name, title, canvas, String::new()))
 }
 
@@ -111,16 +122,15 @@ const KINDS: [(&str, &str, Stroke); 8] = [
     (
         "dead_zone",
         "dead zone begins ($p$ | $p$j)",
-        Stroke::dashed(PURPLE, 0.9, &[5.0, 1.6, 1.4, 1.6]),
+        Stroke::dashed(look::PLUM, 0.9, &[5.0, 1.6, 1.4, 1.6]),
     ),
     (
         "joined",
         "$ρ_p$: together for ever",
         Stroke::solid(look::QUIET, 1.2),
     ),
-    ("torus", "torus", Stroke::solid(PURPLE, 0.7)),
+    ("torus", "torus", Stroke::solid(look::PLUM, 0.7)),
 ];
-const PURPLE: plotters::style::RGBColor = plotters::style::RGBColor(0x6f, 0x4a, 0x9e);
 
 fn stroke(kind: &str) -> Stroke {
     let known = KINDS.iter().find(|k| k.0 == kind);

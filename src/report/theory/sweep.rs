@@ -4,15 +4,18 @@
 use super::{keys_height, keys_on_top};
 use crate::atlas::sweep::{Impactless, SweepPoint};
 use crate::report::figures::Figure;
-use crate::report::figures::axes::{Axis, Panel, Sides, range};
+use crate::report::figures::axis::{Axis, range};
 use crate::report::figures::canvas::{Canvas, Colour, Stroke};
 use crate::report::figures::dots::{self, DotLook, Dots};
 use crate::report::figures::legend::{Key, Sign};
-use crate::report::figures::look::{self, NumberLook};
-use crate::report::figures::marks::{MotionLook, Shape};
+use crate::report::figures::look;
+use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
+use crate::report::speech::Speech;
 
+/// Room left of the panels, points.
 const LEFT: f64 = 42.0;
+/// Room between the panels, points.
 const GAP: f64 = 7.0;
 
 /// A sweep in both directions.
@@ -37,6 +40,7 @@ struct Row {
     ticks: usize,
 }
 
+/// The characteristics from above.
 const ROWS: [Row; 4] = [
     Row {
         title: "greatest\n$X_m$ (1)",
@@ -67,16 +71,17 @@ const ROWS: [Row; 4] = [
         ticks: 3,
     },
 ];
+/// Height of the last panel, the phase of the impactless motion, points.
 const PHASE_HEIGHT: f64 = 62.0;
 
 /// Draws the characteristics over the quantity that moves.
-pub fn draw(data: &Characteristics<'_>, name: &str, title: &str, numbers: NumberLook) -> Figure {
+pub fn draw(data: &Characteristics<'_>, name: &str, title: &str, speech: Speech) -> Figure {
     let keys = keys(data.two_masses);
-    let top = keys_height(LEFT, &keys, numbers);
+    let top = keys_height(LEFT, &keys, speech);
     let rows: f64 = ROWS.iter().map(|r| r.height + GAP).sum();
     let mut canvas = Canvas::new(look::FULL_WIDTH, top + rows + PHASE_HEIGHT + 26.0);
-    keys_on_top(&mut canvas, LEFT, &keys, numbers);
-    let drawing = Drawing { data, numbers };
+    keys_on_top(&mut canvas, LEFT, &keys, speech);
+    let drawing = Drawing { data, speech };
     let mut y = top;
     for (i, row) in ROWS.iter().enumerate() {
         drawing.row(&mut canvas, y, row, i == 0);
@@ -87,33 +92,30 @@ pub fn draw(data: &Characteristics<'_>, name: &str, title: &str, numbers: Number
 }
 
 fn keys(two: bool) -> Vec<Key> {
-    let dot = |colour| {
-        Sign::Mark(MotionLook {
-            shape: Shape::Dot,
-            colour,
-            tint: look::PAPER,
-        })
-    };
     let mut keys = vec![
-        Key::new(dot(look::BLUE), "there (in the sweep's own direction)"),
-        Key::new(dot(look::VERMILION), "back"),
+        Key::new(
+            Sign::dot(look::BLUE),
+            "there (in the sweep's own direction)",
+        ),
+        Key::new(Sign::dot(look::VERMILION), "back"),
         Key::new(
             Sign::Line(Stroke::solid(IMPACTLESS, 0.8)),
             "impactless motion of $X$",
         ),
     ];
     if two {
-        let stroke = Stroke::dashed(IMPACTLESS, 0.8, &[4.0, 2.0]);
+        let stroke = Stroke::dashed(IMPACTLESS, 0.8, look::DASH);
         keys.push(Key::new(Sign::Line(stroke), "of $Y$"));
     }
     keys
 }
 
+/// Colour of the impactless motion.
 const IMPACTLESS: Colour = look::QUIET;
 
 struct Drawing<'a> {
     data: &'a Characteristics<'a>,
-    numbers: NumberLook<'a>,
+    speech: Speech<'a>,
 }
 
 impl Drawing<'_> {
@@ -179,7 +181,7 @@ impl Drawing<'_> {
             below: false,
             left: true,
         };
-        panel.frame(canvas, sides, self.numbers);
+        panel.frame(canvas, sides, self.speech);
     }
 
     /// The impactless motion's curve of X, and of Y where there is one.
@@ -188,7 +190,7 @@ impl Drawing<'_> {
         let y: Vec<(f64, f64)> = pairs()
             .filter_map(|(p, i)| Some((self.at(p), of(i.y?))))
             .collect();
-        let dashed = Stroke::dashed(IMPACTLESS, 0.8, &[4.0, 2.0]);
+        let dashed = Stroke::dashed(IMPACTLESS, 0.8, look::DASH);
         panel.curve(canvas, y, dashed);
         let x: Vec<(f64, f64)> = pairs().map(|(p, i)| (self.at(p), of(i.x))).collect();
         panel.curve(canvas, x, Stroke::solid(IMPACTLESS, 0.8));
@@ -199,6 +201,6 @@ impl Drawing<'_> {
         let panel = self.panel(top, PHASE_HEIGHT, y, true);
         self.impactless(canvas, &panel, |p| p.1.to_degrees());
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.numbers);
+        panel.frame(canvas, Sides::BOTH, self.speech);
     }
 }

@@ -3,28 +3,28 @@
 use super::{Column, arrow, table};
 use crate::report::content::{BracketRow, ReportContent};
 use crate::report::document::model::{Rich, Table};
-use crate::report::figures::look::NumberLook;
+use crate::report::speech::Speech;
 
 /// From how many brackets on their table is set small and in two columns.
 const MANY_BRACKETS: usize = 14;
 
 /// The measured brackets beside the simulated boundary; many of them small and in two columns.
-pub fn brackets(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
+pub fn brackets(content: &ReportContent, speech: Speech) -> Option<Table> {
     let many = content.brackets.len() > MANY_BRACKETS;
     let rows = content
         .brackets
         .iter()
-        .map(|b| bracket_row(b, many, numbers))
+        .map(|b| bracket_row(b, many, speech))
         .collect();
     let columns: [Column; 8] = [
-        (if many { "" } else { "boundary" }, "left", 0),
-        ("$z$", "left", 0),
-        ("$r$ (mm)", "right", 0),
-        ("$ρ$", "right", 0),
-        (if many { "" } else { "sweep" }, "center", 0),
-        ("measured between (Hz)", "center", 0),
-        ("simulated (Hz)", "right", 0),
-        (if many { "" } else { "remark" }, "left", 1),
+        Column::left(if many { "" } else { "boundary" }),
+        Column::left("$z$"),
+        Column::right("$r$ (mm)"),
+        Column::right("$ρ$"),
+        Column::center(if many { "" } else { "sweep" }),
+        Column::center("measured between (Hz)"),
+        Column::right("simulated (Hz)"),
+        Column::wide(if many { "" } else { "remark" }, 1),
     ];
     let caption = if many {
         "Measured brackets of the boundaries, and the boundary of the fitted model: = within the \
@@ -32,7 +32,7 @@ pub fn brackets(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     } else {
         "Measured brackets of the boundaries, and the boundary of the fitted model."
     };
-    let table = table(caption, &columns, rows, numbers)?;
+    let table = table(caption, &columns, rows, speech)?;
     Some(if many {
         Table {
             size: 6.8,
@@ -44,24 +44,24 @@ pub fn brackets(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     })
 }
 
-fn bracket_row(b: &BracketRow, many: bool, numbers: NumberLook) -> Vec<Rich> {
+fn bracket_row(b: &BracketRow, many: bool, speech: Speech) -> Vec<Rich> {
     let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
     vec![
-        Rich::from(numbers.say(b.kind.symbol())),
-        Rich::from(numbers.say(&b.motion.label())),
-        Rich::from(numbers.significant(1e3 * b.clearance_m, 3)),
-        Rich::from(b.rho.map_or("–".into(), |r| numbers.fixed(r, 3))),
+        Rich::from(speech.say(b.kind.symbol())),
+        Rich::from(speech.say(&b.motion.label())),
+        Rich::from(speech.significant(1e3 * b.clearance_m, 3)),
+        Rich::from(b.rho.map_or("–".into(), |r| speech.fixed(r, 3))),
         Rich::from(arrow(b.direction)),
         Rich::from(format!(
             "{} … {}",
-            numbers.fixed(low, 3),
-            numbers.fixed(high, 3)
+            speech.fixed(low, 3),
+            speech.fixed(high, 3)
         )),
-        Rich::from(b.simulated_hz.map_or("–".into(), |f| numbers.fixed(f, 3))),
+        Rich::from(b.simulated_hz.map_or("–".into(), |f| speech.fixed(f, 3))),
         Rich::from(if many {
             bracket_sign(b).into()
         } else {
-            bracket_remark(b, numbers)
+            bracket_remark(b, speech)
         }),
     ]
 }
@@ -76,16 +76,19 @@ fn bracket_sign(b: &BracketRow) -> &'static str {
     }
 }
 
-fn bracket_remark(b: &BracketRow, numbers: NumberLook) -> String {
+fn bracket_remark(b: &BracketRow, speech: Speech) -> String {
     let by = |phrase: &str, distance: f64| {
-        numbers.say_with(phrase, &[("distance", &numbers.fixed(distance, 3))])
+        speech.say_with(phrase, &[("distance", &speech.fixed(distance, 3))])
     };
     let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
     match (&b.left_out, b.simulated_hz) {
-        (Some(why), _) => numbers.say_with("not used: {why}", &[("why", why)]),
+        (Some(why), _) => {
+            let why = speech.tell(why);
+            speech.say_with("not used: {why}", &[("why", &why)])
+        }
         (None, Some(f)) if f < low => by("below by {distance} Hz", low - f),
         (None, Some(f)) if f > high => by("above by {distance} Hz", f - high),
-        (None, Some(_)) => numbers.say("within"),
+        (None, Some(_)) => speech.say("within"),
         (None, None) => String::new(),
     }
 }

@@ -1,45 +1,66 @@
 //! The tables of the document.
 
 mod brackets;
+mod estimates;
 mod records;
 
 pub use brackets::brackets;
+pub use estimates::{agreement, methods, specimen_methods, specimens};
 pub use records::records;
 
-use std::collections::BTreeMap;
-
-use crate::identify::{MethodResult, ParameterSet};
 use crate::record::Sweep;
 use crate::report::content::ReportContent;
-use crate::report::document::model::{Rich, Table};
+use crate::report::document::model::{Align, Rich, Table};
 use crate::report::document::prose::prose;
-use crate::report::figures::look::NumberLook;
-use crate::report::parameters::{self, PARAMETERS, method_name};
+use crate::report::figures::richtext::{Level, Run};
+use crate::report::speech::Speech;
 
-/// A column: head, alignment, relative width (0: as wide as its content).
-type Column = (&'static str, &'static str, u16);
+/// A column of a table.
+#[derive(Debug, Clone, Copy)]
+struct Column {
+    /// Its head, a phrase with markup.
+    head: &'static str,
+    align: Align,
+    /// Relative width; 0: as wide as its content.
+    width: u16,
+}
 
-fn table(
-    caption: &str,
-    columns: &[Column],
-    rows: Vec<Vec<Rich>>,
-    numbers: NumberLook,
-) -> Option<Table> {
-    let table = (!rows.is_empty()).then(|| Table {
-        caption: Rich::from(numbers.say(caption)),
-        heads: columns
-            .iter()
-            .map(|c| Rich::from(numbers.say_title(c.0)))
-            .collect(),
-        align: columns.iter().map(|c| c.1).collect(),
-        widths: columns.iter().map(|c| c.2).collect(),
-        rows,
-        size: 8.5,
-        side_by_side: 1,
-        dense: false,
-        columns_text: Vec::new(),
-    });
-    table.map(without_empty_columns)
+impl Column {
+    /// As wide as its content, from the left.
+    const fn left(head: &'static str) -> Self {
+        Self::wide(head, 0)
+    }
+
+    /// With a share of the room that the others leave, from the left.
+    const fn wide(head: &'static str, width: u16) -> Self {
+        let align = Align::Left;
+        Self { head, align, width }
+    }
+
+    /// As wide as its content, to the right: numbers.
+    const fn right(head: &'static str) -> Self {
+        let (align, width) = (Align::Right, 0);
+        Self { head, align, width }
+    }
+
+    /// As wide as its content, in the middle: signs.
+    const fn center(head: &'static str) -> Self {
+        let (align, width) = (Align::Center, 0);
+        Self { head, align, width }
+    }
+}
+
+/// A table of columns whose heads are phrases; `None` where it has no rows.
+fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>, speech: Speech) -> Option<Table> {
+    let heads = columns.iter().map(|c| Rich::from(speech.say_title(c.head)));
+    let table = Table {
+        caption: Rich::from(speech.say(caption)),
+        heads: heads.collect(),
+        align: columns.iter().map(|c| c.align).collect(),
+        widths: columns.iter().map(|c| c.width).collect(),
+        ..Table::of(rows)
+    };
+    (!table.rows.is_empty()).then(|| without_empty_columns(table))
 }
 
 /// Without the columns in which no row says anything; the first column stays.
@@ -66,168 +87,25 @@ fn without_empty_columns(table: Table) -> Table {
     }
 }
 
-const METHOD_COLUMNS: [Column; 8] = [
-    ("method", "left", 0),
-    ("$R$", "left", 1),
-    ("$f_0$", "left", 1),
-    ("$β$", "left", 1),
-    ("$x_st$", "left", 1),
-    ("obs.", "right", 0),
-    ("residual", "right", 0),
-    ("fits", "center", 0),
-];
-
-const METHODS_CAPTION: &str = "Estimates with half their 95 % interval, number of observations, \
-     root mean square of the weighted residuals (1: as the stated noise), and whether the model \
-     fits.";
-
-/// What each method found, and the joint estimate.
-pub fn methods(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
-    let id = &content.identification;
-    let rows = method_rows(&id.methods, &id.joint, numbers);
-    table(METHODS_CAPTION, &METHOD_COLUMNS, rows, numbers).map(|t| Table { size: 7.5, ..t })
-}
-
-/// The same for each specimen of a campaign that holds several.
-pub fn specimen_methods(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
-    let specimens = content.identification.specimens.iter();
-    let rows = specimens.flat_map(|(specimen, result)| {
-        let rows = method_rows(&result.methods, &result.joint, numbers);
-        rows.into_iter().enumerate().map(move |(i, row)| {
-            let name = if i == 0 {
-                verbatim(specimen.clone())
-            } else {
-                Rich::default()
-            };
-            std::iter::once(name).chain(row).collect()
-        })
-    });
-    let mut columns: Vec<Column> = vec![("specimen", "left", 0)];
-    columns.extend(METHOD_COLUMNS);
-    table(METHODS_CAPTION, &columns, rows.collect(), numbers).map(|t| Table { size: 7.5, ..t })
-}
-
-/// The answer for each specimen of a campaign that holds several.
-pub fn specimens(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
-    let rows = content
-        .identification
-        .specimens
-        .iter()
-        .map(|(specimen, result)| {
-            let mut row = vec![verbatim(specimen.clone())];
-            row.extend(estimate_cells(&result.joint.parameters, numbers));
-            let headline = super::front::headline(result.verdict.kind).1;
-            row.push(Rich::from(numbers.say(headline)));
-            row
-        });
-    let columns: [Column; 6] = [
-        ("specimen", "left", 0),
-        ("$R$", "left", 1),
-        ("$f_0$", "left", 1),
-        ("$β$", "left", 1),
-        ("$x_st$", "left", 1),
-        ("verdict", "left", 2),
-    ];
-    table("", &columns, rows.collect(), numbers).map(|t| Table { size: 8.5, ..t })
-}
-
-fn estimate_cells(set: &ParameterSet, numbers: NumberLook) -> Vec<Rich> {
-    let cell = |look| Rich::from(parameters::short(look, (look.pick)(set), numbers));
-    PARAMETERS.iter().map(cell).collect()
-}
-
-/// Rows of the methods that say anything, the joint estimate last.
-fn method_rows(
-    methods: &BTreeMap<String, MethodResult>,
-    joint: &MethodResult,
-    numbers: NumberLook,
-) -> Vec<Vec<Rich>> {
-    let all = methods.iter().map(|(k, m)| (method_name(k), m));
-    let all = all.chain([(method_name("joint"), joint)]);
-    let says = |m: &MethodResult| PARAMETERS.iter().any(|p| (p.pick)(&m.parameters).is_some());
-    all.filter(|(_, m)| says(m))
-        .map(|(name, m)| method_row(numbers.say(&name), m, numbers))
-        .collect()
-}
-
-fn method_row(name: String, method: &MethodResult, numbers: NumberLook) -> Vec<Rich> {
-    let mut row = vec![Rich::from(name)];
-    row.extend(estimate_cells(&method.parameters, numbers));
-    let observations = method.observations;
-    let observations = if observations == 0 {
-        "–".into()
-    } else {
-        observations.to_string()
-    };
-    let residual = method.reduced_residual;
-    let residual = residual.map_or("–".into(), |r| numbers.significant(r, 2));
-    let fits = match method.fits {
-        Some(true) => "yes",
-        Some(false) => "no",
-        None => "–",
-    };
-    row.extend([
-        Rich::from(observations),
-        Rich::from(residual),
-        Rich::from(numbers.say(fits)),
-    ]);
-    row
-}
-
-/// Whether the methods agree, pair by pair.
-pub fn agreement(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
-    let rows = content.identification.agreement.pairs.iter().map(|pair| {
-        let symbol =
-            parameters::parameter(&pair.parameter).map_or(pair.parameter.as_str(), |p| p.symbol);
-        let p = if pair.p_value < 1e-3 {
-            format!("< {}", numbers.fixed(1e-3, 3))
-        } else {
-            numbers.fixed(pair.p_value, 3)
-        };
-        vec![
-            Rich::from(symbol),
-            Rich::from(numbers.say(&method_name(&pair.methods[0]))),
-            Rich::from(numbers.say(&method_name(&pair.methods[1]))),
-            Rich::from(numbers.fixed(pair.z_score, 2)),
-            Rich::from(p),
-        ]
-    });
-    let columns: [Column; 5] = [
-        ("parameter", "left", 0),
-        ("method", "left", 1),
-        ("and method", "left", 1),
-        ("difference / its error", "right", 0),
-        ("p-value", "right", 0),
-    ];
-    table(
-        "Agreement of the methods, pair by pair.",
-        &columns,
-        rows.collect(),
-        numbers,
-    )
-}
-
 /// Further tables of the content, as they stand.
 pub fn further<'a>(
     content: &'a ReportContent,
-    numbers: NumberLook<'a>,
+    speech: Speech<'a>,
 ) -> impl Iterator<Item = Table> + 'a {
-    content.tables.iter().filter_map(move |t| {
-        let columns: Vec<Column> = t.heads.iter().map(|_| ("", "right", 0)).collect();
-        let rows = t.rows.iter();
-        let rows = rows.map(|row| row.iter().map(Rich::from).collect());
-        let heads = t.heads.iter().map(|h| Rich::from(numbers.say_title(h)));
-        (!t.rows.is_empty()).then(|| Table {
-            caption: Rich::from(numbers.say(&t.caption)),
+    let with_rows = content.tables.iter().filter(|t| !t.rows.is_empty());
+    with_rows.map(move |t| {
+        let rows = t
+            .rows
+            .iter()
+            .map(|row| row.iter().map(Rich::from).collect());
+        let heads = t.heads.iter().map(|h| Rich::from(speech.say_title(h)));
+        Table {
+            caption: Rich::from(speech.say(&t.caption)),
             heads: heads.collect(),
-            align: columns.iter().map(|c| c.1).collect(),
-            widths: columns.iter().map(|c| c.2).collect(),
-            rows: rows.collect(),
-            size: 8.5,
-            side_by_side: 1,
-            dense: false,
-            columns_text: Vec::new(),
-        })
+            align: vec![Align::Right; t.heads.len()],
+            widths: vec![0; t.heads.len()],
+            ..Table::of(rows.collect())
+        }
     })
 }
 
@@ -240,22 +118,22 @@ fn arrow(sweep: Sweep) -> &'static str {
 }
 
 /// What was left out and why.
-pub fn left_out(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
+pub fn left_out(content: &ReportContent, speech: Speech) -> Option<Table> {
     let rows = content.left_out.iter().map(|l| {
         let count = l.count.map_or(String::new(), |c| c.to_string());
-        vec![verbatim(l.what.clone()), Rich::from(count), prose(&l.why)]
+        let (what, why) = (speech.tell(&l.what), speech.tell(&l.why));
+        vec![verbatim(what), Rich::from(count), prose(&why)]
     });
     let columns: [Column; 3] = [
-        ("left out", "left", 2),
-        ("count", "right", 0),
-        ("why", "left", 5),
+        Column::wide("left out", 2),
+        Column::right("count"),
+        Column::wide("why", 5),
     ];
-    table("", &columns, rows.collect(), numbers)
+    table("", &columns, rows.collect(), speech)
 }
 
 /// A cell whose text has no markup, whatever signs it holds.
 pub fn verbatim(text: String) -> Rich {
-    use crate::report::figures::richtext::{Level, Run};
     if text.is_empty() {
         Rich::default()
     } else {
@@ -268,7 +146,7 @@ pub fn verbatim(text: String) -> Rich {
 }
 
 /// SHA-256 of the inputs.
-pub fn hashes(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
+pub fn hashes(content: &ReportContent, speech: Speech) -> Option<Table> {
     let inputs = &content.identification.inputs_sha256;
     let rows = inputs
         .iter()
@@ -277,9 +155,9 @@ pub fn hashes(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
     let caption = "SHA-256 of every input.";
     table(
         caption,
-        &[("input", "left", 2), ("SHA-256", "left", 0)],
+        &[Column::wide("input", 2), Column::left("SHA-256")],
         rows,
-        numbers,
+        speech,
     )
     .map(|t| Table { size: 6.2, ..t })
 }

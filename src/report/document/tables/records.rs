@@ -5,45 +5,46 @@ use crate::motion::Motion;
 use crate::report::content::{RecordRow, ReportContent};
 use crate::report::document::model::{Rich, Table};
 use crate::report::figures::fonts::{self, Face};
-use crate::report::figures::look::{self, NumberLook};
+use crate::report::figures::look;
 use crate::report::parameters::method_name;
+use crate::report::speech::Speech;
 
 /// From how many records on the table is set small and in two columns.
 const MANY_RECORDS: usize = 45;
 
 /// All records; many of them small and in two columns.
-pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
+pub fn records(content: &ReportContent, speech: Speech) -> Option<Table> {
     let many = content.records.len() > MANY_RECORDS;
     let planar = content
         .records
         .iter()
         .any(|r| r.eta.is_some() && r.rho.is_some());
-    let mut columns: Vec<Column> = vec![("record", "left", 0), ("specimen", "left", 0)];
+    let mut columns: Vec<Column> = vec![Column::left("record"), Column::left("specimen")];
     columns.extend([
-        ("", "center", 0),
-        ("$f$ (Hz)", "right", 0),
-        ("$r$ (mm)", "right", 0),
+        Column::center(""),
+        Column::right("$f$ (Hz)"),
+        Column::right("$r$ (mm)"),
     ]);
     if planar {
-        columns.extend([("$η$", "right", 0), ("$ρ$", "right", 0)]);
+        columns.extend([Column::right("$η$"), Column::right("$ρ$")]);
     }
     columns.extend([
-        ("$z$", "center", 0),
-        ("conf.", "right", 0),
-        ("impacts", "right", 0),
+        Column::center("$z$"),
+        Column::right("conf."),
+        Column::right("impacts"),
     ]);
     columns.push(if many {
-        ("", "left", 0)
+        Column::left("")
     } else {
-        ("used by; flags", "left", 1)
+        Column::wide("used by; flags", 1)
     });
-    let row = |r: &RecordRow| record_row(r, planar, many, numbers);
+    let row = |r: &RecordRow| record_row(r, planar, many, speech);
     let rows = content.records.iter().map(row).collect();
     let caption = if many {
         let signs = "{records}: sweep, measured drive frequency, clearance, motion, confidence. \
                      ? undetermined; • used in the identification; ! flagged. Reasons and flags \
                      in full are in records.parquet.";
-        numbers.say_with(signs, &[("records", &which(content, numbers))])
+        speech.say_with(signs, &[("records", &which(content, speech))])
     } else {
         match content.records.iter().any(|r| r.frequency_hz.is_some()) {
             true => {
@@ -53,7 +54,7 @@ pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
         }
         .to_owned()
     };
-    let table = table(&caption, &columns, rows, numbers)?;
+    let table = table(&caption, &columns, rows, speech)?;
     Some(if many {
         crowded(table)
     } else {
@@ -62,22 +63,25 @@ pub fn records(content: &ReportContent, numbers: NumberLook) -> Option<Table> {
 }
 
 /// Which records the table lists: all, or an even choice of very many.
-fn which(content: &ReportContent, numbers: NumberLook) -> String {
+fn which(content: &ReportContent, speech: Speech) -> String {
     let (listed, all) = (content.records.len(), content.summary.records_total);
     if listed < all {
-        numbers.say_with(
+        speech.say_with(
             "{some} of the {count} records, evenly chosen (records.parquet holds all)",
             &[("some", &listed.to_string()), ("count", &all.to_string())],
         )
     } else {
-        numbers.say("All records")
+        speech.say("All records")
     }
 }
 
 /// Many rows: small type, whole columns at once, two tables beside each other where they fit.
 fn crowded(table: Table) -> Table {
+    /// Size of the type, points.
     const SIZE: f64 = 6.2;
+    /// Room that a cell takes beside its text, points.
     const PADDING: f64 = 0.9 * SIZE;
+    /// Room between the two tables, points, as the template has it.
     const GUTTER: f64 = 14.0;
     let mut table = table;
     let width = |cell: &Rich| fonts::width(&cell.plain(), Face::Bold, SIZE);
@@ -123,22 +127,22 @@ fn shortened(name: &Rich, room: f64, size: f64) -> Rich {
     verbatim(fitting.unwrap_or_else(|| "…".into()))
 }
 
-fn record_row(r: &RecordRow, planar: bool, many: bool, numbers: NumberLook) -> Vec<Rich> {
-    let number = |v: Option<f64>, decimals| v.map_or("–".into(), |v| numbers.fixed(v, decimals));
+fn record_row(r: &RecordRow, planar: bool, many: bool, speech: Speech) -> Vec<Rich> {
+    let number = |v: Option<f64>, decimals| v.map_or("–".into(), |v| speech.fixed(v, decimals));
     let mut row: Vec<String> = vec![
         r.id.clone(),
         r.specimen.clone().unwrap_or_default(),
         arrow(r.sweep).into(),
         number(r.frequency_hz, 3),
         r.clearance_m
-            .map_or("–".into(), |c| numbers.fixed(1e3 * c, 3)),
+            .map_or("–".into(), |c| speech.fixed(1e3 * c, 3)),
     ];
     if planar {
         row.extend([number(r.eta, 4), number(r.rho, 3)]);
     }
     let driven = r.frequency_hz.is_some();
     row.extend([
-        motion_label(r, many, numbers),
+        motion_label(r, many, speech),
         number(r.confidence.filter(|_| driven), 2),
     ]);
     if !driven && r.impacts > 0 {
@@ -149,16 +153,16 @@ fn record_row(r: &RecordRow, planar: bool, many: bool, numbers: NumberLook) -> V
     row.push(if many {
         short_remark(r)
     } else {
-        long_remark(r, numbers)
+        long_remark(r, speech)
     });
     row.into_iter().map(verbatim).collect()
 }
 
-fn motion_label(r: &RecordRow, many: bool, numbers: NumberLook) -> String {
+fn motion_label(r: &RecordRow, many: bool, speech: Speech) -> String {
     match &r.motion {
         Motion::Undetermined { .. } if r.frequency_hz.is_none() => "–".into(),
         Motion::Undetermined { .. } if many => "?".into(),
-        motion => numbers.say(&motion.label()),
+        motion => speech.say(&motion.label()),
     }
 }
 
@@ -168,20 +172,24 @@ fn short_remark(r: &RecordRow) -> String {
     format!("{used}{flagged}")
 }
 
-fn long_remark(r: &RecordRow, numbers: NumberLook) -> String {
+fn long_remark(r: &RecordRow, speech: Speech) -> String {
     let used = if r.used_by.is_empty() {
-        let not_used = |why| numbers.say_with("not used: {why}", &[("why", why)]);
+        let not_used =
+            |why: &str| speech.say_with("not used: {why}", &[("why", &speech.tell(why))]);
         r.left_out.as_deref().map(not_used)
     } else {
         Some(
             r.used_by
                 .iter()
-                .map(|m| numbers.say(&method_name(m).to_lowercase()))
+                .map(|m| speech.say(&method_name(m).to_lowercase()))
                 .collect::<Vec<_>>()
                 .join(", "),
         )
     };
-    let flags = (!r.flags.is_empty()).then(|| r.flags.join(", "));
+    let flags = (!r.flags.is_empty()).then(|| {
+        let told = r.flags.iter().map(|f| speech.tell(f));
+        told.collect::<Vec<_>>().join(", ")
+    });
     [used, flags]
         .into_iter()
         .flatten()

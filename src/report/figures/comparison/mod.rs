@@ -1,37 +1,47 @@
 //! A chosen point: simulated beside measured over the drive periods, phase portraits, residuals.
 
+mod data;
 mod portraits;
 mod rows;
-mod words;
 
-pub use words::{caption, name};
+pub use data::name;
 
 use crate::record::Role;
 use crate::report::content::{Comparison, Signal};
-use crate::report::figures::axes::{Axis, Panel, Sides, range};
+use crate::report::figures::axis::{Axis, range};
 use crate::report::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
 use crate::report::figures::fonts::Face;
-use crate::report::figures::look::{self, NumberLook};
+use crate::report::figures::look;
 use crate::report::figures::marks;
+use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
 use crate::report::figures::{Figure, richtext};
+use crate::report::speech::Speech;
 use rows::{Row, root_mean_square, rows, shown, symbol};
 
+/// Room left of the first column, for numbers and titles, points.
 const LEFT: f64 = 40.0;
 /// Width of a column of panels beside phase portraits, and without them.
 const COLUMNS: [f64; 2] = [136.0, 201.0];
+/// Room between the columns of panels, points.
 const COLUMN_GAP: f64 = 35.0;
+/// Left edge of the phase portraits, points.
 const PORTRAIT_LEFT: f64 = 387.0;
 /// Distance of the titles of upward axes from their frames.
 const TITLE_REACH: f64 = 22.0;
+/// Width of a phase portrait, points.
 const PORTRAIT_WIDTH: f64 = look::FULL_WIDTH - PORTRAIT_LEFT - 2.0;
+/// Room between the rows of panels, points.
 const ROW_GAP: f64 = 5.0;
+/// Room above the panels, for letter and titles, points.
 const TOP: f64 = 13.0;
+/// Room below the panels, for numbers and title, points.
 const BOTTOM: f64 = 22.0;
+/// Width of the simulated curve behind the measured one, points.
 const BACK_WIDTH: f64 = 1.7;
 
 /// Draws one comparison; `None` where it has no trace at all.
-pub fn draw<'a>(comparison: &'a Comparison, numbers: NumberLook<'a>) -> Option<Figure> {
+pub fn draw<'a>(comparison: &'a Comparison, speech: Speech<'a>) -> Option<Figure> {
     let rows = rows(comparison);
     if rows.is_empty() && comparison.portraits.is_empty() {
         return None;
@@ -44,7 +54,7 @@ pub fn draw<'a>(comparison: &'a Comparison, numbers: NumberLook<'a>) -> Option<F
     });
     let mut sheet = Sheet {
         comparison,
-        numbers,
+        speech,
         canvas: Canvas::new(look::FULL_WIDTH, TOP + stack + BOTTOM),
         time: time_axis(comparison, &rows),
         column: COLUMNS[usize::from(comparison.portraits.is_empty())],
@@ -54,12 +64,12 @@ pub fn draw<'a>(comparison: &'a Comparison, numbers: NumberLook<'a>) -> Option<F
     sheet.portraits(stack);
     let name = name(comparison);
     let letter = [("letter", comparison.letter.as_str())];
-    let title = numbers.say_with("Point ({letter}): simulated and measured", &letter);
+    let title = speech.say_with("Point ({letter}): simulated and measured", &letter);
     Some(Figure::new(
         name,
         &title,
         sheet.canvas,
-        words::csv(comparison),
+        data::csv(comparison),
     ))
 }
 
@@ -122,7 +132,7 @@ enum Side {
 
 struct Sheet<'a> {
     comparison: &'a Comparison,
-    numbers: NumberLook<'a>,
+    speech: Speech<'a>,
     canvas: Canvas,
     time: TimeAxis,
     column: f64,
@@ -160,7 +170,7 @@ impl Sheet<'_> {
         if !rows.is_empty() {
             for (side, word) in [(Side::Simulated, "simulated"), (Side::Measured, "measured")] {
                 let at = (middle(self, side), TOP - 4.0);
-                self.canvas.text(at, &self.numbers.say(word), title);
+                self.canvas.text(at, &self.speech.say(word), title);
             }
         }
         let last_plain = rows.iter().rposition(|r| !r.residual);
@@ -215,7 +225,7 @@ impl Sheet<'_> {
         }
         self.canvas.layer(2);
         let left = side == Side::Simulated || row.residual;
-        panel.frame(&mut self.canvas, Sides { below, left }, self.numbers);
+        panel.frame(&mut self.canvas, Sides { below, left }, self.speech);
         self.empty_note(row, side, &panel);
     }
 
@@ -265,7 +275,7 @@ impl Sheet<'_> {
         let r = panel.rect;
         let at = (0.5 * (r.left + r.right), 0.5 * (r.top + r.bottom) + 2.5);
         let quiet = TextLook::new(look::NOTE_SIZE, Anchor::Middle).colour(look::QUIET);
-        self.canvas.text(at, &self.numbers.say(text), quiet);
+        self.canvas.text(at, &self.speech.say(text), quiet);
     }
 
     /// The impacts of the simulation as stems on a level line.
@@ -284,13 +294,13 @@ impl Sheet<'_> {
         let lines = row.traces.iter().filter_map(|(trace, _)| {
             let rms = root_mean_square(trace.residual.as_ref()?)?;
             let whole = root_mean_square(trace.measured.as_ref()?)?;
-            let value = self.numbers.significant(rms * row.unit.factor, 2);
-            let share = self.numbers.significant(100.0 * rms / whole, 2);
+            let value = self.speech.significant(rms * row.unit.factor, 2);
+            let share = self.speech.significant(100.0 * rms / whole, 2);
             let name = symbol(trace.role);
             let text = "{name}: rms residual {value} = {share} % of rms";
             let value = format!("{value} {}", row.unit.symbol);
             let values = [("name", name), ("value", &value), ("share", &share)];
-            Some(self.numbers.say_with(text, &values))
+            Some(self.speech.say_with(text, &values))
         });
         // up to the two lines of the residual's title
         let room = self.column + COLUMN_GAP - TITLE_REACH - 2.0 * look::TITLE_SIZE;

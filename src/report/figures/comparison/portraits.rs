@@ -2,8 +2,9 @@
 
 use super::{BACK_WIDTH, PORTRAIT_LEFT, PORTRAIT_WIDTH, Sheet, TOP};
 use crate::report::content::Portrait;
-use crate::report::figures::axes::{Axis, Panel, Sides};
+use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Anchor, Stroke, TextLook};
+use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
 use crate::report::figures::units::{PrintUnit, print_unit};
 use crate::report::figures::{look, marks};
@@ -34,7 +35,7 @@ impl Sheet<'_> {
         let middle = PORTRAIT_LEFT + 0.5 * PORTRAIT_WIDTH;
         self.canvas.text(
             (middle, TOP - 4.0),
-            &self.numbers.say("phase portraits"),
+            &self.speech.say("phase portraits"),
             title,
         );
         let units = units(&shown);
@@ -85,6 +86,6 @@ impl Sheet<'_> {
             panel.curve(&mut self.canvas, data, stroke);
         }
         self.canvas.layer(2);
-        panel.frame(&mut self.canvas, Sides::BOTH, self.numbers);
+        panel.frame(&mut self.canvas, Sides::BOTH, self.speech);
     }
 }

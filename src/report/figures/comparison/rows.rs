@@ -5,6 +5,7 @@ use crate::report::content::{Comparison, Signal, Trace};
 use crate::report::figures::canvas::Colour;
 use crate::report::figures::look;
 use crate::report::figures::units::{PrintUnit, print_unit};
+use crate::signal::robust::rms;
 
 /// A row of panels: which channels, how tall, how titled.
 pub struct Row<'a> {
@@ -20,6 +21,7 @@ pub struct Row<'a> {
     pub residual: bool,
 }
 
+/// The rows of a comparison, those with anything to show; residuals last.
 pub fn rows(comparison: &Comparison) -> Vec<Row<'_>> {
     let pairs = [
         ([Role::DisplacementX, Role::DisplacementY], "", 38.0),
@@ -128,6 +130,7 @@ fn peak(signal: &Signal) -> f64 {
         .fold(0.0, |m, v| m.max(v.abs()))
 }
 
+/// Symbol of a channel, with markup; its name where it has none.
 pub fn symbol(role: Role) -> &'static str {
     match role {
         Role::VelocityX => "$v_x$",
@@ -140,6 +143,7 @@ pub fn symbol(role: Role) -> &'static str {
     }
 }
 
+/// The signals that a row draws of a trace.
 pub fn shown(trace: &Trace, residual: bool) -> Vec<&Signal> {
     let picked = if residual {
         [trace.residual.as_ref(), None]
@@ -149,7 +153,7 @@ pub fn shown(trace: &Trace, residual: bool) -> Vec<&Signal> {
     picked.into_iter().flatten().collect()
 }
 
+/// Root mean square of a signal; `None` where it is empty.
 pub fn root_mean_square(signal: &Signal) -> Option<f64> {
-    let n = signal.values.len();
-    (n > 0).then(|| (signal.values.iter().map(|v| v * v).sum::<f64>() / n as f64).sqrt())
+    (!signal.values.is_empty()).then(|| rms(&signal.values))
 }

@@ -4,25 +4,25 @@ use crate::motion::Motion;
 use crate::record::Sweep;
 use crate::report::content::{RecordRow, RegionMap, ReportContent};
 use crate::report::figures::csv::Csv;
-use crate::report::figures::look::NumberLook;
+use crate::report::speech::Speech;
 
 /// What hovering over a record tells.
-pub fn describe(record: &RecordRow, numbers: NumberLook) -> String {
+pub fn describe(record: &RecordRow, speech: Speech) -> String {
     let mut parts = vec![
         record.id.clone(),
-        format!("z = {}", numbers.say(&record.motion.label())),
+        format!("z = {}", speech.say(&record.motion.label())),
     ];
     if let Some(f) = record.frequency_hz {
-        parts.push(format!("f = {} Hz", numbers.fixed(f, 3)));
+        parts.push(format!("f = {} Hz", speech.fixed(f, 3)));
     }
     if let Some(r) = record.clearance_m {
-        parts.push(format!("r = {} mm", numbers.significant(1e3 * r, 4)));
+        parts.push(format!("r = {} mm", speech.significant(1e3 * r, 4)));
     }
     if let (Some(eta), Some(rho)) = (record.eta, record.rho) {
         parts.push(format!(
             "η = {}, ρ = {}",
-            numbers.fixed(eta, 4),
-            numbers.fixed(rho, 3)
+            speech.fixed(eta, 4),
+            speech.fixed(rho, 3)
         ));
     }
     let sweep = match record.sweep {
@@ -30,9 +30,9 @@ pub fn describe(record: &RecordRow, numbers: NumberLook) -> String {
         Sweep::Down => "sweep down",
         Sweep::Unknown => "sweep unknown",
     };
-    parts.push(numbers.say(sweep));
+    parts.push(speech.say(sweep));
     if let Some(c) = record.confidence {
-        parts.push(numbers.say_with("confidence {share}", &[("share", &numbers.fixed(c, 2))]));
+        parts.push(speech.say_with("confidence {share}", &[("share", &speech.fixed(c, 2))]));
     }
     parts.join("\n")
 }

@@ -1,6 +1,5 @@
 //! The map's keys and how its boundaries are drawn.
 
-use super::{BAND, UNUSED};
 use crate::report::content::{BoundaryKind, ReportContent};
 use crate::report::figures::canvas::Stroke;
 use crate::report::figures::legend::{Key, Sign};
@@ -22,7 +21,7 @@ pub fn full(content: &ReportContent, plane: Plane) -> Vec<Key> {
     if !content.brackets.is_empty() {
         keys.push(Key::new(Sign::Bracket(look::INK), "measured bracket"));
         if content.brackets.iter().any(|b| b.left_out.is_some()) {
-            keys.push(Key::new(Sign::Bracket(UNUSED), "bracket not used"));
+            keys.push(Key::new(Sign::Bracket(look::UNUSED), "bracket not used"));
         }
     }
     if plane.dimensionless {
@@ -44,7 +43,7 @@ fn curve_keys(content: &ReportContent) -> Vec<Key> {
         .map(|(kind, text)| Key::new(Sign::Line(boundary_stroke(kind, 1.1)), text))
         .collect();
     if content.curves.iter().any(|c| !c.band95.is_empty()) {
-        keys.push(Key::new(Sign::Patch(BAND), "95 % band"));
+        keys.push(Key::new(Sign::Patch(look::BOUNDARY_BAND), "95 % band"));
     }
     keys
 }

@@ -3,12 +3,13 @@
 
 use super::{Map, STRIP_HALF, STRIP_STEP};
 use crate::report::content::BoundaryCurve;
-use crate::report::figures::axes::Axis;
+use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Anchor, Point, Stroke, TextLook};
 use crate::report::figures::fonts::{self, Face};
-use crate::report::figures::look::{self, NumberLook};
+use crate::report::figures::look;
 use crate::report::figures::path::Rect;
 use crate::report::figures::richtext;
+use crate::report::speech::Speech;
 
 impl Map<'_> {
     /// Names a curve beside the middle of its longest visible piece.
@@ -98,7 +99,7 @@ impl Map<'_> {
     }
 
     /// Frames and values of the strips above the panel.
-    pub(super) fn strip_frames(&mut self, numbers: NumberLook) {
+    pub(super) fn strip_frames(&mut self, speech: Speech) {
         let r = self.panel.rect;
         for (i, value) in self.strips.clone().into_iter().enumerate() {
             let middle = self.strip_middle(i);
@@ -115,12 +116,12 @@ impl Map<'_> {
             let text_look = TextLook::new(look::TICK_SIZE, Anchor::Right).colour(look::INK);
             self.canvas.text(
                 (r.left - 3.0, middle + 2.3),
-                &numbers.fixed(value, 1),
+                &speech.fixed(value, 1),
                 text_look,
             );
             let x_st = self.plane.static_deflection_m.filter(|_| self.full());
             if let Some(x_st) = x_st.filter(|_| self.plane.dimensionless) {
-                let millimetres = numbers.fixed(1e3 * x_st * value, 1);
+                let millimetres = speech.fixed(1e3 * x_st * value, 1);
                 let text_look = TextLook::new(look::TICK_SIZE, Anchor::Left).colour(look::QUIET);
                 self.canvas
                     .text((r.right + 3.0, middle + 2.3), &millimetres, text_look);
@@ -129,7 +130,7 @@ impl Map<'_> {
     }
 
     /// Frequency in Hz above and clearance in mm on the right.
-    pub(super) fn laboratory_axes(&mut self, numbers: NumberLook) {
+    pub(super) fn laboratory_axes(&mut self, speech: Speech) {
         let r = self.panel.rect;
         let top = r.top - STRIP_STEP * self.strips.len() as f64;
         let small = TextLook::new(look::TICK_SIZE, Anchor::Middle).colour(look::QUIET);
@@ -142,10 +143,10 @@ impl Map<'_> {
                 self.canvas
                     .segment((x, top), (x, top + 2.5), look::FRAME_STROKE);
                 self.canvas
-                    .text((x, top - 3.0), &numbers.fixed(v, decimals), small);
+                    .text((x, top - 3.0), &speech.fixed(v, decimals), small);
             }
             let at = (0.5 * (r.left + r.right), top - 14.0);
-            let name = numbers.say_title("drive frequency $f$ (Hz)");
+            let name = speech.say_title("drive frequency $f$ (Hz)");
             self.canvas.text(at, &name, title);
         }
         if let Some(x_st) = self.plane.static_deflection_m.map(|x| 1e3 * x) {
@@ -161,12 +162,12 @@ impl Map<'_> {
                 self.canvas
                     .segment((r.right, y), (r.right - 2.5, y), look::FRAME_STROKE);
                 self.canvas
-                    .text((r.right + 3.0, y + 2.3), &numbers.fixed(v, decimals), left);
+                    .text((r.right + 3.0, y + 2.3), &speech.fixed(v, decimals), left);
             }
             let at = (r.right + 24.0, 0.5 * (r.top + r.bottom));
             self.canvas.text(
                 at,
-                &numbers.say_title("clearance $r$ (mm)"),
+                &speech.say_title("clearance $r$ (mm)"),
                 TextLook {
                     upward: true,
                     ..title

@@ -6,17 +6,18 @@ mod labels;
 
 use crate::record::Sweep;
 use crate::report::content::{BoundaryCurve, BracketRow, RecordRow, RegionMap, ReportContent};
-use crate::report::figures::axes::{Panel, Sides};
 use crate::report::figures::canvas::{Anchor, Canvas, Point, TextLook};
 use crate::report::figures::fonts::Face;
 use crate::report::figures::legend::{self, Key};
-use crate::report::figures::look::{self, NumberLook};
+use crate::report::figures::look;
 use crate::report::figures::marks;
+use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::{self, Rect};
 use crate::report::figures::placing::Occupancy;
 use crate::report::figures::plane::{Plane, View, same};
 use crate::report::figures::regions::Regions;
 use crate::report::figures::{Figure, Spot};
+use crate::report::speech::Speech;
 
 /// Which of the two maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,34 +28,32 @@ pub enum MapSize {
     Small,
 }
 
-const BAND: plotters::style::RGBColor = plotters::style::RGBColor(0xbd, 0xc3, 0xca);
 /// Height of a strip with its gap, points.
 const STRIP_STEP: f64 = 15.0;
 /// Half the height of a strip's frame, points.
 const STRIP_HALF: f64 = 5.5;
-const UNUSED: plotters::style::RGBColor = plotters::style::RGBColor(0x9a, 0x9f, 0xa5);
 
 /// Draws the map; `None` where the records have no place in a plane.
-pub fn draw(content: &ReportContent, size: MapSize, numbers: NumberLook) -> Option<Figure> {
+pub fn draw(content: &ReportContent, size: MapSize, speech: Speech) -> Option<Figure> {
     let plane = Plane::of(content)?;
     let keys = if size == MapSize::Full {
         keys::full(content, plane)
     } else {
         keys::motions(content)
     };
-    let mut map = Map::new(content, plane, size, (&keys, numbers));
+    let mut map = Map::new(content, plane, size, (&keys, speech));
     // Labels go where records and curves leave room.
     map.take_records_and_curves();
     map.take_brackets();
-    map.regions(numbers);
+    map.regions(speech);
     map.curves();
     map.draw_brackets();
-    map.records(numbers);
+    map.records(speech);
     if size == MapSize::Full {
         map.letters();
     }
-    map.frame(numbers, &keys);
-    Some(map.finish(numbers))
+    map.frame(speech, &keys);
+    Some(map.finish(speech))
 }
 
 struct Map<'a> {
@@ -94,24 +93,24 @@ impl<'a> Map<'a> {
         content: &'a ReportContent,
         plane: Plane,
         size: MapSize,
-        (keys, numbers): (&[Key], NumberLook),
+        (keys, speech): (&[Key], Speech),
     ) -> Self {
         let full = size == MapSize::Full;
         let flat = content.region_map.is_none() && heights(content, plane) <= 3;
         let (width, height) = match (full, flat) {
             (true, false) => (look::FULL_WIDTH, 370.0),
             (true, true) => (look::FULL_WIDTH, 200.0),
-            (false, false) => (236.0, 235.0),
-            (false, true) => (236.0, 130.0),
+            (false, false) => (look::FRONT_WIDTH, 235.0),
+            (false, true) => (look::FRONT_WIDTH, 130.0),
         };
         let keys_height =
-            legend::height(keys, width, numbers) + if keys.is_empty() { 0.0 } else { 3.0 };
+            legend::height(keys, width, speech) + if keys.is_empty() { 0.0 } else { 3.0 };
         let both_units = full && plane.dimensionless;
         let (left, right) = (33.0, if both_units { 30.0 } else { 4.0 });
         let View { x, y, strips } = plane.view(content);
         let strips_height = STRIP_STEP * strips.len() as f64;
         let top = keys_height + strips_height + if both_units { 26.0 } else { 3.0 };
-        let rect = Rect::new(left, top, width - left - right, height - 24.0);
+        let rect = Rect::new(left, top, width - left - right, height - look::BELOW_PANEL);
         let total = top + height;
         let (x, y) = if full {
             (x, y)
@@ -137,7 +136,7 @@ impl<'a> Map<'a> {
         self.size == MapSize::Full
     }
 
-    fn regions(&mut self, numbers: NumberLook) {
+    fn regions(&mut self, speech: Speech) {
         let Some(map) = self
             .content
             .region_map
@@ -161,7 +160,7 @@ impl<'a> Map<'a> {
         regions.draw(&mut self.canvas);
         let size = if self.full() { 10.0 } else { 8.0 };
         self.canvas.layer(6);
-        for label in regions.labels(&mut self.occupancy, size, numbers) {
+        for label in regions.labels(&mut self.occupancy, size, speech) {
             let text_look = TextLook::new(label.size, Anchor::Middle).face(Face::Bold);
             let (x, y) = label.at;
             let baseline = (x, y + 0.33 * label.size);
@@ -214,7 +213,7 @@ impl<'a> Map<'a> {
         let outline: Vec<Point> = upper.chain(lower).collect();
         if outline.len() >= 4 {
             let polygon = path::clip_polygon(&outline, &self.panel.rect);
-            self.canvas.fill(&path::thin(&polygon), BAND);
+            self.canvas.fill(&path::thin(&polygon), look::BOUNDARY_BAND);
         }
     }
 
@@ -245,7 +244,7 @@ impl<'a> Map<'a> {
             let colour = if bracket.left_out.is_none() {
                 look::INK
             } else {
-                UNUSED
+                look::UNUSED
             };
             self.canvas.layer(3);
             legend::bracket(&mut self.canvas, ends, y, colour);
@@ -290,7 +289,7 @@ impl<'a> Map<'a> {
         self.panel.rect.top - STRIP_STEP * (index as f64 + 0.5) - 1.0
     }
 
-    fn records(&mut self, numbers: NumberLook) {
+    fn records(&mut self, speech: Speech) {
         let radius = self.radius;
         let mut drawn: Vec<(Point, String)> = Vec::new();
         self.canvas.layer(4);
@@ -298,7 +297,7 @@ impl<'a> Map<'a> {
             let Some(at) = self.place(record) else {
                 continue;
             };
-            let text = data::describe(record, numbers);
+            let text = data::describe(record, speech);
             self.spots.push(Spot {
                 x: at.0,
                 y: at.1,
@@ -317,24 +316,24 @@ impl<'a> Map<'a> {
         }
     }
 
-    fn frame(&mut self, numbers: NumberLook, keys: &[Key]) {
+    fn frame(&mut self, speech: Speech, keys: &[Key]) {
         self.canvas.layer(7);
-        self.panel.frame(&mut self.canvas, Sides::BOTH, numbers);
+        self.panel.frame(&mut self.canvas, Sides::BOTH, speech);
         if self.full() && self.plane.dimensionless {
-            self.laboratory_axes(numbers);
+            self.laboratory_axes(speech);
         }
-        self.strip_frames(numbers);
+        self.strip_frames(speech);
         let width = self.canvas.width;
-        legend::draw(&mut self.canvas, (0.0, 0.0), width, keys, numbers);
+        legend::draw(&mut self.canvas, (0.0, 0.0), width, keys, speech);
     }
 
-    fn finish(self, numbers: NumberLook) -> Figure {
+    fn finish(self, speech: Speech) -> Figure {
         let csv = data::csv(self.content);
         let (name, title) = match self.size {
             MapSize::Full => ("map", "Regions of motion, simulated and measured"),
             MapSize::Small => ("map_small", "Measured motions and boundaries"),
         };
-        Figure::new(name, &numbers.say(title), self.canvas, csv).with_spots(self.spots)
+        Figure::new(name, &speech.say(title), self.canvas, csv).with_spots(self.spots)
     }
 }
 

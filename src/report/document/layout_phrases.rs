@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::report::figures::look::NumberLook;
+use crate::report::speech::Speech;
 
+/// Those of template.typ, of the page and of its script.
 const PHRASES: [&str; 13] = [
     "Synthetic data: simulated records, not a measurement.",
     "The methods agree.",
@@ -21,7 +22,7 @@ const PHRASES: [&str; 13] = [
 ];
 
 /// From each phrase to what is printed for it.
-pub fn words(numbers: NumberLook) -> BTreeMap<&'static str, String> {
+pub fn words(speech: Speech) -> BTreeMap<&'static str, String> {
     let each = PHRASES.into_iter();
-    each.map(|phrase| (phrase, numbers.say(phrase))).collect()
+    each.map(|phrase| (phrase, speech.say(phrase))).collect()
 }

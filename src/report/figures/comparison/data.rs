@@ -1,34 +1,7 @@
-//! What a comparison is called, what stands under it, and its data.
+//! A comparison's name and its data as CSV.
 
 use crate::report::content::{Comparison, Signal, Trace};
 use crate::report::figures::csv::Csv;
-use crate::report::figures::look::NumberLook;
-
-/// What stands under a comparison, with markup.
-pub fn caption(comparison: &Comparison, numbers: NumberLook) -> String {
-    let mut text = numbers.say_with("Point ({letter})", &[("letter", &comparison.letter)]);
-    if comparison.drive_period_s.is_some() {
-        let label = numbers.say(&comparison.motion.label());
-        text.push_str(&format!(", $z$ = {label}"));
-    }
-    if let (Some(eta), Some(rho)) = (comparison.eta, comparison.rho) {
-        let (eta, rho) = (numbers.fixed(eta, 3), numbers.fixed(rho, 3));
-        let values = [("eta", eta.as_str()), ("rho", rho.as_str())];
-        text.push_str(&numbers.say_with(", at $η$ = {eta}, $ρ$ = {rho}", &values));
-    }
-    let record = [("record", comparison.record.as_str())];
-    text.push_str(&numbers.say_with("; record {record}.", &record));
-    let simulated = comparison.simulated_motion.as_ref();
-    if let Some(other) = simulated.filter(|m| **m != comparison.motion) {
-        let label = numbers.say(&other.label());
-        let said = numbers.say_with("The simulated motion is {motion}.", &[("motion", &label)]);
-        text.push_str(&format!(" {said}"));
-    }
-    if !comparison.note.is_empty() {
-        text.push_str(&format!(" {}", numbers.say(&comparison.note)));
-    }
-    text
-}
 
 /// Name of a comparison's figure.
 pub fn name(comparison: &Comparison) -> String {

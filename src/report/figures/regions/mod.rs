@@ -1,12 +1,14 @@
-//! The regions of motion of a simulated grid: tints with smoothed edges, and places for labels.
+//! The regions of motion of a simulated grid: tints with smoothed edges, hatched where two motions
+//! are possible.
 
-use super::axes::Panel;
-use super::canvas::{Canvas, Colour, Point, Stroke};
-use super::look::{self, NumberLook};
-use super::marks;
-use super::path::{self, Rect};
-use super::placing::Occupancy;
+mod labels;
+
 use crate::report::content::RegionMap;
+use crate::report::figures::canvas::{Canvas, Colour, Point, Stroke};
+use crate::report::figures::look;
+use crate::report::figures::marks;
+use crate::report::figures::panel::Panel;
+use crate::report::figures::path;
 
 /// Regions smaller than this share of the map get no label and no outline.
 const LEAST_SHARE: f64 = 0.0025;
@@ -18,17 +20,6 @@ pub struct Regions<'a> {
     /// Region of each cell, and each region's number of cells.
     region: Vec<usize>,
     areas: Vec<usize>,
-}
-
-/// Where a region's label may stand.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RegionLabel {
-    /// Its text.
-    pub text: String,
-    /// Middle of the text, points.
-    pub at: Point,
-    /// Size of the text, points.
-    pub size: f64,
 }
 
 /// A run of cells of one motion: its tint, its lower left and its upper right corner.
@@ -273,106 +264,6 @@ impl<'a> Regions<'a> {
         let i = nearest(&self.map.eta, across)?;
         let j = nearest(&self.map.rho, up)?;
         Some(self.cell(i, j))
-    }
-
-    /// A label for each region that is large enough, where its text stands free.
-    pub fn labels(
-        &self,
-        occupancy: &mut Occupancy,
-        size: f64,
-        numbers: NumberLook,
-    ) -> Vec<RegionLabel> {
-        let mut order: Vec<usize> = (0..self.areas.len()).collect();
-        order.sort_by_key(|&r| std::cmp::Reverse(self.areas[r]));
-        let least = LEAST_SHARE * self.region.len() as f64;
-        let large = order
-            .into_iter()
-            .take_while(|&r| self.areas[r] as f64 >= least);
-        let place = |r| {
-            [size, 0.8 * size]
-                .into_iter()
-                .find_map(|s| self.label((r, numbers), occupancy, s))
-        };
-        large.filter_map(place).collect()
-    }
-
-    fn label(
-        &self,
-        (region, numbers): (usize, NumberLook),
-        occupancy: &mut Occupancy,
-        size: f64,
-    ) -> Option<RegionLabel> {
-        let first_cell = self.region.iter().position(|&r| r == region)?;
-        let text = self.name(first_cell, numbers);
-        let half = (
-            0.5 * super::fonts::width(&text, super::fonts::Face::Bold, size) + 3.0,
-            0.5 * size + 1.5,
-        );
-        let columns = self.map.eta.len();
-        let best = self
-            .region
-            .iter()
-            .enumerate()
-            .filter(|(_, r)| **r == region)
-            .filter_map(|(index, _)| {
-                let at = self.centre((index % columns) as isize, (index / columns) as isize);
-                Some((self.room(region, at, half, occupancy)?, at))
-            })
-            .max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let (x, y) = best.1;
-        occupancy.take_rect(&Rect::new(
-            x - half.0,
-            y - half.1,
-            2.0 * half.0,
-            2.0 * half.1,
-        ));
-        Some(RegionLabel {
-            text,
-            at: best.1,
-            size,
-        })
-    }
-
-    fn name(&self, cell: usize, numbers: NumberLook) -> String {
-        let (first, second) = self.kind(cell);
-        let label = |k: u16| numbers.say(&self.map.motions[usize::from(k)].label());
-        if first == second {
-            label(first)
-        } else {
-            format!("{}, {}", label(first), label(second))
-        }
-    }
-
-    /// How well a text of a half size stands at a place: `None` where it leaves the region.
-    fn room(&self, region: usize, at: Point, half: Point, taken: &Occupancy) -> Option<f64> {
-        let inside = |grow: f64| {
-            let (w, h) = (half.0 + grow, half.1 + grow);
-            [
-                (-w, -h),
-                (0.0, -h),
-                (w, -h),
-                (-w, 0.0),
-                (w, 0.0),
-                (-w, h),
-                (0.0, h),
-                (w, h),
-            ]
-            .into_iter()
-            .all(|(dx, dy)| {
-                self.cell_at((at.0 + dx, at.1 + dy))
-                    .is_some_and(|c| self.region[c] == region)
-            })
-        };
-        if !inside(0.0) {
-            return None;
-        }
-        let free = [3.0, 6.0, 10.0, 15.0, 22.0]
-            .into_iter()
-            .take_while(|g| inside(*g))
-            .count();
-        let rect = Rect::new(at.0 - half.0, at.1 - half.1, 2.0 * half.0, 2.0 * half.1);
-        let covered = taken.taken(&rect) as f64;
-        (covered <= 0.08 * rect.width() * rect.height()).then_some(free as f64 - 0.5 * covered)
     }
 }
 

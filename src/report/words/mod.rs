@@ -1,11 +1,15 @@
-//! The report's own words in another language: a table from each English phrase, as it stands in
-//! the source, to the reader's.
+//! The report's words in another language: a table from each English phrase, as it stands in the
+//! source, to the reader's; and from each sentence of the other rooms, by its template.
+
+mod sentences;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
+use sentences::{Part, Sentences};
+
 /// The German words, whose phrases are at the same time all that a report can say of its own.
-const GERMAN: &str = include_str!("words-de.toml");
+const GERMAN: &str = include_str!("../words-de.toml");
 
 /// Phrases and what is printed instead of them.
 #[derive(Debug, Clone, Default, PartialEq, Eq, serde::Deserialize)]
@@ -15,6 +19,9 @@ pub struct Words {
     pub language: Option<String>,
     /// From the English phrase to the one printed.
     words: BTreeMap<String, String>,
+    /// From the template of an English sentence of another room to that of the one printed.
+    #[serde(default)]
+    sentences: Sentences,
 }
 
 /// Why a table of words cannot be used.
@@ -50,7 +57,7 @@ impl Words {
     pub fn read(text: &str) -> Result<Self, WordsError> {
         let form = |e: toml::de::Error| WordsError::Form(e.to_string().trim().replace('\n', " "));
         let words: Self = toml::from_str(text).map_err(form)?;
-        for (phrase, translation) in &words.words {
+        for (phrase, translation) in words.words.iter().chain(&words.sentences) {
             let (wanted, found) = (places(phrase), places(translation));
             if wanted != found {
                 return Err(WordsError::Places {
@@ -77,14 +84,20 @@ impl Words {
         Self::german().words.keys().map(String::as_str)
     }
 
-    /// A table to be filled in: every phrase with the English as its translation.
+    /// The template of every English sentence of other rooms that a report can say again, in order.
+    pub fn sentences() -> impl Iterator<Item = &'static str> {
+        Self::german().sentences.keys().map(String::as_str)
+    }
+
+    /// A table to be filled in: every phrase and sentence with the English as its translation.
     pub fn blank() -> String {
-        let mut text = String::from("language = \"en\"\n\n[words]\n");
-        for phrase in Self::phrases() {
+        let line = |phrase: &str| {
             let quoted = toml::Value::from(phrase).to_string();
-            text.push_str(&format!("{quoted} = {quoted}\n"));
-        }
-        text
+            format!("{quoted} = {quoted}\n")
+        };
+        let words: String = Self::phrases().map(line).collect();
+        let sentences: String = Self::sentences().map(line).collect();
+        format!("language = \"en\"\n\n[words]\n{words}\n[sentences]\n{sentences}")
     }
 
     /// What is printed for a phrase; the phrase itself where the table lacks it.
@@ -92,10 +105,17 @@ impl Words {
         self.words.get(phrase).map_or(phrase, String::as_str)
     }
 
+    /// What another room says, sentence by sentence in the reader's words; what no template of the
+    /// table knows stays as it is.
+    pub fn tell(&self, text: &str) -> String {
+        sentences::tell(&self.sentences, text)
+    }
+
     /// What is to be told of a table: phrases that it lacks, and those that no report says.
     pub fn remarks(&self) -> Vec<String> {
-        let known: BTreeSet<&str> = Self::phrases().collect();
-        let here: BTreeSet<&str> = self.words.keys().map(String::as_str).collect();
+        let known: BTreeSet<&str> = Self::phrases().chain(Self::sentences()).collect();
+        let here = self.words.keys().chain(self.sentences.keys());
+        let here: BTreeSet<&str> = here.map(String::as_str).collect();
         let lacking: Vec<&str> = known.difference(&here).copied().collect();
         let idle: Vec<&str> = here.difference(&known).copied().collect();
         let mut remarks = Vec::new();
@@ -122,13 +142,37 @@ impl Words {
 pub(super) fn places(phrase: &str) -> BTreeSet<&str> {
     // between dollars braces belong to the symbol
     let text = phrase.split('$').step_by(2);
-    text.flat_map(|part| part.split('{').skip(1).filter_map(|p| p.split_once('}')))
-        .map(|(name, _)| name)
-        .collect()
+    let parts = text.flat_map(parts_of);
+    let name = |part| match part {
+        Part::Place(name) => Some(name),
+        Part::Words(_) => None,
+    };
+    parts.filter_map(name).collect()
+}
+
+/// A text without symbols as words and places, by turns.
+fn parts_of(text: &str) -> Vec<Part<'_>> {
+    let mut parts = Vec::new();
+    let mut left = text;
+    while let Some((words, (name, rest))) = left
+        .split_once('{')
+        .and_then(|(words, rest)| Some((words, rest.split_once('}')?)))
+    {
+        if !words.is_empty() {
+            parts.push(Part::Words(words));
+        }
+        parts.push(Part::Place(name));
+        left = rest;
+    }
+    if !left.is_empty() {
+        parts.push(Part::Words(left));
+    }
+    parts
 }
 
 /// The first few phrases.
 fn some(phrases: &[&str]) -> String {
+    /// Phrases that are named at most.
     const FEW: usize = 3;
     let first: Vec<String> = phrases
         .iter()
@@ -158,6 +202,13 @@ mod tests {
         let blank = Words::read(&Words::blank()).expect("a table of words");
         assert!(blank.words.iter().all(|(a, b)| a == b));
         assert!(blank.words.keys().eq(Words::german().words.keys()));
+        assert!(
+            blank
+                .sentences
+                .iter()
+                .all(|(a, b)| a == b && !a.contains(". "))
+        );
+        assert!(blank.sentences.keys().eq(Words::german().sentences.keys()));
         assert!(blank.remarks().is_empty());
     }
 

@@ -1,0 +1,162 @@
+//! The tables of estimates: by method, by specimen, and how the methods agree.
+
+use std::collections::BTreeMap;
+
+use super::{Column, table, verbatim};
+use crate::identify::{MethodResult, ParameterSet};
+use crate::report::content::ReportContent;
+use crate::report::document::front::headline;
+use crate::report::document::model::{Rich, Table};
+use crate::report::parameters::{self, PARAMETERS, method_name};
+use crate::report::speech::Speech;
+
+/// Size of the type of the methods' tables, points.
+const SIZE: f64 = 7.5;
+/// Smaller p-values are printed as smaller than this.
+const LEAST_P: f64 = 1e-3;
+
+/// The estimates, as [`estimate_cells`] fills them.
+const ESTIMATES: [Column; 4] = [
+    Column::wide("$R$", 1),
+    Column::wide("$f_0$", 1),
+    Column::wide("$β$", 1),
+    Column::wide("$x_st$", 1),
+];
+
+/// A row of a method, as [`method_row`] fills it.
+const METHOD: [Column; 8] = [
+    Column::left("method"),
+    ESTIMATES[0],
+    ESTIMATES[1],
+    ESTIMATES[2],
+    ESTIMATES[3],
+    Column::right("obs."),
+    Column::right("residual"),
+    Column::center("fits"),
+];
+
+/// What the columns of the methods hold.
+const METHODS_CAPTION: &str = "Estimates with half their 95 % interval, number of observations, \
+     root mean square of the weighted residuals (1: as the stated noise), and whether the model \
+     fits.";
+
+/// What each method found, and the joint estimate.
+pub fn methods(content: &ReportContent, speech: Speech) -> Option<Table> {
+    let id = &content.identification;
+    let rows = method_rows(&id.methods, &id.joint, speech);
+    table(METHODS_CAPTION, &METHOD, rows, speech).map(|t| Table { size: SIZE, ..t })
+}
+
+/// The same for each specimen of a campaign that holds several.
+pub fn specimen_methods(content: &ReportContent, speech: Speech) -> Option<Table> {
+    let specimens = content.identification.specimens.iter();
+    let rows = specimens.flat_map(|(specimen, result)| {
+        let rows = method_rows(&result.methods, &result.joint, speech);
+        rows.into_iter().enumerate().map(move |(i, row)| {
+            let name = if i == 0 {
+                verbatim(specimen.clone())
+            } else {
+                Rich::default()
+            };
+            std::iter::once(name).chain(row).collect()
+        })
+    });
+    let mut columns: Vec<Column> = vec![Column::left("specimen")];
+    columns.extend(METHOD);
+    table(METHODS_CAPTION, &columns, rows.collect(), speech).map(|t| Table { size: SIZE, ..t })
+}
+
+/// The answer for each specimen of a campaign that holds several.
+pub fn specimens(content: &ReportContent, speech: Speech) -> Option<Table> {
+    let rows = content
+        .identification
+        .specimens
+        .iter()
+        .map(|(specimen, result)| {
+            let mut row = vec![verbatim(specimen.clone())];
+            row.extend(estimate_cells(&result.joint.parameters, speech));
+            let headline = headline(result.verdict.kind, true);
+            row.push(Rich::from(speech.say(headline)));
+            row
+        });
+    let mut columns = vec![Column::left("specimen")];
+    columns.extend(ESTIMATES);
+    columns.push(Column::wide("verdict", 2));
+    table("", &columns, rows.collect(), speech)
+}
+
+fn estimate_cells(set: &ParameterSet, speech: Speech) -> Vec<Rich> {
+    let cell = |look| Rich::from(parameters::short(look, (look.pick)(set), speech));
+    PARAMETERS.iter().map(cell).collect()
+}
+
+/// Rows of the methods that say anything, the joint estimate last.
+fn method_rows(
+    methods: &BTreeMap<String, MethodResult>,
+    joint: &MethodResult,
+    speech: Speech,
+) -> Vec<Vec<Rich>> {
+    let all = methods.iter().map(|(k, m)| (method_name(k), m));
+    let all = all.chain([(method_name("joint"), joint)]);
+    let says = |m: &MethodResult| PARAMETERS.iter().any(|p| (p.pick)(&m.parameters).is_some());
+    all.filter(|(_, m)| says(m))
+        .map(|(name, m)| method_row(speech.say(&name), m, speech))
+        .collect()
+}
+
+fn method_row(name: String, method: &MethodResult, speech: Speech) -> Vec<Rich> {
+    let mut row = vec![Rich::from(name)];
+    row.extend(estimate_cells(&method.parameters, speech));
+    let observations = method.observations;
+    let observations = if observations == 0 {
+        "–".into()
+    } else {
+        observations.to_string()
+    };
+    let residual = method.reduced_residual;
+    let residual = residual.map_or("–".into(), |r| speech.significant(r, 2));
+    let fits = match method.fits {
+        Some(true) => "yes",
+        Some(false) => "no",
+        None => "–",
+    };
+    row.extend([
+        Rich::from(observations),
+        Rich::from(residual),
+        Rich::from(speech.say(fits)),
+    ]);
+    row
+}
+
+/// Whether the methods agree, pair by pair.
+pub fn agreement(content: &ReportContent, speech: Speech) -> Option<Table> {
+    let rows = content.identification.agreement.pairs.iter().map(|pair| {
+        let symbol =
+            parameters::parameter(&pair.parameter).map_or(pair.parameter.as_str(), |p| p.symbol);
+        let p = if pair.p_value < LEAST_P {
+            format!("< {}", speech.fixed(LEAST_P, 3))
+        } else {
+            speech.fixed(pair.p_value, 3)
+        };
+        vec![
+            Rich::from(symbol),
+            Rich::from(speech.say(&method_name(&pair.methods[0]))),
+            Rich::from(speech.say(&method_name(&pair.methods[1]))),
+            Rich::from(speech.fixed(pair.z_score, 2)),
+            Rich::from(p),
+        ]
+    });
+    let columns: [Column; 5] = [
+        Column::left("parameter"),
+        Column::wide("method", 1),
+        Column::wide("and method", 1),
+        Column::right("difference / its error"),
+        Column::right("p-value"),
+    ];
+    table(
+        "Agreement of the methods, pair by pair.",
+        &columns,
+        rows.collect(),
+        speech,
+    )
+}

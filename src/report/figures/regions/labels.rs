@@ -1,0 +1,116 @@
+//! Where the regions' labels stand.
+
+use super::{LEAST_SHARE, Regions};
+use crate::report::figures::canvas::Point;
+use crate::report::figures::fonts::{self, Face};
+use crate::report::figures::path::Rect;
+use crate::report::figures::placing::Occupancy;
+use crate::report::speech::Speech;
+
+/// Where a region's label may stand.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RegionLabel {
+    /// Its text.
+    pub text: String,
+    /// Middle of the text, points.
+    pub at: Point,
+    /// Size of the text, points.
+    pub size: f64,
+}
+
+impl Regions<'_> {
+    /// A label for each region that is large enough, where its text stands free.
+    pub fn labels(&self, occupancy: &mut Occupancy, size: f64, speech: Speech) -> Vec<RegionLabel> {
+        let mut order: Vec<usize> = (0..self.areas.len()).collect();
+        order.sort_by_key(|&r| std::cmp::Reverse(self.areas[r]));
+        let least = LEAST_SHARE * self.region.len() as f64;
+        let large = order
+            .into_iter()
+            .take_while(|&r| self.areas[r] as f64 >= least);
+        let place = |r| {
+            [size, 0.8 * size]
+                .into_iter()
+                .find_map(|s| self.label((r, speech), occupancy, s))
+        };
+        large.filter_map(place).collect()
+    }
+
+    fn label(
+        &self,
+        (region, speech): (usize, Speech),
+        occupancy: &mut Occupancy,
+        size: f64,
+    ) -> Option<RegionLabel> {
+        let first_cell = self.region.iter().position(|&r| r == region)?;
+        let text = self.name(first_cell, speech);
+        let half = (
+            0.5 * fonts::width(&text, Face::Bold, size) + 3.0,
+            0.5 * size + 1.5,
+        );
+        let columns = self.map.eta.len();
+        let best = self
+            .region
+            .iter()
+            .enumerate()
+            .filter(|(_, r)| **r == region)
+            .filter_map(|(index, _)| {
+                let at = self.centre((index % columns) as isize, (index / columns) as isize);
+                Some((self.room(region, at, half, occupancy)?, at))
+            })
+            .max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let (x, y) = best.1;
+        occupancy.take_rect(&Rect::new(
+            x - half.0,
+            y - half.1,
+            2.0 * half.0,
+            2.0 * half.1,
+        ));
+        Some(RegionLabel {
+            text,
+            at: best.1,
+            size,
+        })
+    }
+
+    fn name(&self, cell: usize, speech: Speech) -> String {
+        let (first, second) = self.kind(cell);
+        let label = |k: u16| speech.say(&self.map.motions[usize::from(k)].label());
+        if first == second {
+            label(first)
+        } else {
+            format!("{}, {}", label(first), label(second))
+        }
+    }
+
+    /// How well a text of a half size stands at a place: `None` where it leaves the region.
+    fn room(&self, region: usize, at: Point, half: Point, taken: &Occupancy) -> Option<f64> {
+        let inside = |grow: f64| {
+            let (w, h) = (half.0 + grow, half.1 + grow);
+            [
+                (-w, -h),
+                (0.0, -h),
+                (w, -h),
+                (-w, 0.0),
+                (w, 0.0),
+                (-w, h),
+                (0.0, h),
+                (w, h),
+            ]
+            .into_iter()
+            .all(|(dx, dy)| {
+                self.cell_at((at.0 + dx, at.1 + dy))
+                    .is_some_and(|c| self.region[c] == region)
+            })
+        };
+        if !inside(0.0) {
+            return None;
+        }
+        let free = [3.0, 6.0, 10.0, 15.0, 22.0]
+            .into_iter()
+            .take_while(|g| inside(*g))
+            .count();
+        let rect = Rect::new(at.0 - half.0, at.1 - half.1, 2.0 * half.0, 2.0 * half.1);
+        let covered = taken.taken(&rect) as f64;
+        (covered <= 0.08 * rect.width() * rect.height()).then_some(free as f64 - 0.5 * covered)
+    }
+}

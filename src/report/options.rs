@@ -1,0 +1,125 @@
+//! What a report is written as, and what the reader chose about its look.
+
+use super::speech::Speech;
+use super::words::Words;
+
+/// Paper of the document.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Paper {
+    /// 210 mm × 297 mm.
+    #[default]
+    A4,
+    /// 8.5 in × 11 in.
+    Letter,
+}
+
+impl Paper {
+    /// The name the template knows.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::A4 => "a4",
+            Self::Letter => "us-letter",
+        }
+    }
+}
+
+/// What a report can be written as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Format {
+    /// The document as PDF.
+    Pdf,
+    /// The document as one self-contained HTML page.
+    Html,
+    /// Each figure as SVG.
+    Svg,
+    /// Each figure as PNG.
+    Png,
+    /// Each figure's data as CSV.
+    Csv,
+}
+
+impl Format {
+    /// All formats.
+    pub const ALL: [Format; 5] = [
+        Format::Pdf,
+        Format::Html,
+        Format::Svg,
+        Format::Png,
+        Format::Csv,
+    ];
+
+    /// The format's name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pdf => "pdf",
+            Self::Html => "html",
+            Self::Svg => "svg",
+            Self::Png => "png",
+            Self::Csv => "csv",
+        }
+    }
+}
+
+impl std::str::FromStr for Format {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|f| f.name() == name);
+        found.ok_or_else(|| format!("unknown format '{name}'; known are pdf, html, svg, png, csv"))
+    }
+}
+
+/// A logo for the first page.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Logo {
+    /// The image file.
+    pub bytes: Vec<u8>,
+    /// Its kind by file extension: `svg`, `png`, `jpg`, `webp`, `gif` or `pdf`.
+    pub extension: String,
+}
+
+/// What the reader chose about the report's look.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RenderOptions {
+    /// Paper.
+    pub paper: Paper,
+    /// Language that a template of the user's own may go by, as ISO 639-1 writes it.
+    pub language: String,
+    /// The report's own words in another language than English.
+    pub words: Option<Words>,
+    /// Whether numbers have a decimal comma.
+    pub decimal_comma: bool,
+    /// A typst template instead of the built-in one; it reads `report.json` and the figures.
+    pub template: Option<String>,
+    /// A logo.
+    pub logo: Option<Logo>,
+}
+
+impl Default for RenderOptions {
+    fn default() -> Self {
+        Self {
+            paper: Paper::default(),
+            language: "en".to_owned(),
+            words: None,
+            decimal_comma: false,
+            template: None,
+            logo: None,
+        }
+    }
+}
+
+impl RenderOptions {
+    pub(super) fn speech(&self) -> Speech<'_> {
+        Speech {
+            decimal_comma: self.decimal_comma,
+            words: self.words.as_ref(),
+        }
+    }
+
+    /// The language that the report's own words are in.
+    pub(super) fn spoken(&self) -> &str {
+        let words = self.words.as_ref();
+        words.map_or("en", |w| w.language.as_deref().unwrap_or(&self.language))
+    }
+}
