@@ -112,6 +112,7 @@ fn resolve(
         ),
         analysis: analysis(&written.analysis, desk),
         report: report(&written.report, &name, (folder, &records), desk),
+        synthetic: written.campaign.synthetic,
         laboratory: words(&written.campaign.laboratory),
         measured: words(&written.campaign.measured),
         file: path.to_path_buf(),

@@ -19,6 +19,9 @@ pub struct ResolvedCampaign {
     pub machine: Machine,
     /// What acts between impacts.
     pub flight: Flight,
+    /// Whether its records are simulated.
+    #[serde(default)]
+    pub synthetic: bool,
     /// Who measured, and where.
     #[serde(default)]
     pub laboratory: Option<String>,

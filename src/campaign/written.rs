@@ -61,6 +61,8 @@ pub struct About {
     pub machine: Placed<Machine>,
     /// What acts on the masses between impacts.
     pub flight: Placed<Flight>,
+    /// Whether its records are simulated: the report then says so.
+    pub synthetic: bool,
     /// Who measured, and where.
     pub laboratory: Placed<String>,
     /// When it was measured, in words; the files' own times where it is not given.

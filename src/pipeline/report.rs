@@ -163,6 +163,7 @@ fn facts(campaign: &ResolvedCampaign) -> Result<CampaignFacts, PipelineError> {
         title: campaign.report.title.clone(),
         name: campaign.name.clone(),
         rig: campaign.machine,
+        synthetic: campaign.synthetic,
         laboratory: campaign.laboratory.clone(),
         dates: dates(campaign),
         nominal: nominal(campaign),

@@ -197,6 +197,7 @@ fn campaign_toml(recipe: &Recipe) -> String {
          # The truth behind it is in truth.json; nothing here tells it.\n\n\
          [campaign]\n\
          name = \"Synthetic double impact oscillator\"\n\
+         synthetic = true\n\
          machine = \"double\"\n\
          flight = \"harmonic\"\n\n\
          [records]\n\

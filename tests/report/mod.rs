@@ -211,6 +211,29 @@ fn valid_the_words_are_the_user_s() {
     assert!(code == 2 && told.contains("{first}"), "{told}");
 }
 
+/// The sample campaign is what the README's command leaves: settings, run table and truth, byte by byte.
+#[test]
+fn regress_the_sample_is_what_the_readme_s_command_leaves() {
+    let readme = fs::read_to_string(root().join("README.md")).expect("README.md");
+    let after = readme.split("`impactid simulate campaign --seed").nth(1);
+    let told = after
+        .and_then(|t| t.split('`').next())
+        .expect("the command");
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = text(folder.path());
+    let mut words = vec!["-q", "simulate", "campaign", "--seed"];
+    words.extend(
+        told.split_whitespace()
+            .map(|w| if w == "DIR" { &out } else { w }),
+    );
+    assert_eq!(impactid(&words).0, 0);
+    let sample = root().join("data-samples/double-oscillator");
+    for name in ["campaign.toml", "runs.csv", "truth.json"] {
+        let read = |folder: &Path| fs::read_to_string(folder.join(name)).expect("a text");
+        assert!(read(folder.path()) == read(&sample), "{name} differs");
+    }
+}
+
 /// What the README's command leaves is what lies in reports/example.
 #[test]
 fn regress_the_example_is_what_the_readme_s_command_leaves() {

@@ -33,6 +33,8 @@ pub struct CampaignFacts {
     pub rig: Rig,
     /// Nominal values: name, value in SI, unit.
     pub nominal: Vec<(String, f64, String)>,
+    /// Whether its records are simulated.
+    pub synthetic: bool,
     /// Who measured, and where.
     pub laboratory: Option<String>,
     /// First and last day of the acquisition.

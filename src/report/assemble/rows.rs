@@ -50,7 +50,7 @@ pub(super) fn summary(gathered: &Gathered) -> CampaignSummary {
         channels: gathered.campaign.channels.iter().map(channel_row).collect(),
         laboratory: gathered.campaign.laboratory.clone(),
         dates: gathered.campaign.dates.clone(),
-        synthetic: gathered.campaign.name.to_lowercase().contains("synthetic"),
+        synthetic: gathered.campaign.synthetic,
         ..CampaignSummary::default()
     }
 }
