@@ -1,7 +1,9 @@
 //! Uncertainty beyond the covariance: profile likelihoods, a bootstrap over records, and what each
-//! method contributed. Beside it: the posterior of brackets ([`posterior`]), the least error that any
-//! estimator can have ([`bound`]), and how often intervals hold the truth ([`coverage`]).
+//! method contributed. Beside it: the posterior of brackets ([`posterior`]), how far curves of the plane
+//! may be off ([`band`]), the least error that any estimator can have ([`bound`]), and how often intervals
+//! hold the truth ([`coverage`]).
 
+pub mod band;
 pub mod bound;
 pub mod coverage;
 pub mod posterior;

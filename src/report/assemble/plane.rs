@@ -5,15 +5,13 @@ use rayon::prelude::*;
 use super::{Gathered, rows};
 use crate::atlas::map::even;
 use crate::atlas::{CellMotion, MapGrid, MapSettings, region_map as simulate_map};
-use crate::event::Rig;
-use crate::identify::fit::Fit;
-use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::uncertainty::band::Spread;
 use crate::model::boundary::{rho_grazing, rho_s1, rho_s2};
 use crate::model::orbit::stable_orbit;
 use crate::model::params::{Initial, Machine, Setting};
 use crate::motion::Motion;
 use crate::report::content::{BoundaryCurve, BoundaryKind, RegionMap};
-use crate::report::parameters::NORMAL_95;
 
 /// Columns and rows of the region map.
 const MAP: (usize, usize) = (180, 130);
@@ -21,6 +19,9 @@ const MAP: (usize, usize) = (180, 130);
 const CURVE_POINTS: usize = 220;
 /// Closing speed, in units of x_st Ω, of the lively start.
 const LIVELY_SPEED: f64 = 3.0;
+/// Clearance, times β, beyond which nothing touches: the resonance reaches ρ = 1/(2β). Gaps so wide
+/// say nothing about the regions.
+const REACH: f64 = 0.55;
 /// Largest n whose z = 1/n boundaries are drawn.
 const MOST_PERIODS: u32 = 3;
 
@@ -49,10 +50,9 @@ impl View {
             (low - room, high + room)
         };
         let eta = span(places.iter().map(|p| p.0).collect(), 0.05);
-        // Gaps so wide that nothing can touch say nothing about the regions.
         let reach = gathered
             .parameters()
-            .map_or(f64::INFINITY, |p| 0.55 / p.damping_ratio);
+            .map_or(f64::INFINITY, |p| REACH / p.damping_ratio);
         let touching: Vec<f64> = places.iter().map(|p| p.1).filter(|r| *r <= reach).collect();
         if touching.is_empty() {
             return None;
@@ -75,16 +75,7 @@ impl View {
 fn machine(gathered: &Gathered) -> Option<Machine> {
     let fitted = gathered.parameters()?;
     (fitted.in_range() && tells_restitution(gathered))
-        .then(|| symmetric(fitted, gathered.campaign.rig))
-}
-
-fn symmetric(parameters: &Parameters, rig: Rig) -> Machine {
-    let parameters = Parameters {
-        drive_asymmetry: 0.0,
-        stiffness_asymmetry: 0.0,
-        ..*parameters
-    };
-    parameters.machine(rig)
+        .then(|| fitted.without_asymmetry().machine(gathered.campaign.rig))
 }
 
 /// Without a fitted R there are no regions of impact motion to draw.
@@ -116,7 +107,7 @@ pub(super) fn curves(gathered: &Gathered) -> Vec<BoundaryCurve> {
                 .map(|points| BoundaryCurve {
                     kind,
                     periods_n,
-                    band95: spread.band(&points, &place),
+                    band95: band(&spread, &points, &place),
                     points,
                 })
                 .collect()
@@ -159,58 +150,17 @@ fn pieces(etas: &[f64], rho: impl Fn(f64) -> Option<f64>) -> Vec<Vec<[f64; 2]>> 
     out
 }
 
-/// How far the fitted R and β may be off, on which alone the boundaries in the plane depend.
-struct Spread {
-    /// The machine one standard error below and above in each.
-    ends: Vec<[Machine; 2]>,
-    /// Correlation of the two.
-    correlation: f64,
-}
-
-impl Spread {
-    fn of(fit: &Fit, factor: f64, rig: Rig) -> Self {
-        let free = [Coordinate::Restitution, Coordinate::Damping];
-        let ends = free
-            .into_iter()
-            .filter_map(|coordinate| {
-                let error = fit.error(coordinate)? * factor.sqrt();
-                let centre = fit.parameters.coordinate(coordinate);
-                Some([-error, error].map(|by| {
-                    let moved = fit.parameters.with(coordinate, centre + by);
-                    symmetric(&moved, rig)
-                }))
-            })
-            .collect();
-        Self {
-            ends,
-            correlation: fit.correlation(free[0], free[1]).unwrap_or(0.0),
-        }
-    }
-
-    /// Band of a curve, from its slopes; where it ends for a machine nearby, the band ends.
-    fn band(
-        &self,
-        points: &[[f64; 2]],
-        place: &impl Fn(&Machine, f64) -> Option<f64>,
-    ) -> Vec<[f64; 3]> {
-        points
-            .iter()
-            .filter_map(|[eta, rho]| {
-                let per_error: Vec<f64> = self
-                    .ends
-                    .iter()
-                    .map(|[a, b]| Some(0.5 * (place(b, *eta)? - place(a, *eta)?)))
-                    .collect::<Option<_>>()?;
-                let common = match per_error[..] {
-                    [a, b] => 2.0 * self.correlation * a * b,
-                    _ => 0.0,
-                };
-                let variance = per_error.iter().map(|s| s * s).sum::<f64>() + common;
-                let half = NORMAL_95 * variance.max(0.0).sqrt();
-                (half > 0.0).then_some([*eta, rho - half, rho + half])
-            })
-            .collect()
-    }
+/// Band of a curve; where it ends for a machine nearby, the band ends.
+fn band(
+    spread: &Spread,
+    points: &[[f64; 2]],
+    place: &impl Fn(&Machine, f64) -> Option<f64>,
+) -> Vec<[f64; 3]> {
+    let points = points.iter().filter_map(|[eta, rho]| {
+        let half = spread.half95(|machine| place(machine, *eta))?;
+        (half > 0.0).then_some([*eta, rho - half, rho + half])
+    });
+    points.collect()
 }
 
 /// Regions of motion: every cell from rest; where hysteresis lies, the other motion beside it.
