@@ -14,6 +14,7 @@ pub mod methods;
 pub mod middles;
 pub mod plan;
 pub mod published;
+pub mod replay;
 pub mod residuals;
 pub mod results;
 pub mod run;

@@ -2,10 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::simulation::{Simulation, Window};
+use super::window::Window;
 use super::{Gathered, rows};
 use crate::event::detect::DetectSettings;
 use crate::event::{Detection, detect};
+use crate::identify::replay::{Replay, Stretch};
 use crate::motion::{Motion, Observation};
 use crate::record::{Record, Role};
 use crate::report::content::{Comparison, Portrait, Signal, Trace};
@@ -47,9 +48,14 @@ fn comparison(
         _ => IRREGULAR_PERIODS,
     };
     let window = Window::new(&detection, &drive, f64::from(periods));
+    let stretch = Stretch {
+        drive,
+        start_s: window.start_s,
+        length_s: window.length_s,
+    };
     let simulation = gathered
-        .fit
-        .and_then(|_| Simulation::of(gathered, o, &drive, &window));
+        .parameters()
+        .and_then(|fitted| Replay::of(gathered.campaign.rig, *fitted, o, &stretch));
     let (eta, rho) = rows::place(gathered, o);
     let traces = traces(record, &detection, &window, simulation.as_ref());
     let motion = &o.finding.motion;
@@ -107,7 +113,7 @@ fn traces(
     record: &Record,
     detection: &Detection,
     window: &Window,
-    simulation: Option<&Simulation>,
+    simulation: Option<&Replay>,
 ) -> Vec<Trace> {
     let k = &detection.kinematics;
     let moving = [
@@ -151,9 +157,13 @@ fn compared(
     role: Role,
     dimension: Dimension,
     mut measured: Signal,
-    simulation: Option<&Simulation>,
+    simulation: Option<&Replay>,
 ) -> Trace {
-    let simulated = simulation.and_then(|s| s.signal(role, &measured.time_s));
+    let simulated = simulation.and_then(|s| {
+        let time_s = measured.time_s.clone();
+        let values = s.values(role, &time_s)?;
+        Some(Signal { time_s, values })
+    });
     let residual = simulated.as_ref().map(|s| {
         let apart = difference(&measured.values, &s.values);
         let (offset, slope) = fitted_line(&measured.time_s, &apart);

@@ -9,7 +9,7 @@ mod evidence;
 mod left_out;
 mod plane;
 mod rows;
-mod simulation;
+mod window;
 
 pub use chosen::chosen_records;
 pub use decays::shown_decays;

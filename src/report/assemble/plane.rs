@@ -6,6 +6,7 @@ use super::{Gathered, rows};
 use crate::atlas::map::even;
 use crate::atlas::{CellMotion, MapGrid, MapSettings, region_map as simulate_map};
 use crate::identify::fit::parameters::Coordinate;
+use crate::identify::replay::LIVELY_SPEED;
 use crate::identify::uncertainty::band::Spread;
 use crate::model::boundary::{rho_grazing, rho_s1, rho_s2};
 use crate::model::orbit::stable_orbit;
@@ -17,8 +18,6 @@ use crate::report::content::{BoundaryCurve, BoundaryKind, RegionMap};
 const MAP: (usize, usize) = (180, 130);
 /// Points of a boundary curve.
 const CURVE_POINTS: usize = 220;
-/// Closing speed, in units of x_st Ω, of the lively start.
-const LIVELY_SPEED: f64 = 3.0;
 /// Clearance, times β, beyond which nothing touches: the resonance reaches ρ = 1/(2β). Gaps so wide
 /// say nothing about the regions.
 const REACH: f64 = 0.55;

@@ -1,11 +1,13 @@
-//! The fitted model's motion at the setting of a record.
+//! A record replayed: the fitted model's motion at its setting, in step with its drive.
+//!
+//! The model may have several motions there: the one that was seen is looked for from the states after
+//! the first measured impacts, from rest and from a lively state.
 
 use std::f64::consts::TAU;
 
-use super::Gathered;
 use crate::atlas::MapSettings;
 use crate::atlas::map::{End, Start, march_from};
-use crate::event::{Detection, DriveTone};
+use crate::event::{DriveTone, Rig};
 use crate::identify::evidence::trajectory::channel_value;
 use crate::identify::fit::parameters::Parameters;
 use crate::model::flight::State;
@@ -13,56 +15,19 @@ use crate::model::params::{Initial, Machine, Setting};
 use crate::model::simulate::{Simulator, Trajectory};
 use crate::motion::{Motion, Observation};
 use crate::record::Role;
-use crate::report::content::Signal;
 
 /// Most measured impacts after which a simulation is started.
 const MOST_STARTS: usize = 6;
 
-/// The stretch of a record that is drawn: it begins at a zero phase of the drive.
-pub(super) struct Window {
-    /// Its start, s into the record.
-    pub(super) start_s: f64,
-    /// Its length, s.
-    pub(super) length_s: f64,
-    rate_hz: f64,
-}
-
-impl Window {
-    pub(super) fn new(detection: &Detection, drive: &DriveTone, periods: f64) -> Self {
-        let rate_hz = detection.kinematics.rate_hz;
-        let period = drive.period_s();
-        let start_s = period * (1.0 - drive.phase_at(0.0) / std::f64::consts::TAU);
-        Self {
-            start_s,
-            length_s: periods * period,
-            rate_hz,
-        }
-    }
-
-    fn range(&self, samples: usize) -> std::ops::Range<usize> {
-        let first = (self.start_s * self.rate_hz).ceil() as usize;
-        let last = ((self.start_s + self.length_s) * self.rate_hz).floor() as usize + 1;
-        first.min(samples)..last.min(samples)
-    }
-
-    pub(super) fn signal(&self, values: &[f64]) -> Signal {
-        let range = self.range(values.len());
-        Signal {
-            time_s: range
-                .clone()
-                .map(|i| i as f64 / self.rate_hz - self.start_s)
-                .collect(),
-            values: values[range].to_vec(),
-        }
-    }
-}
+/// Closing speed, in units of x_st Ω, of the lively start.
+pub const LIVELY_SPEED: f64 = 3.0;
 
 /// The fitted model's motion at the setting of a record, in step with the drive.
-pub(super) struct Simulation {
+pub struct Replay {
     /// The motion it settled on.
-    pub(super) motion: Motion,
-    /// Times of its impacts, s from the window's start.
-    pub(super) impacts_s: Vec<f64>,
+    pub motion: Motion,
+    /// Times of its impacts, s from the stretch's start.
+    pub impacts_s: Vec<f64>,
     trajectory: Trajectory,
     start_tau: f64,
     omega: f64,
@@ -70,21 +35,34 @@ pub(super) struct Simulation {
     drive_amplitude: f64,
 }
 
-impl Simulation {
-    pub(super) fn of(
-        gathered: &Gathered,
+/// A stretch of a record that begins at a zero phase of its drive.
+#[derive(Debug, Clone, Copy)]
+pub struct Stretch {
+    /// The record's drive.
+    pub drive: DriveTone,
+    /// Its start, s into the record.
+    pub start_s: f64,
+    /// Its length, s.
+    pub length_s: f64,
+}
+
+impl Replay {
+    /// Of a record's stretch with fitted parameters; `None` where its clearance is not known though
+    /// something touches, or where the model cannot be simulated.
+    pub fn of(
+        rig: Rig,
+        parameters: Parameters,
         o: &Observation,
-        drive: &DriveTone,
-        window: &Window,
+        stretch: &Stretch,
     ) -> Option<Self> {
-        let parameters = *gathered.parameters()?;
+        let drive = &stretch.drive;
         let clearance_m = match (o.setting.clearance_m, &o.finding.motion) {
             (Some(clearance), _) => clearance,
             // Nothing touches: any wide gap will do.
             (None, Motion::Impactless) => 1e6 * parameters.static_deflection_m,
             (None, _) => return None,
         };
-        let machine = parameters.machine(gathered.campaign.rig);
+        let machine = parameters.machine(rig);
         let drive_amplitude = o.setting.drive_amplitude;
         let setting = parameters.setting(drive.frequency_hz, clearance_m, drive_amplitude);
         let end = settled(&machine, setting, o, &parameters)?;
@@ -95,7 +73,7 @@ impl Simulation {
         let mut simulator = Simulator::new(&machine, start, end.initial).ok()?;
         let to_zero = (TAU - simulator.phase().rem_euclid(TAU)) / setting.frequency_ratio;
         simulator.advance(to_zero, &mut Trajectory::default());
-        let skip = cycle_shift(&simulator, o, (drive, window), setting);
+        let skip = cycle_shift(&simulator, o, stretch, setting);
         simulator.advance(
             f64::from(skip) * setting.period(),
             &mut Trajectory::default(),
@@ -103,7 +81,7 @@ impl Simulation {
         let start_tau = simulator.tau();
         let omega = parameters.natural_rate();
         let mut trajectory = Trajectory::default();
-        simulator.advance(window.length_s * omega, &mut trajectory);
+        simulator.advance(stretch.length_s * omega, &mut trajectory);
         let impacts_s = trajectory
             .impacts
             .iter()
@@ -120,22 +98,17 @@ impl Simulation {
         })
     }
 
-    pub(super) fn signal(&self, role: Role, times_s: &[f64]) -> Option<Signal> {
-        channel_value(&self.parameters, 1.0, role, &State::default())
-            .is_finite()
-            .then(|| {
-                let values = times_s
-                    .iter()
-                    .map(|t| {
-                        let state = self.trajectory.at(self.start_tau + t * self.omega);
-                        channel_value(&self.parameters, self.drive_amplitude, role, &state)
-                    })
-                    .collect();
-                Signal {
-                    time_s: times_s.to_vec(),
-                    values,
-                }
-            })
+    /// A channel's values, SI, gain included, at times from the stretch's start; `None` of one that the
+    /// model does not have.
+    pub fn values(&self, role: Role, times_s: &[f64]) -> Option<Vec<f64>> {
+        let value = |state: &State| {
+            let value = channel_value(&self.parameters, self.drive_amplitude, role, state);
+            value.is_finite().then_some(value)
+        };
+        let states = times_s
+            .iter()
+            .map(|t| self.trajectory.at(self.start_tau + t * self.omega));
+        states.map(|state| value(&state)).collect()
     }
 }
 
@@ -187,8 +160,8 @@ fn starts(
     });
     let mut starts: Vec<(Initial, f64)> = measured.take(MOST_STARTS).collect();
     let lively = match machine.y {
-        Some(_) => Initial::both(0.0, 3.0),
-        None => touching(-3.0),
+        Some(_) => Initial::both(0.0, LIVELY_SPEED),
+        None => touching(-LIVELY_SPEED),
     };
     starts.extend([(Initial::rest(), 0.0), (lively, 0.0)]);
     starts
@@ -196,12 +169,7 @@ fn starts(
 
 /// Whole drive periods by which the simulation has to be shifted so that its impacts fall where
 /// the measured ones do (a motion of period n may be met in any of n drive periods).
-fn cycle_shift(
-    simulator: &Simulator,
-    o: &Observation,
-    (drive, window): (&DriveTone, &Window),
-    setting: Setting,
-) -> u32 {
+fn cycle_shift(simulator: &Simulator, o: &Observation, stretch: &Stretch, setting: Setting) -> u32 {
     let Motion::Periodic { periods_n, .. } = o.finding.motion else {
         return 0;
     };
@@ -222,7 +190,7 @@ fn cycle_shift(
         .impacts
         .iter()
         .filter_map(|i| {
-            let turns = (i.time_s - window.start_s) / drive.period_s();
+            let turns = (i.time_s - stretch.start_s) / stretch.drive.period_s();
             Some((turns, i.closing_speed_before_m_s?))
         })
         .filter(|(t, _)| (0.0..f64::from(periods_n)).contains(t))
