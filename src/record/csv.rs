@@ -13,7 +13,7 @@ use crate::record::csv::dialect::Dialect;
 use crate::record::csv::header::Header;
 use crate::record::csv::time_axis::TimeAxis;
 use crate::record::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType};
-use crate::record::text::cells::{Cells, Lines, is_row};
+use crate::record::text::cells::{Cells, Lines, Separator, is_row};
 use crate::record::text::table::{self, Kind, Layout};
 use crate::record::text::{TextFile, decode, number};
 
@@ -21,7 +21,27 @@ use crate::record::text::{TextFile, decode, number};
 const HEAD_BYTES: usize = 1 << 16;
 
 /// Rows at the front of a file from which kinds and time axis are told.
-pub(crate) type HeadRows<'a> = Vec<Vec<&'a [u8]>>;
+pub(crate) struct HeadRows<'a> {
+    lines: Vec<&'a [u8]>,
+    separator: Separator,
+}
+
+impl<'a> HeadRows<'a> {
+    /// The cells of each row.
+    fn rows(&self) -> impl Iterator<Item = Cells<'a>> {
+        self.lines.iter().map(|l| Cells::new(l, self.separator))
+    }
+
+    /// The cells of a column, of the rows that have it.
+    pub(crate) fn column(&self, i: usize) -> impl Iterator<Item = &'a [u8]> {
+        self.rows().filter_map(move |mut row| row.nth(i))
+    }
+
+    /// The cell of the first row in a column.
+    pub(crate) fn first(&self, i: usize) -> Option<&'a [u8]> {
+        self.rows().next()?.nth(i)
+    }
+}
 
 struct CsvSource {
     text: TextFile,
@@ -103,17 +123,18 @@ impl Front {
         })
     }
 
-    /// The rows of the head, cell by cell.
+    /// The rows of the head.
     fn rows<'a>(&self, head: &'a [u8], quotes: bool) -> HeadRows<'a> {
-        Lines::new(&head[self.offset..], quotes)
-            .filter(|(_, l)| is_row(l, dialect::COMMENTS))
-            .map(|(_, l)| Cells::new(l, self.dialect.separator).collect())
-            .collect()
+        let lines = Lines::new(&head[self.offset..], quotes);
+        let rows = lines.filter(|(_, l)| is_row(l, dialect::COMMENTS));
+        HeadRows {
+            lines: rows.map(|(_, l)| l).collect(),
+            separator: self.dialect.separator,
+        }
     }
 
     fn layout(&self, text: &TextFile, rows: &HeadRows<'_>, quotes: bool) -> Layout {
-        let kinds = (0..self.dialect.columns).map(|i| kind_of(rows, i, self.dialect.decimal));
-        let kinds: Vec<Kind> = kinds.collect();
+        let kinds = kinds(rows, &self.dialect);
         Layout {
             separator: self.dialect.separator,
             decimal: self.dialect.decimal,
@@ -131,33 +152,55 @@ impl Front {
 /// Filled cells by which the kind of a column is judged.
 const JUDGED_CELLS: usize = 64;
 
-/// The kind of a column by its first filled cells in the head.
-fn kind_of(rows: &HeadRows<'_>, column: usize, decimal: u8) -> Kind {
-    let cells: Vec<&[u8]> = rows
-        .iter()
-        .filter_map(|r| r.get(column).copied())
-        .filter(|c| !c.is_empty())
-        .take(JUDGED_CELLS)
-        .collect();
-    let others: Vec<&[u8]> = cells
-        .iter()
-        .copied()
-        .filter(|c| number::parse_cell(c, decimal).is_none())
-        .collect();
-    let numbers = cells.len() - others.len();
-    let times = others.iter().filter(|c| dialect::is_time(c)).count();
-    if 2 * times > cells.len() {
-        Kind::Time
-    } else if 2 * numbers >= cells.len() {
-        Kind::Number
-    } else {
-        Kind::Text
+/// What the first filled cells of a column hold.
+#[derive(Debug, Clone, Default)]
+struct Judged {
+    filled: usize,
+    numbers: usize,
+    times: usize,
+}
+
+impl Judged {
+    fn add(&mut self, cell: &[u8], decimal: u8) {
+        if cell.is_empty() || self.filled == JUDGED_CELLS {
+            return;
+        }
+        self.filled += 1;
+        if number::parse_cell(cell, decimal).is_some() {
+            self.numbers += 1;
+        } else if dialect::is_time(cell) {
+            self.times += 1;
+        }
     }
+
+    fn kind(&self) -> Kind {
+        if 2 * self.times > self.filled {
+            Kind::Time
+        } else if 2 * self.numbers >= self.filled {
+            Kind::Number
+        } else {
+            Kind::Text
+        }
+    }
+}
+
+/// The kinds of the columns by their first filled cells in the head.
+fn kinds(rows: &HeadRows<'_>, dialect: &Dialect) -> Vec<Kind> {
+    let mut columns = vec![Judged::default(); dialect.columns];
+    for row in rows.rows() {
+        for (cell, column) in row.zip(&mut columns) {
+            column.add(cell, dialect.decimal);
+        }
+        if columns.iter().all(|c| c.filled == JUDGED_CELLS) {
+            break;
+        }
+    }
+    columns.iter().map(Judged::kind).collect()
 }
 
 /// Whether dates are written month first: only where one has its second number above 12.
 fn month_first(rows: &HeadRows<'_>) -> bool {
-    let mut dates = rows.iter().flatten().filter(|cell| cell.contains(&b'/'));
+    let mut dates = rows.rows().flatten().filter(|cell| cell.contains(&b'/'));
     dates.any(|cell| {
         let text = decode(cell);
         let date = text.split([' ', 'T']).next().unwrap_or_default();
