@@ -86,9 +86,8 @@ fn long(mantissa: u64, exponent: i64) -> f64 {
         bits &= !1;
     }
     bits = (bits + (bits & 1)) >> 1;
-    let carry = bits >> (MANTISSA_BITS + 1);
-    let fraction = (bits >> carry) & ((1 << MANTISSA_BITS) - 1);
-    f64::from_bits(((power as u64 + carry) << MANTISSA_BITS) | fraction)
+    // The mantissa's top bit counts one step of the exponent, and a carry out of it another.
+    f64::from_bits((((power - 1) as u64) << MANTISSA_BITS) + bits)
 }
 
 /// The upper 128 of the 192 bits of a product, as far as they are needed.

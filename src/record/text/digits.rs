@@ -14,6 +14,9 @@ const WORD: usize = 8;
 /// Most digits whose integer 64 bits hold.
 pub const MOST_DIGITS: usize = 19;
 
+/// Least integer that may not fit 64 bits with sixteen further digits.
+const LEAST_TOO_GREAT: u64 = 1000;
+
 /// Powers of ten that 64 bits hold.
 static TENS: [u64; MOST_DIGITS + 1] = tens();
 
@@ -79,7 +82,7 @@ pub fn at_once(text: &[u8], at: usize, mark: u8) -> Option<Unsigned> {
         return None;
     }
     let lead_digits = eight_digits(front(first, lead));
-    if lead_digits >= TENS[MOST_DIGITS - tail] {
+    if lead_digits >= LEAST_TOO_GREAT && lead_digits >= TENS[MOST_DIGITS - tail] {
         return None;
     }
     let tail_digits = sixteen_digits(around[end..].first_chunk()?, LAST[tail..].first_chunk()?);

@@ -43,19 +43,23 @@ pub struct Layout {
 enum Column {
     Skip,
     Number(Vec<f64>),
-    Time {
-        values: Vec<f64>,
-        origin: Option<Stamp>,
-        days: f64,
-    },
+    Time(Box<Times>),
     Text(Vec<String>),
+}
+
+/// A column of points in time.
+struct Times {
+    values: Vec<f64>,
+    origin: Option<Stamp>,
+    days: f64,
 }
 
 impl Column {
     fn samples(self) -> Samples {
         match self {
             Self::Skip => Samples::Real(Vec::new()),
-            Self::Number(values) | Self::Time { values, .. } => Samples::Real(values),
+            Self::Number(values) => Samples::Real(values),
+            Self::Time(times) => Samples::Real(times.values),
             Self::Text(values) => Samples::Text(values),
         }
     }
@@ -111,7 +115,8 @@ fn take_or_copy(columns: &mut [Column], wanted: &[usize], i: usize) -> Samples {
     }
     match &columns[i] {
         Column::Skip => Samples::Real(Vec::new()),
-        Column::Number(values) | Column::Time { values, .. } => Samples::Real(values.clone()),
+        Column::Number(values) => Samples::Real(values.clone()),
+        Column::Time(times) => Samples::Real(times.values.clone()),
         Column::Text(values) => Samples::Text(values.clone()),
     }
 }
@@ -119,11 +124,11 @@ fn take_or_copy(columns: &mut [Column], wanted: &[usize], i: usize) -> Samples {
 fn empty_column(kind: Kind, rows: usize) -> Column {
     match kind {
         Kind::Number => Column::Number(Vec::with_capacity(rows)),
-        Kind::Time => Column::Time {
+        Kind::Time => Column::Time(Box::new(Times {
             values: Vec::with_capacity(rows),
             origin: None,
             days: 0.0,
-        },
+        })),
         Kind::Text => Column::Text(Vec::with_capacity(rows)),
     }
 }
@@ -303,39 +308,31 @@ fn push(column: &mut Column, cell: &[u8], layout: &Layout) -> Result<(), String>
             let value = number::parse_cell(cell, layout.decimal);
             values.push(value.ok_or_else(|| format!("'{}'", shortened(cell)))?);
         }
-        Column::Time {
-            values,
-            origin,
-            days,
-        } => {
-            let value = seconds_since(cell, layout, origin, days, values.last().copied())?;
-            values.push(value);
-        }
+        Column::Time(times) => times.push(cell, layout.month_first)?,
         Column::Text(values) => values.push(decode(cell).replace("\"\"", "\"")),
     }
     Ok(())
 }
 
-/// Seconds of a stamp since the column's first; a clock that passes midnight goes on.
-fn seconds_since(
-    cell: &[u8],
-    layout: &Layout,
-    origin: &mut Option<Stamp>,
-    days: &mut f64,
-    before: Option<f64>,
-) -> Result<f64, String> {
-    if cell.is_empty() {
-        return Ok(f64::NAN);
+impl Times {
+    /// Append the seconds of a cell since the column's first; a clock that passes midnight goes on.
+    fn push(&mut self, cell: &[u8], month_first: bool) -> Result<(), String> {
+        if cell.is_empty() {
+            self.values.push(f64::NAN);
+            return Ok(());
+        }
+        let stamp = clock::parse(&decode(cell), month_first)
+            .ok_or_else(|| format!("'{}'", shortened(cell)))?;
+        let origin = *self.origin.get_or_insert(stamp);
+        let mut value = stamp.since(origin) + self.days * 86_400.0;
+        let before = self.values.last();
+        if stamp.days.is_none() && before.is_some_and(|b| value < b - 43_200.0) {
+            self.days += 1.0;
+            value += 86_400.0;
+        }
+        self.values.push(value);
+        Ok(())
     }
-    let stamp = clock::parse(&decode(cell), layout.month_first)
-        .ok_or_else(|| format!("'{}'", shortened(cell)))?;
-    let origin = *origin.get_or_insert(stamp);
-    let mut value = stamp.since(origin) + *days * 86_400.0;
-    if stamp.days.is_none() && before.is_some_and(|b| value < b - 43_200.0) {
-        *days += 1.0;
-        value += 86_400.0;
-    }
-    Ok(value)
 }
 
 /// Count the rows of a table and find where the last begins.
