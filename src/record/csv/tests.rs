@@ -104,6 +104,17 @@ fn valid_a_wrong_cell_is_named_and_located() {
 }
 
 #[test]
+fn valid_rows_of_few_numbers_among_texts_are_rows() {
+    let s = source(b"name,place,note,x\nalpha,left,\"a, b\",0\nbeta,right,fine,1\n,,,2\n,,,3\n");
+    let info = &s.datasets()[0];
+    let names: Vec<&str> = info.channels.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["name", "place", "note", "x"]);
+    assert_eq!(real(&*s, 3), [0.0, 1.0, 2.0, 3.0]);
+    let s = source(b"name,place,note,x\nalpha,left,fine,0\n");
+    assert_eq!(real(&*s, 3), [0.0]);
+}
+
+#[test]
 fn valid_files_that_are_no_table_are_refused() {
     for bytes in [
         &b""[..],

@@ -1,7 +1,7 @@
 //! Which column of a table is its time axis, and at which rate its rows follow.
 
 use crate::record::attribute::says_time;
-use crate::record::csv::HeadRows;
+use crate::record::csv::columns::HeadRows;
 use crate::record::csv::header::Header;
 use crate::record::rate;
 use crate::record::text::table::{Kind, Layout};

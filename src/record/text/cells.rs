@@ -1,5 +1,7 @@
 //! Lines of a block and the cells of a line.
 
+use crate::record::bytes::decode_text;
+
 /// What stands between two cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Separator {
@@ -62,6 +64,11 @@ impl<'a> Iterator for Cells<'a> {
         let end = end.unwrap_or(rest.len());
         Some(self.cut(rest, end).trim_ascii())
     }
+}
+
+/// Text of a cell; two quotes in a row are one.
+pub fn decode_cell(cell: &[u8]) -> String {
+    decode_text(cell).replace("\"\"", "\"")
 }
 
 /// Position of the quote that closes a cell; two in a row are one quote in the cell.

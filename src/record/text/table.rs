@@ -1,7 +1,7 @@
 //! Rows of a delimited table to columns of numbers, a block of lines at a time.
 
 use crate::record::source::{ReadError, Samples};
-use crate::record::text::cells::{Cells, Lines, Separator, is_row, line_at};
+use crate::record::text::cells::{Cells, Lines, Separator, decode_cell, is_row, line_at};
 use crate::record::text::clock::{self, Stamp};
 use crate::record::text::{TextFile, decode, number};
 
@@ -309,7 +309,7 @@ fn push(column: &mut Column, cell: &[u8], layout: &Layout) -> Result<(), String>
             values.push(value.ok_or_else(|| format!("'{}'", shortened(cell)))?);
         }
         Column::Time(times) => times.push(cell, layout.month_first)?,
-        Column::Text(values) => values.push(decode(cell).replace("\"\"", "\"")),
+        Column::Text(values) => values.push(decode_cell(cell)),
     }
     Ok(())
 }
