@@ -1,9 +1,9 @@
 //! Records to CSV: remarks, a header with units, a row a sample.
 
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::Path;
 
-use crate::output::temporary_beside;
+use crate::output::write_whole_or;
 use crate::record::convert::{ConvertError, Item, io};
 use crate::record::csv::TEXTS_KEY;
 use crate::record::source::Samples;
@@ -24,9 +24,7 @@ pub fn write(items: &[Item], out: &Path) -> Result<(), ConvertError> {
 
 fn one(item: &Item, path: &Path) -> Result<(), ConvertError> {
     let samples = item.read()?;
-    let file = temporary_beside(path).map_err(io(path))?;
-    rows(item, &samples, BufWriter::new(file.as_file())).map_err(io(path))?;
-    file.persist(path).map_err(|e| io(path)(e.error))?;
+    write_whole_or(path, |out| rows(item, &samples, out), |e| e).map_err(io(path))?;
     Ok(())
 }
 
@@ -59,7 +57,7 @@ fn rows(item: &Item, samples: &[Samples], mut out: impl Write) -> std::io::Resul
         }
         out.write_all(b"\n")?;
     }
-    out.flush()
+    Ok(())
 }
 
 fn cell(out: &mut impl Write, samples: &Samples, row: usize) -> std::io::Result<()> {
