@@ -95,22 +95,20 @@ impl Part {
         }
     }
 
-    fn write<E: From<io::Error>>(
-        &self,
-        fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), E>,
-    ) -> Result<(), E> {
-        let file = OpenOptions::new()
-            .write(true)
-            .create(true)
-            .truncate(true)
-            .open(&self.path)?;
-        let mut writer = BufWriter::with_capacity(1 << 16, file);
-        fill(&mut writer)?;
+    fn create(&self) -> io::Result<BufWriter<File>> {
+        let mut options = OpenOptions::new();
+        let options = options.write(true).create(true).truncate(true);
+        let file = options.open(&self.path)?;
+        Ok(BufWriter::with_capacity(1 << 16, file))
+    }
+
+    /// Have all that was written on the disk, then give the file its name.
+    fn finish(self, writer: BufWriter<File>, target: &Path) -> io::Result<()> {
         let file = writer
             .into_inner()
             .map_err(io::IntoInnerError::into_error)?;
         file.sync_all()?;
-        Ok(())
+        self.place(target)
     }
 
     fn place(mut self, target: &Path) -> io::Result<()> {
@@ -145,13 +143,26 @@ pub fn write_whole(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
 ) -> Result<(), OutputError> {
+    write_whole_or(path, fill, |e| e).map_err(|source| OutputError::File {
+        path: path.to_path_buf(),
+        source,
+    })
+}
+
+/// As [`write_whole`], where writing fails in other ways, too; `told` makes such a fault of what
+/// the system said.
+///
+/// # Errors
+/// What `fill` gives, and what `told` makes of the system's words.
+pub fn write_whole_or<E>(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), E>,
+    told: impl Fn(io::Error) -> E,
+) -> Result<(), E> {
     let part = Part::of(path);
-    part.write(fill)
-        .and_then(|()| part.place(path))
-        .map_err(|source| OutputError::File {
-            path: path.to_path_buf(),
-            source,
-        })
+    let mut writer = part.create().map_err(&told)?;
+    fill(&mut writer)?;
+    part.finish(writer, path).map_err(told)
 }
 
 /// Write bytes as [`write_whole`] does.
@@ -168,26 +179,6 @@ pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
 /// As [`write_whole`]; also where the value has no place in JSON.
 pub fn write_json_line<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), OutputError> {
     write_whole(path, |writer| Ok(serde_json::to_writer(writer, value)?))
-}
-
-/// A temporary file in the folder of a path, to be renamed to it; readable as new files are.
-///
-/// # Errors
-/// Where the folder is absent or not writable.
-pub fn temporary_beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let folder = path
-        .parent()
-        .filter(|p| !p.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
-    let ending = own_ending();
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".impactid-").suffix(&ending);
-    #[cfg(unix)]
-    let builder = {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666))
-    };
-    builder.tempfile_in(folder)
 }
 
 /// Make an output folder with all folders above it.
@@ -316,6 +307,18 @@ mod tests {
         assert!(error.remedy().contains("free space"));
         assert_eq!(fs::read(&path).unwrap(), b"first");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn valid_a_fault_of_another_kind_is_handed_on() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        let told = |e: io::Error| e.to_string();
+        let failed = write_whole_or(&path, |_| Err("unread".to_owned()), told);
+        assert_eq!(failed, Err("unread".to_owned()));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        let absent = folder.path().join("absent").join("a.txt");
+        assert!(write_whole_or(&absent, |_| Ok(()), told).is_err());
     }
 
     #[test]

@@ -82,7 +82,17 @@ impl Convert {
                 .iter()
                 .for_each(|n| voice.detail(&format!("{}: {n}", source.path().display())));
         }
-        interrupt::watch(self.out.parent().map(Path::to_path_buf).unwrap_or_default());
+        let count: usize = sources.iter().map(|s| s.datasets().len()).sum();
+        let folder = target == Target::Csv && count > 1;
+        let written = match folder {
+            true => self.out.with_extension(""),
+            false => self.out.clone(),
+        };
+        let within = match folder {
+            true => Some(&*written),
+            false => self.out.parent(),
+        };
+        interrupt::watch(within.map(Path::to_path_buf).unwrap_or_default());
         let options = Options {
             single_precision: self.single,
             attributes: self.set.into_iter().collect(),
@@ -90,12 +100,6 @@ impl Convert {
         let done = convert::convert(&sources, target, &self.out, &options).map_err(failure)?;
         done.notes.iter().for_each(|note| voice.say(note));
         let count = done.records;
-        let many = target == Target::Csv && count > 1;
-        let written = if many {
-            self.out.with_extension("")
-        } else {
-            self.out
-        };
         let records = if count == 1 { "record" } else { "records" };
         voice.say(&format!(
             "{count} {records} written to {}",

@@ -8,6 +8,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use crate::record::attribute;
+use crate::record::csv::TEXTS_KEY;
+use crate::record::csv::header::name_and_unit;
 use crate::record::hdf5_write::WriteError;
 use crate::record::source::{ChannelInfo, ReadError, Samples, Source, StoredType};
 
@@ -106,7 +108,7 @@ impl Item<'_> {
 
     /// The attributes to write: the record's own without those that are written in other ways.
     fn described(&self) -> impl Iterator<Item = (&String, &String)> {
-        const ELSEWHERE: [&str; 10] = [
+        const ELSEWHERE: [&str; 11] = [
             "channels",
             "units",
             "scale",
@@ -117,6 +119,7 @@ impl Item<'_> {
             "columns",
             "start_time",
             crate::record::parquet::RECORDS_KEY,
+            TEXTS_KEY,
         ];
         self.attributes
             .iter()
@@ -147,9 +150,14 @@ impl Heading<'_> {
 
     /// The name of a part with its unit: `force.re [N]`.
     fn part(&self, part: &str) -> String {
+        let name = format!("{}{part}", self.name);
         match self.unit {
-            Some(unit) => format!("{}{part} [{unit}]", self.name),
-            None => format!("{}{part}", self.name),
+            Some(unit) => format!("{name} [{unit}]"),
+            // brackets in the name are no unit
+            None if name_and_unit(&name).1.is_some() || name.ends_with("[]") => {
+                format!("{name} []")
+            }
+            None => name,
         }
     }
 }

@@ -3,25 +3,27 @@
 //! Opening reads the first and the last lines and counts the rows; reading goes through the
 //! file block by block and keeps only the columns that are asked for.
 
+mod columns;
 pub mod dialect;
+mod front;
 pub mod header;
 pub mod time_axis;
 
 use std::path::Path;
 
-use crate::record::csv::dialect::Dialect;
+use crate::record::csv::front::Front;
 use crate::record::csv::header::Header;
 use crate::record::csv::time_axis::TimeAxis;
 use crate::record::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType};
-use crate::record::text::cells::{Cells, Lines, is_row};
+use crate::record::text::TextFile;
+use crate::record::text::cells::{Cells, Lines};
 use crate::record::text::table::{self, Kind, Layout};
-use crate::record::text::{TextFile, decode, number};
+
+/// The remark that numbers the columns of texts, in what this program writes.
+pub const TEXTS_KEY: &str = "impactid_texts";
 
 /// Bytes at the front of a file from which its dialect is told.
 const HEAD_BYTES: usize = 1 << 16;
-
-/// Rows at the front of a file from which kinds and time axis are told.
-pub(crate) type HeadRows<'a> = Vec<Vec<&'a [u8]>>;
 
 struct CsvSource {
     text: TextFile,
@@ -55,115 +57,6 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         datasets: vec![dataset],
         notes,
     }))
-}
-
-/// What stands before the table and where the table begins.
-struct Front {
-    dialect: Dialect,
-    header: Header,
-    /// Offset of the table in the head.
-    offset: usize,
-}
-
-impl Front {
-    fn read(text: &TextFile, head: &[u8], quotes: bool) -> Result<Self, ReadError> {
-        if memchr::memchr(0, head).is_some() {
-            return Err(no_table(text, "bytes that are no text"));
-        }
-        let all: Vec<(usize, &[u8])> = Lines::new(head, quotes)
-            .filter(|(_, l)| !l.trim_ascii().is_empty())
-            .collect();
-        let plain: Vec<&[u8]> = all
-            .iter()
-            .map(|&(_, l)| l)
-            .filter(|l| is_row(l, dialect::COMMENTS))
-            .collect();
-        if plain.is_empty() {
-            return Err(no_table(
-                text,
-                if all.is_empty() {
-                    "an empty file"
-                } else {
-                    "comments only"
-                },
-            ));
-        }
-        let dialect =
-            dialect::detect(&plain).ok_or_else(|| no_table(text, "no column of numbers"))?;
-        let first = all
-            .iter()
-            .position(|(_, l)| is_row(l, dialect::COMMENTS) && dialect::is_value_row(l, &dialect))
-            .ok_or_else(|| no_table(text, "no row of numbers"))?;
-        let before: Vec<&[u8]> = all[..first].iter().map(|&(_, l)| l).collect();
-        let header = header::read(&before, &dialect);
-        Ok(Self {
-            dialect,
-            header,
-            offset: all[first].0,
-        })
-    }
-
-    /// The rows of the head, cell by cell.
-    fn rows<'a>(&self, head: &'a [u8], quotes: bool) -> HeadRows<'a> {
-        Lines::new(&head[self.offset..], quotes)
-            .filter(|(_, l)| is_row(l, dialect::COMMENTS))
-            .map(|(_, l)| Cells::new(l, self.dialect.separator).collect())
-            .collect()
-    }
-
-    fn layout(&self, text: &TextFile, rows: &HeadRows<'_>, quotes: bool) -> Layout {
-        let kinds = (0..self.dialect.columns).map(|i| kind_of(rows, i, self.dialect.decimal));
-        let kinds: Vec<Kind> = kinds.collect();
-        Layout {
-            separator: self.dialect.separator,
-            decimal: self.dialect.decimal,
-            names: Vec::new(),
-            start: text.start() + self.offset as u64,
-            end: text.length(),
-            quotes,
-            month_first: kinds.contains(&Kind::Time) && month_first(rows),
-            kinds,
-            comments: dialect::COMMENTS,
-        }
-    }
-}
-
-/// Filled cells by which the kind of a column is judged.
-const JUDGED_CELLS: usize = 64;
-
-/// The kind of a column by its first filled cells in the head.
-fn kind_of(rows: &HeadRows<'_>, column: usize, decimal: u8) -> Kind {
-    let cells: Vec<&[u8]> = rows
-        .iter()
-        .filter_map(|r| r.get(column).copied())
-        .filter(|c| !c.is_empty())
-        .take(JUDGED_CELLS)
-        .collect();
-    let others: Vec<&[u8]> = cells
-        .iter()
-        .copied()
-        .filter(|c| number::parse_cell(c, decimal).is_none())
-        .collect();
-    let numbers = cells.len() - others.len();
-    let times = others.iter().filter(|c| dialect::is_time(c)).count();
-    if 2 * times > cells.len() {
-        Kind::Time
-    } else if 2 * numbers >= cells.len() {
-        Kind::Number
-    } else {
-        Kind::Text
-    }
-}
-
-/// Whether dates are written month first: only where one has its second number above 12.
-fn month_first(rows: &HeadRows<'_>) -> bool {
-    let mut dates = rows.iter().flatten().filter(|cell| cell.contains(&b'/'));
-    dates.any(|cell| {
-        let text = decode(cell);
-        let date = text.split([' ', 'T']).next().unwrap_or_default();
-        let mut parts = date.split('/').map(str::parse::<u32>);
-        matches!((parts.next(), parts.next(), parts.next()), (Some(Ok(m)), Some(Ok(d)), Some(Ok(_))) if m <= 12 && d > 12)
-    })
 }
 
 /// Refuse a table whose rows are so much shorter than its header that filling them up would

@@ -42,12 +42,12 @@ struct Hdf5Source {
 /// # Errors
 /// Where neither library can read its structure, or it holds no numbers.
 pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
-    let (store, tree, note) = open_store(path)?;
+    let (store, tree, notes) = open_store(path)?;
     if matlab::is_matlab(&tree) {
-        return matlab_file::open(path, store, &tree, note);
+        return matlab_file::open(path, store, &tree, notes);
     }
     let mut plans = plan::plan(&*store, &tree);
-    plans.notes.extend(note);
+    plans.notes.extend(notes);
     if plans.datasets.is_empty() {
         return Err(ReadError::new(
             path,
@@ -65,8 +65,8 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     Ok(Box::new(source))
 }
 
-/// A file's reader, its tree, and a note where the second library reads it.
-type Opened = (Box<dyn Store>, Tree, Option<String>);
+/// A file's reader, its tree, and notes where the second library reads it.
+type Opened = (Box<dyn Store>, Tree, Vec<String>);
 
 /// Open a file with the first library that reads its structure.
 fn open_store(path: &Path) -> Result<Opened, ReadError> {
@@ -77,13 +77,15 @@ fn open_store(path: &Path) -> Result<Opened, ReadError> {
         Ok((store, tree)) => Ok((
             Box::new(Guarded(fallback::WithFallback::new(store, path))),
             tree,
-            None,
+            Vec::new(),
         )),
         Err(first) => match second(path, &first) {
-            Ok((store, tree)) => {
-                let note =
-                    format!("read by the second HDF5 library, because the first says: {first}");
-                Ok((Box::new(Guarded(store)), tree, Some(note)))
+            Ok((store, tree, lost)) => {
+                let mut notes = vec![format!(
+                    "read by the second HDF5 library, because the first says: {first}"
+                )];
+                notes.extend(lost);
+                Ok((Box::new(Guarded(store)), tree, notes))
             }
             Err(both) => Err(ReadError::new(
                 path,
@@ -98,7 +100,7 @@ fn open_store(path: &Path) -> Result<Opened, ReadError> {
 
 /// Open a file with the second library, where the first does not know its layout; else, and where
 /// both refuse, their words.
-fn second(path: &Path, first: &str) -> Result<(fallback::SecondStore, Tree), String> {
+fn second(path: &Path, first: &str) -> Result<fallback::Opened, String> {
     if !fallback::is_unsupported(first) {
         return Err(first.to_owned());
     }
@@ -199,7 +201,7 @@ impl Hdf5Source {
             0,
             info.samples.min(rate::HEAD_SAMPLES as u64),
         )?;
-        let end = self.axis_values(array, locator, info.samples - 1, 1)?;
+        let end = self.axis_values(array, locator, info.samples.checked_sub(1)?, 1)?;
         let seconds = info
             .unit
             .as_deref()

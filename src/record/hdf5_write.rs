@@ -8,11 +8,13 @@
 mod layout;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fs::File;
+use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use ::hdf5::{AttrValue, FileBuilder};
 
-use crate::output::temporary_beside;
+use crate::output::write_whole_or;
 
 /// Version of the layout, written as `impactid_layout` into the file.
 const LAYOUT_VERSION: i64 = 1;
@@ -257,17 +259,15 @@ impl CampaignWriter {
             let group = builder.create_group(&name);
             builder.add_group(layout::fill(group, folder, self.single_precision));
         }
-        let file = temporary_beside(&self.path).map_err(io)?;
-        builder
-            .finish_to(std::io::BufWriter::new(file.as_file()))
-            .map_err(|e| match e {
-                ::hdf5::Error::Io(source) => io(source),
-                other => WriteError::Library {
-                    path: self.path.clone(),
-                    reason: other.to_string(),
-                },
-            })?;
-        file.persist(&self.path).map(drop).map_err(|e| io(e.error))
+        let library = |e| match e {
+            ::hdf5::Error::Io(source) => io(source),
+            other => WriteError::Library {
+                path: self.path.clone(),
+                reason: other.to_string(),
+            },
+        };
+        let fill = |file: &mut BufWriter<File>| builder.finish_to(file).map(drop).map_err(library);
+        write_whole_or(&self.path, fill, io)
     }
 }
 

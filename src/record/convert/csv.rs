@@ -1,10 +1,11 @@
 //! Records to CSV: remarks, a header with units, a row a sample.
 
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::Path;
 
-use crate::output::temporary_beside;
+use crate::output::write_whole_or;
 use crate::record::convert::{ConvertError, Item, io};
+use crate::record::csv::TEXTS_KEY;
 use crate::record::source::Samples;
 
 /// Write one record to a file, or several to the files of a folder.
@@ -23,9 +24,7 @@ pub fn write(items: &[Item], out: &Path) -> Result<(), ConvertError> {
 
 fn one(item: &Item, path: &Path) -> Result<(), ConvertError> {
     let samples = item.read()?;
-    let file = temporary_beside(path).map_err(io(path))?;
-    rows(item, &samples, BufWriter::new(file.as_file())).map_err(io(path))?;
-    file.persist(path).map_err(|e| io(path)(e.error))?;
+    write_whole_or(path, |out| rows(item, &samples, out), |e| e).map_err(io(path))?;
     Ok(())
 }
 
@@ -39,15 +38,13 @@ fn rows(item: &Item, samples: &[Samples], mut out: impl Write) -> std::io::Resul
     if let Some(start) = item.start_time() {
         writeln!(out, "# start_time = {start}")?;
     }
-    let mut headings = Vec::new();
-    for (heading, samples) in item.headings().zip(samples) {
-        match samples {
-            Samples::Complex(_) => {
-                headings.extend([".re", ".im"].map(|p| quoted(&heading.part(p))));
-            }
-            _ => headings.push(quoted(&heading.whole())),
-        }
+    let columns = columns(item, samples);
+    let texts = columns.iter().enumerate().filter(|(_, c)| c.text);
+    let texts: Vec<String> = texts.map(|(i, _)| (i + 1).to_string()).collect();
+    if !texts.is_empty() {
+        writeln!(out, "# {TEXTS_KEY} = {}", texts.join(" "))?;
     }
+    let headings: Vec<String> = columns.into_iter().map(|c| c.heading).collect();
     writeln!(out, "{}", headings.join(","))?;
     let longest = samples.iter().map(Samples::len).max().unwrap_or(0);
     for row in 0..longest {
@@ -60,7 +57,7 @@ fn rows(item: &Item, samples: &[Samples], mut out: impl Write) -> std::io::Resul
         }
         out.write_all(b"\n")?;
     }
-    out.flush()
+    Ok(())
 }
 
 fn cell(out: &mut impl Write, samples: &Samples, row: usize) -> std::io::Result<()> {
@@ -76,11 +73,38 @@ fn cell(out: &mut impl Write, samples: &Samples, row: usize) -> std::io::Result<
     }
 }
 
-/// A text as a cell: quoted where it holds a comma, a quote or a line end, or could be taken
-/// for a comment.
+/// A column of the table.
+struct Column {
+    heading: String,
+    text: bool,
+}
+
+/// The columns, two for complex numbers. Headings of texts are quoted in any case: a reader learns
+/// early that there are quotes.
+fn columns(item: &Item, samples: &[Samples]) -> Vec<Column> {
+    let mut all = Vec::new();
+    for (heading, samples) in item.headings().zip(samples) {
+        let text = matches!(samples, Samples::Text(_));
+        let headings = match samples {
+            Samples::Complex(_) => [".re", ".im"].map(|p| quoted(&heading.part(p))).to_vec(),
+            Samples::Text(_) => vec![in_quotes(&heading.whole())],
+            Samples::Real(_) => vec![quoted(&heading.whole())],
+        };
+        all.extend(headings.into_iter().map(|heading| Column { heading, text }));
+    }
+    all
+}
+
+/// A text as a cell: quoted where it holds a separator, a quote or a line end, begins or ends with
+/// a blank, or could be taken for a comment.
 fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) || text.starts_with(['#', '%', '!']) {
-        return format!("\"{}\"", text.replace('"', "\"\""));
+    let special = text.contains([',', ';', '\t', '|', '"', '\n', '\r']);
+    if special || text.starts_with(['#', '%', '!']) || text.trim() != text {
+        return in_quotes(text);
     }
     text.to_owned()
+}
+
+fn in_quotes(text: &str) -> String {
+    format!("\"{}\"", text.replace('"', "\"\""))
 }

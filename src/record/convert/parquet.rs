@@ -1,13 +1,14 @@
 //! Records to one Parquet file: a row group a record.
 
 use std::collections::BTreeMap;
+use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
 use polars::prelude::{Column, DataFrame, DataType, Schema};
 use polars_io::parquet::write::{KeyValueMetadata, ParquetCompression, ParquetWriter};
 
-use crate::output::temporary_beside;
+use crate::output::write_whole_or;
 use crate::record::convert::{ConvertError, Item, Options, io};
 use crate::record::hdf5_write::WriteError;
 use crate::record::parquet::RECORDS_KEY;
@@ -32,22 +33,22 @@ pub fn write(items: &[Item], out: &Path, options: &Options) -> Result<(), Conver
                 .map(|(name, text)| (name.as_str().into(), kind(*text, single))),
         )
         .collect();
-    let file = temporary_beside(out).map_err(io(out))?;
-    let mut writer = ParquetWriter::new(BufWriter::new(file.as_file()))
-        .with_compression(ParquetCompression::Snappy)
-        .with_key_value_metadata(Some(KeyValueMetadata::from_static(footer(items))))
-        .batched(&schema)
-        .map_err(library)?;
-    for item in items {
-        let frame = frame(item, &columns, several, single)?.map_err(library)?;
-        if frame.height() > 0 {
-            writer.write_batch(&frame).map_err(library)?;
+    let fill = |file: &mut BufWriter<File>| {
+        let mut writer = ParquetWriter::new(file)
+            .with_compression(ParquetCompression::Snappy)
+            .with_key_value_metadata(Some(KeyValueMetadata::from_static(footer(items))))
+            .batched(&schema)
+            .map_err(library)?;
+        for item in items {
+            let frame = frame(item, &columns, several, single)?.map_err(library)?;
+            if frame.height() > 0 {
+                writer.write_batch(&frame).map_err(library)?;
+            }
         }
-    }
-    writer.finish().map_err(library)?;
-    drop(writer);
-    file.persist(out).map_err(|e| io(out)(e.error))?;
-    Ok(())
+        writer.finish().map_err(library)?;
+        Ok(())
+    };
+    write_whole_or(out, fill, |e| io(out)(e).into())
 }
 
 fn kind(text: bool, single: bool) -> DataType {

@@ -223,3 +223,163 @@ fn valid_parts_of_complex_numbers_keep_their_unit() {
         }
     }
 }
+
+/// A record of channels of any kind, in memory.
+struct Made {
+    datasets: Vec<DatasetInfo>,
+    samples: Vec<Samples>,
+}
+
+impl Source for Made {
+    fn format(&self) -> &'static str {
+        "made"
+    }
+
+    fn path(&self) -> &Path {
+        Path::new("made.mat")
+    }
+
+    fn datasets(&self) -> &[DatasetInfo] {
+        &self.datasets
+    }
+
+    fn read(&self, _: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
+        Ok(channels.iter().map(|&c| self.samples[c].clone()).collect())
+    }
+}
+
+fn made(channels: &[(&str, Option<&str>, Samples)]) -> Made {
+    let info = |(name, unit, samples): &(&str, Option<&str>, Samples)| ChannelInfo {
+        name: (*name).to_owned(),
+        unit: unit.map(str::to_owned),
+        stored: match samples {
+            Samples::Real(_) => StoredType::Float(64),
+            Samples::Complex(_) => StoredType::Complex(64),
+            Samples::Text(_) => StoredType::Text,
+        },
+        samples: samples.len() as u64,
+        sample_rate_hz: Some(250.0),
+        start_time: None,
+        properties: BTreeMap::new(),
+    };
+    let dataset = DatasetInfo {
+        name: String::new(),
+        channels: channels.iter().map(info).collect(),
+        time_axis: None,
+        attributes: [("remark", "a, \"b\" = c"), ("clearance_m", "0.001")]
+            .map(|(k, v)| (k.to_owned(), v.to_owned()))
+            .into(),
+    };
+    Made {
+        datasets: vec![dataset],
+        samples: channels.iter().map(|(_, _, s)| s.clone()).collect(),
+    }
+}
+
+/// Texts that could be taken for something else in a table.
+const TEXTS: [&str; 12] = [
+    "a, b",
+    "12.5",
+    "",
+    "say \"hi\"",
+    "# note",
+    " two; blanks ",
+    "NaN",
+    "1\t2",
+    "x\ny",
+    "2024-05-01 12:00:00",
+    "-",
+    "\"",
+];
+
+/// Channels of every kind that is written, most of them texts.
+fn every_kind() -> Vec<(&'static str, Option<&'static str>, Samples)> {
+    let texts = |from: usize| {
+        let turned = TEXTS.iter().cycle().skip(from).take(TEXTS.len());
+        Samples::Text(turned.map(|t| (*t).to_owned()).collect())
+    };
+    let real =
+        |value: fn(f64) -> f64| Samples::Real((0..TEXTS.len()).map(|i| value(i as f64)).collect());
+    let pairs = (0..TEXTS.len()).map(|i| (i as f64, -0.1 * i as f64));
+    let empty = Samples::Text(vec![String::new(); TEXTS.len()]);
+    vec![
+        ("names{1}", None, texts(0)),
+        ("labels, all", None, texts(3)),
+        ("units \"odd\"", Some("m/s²"), texts(5)),
+        ("empty", None, empty),
+        ("7", None, texts(7)),
+        ("mass (kg)", None, real(|i| 1e-310 * i)),
+        ("velocity; x", Some("mm/s"), real(|i| (i - 3.0) / 7.0)),
+        (
+            "gaps [1]",
+            Some("V"),
+            real(|i| if i == 0.0 { f64::NAN } else { 1e300 * i }),
+        ),
+        ("transfer", Some("N/m"), Samples::Complex(pairs.collect())),
+        ("whole", None, real(|i| 9_007_199_254_740_993.0 - i)),
+    ]
+}
+
+/// What a channel must be after it was written: two channels of real numbers for a complex one.
+fn written(channels: &[(&str, Option<&str>, Samples)]) -> Vec<(String, Option<String>, Samples)> {
+    let mut all = Vec::new();
+    for (name, unit, samples) in channels {
+        let unit = unit.map(str::to_owned);
+        match samples {
+            Samples::Complex(values) => {
+                let (re, im) = values.iter().copied().unzip();
+                all.push((format!("{name}.re"), unit.clone(), Samples::Real(re)));
+                all.push((format!("{name}.im"), unit, Samples::Real(im)));
+            }
+            other => all.push(((*name).to_owned(), unit, other.clone())),
+        }
+    }
+    all
+}
+
+/// Whether samples are alike, those that are missing too.
+fn alike(a: &Samples, b: &Samples) -> bool {
+    match (a, b) {
+        (Samples::Real(a), Samples::Real(b)) => {
+            let bits = |v: &f64| if v.is_nan() { 0 } else { v.to_bits() };
+            a.iter().map(bits).eq(b.iter().map(bits))
+        }
+        (a, b) => a == b,
+    }
+}
+
+#[test]
+fn valid_every_kind_of_channel_comes_back_from_every_target() {
+    let channels = every_kind();
+    let sources: [Box<dyn Source>; 1] = [Box::new(made(&channels))];
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["out.h5", "out.parquet", "out.csv"] {
+        let out = dir.path().join(name);
+        let target = Target::of(&out).unwrap();
+        convert(&sources, target, &out, &Options::default()).unwrap();
+        let back = open(&out).unwrap();
+        let info = &back.datasets()[0];
+        let mut expected = written(&channels);
+        if target == Target::Hdf5 {
+            expected.retain(|(_, _, s)| !matches!(s, Samples::Text(_)));
+        }
+        assert_eq!(info.channels.len(), expected.len(), "{name}");
+        assert_eq!(info.sample_rate_hz(), Some(250.0), "{name}");
+        assert_eq!(info.attributes["remark"], "a, \"b\" = c", "{name}");
+        let all: Vec<usize> = (0..expected.len()).collect();
+        let read = back.read(0, &all).unwrap();
+        for ((channel, read), (expected, unit, samples)) in
+            info.channels.iter().zip(&read).zip(&expected)
+        {
+            assert_eq!((&channel.name, &channel.unit), (expected, unit), "{name}");
+            assert_eq!(channel.samples, samples.len() as u64, "{name} {expected}");
+            let text = channel.stored == StoredType::Text;
+            assert_eq!(
+                text,
+                matches!(samples, Samples::Text(_)),
+                "{name} {expected}"
+            );
+            assert!(alike(read, samples), "{name} {expected}: {read:?}");
+        }
+    }
+}

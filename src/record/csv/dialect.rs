@@ -22,6 +22,18 @@ pub struct Dialect {
     pub columns: usize,
 }
 
+impl Dialect {
+    /// The dialect that this program writes, with the columns of its header.
+    pub fn own(header: &[u8]) -> Self {
+        let separator = Separator::Byte(b',');
+        Self {
+            separator,
+            decimal: b'.',
+            columns: Cells::new(header, separator).count(),
+        }
+    }
+}
+
 /// Dialects in the order in which they are preferred when they explain a text equally well.
 const CANDIDATES: [(Separator, u8); 9] = [
     (Separator::Byte(b'\t'), b'.'),
@@ -40,9 +52,7 @@ const CANDIDATES: [(Separator, u8); 9] = [
 /// `lines` are the first lines of the file without blank lines and comments. The last of them
 /// count: a preamble stands before the table.
 pub fn detect(lines: &[&[u8]]) -> Option<Dialect> {
-    let judged = &lines[lines.len().saturating_sub(JUDGED_LINES)..];
-    // A preamble in a short file must not outvote the table: its second half decides.
-    let judged = &judged[judged.len() / 2..];
+    let judged = judged(lines);
     let mut best: Option<(f64, Dialect)> = None;
     for (separator, decimal) in CANDIDATES {
         let Some((score, columns)) = score(judged, separator, decimal) else {
@@ -64,6 +74,13 @@ pub fn detect(lines: &[&[u8]]) -> Option<Dialect> {
         }
     }
     best.map(|(_, dialect)| dialect)
+}
+
+/// The lines by which a table is judged. A preamble in a short file must not outvote the table:
+/// the second half decides.
+fn judged<'a, 'b>(lines: &'b [&'a [u8]]) -> &'b [&'a [u8]] {
+    let last = &lines[lines.len().saturating_sub(JUDGED_LINES)..];
+    &last[last.len() / 2..]
 }
 
 /// How well a dialect explains lines: the share of lines with the usual number of cells times
@@ -111,19 +128,49 @@ pub fn is_time(cell: &[u8]) -> bool {
     cell.len() <= LONGEST_TIME && clock::parse(&decode(cell), false).is_some()
 }
 
-/// Whether a line is a row of values: some filled cells, most of them values, the first of
-/// the filled ones too.
-pub fn is_value_row(line: &[u8], dialect: &Dialect) -> bool {
-    let cells: Vec<&[u8]> = Cells::new(line, dialect.separator)
-        .filter(|c| !c.is_empty())
-        .collect();
-    let values = cells
+/// The number of the first line that is a row of the table: a row of values, or one that has
+/// values wherever the last lines have values alone, as rows of few numbers among texts do.
+pub fn first_row(lines: &[&[u8]], dialect: &Dialect) -> Option<usize> {
+    let values = columns_of_values(judged(lines), dialect);
+    lines.iter().position(|line| {
+        let cells: Vec<&[u8]> = Cells::new(line, dialect.separator).collect();
+        let near = cells.len().abs_diff(dialect.columns) <= dialect.columns / 2;
+        near && (is_value_row(&cells, dialect) || agrees(&cells, &values, dialect))
+    })
+}
+
+/// Whether some of the cells are filled, and most of those hold values.
+fn is_value_row(cells: &[&[u8]], dialect: &Dialect) -> bool {
+    let filled = cells.iter().filter(|c| !c.is_empty()).count();
+    let values = cells.iter().filter(|c| is_value(c, dialect.decimal));
+    let values = values.count();
+    values > 0 && 2 * values >= filled
+}
+
+/// For each column whether lines hold values in it, and nothing else.
+fn columns_of_values(lines: &[&[u8]], dialect: &Dialect) -> Vec<bool> {
+    let mut columns = vec![(false, true); dialect.columns];
+    for line in lines {
+        let cells = Cells::new(line, dialect.separator).zip(&mut columns);
+        for (cell, (some, only)) in cells.filter(|(c, _)| !c.is_empty()) {
+            let value = is_value(cell, dialect.decimal);
+            (*some, *only) = (*some || value, *only && value);
+        }
+    }
+    columns.iter().map(|(some, only)| *some && *only).collect()
+}
+
+/// Whether a row has values in columns of values: in one at least, and no word in any.
+fn agrees(cells: &[&[u8]], columns: &[bool], dialect: &Dialect) -> bool {
+    let held = cells
         .iter()
-        .filter(|c| is_value(c, dialect.decimal))
-        .count();
-    let width = Cells::new(line, dialect.separator).count();
-    let near = width.abs_diff(dialect.columns) <= dialect.columns / 2;
-    near && values > 0 && 2 * values >= cells.len()
+        .zip(columns)
+        .filter(|(_, of_values)| **of_values);
+    let mut filled = held
+        .map(|(cell, _)| cell)
+        .filter(|c| !c.is_empty())
+        .peekable();
+    filled.peek().is_some() && filled.all(|c| is_value(c, dialect.decimal))
 }
 
 #[cfg(test)]

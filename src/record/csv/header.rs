@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::record::csv::dialect::{COMMENTS, Dialect, is_value};
-use crate::record::text::cells::Cells;
+use crate::record::text::cells::{Cells, decode_cell};
 use crate::record::text::decode;
 use crate::units::parse_unit;
 
@@ -62,7 +62,9 @@ fn is_comment(line: &[u8]) -> bool {
 }
 
 fn cells(line: &[u8], dialect: &Dialect) -> Vec<String> {
-    Cells::new(line, dialect.separator).map(decode).collect()
+    Cells::new(line, dialect.separator)
+        .map(decode_cell)
+        .collect()
 }
 
 /// Whether a row of cells can head the table: its width, give or take an empty cell at the end.
@@ -133,8 +135,13 @@ fn unwrapped(text: &str) -> &str {
 }
 
 /// A heading such as `velocity_x [mm/s]`, `Position (m) Run 1` or `x / mm` as name and unit.
+///
+/// Empty brackets at its end say that there is no unit: `mass (kg) []`.
 pub fn name_and_unit(heading: &str) -> (String, Option<String>) {
     let heading = heading.trim();
+    if let Some(name) = heading.strip_suffix("[]") {
+        return (name.trim_end().to_owned(), None);
+    }
     for (open, close, any) in [('[', ']', true), ('(', ')', false)] {
         let Some(from) = heading.rfind(open) else {
             continue;
@@ -206,6 +213,7 @@ mod tests {
             ("x / mm", "x", Some("mm")),
             ("Blue:Acceleration - x", "Blue:Acceleration - x", None),
             ("[V]", "[V]", None),
+            ("mass (kg) []", "mass (kg)", None),
         ] {
             assert_eq!(
                 name_and_unit(heading),

@@ -104,6 +104,17 @@ fn valid_a_wrong_cell_is_named_and_located() {
 }
 
 #[test]
+fn valid_rows_of_few_numbers_among_texts_are_rows() {
+    let s = source(b"name,place,note,x\nalpha,left,\"a, b\",0\nbeta,right,fine,1\n,,,2\n,,,3\n");
+    let info = &s.datasets()[0];
+    let names: Vec<&str> = info.channels.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["name", "place", "note", "x"]);
+    assert_eq!(real(&*s, 3), [0.0, 1.0, 2.0, 3.0]);
+    let s = source(b"name,place,note,x\nalpha,left,fine,0\n");
+    assert_eq!(real(&*s, 3), [0.0]);
+}
+
+#[test]
 fn valid_files_that_are_no_table_are_refused() {
     for bytes in [
         &b""[..],
@@ -136,6 +147,61 @@ fn valid_blocks_join_without_a_seam() {
     assert!(y.iter().enumerate().all(|(i, v)| *v == i as f64 * 0.25));
     assert_eq!(all[1], all[2]);
     assert!((s.datasets()[0].sample_rate_hz().unwrap() - 1e4).abs() < 1e-6);
+}
+
+/// Cells as tables have them, and the number that each holds.
+const CELLS: [(&str, f64); 12] = [
+    ("0.020142826306052714", 0.020142826306052714),
+    ("-1.5", -1.5),
+    ("+2", 2.0),
+    ("", f64::NAN),
+    (" 3.25", 3.25),
+    ("4.5 ", 4.5),
+    ("NaN", f64::NAN),
+    ("-1.234567890123456789e-03", -0.001_234_567_890_123_456_8),
+    ("123456789012", 123456789012.0),
+    ("-inf", f64::NEG_INFINITY),
+    ("0.000000000000000000001", 1e-21),
+    // last, so that tables without quotes leave it out
+    ("\"6.5\"", 6.5),
+];
+
+proptest::proptest! {
+    #![proptest_config(proptest::prelude::ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn prop_every_cell_is_read_alike_in_any_company(
+        mut rows in proptest::collection::vec([0..CELLS.len(), 0..CELLS.len(), 0..CELLS.len()], 60..400),
+        quotes: bool,
+        separator in proptest::sample::select(vec![",", ";", "\t"]),
+        end in proptest::sample::select(vec!["\n", "\r\n", "\n\n", "\n# remark, 1, 2\n", ",\n"]),
+        wanted in proptest::sample::subsequence(vec![0usize, 1, 2, 3], 1..=4),
+    ) {
+        if !quotes {
+            let others = CELLS.len() - 1;
+            rows.iter_mut().flatten().for_each(|c| *c %= others);
+        }
+        let end = end.replace(",\n", &format!("{separator}\n"));
+        let mut text = ["n", "x", "y", "z"].join(separator) + "\n";
+        for (i, row) in rows.iter().enumerate() {
+            let cells = row.map(|c| CELLS[c].0);
+            text += &format!("1{i}{separator}{}{end}", cells.join(separator));
+        }
+        // the last line needs no end
+        let s = source(text.trim_end_matches(['\n', '\r']).as_bytes());
+        let read = s.read(0, &wanted).unwrap();
+        for (column, samples) in wanted.iter().zip(read) {
+            let values = samples.into_real().unwrap();
+            proptest::prop_assert_eq!(values.len(), rows.len());
+            for (i, value) in values.into_iter().enumerate() {
+                let expected = match column {
+                    0 => format!("1{i}").parse().unwrap(),
+                    c => CELLS[rows[i][c - 1]].1,
+                };
+                proptest::prop_assert!(value.to_bits() == expected.to_bits() || value.is_nan() && expected.is_nan(), "row {i} column {column}: {value}");
+            }
+        }
+    }
 }
 
 #[test]

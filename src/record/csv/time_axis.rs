@@ -1,7 +1,7 @@
 //! Which column of a table is its time axis, and at which rate its rows follow.
 
 use crate::record::attribute::says_time;
-use crate::record::csv::HeadRows;
+use crate::record::csv::columns::HeadRows;
 use crate::record::csv::header::Header;
 use crate::record::rate;
 use crate::record::text::table::{Kind, Layout};
@@ -25,7 +25,7 @@ pub struct TimeAxis {
 
 /// Find the time axis: a column of points in time, one whose name or unit says time, or an
 /// unnamed first column that climbs evenly. It must never go back in the rows seen.
-pub fn find(
+pub(crate) fn find(
     header: &Header,
     layout: &Layout,
     rows: &HeadRows<'_>,
@@ -44,7 +44,7 @@ pub fn find(
         .map_or(1.0, |u| u.to_si);
     let rate_hz = rate::from_axis(&head, end, count).map(|r| r / factor);
     let start = (layout.kinds[column] == Kind::Time)
-        .then(|| stamp(layout, rows.first()?.get(column)?).map(clock::Stamp::iso))
+        .then(|| stamp(layout, rows.first(column)?).map(clock::Stamp::iso))
         .flatten();
     let unit = unit.or_else(|| (layout.kinds[column] == Kind::Time).then(|| "s".to_owned()));
     Some(TimeAxis {
@@ -124,8 +124,8 @@ fn unnamed(header: &Header, layout: &Layout, rows: &HeadRows<'_>) -> Option<Cand
 
 /// The values of a column in the rows seen.
 fn head_of(layout: &Layout, rows: &HeadRows<'_>, i: usize) -> Vec<f64> {
-    rows.iter()
-        .filter_map(|r| cell_value(layout, r.get(i)?, i, rows))
+    rows.column(i)
+        .filter_map(|cell| cell_value(layout, cell, i, rows))
         .filter(|v| v.is_finite())
         .collect()
 }
@@ -133,7 +133,7 @@ fn head_of(layout: &Layout, rows: &HeadRows<'_>, i: usize) -> Vec<f64> {
 fn cell_value(layout: &Layout, cell: &[u8], i: usize, rows: &HeadRows<'_>) -> Option<f64> {
     match layout.kinds[i] {
         Kind::Number => number::parse_cell(cell, layout.decimal),
-        Kind::Time => Some(stamp(layout, cell)?.since(stamp(layout, rows.first()?.get(i)?)?)),
+        Kind::Time => Some(stamp(layout, cell)?.since(stamp(layout, rows.first(i)?)?)),
         Kind::Text => None,
     }
 }

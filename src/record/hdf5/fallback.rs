@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use rust_hdf5::{DatatypeMessage, H5Dataset, H5File, H5Group};
 
+use crate::record::bytes::decode_text;
 use crate::record::hdf5::element::Element;
 use crate::record::hdf5::element::{boolean, compound};
 use crate::record::hdf5::pure::PureStore;
@@ -97,18 +98,22 @@ impl Store for WithFallback {
     }
 }
 
+/// A file's reader, its tree, and a note where attributes are not read.
+pub type Opened = (SecondStore, Tree, Option<String>);
+
 /// Open a file and walk its tree.
-pub fn open(path: &Path) -> Result<(SecondStore, Tree), String> {
+pub fn open(path: &Path) -> Result<Opened, String> {
     let file = file(path)?;
-    let mut objects = 0;
-    let mut tree = group(&file, &file.root_group(), String::new(), 0, &mut objects)?;
-    tree.attributes = root_attributes(&file);
-    Ok((
-        SecondStore {
-            path: path.to_path_buf(),
-        },
-        tree,
-    ))
+    let mut walk = Walk {
+        file: &file,
+        objects: 0,
+        lost: Vec::new(),
+    };
+    let mut tree = walk.group(&file.root_group(), String::new(), 0)?;
+    tree.attributes = walk.attributes("", file.attr_names(), |n| text(file.attr_string(n)));
+    let note = walk.note();
+    let path = path.to_path_buf();
+    Ok((SecondStore { path }, tree, note))
 }
 
 fn file(path: &Path) -> Result<H5File, String> {
@@ -118,76 +123,130 @@ fn file(path: &Path) -> Result<H5File, String> {
         .map_err(|e| e.to_string())
 }
 
-fn root_attributes(file: &H5File) -> Attrs {
-    let names = file.attr_names().unwrap_or_default();
-    names
-        .into_iter()
-        .filter_map(|n| file.attr_string(&n).ok().map(|v| (n, Attr::Text(vec![v]))))
-        .collect()
+/// A walk through the tree of a file.
+struct Walk<'a> {
+    file: &'a H5File,
+    /// Groups and arrays met.
+    objects: usize,
+    /// Attributes that the library does not read.
+    lost: Vec<String>,
 }
 
-fn group(
-    file: &H5File,
-    group_of_file: &H5Group,
-    path: String,
-    depth: usize,
-    objects: &mut usize,
-) -> Result<Tree, String> {
-    let text = |e: rust_hdf5::Hdf5Error| e.to_string();
-    if depth > DEEPEST || *objects > MOST_OBJECTS {
-        return Err(format!("too many or too deeply nested groups at '{path}'"));
-    }
-    let mut tree = Tree {
-        path,
-        ..Tree::default()
-    };
-    for name in group_of_file.attr_names().unwrap_or_default() {
-        if let Ok(value) = group_of_file.attr_string(&name) {
-            tree.attributes.insert(name, Attr::Text(vec![value]));
+/// Attributes that are named in a note; of more their number is told.
+const MOST_NAMED: usize = 12;
+
+impl Walk<'_> {
+    fn group(&mut self, group: &H5Group, path: String, depth: usize) -> Result<Tree, String> {
+        let words = |e: rust_hdf5::Hdf5Error| e.to_string();
+        if depth > DEEPEST || self.objects > MOST_OBJECTS {
+            return Err(format!("too many or too deeply nested groups at '{path}'"));
         }
+        let attributes = match depth {
+            // read from the file
+            0 => Attrs::new(),
+            _ => self.attributes(&path, group.attr_names(), |n| text(group.attr_string(n))),
+        };
+        let mut tree = Tree {
+            path,
+            attributes,
+            ..Tree::default()
+        };
+        for name in group.dataset_names().map_err(words)? {
+            self.objects += 1;
+            let path = join(&tree.path, &name);
+            let dataset = self.file.dataset(&path).map_err(words)?;
+            tree.arrays.push(self.array(&dataset, path, name)?);
+        }
+        for name in group.group_names().map_err(words)? {
+            self.objects += 1;
+            let child = group.group(&name).map_err(words)?;
+            let path = join(&tree.path, &name);
+            tree.groups.push(self.group(&child, path, depth + 1)?);
+        }
+        Ok(tree)
     }
-    for name in group_of_file.dataset_names().map_err(text)? {
-        *objects += 1;
-        let path = join(&tree.path, &name);
-        let dataset = file.dataset(&path).map_err(text)?;
-        tree.arrays.push(array(&dataset, path, name)?);
+
+    fn array(&mut self, dataset: &H5Dataset, path: String, name: String) -> Result<Array, String> {
+        let datatype = dataset.datatype().map_err(|e| e.to_string())?;
+        Ok(Array {
+            shape: dataset.shape().into_iter().map(|d| d as u64).collect(),
+            element: element(&datatype),
+            attributes: self.attributes(&path, dataset.attr_names(), |n| attr(dataset, n)),
+            path,
+            name,
+            handle: 0,
+        })
     }
-    for name in group_of_file.group_names().map_err(text)? {
-        *objects += 1;
-        let child = group_of_file.group(&name).map_err(text)?;
-        let path = join(&tree.path, &name);
-        tree.groups
-            .push(group(file, &child, path, depth + 1, objects)?);
+
+    /// The attributes of an object; those that are not read are kept for the note.
+    fn attributes(
+        &mut self,
+        path: &str,
+        names: rust_hdf5::Result<Vec<String>>,
+        value: impl Fn(&str) -> Option<Attr>,
+    ) -> Attrs {
+        let mut read = Attrs::new();
+        match names {
+            Err(_) => self.lost.push(format!("all of '/{path}'")),
+            Ok(names) => {
+                for name in names {
+                    match value(&name) {
+                        Some(value) => drop(read.insert(name, value)),
+                        None => self.lost.push(format!("'{name}' of '/{path}'")),
+                    }
+                }
+            }
+        }
+        read
     }
-    Ok(tree)
+
+    /// What the user should know of the attributes that are not read.
+    fn note(&self) -> Option<String> {
+        let named = self.lost.iter().take(MOST_NAMED).cloned();
+        let named = named.collect::<Vec<_>>().join(", ");
+        let more = match self.lost.len().saturating_sub(MOST_NAMED) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        (!self.lost.is_empty()).then(|| {
+            format!(
+                "attributes not read: {named}{more}; units, rates and settings in them are not \
+                 known: state them in campaign.toml"
+            )
+        })
+    }
 }
 
-fn array(dataset: &H5Dataset, path: String, name: String) -> Result<Array, String> {
-    let datatype = dataset.datatype().map_err(|e| e.to_string())?;
-    Ok(Array {
-        shape: dataset.shape().into_iter().map(|d| d as u64).collect(),
-        element: element(&datatype),
-        attributes: attributes(dataset),
-        path,
-        name,
-        handle: 0,
-    })
+/// A text as an attribute, where the library reads one.
+fn text(read: rust_hdf5::Result<String>) -> Option<Attr> {
+    read.ok().map(|t| Attr::Text(vec![t]))
 }
 
-fn attributes(dataset: &H5Dataset) -> Attrs {
-    let names = dataset.attr_names().unwrap_or_default();
-    names
-        .into_iter()
-        .filter_map(|n| attr(dataset, &n).map(|v| (n, v)))
-        .collect()
-}
+/// Bytes by which a text of any length is referred to.
+const TEXT_REFERENCE_BYTES: usize = 16;
 
+/// An attribute as numbers or texts. Of several texts of any length the library tells the first
+/// alone: they are not read.
 fn attr(dataset: &H5Dataset, name: &str) -> Option<Attr> {
     let attribute = dataset.attr(name).ok()?;
     if let Ok(numbers) = attribute.read_numeric_as::<f64>() {
         return Some(Attr::Numbers(numbers));
     }
-    attribute.read_string().ok().map(|t| Attr::Text(vec![t]))
+    let bytes = attribute.read_raw().ok()?;
+    match attribute.datatype().ok()? {
+        DatatypeMessage::FixedString { size, .. } if bytes.len() > size as usize => {
+            let texts = bytes.chunks(size.max(1) as usize).map(|t| {
+                let end = t.iter().position(|&b| b == 0).unwrap_or(t.len());
+                decode_text(&t[..end]).trim_end().to_owned()
+            });
+            Some(Attr::Text(texts.collect()))
+        }
+        DatatypeMessage::VarLenString { .. } if bytes.len() > TEXT_REFERENCE_BYTES => None,
+        DatatypeMessage::FixedString { .. } | DatatypeMessage::VarLenString { .. } => {
+            text(attribute.read_string())
+        }
+        _ => None,
+    }
 }
 
 fn element(datatype: &DatatypeMessage) -> Element {
@@ -302,5 +361,26 @@ impl Store for SecondStore {
         // The library does not tell; the file's length bounds it.
         let claimed = array.count()?.checked_mul(array.element.bytes() as u64)?;
         Some(claimed.min(self.file_bytes()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::conformance::own;
+
+    #[test]
+    fn valid_attributes_that_are_not_read_are_named() {
+        let (_, tree, note) = open(&own("latest_attributes.h5")).unwrap();
+        let attributes = &tree.arrays[0].attributes;
+        assert_eq!(attributes["units"].list(), ["mm/s", "V"]);
+        assert_eq!(attributes["sample_rate_hz"].numbers(), Some(&[2000.0][..]));
+        assert_eq!(tree.attributes["rig"].text(), "A");
+        let note = note.unwrap();
+        assert!(note.contains("'calibration' of '/run'"), "{note}");
+        // of several texts the library tells the first alone
+        assert!(note.contains("'channels' of '/run'"), "{note}");
+        assert!(!attributes.contains_key("channels"));
+        assert!(open(&own("latest_two_unlimited.h5")).unwrap().2.is_none());
     }
 }

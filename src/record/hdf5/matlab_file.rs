@@ -25,7 +25,7 @@ pub fn open(
     path: &Path,
     store: Box<dyn Store>,
     tree: &Tree,
-    note: Option<String>,
+    store_notes: Vec<String>,
 ) -> Result<Box<dyn Source>, ReadError> {
     let found = matlab::find(&*store, tree).map_err(|e| {
         ReadError::new(
@@ -56,7 +56,7 @@ pub fn open(
         origins,
         notes,
     } = arrange::arrange(&found.variables);
-    let all = note
+    let all = store_notes
         .into_iter()
         .chain(found.variables.notes.clone())
         .chain(left_out)

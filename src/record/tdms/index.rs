@@ -22,7 +22,7 @@ pub fn share(file: &FileBytes, cursor: &mut Cursor<'_>, header: u32) -> Result<S
     }
     let code = cursor.u32("a data type")?;
     let kind = Kind::of(code).map_err(|found| {
-        let remedy = "Save the channel as double precision numbers.";
+        let remedy = "Save the channel again, as double precision numbers (DBL).";
         file.unsupported(at + 4, found, "a data type that is read", remedy)
     })?;
     let dimension = cursor.u32("a dimension")?;

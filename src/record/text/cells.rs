@@ -1,5 +1,7 @@
 //! Lines of a block and the cells of a line.
 
+use crate::record::bytes::decode_text;
+
 /// What stands between two cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Separator {
@@ -64,6 +66,11 @@ impl<'a> Iterator for Cells<'a> {
     }
 }
 
+/// Text of a cell; two quotes in a row are one.
+pub fn decode_cell(cell: &[u8]) -> String {
+    decode_text(cell).replace("\"\"", "\"")
+}
+
 /// Position of the quote that closes a cell; two in a row are one quote in the cell.
 fn closing_quote(bytes: &[u8]) -> Option<usize> {
     let mut i = 0;
@@ -92,22 +99,6 @@ impl<'a> Lines<'a> {
             quotes,
         }
     }
-
-    fn end(&self) -> usize {
-        let rest = &self.block[self.at..];
-        if !self.quotes {
-            return memchr::memchr(b'\n', rest).unwrap_or(rest.len());
-        }
-        let mut open = false;
-        for i in memchr::memchr2_iter(b'\n', b'"', rest) {
-            match rest[i] {
-                b'"' => open = !open,
-                _ if !open => return i,
-                _ => {}
-            }
-        }
-        rest.len()
-    }
 }
 
 impl<'a> Iterator for Lines<'a> {
@@ -118,11 +109,30 @@ impl<'a> Iterator for Lines<'a> {
             return None;
         }
         let at = self.at;
-        let end = self.end();
-        self.at += end + 1;
-        let line = &self.block[at..at + end];
-        Some((at, line.strip_suffix(b"\r").unwrap_or(line)))
+        let (line, next) = line_at(self.block, at, self.quotes);
+        self.at = next;
+        Some((at, line))
     }
+}
+
+/// The line that begins at `at` of a block, without its line end, and where the next begins.
+pub fn line_at(block: &[u8], at: usize, quotes: bool) -> (&[u8], usize) {
+    let rest = &block[at..];
+    let end = match quotes {
+        false => memchr::memchr(b'\n', rest),
+        true => line_feed_outside_quotes(rest),
+    };
+    let end = end.unwrap_or(rest.len());
+    let line = &rest[..end];
+    (line.strip_suffix(b"\r").unwrap_or(line), at + end + 1)
+}
+
+fn line_feed_outside_quotes(bytes: &[u8]) -> Option<usize> {
+    let mut open = false;
+    memchr::memchr2_iter(b'\n', b'"', bytes).find(|&i| {
+        open ^= bytes[i] == b'"';
+        bytes[i] == b'\n' && !open
+    })
 }
 
 /// Whether a line is a row: not blank, not a comment.

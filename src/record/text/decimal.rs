@@ -5,12 +5,11 @@
 //! 19 digits, are multiplied by a power of five in 128 bits (D. Lemire, "Number parsing at a
 //! gigabyte per second", Software: Practice and Experience 51, 2021, algorithm 1).
 
-/// Most digits whose integer 64 bits hold.
-pub const MOST_DIGITS: usize = 19;
 /// Greatest power of five whose square fits 128 bits, and for which the algorithm is exact.
 const GREATEST_POWER: i64 = 27;
-/// Most digits whose integer binary64 holds in any case.
-const EXACT_DIGITS: usize = 15;
+/// Mantissas below it binary64 holds, and so it does a few above it; by this bound numbers of the
+/// usual 16 and 17 digits all take the same way.
+const SHORT: u64 = 1_000_000_000_000_000;
 /// Explicit bits of a binary64 mantissa.
 const MANTISSA_BITS: u64 = 52;
 
@@ -51,61 +50,11 @@ const fn reciprocal(power: u128) -> u128 {
     quotient + 1
 }
 
-/// Whether eight characters are digits: each becomes 0 to 9 by the exclusive or, and 6 more stay
-/// below 16.
-#[inline]
-fn are_digits(word: u64) -> bool {
-    let values = word ^ 0x3030_3030_3030_3030;
-    (values.wrapping_add(0x0606_0606_0606_0606) | values) & 0xf0f0_f0f0_f0f0_f0f0 == 0
-}
-
-/// The value of eight digits: pairs, then fours, then all at once.
-#[inline]
-fn eight_digits(word: u64) -> u64 {
-    let pairs = (word & 0x0f0f_0f0f_0f0f_0f0f).wrapping_mul((10 << 8) + 1) >> 8;
-    let fours = (pairs & 0x00ff_00ff_00ff_00ff).wrapping_mul((100 << 16) + 1) >> 16;
-    (fours & 0x0000_ffff_0000_ffff).wrapping_mul((10_000 << 32) + 1) >> 32
-}
-
-/// Add the digits from `i` on to a mantissa, eight at a time while there are so many; the place
-/// behind them.
-#[inline]
-pub fn many_digits(bytes: &[u8], mut i: usize, mantissa: &mut u64) -> usize {
-    while let Some(eight) = bytes.get(i..).and_then(|rest| rest.first_chunk::<8>()) {
-        let word = u64::from_le_bytes(*eight);
-        if !are_digits(word) {
-            break;
-        }
-        let moved = mantissa.wrapping_mul(100_000_000);
-        *mantissa = moved.wrapping_add(eight_digits(word));
-        i += 8;
-    }
-    few_digits(bytes, i, mantissa)
-}
-
-/// Add the digits from `i` on to a mantissa; the place behind them.
-#[inline]
-pub fn few_digits(bytes: &[u8], mut i: usize, mantissa: &mut u64) -> usize {
-    while let Some(digit) = bytes
-        .get(i)
-        .map(|b| b.wrapping_sub(b'0'))
-        .filter(|d| *d < 10)
-    {
-        *mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
-        i += 1;
-    }
-    i
-}
-
 /// The binary64 number nearest to mantissa · 10^exponent; `None` where another way must be
-/// taken: `digits` are more than 64 bits hold, or the exponent is great.
+/// taken: the exponent is great.
 #[inline]
-pub fn nearest(mantissa: u64, digits: usize, exponent: i64) -> Option<f64> {
-    if digits > MOST_DIGITS {
-        return None;
-    }
-    let short = digits <= EXACT_DIGITS || mantissa == 0;
-    if short && (-22..=22).contains(&exponent) {
+pub fn nearest(mantissa: u64, exponent: i64) -> Option<f64> {
+    if mantissa < SHORT && (-22..=22).contains(&exponent) {
         let power = EXACT_POWERS[exponent.unsigned_abs() as usize];
         return Some(match exponent < 0 {
             true => mantissa as f64 / power,
@@ -137,9 +86,8 @@ fn long(mantissa: u64, exponent: i64) -> f64 {
         bits &= !1;
     }
     bits = (bits + (bits & 1)) >> 1;
-    let carry = bits >> (MANTISSA_BITS + 1);
-    let fraction = (bits >> carry) & ((1 << MANTISSA_BITS) - 1);
-    f64::from_bits(((power as u64 + carry) << MANTISSA_BITS) | fraction)
+    // The mantissa's top bit counts one step of the exponent, and a carry out of it another.
+    f64::from_bits((((power - 1) as u64) << MANTISSA_BITS) + bits)
 }
 
 /// The upper 128 of the 192 bits of a product, as far as they are needed.
@@ -162,20 +110,6 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn valid_digits_end_at_any_other_character() {
-        for byte in (0..=255u8).filter(|b| !b.is_ascii_digit()) {
-            for place in 0..19 {
-                let mut text = *b"1234567890987654321x";
-                text[place] = byte;
-                let mut mantissa = 0;
-                assert_eq!(many_digits(&text, 0, &mut mantissa), place);
-                let expected = std::str::from_utf8(&text[..place]).unwrap();
-                assert_eq!(mantissa, expected.parse().unwrap_or(0), "{byte} at {place}");
-            }
-        }
-    }
-
-    #[test]
     fn valid_numbers_half_way_go_to_the_even_one() {
         for (mantissa, exponent) in [
             (9_007_199_254_740_993, 0),
@@ -187,7 +121,7 @@ mod tests {
         ] {
             let text = format!("{mantissa}e{exponent}");
             let expected: f64 = text.parse().unwrap();
-            assert_eq!(nearest(mantissa, 19, exponent), Some(expected), "{text}");
+            assert_eq!(nearest(mantissa, exponent), Some(expected), "{text}");
         }
     }
 
@@ -198,7 +132,7 @@ mod tests {
         fn prop_long_mantissas_equal_the_standard_parsers(mantissa: u64, drop in 0u32..40, exponent in -27i64..=27) {
             let mantissa = mantissa >> drop;
             let expected: f64 = format!("{mantissa}e{exponent}").parse().unwrap();
-            if let Some(value) = nearest(mantissa, 19, exponent) {
+            if let Some(value) = nearest(mantissa, exponent) {
                 prop_assert_eq!(value.to_bits(), expected.to_bits());
             }
             if mantissa > 0 {

@@ -5,6 +5,7 @@
 pub mod cells;
 pub mod clock;
 pub mod decimal;
+pub mod digits;
 pub mod number;
 pub mod table;
 
@@ -15,7 +16,7 @@ use crate::record::bytes::{decode_text, read_exact_at};
 use crate::record::source::ReadError;
 
 /// Bytes read at a time.
-const BLOCK_BYTES: usize = 1 << 18;
+const BLOCK_BYTES: usize = 1 << 17;
 /// The longest line that is still believed to be text.
 const LONGEST_LINE_BYTES: usize = 1 << 24;
 
@@ -111,26 +112,29 @@ impl TextFile {
         quotes: bool,
         mut visit: impl FnMut(u64, &[u8]) -> Result<(), ReadError>,
     ) -> Result<(), ReadError> {
-        let mut buffer = Vec::with_capacity(BLOCK_BYTES);
-        let mut at = offset;
-        let mut next = offset;
+        let left = self.length.saturating_sub(offset);
+        let mut buffer = vec![0; left.min(BLOCK_BYTES as u64) as usize];
+        let (mut filled, mut at, mut next) = (0, offset, offset);
         while next < self.length {
-            let kept = buffer.len();
-            let more = (self.length - next).min(BLOCK_BYTES.max(kept) as u64) as usize;
-            buffer.resize(kept + more, 0);
-            self.fill(next, &mut buffer[kept..])?;
+            if filled == buffer.len() {
+                buffer.resize(2 * filled, 0);
+            }
+            let more = (self.length - next).min((buffer.len() - filled) as u64) as usize;
+            self.fill(next, &mut buffer[filled..filled + more])?;
             next += more as u64;
+            filled += more;
             let whole = if next == self.length {
-                buffer.len()
+                filled
             } else {
-                whole_lines(&buffer, quotes)
+                whole_lines(&buffer[..filled], quotes)
             };
-            if whole == 0 && buffer.len() > LONGEST_LINE_BYTES {
+            if whole == 0 && filled > LONGEST_LINE_BYTES {
                 return Err(self.endless_line(at));
             }
             if whole > 0 {
                 visit(at, &buffer[..whole])?;
-                buffer.drain(..whole);
+                buffer.copy_within(whole..filled, 0);
+                filled -= whole;
                 at += whole as u64;
             }
         }

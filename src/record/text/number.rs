@@ -1,67 +1,81 @@
 //! Decimal numbers from bytes, exactly rounded, fast for the lengths that instruments print.
 
-use crate::record::text::decimal::{self, few_digits, many_digits};
+use crate::record::text::decimal;
+use crate::record::text::digits::{self, MOST_DIGITS, few_digits, many_digits};
 
 /// A decimal number at the front of `bytes`: its value and the number of bytes it takes.
 ///
 /// `mark` is the decimal mark. Exponents are written with e, E, d or D. The value is the
 /// binary64 number nearest to the decimal one. `None`: no number stands there.
-#[inline]
 pub fn parse_prefix(bytes: &[u8], mark: u8) -> Option<(f64, usize)> {
-    let mut i = 0;
-    let negative = match bytes.first() {
-        Some(b'-') => {
-            i = 1;
-            true
-        }
-        Some(b'+') => {
-            i = 1;
-            false
-        }
-        _ => false,
+    parse_at(bytes, 0, mark)
+}
+
+/// The decimal number at `at` of a text, and the place behind it; as [`parse_prefix`], faster
+/// where the number stands amid a text.
+// Not inlined, its result goes through memory: a tenth of the time of reading a table.
+#[inline(always)]
+pub fn parse_at(text: &[u8], at: usize, mark: u8) -> Option<(f64, usize)> {
+    let sign = *text.get(at)?;
+    let negative = sign == b'-';
+    let first = at + usize::from(negative | (sign == b'+'));
+    let Some(read) = digits::at_once(text, first, mark) else {
+        return step_by_step(text, at, mark);
     };
-    let mut mantissa = 0u64;
-    let first = i;
-    i = few_digits(bytes, i, &mut mantissa);
-    let mut digits = i - first;
-    let mut exponent = 0i64;
-    if bytes.get(i) == Some(&mark) {
-        let fraction = i + 1;
-        let whole = mantissa;
-        i = many_digits(bytes, fraction, &mut mantissa);
-        // Zeros before the first digit that counts do not lengthen the mantissa.
-        digits = match whole == 0 && digits <= decimal::MOST_DIGITS {
-            true => significant(bytes, fraction, i),
-            false => digits + i - fraction,
-        };
-        exponent = -((i - fraction) as i64);
-        if i == fraction && fraction == first + 1 {
+    let places = read.places as i64;
+    let (power, end) = exponent_at(text, read.end).unwrap_or((0, read.end));
+    let value = match decimal::nearest(read.mantissa, power - places) {
+        Some(value) => signed(value, negative),
+        None => slow(&text[at..end], mark)?,
+    };
+    Some((value, end))
+}
+
+#[inline]
+fn signed(value: f64, negative: bool) -> f64 {
+    f64::from_bits(value.to_bits() | u64::from(negative) << 63)
+}
+
+/// As [`parse_at`], digit by digit.
+#[inline(never)]
+fn step_by_step(text: &[u8], at: usize, mark: u8) -> Option<(f64, usize)> {
+    let sign = *text.get(at)?;
+    let first = at + usize::from(matches!(sign, b'-' | b'+'));
+    let mut mantissa = 0;
+    let mut end = few_digits(text, first, &mut mantissa);
+    let mut digits = end - first;
+    let mut exponent = 0;
+    if text.get(end) == Some(&mark) {
+        let (whole, fraction) = (mantissa, end + 1);
+        end = many_digits(text, fraction, &mut mantissa);
+        exponent = -((end - fraction) as i64);
+        if digits == 0 && end == fraction {
             return None;
         }
+        // Zeros before the first digit that counts do not lengthen the mantissa.
+        digits = match whole == 0 && digits <= MOST_DIGITS {
+            true => significant(text, fraction, end),
+            false => digits + end - fraction,
+        };
     } else if digits == 0 {
         return None;
     }
-    if let Some((power, end)) = exponent_at(bytes, i) {
-        exponent += power;
-        i = end;
-    }
-    let value = match decimal::nearest(mantissa, digits, exponent) {
-        Some(value) => {
-            if negative {
-                -value
-            } else {
-                value
-            }
-        }
-        None => slow(&bytes[..i], mark)?,
+    let (power, end) = exponent_at(text, end).unwrap_or((0, end));
+    let fits = digits <= MOST_DIGITS;
+    let value = match fits
+        .then(|| decimal::nearest(mantissa, exponent + power))
+        .flatten()
+    {
+        Some(value) => signed(value, sign == b'-'),
+        None => slow(&text[at..end], mark)?,
     };
-    Some((value, i))
+    Some((value, end))
 }
 
 /// Digits of a fraction from the first that is not 0.
 #[inline]
 fn significant(bytes: &[u8], from: usize, to: usize) -> usize {
-    if to - from <= decimal::MOST_DIGITS {
+    if to - from <= MOST_DIGITS {
         return to - from;
     }
     let zeros = bytes[from..to].iter().take_while(|&&b| b == b'0').count();
@@ -171,6 +185,66 @@ mod tests {
         assert_eq!(parse_cell(b"1.5 V", b'.'), None);
     }
 
+    /// A decimal number as no instrument prints it: sign, zeros, up to thirty digits on either
+    /// side of the mark, an exponent.
+    fn odd_number(random: &mut impl rand::Rng, mark: char) -> String {
+        let mut digits = |most: usize| -> String {
+            let zeros = random.random_range(0..=most / 2) * usize::from(random.random_bool(0.3));
+            let count = random.random_range(0..=most - zeros);
+            let digit = |_| char::from(random.random_range(b'0'..=b'9'));
+            let further: String = (0..count).map(digit).collect();
+            "0".repeat(zeros) + &further
+        };
+        let (long, short) = (digits(30), digits(4));
+        let (fraction, exponent) = (digits(30), digits(3));
+        let whole = if random.random_bool(0.2) { long } else { short };
+        let mut text = ["", "", "-", "+"][random.random_range(0..4)].to_owned() + &whole;
+        if whole.is_empty() || random.random_bool(0.8) {
+            text.push(mark);
+            text += &fraction;
+            if whole.is_empty() && fraction.is_empty() {
+                text.push('5');
+            }
+        }
+        if random.random_bool(0.3) && !exponent.is_empty() {
+            text.push(['e', 'E', 'd', 'D'][random.random_range(0..4)]);
+            text += ["", "-", "+"][random.random_range(0..3)];
+            text += &exponent;
+        }
+        text
+    }
+
+    #[test]
+    fn prop_numbers_amid_a_text_equal_the_standard_parsers() {
+        use rand::{Rng, SeedableRng};
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(1);
+        for _ in 0..200_000 {
+            let mark = [b'.', b','][random.random_range(0..2)];
+            let written = match random.random_range(0..4) {
+                0 => format!("{}", f64::from_bits(random.random())),
+                1 => format!("{:e}", f64::from_bits(random.random::<u64>() >> 11)),
+                2 => format!(
+                    "{:.*}",
+                    random.random_range(0..20),
+                    random.random_range(-10.0..10.0)
+                ),
+                _ => odd_number(&mut random, '.'),
+            };
+            if written.contains(['N', 'i']) {
+                continue;
+            }
+            let expected: f64 = written.replace(['d', 'D'], "e").parse().unwrap();
+            let written = written.replace('.', &char::from(mark).to_string());
+            let behind = [";", "\n", " ", ";8,8.8", "x1"][random.random_range(0..5)];
+            for blanks in [0, 16] {
+                let text = format!("{:blanks$}{written}{behind}{:40}", "", "");
+                let (value, end) = parse_at(text.as_bytes(), blanks, mark).unwrap();
+                assert_eq!(value.to_bits(), expected.to_bits(), "{written}");
+                assert_eq!(end, blanks + written.len(), "{written}");
+            }
+        }
+    }
+
     proptest! {
         #[test]
         fn prop_every_binary64_number_comes_back(bits: u64) {
@@ -195,6 +269,9 @@ mod tests {
         fn prop_no_bytes_panic(bytes: Vec<u8>) {
             let _ = parse_cell(&bytes, b'.');
             let _ = parse_prefix(&bytes, b',');
+            for at in 0..bytes.len() {
+                let _ = parse_at(&bytes, at, b'.');
+            }
         }
     }
 }

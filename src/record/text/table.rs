@@ -1,7 +1,7 @@
 //! Rows of a delimited table to columns of numbers, a block of lines at a time.
 
 use crate::record::source::{ReadError, Samples};
-use crate::record::text::cells::{Cells, Lines, Separator, is_row};
+use crate::record::text::cells::{Cells, Lines, Separator, decode_cell, is_row, line_at};
 use crate::record::text::clock::{self, Stamp};
 use crate::record::text::{TextFile, decode, number};
 
@@ -43,19 +43,23 @@ pub struct Layout {
 enum Column {
     Skip,
     Number(Vec<f64>),
-    Time {
-        values: Vec<f64>,
-        origin: Option<Stamp>,
-        days: f64,
-    },
+    Time(Box<Times>),
     Text(Vec<String>),
+}
+
+/// A column of points in time.
+struct Times {
+    values: Vec<f64>,
+    origin: Option<Stamp>,
+    days: f64,
 }
 
 impl Column {
     fn samples(self) -> Samples {
         match self {
             Self::Skip => Samples::Real(Vec::new()),
-            Self::Number(values) | Self::Time { values, .. } => Samples::Real(values),
+            Self::Number(values) => Samples::Real(values),
+            Self::Time(times) => Samples::Real(times.values),
             Self::Text(values) => Samples::Text(values),
         }
     }
@@ -81,21 +85,20 @@ pub fn read_columns(
     let last = wanted.iter().copied().max().map_or(0, |i| i + 1);
     let mut read = 0usize;
     text.blocks(layout.start, layout.quotes, |offset, block| {
-        for (at, line) in Lines::new(block, layout.quotes) {
-            let position = offset + at as u64;
-            if read == rows || position >= layout.end {
-                break;
-            }
-            if !is_row(line, layout.comments) {
+        let mut at = 0;
+        while at < block.len() && read < rows && offset + (at as u64) < layout.end {
+            let plain = plain_cells(block, at, layout, &mut columns[..last]);
+            if let Some(next) = plain.next {
+                (at, read) = (next, read + 1);
                 continue;
             }
-            let row = Row {
-                line,
-                rest: &block[at..],
-            };
-            read_row(row, layout, &mut columns, last)
-                .map_err(|fault| fault.error(text, layout, read, position))?;
-            read += 1;
+            let (line, next) = line_at(block, at, layout.quotes);
+            if is_row(line, layout.comments) {
+                read_row(line, layout, &mut columns[..last], plain.done)
+                    .map_err(|fault| fault.error(text, layout, read, offset + at as u64))?;
+                read += 1;
+            }
+            at = next;
         }
         Ok(())
     })?;
@@ -112,7 +115,8 @@ fn take_or_copy(columns: &mut [Column], wanted: &[usize], i: usize) -> Samples {
     }
     match &columns[i] {
         Column::Skip => Samples::Real(Vec::new()),
-        Column::Number(values) | Column::Time { values, .. } => Samples::Real(values.clone()),
+        Column::Number(values) => Samples::Real(values.clone()),
+        Column::Time(times) => Samples::Real(times.values.clone()),
         Column::Text(values) => Samples::Text(values.clone()),
     }
 }
@@ -120,11 +124,11 @@ fn take_or_copy(columns: &mut [Column], wanted: &[usize], i: usize) -> Samples {
 fn empty_column(kind: Kind, rows: usize) -> Column {
     match kind {
         Kind::Number => Column::Number(Vec::with_capacity(rows)),
-        Kind::Time => Column::Time {
+        Kind::Time => Column::Time(Box::new(Times {
             values: Vec::with_capacity(rows),
             origin: None,
             days: 0.0,
-        },
+        })),
         Kind::Text => Column::Text(Vec::with_capacity(rows)),
     }
 }
@@ -157,78 +161,108 @@ impl Fault {
     }
 }
 
-/// A row of a block.
-#[derive(Clone, Copy)]
-struct Row<'a> {
-    /// The row.
-    line: &'a [u8],
-    /// The row and what follows it: digits are looked for some at a time.
-    rest: &'a [u8],
+/// What was read at the front of a row.
+struct Plain {
+    /// How many cells.
+    done: usize,
+    /// Where the next row begins, if the row ends with these cells.
+    next: Option<usize>,
 }
 
-/// Append one row to the columns; cells that the row lacks become NaN or empty.
+/// Read the leading cells of a row that are numbers or not wanted, without looking for the ends
+/// of cells and row first.
+#[inline]
+fn plain_cells(block: &[u8], mut at: usize, layout: &Layout, columns: &mut [Column]) -> Plain {
+    let Separator::Byte(separator) = layout.separator else {
+        return Plain {
+            done: 0,
+            next: None,
+        };
+    };
+    let count = columns.len();
+    for (done, column) in columns.iter_mut().enumerate() {
+        let other = Plain { done, next: None };
+        let (value, end) = match column {
+            Column::Number(_) => match number_cell(block, at, layout.decimal) {
+                Some(read) => read,
+                None => return other,
+            },
+            Column::Skip => match unwanted_cell(block, at, separator) {
+                Some(end) => (f64::NAN, end),
+                None => return other,
+            },
+            _ => return other,
+        };
+        let mut next = None;
+        if block.get(end) != Some(&separator) {
+            next = row_end(block, end).filter(|_| done + 1 == count);
+            if next.is_none() {
+                return other;
+            }
+        }
+        if let Column::Number(values) = column {
+            values.push(value);
+        }
+        if next.is_some() {
+            return Plain { done: count, next };
+        }
+        at = end + 1;
+    }
+    Plain {
+        done: count,
+        next: None,
+    }
+}
+
+/// The number of a cell that begins at `at`, and where it ends.
+#[inline]
+fn number_cell(block: &[u8], mut at: usize, decimal: u8) -> Option<(f64, usize)> {
+    while block.get(at) == Some(&b' ') {
+        at += 1;
+    }
+    number::parse_at(block, at, decimal)
+}
+
+/// The end of a cell that nobody wants, where it is known by its separator: it is not empty, not
+/// quoted, no comment, and not the last of its row.
+#[inline]
+fn unwanted_cell(block: &[u8], at: usize, separator: u8) -> Option<usize> {
+    let cell = block.get(at..)?;
+    let plain = |b: &u8| b.is_ascii_alphanumeric() || matches!(b, b'+' | b'-' | b'.');
+    cell.first().filter(|b| plain(b))?;
+    let end = memchr::memchr3(separator, b'\n', b'"', cell)?;
+    (cell[end] == separator).then_some(at + end)
+}
+
+/// Where the next row begins, if a row ends at `at`.
+#[inline]
+fn row_end(block: &[u8], at: usize) -> Option<usize> {
+    match block.get(at..)? {
+        [b'\n', ..] => Some(at + 1),
+        [b'\r', b'\n', ..] => Some(at + 2),
+        [] => Some(at),
+        _ => None,
+    }
+}
+
+/// Append the cells of one row from the one with the number `done` on; cells that the row lacks
+/// become NaN or empty.
 fn read_row(
-    row: Row<'_>,
+    line: &[u8],
     layout: &Layout,
     columns: &mut [Column],
-    last: usize,
+    done: usize,
 ) -> Result<(), Fault> {
-    let line = row.line;
-    let (done, ended) = match layout.separator {
-        Separator::Byte(separator) => {
-            fast_row(row, separator, layout.decimal, &mut columns[..last])
-        }
-        Separator::Blanks => (0, false),
-    };
-    let mut cells = Cells::new(line, layout.separator);
-    if done > 0 && done == last {
-        if ended {
-            return Ok(());
-        }
-        return extra_cells(line, layout);
-    }
-    for (i, column) in columns[..last].iter_mut().enumerate() {
+    let mut cells = Cells::new(line, layout.separator).skip(done);
+    for (column, i) in columns[done..].iter_mut().zip(done..) {
         let cell = cells.next().unwrap_or(b"");
-        if i >= done {
-            push(column, cell, layout).map_err(|found| Fault {
-                column: i,
-                at: offset_of(line, cell),
-                found,
-            })?;
-        }
+        push(column, cell, layout).map_err(|found| Fault {
+            column: i,
+            at: offset_of(line, cell),
+            found,
+        })?;
     }
     extra_cells(line, layout)
-}
-
-/// Read leading number cells without looking for their ends first; the count of columns done,
-/// and whether the line ends with them.
-#[inline]
-fn fast_row(row: Row<'_>, separator: u8, decimal: u8, columns: &mut [Column]) -> (usize, bool) {
-    let Row { line, rest } = row;
-    let mut at = 0;
-    let mut ended = false;
-    let count = columns.len();
-    for (i, column) in columns.iter_mut().enumerate() {
-        let Column::Number(values) = column else {
-            return (i, false);
-        };
-        while line.get(at) == Some(&b' ') {
-            at += 1;
-        }
-        let Some((value, taken)) = rest
-            .get(at..)
-            .and_then(|l| number::parse_prefix(l, decimal))
-        else {
-            return (i, false);
-        };
-        match line.get(at + taken) {
-            Some(&b) if b == separator => at += taken + 1,
-            None if i + 1 == count => ended = true,
-            _ => return (i, false),
-        }
-        values.push(value);
-    }
-    (count, ended)
 }
 
 /// Refuse a row with more filled cells than the table has columns.
@@ -274,39 +308,31 @@ fn push(column: &mut Column, cell: &[u8], layout: &Layout) -> Result<(), String>
             let value = number::parse_cell(cell, layout.decimal);
             values.push(value.ok_or_else(|| format!("'{}'", shortened(cell)))?);
         }
-        Column::Time {
-            values,
-            origin,
-            days,
-        } => {
-            let value = seconds_since(cell, layout, origin, days, values.last().copied())?;
-            values.push(value);
-        }
-        Column::Text(values) => values.push(decode(cell).replace("\"\"", "\"")),
+        Column::Time(times) => times.push(cell, layout.month_first)?,
+        Column::Text(values) => values.push(decode_cell(cell)),
     }
     Ok(())
 }
 
-/// Seconds of a stamp since the column's first; a clock that passes midnight goes on.
-fn seconds_since(
-    cell: &[u8],
-    layout: &Layout,
-    origin: &mut Option<Stamp>,
-    days: &mut f64,
-    before: Option<f64>,
-) -> Result<f64, String> {
-    if cell.is_empty() {
-        return Ok(f64::NAN);
+impl Times {
+    /// Append the seconds of a cell since the column's first; a clock that passes midnight goes on.
+    fn push(&mut self, cell: &[u8], month_first: bool) -> Result<(), String> {
+        if cell.is_empty() {
+            self.values.push(f64::NAN);
+            return Ok(());
+        }
+        let stamp = clock::parse(&decode(cell), month_first)
+            .ok_or_else(|| format!("'{}'", shortened(cell)))?;
+        let origin = *self.origin.get_or_insert(stamp);
+        let mut value = stamp.since(origin) + self.days * 86_400.0;
+        let before = self.values.last();
+        if stamp.days.is_none() && before.is_some_and(|b| value < b - 43_200.0) {
+            self.days += 1.0;
+            value += 86_400.0;
+        }
+        self.values.push(value);
+        Ok(())
     }
-    let stamp = clock::parse(&decode(cell), layout.month_first)
-        .ok_or_else(|| format!("'{}'", shortened(cell)))?;
-    let origin = *origin.get_or_insert(stamp);
-    let mut value = stamp.since(origin) + *days * 86_400.0;
-    if stamp.days.is_none() && before.is_some_and(|b| value < b - 43_200.0) {
-        *days += 1.0;
-        value += 86_400.0;
-    }
-    Ok(value)
 }
 
 /// Count the rows of a table and find where the last begins.

@@ -1,6 +1,7 @@
 //! Numbers written as text, read fast and exactly.
 
-use crate::record::text::decimal::{self, few_digits, many_digits};
+use crate::record::text::decimal;
+use crate::record::text::digits::{MOST_DIGITS, few_digits, many_digits};
 
 /// Longest number that is believed, bytes.
 const LONGEST: usize = 64;
@@ -107,7 +108,8 @@ impl<'a> Numbers<'a> {
         }
         self.at = after;
         let power = i64::from(exponent) - places as i64;
-        if let Some(value) = decimal::nearest(mantissa, digits, power) {
+        let fits = digits <= MOST_DIGITS;
+        if let Some(value) = fits.then(|| decimal::nearest(mantissa, power)).flatten() {
             return Ok(if first == b'-' { -value } else { value });
         }
         self.slowly(start, end, exponent)

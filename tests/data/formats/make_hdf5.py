@@ -62,6 +62,14 @@ with h5py.File("latest.h5", "w", libver="latest") as f:
     f["x"].attrs["unit"] = "mm/s"
 with h5py.File("latest_two_unlimited.h5", "w", libver="latest") as f:
     f.create_dataset("xy", data=np.stack([x, y], axis=1), chunks=(16, 2), maxshape=(None, None), compression="gzip")
+# Attributes that the second library reads, and some that it does not.
+with h5py.File("latest_attributes.h5", "w", libver="latest") as f:
+    f.attrs["rig"] = "A"
+    run = f.create_dataset("run", data=np.stack([x, y], axis=1), chunks=(16, 2), maxshape=(None, None))
+    run.attrs["sample_rate_hz"] = 2000.0
+    run.attrs["units"] = np.array([b"mm/s", b"V"])
+    run.attrs["channels"] = ["x", "y"]
+    run.attrs["calibration"] = np.array([(1.0, 2)], dtype=[("gain", "f8"), ("bits", "i4")])
 with h5py.File("compact.h5", "w") as f:
     plist = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
     plist.set_layout(h5py.h5d.COMPACT)
