@@ -68,6 +68,15 @@ pub fn remedy_for(kind: io::ErrorKind) -> &'static str {
     }
 }
 
+/// The temporary name of a file or folder, in the same folder.
+fn hidden_beside(target: &Path) -> PathBuf {
+    let name = target
+        .file_name()
+        .map(|n| n.to_string_lossy())
+        .unwrap_or_default();
+    target.with_file_name(format!(".{name}{}", own_ending()))
+}
+
 /// A file under its temporary name; removed unless it is put in place.
 struct Part {
     path: PathBuf,
@@ -84,13 +93,8 @@ impl Drop for Part {
 
 impl Part {
     fn of(target: &Path) -> Self {
-        let name = target
-            .file_name()
-            .map(|n| n.to_string_lossy())
-            .unwrap_or_default();
-        let path = target.with_file_name(format!(".{name}{}", own_ending()));
         Self {
-            path,
+            path: hidden_beside(target),
             placed: false,
         }
     }
@@ -163,6 +167,46 @@ pub fn write_whole_or<E>(
     let mut writer = part.create().map_err(&told)?;
     fill(&mut writer)?;
     part.finish(writer, path).map_err(told)
+}
+
+/// Write the files of a folder as a whole: `fill` writes them into a hidden folder beside it, and all
+/// appear when the last is on the disk. Where the folder is there already its other files stay. Where
+/// anything fails, nothing appears; `told` makes a fault of what the system said.
+///
+/// # Errors
+/// What `fill` gives, and what `told` makes of the system's words.
+pub fn write_folder_whole_or<E>(
+    folder: &Path,
+    fill: impl FnOnce(&Path) -> Result<(), E>,
+    told: impl Fn(io::Error) -> E,
+) -> Result<(), E> {
+    let part = PartFolder(hidden_beside(folder));
+    fs::create_dir_all(&part.0).map_err(&told)?;
+    fill(&part.0)?;
+    part.place(folder).map_err(told)
+}
+
+/// A folder under its temporary name; what is left of it is removed in the end.
+struct PartFolder(PathBuf);
+
+impl PartFolder {
+    fn place(&self, folder: &Path) -> io::Result<()> {
+        if folder.is_dir() {
+            for entry in fs::read_dir(&self.0)? {
+                let entry = entry?;
+                fs::rename(entry.path(), folder.join(entry.file_name()))?;
+            }
+            return sync_folder(folder);
+        }
+        fs::rename(&self.0, folder)?;
+        folder.parent().map_or(Ok(()), sync_folder)
+    }
+}
+
+impl Drop for PartFolder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
 }
 
 /// Write bytes as [`write_whole`] does.
@@ -283,11 +327,21 @@ fn clear_ending(folder: &Path, ending: &str) {
         let name = entry.file_name();
         let name = name.to_string_lossy();
         if name.starts_with('.') && name.ends_with(ending) {
-            let _ = fs::remove_file(entry.path());
+            remove(&entry.path());
         } else if name == FIGURES && entry.path().is_dir() {
             clear_ending(&entry.path(), ending);
         }
     }
+}
+
+/// Remove a file or a folder, which another thread may just be filling.
+fn remove(path: &Path) {
+    if !path.is_dir() {
+        let _ = fs::remove_file(path);
+        return;
+    }
+    let tries = 0..10;
+    let _ = tries.map(|_| fs::remove_dir_all(path)).find(Result::is_ok);
 }
 
 #[cfg(test)]

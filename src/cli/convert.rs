@@ -83,16 +83,12 @@ impl Convert {
                 .for_each(|n| voice.detail(&format!("{}: {n}", source.path().display())));
         }
         let count: usize = sources.iter().map(|s| s.datasets().len()).sum();
-        let folder = target == Target::Csv && count > 1;
-        let written = match folder {
+        let written = match target == Target::Csv && count > 1 {
             true => self.out.with_extension(""),
             false => self.out.clone(),
         };
-        let within = match folder {
-            true => Some(&*written),
-            false => self.out.parent(),
-        };
-        interrupt::watch(within.map(Path::to_path_buf).unwrap_or_default());
+        let within = self.out.parent().map(Path::to_path_buf);
+        interrupt::watch(within.unwrap_or_default());
         let options = Options {
             single_precision: self.single,
             attributes: self.set.into_iter().collect(),

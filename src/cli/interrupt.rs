@@ -8,6 +8,16 @@ use std::time::Duration;
 /// Exit code of a program that the user broke off (128 + SIGINT).
 const BROKEN_OFF: i32 = 130;
 
+/// Whether Ctrl-C was pressed and the program is about to end for it.
+static ENDING: AtomicBool = AtomicBool::new(false);
+
+/// Where the program ends for Ctrl-C, wait for that: what fails meanwhile is not to be told.
+pub fn give_way() {
+    while ENDING.load(Ordering::SeqCst) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
 /// From now on Ctrl-C clears the half-written files of `folder` away, says so and ends the
 /// program.
 pub fn watch(folder: PathBuf) {
@@ -23,6 +33,7 @@ pub fn watch(folder: PathBuf) {
         while !flag.load(Ordering::Relaxed) {
             std::thread::sleep(Duration::from_millis(20));
         }
+        ENDING.store(true, Ordering::SeqCst);
         let folder = match folder.as_os_str().is_empty() {
             true => PathBuf::from("."),
             false => folder,

@@ -171,6 +171,7 @@ pub fn main() -> ExitCode {
     match cli.verb.go(voice) {
         Ok(exit) => exit.into(),
         Err(failure) => {
+            interrupt::give_way();
             failure.print();
             Exit::BadInput.into()
         }

@@ -73,3 +73,41 @@ fn valid_ctrl_c_says_so_ends_with_130_and_loses_nothing() {
         assert!(parts.iter().all(|p| !p.contains("part")), "{parts:?}");
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn valid_ctrl_c_leaves_no_file_of_a_folder_that_is_being_written() {
+    let lab = campaign(66);
+    fs::create_dir(lab.path("tables")).expect("a folder");
+    lab.write("tables/other.csv", "of another program");
+    let run = Command::new(env!("CARGO_BIN_EXE_impactid"))
+        .args(["convert", "records.h5", "--out", "tables/day.csv"])
+        .current_dir(lab.folder())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let begin = Instant::now();
+    let started = || {
+        let parts = hidden(&lab.path("tables"));
+        parts.iter().any(|p| p.contains("part"))
+    };
+    while !started() && begin.elapsed() < Duration::from_secs(20) {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let id = run.id().to_string();
+    let sent = Command::new("kill").args(["-INT", &id]).status();
+    assert!(sent.expect("kill").success());
+    let (said, code) = spoken(run);
+    assert_eq!(code, Some(130), "{said}");
+    assert!(
+        said.contains("broken off") && !said.contains("could not"),
+        "{said}"
+    );
+    let left = outputs(&lab.path("tables"));
+    assert_eq!(left.keys().collect::<Vec<_>>(), ["other.csv"]);
+    assert!(hidden(&lab.path("tables")).is_empty());
+    // the same command begins anew
+    let again = lab.run(&["-q", "convert", "records.h5", "--out", "tables/day.csv"]);
+    assert_eq!(again.code, 0, "{}", again.said);
+    assert_eq!(outputs(&lab.path("tables/day")).len(), 66);
+}

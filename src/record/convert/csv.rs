@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use crate::output::write_whole_or;
+use crate::output::{write_folder_whole_or, write_whole_or};
 use crate::record::convert::{ConvertError, Item, io};
 use crate::record::csv::TEXTS_KEY;
 use crate::record::source::Samples;
@@ -11,20 +11,27 @@ use crate::record::source::Samples;
 /// Write one record to a file, or several to the files of a folder.
 pub fn write(items: &[Item], out: &Path) -> Result<(), ConvertError> {
     if let [item] = items {
-        return one(item, out);
+        return one(item, out, out);
     }
-    let folder = out.with_extension("");
-    std::fs::create_dir_all(&folder).map_err(io(&folder))?;
-    for item in items {
-        let path = folder.join(format!("{}.csv", item.name.replace('/', "_")));
-        one(item, &path)?;
-    }
-    Ok(())
+    let target = out.with_extension("");
+    let fill = |folder: &Path| {
+        let each = |item| {
+            let name = file_name(item);
+            one(item, &folder.join(&name), &target.join(&name))
+        };
+        items.iter().try_for_each(each)
+    };
+    write_folder_whole_or(&target, fill, |source| io(&target)(source).into())
 }
 
-fn one(item: &Item, path: &Path) -> Result<(), ConvertError> {
+fn file_name(item: &Item) -> String {
+    format!("{}.csv", item.name.replace('/', "_"))
+}
+
+/// Write a record to a file that a fault knows by another name.
+fn one(item: &Item, path: &Path, named: &Path) -> Result<(), ConvertError> {
     let samples = item.read()?;
-    write_whole_or(path, |out| rows(item, &samples, out), |e| e).map_err(io(path))?;
+    write_whole_or(path, |out| rows(item, &samples, out), |e| e).map_err(io(named))?;
     Ok(())
 }
 
