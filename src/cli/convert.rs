@@ -82,13 +82,7 @@ impl Convert {
                 .iter()
                 .for_each(|n| voice.detail(&format!("{}: {n}", source.path().display())));
         }
-        let count: usize = sources.iter().map(|s| s.datasets().len()).sum();
-        let written = match target == Target::Csv && count > 1 {
-            true => self.out.with_extension(""),
-            false => self.out.clone(),
-        };
-        let within = self.out.parent().map(Path::to_path_buf);
-        interrupt::watch(within.unwrap_or_default());
+        interrupt::watch(self.out.parent().map(Path::to_path_buf).unwrap_or_default());
         let options = Options {
             single_precision: self.single,
             attributes: self.set.into_iter().collect(),
@@ -96,6 +90,12 @@ impl Convert {
         let done = convert::convert(&sources, target, &self.out, &options).map_err(failure)?;
         done.notes.iter().for_each(|note| voice.say(note));
         let count = done.records;
+        let many = target == Target::Csv && count > 1;
+        let written = if many {
+            self.out.with_extension("")
+        } else {
+            self.out
+        };
         let records = if count == 1 { "record" } else { "records" };
         voice.say(&format!(
             "{count} {records} written to {}",

@@ -43,7 +43,7 @@ impl Method {
     }
 
     /// What it fits.
-    fn block(self, blocks: &Blocks) -> &dyn Block {
+    pub fn block(self, blocks: &Blocks) -> &dyn Block {
         match self {
             Self::Resonance => &blocks.resonance,
             Self::Trajectories => &blocks.trajectory,

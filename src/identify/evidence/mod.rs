@@ -22,7 +22,7 @@ use crate::identify::evidence::flights::FlightBlock;
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
 use crate::identify::evidence::resonance::ResonanceBlock;
 use crate::identify::evidence::trajectory::TrajectoryBlock;
-use crate::identify::fit::parameters::Coordinate;
+use crate::identify::fit::parameters::{Coordinate, gain_index};
 use crate::identify::fit::{Block, Prior};
 use crate::identify::uncertainty::Asked;
 use crate::motion::{Bracket, Observation};
@@ -115,28 +115,31 @@ impl Blocks {
         }
     }
 
+    /// Whether any channel of an index is measured whose corner passes a test.
+    fn measures(&self, index: usize, test: impl Fn(Option<f64>) -> bool) -> bool {
+        let mut channels = self.resonance.channels().chain(self.trajectory.channels());
+        channels.any(|(role, corner_hz)| gain_index(role) == Some(index) && test(corner_hz))
+    }
+
     /// Gains of which any channel is measured.
     fn gains(&self) -> impl Iterator<Item = Coordinate> {
         (0..4)
-            .filter(|i| self.resonance.has_gain(*i) || self.trajectory.has_gain(*i))
+            .filter(|i| self.measures(*i, |_| true))
             .map(Coordinate::Gain)
     }
 
     /// Corners of the channels that have passed a high-pass.
     fn corners(&self) -> impl Iterator<Item = Coordinate> {
-        (0..4)
-            .filter(|i| {
-                self.resonance.has_corner(*i)
-                    || self.trajectory.has_corner(*i)
-                    || self.impact.has_corner(*i)
-                    || self.flight.has_corner(*i)
-            })
-            .map(Coordinate::Corner)
+        let filtered = |i: &usize| {
+            let speeds = self.impact.has_corner(*i) || self.flight.has_corner(*i);
+            speeds || self.measures(*i, |corner_hz| corner_hz.is_some())
+        };
+        (0..4).filter(filtered).map(Coordinate::Corner)
     }
 
     /// Whether both masses are measured, so that asymmetries can be told.
     fn sees_both(&self) -> bool {
-        let has = |i: usize| self.resonance.has_gain(i) || self.trajectory.has_gain(i);
+        let has = |i: usize| self.measures(i, |_| true);
         self.resonance.rig == Rig::Double && (has(0) || has(2)) && (has(1) || has(3))
     }
 

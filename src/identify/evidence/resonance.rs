@@ -73,21 +73,10 @@ impl ResonanceBlock {
         }
     }
 
-    /// Whether any channel of a corner's index has passed a high-pass.
-    pub fn has_corner(&self, index: usize) -> bool {
+    /// Role and high-pass corner, Hz, of every channel of every record.
+    pub fn channels(&self) -> impl Iterator<Item = (Role, Option<f64>)> {
         let responses = self.points.iter().flat_map(|p| &p.responses);
-        let mut filtered = responses.filter(|r| r.high_pass_hz.is_some());
-        filtered.any(|r| gain_index(r.role) == Some(index))
-    }
-
-    /// Whether any channel of a gain's index is present.
-    pub fn has_gain(&self, index: usize) -> bool {
-        let mut roles = self
-            .points
-            .iter()
-            .flat_map(|p| &p.responses)
-            .map(|r| r.role);
-        roles.any(|r| gain_index(r) == Some(index))
+        responses.map(|r| (r.role, r.high_pass_hz))
     }
 }
 

@@ -67,21 +67,10 @@ impl TrajectoryBlock {
         }
     }
 
-    /// Whether any channel of a gain's index is present.
-    pub fn has_gain(&self, index: usize) -> bool {
-        let mut roles = self
-            .records
-            .iter()
-            .flat_map(|r| &r.folded.channels)
-            .map(|c| c.role);
-        roles.any(|r| gain_index(r) == Some(index))
-    }
-
-    /// Whether any channel of a corner's index has passed a high-pass.
-    pub fn has_corner(&self, index: usize) -> bool {
+    /// Role and high-pass corner, Hz, of every channel of every record.
+    pub fn channels(&self) -> impl Iterator<Item = (Role, Option<f64>)> {
         let channels = self.records.iter().flat_map(|r| &r.folded.channels);
-        let mut filtered = channels.filter(|c| c.high_pass_hz.is_some());
-        filtered.any(|c| gain_index(c.role) == Some(index))
+        channels.map(|c| (c.role, c.high_pass_hz))
     }
 
     /// Greatest modulus of the multipliers of a record's orbit; `None` where there is none.

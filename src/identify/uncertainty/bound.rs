@@ -12,6 +12,7 @@ use nalgebra::DMatrix;
 use crate::identify::evidence::{Blocks, Evidence, Nominal};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Prior, Problem};
+use crate::identify::joint::Method;
 use crate::identify::methods::wide_priors;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 
@@ -44,44 +45,37 @@ pub fn bounds(evidence: &Evidence, at: &Parameters) -> BTreeMap<String, Bound> {
     let mut blocks = Blocks::with_noise_alone(evidence);
     blocks.trajectory.find_shared_errors(at);
     let blocks = blocks;
-    let resonance: &dyn Block = &blocks.resonance;
-    let trajectory: &dyn Block = &blocks.trajectory;
-    let boundary: &dyn Block = &blocks.boundary;
-    let impact: &dyn Block = &blocks.impact;
-    let methods: [(&str, Vec<&dyn Block>); 6] = [
-        ("resonance", vec![resonance]),
-        ("trajectories", vec![trajectory]),
-        ("boundaries", vec![boundary, resonance]),
-        ("impacts", vec![impact]),
-        ("flights", vec![&blocks.flight]),
-        ("joint", vec![resonance, trajectory, boundary, impact]),
+    use Method::{Boundaries, Flights, Impacts, Resonance, Trajectories};
+    let methods: [(&str, &[Method]); 6] = [
+        (Resonance.name(), &[Resonance]),
+        (Trajectories.name(), &[Trajectories]),
+        (Boundaries.name(), &[Boundaries, Resonance]),
+        (Impacts.name(), &[Impacts]),
+        (Flights.name(), &[Flights]),
+        ("joint", &[Resonance, Trajectories, Boundaries, Impacts]),
     ];
     let mut bounds: BTreeMap<String, Bound> = methods
         .into_iter()
-        .filter_map(|(name, list)| {
-            let found = bound(&blocks, list, &evidence.nominal, at)?;
+        .filter_map(|(name, methods)| {
+            let found = bound(&blocks, methods, &evidence.nominal, at)?;
             Some((name.to_owned(), found))
         })
         .collect();
     let deflection = bounds
-        .get("resonance")
+        .get(Resonance.name())
         .and_then(|b| b.error(Coordinate::Deflection));
-    if let (Some(error), Some(found)) = (deflection, bounds.get_mut("boundaries")) {
+    if let (Some(error), Some(found)) = (deflection, bounds.get_mut(Boundaries.name())) {
         found.take_intervals(posterior::of_brackets(&blocks.boundary, at, error.min(0.3)));
     }
     bounds
 }
 
-fn bound(
-    blocks: &Blocks,
-    list: Vec<&dyn Block>,
-    nominal: &Nominal,
-    at: &Parameters,
-) -> Option<Bound> {
-    let list: Vec<(&dyn Block, f64)> = list
-        .into_iter()
-        .filter(|b| b.items() > 0)
-        .map(|b| (b, 1.0))
+fn bound(blocks: &Blocks, methods: &[Method], nominal: &Nominal, at: &Parameters) -> Option<Bound> {
+    let list: Vec<(&dyn Block, f64)> = methods
+        .iter()
+        .map(|method| method.block(blocks))
+        .filter(|block| block.items() > 0)
+        .map(|block| (block, 1.0))
         .collect();
     let mut free: Vec<Coordinate> = Coordinate::PHYSICAL
         .into_iter()
