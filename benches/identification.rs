@@ -8,12 +8,12 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
+use impact_oscillator::model::params::ModelError;
 use impactid::event::Rig;
 use impactid::event::detect::DetectSettings;
 use impactid::identify::evidence::{Evidence, Nominal};
 use impactid::identify::run::identify;
 use impactid::identify::uncertainty::{Asked, Way};
-use impactid::model::params::ModelError;
 use impactid::motion::{ClassifySettings, Observation, brackets, observe, scale_drives};
 use impactid::synthetic::run::calibrated;
 use impactid::synthetic::{Faults, Plan, Truth, records};

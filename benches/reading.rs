@@ -8,10 +8,10 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use impactid::record::convert::{Options, Target, convert};
-use impactid::record::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
-use impactid::record::open::open;
-use impactid::record::source::Samples;
+use labfiles::convert::{Options, Target, convert};
+use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
+use labfiles::open::open;
+use labfiles::source::Samples;
 
 const RECORDS: usize = 200;
 const CHANNELS: usize = 16;

@@ -8,12 +8,14 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use impactid::atlas::kernel::{Cell, Outcome};
-use impactid::atlas::map::{Kernel, MapGrid, MapSettings, Start, UnitMass, march_all, region_map};
-use impactid::atlas::regions::{AtlasSettings, atlas};
-use impactid::model::boundary::s2_of_branch;
-use impactid::model::orbit::Branch;
-use impactid::model::{Initial, Machine, rho_grazing, rho_s1, rho_s2};
+use impact_oscillator::atlas::kernel::{Cell, Outcome};
+use impact_oscillator::atlas::map::{
+    Kernel, MapGrid, MapSettings, Start, UnitMass, march_all, region_map,
+};
+use impact_oscillator::atlas::regions::{AtlasSettings, atlas};
+use impact_oscillator::model::boundary::s2_of_branch;
+use impact_oscillator::model::orbit::Branch;
+use impact_oscillator::model::{Initial, Machine, rho_grazing, rho_s1, rho_s2};
 
 const KERNELS: [Kernel; 3] = [Kernel::Scalar, Kernel::Avx2, Kernel::Avx512];
 const PERIODS: f64 = 260.0;
@@ -153,8 +155,12 @@ fn closed_forms() {
         s2_of_branch(&Branch::new(&machine, eta, 1), 0.9).0
     });
     tell("s1", &|eta| {
-        impactid::model::boundary::s1_of_branch(&machine, &Branch::new(&machine, eta, 1), 0.9)
-            .map_or(0.0, |p| p.0)
+        impact_oscillator::model::boundary::s1_of_branch(
+            &machine,
+            &Branch::new(&machine, eta, 1),
+            0.9,
+        )
+        .map_or(0.0, |p| p.0)
     });
     tell("ρ'", &|eta| rho_grazing(&machine, eta));
     tell("s2 with its orbit's existence checked", &|eta| {

@@ -6,10 +6,6 @@
 //! `units` < `output` < `signal` < `record` < `event` < `motion` < `model` < `atlas` <
 //! `synthetic` < `identify` < `report` < `campaign` < `pipeline` < `cli`.
 
-pub mod units;
-
-pub mod output;
-
 pub mod signal;
 
 pub mod record;
@@ -17,10 +13,6 @@ pub mod record;
 pub mod event;
 
 pub mod motion;
-
-pub mod model;
-
-pub mod atlas;
 
 pub mod synthetic;
 

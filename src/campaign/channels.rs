@@ -6,7 +6,7 @@ use super::quantity::{Desk, remedy};
 use super::written::{Channel, Channels, Machine, Placed, Quantity};
 use crate::record::Role;
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
-use crate::units::{self, Dimension, Scale, Unit};
+use labfiles::units::{self, Dimension, Scale, Unit};
 
 impl Channels {
     fn of(&self, role: Role) -> &Placed<Channel> {

@@ -13,8 +13,8 @@ use super::resolved::{RecordEntry, ResolvedCampaign};
 use crate::event::Seen;
 use crate::event::detect::{DetectSettings, Detection, detect};
 use crate::record::calibrate;
-use crate::record::source::Source;
 use crate::record::{Flag, Record, Role};
+use labfiles::source::Source;
 
 /// What reading all records found.
 #[derive(Debug, Default)]

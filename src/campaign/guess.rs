@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use super::listing::Opener;
 use crate::record::Role;
-use crate::record::source::{ChannelInfo, DatasetInfo, Samples, Source};
-use crate::units::{self, Dimension};
+use labfiles::source::{ChannelInfo, DatasetInfo, Samples, Source};
+use labfiles::units::{self, Dimension};
 
 /// How deep below the folder files are looked for.
 const DEPTH: usize = 4;

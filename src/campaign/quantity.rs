@@ -5,7 +5,7 @@ use toml::Spanned;
 use super::faults::Notebook;
 use super::read::Text;
 use super::written::{Placed, Quantity};
-use crate::units::{self, Dimension, QuantityError};
+use labfiles::units::{self, Dimension, QuantityError};
 
 /// What every part of the resolution needs: the text's lines and the notebook of faults.
 #[derive(Debug)]

@@ -14,7 +14,7 @@ use super::resolved::{Analysis, RecordEntry, Report, ResolvedCampaign, Rig};
 use super::written::{self, Flight, Format, Language, Machine, Paper, Placed, WrittenCampaign};
 use crate::identify::uncertainty::Way;
 use crate::report::words::Words;
-use crate::units::Dimension;
+use labfiles::units::Dimension;
 
 /// A campaign as far as it could be resolved, and all that is wrong with it.
 #[derive(Debug)]

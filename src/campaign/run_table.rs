@@ -6,7 +6,7 @@ use super::faults::Notebook;
 use super::read::nearest;
 use super::written::Excitation;
 use crate::record::Sweep;
-use crate::units::{self, Dimension};
+use labfiles::units::{self, Dimension};
 
 /// The columns that a run table may have.
 const COLUMNS: [&str; 9] = [

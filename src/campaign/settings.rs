@@ -7,7 +7,7 @@ use super::resolved::RecordEntry;
 use super::run_table::SWEEPS;
 use super::written::{Attributes, Excitation, Placed, Records};
 use crate::record::{Setting, Sweep};
-use crate::units::{self, Dimension};
+use labfiles::units::{self, Dimension};
 
 /// Settings of the records that state none.
 #[derive(Debug, Clone)]

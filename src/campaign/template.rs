@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::guess::{Found, Seen};
 use crate::record::Role;
-use crate::units::{self, Dimension};
+use labfiles::units::{self, Dimension};
 
 /// The text of campaign.toml for what was found in a folder named so.
 pub fn campaign_toml(name: &str, found: &Found) -> String {

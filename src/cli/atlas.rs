@@ -6,11 +6,11 @@ use clap::{Args, ValueEnum};
 use super::machine::{MachineArgs, WatchArgs, range, refused};
 use super::theory::{OutArgs, written};
 use super::{Exit, Failure, Voice, interrupt};
-use crate::atlas::map::{Kernel, MapSettings};
-use crate::atlas::shard::{AtlasPart, AtlasRequest, part};
-use crate::output::{Lock, write_json_line};
 use crate::pipeline::theory::Study;
 use crate::pipeline::theory::plan::RegionsPlan;
+use impact_oscillator::atlas::map::{Kernel, MapSettings};
+use impact_oscillator::atlas::shard::{AtlasPart, AtlasRequest, part};
+use labfiles::output::{Lock, write_json_line};
 
 /// Arguments of `impactid atlas`.
 #[derive(Debug, Args)]
@@ -143,7 +143,7 @@ impl Atlas {
             .out
             .folder()
             .join(format!("part-{number}-of-{of}.json"));
-        crate::output::make_folder(self.out.folder())?;
+        labfiles::output::make_folder(self.out.folder())?;
         // many parts of an array of jobs may share the folder: the lock is the part's own
         let _lock = Lock::take(&self.out.folder().join(format!(".part-{number}")))?;
         interrupt::watch(self.out.folder().to_path_buf());

@@ -5,9 +5,9 @@ use clap::Args;
 use super::machine::{MachineArgs, WatchArgs, range};
 use super::theory::OutArgs;
 use super::{Exit, Failure, Voice};
-use crate::atlas::basins::{BasinGrid, Starts};
-use crate::model::Setting;
 use crate::pipeline::theory::plan::BasinPlan;
+use impact_oscillator::atlas::basins::{BasinGrid, Starts};
+use impact_oscillator::model::Setting;
 
 /// Arguments of `impactid basins`.
 #[derive(Debug, Args)]

@@ -6,16 +6,16 @@ use serde_json::{Value, json};
 use super::machine::{MachineArgs, motion, refused};
 use super::voice::print;
 use super::{Exit, Failure, Voice};
-use crate::atlas::brute::{Way, brute_map};
-use crate::atlas::continuation::{Edge, EdgeKind};
-use crate::atlas::map::{MapGrid, MapSettings};
-use crate::atlas::regions::{AtlasSettings, slices_at, spans_at_clearance};
-use crate::atlas::resting::{RestingEdge, resting_etas, resting_slices};
-use crate::model::boundary::{
+use impact_oscillator::atlas::brute::{Way, brute_map};
+use impact_oscillator::atlas::continuation::{Edge, EdgeKind};
+use impact_oscillator::atlas::map::{MapGrid, MapSettings};
+use impact_oscillator::atlas::regions::{AtlasSettings, slices_at, spans_at_clearance};
+use impact_oscillator::atlas::resting::{RestingEdge, resting_etas, resting_slices};
+use impact_oscillator::model::boundary::{
     BoundaryPoint, etas_grazing, etas_joined, etas_s1, etas_s2, rho_grazing, rho_joined, rho_s1,
     rho_s2,
 };
-use crate::model::{Machine, Setting};
+use impact_oscillator::model::{Machine, Setting};
 
 /// Arguments of `impactid boundary`.
 #[derive(Debug, Args)]

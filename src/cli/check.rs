@@ -9,7 +9,7 @@ use super::{Exit, Failure, Progress, Voice};
 use crate::campaign::check::{self, Checked};
 use crate::campaign::faults::{Fault, Faults, Severity};
 use crate::campaign::load;
-use crate::record::open::open;
+use labfiles::open::open;
 
 /// Arguments of `impactid check`.
 #[derive(Debug, Args)]

@@ -7,7 +7,7 @@ use clap_complete::Shell;
 
 use super::voice::print;
 use super::{Cli, Exit, Failure, Voice};
-use crate::output;
+use labfiles::output;
 
 /// Arguments of `impactid completions`.
 #[derive(Debug, Args)]

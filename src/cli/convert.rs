@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::{Exit, Failure, Voice, interrupt};
-use crate::record::convert::{self, ConvertError, Options, Target};
-use crate::record::open::open;
-use crate::record::source::ReadError;
+use labfiles::convert::{self, ConvertError, Options, Target};
+use labfiles::open::open;
+use labfiles::source::ReadError;
 
 /// Arguments of `impactid convert`.
 #[derive(Debug, Args)]

@@ -7,8 +7,8 @@ use clap::Args;
 use super::voice::{print, print_json};
 use super::{Exit, Failure, Progress, Voice};
 use crate::identify::uncertainty::coverage::Score;
-use crate::output::write_bytes;
 use crate::pipeline::coverage::{self, Tally};
+use labfiles::output::write_bytes;
 
 /// Arguments of `impactid study coverage`.
 #[derive(Debug, Args)]

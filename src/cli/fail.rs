@@ -5,10 +5,10 @@ use std::path::Path;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 
 use crate::campaign::faults::{Fault, Faults, Severity};
-use crate::output::OutputError;
 use crate::pipeline::PipelineError;
-use crate::record::parquet::guard;
-use crate::record::source::ReadError;
+use labfiles::output::OutputError;
+use labfiles::parquet::guard;
+use labfiles::source::ReadError;
 
 /// Print no text for a panic of a library that a reader turns into an error: the error says it.
 pub fn hush_caught_panics() {

@@ -7,8 +7,8 @@ use clap::Args;
 use super::{Exit, Failure, Voice};
 use crate::campaign::guess::{self, Found};
 use crate::campaign::template;
-use crate::output;
-use crate::record::open::open;
+use labfiles::open::open;
+use labfiles::output;
 
 /// Arguments of `impactid init`.
 #[derive(Debug, Args)]

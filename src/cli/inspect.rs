@@ -10,9 +10,9 @@ use serde::Serialize;
 use super::sketch::sketch;
 use super::voice::{print, print_json};
 use super::{Exit, Failure, Voice};
-use crate::record::open::open;
-use crate::record::source::{DatasetInfo, ReadError, Samples, Source};
-use crate::record::summary::{Summary, summarise};
+use labfiles::open::open;
+use labfiles::source::{DatasetInfo, ReadError, Samples, Source};
+use labfiles::summary::{Summary, summarise};
 
 /// Arguments of `impactid inspect`.
 #[derive(Debug, Args)]

@@ -38,7 +38,7 @@ pub fn watch(folder: PathBuf) {
             true => PathBuf::from("."),
             false => folder,
         };
-        crate::output::clear_own_parts(&folder);
+        labfiles::output::clear_own_parts(&folder);
         eprintln!(
             "\nimpactid: broken off. Nothing half-written is left in {}; the same command begins \
              anew, and with --resume, where it has that, goes on.",

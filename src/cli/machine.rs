@@ -3,10 +3,10 @@
 use clap::Args;
 
 use super::Failure;
-use crate::model::params::Asymmetry;
-use crate::model::{Initial, Machine, Restitution, Watch};
 use crate::pipeline::theory::Study;
 use crate::pipeline::theory::plan::Law;
+use impact_oscillator::model::params::Asymmetry;
+use impact_oscillator::model::{Initial, Machine, Restitution, Watch};
 
 /// The dimensionless machine.
 #[derive(Debug, Clone, Args)]
@@ -134,7 +134,7 @@ impl WatchArgs {
 }
 
 /// A model's refusal as the user sees it.
-pub fn refused(error: &crate::model::ModelError) -> Failure {
+pub fn refused(error: &impact_oscillator::model::ModelError) -> Failure {
     Failure::new(
         error.to_string(),
         "give a value within the range that the message names",

@@ -8,9 +8,9 @@ use clap::Args;
 use super::atlas::NAME;
 use super::theory::{OutArgs, Work};
 use super::{Exit, Failure, Voice, interrupt};
-use crate::atlas::shard::{AtlasPart, merge};
-use crate::output::Lock;
 use crate::pipeline::theory::regions::leave;
+use impact_oscillator::atlas::shard::{AtlasPart, merge};
+use labfiles::output::Lock;
 
 /// Arguments of `impactid merge`.
 #[derive(Debug, Args)]

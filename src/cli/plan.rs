@@ -7,8 +7,8 @@ use clap::Args;
 use super::voice::print_json;
 use super::{Exit, Failure, Progress, Voice, interrupt};
 use crate::motion::Motion;
-use crate::output::Lock;
 use crate::pipeline::plan;
+use labfiles::output::Lock;
 
 /// Arguments of `impactid plan`.
 #[derive(Debug, Args)]

@@ -7,9 +7,9 @@ use super::atlas::computed;
 use super::merge::whole;
 use super::theory::OutArgs;
 use super::{Exit, Failure, Voice};
-use crate::atlas::shard::AtlasPart;
 use crate::pipeline::theory::Study;
 use crate::pipeline::theory::plan::RegionsPlan;
+use impact_oscillator::atlas::shard::AtlasPart;
 
 /// What a rank tells the first: its part as JSON, or why it has none.
 type Told = Result<AtlasPart, String>;

@@ -9,9 +9,9 @@ use super::look::{Look, quoted};
 use super::progress::{Later, Progress};
 use super::{Exit, Failure, Voice, interrupt};
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::output::Lock;
 use crate::pipeline::{self, Destination, checkpoint};
 use crate::report::Format;
+use labfiles::output::Lock;
 
 /// Arguments of `impactid run`.
 #[derive(Debug, Args)]

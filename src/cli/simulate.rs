@@ -7,12 +7,12 @@ use clap::{Args, Subcommand};
 use super::machine::{MachineArgs, StartArgs};
 use super::theory::OutArgs;
 use super::{Exit, Failure, Voice, interrupt};
-use crate::atlas::portrait::{PortraitPlan, Soft};
-use crate::model::Setting;
-use crate::output::Lock;
 use crate::pipeline::synthesise::{Recipe, write_campaign};
 use crate::synthetic::truth::draw_asymmetry;
 use crate::synthetic::{Faults, Truth};
+use impact_oscillator::atlas::portrait::{PortraitPlan, Soft};
+use impact_oscillator::model::Setting;
+use labfiles::output::Lock;
 
 /// Arguments of `impactid simulate`.
 #[derive(Debug, Args)]

@@ -15,10 +15,10 @@ use super::{Exit, Failure, Voice, interrupt};
 use crate::campaign::faults::Severity;
 use crate::campaign::load;
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::output::Lock;
 use crate::pipeline::{self, store};
-use crate::record::open::open;
 use crate::report::words::Words;
+use labfiles::open::open;
+use labfiles::output::Lock;
 
 /// Arguments of `impactid ingest`.
 #[derive(Debug, Args)]

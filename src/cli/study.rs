@@ -8,8 +8,8 @@ use clap::{Args, Subcommand};
 use super::coverage::Coverage;
 use super::theory::{COPY, Work};
 use super::{Exit, Failure, Voice, interrupt};
-use crate::output::{Lock, write_bytes};
 use crate::pipeline::theory::{self, Study as Written};
+use labfiles::output::{Lock, write_bytes};
 
 /// Arguments of `impactid study`.
 #[derive(Debug, Args)]

@@ -6,9 +6,9 @@ use std::sync::Mutex;
 use clap::Args;
 
 use super::{Exit, Failure, Progress, Voice, interrupt};
-use crate::output::{Lock, write_bytes};
 use crate::pipeline::theory::kept::Kept;
 use crate::pipeline::theory::{Desk, Study, StudyError, run};
+use labfiles::output::{Lock, write_bytes};
 
 /// Where results go.
 #[derive(Debug, Clone, Args)]
@@ -100,8 +100,8 @@ impl Work<'_> {
         what: &'static str,
         work: impl FnOnce(&Desk<'_>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        crate::output::make_folder(self.folder)?;
-        crate::output::clear_parts(self.folder);
+        labfiles::output::make_folder(self.folder)?;
+        labfiles::output::clear_parts(self.folder);
         let kept = Kept::open(self.folder, self.text, self.resume)?;
         let progress = Progress::new(voice, what, 1);
         let said = Mutex::new(Vec::new());

@@ -83,7 +83,7 @@ fn closed_test(channel: &Channel) -> Option<Box<dyn Fn(f64) -> bool>> {
 mod tests {
     use super::*;
     use crate::record::Role;
-    use crate::units::Dimension;
+    use labfiles::units::Dimension;
 
     fn channel(values: Vec<f64>, threshold: Option<f64>) -> Channel {
         Channel {

@@ -10,11 +10,11 @@ use crate::identify::evidence::trajectory::{TrajectoryBlock, TrajectoryRecord, d
 use crate::identify::fit::normal::inverse;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::identify::fit::{Fit, Problem};
-use crate::model::orbit::{Orbit, stable_orbit};
 use crate::motion::Observation;
 use crate::motion::fold::{Folded, FoldedChannel, FoldedPoint};
 use crate::record::Role;
 use crate::signal::robust;
+use impact_oscillator::model::orbit::{Orbit, stable_orbit};
 
 /// A setting to measure, with what a record there would bring.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

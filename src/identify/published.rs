@@ -10,8 +10,8 @@ use serde::Deserialize;
 use crate::identify::estimate::{NORMAL_975, estimate};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::{Agreement, MethodResult, Verdict, VerdictKind};
-use crate::model::orbit::Branch;
-use crate::model::params::Machine;
+use impact_oscillator::model::orbit::Branch;
+use impact_oscillator::model::params::Machine;
 
 /// Where a published speed belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]

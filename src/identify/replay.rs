@@ -5,16 +5,16 @@
 
 use std::f64::consts::TAU;
 
-use crate::atlas::MapSettings;
-use crate::atlas::map::{End, Start, march_from};
 use crate::event::{DriveTone, Rig};
 use crate::identify::evidence::trajectory::channel_value;
 use crate::identify::fit::parameters::Parameters;
-use crate::model::flight::State;
-use crate::model::params::{Initial, Machine, Setting};
-use crate::model::simulate::{Simulator, Trajectory};
 use crate::motion::{Motion, Observation};
 use crate::record::Role;
+use impact_oscillator::atlas::MapSettings;
+use impact_oscillator::atlas::map::{End, Start, march_from};
+use impact_oscillator::model::flight::State;
+use impact_oscillator::model::params::{Initial, Machine, Setting};
+use impact_oscillator::model::simulate::{Simulator, Trajectory};
 
 /// Most measured impacts after which a simulation is started.
 const MOST_STARTS: usize = 6;

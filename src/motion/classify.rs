@@ -381,7 +381,7 @@ mod tests {
     use crate::event::Rig;
     use crate::event::detect::{DetectSettings, detect};
     use crate::record::{Channel, Record, Role, Setting};
-    use crate::units::Dimension;
+    use labfiles::units::Dimension;
 
     /// A second of a contact that closes twice in each of ten drive periods.
     fn two_pulses_a_period() -> Record {

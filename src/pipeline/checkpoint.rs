@@ -12,9 +12,9 @@ use sha2::{Digest, Sha256};
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::motion::Observation;
-use crate::output::{self, OutputError};
 use crate::pipeline::inputs::hexadecimal;
 use crate::pipeline::packed;
+use labfiles::output::{self, OutputError};
 
 /// Folder of the chunks in the output folder; it is removed when the run is done.
 const FOLDER: &str = ".impactid-observed";
@@ -130,8 +130,8 @@ mod tests {
     use super::*;
     use crate::pipeline::observe::{observe_all, observe_in_chunks};
     use crate::pipeline::synthesise::{Recipe, write_campaign};
-    use crate::record::open::open;
     use crate::synthetic::Truth;
+    use labfiles::open::open;
 
     #[test]
     fn valid_a_resumed_observation_is_that_of_an_undisturbed_run() {

@@ -23,9 +23,9 @@ use std::path::Path;
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::Verdict;
 use crate::motion::{Bracket, Observation, brackets, scale_drives};
-use crate::output::OutputError;
 use crate::pipeline::checkpoint::Checkpoint;
-use crate::record::source::ReadError;
+use labfiles::output::OutputError;
+use labfiles::source::ReadError;
 
 /// Told the stage, the steps done and the steps in all.
 pub type Progress<'a> = &'a (dyn Fn(&'static str, u64, u64) + Sync);
@@ -71,10 +71,10 @@ pub enum PipelineError {
     Report(#[from] crate::report::ReportError),
     /// The simulation refused its parameters.
     #[error(transparent)]
-    Model(#[from] crate::model::params::ModelError),
+    Model(#[from] impact_oscillator::model::params::ModelError),
     /// The HDF5 writer failed.
     #[error(transparent)]
-    Hdf5(#[from] crate::record::hdf5_write::WriteError),
+    Hdf5(#[from] labfiles::hdf5_write::WriteError),
 }
 
 impl PipelineError {

@@ -10,13 +10,13 @@ use crate::campaign::check::by_file;
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
 use crate::event::detect::DetectSettings;
 use crate::motion::{ClassifySettings, Observation, observe};
-use crate::output::OutputError;
 use crate::pipeline::Progress;
 use crate::pipeline::checkpoint::Checkpoint;
 use crate::record::calibrate::{calibrate, unreadable};
-use crate::record::open::open;
-use crate::record::source::{ReadError, Source};
 use crate::record::{Flag, Record};
+use labfiles::open::open;
+use labfiles::output::OutputError;
+use labfiles::source::{ReadError, Source};
 
 /// Settings of the detection as the campaign has them.
 fn detect_settings(campaign: &ResolvedCampaign) -> DetectSettings {

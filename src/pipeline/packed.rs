@@ -10,7 +10,7 @@ use flate2::write::GzEncoder;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::output::{OutputError, write_whole};
+use labfiles::output::{OutputError, write_whole};
 
 /// Write a value as a whole.
 ///

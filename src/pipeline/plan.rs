@@ -7,10 +7,10 @@ use serde::Serialize;
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::plan::{Proposal, Reach, propose};
 use crate::motion::Motion;
-use crate::output::{make_folder, write_bytes};
 use crate::pipeline::store::write_json;
 use crate::pipeline::{Observed, PipelineError, Progress, identify, report};
 use crate::report::ProposedPoint;
+use labfiles::output::{make_folder, write_bytes};
 
 /// What is written as plan.json.
 #[derive(Debug, Clone, Serialize)]

@@ -10,9 +10,9 @@ use crate::identify::published::{
 use crate::identify::{Identification, Verdict};
 use crate::pipeline::identify::{settings, versions};
 use crate::pipeline::{PipelineError, inputs, report, store};
-use crate::record::source::ReadError;
 use crate::report::ReportContent;
 use crate::report::content::DataTable;
+use labfiles::source::ReadError;
 
 /// Identify from published speeds and write identification.json and report.pdf.
 ///

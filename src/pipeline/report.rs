@@ -6,17 +6,17 @@ use rayon::prelude::*;
 
 use crate::campaign::resolved::{Report as Look, ResolvedCampaign};
 use crate::campaign::written::{Language, Paper as WrittenPaper};
-use crate::output::{make_folder, write_bytes};
 use crate::pipeline::identify::Found;
 use crate::pipeline::observe::read_one;
 use crate::pipeline::{Observed, PipelineError};
 use crate::record::Record;
-use crate::record::open::open;
 use crate::report::assemble::{
     CampaignFacts, ChannelFacts, Gathered, assemble, chosen_records, shown_decays,
 };
 use crate::report::words::Words;
 use crate::report::{Format, Logo, Paper, RenderOptions, Report, ReportContent};
+use labfiles::open::open;
+use labfiles::output::{make_folder, write_bytes};
 
 /// Name of the report's file.
 pub const FILE: &str = "report.pdf";

@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
-use crate::model::boundary::{eta_s2, rho_grazing, rho_s1};
-use crate::model::orbit::stable_orbit;
-use crate::model::params::{Initial, Machine, ModelError, Setting};
-use crate::model::simulate::simulate;
+use impact_oscillator::model::boundary::{eta_s2, rho_grazing, rho_s1};
+use impact_oscillator::model::orbit::stable_orbit;
+use impact_oscillator::model::params::{Initial, Machine, ModelError, Setting};
+use impact_oscillator::model::simulate::simulate;
 
 /// One published number and what the program makes of it.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,14 +5,14 @@ use std::path::Path;
 
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
 use crate::motion::{Observation, brackets};
-use crate::output::write_bytes;
 use crate::pipeline::identify::{Found, Kept};
 use crate::pipeline::observe::each_record;
 use crate::pipeline::{Observed, PipelineError, Progress, packed};
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
-use crate::record::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
 use crate::record::{Flag, Record, Role};
-use crate::units::{Quantity, Unit};
+use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
+use labfiles::output::write_bytes;
+use labfiles::units::{Quantity, Unit};
 
 const RESOLVED: &str = "campaign.resolved.json";
 const INGESTED: &str = "ingested.h5";

@@ -5,14 +5,14 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::output::write_bytes;
 use crate::pipeline::PipelineError;
 use crate::pipeline::store::RECORDS_A_FILE;
-use crate::record::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Stored};
 use crate::synthetic::acquisition::{FULL_SCALE_V, converter_step};
 use crate::synthetic::rig::{ROLES, sensitivities};
 use crate::synthetic::run::RATE_HZ;
 use crate::synthetic::{Faults, Laboratory, Plan, RawRecord, Truth, blocks};
+use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Stored};
+use labfiles::output::write_bytes;
 
 /// What a synthetic campaign is made of.
 #[derive(Debug, Clone, Serialize)]
@@ -73,7 +73,7 @@ pub fn write_campaign(recipe: &Recipe, out: &Path) -> Result<usize, PipelineErro
         plan: &plan,
         seed: recipe.seed,
     };
-    crate::output::make_folder(out)?;
+    labfiles::output::make_folder(out)?;
     let keep = |raw| kept(raw, &recipe.faults);
     let files: Vec<RecordsFile> = if plan.steps.len() <= RECORDS_A_FILE {
         let whole = |_: usize, block: Vec<KeptRecord>| Ok::<_, PipelineError>(block);

@@ -8,9 +8,9 @@ use polars_io::parquet::write::ParquetWriter;
 
 use crate::event::{Impact, MassSpeeds};
 use crate::motion::{Bracket, Motion, Observation};
-use crate::output::write_bytes;
 use crate::pipeline::{Observed, PipelineError};
 use crate::record::Role;
+use labfiles::output::write_bytes;
 
 /// How a column's value is got from a row.
 enum Get<T> {

@@ -3,9 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::source::{ChannelInfo, DatasetInfo};
 use super::{Flag, Role};
-use crate::units::{self, Dimension, Quantity, Scale, Unit};
+use labfiles::source::{ChannelInfo, DatasetInfo};
+use labfiles::units::{self, Dimension, Quantity, Scale, Unit};
 
 /// A channel of a file, by name or by index.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

@@ -3,10 +3,10 @@
 
 use super::bind::flag;
 pub use super::bind::{Bound, ChannelKey, ChannelSetup, bind};
-use super::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
 use super::time_axis::{self, TimeAxis};
 use super::{Channel, Flag, Record, Setting};
 use super::{condition, consistency};
+use labfiles::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
 
 /// Everything that turns one dataset into one record.
 #[derive(Debug, Clone)]
@@ -275,5 +275,46 @@ fn all_skipped(duration_s: f64, skip_s: f64) -> Flag {
         message: format!("the record lasts {duration_s} s, and {skip_s} s of it are skipped"),
         remedy: "lower skip in [analysis]".to_owned(),
         excludes: true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Role;
+
+    /// A table of two columns, as a Record whose time axis is the first.
+    fn record(times_s: impl Iterator<Item = f64>) -> Record {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("run.csv");
+        let rows = times_s.enumerate();
+        let rows: String = rows
+            .map(|(i, t)| format!("{t},{}\n", [1.0, -2.0][i % 2]))
+            .collect();
+        std::fs::write(&path, format!("time [s],x\n{rows}")).unwrap();
+        let source = labfiles::open::open(&path).unwrap();
+        let channels = [ChannelSetup::plain(
+            Role::Drive,
+            ChannelKey::Name("x".into()),
+        )];
+        let setup = RecordSetup {
+            id: "run",
+            dataset: 0,
+            channels: &channels,
+            time: None,
+            sample_rate_hz: None,
+            setting: &Setting::unstated(),
+            driven: false,
+            skip_s: 0.0,
+        };
+        calibrate(source.as_ref(), &setup)
+    }
+
+    #[test]
+    fn valid_uneven_times_are_refused_by_name_and_equal_steps_give_the_rate() {
+        let uneven = |record: &Record| record.flags.iter().any(|f| f.code == "time_not_uniform");
+        let even = record((0..200).map(|i| f64::from(i) / 4000.0));
+        assert!((even.sample_rate_hz - 4000.0).abs() < 1e-6 && !uneven(&even));
+        assert!(uneven(&record((0..200).map(|i| f64::from(i * i) / 4000.0))));
     }
 }

@@ -14,7 +14,7 @@ const SCALE_RATIO: f64 = 1.5;
 const MISTAKEN: [(f64, &str); 6] = [
     (1000.0, "between m and mm"),
     (std::f64::consts::TAU, "between Hz and rad/s"),
-    (crate::units::STANDARD_GRAVITY_M_S2, "between g and m/s²"),
+    (labfiles::units::STANDARD_GRAVITY_M_S2, "between g and m/s²"),
     (std::f64::consts::SQRT_2, "between RMS and peak"),
     (25.4, "between inch and mm"),
     (

@@ -1,39 +1,18 @@
 //! What was acquired: a record of channels on one time axis, in SI, with its setting and flags.
 //!
-//! [`source`] opens files of any supported format; calibration turns what they hold into
+//! [`labfiles`] opens files of any supported format; calibration turns what they hold into
 //! [`Record`]s. A simulated record is the same type, so that one detector and one classifier
 //! judge experiment and simulation alike. This room does not know the model.
 
-pub mod attribute;
 pub mod bind;
-pub mod bytes;
 pub mod calibrate;
 mod condition;
-#[cfg(test)]
-pub mod conformance;
 pub mod consistency;
-pub mod convert;
-pub mod csv;
-pub mod hdf5;
-pub mod hdf5_write;
-pub mod inflate;
-pub mod lvm;
-pub mod mat;
-pub mod numbers;
-pub mod open;
-pub mod parquet;
-pub mod rate;
-pub mod source;
-pub mod summary;
-pub mod tdms;
-pub mod text;
 pub mod time_axis;
-pub mod uff;
-pub mod wav;
 
 use serde::{Deserialize, Serialize};
 
-use crate::units::Dimension;
+use labfiles::units::Dimension;
 
 /// What a channel measures on the rig.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]

@@ -2,8 +2,8 @@
 
 use super::Flag;
 use super::calibrate::ChannelKey;
-use super::source::DatasetInfo;
-use crate::units;
+use labfiles::source::DatasetInfo;
+use labfiles::units;
 
 /// Most steps by which a time axis without gaps may stray from equal steps.
 const MOST_STRAY_STEPS: f64 = 2.0;

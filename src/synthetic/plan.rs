@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::boundary::eta_s2;
-use crate::model::params::Machine;
 use crate::record::Sweep;
+use impact_oscillator::model::boundary::eta_s2;
+use impact_oscillator::model::params::Machine;
 
 /// One setting: a record is taken there once the motion has settled.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

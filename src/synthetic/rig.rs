@@ -3,7 +3,7 @@
 use crate::record::Role;
 use crate::synthetic::acquisition;
 use crate::synthetic::truth::Truth;
-use crate::units::Dimension;
+use labfiles::units::Dimension;
 
 /// Role, dimension and whether an integrator filters it, of each channel of the virtual rig.
 pub const ROLES: [(Role, Dimension, bool); 7] = [

@@ -4,15 +4,15 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use crate::model::contact::ModelImpact;
-use crate::model::params::{Initial, ModelError, Setting};
-use crate::model::simulate::{Simulator, Trajectory};
 use crate::motion::Motion;
 use crate::record::{self, Channel, Record, Role};
 use crate::synthetic::acquisition::{self, HighPass};
 use crate::synthetic::plan::{Plan, Step};
 use crate::synthetic::rig::{ROLES, sensitivities};
 use crate::synthetic::truth::{Faults, Truth, draw_corners, draw_gains};
+use impact_oscillator::model::contact::ModelImpact;
+use impact_oscillator::model::params::{Initial, ModelError, Setting};
+use impact_oscillator::model::simulate::{Simulator, Trajectory};
 
 /// Samples per second, Hz.
 pub const RATE_HZ: f64 = 2000.0;

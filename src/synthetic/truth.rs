@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
-use crate::model::params::{Contact, Flight, Machine, Oscillator, Restitution};
+use impact_oscillator::model::params::{Contact, Flight, Machine, Oscillator, Restitution};
 
 /// True parameters of the rig.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -6,7 +6,7 @@ use crate::support::Lab;
 
 fn own(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/data/formats")
+        .join("crates/labfiles/tests/data/formats")
         .join(name)
 }
 

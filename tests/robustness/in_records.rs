@@ -46,7 +46,7 @@ fn uff_of(points: &str) -> String {
 
 /// An HDF5 file with a record at the bottom of so many groups.
 fn nested_groups(path: &std::path::Path, depth: usize) {
-    use impactid::record::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
+    use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
     // who writes so deep a tree needs a deep stack
     let path = path.to_path_buf();
     let write = move || {
@@ -72,7 +72,8 @@ pub fn bombs() -> Vec<Case> {
         refused(
             "HDF5 that claims more samples than its bytes can hold",
             |lab| {
-                let bytes = include_bytes!("../data/formats/claims_too_much.h5");
+                let bytes =
+                    include_bytes!("../../crates/labfiles/tests/data/formats/claims_too_much.h5");
                 instead(lab, "r2.h5", bytes);
             },
             &["r2.h5", "2 of 3 records can be used"],

@@ -3,10 +3,10 @@
 use crate::event::Rig;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::model::boundary::{s1_of_branch, s2_of_branch};
-use crate::model::orbit::Branch;
-use crate::model::params::Machine;
 use crate::motion::bracket::{BoundaryKind, Bracket};
+use impact_oscillator::model::boundary::{s1_of_branch, s2_of_branch};
+use impact_oscillator::model::orbit::Branch;
+use impact_oscillator::model::params::Machine;
 
 /// Brackets that the fit uses, with the likelihood of each.
 #[derive(Debug, Clone)]
@@ -283,8 +283,8 @@ impl Block for BoundaryBlock {
 mod tests {
     use super::*;
     use crate::identify::middles;
-    use crate::model::boundary::{rho_grazing, rho_s1, rho_s2};
     use crate::record::Sweep;
+    use impact_oscillator::model::boundary::{rho_grazing, rho_s1, rho_s2};
 
     /// A bracket about the boundary of a kind at η, as the model itself has it.
     fn bracket(kind: BoundaryKind, eta: f64, p: &Parameters, off_middle: f64) -> Bracket {

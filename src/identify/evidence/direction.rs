@@ -2,8 +2,8 @@
 //! units of the channels.
 
 use crate::identify::fit::parameters::Coordinate;
-use crate::model::params::{Machine, Oscillator};
-use crate::model::sensitivity::{Change, MassChange};
+use impact_oscillator::model::params::{Machine, Oscillator};
+use impact_oscillator::model::sensitivity::{Change, MassChange};
 
 /// Change of machine and setting per unit of a coordinate, at η and a gap; a channel's gain
 /// and corner change neither.

@@ -14,11 +14,11 @@ use crate::event::{CornerShift, Impact, Rig};
 use crate::identify::evidence::impacts::corners_in;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::model::flight::{Drive, State, free_flight};
-use crate::model::params::Machine;
-use crate::model::variation::free_flow;
 use crate::motion::{Motion, Observation};
 use crate::record::Role;
+use impact_oscillator::model::flight::{Drive, State, free_flight};
+use impact_oscillator::model::params::Machine;
+use impact_oscillator::model::variation::free_flow;
 
 /// One impact as it was measured, SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -314,8 +314,8 @@ mod tests {
     use super::*;
     use crate::identify::fit::Problem;
     use crate::identify::methods::wide_priors;
-    use crate::model::params::Initial;
-    use crate::model::simulate::simulate;
+    use impact_oscillator::model::params::Initial;
+    use impact_oscillator::model::simulate::simulate;
 
     fn truth() -> Parameters {
         Parameters {

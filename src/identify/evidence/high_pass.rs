@@ -7,8 +7,8 @@
 //! K = Re(A (1 − e^{λT}) c/(λ + c)) / (1 − e^{−cT}), (17).
 
 use crate::identify::evidence::waveform::{TimingSlope, Vibration};
-use crate::model::path::C64;
-use crate::model::sensitivity::MassMotion;
+use impact_oscillator::model::path::C64;
+use impact_oscillator::model::sensitivity::MassMotion;
 
 /// A motion behind its filter: two terms of the same kind as before, and K. Of a change: the
 /// differentials.

@@ -9,12 +9,12 @@ use crate::identify::evidence::waveform::{
     Phases, Timing, TimingSlope, Vibration, velocity, velocity_slope,
 };
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
-use crate::model::orbit::Branch;
-use crate::model::params::{Machine, Setting};
-use crate::model::path::C64;
-use crate::model::sensitivity::{Change, MassMotion, OrbitMotion, Sensitivity};
 use crate::motion::fold::FoldedChannel;
 use crate::record::Role;
+use impact_oscillator::model::orbit::Branch;
+use impact_oscillator::model::params::{Machine, Setting};
+use impact_oscillator::model::path::C64;
+use impact_oscillator::model::sensitivity::{Change, MassMotion, OrbitMotion, Sensitivity};
 
 /// The z = 1/n orbit at a record's setting whose closing speed is nearest to the measured one.
 pub struct NearestOrbit {

@@ -7,12 +7,12 @@ use crate::identify::evidence::direction::{change, relative_length};
 use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
-use crate::model::flight::{Drive, forced_amplitude};
-use crate::model::params::{Machine, Oscillator};
-use crate::model::sensitivity::{Change, forced_slope};
 use crate::motion::Observation;
 use crate::motion::response::Response;
 use crate::record::Role;
+use impact_oscillator::model::flight::{Drive, forced_amplitude};
+use impact_oscillator::model::params::{Machine, Oscillator};
+use impact_oscillator::model::sensitivity::{Change, forced_slope};
 
 /// One impactless record.
 #[derive(Debug, Clone)]

@@ -8,11 +8,11 @@ use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::evidence::waveform::Phases;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
-use crate::model::flight::State;
-use crate::model::orbit::orbit_with_speed;
 use crate::motion::Observation;
 use crate::motion::fold::{Folded, FoldedChannel};
 use crate::record::Role;
+use impact_oscillator::model::flight::State;
+use impact_oscillator::model::orbit::orbit_with_speed;
 
 /// One folded record.
 #[derive(Debug, Clone)]

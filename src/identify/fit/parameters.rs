@@ -3,8 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::event::{CornerShift, Rig};
-use crate::model::params::{Contact, Flight, Machine, Oscillator, Restitution, Setting};
 use crate::record::Role;
+use impact_oscillator::model::params::{
+    Contact, Flight, Machine, Oscillator, Restitution, Setting,
+};
 
 /// Parameters of rig and instruments.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

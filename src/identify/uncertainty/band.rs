@@ -5,7 +5,7 @@ use crate::event::Rig;
 use crate::identify::estimate::NORMAL_975;
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::Coordinate;
-use crate::model::params::Machine;
+use impact_oscillator::model::params::Machine;
 
 /// The machines that a fit leaves possible, one standard error off in R and in β.
 #[derive(Debug, Clone)]

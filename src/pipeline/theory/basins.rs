@@ -3,12 +3,12 @@
 use super::plan::BasinPlan;
 use super::table::Table;
 use super::{Desk, StudyError};
-use crate::atlas::basins::{Basins, basin_rows};
-use crate::atlas::map::{CellMotion, MapSettings, even};
-use crate::model::{Machine, Restitution};
 use crate::motion::Motion;
 use crate::report::speech::Speech;
 use crate::report::theory::basins::draw;
+use impact_oscillator::atlas::basins::{Basins, basin_rows};
+use impact_oscillator::atlas::map::{CellMotion, MapSettings, even};
+use impact_oscillator::model::{Machine, Restitution};
 
 /// Rows of a block.
 const BLOCK: usize = 8;

@@ -7,8 +7,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
 
-use crate::output::{self, OutputError};
 use crate::pipeline::inputs::hexadecimal;
+use labfiles::output::{self, OutputError};
 
 /// Folder of the blocks in the output folder; it is removed when the work is done.
 const FOLDER: &str = ".impactid-blocks";
@@ -37,7 +37,7 @@ impl Kept {
         hash.update(env!("CARGO_PKG_VERSION"));
         hash.update(format!(
             "{:?}",
-            crate::atlas::map::Kernel::of_this_machine()
+            impact_oscillator::atlas::map::Kernel::of_this_machine()
         ));
         hash.update(work);
         let kept = Self {

@@ -11,12 +11,12 @@ pub mod time_series;
 
 use std::path::Path;
 
-use crate::model::ModelError;
-use crate::output::{OutputError, write_bytes};
 use crate::report::ReportError;
 use crate::report::figures::Figure;
 use crate::report::picture::pictures;
+use impact_oscillator::model::ModelError;
 use kept::Kept;
+use labfiles::output::{OutputError, write_bytes};
 pub use plan::Study;
 use table::Table;
 

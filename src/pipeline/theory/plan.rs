@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::atlas::basins::BasinGrid;
-use crate::atlas::map::{MapGrid, MapSettings};
-use crate::atlas::portrait::PortraitPlan;
-use crate::atlas::regions::AtlasSettings;
-use crate::model::params::Asymmetry;
-use crate::model::{Initial, Machine, Restitution, Setting, Watch};
+use impact_oscillator::atlas::basins::BasinGrid;
+use impact_oscillator::atlas::map::{MapGrid, MapSettings};
+use impact_oscillator::atlas::portrait::PortraitPlan;
+use impact_oscillator::atlas::regions::AtlasSettings;
+use impact_oscillator::model::params::Asymmetry;
+use impact_oscillator::model::{Initial, Machine, Restitution, Setting, Watch};
 
 /// A study: a machine and what is to be computed of it, each piece by its name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -6,16 +6,16 @@ use serde_json::json;
 use super::plan::RegionsPlan;
 use super::table::Table;
 use super::{Desk, StudyError};
-use crate::atlas::agreement::Cause;
-use crate::atlas::brute::{Maps, brute_maps};
-use crate::atlas::curves::{Curve, CurvePoint};
-use crate::atlas::map::{CellMotion, MapGrid};
-use crate::atlas::regions::{Atlas, Slice, assemble, columns};
-use crate::atlas::shard::AtlasRequest;
-use crate::model::Machine;
 use crate::motion::Motion;
 use crate::report::speech::Speech;
 use crate::report::theory::regions::{Plane, draw};
+use impact_oscillator::atlas::agreement::Cause;
+use impact_oscillator::atlas::brute::{Maps, brute_maps};
+use impact_oscillator::atlas::curves::{Curve, CurvePoint};
+use impact_oscillator::atlas::map::{CellMotion, MapGrid};
+use impact_oscillator::atlas::regions::{Atlas, Slice, assemble, columns};
+use impact_oscillator::atlas::shard::AtlasRequest;
+use impact_oscillator::model::Machine;
 
 /// Columns of a block.
 const BLOCK: usize = 16;

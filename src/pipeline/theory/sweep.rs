@@ -7,13 +7,13 @@ use serde::{Deserialize, Serialize};
 use super::plan::SweepPlan;
 use super::table::Table;
 use super::{Desk, StudyError};
-use crate::atlas::map::even;
-use crate::atlas::sweep::{Carried, Impactless, LONGEST_LAG, SweepPoint, impactless};
-use crate::model::Machine;
-use crate::model::simulate::Snapshot;
 use crate::motion::Motion;
 use crate::report::speech::Speech;
 use crate::report::theory::sweep::{Characteristics, draw};
+use impact_oscillator::atlas::map::even;
+use impact_oscillator::atlas::sweep::{Carried, Impactless, LONGEST_LAG, SweepPoint, impactless};
+use impact_oscillator::model::Machine;
+use impact_oscillator::model::simulate::Snapshot;
 
 /// Steps after which a sweep keeps what it has.
 const KEEP_EVERY: usize = 16;

@@ -2,10 +2,10 @@
 
 use super::table::Table;
 use super::{Desk, StudyError};
-use crate::atlas::portrait::{Portrait, PortraitPlan, Strike, portrait};
-use crate::model::Machine;
 use crate::report::speech::Speech;
 use crate::report::theory::motion::draw;
+use impact_oscillator::atlas::portrait::{Portrait, PortraitPlan, Strike, portrait};
+use impact_oscillator::model::Machine;
 
 /// Simulate and leave everything.
 ///
@@ -35,7 +35,7 @@ pub fn run(
 }
 
 fn series(p: &Portrait) -> Table {
-    let of = |f: fn(&crate::atlas::portrait::Sample) -> f64| p.samples.iter().map(f);
+    let of = |f: fn(&impact_oscillator::atlas::portrait::Sample) -> f64| p.samples.iter().map(f);
     let table = Table::new()
         .numbers("tau_over_period", of(|s| s.periods))
         .numbers("x", of(|s| s.x))

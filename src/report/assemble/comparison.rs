@@ -12,7 +12,7 @@ use crate::record::{Record, Role};
 use crate::report::content::{Comparison, Portrait, Signal, Trace};
 use crate::signal::drift::fitted_line;
 use crate::signal::robust::rms;
-use crate::units::Dimension;
+use labfiles::units::Dimension;
 
 /// Residual over the signal below which the simulated motion is the measured one.
 const SAME_MOTION: f64 = 0.05;

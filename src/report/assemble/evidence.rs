@@ -17,7 +17,7 @@ use crate::report::content::{
     Correlation, ImpactPoint, ImpactScatter, Profile, ResidualPoint, ResidualSet, ResonanceCurve,
     ResonancePoint,
 };
-use crate::units::Dimension;
+use labfiles::units::Dimension;
 
 /// Points of a fitted resonance curve.
 const CURVE_POINTS: usize = 240;
@@ -92,7 +92,7 @@ fn fitted(gathered: &Gathered, role: Role, points: &[ResonancePoint]) -> Vec<[f6
     else {
         return Vec::new();
     };
-    crate::atlas::map::even((first.frequency_hz, last.frequency_hz, CURVE_POINTS))
+    impact_oscillator::atlas::map::even((first.frequency_hz, last.frequency_hz, CURVE_POINTS))
         .into_iter()
         .map(|f| {
             let z = predicted(parameters, gathered.campaign.rig, role, f, 1.0);

@@ -3,16 +3,16 @@
 use rayon::prelude::*;
 
 use super::{Gathered, rows};
-use crate::atlas::map::even;
-use crate::atlas::{CellMotion, MapGrid, MapSettings, region_map as simulate_map};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::replay::LIVELY_SPEED;
 use crate::identify::uncertainty::band::Spread;
-use crate::model::boundary::{rho_grazing, rho_s1, rho_s2};
-use crate::model::orbit::stable_orbit;
-use crate::model::params::{Initial, Machine, Setting};
 use crate::motion::Motion;
 use crate::report::content::{BoundaryCurve, BoundaryKind, RegionMap};
+use impact_oscillator::atlas::map::even;
+use impact_oscillator::atlas::{CellMotion, MapGrid, MapSettings, region_map as simulate_map};
+use impact_oscillator::model::boundary::{rho_grazing, rho_s1, rho_s2};
+use impact_oscillator::model::orbit::stable_orbit;
+use impact_oscillator::model::params::{Initial, Machine, Setting};
 
 /// Columns and rows of the region map.
 const MAP: (usize, usize) = (180, 130);

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::motion::Motion;
 use crate::record::Role;
-use crate::units::Dimension;
+use labfiles::units::Dimension;
 
 /// A sampled signal on its own time axis.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::model::Block;
-use crate::units::Dimension;
+use labfiles::units::Dimension;
 
 /// From how many lines on the settings stand in columns.
 const MANY_LINES: usize = 12;

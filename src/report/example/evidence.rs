@@ -7,7 +7,7 @@ use super::{F0, Noise, TRUTH, X_ST};
 use crate::record::Role;
 use crate::report::content::*;
 use crate::report::figures::marks;
-use crate::units::Dimension;
+use labfiles::units::Dimension;
 
 pub fn fill(content: &mut ReportContent) {
     content.comparisons = comparisons(content);

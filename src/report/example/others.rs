@@ -1,7 +1,7 @@
 //! Other kinds of campaign: free decays alone, a cart on a stop, data that do not tell.
 
 use super::*;
-use crate::units::Dimension;
+use labfiles::units::Dimension;
 
 fn unknown(note: &str) -> Option<Estimate> {
     Some(Estimate {

@@ -55,9 +55,9 @@ fn one(canvas: &mut Canvas, decay: &FreeDecay, rect: Rect, speech: Speech) {
         .fold(0.0_f64, |m, v| m.max(v.abs()));
     let unit = print_unit(decay.dimension, peak);
     let symbol = match decay.dimension {
-        crate::units::Dimension::Acceleration => "$a$",
-        crate::units::Dimension::Velocity => "$v$",
-        crate::units::Dimension::Length => "$x$",
+        labfiles::units::Dimension::Acceleration => "$a$",
+        labfiles::units::Dimension::Velocity => "$v$",
+        labfiles::units::Dimension::Length => "$x$",
         _ => "signal",
     };
     let times = decay.measured.time_s.iter().copied();

@@ -11,7 +11,7 @@ use super::units::{PrintUnit, print_unit};
 use super::{Figure, Spot};
 use crate::report::content::ImpactScatter;
 use crate::report::speech::Speech;
-use crate::units::Dimension;
+use labfiles::units::Dimension;
 
 /// Height of the panels, points.
 const HEIGHT: f64 = 150.0;

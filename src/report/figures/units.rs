@@ -1,6 +1,6 @@
 //! The unit in which a figure prints a quantity: SI, with the prefix that suits its size.
 
-use crate::units::Dimension;
+use labfiles::units::Dimension;
 
 /// A unit for printing.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,6 @@
 //! Basins of attraction in the plane of the starts.
 
 use super::{keys_height, keys_on_top, tint_keys};
-use crate::atlas::basins::Basins;
 use crate::motion::Motion;
 use crate::report::content::RegionMap;
 use crate::report::figures::Figure;
@@ -12,6 +11,7 @@ use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
 use crate::report::figures::regions::Regions;
 use crate::report::speech::Speech;
+use impact_oscillator::atlas::basins::Basins;
 
 /// Room left of the panel, points.
 const LEFT: f64 = 36.0;

@@ -1,7 +1,6 @@
 //! One motion: time series, phase trajectories, Poincaré map, autocorrelation.
 
 use super::{keys_height, keys_on_top};
-use crate::atlas::portrait::{Portrait, Sample};
 use crate::report::figures::Figure;
 use crate::report::figures::axis::{Axis, range};
 use crate::report::figures::canvas::{Canvas, Stroke};
@@ -12,6 +11,7 @@ use crate::report::figures::marks::mix;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
 use crate::report::speech::Speech;
+use impact_oscillator::atlas::portrait::{Portrait, Sample};
 
 /// Room left of the panels, points.
 const LEFT: f64 = 36.0;

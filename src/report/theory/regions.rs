@@ -2,8 +2,6 @@
 //! tints (hatched where they differ), the boundaries as curves.
 
 use super::{keys_height, keys_on_top};
-use crate::atlas::curves::Curve;
-use crate::atlas::map::{CellMotion, MapGrid};
 use crate::motion::Motion;
 use crate::report::content::RegionMap;
 use crate::report::figures::Figure;
@@ -17,6 +15,8 @@ use crate::report::figures::path::{self, Rect};
 use crate::report::figures::placing::Occupancy;
 use crate::report::figures::regions::Regions;
 use crate::report::speech::Speech;
+use impact_oscillator::atlas::curves::Curve;
+use impact_oscillator::atlas::map::{CellMotion, MapGrid};
 
 /// Room left of the panel, points.
 const LEFT: f64 = 34.0;

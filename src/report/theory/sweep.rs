@@ -2,7 +2,6 @@
 //! autocorrelation, and amplitude and phase of the impactless motion.
 
 use super::{keys_height, keys_on_top};
-use crate::atlas::sweep::{Impactless, SweepPoint};
 use crate::report::figures::Figure;
 use crate::report::figures::axis::{Axis, range};
 use crate::report::figures::canvas::{Canvas, Colour, Stroke};
@@ -12,6 +11,7 @@ use crate::report::figures::look;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
 use crate::report::speech::Speech;
+use impact_oscillator::atlas::sweep::{Impactless, SweepPoint};
 
 /// Room left of the panels, points.
 const LEFT: f64 = 42.0;

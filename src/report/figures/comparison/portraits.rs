@@ -8,7 +8,7 @@ use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
 use crate::report::figures::units::{PrintUnit, print_unit};
 use crate::report::figures::{look, marks};
-use crate::units::Dimension;
+use labfiles::units::Dimension;
 
 /// Units of length and velocity that suit all portraits, so that they compare.
 fn units(shown: &[&Portrait]) -> [PrintUnit; 2] {

@@ -1,0 +1,234 @@
+//! Which motion a simulated motion settles on, from its exact impacts, without noise: period
+//! p/n by recurrence of the state at impacts, dead zones, chatter, joined masses, chaos.
+
+use serde::{Deserialize, Serialize};
+
+use super::boundary::rho_grazing;
+use super::contact::{ImpactKind, ModelImpact};
+use super::params::{Flight, Initial, Machine, ModelError, Setting};
+use super::simulate::{Simulator, Sink};
+use crate::Motion;
+
+/// The motion that a simulation settles on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum SettledMotion {
+    /// No impact: z = 0.
+    Impactless,
+    /// Periodic, z = p/n.
+    Periodic {
+        /// Impacts in a period of the motion; where chatters are complete each of them counts
+        /// as one, for it has infinitely many.
+        p: u16,
+        /// Drive periods in a period of the motion.
+        n: u16,
+        /// Whether a dead zone follows impacts.
+        dead_zone: bool,
+        /// Whether impacts accumulate in complete chatters.
+        chatter: bool,
+    },
+    /// Impacts that swell and die away, with many impactless drive periods between.
+    Beat,
+    /// Impacts that do not recur within what was watched.
+    Chaotic,
+    /// The masses stay together.
+    Joined,
+}
+
+impl SettledMotion {
+    /// Whether it repeats itself.
+    pub fn is_periodic(self) -> bool {
+        !matches!(self, Self::Beat | Self::Chaotic)
+    }
+}
+
+impl From<SettledMotion> for Motion {
+    fn from(m: SettledMotion) -> Self {
+        match m {
+            SettledMotion::Impactless => Motion::Impactless,
+            SettledMotion::Periodic {
+                p, n, dead_zone, ..
+            } => Motion::Periodic {
+                impacts_p: p.into(),
+                periods_n: n.into(),
+                dead_zone,
+            },
+            SettledMotion::Beat => Motion::Beat,
+            SettledMotion::Chaotic => Motion::Chaotic,
+            SettledMotion::Joined => Motion::Joined,
+        }
+    }
+}
+
+/// How long a simulation settles and is watched.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Watch {
+    /// Drive periods before the watch.
+    pub settle_periods: f64,
+    /// Drive periods watched.
+    pub watch_periods: f64,
+    /// Closure of a recurring state, relative to the motion's size, that counts as settled.
+    pub tolerance: f64,
+}
+
+impl Default for Watch {
+    fn default() -> Self {
+        Self {
+            settle_periods: 200.0,
+            watch_periods: 60.0,
+            tolerance: 1e-5,
+        }
+    }
+}
+
+/// Settle a motion from a start and tell what it is. Its impacts while watched come with it.
+///
+/// # Errors
+/// [`ModelError`] where a parameter is out of range or the start lies beyond the contact.
+pub fn settle(
+    machine: &Machine,
+    setting: Setting,
+    initial: Initial,
+    watch: &Watch,
+) -> Result<(SettledMotion, Vec<ModelImpact>), ModelError> {
+    let mut simulator = Simulator::new(machine, setting, initial)?;
+    simulator.advance(
+        watch.settle_periods * setting.period(),
+        &mut |_: &ModelImpact| {},
+    );
+    Ok(observe(&mut simulator, setting, watch))
+}
+
+/// An impact with the displacement at which it came, which closes the state of two masses.
+#[derive(Debug, Clone, Copy)]
+struct Return {
+    impact: ModelImpact,
+    x: f64,
+}
+
+#[derive(Default)]
+struct Returns {
+    list: Vec<Return>,
+    x: f64,
+}
+
+impl Sink for Returns {
+    fn arc(&mut self, arc: &super::simulate::Arc) {
+        self.x = arc.paths.x.at(arc.duration)[0];
+    }
+    fn impact(&mut self, impact: &ModelImpact) {
+        self.list.push(Return {
+            impact: *impact,
+            x: self.x,
+        });
+    }
+}
+
+/// Watch a motion that has settled and tell what it is.
+pub fn observe(
+    simulator: &mut Simulator,
+    setting: Setting,
+    watch: &Watch,
+) -> (SettledMotion, Vec<ModelImpact>) {
+    let (start, joined_before) = (simulator.tau(), simulator.is_joined());
+    let mut returns = Returns::default();
+    simulator.advance(watch.watch_periods * setting.period(), &mut returns);
+    let impacts: Vec<ModelImpact> = returns.list.iter().map(|r| r.impact).collect();
+    let motion = if impacts.is_empty() {
+        let still = joined_before && simulator.is_joined();
+        if still {
+            SettledMotion::Joined
+        } else if stays_clear(simulator.machine(), setting) {
+            SettledMotion::Impactless
+        } else {
+            SettledMotion::Beat
+        }
+    } else if simulator.is_joined() && impacts.last().is_some_and(|i| i.dead_zone.is_infinite()) {
+        SettledMotion::Joined
+    } else {
+        recurring(&returns.list, setting.period(), watch)
+            .unwrap_or_else(|| irregular(&impacts, start, simulator.tau(), setting.period()))
+    };
+    (motion, impacts)
+}
+
+/// Whether the impactless motion never strikes: else a watch without impacts lay between two.
+fn stays_clear(machine: &Machine, setting: Setting) -> bool {
+    let reach = rho_grazing(machine, setting.frequency_ratio);
+    machine.flight != Flight::Harmonic || setting.clearance >= reach * (1.0 - 1e-9)
+}
+
+/// Impacts that matter for recurrence: with complete chatters only their ends.
+fn essential(list: &[Return]) -> (Vec<Return>, bool) {
+    let chatter = list.iter().any(|r| r.impact.kind == ImpactKind::ChatterEnd);
+    let sticks = |r: &&Return| {
+        !chatter || matches!(r.impact.kind, ImpactKind::ChatterEnd | ImpactKind::Stick)
+    };
+    (list.iter().filter(sticks).copied().collect(), chatter)
+}
+
+/// Smallest lag p at which the last impacts repeat, a whole number of drive periods apart. A
+/// motion that still converges, turning, may close first after several of its periods: once
+/// any lag closes, the smallest that closes 100 times less tightly counts.
+fn recurring(list: &[Return], period: f64, watch: &Watch) -> Option<SettledMotion> {
+    let (list, chatter) = essential(list);
+    let size = list
+        .iter()
+        .map(|r| r.impact.closing_before + r.x.abs())
+        .fold(0.0, f64::max);
+    let last = list.len() - 1;
+    let lag = |tolerance: f64, least: usize| {
+        (1..list.len()).find(|&p| {
+            let checks = p.max(least).min(last - p + 1);
+            let cycles = (list[last].impact.tau - list[last - p].impact.tau) / period;
+            (0..checks).all(|k| closure(&list[last - k], &list[last - k - p], period) <= tolerance)
+                && cycles.round() >= 1.0
+        })
+    };
+    let closed = lag(watch.tolerance * size, 2)?;
+    let p = lag(100.0 * watch.tolerance * size, closed)?;
+    let n = ((list[last].impact.tau - list[last - p].impact.tau) / period).round();
+    Some(SettledMotion::Periodic {
+        p: p as u16,
+        n: n as u16,
+        dead_zone: list[last + 1 - p..]
+            .iter()
+            .any(|r| r.impact.dead_zone > 0.0),
+        chatter,
+    })
+}
+
+/// Distance of two impacts in displacement, velocities and drive phase.
+fn closure(a: &Return, b: &Return, period: f64) -> f64 {
+    let cycles = (a.impact.tau - b.impact.tau) / period;
+    let phase = (cycles - cycles.round()).abs() * std::f64::consts::TAU;
+    // at the end of a chatter the speeds are rounding, its place and time are not
+    let speeds = if a.impact.kind == ImpactKind::ChatterEnd {
+        (a.impact.vx_after - b.impact.vx_after).abs()
+    } else {
+        (a.impact.vx_before - b.impact.vx_before).abs()
+            + (a.impact.vy_before - b.impact.vy_before).abs()
+    };
+    speeds + (a.x - b.x).abs() + phase * a.impact.closing_before.max(b.impact.closing_before)
+}
+
+/// Chaotic, or a beat where long impactless stretches lie between runs of impacts.
+fn irregular(impacts: &[ModelImpact], start: f64, end: f64, period: f64) -> SettledMotion {
+    let mut times = vec![start];
+    times.extend(impacts.iter().map(|i| i.tau));
+    times.push(end);
+    let quiet = times
+        .windows(2)
+        .filter(|w| w[1] - w[0] > 5.0 * period)
+        .count();
+    let runs = times
+        .windows(3)
+        .filter(|w| w[2] - w[0] < 2.5 * period)
+        .count();
+    if quiet >= 1 && runs >= 3 {
+        SettledMotion::Beat
+    } else {
+        SettledMotion::Chaotic
+    }
+}

@@ -1,0 +1,169 @@
+//! Records to one Parquet file: a row group a record.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+
+use polars::prelude::{Column, DataFrame, DataType, Schema};
+use polars_io::parquet::write::{KeyValueMetadata, ParquetCompression, ParquetWriter};
+
+use crate::convert::{ConvertError, Item, Options, io};
+use crate::hdf5_write::WriteError;
+use crate::output::write_whole_or;
+use crate::parquet::RECORDS_KEY;
+use crate::source::{Samples, StoredType};
+
+/// Write all records; with several there is a column `record`, and channels that a record lacks
+/// are empty.
+pub fn write(items: &[Item], out: &Path, options: &Options) -> Result<(), ConvertError> {
+    let library = |e: polars::error::PolarsError| WriteError::Library {
+        path: out.to_path_buf(),
+        reason: e.to_string(),
+    };
+    let columns = columns(items);
+    let several = items.len() > 1;
+    let single = options.single_precision;
+    let schema: Schema = several
+        .then(|| ("record".into(), DataType::String))
+        .into_iter()
+        .chain(
+            columns
+                .iter()
+                .map(|(name, text)| (name.as_str().into(), kind(*text, single))),
+        )
+        .collect();
+    let fill = |file: &mut BufWriter<File>| {
+        let mut writer = ParquetWriter::new(file)
+            .with_compression(ParquetCompression::Snappy)
+            .with_key_value_metadata(Some(KeyValueMetadata::from_static(footer(items))))
+            .batched(&schema)
+            .map_err(library)?;
+        for item in items {
+            let frame = frame(item, &columns, several, single)?.map_err(library)?;
+            if frame.height() > 0 {
+                writer.write_batch(&frame).map_err(library)?;
+            }
+        }
+        writer.finish().map_err(library)?;
+        Ok(())
+    };
+    write_whole_or(out, fill, |e| io(out)(e).into())
+}
+
+fn kind(text: bool, single: bool) -> DataType {
+    match (text, single) {
+        (true, _) => DataType::String,
+        (false, true) => DataType::Float32,
+        (false, false) => DataType::Float64,
+    }
+}
+
+/// All columns in the order in which they come first, and whether they hold texts.
+fn columns(items: &[Item]) -> Vec<(String, bool)> {
+    let mut seen = BTreeMap::new();
+    let mut all = Vec::new();
+    let headed = items.iter().flat_map(|i| i.headings().zip(i.channels()));
+    for (heading, channel) in headed {
+        let names = match channel.stored {
+            StoredType::Complex(_) => vec![heading.part(".re"), heading.part(".im")],
+            _ => vec![heading.whole()],
+        };
+        for name in names {
+            if seen.insert(name.clone(), ()).is_none() {
+                all.push((name, channel.stored == StoredType::Text));
+            }
+        }
+    }
+    all
+}
+
+/// Rates, starts and attributes: of the one record plainly, of several as JSON by name.
+fn footer(items: &[Item]) -> Vec<(String, String)> {
+    let of = |item: &Item| {
+        let mut all: BTreeMap<String, String> = item
+            .described()
+            .map(|(k, v)| (k.clone(), v.clone()))
+            .collect();
+        all.extend(
+            item.sample_rate_hz()
+                .map(|r| ("sample_rate_hz".to_owned(), r.to_string())),
+        );
+        all.extend(
+            item.start_time()
+                .map(|s| ("start_time".to_owned(), s.to_owned())),
+        );
+        all
+    };
+    if let [item] = items {
+        return of(item).into_iter().collect();
+    }
+    let records: BTreeMap<&str, BTreeMap<String, String>> =
+        items.iter().map(|i| (i.name.as_str(), of(i))).collect();
+    serde_json::to_string(&records)
+        .map(|json| (RECORDS_KEY.to_owned(), json))
+        .into_iter()
+        .collect()
+}
+
+type Framed = polars::error::PolarsResult<DataFrame>;
+
+/// One record as a table with all columns of the file.
+fn frame(
+    item: &Item,
+    columns: &[(String, bool)],
+    several: bool,
+    single: bool,
+) -> Result<Framed, ConvertError> {
+    let mut own: BTreeMap<String, Samples> = BTreeMap::new();
+    for (heading, samples) in item.headings().zip(item.read()?) {
+        match samples {
+            Samples::Complex(values) => {
+                let (re, im) = values.into_iter().unzip();
+                own.insert(heading.part(".re"), Samples::Real(re));
+                own.insert(heading.part(".im"), Samples::Real(im));
+            }
+            other => {
+                own.insert(heading.whole(), other);
+            }
+        }
+    }
+    let rows = own.values().map(Samples::len).max().unwrap_or(0);
+    let mut all: Vec<Column> = Vec::new();
+    if several {
+        all.push(Column::new("record".into(), vec![item.name.as_str(); rows]));
+    }
+    for (name, text) in columns {
+        all.push(column(name, own.remove(name), *text, rows, single));
+    }
+    Ok(DataFrame::new(rows, all))
+}
+
+/// A column of the given length; what is missing at its end, or altogether, is null.
+fn column(name: &str, samples: Option<Samples>, text: bool, rows: usize, single: bool) -> Column {
+    match samples {
+        Some(Samples::Text(values)) if text => {
+            let padded = values
+                .into_iter()
+                .map(Some)
+                .chain(std::iter::repeat(None))
+                .take(rows);
+            Column::new(name.into(), padded.collect::<Vec<Option<String>>>())
+        }
+        Some(Samples::Real(values)) if !text => {
+            let padded = values
+                .into_iter()
+                .map(Some)
+                .chain(std::iter::repeat(None))
+                .take(rows);
+            match single {
+                true => Column::new(
+                    name.into(),
+                    padded.map(|v| v.map(|v| v as f32)).collect::<Vec<_>>(),
+                ),
+                false => Column::new(name.into(), padded.collect::<Vec<_>>()),
+            }
+        }
+        _ => Column::full_null(name.into(), rows, &kind(text, single)),
+    }
+}

@@ -1,0 +1,385 @@
+use super::*;
+use crate::conformance::{named as samples, own, shared_data};
+use crate::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
+use crate::open::open;
+use crate::source::DatasetInfo;
+
+fn same(a: &DatasetInfo, b: &DatasetInfo) {
+    assert_eq!(
+        a.sample_rate_hz().map(|r| r.round()),
+        b.sample_rate_hz().map(|r| r.round())
+    );
+    for channel in &a.channels {
+        let other = &b.channels[b.channel_index(&channel.name).unwrap()];
+        assert_eq!(
+            (&channel.unit, channel.samples),
+            (&other.unit, other.samples),
+            "{}",
+            channel.name
+        );
+    }
+}
+
+#[test]
+fn valid_records_come_back_from_every_target() {
+    let source = open(&own("tables_int16_gzip.h5")).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let sources = [source];
+    let options = Options {
+        attributes: [("rig".to_owned(), "A".to_owned())].into(),
+        ..Options::default()
+    };
+    for name in ["out.h5", "out.parquet", "out.csv"] {
+        let out = dir.path().join(name);
+        assert_eq!(
+            convert(&sources, Target::of(&out).unwrap(), &out, &options)
+                .unwrap()
+                .records,
+            3
+        );
+        let back: Vec<Box<dyn Source>> = match name {
+            "out.csv" => ["run1", "run2", "run10"]
+                .map(|r| open(&dir.path().join(format!("out/{r}.csv"))).unwrap())
+                .into(),
+            _ => vec![open(&out).unwrap()],
+        };
+        let all = back
+            .iter()
+            .flat_map(|s| (0..s.datasets().len()).map(move |d| (s, d)));
+        for (d, (other, e)) in all.enumerate() {
+            let (a, b) = (&sources[0].datasets()[d], &other.datasets()[e]);
+            same(a, b);
+            assert_eq!(
+                b.attributes["clearance_m"], a.attributes["clearance_m"],
+                "{name}"
+            );
+            assert_eq!(b.attributes["rig"], "A", "{name}");
+            assert_eq!(
+                samples(&*sources[0], d, "velocity_y"),
+                samples(&**other, e, "velocity_y"),
+                "{name}"
+            );
+        }
+    }
+}
+
+#[test]
+fn valid_mixed_types_and_lengths_survive() {
+    let sources = [
+        open(&own("wide.parquet")).unwrap(),
+        open(&own("rows_and_time.h5")).unwrap(),
+    ];
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["out.h5", "out.parquet"] {
+        let out = dir.path().join(name);
+        convert(
+            &sources,
+            Target::of(&out).unwrap(),
+            &out,
+            &Options::default(),
+        )
+        .unwrap();
+        let back = open(&out).unwrap();
+        assert_eq!(back.datasets().len(), 3, "{name}");
+        let wide = back
+            .datasets()
+            .iter()
+            .position(|d| d.name == "wide")
+            .unwrap();
+        assert_eq!(
+            samples(&*back, wide, "i16"),
+            samples(&*sources[0], 0, "i16"),
+            "{name}"
+        );
+    }
+    let single = dir.path().join("single.parquet");
+    let options = Options {
+        single_precision: true,
+        ..Options::default()
+    };
+    convert(&sources[..1], Target::Parquet, &single, &options).unwrap();
+    let Samples::Real(x) = samples(&*open(&single).unwrap(), 0, "x") else {
+        panic!()
+    };
+    assert_eq!(x[7], f64::from(x[7] as f32));
+    let text = samples(&*open(&single).unwrap(), 0, "note");
+    assert_eq!(text, samples(&*sources[0], 0, "note"));
+}
+
+#[test]
+fn valid_channels_filled_up_with_empty_cells_are_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let made = dir.path().join("made.h5");
+    let mut writer = CampaignWriter::create(&made);
+    writer
+        .add(RecordTable {
+            name: "run".to_owned(),
+            sample_rate_hz: Some(1000.0),
+            channels: vec![
+                ColumnToWrite::numbers("long", "V", vec![1.0, 2.0, 3.0]),
+                ColumnToWrite::numbers("short", "V", vec![1.0, 2.0]),
+            ],
+            attributes: Vec::new(),
+        })
+        .unwrap();
+    writer.finish().unwrap();
+    let sources = [open(&made).unwrap()];
+    for (name, notes) in [("out.h5", 0), ("out.parquet", 1), ("out.csv", 1)] {
+        let out = dir.path().join(name);
+        let target = Target::of(&out).unwrap();
+        let done = convert(&sources, target, &out, &Options::default()).unwrap();
+        assert_eq!(done.notes.len(), notes, "{name}: {:?}", done.notes);
+        let named = |note: &String| note.contains("3 rows (short)");
+        assert!(done.notes.iter().all(named), "{:?}", done.notes);
+    }
+}
+
+#[test]
+fn valid_nothing_is_left_where_a_record_cannot_be_read() {
+    let sources = [open(&own("claims_too_much.h5")).unwrap()];
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["out.h5", "out.parquet", "out.csv"] {
+        let out = dir.path().join(name);
+        let error = convert(
+            &sources,
+            Target::of(&out).unwrap(),
+            &out,
+            &Options::default(),
+        )
+        .unwrap_err();
+        assert!(error.to_string().contains("claims_too_much.h5"), "{error}");
+    }
+    assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn valid_channels_of_one_name_are_all_kept() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("in.lvm");
+    let head = "LabVIEW Measurement\nSeparator\tTab\nDecimal_Separator\t.\nX_Columns\tMulti\n";
+    let ends = "***End_of_Header***\n";
+    let channels = "Channels\t2\t\t\nSamples\t2\t\t2\nY_Unit_Label\tV\t\tV\n";
+    let rows = "X_Value\tx\tX_Value\tx\tComment\n0\t1\t0.5\t2\ta\n1\t3\t1.5\t4\tb\n";
+    std::fs::write(&path, format!("{head}{ends}{channels}{ends}{rows}")).unwrap();
+    let sources = [open(&path).unwrap()];
+    for name in ["out.h5", "out.parquet", "out.csv"] {
+        let out = dir.path().join(name);
+        let target = Target::of(&out).unwrap();
+        let done = convert(&sources, target, &out, &Options::default()).unwrap();
+        assert_eq!(done.records, 1);
+        assert_eq!(
+            done.notes.len(),
+            usize::from(name == "out.h5"),
+            "{:?}",
+            done.notes
+        );
+        let back = open(&out).unwrap();
+        for (channel, values) in [
+            ("X_Value", [0.0, 1.0]),
+            ("x", [1.0, 3.0]),
+            ("X_Value 2", [0.5, 1.5]),
+            ("x 2", [2.0, 4.0]),
+        ] {
+            assert_eq!(
+                samples(&*back, 0, channel),
+                Samples::Real(values.to_vec()),
+                "{name}"
+            );
+        }
+    }
+}
+
+#[test]
+fn valid_a_file_without_numbers_is_not_converted() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("text.mat");
+    // A level 4 file of one text.
+    let words = [51u32, 1, 2, 0, 2].map(u32::to_le_bytes).concat();
+    std::fs::write(&path, [&words[..], b"a\0hi"].concat()).unwrap();
+    let sources = [open(&path).unwrap()];
+    for name in ["out.h5", "out.parquet", "out.csv"] {
+        let out = dir.path().join(name);
+        let target = Target::of(&out).unwrap();
+        let error = convert(&sources, target, &out, &Options::default()).unwrap_err();
+        assert!(error.to_string().contains("channel of numbers"), "{error}");
+        assert!(!out.exists());
+    }
+}
+
+#[test]
+fn valid_parts_of_complex_numbers_keep_their_unit() {
+    let Some(dir) = shared_data() else { return };
+    let sources = [open(&dir.join("uff_conformance/non_ascii_header.uff")).unwrap()];
+    let channel = &sources[0].datasets()[0].channels[1];
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["out.h5", "out.parquet", "out.csv"] {
+        let out = dir.path().join(name);
+        let target = Target::of(&out).unwrap();
+        convert(&sources, target, &out, &Options::default()).unwrap();
+        let back = open(&out).unwrap();
+        for (part, written) in [".re", ".im"].iter().zip(&back.datasets()[0].channels[1..]) {
+            let expected = (format!("{}{part}", channel.name), &channel.unit);
+            assert_eq!((written.name.clone(), &written.unit), expected, "{name}");
+        }
+    }
+}
+
+/// A record of channels of any kind, in memory.
+struct Made {
+    datasets: Vec<DatasetInfo>,
+    samples: Vec<Samples>,
+}
+
+impl Source for Made {
+    fn format(&self) -> &'static str {
+        "made"
+    }
+
+    fn path(&self) -> &Path {
+        Path::new("made.mat")
+    }
+
+    fn datasets(&self) -> &[DatasetInfo] {
+        &self.datasets
+    }
+
+    fn read(&self, _: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
+        Ok(channels.iter().map(|&c| self.samples[c].clone()).collect())
+    }
+}
+
+fn made(channels: &[(&str, Option<&str>, Samples)]) -> Made {
+    let info = |(name, unit, samples): &(&str, Option<&str>, Samples)| ChannelInfo {
+        name: (*name).to_owned(),
+        unit: unit.map(str::to_owned),
+        stored: match samples {
+            Samples::Real(_) => StoredType::Float(64),
+            Samples::Complex(_) => StoredType::Complex(64),
+            Samples::Text(_) => StoredType::Text,
+        },
+        samples: samples.len() as u64,
+        sample_rate_hz: Some(250.0),
+        start_time: None,
+        properties: BTreeMap::new(),
+    };
+    let dataset = DatasetInfo {
+        name: String::new(),
+        channels: channels.iter().map(info).collect(),
+        time_axis: None,
+        attributes: [("remark", "a, \"b\" = c"), ("clearance_m", "0.001")]
+            .map(|(k, v)| (k.to_owned(), v.to_owned()))
+            .into(),
+    };
+    Made {
+        datasets: vec![dataset],
+        samples: channels.iter().map(|(_, _, s)| s.clone()).collect(),
+    }
+}
+
+/// Texts that could be taken for something else in a table.
+const TEXTS: [&str; 12] = [
+    "a, b",
+    "12.5",
+    "",
+    "say \"hi\"",
+    "# note",
+    " two; blanks ",
+    "NaN",
+    "1\t2",
+    "x\ny",
+    "2024-05-01 12:00:00",
+    "-",
+    "\"",
+];
+
+/// Channels of every kind that is written, most of them texts.
+fn every_kind() -> Vec<(&'static str, Option<&'static str>, Samples)> {
+    let texts = |from: usize| {
+        let turned = TEXTS.iter().cycle().skip(from).take(TEXTS.len());
+        Samples::Text(turned.map(|t| (*t).to_owned()).collect())
+    };
+    let real =
+        |value: fn(f64) -> f64| Samples::Real((0..TEXTS.len()).map(|i| value(i as f64)).collect());
+    let pairs = (0..TEXTS.len()).map(|i| (i as f64, -0.1 * i as f64));
+    let empty = Samples::Text(vec![String::new(); TEXTS.len()]);
+    vec![
+        ("names{1}", None, texts(0)),
+        ("labels, all", None, texts(3)),
+        ("units \"odd\"", Some("m/s²"), texts(5)),
+        ("empty", None, empty),
+        ("7", None, texts(7)),
+        ("mass (kg)", None, real(|i| 1e-310 * i)),
+        ("velocity; x", Some("mm/s"), real(|i| (i - 3.0) / 7.0)),
+        (
+            "gaps [1]",
+            Some("V"),
+            real(|i| if i == 0.0 { f64::NAN } else { 1e300 * i }),
+        ),
+        ("transfer", Some("N/m"), Samples::Complex(pairs.collect())),
+        ("whole", None, real(|i| 9_007_199_254_740_993.0 - i)),
+    ]
+}
+
+/// What a channel must be after it was written: two channels of real numbers for a complex one.
+fn written(channels: &[(&str, Option<&str>, Samples)]) -> Vec<(String, Option<String>, Samples)> {
+    let mut all = Vec::new();
+    for (name, unit, samples) in channels {
+        let unit = unit.map(str::to_owned);
+        match samples {
+            Samples::Complex(values) => {
+                let (re, im) = values.iter().copied().unzip();
+                all.push((format!("{name}.re"), unit.clone(), Samples::Real(re)));
+                all.push((format!("{name}.im"), unit, Samples::Real(im)));
+            }
+            other => all.push(((*name).to_owned(), unit, other.clone())),
+        }
+    }
+    all
+}
+
+/// Whether samples are alike, those that are missing too.
+fn alike(a: &Samples, b: &Samples) -> bool {
+    match (a, b) {
+        (Samples::Real(a), Samples::Real(b)) => {
+            let bits = |v: &f64| if v.is_nan() { 0 } else { v.to_bits() };
+            a.iter().map(bits).eq(b.iter().map(bits))
+        }
+        (a, b) => a == b,
+    }
+}
+
+#[test]
+fn valid_every_kind_of_channel_comes_back_from_every_target() {
+    let channels = every_kind();
+    let sources: [Box<dyn Source>; 1] = [Box::new(made(&channels))];
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["out.h5", "out.parquet", "out.csv"] {
+        let out = dir.path().join(name);
+        let target = Target::of(&out).unwrap();
+        convert(&sources, target, &out, &Options::default()).unwrap();
+        let back = open(&out).unwrap();
+        let info = &back.datasets()[0];
+        let mut expected = written(&channels);
+        if target == Target::Hdf5 {
+            expected.retain(|(_, _, s)| !matches!(s, Samples::Text(_)));
+        }
+        assert_eq!(info.channels.len(), expected.len(), "{name}");
+        assert_eq!(info.sample_rate_hz(), Some(250.0), "{name}");
+        assert_eq!(info.attributes["remark"], "a, \"b\" = c", "{name}");
+        let all: Vec<usize> = (0..expected.len()).collect();
+        let read = back.read(0, &all).unwrap();
+        for ((channel, read), (expected, unit, samples)) in
+            info.channels.iter().zip(&read).zip(&expected)
+        {
+            assert_eq!((&channel.name, &channel.unit), (expected, unit), "{name}");
+            assert_eq!(channel.samples, samples.len() as u64, "{name} {expected}");
+            let text = channel.stored == StoredType::Text;
+            assert_eq!(
+                text,
+                matches!(samples, Samples::Text(_)),
+                "{name} {expected}"
+            );
+            assert!(alike(read, samples), "{name} {expected}: {read:?}");
+        }
+    }
+}

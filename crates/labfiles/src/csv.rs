@@ -1,0 +1,163 @@
+//! Text tables: comma-, tab-, semicolon- or blank-separated, with or without a header.
+//!
+//! Opening reads the first and the last lines and counts the rows; reading goes through the
+//! file block by block and keeps only the columns that are asked for.
+
+mod columns;
+pub mod dialect;
+mod front;
+pub mod header;
+pub mod time_axis;
+
+use std::path::Path;
+
+use crate::csv::front::Front;
+use crate::csv::header::Header;
+use crate::csv::time_axis::TimeAxis;
+use crate::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType};
+use crate::text::TextFile;
+use crate::text::cells::{Cells, Lines};
+use crate::text::table::{self, Kind, Layout};
+
+/// The remark that numbers the columns of texts, in what this program writes.
+pub const TEXTS_KEY: &str = "impactid_texts";
+
+/// Bytes at the front of a file from which its dialect is told.
+const HEAD_BYTES: usize = 1 << 16;
+
+struct CsvSource {
+    text: TextFile,
+    layout: Layout,
+    datasets: Vec<DatasetInfo>,
+    notes: Vec<String>,
+}
+
+/// Open a text table.
+///
+/// # Errors
+/// Where the file cannot be read, is empty, or no separator makes a table of numbers of it.
+pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
+    let text = TextFile::open(path)?;
+    let head = text.head(HEAD_BYTES)?;
+    let quotes = memchr::memchr(b'"', &head).is_some();
+    let front = Front::read(&text, &head, quotes)?;
+    let rows = front.rows(&head, quotes);
+    let mut layout = front.layout(&text, &rows, quotes);
+    let (count, last) = table::count_rows(&text, &layout)?;
+    refuse_ragged(&text, count, layout.kinds.len())?;
+    let mut notes = Vec::new();
+    let last_row = last_row(&text, &layout, last, &mut notes)?;
+    let axis = time_axis::find(&front.header, &layout, &rows, last_row.as_deref(), count);
+    layout.names.clone_from(&front.header.names);
+    notes.extend(axis.iter().flat_map(|a| a.note.clone()));
+    let dataset = dataset(front.header, &layout, count, axis.as_ref());
+    Ok(Box::new(CsvSource {
+        text,
+        layout,
+        datasets: vec![dataset],
+        notes,
+    }))
+}
+
+/// Refuse a table whose rows are so much shorter than its header that filling them up would
+/// take far more memory than the file.
+fn refuse_ragged(text: &TextFile, rows: u64, columns: usize) -> Result<(), ReadError> {
+    if rows.saturating_mul(columns as u64) <= 2 * text.length() + 1024 {
+        return Ok(());
+    }
+    Err(ReadError::new(
+        text.path(),
+        format!("rows of {columns} cells as in the first ones"),
+        format!("{rows} rows, most of them much shorter"),
+        "Split the file where its number of columns changes.",
+    ))
+}
+
+/// The cells of the last row; a last line without all its cells is noted as cut off.
+fn last_row(
+    text: &TextFile,
+    layout: &Layout,
+    at: Option<u64>,
+    notes: &mut Vec<String>,
+) -> Result<Option<Vec<Vec<u8>>>, ReadError> {
+    let Some(at) = at else { return Ok(None) };
+    let bytes = text.range(at, HEAD_BYTES)?;
+    let Some((_, line)) = Lines::new(&bytes, layout.quotes).next() else {
+        return Ok(None);
+    };
+    let cells: Vec<Vec<u8>> = Cells::new(line, layout.separator)
+        .map(<[u8]>::to_vec)
+        .collect();
+    if cells.len() < layout.kinds.len() && !bytes.ends_with(b"\n") {
+        notes.push(format!(
+            "the last row has {} of {} cells and no line end: the file may be cut off",
+            cells.len(),
+            layout.kinds.len()
+        ));
+    }
+    Ok(Some(cells))
+}
+
+fn dataset(header: Header, layout: &Layout, rows: u64, axis: Option<&TimeAxis>) -> DatasetInfo {
+    let stated = crate::attribute::sample_rate_hz(&header.attributes);
+    let rate = axis.and_then(|a| a.rate_hz).or(stated);
+    let start = axis
+        .and_then(|a| a.start.clone())
+        .or_else(|| crate::attribute::start_time(&header.attributes));
+    let channel = |(i, (name, unit)): (usize, (String, Option<String>))| ChannelInfo {
+        name,
+        unit: unit.or_else(|| axis.filter(|a| a.column == i).and_then(|a| a.unit.clone())),
+        stored: match layout.kinds[i] {
+            Kind::Number => StoredType::Float(64),
+            Kind::Time => StoredType::Time,
+            Kind::Text => StoredType::Text,
+        },
+        samples: rows,
+        sample_rate_hz: rate,
+        start_time: start.clone(),
+        properties: Default::default(),
+    };
+    let columns = header.names.into_iter().zip(header.units);
+    DatasetInfo {
+        name: String::new(),
+        channels: columns.enumerate().map(channel).collect(),
+        time_axis: axis.map(|a| a.column),
+        attributes: header.attributes,
+    }
+}
+
+fn no_table(text: &TextFile, found: &str) -> ReadError {
+    ReadError::new(
+        text.path(),
+        "a table of numbers separated by commas, semicolons, tabs or blanks",
+        found,
+        "Export the record as CSV with one row a sample and a header of channel names.",
+    )
+}
+
+impl Source for CsvSource {
+    fn format(&self) -> &'static str {
+        "csv"
+    }
+
+    fn path(&self) -> &Path {
+        self.text.path()
+    }
+
+    fn datasets(&self) -> &[DatasetInfo] {
+        &self.datasets
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
+        let info = crate::source::requested(self, dataset, channels)?;
+        let rows = info.channels.first().map_or(0, |c| c.samples) as usize;
+        table::read_columns(&self.text, &self.layout, channels, rows)
+    }
+}
+
+#[cfg(test)]
+mod tests;

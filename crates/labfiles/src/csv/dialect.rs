@@ -1,0 +1,220 @@
+//! How a text table is written, told from its first lines.
+
+use crate::text::cells::{Cells, Separator};
+use crate::text::{clock, decode, number};
+
+/// First characters that make a line a comment.
+pub const COMMENTS: &[u8] = b"#%!";
+/// Lines at the end of the head by which the dialect is judged.
+const JUDGED_LINES: usize = 60;
+
+/// The longest cell that may hold a point in time, bytes.
+const LONGEST_TIME: usize = 80;
+
+/// How a table is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Dialect {
+    /// What stands between two cells.
+    pub separator: Separator,
+    /// The decimal mark.
+    pub decimal: u8,
+    /// Number of columns.
+    pub columns: usize,
+}
+
+impl Dialect {
+    /// The dialect that this program writes, with the columns of its header.
+    pub fn own(header: &[u8]) -> Self {
+        let separator = Separator::Byte(b',');
+        Self {
+            separator,
+            decimal: b'.',
+            columns: Cells::new(header, separator).count(),
+        }
+    }
+}
+
+/// Dialects in the order in which they are preferred when they explain a text equally well.
+const CANDIDATES: [(Separator, u8); 9] = [
+    (Separator::Byte(b'\t'), b'.'),
+    (Separator::Byte(b';'), b'.'),
+    (Separator::Byte(b','), b'.'),
+    (Separator::Byte(b'|'), b'.'),
+    (Separator::Blanks, b'.'),
+    (Separator::Byte(b'\t'), b','),
+    (Separator::Byte(b';'), b','),
+    (Separator::Byte(b'|'), b','),
+    (Separator::Blanks, b','),
+];
+
+/// The dialect that explains the lines best; `None` where none makes a table of them.
+///
+/// `lines` are the first lines of the file without blank lines and comments. The last of them
+/// count: a preamble stands before the table.
+pub fn detect(lines: &[&[u8]]) -> Option<Dialect> {
+    let judged = judged(lines);
+    let mut best: Option<(f64, Dialect)> = None;
+    for (separator, decimal) in CANDIDATES {
+        let Some((score, columns)) = score(judged, separator, decimal) else {
+            continue;
+        };
+        let certain = score > 1.0;
+        if best.is_none_or(|(b, _)| score > b + 1e-9) {
+            best = Some((
+                score,
+                Dialect {
+                    separator,
+                    decimal,
+                    columns,
+                },
+            ));
+        }
+        if certain {
+            break;
+        }
+    }
+    best.map(|(_, dialect)| dialect)
+}
+
+/// The lines by which a table is judged. A preamble in a short file must not outvote the table:
+/// the second half decides.
+fn judged<'a, 'b>(lines: &'b [&'a [u8]]) -> &'b [&'a [u8]] {
+    let last = &lines[lines.len().saturating_sub(JUDGED_LINES)..];
+    &last[last.len() / 2..]
+}
+
+/// How well a dialect explains lines: the share of lines with the usual number of cells times
+/// the share of filled cells that hold a value; and that number of cells.
+fn score(lines: &[&[u8]], separator: Separator, decimal: u8) -> Option<(f64, usize)> {
+    let widths: Vec<usize> = lines
+        .iter()
+        .map(|l| Cells::new(l, separator).count())
+        .collect();
+    let columns = usual(&widths)?;
+    let consistent = widths.iter().filter(|&&w| w == columns).count() as f64;
+    let (mut filled, mut values) = (0usize, 0usize);
+    for cell in lines
+        .iter()
+        .flat_map(|l| Cells::new(l, separator))
+        .filter(|c| !c.is_empty())
+    {
+        filled += 1;
+        values += usize::from(is_value(cell, decimal));
+    }
+    if values == 0 {
+        return None;
+    }
+    let score = consistent / lines.len() as f64 * values as f64 / filled as f64;
+    // Among equals the dialect that finds a table wins over the one that finds a column.
+    Some((score + if columns > 1 { 1e-6 } else { 0.0 }, columns))
+}
+
+/// The most frequent number, the greatest of several.
+fn usual(widths: &[usize]) -> Option<usize> {
+    let count = |w: usize| widths.iter().filter(|&&v| v == w).count();
+    widths.iter().copied().max_by_key(|&w| (count(w), w))
+}
+
+/// Whether a cell holds a number (or says that there is none) or a point in time.
+pub fn is_value(cell: &[u8], decimal: u8) -> bool {
+    if cell.is_empty() {
+        return false;
+    }
+    number::parse_cell(cell, decimal).is_some() || is_time(cell)
+}
+
+/// Whether a cell holds a point in time.
+pub fn is_time(cell: &[u8]) -> bool {
+    cell.len() <= LONGEST_TIME && clock::parse(&decode(cell), false).is_some()
+}
+
+/// The number of the first line that is a row of the table: a row of values, or one that has
+/// values wherever the last lines have values alone, as rows of few numbers among texts do.
+pub fn first_row(lines: &[&[u8]], dialect: &Dialect) -> Option<usize> {
+    let values = columns_of_values(judged(lines), dialect);
+    lines.iter().position(|line| {
+        let cells: Vec<&[u8]> = Cells::new(line, dialect.separator).collect();
+        let near = cells.len().abs_diff(dialect.columns) <= dialect.columns / 2;
+        near && (is_value_row(&cells, dialect) || agrees(&cells, &values, dialect))
+    })
+}
+
+/// Whether some of the cells are filled, and most of those hold values.
+fn is_value_row(cells: &[&[u8]], dialect: &Dialect) -> bool {
+    let filled = cells.iter().filter(|c| !c.is_empty()).count();
+    let values = cells.iter().filter(|c| is_value(c, dialect.decimal));
+    let values = values.count();
+    values > 0 && 2 * values >= filled
+}
+
+/// For each column whether lines hold values in it, and nothing else.
+fn columns_of_values(lines: &[&[u8]], dialect: &Dialect) -> Vec<bool> {
+    let mut columns = vec![(false, true); dialect.columns];
+    for line in lines {
+        let cells = Cells::new(line, dialect.separator).zip(&mut columns);
+        for (cell, (some, only)) in cells.filter(|(c, _)| !c.is_empty()) {
+            let value = is_value(cell, dialect.decimal);
+            (*some, *only) = (*some || value, *only && value);
+        }
+    }
+    columns.iter().map(|(some, only)| *some && *only).collect()
+}
+
+/// Whether a row has values in columns of values: in one at least, and no word in any.
+fn agrees(cells: &[&[u8]], columns: &[bool], dialect: &Dialect) -> bool {
+    let held = cells
+        .iter()
+        .zip(columns)
+        .filter(|(_, of_values)| **of_values);
+    let mut filled = held
+        .map(|(cell, _)| cell)
+        .filter(|c| !c.is_empty())
+        .peekable();
+    filled.peek().is_some() && filled.all(|c| is_value(c, dialect.decimal))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Dialect {
+        let lines: Vec<&[u8]> = text.lines().map(str::as_bytes).collect();
+        detect(&lines).unwrap()
+    }
+
+    #[test]
+    fn valid_dialects_are_told_apart() {
+        let tab = Separator::Byte(b'\t');
+        let is = |text, separator, decimal, columns| {
+            assert_eq!(
+                of(text),
+                Dialect {
+                    separator,
+                    decimal,
+                    columns
+                },
+                "{text}"
+            );
+        };
+        is("a,b\n1.5,2\n2.5,3", Separator::Byte(b','), b'.', 2);
+        is("a;b\n1,5;2\n2,5;3", Separator::Byte(b';'), b',', 2);
+        is("1,5\t2\n2,5\t3", tab, b',', 2);
+        is("1.5\t2\n2.5\t3", tab, b'.', 2);
+        is(" 1.5   2\n 12.5  3", Separator::Blanks, b'.', 2);
+        is("1, 2, 3\n4, 5, 6", Separator::Byte(b','), b'.', 3);
+        is("1\n2\n3", tab, b'.', 1);
+        is("0,5\n0,7\n", Separator::Byte(b','), b'.', 2);
+        is(
+            "2024-05-01 12:00:00;1,5\n2024-05-01 12:00:01;1,6",
+            Separator::Byte(b';'),
+            b',',
+            2,
+        );
+        is(
+            "t,x,note\n0,1,fine\n1,2,\n2,3,\"a, b\"\n3,4,",
+            Separator::Byte(b','),
+            b'.',
+            3,
+        );
+    }
+}

@@ -1,0 +1,251 @@
+//! Names, units and remarks that stand before a table's first row.
+
+use std::collections::BTreeMap;
+
+use crate::csv::dialect::{COMMENTS, Dialect, is_value};
+use crate::text::cells::{Cells, decode_cell};
+use crate::text::decode;
+use crate::units::parse_unit;
+
+/// What the lines before the first row say.
+#[derive(Debug, Default, PartialEq)]
+pub struct Header {
+    /// Names of the columns, as many as there are columns.
+    pub names: Vec<String>,
+    /// Units of the columns.
+    pub units: Vec<Option<String>>,
+    /// Remarks of the form `key: value`, `key = value` or a row of two cells.
+    pub attributes: BTreeMap<String, String>,
+}
+
+/// Units that occur in headers though no channel of the rig is measured in them.
+const FURTHER_UNITS: [&str; 22] = [
+    "Pa", "kPa", "MPa", "bar", "°C", "C", "degC", "K", "A", "mA", "W", "J", "l", "ml", "Ohm", "Ω",
+    "dB", "m²", "Nm", "-", "counts", "h",
+];
+
+/// Read the lines before the first row. `lines` are all of them, comments too, blank ones not.
+pub fn read(lines: &[&[u8]], dialect: &Dialect) -> Header {
+    let mut header = Header::default();
+    let (comments, plain): (Vec<&[u8]>, Vec<&[u8]>) = lines.iter().partition(|l| is_comment(l));
+    let mut rows: Vec<Vec<String>> = plain.iter().map(|l| cells(l, dialect)).collect();
+    let units = units_row(&rows, dialect.columns);
+    if units.is_some() {
+        rows.pop();
+    }
+    if rows.last().is_some_and(|r| fits(r, dialect.columns)) {
+        header.names = rows.pop().unwrap_or_default();
+    } else if let Some(names) = commented_names(&comments, dialect) {
+        header.names = names;
+    }
+    for row in rows {
+        remark(
+            &row.join(if row.len() == 2 { "=" } else { " " }),
+            &mut header.attributes,
+        );
+    }
+    for comment in comments {
+        let text = decode(comment.trim_ascii_start());
+        remark(
+            text.trim_start_matches(|c: char| COMMENTS.contains(&(c as u8))),
+            &mut header.attributes,
+        );
+    }
+    name_columns(&mut header, &units.unwrap_or_default(), dialect.columns);
+    header
+}
+
+fn is_comment(line: &[u8]) -> bool {
+    line.trim_ascii_start()
+        .first()
+        .is_some_and(|b| COMMENTS.contains(b))
+}
+
+fn cells(line: &[u8], dialect: &Dialect) -> Vec<String> {
+    Cells::new(line, dialect.separator)
+        .map(decode_cell)
+        .collect()
+}
+
+/// Whether a row of cells can head the table: its width, give or take an empty cell at the end.
+fn fits(row: &[String], columns: usize) -> bool {
+    let filled = row.iter().rposition(|c| !c.is_empty()).map_or(0, |i| i + 1);
+    filled > 0 && (row.len() == columns || filled == columns || row.len() == columns + 1)
+}
+
+/// The last row, where it holds units under a row of names.
+fn units_row(rows: &[Vec<String>], columns: usize) -> Option<Vec<Option<String>>> {
+    let [.., names, units] = rows else {
+        return None;
+    };
+    if !fits(names, columns) || !fits(units, columns) {
+        return None;
+    }
+    let filled: Vec<&String> = units.iter().filter(|c| !c.is_empty()).collect();
+    let known = filled.iter().filter(|c| is_unit(unwrapped(c))).count();
+    (known > 0 && 2 * known >= filled.len()).then(|| {
+        units
+            .iter()
+            .map(|c| Some(unwrapped(c).to_owned()).filter(|u| !u.is_empty()))
+            .collect()
+    })
+}
+
+/// Names in the last comment before the table, where it has as many words as columns.
+fn commented_names(comments: &[&[u8]], dialect: &Dialect) -> Option<Vec<String>> {
+    let last = comments.last()?.trim_ascii_start();
+    let body = last
+        .iter()
+        .position(|b| !COMMENTS.contains(b))
+        .map(|i| &last[i..])?;
+    let names = cells(body.trim_ascii(), dialect);
+    let words = names
+        .iter()
+        .all(|n| !n.is_empty() && !is_value(n.as_bytes(), dialect.decimal));
+    (names.len() == dialect.columns
+        && words
+        && (names.len() > 1 || !names[0].contains([':', '=', ' '])))
+    .then_some(names)
+}
+
+fn remark(text: &str, attributes: &mut BTreeMap<String, String>) {
+    let text = text.trim();
+    let Some((key, value)) = text.split_once('=').or_else(|| text.split_once(':')) else {
+        return;
+    };
+    let (key, value) = (key.trim(), value.trim());
+    if !key.is_empty() && key.len() <= 80 && !value.is_empty() {
+        attributes.insert(key.to_owned(), value.to_owned());
+    }
+}
+
+/// Whether a text is the symbol of a unit.
+fn is_unit(text: &str) -> bool {
+    parse_unit(text).is_some() || FURTHER_UNITS.contains(&text.trim())
+}
+
+/// A unit without the brackets around it.
+fn unwrapped(text: &str) -> &str {
+    let text = text.trim();
+    text.strip_prefix('[')
+        .and_then(|t| t.strip_suffix(']'))
+        .or_else(|| text.strip_prefix('(').and_then(|t| t.strip_suffix(')')))
+        .unwrap_or(text)
+        .trim()
+}
+
+/// A heading such as `velocity_x [mm/s]`, `Position (m) Run 1` or `x / mm` as name and unit.
+///
+/// Empty brackets at its end say that there is no unit: `mass (kg) []`.
+pub fn name_and_unit(heading: &str) -> (String, Option<String>) {
+    let heading = heading.trim();
+    if let Some(name) = heading.strip_suffix("[]") {
+        return (name.trim_end().to_owned(), None);
+    }
+    for (open, close, any) in [('[', ']', true), ('(', ')', false)] {
+        let Some(from) = heading.rfind(open) else {
+            continue;
+        };
+        let Some(length) = heading[from..].find(close) else {
+            continue;
+        };
+        let unit = heading[from + 1..from + length].trim();
+        let name = [heading[..from].trim(), heading[from + length + 1..].trim()].join(" ");
+        if !unit.is_empty() && (any || is_unit(unit)) && !name.trim().is_empty() {
+            return (name.trim().to_owned(), Some(unit.to_owned()));
+        }
+    }
+    if let Some((name, unit)) = heading.rsplit_once(" / ").filter(|(_, unit)| is_unit(unit)) {
+        return (name.trim().to_owned(), Some(unit.trim().to_owned()));
+    }
+    (heading.to_owned(), None)
+}
+
+/// Fill names and units up to the number of columns; repeated names gain a number.
+fn name_columns(header: &mut Header, units: &[Option<String>], columns: usize) {
+    let headings = std::mem::take(&mut header.names);
+    let mut seen: BTreeMap<String, usize> = BTreeMap::new();
+    for i in 0..columns {
+        let (mut name, unit) = headings
+            .get(i)
+            .map(|h| name_and_unit(h))
+            .unwrap_or_default();
+        if name.is_empty() {
+            name = format!("column_{}", i + 1);
+        }
+        let times = seen
+            .entry(name.clone())
+            .and_modify(|n| *n += 1)
+            .or_insert(1);
+        if *times > 1 {
+            name = format!("{name} {times}");
+        }
+        header.names.push(name);
+        header.units.push(units.get(i).cloned().flatten().or(unit));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::text::cells::Separator;
+
+    const SEMICOLON: Dialect = Dialect {
+        separator: Separator::Byte(b';'),
+        decimal: b',',
+        columns: 3,
+    };
+
+    fn header(lines: &[&str]) -> Header {
+        read(
+            &lines.iter().map(|l| l.as_bytes()).collect::<Vec<_>>(),
+            &SEMICOLON,
+        )
+    }
+
+    #[test]
+    fn valid_headings_give_names_and_units() {
+        for (heading, name, unit) in [
+            ("velocity_x [mm/s]", "velocity_x", Some("mm/s")),
+            ("velocity_x (mm/s)", "velocity_x", Some("mm/s")),
+            ("Position (m) Run 1", "Position Run 1", Some("m")),
+            ("Force (Trigger)", "Force (Trigger)", None),
+            ("x / mm", "x", Some("mm")),
+            ("Blue:Acceleration - x", "Blue:Acceleration - x", None),
+            ("[V]", "[V]", None),
+            ("mass (kg) []", "mass (kg)", None),
+        ] {
+            assert_eq!(
+                name_and_unit(heading),
+                (name.into(), unit.map(Into::into)),
+                "{heading}"
+            );
+        }
+    }
+
+    #[test]
+    fn valid_units_in_a_second_line_and_remarks() {
+        let h = header(&[
+            "# clearance_m: 0.001",
+            "Operator;Novák",
+            "t;x;x",
+            "s;mm;[mm/s]",
+        ]);
+        assert_eq!(h.names, ["t", "x", "x 2"]);
+        assert_eq!(
+            h.units,
+            [Some("s".into()), Some("mm".into()), Some("mm/s".into())]
+        );
+        assert_eq!(h.attributes["clearance_m"], "0.001");
+        assert_eq!(h.attributes["Operator"], "Novák");
+    }
+
+    #[test]
+    fn valid_names_in_a_comment_or_none_at_all() {
+        assert_eq!(
+            header(&["# made by hand", "# t;x;y"]).names,
+            ["t", "x", "y"]
+        );
+        assert_eq!(header(&[]).names, ["column_1", "column_2", "column_3"]);
+    }
+}

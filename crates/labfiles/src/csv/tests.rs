@@ -1,0 +1,237 @@
+use super::*;
+use crate::conformance::shared_data;
+use std::io::Write;
+
+fn file(bytes: &[u8]) -> tempfile::NamedTempFile {
+    let mut file = tempfile::Builder::new().suffix(".csv").tempfile().unwrap();
+    file.write_all(bytes).unwrap();
+    file
+}
+
+fn source(bytes: &[u8]) -> Box<dyn Source> {
+    open(file(bytes).path()).unwrap()
+}
+
+fn real(source: &dyn Source, channel: usize) -> Vec<f64> {
+    source
+        .read(0, &[channel])
+        .unwrap()
+        .remove(0)
+        .into_real()
+        .unwrap()
+}
+
+#[test]
+fn valid_plain_table_with_units_in_the_header() {
+    let s = source(b"time [s],velocity_x [mm/s],note\n0,1.5,a\n0.0005,,\"b, c\"\n0.001,2.5,\n");
+    let info = &s.datasets()[0];
+    assert_eq!(info.time_axis, Some(0));
+    assert_eq!(info.channels[1].unit.as_deref(), Some("mm/s"));
+    assert!((info.sample_rate_hz().unwrap() - 2000.0).abs() < 1e-9);
+    let v = real(&*s, 1);
+    assert_eq!((v[0], v[1].is_nan(), v[2]), (1.5, true, 2.5));
+    assert_eq!(
+        s.read(0, &[2]).unwrap()[0],
+        Samples::Text(vec!["a".into(), "b, c".into(), String::new()])
+    );
+}
+
+#[test]
+fn valid_decimal_comma_with_units_in_a_second_line_and_a_mark() {
+    let text = "\u{feff}# clearance_m: 0,001\nčas;rychlost\nms;mm/s\n0;1,25\n0,5;-2,5e1\n1;3\n";
+    let s = source(text.as_bytes());
+    let info = &s.datasets()[0];
+    assert_eq!(info.channels[0].name, "čas");
+    assert_eq!(info.channels[1].unit.as_deref(), Some("mm/s"));
+    assert_eq!(info.attributes["clearance_m"], "0,001");
+    assert!((info.sample_rate_hz().unwrap() - 2000.0).abs() < 1e-9);
+    assert_eq!(real(&*s, 1), [1.25, -25.0, 3.0]);
+}
+
+#[test]
+fn valid_utf16_and_windows_line_ends() {
+    let text = "t;x [µm]\r\n0;1\r\n1;2\r\n";
+    let bytes: Vec<u8> = [0xFF, 0xFE]
+        .into_iter()
+        .chain(text.encode_utf16().flat_map(u16::to_le_bytes))
+        .collect();
+    let s = source(&bytes);
+    assert_eq!(s.datasets()[0].channels[1].unit.as_deref(), Some("µm"));
+    assert_eq!(real(&*s, 1), [1.0, 2.0]);
+}
+
+#[test]
+fn valid_points_in_time_become_seconds() {
+    let s = source(
+        b"when,x\n2024-05-01 23:59:59.5,1\n2024-05-02 00:00:00.0,2\n2024-05-02 00:00:00.5,3\n",
+    );
+    let info = &s.datasets()[0];
+    assert_eq!(info.time_axis, Some(0));
+    assert_eq!(
+        info.channels[1].start_time.as_deref(),
+        Some("2024-05-01T23:59:59.5")
+    );
+    assert_eq!(info.sample_rate_hz(), Some(2.0));
+    assert_eq!(real(&*s, 0), [0.0, 0.5, 1.0]);
+    let s = source(b"Time\tx\n23:59:59\t1\n00:00:00\t2\n00:00:01\t3\n");
+    assert_eq!(real(&*s, 0), [0.0, 1.0, 2.0]);
+}
+
+#[test]
+fn valid_table_without_header_and_with_stated_rate() {
+    let s = source(b"# sample_rate_hz = 2000\n1.5 2\n2.5 3\n3.5 7\n");
+    let info = &s.datasets()[0];
+    assert_eq!(info.channels[1].name, "column_2");
+    assert_eq!(real(&*s, 1), [2.0, 3.0, 7.0]);
+    let s = source(b"# sample_rate_hz = 2000\n1\n3\n2\n");
+    assert_eq!(s.datasets()[0].sample_rate_hz(), Some(2000.0));
+}
+
+#[test]
+fn valid_a_wrong_cell_is_named_and_located() {
+    let s = source(b"t,x\n0,1\n1,2\n2,4..5\n3,4\n4,5\n5,6\n6,7\n");
+    let error = s.read(0, &[1]).unwrap_err();
+    assert_eq!(error.channel.as_deref(), Some("x"));
+    assert_eq!(error.byte, Some(14));
+    assert!(error.found.contains("4..5"), "{error}");
+    let s = source(b"t,x\n0,1\n1,2\n2,4,9\n3,4\n4,5\n5,6\n6,7\n");
+    assert!(
+        s.read(0, &[0])
+            .unwrap_err()
+            .found
+            .contains("further cell '9'")
+    );
+}
+
+#[test]
+fn valid_rows_of_few_numbers_among_texts_are_rows() {
+    let s = source(b"name,place,note,x\nalpha,left,\"a, b\",0\nbeta,right,fine,1\n,,,2\n,,,3\n");
+    let info = &s.datasets()[0];
+    let names: Vec<&str> = info.channels.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["name", "place", "note", "x"]);
+    assert_eq!(real(&*s, 3), [0.0, 1.0, 2.0, 3.0]);
+    let s = source(b"name,place,note,x\nalpha,left,fine,0\n");
+    assert_eq!(real(&*s, 3), [0.0]);
+}
+
+#[test]
+fn valid_files_that_are_no_table_are_refused() {
+    for bytes in [
+        &b""[..],
+        b"hello world\n",
+        b"# only a comment\n",
+        b"\x00\x01\x02",
+    ] {
+        assert!(open(file(bytes).path()).is_err(), "{bytes:?}");
+    }
+    let wide = format!("{}\n", vec!["1"; 500].join(","));
+    let short = format!("{}{}", wide.repeat(70), "1\n".repeat(50_000));
+    assert!(open(file(short.as_bytes()).path()).is_err());
+}
+
+#[test]
+fn valid_blocks_join_without_a_seam() {
+    let mut text = String::from("t,x,y\n");
+    for i in 0..60_000 {
+        text.push_str(&format!(
+            "{:.4},{},{:.6}\n",
+            f64::from(i) * 1e-4,
+            i,
+            f64::from(i) * 0.25
+        ));
+    }
+    let s = source(text.as_bytes());
+    let all = s.read(0, &[2, 1, 1]).unwrap();
+    let y = all[0].clone().into_real().unwrap();
+    assert_eq!(y.len(), 60_000);
+    assert!(y.iter().enumerate().all(|(i, v)| *v == i as f64 * 0.25));
+    assert_eq!(all[1], all[2]);
+    assert!((s.datasets()[0].sample_rate_hz().unwrap() - 1e4).abs() < 1e-6);
+}
+
+/// Cells as tables have them, and the number that each holds.
+const CELLS: [(&str, f64); 12] = [
+    ("0.020142826306052714", 0.020142826306052714),
+    ("-1.5", -1.5),
+    ("+2", 2.0),
+    ("", f64::NAN),
+    (" 3.25", 3.25),
+    ("4.5 ", 4.5),
+    ("NaN", f64::NAN),
+    ("-1.234567890123456789e-03", -0.001_234_567_890_123_456_8),
+    ("123456789012", 123456789012.0),
+    ("-inf", f64::NEG_INFINITY),
+    ("0.000000000000000000001", 1e-21),
+    // last, so that tables without quotes leave it out
+    ("\"6.5\"", 6.5),
+];
+
+proptest::proptest! {
+    #![proptest_config(proptest::prelude::ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn prop_every_cell_is_read_alike_in_any_company(
+        mut rows in proptest::collection::vec([0..CELLS.len(), 0..CELLS.len(), 0..CELLS.len()], 60..400),
+        quotes: bool,
+        separator in proptest::sample::select(vec![",", ";", "\t"]),
+        end in proptest::sample::select(vec!["\n", "\r\n", "\n\n", "\n# remark, 1, 2\n", ",\n"]),
+        wanted in proptest::sample::subsequence(vec![0usize, 1, 2, 3], 1..=4),
+    ) {
+        if !quotes {
+            let others = CELLS.len() - 1;
+            rows.iter_mut().flatten().for_each(|c| *c %= others);
+        }
+        let end = end.replace(",\n", &format!("{separator}\n"));
+        let mut text = ["n", "x", "y", "z"].join(separator) + "\n";
+        for (i, row) in rows.iter().enumerate() {
+            let cells = row.map(|c| CELLS[c].0);
+            text += &format!("1{i}{separator}{}{end}", cells.join(separator));
+        }
+        // the last line needs no end
+        let s = source(text.trim_end_matches(['\n', '\r']).as_bytes());
+        let read = s.read(0, &wanted).unwrap();
+        for (column, samples) in wanted.iter().zip(read) {
+            let values = samples.into_real().unwrap();
+            proptest::prop_assert_eq!(values.len(), rows.len());
+            for (i, value) in values.into_iter().enumerate() {
+                let expected = match column {
+                    0 => format!("1{i}").parse().unwrap(),
+                    c => CELLS[rows[i][c - 1]].1,
+                };
+                proptest::prop_assert!(value.to_bits() == expected.to_bits() || value.is_nan() && expected.is_nan(), "row {i} column {column}: {value}");
+            }
+        }
+    }
+}
+
+#[test]
+fn valid_cart_and_blade_spring_records() {
+    let Some(dir) = shared_data() else { return };
+    let s = open(&dir.join("pasco_cart_bouncing_on_stop/csv/cart_run07.csv")).unwrap();
+    let info = &s.datasets()[0];
+    assert_eq!(info.time_axis, Some(0));
+    assert_eq!(info.channels.len(), 11);
+    assert!((info.sample_rate_hz().unwrap() - 20.0).abs() < 1e-6);
+    assert!(real(&*s, 1)[0].is_nan());
+    let s = open(&dir.join("unb_cantilever_sdof/first_experiment/massa1/test1-1/tps.txt")).unwrap();
+    let info = &s.datasets()[0];
+    assert_eq!(info.time_axis, Some(0));
+    assert_eq!(info.channels[2].name, "column_3");
+    let rate = info.sample_rate_hz().unwrap();
+    // 4107 steps in 2.48666 s.
+    assert!((rate - 1651.613).abs() < 1e-3, "{rate}");
+    assert_eq!(real(&*s, 3)[0], -0.190312);
+}
+
+#[test]
+fn prop_mutated_tables_are_read_or_refused() {
+    use crate::conformance::{mutate_text, survive};
+    let seeds = [
+        "time [s],velocity_x [mm/s],note\n0,1.5,a\n0.0005,,\"b, c\"\n0.001,2.5,\n",
+        "# rate = 2000\nt;x;y\ns;mm;mm\n0;1,25;3\n0,5;-2,5e1;4\n1;3;5\n",
+        "1.5 2\n2.5 3\n3.5 7\n4.5 8\n",
+        "when\tx\n2024-05-01 23:59:59.5\t1\n2024-05-02 00:00:00.0\t2\n2024-05-02 00:00:00.5\t3\n",
+    ];
+    let seeds: Vec<Vec<u8>> = seeds.iter().map(|s| s.as_bytes().to_vec()).collect();
+    survive(&seeds, open, mutate_text, 64);
+}

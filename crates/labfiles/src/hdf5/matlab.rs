@@ -1,0 +1,329 @@
+//! MATLAB files of level 7.3: HDF5 with MATLAB's conventions. Their variables are arranged to
+//! datasets and channels as those of the older levels are.
+//!
+//! An array lies in the file with its dimensions reversed, so that its bytes are MATLAB's own
+//! order, column by column. Structs are groups, cells and struct arrays are arrays of references.
+
+pub mod values;
+
+use crate::hdf5::element::Element;
+use crate::hdf5::matlab::values::{content, little, static_class};
+use crate::hdf5::store::{Array, Attr, Attrs, DEEPEST, MOST_OBJECTS, Store, Target, Tree};
+use crate::mat::tree::{Leaf, Place, Tree as Variables, Variable};
+use crate::mat::{subscript, text};
+use crate::numbers::ByteOrder;
+
+/// Groups at the root that are MATLAB's own.
+const OWN_GROUPS: [&str; 2] = ["#refs#", "#subsystem#"];
+
+/// Whether a tree follows MATLAB's conventions.
+pub fn is_matlab(tree: &Tree) -> bool {
+    let classed = |attributes: &Attrs| attributes.contains_key("MATLAB_class");
+    tree.arrays.iter().any(|a| classed(&a.attributes))
+        || tree
+            .groups
+            .iter()
+            .any(|g| classed(&g.attributes) || g.path == OWN_GROUPS[0])
+}
+
+/// The variables of a file, and the arrays to which the places of their leaves refer.
+pub struct Found {
+    /// As the older levels' readers find them.
+    pub variables: Variables,
+    /// The array of each leaf: [`Part::at`] counts them.
+    pub arrays: Vec<Array>,
+}
+
+/// Find all variables.
+///
+/// # Errors
+/// Where references lead nowhere or too deep.
+pub fn find(store: &dyn Store, tree: &Tree) -> Result<Found, String> {
+    let found = Found {
+        variables: Variables::default(),
+        arrays: Vec::new(),
+    };
+    let mut walk = Walk {
+        store,
+        found,
+        visited: 0,
+    };
+    for array in &tree.arrays {
+        walk.variable(&array.name);
+        walk.array(array, &Way::to(&array.name))?;
+    }
+    for group in tree
+        .groups
+        .iter()
+        .filter(|g| !OWN_GROUPS.contains(&g.path.as_str()))
+    {
+        walk.variable(&group.path);
+        walk.group(group, &Way::to(&group.path))?;
+    }
+    Ok(walk.found)
+}
+
+/// The way that leads to an array.
+#[derive(Debug, Clone)]
+struct Way {
+    name: String,
+    tail: String,
+    element: Option<u64>,
+    depth: usize,
+}
+
+impl Way {
+    fn to(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            tail: String::new(),
+            element: None,
+            depth: 0,
+        }
+    }
+
+    fn child(&self, suffix: &str) -> Self {
+        Self {
+            name: format!("{}{suffix}", self.name),
+            tail: format!("{}{suffix}", self.tail),
+            element: self.element,
+            depth: self.depth + 1,
+        }
+    }
+
+    /// The way to an element of a container of `count`; a single one is the container itself.
+    fn element(&self, index: usize, count: usize, dims: &[u64], brackets: [char; 2]) -> Self {
+        if count == 1 {
+            return Self {
+                depth: self.depth + 1,
+                ..self.clone()
+            };
+        }
+        let child = self.child(&subscript(dims, index as u64, brackets));
+        match self.depth {
+            0 => Self {
+                element: Some(index as u64),
+                tail: String::new(),
+                ..child
+            },
+            _ => child,
+        }
+    }
+
+    fn leaf_tail(&self) -> String {
+        let tail = self.tail.trim_start_matches('.');
+        if tail.is_empty() {
+            self.name.clone()
+        } else {
+            tail.to_owned()
+        }
+    }
+}
+
+struct Walk<'a> {
+    store: &'a dyn Store,
+    found: Found,
+    visited: usize,
+}
+
+impl Walk<'_> {
+    fn variable(&mut self, name: &str) {
+        self.found.variables.variables.push(Variable {
+            name: name.to_owned(),
+            place: Place::Plain,
+            order: ByteOrder::Little,
+            elements: 1,
+        });
+    }
+
+    fn current(&self) -> usize {
+        self.found.variables.variables.len().saturating_sub(1)
+    }
+
+    fn visit(&mut self, way: &Way) -> Result<(), String> {
+        self.visited += 1;
+        if way.depth > DEEPEST || self.visited > MOST_OBJECTS {
+            return Err(format!(
+                "'{}': more or deeper nested values than are believed",
+                way.name
+            ));
+        }
+        Ok(())
+    }
+
+    /// A struct, a struct array, or a sparse matrix.
+    fn group(&mut self, group: &Tree, way: &Way) -> Result<(), String> {
+        self.visit(way)?;
+        if group.attributes.contains_key("MATLAB_sparse") {
+            self.found
+                .variables
+                .refused
+                .push((way.name.clone(), "sparse"));
+            return Ok(());
+        }
+        let references =
+            |a: &&Array| a.element == Element::Reference && class(&a.attributes).is_empty();
+        let several: Vec<&Array> = group.arrays.iter().filter(references).collect();
+        if let Some(first) = several.first()
+            && several.len() == group.arrays.len()
+        {
+            return self.struct_array(&several, first, way);
+        }
+        for name in field_order(group) {
+            if let Some(array) = group.arrays.iter().find(|a| a.name == name) {
+                self.array(array, &way.child(&format!(".{name}")))?;
+            } else if let Some(inner) = group.groups.iter().find(|g| last(&g.path) == name) {
+                self.group(inner, &way.child(&format!(".{name}")))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Fields that are arrays of references, one for each element.
+    fn struct_array(&mut self, fields: &[&Array], first: &Array, way: &Way) -> Result<(), String> {
+        let dims = reversed(&first.shape);
+        let mut columns = Vec::new();
+        for field in fields {
+            columns.push((field.name.clone(), self.store.targets(field)?));
+        }
+        let count = columns.iter().map(|(_, t)| t.len()).max().unwrap_or(0);
+        if way.depth == 0 {
+            let current = self.current();
+            self.found.variables.variables[current].elements = count as u64;
+        }
+        let mut columns: Vec<_> = columns
+            .into_iter()
+            .map(|(n, t)| (n, t.into_iter()))
+            .collect();
+        for index in 0..count {
+            let element = way.element(index, count, &dims, ['(', ')']);
+            for (name, targets) in &mut columns {
+                if let Some(Some(target)) = targets.next() {
+                    self.target(target, &element.child(&format!(".{name}")))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn target(&mut self, target: Target, way: &Way) -> Result<(), String> {
+        match target {
+            Target::Array(array) => self.array(&array, way),
+            Target::Group(group) => self.group(&group, way),
+        }
+    }
+
+    fn array(&mut self, array: &Array, way: &Way) -> Result<(), String> {
+        self.visit(way)?;
+        if array.attributes.contains_key("MATLAB_object_decode") {
+            self.found
+                .variables
+                .refused
+                .push((way.name.clone(), "opaque object"));
+            return Ok(());
+        }
+        if array.element == Element::Reference && !array.attributes.contains_key("MATLAB_empty") {
+            return self.cell(array, way);
+        }
+        self.leaf(array, way)
+    }
+
+    fn cell(&mut self, array: &Array, way: &Way) -> Result<(), String> {
+        let dims = reversed(&array.shape);
+        let targets = self.store.targets(array)?;
+        let count = targets.len();
+        if way.depth == 0 {
+            let current = self.current();
+            self.found.variables.variables[current].elements = count as u64;
+        }
+        for (index, target) in targets.into_iter().enumerate() {
+            if let Some(target) = target {
+                self.target(target, &way.element(index, count, &dims, ['{', '}']))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn leaf(&mut self, array: &Array, way: &Way) -> Result<(), String> {
+        let name = class(&array.attributes);
+        let at = self.found.arrays.len() as u64;
+        let dims = dimensions(array);
+        let Some(content) = content(array, &name, at) else {
+            let note = format!("'{}' left out: class '{name}' is not read", way.name);
+            self.found.variables.notes.push(note);
+            return Ok(());
+        };
+        let mut leaf = Leaf {
+            variable: self.current(),
+            element: way.element,
+            name: way.name.clone(),
+            tail: way.leaf_tail(),
+            dims,
+            content,
+            class: static_class(&name),
+            logical: name == "logical",
+            value: None,
+        };
+        if leaf.count() == 1 || (!leaf.is_numeric() && leaf.count() > 0) {
+            leaf.value = self.value(array, &leaf);
+        }
+        self.found.arrays.push(array.clone());
+        self.found.variables.leaves.push(leaf);
+        Ok(())
+    }
+
+    /// The value of a short array as text; one that cannot be read is noted.
+    fn value(&mut self, array: &Array, leaf: &Leaf) -> Option<String> {
+        let (store, mut fault) = (self.store, None);
+        let value = text::short_value(leaf, ByteOrder::Little, |_| {
+            let raw = store.raw(array).map_err(|e| fault = Some(e));
+            Ok(little(array, raw.unwrap_or_default()))
+        });
+        match fault {
+            None => value.ok().flatten(),
+            Some(fault) => {
+                let note = format!("the value of '{}' cannot be read: {fault}", leaf.name);
+                self.found.variables.notes.push(note);
+                None
+            }
+        }
+    }
+}
+
+/// MATLAB's dimensions; an empty array (what it holds are its dimensions, not its elements) is
+/// taken for one of 0 × 0.
+fn dimensions(array: &Array) -> Vec<u64> {
+    if array.attributes.contains_key("MATLAB_empty") {
+        return vec![0, 0];
+    }
+    let mut dims = reversed(&array.shape);
+    dims.resize(dims.len().max(2), 1);
+    dims
+}
+
+fn class(attributes: &Attrs) -> String {
+    attributes
+        .get("MATLAB_class")
+        .map(Attr::text)
+        .unwrap_or_default()
+}
+
+fn reversed(shape: &[u64]) -> Vec<u64> {
+    shape.iter().rev().copied().collect()
+}
+
+fn last(path: &str) -> &str {
+    path.rsplit('/').next().unwrap_or(path)
+}
+
+/// The fields of a struct in MATLAB's order where the file states it.
+fn field_order(group: &Tree) -> Vec<String> {
+    let arrays = group.arrays.iter().map(|a| a.name.clone());
+    let mut names: Vec<String> = arrays
+        .chain(group.groups.iter().map(|g| last(&g.path).to_owned()))
+        .collect();
+    if let Some(Attr::Text(stated)) = group.attributes.get("MATLAB_fields") {
+        names.sort_by_key(|n| stated.iter().position(|s| s == n).unwrap_or(usize::MAX));
+    }
+    names
+}

@@ -1,0 +1,131 @@
+//! A MATLAB 7.3 file as a source of records.
+
+use std::path::{Path, PathBuf};
+
+use crate::hdf5::matlab::{self, Found};
+use crate::hdf5::store::{Array, Store, Tree};
+use crate::mat::arrange::{self, Arranged, Origin};
+use crate::mat::tree::{Content, Leaf};
+use crate::source::{self, DatasetInfo, ReadError, Samples, Source};
+
+struct MatlabSource {
+    path: PathBuf,
+    store: Box<dyn Store>,
+    found: Found,
+    datasets: Vec<DatasetInfo>,
+    origins: Vec<Vec<Origin>>,
+    notes: Vec<String>,
+}
+
+/// Open a file whose tree follows MATLAB's conventions.
+///
+/// # Errors
+/// Where references lead nowhere, or nothing is left that is read.
+pub fn open(
+    path: &Path,
+    store: Box<dyn Store>,
+    tree: &Tree,
+    store_notes: Vec<String>,
+) -> Result<Box<dyn Source>, ReadError> {
+    let found = matlab::find(&*store, tree).map_err(|e| {
+        ReadError::new(
+            path,
+            "a complete MATLAB 7.3 file",
+            e,
+            "Save the variables again.",
+        )
+    })?;
+    let refused = found.variables.refused.iter();
+    let left_out: Vec<String> = refused
+        .map(|(name, kind)| format!("{kind} '{name}' not read"))
+        .collect();
+    if found.variables.leaves.is_empty() {
+        return Err(ReadError::new(
+            path,
+            "arrays of numbers",
+            if left_out.is_empty() {
+                "no variables".to_owned()
+            } else {
+                left_out.join(", ")
+            },
+            "Save full arrays: full(x), or the object's numbers as a struct.",
+        ));
+    }
+    let Arranged {
+        datasets,
+        origins,
+        notes,
+    } = arrange::arrange(&found.variables);
+    let all = store_notes
+        .into_iter()
+        .chain(found.variables.notes.clone())
+        .chain(left_out)
+        .chain(notes);
+    let notes = all.collect();
+    Ok(Box::new(MatlabSource {
+        path: path.to_path_buf(),
+        store,
+        datasets,
+        origins,
+        notes,
+        found,
+    }))
+}
+
+impl MatlabSource {
+    fn array(&self, leaf: &Leaf) -> &Array {
+        let (Content::Real(part) | Content::Complex(part, ..) | Content::Text(part, _)) =
+            leaf.content;
+        &self.found.arrays[part.at as usize]
+    }
+
+    fn error(&self, leaf: &Leaf, found: impl Into<String>) -> ReadError {
+        let remedy = "Save the variable again, or leave it out.";
+        ReadError::new(&self.path, "a readable MATLAB variable", found, remedy).channel(&leaf.name)
+    }
+
+    fn raw(&self, leaf: &Leaf) -> Result<Vec<u8>, ReadError> {
+        self.store
+            .raw(self.array(leaf))
+            .map_err(|e| self.error(leaf, e))
+    }
+}
+
+impl Source for MatlabSource {
+    fn format(&self) -> &'static str {
+        "mat"
+    }
+
+    fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn datasets(&self) -> &[DatasetInfo] {
+        &self.datasets
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
+        source::requested(self, dataset, channels)?;
+        let mut last: Option<(usize, Vec<u8>)> = None;
+        let mut all = Vec::with_capacity(channels.len());
+        for &channel in channels {
+            let origin = self.origins[dataset][channel];
+            let leaf = &self.found.variables.leaves[origin.leaf];
+            // The columns of a matrix follow each other: it is read once for all of them.
+            let raw = match last.take() {
+                Some((leaf, raw)) if leaf == origin.leaf => raw,
+                _ => self.raw(leaf)?,
+            };
+            let samples = matlab::values::extract(leaf, self.array(leaf), origin, &raw);
+            all.push(
+                samples.ok_or_else(|| self.error(leaf, format!("{} bytes, too few", raw.len())))?,
+            );
+            last = Some((origin.leaf, raw));
+        }
+        Ok(all)
+    }
+}

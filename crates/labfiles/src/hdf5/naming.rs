@@ -1,0 +1,185 @@
+//! How a table's channels are named, scaled and turned: what its attributes say.
+
+use crate::hdf5::store::{Array, Attr, Attrs};
+
+/// Attributes that name the channels, in order of precedence.
+pub const NAME_KEYS: [&str; 7] = [
+    "channels",
+    "channel_names",
+    "names",
+    "columns",
+    "column_names",
+    "labels",
+    "fields",
+];
+/// Attributes that give the channels' units.
+pub const UNIT_KEYS: [&str; 5] = ["units", "unit", "channel_units", "unit_string", "Unit"];
+/// More rows than this are no channels.
+const MOST_ROW_CHANNELS: u64 = 64;
+
+/// Which dimension of a table counts the channels.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Orientation {
+    /// samples × channels.
+    Columns,
+    /// channels × samples.
+    Rows,
+}
+
+impl Orientation {
+    /// The names decide; without names a few long rows are channels.
+    pub fn of(table: &Array, inherited: &Attrs) -> Self {
+        let [rows, columns] = dimensions(&table.shape);
+        let attributes = merged(inherited, &table.attributes);
+        if names(&attributes, columns).is_some() {
+            Self::Columns
+        } else if names(&attributes, rows).is_some()
+            || (rows <= MOST_ROW_CHANNELS && columns > 4 * rows)
+        {
+            Self::Rows
+        } else {
+            Self::Columns
+        }
+    }
+
+    /// Number of channels; of a table wider than [`MOST_CHANNELS`], an image or a matrix, the
+    /// first alone.
+    pub fn channels(self, table: &Array) -> u64 {
+        let [rows, columns] = dimensions(&table.shape);
+        if self == Self::Columns { columns } else { rows }.min(MOST_CHANNELS)
+    }
+
+    /// Number of samples of each channel.
+    pub fn samples(self, table: &Array) -> u64 {
+        let [rows, columns] = dimensions(&table.shape);
+        if self == Self::Columns { rows } else { columns }
+    }
+}
+
+/// The most channels of a table.
+pub const MOST_CHANNELS: u64 = 4096;
+
+/// The two dimensions of a table that may have further ones of one entry.
+fn dimensions(shape: &[u64]) -> [u64; 2] {
+    match squeezed(shape)[..] {
+        [rows, columns] => [rows, columns],
+        _ => match *shape {
+            [rows, columns] => [rows, columns],
+            _ => [0, 0],
+        },
+    }
+}
+
+/// A shape without its dimensions of one entry.
+pub fn squeezed(shape: &[u64]) -> Vec<u64> {
+    shape.iter().copied().filter(|&d| d != 1).collect()
+}
+
+/// Attributes with those inherited; own ones win.
+pub fn merged(inherited: &Attrs, own: &Attrs) -> Attrs {
+    let mut all = inherited.clone();
+    all.extend(own.clone());
+    all
+}
+
+/// The channels' names, where an attribute lists as many as there are.
+pub fn names(attributes: &Attrs, channels: u64) -> Option<Vec<String>> {
+    NAME_KEYS
+        .iter()
+        .filter_map(|k| attributes.get(*k))
+        .map(Attr::list)
+        .find(|l| l.len() as u64 == channels && l.iter().all(|n| !n.is_empty()))
+}
+
+/// The channels' units: a list of as many, or one for all.
+pub fn units(attributes: &Attrs, channels: usize) -> Vec<Option<String>> {
+    let lists = || {
+        UNIT_KEYS
+            .iter()
+            .filter_map(|k| attributes.get(*k))
+            .map(Attr::list)
+    };
+    let all = lists().find(|l| l.len() == channels);
+    let one = || {
+        lists()
+            .find(|l| l.len() == 1)
+            .map(|l| vec![l[0].clone(); channels])
+    };
+    all.or_else(one)
+        .map(|l| l.into_iter().map(Some).collect())
+        .unwrap_or_default()
+}
+
+/// Scale and offset of each channel: `scale_factor` and `add_offset` of any array, `scale` and
+/// `offset` of an array of integers.
+pub fn scaling(array: &Array, channels: usize) -> Vec<(f64, f64)> {
+    let of = |keys: &[&str], neutral: f64| -> Vec<f64> {
+        let found = keys
+            .iter()
+            .find_map(|k| array.attributes.get(*k))
+            .and_then(Attr::numbers);
+        match found {
+            Some([one]) => vec![*one; channels],
+            Some(all) if all.len() == channels => all.to_vec(),
+            _ => vec![neutral; channels],
+        }
+    };
+    let integer = array.element.is_integer();
+    let scales = of(
+        if integer {
+            &["scale", "scale_factor"]
+        } else {
+            &["scale_factor"]
+        },
+        1.0,
+    );
+    let offsets = of(
+        if integer {
+            &["offset", "add_offset"]
+        } else {
+            &["add_offset"]
+        },
+        0.0,
+    );
+    scales.into_iter().zip(offsets).collect()
+}
+
+/// Order of names in which `run10` follows `run9`.
+pub fn natural(a: &str, b: &str) -> std::cmp::Ordering {
+    let (mut x, mut y) = (a.as_bytes(), b.as_bytes());
+    loop {
+        match (x.first(), y.first()) {
+            (Some(p), Some(q)) if p.is_ascii_digit() && q.is_ascii_digit() => {
+                let (m, n) = (number_of(x), number_of(y));
+                let order = (m.0, m.1.len())
+                    .cmp(&(n.0, n.1.len()))
+                    .then_with(|| m.1.cmp(n.1));
+                if order != std::cmp::Ordering::Equal {
+                    return order;
+                }
+                (x, y) = (&x[m.2..], &y[n.2..]);
+            }
+            (p, q) if p == q && p.is_some() => (x, y) = (&x[1..], &y[1..]),
+            (p, q) => return p.cmp(&q),
+        }
+    }
+}
+
+/// Leading digits: their count without zeros in front, the digits, the length with the zeros.
+fn number_of(bytes: &[u8]) -> (usize, &[u8], usize) {
+    let length = bytes.iter().take_while(|b| b.is_ascii_digit()).count();
+    let zeros = bytes[..length].iter().take_while(|&&b| b == b'0').count();
+    (length - zeros, &bytes[zeros..length], length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_natural_order() {
+        let mut names = ["run10", "run9", "a", "run010", "run", "run9b"];
+        names.sort_by(|a, b| natural(a, b));
+        assert_eq!(names[..4], ["a", "run", "run9", "run9b"]);
+    }
+}

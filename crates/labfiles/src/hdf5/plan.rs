@@ -1,0 +1,400 @@
+//! From a tree of groups and arrays to datasets (records) of channels.
+//!
+//! A two-dimensional array is a record: its columns are the channels (its rows, where the names
+//! say so). The one-dimensional arrays of a group are a record together. A three-dimensional
+//! array is a record for each entry of its first dimension. Arrays of one element beside longer
+//! ones are attributes of their group. Attributes are inherited downward.
+
+use std::collections::BTreeMap;
+
+use crate::attribute;
+use crate::hdf5::element::{Element, Stride};
+use crate::hdf5::naming::{
+    MOST_CHANNELS, NAME_KEYS, Orientation, UNIT_KEYS, merged, names, natural, scaling, squeezed,
+    units,
+};
+use crate::hdf5::store::{Array, Attr, Attrs, Store, Tree};
+use crate::source::{ChannelInfo, DatasetInfo, StoredType};
+
+/// The stride of a single element.
+const ONE: Stride = Stride {
+    first: 0,
+    step: 8,
+    count: 1,
+};
+
+/// Where the samples of a channel are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Locator {
+    /// Index into the plan's arrays.
+    pub array: usize,
+    /// Which part of the array.
+    pub part: Part,
+    /// value = stored · scale + offset.
+    pub scale: f64,
+    /// See `scale`.
+    pub offset: f64,
+}
+
+/// A part of an array.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Part {
+    /// All of it.
+    Whole,
+    /// One column of a table.
+    Column(u64),
+    /// One row of a table.
+    Row(u64),
+    /// One field of a compound.
+    Field(usize),
+}
+
+/// How to read one dataset.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// The arrays that it takes, each read once.
+    pub arrays: Vec<Array>,
+    /// Its channels.
+    pub channels: Vec<Locator>,
+    /// The entry along the first dimension of a three-dimensional array.
+    pub slab: Option<u64>,
+}
+
+/// The records of a file: how they are described and how they are read.
+#[derive(Default)]
+pub struct Plans {
+    /// Descriptions.
+    pub datasets: Vec<DatasetInfo>,
+    /// Ways of reading, one for each description.
+    pub plans: Vec<Plan>,
+    /// What was left out.
+    pub notes: Vec<String>,
+}
+
+/// Make records of a tree.
+pub fn plan(store: &dyn Store, tree: &Tree) -> Plans {
+    let mut plans = Plans::default();
+    plans.group(store, tree, &Attrs::new());
+    plans
+}
+
+impl Plans {
+    fn group(&mut self, store: &dyn Store, tree: &Tree, inherited: &Attrs) {
+        let mut attributes = inherited.clone();
+        attributes.extend(tree.attributes.clone());
+        let sorted = self.sort(store, tree, &mut attributes);
+        self.tables(&sorted, tree, &attributes);
+        for array in &sorted.slabs {
+            self.slabs(array, &attributes);
+        }
+        for array in &sorted.compounds {
+            self.compound(array, &attributes);
+        }
+        let mut groups: Vec<&Tree> = tree.groups.iter().collect();
+        groups.sort_by(|a, b| natural(&a.path, &b.path));
+        for group in groups {
+            self.group(store, group, &attributes);
+        }
+    }
+
+    /// Sort a group's arrays by what they are good for; small ones become attributes.
+    fn sort<'a>(
+        &mut self,
+        store: &dyn Store,
+        tree: &'a Tree,
+        attributes: &mut Attrs,
+    ) -> Sorted<'a> {
+        let mut sorted = Sorted::default();
+        let long = tree
+            .arrays
+            .iter()
+            .any(|a| a.element.is_number() && a.count() > Some(1));
+        for array in &tree.arrays {
+            let small = array.count() == Some(1) && (long || array.shape.is_empty());
+            match (&array.element, squeezed(&array.shape).len()) {
+                (Element::Text, _)
+                    if small
+                        || NAME_KEYS.contains(&array.name.as_str())
+                        || UNIT_KEYS.contains(&array.name.as_str()) =>
+                {
+                    match store.texts(array) {
+                        Ok(texts) => {
+                            attributes.insert(array.name.clone(), Attr::Text(texts));
+                        }
+                        Err(e) => self.unread(array, &e),
+                    }
+                }
+                (e, _) if e.is_number() && small => {
+                    let raw = store.raw(array).map_err(|fault| self.unread(array, &fault));
+                    let value = raw.ok().and_then(|r| e.decode(&r, ONE)?.into_real());
+                    attributes.extend(value.map(|v| (array.name.clone(), Attr::Numbers(v))));
+                }
+                (Element::Text, 0 | 1) => sorted.columns.push(array),
+                (e, 0 | 1) if e.is_number() => sorted.columns.push(array),
+                (e, 2) if e.is_number() => sorted.tables.push(array),
+                (e, 3) if e.is_number() => sorted.slabs.push(array),
+                (Element::Fields { .. }, 0 | 1) => sorted.compounds.push(array),
+                (e, n) => self.notes.push(format!(
+                    "dataset '{}' left out: {n} dimensions of {e:?}",
+                    array.path
+                )),
+            }
+        }
+        sorted.tables.sort_by(|a, b| natural(&a.path, &b.path));
+        sorted
+    }
+
+    /// Note that an array which would be an attribute cannot be read.
+    fn unread(&mut self, array: &Array, fault: &str) {
+        let note = format!("dataset '{}' left out: {fault}", array.path);
+        self.notes.push(note);
+    }
+
+    /// Records of a group's tables and columns; a column as long as a table's rows that says
+    /// time goes with the table.
+    fn tables(&mut self, sorted: &Sorted, tree: &Tree, attributes: &Attrs) {
+        let Sorted {
+            tables, columns, ..
+        } = sorted;
+        let matches = |table: &Array| {
+            let rows = Orientation::of(table, attributes).samples(table);
+            !columns.is_empty() && columns.iter().all(|c| c.count() == Some(rows))
+        };
+        if let [table] = tables[..]
+            && matches(table)
+        {
+            let mut record = Record::new(tree.path.clone(), attributes);
+            columns.iter().for_each(|c| record.column(c));
+            record.table(table, attributes);
+            return self.push(record);
+        }
+        for table in tables {
+            self.note_width(table, attributes);
+            let mut record =
+                Record::new(table.path.clone(), &merged(attributes, &table.attributes));
+            let rows = Orientation::of(table, attributes).samples(table);
+            let time = columns
+                .iter()
+                .find(|c| attribute::says_time(&c.name) && c.count() == Some(rows));
+            time.into_iter().for_each(|c| record.column(c));
+            record.table(table, attributes);
+            self.push(record);
+        }
+        if !columns.is_empty() {
+            let mut record = Record::new(tree.path.clone(), attributes);
+            columns.iter().for_each(|c| record.column(c));
+            self.push(record);
+        }
+    }
+
+    /// Note that a table has more channels than are read.
+    fn note_width(&mut self, table: &Array, attributes: &Attrs) {
+        let of = Orientation::of(table, attributes);
+        let cells = table.count().unwrap_or(u64::MAX);
+        let channels = cells.checked_div(of.samples(table)).unwrap_or(0);
+        if channels > of.channels(table) {
+            self.notes.push(format!(
+                "dataset '{}' has {channels} channels: the first {MOST_CHANNELS} are read",
+                table.path
+            ));
+        }
+    }
+
+    fn slabs(&mut self, array: &Array, attributes: &Attrs) {
+        let all = merged(attributes, &array.attributes);
+        let Some((&slabs, inner)) = array.shape.split_first() else {
+            return;
+        };
+        if slabs > MOST_SLABS || inner.len() != 2 {
+            return self.notes.push(format!(
+                "dataset '{}' left out: {slabs} records",
+                array.path
+            ));
+        }
+        let table = Array {
+            shape: inner.to_vec(),
+            ..array.clone()
+        };
+        for slab in 0..slabs {
+            let mut record = Record::new(format!("{}[{slab}]", array.path), &all);
+            record.table(&table, attributes);
+            record.plan.arrays = vec![array.clone()];
+            record.plan.slab = Some(slab);
+            self.push(record);
+        }
+    }
+
+    fn compound(&mut self, array: &Array, attributes: &Attrs) {
+        let Element::Fields { fields, .. } = &array.element else {
+            return;
+        };
+        let all = merged(attributes, &array.attributes);
+        let units = units(&array.attributes, fields.len());
+        let mut record = Record::new(array.path.clone(), &all);
+        record.plan.arrays.push(array.clone());
+        for (i, (name, _, element)) in fields.iter().enumerate() {
+            if element.is_number() {
+                let unit = units.get(i).cloned().flatten();
+                record.channel(
+                    name.clone(),
+                    unit,
+                    element.stored(),
+                    array.count().unwrap_or(0),
+                );
+                record.plan.channels.push(Locator {
+                    array: 0,
+                    part: Part::Field(i),
+                    scale: 1.0,
+                    offset: 0.0,
+                });
+            }
+        }
+        self.push(record);
+    }
+
+    fn push(&mut self, record: Record) {
+        if !record.info.channels.is_empty() {
+            let (info, plan) = record.finish();
+            self.datasets.push(info);
+            self.plans.push(plan);
+        }
+    }
+}
+
+/// The most entries of a three-dimensional array.
+const MOST_SLABS: u64 = 1 << 20;
+
+#[derive(Default)]
+struct Sorted<'a> {
+    columns: Vec<&'a Array>,
+    tables: Vec<&'a Array>,
+    slabs: Vec<&'a Array>,
+    compounds: Vec<&'a Array>,
+}
+
+/// A record being put together.
+struct Record {
+    info: DatasetInfo,
+    plan: Plan,
+}
+
+impl Record {
+    fn new(name: String, attributes: &Attrs) -> Self {
+        let attributes = attributes
+            .iter()
+            .map(|(k, v)| (k.clone(), v.text()))
+            .collect();
+        let info = DatasetInfo {
+            name,
+            channels: Vec::new(),
+            time_axis: None,
+            attributes,
+        };
+        Self {
+            info,
+            plan: Plan {
+                arrays: Vec::new(),
+                channels: Vec::new(),
+                slab: None,
+            },
+        }
+    }
+
+    fn channel(&mut self, name: String, unit: Option<String>, stored: StoredType, samples: u64) {
+        self.info.channels.push(ChannelInfo {
+            name,
+            unit: unit.filter(|u| !u.is_empty()),
+            stored,
+            samples,
+            sample_rate_hz: None,
+            start_time: None,
+            properties: BTreeMap::new(),
+        });
+    }
+
+    /// Add a one-dimensional array as a channel.
+    fn column(&mut self, array: &Array) {
+        let unit = UNIT_KEYS
+            .iter()
+            .find_map(|k| array.attributes.get(*k))
+            .map(Attr::text);
+        self.channel(
+            array.name.clone(),
+            unit,
+            array.element.stored(),
+            array.count().unwrap_or(0),
+        );
+        let (scale, offset) = scaling(array, 1)[0];
+        let number = self.plan.arrays.len();
+        self.plan.arrays.push(array.clone());
+        self.plan.channels.push(Locator {
+            array: number,
+            part: Part::Whole,
+            scale,
+            offset,
+        });
+        if let Some(channel) = self.info.channels.last_mut() {
+            let texts: BTreeMap<String, String> = array
+                .attributes
+                .iter()
+                .map(|(k, v)| (k.clone(), v.text()))
+                .collect();
+            channel.sample_rate_hz = attribute::sample_rate_hz(&texts);
+            channel.start_time = attribute::start_time(&texts);
+            channel.properties = texts;
+        }
+    }
+
+    /// Add the channels of a table.
+    fn table(&mut self, table: &Array, inherited: &Attrs) {
+        let orientation = Orientation::of(table, inherited);
+        let channels = orientation.channels(table);
+        let attributes = merged(inherited, &table.attributes);
+        let names = names(&attributes, channels);
+        let units = units(&attributes, channels as usize);
+        let scaling = scaling(table, channels as usize);
+        let number = self.plan.arrays.len();
+        self.plan.arrays.push(table.clone());
+        for i in 0..channels {
+            let name = names
+                .as_ref()
+                .map_or_else(|| format!("column_{}", i + 1), |n| n[i as usize].clone());
+            let unit = units.get(i as usize).cloned().flatten();
+            self.channel(
+                name,
+                unit,
+                table.element.stored(),
+                orientation.samples(table),
+            );
+            let (scale, offset) = scaling[i as usize];
+            let part = match orientation {
+                Orientation::Columns => Part::Column(i),
+                Orientation::Rows => Part::Row(i),
+            };
+            self.plan.channels.push(Locator {
+                array: number,
+                part,
+                scale,
+                offset,
+            });
+        }
+        for (key, value) in &table.attributes {
+            self.info
+                .attributes
+                .entry(key.clone())
+                .or_insert_with(|| value.text());
+        }
+    }
+
+    /// Give the channels the record's rate and start and find the time axis.
+    fn finish(mut self) -> (DatasetInfo, Plan) {
+        let rate = attribute::sample_rate_hz(&self.info.attributes);
+        let start = attribute::start_time(&self.info.attributes);
+        for channel in &mut self.info.channels {
+            channel.sample_rate_hz = channel.sample_rate_hz.or(rate);
+            channel.start_time = channel.start_time.take().or_else(|| start.clone());
+        }
+        self.info.time_axis = self.info.channels.iter().position(attribute::is_time_axis);
+        (self.info, self.plan)
+    }
+}

@@ -1,0 +1,161 @@
+//! How records lie in the file: tables of samples × channels, or groups of arrays.
+
+use ::hdf5::{AttrValue, DatasetBuilder, FinishedGroup, GroupBuilder};
+
+use crate::hdf5_write::{ColumnToWrite, Folder, RecordTable, Stored, Value};
+
+/// Rows of a chunk.
+const CHUNK_ROWS: u64 = 4096;
+/// Effort of packing: higher ones gain little on noisy signals.
+const DEFLATE_LEVEL: u32 = 4;
+
+/// Put a folder's records and folders into a group.
+pub(super) fn fill(mut group: GroupBuilder, folder: Folder, single: bool) -> FinishedGroup {
+    for record in folder.records {
+        if is_table(&record) {
+            table(group.create_dataset(&record.name), &record, single);
+        } else {
+            let own = arrays(group.create_group(&record.name), &record, single);
+            group.add_group(own);
+        }
+    }
+    for (name, folder) in folder.folders {
+        let inner = fill(group.create_group(&name), folder, single);
+        group.add_group(inner);
+    }
+    group.finish()
+}
+
+/// Whether all channels fit one table: of one length, all numbers or all counts.
+pub(super) fn is_table(record: &RecordTable) -> bool {
+    let counts = |c: &ColumnToWrite| matches!(c.samples, Stored::Counts { .. });
+    record
+        .channels
+        .windows(2)
+        .all(|w| w[0].samples.len() == w[1].samples.len() && counts(&w[0]) == counts(&w[1]))
+        && record.channels.len() > 1
+        && record.channels[0].samples.len() > 1
+}
+
+pub(super) fn attr(value: &Value) -> AttrValue {
+    match value {
+        Value::Number(number) => AttrValue::F64(*number),
+        Value::Text(text) => AttrValue::String(text.clone()),
+    }
+}
+
+/// A record as one dataset samples × channels.
+pub(super) fn table(dataset: &mut DatasetBuilder, record: &RecordTable, single: bool) {
+    let rows = record.channels.first().map_or(0, |c| c.samples.len());
+    let columns = record.channels.len();
+    match &record.channels[0].samples {
+        Stored::Counts { .. } => {
+            dataset.with_i16_data(&interleaved(record, rows, |s, i| match s {
+                Stored::Counts { counts, .. } => counts[i],
+                Stored::Numbers(_) => 0,
+            }));
+            scales(dataset, record);
+        }
+        Stored::Numbers(_) if single => {
+            dataset.with_f32_data(&interleaved(record, rows, |s, i| number(s, i) as f32));
+        }
+        Stored::Numbers(_) => {
+            dataset.with_f64_data(&interleaved(record, rows, number));
+        }
+    }
+    dataset.with_shape(&[rows as u64, columns as u64]);
+    pack(
+        dataset,
+        &[(rows as u64).clamp(1, CHUNK_ROWS), columns as u64],
+    );
+    let names = record.channels.iter().map(|c| c.name.clone()).collect();
+    let units = record.channels.iter().map(|c| c.unit.clone()).collect();
+    dataset.set_attr("channels", AttrValue::StringArray(names));
+    dataset.set_attr("units", AttrValue::StringArray(units));
+    for (name, value) in described(record) {
+        dataset.set_attr(&name, value);
+    }
+}
+
+/// Scale and offset of each channel of counts.
+fn scales(dataset: &mut DatasetBuilder, record: &RecordTable) {
+    let (scale, offset) = record
+        .channels
+        .iter()
+        .map(|c| match c.samples {
+            Stored::Counts { scale, offset, .. } => (scale, offset),
+            Stored::Numbers(_) => (1.0, 0.0),
+        })
+        .unzip();
+    dataset.set_attr("scale", AttrValue::F64Array(scale));
+    dataset.set_attr("offset", AttrValue::F64Array(offset));
+}
+
+fn number(samples: &Stored, i: usize) -> f64 {
+    match samples {
+        Stored::Numbers(values) => values[i],
+        Stored::Counts {
+            counts,
+            scale,
+            offset,
+        } => f64::from(counts[i]) * scale + offset,
+    }
+}
+
+/// The channels' samples row by row.
+fn interleaved<T>(record: &RecordTable, rows: usize, of: impl Fn(&Stored, usize) -> T) -> Vec<T> {
+    (0..rows)
+        .flat_map(|i| record.channels.iter().map(move |c| (c, i)))
+        .map(|(c, i)| of(&c.samples, i))
+        .collect()
+}
+
+fn pack(dataset: &mut DatasetBuilder, chunk: &[u64]) {
+    dataset
+        .with_chunks(chunk)
+        .with_shuffle()
+        .with_deflate(DEFLATE_LEVEL);
+}
+
+/// The attributes that describe a record.
+fn described(record: &RecordTable) -> Vec<(String, AttrValue)> {
+    let rate = record
+        .sample_rate_hz
+        .map(|r| ("sample_rate_hz".to_owned(), AttrValue::F64(r)));
+    let own = record.attributes.iter().map(|(n, v)| (n.clone(), attr(v)));
+    rate.into_iter().chain(own).collect()
+}
+
+/// A record as a group of one-dimensional datasets.
+pub(super) fn arrays(mut group: GroupBuilder, record: &RecordTable, single: bool) -> FinishedGroup {
+    for (name, value) in described(record) {
+        group.set_attr(&name, value);
+    }
+    for channel in &record.channels {
+        // A slash would make a group of the channel.
+        let dataset = group.create_dataset(&channel.name.replace('/', "_"));
+        match &channel.samples {
+            Stored::Counts {
+                counts,
+                scale,
+                offset,
+            } => {
+                dataset.with_i16_data(counts);
+                dataset.set_attr("scale", AttrValue::F64(*scale));
+                dataset.set_attr("offset", AttrValue::F64(*offset));
+            }
+            Stored::Numbers(values) if single => {
+                let values: Vec<f32> = values.iter().map(|v| *v as f32).collect();
+                dataset.with_f32_data(&values);
+            }
+            Stored::Numbers(values) => {
+                dataset.with_f64_data(values);
+            }
+        }
+        if channel.samples.len() > 0 {
+            pack(dataset, &[(channel.samples.len() as u64).min(CHUNK_ROWS)]);
+        }
+        dataset.set_attr("units", AttrValue::String(channel.unit.clone()));
+    }
+    group.finish()
+}

@@ -1,0 +1,94 @@
+//! What the headers of a LabVIEW measurement file say of a table and of its channels.
+
+use std::collections::BTreeMap;
+
+use crate::lvm::scan::{FIRST_WORDS, Keys, Segment};
+use crate::text::cells::Separator;
+use crate::text::number;
+
+/// The value of a header key for a channel; a single value holds for all.
+pub fn value_for(keys: &Keys, key: &str, n: usize) -> Option<String> {
+    let values: Vec<&String> = keys.get(key)?.iter().collect();
+    let packed: Vec<&String> = values.iter().copied().filter(|v| !v.is_empty()).collect();
+    // With an X column for each channel the header has an empty cell for each of them.
+    let sparse = values.iter().filter(|v| !v.is_empty()).count() * 2 <= values.len() + 1;
+    let found = if sparse { packed.get(n) } else { values.get(n) };
+    found
+        .or(packed.first().filter(|_| packed.len() == 1))
+        .map(|v| (*v).clone())
+        .filter(|v| !v.is_empty())
+}
+
+/// A number with either decimal mark.
+pub fn decimal_any(text: &str) -> Option<f64> {
+    number::parse_cell(text.as_bytes(), b'.').or_else(|| number::parse_cell(text.as_bytes(), b','))
+}
+
+/// Whether the X values of a channel are points in time, as they are where nothing is said.
+pub fn x_is_time(segment: &Segment, n: usize) -> bool {
+    value_for(&segment.keys, "X_Dimension", n).is_none_or(|d| d.trim() == "Time")
+}
+
+/// The number of channels that a table's header states.
+pub fn stated_channels(segment: &Segment) -> Option<usize> {
+    let stated: usize = segment.keys.get("Channels")?.first()?.trim().parse().ok()?;
+    // More channels than the header has cells for are no channels.
+    let cells = segment.keys.values().map(Vec::len).max().unwrap_or(0);
+    Some(stated.min(cells))
+}
+
+/// The decimal mark that the header states; a header without it leaves it to the rows.
+pub fn decimal(keys: &Keys, separator: Separator, head: &[u8]) -> u8 {
+    let stated = keys
+        .get("Decimal_Separator")
+        .and_then(|v| v.iter().find(|v| !v.is_empty()));
+    match stated.and_then(|v| v.bytes().next()) {
+        Some(mark @ (b'.' | b',')) => mark,
+        _ if separator != Separator::Byte(b',')
+            && head.contains(&b',')
+            && !head.contains(&b'.') =>
+        {
+            b','
+        }
+        _ => b'.',
+    }
+}
+
+/// The unit of the X values of a channel.
+pub fn x_unit(segment: &Segment, n: usize) -> Option<String> {
+    match value_for(&segment.keys, "X_Dimension", n)?.trim() {
+        "Time" => Some("s".to_owned()),
+        "Frequency" => Some("Hz".to_owned()),
+        _ => None,
+    }
+}
+
+/// Date and time of a header as ISO 8601.
+pub fn start_time(keys: &Keys, n: usize) -> Option<String> {
+    let date = value_for(keys, "Date", n)?.replace('/', "-");
+    let time = value_for(keys, "Time", n)?.replace(',', ".");
+    Some(format!("{date}T{time}"))
+}
+
+/// What the headers say of the whole table.
+pub fn attributes(keys: &Keys, segment: &Segment) -> BTreeMap<String, String> {
+    let own = [
+        "Notes",
+        "Test_Name",
+        "Test_Numbers",
+        "Test_Series",
+        "UUT_Name",
+        "UUT_M/N",
+        "UUT_S/N",
+    ];
+    let of_segment = segment
+        .keys
+        .iter()
+        .filter(|(k, _)| own.contains(&k.as_str()));
+    keys.iter()
+        .filter(|(k, _)| !matches!(k.as_str(), FIRST_WORDS | "Separator" | "Decimal_Separator"))
+        .chain(of_segment)
+        .map(|(k, v)| (k.clone(), v.join(" ").trim().to_owned()))
+        .filter(|(_, v)| !v.is_empty())
+        .collect()
+}

@@ -1,0 +1,375 @@
+//! From the arrays of a file to datasets and channels.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use super::text;
+use super::tree::{Content, Leaf, Tree};
+use crate::source::{ChannelInfo, DatasetInfo};
+
+/// Matrices with more columns than this are one channel, not one per column.
+const MOST_COLUMNS: u64 = 4096;
+/// A matrix this many times wider than tall is read by rows.
+const WIDE: u64 = 16;
+
+/// Which part of an array a channel is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Slice {
+    /// All of it, column by column.
+    Whole,
+    /// One column (higher dimensions counted through).
+    Column(u64),
+    /// One row of a matrix.
+    Row(u64),
+}
+
+/// Where a channel's samples come from.
+#[derive(Debug, Clone, Copy)]
+pub struct Origin {
+    /// Index into [`Tree::leaves`].
+    pub leaf: usize,
+    /// The part of that array.
+    pub slice: Slice,
+}
+
+/// The datasets of a file and, for each, the origins of its channels.
+#[derive(Debug, Default)]
+pub struct Arranged {
+    /// As the user sees them.
+    pub datasets: Vec<DatasetInfo>,
+    /// One list per dataset, one origin per channel.
+    pub origins: Vec<Vec<Origin>>,
+    /// What was assumed.
+    pub notes: Vec<String>,
+}
+
+/// Arrange the arrays: a struct or cell array of records gives one dataset per element; all
+/// other variables are one dataset without a name.
+///
+/// Single values of the file are repeated as attributes of every record as far as that takes no
+/// more memory than the arrays themselves.
+pub fn arrange(tree: &Tree) -> Arranged {
+    let mut by_variable: Vec<Vec<usize>> = vec![Vec::new(); tree.variables.len()];
+    for (index, leaf) in tree.leaves.iter().enumerate() {
+        by_variable[leaf.variable].push(index);
+    }
+    let records: Vec<bool> = by_variable
+        .iter()
+        .map(|leaves| holds_records(tree, leaves))
+        .collect();
+    let mut builder = Builder::new(tree, &records);
+    let common: Vec<usize> = (0..tree.leaves.len())
+        .filter(|&leaf| !records[tree.leaves[leaf].variable])
+        .collect();
+    if !common.is_empty() || !records.contains(&true) {
+        builder.common(&common);
+    }
+    for leaves in by_variable
+        .iter()
+        .zip(&records)
+        .filter(|(_, holds)| **holds)
+        .map(|(l, _)| l)
+    {
+        for element in leaves.chunk_by(|&a, &b| tree.leaves[a].element == tree.leaves[b].element) {
+            builder.record(element);
+        }
+    }
+    builder.arranged
+}
+
+/// Whether a variable has several elements of which each looks like a record: a struct with at
+/// least one numeric vector, or a matrix of several channels.
+fn holds_records(tree: &Tree, leaves: &[usize]) -> bool {
+    let looks = |&index: &usize| {
+        let leaf = &tree.leaves[index];
+        let bare = leaf.tail == leaf.name;
+        let vectors = if bare { !is_vector(leaf) } else { true };
+        leaf.is_numeric() && leaf.count() > 1 && vectors
+    };
+    let mut elements = leaves
+        .chunk_by(|&a, &b| tree.leaves[a].element == tree.leaves[b].element)
+        .peekable();
+    let several = leaves
+        .first()
+        .is_some_and(|&first| tree.leaves[first].element.is_some());
+    several && elements.all(|element| element.iter().any(looks))
+}
+
+fn is_vector(leaf: &Leaf) -> bool {
+    leaf.dims.iter().filter(|&&d| d != 1).count() <= 1
+}
+
+/// Lengths of the vectors among arrays; a matrix with one side of that length has it as its time.
+fn vector_lengths(tree: &Tree, leaves: &[usize]) -> BTreeSet<u64> {
+    let leaves = leaves.iter().map(|&index| &tree.leaves[index]);
+    leaves
+        .filter(|l| l.is_numeric() && is_vector(l))
+        .map(Leaf::count)
+        .filter(|&n| n > 1)
+        .collect()
+}
+
+/// The last part of a path: `velocity` of `runs(2).velocity`.
+fn last_part(name: &str) -> &str {
+    name.rsplit('.').next().unwrap_or(name)
+}
+
+fn is_time_name(name: &str) -> bool {
+    let name = last_part(name).to_lowercase();
+    matches!(
+        name.as_str(),
+        "t" | "time" | "time_s" | "t_s" | "zeit" | "zeit_s" | "timevector"
+    )
+}
+
+/// The sample rate that a scalar's name and value state, Hz.
+fn stated_rate(name: &str, value: &str) -> Option<f64> {
+    const RATES: [&str; 12] = [
+        "fs",
+        "fs_hz",
+        "f_s",
+        "samplerate",
+        "sample_rate",
+        "sample_rate_hz",
+        "samplingrate",
+        "sampling_rate",
+        "sampling_frequency",
+        "samplingfrequency",
+        "sample_frequency",
+        "srate",
+    ];
+    const STEPS: [&str; 4] = ["dt", "dt_s", "delta_t", "deltat"];
+    let name = last_part(name).to_lowercase();
+    let value = value
+        .parse::<f64>()
+        .ok()
+        .filter(|v| v.is_finite() && *v > 0.0)?;
+    if RATES.contains(&name.as_str()) {
+        return Some(value);
+    }
+    STEPS
+        .contains(&name.as_str())
+        .then(|| value.recip())
+        .filter(|rate| rate.is_finite())
+}
+
+struct Builder<'t> {
+    tree: &'t Tree,
+    arranged: Arranged,
+    texts: HashMap<&'t str, &'t str>,
+    shared: BTreeMap<String, String>,
+    times: Vec<usize>,
+}
+
+impl<'t> Builder<'t> {
+    fn new(tree: &'t Tree, records: &[bool]) -> Self {
+        let common = || tree.leaves.iter().filter(|leaf| !records[leaf.variable]);
+        let texts = tree.leaves.iter().filter(|leaf| !leaf.is_numeric());
+        let texts = texts
+            .filter_map(|l| Some((l.name.as_str(), l.value.as_deref()?)))
+            .collect();
+        let shared = common().filter_map(|l| Some((l.name.clone(), l.value.clone()?)));
+        let sizes = tree.leaves.iter().map(|leaf| leaf.part().bytes + 128);
+        let mut left = sizes.sum::<u64>() / tree.leaves.len().max(1) as u64;
+        let affordable = |(name, value): &(String, String)| {
+            let size = (name.len() + value.len() + 64) as u64;
+            let fits = size <= left;
+            left = left.saturating_sub(size);
+            fits
+        };
+        let shared = shared.take_while(affordable).collect();
+        let is_time = |(_, leaf): &(usize, &Leaf)| {
+            let open = !records[leaf.variable] && is_vector(leaf) && leaf.count() > 1;
+            open && matches!(leaf.content, Content::Real(_)) && is_time_name(&leaf.name)
+        };
+        let times = tree
+            .leaves
+            .iter()
+            .enumerate()
+            .filter(is_time)
+            .map(|(i, _)| i)
+            .collect();
+        Self {
+            tree,
+            arranged: Arranged::default(),
+            texts,
+            shared,
+            times,
+        }
+    }
+
+    /// The dataset of all variables that are no records.
+    fn common(&mut self, leaves: &[usize]) {
+        let named: Vec<_> = leaves
+            .iter()
+            .map(|&l| (l, self.tree.leaves[l].name.clone()))
+            .collect();
+        let lengths = vector_lengths(self.tree, leaves);
+        let values = leaves.iter().map(|&l| &self.tree.leaves[l]);
+        let attributes = values
+            .filter_map(|l| Some((l.name.clone(), l.value.clone()?)))
+            .collect();
+        self.dataset(String::new(), &named, &lengths, attributes);
+    }
+
+    /// The dataset of one element of an array of records.
+    fn record(&mut self, leaves: &[usize]) {
+        let tree = self.tree;
+        let first = &tree.leaves[leaves[0]];
+        let inner = |leaf: &Leaf| match leaf.tail == leaf.name {
+            true => tree.variables[leaf.variable].name.clone(),
+            false => leaf.tail.clone(),
+        };
+        let mut named: Vec<_> = leaves
+            .iter()
+            .map(|&l| (l, inner(&tree.leaves[l])))
+            .collect();
+        let mut lengths = vector_lengths(tree, leaves);
+        lengths.extend(self.times.iter().map(|&time| tree.leaves[time].count()));
+        let has_time = named.iter().any(|(_, name)| is_time_name(name));
+        let fits = |&&time: &&usize| {
+            let length = tree.leaves[time].count();
+            leaves
+                .iter()
+                .any(|&l| tree.leaves[l].dims.contains(&length))
+        };
+        if let Some(&time) = self.times.iter().find(fits).filter(|_| !has_time) {
+            named.insert(0, (time, tree.leaves[time].name.clone()));
+        }
+        let mut attributes = self.shared.clone();
+        for leaf in leaves.iter().map(|&l| &tree.leaves[l]) {
+            attributes.extend(leaf.value.clone().map(|value| (inner(leaf), value)));
+        }
+        let path = first.name.strip_suffix(&first.tail).unwrap_or(&first.name);
+        let name = if path.is_empty() {
+            &first.name
+        } else {
+            path.trim_end_matches('.')
+        };
+        self.dataset(name.to_owned(), &named, &lengths, attributes);
+    }
+
+    fn dataset(
+        &mut self,
+        name: String,
+        leaves: &[(usize, String)],
+        lengths: &BTreeSet<u64>,
+        attributes: BTreeMap<String, String>,
+    ) {
+        let rate = attributes
+            .iter()
+            .find_map(|(name, value)| stated_rate(name, value));
+        let (mut channels, mut origins) = (Vec::new(), Vec::new());
+        for (leaf, name) in leaves {
+            for (suffix, samples, slice) in self.slices(*leaf, lengths) {
+                channels.push(self.channel(*leaf, format!("{name}{suffix}"), samples, rate));
+                origins.push(Origin { leaf: *leaf, slice });
+            }
+        }
+        let is_time = |c: &ChannelInfo| c.samples > 1 && is_time_name(&c.name);
+        let time_axis = channels.iter().position(is_time);
+        self.arranged.datasets.push(DatasetInfo {
+            name,
+            channels,
+            time_axis,
+            attributes,
+        });
+        self.arranged.origins.push(origins);
+    }
+
+    fn channel(&self, leaf: usize, name: String, samples: u64, rate: Option<f64>) -> ChannelInfo {
+        let leaf = &self.tree.leaves[leaf];
+        let mut properties = BTreeMap::from([("class".to_owned(), leaf.class.to_owned())]);
+        if leaf.logical {
+            properties.insert("logical".into(), "true".into());
+        }
+        if samples != leaf.count() && leaf.is_numeric() {
+            let dims: Vec<String> = leaf.dims.iter().map(u64::to_string).collect();
+            properties.insert("shape".into(), dims.join("x"));
+        }
+        ChannelInfo {
+            unit: self.unit(&leaf.name),
+            name,
+            stored: leaf.stored(),
+            samples,
+            sample_rate_hz: rate.filter(|_| samples > 1 && leaf.is_numeric()),
+            start_time: None,
+            properties,
+        }
+    }
+
+    /// The unit of an array, where a text beside it states one: `x_unit`, `x_units`, or the
+    /// field `x` of a struct `Units` beside it.
+    fn unit(&self, name: &str) -> Option<String> {
+        let (parent, last) = name.rsplit_once('.').unwrap_or(("", name));
+        let beside = |units: &str| match parent {
+            "" => format!("{units}.{last}"),
+            _ => format!("{parent}.{units}.{last}"),
+        };
+        let candidates = [
+            format!("{name}_unit"),
+            format!("{name}_units"),
+            beside("Units"),
+            beside("units"),
+        ];
+        candidates
+            .iter()
+            .filter_map(|c| self.texts.get(c.as_str()))
+            .map(|unit| unit.trim())
+            .find(|unit| !unit.is_empty())
+            .map(str::to_owned)
+    }
+
+    /// The channels of an array: suffix of the name, samples and slice of each.
+    fn slices(&mut self, leaf: usize, lengths: &BTreeSet<u64>) -> Vec<(String, u64, Slice)> {
+        let leaf = &self.tree.leaves[leaf];
+        if !leaf.is_numeric() {
+            return vec![(String::new(), text::row_count(leaf), Slice::Whole)];
+        }
+        let count = leaf.count();
+        let rows = leaf.dims[0];
+        if count == 0 || is_vector(leaf) || rows == 0 {
+            return vec![(String::new(), count, Slice::Whole)];
+        }
+        let columns = count / rows;
+        if leaf.dims.len() == 2 && is_by_rows(rows, columns, lengths) {
+            let note = format!("matrix {} of {rows}x{columns} read by rows", leaf.name);
+            self.arranged.notes.push(note);
+            let row = |row: u64| (format!("({},:)", row + 1), columns, Slice::Row(row));
+            return (0..rows).map(row).collect();
+        }
+        if columns > MOST_COLUMNS {
+            let note = format!(
+                "array {} has {columns} columns: read as one channel",
+                leaf.name
+            );
+            self.arranged.notes.push(note);
+            return vec![(String::new(), count, Slice::Whole)];
+        }
+        let column = |column: u64| {
+            (
+                column_suffix(&leaf.dims, column),
+                rows,
+                Slice::Column(column),
+            )
+        };
+        (0..columns).map(column).collect()
+    }
+}
+
+/// Whether a matrix holds a channel in each row: where the length of its rows is that of a
+/// vector beside it, or where it is far wider than tall.
+fn is_by_rows(rows: u64, columns: u64, lengths: &BTreeSet<u64>) -> bool {
+    let told = lengths.contains(&columns) && !lengths.contains(&rows);
+    let wide = columns >= rows.saturating_mul(WIDE) && !lengths.contains(&rows);
+    columns > rows && rows <= MOST_COLUMNS && (told || wide)
+}
+
+/// `(:,2)` for a matrix, `(:,2,1)` for an array of three dimensions.
+fn column_suffix(dims: &[u64], mut column: u64) -> String {
+    let mut parts = vec![":".to_owned()];
+    for &dim in &dims[1..] {
+        parts.push((column % dim.max(1) + 1).to_string());
+        column /= dim.max(1);
+    }
+    format!("({})", parts.join(","))
+}

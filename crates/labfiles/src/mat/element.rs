@@ -1,0 +1,227 @@
+//! Elements of a level 5 file: tags, and the short lists that stand before an array's data.
+
+use super::inflate::Stream;
+use super::tree::Place;
+use crate::bytes::FileBytes;
+use crate::numbers::{self, ByteOrder, Number};
+use crate::source::ReadError;
+
+/// Longest list of dimensions or of names that is believed, bytes.
+const LONGEST_LIST: u64 = 1 << 20;
+
+/// The bytes of one variable: the file's own or inflated ones, read forward.
+pub enum Input<'a> {
+    /// In the file.
+    Plain(&'a FileBytes),
+    /// In a zlib stream.
+    Packed(Box<Stream<'a>>),
+}
+
+/// Reads the elements of one variable, forward.
+pub struct Elements<'a> {
+    file: &'a FileBytes,
+    input: Input<'a>,
+    place: Place,
+    order: ByteOrder,
+    /// The last tag read and its offset: a small element's data stand in it.
+    last: (u64, [u8; 8]),
+}
+
+/// An element's kind and where its data lie.
+#[derive(Debug, Clone, Copy)]
+pub struct Tag {
+    /// Kind of the data.
+    pub kind: u32,
+    /// Their length.
+    pub bytes: u64,
+    /// Their offset.
+    pub at: u64,
+    /// Offset of the next element.
+    pub next: u64,
+}
+
+impl<'a> Elements<'a> {
+    /// The elements of a variable.
+    pub fn new(file: &'a FileBytes, input: Input<'a>, place: Place, order: ByteOrder) -> Self {
+        Self {
+            file,
+            input,
+            place,
+            order,
+            last: (0, [0; 8]),
+        }
+    }
+
+    /// Where the variable's bytes lie.
+    pub fn place(&self) -> Place {
+        self.place
+    }
+
+    /// The byte order of the numbers.
+    pub fn order(&self) -> ByteOrder {
+        self.order
+    }
+
+    /// An error at an offset of the variable.
+    pub fn refuse(
+        &self,
+        at: u64,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+    ) -> ReadError {
+        match self.place {
+            Place::Plain => self.file.refuse(at, expected, found),
+            Place::Packed { at: stream, .. } => {
+                let found = format!("{} (byte {at} of the inflated variable)", found.into());
+                self.file.refuse(stream, expected, found)
+            }
+        }
+    }
+
+    fn fetch(&mut self, at: u64, length: u64, what: &str) -> Result<Vec<u8>, ReadError> {
+        match &mut self.input {
+            Input::Plain(file) => Ok(file.slice(at, length, what)?.to_vec()),
+            Input::Packed(stream) => {
+                let mut buffer = vec![0; length as usize];
+                stream.read_at(at, &mut buffer, what)?;
+                Ok(buffer)
+            }
+        }
+    }
+
+    /// The 32-bit number in four bytes.
+    pub fn word(&self, bytes: &[u8]) -> u32 {
+        let array = [bytes[0], bytes[1], bytes[2], bytes[3]];
+        match self.order {
+            ByteOrder::Little => u32::from_le_bytes(array),
+            ByteOrder::Big => u32::from_be_bytes(array),
+        }
+    }
+
+    /// The tag at an offset; its data end before `end`.
+    pub fn tag(&mut self, at: u64, end: u64, what: &str) -> Result<Tag, ReadError> {
+        if at.saturating_add(8) > end {
+            let found = format!("only {} bytes left", end.saturating_sub(at));
+            return Err(self.refuse(at, format!("the tag of {what}"), found));
+        }
+        let head = self.fetch(at, 8, what)?;
+        self.last.0 = at;
+        self.last.1.copy_from_slice(&head);
+        let first = self.word(&head[..4]);
+        if first >> 16 != 0 {
+            let (kind, bytes) = (first & 0xffff, u64::from(first >> 16));
+            if bytes > 4 {
+                return Err(self.refuse(
+                    at,
+                    "at most 4 bytes in a small element",
+                    bytes.to_string(),
+                ));
+            }
+            return Ok(Tag {
+                kind,
+                bytes,
+                at: at + 4,
+                next: at + 8,
+            });
+        }
+        let bytes = u64::from(self.word(&head[4..]));
+        let data = at + 8;
+        if bytes > end - data {
+            let found = format!("{bytes} bytes where {} are left", end - data);
+            return Err(self.refuse(at, what, found));
+        }
+        Ok(Tag {
+            kind: first,
+            bytes,
+            at: data,
+            next: (data + bytes.next_multiple_of(8)).min(end),
+        })
+    }
+
+    /// The data of a short element (a list of dimensions or names).
+    pub fn list(&mut self, tag: Tag, what: &str) -> Result<Vec<u8>, ReadError> {
+        if tag.bytes > LONGEST_LIST {
+            return Err(self.refuse(tag.at, what, format!("{} bytes", tag.bytes)));
+        }
+        self.data(tag.at, tag.bytes, what)
+    }
+
+    /// The data at an offset; those of a small element were part of the tag just read, and in a
+    /// stream lie behind.
+    pub fn data(&mut self, at: u64, bytes: u64, what: &str) -> Result<Vec<u8>, ReadError> {
+        let (tag_at, tag) = self.last;
+        match at == tag_at + 4 && bytes <= 4 {
+            true => Ok(tag[4..4 + bytes as usize].to_vec()),
+            false => self.fetch(at, bytes, what),
+        }
+    }
+
+    /// Whole numbers from 0 to 2^31 - 1.
+    pub fn integers(&mut self, tag: Tag, what: &str) -> Result<Vec<i64>, ReadError> {
+        let bytes = self.list(tag, what)?;
+        let number = match tag.kind {
+            5 => Number::I32,
+            6 => Number::U32,
+            other => return Err(self.refuse(tag.at, format!("{what} as int32"), kind_name(other))),
+        };
+        let mut values = Vec::new();
+        numbers::decode(number, self.order, &bytes, &mut values);
+        if let Some(wild) = values
+            .iter()
+            .find(|v| !(0.0..=2_147_483_647.0).contains(*v))
+        {
+            return Err(self.refuse(
+                tag.at,
+                format!("{what} between 0 and 2147483647"),
+                wild.to_string(),
+            ));
+        }
+        Ok(values.into_iter().map(|v| v as i64).collect())
+    }
+
+    /// A name in ASCII.
+    pub fn ascii(&mut self, tag: Tag, what: &str) -> Result<String, ReadError> {
+        let bytes = self.list(tag, what)?;
+        if !matches!(tag.kind, 1 | 2 | 16) {
+            return Err(self.refuse(tag.at, format!("{what} as int8"), kind_name(tag.kind)));
+        }
+        match bytes.is_ascii() {
+            true => Ok(String::from_utf8_lossy(&bytes)
+                .trim_end_matches('\0')
+                .to_owned()),
+            false => Err(self.refuse(
+                tag.at,
+                format!("{what} in ASCII"),
+                format!("{:?}", String::from_utf8_lossy(&bytes)),
+            )),
+        }
+    }
+}
+
+/// The kind of numbers that an element of that kind holds.
+pub fn number_of(kind: u32) -> Option<Number> {
+    Some(match kind {
+        1 => Number::I8,
+        2 => Number::U8,
+        3 => Number::I16,
+        4 => Number::U16,
+        5 => Number::I32,
+        6 => Number::U32,
+        7 => Number::F32,
+        9 => Number::F64,
+        12 => Number::I64,
+        13 => Number::U64,
+        _ => return None,
+    })
+}
+
+/// The kind of an element, for a message.
+pub fn kind_name(kind: u32) -> String {
+    match (kind, number_of(kind)) {
+        (_, Some(number)) => format!("an element of {}", number.name()),
+        (14, _) => "a matrix element".into(),
+        (15, _) => "a compressed element".into(),
+        (16..=18, _) => "an element of text".into(),
+        _ => format!("an element of unknown kind {kind}"),
+    }
+}

@@ -1,0 +1,66 @@
+//! Characters of MATLAB arrays, and the short values that serve as attributes.
+
+use super::tree::{Content, Encoding, Leaf, Part};
+use crate::numbers::{self, ByteOrder};
+use crate::source::ReadError;
+
+/// Longest text that is kept as an attribute, bytes.
+const SHORT: u64 = 512;
+
+/// The characters that the bytes encode; what is no character becomes U+FFFD.
+fn characters(bytes: &[u8], part: Part, encoding: Encoding, order: ByteOrder) -> Vec<char> {
+    let codes = || {
+        let mut codes = Vec::new();
+        numbers::decode(part.number, order, bytes, &mut codes);
+        codes.into_iter().map(|c| c as u32)
+    };
+    match encoding {
+        Encoding::Utf8 => String::from_utf8_lossy(bytes).chars().collect(),
+        Encoding::Utf16 => char::decode_utf16(codes().map(|c| c as u16))
+            .map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER))
+            .collect(),
+        Encoding::Codes | Encoding::Utf32 => codes()
+            .map(|c| char::from_u32(c).unwrap_or(char::REPLACEMENT_CHARACTER))
+            .collect(),
+    }
+}
+
+/// The rows of a text array as strings.
+pub fn rows(leaf: &Leaf, bytes: &[u8], order: ByteOrder) -> Vec<String> {
+    let Content::Text(part, encoding) = leaf.content else {
+        return Vec::new();
+    };
+    let all = characters(bytes, part, encoding, order);
+    let rows = row_count(leaf) as usize;
+    match rows {
+        0 => Vec::new(),
+        1 => vec![all.into_iter().collect()],
+        _ => (0..rows)
+            .map(|row| all.iter().skip(row).step_by(rows).collect())
+            .collect(),
+    }
+}
+
+/// Number of strings in a text array: its rows, none where it is empty.
+pub fn row_count(leaf: &Leaf) -> u64 {
+    if leaf.count() == 0 { 0 } else { leaf.dims[0] }
+}
+
+/// The value of an array of one number or of one short string, as text.
+pub fn short_value(
+    leaf: &Leaf,
+    order: ByteOrder,
+    mut fetch: impl FnMut(Part) -> Result<Vec<u8>, ReadError>,
+) -> Result<Option<String>, ReadError> {
+    match leaf.content {
+        Content::Real(part) if leaf.count() == 1 => {
+            let mut values = Vec::new();
+            numbers::decode(part.number, order, &fetch(part)?, &mut values);
+            Ok(values.first().map(f64::to_string))
+        }
+        Content::Text(part, _) if row_count(leaf) == 1 && part.bytes <= SHORT => {
+            Ok(rows(leaf, &fetch(part)?, order).pop())
+        }
+        _ => Ok(None),
+    }
+}

@@ -1,0 +1,132 @@
+//! The arrays a MATLAB file holds, as found before any sample is read.
+
+use crate::numbers::{ByteOrder, Number};
+use crate::source::StoredType;
+
+/// Where the bytes of a variable lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// As they are in the file; offsets count from the file's start.
+    Plain,
+    /// In a zlib stream; offsets count from the start of the inflated bytes.
+    Packed {
+        /// Offset of the zlib stream in the file.
+        at: u64,
+        /// Its length, bytes.
+        packed: u64,
+        /// Length it must inflate to, bytes.
+        inflated: u64,
+    },
+}
+
+/// A variable at the top of the file.
+#[derive(Debug, Clone)]
+pub struct Variable {
+    /// Its name.
+    pub name: String,
+    /// Where its bytes lie.
+    pub place: Place,
+    /// Byte order of its numbers.
+    pub order: ByteOrder,
+    /// Number of elements where it is a struct array or a cell array, else 1.
+    pub elements: u64,
+}
+
+/// A run of numbers of one kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part {
+    /// Offset of the first byte (see [`Place`]).
+    pub at: u64,
+    /// Length, bytes.
+    pub bytes: u64,
+    /// How each number is stored.
+    pub number: Number,
+}
+
+/// How the codes of a text are to be understood.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Encoding {
+    /// One number per character.
+    Codes,
+    /// UTF-8.
+    Utf8,
+    /// UTF-16.
+    Utf16,
+    /// UTF-32.
+    Utf32,
+}
+
+/// What an array holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Content {
+    /// Real numbers.
+    Real(Part),
+    /// Complex numbers; each part of that many bits by the array's class.
+    Complex(Part, Part, u8),
+    /// Text; every row of the array is one string.
+    Text(Part, Encoding),
+}
+
+/// An array of numbers or of characters, with the path that leads to it.
+#[derive(Debug, Clone)]
+pub struct Leaf {
+    /// Index of its variable.
+    pub variable: usize,
+    /// Which element of its variable it belongs to, where the variable has several.
+    pub element: Option<u64>,
+    /// Its path, e.g. `runs(2).velocity`.
+    pub name: String,
+    /// Its path inside the element, e.g. `velocity`.
+    pub tail: String,
+    /// Its dimensions, at least two.
+    pub dims: Vec<u64>,
+    /// What it holds.
+    pub content: Content,
+    /// MATLAB class, e.g. `double`.
+    pub class: &'static str,
+    /// Whether it holds true and false.
+    pub logical: bool,
+    /// Its value as text where it is one number or one short string.
+    pub value: Option<String>,
+}
+
+impl Leaf {
+    /// Number of elements.
+    pub fn count(&self) -> u64 {
+        self.dims.iter().product()
+    }
+
+    /// Its numbers or characters (of complex numbers: the real parts).
+    pub fn part(&self) -> Part {
+        match self.content {
+            Content::Real(part) | Content::Complex(part, ..) | Content::Text(part, _) => part,
+        }
+    }
+
+    /// How the numbers are stored.
+    pub fn stored(&self) -> StoredType {
+        match self.content {
+            Content::Real(part) => part.number.stored(),
+            Content::Complex(_, _, bits) => StoredType::Complex(bits),
+            Content::Text(..) => StoredType::Text,
+        }
+    }
+
+    /// Whether it holds numbers.
+    pub fn is_numeric(&self) -> bool {
+        !matches!(self.content, Content::Text(..))
+    }
+}
+
+/// All that opening a file finds.
+#[derive(Debug, Clone, Default)]
+pub struct Tree {
+    /// The variables in file order.
+    pub variables: Vec<Variable>,
+    /// Their arrays in file order.
+    pub leaves: Vec<Leaf>,
+    /// What was skipped or assumed.
+    pub notes: Vec<String>,
+    /// Names of variables that were left out because their kind is not read, with the kind.
+    pub refused: Vec<(String, &'static str)>,
+}

@@ -1,0 +1,261 @@
+//! How the raw data of a chunk are laid out: which channel's samples lie where.
+
+use std::sync::Arc;
+
+use crate::numbers::Number;
+
+use super::value::Kind;
+
+/// One scaler of a DAQmx channel: where its raw samples lie in the device's buffer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Scaler {
+    /// Number of the scale that stands for it.
+    pub scale: u32,
+    /// How a sample is stored.
+    pub number: Number,
+    /// Which buffer of the chunk.
+    pub buffer: u32,
+    /// Byte of the sample within a row of the buffer.
+    pub byte: u64,
+    /// For a digital line: which bit of the sample.
+    pub bit: Option<u32>,
+}
+
+/// Raw data of a DAQmx channel.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Device {
+    /// Its scalers, at least one.
+    pub scalers: Vec<Scaler>,
+    /// Bytes of a row of each buffer of the chunk.
+    pub widths: Vec<u64>,
+}
+
+/// A channel's share of every chunk.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Share {
+    /// What the samples are.
+    pub kind: Kind,
+    /// Samples per chunk.
+    pub count: u64,
+    /// Bytes per chunk (of a DAQmx channel: 0, see the buffers).
+    pub bytes: u64,
+    /// Of a DAQmx channel.
+    pub device: Option<Arc<Device>>,
+}
+
+/// A channel in a layout.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Entry {
+    /// The channel.
+    pub object: usize,
+    /// Its share.
+    pub share: Share,
+    /// Byte of its first sample in a chunk where channels follow each other.
+    pub offset: u64,
+    /// Byte of its sample in a row where channels are interleaved.
+    pub column: u64,
+}
+
+/// Samples of one scaler in a chunk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Run {
+    /// Byte of the first sample in the chunk.
+    pub offset: u64,
+    /// Bytes from one sample to the next.
+    pub stride: u64,
+}
+
+/// The layout of the chunks of a segment.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Layout {
+    /// The channels that have data, in the order of their data.
+    pub entries: Vec<Entry>,
+    /// Bytes of a chunk.
+    pub chunk: u64,
+    /// Bytes of a row of interleaved samples.
+    pub row: u64,
+    /// Rows and width of every DAQmx buffer.
+    buffers: Vec<(u64, u64)>,
+}
+
+impl Layout {
+    /// Lay out the shares of channels one after the other. The error tells what does not fit.
+    pub fn new(shares: Vec<(usize, Share)>) -> Result<Self, String> {
+        let mut layout = Self::default();
+        let devices = shares
+            .iter()
+            .filter(|(_, share)| share.device.is_some())
+            .count();
+        if devices > 0 {
+            return layout.devices(shares, devices);
+        }
+        for (object, share) in shares {
+            let (offset, column) = (layout.chunk, layout.row);
+            layout.chunk = layout
+                .chunk
+                .checked_add(share.bytes)
+                .ok_or("a chunk beyond 2^64 bytes")?;
+            layout.row += share.kind.bytes().unwrap_or(0);
+            layout.entries.push(Entry {
+                object,
+                share,
+                offset,
+                column,
+            });
+        }
+        Ok(layout)
+    }
+
+    fn devices(mut self, shares: Vec<(usize, Share)>, devices: usize) -> Result<Self, String> {
+        if devices != shares.len() {
+            return Err("DAQmx channels beside channels of another kind".into());
+        }
+        let mut used = Vec::new();
+        for (object, share) in shares {
+            let Some(device) = &share.device else {
+                continue;
+            };
+            if self.entries.is_empty() {
+                self.buffers = device.widths.iter().map(|&width| (0, width)).collect();
+                used = vec![0u64; device.widths.len()];
+            }
+            if !self.buffers.iter().map(|b| &b.1).eq(&device.widths) {
+                return Err("DAQmx channels with different raw data widths".into());
+            }
+            for scaler in &device.scalers {
+                self.place(scaler, share.count, &mut used)?;
+            }
+            self.entries.push(Entry {
+                object,
+                share,
+                offset: 0,
+                column: 0,
+            });
+        }
+        let bytes = self
+            .buffers
+            .iter()
+            .map(|(rows, width)| rows.checked_mul(*width));
+        let total = bytes
+            .into_iter()
+            .try_fold(0u64, |all, bytes| all.checked_add(bytes?));
+        self.chunk = total.ok_or("a chunk beyond 2^64 bytes")?;
+        Ok(self)
+    }
+
+    /// Check that a scaler lies in its buffer and that channels do not claim the same bits again
+    /// and again.
+    fn place(&mut self, scaler: &Scaler, rows: u64, used: &mut [u64]) -> Result<(), String> {
+        let index = scaler.buffer as usize;
+        let Some((buffer, used)) = self.buffers.get_mut(index).zip(used.get_mut(index)) else {
+            return Err(format!(
+                "a DAQmx scaler in buffer {index} of {}",
+                used.len()
+            ));
+        };
+        if scaler.byte.saturating_add(scaler.number.bytes()) > buffer.1 {
+            return Err(format!(
+                "a DAQmx scaler at byte {} of {}",
+                scaler.byte, buffer.1
+            ));
+        }
+        *used += if scaler.bit.is_some() {
+            1
+        } else {
+            8 * scaler.number.bytes()
+        };
+        if *used > 16 * buffer.1 {
+            return Err(format!("DAQmx scalers that overlap in buffer {index}"));
+        }
+        buffer.0 = buffer.0.max(rows);
+        Ok(())
+    }
+
+    /// Where the samples of a scaler lie in a chunk.
+    pub fn run(&self, scaler: &Scaler) -> Run {
+        let before = &self.buffers[..scaler.buffer as usize];
+        let start: u64 = before.iter().map(|(rows, width)| rows * width).sum();
+        let stride = self.buffers[scaler.buffer as usize].1;
+        Run {
+            offset: start + scaler.byte,
+            stride,
+        }
+    }
+
+    /// Whether all channels can be interleaved row by row.
+    pub fn can_interleave(&self) -> bool {
+        let sized = self
+            .entries
+            .iter()
+            .all(|entry| entry.share.kind.bytes().is_some());
+        let mut counts = self.entries.iter().map(|entry| entry.share.count);
+        let first = counts.next();
+        sized && counts.all(|count| Some(count) == first)
+    }
+
+    /// The layout of the last chunk of a segment, of which only `rest` bytes are there.
+    ///
+    /// A segment that was cut short holds the first channels whole and later ones in part; a
+    /// complete segment divides a short last chunk among the channels in proportion.
+    pub fn cut(&self, rest: u64, cut_short: bool, interleaved: bool) -> Self {
+        let mut cut = self.clone();
+        if !self.buffers.is_empty() {
+            cut.cut_buffers(rest);
+            return cut;
+        }
+        let mut offset = 0;
+        for entry in &mut cut.entries {
+            let Some(size) = entry.share.kind.bytes() else {
+                entry.share.count = 0;
+                continue;
+            };
+            let count = entry.share.count;
+            let count = match cut_short && !interleaved {
+                true => count.min(rest.saturating_sub(entry.offset) / size),
+                false => (u128::from(count) * u128::from(rest) / u128::from(self.chunk)) as u64,
+            };
+            if !cut_short || interleaved {
+                entry.offset = offset;
+            }
+            entry.share.count = count;
+            entry.share.bytes = count * size;
+            offset += count * size;
+        }
+        if self
+            .entries
+            .iter()
+            .any(|entry| entry.share.kind.bytes().is_none())
+        {
+            // Lengths of texts are not known in part: nothing of such a chunk is read.
+            cut.entries
+                .iter_mut()
+                .for_each(|entry| entry.share.count = 0);
+        }
+        cut.chunk = rest;
+        cut
+    }
+
+    fn cut_buffers(&mut self, mut rest: u64) {
+        for (rows, width) in &mut self.buffers {
+            let there = (*rows).min(rest.checked_div(*width).unwrap_or(0));
+            rest = if there < *rows {
+                0
+            } else {
+                rest - there * *width
+            };
+            *rows = there;
+        }
+        for entry in &mut self.entries {
+            let scalers = entry
+                .share
+                .device
+                .iter()
+                .flat_map(|device| device.scalers.iter());
+            let rows = scalers
+                .map(|scaler| self.buffers[scaler.buffer as usize].0)
+                .min();
+            entry.share.count = entry.share.count.min(rows.unwrap_or(0));
+        }
+        self.chunk = self.buffers.iter().map(|(rows, width)| rows * width).sum();
+    }
+}

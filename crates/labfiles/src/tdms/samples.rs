@@ -1,0 +1,304 @@
+//! Samples of a channel, gathered from the chunks of all segments.
+
+use super::content::{Content, Object, Piece};
+use super::layout::Entry;
+use super::scale::Scaling;
+use super::value::{Kind, Stamp};
+use crate::bytes::FileBytes;
+use crate::numbers::{self, ByteOrder, Number, Spacing};
+use crate::source::{ReadError, Samples};
+
+/// A run of samples in the file: where it begins, its spacing and its number of samples.
+#[derive(Debug, Clone, Copy)]
+struct Run {
+    at: u64,
+    stride: u64,
+    count: u64,
+}
+
+/// Reads samples of an open file.
+pub struct Reader<'a> {
+    /// The file.
+    pub file: &'a FileBytes,
+    /// What opening it found.
+    pub content: &'a Content,
+}
+
+impl<'a> Reader<'a> {
+    /// The pieces in which a channel has samples, in file order.
+    fn pieces(&self, object: &Object) -> Vec<(&'a Piece, &'a Entry)> {
+        let content = self.content;
+        let mut all: Vec<(u32, &Entry)> = Vec::new();
+        for &(layout, entry) in &object.places {
+            let entry = &content.layouts[layout as usize].entries[entry as usize];
+            all.extend(
+                content.pieces_of[layout as usize]
+                    .iter()
+                    .map(|&piece| (piece, entry)),
+            );
+        }
+        all.sort_unstable_by_key(|(piece, _)| *piece);
+        all.into_iter()
+            .map(|(piece, entry)| (&content.pieces[piece as usize], entry))
+            .collect()
+    }
+
+    /// Call `visit` with each run of a channel's samples; `scaler` picks one of a DAQmx channel.
+    fn runs(
+        &self,
+        object: &Object,
+        scaler: usize,
+        mut visit: impl FnMut(Run, ByteOrder) -> Result<(), ReadError>,
+    ) -> Result<(), ReadError> {
+        for (piece, entry) in self.pieces(object) {
+            let layout = &self.content.layouts[piece.layout as usize];
+            let count = entry.share.count;
+            let size = entry.share.kind.bytes().unwrap_or(0);
+            let mut step = layout.chunk;
+            let run = match &entry.share.device {
+                Some(device) => {
+                    let run = layout.run(&device.scalers[scaler.min(device.scalers.len() - 1)]);
+                    Run {
+                        at: piece.at + run.offset,
+                        stride: run.stride,
+                        count,
+                    }
+                }
+                None if piece.interleaved => {
+                    step = 0;
+                    let count = count * piece.chunks;
+                    Run {
+                        at: piece.at + entry.column,
+                        stride: layout.row,
+                        count,
+                    }
+                }
+                None if entry.share.bytes == layout.chunk && entry.share.kind != Kind::Text => {
+                    step = 0;
+                    Run {
+                        at: piece.at,
+                        stride: size,
+                        count: count * piece.chunks,
+                    }
+                }
+                None => Run {
+                    at: piece.at + entry.offset,
+                    stride: size,
+                    count,
+                },
+            };
+            let chunks = if step == 0 { 1 } else { piece.chunks };
+            for chunk in 0..chunks {
+                visit(
+                    Run {
+                        at: run.at + chunk * step,
+                        ..run
+                    },
+                    piece.order,
+                )?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The bytes of a run of samples of `size` bytes.
+    fn bytes(&self, run: Run, size: u64) -> Result<&'a [u8], ReadError> {
+        let length = run
+            .count
+            .saturating_sub(1)
+            .saturating_mul(run.stride)
+            .saturating_add(size);
+        self.file
+            .slice(run.at, if run.count == 0 { 0 } else { length }, "samples")
+    }
+
+    fn numbers(
+        &self,
+        object: &Object,
+        number: Number,
+        scaler: usize,
+        shift: u64,
+    ) -> Result<Vec<f64>, ReadError> {
+        let mut out = Vec::new();
+        out.reserve_exact(object.samples as usize);
+        self.runs(object, scaler, |run, order| {
+            let run = Run {
+                at: run.at + shift,
+                ..run
+            };
+            let bytes = self.bytes(run, number.bytes())?;
+            let spacing = Spacing {
+                offset: 0,
+                stride: run.stride as usize,
+                count: run.count as usize,
+            };
+            numbers::decode_spaced(number, order, bytes, spacing, &mut out);
+            Ok(())
+        })?;
+        Ok(out)
+    }
+
+    /// All samples of a channel, after its scaling.
+    pub fn samples(&self, object: &Object, scaling: &Scaling) -> Result<Samples, ReadError> {
+        let device = self.device(object, scaling)?;
+        let Some(kind) = object.kind else {
+            return Ok(Samples::Real(Vec::new()));
+        };
+        if let Some((index, number, bit)) = device {
+            let mut values = self.numbers(object, number, index, 0)?;
+            if let Some(bit) = bit {
+                let mask = 1u64 << bit;
+                values
+                    .iter_mut()
+                    .for_each(|v| *v = f64::from(u8::from(*v as i64 as u64 & mask != 0)));
+            }
+            scaling.apply(&mut values);
+            return Ok(Samples::Real(values));
+        }
+        Ok(match kind {
+            Kind::Number(number) => {
+                let mut values = self.numbers(object, number, 0, 0)?;
+                scaling.apply(&mut values);
+                Samples::Real(values)
+            }
+            Kind::Bool => {
+                let mut values = self.numbers(object, Number::U8, 0, 0)?;
+                values
+                    .iter_mut()
+                    .for_each(|v| *v = f64::from(u8::from(*v != 0.0)));
+                Samples::Real(values)
+            }
+            Kind::Complex(part) => {
+                let real = self.numbers(object, part, 0, 0)?;
+                let imaginary = self.numbers(object, part, 0, part.bytes())?;
+                Samples::Complex(numbers::pair(real, imaginary))
+            }
+            Kind::Time => Samples::Real(self.times(object)?),
+            Kind::Text => Samples::Text(self.texts(object)?),
+            Kind::Device => Samples::Real(Vec::new()),
+        })
+    }
+
+    /// The scaler of a DAQmx channel that its scaling starts from: index, number, bit.
+    fn device(
+        &self,
+        object: &Object,
+        scaling: &Scaling,
+    ) -> Result<Option<(usize, Number, Option<u32>)>, ReadError> {
+        let Some(device) = self.first_device(object) else {
+            return Ok(None);
+        };
+        let index = match scaling.scaler {
+            Some(scale) => device.scalers.iter().position(|s| s.scale == scale),
+            None => Some(0).filter(|_| device.scalers.len() == 1),
+        };
+        let Some(index) = index else {
+            let count = device.scalers.len();
+            let found = match scaling.scaler {
+                Some(scale) => format!("{count} scalers, none of which is scale {scale}"),
+                None => format!("{count} scalers, and no scaling that names one"),
+            };
+            return Err(ReadError {
+                byte: None,
+                ..self.file.refuse(
+                    0,
+                    "the DAQmx scaler that the channel's scaling names",
+                    found,
+                )
+            });
+        };
+        let scaler = &device.scalers[index];
+        Ok(Some((index, scaler.number, scaler.bit)))
+    }
+
+    /// The DAQmx description of a channel, where it is one.
+    pub fn first_device(&self, object: &Object) -> Option<&'a super::layout::Device> {
+        let &(layout, entry) = object.places.first()?;
+        self.content.layouts[layout as usize].entries[entry as usize]
+            .share
+            .device
+            .as_deref()
+    }
+
+    /// The stamps of a time channel.
+    fn stamps(&self, object: &Object, most: usize) -> Result<Vec<Stamp>, ReadError> {
+        let mut all = Vec::new();
+        self.runs(object, 0, |run, order| {
+            for sample in 0..run.count.min((most - all.len()) as u64) {
+                let at = run.at + sample * run.stride;
+                let bytes = self.file.slice(at, 16, "a time stamp")?;
+                all.push(stamp(bytes, order));
+            }
+            Ok(())
+        })?;
+        Ok(all)
+    }
+
+    /// The first stamp of a time channel.
+    pub fn first_stamp(&self, object: &Object) -> Result<Option<Stamp>, ReadError> {
+        Ok(self.stamps(object, 1)?.pop())
+    }
+
+    /// Seconds since a time channel's first stamp.
+    fn times(&self, object: &Object) -> Result<Vec<f64>, ReadError> {
+        let stamps = self.stamps(object, usize::MAX)?;
+        let first = stamps.first().copied();
+        Ok(stamps
+            .iter()
+            .map(|s| first.map_or(0.0, |first| s.seconds_since(first)))
+            .collect())
+    }
+
+    /// Texts: the ends of all, then their bytes.
+    fn texts(&self, object: &Object) -> Result<Vec<String>, ReadError> {
+        let mut all = Vec::new();
+        for (piece, entry) in self.pieces(object) {
+            let layout = &self.content.layouts[piece.layout as usize];
+            for chunk in 0..piece.chunks {
+                let at = piece.at + chunk * layout.chunk + entry.offset;
+                self.text_chunk(at, entry, piece.order, &mut all)?;
+            }
+        }
+        Ok(all)
+    }
+
+    fn text_chunk(
+        &self,
+        at: u64,
+        entry: &Entry,
+        order: ByteOrder,
+        all: &mut Vec<String>,
+    ) -> Result<(), ReadError> {
+        let bytes = self.file.slice(at, entry.share.bytes, "texts")?;
+        let (ends, texts) = bytes.split_at(4 * entry.share.count as usize);
+        let mut offsets = Vec::new();
+        numbers::decode(Number::U32, order, ends, &mut offsets);
+        let mut start = 0;
+        for end in offsets.into_iter().map(|end| end as usize) {
+            let Some(text) = texts.get(start..end) else {
+                let expected = format!("the end of a text between {start} and {}", texts.len());
+                return Err(self.file.refuse(at, expected, end.to_string()));
+            };
+            all.push(crate::bytes::decode_text(text).into_owned());
+            start = end;
+        }
+        Ok(())
+    }
+}
+
+fn stamp(bytes: &[u8], order: ByteOrder) -> Stamp {
+    let mut words = [[0; 8]; 2];
+    for (word, half) in words.iter_mut().zip(bytes.chunks_exact(8)) {
+        word.copy_from_slice(half);
+    }
+    match order {
+        ByteOrder::Little => Stamp {
+            fraction: u64::from_le_bytes(words[0]),
+            seconds: i64::from_le_bytes(words[1]),
+        },
+        ByteOrder::Big => Stamp {
+            seconds: i64::from_be_bytes(words[0]),
+            fraction: u64::from_be_bytes(words[1]),
+        },
+    }
+}

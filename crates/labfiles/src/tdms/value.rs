@@ -1,0 +1,257 @@
+//! Types and property values of TDMS files.
+
+use crate::bytes::{Cursor, decode_text};
+use crate::numbers::Number;
+use crate::source::{ReadError, StoredType};
+use crate::text::clock::civil_of_days;
+
+/// What a channel's samples or a property are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A real number.
+    Number(Number),
+    /// A complex number of two such parts.
+    Complex(Number),
+    /// One byte, true where it is not 0.
+    Bool,
+    /// Text.
+    Text,
+    /// 16 bytes: fractions of a second (2^-64) and seconds since 1904.
+    Time,
+    /// Samples of a DAQmx device, described by scalers.
+    Device,
+}
+
+impl Kind {
+    /// The kind of a type code; the error names a type that is not read.
+    pub fn of(code: u32) -> Result<Self, String> {
+        Ok(match code {
+            1 => Self::Number(Number::I8),
+            2 => Self::Number(Number::I16),
+            3 => Self::Number(Number::I32),
+            4 => Self::Number(Number::I64),
+            5 => Self::Number(Number::U8),
+            6 => Self::Number(Number::U16),
+            7 => Self::Number(Number::U32),
+            8 => Self::Number(Number::U64),
+            9 | 0x19 => Self::Number(Number::F32),
+            10 | 0x1a => Self::Number(Number::F64),
+            0x20 => Self::Text,
+            0x21 => Self::Bool,
+            0x44 => Self::Time,
+            0x08_000c => Self::Complex(Number::F32),
+            0x10_000d => Self::Complex(Number::F64),
+            0xffff_ffff => Self::Device,
+            0 => return Err("void".into()),
+            11 | 0x1b => return Err("extended float".into()),
+            0x4f => return Err("fixed point".into()),
+            other => return Err(format!("unknown type {other:#x}")),
+        })
+    }
+
+    /// Bytes of one sample; `None` where they are not fixed.
+    pub fn bytes(self) -> Option<u64> {
+        match self {
+            Self::Number(number) => Some(number.bytes()),
+            Self::Complex(number) => Some(2 * number.bytes()),
+            Self::Bool => Some(1),
+            Self::Time => Some(16),
+            Self::Text | Self::Device => None,
+        }
+    }
+
+    /// The kind as a [`StoredType`].
+    pub fn stored(self) -> StoredType {
+        match self {
+            Self::Number(number) => number.stored(),
+            Self::Complex(number) => StoredType::Complex(number.bytes() as u8 * 8),
+            Self::Bool => StoredType::Bool,
+            Self::Text => StoredType::Text,
+            Self::Time => StoredType::Time,
+            Self::Device => StoredType::Float(64),
+        }
+    }
+}
+
+/// A point in time: seconds since 1904-01-01 00:00 UTC and 2^-64 fractions of a second.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stamp {
+    /// Whole seconds.
+    pub seconds: i64,
+    /// Fraction of a second, in units of 2^-64 s.
+    pub fraction: u64,
+}
+
+impl Stamp {
+    /// From the two words as they stand in the file.
+    pub fn read(cursor: &mut Cursor<'_>, big: bool) -> Result<Self, ReadError> {
+        let words = [cursor.u64("a time stamp")?, cursor.u64("a time stamp")?];
+        let [fraction, seconds] = if big { [words[1], words[0]] } else { words };
+        Ok(Self {
+            seconds: seconds as i64,
+            fraction,
+        })
+    }
+
+    /// Seconds since another stamp.
+    pub fn seconds_since(self, start: Self) -> f64 {
+        let whole = i128::from(self.seconds) - i128::from(start.seconds);
+        let unit = 2f64.powi(-64);
+        let fraction = i128::from(self.fraction) - i128::from(start.fraction);
+        whole as f64 + fraction as f64 * unit
+    }
+
+    /// ISO 8601 text in UTC to the nanosecond; `None` where the stamp was never set (0) or its
+    /// year has more than four digits.
+    pub fn iso8601(self) -> Option<String> {
+        if self.seconds == 0 && self.fraction == 0 {
+            return None;
+        }
+        let nanoseconds = ((u128::from(self.fraction) * 1_000_000_000) >> 64) as u64;
+        let (days, second) = (
+            self.seconds.div_euclid(86_400),
+            self.seconds.rem_euclid(86_400),
+        );
+        let days = days.checked_sub(DAYS_TO_1970)?;
+        if !YEARS_OF_FOUR_DIGITS.contains(&days) {
+            return None;
+        }
+        let (year, month, day) = civil_of_days(days);
+        let (hour, minute, second) = (second / 3600, second / 60 % 60, second % 60);
+        let date = format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}");
+        Some(format!("{date}.{nanoseconds:09}Z"))
+    }
+}
+
+/// Days from 1904-01-01 to 1970-01-01.
+const DAYS_TO_1970: i64 = 24_107;
+
+/// Days since 1970-01-01 of the years 0000 (from March on) to 9999.
+const YEARS_OF_FOUR_DIGITS: std::ops::Range<i64> = -719_468..2_932_897;
+
+/// The value of a property.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// A number; integers beyond 2^53 keep their text only.
+    Number(f64, String),
+    /// Text.
+    Text(String),
+    /// True or false.
+    Bool(bool),
+    /// A point in time.
+    Time(Stamp),
+}
+
+impl Value {
+    /// Read a property's value of a type.
+    pub fn read(cursor: &mut Cursor<'_>, code: u32, big: bool) -> Result<Self, ReadError> {
+        let kind = match Kind::of(code) {
+            Ok(kind) => kind,
+            Err(_) if code == 0 => return Ok(Self::Text(String::new())),
+            Err(found) => return Err(cursor.refuse("a property's type", found)),
+        };
+        Ok(match kind {
+            Kind::Text => Self::Text(text(cursor, "a property")?),
+            Kind::Bool => Self::Bool(cursor.u8("a property")? != 0),
+            Kind::Time => Self::Time(Stamp::read(cursor, big)?),
+            Kind::Number(number) => self::number(cursor, number)?,
+            Kind::Complex(part) => {
+                let (re, im) = (self::number(cursor, part)?, self::number(cursor, part)?);
+                Self::Text(format!("{} {}", re.text(), im.text()))
+            }
+            Kind::Device => return Err(cursor.refuse("a property's type", "DAQmx raw data")),
+        })
+    }
+
+    /// The value as text.
+    pub fn text(&self) -> String {
+        match self {
+            Self::Number(_, text) | Self::Text(text) => text.clone(),
+            Self::Bool(value) => value.to_string(),
+            Self::Time(stamp) => stamp.iso8601().unwrap_or_default(),
+        }
+    }
+
+    /// The value as a number, where it is one.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(value, _) => Some(*value),
+            _ => None,
+        }
+    }
+}
+
+fn number(cursor: &mut Cursor<'_>, number: Number) -> Result<Value, ReadError> {
+    macro_rules! as_is {
+        ($value:expr) => {{
+            let value = $value;
+            Value::Number(value as f64, value.to_string())
+        }};
+    }
+    Ok(match number {
+        Number::I8 => as_is!(cursor.u8("a property")? as i8),
+        Number::U8 => as_is!(cursor.u8("a property")?),
+        Number::I16 => as_is!(cursor.u16("a property")? as i16),
+        Number::U16 => as_is!(cursor.u16("a property")?),
+        Number::I32 => as_is!(cursor.u32("a property")? as i32),
+        Number::U32 => as_is!(cursor.u32("a property")?),
+        Number::I64 => as_is!(cursor.u64("a property")? as i64),
+        Number::U64 => as_is!(cursor.u64("a property")?),
+        Number::F32 => as_is!(f32::from_bits(cursor.u32("a property")?)),
+        Number::F64 => as_is!(f64::from_bits(cursor.u64("a property")?)),
+    })
+}
+
+/// A text behind its length.
+pub fn text(cursor: &mut Cursor<'_>, what: &str) -> Result<String, ReadError> {
+    let length = cursor.u32(what)?;
+    Ok(decode_text(cursor.take(u64::from(length), what)?).into_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_stamps_as_dates() {
+        let iso = |seconds, fraction| Stamp { seconds, fraction }.iso8601();
+        assert_eq!(
+            iso(2_082_844_800, 0).as_deref(),
+            Some("1970-01-01T00:00:00.000000000Z")
+        );
+        assert_eq!(
+            iso(3_540_000_000 + 12, 1 << 63).as_deref(),
+            Some("2016-03-05T05:20:12.500000000Z")
+        );
+        // Around the leap day of a year divisible by 400.
+        assert_eq!(
+            iso(3_034_540_800, 0).as_deref(),
+            Some("2000-02-28T00:00:00.000000000Z")
+        );
+        assert_eq!(
+            iso(3_034_627_200, 0).as_deref(),
+            Some("2000-02-29T00:00:00.000000000Z")
+        );
+        assert_eq!(
+            iso(3_034_713_600, 0).as_deref(),
+            Some("2000-03-01T00:00:00.000000000Z")
+        );
+        assert_eq!(iso(0, 0), None);
+        assert_eq!(iso(i64::MIN, 0), None);
+        assert_eq!(iso(i64::MAX, 0), None);
+    }
+
+    #[test]
+    fn valid_differences_of_stamps_keep_the_fraction() {
+        let start = Stamp {
+            seconds: 3_540_000_000,
+            fraction: 1 << 63,
+        };
+        let later = Stamp {
+            seconds: 3_540_000_001,
+            fraction: 0,
+        };
+        assert_eq!(later.seconds_since(start), 0.5);
+        assert_eq!(start.seconds_since(later), -0.5);
+    }
+}

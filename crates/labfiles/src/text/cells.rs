@@ -1,0 +1,144 @@
+//! Lines of a block and the cells of a line.
+
+use crate::bytes::decode_text;
+
+/// What stands between two cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Separator {
+    /// One byte.
+    Byte(u8),
+    /// Any run of spaces and tabs.
+    Blanks,
+}
+
+/// The cells of one line, without the blanks around them and without their quotes.
+pub struct Cells<'a> {
+    rest: Option<&'a [u8]>,
+    separator: Separator,
+}
+
+impl<'a> Cells<'a> {
+    /// The cells of a line that has no line end.
+    pub fn new(line: &'a [u8], separator: Separator) -> Self {
+        let rest = match separator {
+            Separator::Blanks => line.trim_ascii(),
+            Separator::Byte(_) => line,
+        };
+        Self {
+            rest: Some(rest),
+            separator,
+        }
+    }
+
+    fn cut(&mut self, rest: &'a [u8], end: usize) -> &'a [u8] {
+        self.rest = match self.separator {
+            _ if end >= rest.len() => None,
+            Separator::Byte(_) => Some(&rest[end + 1..]),
+            Separator::Blanks => Some(rest[end..].trim_ascii_start()),
+        };
+        &rest[..end.min(rest.len())]
+    }
+}
+
+impl<'a> Iterator for Cells<'a> {
+    type Item = &'a [u8];
+
+    fn next(&mut self) -> Option<&'a [u8]> {
+        let rest = self.rest?;
+        let skipped = rest.len() - rest.trim_ascii_start().len();
+        let is_separator = |b: u8| match self.separator {
+            Separator::Byte(s) => b == s,
+            Separator::Blanks => b == b' ' || b == b'\t',
+        };
+        if rest.get(skipped) == Some(&b'"') && !rest[..skipped].iter().any(|&b| is_separator(b)) {
+            let close = closing_quote(&rest[skipped + 1..]).map_or(rest.len(), |i| skipped + 2 + i);
+            let after = rest[close..].iter().position(|&b| is_separator(b));
+            let cell = self.cut(rest, after.map_or(rest.len(), |i| close + i));
+            let inner = cell.trim_ascii();
+            return Some(inner[1..].strip_suffix(b"\"").unwrap_or(&inner[1..]));
+        }
+        let end = match self.separator {
+            Separator::Byte(separator) => memchr::memchr(separator, rest),
+            Separator::Blanks => memchr::memchr2(b' ', b'\t', rest),
+        };
+        let end = end.unwrap_or(rest.len());
+        Some(self.cut(rest, end).trim_ascii())
+    }
+}
+
+/// Text of a cell; two quotes in a row are one.
+pub fn decode_cell(cell: &[u8]) -> String {
+    decode_text(cell).replace("\"\"", "\"")
+}
+
+/// Position of the quote that closes a cell; two in a row are one quote in the cell.
+fn closing_quote(bytes: &[u8]) -> Option<usize> {
+    let mut i = 0;
+    loop {
+        i += memchr::memchr(b'"', bytes.get(i..)?)?;
+        if bytes.get(i + 1) != Some(&b'"') {
+            return Some(i);
+        }
+        i += 2;
+    }
+}
+
+/// Lines of a block without their line ends, each with its offset in the block.
+pub struct Lines<'a> {
+    block: &'a [u8],
+    at: usize,
+    quotes: bool,
+}
+
+impl<'a> Lines<'a> {
+    /// The lines of a block; with `quotes`, line feeds between quotes do not end a line.
+    pub fn new(block: &'a [u8], quotes: bool) -> Self {
+        Self {
+            block,
+            at: 0,
+            quotes,
+        }
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = (usize, &'a [u8]);
+
+    fn next(&mut self) -> Option<(usize, &'a [u8])> {
+        if self.at >= self.block.len() {
+            return None;
+        }
+        let at = self.at;
+        let (line, next) = line_at(self.block, at, self.quotes);
+        self.at = next;
+        Some((at, line))
+    }
+}
+
+/// The line that begins at `at` of a block, without its line end, and where the next begins.
+pub fn line_at(block: &[u8], at: usize, quotes: bool) -> (&[u8], usize) {
+    let rest = &block[at..];
+    let end = match quotes {
+        false => memchr::memchr(b'\n', rest),
+        true => line_feed_outside_quotes(rest),
+    };
+    let end = end.unwrap_or(rest.len());
+    let line = &rest[..end];
+    (line.strip_suffix(b"\r").unwrap_or(line), at + end + 1)
+}
+
+fn line_feed_outside_quotes(bytes: &[u8]) -> Option<usize> {
+    let mut open = false;
+    memchr::memchr2_iter(b'\n', b'"', bytes).find(|&i| {
+        open ^= bytes[i] == b'"';
+        bytes[i] == b'\n' && !open
+    })
+}
+
+/// Whether a line is a row: not blank, not a comment.
+#[inline]
+pub fn is_row(line: &[u8], comments: &[u8]) -> bool {
+    line.iter()
+        .find(|b| !matches!(b, b' ' | b'\t' | b'\r'))
+        .is_some_and(|first| !comments.contains(first))
+}

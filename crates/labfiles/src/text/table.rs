@@ -1,0 +1,356 @@
+//! Rows of a delimited table to columns of numbers, a block of lines at a time.
+
+use crate::source::{ReadError, Samples};
+use crate::text::cells::{Cells, Lines, Separator, decode_cell, is_row, line_at};
+use crate::text::clock::{self, Stamp};
+use crate::text::{TextFile, decode, number};
+
+/// How the cells of a column are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Decimal numbers.
+    Number,
+    /// Points in time, given as seconds since the first.
+    Time,
+    /// Anything else.
+    Text,
+}
+
+/// Where the rows of a table lie and how they are written.
+#[derive(Debug, Clone)]
+pub struct Layout {
+    /// What stands between two cells.
+    pub separator: Separator,
+    /// The decimal mark.
+    pub decimal: u8,
+    /// The kinds of the columns.
+    pub kinds: Vec<Kind>,
+    /// Names of the columns, for messages.
+    pub names: Vec<String>,
+    /// Offset of the first row.
+    pub start: u64,
+    /// Offset of the end of the last row.
+    pub end: u64,
+    /// Whether line feeds may stand between quotes.
+    pub quotes: bool,
+    /// Whether `05/01/2024` is the first of May.
+    pub month_first: bool,
+    /// Line prefixes that make a line a comment.
+    pub comments: &'static [u8],
+}
+
+/// Columns being filled.
+enum Column {
+    Skip,
+    Number(Vec<f64>),
+    Time(Box<Times>),
+    Text(Vec<String>),
+}
+
+/// A column of points in time.
+struct Times {
+    values: Vec<f64>,
+    origin: Option<Stamp>,
+    days: f64,
+}
+
+impl Column {
+    fn samples(self) -> Samples {
+        match self {
+            Self::Skip => Samples::Real(Vec::new()),
+            Self::Number(values) => Samples::Real(values),
+            Self::Time(times) => Samples::Real(times.values),
+            Self::Text(values) => Samples::Text(values),
+        }
+    }
+}
+
+/// Read the columns `wanted` (indices, any order) of a table of `rows` rows.
+pub fn read_columns(
+    text: &TextFile,
+    layout: &Layout,
+    wanted: &[usize],
+    rows: usize,
+) -> Result<Vec<Samples>, ReadError> {
+    let width = layout.kinds.len();
+    let mut columns: Vec<Column> = (0..width)
+        .map(|i| {
+            if wanted.contains(&i) {
+                empty_column(layout.kinds[i], rows)
+            } else {
+                Column::Skip
+            }
+        })
+        .collect();
+    let last = wanted.iter().copied().max().map_or(0, |i| i + 1);
+    let mut read = 0usize;
+    text.blocks(layout.start, layout.quotes, |offset, block| {
+        let mut at = 0;
+        while at < block.len() && read < rows && offset + (at as u64) < layout.end {
+            let plain = plain_cells(block, at, layout, &mut columns[..last]);
+            if let Some(next) = plain.next {
+                (at, read) = (next, read + 1);
+                continue;
+            }
+            let (line, next) = line_at(block, at, layout.quotes);
+            if is_row(line, layout.comments) {
+                read_row(line, layout, &mut columns[..last], plain.done)
+                    .map_err(|fault| fault.error(text, layout, read, offset + at as u64))?;
+                read += 1;
+            }
+            at = next;
+        }
+        Ok(())
+    })?;
+    Ok(wanted
+        .iter()
+        .map(|&i| take_or_copy(&mut columns, wanted, i))
+        .collect())
+}
+
+/// A column's samples; one that is wanted twice is copied.
+fn take_or_copy(columns: &mut [Column], wanted: &[usize], i: usize) -> Samples {
+    if wanted.iter().filter(|&&w| w == i).count() == 1 {
+        return std::mem::replace(&mut columns[i], Column::Skip).samples();
+    }
+    match &columns[i] {
+        Column::Skip => Samples::Real(Vec::new()),
+        Column::Number(values) => Samples::Real(values.clone()),
+        Column::Time(times) => Samples::Real(times.values.clone()),
+        Column::Text(values) => Samples::Text(values.clone()),
+    }
+}
+
+fn empty_column(kind: Kind, rows: usize) -> Column {
+    match kind {
+        Kind::Number => Column::Number(Vec::with_capacity(rows)),
+        Kind::Time => Column::Time(Box::new(Times {
+            values: Vec::with_capacity(rows),
+            origin: None,
+            days: 0.0,
+        })),
+        Kind::Text => Column::Text(Vec::with_capacity(rows)),
+    }
+}
+
+/// What is wrong with a row: the column, the offset in the line, the words.
+struct Fault {
+    column: usize,
+    at: usize,
+    found: String,
+}
+
+impl Fault {
+    fn error(self, text: &TextFile, layout: &Layout, row: usize, position: u64) -> ReadError {
+        let expected = match layout.kinds.get(self.column) {
+            Some(Kind::Number) => "a number or an empty cell".to_owned(),
+            Some(Kind::Time) => "a point in time as in the rows before".to_owned(),
+            _ => format!("{} cells in a row", layout.kinds.len()),
+        };
+        let error = ReadError::new(
+            text.path(),
+            expected,
+            format!("{} in row {}", self.found, row + 1),
+            "Correct the row, or turn it into a comment with '#'.",
+        )
+        .at(position + self.at as u64);
+        match layout.names.get(self.column) {
+            Some(name) => error.channel(name.clone()),
+            None => error,
+        }
+    }
+}
+
+/// What was read at the front of a row.
+struct Plain {
+    /// How many cells.
+    done: usize,
+    /// Where the next row begins, if the row ends with these cells.
+    next: Option<usize>,
+}
+
+/// Read the leading cells of a row that are numbers or not wanted, without looking for the ends
+/// of cells and row first.
+#[inline]
+fn plain_cells(block: &[u8], mut at: usize, layout: &Layout, columns: &mut [Column]) -> Plain {
+    let Separator::Byte(separator) = layout.separator else {
+        return Plain {
+            done: 0,
+            next: None,
+        };
+    };
+    let count = columns.len();
+    for (done, column) in columns.iter_mut().enumerate() {
+        let other = Plain { done, next: None };
+        let (value, end) = match column {
+            Column::Number(_) => match number_cell(block, at, layout.decimal) {
+                Some(read) => read,
+                None => return other,
+            },
+            Column::Skip => match unwanted_cell(block, at, separator) {
+                Some(end) => (f64::NAN, end),
+                None => return other,
+            },
+            _ => return other,
+        };
+        let mut next = None;
+        if block.get(end) != Some(&separator) {
+            next = row_end(block, end).filter(|_| done + 1 == count);
+            if next.is_none() {
+                return other;
+            }
+        }
+        if let Column::Number(values) = column {
+            values.push(value);
+        }
+        if next.is_some() {
+            return Plain { done: count, next };
+        }
+        at = end + 1;
+    }
+    Plain {
+        done: count,
+        next: None,
+    }
+}
+
+/// The number of a cell that begins at `at`, and where it ends.
+#[inline]
+fn number_cell(block: &[u8], mut at: usize, decimal: u8) -> Option<(f64, usize)> {
+    while block.get(at) == Some(&b' ') {
+        at += 1;
+    }
+    number::parse_at(block, at, decimal)
+}
+
+/// The end of a cell that nobody wants, where it is known by its separator: it is not empty, not
+/// quoted, no comment, and not the last of its row.
+#[inline]
+fn unwanted_cell(block: &[u8], at: usize, separator: u8) -> Option<usize> {
+    let cell = block.get(at..)?;
+    let plain = |b: &u8| b.is_ascii_alphanumeric() || matches!(b, b'+' | b'-' | b'.');
+    cell.first().filter(|b| plain(b))?;
+    let end = memchr::memchr3(separator, b'\n', b'"', cell)?;
+    (cell[end] == separator).then_some(at + end)
+}
+
+/// Where the next row begins, if a row ends at `at`.
+#[inline]
+fn row_end(block: &[u8], at: usize) -> Option<usize> {
+    match block.get(at..)? {
+        [b'\n', ..] => Some(at + 1),
+        [b'\r', b'\n', ..] => Some(at + 2),
+        [] => Some(at),
+        _ => None,
+    }
+}
+
+/// Append the cells of one row from the one with the number `done` on; cells that the row lacks
+/// become NaN or empty.
+fn read_row(
+    line: &[u8],
+    layout: &Layout,
+    columns: &mut [Column],
+    done: usize,
+) -> Result<(), Fault> {
+    let mut cells = Cells::new(line, layout.separator).skip(done);
+    for (column, i) in columns[done..].iter_mut().zip(done..) {
+        let cell = cells.next().unwrap_or(b"");
+        push(column, cell, layout).map_err(|found| Fault {
+            column: i,
+            at: offset_of(line, cell),
+            found,
+        })?;
+    }
+    extra_cells(line, layout)
+}
+
+/// Refuse a row with more filled cells than the table has columns.
+fn extra_cells(line: &[u8], layout: &Layout) -> Result<(), Fault> {
+    let width = layout.kinds.len();
+    if let Separator::Byte(b) = layout.separator
+        && memchr::memchr_iter(b, line).count() < width
+    {
+        return Ok(());
+    }
+    match Cells::new(line, layout.separator)
+        .skip(width)
+        .find(|c| !c.is_empty())
+    {
+        None => Ok(()),
+        Some(cell) => Err(Fault {
+            column: width,
+            at: offset_of(line, cell),
+            found: format!("a further cell '{}'", shortened(cell)),
+        }),
+    }
+}
+
+fn offset_of(line: &[u8], cell: &[u8]) -> usize {
+    (cell.as_ptr() as usize)
+        .saturating_sub(line.as_ptr() as usize)
+        .min(line.len())
+}
+
+fn shortened(cell: &[u8]) -> String {
+    let text = decode(cell);
+    if text.chars().count() <= 24 {
+        text
+    } else {
+        text.chars().take(24).chain(['…']).collect()
+    }
+}
+
+fn push(column: &mut Column, cell: &[u8], layout: &Layout) -> Result<(), String> {
+    match column {
+        Column::Skip => {}
+        Column::Number(values) => {
+            let value = number::parse_cell(cell, layout.decimal);
+            values.push(value.ok_or_else(|| format!("'{}'", shortened(cell)))?);
+        }
+        Column::Time(times) => times.push(cell, layout.month_first)?,
+        Column::Text(values) => values.push(decode_cell(cell)),
+    }
+    Ok(())
+}
+
+impl Times {
+    /// Append the seconds of a cell since the column's first; a clock that passes midnight goes on.
+    fn push(&mut self, cell: &[u8], month_first: bool) -> Result<(), String> {
+        if cell.is_empty() {
+            self.values.push(f64::NAN);
+            return Ok(());
+        }
+        let stamp = clock::parse(&decode(cell), month_first)
+            .ok_or_else(|| format!("'{}'", shortened(cell)))?;
+        let origin = *self.origin.get_or_insert(stamp);
+        let mut value = stamp.since(origin) + self.days * 86_400.0;
+        let before = self.values.last();
+        if stamp.days.is_none() && before.is_some_and(|b| value < b - 43_200.0) {
+            self.days += 1.0;
+            value += 86_400.0;
+        }
+        self.values.push(value);
+        Ok(())
+    }
+}
+
+/// Count the rows of a table and find where the last begins.
+pub fn count_rows(text: &TextFile, layout: &Layout) -> Result<(u64, Option<u64>), ReadError> {
+    let mut rows = 0;
+    let mut last = None;
+    text.blocks(layout.start, layout.quotes, |offset, block| {
+        for (at, line) in Lines::new(block, layout.quotes) {
+            let position = offset + at as u64;
+            if position >= layout.end {
+                break;
+            }
+            if is_row(line, layout.comments) {
+                rows += 1;
+                last = Some(position);
+            }
+        }
+        Ok(())
+    })?;
+    Ok((rows, last))
+}

@@ -1,0 +1,254 @@
+//! From the functions of a file to datasets and channels.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::header::Header;
+use super::samples;
+use super::sets::{Function, Sets};
+use crate::bytes::FileBytes;
+use crate::source::{ChannelInfo, DatasetInfo, StoredType};
+
+/// What a channel is of its function.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// The abscissa.
+    Abscissa,
+    /// The ordinate.
+    Ordinate,
+}
+
+/// Where a channel's samples come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Origin {
+    /// Index into [`Sets::functions`].
+    pub function: usize,
+    /// Abscissa or ordinate.
+    pub side: Side,
+}
+
+/// The datasets of a file and the origins of their channels.
+pub type Arranged = (Vec<DatasetInfo>, Vec<Vec<Origin>>);
+
+/// What tells one channel of a record from another, and one record from the next.
+type Identity<'a> = (
+    i64,
+    Option<&'a str>,
+    i64,
+    i64,
+    Option<&'a str>,
+    i64,
+    i64,
+    Option<&'a str>,
+);
+
+fn identity(header: &Header) -> Identity<'_> {
+    let (response, reference) = (&header.response, &header.reference);
+    (
+        header.function,
+        response.name.as_deref(),
+        response.node,
+        response.direction,
+        reference.name.as_deref(),
+        reference.node,
+        reference.direction,
+        header.axes[1].label.as_deref(),
+    )
+}
+
+/// Compares the abscissae of functions: even ones by their headers, uneven ones value by value.
+struct Comparison<'a> {
+    file: &'a FileBytes,
+    functions: &'a [Function],
+    /// Abscissa of the uneven function that others were compared with last.
+    known: Option<(usize, Vec<f64>)>,
+}
+
+impl Comparison<'_> {
+    fn same(&mut self, first: usize, other: usize) -> bool {
+        let (a, b) = (&self.functions[first], &self.functions[other]);
+        let (x, y) = (&a.header, &b.header);
+        if x.even != y.even || a.samples != b.samples || x.axes[0] != y.axes[0] {
+            return false;
+        }
+        if x.even {
+            return x.start == y.start && x.increment == y.increment;
+        }
+        self.same_values(first, other)
+    }
+
+    /// Whether two uneven abscissae hold the same; not where one cannot be read.
+    fn same_values(&mut self, first: usize, other: usize) -> bool {
+        let read = |index: usize| samples::abscissa(self.file, &self.functions[index]).ok();
+        if self.known.as_ref().is_none_or(|(index, _)| *index != first) {
+            self.known = read(first).map(|values| (first, values));
+        }
+        let known = self.known.as_ref().map(|(_, values)| values);
+        known.is_some_and(|values| read(other).is_some_and(|others| *values == others))
+    }
+}
+
+/// Group functions that follow each other with the same abscissa; a channel that comes again with
+/// the same names, or at another time or load case, begins the next record.
+fn group(file: &FileBytes, functions: &[Function]) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    let mut abscissae = Comparison {
+        file,
+        functions,
+        known: None,
+    };
+    let mut seen: HashMap<Identity<'_>, Vec<usize>> = HashMap::new();
+    for (index, function) in functions.iter().enumerate() {
+        let header = &function.header;
+        let before = seen.get(&identity(header)).map_or(&[][..], Vec::as_slice);
+        let again = before.iter().take(8).any(|&other| {
+            let other = &functions[other].header;
+            let moved = other.lines[2] != header.lines[2] || other.load_case != header.load_case;
+            moved || other.lines == header.lines
+        });
+        let last = groups.last().filter(|_| !again);
+        if !last.is_some_and(|group| abscissae.same(group[0], index)) {
+            groups.push(Vec::new());
+            seen.clear();
+        }
+        if let Some(group) = groups.last_mut() {
+            group.push(index);
+        }
+        seen.entry(identity(header)).or_default().push(index);
+    }
+    groups
+}
+
+/// Names of the functions of a dataset: the first kind of name that tells them apart.
+fn names(headers: &[&Header]) -> Vec<String> {
+    let kinds: [fn(&Header) -> Option<String>; 4] = [
+        |h| h.response.name.clone(),
+        |h| h.response.place(),
+        |h| Some(h.lines[0].clone()).filter(|line| !line.is_empty()),
+        |h| h.axes[1].label.clone(),
+    ];
+    for kind in kinds {
+        let all: Option<Vec<String>> = headers.iter().map(|h| kind(h)).collect();
+        if let Some(all) = all {
+            let distinct: std::collections::HashSet<&String> = all.iter().collect();
+            if distinct.len() == all.len() {
+                return all;
+            }
+        }
+    }
+    let any = |h: &Header| kinds.iter().find_map(|kind| kind(h)).unwrap_or_default();
+    let numbered = headers.iter().enumerate();
+    numbered
+        .map(|(k, h)| format!("{} #{}", any(h), k + 1).trim_start().to_owned())
+        .collect()
+}
+
+/// Arrange the functions of a file as datasets.
+pub fn arrange(file: &FileBytes, sets: &Sets) -> Arranged {
+    let groups = group(file, &sets.functions);
+    let single = groups.len() == 1;
+    let mut arranged: Arranged = (Vec::new(), Vec::new());
+    for (number, members) in groups.iter().enumerate() {
+        let headers: Vec<&Header> = members.iter().map(|&m| &sets.functions[m].header).collect();
+        let first = &sets.functions[members[0]];
+        let (mut channels, mut origins) = (Vec::new(), Vec::new());
+        if !(first.header.even && first.header.over_time()) {
+            channels.push(abscissa(first));
+            origins.push(Origin {
+                function: members[0],
+                side: Side::Abscissa,
+            });
+        }
+        for (&member, name) in members.iter().zip(names(&headers)) {
+            channels.push(ordinate(sets, &sets.functions[member], name));
+            origins.push(Origin {
+                function: member,
+                side: Side::Ordinate,
+            });
+        }
+        let time_axis = (first.header.over_time() && !first.header.even).then_some(0);
+        let name = if single {
+            String::new()
+        } else {
+            (number + 1).to_string()
+        };
+        let attributes = attributes(sets, first, number);
+        arranged.0.push(DatasetInfo {
+            name,
+            channels,
+            time_axis,
+            attributes,
+        });
+        arranged.1.push(origins);
+    }
+    arranged
+}
+
+fn abscissa(function: &Function) -> ChannelInfo {
+    let header = &function.header;
+    let axis = &header.axes[0];
+    let fallback = match axis.kind {
+        17 => "time",
+        18 => "frequency",
+        _ => "abscissa",
+    };
+    let double = header.even || header.double();
+    ChannelInfo {
+        name: axis.label.clone().unwrap_or_else(|| fallback.to_owned()),
+        unit: axis.unit.clone(),
+        stored: StoredType::Float(if double { 64 } else { 32 }),
+        samples: function.samples,
+        sample_rate_hz: None,
+        start_time: header.start_time(),
+        properties: BTreeMap::new(),
+    }
+}
+
+fn ordinate(sets: &Sets, function: &Function, name: String) -> ChannelInfo {
+    let header = &function.header;
+    let bits = if header.double() { 64 } else { 32 };
+    let system = function.system.map(|index| &sets.systems[index]);
+    let of = |axis: usize| {
+        let axis = &header.axes[axis];
+        axis.unit
+            .clone()
+            .or_else(|| system.and_then(|system| system.unit(axis.kind)))
+    };
+    let unit = match (of(1), of(2)) {
+        (Some(numerator), Some(denominator)) => Some(format!("({numerator})/({denominator})")),
+        (numerator, _) => numerator,
+    };
+    let rate = header.sample_rate_hz();
+    let timed = header.even && header.over_time() && rate.is_finite() && rate > 0.0;
+    ChannelInfo {
+        name,
+        unit,
+        stored: match header.complex() {
+            true => StoredType::Complex(bits),
+            false => StoredType::Float(bits),
+        },
+        samples: function.samples,
+        sample_rate_hz: timed.then_some(rate),
+        start_time: header.start_time(),
+        properties: header.properties(),
+    }
+}
+
+/// Names and unit system of the file, and the identification of the record. The file's names go
+/// with its first datasets only, so that many small records do not multiply them.
+fn attributes(sets: &Sets, first: &Function, number: usize) -> BTreeMap<String, String> {
+    let mut all = BTreeMap::new();
+    if number < 1000 {
+        all.extend(sets.model.iter().cloned());
+    }
+    let system = first.system.map(|index| sets.systems[index].attributes());
+    all.extend(system.into_iter().flatten());
+    let lines = first
+        .header
+        .lines
+        .iter()
+        .enumerate()
+        .filter(|(_, line)| !line.is_empty());
+    all.extend(lines.map(|(index, line)| (format!("id{}", index + 1), line.clone())));
+    all.insert("load_case_id".into(), first.header.load_case.to_string());
+    all
+}

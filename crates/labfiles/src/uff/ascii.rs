@@ -1,0 +1,275 @@
+//! Numbers written as text, read fast and exactly.
+
+use crate::text::decimal;
+use crate::text::digits::{MOST_DIGITS, few_digits, many_digits};
+
+/// Longest number that is believed, bytes.
+const LONGEST: usize = 64;
+
+/// Why a number could not be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NoNumber {
+    /// Offset of the offending byte.
+    pub at: usize,
+}
+
+/// Reads numbers from text, one after the other.
+///
+/// Numbers are separated by blanks or line ends, or by their sign alone, as where a Fortran field
+/// is full (`-1.5E+00-2.5E+00`). Exponents are spelt E, e, D or d, or only by their sign
+/// (`1.5-100`).
+#[derive(Debug, Clone)]
+pub struct Numbers<'a> {
+    text: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Numbers<'a> {
+    /// Start at the front of a text.
+    pub fn new(text: &'a [u8]) -> Self {
+        Self { text, at: 0 }
+    }
+
+    #[inline]
+    fn peek(&self, at: usize) -> u8 {
+        self.text.get(at).copied().unwrap_or(b' ')
+    }
+
+    #[inline]
+    fn skip_blanks(&mut self) {
+        while self
+            .text
+            .get(self.at)
+            .is_some_and(|b| matches!(b, b' ' | b'\n' | b'\r' | b'\t'))
+        {
+            self.at += 1;
+        }
+    }
+
+    /// The exponent at `at`, of up to four digits, and the place behind it.
+    #[inline]
+    fn exponent(&self, mut at: usize) -> Option<(i32, usize)> {
+        let letter = matches!(self.peek(at), b'E' | b'e' | b'D' | b'd');
+        let signed = |at| matches!(self.peek(at), b'+' | b'-');
+        if !letter {
+            // A sign is an exponent's only before three digits (`1.5-100`); else a number begins.
+            if !signed(at) {
+                return Some((0, at));
+            }
+            let mut digits = 0;
+            let end = few_digits(self.text, at + 1, &mut digits);
+            let bare = end == at + 4 && !matches!(self.peek(end), b'.');
+            return Some(match bare {
+                true if self.peek(at) == b'-' => (-(digits as i32), end),
+                true => (digits as i32, end),
+                false => (0, at),
+            });
+        }
+        at += 1;
+        let negative = self.peek(at) == b'-';
+        at += usize::from(signed(at));
+        let mut value = 0;
+        let end = few_digits(self.text, at, &mut value);
+        if end == at || end > at + 4 {
+            return None;
+        }
+        Some((
+            if negative {
+                -(value as i32)
+            } else {
+                value as i32
+            },
+            end,
+        ))
+    }
+
+    /// The number at the present place, which is no blank.
+    #[inline]
+    fn number(&mut self) -> Result<f64, NoNumber> {
+        let start = self.at;
+        let first = self.peek(start);
+        let begin = start + usize::from(matches!(first, b'-' | b'+'));
+        let mut mantissa = 0;
+        let whole = few_digits(self.text, begin, &mut mantissa);
+        let (mut end, mut places) = (whole, 0);
+        if self.peek(whole) == b'.' {
+            end = many_digits(self.text, whole + 1, &mut mantissa);
+            places = end - whole - 1;
+        }
+        let digits = whole - begin + places;
+        if digits == 0 {
+            return self.word();
+        }
+        let Some((exponent, after)) = self.exponent(end) else {
+            return Err(NoNumber { at: end });
+        };
+        if !matches!(self.peek(after), b' ' | b'\n' | b'\r' | b'\t' | b'-' | b'+') {
+            return Err(NoNumber { at: after });
+        }
+        self.at = after;
+        let power = i64::from(exponent) - places as i64;
+        let fits = digits <= MOST_DIGITS;
+        if let Some(value) = fits.then(|| decimal::nearest(mantissa, power)).flatten() {
+            return Ok(if first == b'-' { -value } else { value });
+        }
+        self.slowly(start, end, exponent)
+    }
+
+    /// Any number, by the standard library.
+    #[cold]
+    fn slowly(&self, start: usize, end: usize, exponent: i32) -> Result<f64, NoNumber> {
+        let mantissa = &self.text[start..end];
+        if mantissa.len() > LONGEST {
+            return Err(NoNumber { at: start });
+        }
+        let text = format!("{}e{exponent}", String::from_utf8_lossy(mantissa));
+        text.parse().map_err(|_| NoNumber { at: start })
+    }
+
+    /// Not a number, or infinity, as programs write them.
+    #[cold]
+    fn word(&mut self) -> Result<f64, NoNumber> {
+        let start = self.at;
+        let length = self.text[start..]
+            .iter()
+            .take(LONGEST)
+            .take_while(|b| !b.is_ascii_whitespace());
+        let word = &self.text[start..start + length.count()];
+        let word = String::from_utf8_lossy(word).to_ascii_lowercase();
+        let value = match word.trim_start_matches(['+', '-']) {
+            "nan" | "nan(ind)" | "1.#ind" | "1.#qnan" => f64::NAN,
+            "inf" | "infinity" => f64::INFINITY,
+            _ => return Err(NoNumber { at: start }),
+        };
+        self.at += word.len();
+        Ok(if word.starts_with('-') { -value } else { value })
+    }
+
+    /// Append up to `most` numbers; fewer where the text ends.
+    pub fn take(&mut self, most: usize, out: &mut Vec<f64>) -> Result<(), NoNumber> {
+        for _ in 0..most {
+            self.skip_blanks();
+            if self.at >= self.text.len() {
+                break;
+            }
+            out.push(self.number()?);
+        }
+        Ok(())
+    }
+
+    /// How many numbers are left; stops at what is none.
+    pub fn count(mut self) -> Result<u64, NoNumber> {
+        let mut count = 0;
+        loop {
+            self.skip_blanks();
+            if self.at >= self.text.len() {
+                return Ok(count);
+            }
+            self.number()?;
+            count += 1;
+        }
+    }
+}
+
+/// Place of the first line feed, eight bytes at a time.
+pub fn line_feed(text: &[u8]) -> Option<usize> {
+    const ONES: u64 = 0x0101_0101_0101_0101;
+    const FEEDS: u64 = ONES * b'\n' as u64;
+    let (words, _) = text.as_chunks::<8>();
+    let mut at = 0;
+    for &word in words {
+        // A byte that equals the line feed becomes 0, and a 0 borrows into its top bit.
+        let zero = u64::from_le_bytes(word) ^ FEEDS;
+        if zero.wrapping_sub(ONES) & !zero & (ONES << 7) != 0 {
+            break;
+        }
+        at += 8;
+    }
+    text[at..]
+        .iter()
+        .position(|&b| b == b'\n')
+        .map(|found| at + found)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn all(text: &str) -> Result<Vec<f64>, NoNumber> {
+        let mut out = Vec::new();
+        Numbers::new(text.as_bytes())
+            .take(usize::MAX, &mut out)
+            .map(|()| out)
+    }
+
+    #[test]
+    fn valid_fields_as_instruments_write_them() {
+        assert_eq!(
+            all(" -1.47553E-02 -1.72957e-02\r\n 5.").unwrap(),
+            [-0.0147553, -0.0172957, 5.0]
+        );
+        assert_eq!(
+            all("-1.11111E+00-2.5D+01+3.5d0").unwrap(),
+            [-1.11111, -25.0, 3.5]
+        );
+        assert_eq!(all("1.5-100 -2.5+003").unwrap(), [1.5e-100, -2500.0]);
+        assert_eq!(
+            all("1.00000E-023 9.99999E+299").unwrap(),
+            [1e-23, 9.99999e299]
+        );
+        assert_eq!(
+            all("0.123456789012345678D+01").unwrap(),
+            [1.2345678901234567]
+        );
+        assert!(all("NaN -inf").unwrap()[0].is_nan());
+        assert!(all("").unwrap().is_empty());
+    }
+
+    #[test]
+    fn valid_what_is_no_number_is_refused_at_its_byte() {
+        assert_eq!(all("1.0 x"), Err(NoNumber { at: 4 }));
+        assert_eq!(all("1.0E"), Err(NoNumber { at: 3 }));
+        assert_eq!(all("1.00000E+001.5"), Err(NoNumber { at: 12 }));
+        assert_eq!(all("1,5"), Err(NoNumber { at: 1 }));
+        assert_eq!(all("- 5"), Err(NoNumber { at: 0 }));
+    }
+
+    #[test]
+    fn valid_line_feeds() {
+        for length in 0..40 {
+            let mut text = vec![b'x'; length];
+            assert_eq!(line_feed(&text), None);
+            for at in 0..length {
+                text[at] = b'\n';
+                assert_eq!(line_feed(&text), Some(at));
+                text[at] = 0x0b;
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn prop_numbers_equal_the_standard_parsers(mantissa in -9_999_999i64..=9_999_999, places in 0u32..7, exponent in -310i32..310) {
+            let text = format!("{}.{:0width$}E{exponent:+03}", mantissa / 1000, mantissa.unsigned_abs() % 1000, width = places.max(3) as usize);
+            prop_assert_eq!(all(&text).unwrap(), [text.parse::<f64>().unwrap()]);
+        }
+
+        #[test]
+        fn prop_fortran_fields_equal_the_standard_parsers(bits: u64) {
+            let value = f64::from_bits(bits);
+            prop_assume!(value.is_finite());
+            for text in [format!("{value:.5E}"), format!("{value:.12e}"), format!("{value:.16e}")] {
+                prop_assert_eq!(all(&text).unwrap(), [text.parse::<f64>().unwrap()]);
+            }
+        }
+
+        #[test]
+        fn prop_any_text_is_read_or_refused(text: Vec<u8>) {
+            let mut out = Vec::new();
+            let _ = Numbers::new(&text).take(usize::MAX, &mut out);
+            let _ = Numbers::new(&text).count();
+        }
+    }
+}
