@@ -59,8 +59,8 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::identify::fit::least_squares::Ending;
     use crate::identify::fit::parameters::Parameters;
+    use crate::identify::fit::report::FitReport;
 
     #[test]
     fn valid_the_band_of_r_and_beta_themselves_is_their_interval() {
@@ -72,7 +72,7 @@ mod tests {
             covariance: DMatrix::from_row_slice(2, 2, &[r * r, common, common, beta * beta]),
             cost: 0.0,
             residuals: 0,
-            ending: Ending::Converged,
+            report: FitReport::default(),
         };
         let spread = Spread::of(&fit, 4.0, Rig::Double);
         let of_r = spread.half95(|m| Some(m.restitution().at(1.0)));
