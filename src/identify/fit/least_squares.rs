@@ -243,10 +243,9 @@ impl<P: LeastSquares> Solver<&P, FitState<P::Point>> for DampedSteps<'_> {
         problem: &mut Problem<&P>,
         mut state: FitState<P::Point>,
     ) -> Result<(FitState<P::Point>, Option<KV>), Error> {
-        let start = state.take_param().ok_or_else(argmin_error_closure!(
-            NotInitialized,
-            "a fit needs a start"
-        ))?;
+        let start = state
+            .take_param()
+            .ok_or_else(argmin_error_closure!(NotInitialized, "a fit needs a start"))?;
         let factor = problem.problem(FACTOR, |p| p.factor(&start))?;
         self.scales = vec![0.0; factor.unknowns()];
         let state = state.param(start).cost(factor.cost).jacobian(factor);
