@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::identify::evidence::{Blocks, Evidence};
-use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::Problem;
+use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::identification::{Identification, JointFit, MethodResult};
 use crate::identify::joint::{self, Weights};
 use crate::identify::judgement::agreement::agreement;

@@ -267,7 +267,9 @@ impl<'a> Selection<'a> {
     fn settles_slowly(&self, item: usize, at: &Parameters) -> bool {
         let block = &self.blocks.trajectory;
         let observation = block.records[item].observation;
-        let evidence = &self.evidence.observations[observation].finding.evidence;
+        let evidence = &self.evidence.observations[observation]
+            .classification
+            .evidence;
         let slowest = block.slowest_multiplier(item, at).unwrap_or(1.0);
         slowest.powf(evidence.cycles_observed) > (-1f64).exp()
     }
@@ -291,14 +293,23 @@ impl<'a> Selection<'a> {
         let observations = self.evidence.observations;
         let blocks = &self.blocks;
         match method {
-            Method::Resonance => blocks.resonance.points.iter().map(|p| p.observation).collect(),
+            Method::Resonance => blocks
+                .resonance
+                .points
+                .iter()
+                .map(|p| p.observation)
+                .collect(),
             Method::Trajectories => {
                 let records = &blocks.trajectory.records;
                 records.iter().map(|r| r.observation).collect()
             }
             Method::Boundaries => {
-                let names: BTreeSet<&String> =
-                    blocks.boundary.brackets.iter().flat_map(|b| &b.records).collect();
+                let names: BTreeSet<&String> = blocks
+                    .boundary
+                    .brackets
+                    .iter()
+                    .flat_map(|b| &b.records)
+                    .collect();
                 let indexed = observations.iter().enumerate();
                 indexed
                     .filter(|(_, o)| names.contains(&o.record))
@@ -306,7 +317,12 @@ impl<'a> Selection<'a> {
                     .collect()
             }
             Method::Impacts => blocks.impact.pairs.iter().map(|p| p.observation).collect(),
-            Method::Flights => blocks.flight.records.iter().map(|r| r.observation).collect(),
+            Method::Flights => blocks
+                .flight
+                .records
+                .iter()
+                .map(|r| r.observation)
+                .collect(),
             Method::FreeDecay => {
                 let indexed = observations.iter().enumerate();
                 indexed

@@ -7,15 +7,15 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::event::detect::DetectSettings;
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::run::identify;
-use crate::identify::{Finding, Identification};
 use crate::identify::uncertainty::bound::bounds;
 use crate::identify::uncertainty::coverage::{Score, Trial, scores, table};
 use crate::identify::uncertainty::{Asked, Way};
+use crate::identify::{Finding, Identification};
 use crate::motion::{Bracket, ClassifySettings, Observation, brackets, observe, scale_drives};
 use crate::pipeline::{PipelineError, Progress};
 use crate::record::{Record, Role};
@@ -111,11 +111,7 @@ impl Mistake {
     fn is_named_by(self, seen: &Seen) -> bool {
         match self {
             Self::SwappedChannels if seen.flag("swapped_masses") => true,
-            _ => seen
-                .outcome
-                .suspicions
-                .iter()
-                .any(|s| self.is(s)),
+            _ => seen.outcome.suspicions.iter().any(|s| self.is(s)),
         }
     }
 }
@@ -164,7 +160,7 @@ impl Seen {
 
 fn evidence<'a>(observations: &'a [Observation], brackets: &'a [Bracket]) -> Evidence<'a> {
     Evidence {
-        rig: Rig::Double,
+        rig: RigKind::Double,
         observations,
         brackets,
         nominal: Nominal {
@@ -196,7 +192,7 @@ fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError
             let found = crate::record::consistency::inspect(&record);
             record.flags.extend(found);
             let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
-            observe(&record, Rig::Double, &detect, &classify)
+            observe(&record, RigKind::Double, &detect, &classify)
         })
         .collect();
     scale_drives(&mut observations);

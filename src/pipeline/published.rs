@@ -27,10 +27,8 @@ pub fn run(
         identification: identify(&speeds, &published.damping_ratio_hypotheses),
         provenance: provenance(campaign)?,
     };
-    let mut content = ReportContent::new(
-        campaign.report.title.clone(),
-        found.identification.clone(),
-    );
+    let mut content =
+        ReportContent::new(campaign.report.title.clone(), found.identification.clone());
     content.summary.name = campaign.name.clone();
     content.summary.rig = "closing speeds as published; nothing was measured here".into();
     let damping_ratio = found_damping(&found.identification);

@@ -16,10 +16,10 @@ pub use decays::shown_decays;
 
 use std::collections::BTreeMap;
 
-use crate::event::Rig;
-use crate::identify::{Identification, Item, Provenance, Reason};
+use crate::event::RigKind;
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::Parameters;
+use crate::identify::{Identification, Item, Provenance, Reason};
 use crate::motion::{Bracket, Observation};
 use crate::record::{Record, Role};
 use crate::report::content::ReportContent;
@@ -32,7 +32,7 @@ pub struct CampaignFacts {
     /// Name of the campaign.
     pub name: String,
     /// One or two masses.
-    pub rig: Rig,
+    pub rig: RigKind,
     /// Nominal values: name, value in SI, unit.
     pub nominal: Vec<(String, f64, String)>,
     /// Whether its records are simulated.

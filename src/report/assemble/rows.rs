@@ -23,8 +23,8 @@ pub(super) fn summary(gathered: &Gathered) -> CampaignSummary {
     CampaignSummary {
         name: gathered.campaign.name.clone(),
         rig: match gathered.campaign.rig {
-            crate::event::Rig::Double => "two masses against each other".into(),
-            crate::event::Rig::Single => "one mass against a stop".into(),
+            crate::event::RigKind::Double => "two masses against each other".into(),
+            crate::event::RigKind::Single => "one mass against a stop".into(),
         },
         records_total: all.len(),
         records_used: all.iter().filter(|o| !o.excluded()).count(),
@@ -98,7 +98,7 @@ pub(super) fn records(gathered: &Gathered) -> Vec<RecordRow> {
 
 fn record(gathered: &Gathered, index: usize, o: &Observation, left: Option<&Reason>) -> RecordRow {
     let (eta, rho) = place(gathered, o);
-    let pair = o.finding.impacts_and_periods();
+    let pair = o.classification.impacts_and_periods();
     let using = gathered.identification.methods_using(index);
     let used_by: Vec<String> = using.map(|m| m.name().to_owned()).collect();
     let excluded = o
@@ -114,10 +114,10 @@ fn record(gathered: &Gathered, index: usize, o: &Observation, left: Option<&Reas
         clearance_m: o.setting.clearance_m,
         rho,
         sweep: o.setting.sweep,
-        motion: o.finding.motion.clone(),
+        motion: o.classification.motion.clone(),
         impacts_p: pair.map(|p| p.0),
         periods_n: pair.map(|p| p.1),
-        confidence: Some(o.finding.confidence),
+        confidence: Some(o.classification.confidence),
         impacts: o.impacts.len(),
         flags: o.flags.iter().map(|f| f.code.replace('_', " ")).collect(),
         left_out: excluded

@@ -26,7 +26,9 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
             None => "unknown",
         },
         agreement: match id.specimens.is_empty() {
-            true => prose(&agreement(&id.agreement.to_string(), drawn.speech)).localised(drawn.speech),
+            true => {
+                prose(&agreement(&id.agreement.to_string(), drawn.speech)).localised(drawn.speech)
+            }
             false => Rich::default(),
         },
         facts: facts(&content.summary, drawn.speech),

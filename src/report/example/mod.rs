@@ -210,11 +210,20 @@ pub fn identification() -> Identification {
 fn provenance() -> Provenance {
     Provenance {
         settings: serde_json::json!({}),
-        versions: [("impactid", "0.1.0"), ("identification.json", "2"), ("polars", "0.55.2")]
-            .map(|(k, v)| (k.to_owned(), v.to_owned()))
-            .into(),
+        versions: [
+            ("impactid", "0.1.0"),
+            ("identification.json", "2"),
+            ("polars", "0.55.2"),
+        ]
+        .map(|(k, v)| (k.to_owned(), v.to_owned()))
+        .into(),
         inputs_sha256: (1..=3)
-            .map(|i| (format!("raw/sweep_{i:02}.h5"), format!("{:064x}", 0x1234_5678_9abc_def0_u128 * i * i)))
+            .map(|i| {
+                (
+                    format!("raw/sweep_{i:02}.h5"),
+                    format!("{:064x}", 0x1234_5678_9abc_def0_u128 * i * i),
+                )
+            })
             .collect(),
     }
 }

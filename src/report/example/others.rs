@@ -28,10 +28,7 @@ fn bare(kind: VerdictKind, sentence: Sentence) -> Identification {
 
 /// Nine free decays and nothing else.
 pub fn decays_only() -> ReportContent {
-    let mut id = bare(
-        VerdictKind::Weak,
-        Sentence::Specimens { count: 4 },
-    );
+    let mut id = bare(VerdictKind::Weak, Sentence::Specimens { count: 4 });
     for (i, name) in ["mass 1", "mass 2", "mass 3", "mass 4"]
         .into_iter()
         .enumerate()
