@@ -24,7 +24,7 @@ use crate::identify::evidence::resonance::ResonanceBlock;
 use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::fit::parameters::{Coordinate, gain_index};
 use crate::identify::fit::{Block, Prior};
-use crate::identify::uncertainty::Asked;
+use crate::identify::uncertainty::UncertaintyOptions;
 use crate::motion::{Bracket, Observation};
 
 /// What the laboratory states about its rig.
@@ -56,7 +56,7 @@ pub struct Evidence<'a> {
     /// What is stated.
     pub nominal: Nominal,
     /// What is asked for of the uncertainty.
-    pub uncertainty: Asked,
+    pub uncertainty: UncertaintyOptions,
 }
 
 /// Relative error of instruments and model that noise does not show.
