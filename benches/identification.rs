@@ -9,7 +9,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use impact_oscillator::model::params::ModelError;
-use impactid::event::Rig;
+use impactid::event::RigKind;
 use impactid::event::detect::DetectSettings;
 use impactid::identify::evidence::{Evidence, Nominal};
 use impactid::identify::run::identify;
@@ -38,7 +38,7 @@ fn main() -> Result<(), ModelError> {
         ("all fits and 1,000 bootstrap replicas", Way::Bootstrap, 3),
     ] {
         let evidence = Evidence {
-            rig: Rig::Double,
+            rig: RigKind::Double,
             observations: &observations,
             brackets: &brackets,
             nominal: Nominal {
@@ -92,7 +92,7 @@ fn campaign() -> Result<Vec<Observation>, ModelError> {
         .map(|raw| {
             let record = calibrated(raw, &truth, &faults);
             let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
-            observe(&record, Rig::Double, &detect, &classify)
+            observe(&record, RigKind::Double, &detect, &classify)
         })
         .collect();
     scale_drives(&mut observations);

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::event::detect::DetectSettings;
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::fit::parameters::Parameters;
@@ -156,7 +156,7 @@ impl Seen {
 
 fn evidence<'a>(observations: &'a [Observation], brackets: &'a [Bracket]) -> Evidence<'a> {
     Evidence {
-        rig: Rig::Double,
+        rig: RigKind::Double,
         observations,
         brackets,
         nominal: Nominal {
@@ -188,7 +188,7 @@ fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError
             let found = crate::record::consistency::inspect(&record);
             record.flags.extend(found);
             let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
-            observe(&record, Rig::Double, &detect, &classify)
+            observe(&record, RigKind::Double, &detect, &classify)
         })
         .collect();
     scale_drives(&mut observations);
