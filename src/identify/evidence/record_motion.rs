@@ -1,7 +1,7 @@
 //! A periodic record as the model has it: the values at all its points, and their exact slopes
 //! over every parameter, over the drive's phase and over its frequency.
 
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::identify::evidence::direction::{change, relative_length, relative_rate};
 use crate::identify::evidence::high_pass::{HighPass, HighPassSlope, Passed, Tail};
 use crate::identify::evidence::trajectory::TrajectoryRecord;
@@ -34,7 +34,7 @@ pub struct NearestOrbit {
 
 impl NearestOrbit {
     /// At given parameters; `None` beyond the saddle-node.
-    pub fn of(rig: Rig, record: &TrajectoryRecord, parameters: &Parameters) -> Option<Self> {
+    pub fn of(rig: RigKind, record: &TrajectoryRecord, parameters: &Parameters) -> Option<Self> {
         let (own, clearance_m) = parameters.own(&record.circumstances(rig));
         let machine = own.machine(rig);
         let setting = own.setting(record.frequency_hz, clearance_m, record.drive_amplitude);
@@ -61,7 +61,7 @@ impl NearestOrbit {
 /// A record's orbit at its points.
 pub struct RecordMotion<'a> {
     record: &'a TrajectoryRecord,
-    rig: Rig,
+    rig: RigKind,
     /// Of the whole campaign.
     common: Parameters,
     /// Of this record.
@@ -108,7 +108,11 @@ const NODES: usize = 128;
 
 impl<'a> RecordMotion<'a> {
     /// At given parameters; `None` where there is no such orbit.
-    pub fn new(rig: Rig, record: &'a TrajectoryRecord, parameters: &Parameters) -> Option<Self> {
+    pub fn new(
+        rig: RigKind,
+        record: &'a TrajectoryRecord,
+        parameters: &Parameters,
+    ) -> Option<Self> {
         let NearestOrbit {
             own,
             machine,
@@ -603,7 +607,7 @@ mod tests {
     }
 
     fn values(record: &TrajectoryRecord, parameters: &Parameters) -> Vec<f64> {
-        RecordMotion::new(Rig::Double, record, parameters)
+        RecordMotion::new(RigKind::Double, record, parameters)
             .expect("an orbit")
             .values()
     }
@@ -621,7 +625,7 @@ mod tests {
     fn valid_slopes_of_a_record_are_those_of_finite_differences() {
         let (p, step) = (parameters(), 1e-6);
         for record in [record(1, 15.0), record(2, 31.0)] {
-            let motion = RecordMotion::new(Rig::Double, &record, &p).expect("an orbit");
+            let motion = RecordMotion::new(RigKind::Double, &record, &p).expect("an orbit");
             let here = motion.values();
             let mut coordinates = Coordinate::PHYSICAL.to_vec();
             coordinates.extend([Coordinate::DriveAsymmetry, Coordinate::StiffnessAsymmetry]);

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::identify::evidence::record_motion::{NearestOrbit, RecordMotion};
 use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::evidence::waveform::Phases;
@@ -52,14 +52,14 @@ pub struct TrajectoryRecord {
 
 impl TrajectoryRecord {
     /// Where and when it was taken.
-    pub fn circumstances(&self, rig: Rig) -> Circumstances {
+    pub fn circumstances(&self, rig: RigKind) -> Circumstances {
         Circumstances {
             frequency_hz: self.frequency_hz,
             clearance_m: self.clearance_m,
             gap: self.gap,
             place: self.place,
             approach_m_s: self.closing_speed_m_s,
-            masses: if rig == Rig::Double { 2.0 } else { 1.0 },
+            masses: if rig == RigKind::Double { 2.0 } else { 1.0 },
         }
     }
 
@@ -73,7 +73,7 @@ impl TrajectoryRecord {
 #[derive(Debug, Clone)]
 pub struct TrajectoryBlock {
     /// One or two masses.
-    pub rig: Rig,
+    pub rig: RigKind,
     /// The records.
     pub records: Vec<TrajectoryRecord>,
     /// Relative error added to every point: what instruments and model leave open.
@@ -86,11 +86,11 @@ pub struct TrajectoryBlock {
 
 impl TrajectoryBlock {
     /// Collect the records that may be used.
-    pub fn new(rig: Rig, observations: &[Observation], relative_error: f64) -> Self {
+    pub fn new(rig: RigKind, observations: &[Observation], relative_error: f64) -> Self {
         let records = observations
             .iter()
             .enumerate()
-            .filter(|(_, o)| !o.excluded() && o.finding.confidence >= 0.7)
+            .filter(|(_, o)| !o.excluded() && o.classification.confidence >= 0.7)
             .filter_map(|(i, o)| trajectory_record(i, o))
             .collect();
         Self {
@@ -167,7 +167,7 @@ fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> 
     let speeds: Vec<f64> = o
         .impacts
         .iter()
-        .filter_map(|i| i.closing_speed_before_m_s)
+        .filter_map(|i| i.approach_speed_before_m_s)
         .collect();
     Some(TrajectoryRecord {
         observation: index,

@@ -140,7 +140,7 @@ impl Effect {
             Self::FrequencyBend => 1e-3,
             Self::DampingDrift => 2e-2,
             Self::DeflectionDrift => 5e-3,
-            Self::ContactDuration => 0.3,
+            Self::ContactDuration => 0.6,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::event::{CornerShift, Rig};
+use crate::event::{CornerShift, RigKind};
 use crate::identify::fit::effect::Effect;
 use crate::record::Role;
 use impact_oscillator::model::params::{
@@ -135,7 +135,7 @@ impl Parameters {
     /// The machine, dimensionless: masses about the nominal one. The coefficients of damping are
     /// alike where stiffnesses differ (the paper's eq. 15); asymmetries are per unit of mass, so
     /// that unlike masses change the impact alone.
-    pub fn machine(&self, rig: Rig) -> Machine {
+    pub fn machine(&self, rig: RigKind) -> Machine {
         let mass = |sign: f64| {
             let of = |asymmetry: f64| (1.0 + 0.5 * sign * asymmetry).max(0.01);
             let natural_frequency_ratio = of(self.stiffness_asymmetry).sqrt();
@@ -150,8 +150,8 @@ impl Parameters {
         };
         let restitution = Restitution::Constant(self.restitution.clamp(0.0, 1.0));
         let (x, y) = match rig {
-            Rig::Double => (mass(1.0), Some(mass(-1.0))),
-            Rig::Single => (Oscillator::nominal(self.damping_ratio), None),
+            RigKind::Double => (mass(1.0), Some(mass(-1.0))),
+            RigKind::Single => (Oscillator::nominal(self.damping_ratio), None),
         };
         Machine {
             x,
