@@ -11,10 +11,11 @@ use crate::event::RigKind;
 use crate::event::detect::DetectSettings;
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::fit::parameters::Parameters;
-use crate::identify::run::{Outcome, identify};
+use crate::identify::run::identify;
 use crate::identify::uncertainty::bound::bounds;
 use crate::identify::uncertainty::coverage::{Score, Trial, scores, table};
 use crate::identify::uncertainty::{Asked, Way};
+use crate::identify::{Finding, Identification};
 use crate::motion::{Bracket, ClassifySettings, Observation, brackets, observe, scale_drives};
 use crate::pipeline::{PipelineError, Progress};
 use crate::record::{Record, Role};
@@ -99,15 +100,20 @@ impl Mistake {
         }
     }
 
+    /// Whether a finding is this mistake.
+    fn is(self, finding: &Finding) -> bool {
+        match self {
+            Self::WrongClearance => matches!(finding, Finding::WrongClearance { .. }),
+            Self::SwappedChannels => matches!(finding, Finding::SwappedChannels { .. }),
+            Self::WrongGain => matches!(finding, Finding::WrongGain { .. }),
+        }
+    }
+
     /// Whether an outcome names it.
     fn is_named_by(self, seen: &Seen) -> bool {
         match self {
             Self::SwappedChannels if seen.flag("swapped_masses") => true,
-            _ => seen
-                .outcome
-                .suspicions
-                .iter()
-                .any(|s| s.kind == self.name()),
+            _ => seen.outcome.suspicions.iter().any(|s| self.is(s)),
         }
     }
 }
@@ -144,7 +150,7 @@ fn swap_roles(record: &mut Record, a: Role, b: Role) {
 struct Seen {
     observations: Vec<Observation>,
     brackets: Vec<Bracket>,
-    outcome: Outcome,
+    outcome: Identification,
 }
 
 impl Seen {
