@@ -4,14 +4,14 @@ use std::path::Path;
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::campaign::written::Published;
+use crate::compare::Compared;
 use crate::identify::published::{
     PublishedOutcome, PublishedSpeed, Where, identify, methods, predicted,
 };
 use crate::identify::{Identification, Verdict};
 use crate::pipeline::identify::{settings, versions};
 use crate::pipeline::{PipelineError, inputs, report, store};
-use crate::report::ReportContent;
-use crate::report::content::DataTable;
+use crate::report::{CampaignFacts, DataTable, ReportContent, Subject};
 use labfiles::source::ReadError;
 
 /// Identify from published speeds and write identification.json and report.pdf.
@@ -39,12 +39,21 @@ pub fn run(
         versions: versions(),
         inputs_sha256: inputs::hashes(campaign),
     };
-    let mut content = ReportContent::new(campaign.report.title.clone(), identification);
-    content.summary.name = campaign.name.clone();
-    content.summary.rig = "closing speeds as published; nothing was measured here".into();
-    content.tables = vec![table(&speeds, found_damping(&found), published)];
-    content.settings_text = format!("{:#}", content.identification.settings);
-    content.command_line = command_line.to_owned();
+    let content = ReportContent {
+        title: campaign.report.title.clone(),
+        campaign: CampaignFacts {
+            name: campaign.name.clone(),
+            subject: Subject::PublishedSpeeds,
+            ..CampaignFacts::default()
+        },
+        compared: Compared::default(),
+        left_out: Vec::new(),
+        proposals: Vec::new(),
+        tables: vec![table(&speeds, found_damping(&found), published)],
+        settings: identification.settings.clone(),
+        command_line: command_line.to_owned(),
+        identification,
+    };
     let report = report::render(&content, campaign)?;
     store::write_resolved(campaign, out)?;
     super::identify::write(&content.identification, out)?;

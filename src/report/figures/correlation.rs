@@ -11,7 +11,7 @@ use super::look;
 use super::marks::mix;
 use super::path::Rect;
 use super::richtext;
-use crate::report::content::Correlation;
+use crate::compare::Correlation;
 use crate::report::parameters::parameter;
 use crate::report::speech::Speech;
 

@@ -2,9 +2,12 @@
 
 use std::path::Path;
 
-use super::{kind, kinds};
-use crate::report::content::{self, ReportContent};
-use crate::report::{RenderOptions, Report, document, words};
+use super::contents::{kind, kinds};
+use crate::compare::{BracketRow, Correlation, Unusable};
+use crate::motion::Motion;
+use crate::record::calibrate::{ChannelKey, ChannelSetup};
+use crate::record::{Role, Sweep};
+use crate::report::{NominalValue, Report, ReportContent, ReportOptions, Subject, document, words};
 
 /// A table that prints each phrase as its number in brackets, with the values that it carries.
 fn marks_for_phrases() -> words::Words {
@@ -22,41 +25,35 @@ fn marks_for_phrases() -> words::Words {
 
 /// A campaign to which all happened that the others were spared.
 fn unlucky() -> ReportContent {
-    use crate::motion::Motion;
-    use crate::record::{Role, Sweep};
     let mut content = kind("small").clone();
-    let summary = &mut content.summary;
-    summary.files_total = 1;
-    summary.rig = "one mass against a stop".into();
-    summary.notes.push("a remark".into());
-    let channel = summary.channels[0].clone();
-    let roles = [
-        Role::VelocityY,
-        Role::DisplacementY,
-        Role::AccelerationX,
-        Role::AccelerationY,
-        Role::FrameX,
-        Role::FrameY,
+    let campaign = &mut content.campaign;
+    campaign.files = 1;
+    campaign.subject = Subject::OneMass;
+    let channels = Role::ALL.map(|role| ChannelSetup {
+        high_pass_hz: Some(0.5),
+        ..ChannelSetup::plain(role, ChannelKey::Name("channel".into()))
+    });
+    campaign.channels = channels.into();
+    let names = [
+        "static deflection $x_st$",
+        "uncertainty of the gains",
+        "restitution $R$",
     ];
-    summary
-        .channels
-        .extend(roles.map(|role| content::ChannelRow {
-            role,
-            high_pass_hz: Some(0.5),
-            ..channel.clone()
-        }));
-    for name in ["static deflection $x_st$", "uncertainty of the gains"] {
-        let mut value = summary.nominal[0].clone();
-        value.name = name.into();
-        summary.nominal.push(value);
-    }
+    campaign.nominal = names
+        .map(|name| NominalValue {
+            name,
+            value: 0.1,
+            unit: "",
+        })
+        .into();
+    let compared = &mut content.compared;
     let fitted = ["restitution", "gain_velocity_x", "corner_velocity_y"];
     let others = ["drive_asymmetry", "stiffness_asymmetry"];
-    content.correlation = Some(content::Correlation {
+    compared.correlation = Some(Correlation {
         parameters: fitted.iter().chain(&others).map(|p| (*p).into()).collect(),
         matrix: vec![vec![0.5; 5]; 5],
     });
-    for (record, motion) in content
+    for (record, motion) in compared
         .records
         .iter_mut()
         .zip([Motion::Beat, Motion::Joined])
@@ -67,35 +64,35 @@ fn unlucky() -> ReportContent {
             .map(String::from)
             .into();
     }
-    content.records[2].used_by.clear();
-    content.records[2].left_out = Some("it is short".into());
-    for (bracket, off) in content.brackets.iter_mut().zip([-1.0, 1.0]) {
+    compared.records[2].used_by.clear();
+    compared.records[2].left_out = Some("it is short".into());
+    for (bracket, off) in compared.brackets.iter_mut().zip([-1.0, 1.0]) {
         bracket.left_out = None;
         let middle = 0.5 * (bracket.frequency_low_hz + bracket.frequency_high_hz);
         bracket.simulated_hz = Some(middle + off * bracket.frequency_low_hz);
     }
-    content.brackets.push(content::BracketRow {
+    compared.brackets.push(BracketRow {
         left_out: Some("it jumped".into()),
-        ..content.brackets[0].clone()
+        ..compared.brackets[0].clone()
     });
-    content.comparisons[0].simulated_motion = Some(Motion::Beat);
-    content.resonance[0].fits = Some(false);
-    content.free_decays = kind("decays").free_decays.clone();
-    content.free_decays[0].natural_frequency_hz = None;
-    content.free_decays[0].damping_ratio = None;
-    if let Some(map) = &mut content.region_map {
-        map.second.clear();
+    compared.comparisons[0].motion = Motion::periodic(1, 1);
+    compared.comparisons[0].simulated_motion = Some(Motion::Beat);
+    compared.comparisons[1].motion = Motion::Chaotic;
+    compared.resonance[0].points[0].used = false;
+    if let Some(method) = content.identification.methods.get_mut("resonance") {
+        method.fits = Some(false);
     }
-    content.remarks.push("a remark".into());
+    compared.free_decays = kind("decays").compared.free_decays.clone();
+    compared.unusable.clear();
     content.left_out.clear();
     content
 }
 
 /// All kinds of report with a mark for each phrase.
 fn marked() -> Vec<Report> {
-    let options = RenderOptions {
+    let options = ReportOptions {
         words: Some(marks_for_phrases()),
-        ..RenderOptions::default()
+        ..ReportOptions::default()
     };
     let each = kinds().iter().map(|(_, content)| content);
     each.chain([&unlucky()])
@@ -213,11 +210,11 @@ fn valid_all_words_of_figures_and_headings_are_the_reader_s() {
 
 #[test]
 fn valid_a_german_report_speaks_german() {
-    let options = RenderOptions {
+    let options = ReportOptions {
         words: Some(words::Words::german().clone()),
-        ..RenderOptions::default()
+        ..ReportOptions::default()
     };
-    for (name, content) in kinds().iter().filter(|k| k.0 != "large") {
+    for (name, content) in kinds().iter().filter(|k| k.0 != "whole") {
         let report = Report::new(content, &options);
         for figure in &report.figures {
             assert!(figure.overfull.is_empty(), "{name}: {:?}", figure.overfull);
@@ -263,26 +260,25 @@ fn full_of_sentences() -> ReportContent {
     }
     let estimate = id.joint.parameters.restitution.as_mut().expect("an R");
     estimate.note = Some(said.join("; "));
-    content.resonance[0].note = said.join("; ");
-    content.impacts[0].note = said.join("; ");
-    let left_out = said.iter().map(|s| content::LeftOut {
-        what: s.clone(),
-        why: match s.contains("the others alike") {
-            true => s.clone(),
-            false => format!("clipped (x): {s} (so r1; the others alike)"),
-        },
-        count: None,
+    let alike = |s: &&String| s.contains("the others alike");
+    let others = said.iter().filter(|s| !alike(s));
+    let unusable = others.map(|s| Unusable {
+        flag: Some("clipped".into()),
+        channel: Some("x".into()),
+        records: vec![s.clone(), "r1".into()],
+        message: s.clone(),
+        differ: true,
     });
-    content.left_out = left_out.collect();
-    content.records[0].used_by.clear();
-    content.records[0].left_out = Some(said.join("; "));
-    content.records[0].flags = vec!["dropped samples".into()];
-    content.brackets.truncate(1);
-    content.brackets[0].left_out = Some(said.join("; "));
-    content.remarks = said;
-    // what these say of their own is no sentence of another room's
-    content.residuals.clear();
-    content.summary.notes.clear();
+    content.compared.unusable = unusable.collect();
+    let left_out = said.iter().filter(alike);
+    content.left_out = left_out.map(|s| (s.clone(), s.clone())).collect();
+    let records = &mut content.compared.records;
+    records[0].used_by.clear();
+    records[0].left_out = Some(said.join("; "));
+    records[0].flags = vec!["dropped_samples".into()];
+    let brackets = &mut content.compared.brackets;
+    brackets.truncate(1);
+    brackets[0].left_out = Some(said.join("; "));
     content
 }
 
@@ -297,12 +293,12 @@ fn longest_words(template: &str) -> String {
 
 #[test]
 fn valid_a_german_report_says_no_english_sentence() {
-    let options = RenderOptions {
+    let options = ReportOptions {
         words: Some(words::Words::german().clone()),
-        ..RenderOptions::default()
+        ..ReportOptions::default()
     };
     let content = full_of_sentences();
-    let text = |options: &RenderOptions| {
+    let text = |options: &ReportOptions| {
         let mut document = Report::new(&content, options).document;
         // from the English to the reader's
         document.words.clear();
@@ -310,7 +306,7 @@ fn valid_a_german_report_says_no_english_sentence() {
             .expect("JSON")
             .to_lowercase()
     };
-    let (english, german) = (text(&RenderOptions::default()), text(&options));
+    let (english, german) = (text(&ReportOptions::default()), text(&options));
     // short ones are parts of German words
     let long = words::Words::sentences().filter(|s| longest_words(s).len() > 12);
     let mut met = 0;
