@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::input::Input;
 use super::replays::Signal;
+use crate::identify::Reason;
 use crate::motion::Observation;
 use crate::record::{Channel, Record};
 use crate::signal::decay::Decay;
@@ -27,7 +28,7 @@ pub struct FreeDecay {
     /// Damping ratio β and its standard error.
     pub damping_ratio: [f64; 2],
     /// Why the fit left it out; `None` if it did not.
-    pub left_out: Option<String>,
+    pub left_out: Option<Reason>,
 }
 
 /// Most decays that are shown.
@@ -59,13 +60,16 @@ fn shown(observations: &[Observation]) -> Vec<usize> {
 }
 
 pub(super) fn free_decays(input: &Input) -> Vec<FreeDecay> {
+    let reasons = input.record_reasons();
     let records = shown(input.observations).into_iter();
-    records
-        .filter_map(|i| free_decay(input, &input.observations[i], &(input.read)(i)?))
-        .collect()
+    let decays = records.filter_map(|i| {
+        let reason = reasons.get(&i).copied();
+        free_decay(&input.observations[i], &(input.read)(i)?, reason)
+    });
+    decays.collect()
 }
 
-fn free_decay(input: &Input, o: &Observation, record: &Record) -> Option<FreeDecay> {
+fn free_decay(o: &Observation, record: &Record, reason: Option<&Reason>) -> Option<FreeDecay> {
     let decay = o.decay?;
     let fitted = decay.values(record.sample_rate_hz);
     let long_enough = |c: &&Channel| c.values.len() >= decay.first + decay.samples;
@@ -87,7 +91,7 @@ fn free_decay(input: &Input, o: &Observation, record: &Record) -> Option<FreeDec
         fitted: thinned(record.sample_rate_hz, decay.first, &fitted),
         natural_frequency_hz: [decay.natural_frequency_hz, decay.natural_frequency_error_hz],
         damping_ratio: [decay.damping_ratio, decay.damping_ratio_error],
-        left_out: input.reason(&o.record).cloned(),
+        left_out: reason.cloned(),
     })
 }
 

@@ -1,14 +1,13 @@
 //! What each method used: resonance curves, speeds at impacts, residuals, correlation.
 
-use std::collections::HashSet;
-
 use super::input::{Input, thinned};
 use crate::identify::evidence::impacts::SpeedPair;
 use crate::identify::evidence::resonance::predicted;
 use crate::identify::evidence::{Blocks, Evidence, Nominal};
+use crate::identify::fit::parameters::Coordinate;
 use crate::identify::judgement::contact_law::Law;
 use crate::identify::residuals::{MethodResiduals, residuals as residuals_of_methods};
-use crate::identify::{MethodResult, SpecimenResult};
+use crate::identify::{Method, MethodResult, SpecimenResult};
 use crate::motion::Observation;
 use crate::motion::response::Response;
 use crate::record::Role;
@@ -94,7 +93,7 @@ pub struct ResidualPoint {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResidualSet {
     /// The method.
-    pub method: &'static str,
+    pub method: Method,
     /// The residuals, in the order of the observations; of very many every second, third …
     pub points: Vec<ResidualPoint>,
     /// Number of residuals.
@@ -106,8 +105,8 @@ pub struct ResidualSet {
 /// Correlation of the fitted parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Correlation {
-    /// Names of the parameters.
-    pub parameters: Vec<String>,
+    /// The parameters.
+    pub parameters: Vec<Coordinate>,
     /// The matrix, row by row.
     pub matrix: Vec<Vec<f64>>,
 }
@@ -123,11 +122,6 @@ const MOST_RESIDUALS: usize = 4000;
 /// Most impacts, and most points of a resonance curve.
 const MOST_POINTS: usize = 20_000;
 
-/// Names of the records that a fit left out.
-fn left_out<'a>(input: &Input<'a>) -> HashSet<&'a str> {
-    input.left_out.iter().map(|l| l.0.as_str()).collect()
-}
-
 /// Resonance curves of the channels that have one, velocities first.
 pub(super) fn resonance(input: &Input) -> Vec<ResonanceCurve> {
     let roles = Role::ALL.into_iter().filter(|r| r.is_motion());
@@ -136,10 +130,11 @@ pub(super) fn resonance(input: &Input) -> Vec<ResonanceCurve> {
 }
 
 fn curve(input: &Input, role: Role) -> Option<ResonanceCurve> {
-    let left = left_out(input);
-    let points = input.observations.iter().filter_map(|o| {
+    let left_out = input.record_reasons();
+    let observations = input.observations.iter().enumerate();
+    let points = observations.filter_map(|(i, o)| {
         let response = o.response.iter().find(|r| r.role == role)?;
-        let used = !o.excluded() && !left.contains(o.record.as_str());
+        let used = !o.excluded() && !left_out.contains_key(&i);
         Some(point(o, response, used))
     });
     let points: Vec<ResonancePoint> = points.collect();
@@ -199,7 +194,7 @@ pub(super) fn impacts(input: &Input) -> Vec<ImpactScatter> {
     let block = Blocks::new(&evidence(input)).impact;
     let specimens = &input.identification.specimens;
     if specimens.is_empty() {
-        let method = input.identification.methods.get("impacts");
+        let method = input.identification.methods.get(&Method::Impacts);
         let pairs: Vec<&SpeedPair> = block.pairs.iter().collect();
         return scatter(input, None, &pairs, method).into_iter().collect();
     }
@@ -209,7 +204,12 @@ pub(super) fn impacts(input: &Input) -> Vec<ImpactScatter> {
             setting.specimen.as_ref() == Some(name)
         };
         let pairs: Vec<&SpeedPair> = block.pairs.iter().filter(specimen).collect();
-        scatter(input, Some(name), &pairs, result.methods.get("impacts"))
+        scatter(
+            input,
+            Some(name),
+            &pairs,
+            result.methods.get(&Method::Impacts),
+        )
     };
     specimens.iter().filter_map(of_specimen).collect()
 }
@@ -250,9 +250,9 @@ pub(super) fn residuals(input: &Input) -> Vec<ResidualSet> {
     let Some(parameters) = input.parameters() else {
         return Vec::new();
     };
-    let left = left_out(input);
-    let is_left_out = |i: usize| left.contains(input.observations[i].record.as_str());
-    let found = residuals_of_methods(&evidence(input), parameters, is_left_out);
+    let reasons = input.record_reasons();
+    let left_out = |i: usize| reasons.contains_key(&i);
+    let found = residuals_of_methods(&evidence(input), parameters, left_out);
     found.into_iter().map(|m| residual_set(input, m)).collect()
 }
 
@@ -277,11 +277,11 @@ fn residual_set(input: &Input, found: MethodResiduals) -> ResidualSet {
 
 /// Correlation of the parameters that were fitted together.
 pub(super) fn correlation(input: &Input) -> Option<Correlation> {
-    let fit = input.fit?;
+    let fit = &input.identification.joint_fit.as_ref()?.fit;
     let between = |a, b| fit.correlation(a, b).unwrap_or(0.0);
     let row = |a| fit.free.iter().map(|b| between(a, *b)).collect();
     Some(Correlation {
-        parameters: fit.free.iter().map(|c| c.name().to_owned()).collect(),
+        parameters: fit.free.clone(),
         matrix: fit.free.iter().map(|a| row(*a)).collect(),
     })
 }

@@ -1,6 +1,5 @@
 //! Campaigns of the virtual laboratory, identified and compared, for tests here and in `report`.
 
-use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
@@ -8,9 +7,8 @@ use rayon::prelude::*;
 use super::{Compared, Input, compare};
 use crate::event::Rig;
 use crate::event::detect::DetectSettings;
-use crate::identify::Identification;
 use crate::identify::evidence::{Evidence, Nominal};
-use crate::identify::specimens::identify_campaign;
+use crate::identify::{Identification, identify_campaign};
 use crate::motion::{ClassifySettings, brackets, observe, scale_drives};
 use crate::record::{Channel, Excitation, Record, Role, Setting, Sweep};
 use crate::synthetic::run::calibrated;
@@ -21,7 +19,6 @@ use labfiles::units::Dimension;
 pub(crate) struct Identified {
     pub(crate) identification: Identification,
     pub(crate) compared: Compared,
-    pub(crate) left_out: Vec<(String, String)>,
 }
 
 /// The paper's setting: R = 0.9, f0 = 12.6 Hz, β = 0.07, x_st = 1.25 mm, two gaps up and down.
@@ -111,7 +108,7 @@ fn identified(records: &[Record], rig: Rig) -> Identified {
     let mut observations: Vec<_> = observed.collect();
     scale_drives(&mut observations);
     let brackets = brackets(&observations);
-    let (outcome, specimens) = identify_campaign(&Evidence {
+    let identification = identify_campaign(&Evidence {
         rig,
         observations: &observations,
         brackets: &brackets,
@@ -122,32 +119,16 @@ fn identified(records: &[Record], rig: Rig) -> Identified {
         },
         uncertainty: Default::default(),
     });
-    let identification = Identification {
-        verdict: outcome.verdict,
-        joint: outcome.joint,
-        methods: outcome.methods,
-        agreement: outcome.agreement,
-        suspicions: outcome.suspicions,
-        uncertainty: outcome.uncertainty,
-        specimens,
-        settings: serde_json::json!({"rig": {"gain_uncertainty": 0.005}}),
-        versions: [("impactid".to_owned(), "0.1.0".to_owned())].into(),
-        inputs_sha256: BTreeMap::from([("records.h5".to_owned(), format!("{:064x}", 2026))]),
-    };
     let compared = compare(&Input {
         rig,
         observations: &observations,
         brackets: &brackets,
         identification: &identification,
-        fit: outcome.fit.as_ref(),
-        factor: outcome.factor,
-        left_out: &outcome.left_out,
         points: &[],
         read: &|i| records.get(i).cloned(),
     });
     Identified {
         identification,
         compared,
-        left_out: outcome.left_out,
     }
 }

@@ -1,9 +1,10 @@
 //! What a comparison starts from.
 
+use std::collections::BTreeMap;
+
 use crate::event::Rig;
-use crate::identify::Identification;
-use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::Parameters;
+use crate::identify::{Identification, Item, Reason};
 use crate::motion::{Bracket, Observation};
 use crate::record::Record;
 
@@ -17,28 +18,37 @@ pub struct Input<'a> {
     pub brackets: &'a [Bracket],
     /// The answer.
     pub identification: &'a Identification,
-    /// The joint fit; `None` without one.
-    pub fit: Option<&'a Fit>,
-    /// Factor on its covariance.
-    pub factor: f64,
-    /// What a fit left out, and why.
-    pub left_out: &'a [(String, String)],
     /// Names of the records to be replayed; empty: the surest of each type of motion.
     pub points: &'a [String],
     /// Reads a record by its index among the observations; `None` if it cannot be read.
     pub read: &'a (dyn Fn(usize) -> Option<Record> + Sync),
 }
 
-impl Input<'_> {
+impl<'a> Input<'a> {
     /// The fitted parameters.
-    pub(super) fn parameters(&self) -> Option<&Parameters> {
-        self.fit.map(|fit| &fit.parameters)
+    pub(super) fn parameters(&self) -> Option<&'a Parameters> {
+        let joint = self.identification.joint_fit.as_ref();
+        joint.map(|joint| &joint.fit.parameters)
     }
 
-    /// Why a fit left a record out; `None` if it did not.
-    pub(super) fn reason(&self, record: &str) -> Option<&String> {
-        let found = self.left_out.iter().find(|(name, _)| name == record);
-        found.map(|(_, why)| why)
+    /// Why the fits left records out, by index; the first reason of several.
+    pub(super) fn record_reasons(&self) -> BTreeMap<usize, &'a Reason> {
+        let left_out = self.identification.left_out.iter().rev();
+        let records = left_out.filter_map(|l| match &l.item {
+            Item::Record { index, .. } => Some((*index, &l.reason)),
+            Item::Bracket { .. } | Item::Impact { .. } => None,
+        });
+        records.collect()
+    }
+
+    /// Why the fits left brackets out, by index; the first reason of several.
+    pub(super) fn bracket_reasons(&self) -> BTreeMap<usize, &'a Reason> {
+        let left_out = self.identification.left_out.iter().rev();
+        let brackets = left_out.filter_map(|l| match &l.item {
+            Item::Bracket { index, .. } => Some((*index, &l.reason)),
+            Item::Record { .. } | Item::Impact { .. } => None,
+        });
+        brackets.collect()
     }
 
     /// η and ρ of a record's setting with the fitted parameters, as far as they are known.

@@ -120,7 +120,7 @@ impl View {
 /// The fitted machine without its asymmetry, as the paper draws the plane, and the part that is
 /// shown; `None` without a fitted R, which the regions of impact motion need.
 fn plane(input: &Input) -> Option<(Machine, View)> {
-    let fit = input.fit?;
+    let fit = &input.identification.joint_fit.as_ref()?.fit;
     let fitted = &fit.parameters;
     if !fitted.in_range() || !fit.free.contains(&Coordinate::Restitution) {
         return None;
@@ -137,11 +137,12 @@ fn plane(input: &Input) -> Option<(Machine, View)> {
 
 /// s2 and s1 of z = 1/n and the grazing boundary, each with its 95 % band.
 pub(super) fn curves(input: &Input) -> Vec<BoundaryCurve> {
-    let (Some((machine, view)), Some(fit)) = (plane(input), input.fit) else {
+    let joint = input.identification.joint_fit.as_ref();
+    let (Some((machine, view)), Some(joint)) = (plane(input), joint) else {
         return Vec::new();
     };
     let etas = even((view.eta.0, view.eta.1, CURVE_POINTS));
-    let spread = Spread::of(fit, input.factor, input.rig);
+    let spread = Spread::of(&joint.fit, joint.variance_factor, input.rig);
     let mut wanted = vec![(BoundaryKind::Grazing, 1)];
     for n in 1..=MOST_PERIODS {
         wanted.extend([

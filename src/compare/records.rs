@@ -1,11 +1,8 @@
 //! Records and brackets with their place in the (η, ρ) plane, and counts over all of them.
 
-use std::collections::HashMap;
-
 use super::input::Input;
-use crate::event::Rig;
 use crate::identify::evidence::boundary::predicted_hz;
-use crate::identify::evidence::flights::is_flown;
+use crate::identify::{Method, Reason};
 use crate::motion::{BoundaryKind, Bracket, Motion, Observation};
 use crate::record::Sweep;
 use crate::signal::robust;
@@ -77,10 +74,12 @@ pub struct RecordRow {
     pub impacts: usize,
     /// Codes of its flags.
     pub flags: Vec<String>,
-    /// The methods that used the record.
-    pub used_by: Vec<String>,
-    /// Why no method used it, if none did.
-    pub left_out: Option<String>,
+    /// The methods whose fit used the record.
+    pub used_by: Vec<Method>,
+    /// Details of the flag that excludes it, if one does.
+    pub excluded: Option<String>,
+    /// Why a fit left it out; `None` if none did.
+    pub left_out: Option<Reason>,
 }
 
 /// Most records that are listed; of more, every second, third … The replayed ones are always
@@ -88,26 +87,20 @@ pub struct RecordRow {
 const MOST_RECORDS: usize = 6_000;
 
 pub(super) fn records(input: &Input, chosen: &[usize]) -> Vec<RecordRow> {
-    let reasons = input.left_out.iter().rev();
-    let reasons: HashMap<&str, &str> = reasons.map(|(n, why)| (n.as_str(), why.as_str())).collect();
+    let reasons = input.record_reasons();
     let all = input.observations;
     let stride = all.len().div_ceil(MOST_RECORDS).max(1);
-    all.iter()
-        .enumerate()
-        .filter(|(i, _)| i.is_multiple_of(stride) || chosen.contains(i))
-        .map(|(_, o)| record(input, o, reasons.get(o.record.as_str()).copied()))
+    let listed = |i: &usize| i.is_multiple_of(stride) || chosen.contains(i);
+    (0..all.len())
+        .filter(listed)
+        .map(|i| record(input, i, reasons.get(&i).copied()))
         .collect()
 }
 
-fn record(input: &Input, o: &Observation, reason: Option<&str>) -> RecordRow {
+fn record(input: &Input, index: usize, reason: Option<&Reason>) -> RecordRow {
+    let o = &input.observations[index];
     let (eta, rho) = input.place(o);
-    let used_by = if o.excluded() {
-        Vec::new()
-    } else {
-        used_by(input.rig, o, reason.is_some())
-    };
     let excluding = o.flags.iter().find(|f| f.excludes);
-    let excluding = excluding.map(|f| f.message.clone());
     RecordRow {
         id: o.record.clone(),
         specimen: o.setting.specimen.clone(),
@@ -120,27 +113,10 @@ fn record(input: &Input, o: &Observation, reason: Option<&str>) -> RecordRow {
         confidence: o.finding.confidence,
         impacts: o.impacts.len(),
         flags: o.flags.iter().map(|f| f.code.clone()).collect(),
-        left_out: excluding
-            .or_else(|| reason.map(str::to_owned))
-            .filter(|_| used_by.is_empty()),
-        used_by,
+        used_by: input.identification.methods_using(index).collect(),
+        excluded: excluding.map(|f| f.message.clone()),
+        left_out: reason.cloned(),
     }
-}
-
-fn used_by(rig: Rig, o: &Observation, left_out: bool) -> Vec<String> {
-    let speeds = |o: &Observation| {
-        let mut impacts = o.impacts.iter();
-        impacts.any(|i| i.closing_speed_before_m_s.is_some())
-    };
-    let methods = [
-        ("resonance", !o.response.is_empty() && !left_out),
-        ("trajectories", o.folded.is_some() && !left_out),
-        ("impacts", speeds(o)),
-        ("flights", is_flown(rig, o) && !left_out),
-        ("free_decay", o.decay.is_some()),
-    ];
-    let used = methods.into_iter().filter(|(_, used)| *used);
-    used.map(|(name, _)| name.to_owned()).collect()
 }
 
 /// A boundary as measured, between two neighbouring records, beside the fitted model's.
@@ -165,19 +141,20 @@ pub struct BracketRow {
     /// The boundary of the fitted model, Hz, if it has one at this clearance in closed form.
     pub simulated_hz: Option<f64>,
     /// Why the fit left it out; `None` if it did not.
-    pub left_out: Option<String>,
+    pub left_out: Option<Reason>,
 }
 
 pub(super) fn brackets(input: &Input) -> Vec<BracketRow> {
-    input.brackets.iter().map(|b| bracket(input, b)).collect()
+    let reasons = input.bracket_reasons();
+    let brackets = input.brackets.iter().enumerate();
+    let row = |(i, b)| bracket(input, b, reasons.get(&i).copied());
+    brackets.map(row).collect()
 }
 
-fn bracket(input: &Input, b: &Bracket) -> BracketRow {
+fn bracket(input: &Input, b: &Bracket, reason: Option<&Reason>) -> BracketRow {
     let parameters = input.parameters();
     let ends = [b.frequency_low_hz, b.frequency_high_hz];
     let closed_form = matches!(b.kind, BoundaryKind::SaddleNode | BoundaryKind::Grazing);
-    let place = format!("bracket {} {:.2}–{:.2} Hz", b.kind.name(), ends[0], ends[1]);
-    let reason = |(what, why): &(String, String)| what.starts_with(&place).then(|| why.clone());
     BracketRow {
         kind: b.kind,
         motion: match b.kind {
@@ -193,6 +170,6 @@ fn bracket(input: &Input, b: &Bracket) -> BracketRow {
         simulated_hz: parameters
             .filter(|_| closed_form)
             .and_then(|p| predicted_hz(b, p, input.rig)),
-        left_out: input.left_out.iter().find_map(reason),
+        left_out: reason.cloned(),
     }
 }

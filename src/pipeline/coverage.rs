@@ -11,7 +11,8 @@ use crate::event::Rig;
 use crate::event::detect::DetectSettings;
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::fit::parameters::Parameters;
-use crate::identify::run::{Outcome, identify};
+use crate::identify::run::identify;
+use crate::identify::{Finding, Identification};
 use crate::identify::uncertainty::bound::bounds;
 use crate::identify::uncertainty::coverage::{Score, Trial, scores, table};
 use crate::identify::uncertainty::{Asked, Way};
@@ -97,6 +98,15 @@ impl Mistake {
         }
     }
 
+    /// Whether a finding is this mistake.
+    fn is(self, finding: &Finding) -> bool {
+        match self {
+            Self::WrongClearance => matches!(finding, Finding::WrongClearance { .. }),
+            Self::SwappedChannels => matches!(finding, Finding::SwappedChannels { .. }),
+            Self::WrongGain => matches!(finding, Finding::WrongGain { .. }),
+        }
+    }
+
     /// Whether an outcome names it.
     fn is_named_by(self, seen: &Seen) -> bool {
         match self {
@@ -105,7 +115,7 @@ impl Mistake {
                 .outcome
                 .suspicions
                 .iter()
-                .any(|s| s.kind == self.name()),
+                .any(|s| self.is(s)),
         }
     }
 }
@@ -142,7 +152,7 @@ fn swap_roles(record: &mut Record, a: Role, b: Role) {
 struct Seen {
     observations: Vec<Observation>,
     brackets: Vec<Bracket>,
-    outcome: Outcome,
+    outcome: Identification,
 }
 
 impl Seen {

@@ -5,12 +5,10 @@ use std::path::Path;
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::campaign::written::Published;
 use crate::compare::Compared;
-use crate::identify::published::{
-    PublishedOutcome, PublishedSpeed, Where, identify, methods, predicted,
-};
+use crate::identify::published::{PublishedSpeed, Where, identify, predicted};
 use crate::identify::{Identification, Verdict};
-use crate::pipeline::identify::{settings, versions};
-use crate::pipeline::{PipelineError, inputs, report, store};
+use crate::pipeline::identify::{IdentificationFile, provenance};
+use crate::pipeline::{PipelineError, report, store};
 use crate::report::{CampaignFacts, DataTable, ReportContent, Subject};
 use labfiles::source::ReadError;
 
@@ -25,20 +23,11 @@ pub fn run(
     command_line: &str,
 ) -> Result<Verdict, PipelineError> {
     let speeds = read(&campaign.folder().join(&published.speeds))?;
-    let found = identify(&speeds, &published.damping_ratio_hypotheses);
-    let (methods, agreement) = methods(&found);
-    let identification = Identification {
-        verdict: found.verdict.clone(),
-        joint: found.result.clone(),
-        methods,
-        agreement,
-        suspicions: Vec::new(),
-        uncertainty: Default::default(),
-        specimens: std::collections::BTreeMap::new(),
-        settings: settings(campaign)?,
-        versions: versions(),
-        inputs_sha256: inputs::hashes(campaign),
+    let found = IdentificationFile {
+        identification: identify(&speeds, &published.damping_ratio_hypotheses),
+        provenance: provenance(campaign)?,
     };
+    let damping_ratio = found_damping(&found.identification);
     let content = ReportContent {
         title: campaign.report.title.clone(),
         campaign: CampaignFacts {
@@ -46,23 +35,22 @@ pub fn run(
             subject: Subject::PublishedSpeeds,
             ..CampaignFacts::default()
         },
+        identification: found.identification.clone(),
+        provenance: found.provenance.clone(),
         compared: Compared::default(),
-        left_out: Vec::new(),
         proposals: Vec::new(),
-        tables: vec![table(&speeds, found_damping(&found), published)],
-        settings: identification.settings.clone(),
+        tables: vec![table(&speeds, damping_ratio, published)],
         command_line: command_line.to_owned(),
-        identification,
     };
     let report = report::render(&content, campaign)?;
     store::write_resolved(campaign, out)?;
-    super::identify::write(&content.identification, out)?;
+    super::identify::write(&found, out)?;
     report::write(&report, out)?;
-    Ok(found.verdict)
+    Ok(found.identification.verdict)
 }
 
-fn found_damping(found: &PublishedOutcome) -> Option<f64> {
-    found.result.parameters.damping_ratio.as_ref()?.value
+fn found_damping(found: &Identification) -> Option<f64> {
+    found.joint.parameters.damping_ratio.as_ref()?.value
 }
 
 /// Each published speed beside the model's for the damping ratio found and those printed.

@@ -7,7 +7,8 @@ use crate::campaign::resolved::{Report as Look, ResolvedCampaign};
 use crate::campaign::written::{Language, Paper as WrittenPaper};
 use crate::compare::{self, Input};
 use crate::event::Rig;
-use crate::pipeline::identify::{Found, settings};
+use crate::identify::Provenance;
+use crate::pipeline::identify::{IdentificationFile, settings};
 use crate::pipeline::observe::read_one;
 use crate::pipeline::{Observed, PipelineError};
 use crate::report::words::Words;
@@ -31,7 +32,7 @@ pub type ReportFile = (String, Vec<u8>);
 pub fn files(
     campaign: &ResolvedCampaign,
     observed: &Observed,
-    found: &Found,
+    found: &IdentificationFile,
     command_line: &str,
 ) -> Result<Vec<ReportFile>, PipelineError> {
     render(&content(campaign, observed, found, command_line)?, campaign)
@@ -78,22 +79,18 @@ pub fn write(files: &[ReportFile], out: &Path) -> Result<(), PipelineError> {
 pub fn content(
     campaign: &ResolvedCampaign,
     observed: &Observed,
-    found: &Found,
+    found: &IdentificationFile,
     command_line: &str,
 ) -> Result<ReportContent, PipelineError> {
     let read = |index: usize| {
         let entry = campaign.records.get(index)?;
         Some(read_one(campaign, entry))
     };
-    let outcome = &found.outcome;
     let compared = compare::compare(&Input {
         rig: campaign.machine,
         observations: &observed.observations,
         brackets: &observed.brackets,
         identification: &found.identification,
-        fit: outcome.fit.as_ref(),
-        factor: outcome.factor,
-        left_out: &outcome.left_out,
         points: &campaign.report.points,
         read: &read,
     });
@@ -101,11 +98,13 @@ pub fn content(
         title: campaign.report.title.clone(),
         campaign: facts(campaign),
         identification: found.identification.clone(),
+        provenance: Provenance {
+            settings: settings(campaign)?,
+            ..found.provenance.clone()
+        },
         compared,
-        left_out: outcome.left_out.clone(),
         proposals: Vec::new(),
         tables: Vec::new(),
-        settings: settings(campaign)?,
         command_line: command_line.to_owned(),
     })
 }

@@ -1,12 +1,12 @@
 //! What a report shows: the campaign, the answer, and the comparison with the model, as plain data.
 
 use crate::compare::Compared;
-use crate::identify::Identification;
+use crate::identify::{Identification, Provenance};
 use crate::record::calibrate::ChannelSetup;
 
 /// Everything that a report shows. All quantities are SI; what a campaign does not have is empty, so
 /// that free decays alone give a report of the pages that apply.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct ReportContent {
     /// Title of the report.
     pub title: String,
@@ -14,16 +14,14 @@ pub struct ReportContent {
     pub campaign: CampaignFacts,
     /// The answer.
     pub identification: Identification,
+    /// Settings, versions and inputs.
+    pub provenance: Provenance,
     /// The fitted model beside the measurement.
     pub compared: Compared,
-    /// What the fits left out, and why.
-    pub left_out: Vec<(String, String)>,
     /// Settings proposed for measuring next, the best first.
     pub proposals: Vec<ProposedPoint>,
     /// Further tables of numbers, printed with the methods.
     pub tables: Vec<DataTable>,
-    /// The resolved settings.
-    pub settings: serde_json::Value,
     /// The command that makes this report again.
     pub command_line: String,
 }

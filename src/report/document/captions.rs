@@ -2,7 +2,7 @@
 
 use super::prose::sentence;
 use crate::compare::Comparison;
-use crate::identify::MethodResult;
+use crate::identify::{Method, MethodResult};
 use crate::motion::Motion;
 use crate::report::content::ReportContent;
 use crate::report::figures::{decays, numbered};
@@ -71,7 +71,7 @@ fn narrow(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
     let others = "How the quantities that are fitted beside them hang together among themselves is \
                   in correlation.csv.";
     let shown = content.compared.correlation.as_ref();
-    let beside = shown.is_some_and(|c| c.parameters.iter().any(|p| parameter(p).is_none()));
+    let beside = shown.is_some_and(|c| c.parameters.iter().any(|p| parameter(p.name()).is_none()));
     let correlation = match beside {
         true => format!("{} {}", speech.say(correlation), speech.say(others)),
         false => speech.say(correlation),
@@ -84,12 +84,12 @@ fn narrow(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
 
 /// A caption with the remarks on its method.
 fn with_remarks(text: &str, method: Option<&MethodResult>, speech: Speech) -> String {
-    match method.map(|m| m.remarks.join("; ")) {
-        Some(remarks) if !remarks.is_empty() => {
-            format!("{text} {}", sentence(&speech.tell(&remarks)))
-        }
-        _ => text.to_owned(),
+    let remarks = method.into_iter().flat_map(|m| &m.remarks);
+    let remarks: Vec<String> = remarks.map(ToString::to_string).collect();
+    if remarks.is_empty() {
+        return text.to_owned();
     }
+    format!("{text} {}", sentence(&speech.tell(&remarks.join("; "))))
 }
 
 fn impacts(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
@@ -106,7 +106,7 @@ fn impacts(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
                 (format!("{name}. {text}"), methods)
             }
         };
-        let method = methods.and_then(|m| m.get("impacts"));
+        let method = methods.and_then(|m| m.get(&Method::Impacts));
         (numbered("impacts", i), with_remarks(&text, method, speech))
     })
     .collect()
@@ -115,7 +115,7 @@ fn impacts(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
 fn resonance(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
     let text = "Resonance curve of the motion without impacts, measured and fitted.";
     let text = speech.say(text);
-    let method = content.identification.methods.get("resonance");
+    let method = content.identification.methods.get(&Method::Resonance);
     let text = with_remarks(&text, method, speech);
     let curves = 0..content.compared.resonance.len();
     curves
@@ -158,7 +158,7 @@ fn residuals(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
         let text = "{method}, residual diagnostics ({count} residuals over their standard errors): \
                     histogram with the normal curve, autocorrelation with the 95 % band of white \
                     noise, over frequency and over gap.";
-        let method = speech.say(&method_name(set.method));
+        let method = speech.say(&method_name(set.method.name()));
         let count = set.total.to_string();
         let text = speech.say_with(text, &[("method", &method), ("count", &count)]);
         (numbered("residuals", i), text)

@@ -32,6 +32,7 @@ use crate::report::speech::Speech;
 use canvas::Canvas;
 use rayon::prelude::*;
 
+use crate::identify::Method;
 use crate::report::content::ReportContent;
 
 /// A finished figure.
@@ -145,7 +146,7 @@ fn method_jobs<'a>(content: &'a ReportContent, speech: Speech<'a>, jobs: &mut Ve
             impacts::draw(scatter, &numbered("impacts", i), speech)
         }));
     }
-    let method = content.identification.methods.get("resonance");
+    let method = content.identification.methods.get(&Method::Resonance);
     let fits = method.and_then(|m| m.fits);
     for (i, curve) in content.compared.resonance.iter().enumerate() {
         jobs.push(Box::new(move || {

@@ -36,8 +36,8 @@ pub fn draw(id: &Identification, speech: Speech) -> Option<Figure> {
         let left = 28.0 + (i % COLUMNS) as f64 * step;
         let top = 11.0 + (i / COLUMNS) as f64 * ROW;
         let rect = Rect::new(left, top, step - 36.0, HEIGHT);
-        let shown = parameter(&profile.parameter);
-        let best = shown.and_then(|p| (p.pick)(&id.joint.parameters)?.value);
+        let best = id.joint.parameters.get(profile.parameter);
+        let best = best.and_then(|e| e.value);
         one(&mut canvas, (profile, best), rect, speech);
     }
     let title = speech.say("Profile likelihoods");
@@ -50,10 +50,11 @@ fn one(
     rect: Rect,
     speech: Speech,
 ) {
-    let shown = parameter(&profile.parameter);
+    let key = profile.parameter.name();
+    let shown = parameter(key);
     let factor = shown.map_or(1.0, |p| p.factor);
     let title = shown.map_or_else(
-        || speech.say(&profile.parameter.replace('_', " ")),
+        || speech.say(&key.replace('_', " ")),
         |p| {
             format!(
                 "{} ({})",
@@ -101,7 +102,7 @@ fn csv(profiles: &[&ProfileCurve]) -> String {
     for p in profiles {
         for (v, d) in p.values.iter().zip(&p.delta_chi2) {
             csv.row()
-                .texts(&[&p.parameter, ""])
+                .texts(&[p.parameter.name(), ""])
                 .numbers(&[Some(*v), Some(*d)]);
         }
     }

@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 
 use crate::compare::fixture::{self, Identified};
 use crate::compare::{ImpactScatter, RecordRow};
+use crate::identify::Provenance;
 use crate::motion::Motion;
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
 use crate::record::{Role, Sweep};
@@ -40,11 +41,14 @@ fn content(title: &str, of: &Identified, subject: Subject) -> ReportContent {
             ..CampaignFacts::default()
         },
         identification: of.identification.clone(),
+        provenance: Provenance {
+            settings: serde_json::json!({"rig": {"gain_uncertainty": 0.005}}),
+            versions: [("impactid".to_owned(), "0.1.0".to_owned())].into(),
+            inputs_sha256: [("records.h5".to_owned(), format!("{:064x}", 2026))].into(),
+        },
         compared: of.compared.clone(),
-        left_out: of.left_out.clone(),
         proposals: Vec::new(),
         tables: Vec::new(),
-        settings: of.identification.settings.clone(),
         command_line: "impactid run campaign.toml --out out".into(),
     }
 }

@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use super::contents::{kind, kinds};
-use crate::compare::{BracketRow, Correlation, Unusable};
+use crate::compare::{BracketRow, Correlation};
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::{Method, Reason};
 use crate::motion::Motion;
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
 use crate::record::{Role, Sweep};
@@ -47,10 +49,15 @@ fn unlucky() -> ReportContent {
         })
         .into();
     let compared = &mut content.compared;
-    let fitted = ["restitution", "gain_velocity_x", "corner_velocity_y"];
-    let others = ["drive_asymmetry", "stiffness_asymmetry"];
+    let fitted = [
+        Coordinate::Restitution,
+        Coordinate::Gain(0),
+        Coordinate::Corner(1),
+        Coordinate::DriveAsymmetry,
+        Coordinate::StiffnessAsymmetry,
+    ];
     compared.correlation = Some(Correlation {
-        parameters: fitted.iter().chain(&others).map(|p| (*p).into()).collect(),
+        parameters: fitted.into(),
         matrix: vec![vec![0.5; 5]; 5],
     });
     for (record, motion) in compared
@@ -60,31 +67,34 @@ fn unlucky() -> ReportContent {
     {
         record.motion = motion;
         record.sweep = Sweep::Unknown;
-        record.used_by = ["boundaries", "resonance", "impacts", "flights"]
-            .map(String::from)
-            .into();
+        record.used_by = vec![
+            Method::Boundaries,
+            Method::Resonance,
+            Method::Impacts,
+            Method::Flights,
+        ];
     }
     compared.records[2].used_by.clear();
-    compared.records[2].left_out = Some("it is short".into());
+    compared.records[2].excluded = Some("it is short".into());
     for (bracket, off) in compared.brackets.iter_mut().zip([-1.0, 1.0]) {
         bracket.left_out = None;
         let middle = 0.5 * (bracket.frequency_low_hz + bracket.frequency_high_hz);
         bracket.simulated_hz = Some(middle + off * bracket.frequency_low_hz);
     }
     compared.brackets.push(BracketRow {
-        left_out: Some("it jumped".into()),
+        left_out: Some(Reason::FarFromBoundary),
         ..compared.brackets[0].clone()
     });
     compared.comparisons[0].motion = Motion::periodic(1, 1);
     compared.comparisons[0].simulated_motion = Some(Motion::Beat);
     compared.comparisons[1].motion = Motion::Chaotic;
     compared.resonance[0].points[0].used = false;
-    if let Some(method) = content.identification.methods.get_mut("resonance") {
+    if let Some(method) = content.identification.methods.get_mut(&Method::Resonance) {
         method.fits = Some(false);
     }
     compared.free_decays = kind("decays").compared.free_decays.clone();
     compared.unusable.clear();
-    content.left_out.clear();
+    content.identification.left_out.clear();
     content
 }
 
@@ -151,8 +161,6 @@ fn valid_no_phrase_of_the_words_is_idle() {
         "/src"
     ))));
     let (mut unsaid, mut idle) = (Vec::new(), Vec::new());
-    let unknown = |sentence: &&str| !source.contains(plainly(sentence).trim_matches(['{', '}']));
-    idle.extend(words::Words::sentences().filter(unknown));
     for (i, phrase) in words::Words::phrases().enumerate() {
         if !said.contains(&format!("⟦{i}⟧")) {
             unsaid.push(phrase);
@@ -233,98 +241,4 @@ fn valid_a_german_report_speaks_german() {
         assert!(page.contains("<html lang=\"de\">") && page.contains("Was gemessen wurde"));
         assert!(!page.contains("<h2>What was measured"));
     }
-}
-
-/// A template with a number in each of its places.
-fn filled(template: &str) -> String {
-    let places = words::places(template);
-    let numbers = places.into_iter().enumerate();
-    numbers.fold(template.to_owned(), |text, (i, name)| {
-        text.replace(&format!("{{{name}}}"), &format!("{i}.5"))
-    })
-}
-
-/// The example with every sentence that other rooms say, as verdict, finding, remark and reason.
-fn full_of_sentences() -> ReportContent {
-    let said: Vec<String> = words::Words::sentences().map(filled).collect();
-    let mut content = kind("small").clone();
-    let id = &mut content.identification;
-    id.verdict.summary = format!("{}.", said.join(". "));
-    id.verdict.findings = said.iter().map(|s| format!("impacts: {s}")).collect();
-    id.agreement.summary = "The methods do not agree on R: impacts finds 0.9, flights finds 0.8, 4.0 \
-                            standard errors apart. Trust the interval of neither until the cause is \
-                            found."
-        .into();
-    for method in id.methods.values_mut() {
-        method.remarks.clone_from(&said);
-    }
-    let estimate = id.joint.parameters.restitution.as_mut().expect("an R");
-    estimate.note = Some(said.join("; "));
-    let alike = |s: &&String| s.contains("the others alike");
-    let others = said.iter().filter(|s| !alike(s));
-    let unusable = others.map(|s| Unusable {
-        flag: Some("clipped".into()),
-        channel: Some("x".into()),
-        records: vec![s.clone(), "r1".into()],
-        message: s.clone(),
-        differ: true,
-    });
-    content.compared.unusable = unusable.collect();
-    let left_out = said.iter().filter(alike);
-    content.left_out = left_out.map(|s| (s.clone(), s.clone())).collect();
-    let records = &mut content.compared.records;
-    records[0].used_by.clear();
-    records[0].left_out = Some(said.join("; "));
-    records[0].flags = vec!["dropped_samples".into()];
-    let brackets = &mut content.compared.brackets;
-    brackets.truncate(1);
-    brackets[0].left_out = Some(said.join("; "));
-    content
-}
-
-/// The words of a template that stand together in its text, the longest.
-fn longest_words(template: &str) -> String {
-    let pieces = template.split(['{', '}']).step_by(2);
-    pieces
-        .max_by_key(|p| p.len())
-        .unwrap_or_default()
-        .to_lowercase()
-}
-
-#[test]
-fn valid_a_german_report_says_no_english_sentence() {
-    let options = ReportOptions {
-        words: Some(words::Words::german().clone()),
-        ..ReportOptions::default()
-    };
-    let content = full_of_sentences();
-    let text = |options: &ReportOptions| {
-        let mut document = Report::new(&content, options).document;
-        // from the English to the reader's
-        document.words.clear();
-        serde_json::to_string(&document)
-            .expect("JSON")
-            .to_lowercase()
-    };
-    let (english, german) = (text(&ReportOptions::default()), text(&options));
-    // short ones are parts of German words
-    let long = words::Words::sentences().filter(|s| longest_words(s).len() > 12);
-    let mut met = 0;
-    for template in long {
-        let words = longest_words(template).replace('"', "\\\"");
-        met += usize::from(english.contains(&words));
-        if let Some(at) = german.find(&words) {
-            let from = german[..at]
-                .char_indices()
-                .rev()
-                .nth(200)
-                .map_or(0, |c| c.0);
-            let said: String = german[from..].chars().take(500).collect();
-            panic!("{template} is said: …{said}…");
-        }
-    }
-    assert!(met > 60, "{met} sentences are met");
-    assert!(
-        german.contains("einzelne stöße ergibt 0.9, stoß zu stoß ergibt 0.8, 4.0 standardfehler")
-    );
 }

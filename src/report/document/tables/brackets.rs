@@ -86,7 +86,7 @@ fn bracket_remark(b: &BracketRow, speech: Speech) -> String {
     let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
     match (&b.left_out, b.simulated_hz) {
         (Some(why), _) => {
-            let why = speech.tell(why);
+            let why = speech.tell(&why.to_string());
             speech.say_with("not used: {why}", &[("why", &why)])
         }
         (None, Some(f)) if f < low => by("below by {distance} Hz", low - f),

@@ -9,6 +9,7 @@ pub use estimates::{agreement, methods, specimen_methods, specimens};
 pub use records::records;
 
 use crate::compare::Unusable;
+use crate::identify::Item;
 use crate::record::Sweep;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Align, Rich, Table};
@@ -124,8 +125,10 @@ pub fn left_out(content: &ReportContent, speech: Speech) -> Option<Table> {
         let count = Some(u.records.len()).filter(|n| *n > 1);
         (first_few(&u.records), count, reason(u))
     });
-    let fits = content.left_out.iter();
-    let fits = fits.map(|(what, why)| (what.clone(), None, why.clone()));
+    // impacts are in a remark of their method
+    let fits = content.identification.left_out.iter();
+    let fits = fits.filter(|l| !matches!(l.item, Item::Impact { .. }));
+    let fits = fits.map(|l| (l.item.to_string(), None, l.reason.to_string()));
     let rows = unusable.chain(fits).map(|(what, count, why)| {
         let count = count.map_or(String::new(), |c| c.to_string());
         let (what, why) = (speech.tell(&what), speech.tell(&why));
@@ -173,7 +176,7 @@ pub fn verbatim(text: String) -> Rich {
 
 /// SHA-256 of the inputs.
 pub fn hashes(content: &ReportContent, speech: Speech) -> Option<Table> {
-    let inputs = &content.identification.inputs_sha256;
+    let inputs = &content.provenance.inputs_sha256;
     let rows = inputs
         .iter()
         .map(|(k, v)| vec![verbatim(k.clone()), verbatim(v.clone())])

@@ -184,14 +184,14 @@ fn short_remark(r: &RecordRow) -> String {
 
 fn long_remark(r: &RecordRow, speech: Speech) -> String {
     let used = if r.used_by.is_empty() {
-        let not_used =
-            |why: &str| speech.say_with("not used: {why}", &[("why", &speech.tell(why))]);
-        r.left_out.as_deref().map(not_used)
+        let reason = r.left_out.as_ref().map(ToString::to_string);
+        let why = r.excluded.clone().or(reason);
+        why.map(|why| speech.say_with("not used: {why}", &[("why", &speech.tell(&why))]))
     } else {
         Some(
             r.used_by
                 .iter()
-                .map(|m| speech.say(&method_name(m).to_lowercase()))
+                .map(|m| speech.say(&method_name(m.name()).to_lowercase()))
                 .collect::<Vec<_>>()
                 .join(", "),
         )
