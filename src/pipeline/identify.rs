@@ -82,7 +82,7 @@ pub(super) fn provenance(campaign: &ResolvedCampaign) -> Result<Provenance, Pipe
 }
 
 /// The resolved settings without the list of records, which has its own table.
-fn settings(campaign: &ResolvedCampaign) -> Result<serde_json::Value, PipelineError> {
+pub(super) fn settings(campaign: &ResolvedCampaign) -> Result<serde_json::Value, PipelineError> {
     let short = ResolvedCampaign {
         records: Vec::new(),
         ..campaign.clone()
