@@ -34,7 +34,9 @@ pub fn impact_weight(found: &MethodFit) -> f64 {
 
 /// The methods that a joint fit uses, in its problem's order.
 pub fn present(blocks: &Blocks, weights: &Weights) -> Vec<Method> {
-    weighted(blocks, weights).map(|(method, ..)| method).collect()
+    weighted(blocks, weights)
+        .map(|(method, ..)| method)
+        .collect()
 }
 
 fn weighted<'b>(

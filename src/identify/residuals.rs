@@ -50,7 +50,11 @@ pub fn residuals(
     };
     let all = [
         of(Method::Resonance, &blocks.resonance, resonance.collect()),
-        of(Method::Trajectories, &blocks.trajectory, trajectory.collect()),
+        of(
+            Method::Trajectories,
+            &blocks.trajectory,
+            trajectory.collect(),
+        ),
         of(Method::Impacts, &blocks.impact, impact.collect()),
     ];
     let enough = |m: &MethodResiduals| m.residuals.len() >= FEWEST;

@@ -102,7 +102,9 @@ pub fn flights(blocks: &Blocks, tried: &Tried) -> MethodResult {
     let impacts = records.iter().map(|r| r.nodes.len()).sum();
     let mut result = methods::result(tried, &Coordinate::PHYSICAL, impacts, records.len());
     if let Some(reduced) = result.reduced_residual {
-        result.remarks.push(Remark::StatesDeviate { ratio: reduced });
+        result
+            .remarks
+            .push(Remark::StatesDeviate { ratio: reduced });
     }
     result
 }
@@ -110,7 +112,7 @@ pub fn flights(blocks: &Blocks, tried: &Tried) -> MethodResult {
 /// How many waveforms the trajectories rest on where not all were kept.
 fn thinned(evidence: &Evidence) -> Option<Remark> {
     let periodic = evidence.observations.iter().filter(|o| {
-        let pair = o.finding.impacts_and_periods();
+        let pair = o.classification.impacts_and_periods();
         !o.excluded() && pair.is_some_and(|(impacts_p, _)| impacts_p == 1)
     });
     let (kept, let_go): (Vec<_>, Vec<_>) = periodic.partition(|o| o.folded.is_some());
@@ -145,7 +147,9 @@ pub fn boundaries(blocks: &Blocks, tried: &Tried, posterior: Option<&Posterior>)
             ..found.fit.parameters
         });
         let midpoints = about.and_then(|at| middles::restitution(&blocks.boundary, &at));
-        result.remarks.extend(midpoints.as_ref().and_then(by_midpoints));
+        result
+            .remarks
+            .extend(midpoints.as_ref().and_then(by_midpoints));
         result.restitution_by_midpoints = midpoints;
     }
     result

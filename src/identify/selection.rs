@@ -108,16 +108,21 @@ impl<'a> Selection<'a> {
         methods::resonance(&self.blocks, &self.evidence.nominal)
     }
 
-    /// Fit the folded records; those without an orbit at the start are tried again at the end,
-    /// and those that fit far worse than the bulk are left out and named.
+    /// Fit the folded records, first as if the rig were ideal, then with all that may add to it; those
+    /// without an orbit at the start are tried again, and those that fit far worse than the bulk are left out and named.
     pub fn trajectories(&mut self, start: Parameters) -> Attempt {
+        let nominal = self.evidence.nominal;
         let all = self.blocks.trajectory.records.clone();
-        let at_start = mean_squares(&self.blocks.trajectory, &start);
-        let mut has_orbit = at_start.iter().map(Option::is_some);
-        let records = &mut self.blocks.trajectory.records;
-        records.retain(|_| has_orbit.next().unwrap_or(false));
-        let mut found = match methods::trajectories(&self.blocks, &self.evidence.nominal, start)? {
-            Ok(first) => first,
+        self.keep_those_with_orbits(&start);
+        let first = match methods::trajectories(&self.blocks, &nominal.ideal(), start)? {
+            Ok(first) => first.fit.parameters,
+            failed => return Some(failed),
+        };
+        self.blocks.trajectory.records.clone_from(&all);
+        self.keep_those_with_orbits(&first);
+        self.blocks.weigh_trajectories(&first);
+        let mut found = match methods::trajectories(&self.blocks, &nominal, first)? {
+            Ok(found) => found,
             failed => return Some(failed),
         };
         self.blocks.trajectory.records = all;
@@ -130,6 +135,14 @@ impl<'a> Selection<'a> {
             };
         }
         Some(Ok(found))
+    }
+
+    /// Keep the periodic records that have an orbit at given parameters.
+    fn keep_those_with_orbits(&mut self, parameters: &Parameters) {
+        let at_start = mean_squares(&self.blocks.trajectory, parameters);
+        let mut has_orbit = at_start.iter().map(Option::is_some);
+        let records = &mut self.blocks.trajectory.records;
+        records.retain(|_| has_orbit.next().unwrap_or(false));
     }
 
     /// Keep the records that fit like the bulk, name the others, and find again what is allowed
@@ -267,7 +280,9 @@ impl<'a> Selection<'a> {
     fn settles_slowly(&self, item: usize, at: &Parameters) -> bool {
         let block = &self.blocks.trajectory;
         let observation = block.records[item].observation;
-        let evidence = &self.evidence.observations[observation].finding.evidence;
+        let evidence = &self.evidence.observations[observation]
+            .classification
+            .evidence;
         let slowest = block.slowest_multiplier(item, at).unwrap_or(1.0);
         slowest.powf(evidence.cycles_observed) > (-1f64).exp()
     }
@@ -291,14 +306,23 @@ impl<'a> Selection<'a> {
         let observations = self.evidence.observations;
         let blocks = &self.blocks;
         match method {
-            Method::Resonance => blocks.resonance.points.iter().map(|p| p.observation).collect(),
+            Method::Resonance => blocks
+                .resonance
+                .points
+                .iter()
+                .map(|p| p.observation)
+                .collect(),
             Method::Trajectories => {
                 let records = &blocks.trajectory.records;
                 records.iter().map(|r| r.observation).collect()
             }
             Method::Boundaries => {
-                let names: BTreeSet<&String> =
-                    blocks.boundary.brackets.iter().flat_map(|b| &b.records).collect();
+                let names: BTreeSet<&String> = blocks
+                    .boundary
+                    .brackets
+                    .iter()
+                    .flat_map(|b| &b.records)
+                    .collect();
                 let indexed = observations.iter().enumerate();
                 indexed
                     .filter(|(_, o)| names.contains(&o.record))
@@ -306,7 +330,12 @@ impl<'a> Selection<'a> {
                     .collect()
             }
             Method::Impacts => blocks.impact.pairs.iter().map(|p| p.observation).collect(),
-            Method::Flights => blocks.flight.records.iter().map(|r| r.observation).collect(),
+            Method::Flights => blocks
+                .flight
+                .records
+                .iter()
+                .map(|r| r.observation)
+                .collect(),
             Method::FreeDecay => {
                 let indexed = observations.iter().enumerate();
                 indexed

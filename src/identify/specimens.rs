@@ -80,7 +80,9 @@ impl Part {
     /// What was left out, with the indices of the campaign.
     fn in_campaign(&self, mut left: LeftOut) -> LeftOut {
         match &mut left.item {
-            Item::Record { index, .. } | Item::Impact { index, .. } => *index = self.records[*index],
+            Item::Record { index, .. } | Item::Impact { index, .. } => {
+                *index = self.records[*index]
+            }
             Item::Bracket { index, .. } => *index = self.bracket_indices[*index],
         }
         left

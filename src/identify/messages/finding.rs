@@ -157,7 +157,10 @@ impl Message for Finding {
                 without_motion,
             } => vec![
                 ("value", Value::Shortest(*printed)),
-                ("share", Value::Number(100.0 * deviation.unwrap_or_default(), 1)),
+                (
+                    "share",
+                    Value::Number(100.0 * deviation.unwrap_or_default(), 1),
+                ),
                 ("settings", settings(without_motion)),
             ],
         }

@@ -38,6 +38,11 @@ pub enum Note {
     },
     /// There is nothing to fit.
     NothingToFit,
+    /// The solver failed.
+    SolverFailed {
+        /// What it reported, in English.
+        report: String,
+    },
     /// The data do not separate the parameters.
     NotSeparable,
 }
@@ -49,6 +54,9 @@ impl From<&FitError> for Note {
                 observations: items.len(),
             },
             FitError::Empty => Self::NothingToFit,
+            FitError::Solver(report) => Self::SolverFailed {
+                report: report.clone(),
+            },
             FitError::Singular => Self::NotSeparable,
         }
     }
@@ -64,24 +72,48 @@ impl Message for Note {
     fn template(&self, language: Language) -> &'static str {
         use Language::{English, German};
         match (self, language) {
-            (Self::Open { parameter: p, standard_error: Some(_) }, English) if p.is_logarithm() => {
-                "the data leave {parameter} open by ± {width} %"
-            }
-            (Self::Open { parameter: p, standard_error: Some(_) }, German) if p.is_logarithm() => {
-                "die Daten lassen {parameter} um ± {width} % offen"
-            }
-            (Self::Open { standard_error: Some(_), .. }, English) => {
-                "the data leave {parameter} open by ± {width}"
-            }
-            (Self::Open { standard_error: Some(_), .. }, German) => {
-                "die Daten lassen {parameter} um ± {width} offen"
-            }
-            (Self::Open { standard_error: None, .. }, English) => {
-                "the data do not determine {parameter}"
-            }
-            (Self::Open { standard_error: None, .. }, German) => {
-                "die Daten bestimmen {parameter} nicht"
-            }
+            (
+                Self::Open {
+                    parameter: p,
+                    standard_error: Some(_),
+                },
+                English,
+            ) if p.is_logarithm() => "the data leave {parameter} open by ± {width} %",
+            (
+                Self::Open {
+                    parameter: p,
+                    standard_error: Some(_),
+                },
+                German,
+            ) if p.is_logarithm() => "die Daten lassen {parameter} um ± {width} % offen",
+            (
+                Self::Open {
+                    standard_error: Some(_),
+                    ..
+                },
+                English,
+            ) => "the data leave {parameter} open by ± {width}",
+            (
+                Self::Open {
+                    standard_error: Some(_),
+                    ..
+                },
+                German,
+            ) => "die Daten lassen {parameter} um ± {width} offen",
+            (
+                Self::Open {
+                    standard_error: None,
+                    ..
+                },
+                English,
+            ) => "the data do not determine {parameter}",
+            (
+                Self::Open {
+                    standard_error: None,
+                    ..
+                },
+                German,
+            ) => "die Daten bestimmen {parameter} nicht",
             (Self::LeansOn { .. }, English) => "leans on {parameter} (correlation {correlation})",
             (Self::LeansOn { .. }, German) => {
                 "stützt sich auf {parameter} (Korrelation {correlation})"
@@ -99,9 +131,7 @@ impl Message for Note {
                 "die Messreihe hat mehrere Prüflinge; jeder hat seine eigenen Parameter"
             }
             (Self::NoPublishedMotion, English) => "no damping ratio gives all of these motions",
-            (Self::NoPublishedMotion, German) => {
-                "kein Dämpfungsgrad ergibt alle diese Bewegungen"
-            }
+            (Self::NoPublishedMotion, German) => "kein Dämpfungsgrad ergibt alle diese Bewegungen",
             (Self::NoStart { .. }, English) => {
                 "the model has no such motion at the starting values for {count} observations"
             }
@@ -110,7 +140,9 @@ impl Message for Note {
             }
             (Self::NothingToFit, English) => "there are no observations to fit",
             (Self::NothingToFit, German) => "es gibt keine Beobachtungen für eine Anpassung",
-            (Self::NotSeparable, English) => "the data do not tell the parameters apart",
+            (Self::SolverFailed { .. }, English) => "the solver failed: {report}",
+            (Self::SolverFailed { .. }, German) => "der Löser versagte: {report}",
+            (Self::NotSeparable, English) => "the data do not separate the parameters",
             (Self::NotSeparable, German) => "die Daten trennen die Parameter nicht",
         }
     }
@@ -136,6 +168,7 @@ impl Message for Note {
                 ("correlation", Value::Number(*correlation, 2)),
             ],
             Self::NoStart { observations } => vec![("count", Value::Count(*observations))],
+            Self::SolverFailed { report } => vec![("report", Value::Name(report))],
             Self::NotOneNumber
             | Self::SeveralSpecimens
             | Self::NoPublishedMotion

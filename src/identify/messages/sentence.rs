@@ -184,9 +184,7 @@ impl Sentence {
                 "Der Prüfstand hat {values}, aber {parameters} ist aus diesen Daten nicht zu \
                  bestimmen."
             }
-            Self::NotIdentifiable { .. } => {
-                "Aus diesen Daten ist {parameters} nicht zu bestimmen."
-            }
+            Self::NotIdentifiable { .. } => "Aus diesen Daten ist {parameters} nicht zu bestimmen.",
             Self::NothingUsable => {
                 "Nichts war zu identifizieren: Keine Aufzeichnung ist für ein Verfahren brauchbar."
             }
@@ -197,12 +195,8 @@ impl Sentence {
             Self::Specimens { .. } => {
                 "Die Messreihe hat {count} Prüflinge; jeder ist für sich identifiziert."
             }
-            Self::MisfiledRecords { count: 1 } => {
-                "Eine Aufzeichnung sieht falsch abgelegt aus."
-            }
-            Self::MisfiledRecords { .. } => {
-                "{count} Aufzeichnungen sehen falsch abgelegt aus."
-            }
+            Self::MisfiledRecords { count: 1 } => "Eine Aufzeichnung sieht falsch abgelegt aus.",
+            Self::MisfiledRecords { .. } => "{count} Aufzeichnungen sehen falsch abgelegt aus.",
             Self::PublishedDamping { .. } => {
                 "Die veröffentlichten Geschwindigkeiten gehören zu einem Dämpfungsgrad $β$ von \
                  {value}."
