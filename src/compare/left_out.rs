@@ -41,7 +41,7 @@ pub(super) fn unusable(observations: &[Observation]) -> Vec<Unusable> {
             let key = flag.code.replace('_', " ") + &of;
             note(o, key, Some(&flag.code), channel, &flag.message);
         }
-        if let Motion::Undetermined { reason } = &o.finding.motion
+        if let Motion::Undetermined { reason } = &o.classification.motion
             && !o.excluded()
             && o.drive.is_some()
         {

@@ -54,7 +54,7 @@ pub(super) fn overview(input: &Input) -> Overview {
 pub struct RecordRow {
     /// The record's name.
     pub id: String,
-    /// Rig, mass or bumper, if the campaign has several.
+    /// RigKind, mass or bumper, if the campaign has several.
     pub specimen: Option<String>,
     /// Measured drive frequency, Hz; `None` without a drive.
     pub frequency_hz: Option<f64>,
@@ -109,8 +109,8 @@ fn record(input: &Input, index: usize, reason: Option<&Reason>) -> RecordRow {
         clearance_m: o.setting.clearance_m,
         rho,
         sweep: o.setting.sweep,
-        motion: o.finding.motion.clone(),
-        confidence: o.finding.confidence,
+        motion: o.classification.motion.clone(),
+        confidence: o.classification.confidence,
         impacts: o.impacts.len(),
         flags: o.flags.iter().map(|f| f.code.clone()).collect(),
         used_by: input.identification.methods_using(index).collect(),

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::campaign::resolved::{Report as Look, ResolvedCampaign};
 use crate::campaign::written::{Language, Paper as WrittenPaper};
 use crate::compare::{self, Input};
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::identify::Provenance;
 use crate::pipeline::identify::{IdentificationFile, settings};
 use crate::pipeline::observe::read_one;
@@ -167,8 +167,8 @@ fn facts(campaign: &ResolvedCampaign) -> CampaignFacts {
     CampaignFacts {
         name: campaign.name.clone(),
         subject: match campaign.machine {
-            Rig::Double => Subject::TwoMasses,
-            Rig::Single => Subject::OneMass,
+            RigKind::Double => Subject::TwoMasses,
+            RigKind::Single => Subject::OneMass,
         },
         laboratory: campaign.laboratory.clone(),
         dates: dates(campaign),

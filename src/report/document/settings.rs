@@ -5,10 +5,10 @@ use serde_json::Value;
 use super::model::Block;
 use labfiles::units::Dimension;
 
-/// From how many lines on the settings stand in columns.
+/// More lines of settings than these are set in columns.
 const MANY_LINES: usize = 12;
 
-/// What a channel has where nothing was said: not worth a line.
+/// Defaults of a channel: not worth a line.
 const DEFAULTS: [&str; 4] = [
     "offset = 0.0",
     "sign = 1.0",

@@ -1,4 +1,4 @@
-//! Placing labels where nothing else stands.
+//! Placing labels where nothing else is drawn.
 
 use super::canvas::Point;
 use super::path::Rect;
@@ -66,7 +66,7 @@ impl Occupancy {
     }
 
     /// The best place for a box of a size near a point: its cost (covered area and distance) and
-    /// its middle, or `None` where all places within reach lie outside the bounds.
+    /// its middle, or `None` if all places within reach are outside the bounds.
     pub fn near(
         &self,
         point: Point,

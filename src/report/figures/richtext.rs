@@ -3,7 +3,7 @@
 
 use super::fonts::{self, Face};
 
-/// Where a run stands against the baseline.
+/// Level of a run relative to the baseline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Level {
@@ -95,7 +95,7 @@ impl Run {
         }
     }
 
-    /// How far its baseline lies below the text's.
+    /// How far its baseline is below the text's.
     pub fn shift(&self, around: f64) -> f64 {
         match self.level {
             Level::Base => 0.0,

@@ -123,7 +123,7 @@ fn crowded(table: Table) -> Table {
     .densely()
 }
 
-/// A name cut at its front where it is wider than the room: a wrapped line would shift the rows.
+/// A name cut at its front if it is wider than its column: a wrapped line would shift the rows.
 fn shortened(name: &Rich, room: f64, size: f64) -> Rich {
     let plain = name.plain();
     let wide = |text: &str| fonts::width(text, Face::Bold, size) > room;
