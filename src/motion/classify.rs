@@ -113,7 +113,7 @@ pub fn classify(detection: &Detection, duration_s: f64, settings: &ClassifySetti
     evidence.noise_ratio = noise_ratio;
     if rest && detection.closed_fraction > 0.9 {
         return Finding {
-            motion: Motion::Joined,
+            motion: Motion::Sticking,
             confidence: 0.95,
             evidence,
         };

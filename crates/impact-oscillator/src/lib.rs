@@ -1,12 +1,20 @@
-//! Theory of the impact oscillator: two masses on springs, driven toward each other, that hit
-//! when their displacements fill the gap (Peterka's double impact oscillator), or one mass
-//! against a stop.
-//!
-//! [`model`] is one oscillator: exact flights, impacts, periodic orbits and their boundaries.
-//! [`atlas`] runs many: region maps over (η, ρ), diagrams, basins.
+//! Theory of the impact oscillator.
+#![warn(
+    unreachable_pub,
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    clippy::cast_sign_loss,
+    clippy::missing_errors_doc,
+    clippy::missing_panics_doc
+)]
 
 pub mod atlas;
 pub mod model;
-mod motion;
+mod parallel;
 
-pub use motion::Motion;
+pub use atlas::{MapGrid, MapSettings, region_map};
+pub use model::{
+    Flight, Impact, ImpactKind, Initial, Machine, ModelError, Orbit, Oscillator, PeriodicOrbit,
+    Restitution, Setting, SettledMotion, Simulator, Trajectory, Watch, eta_s2, periodic_label,
+    rho_grazing, rho_s1, rho_s2, settle, simulate,
+};

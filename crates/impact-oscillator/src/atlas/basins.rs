@@ -3,8 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::map::{CellMotion, MapSettings, Start, even, march_from};
-use crate::model::{Initial, Machine, ModelError, Setting};
+use super::map::{MapSettings, Start, even, march_from};
+use crate::model::{Initial, Machine, ModelError, Setting, SettledMotion};
 
 /// Which masses take the start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -38,7 +38,7 @@ pub struct Basins {
     /// X'(0) of the rows.
     pub vx: Vec<f64>,
     /// Motions row by row; `None`: the start lies beyond the contact.
-    pub cells: Vec<Option<CellMotion>>,
+    pub cells: Vec<Option<SettledMotion>>,
 }
 
 impl BasinGrid {
@@ -86,7 +86,7 @@ pub fn basin_rows(
     grid: &BasinGrid,
     settings: &MapSettings,
     rows: std::ops::Range<usize>,
-) -> Result<Vec<Option<CellMotion>>, ModelError> {
+) -> Result<Vec<Option<SettledMotion>>, ModelError> {
     machine.check()?;
     setting.check()?;
     let (x, vx) = (even(grid.x), even(grid.vx));

@@ -45,7 +45,7 @@ pub enum EdgeKind {
     Torus,
     /// The flight touches the contact: a further impact begins.
     Grazing,
-    /// An impact's closing speed falls to zero.
+    /// An impact's approach speed falls to zero.
     ImpactVanishes,
     /// The masses begin to stay together after an impact (1 | 1j).
     DeadZone,
@@ -245,9 +245,9 @@ impl Follower<'_> {
         named(kind, orbit)
     }
 
-    /// The branch's edge; parameter and greatest closing speed of every orbit on the way.
+    /// The branch's edge; parameter and greatest approach speed of every orbit on the way.
     fn walk(&self, seed: &PeriodicOrbit, walk: &Walk, passed: &mut Vec<(f64, f64)>) -> Edge {
-        let n = 2 * seed.p() + 1;
+        let n = 2 * seed.times.len() + 1;
         let mut towards = DVector::zeros(n);
         towards[n - 1] = self.direction;
         let lost = |orbit: &PeriodicOrbit| named(EdgeKind::Lost, orbit.clone());
@@ -312,7 +312,7 @@ fn named(kind: EdgeKind, orbit: PeriodicOrbit) -> Edge {
 pub struct Followed {
     /// What ends the motion, and where.
     pub edge: Edge,
-    /// The parameter and the greatest closing speed of the orbits on the way, the edge's last.
+    /// The parameter and the greatest approach speed of the orbits on the way, the edge's last.
     pub passed: Vec<(f64, f64)>,
 }
 

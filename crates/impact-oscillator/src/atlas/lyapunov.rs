@@ -7,7 +7,7 @@ use crate::model::contact::free_accelerations;
 use crate::model::flight::{Drive, State};
 use crate::model::simulate::{Arc, Sink};
 use crate::model::variation::{free_flow, saltation};
-use crate::model::{ImpactKind, Machine, ModelImpact, Restitution};
+use crate::model::{ImpactKind, Machine, Impact, Restitution};
 
 /// Carries a variation along a simulation; give it to `Simulator::advance`.
 #[derive(Debug, Clone)]
@@ -56,7 +56,7 @@ impl<'a> Lyapunov<'a> {
     }
 
     /// Into a dead zone: the impact's map with R = 0, relative motion gone.
-    fn rest_map(&self, impact: &ModelImpact, after: &State) -> Matrix4<f64> {
+    fn rest_map(&self, impact: &Impact, after: &State) -> Matrix4<f64> {
         let plastic = self
             .machine
             .clone()
@@ -85,7 +85,7 @@ impl Sink for Lyapunov<'_> {
     fn arc(&mut self, arc: &Arc) {
         self.time += arc.duration;
         self.before = arc.paths.at(arc.duration);
-        if !arc.joined {
+        if !arc.sticking {
             self.apply(&free_flow(self.machine, arc.duration));
         } else if self.machine.is_symmetric() {
             // the common motion of joined equal masses is each mass's free vibration
@@ -98,7 +98,7 @@ impl Sink for Lyapunov<'_> {
         }
     }
 
-    fn impact(&mut self, impact: &ModelImpact) {
+    fn impact(&mut self, impact: &Impact) {
         let drive = Drive {
             eta: self.eta,
             phase: impact.phase,

@@ -5,19 +5,16 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 pub use super::kernel::Kernel;
 use super::kernel::{Cell, Course, Feed, Outcome, run};
 use crate::model::recurrence::observe;
 use crate::model::{
-    Flight, Initial, Machine, ModelError, ModelImpact, Oscillator, Setting, SettledMotion,
-    Simulator, Watch,
+    Flight, Impact, Initial, Machine, ModelError, Oscillator, Setting, SettledMotion, Simulator,
+    Watch,
 };
-
-/// What a cell shows.
-pub type CellMotion = SettledMotion;
+use crate::parallel;
 
 /// The grid: cell (i, k) lies at (`eta[i]`, `rho[k]`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -98,12 +95,12 @@ pub struct RegionMap {
     /// ρ of the rows.
     pub rho: Vec<f64>,
     /// The motions, row by row: cell (i, k) is `cells[k * eta.len() + i]`.
-    pub cells: Vec<CellMotion>,
+    pub cells: Vec<SettledMotion>,
 }
 
 impl RegionMap {
     /// The motion at column i (η) and row k (ρ).
-    pub fn at(&self, i: usize, k: usize) -> CellMotion {
+    pub fn at(&self, i: usize, k: usize) -> SettledMotion {
         self.cells[k * self.eta.len() + i]
     }
 }
@@ -136,7 +133,7 @@ fn map_cells(
     grid: &MapGrid,
     settings: &MapSettings,
     chosen: &[usize],
-) -> Result<Vec<CellMotion>, ModelError> {
+) -> Result<Vec<SettledMotion>, ModelError> {
     check(machine, grid, settings)?;
     let starts: Vec<Start> = chosen
         .iter()
@@ -167,7 +164,7 @@ pub struct Start {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct End {
     /// The motion.
-    pub motion: CellMotion,
+    pub motion: SettledMotion,
     /// A state of that motion.
     pub initial: Initial,
     /// Phase of the drive there, rad.
@@ -192,11 +189,10 @@ pub fn march_from(
                 motion: unit.judge(o, &settings.watch),
                 ..unit.end(o)
             };
-            Ok(outcomes.par_iter().map(end).collect())
+            Ok(parallel::map(&outcomes, end))
         }
-        _ => starts
-            .par_iter()
-            .map(|s| exact_cell(machine, s, settings))
+        _ => parallel::map(starts, |s| exact_cell(machine, s, settings))
+            .into_iter()
             .collect(),
     }
 }
@@ -230,7 +226,7 @@ fn exact_cell(machine: &Machine, s: &Start, settings: &MapSettings) -> Result<En
     };
     let mut simulator = Simulator::new(machine, setting, clear_of(machine, rho, s.initial))?;
     let settle = settings.watch.settle_periods * setting.period();
-    simulator.advance(settle, &mut |_: &ModelImpact| {});
+    simulator.advance(settle, &mut |_: &Impact| {});
     let motion = observe(&mut simulator, setting, &settings.watch).0;
     let now = simulator.state();
     let initial = Initial {
@@ -316,7 +312,7 @@ impl UnitMass {
 
     /// The motion of an outcome. One without recurrence in the kernel is watched once more by
     /// the exact simulator: it may converge slowly, or beat.
-    pub fn judge(&self, outcome: &Outcome, watch: &Watch) -> CellMotion {
+    pub fn judge(&self, outcome: &Outcome, watch: &Watch) -> SettledMotion {
         if outcome.motion != SettledMotion::Chaotic {
             return outcome.motion;
         }
@@ -378,20 +374,18 @@ pub fn march_all(course: &Course, cells: &[Cell], kernel: Option<Kernel>) -> Vec
         .filter(|k| k.is_available())
         .unwrap_or_else(Kernel::of_this_machine);
     let next = AtomicUsize::new(0);
-    let parts: Vec<Vec<(usize, Outcome)>> = (0..rayon::current_num_threads())
-        .into_par_iter()
-        .map(|_| {
-            let mut shared = Shared {
-                cells,
-                next: &next,
-                block: 0..0,
-                done: Vec::new(),
-            };
-            run(kernel, course, &mut shared);
-            shared.done
-        })
-        .collect();
-    let mut all: Vec<(usize, Outcome)> = parts.into_iter().flatten().collect();
+    let workers: Vec<usize> = (0..parallel::threads()).collect();
+    let march = |_: &usize| {
+        let mut shared = Shared {
+            cells,
+            next: &next,
+            block: 0..0,
+            done: Vec::new(),
+        };
+        run(kernel, course, &mut shared);
+        shared.done
+    };
+    let mut all: Vec<(usize, Outcome)> = parallel::map(&workers, march).concat();
     all.sort_unstable_by_key(|p| p.0);
     all.into_iter().map(|p| p.1).collect()
 }

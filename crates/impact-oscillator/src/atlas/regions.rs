@@ -4,64 +4,16 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
-
 use super::agreement::{Agreement, compare};
-use super::brute::{Maps, Way, brute_map, brute_maps};
-use super::continuation::{Along, Edge};
+use super::brute::{Maps, Seeding, brute_map, brute_maps};
+use super::continuation::Along;
 use super::curves::{Curve, curves};
-use super::line::{Line, Span};
-use super::map::{CellMotion, End, MapGrid, MapSettings};
+use super::line::{Line, Slice, Span};
+use super::map::{End, MapGrid};
 use super::resting::{RestingSlice, resting_slices};
-use crate::model::{Machine, ModelError};
-
-/// What an atlas covers.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct AtlasSettings {
-    /// Columns (η) along which regions are followed, and rows of the brute-force map.
-    pub grid: MapGrid,
-    /// Most impacts in a period of the motion.
-    pub largest_p: u32,
-    /// Most drive periods in a period of the motion.
-    pub largest_n: u32,
-    /// How the brute-force maps are marched.
-    #[serde(default)]
-    pub map: MapSettings,
-}
-
-/// One motion's interval of existence and stability along ρ at one η.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Slice {
-    /// η
-    pub eta: f64,
-    /// Impacts in a period of the motion.
-    pub p: u32,
-    /// Drive periods in a period of the motion.
-    pub n: u32,
-    /// Its lower edge.
-    pub low: Edge,
-    /// Its upper edge.
-    pub high: Edge,
-}
-
-impl Slice {
-    /// The motion.
-    pub fn motion(&self) -> CellMotion {
-        CellMotion::Periodic {
-            p: self.p as u16,
-            n: self.n as u16,
-            dead_zone: false,
-            chatter: false,
-        }
-    }
-
-    /// Whether a clearance lies in it.
-    pub fn holds(&self, rho: f64) -> bool {
-        self.low.orbit.rho <= rho && rho <= self.high.orbit.rho
-    }
-}
+use super::settings::AtlasSettings;
+use crate::model::{Machine, ModelError, SettledMotion};
+use crate::parallel;
 
 /// The atlas of a machine.
 #[derive(Debug, Clone)]
@@ -73,7 +25,7 @@ pub struct Atlas {
     /// The boundaries.
     pub curves: Vec<Curve>,
     /// The brute-force maps: from the start, rising, falling.
-    pub maps: [Vec<CellMotion>; 3],
+    pub maps: [Vec<SettledMotion>; 3],
     /// How curves and maps agree.
     pub agreement: Agreement,
 }
@@ -81,7 +33,7 @@ pub struct Atlas {
 impl Atlas {
     /// A motion of each cell beside the one from the start, where there is another: carried along
     /// rising or falling, else by the regions of the curves.
-    pub fn other_motions(&self, grid: &MapGrid) -> Vec<CellMotion> {
+    pub fn other_motions(&self, grid: &MapGrid) -> Vec<SettledMotion> {
         let mut by_eta: BTreeMap<u64, Vec<&Slice>> = BTreeMap::new();
         for s in &self.slices {
             by_eta.entry(s.eta.to_bits()).or_default().push(s);
@@ -119,10 +71,8 @@ pub fn columns(
     maps: &Maps,
     chosen: std::ops::Range<usize>,
 ) -> Vec<Vec<Slice>> {
-    chosen
-        .into_par_iter()
-        .map(|i| column(machine, settings, maps, i))
-        .collect()
+    let chosen: Vec<usize> = chosen.collect();
+    parallel::map(&chosen, |&i| column(machine, settings, maps, i))
 }
 
 /// The atlas from its maps and the slices of all its columns.
@@ -166,7 +116,7 @@ pub fn slices_at(
 ) -> Result<Vec<Slice>, ModelError> {
     let mut settings = settings.clone();
     settings.grid.eta = vec![eta];
-    let map = brute_map(machine, &settings.grid, &settings.map, Way::FromStart)?;
+    let map = brute_map(machine, &settings.grid, &settings.map, Seeding::FromStart)?;
     Ok(column(machine, &settings, &[map], 0))
 }
 

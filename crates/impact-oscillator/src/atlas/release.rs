@@ -9,14 +9,40 @@
 use std::collections::BTreeSet;
 
 use nalgebra::{Matrix2, Vector2};
+use serde::{Deserialize, Serialize};
 
-use super::resting::{Label, RestingEdge};
-use crate::model::boundary::rho_joined;
+use crate::model::boundary::rho_sticking;
 use crate::model::recurrence::observe;
 use crate::model::simulate::{Arc, Sink};
 use crate::model::{
     Flight, Initial, Machine, Oscillator, Setting, SettledMotion, Simulator, Watch,
 };
+
+/// p and n.
+pub type Label = (u32, u32);
+
+/// What bounds a motion with a dead zone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RestingEdge {
+    /// ρp: the masses stay together for ever below.
+    Sticking,
+    /// The dead zone closes, or the number of impacts between two of them changes.
+    DeadZone,
+    /// The motion loses its stability (asymmetric machines).
+    Unstable,
+}
+
+impl RestingEdge {
+    /// The name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sticking => "joined",
+            Self::DeadZone => "dead_zone",
+            Self::Unstable => "stability_lost",
+        }
+    }
+}
 
 /// J and J'.
 type Difference = Vector2<f64>;
@@ -88,7 +114,7 @@ struct Seen {
 
 impl Sink for Seen {
     fn arc(&mut self, arc: &Arc) {
-        if arc.joined {
+        if arc.sticking {
             let s = arc.paths.at(arc.duration);
             let difference = 0.5 * Difference::new(s.x - s.y, s.vx - s.vy);
             self.resting = Some((arc.tau + arc.duration, difference));
@@ -218,10 +244,10 @@ impl<'a> Releases<'a> {
     }
 
     fn kind(&self, inside: Place, outside: Place, rest: &Rest) -> RestingEdge {
-        let joined = rho_joined(self.machine, inside.0);
+        let sticking = rho_sticking(self.machine, inside.0);
         let goes_on = self.continued(outside, rest);
-        if inside.1 - joined < 1e-5 * (1.0 + joined.abs()) {
-            RestingEdge::Joined
+        if inside.1 - sticking < 1e-5 * (1.0 + sticking.abs()) {
+            RestingEdge::Sticking
         } else if goes_on.is_some_and(|r| r.label == rest.label && !r.is_stable()) {
             RestingEdge::Unstable
         } else {
@@ -375,7 +401,7 @@ pub fn label(motion: SettledMotion) -> Option<Label> {
             n,
             dead_zone: true,
             ..
-        } => Some((p.into(), n.into())),
+        } => Some((p, n)),
         _ => None,
     }
 }

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::brute::{Maps, brute_maps};
 use super::map::{End, Kernel, MapGrid};
-use super::regions::AtlasSettings;
+use super::settings::AtlasSettings;
 use crate::model::{Machine, ModelError};
 
 /// Everything that determines an atlas.

@@ -1,15 +1,16 @@
 //! Quasi-stationary sweeps: the frequency or the clearance moves in small steps, the motion is
-//! carried along, and at every step its amplitude, closing speeds and Lyapunov exponent are
+//! carried along, and at every step its amplitude, approach speeds and Lyapunov exponent are
 //! taken (Figs. 4 and 6 of the paper).
 
 use serde::{Deserialize, Serialize};
 
 use super::lyapunov::Lyapunov;
 use crate::model::flight::{Drive, forced_amplitude};
+use crate::model::motion::count;
 use crate::model::recurrence::observe;
 use crate::model::simulate::{Arc, Sink, Snapshot};
 use crate::model::{
-    Initial, Machine, ModelError, ModelImpact, Oscillator, Setting, SettledMotion, Simulator, Watch,
+    Impact, Initial, Machine, ModelError, Oscillator, Setting, SettledMotion, Simulator, Watch,
 };
 
 /// What a sweep goes through.
@@ -39,8 +40,8 @@ pub struct SweepPoint {
     pub x_max: f64,
     /// Greatest displacement Y in the watch.
     pub y_max: f64,
-    /// Closing speeds of the last impacts: one period's of a periodic motion, else up to 64.
-    pub closing_speeds: Vec<f64>,
+    /// Approach speeds of the last impacts: one period's of a periodic motion, else up to 64.
+    pub approach_speeds: Vec<f64>,
     /// X'₋ of the same impacts.
     pub x_speeds: Vec<f64>,
     /// Phases of the drive at the same impacts, rad.
@@ -79,8 +80,8 @@ fn maximum(path: &crate::model::path::Path, duration: f64) -> f64 {
     let steps = (duration * path.rate() * 8.0).ceil().clamp(2.0, 1e5);
     let at = |k: f64| path.at(duration * k / steps);
     let mut best = at(0.0)[0].max(at(steps)[0]);
-    for k in 0..(steps as usize) {
-        let (mut lo, mut hi) = (k as f64, k as f64 + 1.0);
+    for k in 0..count(steps) {
+        let (mut lo, mut hi) = (f64::from(k), f64::from(k) + 1.0);
         if at(lo)[1] > 0.0 && at(hi)[1] <= 0.0 {
             for _ in 0..50 {
                 let mid = 0.5 * (lo + hi);
@@ -215,7 +216,7 @@ fn one_step(
     watch: &Watch,
 ) -> SweepPoint {
     let period = setting.period();
-    simulator.advance(watch.settle_periods * period, &mut |_: &ModelImpact| {});
+    simulator.advance(watch.settle_periods * period, &mut |_: &Impact| {});
     let mut follower = simulator.clone();
     let (motion, impacts) = observe(simulator, setting, watch);
     let mut extremes = Extremes::new();
@@ -232,21 +233,21 @@ fn one_step(
         .advance(watch.watch_periods * period, &mut sampler);
     let mut lyapunov = Lyapunov::new(machine, setting.frequency_ratio);
     follower.advance(watch.watch_periods * period, &mut lyapunov);
-    let count = match motion {
+    let shown = match motion {
         SettledMotion::Periodic {
             p, chatter: false, ..
-        } => usize::from(p),
+        } => p as usize,
         _ => MOST_IMPACTS,
     };
-    let last = &impacts[impacts.len().saturating_sub(count)..];
-    let of = |f: fn(&ModelImpact) -> f64| last.iter().map(f).collect();
+    let last = &impacts[impacts.len().saturating_sub(shown)..];
+    let of = |f: fn(&Impact) -> f64| last.iter().map(f).collect();
     SweepPoint {
         eta: setting.frequency_ratio,
         rho: setting.clearance,
         motion,
         x_max: extremes.x,
         y_max: extremes.y,
-        closing_speeds: of(|i| i.closing_before),
+        approach_speeds: of(|i| i.approach_speed),
         x_speeds: of(|i| i.vx_before),
         phases: of(|i| i.phase),
         lyapunov: Some(lyapunov.exponent()).filter(|l| l.is_finite()),

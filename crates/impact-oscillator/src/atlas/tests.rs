@@ -1,12 +1,11 @@
 //! Maps: the vector kernel against the exact simulator, and invariants of maps.
 
 use super::agreement::Cause;
-use super::basins::{BasinGrid, Starts, basins};
 use super::brute::brute_maps;
 use super::continuation::EdgeKind;
-use super::lyapunov::Lyapunov;
 use super::map::{Kernel, even};
-use super::regions::{Slice, slices_at};
+use super::line::Slice;
+use super::regions::slices_at;
 use super::shard::{AtlasPart, AtlasRequest, MergeError, merge, part};
 use super::sweep::{Sweep, SweepPoint, sweep};
 use super::*;
@@ -165,7 +164,7 @@ fn valid_preloaded_cells_are_joined_or_rest_once_a_period() {
     let exact = region_map(&slow_path(&machine), &grid, &MapSettings::default()).unwrap();
     assert_eq!(map.cells, exact.cells);
     for (i, cell) in map.cells.iter().enumerate() {
-        let joined = *cell == SettledMotion::Joined;
+        let joined = *cell == SettledMotion::Sticking;
         assert_eq!(
             joined,
             grid.at(i).1 < -1.0 + 1e-9,
@@ -207,7 +206,7 @@ fn valid_sweeps_show_hysteresis_between_grazing_and_s2() {
             .all(|p| p.x_max >= 2.0 - 1e-9 && p.x_max < 2.0 + 1e-9)
     );
     let down = sweep(&machine, &walk_eta(1.7, 1.1, 121, 2.0), |_| true).unwrap();
-    let first = down.iter().find(|p| !p.closing_speeds.is_empty()).unwrap();
+    let first = down.iter().find(|p| !p.approach_speeds.is_empty()).unwrap();
     assert!(
         (rho_grazing(&machine, first.eta) - 2.0).abs() < 0.1,
         "{}",
@@ -247,7 +246,7 @@ fn valid_lyapunov_exponent_is_that_of_the_multipliers() {
 
 #[test]
 fn valid_basins_of_fig5_shrink_with_restitution() {
-    // in the hysteresis region, at the greatest closing speeds: z = 1 is easily reached at
+    // in the hysteresis region, at the greatest approach speeds: z = 1 is easily reached at
     // R = 0 and hardly at R = 0.9
     let share = |r: f64, eta: f64| {
         let grid = BasinGrid {
@@ -435,8 +434,8 @@ fn valid_dead_zones_of_uneven_machines_hold_what_brute_force_finds() {
         let differing = &atlas.agreement.differing;
         assert!(differing.is_empty(), "{differing:#?}");
         let edges = atlas.curves.iter().filter(|c| c.dead_zone);
-        assert!(edges.clone().any(|c| c.kind == "dead_zone"));
-        assert!(edges.clone().any(|c| c.kind == "joined"));
+        assert!(edges.clone().any(|c| c.kind.name() == "dead_zone"));
+        assert!(edges.clone().any(|c| c.kind.name() == "joined"));
     }
 }
 

@@ -16,8 +16,8 @@ pub struct BoundaryPoint {
     pub eta: f64,
     /// ρ
     pub rho: f64,
-    /// Closing speed of the marginal orbit; 0 at grazing.
-    pub closing_speed: f64,
+    /// Approach speed of the marginal orbit; 0 at grazing.
+    pub approach_speed: f64,
     /// Phase of the drive at its impact, rad in [0, 2π).
     pub phase: f64,
     /// Whether the marginal orbit is a motion of the machine.
@@ -53,7 +53,7 @@ pub fn rho_grazing(machine: &Machine, eta: f64) -> f64 {
 /// ρp(η): clearance below which masses that are together stay together for ever. Joined masses
 /// press with −2k₁k₂ρ/(k₁+k₂) + Re((F₁D₂ + F₂D₁)/(D₁ + D₂) e^{i(ητ+φ)}), Dᵢ = kᵢ − η²mᵢ + iηbᵢ;
 /// ρp is where that just never vanishes. Equal masses, or one of them: −F/k for every η.
-pub fn rho_joined(machine: &Machine, eta: f64) -> f64 {
+pub fn rho_sticking(machine: &Machine, eta: f64) -> f64 {
     let parts = |o: &Oscillator| {
         let k = o.stiffness_per_mass() * o.mass;
         let dynamic = C64::new(k - eta * eta * o.mass, 2.0 * eta * o.decay_rate() * o.mass);
@@ -68,7 +68,7 @@ pub fn rho_joined(machine: &Machine, eta: f64) -> f64 {
     -swing.norm() * (k1 + k2) / (2.0 * k1 * k2)
 }
 
-/// Clearance and closing speed at s2 for constant R, without a check of existence:
+/// Clearance and approach speed at s2 for constant R, without a check of existence:
 /// G = |F|√(1 + (αη/Q)²), w = Gα/(α² + Q²/η²).
 pub fn s2_of_branch(branch: &Branch, restitution: f64) -> (f64, f64) {
     let (alpha, q) = (
@@ -95,20 +95,20 @@ fn harmonic_branch(machine: &Machine, eta: f64, n: u32) -> Option<Branch> {
 }
 
 fn point(machine: &Machine, eta: f64, n: u32, at: (f64, f64)) -> Option<BoundaryPoint> {
-    let (rho, closing_speed) = at;
-    if !rho.is_finite() || !closing_speed.is_finite() {
+    let (rho, approach_speed) = at;
+    if !rho.is_finite() || !approach_speed.is_finite() {
         return None;
     }
     let mut p = BoundaryPoint {
         eta,
         rho,
-        closing_speed,
+        approach_speed,
         phase: 0.0,
         existence: Existence::NotClosing,
         ends_stability: false,
     };
-    if closing_speed > 0.0 {
-        let orbit = orbit_with_speed(machine, Setting::new(eta, rho), n, closing_speed);
+    if approach_speed > 0.0 {
+        let orbit = orbit_with_speed(machine, Setting::new(eta, rho), n, approach_speed);
         (p.phase, p.existence) = (orbit.phase_at_impact, orbit.existence);
         let within = |m: &C64| m.norm() < 1.0 + 1e-6;
         p.ends_stability = orbit.multipliers.iter().all(within);
@@ -164,13 +164,13 @@ pub fn rho_s1(machine: &Machine, eta: f64, n: u32) -> Option<BoundaryPoint> {
     }
 }
 
-/// Clearance and closing speed at s1 of one mass (or of equal ones) for constant R, without a
+/// Clearance and approach speed at s1 of one mass (or of equal ones) for constant R, without a
 /// check of existence.
 pub fn s1_of_branch(machine: &Machine, branch: &Branch, restitution: f64) -> Option<(f64, f64)> {
     marginal(machine, branch, restitution, -1.0)
 }
 
-/// Clearance and closing speed of one mass (or of equal ones) where a multiplier is `sign`
+/// Clearance and approach speed of one mass (or of equal ones) where a multiplier is `sign`
 /// (±1): trace = sign·(1 + determinant). For +1 it is s2 again.
 fn marginal(machine: &Machine, branch: &Branch, r: f64, sign: f64) -> Option<(f64, f64)> {
     let masses = machine.gap(1.0);
@@ -189,7 +189,7 @@ fn marginal(machine: &Machine, branch: &Branch, r: f64, sign: f64) -> Option<(f6
 }
 
 /// Doubling along the branch w = (η|F|/|Q|) sin θ, G = αw + |F| cos θ of an asymmetric machine:
-/// the root of det(M + 1) of largest closing speed whose orbit exists, else of largest speed.
+/// the root of det(M + 1) of largest approach speed whose orbit exists, else of largest speed.
 fn s1_along_branch(machine: &Machine, branch: &Branch, r: f64, n: u32) -> Option<BoundaryPoint> {
     let (f, eta) = (branch.forced.norm(), branch.eta);
     let at = |theta: f64| {
@@ -217,8 +217,8 @@ fn s1_along_branch(machine: &Machine, branch: &Branch, r: f64, n: u32) -> Option
         })
         .collect();
     found.sort_by(|a, b| {
-        (b.is_valid(), b.closing_speed)
-            .partial_cmp(&(a.is_valid(), a.closing_speed))
+        (b.is_valid(), b.approach_speed)
+            .partial_cmp(&(a.is_valid(), a.approach_speed))
             .unwrap_or(std::cmp::Ordering::Equal)
     });
     found.first().copied()
@@ -254,11 +254,11 @@ pub fn etas_grazing(machine: &Machine, rho: f64) -> Vec<f64> {
 
 /// All η at which masses that are together begin to stay so for ever at a clearance, rising; none
 /// where ρp does not depend on η, as with equal masses.
-pub fn etas_joined(machine: &Machine, rho: f64) -> Vec<f64> {
+pub fn etas_sticking(machine: &Machine, rho: f64) -> Vec<f64> {
     if machine.y.is_none() || machine.is_symmetric() {
         return Vec::new();
     }
-    roots(2.5, |eta| rho_joined(machine, eta) - rho)
+    roots(2.5, |eta| rho_sticking(machine, eta) - rho)
 }
 
 fn points_at(

@@ -147,7 +147,7 @@ pub fn with_friction(force: f64, friction: f64, v: f64) -> (f64, f64) {
 /// Paths while the masses stay together, X = ρ + J, Y = ρ − J:
 /// (m₁+m₂)J'' + (b₁+b₂)J' + (k₁+k₂)J = (k₂−k₁)ρ + (F₁−F₂)cos(ητ+φ), for equal masses eq. (7)
 /// of the paper. Against a stop X rests at ρ.
-pub fn joined_flight(
+pub fn sticking_flight(
     machine: &Machine,
     drive: Drive,
     clearance: f64,
@@ -208,9 +208,9 @@ fn fictive_acceleration(o: &Oscillator, drive: Drive, path: &Path) -> Path {
         .plus(-o.stiffness_per_mass(), path)
 }
 
-/// The press force's measure along joined paths: the fictive relative acceleration X'' + Y''
+/// The press force's measure along the paths of sticking masses: the fictive relative acceleration X'' + Y''
 /// that the masses would have without the contact (eq. 6); pressed while it is positive.
-pub fn press(machine: &Machine, drive: Drive, joined: &FlightPaths) -> Path {
+pub fn press(machine: &Machine, drive: Drive, sticking: &FlightPaths) -> Path {
     if let Flight::ConstantForce {
         acceleration,
         friction,
@@ -218,9 +218,9 @@ pub fn press(machine: &Machine, drive: Drive, joined: &FlightPaths) -> Path {
     {
         return Path::constant(acceleration - friction, drive.eta);
     }
-    let ax = fictive_acceleration(&machine.x, drive, &joined.x);
+    let ax = fictive_acceleration(&machine.x, drive, &sticking.x);
     match &machine.y {
         None => ax,
-        Some(o) => ax.plus(1.0, &fictive_acceleration(o, drive, &joined.y)),
+        Some(o) => ax.plus(1.0, &fictive_acceleration(o, drive, &sticking.y)),
     }
 }

@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use super::contact::{self, ImpactKind, ModelImpact, Outcome};
+use super::contact::{self, ImpactKind, Impact, Outcome};
 use super::crossing::first_zero;
-use super::flight::{Drive, FlightPaths, State, free_flight, joined_flight, press};
+use super::flight::{Drive, FlightPaths, State, free_flight, sticking_flight, press};
 use super::params::{Initial, Machine, ModelError, Setting};
 
 /// A piece of the motion between two events.
@@ -14,8 +14,8 @@ pub struct Arc {
     pub tau: f64,
     /// How long it lasts.
     pub duration: f64,
-    /// Whether the masses are joined in it (a dead zone).
-    pub joined: bool,
+    /// Whether the masses stick together in it (a dead zone).
+    pub sticking: bool,
     /// Phase of the drive at its start, rad.
     pub phase: f64,
     /// Displacements in time since its start.
@@ -27,11 +27,11 @@ pub trait Sink {
     /// A finished piece of motion.
     fn arc(&mut self, _arc: &Arc) {}
     /// An impact.
-    fn impact(&mut self, _impact: &ModelImpact) {}
+    fn impact(&mut self, _impact: &Impact) {}
 }
 
-impl<F: FnMut(&ModelImpact)> Sink for F {
-    fn impact(&mut self, impact: &ModelImpact) {
+impl<F: FnMut(&Impact)> Sink for F {
+    fn impact(&mut self, impact: &Impact) {
         self(impact);
     }
 }
@@ -46,7 +46,7 @@ pub struct Simulator {
     tau: f64,
     phase: f64,
     state: State,
-    joined: bool,
+    sticking: bool,
     size: f64,
 }
 
@@ -58,13 +58,13 @@ pub struct Snapshot {
     tau: f64,
     phase: f64,
     state: State,
-    joined: bool,
+    sticking: bool,
     size: f64,
 }
 
 impl Simulator {
     /// Start a motion at τ = 0. Masses that start in contact, at rest and pressed together
-    /// start joined.
+    /// start sticking.
     ///
     /// # Errors
     /// [`ModelError`] where a parameter is out of range or the start lies beyond the contact.
@@ -91,7 +91,7 @@ impl Simulator {
             tau: 0.0,
             phase: setting.phase.rem_euclid(TAU),
             state,
-            joined: false,
+            sticking: false,
             size: 0.0,
         };
         let depth = -new.gap_left();
@@ -110,7 +110,7 @@ impl Simulator {
             tau: self.tau,
             phase: self.phase,
             state: self.state,
-            joined: self.joined,
+            sticking: self.sticking,
             size: self.size,
         }
     }
@@ -128,7 +128,7 @@ impl Simulator {
             tau: snapshot.tau,
             phase: snapshot.phase,
             state: snapshot.state,
-            joined: snapshot.joined,
+            sticking: snapshot.sticking,
             size: snapshot.size,
         })
     }
@@ -153,9 +153,9 @@ impl Simulator {
         self.paths().at(0.0)
     }
 
-    /// Whether the masses are joined now.
-    pub fn is_joined(&self) -> bool {
-        self.joined
+    /// Whether the masses stick together now.
+    pub fn is_sticking(&self) -> bool {
+        self.sticking
     }
 
     /// Go on with another frequency ratio and clearance; the drive's phase and the motion stay
@@ -163,8 +163,8 @@ impl Simulator {
     /// the contact, each by its mobility.
     pub fn set(&mut self, frequency_ratio: f64, clearance: f64) {
         (self.eta, self.clearance) = (frequency_ratio, clearance);
-        if self.joined {
-            self.state = contact::joined_state(&self.machine, clearance, &self.state);
+        if self.sticking {
+            self.state = contact::sticking_state(&self.machine, clearance, &self.state);
         } else if self.gap_left() < 0.0 {
             self.state = contact::in_contact(&self.machine, clearance, &self.state);
         }
@@ -175,7 +175,7 @@ impl Simulator {
     pub fn advance(&mut self, duration: f64, sink: &mut impl Sink) {
         let end = self.tau + duration;
         while self.tau < end {
-            if self.joined {
+            if self.sticking {
                 self.stay(end, sink);
             } else {
                 self.fly(end, sink);
@@ -195,8 +195,8 @@ impl Simulator {
     }
 
     fn paths(&self) -> FlightPaths {
-        if self.joined {
-            joined_flight(&self.machine, self.drive(), self.clearance, &self.state)
+        if self.sticking {
+            sticking_flight(&self.machine, self.drive(), self.clearance, &self.state)
         } else {
             free_flight(&self.machine, self.drive(), &self.state)
         }
@@ -206,23 +206,23 @@ impl Simulator {
     fn settle(&mut self) {
         let s = &self.state;
         let still = 1e-12 * (1.0 + s.x.abs() + s.y.abs() + s.vx.abs() + s.vy.abs());
-        if self.joined || self.gap_left() > still || (s.vx + s.vy).abs() > still {
+        if self.sticking || self.gap_left() > still || (s.vx + s.vy).abs() > still {
             return;
         }
         let (ax, ay) = contact::free_accelerations(&self.machine, self.drive(), s);
         if ax + ay > 0.0 {
-            self.joined = true;
-            self.state = contact::joined_state(&self.machine, self.clearance, s);
+            self.sticking = true;
+            self.state = contact::sticking_state(&self.machine, self.clearance, s);
         }
     }
 
     /// Move along an arc of a given length and tell it; the last arc ends exactly at `end`.
     fn move_on(&mut self, paths: &FlightPaths, length: f64, end: f64, sink: &mut impl Sink) {
-        let (tau, joined, phase) = (self.tau, self.joined, self.phase);
+        let (tau, sticking, phase) = (self.tau, self.sticking, self.phase);
         sink.arc(&Arc {
             tau,
             duration: length,
-            joined,
+            sticking,
             phase,
             paths: *paths,
         });
@@ -267,21 +267,21 @@ impl Simulator {
         let sticks = matches!(kind, ImpactKind::Stick | ImpactKind::ChatterEnd);
         let mut dead_zone = 0.0;
         if sticks {
-            self.joined = true;
-            self.state = contact::joined_state(&self.machine, self.clearance, &after);
+            self.sticking = true;
+            self.state = contact::sticking_state(&self.machine, self.clearance, &after);
             let release =
                 contact::release_time(&self.machine, self.drive(), self.clearance, &self.state);
             dead_zone = (release - until_rest).max(0.0);
         }
-        sink.impact(&ModelImpact {
+        sink.impact(&Impact {
             tau: self.tau + until_rest,
             phase: (self.phase + self.eta * until_rest).rem_euclid(TAU),
             vx_before: before.vx,
             vx_after: self.state.vx,
             vy_before: before.vy,
             vy_after: self.state.vy,
-            closing_before: (before.vx + before.vy).max(0.0),
-            closing_after: self.state.vx + self.state.vy,
+            approach_speed: (before.vx + before.vy).max(0.0),
+            separation_speed: -(self.state.vx + self.state.vy),
             kind,
             dead_zone,
         });
@@ -291,14 +291,14 @@ impl Simulator {
         let paths = self.paths();
         let press = press(&self.machine, self.drive(), &paths);
         if press.at(0.0)[0] <= 0.0 {
-            self.joined = false;
+            self.sticking = false;
             return;
         }
         let limit = end - self.tau;
         match first_zero(&press, limit) {
             Some(release) => {
                 self.move_on(&paths, release.time, end, sink);
-                self.joined = false;
+                self.sticking = false;
             }
             None => self.move_on(&paths, limit, end, sink),
         }
@@ -311,14 +311,14 @@ pub struct Trajectory {
     /// Pieces of motion in the order of time, without a gap between them.
     pub arcs: Vec<Arc>,
     /// All impacts in the order of time.
-    pub impacts: Vec<ModelImpact>,
+    pub impacts: Vec<Impact>,
 }
 
 impl Sink for Trajectory {
     fn arc(&mut self, arc: &Arc) {
         self.arcs.push(*arc);
     }
-    fn impact(&mut self, impact: &ModelImpact) {
+    fn impact(&mut self, impact: &Impact) {
         self.impacts.push(*impact);
     }
 }

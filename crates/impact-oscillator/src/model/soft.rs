@@ -32,13 +32,13 @@ pub struct SoftImpact {
     pub tau: f64,
     /// How long the contact presses.
     pub duration: f64,
-    /// Closing speed at first touch.
-    pub closing_before: f64,
-    /// Closing speed when the press ends; not positive.
-    pub closing_after: f64,
+    /// Approach speed at first touch.
+    pub approach_speed: f64,
+    /// Separation speed when the contact ends, not negative.
+    pub separation_speed: f64,
 }
 
-/// A simulated motion with soft contacts; arcs with a contact are marked joined.
+/// A simulated motion with soft contacts; arcs with a contact are marked as sticking.
 #[derive(Debug, Clone, Default)]
 pub struct SoftMotion {
     /// The motion, exact at every instant; its list of rigid impacts is empty.
@@ -128,7 +128,7 @@ enum Phase {
     Free,
     /// Pressed together.
     Pressed,
-    /// Overlapping still, but parting faster than the contact recovers.
+    /// Overlapping still, but separation faster than the contact recovers.
     Recovering,
 }
 
@@ -292,7 +292,7 @@ impl Runner<'_> {
         motion.trajectory.arcs.push(Arc {
             tau: self.tau,
             duration: length,
-            joined: self.phase == Phase::Pressed,
+            sticking: self.phase == Phase::Pressed,
             phase: self.drive_phase,
             paths,
         });
@@ -309,19 +309,19 @@ impl Runner<'_> {
     }
 
     fn enter(&mut self, next: Phase, motion: &mut SoftMotion) {
-        let closing = self.state.vx + self.state.vy;
+        let approach = self.state.vx + self.state.vy;
         if next == Phase::Pressed {
-            self.touch = Some((self.tau, closing));
+            self.touch = Some((self.tau, approach));
         }
         if self.phase == Phase::Pressed
-            && let Some((tau, closing_before)) = self.touch.take()
+            && let Some((tau, approach_speed)) = self.touch.take()
         {
             let duration = self.tau - tau;
             let contact = SoftImpact {
                 tau,
                 duration,
-                closing_before,
-                closing_after: closing,
+                approach_speed,
+                separation_speed: -approach,
             };
             motion.contacts.push(contact);
         }
@@ -421,7 +421,7 @@ mod tests {
                 .unwrap();
             let c = m.contacts[0];
             assert!(
-                (c.closing_after / c.closing_before + r).abs() < 1e-4,
+                (c.separation_speed / c.approach_speed - r).abs() < 1e-4,
                 "{r} {c:?}"
             );
         }
@@ -451,7 +451,7 @@ mod tests {
         assert!(
             m.contacts
                 .iter()
-                .all(|c| c.closing_before > 0.0 && c.duration > 0.0)
+                .all(|c| c.approach_speed > 0.0 && c.duration > 0.0)
         );
     }
 
@@ -463,6 +463,6 @@ mod tests {
         let soft = SoftContact::with_restitution(&machine, 1e9, 0.8).unwrap();
         let m = simulate_soft(&machine, soft, setting, Initial::rest(), 400.0).unwrap();
         let last = m.contacts.last().unwrap();
-        assert!((last.closing_before / orbit.closing_speed - 1.0).abs() < 1e-3);
+        assert!((last.approach_speed / orbit.approach_speed - 1.0).abs() < 1e-3);
     }
 }

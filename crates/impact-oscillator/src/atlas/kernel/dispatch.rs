@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::lanes::Two;
-use super::{Course, Feed, march};
+use crate::atlas::lanes::Two;
+use super::cell::{Course, Feed};
+use super::march::march;
 
 /// Instruction sets that the kernel is compiled for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -66,7 +67,7 @@ pub fn run(kernel: Kernel, course: &Course, feed: &mut impl Feed) {
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
-    use super::super::super::lanes::{Avx2, Avx512, Two};
+    use crate::atlas::lanes::{Avx2, Avx512, Two};
     use super::{Course, Feed, march};
 
     #[target_feature(enable = "avx2,fma")]

@@ -1,11 +1,12 @@
 //! What a lane asks for beside the steps: an orbit that recurs, a mass that rests at the stop, the
 //! end of settling and watch, the hand-over of a cell that is done.
 
-use super::super::lanes::Lanes;
+use crate::atlas::lanes::Lanes;
+use super::cell::{Cell, Course, Feed, Outcome};
 use super::lane::{Anchor, Lane, forget, place, where_is};
 use super::step::{Events, Group};
-use super::{Cell, Course, Feed, Outcome};
 use crate::model::SettledMotion;
+use crate::model::motion::count;
 
 /// The mass has no relative speed left at the stop, at (t, phase): it rests there until the
 /// drive lets go (cos φ = ρ, falling), then leaves; or it leaves at once. Gives whether it
@@ -21,7 +22,7 @@ pub(super) fn come_to_rest<V: Lanes>(
     let rho = info.cell.rho;
     if phase.cos() - rho > 0.0 {
         if rho <= -1.0 {
-            info.found = Some(SettledMotion::Joined);
+            info.found = Some(SettledMotion::Sticking);
             return true;
         }
         let release = rho.acos();
@@ -43,8 +44,8 @@ pub(super) fn come_to_rest<V: Lanes>(
 fn resting_orbit(course: &Course, periods: f64, hits: f64) -> SettledMotion {
     let chatter = course.restitution > 0.0;
     SettledMotion::Periodic {
-        p: if chatter { 1 } else { hits as u16 },
-        n: periods.round() as u16,
+        p: if chatter { 1 } else { count(hits) },
+        n: count(periods.round()),
         dead_zone: true,
         chatter,
     }
@@ -172,8 +173,8 @@ fn recognise<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize, here: &An
     }
     if p == 1.0 || info.confirming {
         info.found = Some(SettledMotion::Periodic {
-            p: p as u16,
-            n: n as u16,
+            p: count(p),
+            n: count(n),
             dead_zone: false,
             chatter: false,
         });

@@ -1,8 +1,8 @@
 //! A lane and its cell: loaded, parked, placed at a state and read off again.
 
-use super::super::lanes::Lanes;
+use crate::atlas::lanes::Lanes;
+use super::cell::{Cell, Course};
 use super::step::Group;
-use super::{Cell, Course};
 use crate::model::SettledMotion;
 
 /// Longest step in units of the faster of both rates: a quarter of it is where the polynomials

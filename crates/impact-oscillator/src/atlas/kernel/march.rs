@@ -1,10 +1,10 @@
 //! The loop over the steps, with all lanes at work as long as there are cells.
 
-use super::super::lanes::Lanes;
+use crate::atlas::lanes::Lanes;
+use super::cell::{Cell, Course, Feed, Outcome};
 use super::exits::{come_to_rest, serve};
 use super::lane::{IDLE, Lane, empty_group, load, park};
 use super::step::{Constants, Group, step};
-use super::{Cell, Course, Feed, Outcome};
 use crate::model::SettledMotion;
 
 /// Lanes of the widest kernel.
@@ -69,7 +69,7 @@ fn refill<V: Lanes>(
         feed.done(
             index,
             Outcome {
-                motion: SettledMotion::Joined,
+                motion: SettledMotion::Sticking,
                 end,
             },
         );

@@ -1,6 +1,6 @@
 //! One step of all lanes of a group: impacts by masks, the safe step, the exact motion over it.
 
-use super::super::lanes::Lanes;
+use crate::atlas::lanes::Lanes;
 
 const SIN: [f64; 6] = [
     -0.16666666666666663,
@@ -190,10 +190,10 @@ pub(super) fn step<V: Lanes, const DEGREE: usize>(c: &Constants<V>, s: &mut Grou
     let two_g = g.add(g);
     let d = m.mul_add(two_g, v2);
     let root = d.max(zero).sqrt();
-    let closing = zero.lt(v);
-    let no_root = V::or(d.lt(zero), V::and_not(m.le(zero), closing));
-    let up = two_g.or_else(closing, root.sub(v));
-    let down = v.add(root).or_else(closing, m);
+    let approaching = zero.lt(v);
+    let no_root = V::or(d.lt(zero), V::and_not(m.le(zero), approaching));
+    let up = two_g.or_else(approaching, root.sub(v));
+    let down = v.add(root).or_else(approaching, m);
     let h = hm.or_else(no_root, up.div(down).min(hm));
     // the exact motion over it
     let e = decay::<V, DEGREE>(c.quarter_beta.mul(h));
