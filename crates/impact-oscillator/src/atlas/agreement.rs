@@ -1,5 +1,5 @@
 //! Curves against brute force: every cell of the maps is looked up in the regions of the curves,
-//! and each that lies in none is told why.
+//! with the cause for each that is in none.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use crate::model::{Existence, Machine, SettledMotion, rho_grazing};
 pub struct Agreement {
     /// Cells whose motion the curves can judge.
     pub compared: usize,
-    /// Cells whose motion lies in no region of the curves.
+    /// Cells whose motion is in no region of the curves.
     pub differing: Vec<Differing>,
     /// Periodic cells beyond the largest p or n.
     pub beyond: usize,
@@ -25,7 +25,7 @@ pub struct Agreement {
     pub aperiodic: usize,
 }
 
-/// A cell whose motion lies in no region of the curves.
+/// A cell whose motion is in no region of the curves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Differing {
     /// η
@@ -41,13 +41,13 @@ pub struct Differing {
     pub cause: Cause,
 }
 
-/// Why a cell's motion lies in no region of the curves.
+/// Why a cell's motion is in no region of the curves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Cause {
-    /// The motion is there and stable: the curves miss a region.
+    /// The motion exists and is stable: the curves miss a region.
     NoRegion,
-    /// The motion converges to one of fewer impacts, too slowly for its watch: it lies just
+    /// The motion converges to one of fewer impacts, too slowly for its watch: it is just
     /// before that one's period doubling.
     Converges {
         /// Impacts in a period of the motion that it converges to.
@@ -61,7 +61,7 @@ pub enum Cause {
         /// Largest modulus of its multipliers.
         multiplier: f64,
     },
-    /// No orbit lies where the cell closes: a transient.
+    /// No orbit exists where the cell closes: a transient.
     NoOrbit,
 }
 
@@ -84,7 +84,7 @@ struct Regions<'a> {
 }
 
 impl Regions<'_> {
-    /// Whether a motion lies in one of its regions; `None`: the curves do not judge it.
+    /// Whether a motion is in one of its regions; `None`: the curves do not judge it.
     fn hold(&self, (eta, rho): (f64, f64), motion: SettledMotion) -> Option<bool> {
         let (column, grazing) = (eta.to_bits(), rho_grazing(self.machine, eta));
         match motion {
@@ -110,7 +110,7 @@ impl Regions<'_> {
 }
 
 /// Look every cell of the maps up in the regions of the curves.
-pub fn compare(
+pub(super) fn compare(
     machine: &Machine,
     settings: &AtlasSettings,
     maps: &[Vec<End>],
@@ -158,7 +158,7 @@ fn is_beyond(settings: &AtlasSettings, motion: SettledMotion) -> bool {
     }
 }
 
-/// Why a cell lies in no region, by the orbit on which its last impacts close.
+/// Why a cell is in no region, by the orbit on which its last impacts close.
 fn cause(machine: &Machine, at: (f64, f64), end: &End) -> Cause {
     let SettledMotion::Periodic {
         p,

@@ -37,7 +37,7 @@ pub struct Basins {
     pub x: Vec<f64>,
     /// X'(0) of the rows.
     pub vx: Vec<f64>,
-    /// Motions row by row; `None`: the start lies beyond the contact.
+    /// Motions row by row; `None`: the start is beyond the contact.
     pub cells: Vec<Option<SettledMotion>>,
 }
 

@@ -1,5 +1,5 @@
-//! Brute-force maps: every cell from rest, and carried along from its neighbour in rising and in
-//! falling η, so that coexisting motions show.
+//! Brute-force maps: every cell from rest, and continued from its neighbour in rising and in
+//! falling η, so that coexisting motions appear.
 
 use serde::{Deserialize, Serialize};
 
@@ -32,7 +32,7 @@ impl Seeding {
 }
 
 /// All seedings, in the order of [`brute_maps`].
-pub const SEEDINGS: [Seeding; 3] = [Seeding::FromStart, Seeding::Rising, Seeding::Falling];
+pub(super) const SEEDINGS: [Seeding; 3] = [Seeding::FromStart, Seeding::Rising, Seeding::Falling];
 
 /// The three maps of a grid, in the order of [`SEEDINGS`].
 pub type Maps = [Vec<End>; 3];
@@ -59,7 +59,7 @@ pub fn brute_maps(
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range.
-pub fn brute_map(
+pub(super) fn brute_map(
     machine: &Machine,
     grid: &MapGrid,
     settings: &MapSettings,
@@ -78,7 +78,7 @@ pub fn brute_map(
     march_from(machine, &starts, settings)
 }
 
-/// Rows that the marching kernel carries from column to column, each on its own: a lane whose
+/// Rows that the marching kernel continues from column to column, each on its own: a lane whose
 /// cell is done takes any row that can go on.
 struct Chains<'a> {
     unit: UnitMass,
@@ -119,7 +119,7 @@ impl Feed for Chains<'_> {
     }
 }
 
-/// Carry motions from column to column in the marching kernel.
+/// Continue motions from column to column in the marching kernel.
 fn carried_in_lanes(
     unit: UnitMass,
     grid: &MapGrid,

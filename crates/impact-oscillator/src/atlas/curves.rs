@@ -65,7 +65,7 @@ pub struct Curve {
 }
 
 /// All boundaries as curves.
-pub fn curves(
+pub(super) fn curves(
     machine: &Machine,
     (etas, range): (&[f64], (f64, f64)),
     largest_n: u32,

@@ -2,16 +2,16 @@
 //! once: AVX-512, AVX2 with FMA, and one lane of plain arithmetic for every other machine.
 //!
 //! The methods are inlined into functions that enable the instruction set; they must only be
-//! called where the processor has it, which [`Kernel`](super::map::Kernel) asks at run time.
+//! called where the processor has it, which [`Kernel`](super::map::Kernel) checks at run time.
 
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
 #[cfg(target_arch = "x86_64")]
-pub use x86::{Avx2, Avx512};
+pub(super) use x86::{Avx2, Avx512};
 
 /// A vector of lanes.
-pub trait Lanes: Copy {
+pub(super) trait Lanes: Copy {
     /// Number of lanes.
     const WIDTH: usize;
     /// One truth value per lane.
@@ -158,7 +158,7 @@ impl Lanes for f64 {
 /// Two vectors side by side: their instructions interleave, which hides the latency of each.
 #[derive(Clone, Copy)]
 #[repr(C)]
-pub struct Two<V>(V, V);
+pub(super) struct Two<V>(V, V);
 
 impl<V: Lanes> Lanes for Two<V> {
     const WIDTH: usize = 2 * V::WIDTH;

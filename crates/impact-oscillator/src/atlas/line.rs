@@ -16,17 +16,17 @@ use crate::model::{
 
 /// One motion's interval of existence and stability along a line.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Span {
+pub(super) struct Span {
     /// Impacts in a period of the motion.
-    pub p: u32,
+    pub(super) p: u32,
     /// Drive periods in a period of the motion.
-    pub n: u32,
+    pub(super) n: u32,
     /// Its lower edge.
-    pub low: Edge,
+    pub(super) low: Edge,
     /// Its upper edge.
-    pub high: Edge,
+    pub(super) high: Edge,
     /// The line's parameter and the greatest approach speed of its orbits, the parameter rising.
-    pub branch: Vec<(f64, f64)>,
+    pub(super) branch: Vec<(f64, f64)>,
 }
 
 impl Span {
@@ -73,7 +73,7 @@ impl Slice {
         }
     }
 
-    /// Whether a clearance lies in it.
+    /// Whether it contains a clearance.
     pub fn holds(&self, rho: f64) -> bool {
         self.low.orbit.rho <= rho && rho <= self.high.orbit.rho
     }
@@ -81,15 +81,15 @@ impl Slice {
 
 /// A line of the settings' grid.
 #[derive(Debug, Clone, Copy)]
-pub struct Line<'a> {
+pub(super) struct Line<'a> {
     /// The machine.
-    pub machine: &'a Machine,
+    pub(super) machine: &'a Machine,
     /// The grid, the motions that are sought, and how cells are marched.
-    pub settings: &'a AtlasSettings,
+    pub(super) settings: &'a AtlasSettings,
     /// ρ for a column of the grid, η for a row.
-    pub along: Along,
+    pub(super) along: Along,
     /// Number of the column or of the row.
-    pub number: usize,
+    pub(super) number: usize,
 }
 
 /// A periodic cell of a line.
@@ -104,7 +104,7 @@ struct CellSeed {
 
 impl Line<'_> {
     /// All motions: from closed forms, from the maps' cells, from period doublings.
-    pub fn spans(&self, maps: &[Vec<End>]) -> Vec<Span> {
+    pub(super) fn spans(&self, maps: &[Vec<End>]) -> Vec<Span> {
         let mut seeds = self.closed_form_seeds();
         let mut cells = self.cell_seeds(maps).into_iter();
         let mut spans: Vec<Span> = Vec::new();
@@ -234,7 +234,7 @@ impl Line<'_> {
 
     /// The periodic cells of each map: the middle one of every run of equal ones first, which
     /// mostly lies in the region of all, then the others: a run may hold several branches of p/n
-    /// orbits, so all are told apart from the known ones by their speed.
+    /// orbits, so all are compared with the known ones by their speed.
     fn cell_seeds(&self, maps: &[Vec<End>]) -> Vec<CellSeed> {
         let count = self.values().len();
         let (mut middles, mut others) = (Vec::new(), Vec::new());
@@ -363,7 +363,7 @@ fn last_impacts(
 
 /// The orbit on which a cell's last impacts close, stable or not, with the fewest p and n that it
 /// is. `None`: Newton's method finds none near them.
-pub fn orbit_of_cell(
+pub(super) fn orbit_of_cell(
     machine: &Machine,
     (eta, rho): (f64, f64),
     end: &End,

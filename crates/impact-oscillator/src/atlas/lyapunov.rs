@@ -1,4 +1,4 @@
-//! Largest Lyapunov exponent of a simulated motion: a variation carried exactly through flights
+//! Largest Lyapunov exponent of a simulated motion: a variation mapped exactly through flights
 //! and, by saltation matrices, through impacts and into dead zones.
 
 use nalgebra::{Matrix4, Vector4};

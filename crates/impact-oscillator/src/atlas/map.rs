@@ -201,7 +201,7 @@ pub fn march_from(
 ///
 /// # Errors
 /// [`ModelError`] with the first parameter out of range.
-pub fn check(machine: &Machine, grid: &MapGrid, settings: &MapSettings) -> Result<(), ModelError> {
+pub(super) fn check(machine: &Machine, grid: &MapGrid, settings: &MapSettings) -> Result<(), ModelError> {
     machine.check()?;
     settings.start.check()?;
     if machine.flight != Flight::Harmonic {
@@ -242,8 +242,8 @@ fn exact_cell(machine: &Machine, s: &Start, settings: &MapSettings) -> Result<En
     })
 }
 
-/// A start moved back to the contact where it lies beyond, each mass by its mobility.
-pub fn clear_of(machine: &Machine, rho: f64, mut start: Initial) -> Initial {
+/// A start moved back to the contact where it is beyond, each mass by its mobility.
+pub(super) fn clear_of(machine: &Machine, rho: f64, mut start: Initial) -> Initial {
     if machine.y.is_none() {
         (start.y, start.vy) = (0.0, 0.0);
     }
@@ -283,7 +283,7 @@ impl UnitMass {
     }
 
     /// The machine in the scaled quantities: one nominal mass against a stop.
-    pub fn machine(&self) -> Machine {
+    pub(super) fn machine(&self) -> Machine {
         Machine::single(self.oscillator.damping_ratio, self.restitution)
     }
 
@@ -300,7 +300,7 @@ impl UnitMass {
     }
 
     /// Where an outcome ended, in the machine's own quantities.
-    pub fn end(&self, o: &Outcome) -> End {
+    pub(super) fn end(&self, o: &Outcome) -> End {
         let (length, rate) = self.scales();
         let initial = Initial::both(o.end.x * length, o.end.v * length * rate);
         End {
@@ -312,7 +312,7 @@ impl UnitMass {
 
     /// The motion of an outcome. One without recurrence in the kernel is watched once more by
     /// the exact simulator: it may converge slowly, or beat.
-    pub fn judge(&self, outcome: &Outcome, watch: &Watch) -> SettledMotion {
+    pub(super) fn judge(&self, outcome: &Outcome, watch: &Watch) -> SettledMotion {
         if outcome.motion != SettledMotion::Chaotic {
             return outcome.motion;
         }

@@ -24,7 +24,7 @@ pub use basins::{BasinGrid, Basins, Starts, basins};
 pub use brute::{Maps, Seeding, brute_maps};
 pub use continuation::{Edge, EdgeKind};
 pub use curves::Curve;
-pub use line::{Slice, Span};
+pub use line::Slice;
 pub use lyapunov::Lyapunov;
 pub use map::{MapGrid, MapSettings, RegionMap, region_map};
 pub use points::{At, Boundary, BoundaryQuery, Point, boundary_points};

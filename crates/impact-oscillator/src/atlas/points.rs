@@ -29,7 +29,7 @@ pub enum Boundary {
     FurtherImpact,
     /// The masses begin to stick together after an impact (1 | 1j).
     DeadZone,
-    /// ρp: the masses stick together for ever below.
+    /// ρp: the masses stick together for all time below.
     Sticking,
 }
 

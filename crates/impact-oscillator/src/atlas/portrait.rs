@@ -86,7 +86,7 @@ pub struct Strike {
     pub approach_speed: f64,
     /// −(X' + Y') after the impact.
     pub separation_speed: f64,
-    /// X' before; not told of a soft contact.
+    /// X' before; `None` for a soft contact.
     pub vx_before: Option<f64>,
     /// X' after.
     pub vx_after: Option<f64>,
@@ -136,7 +136,7 @@ impl Sink for Strobe {
     }
 }
 
-/// Samples of X a drive period that its autocorrelation is taken from.
+/// Samples of X per drive period in its autocorrelation.
 const CORRELATED: usize = 24;
 /// Longest lag of the autocorrelation, drive periods.
 const LONGEST_LAG: usize = 20;
@@ -144,7 +144,7 @@ const LONGEST_LAG: usize = 20;
 /// Simulate a motion and look at it.
 ///
 /// # Errors
-/// [`ModelError`] where a parameter is out of range or the start lies beyond the contact.
+/// [`ModelError`] where a parameter is out of range or the start is beyond the contact.
 pub fn portrait(machine: &Machine, plan: &PortraitPlan) -> Result<Portrait, ModelError> {
     let setting = plan.setting;
     let period = setting.period();

@@ -31,8 +31,8 @@ pub struct Atlas {
 }
 
 impl Atlas {
-    /// A motion of each cell beside the one from the start, where there is another: carried along
-    /// rising or falling, else by the regions of the curves.
+    /// A motion of each cell beside the one from the start, where there is another: continued
+    /// in rising or falling η, else by the regions of the curves.
     pub fn other_motions(&self, grid: &MapGrid) -> Vec<SettledMotion> {
         let mut by_eta: BTreeMap<u64, Vec<&Slice>> = BTreeMap::new();
         for s in &self.slices {
@@ -109,7 +109,7 @@ pub fn assemble(
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range.
-pub fn slices_at(
+pub(super) fn slices_at(
     machine: &Machine,
     eta: f64,
     settings: &AtlasSettings,
@@ -143,7 +143,7 @@ fn column(machine: &Machine, settings: &AtlasSettings, maps: &[Vec<End>], i: usi
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range.
-pub fn spans_at_clearance(
+pub(super) fn spans_at_clearance(
     machine: &Machine,
     rho: f64,
     settings: &AtlasSettings,

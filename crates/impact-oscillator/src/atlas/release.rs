@@ -1,7 +1,7 @@
 //! Motions that rest in a dead zone, for machines of any kind: periodic orbits through a release.
 //!
 //! While the masses stay together X = ρ + J, Y = ρ − J, and they part where the relative
-//! acceleration that they would have apart, X'' + Y'', falls to zero. So J and J' tell a release;
+//! acceleration that they would have apart, X'' + Y'', falls to zero. So J and J' determine a release;
 //! the drive's phase follows from them. A resting motion is a fixed point of the map from one
 //! release to the one n drive periods later, found by Newton's method. With one mass, or two
 //! equal ones, J has no part in it, and the release is a single state.
@@ -19,13 +19,13 @@ use crate::model::{
 };
 
 /// p and n.
-pub type Label = (u32, u32);
+pub(super) type Label = (u32, u32);
 
 /// What bounds a motion with a dead zone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RestingEdge {
-    /// ρp: the masses stay together for ever below.
+    /// ρp: the masses stick together for all time below.
     Sticking,
     /// The dead zone closes, or the number of impacts between two of them changes.
     DeadZone,
@@ -51,13 +51,13 @@ type Difference = Vector2<f64>;
 type Place = (f64, f64);
 
 /// A state of a motion that rests: its p and n, the state, the drive's phase.
-pub type RestingStart = (Label, Initial, f64);
+pub(super) type RestingStart = (Label, Initial, f64);
 
 /// A resting motion at a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rest {
+pub(super) struct Rest {
     /// p and n.
-    pub label: Label,
+    pub(super) label: Label,
     /// J and J' at the release.
     difference: Difference,
     /// Largest modulus of the release map's multipliers.
@@ -72,24 +72,24 @@ impl Rest {
 
 /// Where a run of equal labels ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RunEnd {
+pub(super) struct RunEnd {
     /// The last place that shows it, to 1e-7.
-    pub at: Place,
+    pub(super) at: Place,
     /// What ends it.
-    pub kind: RestingEdge,
+    pub(super) kind: RestingEdge,
 }
 
 /// Neighbouring points of a line that show one resting motion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Run {
+pub(super) struct Run {
     /// p and n.
-    pub label: Label,
+    pub(super) label: Label,
     /// First and last point.
-    pub points: (usize, usize),
+    pub(super) points: (usize, usize),
     /// Its end before the first point; `None` where the line begins.
-    pub low: Option<RunEnd>,
+    pub(super) low: Option<RunEnd>,
     /// Its end behind the last point.
-    pub high: Option<RunEnd>,
+    pub(super) high: Option<RunEnd>,
 }
 
 /// Ends of runs are located to this.
@@ -100,7 +100,7 @@ const MOST_STEPS: usize = 12;
 
 /// The resting motions of a machine up to a longest period.
 #[derive(Debug, Clone, Copy)]
-pub struct Releases<'a> {
+pub(super) struct Releases<'a> {
     machine: &'a Machine,
     longest: u32,
 }
@@ -127,13 +127,13 @@ impl Sink for Seen {
 impl<'a> Releases<'a> {
     /// Of a machine, motions of at most `longest` drive periods. `None` where the flight is not
     /// harmonic.
-    pub fn new(machine: &'a Machine, longest: u32) -> Option<Self> {
+    pub(super) fn new(machine: &'a Machine, longest: u32) -> Option<Self> {
         (machine.flight == Flight::Harmonic).then_some(Self { machine, longest })
     }
 
     /// All runs of resting motions along a line of points; motions that coexist have runs of
     /// their own. `starts` gives states that rest at a point: p and n, state and drive phase.
-    pub fn runs(&self, points: &[Place], starts: impl Fn(usize) -> Vec<RestingStart>) -> Vec<Run> {
+    pub(super) fn runs(&self, points: &[Place], starts: impl Fn(usize) -> Vec<RestingStart>) -> Vec<Run> {
         let mut rests: Vec<Vec<Rest>> = Vec::with_capacity(points.len());
         for (k, &at) in points.iter().enumerate() {
             let mut there = Vec::new();
@@ -167,7 +167,7 @@ impl<'a> Releases<'a> {
         runs
     }
 
-    /// Add the motions that those of a neighbour go over into.
+    /// Add the motions into which those of a neighbour continue.
     fn carry(&self, at: Place, from: &[Rest], there: &mut Vec<Rest>) {
         for rest in from {
             let known = |l: Label| move |r: &Rest| r.label == l;
@@ -255,7 +255,7 @@ impl<'a> Releases<'a> {
         }
     }
 
-    /// The stable resting motion that a neighbour's goes over into.
+    /// The stable resting motion that a neighbour's continues into.
     fn carried(&self, at: Place, from: &Rest) -> Option<Rest> {
         self.continued(at, from).filter(Rest::is_stable)
     }
@@ -394,7 +394,7 @@ impl<'a> Releases<'a> {
 }
 
 /// p and n of a motion with a dead zone; `None`: it has none.
-pub fn label(motion: SettledMotion) -> Option<Label> {
+pub(super) fn label(motion: SettledMotion) -> Option<Label> {
     match motion {
         SettledMotion::Periodic {
             p,

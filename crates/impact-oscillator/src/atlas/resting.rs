@@ -40,8 +40,8 @@ impl RestingSlice {
         (self.p, self.n) == (p, n)
     }
 
-    /// Whether a clearance lies in it.
-    pub fn holds(&self, rho: f64) -> bool {
+    /// Whether it contains a clearance.
+    pub(super) fn holds(&self, rho: f64) -> bool {
         let low = self.low.map_or(self.interval.0, |e| e.0);
         let high = self.high.map_or(self.interval.1, |e| e.0);
         (low..=high).contains(&rho)
@@ -112,9 +112,9 @@ struct End {
 }
 
 /// All resting motions of at most `most` impacts in at most `longest` drive periods along ρ, for
-/// each column of a grid, told apart at its rows; edges to 1e-7. Cells of the grid's brute-force
+/// each column of a grid, distinguished at its rows; edges to 1e-7. Cells of the grid's brute-force
 /// maps that rest are starts for machines that the kernel cannot march; there may be none.
-pub fn resting_slices(
+pub(super) fn resting_slices(
     machine: &Machine,
     grid: &MapGrid,
     (most, longest): (u32, u32),
@@ -153,8 +153,8 @@ pub fn resting_slices(
 }
 
 /// The η between the first and the last of a rising list at which the resting motion of p impacts
-/// in n drive periods begins or ends at a clearance, to 1e-7, and whether it lies below that η.
-pub fn resting_etas(
+/// in n drive periods begins or ends at a clearance, to 1e-7, and whether it is below that η.
+pub(super) fn resting_etas(
     machine: &Machine,
     rho: f64,
     (p, n): (u32, u32),
@@ -272,7 +272,7 @@ fn release_settings(longest: u32, kernel: Option<Kernel>) -> MapSettings {
     }
 }
 
-/// Tell every run of rows of one column with the same label.
+/// Report every run of rows of one column with the same label.
 fn runs(
     grid: &MapGrid,
     labels: &[Option<Label>],

@@ -1,6 +1,5 @@
-//! Quasi-stationary sweeps: the frequency or the clearance moves in small steps, the motion is
-//! carried along, and at every step its amplitude, approach speeds and Lyapunov exponent are
-//! taken (Figs. 4 and 6 of the paper).
+//! Quasi-stationary sweeps: the frequency or the clearance moves in small steps, the motion
+//! continues, and every step yields its amplitude, approach speeds and Lyapunov exponent (Figs. 4 and 6 of the paper).
 
 use serde::{Deserialize, Serialize};
 
@@ -17,7 +16,7 @@ use crate::model::{
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sweep {
-    /// (η, ρ) step by step, in the order in which the motion is carried along.
+    /// (η, ρ) step by step, in the order of the sweep.
     pub steps: Vec<(f64, f64)>,
     /// Start of the first step.
     #[serde(default)]
@@ -48,7 +47,7 @@ pub struct SweepPoint {
     pub phases: Vec<f64>,
     /// Largest Lyapunov exponent per unit of τ; `None` where a dead zone wipes it out.
     pub lyapunov: Option<f64>,
-    /// Autocorrelation of X at lags of 1, 2, … drive periods; empty where X stands still.
+    /// Autocorrelation of X at lags of 1, 2, … drive periods; empty where X is at rest.
     pub autocorrelation: Vec<f64>,
 }
 
@@ -93,10 +92,10 @@ fn maximum(path: &crate::model::path::Path, duration: f64) -> f64 {
     best
 }
 
-/// Most impacts told of a motion without a period.
+/// Greatest number of impacts reported of a motion without a period.
 const MOST_IMPACTS: usize = 64;
 
-/// Samples of X a drive period that its autocorrelation is taken from.
+/// Samples of X per drive period in its autocorrelation.
 const SAMPLES: usize = 32;
 /// Longest lag of a point's autocorrelation, drive periods.
 pub const LONGEST_LAG: usize = 6;
@@ -118,7 +117,7 @@ impl Sink for Sampler {
     }
 }
 
-/// A motion that is carried along step by step.
+/// A motion that continues step by step.
 #[derive(Debug, Clone)]
 pub struct Carried<'a> {
     machine: &'a Machine,
@@ -166,7 +165,7 @@ impl<'a> Carried<'a> {
         self.simulator.snapshot()
     }
 
-    /// Carry the motion on to (η, ρ) and tell what it is there.
+    /// Continue the motion at (η, ρ) and classify it there.
     ///
     /// # Errors
     /// [`ModelError`] where η or ρ is out of range.
@@ -183,15 +182,15 @@ impl<'a> Carried<'a> {
     }
 }
 
-/// Carry a motion through a sweep; `told` hears every point as it is done and may end the sweep
-/// by giving false.
+/// Take a motion through a sweep. `observer` receives every point as it is done and ends the sweep
+/// by returning false.
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range.
 pub fn sweep(
     machine: &Machine,
     plan: &Sweep,
-    mut told: impl FnMut(&SweepPoint) -> bool,
+    mut observer: impl FnMut(&SweepPoint) -> bool,
 ) -> Result<Vec<SweepPoint>, ModelError> {
     let mut points = Vec::with_capacity(plan.steps.len());
     let Some(&first) = plan.steps.first() else {
@@ -200,7 +199,7 @@ pub fn sweep(
     let mut carried = Carried::start(machine, first, plan.start, plan.watch)?;
     for &at in &plan.steps {
         let point = carried.step(at)?;
-        let go_on = told(&point);
+        let go_on = observer(&point);
         points.push(point);
         if !go_on {
             break;

@@ -1,5 +1,5 @@
 //! Boundaries of z = 1/n in the (η, ρ) plane: saddle-node s2 and period doubling s1 in closed
-//! form, grazing ρ', and the inverse η_s2(ρ). Each point says whether its orbit exists.
+//! form, grazing ρ', and the inverse η_s2(ρ). Each point reports whether its orbit exists.
 
 use serde::Serialize;
 
@@ -22,7 +22,7 @@ pub struct BoundaryPoint {
     pub phase: f64,
     /// Whether the marginal orbit is a motion of the machine.
     pub existence: Existence,
-    /// Whether no other multiplier of the orbit lies outside the unit circle, so that it is a
+    /// Whether no other multiplier of the orbit is outside the unit circle, so that it is a
     /// stable motion that ends here.
     pub ends_stability: bool,
 }
@@ -50,8 +50,8 @@ pub fn rho_grazing(machine: &Machine, eta: f64) -> f64 {
     clearance(machine, forced.norm())
 }
 
-/// ρp(η): clearance below which masses that are together stay together for ever. Joined masses
-/// press with −2k₁k₂ρ/(k₁+k₂) + Re((F₁D₂ + F₂D₁)/(D₁ + D₂) e^{i(ητ+φ)}), Dᵢ = kᵢ − η²mᵢ + iηbᵢ;
+/// ρp(η): clearance below which masses that stick together never separate, eq. (12). Sticking
+/// masses press with −2k₁k₂ρ/(k₁+k₂) + Re((F₁D₂ + F₂D₁)/(D₁ + D₂) e^{i(ητ+φ)}), Dᵢ = kᵢ − η²mᵢ + iηbᵢ;
 /// ρp is where that just never vanishes. Equal masses, or one of them: −F/k for every η.
 pub fn rho_sticking(machine: &Machine, eta: f64) -> f64 {
     let parts = |o: &Oscillator| {
@@ -252,8 +252,8 @@ pub fn etas_grazing(machine: &Machine, rho: f64) -> Vec<f64> {
     roots(2.5, |eta| rho_grazing(machine, eta) - rho)
 }
 
-/// All η at which masses that are together begin to stay so for ever at a clearance, rising; none
-/// where ρp does not depend on η, as with equal masses.
+/// All η at which ρp passes a clearance, rising; none where ρp does not depend on η, as with equal
+/// masses.
 pub fn etas_sticking(machine: &Machine, rho: f64) -> Vec<f64> {
     if machine.y.is_none() || machine.is_symmetric() {
         return Vec::new();
@@ -274,7 +274,7 @@ fn points_at(
         .collect()
 }
 
-/// Roots of a function over (0, top] that a fixed grid tells apart.
+/// Roots of a function over (0, top] that a fixed grid separates.
 fn roots(top: f64, f: impl Fn(f64) -> f64) -> Vec<f64> {
     let grid: Vec<f64> = (1..=1000).map(|i| top * f64::from(i) / 1000.0).collect();
     let values: Vec<f64> = grid.iter().map(|eta| f(*eta)).collect();

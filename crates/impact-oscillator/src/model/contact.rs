@@ -1,4 +1,4 @@
-//! What happens at an impact: Newton's law with momentum kept, plastic impacts with a dead zone
+//! What happens at an impact: Newton's law with momentum conserved, plastic impacts with a dead zone
 //! (eqs. 4–6 of the paper), and the end of a complete chatter.
 
 use serde::{Deserialize, Serialize};
@@ -11,14 +11,14 @@ use super::params::{Flight, Machine, Oscillator};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ImpactKind {
-    /// The masses part again.
+    /// The masses separate again.
     Bounce,
-    /// Plastic, but nothing presses the masses together: they part without a dead zone (eq. 6).
+    /// Plastic, but nothing presses the masses together: they separate without a dead zone (eq. 6).
     Plastic,
     /// Plastic, followed by a dead zone.
     Stick,
     /// The accumulation point of a complete chatter: infinitely many impacts in finite time,
-    /// then a dead zone. It stands for all impacts of the sequence's unresolved rest.
+    /// then a dead zone. It represents the infinitely many impacts that remain.
     ChatterEnd,
 }
 
@@ -59,24 +59,24 @@ pub struct Impact {
     pub dead_zone: f64,
 }
 
-/// Displacement resolution, relative to the motion's size, below which a bounce is not told
+/// Displacement resolution, relative to the motion's size, below which a bounce is not distinguished
 /// from rest.
 const RESOLUTION: f64 = 1e-13;
 
 /// What an impact leads to.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Outcome {
+pub(crate) struct Outcome {
     /// The state just after.
-    pub after: State,
+    pub(crate) after: State,
     /// Kind of impact.
-    pub kind: ImpactKind,
+    pub(crate) kind: ImpactKind,
     /// Time from this impact until the chatter has come to rest (0 for the other kinds).
-    pub until_rest: f64,
+    pub(crate) until_rest: f64,
 }
 
 /// Velocities after an impact: X'₊ = X'₋ − μ₁(1+R)w, Y'₊ = Y'₋ − μ₂(1+R)w with the approach
 /// speed w and the mobilities μ of [`Machine::mobility`]; for equal masses eq. (4).
-pub fn newton(machine: &Machine, before: &State) -> State {
+pub(crate) fn newton(machine: &Machine, before: &State) -> State {
     let w = before.vx + before.vy;
     let change = (1.0 + machine.restitution().at(w)) * w;
     let (mx, my) = machine.mobility();
@@ -88,7 +88,7 @@ pub fn newton(machine: &Machine, before: &State) -> State {
 }
 
 /// Free accelerations of both masses in a state.
-pub fn free_accelerations(machine: &Machine, drive: Drive, s: &State) -> (f64, f64) {
+pub(crate) fn free_accelerations(machine: &Machine, drive: Drive, s: &State) -> (f64, f64) {
     if let Flight::ConstantForce {
         acceleration,
         friction,
@@ -110,7 +110,7 @@ pub fn free_accelerations(machine: &Machine, drive: Drive, s: &State) -> (f64, f
 }
 
 /// Whether an impact at a approach speed is plastic: R = 0 but for rounding.
-pub fn is_plastic(machine: &Machine, approach_speed: f64) -> bool {
+pub(crate) fn is_plastic(machine: &Machine, approach_speed: f64) -> bool {
     machine.restitution().at(approach_speed) <= 1e-15
 }
 
@@ -119,7 +119,7 @@ pub fn is_plastic(machine: &Machine, approach_speed: f64) -> bool {
 /// A rebound that would not rise above the resolution while the masses are pressed together is
 /// the end of a chatter: flights last 2v/a, speeds fall by R, so rest comes after
 /// 2v/(a(1−R)), the sum of the geometric sequence.
-pub fn impact(machine: &Machine, drive: Drive, before: &State, size: f64) -> Outcome {
+pub(crate) fn impact(machine: &Machine, drive: Drive, before: &State, size: f64) -> Outcome {
     let mut after = newton(machine, before);
     let (ax, ay) = free_accelerations(machine, drive, &after);
     (after.ax, after.ay) = (ax, ay);
@@ -167,7 +167,7 @@ fn rest_after(machine: &Machine, v: f64, a: f64) -> f64 {
 }
 
 /// The state with the masses exactly in contact; what rounding left over is shared by mobility.
-pub fn in_contact(machine: &Machine, clearance: f64, s: &State) -> State {
+pub(crate) fn in_contact(machine: &Machine, clearance: f64, s: &State) -> State {
     let (mx, my) = machine.mobility();
     let depth = s.x + s.y - machine.gap(clearance);
     State {
@@ -178,7 +178,7 @@ pub fn in_contact(machine: &Machine, clearance: f64, s: &State) -> State {
 }
 
 /// The state with the masses in contact and without relative velocity; momentum is kept.
-pub fn sticking_state(machine: &Machine, clearance: f64, s: &State) -> State {
+pub(crate) fn sticking_state(machine: &Machine, clearance: f64, s: &State) -> State {
     let (mx, my) = machine.mobility();
     let w = s.vx + s.vy;
     State {
@@ -190,7 +190,7 @@ pub fn sticking_state(machine: &Machine, clearance: f64, s: &State) -> State {
 
 /// Time until the press force vanishes, from the start of a dead zone; infinite if it never
 /// does. Free vibrations of the joined masses have decayed within the search.
-pub fn release_time(machine: &Machine, drive: Drive, clearance: f64, s: &State) -> f64 {
+pub(crate) fn release_time(machine: &Machine, drive: Drive, clearance: f64, s: &State) -> f64 {
     let paths: FlightPaths = sticking_flight(machine, drive, clearance, s);
     let path = press(machine, drive, &paths);
     let slowest = path

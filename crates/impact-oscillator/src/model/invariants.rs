@@ -147,6 +147,6 @@ fn valid_a_tangential_start_leaves() {
     let mut path = Path::constant(0.0, 1.0);
     path.force = C64::new(0.0, 1.0);
     path.polynomial = [0.0, 1.0, 0.0];
-    // t − sin t grows for ever
+    // t − sin t grows without bound
     assert!(first_zero(&path, 100.0).is_none());
 }

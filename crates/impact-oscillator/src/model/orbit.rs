@@ -69,7 +69,7 @@ impl Orbit {
         f64::from(self.n) * self.setting.period()
     }
 
-    /// Whether every multiplier lies inside the unit circle.
+    /// Whether every multiplier is inside the unit circle.
     pub fn is_stable(&self) -> bool {
         self.multipliers.iter().all(|m| m.norm() < 1.0)
     }
@@ -83,17 +83,17 @@ impl Orbit {
 /// Periodic response of one mass to a unit velocity jump once per period T: the free mode just
 /// after the jump, and displacement and velocity just before it.
 #[derive(Debug, Clone, Copy)]
-pub struct Green {
+pub(crate) struct Green {
     /// Displacement at the jump.
-    pub position: f64,
+    pub(crate) position: f64,
     /// Velocity just before the jump (just after: + 1).
-    pub velocity_before: f64,
+    pub(crate) velocity_before: f64,
 }
 
 /// Green's function of a mass for a jump every `period`.
 ///
 /// The response to one jump is Im(e^{λt})/ω; all past ones sum up geometrically.
-pub fn green(o: &Oscillator, period: f64) -> Green {
+pub(crate) fn green(o: &Oscillator, period: f64) -> Green {
     green_of(o, returned(o, period))
 }
 
@@ -307,9 +307,8 @@ pub fn orbit_with_speed(machine: &Machine, setting: Setting, n: u32, w: f64) -> 
     orbit
 }
 
-/// As [`orbit_with_speed`], but neither its multipliers nor its existence are found: it is taken
-/// for a motion of the machine.
-pub fn unjudged_orbit(machine: &Machine, setting: Setting, n: u32, w: f64) -> Orbit {
+/// As [`orbit_with_speed`], without its multipliers and with its existence assumed.
+fn unjudged_orbit(machine: &Machine, setting: Setting, n: u32, w: f64) -> Orbit {
     let eta = setting.frequency_ratio;
     let branch = Branch::new(machine, eta, n);
     let r = machine.restitution().at(w);

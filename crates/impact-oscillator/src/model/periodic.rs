@@ -310,7 +310,7 @@ impl PeriodicOrbit {
         eigenvalues(machine, &self.monodromy(machine))
     }
 
-    /// Whether every multiplier lies inside the unit circle.
+    /// Whether every multiplier is inside the unit circle.
     pub fn is_stable(&self, machine: &Machine) -> bool {
         self.multipliers(machine)
             .first()

@@ -31,10 +31,10 @@ impl Default for Watch {
     }
 }
 
-/// Settle a motion from a start and tell what it is. Its impacts while watched come with it.
+/// Settle a motion from a start and classify it; with it come its impacts while watched.
 ///
 /// # Errors
-/// [`ModelError`] where a parameter is out of range or the start lies beyond the contact.
+/// [`ModelError`] where a parameter is out of range or the start is beyond the contact.
 pub fn settle(
     machine: &Machine,
     setting: Setting,
@@ -74,8 +74,8 @@ impl Sink for Returns {
     }
 }
 
-/// Watch a motion that has settled and tell what it is.
-pub fn observe(
+/// Watch a motion that has settled and classify it.
+pub(crate) fn observe(
     simulator: &mut Simulator,
     setting: Setting,
     watch: &Watch,
@@ -162,7 +162,7 @@ fn closure(a: &Return, b: &Return, period: f64) -> f64 {
     speeds + (a.x - b.x).abs() + phase * a.impact.approach_speed.max(b.impact.approach_speed)
 }
 
-/// Chaotic, or a beat where long impactless stretches lie between runs of impacts.
+/// Chaotic, or a beat where runs of impacts are separated by long impactless stretches.
 fn irregular(impacts: &[Impact], start: f64, end: f64, period: f64) -> SettledMotion {
     let mut times = vec![start];
     times.extend(impacts.iter().map(|i| i.tau));

@@ -67,7 +67,7 @@ impl Simulator {
     /// start sticking.
     ///
     /// # Errors
-    /// [`ModelError`] where a parameter is out of range or the start lies beyond the contact.
+    /// [`ModelError`] where a parameter is out of range or the start is beyond the contact.
     pub fn new(machine: &Machine, setting: Setting, initial: Initial) -> Result<Self, ModelError> {
         machine.check()?;
         setting.check()?;
@@ -171,7 +171,7 @@ impl Simulator {
         self.settle();
     }
 
-    /// Go on for a time, telling arcs and impacts.
+    /// Continue for a time in units of τ; the sink receives arcs and impacts in the order of time.
     pub fn advance(&mut self, duration: f64, sink: &mut impl Sink) {
         let end = self.tau + duration;
         while self.tau < end {
@@ -202,7 +202,7 @@ impl Simulator {
         }
     }
 
-    /// Join masses that lie in contact without relative velocity and are pressed together.
+    /// Let masses stick that are in contact without relative velocity and are pressed together.
     fn settle(&mut self) {
         let s = &self.state;
         let still = 1e-12 * (1.0 + s.x.abs() + s.y.abs() + s.vx.abs() + s.vy.abs());
@@ -216,7 +216,7 @@ impl Simulator {
         }
     }
 
-    /// Move along an arc of a given length and tell it; the last arc ends exactly at `end`.
+    /// Move along an arc of a given length and report it; the last arc ends exactly at `end`.
     fn move_on(&mut self, paths: &FlightPaths, length: f64, end: f64, sink: &mut impl Sink) {
         let (tau, sticking, phase) = (self.tau, self.sticking, self.phase);
         sink.arc(&Arc {
@@ -360,7 +360,7 @@ impl Trajectory {
 /// Simulate a motion from a start for a time.
 ///
 /// # Errors
-/// [`ModelError`] where a parameter is out of range or the start lies beyond the contact.
+/// [`ModelError`] where a parameter is out of range or the start is beyond the contact.
 pub fn simulate(
     machine: &Machine,
     setting: Setting,

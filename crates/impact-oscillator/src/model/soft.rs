@@ -148,7 +148,7 @@ struct Runner<'a> {
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range, the masses differ in more than their
-/// drives, or the start lies beyond the contact.
+/// drives, or the start is beyond the contact.
 pub fn simulate_soft(
     machine: &Machine,
     contact: SoftContact,

@@ -27,7 +27,7 @@ fn fill_flow(m: &mut Matrix4<f64>, at: usize, o: &Oscillator, time: f64) {
     m[(at + 1, at + 1)] = e * (c - d * s / w);
 }
 
-/// Saltation matrix at an impact: how a variation (X, X', Y, Y') just before goes over into one
+/// Saltation matrix at an impact: which maps a variation (X, X', Y, Y') just before to one
 /// just after, S = DR + (f₊ − DR f₋)nᵀ/w with n the gap's normal.
 pub fn saltation(machine: &Machine, before: &State, after: &State) -> Matrix4<f64> {
     let w = before.vx + before.vy;
@@ -61,8 +61,8 @@ pub fn eigenvalues(machine: &Machine, map: &Matrix4<f64>) -> Vec<C64> {
 /// Steps after which the QR iteration of a matrix of four rows is given up; it needs about ten.
 const MOST_STEPS: usize = 1000;
 
-/// Eigenvalues by the QR iteration, which is told when to stop: where a map's last digits toss to
-/// and fro it would go on for ever.
+/// Eigenvalues by the QR iteration with a limit on its steps: where a map's last digits oscillate
+/// it would not end.
 fn of_four(map: &Matrix4<f64>) -> Vec<C64> {
     [f64::EPSILON, 1e3 * f64::EPSILON, 1e6 * f64::EPSILON]
         .into_iter()

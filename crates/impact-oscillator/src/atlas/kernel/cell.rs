@@ -46,7 +46,7 @@ pub struct Course {
 }
 
 /// Source of cells and receiver of outcomes.
-pub trait Feed {
+pub(in crate::atlas) trait Feed {
     /// The next cell with its number, until there is none.
     fn next(&mut self) -> Option<(usize, Cell)>;
     /// A cell is done.

@@ -49,12 +49,12 @@ impl Kernel {
 const LIGHT_DAMPING: f64 = 0.08;
 
 /// March a feed with a kernel that this processor runs.
-pub fn run(kernel: Kernel, course: &Course, feed: &mut impl Feed) {
+pub(in crate::atlas) fn run(kernel: Kernel, course: &Course, feed: &mut impl Feed) {
     let light = course.damping_ratio <= LIGHT_DAMPING;
     match kernel {
         Kernel::Scalar if light => march::<Two<f64>, 8>(course, feed),
         Kernel::Scalar => march::<Two<f64>, 17>(course, feed),
-        // SAFETY: `march_all` and the caller asked the processor for the instruction set.
+        // SAFETY: `march_all` and the caller checked that the processor has the instruction set.
         #[cfg(target_arch = "x86_64")]
         Kernel::Avx2 => unsafe { x86::march_avx2(light, course, feed) },
         // SAFETY: as above.
@@ -71,7 +71,7 @@ mod x86 {
     use super::{Course, Feed, march};
 
     #[target_feature(enable = "avx2,fma")]
-    pub fn march_avx2(light: bool, course: &Course, feed: &mut impl Feed) {
+    pub(super) fn march_avx2(light: bool, course: &Course, feed: &mut impl Feed) {
         if light {
             march::<Two<Avx2>, 8>(course, feed);
         } else {
@@ -80,7 +80,7 @@ mod x86 {
     }
 
     #[target_feature(enable = "avx512f,avx2,fma")]
-    pub fn march_avx512(light: bool, course: &Course, feed: &mut impl Feed) {
+    pub(super) fn march_avx512(light: bool, course: &Course, feed: &mut impl Feed) {
         if light {
             march::<Two<Avx512>, 8>(course, feed);
         } else {

@@ -1,5 +1,5 @@
-//! What a lane asks for beside the steps: an orbit that recurs, a mass that rests at the stop, the
-//! end of settling and watch, the hand-over of a cell that is done.
+//! Events of a lane between its steps: an orbit that recurs, a mass that rests at the stop, the
+//! end of settling and watch, a cell that is done.
 
 use crate::atlas::lanes::Lanes;
 use super::cell::{Cell, Course, Feed, Outcome};
@@ -9,8 +9,8 @@ use crate::model::SettledMotion;
 use crate::model::motion::count;
 
 /// The mass has no relative speed left at the stop, at (t, phase): it rests there until the
-/// drive lets go (cos φ = ρ, falling), then leaves; or it leaves at once. Gives whether it
-/// stays for ever.
+/// drive lets go (cos φ = ρ, falling), then leaves; or it leaves at once. Returns whether it
+/// stays for all time.
 pub(super) fn come_to_rest<V: Lanes>(
     course: &Course,
     s: &mut Group<V>,
@@ -82,7 +82,7 @@ fn leave<V: Lanes>(course: &Course, s: &mut Group<V>, info: &Lane, lane: usize, 
     s.hm.set(lane, hm);
 }
 
-/// Serve a lane that raised an event. Gives whether its cell is done (and was handed over).
+/// Serve a lane that raised an event. Returns whether its cell is done (and was handed over).
 #[inline(never)]
 pub(super) fn serve<V: Lanes>(
     course: &Course,
@@ -140,7 +140,7 @@ pub(super) fn serve<V: Lanes>(
     finished
 }
 
-/// Least difference of phases, rad, that the times of impacts tell.
+/// Least difference of phases, rad, that the times of impacts resolve.
 const TIMING: f64 = 1e-9;
 
 /// Whether an impact that looks like the anchor's is: whole drive periods lie between them.
@@ -164,7 +164,7 @@ fn set_anchor<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize, here: An
 fn recognise<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize, here: &Anchor) {
     let anchor = info.anchor;
     if info.found.is_some() || info.released.is_some_and(|(t, _)| t >= anchor.t) {
-        return; // an orbit that rests at the stop is told by its releases
+        return; // an orbit that rests at the stop is identified by its releases
     }
     let p = here.hits - anchor.hits;
     let n = ((here.t - anchor.t) / info.period).round();
@@ -208,7 +208,7 @@ fn start_watch<V: Lanes>(course: &Course, s: &mut Group<V>, info: &mut Lane, lan
 
 /// Motion of a cell whose orbit did not recur; chaos is a guess that `map` follows up. Without an
 /// impact in the watch it is impactless where that motion stays clear of the stop, else between
-/// two impacts that lie farther apart than the watch is long.
+/// two impacts that are farther apart than the watch is long.
 fn unrecognised<V: Lanes>(s: &Group<V>, info: &Lane, lane: usize) -> SettledMotion {
     let clear = s.forced.get(lane) * (1.0 - 1e-9) <= info.cell.rho;
     if clear && s.hits.get(lane) == info.hits_at_watch {

@@ -7,15 +7,15 @@ use super::Lanes;
 /// Four lanes, AVX2 and FMA.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
-pub struct Avx2(__m256d);
+pub(in crate::atlas) struct Avx2(__m256d);
 
 /// Eight lanes, AVX-512 F.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
-pub struct Avx512(__m512d);
+pub(in crate::atlas) struct Avx512(__m512d);
 
-// SAFETY of all blocks below: the caller of a kernel over these types has asked the
-// processor for the instruction set (see `Kernel::is_available`).
+// SAFETY of all blocks below: the caller of a kernel over these types has checked that
+// the processor has the instruction set (see `Kernel::is_available`).
 impl Lanes for Avx2 {
     const WIDTH: usize = 4;
     type Mask = __m256d;
