@@ -154,7 +154,7 @@ impl Classify {
         let mut counts: BTreeMap<String, usize> = BTreeMap::new();
         for observation in &observed.observations {
             *counts
-                .entry(observation.finding.motion.label())
+                .entry(observation.classification.motion.label())
                 .or_default() += 1;
         }
         for (motion, count) in counts {

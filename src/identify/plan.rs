@@ -272,7 +272,7 @@ impl UsualRecord {
             drive_amplitude: 1.0,
             phases: distinct_phases(&folded),
             folded,
-            closing_speed_m_s: orbit.closing_speed * speed,
+            closing_speed_m_s: orbit.approach_speed * speed,
             frequency_error: self.frequency_error,
             phase_error_rad: self.phase_error_rad,
             shared: Vec::new(),

@@ -129,7 +129,7 @@ pub fn flights(blocks: &Blocks, tried: &Tried) -> MethodResult {
 /// How many waveforms the trajectories rest on where not all were kept.
 fn thinned(evidence: &Evidence) -> Option<String> {
     let periodic = evidence.observations.iter().filter(|o| {
-        let pair = o.finding.impacts_and_periods();
+        let pair = o.classification.impacts_and_periods();
         !o.excluded() && pair.is_some_and(|(impacts_p, _)| impacts_p == 1)
     });
     let (kept, let_go): (Vec<_>, Vec<_>) = periodic.partition(|o| o.folded.is_some());

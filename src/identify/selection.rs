@@ -254,7 +254,9 @@ impl<'a> Selection<'a> {
     fn settles_slowly(&self, item: usize, at: &Parameters) -> bool {
         let block = &self.blocks.trajectory;
         let observation = block.records[item].observation;
-        let evidence = &self.evidence.observations[observation].finding.evidence;
+        let evidence = &self.evidence.observations[observation]
+            .classification
+            .evidence;
         let slowest = block.slowest_multiplier(item, at).unwrap_or(1.0);
         slowest.powf(evidence.cycles_observed) > (-1f64).exp()
     }

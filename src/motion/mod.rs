@@ -11,7 +11,7 @@ pub mod observation;
 pub mod response;
 
 pub use bracket::{BoundaryKind, Bracket, brackets};
-pub use classify::{ClassifySettings, Evidence, Finding, classify};
+pub use classify::{Classification, ClassifySettings, Evidence, classify};
 pub use kind::Motion;
 pub use observation::{Observation, observe, scale_drives};
 

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::event::detect::DetectSettings;
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::fit::parameters::Parameters;
@@ -19,7 +19,7 @@ use crate::motion::{Bracket, ClassifySettings, Observation, brackets, observe, s
 use crate::pipeline::{PipelineError, Progress};
 use crate::record::{Record, Role};
 use crate::synthetic::run::calibrated;
-use crate::synthetic::{Draw, Reach, Truth, draw, records};
+use crate::synthetic::{Draw, Reach, RigSpec, Truth, draw, records};
 
 /// What a coverage study finds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -28,6 +28,8 @@ pub struct Coverage {
     pub campaigns: usize,
     /// Seed of everything random.
     pub seed: u64,
+    /// The rig: exact, realistic, or its effects with their strengths.
+    pub rig: String,
     /// Every estimate of every campaign, as CSV.
     #[serde(skip)]
     pub estimates: String,
@@ -154,7 +156,7 @@ impl Seen {
 
 fn evidence<'a>(observations: &'a [Observation], brackets: &'a [Bracket]) -> Evidence<'a> {
     Evidence {
-        rig: Rig::Double,
+        rig: RigKind::Double,
         observations,
         brackets,
         nominal: Nominal {
@@ -172,7 +174,7 @@ fn evidence<'a>(observations: &'a [Observation], brackets: &'a [Bracket]) -> Evi
 
 /// Simulate, observe and identify a campaign, with a mistake or without.
 fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError> {
-    let raw = records(&draw.truth, &draw.faults, &draw.plan, draw.seed)?;
+    let raw = records(&draw.laboratory())?;
     let mut records: Vec<Record> = raw
         .iter()
         .map(|r| calibrated(r, &draw.truth, &draw.faults))
@@ -186,7 +188,7 @@ fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError
             let found = crate::record::consistency::inspect(&record);
             record.flags.extend(found);
             let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
-            observe(&record, Rig::Double, &detect, &classify)
+            observe(&record, RigKind::Double, &detect, &classify)
         })
         .collect();
     scale_drives(&mut observations);
@@ -219,11 +221,17 @@ fn parameters(truth: &Truth) -> Parameters {
     }
 }
 
-/// Run a study of so many campaigns, and a fifth as many for each mistake.
+/// Run a study of that many campaigns on rigs with these effects, and a fifth as many for each
+/// mistake.
 ///
 /// # Errors
 /// Where a simulation refuses its parameters.
-pub fn study(campaigns: usize, seed: u64, progress: Progress) -> Result<Coverage, PipelineError> {
+pub fn study(
+    campaigns: usize,
+    seed: u64,
+    rig: &RigSpec,
+    progress: Progress,
+) -> Result<Coverage, PipelineError> {
     let few = campaigns.div_ceil(5);
     let total = (campaigns + few * (1 + Mistake::ALL.len())) as u64;
     let done = AtomicU64::new(0);
@@ -233,7 +241,7 @@ pub fn study(campaigns: usize, seed: u64, progress: Progress) -> Result<Coverage
     let main: Vec<(bool, Trial)> = (0..campaigns as u64)
         .into_par_iter()
         .map(|i| {
-            let draw = draw(seed, i, Reach::Full);
+            let draw = draw(seed, i, Reach::Full, rig);
             let seen = campaign(&draw, None)?;
             let trial = trial(&seen, &draw.truth);
             step();
@@ -246,7 +254,7 @@ pub fn study(campaigns: usize, seed: u64, progress: Progress) -> Result<Coverage
         let found: Vec<bool> = (0..few as u64)
             .into_par_iter()
             .map(|i| {
-                let seen = campaign(&draw(seed ^ 0x00FA_0175, i, reach), mistake)?;
+                let seen = campaign(&draw(seed ^ 0x00FA_0175, i, reach, rig), mistake)?;
                 step();
                 Ok(named(&seen))
             })
@@ -270,6 +278,7 @@ pub fn study(campaigns: usize, seed: u64, progress: Progress) -> Result<Coverage
     Ok(Coverage {
         campaigns,
         seed,
+        rig: rig.to_string(),
         methods: scores(&trials),
         estimates: table(&trials),
         nothing_touches,

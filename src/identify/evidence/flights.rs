@@ -10,7 +10,7 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-use crate::event::{CornerShift, Impact, Rig};
+use crate::event::{CornerShift, Impact, RigKind};
 use crate::identify::evidence::impacts::corners_in;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
@@ -68,7 +68,7 @@ pub struct FlightRecord {
 #[derive(Debug, Clone)]
 pub struct FlightBlock {
     /// One or two masses.
-    pub rig: Rig,
+    pub rig: RigKind,
     /// The records.
     pub records: Vec<FlightRecord>,
     /// On which corners the speeds depend, by their index.
@@ -84,18 +84,18 @@ const UNKNOWN: f64 = 30.0;
 
 impl FlightBlock {
     /// Collect the records with impacts that have no closed-form orbit.
-    pub fn new(rig: Rig, observations: &[Observation]) -> Self {
+    pub fn new(rig: RigKind, observations: &[Observation]) -> Self {
         let records = observations
             .iter()
             .enumerate()
-            .filter(|(_, o)| !o.excluded() && has_no_closed_form(&o.finding.motion))
+            .filter(|(_, o)| !o.excluded() && has_no_closed_form(&o.classification.motion))
             .filter_map(|(i, o)| flight_record(rig, i, o))
             .collect();
         Self::of_records(rig, records)
     }
 
     /// Of given records.
-    fn of_records(rig: Rig, records: Vec<FlightRecord>) -> Self {
+    fn of_records(rig: RigKind, records: Vec<FlightRecord>) -> Self {
         let nodes = records.iter().flat_map(|r| &r.nodes);
         let corners = corners_in(nodes.flat_map(|n| &n.corner_shifts));
         Self {
@@ -112,8 +112,8 @@ impl FlightBlock {
 }
 
 /// Whether a record is shot from impact to impact.
-pub fn is_flown(rig: Rig, o: &Observation) -> bool {
-    has_no_closed_form(&o.finding.motion) && flight_record(rig, 0, o).is_some()
+pub fn is_flown(rig: RigKind, o: &Observation) -> bool {
+    has_no_closed_form(&o.classification.motion) && flight_record(rig, 0, o).is_some()
 }
 
 fn has_no_closed_form(motion: &Motion) -> bool {
@@ -128,7 +128,7 @@ fn has_no_closed_form(motion: &Motion) -> bool {
     }
 }
 
-fn flight_record(rig: Rig, index: usize, o: &Observation) -> Option<FlightRecord> {
+fn flight_record(rig: RigKind, index: usize, o: &Observation) -> Option<FlightRecord> {
     let drive = o.drive?;
     let sound = o.impacts.iter().all(|i| i.dead_zone_s == 0.0);
     if !sound || o.unsupported_pulses > 0 || o.impacts.len() < FEWEST_IMPACTS {
@@ -148,9 +148,9 @@ fn flight_record(rig: Rig, index: usize, o: &Observation) -> Option<FlightRecord
     })
 }
 
-fn node(rig: Rig, impact: &Impact, frequency_hz: f64) -> Option<Node> {
+fn node(rig: RigKind, impact: &Impact, frequency_hz: f64) -> Option<Node> {
     let (before_m_s, after_m_s, masses) = match rig {
-        Rig::Double => {
+        RigKind::Double => {
             let (x, y) = (impact.x?, impact.y?);
             (
                 [x.before_m_s, y.before_m_s],
@@ -158,13 +158,13 @@ fn node(rig: Rig, impact: &Impact, frequency_hz: f64) -> Option<Node> {
                 2.0f64,
             )
         }
-        Rig::Single => (
-            [impact.closing_speed_before_m_s?, 0.0],
-            [impact.closing_speed_after_m_s?, 0.0],
+        RigKind::Single => (
+            [impact.approach_speed_before_m_s?, 0.0],
+            [impact.approach_speed_after_m_s?, 0.0],
             1.0,
         ),
     };
-    let closing = impact.closing_speed_before_m_s?;
+    let closing = impact.approach_speed_before_m_s?;
     let noise = impact.speed_error_m_s? / masses.sqrt();
     (closing > 6.0 * noise && frequency_hz > 0.0).then_some(Node {
         time_s: impact.time_s,
@@ -325,7 +325,7 @@ mod tests {
     }
 
     /// Impacts of irregular motions, exact but for the stated errors.
-    fn block(rig: Rig) -> FlightBlock {
+    fn block(rig: RigKind) -> FlightBlock {
         let p = truth();
         let speed = p.static_deflection_m * p.natural_rate();
         let records = [(24.0, 0.2e-3), (20.0, 0.1e-3), (29.0, 0.15e-3)]
@@ -357,13 +357,13 @@ mod tests {
 
     #[test]
     fn valid_exact_impacts_follow_from_each_other() {
-        for rig in [Rig::Double, Rig::Single] {
+        for rig in [RigKind::Double, RigKind::Single] {
             let block = block(rig);
             for item in 0..block.items() {
                 assert!(block.records[item].nodes.len() >= 10);
                 let residuals = block.residuals(item, &truth()).expect("residuals");
                 // The first node's own measurements meet a state of which nothing is known.
-                let first = if rig == Rig::Double { 3 } else { 2 };
+                let first = if rig == RigKind::Double { 3 } else { 2 };
                 let later = residuals[first..].iter();
                 let worst = later.fold(0.0f64, |m, r| m.max(r.abs()));
                 assert!(worst < 0.01, "{worst}");
@@ -373,7 +373,7 @@ mod tests {
 
     #[test]
     fn valid_irregular_motions_alone_tell_all_four_parameters() {
-        let block = block(Rig::Double);
+        let block = block(RigKind::Double);
         let start = Parameters {
             restitution: 0.77,
             natural_frequency_hz: 12.03,

@@ -16,7 +16,7 @@ pub mod trajectory;
 pub mod waveform;
 pub mod weighing;
 
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::identify::evidence::boundary::BoundaryBlock;
 use crate::identify::evidence::flights::FlightBlock;
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
@@ -48,7 +48,7 @@ pub struct Nominal {
 #[derive(Debug, Clone, Copy)]
 pub struct Evidence<'a> {
     /// One or two masses.
-    pub rig: Rig,
+    pub rig: RigKind,
     /// All records as observed.
     pub observations: &'a [Observation],
     /// All brackets.
@@ -140,7 +140,7 @@ impl Blocks {
     /// Whether both masses are measured, so that asymmetries can be told.
     fn sees_both(&self) -> bool {
         let has = |i: usize| self.measures(i, |_| true);
-        self.resonance.rig == Rig::Double && (has(0) || has(2)) && (has(1) || has(3))
+        self.resonance.rig == RigKind::Double && (has(0) || has(2)) && (has(1) || has(3))
     }
 
     /// Add the nuisance coordinates on which a fit of some blocks depends, with their priors: the

@@ -1,7 +1,7 @@
 //! A periodic record as the model has it: the values at all its points, and their exact slopes
 //! over every parameter, over the drive's phase and over its frequency.
 
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::identify::evidence::direction::{change, relative_length, relative_rate};
 use crate::identify::evidence::high_pass::{HighPass, HighPassSlope, Passed, Tail};
 use crate::identify::evidence::trajectory::TrajectoryRecord;
@@ -30,7 +30,7 @@ pub struct NearestOrbit {
 
 impl NearestOrbit {
     /// At given parameters; `None` beyond the saddle-node.
-    pub fn of(rig: Rig, record: &TrajectoryRecord, parameters: &Parameters) -> Option<Self> {
+    pub fn of(rig: RigKind, record: &TrajectoryRecord, parameters: &Parameters) -> Option<Self> {
         let machine = parameters.machine(rig);
         let setting = parameters.setting(
             record.frequency_hz,
@@ -40,7 +40,7 @@ impl NearestOrbit {
         let n = record.folded.periods_n;
         let branch = Branch::new(&machine, setting.frequency_ratio, n);
         let restitution = parameters.restitution.clamp(0.0, 1.0);
-        let speeds = branch.closing_speeds(restitution, machine.gap(setting.clearance))?;
+        let speeds = branch.approach_speeds(restitution, machine.gap(setting.clearance))?;
         let scale =
             parameters.static_deflection_m * record.drive_amplitude * parameters.natural_rate();
         let measured = record.closing_speed_m_s / scale;
@@ -99,7 +99,11 @@ struct Direction {
 
 impl<'a> RecordMotion<'a> {
     /// At given parameters; `None` where there is no such orbit.
-    pub fn new(rig: Rig, record: &'a TrajectoryRecord, parameters: &Parameters) -> Option<Self> {
+    pub fn new(
+        rig: RigKind,
+        record: &'a TrajectoryRecord,
+        parameters: &Parameters,
+    ) -> Option<Self> {
         let NearestOrbit {
             machine,
             setting,
@@ -197,7 +201,7 @@ impl<'a> RecordMotion<'a> {
             x: turned(&self.orbit.x),
             y: turned(&self.orbit.y),
             phase: 1.0,
-            closing_speed: 0.0,
+            approach_speed: 0.0,
         };
         let direction = Direction {
             orbit,
@@ -411,7 +415,7 @@ mod tests {
     }
 
     fn values(record: &TrajectoryRecord, parameters: &Parameters) -> Vec<f64> {
-        RecordMotion::new(Rig::Double, record, parameters)
+        RecordMotion::new(RigKind::Double, record, parameters)
             .expect("an orbit")
             .values()
     }
@@ -429,7 +433,7 @@ mod tests {
     fn valid_slopes_of_a_record_are_those_of_finite_differences() {
         let (p, step) = (parameters(), 1e-6);
         for record in [record(1, 15.0), record(2, 31.0)] {
-            let motion = RecordMotion::new(Rig::Double, &record, &p).expect("an orbit");
+            let motion = RecordMotion::new(RigKind::Double, &record, &p).expect("an orbit");
             let here = motion.values();
             let mut coordinates = Coordinate::PHYSICAL.to_vec();
             coordinates.extend([Coordinate::DriveAsymmetry, Coordinate::StiffnessAsymmetry]);

@@ -2,7 +2,7 @@
 
 use nalgebra::Complex;
 
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::identify::evidence::direction::{change, relative_length};
 use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::fit::Block;
@@ -35,7 +35,7 @@ pub struct ResonancePoint {
 #[derive(Debug, Clone)]
 pub struct ResonanceBlock {
     /// One or two masses.
-    pub rig: Rig,
+    pub rig: RigKind,
     /// The records.
     pub points: Vec<ResonancePoint>,
     /// Relative error added to every response: what gains and model leave open.
@@ -44,7 +44,7 @@ pub struct ResonanceBlock {
 
 impl ResonanceBlock {
     /// Collect the impactless records that may be used.
-    pub fn new(rig: Rig, observations: &[Observation], relative_error: f64) -> Self {
+    pub fn new(rig: RigKind, observations: &[Observation], relative_error: f64) -> Self {
         let points = observations
             .iter()
             .enumerate()
@@ -60,7 +60,7 @@ impl ResonanceBlock {
                     responses: o
                         .response
                         .iter()
-                        .filter(|r| rig == Rig::Double || !r.role.is_of_y())
+                        .filter(|r| rig == RigKind::Double || !r.role.is_of_y())
                         .copied()
                         .collect(),
                 })
@@ -124,7 +124,7 @@ fn respond(
 /// Predicted complex response of a channel, SI, gain included; the drive is cos θ.
 pub fn predicted(
     parameters: &Parameters,
-    rig: Rig,
+    rig: RigKind,
     role: Role,
     frequency_hz: f64,
     drive_amplitude: f64,
@@ -288,7 +288,7 @@ mod tests {
             Role::AccelerationY,
         ];
         let block = ResonanceBlock {
-            rig: Rig::Double,
+            rig: RigKind::Double,
             points: vec![ResonancePoint {
                 observation: 0,
                 frequency_hz: 14.0,

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::identify::evidence::record_motion::{NearestOrbit, RecordMotion};
 use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::evidence::waveform::Phases;
@@ -44,7 +44,7 @@ pub struct TrajectoryRecord {
 #[derive(Debug, Clone)]
 pub struct TrajectoryBlock {
     /// One or two masses.
-    pub rig: Rig,
+    pub rig: RigKind,
     /// The records.
     pub records: Vec<TrajectoryRecord>,
     /// Relative error added to every point: what instruments and model leave open.
@@ -53,11 +53,11 @@ pub struct TrajectoryBlock {
 
 impl TrajectoryBlock {
     /// Collect the records that may be used.
-    pub fn new(rig: Rig, observations: &[Observation], relative_error: f64) -> Self {
+    pub fn new(rig: RigKind, observations: &[Observation], relative_error: f64) -> Self {
         let records = observations
             .iter()
             .enumerate()
-            .filter(|(_, o)| !o.excluded() && o.finding.confidence >= 0.7)
+            .filter(|(_, o)| !o.excluded() && o.classification.confidence >= 0.7)
             .filter_map(|(i, o)| trajectory_record(i, o))
             .collect();
         Self {
@@ -115,7 +115,7 @@ fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> 
     let speeds: Vec<f64> = o
         .impacts
         .iter()
-        .filter_map(|i| i.closing_speed_before_m_s)
+        .filter_map(|i| i.approach_speed_before_m_s)
         .collect();
     Some(TrajectoryRecord {
         observation: index,

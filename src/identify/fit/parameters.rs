@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::event::{CornerShift, Rig};
+use crate::event::{CornerShift, RigKind};
 use crate::record::Role;
 use impact_oscillator::model::params::{
     Contact, Flight, Machine, Oscillator, Restitution, Setting,
@@ -50,7 +50,7 @@ impl Parameters {
     }
 
     /// The machine, dimensionless: masses about the nominal one.
-    pub fn machine(&self, rig: Rig) -> Machine {
+    pub fn machine(&self, rig: RigKind) -> Machine {
         let mass = |sign: f64| Oscillator {
             mass: 1.0,
             natural_frequency_ratio: (1.0 + 0.5 * sign * self.stiffness_asymmetry)
@@ -61,8 +61,8 @@ impl Parameters {
         };
         let restitution = Restitution::Constant(self.restitution.clamp(0.0, 1.0));
         let (x, y) = match rig {
-            Rig::Double => (mass(1.0), Some(mass(-1.0))),
-            Rig::Single => (Oscillator::nominal(self.damping_ratio), None),
+            RigKind::Double => (mass(1.0), Some(mass(-1.0))),
+            RigKind::Single => (Oscillator::nominal(self.damping_ratio), None),
         };
         Machine {
             x,

@@ -40,7 +40,7 @@ const LIMITS: Limits = Limits {
     negligible: 1e-4,
     variance: Variance::Unit,
     damping: 1e-4,
-    steps: 60,
+    iterations: 60,
 };
 
 impl Problem<'_> {
@@ -50,7 +50,10 @@ impl Problem<'_> {
     /// [`FitError`] where there is nothing to fit, where observations have no counterpart in the
     /// model at the start, or where the data do not determine the coordinates.
     pub fn fit(&self, start: Parameters) -> Result<Fit, FitError> {
-        let minimum = minimise(self, start, &LIMITS)?;
+        let minimum = minimise(self, start, &LIMITS).map_err(|error| {
+            let own = error.downcast::<FitError>();
+            own.unwrap_or_else(|other| FitError::Solver(other.to_string()))
+        })?;
         let factor = minimum.factor;
         Ok(Fit {
             parameters: minimum.point,
@@ -58,7 +61,7 @@ impl Problem<'_> {
             covariance: factor.covariance(LEAST_SHARE).ok_or(FitError::Singular)?,
             cost: factor.cost,
             residuals: factor.count - self.priors.len(),
-            ending: minimum.ending,
+            report: minimum.report,
         })
     }
 
@@ -237,15 +240,14 @@ impl Problem<'_> {
 
 impl LeastSquares for Problem<'_> {
     type Point = Parameters;
-    type Error = FitError;
 
-    fn factor(&self, at: &Parameters) -> Result<Factor, FitError> {
+    fn factor(&self, at: &Parameters) -> Result<Factor, argmin::core::Error> {
         let (factor, missing) = self.known_factor(at);
         if !missing.is_empty() {
-            return Err(FitError::NoModel(missing));
+            return Err(FitError::NoModel(missing).into());
         }
         if factor.count == 0 {
-            return Err(FitError::Empty);
+            return Err(FitError::Empty.into());
         }
         Ok(factor)
     }

@@ -3,12 +3,11 @@
 use super::plan::BasinPlan;
 use super::table::Table;
 use super::{Desk, StudyError};
-use crate::motion::Motion;
 use crate::report::speech::Speech;
 use crate::report::theory::basins::draw;
 use impact_oscillator::atlas::basins::{Basins, basin_rows};
-use impact_oscillator::atlas::map::{CellMotion, MapSettings, even};
-use impact_oscillator::model::{Machine, Restitution};
+use impact_oscillator::atlas::map::even;
+use impact_oscillator::{Machine, MapSettings, Restitution, SettledMotion};
 
 /// Rows of a block.
 const BLOCK: usize = 8;
@@ -54,7 +53,7 @@ fn cells(
     name: &str,
     plan: &BasinPlan,
     desk: &Desk<'_>,
-) -> Result<Vec<Option<CellMotion>>, StudyError> {
+) -> Result<Vec<Option<SettledMotion>>, StudyError> {
     let settings = MapSettings {
         watch: plan.watch,
         ..MapSettings::default()
@@ -64,7 +63,7 @@ fn cells(
     for first in (0..rows).step_by(BLOCK) {
         let last = (first + BLOCK).min(rows);
         let block = format!("{name} rows {first}");
-        let found: Vec<Option<CellMotion>> = match desk.kept.load(&block) {
+        let found: Vec<Option<SettledMotion>> = match desk.kept.load(&block) {
             Some(found) => found,
             None => {
                 let found = basin_rows(machine, plan.setting, &plan.grid, &settings, first..last)
@@ -79,8 +78,8 @@ fn cells(
     Ok(cells)
 }
 
-fn label(cell: &Option<CellMotion>) -> String {
-    cell.map_or("beyond contact".into(), |m| Motion::from(m).label())
+fn label(cell: &Option<SettledMotion>) -> String {
+    cell.map_or("beyond contact".into(), SettledMotion::label)
 }
 
 fn table(b: &Basins) -> Table {

@@ -19,7 +19,7 @@ pub(super) fn left_out(gathered: &Gathered) -> Vec<LeftOut> {
             let reason = flag.code.replace('_', " ") + &of.unwrap_or_default();
             note(reason, &flag.message);
         }
-        if let Motion::Undetermined { reason } = &o.finding.motion
+        if let Motion::Undetermined { reason } = &o.classification.motion
             && !o.excluded()
             && o.drive.is_some()
         {

@@ -14,7 +14,7 @@ mod window;
 pub use chosen::chosen_records;
 pub use decays::shown_decays;
 
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::identify::Identification;
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::Parameters;
@@ -30,7 +30,7 @@ pub struct CampaignFacts {
     /// Name of the campaign.
     pub name: String,
     /// One or two masses.
-    pub rig: Rig,
+    pub rig: RigKind,
     /// Nominal values: name, value in SI, unit.
     pub nominal: Vec<(String, f64, String)>,
     /// Whether its records are simulated.

@@ -9,7 +9,8 @@ use crate::identify::uncertainty::band::Spread;
 use crate::motion::Motion;
 use crate::report::content::{BoundaryCurve, BoundaryKind, RegionMap};
 use impact_oscillator::atlas::map::even;
-use impact_oscillator::atlas::{CellMotion, MapGrid, MapSettings, region_map as simulate_map};
+use impact_oscillator::SettledMotion;
+use impact_oscillator::atlas::{MapGrid, MapSettings, region_map as simulate_map};
 use impact_oscillator::model::boundary::{rho_grazing, rho_s1, rho_s2};
 use impact_oscillator::model::orbit::stable_orbit;
 use impact_oscillator::model::params::{Initial, Machine, Setting};
@@ -191,7 +192,7 @@ pub(super) fn region_map(gathered: &Gathered) -> Option<RegionMap> {
     ))
 }
 
-fn motions(cells: &[CellMotion]) -> Vec<Motion> {
+fn motions(cells: &[SettledMotion]) -> Vec<Motion> {
     cells.iter().map(|cell| Motion::from(*cell)).collect()
 }
 

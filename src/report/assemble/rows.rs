@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::{ChannelFacts, Gathered};
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::identify::evidence::flights::is_flown;
 use crate::motion::{self, Motion, Observation};
 use crate::report::content::{
@@ -26,8 +26,8 @@ pub(super) fn summary(gathered: &Gathered) -> CampaignSummary {
     CampaignSummary {
         name: gathered.campaign.name.clone(),
         rig: match gathered.campaign.rig {
-            crate::event::Rig::Double => "two masses against each other".into(),
-            crate::event::Rig::Single => "one mass against a stop".into(),
+            crate::event::RigKind::Double => "two masses against each other".into(),
+            crate::event::RigKind::Single => "one mass against a stop".into(),
         },
         records_total: all.len(),
         records_used: all.iter().filter(|o| !o.excluded()).count(),
@@ -106,7 +106,7 @@ pub(super) fn records(gathered: &Gathered) -> Vec<RecordRow> {
 
 fn record(gathered: &Gathered, o: &Observation, left: Option<&str>) -> RecordRow {
     let (eta, rho) = place(gathered, o);
-    let pair = o.finding.impacts_and_periods();
+    let pair = o.classification.impacts_and_periods();
     let used_by = if o.excluded() {
         Vec::new()
     } else {
@@ -125,10 +125,10 @@ fn record(gathered: &Gathered, o: &Observation, left: Option<&str>) -> RecordRow
         clearance_m: o.setting.clearance_m,
         rho,
         sweep: o.setting.sweep,
-        motion: o.finding.motion.clone(),
+        motion: o.classification.motion.clone(),
         impacts_p: pair.map(|p| p.0),
         periods_n: pair.map(|p| p.1),
-        confidence: Some(o.finding.confidence),
+        confidence: Some(o.classification.confidence),
         impacts: o.impacts.len(),
         flags: o.flags.iter().map(|f| f.code.replace('_', " ")).collect(),
         left_out: excluded
@@ -138,7 +138,7 @@ fn record(gathered: &Gathered, o: &Observation, left: Option<&str>) -> RecordRow
     }
 }
 
-fn used_by(rig: Rig, o: &Observation, left_out: bool) -> Vec<String> {
+fn used_by(rig: RigKind, o: &Observation, left_out: bool) -> Vec<String> {
     let mut out = Vec::new();
     let mut add = |name: &str, used: bool| {
         if used {
@@ -151,7 +151,7 @@ fn used_by(rig: Rig, o: &Observation, left_out: bool) -> Vec<String> {
         "impacts",
         o.impacts
             .iter()
-            .any(|i| i.closing_speed_before_m_s.is_some()),
+            .any(|i| i.approach_speed_before_m_s.is_some()),
     );
     add("flights", is_flown(rig, o) && !left_out);
     add("free_decay", o.decay.is_some());
