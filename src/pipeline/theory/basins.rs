@@ -62,16 +62,11 @@ fn cells(
     let mut cells = Vec::with_capacity(rows * plan.grid.x.2);
     for first in (0..rows).step_by(BLOCK) {
         let last = (first + BLOCK).min(rows);
-        let block = format!("{name} rows {first}");
-        let found: Vec<Option<SettledMotion>> = match desk.kept.load(&block) {
-            Some(found) => found,
-            None => {
-                let found = basin_rows(machine, plan.setting, &plan.grid, &settings, first..last)
-                    .map_err(StudyError::of(name))?;
-                desk.kept.save(&block, &found)?;
-                found
-            }
-        };
+        let found: Vec<Option<SettledMotion>> =
+            desk.kept.block(&format!("{name} rows {first}"), || {
+                basin_rows(machine, plan.setting, &plan.grid, &settings, first..last)
+                    .map_err(StudyError::of(name))
+            })?;
         cells.extend(found);
         (desk.progress)(last as u64, rows as u64);
     }

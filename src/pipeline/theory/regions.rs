@@ -30,16 +30,10 @@ pub fn run(
     desk: &Desk<'_>,
 ) -> Result<(), StudyError> {
     let request = AtlasRequest::new(machine.clone(), plan.settings());
-    let block = format!("{name} maps");
-    let maps: Maps = match desk.kept.load(&block) {
-        Some(maps) => maps,
-        None => {
-            let maps = brute_maps(machine, &request.settings.grid, &request.settings.map)
-                .map_err(StudyError::of(name))?;
-            desk.kept.save(&block, &maps)?;
-            maps
-        }
-    };
+    let maps: Maps = desk.kept.block(&format!("{name} maps"), || {
+        brute_maps(machine, &request.settings.grid, &request.settings.map)
+            .map_err(StudyError::of(name))
+    })?;
     leave(&request, &maps, name, desk)
 }
 
@@ -90,15 +84,10 @@ fn all_columns(
     let mut slices = Vec::with_capacity(count);
     for first in (0..count).step_by(BLOCK) {
         let last = (first + BLOCK).min(count);
-        let block = format!("{name} columns {first}");
-        let found: Vec<Vec<Slice>> = match desk.kept.load(&block) {
-            Some(found) => found,
-            None => {
-                let found = columns(&request.machine, &request.settings, maps, first..last);
-                desk.kept.save(&block, &found)?;
-                found
-            }
-        };
+        let found: Vec<Vec<Slice>> = desk.kept.block(&format!("{name} columns {first}"), || {
+            let chosen = first..last;
+            Ok::<_, StudyError>(columns(&request.machine, &request.settings, maps, chosen))
+        })?;
         slices.extend(found);
         (desk.progress)(last as u64, count as u64);
     }

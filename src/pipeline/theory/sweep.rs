@@ -134,10 +134,7 @@ fn characteristics(machine: &Machine, forward: &[SweepPoint], backward: &[SweepP
         .texts("direction", all.clone().map(|(way, _)| way))
         .numbers("eta", of(|p| p.eta))
         .numbers("rho", of(|p| p.rho))
-        .texts(
-            "motion",
-            all.clone().map(|(_, p)| p.motion.label()),
-        )
+        .texts("motion", all.clone().map(|(_, p)| p.motion.label()))
         .numbers("x_max", of(|p| p.x_max));
     if machine.y.is_some() {
         table = table.numbers("y_max", of(|p| p.y_max));

@@ -15,8 +15,8 @@ use crate::report::figures::path::{self, Rect};
 use crate::report::figures::placing::Occupancy;
 use crate::report::figures::regions::Regions;
 use crate::report::speech::Speech;
-use impact_oscillator::atlas::curves::Curve;
 use impact_oscillator::SettledMotion;
+use impact_oscillator::atlas::curves::Curve;
 use impact_oscillator::atlas::map::MapGrid;
 
 /// Room left of the panel, points.
@@ -41,8 +41,9 @@ pub struct Plane<'a> {
 
 /// Draws the plane; `None` where the grid has no area.
 pub fn draw(plane: &Plane<'_>, name: &str, title: &str, speech: Speech) -> Option<Figure> {
-    let motions =
-        |cells: &[SettledMotion]| -> Vec<Motion> { cells.iter().map(|c| Motion::from(*c)).collect() };
+    let motions = |cells: &[SettledMotion]| -> Vec<Motion> {
+        cells.iter().map(|c| Motion::from(*c)).collect()
+    };
     let (first, second) = (motions(plane.first), motions(plane.second));
     let map = RegionMap::of_motions(
         plane.grid.eta.clone(),

@@ -151,9 +151,7 @@ pub(super) fn compare(
 
 fn is_beyond(settings: &AtlasSettings, motion: SettledMotion) -> bool {
     match motion {
-        SettledMotion::Periodic { p, n, .. } => {
-            p > settings.largest_p || n > settings.largest_n
-        }
+        SettledMotion::Periodic { p, n, .. } => p > settings.largest_p || n > settings.largest_n,
         _ => false,
     }
 }

@@ -63,6 +63,23 @@ impl BasinGrid {
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range.
+///
+/// ```
+/// use impact_oscillator::atlas::{BasinGrid, Starts, basins};
+/// use impact_oscillator::{Machine, MapSettings, Setting};
+///
+/// // Fig. 5 of the paper: z = 0 and z = 1 coexist at η = 1.19, ρ = 3 with R = 0
+/// let machine = Machine::symmetric(0.005, 0.0);
+/// let grid = BasinGrid {
+///     x: (-12.0, 3.0, 11),
+///     vx: (-12.0, 12.0, 11),
+///     starts: Starts::BothMasses,
+/// };
+/// let basins = basins(&machine, Setting::new(1.19, 3.0), &grid, &MapSettings::default())?;
+/// let count = |label: &str| basins.cells.iter().flatten().filter(|m| m.label() == label).count();
+/// assert!(count("1") > 5 * count("0") && count("0") > 0);
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn basins(
     machine: &Machine,
     setting: Setting,

@@ -4,7 +4,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::kernel::{Cell, Feed, Outcome, run};
-use super::map::{End, Kernel, MapGrid, MapSettings, Start, UnitMass, check, march_from};
+use super::map::{
+    End, Kernel, MapGrid, MapSettings, Start, UnitMass, check, march_from, march_grid,
+};
 use crate::model::{Initial, Machine, ModelError};
 use crate::parallel;
 
@@ -49,7 +51,12 @@ pub fn brute_maps(
     check(machine, grid, settings)?;
     let start = brute_map(machine, grid, settings, Seeding::FromStart)?;
     // both seedings in one march, so that all lanes have work
-    let mut carried = carried(machine, grid, settings, &[Seeding::Rising, Seeding::Falling])?;
+    let mut carried = carried(
+        machine,
+        grid,
+        settings,
+        &[Seeding::Rising, Seeding::Falling],
+    )?;
     let falling = carried.pop().unwrap_or_default();
     let rising = carried.pop().unwrap_or_default();
     Ok([start, rising, falling])
@@ -69,13 +76,7 @@ pub(super) fn brute_map(
         let mut carried = carried(machine, grid, settings, &[seeding])?;
         return Ok(carried.pop().unwrap_or_default());
     }
-    let start = |i: usize| Start {
-        at: grid.at(i),
-        initial: settings.start,
-        phase: 0.0,
-    };
-    let starts: Vec<Start> = (0..grid.len()).map(start).collect();
-    march_from(machine, &starts, settings)
+    march_grid(machine, grid, settings)
 }
 
 /// Rows that the marching kernel continues from column to column, each on its own: a lane whose

@@ -7,9 +7,26 @@ use crate::model::contact::free_accelerations;
 use crate::model::flight::{Drive, State};
 use crate::model::simulate::{Arc, Sink};
 use crate::model::variation::{free_flow, saltation};
-use crate::model::{ImpactKind, Machine, Impact, Restitution};
+use crate::model::{Impact, ImpactKind, Machine, Restitution};
 
-/// Carries a variation along a simulation; give it to `Simulator::advance`.
+/// Follows a variation along a simulation; pass it to [`Simulator::advance`].
+///
+/// [`Simulator::advance`]: crate::Simulator::advance
+///
+/// ```
+/// use impact_oscillator::atlas::Lyapunov;
+/// use impact_oscillator::{Impact, Initial, Machine, Setting, Simulator};
+///
+/// // at η = 2, ρ = 0.2 the motion is chaotic
+/// let machine = Machine::symmetric(0.07, 0.9);
+/// let setting = Setting::new(2.0, 0.2);
+/// let mut simulator = Simulator::new(&machine, setting, Initial::rest())?;
+/// simulator.advance(200.0 * setting.period(), &mut |_: &Impact| ());
+/// let mut lyapunov = Lyapunov::new(&machine, setting.frequency_ratio);
+/// simulator.advance(500.0 * setting.period(), &mut lyapunov);
+/// assert!(lyapunov.exponent() > 0.0);
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Lyapunov<'a> {
     machine: &'a Machine,

@@ -110,43 +110,44 @@ impl RegionMap {
 ///
 /// # Errors
 /// [`ModelError`] where a parameter or a grid value is out of range.
+///
+/// ```
+/// use impact_oscillator::{Machine, MapGrid, MapSettings, region_map};
+///
+/// let grid = MapGrid::even((1.1, 1.5, 3), (1.0, 7.0, 4));
+/// let map = region_map(&Machine::symmetric(0.07, 0.9), &grid, &MapSettings::default())?;
+/// // at η = 1.3 z = 1 exists for ρ below s2 = 4.152, and from rest it is reached below ρ' = 1.401
+/// assert_eq!(map.at(1, 0).label(), "1");
+/// assert_eq!(map.at(1, 2).label(), "0");
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn region_map(
     machine: &Machine,
     grid: &MapGrid,
     settings: &MapSettings,
 ) -> Result<RegionMap, ModelError> {
-    let all: Vec<usize> = (0..grid.len()).collect();
-    let cells = map_cells(machine, grid, settings, &all)?;
+    check(machine, grid, settings)?;
+    let ends = march_grid(machine, grid, settings)?;
     Ok(RegionMap {
         eta: grid.eta.clone(),
         rho: grid.rho.clone(),
-        cells,
+        cells: ends.iter().map(|end| end.motion).collect(),
     })
 }
 
-/// The motions of chosen cells of a grid, by their numbers.
-///
-/// # Errors
-/// As [`region_map`].
-fn map_cells(
+/// March every cell of a grid from the settings' start, row by row.
+pub(super) fn march_grid(
     machine: &Machine,
     grid: &MapGrid,
     settings: &MapSettings,
-    chosen: &[usize],
-) -> Result<Vec<SettledMotion>, ModelError> {
-    check(machine, grid, settings)?;
-    let starts: Vec<Start> = chosen
-        .iter()
-        .map(|&i| Start {
-            at: grid.at(i),
-            initial: settings.start,
-            phase: 0.0,
-        })
-        .collect();
-    Ok(march_from(machine, &starts, settings)?
-        .into_iter()
-        .map(|end| end.motion)
-        .collect())
+) -> Result<Vec<End>, ModelError> {
+    let start = |i: usize| Start {
+        at: grid.at(i),
+        initial: settings.start,
+        phase: 0.0,
+    };
+    let starts: Vec<Start> = (0..grid.len()).map(start).collect();
+    march_from(machine, &starts, settings)
 }
 
 /// A cell with its own start.
@@ -201,7 +202,11 @@ pub fn march_from(
 ///
 /// # Errors
 /// [`ModelError`] with the first parameter out of range.
-pub(super) fn check(machine: &Machine, grid: &MapGrid, settings: &MapSettings) -> Result<(), ModelError> {
+pub(super) fn check(
+    machine: &Machine,
+    grid: &MapGrid,
+    settings: &MapSettings,
+) -> Result<(), ModelError> {
     machine.check()?;
     settings.start.check()?;
     if machine.flight != Flight::Harmonic {

@@ -141,10 +141,32 @@ const CORRELATED: usize = 24;
 /// Longest lag of the autocorrelation, drive periods.
 const LONGEST_LAG: usize = 20;
 
-/// Simulate a motion and look at it.
+/// Simulate a motion and sample it.
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range or the start is beyond the contact.
+///
+/// ```
+/// use impact_oscillator::atlas::portrait::{PortraitPlan, portrait};
+/// use impact_oscillator::{Initial, Machine, Setting};
+///
+/// let plan = PortraitPlan {
+///     setting: Setting::new(1.3, 1.0),
+///     start: Initial::rest(),
+///     skip_periods: 300.0,
+///     periods: 2.0,
+///     samples_per_period: 50,
+///     poincare_periods: 40,
+///     poincare_phase: 0.0,
+///     soft: None,
+/// };
+/// let motion = portrait(&Machine::symmetric(0.07, 0.9), &plan)?;
+/// assert_eq!((motion.samples.len(), motion.impacts.len()), (101, 2));
+/// // z = 1: the Poincaré map is one point
+/// let [first, .., last] = motion.poincare.as_slice() else { unreachable!() };
+/// assert!((first[0] - last[0]).abs() < 1e-6);
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn portrait(machine: &Machine, plan: &PortraitPlan) -> Result<Portrait, ModelError> {
     let setting = plan.setting;
     let period = setting.period();

@@ -58,6 +58,24 @@ impl Atlas {
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range.
+///
+/// ```
+/// use impact_oscillator::atlas::{AtlasSettings, EdgeKind, MapGrid, MapSettings, atlas};
+/// use impact_oscillator::Machine;
+///
+/// let settings = AtlasSettings {
+///     grid: MapGrid::even((1.2, 1.3, 2), (0.5, 5.0, 19)),
+///     largest_p: 1,
+///     largest_n: 1,
+///     map: MapSettings::default(),
+/// };
+/// let atlas = atlas(&Machine::symmetric(0.07, 0.9), &settings)?;
+/// let slice = atlas.slices.iter().find(|s| s.eta == 1.3).expect("z = 1 at η = 1.3");
+/// assert_eq!(slice.high.kind, EdgeKind::SaddleNode);
+/// assert!((slice.high.orbit.rho - 4.151_754).abs() < 1e-6);
+/// assert!(atlas.agreement.differing.is_empty());
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn atlas(machine: &Machine, settings: &AtlasSettings) -> Result<Atlas, ModelError> {
     let maps = brute_maps(machine, &settings.grid, &settings.map)?;
     let columns = columns(machine, settings, &maps, 0..settings.grid.eta.len());

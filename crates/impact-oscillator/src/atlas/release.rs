@@ -133,7 +133,11 @@ impl<'a> Releases<'a> {
 
     /// All runs of resting motions along a line of points; motions that coexist have runs of
     /// their own. `starts` gives states that rest at a point: p and n, state and drive phase.
-    pub(super) fn runs(&self, points: &[Place], starts: impl Fn(usize) -> Vec<RestingStart>) -> Vec<Run> {
+    pub(super) fn runs(
+        &self,
+        points: &[Place],
+        starts: impl Fn(usize) -> Vec<RestingStart>,
+    ) -> Vec<Run> {
         let mut rests: Vec<Vec<Rest>> = Vec::with_capacity(points.len());
         for (k, &at) in points.iter().enumerate() {
             let mut there = Vec::new();

@@ -187,6 +187,20 @@ impl<'a> Carried<'a> {
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range.
+///
+/// ```
+/// use impact_oscillator::atlas::{Sweep, sweep};
+/// use impact_oscillator::{Initial, Machine, SettledMotion, Watch};
+///
+/// // η rising at ρ = 2 through the hysteresis region: z = 1 ends at η_s2 = 1.5688
+/// let steps = (0..=50).map(|i| (1.1 + 0.01 * f64::from(i), 2.0)).collect();
+/// let plan = Sweep { steps, start: Initial::rest(), watch: Watch::default() };
+/// let points = sweep(&Machine::symmetric(0.07, 0.9), &plan, |_| true)?;
+/// let impacts = points.iter().rfind(|p| p.motion != SettledMotion::Impactless);
+/// let last = impacts.expect("impacts").eta;
+/// assert!(last < 1.5688 && last > 1.53, "{last}");
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn sweep(
     machine: &Machine,
     plan: &Sweep,

@@ -40,7 +40,15 @@ fn clearance(machine: &Machine, gap: f64) -> f64 {
     gap / machine.gap(1.0)
 }
 
-/// ρ'(η): clearance at which the impactless motion X + Y grazes the contact (or the stop).
+/// ρ'(η): clearance at which the impactless motion X + Y grazes the contact (or the stop),
+/// ρ' = |F|/2 of eq. (10). Infinite at an undamped resonance.
+///
+/// ```
+/// use impact_oscillator::{Machine, rho_grazing};
+///
+/// let machine = Machine::symmetric(0.07, 0.9);
+/// assert!((rho_grazing(&machine, 1.3) - 1.401_347).abs() < 1e-6);
+/// ```
 pub fn rho_grazing(machine: &Machine, eta: f64) -> f64 {
     let drive = Drive { eta, phase: 0.0 };
     let mut forced = forced_amplitude(&machine.x, drive);
@@ -53,6 +61,12 @@ pub fn rho_grazing(machine: &Machine, eta: f64) -> f64 {
 /// ρp(η): clearance below which masses that stick together never separate, eq. (12). Sticking
 /// masses press with −2k₁k₂ρ/(k₁+k₂) + Re((F₁D₂ + F₂D₁)/(D₁ + D₂) e^{i(ητ+φ)}), Dᵢ = kᵢ − η²mᵢ + iηbᵢ;
 /// ρp is where that just never vanishes. Equal masses, or one of them: −F/k for every η.
+///
+/// ```
+/// use impact_oscillator::{Machine, model::boundary::rho_sticking};
+///
+/// assert!((rho_sticking(&Machine::symmetric(0.07, 0.9), 1.3) + 1.0).abs() < 1e-12);
+/// ```
 pub fn rho_sticking(machine: &Machine, eta: f64) -> f64 {
     let parts = |o: &Oscillator| {
         let k = o.stiffness_per_mass() * o.mass;
@@ -79,7 +93,19 @@ pub fn s2_of_branch(branch: &Branch, restitution: f64) -> (f64, f64) {
     (gap, gap * alpha / (alpha * alpha + q * q))
 }
 
-/// The saddle-node boundary of z = 1/n at η. `None`: no saddle-node at a finite clearance.
+/// s2: the saddle-node boundary of z = 1/n at η, eq. (10), with the marginal orbit and whether it
+/// exists. `None`: no saddle-node at a finite clearance.
+///
+/// ```
+/// use impact_oscillator::{Machine, rho_s2};
+///
+/// let machine = Machine::symmetric(0.07, 0.9);
+/// for (eta, rho) in [(1.1, 6.351_142), (1.3, 4.151_754), (1.6, 1.812_702)] {
+///     let point = rho_s2(&machine, eta, 1).expect("a saddle-node");
+///     assert!((point.rho - rho).abs() < 1e-6);
+///     assert!(point.is_valid());
+/// }
+/// ```
 pub fn rho_s2(machine: &Machine, eta: f64, n: u32) -> Option<BoundaryPoint> {
     let branch = harmonic_branch(machine, eta, n)?;
     let (gap, w) = match machine.restitution().constant() {
@@ -148,9 +174,16 @@ fn golden_maximum(f: impl Fn(f64) -> f64, mut lo: f64, mut hi: f64) -> f64 {
     0.5 * (lo + hi)
 }
 
-/// The period-doubling boundary of z = 1/n at η (multiplier −1). With equal masses and constant
+/// s1: the period-doubling boundary of z = 1/n at η (multiplier −1). With equal masses and constant
 /// R it is a closed form; otherwise the root is found along the branch of orbits. `None`: the
 /// branch has no doubling.
+///
+/// ```
+/// use impact_oscillator::{Machine, rho_s1};
+///
+/// let point = rho_s1(&Machine::symmetric(0.07, 0.9), 0.9, 1).expect("a doubling");
+/// assert!((point.rho - 1.760_461).abs() < 1e-6);
+/// ```
 pub fn rho_s1(machine: &Machine, eta: f64, n: u32) -> Option<BoundaryPoint> {
     let branch = harmonic_branch(machine, eta, n)?;
     let equal = machine.y.is_none() || machine.is_symmetric();
@@ -286,6 +319,13 @@ fn roots(top: f64, f: impl Fn(f64) -> f64) -> Vec<f64> {
 
 /// The greatest η at which z = 1/n ends in a saddle-node at a clearance: where a rising sweep
 /// of the frequency jumps. `None`: the boundary does not pass this clearance with an orbit.
+///
+/// ```
+/// use impact_oscillator::{Machine, eta_s2};
+///
+/// let point = eta_s2(&Machine::symmetric(0.07, 0.9), 2.0, 1).expect("a saddle-node");
+/// assert!((point.eta - 1.568_813).abs() < 1e-6);
+/// ```
 pub fn eta_s2(machine: &Machine, rho: f64, n: u32) -> Option<BoundaryPoint> {
     etas_s2(machine, rho, n).pop()
 }

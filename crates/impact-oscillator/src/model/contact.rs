@@ -94,10 +94,7 @@ pub(crate) fn free_accelerations(machine: &Machine, drive: Drive, s: &State) -> 
         friction,
     } = machine.flight
     {
-        return (
-            with_friction(acceleration, friction, s.vx).0,
-            0.0,
-        );
+        return (with_friction(acceleration, friction, s.vx).0, 0.0);
     }
     let cos = drive.phase.cos();
     let of = |o: &Oscillator, x: f64, v: f64| {
@@ -136,7 +133,10 @@ pub(crate) fn impact(machine: &Machine, drive: Drive, before: &State, size: f64)
             0.0,
         )
     } else if press > 0.0 && separation * separation <= 2.0 * press * RESOLUTION * size {
-        (ImpactKind::ChatterEnd, rest_after(machine, separation, press))
+        (
+            ImpactKind::ChatterEnd,
+            rest_after(machine, separation, press),
+        )
     } else {
         (ImpactKind::Bounce, 0.0)
     };

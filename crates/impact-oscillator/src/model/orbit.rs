@@ -244,6 +244,18 @@ pub fn orbits(machine: &Machine, setting: Setting, n: u32) -> Result<Vec<Orbit>,
 ///
 /// # Errors
 /// As [`orbits`].
+///
+/// ```
+/// use impact_oscillator::{Machine, Setting, model::orbit::stable_orbit};
+///
+/// let machine = Machine::single(0.07, 0.9);
+/// let orbit = stable_orbit(&machine, Setting::new(1.2, 2.0), 1)?.expect("z = 1");
+/// assert!((orbit.approach_speed - 2.413_516).abs() < 1e-6);
+/// assert!(orbit.multipliers.iter().all(|m| m.norm() < 1.0));
+/// // the motion is periodic
+/// assert!((orbit.at(0.3).x - orbit.at(0.3 + orbit.period()).x).abs() < 1e-12);
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn stable_orbit(
     machine: &Machine,
     setting: Setting,

@@ -17,7 +17,23 @@ use super::params::{Machine, Setting};
 use super::path::C64;
 use super::variation::{eigenvalues, free_flow, saltation};
 
-/// A periodic orbit with p impacts in n drive periods.
+/// A periodic orbit with p impacts in n drive periods: the solution of eq. (8).
+///
+/// ```
+/// use impact_oscillator::{Existence, Initial, Machine, PeriodicOrbit, Setting, SettledMotion};
+/// use impact_oscillator::{Watch, settle};
+///
+/// // a simulated motion as the start of Newton's method
+/// let machine = Machine::symmetric(0.07, 0.9);
+/// let setting = Setting::new(1.3, 1.0);
+/// let (motion, impacts) = settle(&machine, setting, Initial::rest(), &Watch::default())?;
+/// let SettledMotion::Periodic { p: 1, n, .. } = motion else { panic!("{motion}") };
+/// let guess = PeriodicOrbit::from_impacts(&impacts[impacts.len() - 1..], setting, n);
+/// let orbit = guess.and_then(|o| o.solve(&machine)).expect("an orbit");
+/// assert_eq!(orbit.existence(&machine), Existence::Exists);
+/// assert!(orbit.is_stable(&machine) && orbit.residual(&machine).amax() < 1e-12);
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PeriodicOrbit {
     /// Drive periods in one period of the motion.
@@ -188,7 +204,10 @@ impl PeriodicOrbit {
 
     /// Unknowns of Newton's method: times, then speeds.
     pub fn unknowns(&self) -> DVector<f64> {
-        DVector::from_iterator(2 * self.times.len(), self.times.iter().chain(&self.speeds).copied())
+        DVector::from_iterator(
+            2 * self.times.len(),
+            self.times.iter().chain(&self.speeds).copied(),
+        )
     }
 
     /// The orbit with other unknowns.

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::boundary::rho_grazing;
-use super::contact::{ImpactKind, Impact};
+use super::contact::{Impact, ImpactKind};
 use super::motion::{SettledMotion, count};
 use super::params::{Flight, Initial, Machine, ModelError, Setting};
 use super::simulate::{Arc, Simulator, Sink};
@@ -35,6 +35,17 @@ impl Default for Watch {
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range or the start is beyond the contact.
+///
+/// ```
+/// use impact_oscillator::{Initial, Machine, Setting, Watch, settle};
+///
+/// let machine = Machine::symmetric(0.07, 0.9);
+/// let watch = Watch::default();
+/// let (motion, impacts) = settle(&machine, Setting::new(1.3, 1.0), Initial::rest(), &watch)?;
+/// assert_eq!(motion.label(), "1");
+/// assert_eq!(impacts.len(), 60); // one in each drive period of the watch
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn settle(
     machine: &Machine,
     setting: Setting,

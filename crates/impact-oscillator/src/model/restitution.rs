@@ -5,6 +5,14 @@ use serde::{Deserialize, Serialize};
 use super::error::{ModelError, range};
 
 /// The coefficient of restitution R, constant or depending on the approach speed v.
+///
+/// ```
+/// use impact_oscillator::Restitution;
+///
+/// let law = Restitution::Table(vec![(0.0, 0.95), (6.0, 0.85)]);
+/// assert!((law.at(3.0) - 0.90).abs() < 1e-12);
+/// assert_eq!(law.at(9.0), 0.85);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Restitution {

@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_coefficients_are_those_of_the_orbit() {
+    fn coefficients_are_those_of_the_orbit() {
         for machine in machines() {
             for orbit in orbits(&machine, Setting::new(1.2, 0.8), 1).unwrap() {
                 let gap = machine.gap(0.8);
@@ -383,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_slopes_are_those_of_finite_differences() {
+    fn slopes_are_those_of_finite_differences() {
         let step = 1e-6;
         for machine in machines() {
             for n in [1, 2] {
@@ -398,7 +398,9 @@ mod tests {
                 for ((change, ma, ea, ga), (_, mb, eb, gb)) in above.into_iter().zip(below) {
                     let near = |m: &Machine, eta: f64, gap: f64| {
                         let branch = Branch::new(m, eta, n);
-                        let roots = branch.approach_speeds(m.restitution().at(1.0), gap).unwrap();
+                        let roots = branch
+                            .approach_speeds(m.restitution().at(1.0), gap)
+                            .unwrap();
                         let nearer = |w: &f64| (w - speed).abs();
                         let w = roots
                             .into_iter()

@@ -144,11 +144,25 @@ struct Runner<'a> {
     touch: Option<(f64, f64)>,
 }
 
-/// Simulate a motion with soft contact from a start for a time.
+/// Simulate a motion with soft contact from a start over a duration in units of τ.
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range, the masses differ in more than their
 /// drives, or the start is beyond the contact.
+///
+/// ```
+/// use impact_oscillator::model::soft::{SoftContact, simulate_soft};
+/// use impact_oscillator::{Initial, Machine, Setting};
+///
+/// let machine = Machine::symmetric(0.07, 0.8);
+/// let contact = SoftContact::with_restitution(&machine, 1e8, 0.8)?;
+/// let motion = simulate_soft(&machine, contact, Setting::new(1.25, 1.0), Initial::rest(), 25.0)?;
+/// let first = motion.contacts[0];
+/// assert!((first.separation_speed / first.approach_speed - 0.8).abs() < 1e-3);
+/// // half a period of the contact's vibration, π/√(2κ), shortened by its damper
+/// assert!(first.duration < 2.3e-4);
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn simulate_soft(
     machine: &Machine,
     contact: SoftContact,
@@ -413,7 +427,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_short_contacts_have_the_restitution_asked_for() {
+    fn valid_short_contacts_have_the_requested_restitution() {
         let machine = Machine::single(0.0, 0.5);
         for r in [0.2, 0.5, 0.9, 1.0] {
             let soft = SoftContact::with_restitution(&machine, 1e10, r).unwrap();
@@ -428,7 +442,7 @@ mod tests {
     }
 
     #[test]
-    fn prop_the_motion_is_continuous_and_pays_for_every_contact() {
+    fn the_motion_is_continuous_through_every_contact() {
         let machine = Machine::symmetric(0.05, 0.5);
         let soft = SoftContact {
             stiffness: 30.0,
@@ -456,7 +470,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_stiff_orbit_settles_on_the_rigid_one() {
+    fn a_stiff_orbit_settles_on_the_rigid_one() {
         let machine = Machine::symmetric(0.07, 0.8);
         let setting = Setting::new(1.25, 1.0);
         let orbit = stable_orbit(&machine, setting, 1).unwrap().unwrap();

@@ -46,7 +46,7 @@ fn valid_paper_fig2_plastic_impacts_and_dead_zones() {
 }
 
 #[test]
-fn valid_paper_fig5_greatest_closing_speeds() {
+fn valid_paper_fig5_greatest_approach_speeds() {
     let greatest = |r: f64| {
         (0..6000)
             .filter_map(|i| {
@@ -122,7 +122,7 @@ fn valid_paper_fig4_boundaries_along_line_q() {
 }
 
 #[test]
-fn prop_orbit_is_periodic_in_the_simulator() {
+fn orbit_is_periodic_in_the_simulator() {
     let asymmetry = Asymmetry {
         drive_amplitude: 0.95,
         stiffness: 0.97,
@@ -154,7 +154,7 @@ fn prop_orbit_is_periodic_in_the_simulator() {
 }
 
 #[test]
-fn prop_multipliers_match_finite_differences() {
+fn multipliers_match_finite_differences() {
     let asymmetry = Asymmetry {
         drive_amplitude: 0.9,
         stiffness: 1.1,
@@ -232,7 +232,7 @@ fn valid_cart_on_incline_bounces_geometrically() {
 }
 
 #[test]
-fn prop_complete_chatter_ends_and_releases() {
+fn complete_chatter_ends_and_releases() {
     // ρ slightly below 1 with slow drive: long press, chatter, release
     let m = Machine::symmetric(0.05, 0.5);
     let t = simulate(
@@ -281,7 +281,7 @@ fn valid_preload_keeps_the_masses_sticking() {
 }
 
 #[test]
-fn prop_newton_orbits_match_simulated_motions() {
+fn newton_orbits_match_simulated_motions() {
     let asymmetry = Asymmetry {
         drive_amplitude: 0.95,
         stiffness: 1.0,
@@ -328,7 +328,7 @@ fn prop_newton_orbits_match_simulated_motions() {
 }
 
 #[test]
-fn valid_masses_stay_together_for_ever_below_rho_p() {
+fn masses_stick_for_all_time_below_rho_p() {
     let asymmetry = params::Asymmetry {
         drive_amplitude: 0.8,
         stiffness: 1.3,
@@ -360,7 +360,7 @@ fn valid_masses_stay_together_for_ever_below_rho_p() {
 }
 
 #[test]
-fn valid_boundaries_at_a_clearance_are_those_at_their_frequency() {
+fn boundaries_at_a_clearance_are_those_at_their_frequency() {
     let machine = Machine::symmetric(0.07, 0.9);
     for p in boundary::etas_s1(&machine, 1.9, 1) {
         assert!((rho_s1(&machine, p.eta, 1).unwrap().rho - 1.9).abs() < 1e-8);
@@ -373,7 +373,7 @@ fn valid_boundaries_at_a_clearance_are_those_at_their_frequency() {
 }
 
 #[test]
-fn valid_every_impact_follows_the_law_of_its_speed() {
+fn every_impact_follows_the_law_of_its_speed() {
     let laws = [
         Restitution::Table(vec![(0.0, 0.95), (2.0, 0.8), (6.0, 0.6)]),
         Restitution::PowerLaw {

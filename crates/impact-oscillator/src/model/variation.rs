@@ -28,7 +28,19 @@ fn fill_flow(m: &mut Matrix4<f64>, at: usize, o: &Oscillator, time: f64) {
 }
 
 /// Saltation matrix at an impact: which maps a variation (X, X', Y, Y') just before to one
-/// just after, S = DR + (f₊ − DR f₋)nᵀ/w with n the gap's normal.
+/// just after, S = D + (f₊ − D f₋)nᵀ/w with n the gap's normal, eq. (11).
+///
+/// ```
+/// use impact_oscillator::model::{orbit::stable_orbit, variation::saltation};
+/// use impact_oscillator::{Machine, Setting};
+///
+/// let machine = Machine::single(0.07, 0.9);
+/// let orbit = stable_orbit(&machine, Setting::new(1.2, 2.0), 1)?.expect("z = 1");
+/// let map = saltation(&machine, &orbit.before, &orbit.after);
+/// // an impact contracts areas of the phase plane by R²
+/// assert!((map.determinant() - 0.81).abs() < 1e-9);
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn saltation(machine: &Machine, before: &State, after: &State) -> Matrix4<f64> {
     let w = before.vx + before.vy;
     let law = machine.restitution();

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::atlas::lanes::Two;
 use super::cell::{Course, Feed};
 use super::march::march;
+use crate::atlas::lanes::Two;
 
 /// Instruction sets that the kernel is compiled for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -67,8 +67,8 @@ pub(in crate::atlas) fn run(kernel: Kernel, course: &Course, feed: &mut impl Fee
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
-    use crate::atlas::lanes::{Avx2, Avx512, Two};
     use super::{Course, Feed, march};
+    use crate::atlas::lanes::{Avx2, Avx512, Two};
 
     #[target_feature(enable = "avx2,fma")]
     pub(super) fn march_avx2(light: bool, course: &Course, feed: &mut impl Feed) {

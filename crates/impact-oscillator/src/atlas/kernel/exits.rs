@@ -1,10 +1,10 @@
 //! Events of a lane between its steps: an orbit that recurs, a mass that rests at the stop, the
 //! end of settling and watch, a cell that is done.
 
-use crate::atlas::lanes::Lanes;
 use super::cell::{Cell, Course, Feed, Outcome};
 use super::lane::{Anchor, Lane, forget, place, where_is};
 use super::step::{Events, Group};
+use crate::atlas::lanes::Lanes;
 use crate::model::SettledMotion;
 use crate::model::motion::count;
 

@@ -1,8 +1,8 @@
 //! A lane and its cell: loaded, parked, placed at a state and read off again.
 
-use crate::atlas::lanes::Lanes;
 use super::cell::{Cell, Course};
 use super::step::Group;
+use crate::atlas::lanes::Lanes;
 use crate::model::SettledMotion;
 
 /// Longest step in units of the faster of both rates: a quarter of it is where the polynomials

@@ -1,10 +1,10 @@
 //! The loop over the steps, with all lanes at work as long as there are cells.
 
-use crate::atlas::lanes::Lanes;
 use super::cell::{Cell, Course, Feed, Outcome};
 use super::exits::{come_to_rest, serve};
 use super::lane::{IDLE, Lane, empty_group, load, park};
 use super::step::{Constants, Group, step};
+use crate::atlas::lanes::Lanes;
 use crate::model::SettledMotion;
 
 /// Lanes of the widest kernel.
