@@ -62,7 +62,7 @@ fn time(evidence: &Evidence) -> f64 {
     let start = Instant::now();
     let outcome = identify(evidence);
     let seconds = start.elapsed().as_secs_f64();
-    assert!(outcome.fit.is_some(), "nothing was fitted");
+    assert!(outcome.joint_fit.is_some(), "nothing was fitted");
     seconds
 }
 

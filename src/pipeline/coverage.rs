@@ -11,10 +11,11 @@ use crate::event::RigKind;
 use crate::event::detect::DetectSettings;
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::fit::parameters::Parameters;
-use crate::identify::run::{Outcome, identify};
+use crate::identify::run::identify;
 use crate::identify::uncertainty::bound::bounds;
 use crate::identify::uncertainty::coverage::{Score, Trial, scores, table};
 use crate::identify::uncertainty::{Asked, Way};
+use crate::identify::{Finding, Identification};
 use crate::motion::{Bracket, ClassifySettings, Observation, brackets, observe, scale_drives};
 use crate::pipeline::{PipelineError, Progress};
 use crate::record::{Record, Role};
@@ -99,15 +100,20 @@ impl Mistake {
         }
     }
 
+    /// Whether a finding is this mistake.
+    fn is(self, finding: &Finding) -> bool {
+        match self {
+            Self::WrongClearance => matches!(finding, Finding::WrongClearance { .. }),
+            Self::SwappedChannels => matches!(finding, Finding::SwappedChannels { .. }),
+            Self::WrongGain => matches!(finding, Finding::WrongGain { .. }),
+        }
+    }
+
     /// Whether an outcome names it.
     fn is_named_by(self, seen: &Seen) -> bool {
         match self {
             Self::SwappedChannels if seen.flag("swapped_masses") => true,
-            _ => seen
-                .outcome
-                .suspicions
-                .iter()
-                .any(|s| s.kind == self.name()),
+            _ => seen.outcome.suspicions.iter().any(|s| self.is(s)),
         }
     }
 }
@@ -144,7 +150,7 @@ fn swap_roles(record: &mut Record, a: Role, b: Role) {
 struct Seen {
     observations: Vec<Observation>,
     brackets: Vec<Bracket>,
-    outcome: Outcome,
+    outcome: Identification,
 }
 
 impl Seen {
@@ -154,7 +160,11 @@ impl Seen {
     }
 }
 
-fn evidence<'a>(observations: &'a [Observation], brackets: &'a [Bracket]) -> Evidence<'a> {
+fn evidence<'a>(
+    observations: &'a [Observation],
+    brackets: &'a [Bracket],
+    draw: &Draw,
+) -> Evidence<'a> {
     Evidence {
         rig: RigKind::Double,
         observations,
@@ -162,6 +172,7 @@ fn evidence<'a>(observations: &'a [Observation], brackets: &'a [Bracket]) -> Evi
         nominal: Nominal {
             gain_uncertainty: 5e-3,
             corner_uncertainty: 2e-2,
+            clearance_uncertainty_m: draw.clearance_uncertainty_m.unwrap_or(0.0),
             ..Nominal::default()
         },
         // Nobody reads profiles of hundreds of campaigns.
@@ -193,7 +204,7 @@ fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError
         .collect();
     scale_drives(&mut observations);
     let brackets = brackets(&observations);
-    let outcome = identify(&evidence(&observations, &brackets));
+    let outcome = identify(&evidence(&observations, &brackets, draw));
     Ok(Seen {
         observations,
         brackets,
@@ -202,9 +213,9 @@ fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError
 }
 
 /// What a campaign contributes to the scores.
-fn trial(seen: &Seen, truth: &Truth) -> Trial {
-    let truth = parameters(truth);
-    let bounds = bounds(&evidence(&seen.observations, &seen.brackets), &truth);
+fn trial(seen: &Seen, draw: &Draw) -> Trial {
+    let truth = parameters(&draw.truth);
+    let bounds = bounds(&evidence(&seen.observations, &seen.brackets, draw), &truth);
     Trial::new(truth, &seen.outcome.joint, &seen.outcome.methods, bounds)
 }
 
@@ -243,7 +254,7 @@ pub fn study(
         .map(|i| {
             let draw = draw(seed, i, Reach::Full, rig);
             let seen = campaign(&draw, None)?;
-            let trial = trial(&seen, &draw.truth);
+            let trial = trial(&seen, &draw);
             step();
             Ok((!seen.outcome.suspicions.is_empty(), trial))
         })

@@ -2,6 +2,7 @@
 //! them least.
 
 pub mod block;
+pub mod effect;
 pub mod factor;
 pub mod least_squares;
 pub mod normal;

@@ -163,17 +163,17 @@ impl Problem<'_> {
         let mut total = Factor::empty(self.free.len());
         let mut missing = Vec::new();
         for (b, (block, weight)) in self.blocks.iter().enumerate() {
-            let (places, coordinates) = self.touched(*block);
-            let parts: Vec<Option<Factor>> = (0..block.items())
+            let parts: Vec<Option<(Factor, Vec<usize>)>> = (0..block.items())
                 .into_par_iter()
                 .map(|i| {
+                    let (places, coordinates) = self.touched(*block, i);
                     let (residuals, columns) = block.slopes(i, parameters, &coordinates)?;
-                    Some(Factor::of(&residuals, &columns, *weight))
+                    Some((Factor::of(&residuals, &columns, *weight), places))
                 })
                 .collect();
             for (i, part) in parts.iter().enumerate() {
                 match part {
-                    Some(part) => total.add(part, &places),
+                    Some((part, places)) => total.add(part, places),
                     None => missing.push((b, i)),
                 }
             }
@@ -188,13 +188,13 @@ impl Problem<'_> {
         (total, missing)
     }
 
-    /// Places among the free coordinates, and the coordinates, that a block depends on.
-    fn touched(&self, block: &dyn Block) -> (Vec<usize>, Vec<Coordinate>) {
+    /// Places among the free coordinates, and the coordinates, that an item of a block depends on.
+    fn touched(&self, block: &dyn Block, item: usize) -> (Vec<usize>, Vec<Coordinate>) {
         self.free
             .iter()
             .copied()
             .enumerate()
-            .filter(|(_, c)| block.touches(*c))
+            .filter(|(_, c)| block.item_touches(item, *c))
             .unzip()
     }
 
@@ -205,7 +205,7 @@ impl Problem<'_> {
         weight: f64,
         at: &Parameters,
     ) -> Option<Normal> {
-        let (places, coordinates) = self.touched(block);
+        let (places, coordinates) = self.touched(block, item);
         let (residuals, columns) = block.slopes(item, at, &coordinates)?;
         let mut normal = Normal::zeros(self.free.len());
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };

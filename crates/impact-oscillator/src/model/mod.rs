@@ -14,6 +14,7 @@ pub mod orbit;
 pub mod params;
 pub mod path;
 pub mod periodic;
+pub mod perturbation;
 pub(crate) mod recurrence;
 mod restitution;
 pub mod sensitivity;
