@@ -14,4 +14,3 @@ pub use bracket::{BoundaryKind, Bracket, brackets};
 pub use classify::{Classification, ClassifySettings, Evidence, classify};
 pub use kind::Motion;
 pub use observation::{Observation, observe, scale_drives};
-

@@ -492,7 +492,8 @@ fn friction(states: &[[f64; 2]]) -> Vec<f64> {
         let (a, b) = (k.saturating_sub(1), (k + 1).min(states.len() - 1));
         0.5 * (states[b][1] - states[a][1]).abs()
     };
-    let of = |(k, s): (usize, &[f64; 2])| -(s[1] / change(k).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0);
+    let of =
+        |(k, s): (usize, &[f64; 2])| -(s[1] / change(k).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0);
     states.iter().enumerate().map(of).collect()
 }
 
