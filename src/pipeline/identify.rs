@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::evidence::{Evidence, Nominal};
-use crate::identify::uncertainty::Asked;
+use crate::identify::uncertainty::UncertaintyOptions;
 use crate::identify::{Identification, Provenance, identify_campaign};
 use crate::pipeline::store::write_json;
 use crate::pipeline::{Observed, PipelineError, inputs};
@@ -47,8 +47,8 @@ pub fn evidence<'a>(campaign: &ResolvedCampaign, observed: &'a Observed) -> Evid
         observations: &observed.observations,
         brackets: &observed.brackets,
         nominal: nominal(campaign),
-        uncertainty: Asked {
-            way: campaign.analysis.uncertainty,
+        uncertainty: UncertaintyOptions {
+            intervals: campaign.analysis.uncertainty,
             replicas: campaign.analysis.replicas,
             seed: campaign.analysis.seed,
         },
