@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::event::{Detection, Impact};
-use crate::motion::Motion;
 use crate::motion::aperiodic::Irregularity;
 use crate::motion::closure::{self, Count, ImpactClosure, WaveformClosure};
+use impact_oscillator::Motion;
 
 /// Settings of the classification.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -382,8 +382,7 @@ fn shorter_factor(evidence: &Evidence) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::event::RigKind;
-    use crate::event::detect::{DetectSettings, detect};
+    use crate::event::{DetectSettings, RigKind, detect};
     use crate::record::{Channel, Record, Role, Setting};
     use labfiles::units::Dimension;
 

@@ -9,7 +9,7 @@ use crate::identify::evidence::waveform::{
     Phases, Timing, TimingSlope, Vibration, velocity, velocity_slope,
 };
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
-use crate::motion::fold::FoldedChannel;
+use crate::motion::FoldedChannel;
 use crate::record::Role;
 use impact_oscillator::model::orbit::Branch;
 use impact_oscillator::model::params::{Machine, Setting};
@@ -360,7 +360,7 @@ fn measured(role: Role) -> Measured {
 mod tests {
     use super::*;
     use crate::identify::evidence::trajectory::distinct_phases;
-    use crate::motion::fold::{Folded, FoldedPoint};
+    use crate::motion::{Folded, FoldedPoint};
 
     const ROLES: [Role; 4] = [
         Role::VelocityX,

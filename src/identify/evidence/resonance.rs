@@ -8,7 +8,7 @@ use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
-use crate::motion::response::Response;
+use crate::motion::Response;
 use crate::record::Role;
 use impact_oscillator::model::flight::{Drive, forced_amplitude};
 use impact_oscillator::model::params::{Machine, Oscillator};

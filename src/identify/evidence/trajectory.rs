@@ -9,7 +9,7 @@ use crate::identify::evidence::waveform::Phases;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
-use crate::motion::fold::{Folded, FoldedChannel};
+use crate::motion::{Folded, FoldedChannel};
 use crate::record::Role;
 use impact_oscillator::model::flight::State;
 use impact_oscillator::model::orbit::orbit_with_speed;

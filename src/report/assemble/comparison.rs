@@ -4,8 +4,7 @@ use rayon::prelude::*;
 
 use super::window::Window;
 use super::{Gathered, rows};
-use crate::event::detect::DetectSettings;
-use crate::event::{Detection, detect};
+use crate::event::{DetectSettings, Detection, detect};
 use crate::identify::replay::{Replay, Stretch};
 use crate::motion::{Motion, Observation};
 use crate::record::{Record, Role};

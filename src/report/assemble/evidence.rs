@@ -11,7 +11,7 @@ use crate::identify::judgement::contact_law::Law;
 use crate::identify::residuals::{MethodResiduals, residuals as methods_residuals};
 use crate::identify::{MethodResult, SpecimenResult};
 use crate::motion::Observation;
-use crate::motion::response::Response;
+use crate::motion::Response;
 use crate::record::Role;
 use crate::report::content::{
     Correlation, ImpactPoint, ImpactScatter, Profile, ResidualPoint, ResidualSet, ResonanceCurve,

@@ -16,7 +16,7 @@ pub(super) fn left_out(gathered: &Gathered) -> Vec<LeftOut> {
         };
         for flag in o.flags.iter().filter(|f| f.excludes) {
             let of = flag.channel.as_ref().map(|c| format!(" ({c})"));
-            let reason = flag.code.replace('_', " ") + &of.unwrap_or_default();
+            let reason = flag.code.name().replace('_', " ") + &of.unwrap_or_default();
             note(reason, &flag.message);
         }
         if let Motion::Undetermined { reason } = &o.classification.motion

@@ -130,7 +130,11 @@ fn record(gathered: &Gathered, o: &Observation, left: Option<&str>) -> RecordRow
         periods_n: pair.map(|p| p.1),
         confidence: Some(o.classification.confidence),
         impacts: o.impacts.len(),
-        flags: o.flags.iter().map(|f| f.code.replace('_', " ")).collect(),
+        flags: o
+            .flags
+            .iter()
+            .map(|f| f.code.name().replace('_', " "))
+            .collect(),
         left_out: excluded
             .or_else(|| left.map(str::to_owned))
             .filter(|_| used_by.is_empty()),
