@@ -1,10 +1,11 @@
 //! The methods, each alone: boundaries, trajectories, impacts, resonance.
 
-use crate::identify::MethodResult;
 use crate::identify::estimate;
 use crate::identify::evidence::{Blocks, Nominal};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Fit, FitError, Prior, Problem, mean_squares};
+use crate::identify::identification::MethodResult;
+use crate::identify::messages::{Note, Remark};
 
 /// Very wide priors that keep the equations regular where the data say nothing.
 pub fn wide_priors(start: &Parameters, free: &[Coordinate]) -> Vec<Prior> {
@@ -235,10 +236,8 @@ pub fn result(
                 let error = found.fit.error(*coordinate).unwrap_or(f64::INFINITY);
                 let error = error * found.factor.sqrt();
                 let value = found.fit.parameters.coordinate(*coordinate);
-                result.further.insert(
-                    coordinate.name().into(),
-                    estimate::estimate(*coordinate, value, error, None),
-                );
+                let estimate = estimate::estimate(*coordinate, value, error, None);
+                result.further.insert(*coordinate, estimate);
             }
             result
         }
@@ -250,10 +249,11 @@ pub fn result(
             };
             for coordinate in tells {
                 if let Some(slot) = result.parameters.slot(*coordinate) {
-                    *slot = Some(estimate::not_identifiable(error.to_string()));
+                    *slot = Some(estimate::not_identifiable(Note::from(error)));
                 }
             }
-            result.remarks.push(error.to_string());
+            let why = Note::from(error);
+            result.remarks.push(Remark::NoResult { why });
             result
         }
     }

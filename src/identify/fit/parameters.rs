@@ -163,7 +163,7 @@ pub fn gain_index(role: Role) -> Option<usize> {
 /// One coordinate of the fit: R itself, the logarithms of f0, β, x_st, the gains and the
 /// corners, the asymmetries themselves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(into = "String", try_from = "String")]
 pub enum Coordinate {
     /// R
     Restitution,
@@ -212,6 +212,16 @@ impl Coordinate {
         }
     }
 
+    /// All coordinates.
+    pub fn all() -> impl Iterator<Item = Coordinate> {
+        let asymmetries = [Self::DriveAsymmetry, Self::StiffnessAsymmetry];
+        let channels = (0..4).map(Self::Gain).chain((0..4).map(Self::Corner));
+        Self::PHYSICAL
+            .into_iter()
+            .chain(asymmetries)
+            .chain(channels)
+    }
+
     /// Symbol in running text.
     pub fn symbol(self) -> &'static str {
         match self {
@@ -238,5 +248,25 @@ impl Coordinate {
         } else {
             value
         }
+    }
+}
+
+impl From<Coordinate> for String {
+    fn from(coordinate: Coordinate) -> Self {
+        coordinate.name().to_owned()
+    }
+}
+
+/// A name that no coordinate has.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("no parameter is named '{0}'")]
+pub struct UnknownCoordinate(String);
+
+impl TryFrom<String> for Coordinate {
+    type Error = UnknownCoordinate;
+
+    fn try_from(name: String) -> Result<Self, UnknownCoordinate> {
+        let found = Self::all().find(|c| c.name() == name);
+        found.ok_or(UnknownCoordinate(name))
     }
 }

@@ -80,19 +80,21 @@ fn machine(gathered: &Gathered) -> Option<Machine> {
 /// Without a fitted R there are no regions of impact motion to draw.
 fn tells_restitution(gathered: &Gathered) -> bool {
     gathered
-        .fit
+        .fit()
         .is_some_and(|fit| fit.free.contains(&Coordinate::Restitution))
 }
 
 /// s2 and s1 of z = 1/n and the grazing boundary, each with its 95 % band.
 pub(super) fn curves(gathered: &Gathered) -> Vec<BoundaryCurve> {
-    let (Some(view), Some(machine), Some(fit)) =
-        (View::of(gathered), machine(gathered), gathered.fit)
-    else {
+    let (Some(view), Some(machine), Some(joint)) = (
+        View::of(gathered),
+        machine(gathered),
+        &gathered.identification.joint_fit,
+    ) else {
         return Vec::new();
     };
     let etas = even((view.eta.0, view.eta.1, CURVE_POINTS));
-    let spread = Spread::of(fit, gathered.factor, gathered.campaign.rig);
+    let spread = Spread::of(&joint.fit, joint.variance_factor, gathered.campaign.rig);
     let mut wanted = vec![(BoundaryKind::Grazing, 1)];
     for n in 1..=MOST_PERIODS {
         wanted.extend([(BoundaryKind::S2, n), (BoundaryKind::S1, n)]);
