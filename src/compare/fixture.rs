@@ -5,8 +5,8 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 
 use super::{Compared, Input, compare};
+use crate::event::DetectSettings;
 use crate::event::RigKind;
-use crate::event::detect::DetectSettings;
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::{Identification, identify_campaign};
 use crate::motion::{ClassifySettings, brackets, observe, scale_drives};
@@ -62,7 +62,7 @@ fn laboratory() -> Vec<Record> {
 }
 
 /// Two seconds of a decay a(t) = 3 e^(−βΩt) cos(√(1−β²)Ωt) m/s² with β = 0.02, after 0.05 s of rest.
-fn decay(id: &str, mass: usize, f0_hz: f64) -> Record {
+pub(crate) fn decay(id: &str, mass: usize, f0_hz: f64) -> Record {
     let (rate_hz, beta) = (800.0, 0.02);
     let omega = std::f64::consts::TAU * f0_hz;
     let value = |i: usize| {

@@ -145,7 +145,7 @@ mod tests {
     use crate::identify::Status;
 
     #[test]
-    fn valid_what_is_not_identifiable_has_no_number() {
+    fn what_is_not_identifiable_has_no_number() {
         let none = Estimate {
             value: None,
             standard_error: None,

@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_json_settings_become_lines() {
+    fn json_settings_become_lines() {
         let block = settings(&json!({"rig": {"f": 12.6, "r": null}, "channels": [{"unit": "V"}]}));
         let expected = "rig.f = 12.6\nchannels[0].unit = \"V\"";
         assert_eq!(

@@ -156,7 +156,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn valid_ticks_are_round_numbers() {
+    fn ticks_are_round_numbers() {
         let (ticks, decimals) = Axis::new(0.93, 2.07, "").major();
         assert_eq!(decimals, 1);
         let labels: Vec<_> = ticks.iter().map(|t| format!("{t:.1}")).collect();

@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_straight_line_keeps_its_two_ends() {
+    fn a_straight_line_keeps_its_two_ends() {
         let line: Vec<Point> = (0..100)
             .map(|i| (f64::from(i), 2.0 * f64::from(i)))
             .collect();

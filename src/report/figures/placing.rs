@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_a_label_avoids_what_is_taken() {
+    fn a_label_avoids_what_is_taken() {
         let mut occupancy = Occupancy::new(200.0, 200.0);
         occupancy.take_rect(&Rect::new(100.0, 0.0, 100.0, 200.0));
         let bounds = Rect::new(0.0, 0.0, 200.0, 200.0);

@@ -210,7 +210,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_clearances_far_above_all_impacts_stand_in_strips() {
+    fn clearances_far_above_all_impacts_stand_in_strips() {
         let all = [0.6, 1.4, 4.4, 8.9, 8.93];
         assert_eq!(strips(&all, Some((0.6, 4.4))), [8.9]);
         assert!(strips(&all, None).is_empty());

@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_symbols_are_slanted_and_indices_lowered() {
+    fn symbols_are_slanted_and_indices_lowered() {
         let runs = parse("$f_0$ (Hz), $x_{st}$");
         let seen: Vec<_> = runs
             .iter()
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_greek_has_the_font_s_own_width() {
+    fn greek_has_the_font_s_own_width() {
         let eta = width("$η$", Face::Regular, 10.0);
         assert!(eta > 3.0 && eta < 7.0, "{eta}");
         let twice = width("$ηη$", Face::Regular, 10.0);

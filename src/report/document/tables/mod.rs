@@ -10,7 +10,7 @@ pub use records::records;
 
 use crate::compare::Unusable;
 use crate::identify::Item;
-use crate::record::Sweep;
+use crate::record::{FlagCode, Sweep};
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Align, Rich, Table};
 use crate::report::document::prose::prose;
@@ -151,7 +151,7 @@ fn first_few(records: &[String]) -> String {
 }
 
 fn reason(unusable: &Unusable) -> String {
-    let code = unusable.flag.as_deref().unwrap_or("motion_undetermined");
+    let code = unusable.flag.map_or("motion undetermined", FlagCode::name);
     let code = code.replace('_', " ");
     let of = unusable.channel.as_ref().map(|c| format!(" ({c})"));
     let mut text = format!("{code}{}: {}", of.unwrap_or_default(), unusable.message);

@@ -197,7 +197,10 @@ fn long_remark(r: &RecordRow, speech: Speech) -> String {
         )
     };
     let flags = (!r.flags.is_empty()).then(|| {
-        let flags = r.flags.iter().map(|f| speech.tell(&f.replace('_', " ")));
+        let flags = r
+            .flags
+            .iter()
+            .map(|f| speech.tell(&f.name().replace('_', " ")));
         flags.collect::<Vec<_>>().join(", ")
     });
     [used, flags]
