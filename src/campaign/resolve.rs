@@ -13,7 +13,7 @@ use super::records;
 use super::resolved::{Analysis, RecordEntry, Report, ResolvedCampaign, Rig};
 use super::written::{self, Flight, Format, Language, Machine, Paper, Placed, WrittenCampaign};
 use crate::identify::uncertainty::IntervalMethod;
-use crate::report::words::Words;
+use crate::report::catalog::Catalog;
 use labfiles::units::Dimension;
 
 /// A campaign as far as it could be resolved, and all that is wrong with it.
@@ -267,7 +267,7 @@ fn words_file(placed: &Placed<String>, folder: &Path, desk: &mut Desk<'_>) -> Op
     let key = "report.words";
     let path = beside(placed, key, folder, desk)?;
     if let (Some(placed), Ok(text)) = (placed, std::fs::read_to_string(&path))
-        && let Err(error) = Words::read(&text)
+        && let Err(error) = Catalog::read(&text)
     {
         let what = format!("{}: {error}", path.display());
         desk.fault(placed, key, what, "mend the table, or remove the line");

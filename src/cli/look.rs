@@ -72,8 +72,8 @@ impl Look {
             report.paper = paper;
         }
         report.decimal_comma |= self.decimal_comma;
-        if let Some(words) = pipeline::report::words(report)? {
-            for remark in words.remarks() {
+        if let Some(catalog) = pipeline::report::catalog(report)? {
+            for remark in catalog.remarks() {
                 voice.say(&format!("note: {remark}"));
             }
         }

@@ -16,7 +16,7 @@ use crate::campaign::faults::Severity;
 use crate::campaign::load;
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::pipeline::{self, store};
-use crate::report::words::Words;
+use crate::report::catalog::Catalog;
 use labfiles::open::open;
 use labfiles::output::Lock;
 
@@ -180,7 +180,7 @@ impl Identify {
 impl Report {
     pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
         let Some(folder) = self.folder.filter(|_| !self.list_words) else {
-            print(&Words::blank())?;
+            print(&Catalog::blank())?;
             return Ok(Exit::Done);
         };
         let (folder, _lock) = folder.take()?;

@@ -71,9 +71,13 @@ pub(super) fn limits(coordinate: Coordinate) -> (f64, f64) {
 pub fn estimate(coordinate: Coordinate, value: f64, error: f64, note: Option<Note>) -> Estimate {
     let (weak, unknown) = limits(coordinate);
     if !error.is_finite() || error >= unknown {
-        return not_identifiable(Note::Open {
-            parameter: coordinate,
-            standard_error: error.is_finite().then_some(error),
+        let parameter = coordinate;
+        return not_identifiable(match error.is_finite() {
+            true => Note::Open {
+                parameter,
+                standard_error: error,
+            },
+            false => Note::NotDetermined { parameter },
         });
     }
     let half = NORMAL_975 * error;

@@ -11,7 +11,7 @@ use crate::identify::fit::parameters::Coordinate;
 use crate::identify::messages::{Finding, LeftOut, PairAgreement, Remark, Sentence};
 use crate::identify::method::Method;
 use crate::identify::uncertainty::Uncertainty;
-use crate::message::{Language, Message, Value, plain, plain_all};
+use crate::message::{Language, Message, Value, plain, plain_all, sentence};
 use crate::serialised_with_text;
 
 /// What one method found.
@@ -67,7 +67,7 @@ impl Message for Agreement {
         match self.agree {
             None => "nothing_to_compare",
             Some(true) => "agreement",
-            Some(false) => "disagreement",
+            Some(false) => "pair",
         }
         .to_owned()
     }
@@ -75,34 +75,30 @@ impl Message for Agreement {
     fn template(&self, language: Language) -> &'static str {
         match (self.disagreement(), self.agree, language) {
             (Some(pair), _, language) => pair.template(language),
-            (None, None, Language::English) => {
-                "Only one method tells each parameter, so there is nothing to compare."
-            }
-            (None, None, Language::German) => {
-                "Jeden Parameter bestimmt nur ein Verfahren, daher ist nichts zu vergleichen."
-            }
+            (None, None, Language::English) => "there is nothing to compare",
+            (None, None, Language::German) => "es ist nichts zu vergleichen",
             (None, Some(_), Language::English) => {
-                "The methods agree: none of the {count} comparisons differs by more than its \
-                 uncertainty allows."
+                "none of the {count} comparisons differs by more than its uncertainty allows"
             }
             (None, Some(_), Language::German) => {
-                "Die Verfahren stimmen überein: Keiner der {count} Vergleiche weicht um mehr ab, \
-                 als seine Unsicherheit erlaubt."
+                "keiner der {count} Vergleiche weicht um mehr ab, als seine Unsicherheit erlaubt"
             }
         }
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        match self.disagreement() {
-            Some(pair) => pair.values(),
-            None => vec![("count", Value::Count(self.pairs.len()))],
+        match (self.disagreement(), self.agree) {
+            (Some(pair), _) => pair.values(),
+            (None, Some(_)) => vec![("count", Value::Count(self.pairs.len()))],
+            (None, None) => Vec::new(),
         }
     }
 }
 
 impl std::fmt::Display for Agreement {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&plain(self))
+        let headline = Sentence::on_agreement(self.agree);
+        write!(f, "{headline} {}", sentence(&plain(self)))
     }
 }
 

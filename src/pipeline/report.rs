@@ -11,7 +11,7 @@ use crate::identify::Provenance;
 use crate::pipeline::identify::{IdentificationFile, settings};
 use crate::pipeline::observe::read_one;
 use crate::pipeline::{Observed, PipelineError};
-use crate::report::words::Words;
+use crate::report::catalog::Catalog;
 use crate::report::{
     CampaignFacts, Format, Logo, NominalValue, Paper, Report, ReportContent, ReportOptions, Subject,
 };
@@ -109,23 +109,22 @@ pub fn content(
     })
 }
 
-/// The words of the report: of the table that is named, else of the language where the program
-/// has them.
+/// The report's catalog: that of the file that is named, else the program's in the language.
 ///
 /// # Errors
-/// Where the table cannot be read, or is none.
-pub fn words(look: &Look) -> Result<Option<Words>, PipelineError> {
+/// If the file cannot be read, or is no catalog.
+pub fn catalog(look: &Look) -> Result<Option<Catalog>, PipelineError> {
     let Some(path) = &look.words else {
         let german = look.language == Language::De;
-        return Ok(german.then(|| Words::german().clone()));
+        return Ok(german.then(|| Catalog::german().clone()));
     };
     let unusable = |reason: String| PipelineError::Look {
         path: path.display().to_string(),
         reason,
     };
     let text = std::fs::read_to_string(path).map_err(|error| unusable(error.to_string()))?;
-    let words = Words::read(&text).map_err(|error| unusable(error.to_string()))?;
-    Ok(Some(words))
+    let catalog = Catalog::read(&text).map_err(|error| unusable(error.to_string()))?;
+    Ok(Some(catalog))
 }
 
 fn options(look: &Look) -> Result<ReportOptions, PipelineError> {
@@ -144,7 +143,7 @@ fn options(look: &Look) -> Result<ReportOptions, PipelineError> {
         })
     };
     Ok(ReportOptions {
-        words: words(look)?,
+        catalog: catalog(look)?,
         paper: match look.paper {
             WrittenPaper::A4 => Paper::A4,
             WrittenPaper::UsLetter => Paper::Letter,

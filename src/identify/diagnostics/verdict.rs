@@ -171,11 +171,7 @@ pub fn verdict(basis: &Basis) -> Verdict {
         },
         VerdictKind::Identified => Sentence::Identified { values },
     };
-    let second = match basis.agreement.agree {
-        Some(true) => Sentence::MethodsAgree,
-        Some(false) => Sentence::MethodsDisagree,
-        None => Sentence::OneMethod,
-    };
+    let second = Sentence::on_agreement(basis.agreement.agree);
     Verdict {
         kind,
         sentences: vec![first, second],

@@ -12,17 +12,17 @@ use crate::record::{Role, Sweep};
 use crate::report::{NominalValue, Report, ReportContent, ReportOptions, Subject, document, words};
 
 /// A table that prints each phrase as its number in brackets, with the values that it carries.
-fn marks_for_phrases() -> words::Words {
+fn marks_for_phrases() -> catalog::Catalog {
     let mut text = String::from("[words]\n");
-    for (i, phrase) in words::Words::phrases().enumerate() {
-        let values: String = words::places(phrase)
+    for (i, phrase) in catalog::Catalog::phrases().enumerate() {
+        let values: String = catalog::places(phrase)
             .iter()
             .map(|n| format!("{{{n}}}"))
             .collect();
         let key = toml::Value::from(phrase);
         text.push_str(&format!("{key} = \"⟦{i}⟧{values}\"\n"));
     }
-    words::Words::read(&text).expect("a table of words")
+    catalog::Catalog::read(&text).expect("a table of words")
 }
 
 /// A campaign to which all happened that the others were spared.
@@ -161,7 +161,7 @@ fn valid_no_phrase_of_the_words_is_idle() {
         "/src"
     ))));
     let (mut unsaid, mut idle) = (Vec::new(), Vec::new());
-    for (i, phrase) in words::Words::phrases().enumerate() {
+    for (i, phrase) in catalog::Catalog::phrases().enumerate() {
         if !said.contains(&format!("⟦{i}⟧")) {
             unsaid.push(phrase);
             if !source.contains(&plainly(phrase)) {
@@ -219,7 +219,7 @@ fn valid_all_words_of_figures_and_headings_are_the_reader_s() {
 #[test]
 fn valid_a_german_report_speaks_german() {
     let options = ReportOptions {
-        words: Some(words::Words::german().clone()),
+        words: Some(catalog::Catalog::german().clone()),
         ..ReportOptions::default()
     };
     for (name, content) in kinds().iter().filter(|k| k.0 != "whole") {
