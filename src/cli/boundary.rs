@@ -4,8 +4,8 @@ use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
 use super::machine::{MachineArgs, motion, refused};
-use super::voice::print;
-use super::{Exit, Failure, Voice};
+use super::stdout::print;
+use super::{Exit, Failure, Verbosity};
 use impact_oscillator::atlas::brute::{Way, brute_map};
 use impact_oscillator::atlas::continuation::{Edge, EdgeKind};
 use impact_oscillator::atlas::map::{MapGrid, MapSettings};
@@ -89,7 +89,7 @@ impl Boundary {
     ///
     /// # Errors
     /// [`Failure`] where a parameter is out of range.
-    pub fn go(self, _voice: Voice) -> Result<Exit, Failure> {
+    pub fn run(self, _verbosity: Verbosity) -> Result<Exit, Failure> {
         let machine = self.machine.machine()?;
         let points = match (self.eta, self.rho) {
             (Some(eta), _) => self.at_eta(&machine, eta)?,
