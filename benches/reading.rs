@@ -10,8 +10,8 @@ use std::time::Instant;
 
 use labfiles::convert::{Options, Target, convert};
 use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
-use labfiles::open::open;
-use labfiles::source::Samples;
+use labfiles::open;
+use labfiles::Samples;
 
 const RECORDS: usize = 200;
 const CHANNELS: usize = 16;

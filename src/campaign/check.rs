@@ -14,7 +14,7 @@ use crate::event::Seen;
 use crate::event::detect::{DetectSettings, Detection, detect};
 use crate::record::calibrate;
 use crate::record::{Flag, Record, Role};
-use labfiles::source::Source;
+use labfiles::Source;
 
 /// What reading all records found.
 #[derive(Debug, Default)]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::listing::Opener;
 use crate::record::Role;
-use labfiles::source::{ChannelInfo, DatasetInfo, Samples, Source};
+use labfiles::{ChannelInfo, DatasetInfo, Samples, Source};
 use labfiles::units::{self, Dimension};
 
 /// How deep below the folder files are looked for.

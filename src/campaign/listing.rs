@@ -12,9 +12,9 @@ use super::run_table::{self, Row};
 use super::written::OneOrMany;
 use crate::record::Flag;
 use crate::record::calibrate::{self, ChannelKey, ChannelSetup};
-use labfiles::source::{DatasetInfo, ReadError, Source};
+use labfiles::{DatasetInfo, ReadError, Source};
 
-/// How a file is opened; [`labfiles::open::open`] but for tests.
+/// How a file is opened; [`labfiles::open`] but for tests.
 pub type Opener<'a> = &'a (dyn Fn(&Path) -> Result<Box<dyn Source>, ReadError> + Sync);
 
 /// What a dataset is known by before it is read.

@@ -9,7 +9,7 @@ use super::{Exit, Failure, Progress, Voice};
 use crate::campaign::check::{self, Checked};
 use crate::campaign::faults::{Fault, Faults, Severity};
 use crate::campaign::load;
-use labfiles::open::open;
+use labfiles::open;
 
 /// Arguments of `impactid check`.
 #[derive(Debug, Args)]

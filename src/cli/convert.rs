@@ -6,8 +6,8 @@ use clap::{Args, ValueEnum};
 
 use super::{Exit, Failure, Voice, interrupt};
 use labfiles::convert::{self, ConvertError, Options, Target};
-use labfiles::open::open;
-use labfiles::source::ReadError;
+use labfiles::open;
+use labfiles::ReadError;
 
 /// Arguments of `impactid convert`.
 #[derive(Debug, Args)]

@@ -7,14 +7,14 @@ use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 use crate::campaign::faults::{Fault, Faults, Severity};
 use crate::pipeline::PipelineError;
 use labfiles::output::OutputError;
-use labfiles::parquet::guard;
-use labfiles::source::ReadError;
+use labfiles::panic_is_caught;
+use labfiles::ReadError;
 
 /// Print no text for a panic of a library that a reader turns into an error: the error says it.
 pub fn hush_caught_panics() {
     let print = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
-        if !guard::is_caught() {
+        if !panic_is_caught() {
             print(panic);
         }
     }));

@@ -10,8 +10,8 @@ use serde::Serialize;
 use super::sketch::sketch;
 use super::voice::{print, print_json};
 use super::{Exit, Failure, Voice};
-use labfiles::open::open;
-use labfiles::source::{DatasetInfo, ReadError, Samples, Source};
+use labfiles::open;
+use labfiles::{DatasetInfo, ReadError, Samples, Source};
 use labfiles::summary::{Summary, summarise};
 
 /// Arguments of `impactid inspect`.

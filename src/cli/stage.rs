@@ -17,7 +17,7 @@ use crate::campaign::load;
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::pipeline::{self, store};
 use crate::report::words::Words;
-use labfiles::open::open;
+use labfiles::open;
 use labfiles::output::Lock;
 
 /// Arguments of `impactid ingest`.

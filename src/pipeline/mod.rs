@@ -25,7 +25,7 @@ use crate::identify::Verdict;
 use crate::motion::{Bracket, Observation, brackets, scale_drives};
 use crate::pipeline::checkpoint::Checkpoint;
 use labfiles::output::OutputError;
-use labfiles::source::ReadError;
+use labfiles::ReadError;
 
 /// Told the stage, the steps done and the steps in all.
 pub type Progress<'a> = &'a (dyn Fn(&'static str, u64, u64) + Sync);

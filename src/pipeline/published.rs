@@ -12,7 +12,7 @@ use crate::pipeline::identify::{settings, versions};
 use crate::pipeline::{PipelineError, inputs, report, store};
 use crate::report::ReportContent;
 use crate::report::content::DataTable;
-use labfiles::source::ReadError;
+use labfiles::ReadError;
 
 /// Identify from published speeds and write identification.json and report.pdf.
 ///

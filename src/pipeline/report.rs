@@ -15,7 +15,7 @@ use crate::report::assemble::{
 };
 use crate::report::words::Words;
 use crate::report::{Format, Logo, Paper, RenderOptions, Report, ReportContent};
-use labfiles::open::open;
+use labfiles::open;
 use labfiles::output::{make_folder, write_bytes};
 
 /// Name of the report's file.

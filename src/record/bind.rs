@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Flag, Role};
-use labfiles::source::{ChannelInfo, DatasetInfo};
+use labfiles::{ChannelInfo, DatasetInfo};
 use labfiles::units::{self, Dimension, Quantity, Scale, Unit};
 
 /// A channel of a file, by name or by index.

@@ -2,7 +2,7 @@
 
 use super::Flag;
 use super::calibrate::ChannelKey;
-use labfiles::source::DatasetInfo;
+use labfiles::DatasetInfo;
 use labfiles::units;
 
 /// Most steps by which a time axis without gaps may stray from equal steps.

@@ -76,5 +76,5 @@ fn prop_mutated_files_are_read_or_refused() {
     };
     // A panic of the library that is caught may print a trace, for which the debugging
     // information of the program is loaded.
-    survive_within(&own_seeds(&["parquet"]), open, change, [1200, 256 << 20]);
+    survive_within(&own_seeds("parquet"), open, change, [1200, 256 << 20]);
 }

@@ -3,12 +3,12 @@
 use crate::text::decimal;
 use crate::text::digits::{MOST_DIGITS, few_digits, many_digits};
 
-/// Longest number that is believed, bytes.
+/// Longest number that is accepted, bytes.
 const LONGEST: usize = 64;
 
 /// Why a number could not be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct NoNumber {
+pub(super) struct NoNumber {
     /// Offset of the offending byte.
     pub at: usize,
 }
@@ -19,14 +19,14 @@ pub struct NoNumber {
 /// is full (`-1.5E+00-2.5E+00`). Exponents are spelt E, e, D or d, or only by their sign
 /// (`1.5-100`).
 #[derive(Debug, Clone)]
-pub struct Numbers<'a> {
+pub(super) struct Numbers<'a> {
     text: &'a [u8],
     at: usize,
 }
 
 impl<'a> Numbers<'a> {
     /// Start at the front of a text.
-    pub fn new(text: &'a [u8]) -> Self {
+    pub(super) fn new(text: &'a [u8]) -> Self {
         Self { text, at: 0 }
     }
 
@@ -46,8 +46,9 @@ impl<'a> Numbers<'a> {
         }
     }
 
-    /// The exponent at `at`, of up to four digits, and the place behind it.
+    /// The exponent at `at`, of up to four digits, and the place after it.
     #[inline]
+    #[expect(clippy::cast_possible_truncation, reason = "at most four digits")]
     fn exponent(&self, mut at: usize) -> Option<(i32, usize)> {
         let letter = matches!(self.peek(at), b'E' | b'e' | b'D' | b'd');
         let signed = |at| matches!(self.peek(at), b'+' | b'-');
@@ -85,6 +86,7 @@ impl<'a> Numbers<'a> {
 
     /// The number at the present place, which is no blank.
     #[inline]
+    #[expect(clippy::cast_possible_wrap, reason = "fewer digits than 2^63")]
     fn number(&mut self) -> Result<f64, NoNumber> {
         let start = self.at;
         let first = self.peek(start);
@@ -146,7 +148,7 @@ impl<'a> Numbers<'a> {
     }
 
     /// Append up to `most` numbers; fewer where the text ends.
-    pub fn take(&mut self, most: usize, out: &mut Vec<f64>) -> Result<(), NoNumber> {
+    pub(super) fn take(&mut self, most: usize, out: &mut Vec<f64>) -> Result<(), NoNumber> {
         for _ in 0..most {
             self.skip_blanks();
             if self.at >= self.text.len() {
@@ -158,7 +160,7 @@ impl<'a> Numbers<'a> {
     }
 
     /// How many numbers are left; stops at what is none.
-    pub fn count(mut self) -> Result<u64, NoNumber> {
+    pub(super) fn count(mut self) -> Result<u64, NoNumber> {
         let mut count = 0;
         loop {
             self.skip_blanks();
@@ -172,7 +174,7 @@ impl<'a> Numbers<'a> {
 }
 
 /// Place of the first line feed, eight bytes at a time.
-pub fn line_feed(text: &[u8]) -> Option<usize> {
+pub(super) fn line_feed(text: &[u8]) -> Option<usize> {
     const ONES: u64 = 0x0101_0101_0101_0101;
     const FEEDS: u64 = ONES * b'\n' as u64;
     let (words, _) = text.as_chunks::<8>();
@@ -205,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_fields_as_instruments_write_them() {
+    fn fields_as_instruments_write_them() {
         assert_eq!(
             all(" -1.47553E-02 -1.72957e-02\r\n 5.").unwrap(),
             [-0.0147553, -0.0172957, 5.0]
@@ -228,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_what_is_no_number_is_refused_at_its_byte() {
+    fn what_is_no_number_is_refused_at_its_byte() {
         assert_eq!(all("1.0 x"), Err(NoNumber { at: 4 }));
         assert_eq!(all("1.0E"), Err(NoNumber { at: 3 }));
         assert_eq!(all("1.00000E+001.5"), Err(NoNumber { at: 12 }));
@@ -237,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_line_feeds() {
+    fn line_feeds() {
         for length in 0..40 {
             let mut text = vec![b'x'; length];
             assert_eq!(line_feed(&text), None);
