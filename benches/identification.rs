@@ -9,14 +9,14 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use impact_oscillator::model::params::ModelError;
-use impactid::event::Rig;
+use impactid::event::RigKind;
 use impactid::event::detect::DetectSettings;
 use impactid::identify::evidence::{Evidence, Nominal};
 use impactid::identify::run::identify;
 use impactid::identify::uncertainty::{Asked, Way};
 use impactid::motion::{ClassifySettings, Observation, brackets, observe, scale_drives};
 use impactid::synthetic::run::calibrated;
-use impactid::synthetic::{Faults, Plan, Truth, records};
+use impactid::synthetic::{Effects, Faults, Laboratory, Plan, Truth, records};
 
 const RECORDS: usize = 846;
 
@@ -38,7 +38,7 @@ fn main() -> Result<(), ModelError> {
         ("all fits and 1,000 bootstrap replicas", Way::Bootstrap, 3),
     ] {
         let evidence = Evidence {
-            rig: Rig::Double,
+            rig: RigKind::Double,
             observations: &observations,
             brackets: &brackets,
             nominal: Nominal {
@@ -62,19 +62,16 @@ fn time(evidence: &Evidence) -> f64 {
     let start = Instant::now();
     let outcome = identify(evidence);
     let seconds = start.elapsed().as_secs_f64();
-    assert!(outcome.fit.is_some(), "nothing was fitted");
+    assert!(outcome.joint_fit.is_some(), "nothing was fitted");
     seconds
 }
 
 /// A campaign as `simulate campaign` makes it, observed.
 fn campaign() -> Result<Vec<Observation>, ModelError> {
     let truth = Truth {
-        restitution: 0.9,
-        natural_frequency_hz: 12.6,
-        damping_ratio: 0.07,
-        static_deflection_m: 1e-3,
         drive_asymmetry: 0.01,
         stiffness_asymmetry: -0.01,
+        ..Truth::symmetric(0.9, 12.6, 0.07, 1e-3)
     };
     let faults = Faults::default();
     let plan = Plan::for_rig(
@@ -83,13 +80,19 @@ fn campaign() -> Result<Vec<Observation>, ModelError> {
         truth.static_deflection_m,
         RECORDS,
     );
-    let raw = records(&truth, &faults, &plan, 1)?;
+    let raw = records(&Laboratory {
+        truth: &truth,
+        faults: &faults,
+        effects: &Effects::default(),
+        plan: &plan,
+        seed: 1,
+    })?;
     let mut observations: Vec<Observation> = raw
         .par_iter()
         .map(|raw| {
             let record = calibrated(raw, &truth, &faults);
             let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
-            observe(&record, Rig::Double, &detect, &classify)
+            observe(&record, RigKind::Double, &detect, &classify)
         })
         .collect();
     scale_drives(&mut observations);

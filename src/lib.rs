@@ -6,6 +6,8 @@
 //! `units` < `output` < `signal` < `record` < `event` < `motion` < `model` < `atlas` <
 //! `synthetic` < `identify` < `report` < `campaign` < `pipeline` < `cli`.
 
+pub mod message;
+
 pub mod signal;
 
 pub mod record;

@@ -10,7 +10,7 @@ use sha2::{Digest, Sha256};
 use super::faults::{Fault, Severity};
 use super::listing::Opener;
 use super::resolved::{RecordEntry, ResolvedCampaign};
-use crate::event::Seen;
+use crate::event::DetectionSource;
 use crate::event::detect::{DetectSettings, Detection, detect};
 use crate::record::calibrate;
 use crate::record::{Flag, Record, Role};
@@ -120,7 +120,7 @@ fn contact_without_jump(record: &Record, found: &Detection) -> Option<Flag> {
     let supported = found
         .impacts
         .iter()
-        .filter(|i| i.seen == Seen::Both)
+        .filter(|i| i.source == DetectionSource::Both)
         .count();
     let channel = record.channel(Role::Contact)?;
     (found.unsupported_pulses >= 3 && found.unsupported_pulses > 2 * supported).then(|| Flag {

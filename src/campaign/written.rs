@@ -10,7 +10,7 @@ use std::fmt;
 use serde::{Deserialize, Deserializer, Serialize, de};
 use toml::Spanned;
 
-pub use crate::event::Rig as Machine;
+pub use crate::event::RigKind as Machine;
 pub use crate::event::detect::FlightKind as Flight;
 pub use crate::identify::uncertainty::Way;
 use crate::record::calibrate::ChannelKey;

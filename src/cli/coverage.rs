@@ -8,6 +8,7 @@ use super::voice::{print, print_json};
 use super::{Exit, Failure, Progress, Voice};
 use crate::identify::uncertainty::coverage::Score;
 use crate::pipeline::coverage::{self, Tally};
+use crate::synthetic::RigSpec;
 use labfiles::output::write_bytes;
 
 /// Arguments of `impactid study coverage`.
@@ -20,6 +21,9 @@ pub struct Coverage {
     /// Seed of everything random
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
+    /// Rig that is simulated: exact, realistic, or EFFECT[=STRENGTH],… (see `simulate campaign`)
+    #[arg(long, value_name = "RIG", default_value = "exact")]
+    rig: RigSpec,
     /// Write every estimate of every campaign beside its truth into a CSV file
     #[arg(long, value_name = "FILE")]
     estimates: Option<PathBuf>,
@@ -31,6 +35,8 @@ pub struct Coverage {
 const EXAMPLE: &str = "\
 Example:
   impactid study coverage --campaigns 300 --seed 1 --json
+  impactid study coverage --campaigns 100 --rig realistic
+  impactid study coverage --campaigns 100 --rig friction=0.015,contact=0.3
 
 Each campaign has a truth, noise and faults of its own. Errors of R are absolute, those of the
 other parameters relative. `bound` is the Cramér–Rao bound: no unbiased estimator errs less.";
@@ -42,7 +48,7 @@ impl Coverage {
     /// [`Failure`] where a simulation refuses its parameters.
     pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
         let bar = Progress::new(voice, "campaigns", self.campaigns as u64);
-        let found = coverage::study(self.campaigns, self.seed, &|_, done, total| {
+        let found = coverage::study(self.campaigns, self.seed, &self.rig, &|_, done, total| {
             bar.set(done, total);
         })?;
         drop(bar);

@@ -97,7 +97,7 @@ impl Run {
         };
         let found = pipeline::run(&campaign, &destination, &told)?;
         drop(progress);
-        voice.say(&found.summary);
+        voice.say(&found.to_string());
         for finding in &found.findings {
             voice.say(&format!("  - {finding}"));
         }

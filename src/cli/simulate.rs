@@ -9,7 +9,7 @@ use super::theory::OutArgs;
 use super::{Exit, Failure, Voice, interrupt};
 use crate::pipeline::synthesise::{Recipe, write_campaign};
 use crate::synthetic::truth::draw_asymmetry;
-use crate::synthetic::{Faults, Truth};
+use crate::synthetic::{Faults, RigSpec, Truth};
 use impact_oscillator::atlas::portrait::{PortraitPlan, Soft};
 use impact_oscillator::model::Setting;
 use labfiles::output::Lock;
@@ -120,9 +120,33 @@ impl MotionArgs {
     }
 }
 
+const CAMPAIGN_HELP: &str = "\
+Example:
+  impactid simulate campaign --seed 1 --restitution 0.9 --damping-ratio 0.07 --out synthetic/
+  impactid simulate campaign --rig realistic --out synthetic/
+  impactid simulate campaign --rig contact=0.3,friction --out synthetic/
+
+Effects and the strengths they have if none is given (0 switches one off):
+  gaps=0.003               each stated gap is off; standard deviation over x_st
+  gap-offset=0.003         all gaps are off alike; standard deviation over x_st
+  damping-asymmetry=0.05   difference of the damping ratios over their mean
+  second-harmonic=0.005    of the drive force, over its fundamental
+  third-harmonic=0.003     of the drive force, over its fundamental
+  force-slope=0.01         relative change of the force per unit of eta, about eta = 1
+  force-curvature=0.005    the same, per unit of eta squared
+  hardening=0.004          relative stiffening of the springs at x_st/(2 beta)
+  friction=0.005           Coulomb friction of each mass over F0
+  frequency-drift=0.002    relative change of f0 over the campaign
+  damping-drift=0.02       relative change of the dashpots over the campaign
+  contact=0.64             duration of an impact, ms (needs R of 0.136 or more)
+  delays=0.5               greatest delay of a channel against the drive, samples
+  flicker=0.001            1/f noise, V rms
+  hum=0.001                mains hum, V amplitude
+truth.json states what was drawn.";
+
 /// Arguments of `impactid simulate campaign`.
 #[derive(Debug, Clone, Args)]
-#[command(after_help = EXAMPLE)]
+#[command(after_help = CAMPAIGN_HELP)]
 pub struct Campaign {
     /// Seed of everything random
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -145,6 +169,10 @@ pub struct Campaign {
     /// Folder for the campaign
     #[arg(long, short, value_name = "DIR")]
     pub out: PathBuf,
+    /// Effects beyond the model: exact (none), realistic (all of them at sizes drawn at random), or
+    /// EFFECT[=STRENGTH],… as listed below
+    #[arg(long, value_name = "RIG", default_value = "exact")]
+    pub rig: RigSpec,
     /// A rig without faults: no noise, no rounding, no filter, no asymmetry
     #[arg(long)]
     pub ideal: bool,
@@ -207,14 +235,17 @@ impl Campaign {
         let (drive_asymmetry, stiffness_asymmetry) = draw_asymmetry(&faults, self.seed);
         let recipe = Recipe {
             truth: Truth {
-                restitution: self.restitution,
-                natural_frequency_hz: self.natural_frequency_hz,
-                damping_ratio: self.damping_ratio,
-                static_deflection_m: self.static_deflection_m,
                 drive_asymmetry,
                 stiffness_asymmetry,
+                ..Truth::symmetric(
+                    self.restitution,
+                    self.natural_frequency_hz,
+                    self.damping_ratio,
+                    self.static_deflection_m,
+                )
             },
             faults,
+            rig: self.rig,
             records: self
                 .records
                 .map_or(DEFAULT_RECORDS, std::num::NonZeroUsize::get),

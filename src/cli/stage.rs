@@ -154,7 +154,7 @@ impl Classify {
         let mut counts: BTreeMap<String, usize> = BTreeMap::new();
         for observation in &observed.observations {
             *counts
-                .entry(observation.finding.motion.label())
+                .entry(observation.classification.motion.label())
                 .or_default() += 1;
         }
         for (motion, count) in counts {
@@ -170,10 +170,9 @@ impl Identify {
         let campaign = store::read_resolved(&folder)?;
         let observed = store::read_observed(&folder)?;
         let found = pipeline::identify::identify(&campaign, &observed)?;
-        pipeline::identify::write(&found.identification, &folder)?;
-        store::write_fit(&found.outcome, &folder)?;
+        pipeline::identify::write(&found, &folder)?;
         let verdict = &found.identification.verdict;
-        voice.say(&verdict.summary);
+        voice.say(&verdict.to_string());
         Ok(Exit::of(verdict.kind))
     }
 }
@@ -188,7 +187,7 @@ impl Report {
         let mut campaign = store::read_resolved(&folder)?;
         self.look.apply(&mut campaign.report, voice)?;
         let observed = store::read_observed(&folder)?;
-        let found = store::read_found(&folder)?;
+        let found = store::read_identification(&folder)?;
         let command = commands(&campaign.file, &folder, &self.look);
         let report = pipeline::report::files(&campaign, &observed, &found, &command)?;
         pipeline::report::write(&report, &folder)?;

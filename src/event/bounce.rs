@@ -1,7 +1,7 @@
 //! Bounces under a constant force: velocity climbs steadily in flight, against friction of either
 //! sign, and falls while the body touches the stop, however many samples that takes.
 
-use crate::event::Seen;
+use crate::event::DetectionSource;
 use crate::event::jumps::Jump;
 use crate::event::kinematics::Series;
 use crate::event::refine::Candidate;
@@ -87,7 +87,7 @@ fn candidate(velocity: &Series, falls: &[(usize, usize)], index: usize) -> Optio
     };
     Some(Candidate {
         jump,
-        seen: Seen::Velocity,
+        source: DetectionSource::Velocity,
         dead_samples: 0.0,
     })
 }

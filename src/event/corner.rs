@@ -6,12 +6,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::event::kinematics::{Body, ClosingFrom, Kinematics};
+use crate::event::kinematics::{Body, Kinematics, RelativeSource};
 use crate::record::Role;
 use crate::signal::interpolation::interpolate;
 use crate::signal::{drift, robust};
 
-/// Change of both closing speeds at an impact per unit of the logarithm of a corner.
+/// Change of both approach speeds at an impact per unit of the logarithm of a corner.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CornerShift {
     /// The channel whose corner it is.
@@ -26,7 +26,7 @@ struct Shift {
     speeds_m_s: Vec<f64>,
 }
 
-/// The shifts of the closing velocity of a record.
+/// The shifts of the approach velocity of a record.
 pub struct Shifts([Option<Shift>; 2]);
 
 impl Shifts {
@@ -35,10 +35,10 @@ impl Shifts {
         let rate_hz = kinematics.rate_hz;
         let of = |body: &Body, times: f64| shift(body, times / rate_hz);
         let Kinematics { x, y, .. } = kinematics;
-        Self(match kinematics.closing_from {
-            Some(ClosingFrom::Both) => [of(x, 1.0), of(y, 1.0)],
-            Some(ClosingFrom::One) => [of(x, 1.0), None],
-            Some(ClosingFrom::Doubled) => [of(x, 2.0), of(y, 2.0)],
+        Self(match kinematics.relative_from {
+            Some(RelativeSource::Both) => [of(x, 1.0), of(y, 1.0)],
+            Some(RelativeSource::One) => [of(x, 1.0), None],
+            Some(RelativeSource::Doubled) => [of(x, 2.0), of(y, 2.0)],
             None => [None, None],
         })
     }

@@ -4,7 +4,7 @@ use crate::event::contact::{Closed, closed_intervals};
 use crate::event::jumps::{Jump, JumpSearch, SUPPORTED};
 use crate::event::kinematics::{Kinematics, Series};
 use crate::event::refine::{self, ArcFit, Candidate};
-use crate::event::{DriveTone, Impact, Rig, Seen, bounce, drift, drive};
+use crate::event::{DetectionSource, DriveTone, Impact, RigKind, bounce, drift, drive};
 use crate::record::{Flag, Record, Role};
 use crate::signal::robust;
 
@@ -70,9 +70,9 @@ pub struct Detection {
 
 /// Detect the impacts of a record.
 ///
-/// Impacts come from the contact channel and from jumps of the closing velocity, fused; a record
+/// Impacts come from the contact channel and from jumps of the approach velocity, fused; a record
 /// without any velocity gives impacts without speeds. No parameter of the model enters.
-pub fn detect(record: &Record, rig: Rig, settings: &DetectSettings) -> Detection {
+pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detection {
     let (drive, mut flags) = drive::measure(record, settings.drive_tolerance);
     let mut kinematics = Kinematics::of(record, rig);
     let rate_hz = record.sample_rate_hz;
@@ -83,7 +83,7 @@ pub fn detect(record: &Record, rig: Rig, settings: &DetectSettings) -> Detection
         });
     let dead_from = samples_of(settings.dead_zone_s, rate_hz).max(4);
     let width = window_samples(drive.as_ref(), rate_hz, settings.window_periods);
-    let found = match &kinematics.closing.velocity {
+    let found = match &kinematics.relative.velocity {
         Some(velocity) if settings.flight == FlightKind::ConstantForce => bounces(velocity),
         Some(velocity) => fuse(velocity, &closed, width, dead_from),
         None => from_contact_alone(&closed, dead_from),
@@ -144,9 +144,9 @@ fn refined(
     kinematics: &mut Kinematics,
     candidates: &[Candidate],
     drive: Option<&DriveTone>,
-    (rig, arc): (Rig, ArcFit),
+    (rig, arc): (RigKind, ArcFit),
 ) -> Vec<Impact> {
-    if kinematics.closing.velocity.is_none() {
+    if kinematics.relative.velocity.is_none() {
         return without_speeds(candidates, drive, kinematics.rate_hz);
     }
     if arc.same_way {
@@ -156,11 +156,11 @@ fn refined(
     }
     let first = refine::instants(kinematics, candidates, arc);
     refine::correct_jumps(kinematics, candidates, &first, arc);
-    kinematics.close_again(rig);
+    kinematics.update_relative(rig);
     let times: Vec<f64> = first.iter().map(|i| i.time).collect();
     let rate_hz = kinematics.rate_hz;
     for series in [
-        &mut kinematics.closing,
+        &mut kinematics.relative,
         &mut kinematics.x,
         &mut kinematics.y,
     ]
@@ -183,7 +183,7 @@ struct Fused {
     unsupported: usize,
     /// Jumps without a contact pulse.
     missed: usize,
-    /// Jumps upward, as the closing velocity has none at an impact.
+    /// Jumps upward, as the approach velocity has none at an impact.
     upward: usize,
     /// Jumps downward, as impacts make them.
     downward: usize,
@@ -225,7 +225,7 @@ fn fuse(velocity: &Series, closed: &[Closed], width: usize, dead_from: usize) ->
     let candidates = candidates(&jumps, closed, search.gap, dead_from, velocity);
     let missed = candidates
         .iter()
-        .filter(|c| c.seen == Seen::Velocity)
+        .filter(|c| c.source == DetectionSource::Velocity)
         .count();
     Fused {
         candidates,
@@ -265,21 +265,21 @@ fn candidates(
             (None, true) => resting_samples(velocity, jump, next, dead_from),
             (None, false) => 0.0,
         };
-        let seen = if pulse.is_some() {
-            Seen::Both
+        let source = if pulse.is_some() {
+            DetectionSource::Both
         } else {
-            Seen::Velocity
+            DetectionSource::Velocity
         };
         out.push(Candidate {
             jump: *jump,
-            seen,
+            source,
             dead_samples,
         });
     }
     out
 }
 
-/// Without a contact channel: how long the closing velocity stays at zero after a jump.
+/// Without a contact channel: how long the approach velocity stays at zero after a jump.
 fn resting_samples(velocity: &Series, jump: &Jump, next: usize, dead_from: usize) -> f64 {
     let begin = jump.left + jump.gap;
     let rest_below = 4.0 * velocity.noise + 5e-3 * jump.height.abs();
@@ -304,7 +304,7 @@ fn from_contact_alone(closed: &[Closed], dead_from: usize) -> Fused {
                 height: f64::NAN,
                 error: f64::NAN,
             },
-            seen: Seen::Contact,
+            source: DetectionSource::Contact,
             dead_samples: if pulse.samples() >= dead_from {
                 pulse.samples() as f64
             } else {
@@ -332,14 +332,14 @@ fn without_speeds(
                 time_s,
                 time_error_s: 1.0 / (rate_hz * 12f64.sqrt()),
                 drive_phase_rad: drive.map(|d| d.phase_at(time_s)),
-                closing_speed_before_m_s: None,
-                closing_speed_after_m_s: None,
+                approach_speed_before_m_s: None,
+                approach_speed_after_m_s: None,
                 speed_error_m_s: None,
                 x: None,
                 y: None,
                 corner_shifts: [None, None],
                 dead_zone_s: c.dead_samples / rate_hz,
-                seen: c.seen,
+                source: c.source,
             }
         })
         .collect()
@@ -356,7 +356,7 @@ fn wrong_way(found: &Fused, record: &Record) -> Option<Flag> {
             code: "jumps_point_the_wrong_way".into(),
             channel,
             message: format!(
-                "{} jumps of the closing velocity go up, {} down; an impact jumps down",
+                "{} jumps of the approach velocity go up, {} down; an impact jumps down",
                 found.upward, found.downward
             ),
             remedy: "turn the `sign` of the velocity or displacement channels: positive is toward \

@@ -1,12 +1,12 @@
 //! Offset and ramp of a velocity signal, found from what kinematics demands: at every impact the
-//! bodies are at the same place, so between two impacts the mean closing velocity is zero.
+//! bodies are at the same place, so between two impacts the mean approach velocity is zero.
 
 use crate::event::DriveTone;
 use crate::event::kinematics::Series;
 use crate::signal::interpolation::interpolate;
 use crate::signal::{drift, robust};
 
-/// Remove offset (and, where a high-pass was undone, ramp) from a closing velocity.
+/// Remove offset (and, where a high-pass was undone, ramp) from a approach velocity.
 ///
 /// With two impacts or more, from the arcs between them (`times` in samples); else from whole
 /// drive periods.

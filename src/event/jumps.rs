@@ -1,4 +1,4 @@
-//! Jumps of the closing velocity: where one-sided extrapolations from left and right disagree.
+//! Jumps of the approach velocity: where one-sided extrapolations from left and right disagree.
 
 use crate::event::kinematics::Series;
 use crate::signal::local_fit::LocalFit;

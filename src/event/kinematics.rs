@@ -1,14 +1,14 @@
-//! What moved: velocity and displacement of each body and of the closing motion, on one time
+//! What moved: velocity and displacement of each body and of the relative motion, on one time
 //! axis, with the integrators' high-pass undone and the noise known.
 
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::record::{Record, Role};
 use crate::signal::{drift, robust};
 
 /// A signal in SI with its noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// The channel that it comes from; of a closing motion, the first.
+    /// The channel that it comes from; of a relative motion, the first.
     pub role: Role,
     /// Samples, SI.
     pub values: Vec<f64>,
@@ -37,7 +37,7 @@ impl Series {
     }
 }
 
-/// Velocity and displacement of one body (or of the closing motion) toward the other.
+/// Velocity and displacement of one body (or of the relative motion) toward the other.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Body {
     /// Velocity, m/s: measured, else differentiated displacement, else integrated acceleration.
@@ -46,9 +46,9 @@ pub struct Body {
     pub displacement: Option<Series>,
 }
 
-/// From which channels the closing motion was built.
+/// From which channels the relative motion was built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ClosingFrom {
+pub enum RelativeSource {
     /// x + y, both measured.
     Both,
     /// x of a single mass against a stop.
@@ -66,31 +66,31 @@ pub struct Kinematics {
     pub x: Body,
     /// Mass y.
     pub y: Body,
-    /// The closing motion: displacement u = x + y, velocity u' (for one mass x alone).
-    pub closing: Body,
-    /// From what the closing velocity was built; `None` without any velocity.
-    pub closing_from: Option<ClosingFrom>,
-    /// The closing motion as it was measured (velocity, else displacement, else acceleration):
+    /// The relative motion: displacement u = x + y, velocity u' (for one mass x alone).
+    pub relative: Body,
+    /// From what the approach velocity was built; `None` without any velocity.
+    pub relative_from: Option<RelativeSource>,
+    /// The relative motion as it was measured (velocity, else displacement, else acceleration):
     /// what is compared with itself a period later, free of any drift of integration.
     pub waveform: Option<Series>,
 }
 
 impl Kinematics {
     /// Build the kinematics of a record from whatever motion channels it has.
-    pub fn of(record: &Record, rig: Rig) -> Self {
+    pub fn of(record: &Record, rig: RigKind) -> Self {
         let rate_hz = record.sample_rate_hz;
         let x = body(
             record,
             [Role::VelocityX, Role::DisplacementX, Role::AccelerationX],
         );
         let y = match rig {
-            Rig::Double => body(
+            RigKind::Double => body(
                 record,
                 [Role::VelocityY, Role::DisplacementY, Role::AccelerationY],
             ),
-            Rig::Single => Body::default(),
+            RigKind::Single => Body::default(),
         };
-        let (closing, closing_from) = closing_motion(&x, &y, rig);
+        let (relative, relative_from) = relative_motion(&x, &y, rig);
         let waveform = [
             [Role::VelocityX, Role::VelocityY],
             [Role::DisplacementX, Role::DisplacementY],
@@ -98,26 +98,26 @@ impl Kinematics {
         ]
         .into_iter()
         .find_map(|[of_x, of_y]| {
-            let of_y = if rig == Rig::Double {
+            let of_y = if rig == RigKind::Double {
                 series(record, of_y)
             } else {
                 None
             };
-            self::closing(&series(record, of_x), &of_y, rig).0
+            combined(&series(record, of_x), &of_y, rig).0
         });
         Self {
             rate_hz,
             x,
             y,
-            closing,
-            closing_from,
+            relative,
+            relative_from,
             waveform,
         }
     }
 
-    /// Build the closing motion anew after the bodies' signals were corrected.
-    pub fn close_again(&mut self, rig: Rig) {
-        (self.closing, self.closing_from) = closing_motion(&self.x, &self.y, rig);
+    /// Build the relative motion anew after the bodies' signals were corrected.
+    pub fn update_relative(&mut self, rig: RigKind) {
+        (self.relative, self.relative_from) = relative_motion(&self.x, &self.y, rig);
     }
 
     /// The measured bodies with a velocity, x first.
@@ -128,17 +128,17 @@ impl Kinematics {
     }
 }
 
-fn closing_motion(x: &Body, y: &Body, rig: Rig) -> (Body, Option<ClosingFrom>) {
-    let (velocity, closing_from) = closing(&x.velocity, &y.velocity, rig);
-    let (displacement, displacement_from) = closing(&x.displacement, &y.displacement, rig);
-    // A closing displacement of another making than the velocity would not fit to it.
-    let displacement = displacement.filter(|_| displacement_from == closing_from);
+fn relative_motion(x: &Body, y: &Body, rig: RigKind) -> (Body, Option<RelativeSource>) {
+    let (velocity, relative_from) = combined(&x.velocity, &y.velocity, rig);
+    let (displacement, displacement_from) = combined(&x.displacement, &y.displacement, rig);
+    // A relative displacement of another making than the velocity would not fit to it.
+    let displacement = displacement.filter(|_| displacement_from == relative_from);
     (
         Body {
             velocity,
             displacement,
         },
-        closing_from,
+        relative_from,
     )
 }
 
@@ -247,14 +247,14 @@ fn integrated(acceleration: &Series, rate_hz: f64) -> Series {
     }
 }
 
-fn closing(
+fn combined(
     x: &Option<Series>,
     y: &Option<Series>,
-    rig: Rig,
-) -> (Option<Series>, Option<ClosingFrom>) {
+    rig: RigKind,
+) -> (Option<Series>, Option<RelativeSource>) {
     match (x, y, rig) {
-        (Some(x), _, Rig::Single) => (Some(x.clone()), Some(ClosingFrom::One)),
-        (Some(x), Some(y), Rig::Double) => {
+        (Some(x), _, RigKind::Single) => (Some(x.clone()), Some(RelativeSource::One)),
+        (Some(x), Some(y), RigKind::Double) => {
             let values = x.values.iter().zip(&y.values).map(|(a, b)| a + b).collect();
             let noise = x.noise.hypot(y.noise);
             let high_pass_hz = x.high_pass_hz.or(y.high_pass_hz);
@@ -265,10 +265,10 @@ fn closing(
                     noise,
                     high_pass_hz,
                 }),
-                Some(ClosingFrom::Both),
+                Some(RelativeSource::Both),
             )
         }
-        (Some(one), None, Rig::Double) | (None, Some(one), Rig::Double) => {
+        (Some(one), None, RigKind::Double) | (None, Some(one), RigKind::Double) => {
             let values = one.values.iter().map(|v| 2.0 * v).collect();
             let series = Series {
                 role: one.role,
@@ -276,7 +276,7 @@ fn closing(
                 noise: 2.0 * one.noise,
                 high_pass_hz: one.high_pass_hz,
             };
-            (Some(series), Some(ClosingFrom::Doubled))
+            (Some(series), Some(RelativeSource::Doubled))
         }
         _ => (None, None),
     }

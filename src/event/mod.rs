@@ -19,17 +19,17 @@ use serde::{Deserialize, Serialize};
 /// How the rig is built, as far as the detection of impacts has to know.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Rig {
-    /// Two masses that hit each other; closing speed x' + y'.
+pub enum RigKind {
+    /// Two masses that hit each other; approach speed x' + y'.
     Double,
-    /// One mass that hits a fixed stop; closing speed x'.
+    /// One mass that hits a fixed stop; approach speed x'.
     Single,
 }
 
 /// Through which channel an impact was seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Seen {
+pub enum DetectionSource {
     /// Only the contact channel.
     Contact,
     /// Only a jump of velocity.
@@ -38,13 +38,13 @@ pub enum Seen {
     Both,
 }
 
-impl Seen {
+impl DetectionSource {
     /// The name in tables.
     pub fn name(self) -> &'static str {
         match self {
-            Seen::Contact => "contact",
-            Seen::Velocity => "velocity",
-            Seen::Both => "both",
+            DetectionSource::Contact => "contact",
+            DetectionSource::Velocity => "velocity",
+            DetectionSource::Both => "both",
         }
     }
 }
@@ -67,23 +67,26 @@ pub struct Impact {
     pub time_error_s: f64,
     /// Phase of the drive at the impact, rad in [0, 2π); the drive is cos(phase).
     pub drive_phase_rad: Option<f64>,
-    /// Closing speed before the impact (x' + y'; for one mass x'), m/s, positive.
-    pub closing_speed_before_m_s: Option<f64>,
-    /// Closing speed after the impact, m/s: negative while the bodies part.
-    pub closing_speed_after_m_s: Option<f64>,
-    /// Standard error of either closing speed, m/s.
+    /// Approach speed before the impact (x' + y'; for one mass x'), m/s, positive.
+    #[serde(rename = "closing_speed_before_m_s")]
+    pub approach_speed_before_m_s: Option<f64>,
+    /// Approach speed after the impact, m/s: minus the separation speed, so negative while the bodies separate.
+    #[serde(rename = "closing_speed_after_m_s")]
+    pub approach_speed_after_m_s: Option<f64>,
+    /// Standard error of either approach speed, m/s.
     pub speed_error_m_s: Option<f64>,
     /// Mass x alone.
     pub x: Option<MassSpeeds>,
     /// Mass y alone.
     pub y: Option<MassSpeeds>,
-    /// What corners other than the stated ones would change of both closing speeds.
+    /// What corners other than the stated ones would change of both approach speeds.
     #[serde(default)]
     pub corner_shifts: [Option<CornerShift>; 2],
     /// How long the bodies stayed together after it, s; zero without a dead zone.
     pub dead_zone_s: f64,
     /// How it was seen.
-    pub seen: Seen,
+    #[serde(rename = "seen")]
+    pub source: DetectionSource,
 }
 
 /// The drive as measured from its channel: amplitude · cos(2π f t + phase).

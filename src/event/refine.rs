@@ -6,7 +6,7 @@ use crate::event::corner::Shifts;
 use crate::event::drift::integral;
 use crate::event::jumps::Jump;
 use crate::event::kinematics::{Body, Kinematics, Series};
-use crate::event::{DriveTone, Impact, MassSpeeds, Seen};
+use crate::event::{DetectionSource, DriveTone, Impact, MassSpeeds};
 use crate::signal::local_fit::{LocalFit, crossing};
 
 /// How the arcs beside an impact are fitted to carry speeds and places to it.
@@ -38,7 +38,7 @@ pub struct Candidate {
     /// The jump of velocity.
     pub jump: Jump,
     /// How it was seen.
-    pub seen: Seen,
+    pub source: DetectionSource,
     /// Samples the contact stayed closed beyond an ordinary pulse.
     pub dead_samples: f64,
 }
@@ -93,7 +93,7 @@ fn windows(velocity: &Series, candidates: &[Candidate], index: usize, arc: ArcFi
 }
 
 /// Times of all candidates: from the kink of the displacement where it is measured, else from
-/// the condition that the closing motion returns to the same place at every impact, else the
+/// the condition that the relative motion returns to the same place at every impact, else the
 /// middle of the sample interval.
 pub fn instants(kinematics: &Kinematics, candidates: &[Candidate], arc: ArcFit) -> Vec<Instant> {
     let middle = |c: &Candidate| Instant {
@@ -110,8 +110,8 @@ pub fn instants(kinematics: &Kinematics, candidates: &[Candidate], arc: ArcFit) 
         return plain;
     }
     match (
-        &kinematics.closing.displacement,
-        &kinematics.closing.velocity,
+        &kinematics.relative.displacement,
+        &kinematics.relative.velocity,
     ) {
         (Some(displacement), Some(velocity)) => (0..candidates.len())
             .map(|i| {
@@ -284,19 +284,19 @@ pub fn impacts(
     (0..candidates.len())
         .map(|i| {
             let time_s = instants[i].time / kinematics.rate_hz;
-            let closing = of(&kinematics.closing, i);
+            let relative = of(&kinematics.relative, i);
             Impact {
                 time_s,
                 time_error_s: instants[i].error / kinematics.rate_hz,
                 drive_phase_rad: drive.map(|d| d.phase_at(time_s)),
-                closing_speed_before_m_s: closing.map(|c| c.0.before_m_s),
-                closing_speed_after_m_s: closing.map(|c| c.0.after_m_s),
-                speed_error_m_s: closing.map(|c| c.1),
+                approach_speed_before_m_s: relative.map(|c| c.0.before_m_s),
+                approach_speed_after_m_s: relative.map(|c| c.0.after_m_s),
+                speed_error_m_s: relative.map(|c| c.1),
                 x: of(&kinematics.x, i).map(|s| s.0),
                 y: of(&kinematics.y, i).map(|s| s.0),
                 corner_shifts: shifts.at(instants[i].time),
                 dead_zone_s: candidates[i].dead_samples / kinematics.rate_hz,
-                seen: candidates[i].seen,
+                source: candidates[i].source,
             }
         })
         .collect()

@@ -1,8 +1,55 @@
-//! From a fit's covariance to estimates with intervals and a status.
+//! Estimates with intervals and a status, from a fit's covariance.
+
+use serde::{Deserialize, Serialize};
 
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::Coordinate;
-use crate::identify::{Estimate, ParameterSet, Status};
+use crate::identify::messages::Note;
+
+/// How well the data determine a parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// Well.
+    Identified,
+    /// Poorly; the note states what the estimate depends on.
+    Weak,
+    /// Not at all: there is no value.
+    NotIdentifiable,
+}
+
+/// An estimate of one parameter with its interval.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// Best value in SI; `None` where not identifiable.
+    pub value: Option<f64>,
+    /// Standard error in the same unit.
+    pub standard_error: Option<f64>,
+    /// 95 % interval, low and high.
+    pub interval95: Option<[f64; 2]>,
+    /// How well the data determine it.
+    pub status: Status,
+    /// Why weak or not identifiable.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub note: Option<Note>,
+}
+
+/// The parameters of the oscillator, as far as a method determines them.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct ParameterSet {
+    /// Coefficient of restitution R.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub restitution: Option<Estimate>,
+    /// Natural frequency f0, Hz.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub natural_frequency_hz: Option<Estimate>,
+    /// Damping ratio β = b/(2√(km)).
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub damping_ratio: Option<Estimate>,
+    /// Static deflection x_st = F0/k, m.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub static_deflection_m: Option<Estimate>,
+}
 
 /// 97.5 % point of the normal distribution.
 pub const NORMAL_975: f64 = 1.959_963_984_540_054;
@@ -15,31 +62,19 @@ pub(super) fn limits(coordinate: Coordinate) -> (f64, f64) {
         Coordinate::Frequency => (0.01, 0.08),
         Coordinate::Damping => (0.15, 0.9),
         Coordinate::Deflection => (0.05, 0.5),
-        Coordinate::Gain(_) | Coordinate::Corner(_) => (0.05, 0.5),
-        Coordinate::DriveAsymmetry | Coordinate::StiffnessAsymmetry => (0.05, 0.5),
+        _ => (0.05, 0.5),
     }
 }
 
-/// Estimate of one coordinate from its value and standard error (both of the coordinate).
-pub fn estimate(
-    coordinate: Coordinate,
-    value: f64,
-    error: f64,
-    leans_on: Option<String>,
-) -> Estimate {
+/// Estimate of one coordinate from its value and standard error (both of the coordinate); a weak one
+/// carries the note.
+pub fn estimate(coordinate: Coordinate, value: f64, error: f64, note: Option<Note>) -> Estimate {
     let (weak, unknown) = limits(coordinate);
     if !error.is_finite() || error >= unknown {
-        return not_identifiable(format!(
-            "the data leave {} open by ± {:.2}{}",
-            coordinate.symbol(),
-            error
-                * if coordinate.is_logarithm() {
-                    100.0
-                } else {
-                    1.0
-                },
-            if coordinate.is_logarithm() { " %" } else { "" },
-        ));
+        return not_identifiable(Note::Open {
+            parameter: coordinate,
+            standard_error: error.is_finite().then_some(error),
+        });
     }
     let half = NORMAL_975 * error;
     let (value, standard_error, interval) = if coordinate.is_logarithm() {
@@ -62,22 +97,18 @@ pub fn estimate(
         standard_error: Some(standard_error),
         interval95: Some(interval),
         status,
-        note: if status == Status::Weak {
-            leans_on
-        } else {
-            None
-        },
+        note: note.filter(|_| status == Status::Weak),
     }
 }
 
-/// An estimate that says why there is none.
-pub fn not_identifiable(reason: impl Into<String>) -> Estimate {
+/// A missing estimate with the reason.
+pub fn not_identifiable(why: Note) -> Estimate {
     Estimate {
         value: None,
         standard_error: None,
         interval95: None,
         status: Status::NotIdentifiable,
-        note: Some(reason.into()),
+        note: Some(why),
     }
 }
 
@@ -99,16 +130,18 @@ pub fn parameter_set(fit: &Fit, factor: f64, tells: &[Coordinate]) -> ParameterS
     }
 }
 
-/// On which other parameter an estimate leans, in words.
-fn leaning(fit: &Fit, coordinate: Coordinate) -> Option<String> {
-    let (other, correlation) = fit
+/// The other parameter with which an estimate is strongly correlated.
+fn leaning(fit: &Fit, coordinate: Coordinate) -> Option<Note> {
+    let (parameter, correlation) = fit
         .free
         .iter()
         .filter(|c| **c != coordinate)
         .filter_map(|c| Some((*c, fit.correlation(coordinate, *c)?)))
         .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-    (correlation.abs() > 0.7)
-        .then(|| format!("leans on {} (correlation {correlation:.2})", other.symbol()))
+    (correlation.abs() > 0.7).then_some(Note::LeansOn {
+        parameter,
+        correlation,
+    })
 }
 
 impl ParameterSet {

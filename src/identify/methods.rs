@@ -1,10 +1,11 @@
 //! The methods, each alone: boundaries, trajectories, impacts, resonance.
 
-use crate::identify::MethodResult;
 use crate::identify::estimate;
 use crate::identify::evidence::{Blocks, Nominal};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Fit, FitError, Prior, Problem, mean_squares};
+use crate::identify::identification::MethodResult;
+use crate::identify::messages::{Note, Remark};
 
 /// Very wide priors that keep the equations regular where the data say nothing.
 pub fn wide_priors(start: &Parameters, free: &[Coordinate]) -> Vec<Prior> {
@@ -82,7 +83,8 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Attempt {
     ];
     let list: [(&dyn Block, f64); 1] = [(&blocks.resonance, 1.0)];
     let mut priors = Vec::new();
-    blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
+    let told = free.clone();
+    blocks.add_nuisances(&nominal.ideal(), &list, (&mut free, &mut priors));
     let best = starts(blocks, nominal)
         .into_iter()
         .filter_map(|start| {
@@ -91,7 +93,13 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Attempt {
             fit_blocks(list.to_vec(), free.clone(), priors, start).ok()
         })
         .min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
-    Some(best.ok_or(FitError::Singular))
+    let Some(best) = best else {
+        return Some(Err(FitError::Singular));
+    };
+    let start = best.fit.parameters;
+    let (mut free, mut priors) = (told.clone(), wide_priors(&start, &told));
+    blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
+    Some(fit_blocks(list.to_vec(), free, priors, start))
 }
 
 /// Starting values of the resonance curve: the stated ones, and a coarse grid whose deflection
@@ -113,7 +121,7 @@ fn starts(blocks: &Blocks, nominal: &Nominal) -> Vec<Parameters> {
     for f0 in grid {
         for beta in [0.01, 0.05, 0.2] {
             let beta = nominal.damping_ratio.unwrap_or(beta);
-            let unit = Parameters::symmetric(0.8, f0, beta, 1.0);
+            let unit = nominal.applied(Parameters::symmetric(0.8, f0, beta, 1.0));
             out.push(Parameters {
                 static_deflection_m: deflection_guess(blocks, &unit),
                 ..unit
@@ -235,10 +243,8 @@ pub fn result(
                 let error = found.fit.error(*coordinate).unwrap_or(f64::INFINITY);
                 let error = error * found.factor.sqrt();
                 let value = found.fit.parameters.coordinate(*coordinate);
-                result.further.insert(
-                    coordinate.name().into(),
-                    estimate::estimate(*coordinate, value, error, None),
-                );
+                let estimate = estimate::estimate(*coordinate, value, error, None);
+                result.further.insert(*coordinate, estimate);
             }
             result
         }
@@ -250,10 +256,11 @@ pub fn result(
             };
             for coordinate in tells {
                 if let Some(slot) = result.parameters.slot(*coordinate) {
-                    *slot = Some(estimate::not_identifiable(error.to_string()));
+                    *slot = Some(estimate::not_identifiable(Note::from(error)));
                 }
             }
-            result.remarks.push(error.to_string());
+            let why = Note::from(error);
+            result.remarks.push(Remark::NoResult { why });
             result
         }
     }

@@ -1,7 +1,7 @@
 //! R by plain least squares on the middles of the brackets of s2, as a paper would do it by hand:
 //! printed beside the posterior, which takes the brackets as the intervals that they are.
 
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::identify::evidence::boundary::{BoundaryBlock, predicted_hz};
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
@@ -11,7 +11,7 @@ use crate::motion::bracket::{BoundaryKind, Bracket};
 
 /// The brackets of s2 that the model reaches, their middles as measured values.
 struct Middles {
-    rig: Rig,
+    rig: RigKind,
     brackets: Vec<Bracket>,
 }
 

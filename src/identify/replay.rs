@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::event::{DriveTone, Rig};
+use crate::event::{DriveTone, RigKind};
 use crate::identify::evidence::trajectory::channel_value;
 use crate::identify::fit::parameters::Parameters;
 use crate::motion::{Motion, Observation};
@@ -50,13 +50,13 @@ impl Replay {
     /// Of a record's stretch with fitted parameters; `None` where its clearance is not known though
     /// something touches, or where the model cannot be simulated.
     pub fn of(
-        rig: Rig,
+        rig: RigKind,
         parameters: Parameters,
         o: &Observation,
         stretch: &Stretch,
     ) -> Option<Self> {
         let drive = &stretch.drive;
-        let clearance_m = match (o.setting.clearance_m, &o.finding.motion) {
+        let clearance_m = match (o.setting.clearance_m, &o.classification.motion) {
             (Some(clearance), _) => clearance,
             // Nothing touches: any wide gap will do.
             (None, Motion::Impactless) => 1e6 * parameters.static_deflection_m,
@@ -127,7 +127,7 @@ fn settled(
         .map(place)
         .collect();
     let ends = march_from(machine, &starts, &MapSettings::default()).ok()?;
-    let same = |end: &&End| Motion::from(end.motion) == o.finding.motion;
+    let same = |end: &&End| Motion::from(end.motion) == o.classification.motion;
     ends.iter().find(same).or(ends.first()).copied()
 }
 
@@ -155,7 +155,7 @@ fn starts(
         },
     };
     let measured = o.impacts.iter().filter_map(|i| {
-        let after = i.closing_speed_after_m_s? / scale;
+        let after = i.approach_speed_after_m_s? / scale;
         Some((touching(after), i.drive_phase_rad?))
     });
     let mut starts: Vec<(Initial, f64)> = measured.take(MOST_STARTS).collect();
@@ -170,7 +170,7 @@ fn starts(
 /// Whole drive periods by which the simulation has to be shifted so that its impacts fall where
 /// the measured ones do (a motion of period n may be met in any of n drive periods).
 fn cycle_shift(simulator: &Simulator, o: &Observation, stretch: &Stretch, setting: Setting) -> u32 {
-    let Motion::Periodic { periods_n, .. } = o.finding.motion else {
+    let Motion::Periodic { periods_n, .. } = o.classification.motion else {
         return 0;
     };
     if periods_n < 2 {
@@ -184,14 +184,14 @@ fn cycle_shift(simulator: &Simulator, o: &Observation, stretch: &Stretch, settin
     let simulated: Vec<(f64, f64)> = run
         .impacts
         .iter()
-        .map(|i| ((i.tau - begin) / setting.period(), i.closing_before))
+        .map(|i| ((i.tau - begin) / setting.period(), i.approach_speed))
         .collect();
     let measured: Vec<(f64, f64)> = o
         .impacts
         .iter()
         .filter_map(|i| {
             let turns = (i.time_s - stretch.start_s) / stretch.drive.period_s();
-            Some((turns, i.closing_speed_before_m_s?))
+            Some((turns, i.approach_speed_before_m_s?))
         })
         .filter(|(t, _)| (0.0..f64::from(periods_n)).contains(t))
         .collect();

@@ -3,44 +3,24 @@
 use std::collections::BTreeMap;
 
 use crate::identify::evidence::{Blocks, Evidence};
+use crate::identify::fit::Problem;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::{Fit, Problem};
-use crate::identify::joint::{self, Method, Weights};
+use crate::identify::identification::{Identification, JointFit, MethodResult};
+use crate::identify::joint::{self, Weights};
 use crate::identify::judgement::agreement::agreement;
 use crate::identify::judgement::interchange;
-use crate::identify::judgement::suspicion::{self, OddGap, Suspicion};
-use crate::identify::judgement::verdict::{self, Findings};
+use crate::identify::judgement::suspicion::{self, OddGap};
+use crate::identify::judgement::verdict::{self, Basis};
+use crate::identify::messages::{Finding, LeftOut, Reason};
+use crate::identify::method::Method;
 use crate::identify::methods::{self, Attempt, succeeded};
 use crate::identify::selection::Selection;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
-use crate::identify::{Agreement, MethodResult, Verdict, decay, results};
-
-/// What an identification leads to; settings, versions and hashes are the caller's to add.
-#[derive(Debug, Clone)]
-pub struct Outcome {
-    /// The verdict.
-    pub verdict: Verdict,
-    /// All methods together.
-    pub joint: MethodResult,
-    /// Each method alone.
-    pub methods: BTreeMap<String, MethodResult>,
-    /// Whether they agree.
-    pub agreement: Agreement,
-    /// The joint fit, for simulation beside the measurement; `None` without one.
-    pub fit: Option<Fit>,
-    /// Factor on the joint fit's covariance.
-    pub factor: f64,
-    /// Records or impacts that were left out of a fit, each with the reason.
-    pub left_out: Vec<(String, String)>,
-    /// Mistakes of the laboratory that the data give away.
-    pub suspicions: Vec<Suspicion>,
-    /// What each method contributed, profiles and bootstrap.
-    pub uncertainty: Uncertainty,
-}
+use crate::identify::{decay, results};
 
 /// Identify from observations and brackets.
-pub fn identify(evidence: &Evidence) -> Outcome {
+pub fn identify(evidence: &Evidence) -> Identification {
     let mut work = Work {
         evidence,
         selection: Selection::new(evidence),
@@ -53,7 +33,7 @@ pub fn identify(evidence: &Evidence) -> Outcome {
     let mut fits = work.fits(start, resonance, impacts);
     let mut suspicions = Vec::new();
     while let Some(odd) = work.odd_gap(&fits, suspicions.len()) {
-        suspicions.push(odd.suspicion());
+        suspicions.push(odd.into());
         if !work.selection.leave_out_gap(odd.stated_m) {
             break;
         }
@@ -61,26 +41,29 @@ pub fn identify(evidence: &Evidence) -> Outcome {
     }
     fits = work.without_pulling(fits);
     suspicions.extend(work.other_suspicions(&fits));
-    let uncertainty = work.uncertainty(&fits);
-    let found = work.results(&fits);
-    let (joint_result, fit, factor) = results::joint(evidence, fits.joint, &found);
-    let agreement = agreement(&found);
-    let verdict = verdict::verdict(&Findings {
-        joint: &joint_result,
-        methods: &found,
+    let methods = work.results(&fits);
+    let joint = results::joint(evidence, fits.joint.as_ref(), &methods);
+    let agreement = agreement(&methods);
+    let verdict = verdict::verdict(&Basis {
+        joint: &joint,
+        methods: &methods,
         agreement: &agreement,
         suspicions: &suspicions,
     });
-    Outcome {
+    Identification {
         verdict,
-        joint: joint_result,
-        methods: found,
+        joint,
         agreement,
-        fit,
-        factor,
-        left_out: work.selection.left_out,
+        uncertainty: work.uncertainty(&fits),
         suspicions,
-        uncertainty,
+        left_out: work.left_out(),
+        used_by: work.used_by(&methods),
+        methods,
+        joint_fit: fits.joint.and_then(Result::ok).map(|found| JointFit {
+            fit: found.fit,
+            variance_factor: found.factor,
+        }),
+        specimens: BTreeMap::new(),
     }
 }
 
@@ -131,7 +114,7 @@ fn start(evidence: &Evidence, resonance: &Attempt) -> Parameters {
         .filter_map(|o| o.setting.clearance_m)
         .collect();
     let median = |v: &[f64], default: f64| crate::signal::robust::median(v).unwrap_or(default);
-    Parameters::symmetric(
+    nominal.applied(Parameters::symmetric(
         nominal.restitution.unwrap_or(0.8),
         nominal
             .natural_frequency_hz
@@ -140,7 +123,7 @@ fn start(evidence: &Evidence, resonance: &Attempt) -> Parameters {
         nominal
             .static_deflection_m
             .unwrap_or_else(|| median(&clearances, 1e-3).abs() / 2.0),
-    )
+    ))
 }
 
 struct Work<'a> {
@@ -165,15 +148,20 @@ impl Work<'_> {
         let weight = |attempt: &Attempt| succeeded(attempt).map(|f| 1.0 / f.factor);
         // Flights rest on the speeds at impacts; waveforms tell the same better than either.
         let flown = weight(&flights).filter(|_| succeeded(&trajectories).is_none());
-        let weights = [
-            weight(&resonance),
-            weight(&trajectories),
-            weight(&boundaries).filter(|_| self.posterior.is_none()),
-            succeeded(&impacts)
-                .map(joint::impact_weight)
-                .filter(|_| flown.is_none()),
-            flown,
-        ];
+        let impact_weight = succeeded(&impacts).map(joint::impact_weight);
+        let weights: Weights = [
+            (Method::Resonance, weight(&resonance)),
+            (Method::Trajectories, weight(&trajectories)),
+            (
+                Method::Boundaries,
+                weight(&boundaries).filter(|_| self.posterior.is_none()),
+            ),
+            (Method::Impacts, impact_weight.filter(|_| flown.is_none())),
+            (Method::Flights, flown),
+        ]
+        .into_iter()
+        .filter_map(|(method, weight)| Some((method, weight?)))
+        .collect();
         let joint = self.joint(&self.selection.blocks, start, &weights);
         Fits {
             resonance,
@@ -237,9 +225,8 @@ impl Work<'_> {
             return Uncertainty::default();
         };
         let present = joint::present(blocks, &fits.weights);
-        let names: Vec<&str> = present.into_iter().map(Method::name).collect();
         let asked = &self.evidence.uncertainty;
-        uncertainty::uncertainty(&problem, &names, &joint.fit, joint.factor, asked)
+        uncertainty::uncertainty(&problem, &present, &joint.fit, joint.factor, asked)
     }
 
     /// The gap that deviates most from what the others say, if one does.
@@ -260,7 +247,7 @@ impl Work<'_> {
     }
 
     /// Gains and corners far off, and interchanged channels.
-    fn other_suspicions(&self, fits: &Fits) -> Vec<Suspicion> {
+    fn other_suspicions(&self, fits: &Fits) -> Vec<Finding> {
         let Some(joint) = succeeded(&fits.joint) else {
             return Vec::new();
         };
@@ -277,34 +264,57 @@ impl Work<'_> {
         suspicion::channels(&joint.fit, joint.factor, nominal)
     }
 
+    /// What was left out: records and brackets by the selection, outlying impacts.
+    fn left_out(&self) -> Vec<LeftOut> {
+        let outlying = &self.selection.blocks.impact_outliers;
+        let impacts = outlying.iter().map(|pair| LeftOut {
+            item: results::impact(pair, self.evidence),
+            reason: Reason::OutlyingImpact {
+                before_m_s: pair.before_m_s,
+                after_m_s: pair.after_m_s,
+            },
+        });
+        let selected = self.selection.left_out.iter().cloned();
+        selected.chain(impacts).collect()
+    }
+
+    /// The records that each method's fit used, by their indices.
+    fn used_by(&self, methods: &BTreeMap<Method, MethodResult>) -> BTreeMap<Method, Vec<usize>> {
+        let fitted = methods.keys().map(|method| {
+            let mut records = self.selection.records_of(*method);
+            records.sort_unstable();
+            records.dedup();
+            (*method, records)
+        });
+        fitted.collect()
+    }
+
     /// What each method found.
-    fn results(&self, fits: &Fits) -> BTreeMap<String, MethodResult> {
+    fn results(&self, fits: &Fits) -> BTreeMap<Method, MethodResult> {
         let blocks = &self.selection.blocks;
         let posterior = self.posterior.as_ref();
         let together = succeeded(&fits.joint).map(|j| &j.fit);
         let found = [
             fits.resonance
                 .as_ref()
-                .map(|a| results::resonance(blocks, a)),
-            fits.trajectories
+                .map(|a| (Method::Resonance, results::resonance(blocks, a))),
+            fits.trajectories.as_ref().map(|a| {
+                let result = results::trajectories(blocks, a, self.evidence);
+                (Method::Trajectories, result)
+            }),
+            fits.boundaries.as_ref().map(|a| {
+                let result = results::boundaries(blocks, a, posterior);
+                (Method::Boundaries, result)
+            }),
+            fits.impacts.as_ref().map(|a| {
+                let result = results::impacts(blocks, a, self.evidence, together);
+                (Method::Impacts, result)
+            }),
+            fits.flights
                 .as_ref()
-                .map(|a| results::trajectories(blocks, a, self.evidence)),
-            fits.boundaries
-                .as_ref()
-                .map(|a| results::boundaries(blocks, a, posterior)),
-            fits.impacts
-                .as_ref()
-                .map(|a| results::impacts(blocks, a, self.evidence, together)),
-            fits.flights.as_ref().map(|a| results::flights(blocks, a)),
+                .map(|a| (Method::Flights, results::flights(blocks, a))),
+            decay::pooled(self.evidence.observations).map(|result| (Method::FreeDecay, result)),
         ];
-        let mut named: BTreeMap<String, MethodResult> = Method::ALL
-            .into_iter()
-            .zip(found)
-            .filter_map(|(method, result)| Some((method.name().to_owned(), result?)))
-            .collect();
-        if let Some(result) = decay::pooled(self.evidence.observations) {
-            named.insert("free_decay".into(), result);
-        }
-        named
+        found.into_iter().flatten().collect()
     }
 }

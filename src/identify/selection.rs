@@ -1,14 +1,18 @@
 //! Which records and brackets the fits rest on; the others are named with the reason.
 
+use std::collections::BTreeSet;
+
 use crate::identify::evidence::trajectory::TrajectoryRecord;
 use crate::identify::evidence::weighing::Bulk;
 use crate::identify::evidence::{Blocks, Evidence};
 use crate::identify::fit::normal::Normal;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::fit::{Problem, mean_squares};
-use crate::identify::joint::Method;
 use crate::identify::judgement::pull;
+use crate::identify::messages::{Item, LeftOut, Reason};
+use crate::identify::method::Method;
 use crate::identify::methods::{self, Attempt};
+use crate::motion::Bracket;
 
 /// Rounds of leaving outlying records out and fitting again.
 const ROUNDS: usize = 2;
@@ -35,7 +39,7 @@ pub struct Selection<'a> {
     /// The observations that the fits rest on.
     pub blocks: Blocks,
     /// Records or brackets left out, each with the reason.
-    pub left_out: Vec<(String, String)>,
+    pub left_out: Vec<LeftOut>,
     /// Periodic records that the trajectories' fit lost.
     pub lost: Vec<TrajectoryRecord>,
     /// The typical mean square of the records that it kept.
@@ -54,10 +58,26 @@ impl<'a> Selection<'a> {
         }
     }
 
-    /// Name a record that is left out, with the reason.
-    fn name(&mut self, observation: usize, reason: impl Into<String>) {
-        let record = self.evidence.observations[observation].record.clone();
-        self.left_out.push((record, reason.into()));
+    /// Note a record that is left out, with the reason.
+    fn note(&mut self, index: usize, reason: Reason) {
+        let record = self.evidence.observations[index].record.clone();
+        let item = Item::Record { index, record };
+        self.left_out.push(LeftOut { item, reason });
+    }
+
+    /// Note a bracket that is left out, with the reason.
+    fn note_bracket(&mut self, bracket: &Bracket, reason: Reason) {
+        let all = self.evidence.brackets;
+        if let Some(index) = all.iter().position(|b| b == bracket) {
+            let item = Item::Bracket {
+                index,
+                boundary: bracket.kind,
+                frequency_low_hz: bracket.frequency_low_hz,
+                frequency_high_hz: bracket.frequency_high_hz,
+                clearance_m: bracket.clearance_m,
+            };
+            self.left_out.push(LeftOut { item, reason });
+        }
     }
 
     /// Fit the impactless records; those that fit far worse than the bulk are named and left out.
@@ -78,27 +98,31 @@ impl<'a> Selection<'a> {
             if score <= bulk.limit {
                 self.blocks.resonance.points.push(point);
             } else {
-                let reason = format!(
-                    "its response fits {:.0} times worse than the others (still settling?): left \
-                     out of the resonance curve",
-                    bulk.times_worse(score)
+                let times_worse = bulk.times_worse(score);
+                self.note(
+                    point.observation,
+                    Reason::ResponseUnlikeOthers { times_worse },
                 );
-                self.name(point.observation, reason);
             }
         }
         methods::resonance(&self.blocks, &self.evidence.nominal)
     }
 
-    /// Fit the folded records; those without an orbit at the start are tried again at the end,
-    /// and those that fit far worse than the bulk are left out and named.
+    /// Fit the folded records, first as if the rig were ideal, then with all that may add to it; those
+    /// without an orbit at the start are tried again, and those that fit far worse than the bulk are left out and named.
     pub fn trajectories(&mut self, start: Parameters) -> Attempt {
+        let nominal = self.evidence.nominal;
         let all = self.blocks.trajectory.records.clone();
-        let at_start = mean_squares(&self.blocks.trajectory, &start);
-        let mut has_orbit = at_start.iter().map(Option::is_some);
-        let records = &mut self.blocks.trajectory.records;
-        records.retain(|_| has_orbit.next().unwrap_or(false));
-        let mut found = match methods::trajectories(&self.blocks, &self.evidence.nominal, start)? {
-            Ok(first) => first,
+        self.keep_those_with_orbits(&start);
+        let first = match methods::trajectories(&self.blocks, &nominal.ideal(), start)? {
+            Ok(first) => first.fit.parameters,
+            failed => return Some(failed),
+        };
+        self.blocks.trajectory.records.clone_from(&all);
+        self.keep_those_with_orbits(&first);
+        self.blocks.weigh_trajectories(&first);
+        let mut found = match methods::trajectories(&self.blocks, &nominal, first)? {
+            Ok(found) => found,
             failed => return Some(failed),
         };
         self.blocks.trajectory.records = all;
@@ -111,6 +135,14 @@ impl<'a> Selection<'a> {
             };
         }
         Some(Ok(found))
+    }
+
+    /// Keep the periodic records that have an orbit at given parameters.
+    fn keep_those_with_orbits(&mut self, parameters: &Parameters) {
+        let at_start = mean_squares(&self.blocks.trajectory, parameters);
+        let mut has_orbit = at_start.iter().map(Option::is_some);
+        let records = &mut self.blocks.trajectory.records;
+        records.retain(|_| has_orbit.next().unwrap_or(false));
     }
 
     /// Keep the records that fit like the bulk, name the others, and find again what is allowed
@@ -127,16 +159,12 @@ impl<'a> Selection<'a> {
                     self.blocks.trajectory.records.push(record);
                     continue;
                 }
-                Some(s) => format!(
-                    "its waveform fits {:.1} times worse than the others: left out of the \
-                     trajectories",
-                    bulk.times_worse(s)
-                ),
-                None => "the model has no such periodic motion at the fitted parameters: left \
-                         out of the trajectories"
-                    .to_owned(),
+                Some(s) => Reason::WaveformUnlikeOthers {
+                    times_worse: bulk.times_worse(s),
+                },
+                None => Reason::NoSuchMotion,
             };
-            self.name(record.observation, reason);
+            self.note(record.observation, reason);
             self.lost.push(record);
         }
         self.blocks.weigh_trajectories(parameters);
@@ -155,16 +183,7 @@ impl<'a> Selection<'a> {
             if near {
                 kept.push(bracket);
             } else {
-                let place = format!(
-                    "bracket {} {:.2}–{:.2} Hz at {:.3} mm",
-                    bracket.kind.name(),
-                    bracket.frequency_low_hz,
-                    bracket.frequency_high_hz,
-                    bracket.clearance_m * 1e3
-                );
-                let reason = "the motion changed far from the simulated boundary: a disturbance, \
-                              or another boundary";
-                self.left_out.push((place, reason.into()));
+                self.note_bracket(&bracket, Reason::FarFromBoundary);
             }
         }
         self.blocks.boundary.brackets = kept;
@@ -178,17 +197,22 @@ impl<'a> Selection<'a> {
         if records.iter().all(|r| r.clearance_m == clearance_m) {
             return false;
         }
-        let reason = "its gap is not as stated: left out of trajectories and boundaries";
         let (gone, kept): (Vec<_>, Vec<_>) = std::mem::take(records)
             .into_iter()
             .partition(|r| r.clearance_m == clearance_m);
         *records = kept;
         for record in gone {
-            self.name(record.observation, reason);
+            self.note(record.observation, Reason::GapNotAsStated);
         }
         self.lost.retain(|r| r.clearance_m != clearance_m);
-        let brackets = &mut self.blocks.boundary.brackets;
-        brackets.retain(|b| b.clearance_m != clearance_m);
+        let brackets = std::mem::take(&mut self.blocks.boundary.brackets);
+        let (gone, kept): (Vec<_>, Vec<_>) = brackets
+            .into_iter()
+            .partition(|b| b.clearance_m == clearance_m);
+        self.blocks.boundary.brackets = kept;
+        for bracket in gone {
+            self.note_bracket(&bracket, Reason::GapNotAsStated);
+        }
         true
     }
 
@@ -205,9 +229,7 @@ impl<'a> Selection<'a> {
                 if score.is_some_and(|s| s <= limit) {
                     self.blocks.flight.records.push(record);
                 } else {
-                    let reason = "its impacts do not follow from each other (one missed?): left \
-                                  out of the flights";
-                    self.name(record.observation, reason);
+                    self.note(record.observation, Reason::ImpactsDoNotFollow);
                 }
             }
             match methods::flights(&self.blocks, &self.evidence.nominal, parameters)? {
@@ -224,7 +246,11 @@ impl<'a> Selection<'a> {
         for (part, method) in problem.item_parts(at).into_iter().zip(present) {
             match method {
                 Method::Resonance | Method::Trajectories => items.push((*method, part)),
-                Method::Boundaries | Method::Impacts | Method::Flights => others.extend(part),
+                Method::Boundaries
+                | Method::Impacts
+                | Method::Flights
+                | Method::FreeDecay
+                | Method::PublishedSpeeds => others.extend(part),
             }
         }
         let priors = problem.priors.iter();
@@ -254,23 +280,70 @@ impl<'a> Selection<'a> {
     fn settles_slowly(&self, item: usize, at: &Parameters) -> bool {
         let block = &self.blocks.trajectory;
         let observation = block.records[item].observation;
-        let evidence = &self.evidence.observations[observation].finding.evidence;
+        let evidence = &self.evidence.observations[observation]
+            .classification
+            .evidence;
         let slowest = block.slowest_multiplier(item, at).unwrap_or(1.0);
         slowest.powf(evidence.cycles_observed) > (-1f64).exp()
     }
 
     /// Leave records out that pull the fit, and name them.
     pub fn leave_out(&mut self, pulling: &Pulling) {
-        let reason = "it pulls the fit away from what all other records say";
         for i in pulling.resonance.iter().rev() {
             let point = self.blocks.resonance.points.remove(*i);
-            let reason = format!("{reason}: left out of the resonance curve");
-            self.name(point.observation, reason);
+            let method = Method::Resonance;
+            self.note(point.observation, Reason::Influential { method });
         }
         for i in pulling.trajectory.iter().rev() {
             let record = self.blocks.trajectory.records.remove(*i);
-            let reason = format!("{reason}: left out of the trajectories");
-            self.name(record.observation, reason);
+            let method = Method::Trajectories;
+            self.note(record.observation, Reason::Influential { method });
+        }
+    }
+
+    /// The records that a method's fit uses, by their indices; one may come several times.
+    pub fn records_of(&self, method: Method) -> Vec<usize> {
+        let observations = self.evidence.observations;
+        let blocks = &self.blocks;
+        match method {
+            Method::Resonance => blocks
+                .resonance
+                .points
+                .iter()
+                .map(|p| p.observation)
+                .collect(),
+            Method::Trajectories => {
+                let records = &blocks.trajectory.records;
+                records.iter().map(|r| r.observation).collect()
+            }
+            Method::Boundaries => {
+                let names: BTreeSet<&String> = blocks
+                    .boundary
+                    .brackets
+                    .iter()
+                    .flat_map(|b| &b.records)
+                    .collect();
+                let indexed = observations.iter().enumerate();
+                indexed
+                    .filter(|(_, o)| names.contains(&o.record))
+                    .map(|(i, _)| i)
+                    .collect()
+            }
+            Method::Impacts => blocks.impact.pairs.iter().map(|p| p.observation).collect(),
+            Method::Flights => blocks
+                .flight
+                .records
+                .iter()
+                .map(|r| r.observation)
+                .collect(),
+            Method::FreeDecay => {
+                let indexed = observations.iter().enumerate();
+                indexed
+                    .filter(|(_, o)| !o.excluded() && o.decay.is_some())
+                    .map(|(i, _)| i)
+                    .collect()
+            }
+            Method::PublishedSpeeds => Vec::new(),
         }
     }
 }

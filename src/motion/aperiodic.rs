@@ -9,7 +9,7 @@ use crate::event::Impact;
 pub struct Irregularity {
     /// Fraction of the drive periods without an impact.
     pub impactless_periods: f64,
-    /// Von Neumann's ratio of the closing speeds: mean square of successive differences over the
+    /// Von Neumann's ratio of the approach speeds: mean square of successive differences over the
     /// variance; about 2 for an irregular sequence, small for one that swells and dies away.
     pub speed_roughness: f64,
 }
@@ -47,7 +47,7 @@ impl Irregularity {
 fn roughness(impacts: &[Impact]) -> f64 {
     let speeds: Vec<f64> = impacts
         .iter()
-        .filter_map(|i| i.closing_speed_before_m_s)
+        .filter_map(|i| i.approach_speed_before_m_s)
         .collect();
     let mean = crate::signal::robust::mean(&speeds);
     let variance: f64 = speeds.iter().map(|v| (v - mean).powi(2)).sum();

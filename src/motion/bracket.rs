@@ -74,7 +74,9 @@ impl Bracket {
 pub fn brackets(observations: &[Observation]) -> Vec<Bracket> {
     let mut usable: Vec<&Observation> = observations
         .iter()
-        .filter(|o| !o.excluded() && !matches!(o.finding.motion, Motion::Undetermined { .. }))
+        .filter(|o| {
+            !o.excluded() && !matches!(o.classification.motion, Motion::Undetermined { .. })
+        })
         .filter(|o| o.setting.sweep != Sweep::Unknown)
         .filter(|o| o.frequency_hz().is_some() && o.setting.clearance_m.is_some())
         .collect();
@@ -92,7 +94,7 @@ fn bracket(before: &Observation, after: &Observation) -> Option<Bracket> {
         && before.setting.sweep == after.setting.sweep
         && (before.setting.drive_amplitude / after.setting.drive_amplitude - 1.0).abs() < 0.02
         && rising == (before.setting.sweep == Sweep::Up);
-    if !one_run || before.finding.motion == after.finding.motion {
+    if !one_run || before.classification.motion == after.classification.motion {
         return None;
     }
     let (kind, periods_n) = kind(before, after);
@@ -104,8 +106,8 @@ fn bracket(before: &Observation, after: &Observation) -> Option<Bracket> {
         frequency_low_hz: a.min(b),
         frequency_high_hz: a.max(b),
         sweep: before.setting.sweep,
-        from: before.finding.motion.label(),
-        to: after.finding.motion.label(),
+        from: before.classification.motion.label(),
+        to: after.classification.motion.label(),
         records: [before.record.clone(), after.record.clone()],
     })
 }
@@ -113,7 +115,7 @@ fn bracket(before: &Observation, after: &Observation) -> Option<Bracket> {
 fn kind(before: &Observation, after: &Observation) -> (BoundaryKind, u32) {
     use BoundaryKind::{Grazing, Other, PeriodDoubling, SaddleNode};
     let up = before.setting.sweep == Sweep::Up;
-    let (from, to) = (&before.finding.motion, &after.finding.motion);
+    let (from, to) = (&before.classification.motion, &after.classification.motion);
     match (from, to, before.one_impact_in()) {
         (Motion::Impactless, _, _) => (Grazing, 1),
         // z = 1 vanishes upward at s2; z = 1/n at s2 on either side of its region.

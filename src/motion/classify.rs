@@ -43,7 +43,7 @@ pub struct Evidence {
     pub waveform_closure: Option<f64>,
     /// Waveform closure of the best shorter period, relative.
     pub shorter_closure: Option<f64>,
-    /// Noise of the closing velocity over its root mean square.
+    /// Noise of the approach velocity over its root mean square.
     pub noise_ratio: Option<f64>,
     /// Closure of the impacts at the chosen p/n.
     pub impact_closure: Option<ImpactClosure>,
@@ -57,7 +57,7 @@ pub struct Evidence {
 
 /// A motion type with its evidence.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Finding {
+pub struct Classification {
     /// The motion.
     pub motion: Motion,
     /// Between 0 and 1; from 0.9 on the program counts as sure.
@@ -66,7 +66,7 @@ pub struct Finding {
     pub evidence: Evidence,
 }
 
-impl Finding {
+impl Classification {
     /// p and n of a periodic motion (0/1 for the impactless one).
     pub fn impacts_and_periods(&self) -> Option<(u32, u32)> {
         match self.motion {
@@ -81,8 +81,8 @@ impl Finding {
     }
 }
 
-fn undetermined(reason: impl Into<String>, evidence: Evidence) -> Finding {
-    Finding {
+fn undetermined(reason: impl Into<String>, evidence: Evidence) -> Classification {
+    Classification {
         motion: Motion::Undetermined {
             reason: reason.into(),
         },
@@ -92,7 +92,11 @@ fn undetermined(reason: impl Into<String>, evidence: Evidence) -> Finding {
 }
 
 /// Classify the motion of a record from what was detected in it.
-pub fn classify(detection: &Detection, duration_s: f64, settings: &ClassifySettings) -> Finding {
+pub fn classify(
+    detection: &Detection,
+    duration_s: f64,
+    settings: &ClassifySettings,
+) -> Classification {
     let mut evidence = Evidence {
         impacts: detection.impacts.len(),
         ..Evidence::default()
@@ -112,8 +116,8 @@ pub fn classify(detection: &Detection, duration_s: f64, settings: &ClassifySetti
     } = View::of(detection, period_s, settings);
     evidence.noise_ratio = noise_ratio;
     if rest && detection.closed_fraction > 0.9 {
-        return Finding {
-            motion: Motion::Joined,
+        return Classification {
+            motion: Motion::Sticking,
             confidence: 0.95,
             evidence,
         };
@@ -180,7 +184,7 @@ struct Case<'a> {
 }
 
 impl Case<'_> {
-    fn by_waveform(&self, closures: &[WaveformClosure], mut evidence: Evidence) -> Finding {
+    fn by_waveform(&self, closures: &[WaveformClosure], mut evidence: Evidence) -> Classification {
         let best = closures
             .iter()
             .map(|c| c.ratio)
@@ -217,7 +221,7 @@ impl Case<'_> {
     }
 
     /// Without velocity: the smallest n for which the impact times close.
-    fn by_impacts_alone(&self, mut evidence: Evidence) -> Finding {
+    fn by_impacts_alone(&self, mut evidence: Evidence) -> Classification {
         let impacts = &self.detection.impacts;
         if impacts.is_empty() {
             return undetermined("neither velocity nor contact shows any motion", evidence);
@@ -251,7 +255,7 @@ impl Case<'_> {
     }
 
     /// The waveform (or the impact times) close after n periods: count the impacts in them.
-    fn periodic(&self, periods_n: u32, quality: f64, mut evidence: Evidence) -> Finding {
+    fn periodic(&self, periods_n: u32, quality: f64, mut evidence: Evidence) -> Classification {
         evidence.cycles_observed = evidence.periods_observed / f64::from(periods_n);
         let Some(count) = self.count(periods_n) else {
             return undetermined(
@@ -296,7 +300,7 @@ impl Case<'_> {
             * count.agreement.powi(2)
             * cycles_factor(evidence.cycles_observed)
             * shorter_factor(&evidence);
-        Finding {
+        Classification {
             motion,
             confidence,
             evidence,
@@ -309,7 +313,7 @@ impl Case<'_> {
         count: Count,
         quality: f64,
         evidence: Evidence,
-    ) -> Finding {
+    ) -> Classification {
         if periods_n > 1 && evidence.shorter_closure > evidence.waveform_closure.map(|c| 2.0 * c) {
             return undetermined(
                 format!(
@@ -320,14 +324,14 @@ impl Case<'_> {
             );
         }
         let confidence = quality * count.agreement.powi(2);
-        Finding {
+        Classification {
             motion: Motion::Impactless,
             confidence,
             evidence,
         }
     }
 
-    fn aperiodic(&self, mut evidence: Evidence) -> Finding {
+    fn aperiodic(&self, mut evidence: Evidence) -> Classification {
         let impacts = &self.detection.impacts;
         if impacts.is_empty() {
             return undetermined(
@@ -347,7 +351,7 @@ impl Case<'_> {
         let seen = (evidence.periods_observed / 8.0).min(1.0);
         let open = evidence.waveform_closure.unwrap_or(0.0) / self.settings.open_ratio;
         let confidence = 0.9 * seen * (1.0 - (-open).exp());
-        Finding {
+        Classification {
             motion,
             confidence,
             evidence,
@@ -378,7 +382,7 @@ fn shorter_factor(evidence: &Evidence) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::event::Rig;
+    use crate::event::RigKind;
     use crate::event::detect::{DetectSettings, detect};
     use crate::record::{Channel, Record, Role, Setting};
     use labfiles::units::Dimension;
@@ -412,7 +416,7 @@ mod tests {
     #[test]
     fn valid_more_impacts_than_are_looked_for_are_not_believed() {
         let record = two_pulses_a_period();
-        let detection = detect(&record, Rig::Double, &DetectSettings::default());
+        let detection = detect(&record, RigKind::Double, &DetectSettings::default());
         let looked_for = |most_impacts: u32| {
             let settings = ClassifySettings {
                 most_impacts,

@@ -118,7 +118,7 @@ pub fn count(times: &[f64], period: f64, duration: f64, periods_n: u32) -> Optio
 pub struct ImpactClosure {
     /// Typical phase difference, rad (robust: 1.4826 times the median magnitude).
     pub phase_rad: f64,
-    /// Typical difference of closing speeds over their mean (robust likewise); `None` without
+    /// Typical difference of approach speeds over their mean (robust likewise); `None` without
     /// speeds.
     pub speed_ratio: Option<f64>,
     /// Pairs compared.
@@ -139,11 +139,11 @@ pub fn impacts(impacts: &[Impact], period_s: f64, p: u32, n: u32) -> Option<Impa
         .collect();
     let speeds: Option<Vec<f64>> = pairs
         .iter()
-        .map(|(a, b)| Some(b.closing_speed_before_m_s? - a.closing_speed_before_m_s?))
+        .map(|(a, b)| Some(b.approach_speed_before_m_s? - a.approach_speed_before_m_s?))
         .collect();
     let level: Vec<f64> = impacts
         .iter()
-        .filter_map(|i| i.closing_speed_before_m_s)
+        .filter_map(|i| i.approach_speed_before_m_s)
         .collect();
     let level = robust::mean(&level).abs().max(f64::MIN_POSITIVE);
     Some(ImpactClosure {

@@ -4,9 +4,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::event::detect::DetectSettings;
-use crate::event::{DriveTone, Impact, Rig, detect};
+use crate::event::{DriveTone, Impact, RigKind, detect};
 use crate::motion::Motion;
-use crate::motion::classify::{ClassifySettings, Finding, classify};
+use crate::motion::classify::{Classification, ClassifySettings, classify};
 use crate::motion::fold::{Folded, fold};
 use crate::motion::response::{Response, responses};
 use crate::record::{Excitation, Flag, Record, Role, Setting};
@@ -37,7 +37,8 @@ pub struct Observation {
     /// The drive as measured.
     pub drive: Option<DriveTone>,
     /// The motion and its evidence.
-    pub finding: Finding,
+    #[serde(rename = "finding")]
+    pub classification: Classification,
     /// The impacts.
     pub impacts: Vec<Impact>,
     /// Contact pulses without a jump of velocity.
@@ -85,14 +86,14 @@ impl Observation {
         self.impacts.is_empty()
             && self.unsupported_pulses == 0
             && matches!(
-                self.finding.motion,
+                self.classification.motion,
                 Motion::Impactless | Motion::Undetermined { .. }
             )
     }
 
     /// Whether the motion is z = 1/n without a dead zone; gives n.
     pub fn one_impact_in(&self) -> Option<u32> {
-        match self.finding.motion {
+        match self.classification.motion {
             Motion::Periodic {
                 impacts_p: 1,
                 periods_n,
@@ -106,7 +107,7 @@ impl Observation {
 /// Observe one record: detect, classify, and keep what the identification needs.
 pub fn observe(
     record: &Record,
-    rig: Rig,
+    rig: RigKind,
     detecting: &DetectSettings,
     classifying: &ClassifySettings,
 ) -> Observation {
@@ -114,7 +115,7 @@ pub fn observe(
         return observe_decay(record);
     }
     let mut detection = detect(record, rig, detecting);
-    let finding = classify(&detection, record.duration_s(), classifying);
+    let classification = classify(&detection, record.duration_s(), classifying);
     let mut flags = record.flags.clone();
     flags.append(&mut detection.flags);
     flags.extend(contact_flag(
@@ -137,7 +138,7 @@ pub fn observe(
         folded: None,
         decay: None,
         flags,
-        finding,
+        classification,
     };
     if let Some(drive) = &observation.drive {
         if observation.has_no_impact() {
@@ -169,7 +170,7 @@ fn observe_decay(record: &Record) -> Observation {
         sample_rate_hz: record.sample_rate_hz,
         duration_s: record.duration_s(),
         drive: None,
-        finding: Finding {
+        classification: Classification {
             motion: Motion::Undetermined {
                 reason: "a free decay, without drive".into(),
             },

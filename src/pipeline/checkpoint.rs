@@ -137,15 +137,9 @@ mod tests {
     fn valid_a_resumed_observation_is_that_of_an_undisturbed_run() {
         let folder = tempfile::tempdir().unwrap();
         let recipe = Recipe {
-            truth: Truth {
-                restitution: 0.9,
-                natural_frequency_hz: 12.6,
-                damping_ratio: 0.07,
-                static_deflection_m: 1e-3,
-                drive_asymmetry: 0.0,
-                stiffness_asymmetry: 0.0,
-            },
+            truth: Truth::symmetric(0.9, 12.6, 0.07, 1e-3),
             faults: crate::synthetic::Faults::default(),
+            rig: crate::synthetic::RigSpec::exact(),
             records: 12,
             seed: 5,
         };

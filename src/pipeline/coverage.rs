@@ -7,19 +7,20 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::event::detect::DetectSettings;
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::fit::parameters::Parameters;
-use crate::identify::run::{Outcome, identify};
+use crate::identify::run::identify;
 use crate::identify::uncertainty::bound::bounds;
 use crate::identify::uncertainty::coverage::{Score, Trial, scores, table};
 use crate::identify::uncertainty::{Asked, Way};
+use crate::identify::{Finding, Identification};
 use crate::motion::{Bracket, ClassifySettings, Observation, brackets, observe, scale_drives};
 use crate::pipeline::{PipelineError, Progress};
 use crate::record::{Record, Role};
 use crate::synthetic::run::calibrated;
-use crate::synthetic::{Draw, Reach, Truth, draw, records};
+use crate::synthetic::{Draw, Reach, RigSpec, Truth, draw, records};
 
 /// What a coverage study finds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -28,6 +29,8 @@ pub struct Coverage {
     pub campaigns: usize,
     /// Seed of everything random.
     pub seed: u64,
+    /// The rig: exact, realistic, or its effects with their strengths.
+    pub rig: String,
     /// Every estimate of every campaign, as CSV.
     #[serde(skip)]
     pub estimates: String,
@@ -97,15 +100,20 @@ impl Mistake {
         }
     }
 
+    /// Whether a finding is this mistake.
+    fn is(self, finding: &Finding) -> bool {
+        match self {
+            Self::WrongClearance => matches!(finding, Finding::WrongClearance { .. }),
+            Self::SwappedChannels => matches!(finding, Finding::SwappedChannels { .. }),
+            Self::WrongGain => matches!(finding, Finding::WrongGain { .. }),
+        }
+    }
+
     /// Whether an outcome names it.
     fn is_named_by(self, seen: &Seen) -> bool {
         match self {
             Self::SwappedChannels if seen.flag("swapped_masses") => true,
-            _ => seen
-                .outcome
-                .suspicions
-                .iter()
-                .any(|s| s.kind == self.name()),
+            _ => seen.outcome.suspicions.iter().any(|s| self.is(s)),
         }
     }
 }
@@ -142,7 +150,7 @@ fn swap_roles(record: &mut Record, a: Role, b: Role) {
 struct Seen {
     observations: Vec<Observation>,
     brackets: Vec<Bracket>,
-    outcome: Outcome,
+    outcome: Identification,
 }
 
 impl Seen {
@@ -152,14 +160,19 @@ impl Seen {
     }
 }
 
-fn evidence<'a>(observations: &'a [Observation], brackets: &'a [Bracket]) -> Evidence<'a> {
+fn evidence<'a>(
+    observations: &'a [Observation],
+    brackets: &'a [Bracket],
+    draw: &Draw,
+) -> Evidence<'a> {
     Evidence {
-        rig: Rig::Double,
+        rig: RigKind::Double,
         observations,
         brackets,
         nominal: Nominal {
             gain_uncertainty: 5e-3,
             corner_uncertainty: 2e-2,
+            clearance_uncertainty_m: draw.clearance_uncertainty_m.unwrap_or(0.0),
             ..Nominal::default()
         },
         // Nobody reads profiles of hundreds of campaigns.
@@ -172,7 +185,7 @@ fn evidence<'a>(observations: &'a [Observation], brackets: &'a [Bracket]) -> Evi
 
 /// Simulate, observe and identify a campaign, with a mistake or without.
 fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError> {
-    let raw = records(&draw.truth, &draw.faults, &draw.plan, draw.seed)?;
+    let raw = records(&draw.laboratory())?;
     let mut records: Vec<Record> = raw
         .iter()
         .map(|r| calibrated(r, &draw.truth, &draw.faults))
@@ -186,12 +199,12 @@ fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError
             let found = crate::record::consistency::inspect(&record);
             record.flags.extend(found);
             let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
-            observe(&record, Rig::Double, &detect, &classify)
+            observe(&record, RigKind::Double, &detect, &classify)
         })
         .collect();
     scale_drives(&mut observations);
     let brackets = brackets(&observations);
-    let outcome = identify(&evidence(&observations, &brackets));
+    let outcome = identify(&evidence(&observations, &brackets, draw));
     Ok(Seen {
         observations,
         brackets,
@@ -200,9 +213,9 @@ fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError
 }
 
 /// What a campaign contributes to the scores.
-fn trial(seen: &Seen, truth: &Truth) -> Trial {
-    let truth = parameters(truth);
-    let bounds = bounds(&evidence(&seen.observations, &seen.brackets), &truth);
+fn trial(seen: &Seen, draw: &Draw) -> Trial {
+    let truth = parameters(&draw.truth);
+    let bounds = bounds(&evidence(&seen.observations, &seen.brackets, draw), &truth);
     Trial::new(truth, &seen.outcome.joint, &seen.outcome.methods, bounds)
 }
 
@@ -219,11 +232,17 @@ fn parameters(truth: &Truth) -> Parameters {
     }
 }
 
-/// Run a study of so many campaigns, and a fifth as many for each mistake.
+/// Run a study of that many campaigns on rigs with these effects, and a fifth as many for each
+/// mistake.
 ///
 /// # Errors
 /// Where a simulation refuses its parameters.
-pub fn study(campaigns: usize, seed: u64, progress: Progress) -> Result<Coverage, PipelineError> {
+pub fn study(
+    campaigns: usize,
+    seed: u64,
+    rig: &RigSpec,
+    progress: Progress,
+) -> Result<Coverage, PipelineError> {
     let few = campaigns.div_ceil(5);
     let total = (campaigns + few * (1 + Mistake::ALL.len())) as u64;
     let done = AtomicU64::new(0);
@@ -233,9 +252,9 @@ pub fn study(campaigns: usize, seed: u64, progress: Progress) -> Result<Coverage
     let main: Vec<(bool, Trial)> = (0..campaigns as u64)
         .into_par_iter()
         .map(|i| {
-            let draw = draw(seed, i, Reach::Full);
+            let draw = draw(seed, i, Reach::Full, rig);
             let seen = campaign(&draw, None)?;
-            let trial = trial(&seen, &draw.truth);
+            let trial = trial(&seen, &draw);
             step();
             Ok((!seen.outcome.suspicions.is_empty(), trial))
         })
@@ -246,7 +265,7 @@ pub fn study(campaigns: usize, seed: u64, progress: Progress) -> Result<Coverage
         let found: Vec<bool> = (0..few as u64)
             .into_par_iter()
             .map(|i| {
-                let seen = campaign(&draw(seed ^ 0x00FA_0175, i, reach), mistake)?;
+                let seen = campaign(&draw(seed ^ 0x00FA_0175, i, reach, rig), mistake)?;
                 step();
                 Ok(named(&seen))
             })
@@ -270,6 +289,7 @@ pub fn study(campaigns: usize, seed: u64, progress: Progress) -> Result<Coverage
     Ok(Coverage {
         campaigns,
         seed,
+        rig: rig.to_string(),
         methods: scores(&trials),
         estimates: table(&trials),
         nothing_touches,

@@ -6,35 +6,24 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::campaign::resolved::ResolvedCampaign;
-use crate::identify::Identification;
 use crate::identify::evidence::{Evidence, Nominal};
-use crate::identify::fit::Fit;
-use crate::identify::specimens::identify_campaign;
 use crate::identify::uncertainty::Asked;
+use crate::identify::{Identification, Provenance, identify_campaign};
 use crate::pipeline::store::write_json;
 use crate::pipeline::{Observed, PipelineError, inputs};
 
 /// Name of the result's file.
 pub const FILE: &str = "identification.json";
 
-/// An identification with what the report needs beside it.
-#[derive(Debug, Clone)]
-pub struct Found {
-    /// What is written.
-    pub identification: Identification,
-    /// Fit and records left out.
-    pub outcome: Kept,
-}
-
-/// What of an outcome the report needs beside identification.json.
+/// An identification with its provenance: identification.json.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Kept {
-    /// The joint fit.
-    pub fit: Option<Fit>,
-    /// Factor on its covariance.
-    pub factor: f64,
-    /// What a fit left out, and why.
-    pub left_out: Vec<(String, String)>,
+pub struct IdentificationFile {
+    /// The result.
+    #[serde(flatten)]
+    pub identification: Identification,
+    /// Settings, versions and inputs.
+    #[serde(flatten)]
+    pub provenance: Provenance,
 }
 
 /// What the campaign states about its rig.
@@ -46,6 +35,8 @@ pub fn nominal(campaign: &ResolvedCampaign) -> Nominal {
         static_deflection_m: campaign.rig.static_deflection_m,
         gain_uncertainty: campaign.rig.gain_uncertainty,
         corner_uncertainty: campaign.rig.corner_uncertainty,
+        clearance_uncertainty_m: campaign.rig.clearance_uncertainty_m,
+        ..Nominal::default()
     }
 }
 
@@ -68,33 +59,30 @@ pub fn evidence<'a>(campaign: &ResolvedCampaign, observed: &'a Observed) -> Evid
 ///
 /// # Errors
 /// Where the settings cannot be written as JSON.
-pub fn identify(campaign: &ResolvedCampaign, observed: &Observed) -> Result<Found, PipelineError> {
-    let (outcome, specimens) = identify_campaign(&evidence(campaign, observed));
-    let identification = Identification {
-        verdict: outcome.verdict,
-        joint: outcome.joint,
-        methods: outcome.methods,
-        agreement: outcome.agreement,
-        suspicions: outcome.suspicions,
-        uncertainty: outcome.uncertainty,
-        specimens,
+pub fn identify(
+    campaign: &ResolvedCampaign,
+    observed: &Observed,
+) -> Result<IdentificationFile, PipelineError> {
+    Ok(IdentificationFile {
+        identification: identify_campaign(&evidence(campaign, observed)),
+        provenance: provenance(campaign)?,
+    })
+}
+
+/// Where an identification of a campaign comes from.
+///
+/// # Errors
+/// Where the settings cannot be written as JSON.
+pub(super) fn provenance(campaign: &ResolvedCampaign) -> Result<Provenance, PipelineError> {
+    Ok(Provenance {
         settings: settings(campaign)?,
         versions: versions(),
         inputs_sha256: inputs::hashes(campaign),
-    };
-    let outcome = Kept {
-        fit: outcome.fit,
-        factor: outcome.factor,
-        left_out: outcome.left_out,
-    };
-    Ok(Found {
-        identification,
-        outcome,
     })
 }
 
 /// The resolved settings without the list of records, which has its own table.
-pub(super) fn settings(campaign: &ResolvedCampaign) -> Result<serde_json::Value, PipelineError> {
+fn settings(campaign: &ResolvedCampaign) -> Result<serde_json::Value, PipelineError> {
     let short = ResolvedCampaign {
         records: Vec::new(),
         ..campaign.clone()
@@ -109,7 +97,7 @@ pub(super) fn settings(campaign: &ResolvedCampaign) -> Result<serde_json::Value,
 pub fn versions() -> BTreeMap<String, String> {
     [
         ("impactid", env!("CARGO_PKG_VERSION")),
-        ("identification.json", "1"),
+        ("identification.json", "2"),
         ("records.parquet", "1"),
     ]
     .into_iter()
@@ -121,6 +109,6 @@ pub fn versions() -> BTreeMap<String, String> {
 ///
 /// # Errors
 /// Where it cannot be written.
-pub fn write(identification: &Identification, out: &Path) -> Result<(), PipelineError> {
+pub fn write(identification: &IdentificationFile, out: &Path) -> Result<(), PipelineError> {
     write_json(&out.join(FILE), identification)
 }

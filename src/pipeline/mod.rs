@@ -190,7 +190,7 @@ pub fn run(
     progress("write", 0, 1);
     store::write_resolved(campaign, out)?;
     tables::write_all(&observed, out)?;
-    identify::write(&found.identification, out)?;
+    identify::write(&found, out)?;
     report::write(&report, out)?;
     checkpoint::remove(out);
     Ok(found.identification.verdict)

@@ -42,8 +42,10 @@ pub fn plan(
     let found = identify::identify(campaign, &observed)?;
     let evidence = identify::evidence(campaign, &observed);
     let reach = Reach::of(&observed.observations);
-    let proposals = match (found.outcome.fit.as_ref(), reach) {
-        (Some(fit), Some(reach)) => propose(&evidence, fit, found.outcome.factor, reach, count),
+    let proposals = match (&found.identification.joint_fit, reach) {
+        (Some(joint), Some(reach)) => {
+            propose(&evidence, &joint.fit, joint.variance_factor, reach, count)
+        }
         _ => Vec::new(),
     };
     let now = found.identification.joint.parameters.restitution.as_ref();

@@ -4,12 +4,10 @@ use std::path::Path;
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::campaign::written::Published;
-use crate::identify::published::{
-    PublishedOutcome, PublishedSpeed, Where, identify, methods, predicted,
-};
+use crate::identify::published::{PublishedSpeed, Where, identify, predicted};
 use crate::identify::{Identification, Verdict};
-use crate::pipeline::identify::{settings, versions};
-use crate::pipeline::{PipelineError, inputs, report, store};
+use crate::pipeline::identify::{IdentificationFile, provenance};
+use crate::pipeline::{PipelineError, report, store};
 use crate::report::ReportContent;
 use crate::report::content::DataTable;
 use labfiles::ReadError;
@@ -25,35 +23,28 @@ pub fn run(
     command_line: &str,
 ) -> Result<Verdict, PipelineError> {
     let speeds = read(&campaign.folder().join(&published.speeds))?;
-    let found = identify(&speeds, &published.damping_ratio_hypotheses);
-    let (methods, agreement) = methods(&found);
-    let identification = Identification {
-        verdict: found.verdict.clone(),
-        joint: found.result.clone(),
-        methods,
-        agreement,
-        suspicions: Vec::new(),
-        uncertainty: Default::default(),
-        specimens: std::collections::BTreeMap::new(),
-        settings: settings(campaign)?,
-        versions: versions(),
-        inputs_sha256: inputs::hashes(campaign),
+    let found = IdentificationFile {
+        identification: identify(&speeds, &published.damping_ratio_hypotheses),
+        provenance: provenance(campaign)?,
     };
-    let mut content = ReportContent::new(campaign.report.title.clone(), identification);
+    let mut content =
+        ReportContent::new(campaign.report.title.clone(), found.identification.clone());
     content.summary.name = campaign.name.clone();
     content.summary.rig = "closing speeds as published; nothing was measured here".into();
-    content.tables = vec![table(&speeds, found_damping(&found), published)];
-    content.settings_text = format!("{:#}", content.identification.settings);
+    let damping_ratio = found_damping(&found.identification);
+    content.tables = vec![table(&speeds, damping_ratio, published)];
+    content.settings_text = format!("{:#}", found.provenance.settings);
+    content.provenance = found.provenance.clone();
     content.command_line = command_line.to_owned();
     let report = report::render(&content, campaign)?;
     store::write_resolved(campaign, out)?;
-    super::identify::write(&content.identification, out)?;
+    super::identify::write(&found, out)?;
     report::write(&report, out)?;
-    Ok(found.verdict)
+    Ok(found.identification.verdict)
 }
 
-fn found_damping(found: &PublishedOutcome) -> Option<f64> {
-    found.result.parameters.damping_ratio.as_ref()?.value
+fn found_damping(found: &Identification) -> Option<f64> {
+    found.joint.parameters.damping_ratio.as_ref()?.value
 }
 
 /// Each published speed beside the model's for the damping ratio found and those printed.

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::campaign::resolved::{Report as Look, ResolvedCampaign};
 use crate::campaign::written::{Language, Paper as WrittenPaper};
-use crate::pipeline::identify::Found;
+use crate::pipeline::identify::IdentificationFile;
 use crate::pipeline::observe::read_one;
 use crate::pipeline::{Observed, PipelineError};
 use crate::record::Record;
@@ -32,7 +32,7 @@ pub type ReportFile = (String, Vec<u8>);
 pub fn files(
     campaign: &ResolvedCampaign,
     observed: &Observed,
-    found: &Found,
+    found: &IdentificationFile,
     command_line: &str,
 ) -> Result<Vec<ReportFile>, PipelineError> {
     render(&content(campaign, observed, found, command_line)?, campaign)
@@ -79,7 +79,7 @@ pub fn write(files: &[ReportFile], out: &Path) -> Result<(), PipelineError> {
 pub fn content(
     campaign: &ResolvedCampaign,
     observed: &Observed,
-    found: &Found,
+    found: &IdentificationFile,
     command_line: &str,
 ) -> Result<ReportContent, PipelineError> {
     let chosen = chosen_records(&observed.observations, &campaign.report.points);
@@ -89,9 +89,7 @@ pub fn content(
         observations: &observed.observations,
         brackets: &observed.brackets,
         identification: &found.identification,
-        fit: found.outcome.fit.as_ref(),
-        factor: found.outcome.factor,
-        left_out: &found.outcome.left_out,
+        provenance: &found.provenance,
         chosen: &chosen,
         chosen_records: &records(campaign, &chosen),
         decays: &decays,

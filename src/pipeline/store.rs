@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
 use crate::motion::{Observation, brackets};
-use crate::pipeline::identify::{Found, Kept};
+use crate::pipeline::identify::IdentificationFile;
 use crate::pipeline::observe::each_record;
 use crate::pipeline::{Observed, PipelineError, Progress, packed};
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
@@ -17,7 +17,6 @@ use labfiles::units::{Quantity, Unit};
 const RESOLVED: &str = "campaign.resolved.json";
 const INGESTED: &str = "ingested.h5";
 const INGESTED_CAMPAIGN: &str = "ingested.json";
-const FIT: &str = "fit.json";
 const OBSERVATIONS: &str = "observations.json.gz";
 
 fn store_error(path: &Path, reason: impl std::fmt::Display) -> PipelineError {
@@ -234,23 +233,12 @@ pub fn classify(out: &Path, progress: Progress) -> Result<Observed, PipelineErro
     Ok(observed)
 }
 
-/// Keep what the report needs of stage three beside identification.json.
-///
-/// # Errors
-/// Where it cannot be written.
-pub fn write_fit(kept: &Kept, out: &Path) -> Result<(), PipelineError> {
-    write_json(&out.join(FIT), kept)
-}
-
 /// What stage three left.
 ///
 /// # Errors
 /// Where it is missing or unreadable.
-pub fn read_found(out: &Path) -> Result<Found, PipelineError> {
-    Ok(Found {
-        identification: read_json(&out.join(super::identify::FILE))?,
-        outcome: read_json(&out.join(FIT))?,
-    })
+pub fn read_identification(out: &Path) -> Result<IdentificationFile, PipelineError> {
+    read_json(&out.join(super::identify::FILE))
 }
 
 /// What stage two kept.

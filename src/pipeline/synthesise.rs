@@ -10,7 +10,9 @@ use crate::pipeline::store::RECORDS_A_FILE;
 use crate::synthetic::acquisition::{FULL_SCALE_V, converter_step};
 use crate::synthetic::rig::{ROLES, sensitivities};
 use crate::synthetic::run::RATE_HZ;
-use crate::synthetic::{Faults, Laboratory, Plan, RawRecord, Truth, blocks};
+use crate::synthetic::{
+    Effects, Faults, Laboratory, Plan, RawRecord, RigSpec, TrueImpact, Truth, blocks,
+};
 use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Stored};
 use labfiles::output::write_bytes;
 
@@ -21,6 +23,9 @@ pub struct Recipe {
     pub truth: Truth,
     /// Faults of the rig.
     pub faults: Faults,
+    /// Effects beyond the model, with their strengths.
+    #[serde(skip_serializing_if = "RigSpec::is_exact")]
+    pub rig: RigSpec,
     /// Number of records.
     pub records: usize,
     /// Seed of everything random.
@@ -37,6 +42,9 @@ struct TrueRecord {
     motion: String,
     periodic: bool,
     impacts: usize,
+    /// Sums of approach speed squared and of approach times separation speed.
+    #[serde(skip)]
+    speeds: [f64; 2],
 }
 
 #[derive(Serialize)]
@@ -46,6 +54,13 @@ struct TruthFile<'a> {
     natural_frequency_hz: f64,
     damping_ratio: f64,
     static_deflection_m: f64,
+    /// What was drawn of the effects beyond the model.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    effects: Option<&'a Effects>,
+    /// Separation speed at the end over approach speed at the start of contact, over all impacts
+    /// by least squares: R as it acts, springs and drive included, where impacts last.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    speed_ratio: Option<f64>,
     recipe: &'a Recipe,
     records: Vec<&'a TrueRecord>,
 }
@@ -67,9 +82,13 @@ pub fn write_campaign(recipe: &Recipe, out: &Path) -> Result<usize, PipelineErro
         recipe.truth.static_deflection_m,
         recipe.records,
     );
+    let mut recipe = recipe.clone();
+    let effects = recipe.rig.draw(&mut recipe.truth, &plan, recipe.seed);
+    let recipe = &recipe;
     let laboratory = Laboratory {
         truth: &recipe.truth,
         faults: &recipe.faults,
+        effects: &effects,
         plan: &plan,
         seed: recipe.seed,
     };
@@ -89,7 +108,7 @@ pub fn write_campaign(recipe: &Recipe, out: &Path) -> Result<usize, PipelineErro
     write_bytes(&out.join("campaign.toml"), campaign_toml(recipe).as_bytes())?;
     write_bytes(
         &out.join("truth.json"),
-        truth_json(recipe, &files)?.as_bytes(),
+        truth_json(recipe, &effects, &files)?.as_bytes(),
     )?;
     Ok(plan.steps.len())
 }
@@ -112,6 +131,7 @@ fn kept(raw: RawRecord, faults: &Faults) -> KeptRecord {
         motion: raw.motion.label(),
         periodic: raw.motion.is_periodic(),
         impacts: raw.impacts.len(),
+        speeds: speed_sums(&raw.impacts),
     };
     let columns = raw.channels.iter().map(|c| ColumnToWrite {
         name: c.name.to_owned(),
@@ -125,6 +145,22 @@ fn kept(raw: RawRecord, faults: &Faults) -> KeptRecord {
         attributes: Vec::new(),
     };
     (table, truth)
+}
+
+/// Sums of approach speed squared and of approach times separation speed, of impacts without a
+/// dead zone.
+fn speed_sums(impacts: &[TrueImpact]) -> [f64; 2] {
+    let bounces = impacts.iter().filter(|i| i.dead_zone_s == 0.0);
+    bounces.fold([0.0; 2], |[square, product], i| {
+        let v = i.approach_m_s;
+        [square + v * v, product + v * i.separation_m_s]
+    })
+}
+
+fn speed_ratio(files: &[RecordsFile]) -> Option<f64> {
+    let records = files.iter().flat_map(|f| &f.truths);
+    let [square, product] = records.fold([0.0; 2], |[a, b], r| [a + r.speeds[0], b + r.speeds[1]]);
+    (square > 0.0).then(|| product / square)
 }
 
 fn write_records(
@@ -172,13 +208,19 @@ fn run_table(files: &[RecordsFile]) -> String {
     text
 }
 
-fn truth_json(recipe: &Recipe, files: &[RecordsFile]) -> Result<String, PipelineError> {
+fn truth_json(
+    recipe: &Recipe,
+    effects: &Effects,
+    files: &[RecordsFile],
+) -> Result<String, PipelineError> {
     let file = TruthFile {
         synthetic: true,
         restitution: recipe.truth.restitution,
         natural_frequency_hz: recipe.truth.natural_frequency_hz,
         damping_ratio: recipe.truth.damping_ratio,
         static_deflection_m: recipe.truth.static_deflection_m,
+        effects: (!recipe.rig.is_exact()).then_some(effects),
+        speed_ratio: speed_ratio(files).filter(|_| effects.contact_duration_s > 0.0),
         recipe,
         records: files.iter().flat_map(|f| &f.truths).collect(),
     };
@@ -206,6 +248,13 @@ fn campaign_toml(recipe: &Recipe) -> String {
          gain_uncertainty = \"0.5 %\"\n\
          corner_uncertainty = \"2 %\"\n",
     );
+    if let Some(uncertainty_m) = recipe.rig.clearance_uncertainty_m(&recipe.truth) {
+        let _ = writeln!(
+            text,
+            "clearance_uncertainty = \"{:.3} um\"",
+            1e6 * uncertainty_m
+        );
+    }
     for (sensitivity, (role, dimension, filtered)) in sensitivities(&recipe.truth).iter().zip(ROLES)
     {
         let _ = write!(

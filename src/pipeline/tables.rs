@@ -37,7 +37,7 @@ fn amplitude(o: &Observation, role: Role) -> Option<f64> {
 }
 
 fn reason(o: &Observation) -> Option<String> {
-    match &o.finding.motion {
+    match &o.classification.motion {
         Motion::Undetermined { reason } => Some(reason.clone()),
         _ => None,
     }
@@ -75,16 +75,22 @@ const RECORDS: &[(&str, Get<Observation>)] = &[
         "sweep",
         Get::Text(|o| Some(o.setting.sweep.name().to_owned())),
     ),
-    ("motion", Get::Text(|o| Some(o.finding.motion.label()))),
+    (
+        "motion",
+        Get::Text(|o| Some(o.classification.motion.label())),
+    ),
     (
         "impacts_p",
-        Get::Count(|o| o.finding.impacts_and_periods().map(|p| p.0)),
+        Get::Count(|o| o.classification.impacts_and_periods().map(|p| p.0)),
     ),
     (
         "periods_n",
-        Get::Count(|o| o.finding.impacts_and_periods().map(|p| p.1)),
+        Get::Count(|o| o.classification.impacts_and_periods().map(|p| p.1)),
     ),
-    ("confidence", Get::Number(|o| Some(o.finding.confidence))),
+    (
+        "confidence",
+        Get::Number(|o| Some(o.classification.confidence)),
+    ),
     ("reason", Get::Text(reason)),
     ("impacts", Get::Count(|o| Some(o.impacts.len() as u32))),
     (
@@ -97,39 +103,39 @@ const RECORDS: &[(&str, Get<Observation>)] = &[
     ),
     (
         "periods_observed",
-        Get::Number(|o| Some(o.finding.evidence.periods_observed)),
+        Get::Number(|o| Some(o.classification.evidence.periods_observed)),
     ),
     (
         "waveform_closure_ratio",
-        Get::Number(|o| o.finding.evidence.waveform_closure),
+        Get::Number(|o| o.classification.evidence.waveform_closure),
     ),
     (
         "shorter_closure_ratio",
-        Get::Number(|o| o.finding.evidence.shorter_closure),
+        Get::Number(|o| o.classification.evidence.shorter_closure),
     ),
     (
         "noise_ratio",
-        Get::Number(|o| o.finding.evidence.noise_ratio),
+        Get::Number(|o| o.classification.evidence.noise_ratio),
     ),
     (
         "impact_closure_rad",
-        Get::Number(|o| Some(o.finding.evidence.impact_closure?.phase_rad)),
+        Get::Number(|o| Some(o.classification.evidence.impact_closure?.phase_rad)),
     ),
     (
         "impact_closure_speed_ratio",
-        Get::Number(|o| o.finding.evidence.impact_closure?.speed_ratio),
+        Get::Number(|o| o.classification.evidence.impact_closure?.speed_ratio),
     ),
     (
         "count_agreement",
-        Get::Number(|o| o.finding.evidence.count_agreement),
+        Get::Number(|o| o.classification.evidence.count_agreement),
     ),
     (
         "impactless_periods",
-        Get::Number(|o| Some(o.finding.evidence.irregularity?.impactless_periods)),
+        Get::Number(|o| Some(o.classification.evidence.irregularity?.impactless_periods)),
     ),
     (
         "speed_roughness",
-        Get::Number(|o| Some(o.finding.evidence.irregularity?.speed_roughness)),
+        Get::Number(|o| Some(o.classification.evidence.irregularity?.speed_roughness)),
     ),
     (
         "velocity_x_amplitude_m_s",
@@ -194,11 +200,11 @@ const IMPACTS: &[(&str, Get<ImpactRow>)] = &[
     ("drive_phase_rad", Get::Number(|r| r.1.drive_phase_rad)),
     (
         "closing_speed_before_m_s",
-        Get::Number(|r| r.1.closing_speed_before_m_s),
+        Get::Number(|r| r.1.approach_speed_before_m_s),
     ),
     (
         "closing_speed_after_m_s",
-        Get::Number(|r| r.1.closing_speed_after_m_s),
+        Get::Number(|r| r.1.approach_speed_after_m_s),
     ),
     ("speed_error_m_s", Get::Number(|r| r.1.speed_error_m_s)),
     ("velocity_x_before_m_s", Get::Number(|r| before(r.1.x))),
@@ -206,7 +212,7 @@ const IMPACTS: &[(&str, Get<ImpactRow>)] = &[
     ("velocity_y_before_m_s", Get::Number(|r| before(r.1.y))),
     ("velocity_y_after_m_s", Get::Number(|r| after(r.1.y))),
     ("dead_zone_s", Get::Number(|r| Some(r.1.dead_zone_s))),
-    ("seen", Get::Text(|r| Some(r.1.seen.name().to_owned()))),
+    ("seen", Get::Text(|r| Some(r.1.source.name().to_owned()))),
 ];
 
 fn frame<T>(

@@ -1,9 +1,11 @@
 //! The rig's electronics: integrators with a high-pass, gains, noise, contact, converter.
 
-use rand::Rng;
+use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
+use crate::synthetic::effects::Effects;
+use crate::synthetic::run::{RATE_HZ, TrueImpact};
 use crate::synthetic::truth::Faults;
 
 /// Full scale of the converter, V (±).
@@ -55,27 +57,27 @@ pub fn converter_step(faults: &Faults) -> Option<f64> {
         .map(|bits| 2.0 * FULL_SCALE_V / 2f64.powi(bits as i32))
 }
 
-/// Voltage of the contact at each sample: 5 V while it is closed.
-///
-/// `impacts`: time and length of the dead zone of each, s.
+/// Voltage of the contact at each of the given times: 5 V while it is closed, at least for the
+/// length of its pulse.
 pub fn contact_volts(
     times_s: &[f64],
-    impacts: &[(f64, f64)],
+    impacts: &[TrueImpact],
     faults: &Faults,
     rng: &mut ChaCha8Rng,
 ) -> Vec<f64> {
     let mut closed: Vec<(f64, f64)> = Vec::new();
-    for &(time, dead_zone) in impacts {
-        if dead_zone > 0.0 {
-            closed.push((time, time + dead_zone.min(1e3)));
+    for impact in impacts {
+        let time = impact.time_s;
+        if impact.dead_zone_s > 0.0 {
+            closed.push((time, time + impact.dead_zone_s.min(1e3)));
             continue;
         }
         if rng.random_bool(faults.missed_probability) {
             continue;
         }
-        closed.push((time, time + faults.contact_pulse_s));
+        closed.push((time, time + faults.contact_pulse_s.max(impact.duration_s)));
         if rng.random_bool(faults.bounce_probability) {
-            let again = time + rng.random_range(0.7e-3..1.5e-3);
+            let again = time + impact.duration_s + rng.random_range(0.7e-3..1.5e-3);
             closed.push((again, again + 0.7 * faults.contact_pulse_s));
         }
     }
@@ -89,4 +91,63 @@ pub fn contact_volts(
             }
         })
         .collect()
+}
+
+/// Frequency of the mains, Hz.
+const MAINS_HZ: f64 = 50.0;
+/// Corner of the slowest process that makes up the 1/f noise, Hz; the others are octaves above.
+const SLOWEST_HZ: f64 = 0.25;
+/// Number of those processes: up to half the rate of sampling.
+const OCTAVES: usize = 12;
+
+/// Noise that is not white: 1/f noise, a sum of first-order processes an octave apart with equal
+/// variances, and mains hum at a phase of its own in every record.
+#[derive(Debug)]
+pub struct Disturbance {
+    flicker_v: f64,
+    hum_v: f64,
+    hum_phase_rad: f64,
+    rng: ChaCha8Rng,
+}
+
+impl Disturbance {
+    /// That of one record of a campaign.
+    pub fn new(effects: &Effects, seed: u64, record: usize) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed ^ 0xF11C_4E12);
+        rng.set_stream(record as u64);
+        Self {
+            flicker_v: effects.flicker_v,
+            hum_v: effects.hum_v,
+            hum_phase_rad: rng.random_range(0.0..std::f64::consts::TAU),
+            rng,
+        }
+    }
+
+    /// Add it to the next channel, V.
+    pub fn add(&mut self, volts: &mut [f64]) {
+        if self.flicker_v > 0.0 {
+            for octave in 0..OCTAVES {
+                self.add_process(SLOWEST_HZ * 2f64.powi(octave as i32), volts);
+            }
+        }
+        if self.hum_v > 0.0 {
+            for (i, v) in volts.iter_mut().enumerate() {
+                let turns = MAINS_HZ * i as f64 / RATE_HZ;
+                *v += self.hum_v * (std::f64::consts::TAU * turns + self.hum_phase_rad).sin();
+            }
+        }
+    }
+
+    /// One stationary first-order process.
+    fn add_process(&mut self, corner_hz: f64, volts: &mut [f64]) {
+        let deviation = self.flicker_v / (OCTAVES as f64).sqrt();
+        let decay = (-std::f64::consts::TAU * corner_hz / RATE_HZ).exp();
+        let fresh = deviation * (1.0 - decay * decay).sqrt();
+        let mut normal = || -> f64 { StandardNormal.sample(&mut self.rng) };
+        let mut value = deviation * normal();
+        for v in volts {
+            *v += value;
+            value = decay * value + fresh * normal();
+        }
+    }
 }

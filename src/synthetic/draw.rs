@@ -3,7 +3,9 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use super::effects::{Effects, RigSpec};
 use super::plan::Plan;
+use super::run::Laboratory;
 use super::truth::{Faults, Truth, draw_asymmetry};
 
 /// A campaign to simulate.
@@ -13,6 +15,10 @@ pub struct Draw {
     pub truth: Truth,
     /// Faults of the rig.
     pub faults: Faults,
+    /// Effects beyond the model.
+    pub effects: Effects,
+    /// Standard uncertainty that the laboratory states of its gaps, m, if they are off.
+    pub clearance_uncertainty_m: Option<f64>,
     /// The settings visited.
     pub plan: Plan,
     /// Seed of its noise.
@@ -24,15 +30,15 @@ pub struct Draw {
 pub enum Reach {
     /// Several gaps, up and down, and the resonance curve.
     Full,
-    /// A gap so wide that nothing touches: R cannot be told.
+    /// A gap so wide that nothing touches: R cannot be identified.
     NothingTouches,
 }
 
 /// Draw campaign number `index` of a study; the same seed and index always give the same.
 ///
 /// R 0.5 to 0.93, β 0.025 to 0.09, f0 8 to 17 Hz, x_st 0.3 to 3 mm, 120 to 260 records, noise 1 to
-/// 8 mV on ±5 V, integrators' corner 0.2 to 0.8 Hz, asymmetry up to 2 %.
-pub fn draw(seed: u64, index: u64, reach: Reach) -> Draw {
+/// 8 mV on ±5 V, integrators' corner 0.2 to 0.8 Hz, asymmetry up to 2 %, and the effects of `rig`.
+pub fn draw(seed: u64, index: u64, reach: Reach, rig: &RigSpec) -> Draw {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(index);
     let mut between = |low: f64, high: f64| rng.random_range(low..high);
@@ -61,17 +67,36 @@ pub fn draw(seed: u64, index: u64, reach: Reach) -> Draw {
         let widest = plan.steps[0].clearance_m;
         plan.steps.retain(|s| s.clearance_m == widest);
     }
-    Draw {
-        truth: Truth {
+    let mut truth = Truth {
+        drive_asymmetry,
+        stiffness_asymmetry,
+        ..Truth::symmetric(
             restitution,
             natural_frequency_hz,
             damping_ratio,
             static_deflection_m,
-            drive_asymmetry,
-            stiffness_asymmetry,
-        },
+        )
+    };
+    let effects = rig.draw(&mut truth, &plan, own_seed);
+    Draw {
+        clearance_uncertainty_m: rig.clearance_uncertainty_m(&truth),
+        truth,
         faults,
+        effects,
         plan,
         seed: own_seed,
+    }
+}
+
+impl Draw {
+    /// The laboratory that runs it.
+    pub fn laboratory(&self) -> Laboratory<'_> {
+        Laboratory {
+            truth: &self.truth,
+            faults: &self.faults,
+            effects: &self.effects,
+            plan: &self.plan,
+            seed: self.seed,
+        }
     }
 }

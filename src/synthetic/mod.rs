@@ -4,12 +4,17 @@
 
 pub mod acquisition;
 pub mod draw;
+pub mod effects;
+pub mod engine;
+mod equations;
+mod integrate;
 pub mod plan;
 pub mod rig;
 pub mod run;
 pub mod truth;
 
 pub use draw::{Draw, Reach, draw};
+pub use effects::{Effect, Effects, RigError, RigSpec};
 pub use plan::{Plan, Step};
-pub use run::{Laboratory, RawChannel, RawRecord, blocks, records};
+pub use run::{Laboratory, RawChannel, RawRecord, TrueImpact, blocks, records};
 pub use truth::{Faults, Truth};

@@ -1,4 +1,4 @@
-//! Running a plan: the exact motion, sampled through the rig's electronics.
+//! Running a plan: the motion, sampled through the rig's electronics.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -6,13 +6,14 @@ use rayon::prelude::*;
 
 use crate::motion::Motion;
 use crate::record::{self, Channel, Record, Role};
-use crate::synthetic::acquisition::{self, HighPass};
+use crate::synthetic::acquisition::{self, Disturbance, HighPass};
+use crate::synthetic::effects::Effects;
+use crate::synthetic::engine::{Engine, Physics, Recorded};
+use crate::synthetic::equations::Phase4;
 use crate::synthetic::plan::{Plan, Step};
 use crate::synthetic::rig::{ROLES, sensitivities};
 use crate::synthetic::truth::{Faults, Truth, draw_corners, draw_gains};
-use impact_oscillator::model::contact::ModelImpact;
-use impact_oscillator::model::params::{Initial, ModelError, Setting};
-use impact_oscillator::model::simulate::{Simulator, Trajectory};
+use impact_oscillator::model::params::{ModelError, Setting};
 
 /// Samples per second, Hz.
 pub const RATE_HZ: f64 = 2000.0;
@@ -24,6 +25,10 @@ const FINE: usize = 4;
 const SETTLE_PERIODS: f64 = 150.0;
 /// Time before a record for the high-pass to settle, s.
 const PRE_ROLL_S: f64 = 3.0;
+/// The same in fine steps.
+const PRE_ROLL_FINE: usize = (PRE_ROLL_S * RATE_HZ) as usize * FINE;
+/// A fine step, s.
+const FINE_STEP_S: f64 = 1.0 / (RATE_HZ * FINE as f64);
 
 /// One channel of a raw record, in V as the converter gives it.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,8 +50,35 @@ pub struct RawRecord {
     pub channels: Vec<RawChannel>,
     /// The motion according to the noiseless simulation.
     pub motion: Motion,
-    /// True impacts within the record: time since its first sample, s, and closing speed, m/s.
-    pub impacts: Vec<(f64, f64)>,
+    /// True impacts that begin within the record.
+    pub impacts: Vec<TrueImpact>,
+}
+
+/// One impact in truth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrueImpact {
+    /// First touch, since the record's first sample, s.
+    pub time_s: f64,
+    /// Approach speed at first touch, m/s.
+    pub approach_m_s: f64,
+    /// Separation speed at the end of contact, m/s.
+    pub separation_m_s: f64,
+    /// How long the contact lasts, s; zero for an instantaneous one.
+    pub duration_s: f64,
+    /// How long the masses stay together in a dead zone, s; zero without one.
+    pub dead_zone_s: f64,
+}
+
+/// What a record is made from: the motion and where it was taken.
+struct Take<'a> {
+    step: &'a Step,
+    index: usize,
+    /// Phase of the drive at the first sample, rad.
+    phase: f64,
+    /// Dimensionless time at the start of the pre-roll.
+    start_tau: f64,
+    recorded: &'a Recorded,
+    impacts: &'a [TrueImpact],
 }
 
 /// What a virtual laboratory is made of and what it visits.
@@ -56,6 +88,8 @@ pub struct Laboratory<'a> {
     pub truth: &'a Truth,
     /// Faults of the rig.
     pub faults: &'a Faults,
+    /// Effects beyond the model.
+    pub effects: &'a Effects,
     /// The settings that are visited.
     pub plan: &'a Plan,
     /// Seed of everything random.
@@ -65,21 +99,10 @@ pub struct Laboratory<'a> {
 /// All records of a plan, in order. Sweeps run in parallel; the result does not depend on it.
 ///
 /// # Errors
-/// [`ModelError`] where the truth or the plan lies outside the model's range.
-pub fn records(
-    truth: &Truth,
-    faults: &Faults,
-    plan: &Plan,
-    seed: u64,
-) -> Result<Vec<RawRecord>, ModelError> {
-    let laboratory = Laboratory {
-        truth,
-        faults,
-        plan,
-        seed,
-    };
+/// [`ModelError`] if the truth or the plan is outside the model's range.
+pub fn records(laboratory: &Laboratory<'_>) -> Result<Vec<RawRecord>, ModelError> {
     let whole = |_: usize, block: Vec<RawRecord>| Ok::<_, ModelError>(block);
-    let parts = blocks(&laboratory, usize::MAX, &|raw| raw, &whole)?;
+    let parts = blocks(laboratory, usize::MAX, &|raw| raw, &whole)?;
     Ok(parts.into_iter().flatten().collect())
 }
 
@@ -89,7 +112,7 @@ pub fn records(
 /// parallel, so `write` does too.
 ///
 /// # Errors
-/// [`ModelError`] where the truth or the plan lies outside the model's range; what `write` says.
+/// [`ModelError`] if the truth or the plan is outside the model's range; what `write` says.
 pub fn blocks<K: Send, W: Send, E: From<ModelError> + Send>(
     laboratory: &Laboratory<'_>,
     most: usize,
@@ -99,11 +122,16 @@ pub fn blocks<K: Send, W: Send, E: From<ModelError> + Send>(
     let Laboratory {
         truth,
         faults,
+        effects,
         plan,
         seed,
     } = *laboratory;
     let rig = VirtualRig {
-        truth,
+        physics: Physics {
+            truth,
+            effects,
+            steps: plan.steps.len(),
+        },
         faults,
         gains: draw_gains(faults, sensitivities(truth).len(), seed),
         corners: draw_corners(faults, seed),
@@ -112,13 +140,12 @@ pub fn blocks<K: Send, W: Send, E: From<ModelError> + Send>(
     let parts: Result<Vec<Vec<W>>, E> = sweeps(plan)
         .par_iter()
         .map(|(first, steps)| {
-            let mut simulator = rig.at_rest(steps)?;
+            let mut engine = rig.physics.at_rest(*first, &steps[0])?;
             let mut first = *first;
             let mut written = Vec::new();
             for steps in steps.chunks(most.max(1)) {
                 let block = steps.iter().enumerate();
-                let block =
-                    block.map(|(i, step)| keep(rig.record(&mut simulator, first + i, step)));
+                let block = block.map(|(i, step)| keep(rig.record(&mut engine, first + i, step)));
                 written.push(write(first, block.collect())?);
                 first += steps.len();
             }
@@ -142,7 +169,7 @@ fn sweeps(plan: &Plan) -> Vec<(usize, Vec<Step>)> {
 }
 
 struct VirtualRig<'a> {
-    truth: &'a Truth,
+    physics: Physics<'a>,
     faults: &'a Faults,
     gains: Vec<f64>,
     /// Of the three integrators, over the stated corner.
@@ -151,87 +178,70 @@ struct VirtualRig<'a> {
 }
 
 impl VirtualRig<'_> {
-    fn setting(&self, step: &Step) -> Setting {
-        Setting::new(
-            step.frequency_hz / self.truth.natural_frequency_hz,
-            step.clearance_m / self.truth.static_deflection_m,
-        )
-    }
-
-    /// A simulator at the first step of a sweep.
-    fn at_rest(&self, steps: &[Step]) -> Result<Simulator, ModelError> {
-        Simulator::new(
-            &self.truth.machine(),
-            self.setting(&steps[0]),
-            Initial::rest(),
-        )
-    }
-
     /// Settle at a step, then record.
-    fn record(&self, simulator: &mut Simulator, index: usize, step: &Step) -> RawRecord {
-        let setting = self.setting(step);
-        let omega = self.truth.natural_rate();
+    fn record(&self, engine: &mut Engine, index: usize, step: &Step) -> RawRecord {
+        let setting = self.physics.setting(step);
+        let omega = self.physics.truth.natural_rate();
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed.wrapping_add(1));
         rng.set_stream(index as u64);
-        simulator.set(setting.frequency_ratio, setting.clearance);
+        self.physics.set(engine, index, step);
         // A random fraction of a period, so that records start at any phase of the drive.
         let settle = (SETTLE_PERIODS + rng.random_range(0.0..1.0)) * setting.period();
-        simulator.advance(settle, &mut |_: &ModelImpact| {});
-        let start_tau = simulator.tau();
-        let mut trajectory = Trajectory::default();
+        engine.advance(settle);
+        let start_tau = engine.tau();
         let duration = PRE_ROLL_S + SAMPLES as f64 / RATE_HZ;
-        simulator.advance(duration * omega, &mut trajectory);
+        let recorded = engine.record(duration * omega);
         let first_tau = start_tau + PRE_ROLL_S * omega;
-        let motion = true_motion(simulator.clone(), setting);
-        let impacts: Vec<(f64, f64, f64)> = trajectory
-            .impacts
+        let impacts: Vec<TrueImpact> = recorded
+            .impacts()
             .iter()
-            .map(|i| {
-                (
-                    (i.tau - first_tau) / omega,
-                    i.closing_before * self.speed(),
-                    i.dead_zone / omega,
-                )
+            .map(|i| TrueImpact {
+                time_s: (i.tau - first_tau) / omega,
+                approach_m_s: i.approach * self.speed(),
+                separation_m_s: i.separation * self.speed(),
+                duration_s: i.duration / omega,
+                dead_zone_s: i.dead_zone / omega,
             })
             .collect();
-        let phase = simulator.phase() - setting.frequency_ratio * (simulator.tau() - first_tau);
-        let channels = self.channels(&trajectory, start_tau, &impacts, (phase, step), &mut rng);
+        let phase = engine.phase() - setting.frequency_ratio * (engine.tau() - first_tau);
+        let take = Take {
+            step,
+            index,
+            phase,
+            start_tau,
+            recorded: &recorded,
+            impacts: &impacts,
+        };
         RawRecord {
             id: format!("r{index:04}"),
             step: *step,
-            channels,
-            motion,
+            channels: self.channels(&take, &mut rng),
+            motion: true_motion(engine.clone(), setting),
             impacts: impacts
-                .iter()
-                .filter(|i| (0.0..SAMPLES as f64 / RATE_HZ).contains(&i.0))
-                .map(|i| (i.0, i.1))
+                .into_iter()
+                .filter(|i| (0.0..SAMPLES as f64 / RATE_HZ).contains(&i.time_s))
                 .collect(),
         }
     }
 
     fn speed(&self) -> f64 {
-        self.truth.static_deflection_m * self.truth.natural_rate()
+        self.physics.truth.static_deflection_m * self.physics.truth.natural_rate()
     }
 
-    fn channels(
-        &self,
-        trajectory: &Trajectory,
-        start_tau: f64,
-        impacts: &[(f64, f64, f64)],
-        (phase, step): (f64, &Step),
-        rng: &mut ChaCha8Rng,
-    ) -> Vec<RawChannel> {
+    fn channels(&self, take: &Take, rng: &mut ChaCha8Rng) -> Vec<RawChannel> {
+        let delays = self.physics.effects.delays_s;
         let times: Vec<f64> = (0..SAMPLES).map(|i| i as f64 / RATE_HZ).collect();
+        let rate = std::f64::consts::TAU * take.step.frequency_hz;
         let drive = times
             .iter()
-            .map(|t| 2.0 * (std::f64::consts::TAU * step.frequency_hz * t + phase).cos())
+            .map(|t| 2.0 * (rate * (t - delays[0]) + take.phase).cos())
             .collect();
-        let events: Vec<(f64, f64)> = impacts.iter().map(|i| (i.0, i.2)).collect();
-        let contact = acquisition::contact_volts(&times, &events, self.faults, rng);
-        let [vx, vy, x, y] = self.motion_samples(trajectory, start_tau);
-        let frame = x.iter().map(|x| 2e-3 * x).collect();
+        let late: Vec<f64> = times.iter().map(|t| t - delays[1]).collect();
+        let contact = acquisition::contact_volts(&late, take.impacts, self.faults, rng);
+        let [vx, vy, x, y, frame] = self.motion_samples(take);
         let signals: [Vec<f64>; 7] = [drive, contact, vx, vy, x, y, frame];
-        sensitivities(self.truth)
+        let mut disturbance = Disturbance::new(self.physics.effects, self.seed, take.index);
+        sensitivities(self.physics.truth)
             .iter()
             .zip(signals)
             .zip(&self.gains)
@@ -241,6 +251,7 @@ impl VirtualRig<'_> {
                     _ => gain / sensitivity.si_per_volt,
                 };
                 let mut volts: Vec<f64> = values.iter().map(|v| v * factor).collect();
+                disturbance.add(&mut volts);
                 acquisition::convert(&mut volts, self.faults, rng);
                 RawChannel {
                     name: sensitivity.name,
@@ -250,49 +261,70 @@ impl VirtualRig<'_> {
             .collect()
     }
 
-    /// Velocities and displacements of both masses, SI, each through its filter: the laser's
-    /// velocity of x has none, the integrators' signals have a high-pass.
-    fn motion_samples(&self, trajectory: &Trajectory, start_tau: f64) -> [Vec<f64>; 4] {
-        let omega = self.truth.natural_rate();
-        let (x_st, speed) = (self.truth.static_deflection_m, self.speed());
-        let pre = (PRE_ROLL_S * RATE_HZ) as usize * FINE;
-        let step_s = 1.0 / (RATE_HZ * FINE as f64);
-        let count = pre + (SAMPLES - 1) * FINE + 1;
-        let taus = (0..count).map(|i| start_tau + i as f64 * step_s * omega);
-        let mut filters = self.corners.map(|corner| {
-            let stated_hz = self.faults.high_pass_hz;
-            stated_hz.map(|c| HighPass::new(corner * c, step_s))
+    /// Velocities and displacements of both masses and the frame's, SI, each through its filter
+    /// and late by its delay: the laser's velocity of x has no filter, the integrators' signals
+    /// have a high-pass.
+    fn motion_samples(&self, take: &Take) -> [Vec<f64>; 5] {
+        let delays = &self.physics.effects.delays_s;
+        let corner = |i: usize| Some(self.corners[i] * self.faults.high_pass_hz?);
+        let channels: [(usize, f64, Option<f64>); 5] = [
+            (1, delays[2], None),
+            (3, delays[3], corner(0)),
+            (0, delays[4], corner(1)),
+            (2, delays[5], corner(2)),
+            (0, delays[6], corner(1)),
+        ];
+        let mut fine: Option<(f64, Vec<Phase4>)> = None;
+        let mut out = channels.map(|(component, delay, corner_hz)| {
+            let states = match fine.take() {
+                Some((at, states)) if at == delay => states,
+                _ => self.fine_states(take, delay),
+            };
+            let samples = filtered(&states, component, corner_hz);
+            fine = Some((delay, states));
+            samples
         });
-        let mut out = [(); 4].map(|()| Vec::with_capacity(SAMPLES));
-        let mut before: Option<[f64; 4]> = None;
-        for (i, state) in trajectory.sample(taus).into_iter().enumerate() {
-            let raw = [
-                state.vx * speed,
-                state.vy * speed,
-                state.x * x_st,
-                state.y * x_st,
-            ];
-            let last = before.replace(raw).unwrap_or(raw);
-            // The mean velocity is the displacement's difference, jumps included.
-            let means = [
-                (raw[3] - last[3]) / step_s,
-                0.5 * (raw[2] + last[2]),
-                0.5 * (raw[3] + last[3]),
-            ];
-            let mut seen = raw;
-            for ((value, mean), filter) in seen[1..].iter_mut().zip(means).zip(&mut filters) {
-                if let Some(filter) = filter {
-                    *value = filter.next(*value, mean);
-                }
-            }
-            if i >= pre && (i - pre).is_multiple_of(FINE) {
-                for (channel, value) in out.iter_mut().zip(seen) {
-                    channel.push(value);
-                }
-            }
+        for frame in &mut out[4] {
+            *frame *= 2e-3;
         }
         out
     }
+
+    /// [x, x', y, y'] in SI at [`FINE`] times the rate of sampling, the pre-roll included.
+    fn fine_states(&self, take: &Take, delay_s: f64) -> Vec<Phase4> {
+        let omega = self.physics.truth.natural_rate();
+        let (x_st, speed) = (self.physics.truth.static_deflection_m, self.speed());
+        let count = PRE_ROLL_FINE + (SAMPLES - 1) * FINE + 1;
+        let taus = (0..count).map(|i| take.start_tau + (i as f64 * FINE_STEP_S - delay_s) * omega);
+        let states = take.recorded.sample(taus).into_iter();
+        states
+            .map(|[x, vx, y, vy]| [x * x_st, vx * speed, y * x_st, vy * speed])
+            .collect()
+    }
+}
+
+/// One component of a motion through a high-pass, at the rate of sampling.
+fn filtered(states: &[Phase4], component: usize, corner_hz: Option<f64>) -> Vec<f64> {
+    let mut filter = corner_hz.map(|c| HighPass::new(c, FINE_STEP_S));
+    let mut last = states.first().copied().unwrap_or_default();
+    let mut out = Vec::with_capacity(SAMPLES);
+    for (i, state) in states.iter().enumerate() {
+        let mut value = state[component];
+        if let Some(filter) = &mut filter {
+            let mean = if component % 2 == 1 {
+                // The mean velocity is the displacement's difference, jumps included.
+                (state[component - 1] - last[component - 1]) / FINE_STEP_S
+            } else {
+                0.5 * (state[component] + last[component])
+            };
+            value = filter.next(value, mean);
+        }
+        last = *state;
+        if i >= PRE_ROLL_FINE && (i - PRE_ROLL_FINE).is_multiple_of(FINE) {
+            out.push(value);
+        }
+    }
+    out
 }
 
 /// Largest period looked for in the noiseless motion, drive periods.
@@ -304,18 +336,14 @@ const CLOSED: f64 = 1e-3;
 
 /// The motion after a record according to the noiseless simulation itself: states strobed once a
 /// drive period must repeat after n periods within a thousandth of the motion's size.
-fn true_motion(mut simulator: Simulator, setting: Setting) -> Motion {
+fn true_motion(mut engine: Engine, setting: Setting) -> Motion {
     let mut states = Vec::with_capacity(WATCHED);
     let mut counts = Vec::with_capacity(WATCHED);
     let mut dead_zones = 0;
     for _ in 0..WATCHED {
-        let mut count = 0;
-        simulator.advance(setting.period(), &mut |impact: &ModelImpact| {
-            count += 1;
-            dead_zones += usize::from(impact.dead_zone > 0.0);
-        });
-        let s = simulator.state();
-        states.push([s.x, s.vx, s.y, s.vy]);
+        let [count, dead] = engine.advance(setting.period());
+        dead_zones += dead;
+        states.push(engine.state());
         counts.push(count);
     }
     let size = states

@@ -22,15 +22,40 @@ pub struct Truth {
     pub drive_asymmetry: f64,
     /// (k_x − k_y)/k, relative.
     pub stiffness_asymmetry: f64,
+    /// (β_x − β_y)/β, relative; each β_i = b_i/(2√(k_i m)) with the mass's own spring.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub damping_asymmetry: f64,
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 impl Truth {
+    /// Two equal masses: R, f0 in Hz, β, x_st in m.
+    pub fn symmetric(
+        restitution: f64,
+        natural_frequency_hz: f64,
+        damping_ratio: f64,
+        static_deflection_m: f64,
+    ) -> Self {
+        Self {
+            restitution,
+            natural_frequency_hz,
+            damping_ratio,
+            static_deflection_m,
+            drive_asymmetry: 0.0,
+            stiffness_asymmetry: 0.0,
+            damping_asymmetry: 0.0,
+        }
+    }
+
     /// The machine, dimensionless: both masses about the nominal one.
     pub fn machine(&self) -> Machine {
         let mass = |sign: f64| Oscillator {
             mass: 1.0,
             natural_frequency_ratio: (1.0 + 0.5 * sign * self.stiffness_asymmetry).sqrt(),
-            damping_ratio: self.damping_ratio,
+            damping_ratio: self.damping_ratio * (1.0 + 0.5 * sign * self.damping_asymmetry),
             drive_amplitude: 1.0 + 0.5 * sign * self.drive_asymmetry,
         };
         Machine {

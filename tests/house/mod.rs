@@ -7,7 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms from left to right.
-const ROOMS: [&str; 10] = [
+const ROOMS: [&str; 11] = [
+    "message",
     "signal",
     "record",
     "event",

@@ -81,16 +81,16 @@ fn numbers(line: &str) -> Option<Vec<f64>> {
 
 impl LeastSquares for Set {
     type Point = Vec<f64>;
-    type Error = ();
 
-    fn factor(&self, at: &Vec<f64>) -> Result<Factor, ()> {
+    fn factor(&self, at: &Vec<f64>) -> Result<Factor, argmin::core::Error> {
         let residuals = self.residuals(at);
         let values: Vec<f64> = residuals.iter().map(|r| r.value).collect();
         let slopes: Vec<Vec<f64>> = (0..at.len())
             .map(|i| residuals.iter().map(|r| r.slopes[i]).collect())
             .collect();
         let factor = Factor::of(&values, &slopes, 1.0);
-        factor.cost.is_finite().then_some(factor).ok_or(())
+        let finite = factor.cost.is_finite().then_some(factor);
+        finite.ok_or_else(|| argmin::core::Error::msg("the residuals are not finite"))
     }
 
     fn cost(&self, at: &Vec<f64>) -> Option<f64> {
@@ -126,7 +126,7 @@ const LIMITS: Limits = Limits {
     negligible: 1e-8,
     variance: Variance::Estimated,
     damping: 1e-2,
-    steps: 10_000,
+    iterations: 10_000,
 };
 
 fn fit(set: &Set, start: usize) -> Digits {
@@ -145,14 +145,13 @@ fn fit(set: &Set, start: usize) -> Digits {
         shape: digits(&shape, &certified_shape),
     };
     println!(
-        "{:9} {} {:5.1} {:5.1} {:5.1} {:5} {:?}",
+        "{:9} {} {:5.1} {:5.1} {:5.1} {}",
         set.name,
         start + 1,
         digits.parameters,
         digits.errors,
         digits.shape,
-        minimum.steps,
-        minimum.ending,
+        minimum.report,
     );
     digits
 }

@@ -122,7 +122,7 @@ pub fn cases() -> Vec<Case> {
                 lab.mend("sign = 1", "sign = -1");
                 lab.mend("channel = \"vy\"", "channel = \"vy\"\nsign = -1");
             },
-            &["jumps of the closing velocity go up", "sign"],
+            &["jumps of the approach velocity go up", "sign"],
         ),
         noted(
             "a displacement that fits the velocity",

@@ -1,6 +1,6 @@
 //! Brackets of boundaries against the closed-form s2, s1 and ρ'.
 
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::motion::bracket::{BoundaryKind, Bracket};
@@ -12,7 +12,7 @@ use impact_oscillator::model::params::Machine;
 #[derive(Debug, Clone)]
 pub struct BoundaryBlock {
     /// One or two masses.
-    pub rig: Rig,
+    pub rig: RigKind,
     /// The brackets: s2, s1 and grazing.
     pub brackets: Vec<Bracket>,
     /// Typical distance of an early jump from the boundary, as a fraction of the frequency.
@@ -21,7 +21,7 @@ pub struct BoundaryBlock {
 
 impl BoundaryBlock {
     /// Collect the brackets of boundaries that have a closed form.
-    pub fn new(rig: Rig, brackets: &[Bracket]) -> Self {
+    pub fn new(rig: RigKind, brackets: &[Bracket]) -> Self {
         let brackets = brackets
             .iter()
             .filter(|b| b.kind != BoundaryKind::Other)
@@ -156,7 +156,7 @@ pub fn bracket_probability(bracket: &Bracket, early_scale: f64, boundary_hz: f64
 
 /// Frequency of the boundary of a bracket according to the model, Hz: the crossing nearest to it.
 /// `None` where the boundary does not reach this clearance.
-pub fn predicted_hz(bracket: &Bracket, parameters: &Parameters, rig: Rig) -> Option<f64> {
+pub fn predicted_hz(bracket: &Bracket, parameters: &Parameters, rig: RigKind) -> Option<f64> {
     let machine = match bracket.kind {
         // Exchanged masses double at the same place: an asymmetry changes it in second order only.
         BoundaryKind::PeriodDoubling => parameters.without_asymmetry().machine(rig),
@@ -275,7 +275,11 @@ impl Block for BoundaryBlock {
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {
-        !matches!(coordinate, Coordinate::Gain(_) | Coordinate::Corner(_))
+        Coordinate::PHYSICAL.contains(&coordinate)
+            || matches!(
+                coordinate,
+                Coordinate::DriveAsymmetry | Coordinate::StiffnessAsymmetry
+            )
     }
 }
 
@@ -288,7 +292,7 @@ mod tests {
 
     /// A bracket about the boundary of a kind at η, as the model itself has it.
     fn bracket(kind: BoundaryKind, eta: f64, p: &Parameters, off_middle: f64) -> Bracket {
-        let machine = p.machine(Rig::Double);
+        let machine = p.machine(RigKind::Double);
         let rho = match kind {
             BoundaryKind::SaddleNode => rho_s2(&machine, eta, 1).expect("an s2").rho,
             BoundaryKind::PeriodDoubling => rho_s1(&machine, eta, 1).expect("an s1").rho,
@@ -318,7 +322,7 @@ mod tests {
             (BoundaryKind::PeriodDoubling, 0.85),
         ];
         for (kind, eta) in cases {
-            let found = predicted_hz(&bracket(kind, eta, &p, 0.0), &p, Rig::Double);
+            let found = predicted_hz(&bracket(kind, eta, &p, 0.0), &p, RigKind::Double);
             let found = found.expect("a boundary") / p.natural_frequency_hz;
             assert!((found - eta).abs() < 1e-9, "{kind:?} {found}");
         }
@@ -329,7 +333,10 @@ mod tests {
         let p = Parameters::symmetric(0.7, 12.6, 0.05, 1e-3);
         let etas = [1.15, 1.25, 1.35];
         let of = |kind, off: f64| {
-            BoundaryBlock::new(Rig::Double, &etas.map(|eta| bracket(kind, eta, &p, off)))
+            BoundaryBlock::new(
+                RigKind::Double,
+                &etas.map(|eta| bracket(kind, eta, &p, off)),
+            )
         };
         let wrong = Parameters {
             restitution: 0.62,

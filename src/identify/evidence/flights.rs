@@ -10,10 +10,10 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-use crate::event::{CornerShift, Impact, Rig};
+use crate::event::{CornerShift, Impact, RigKind};
 use crate::identify::evidence::impacts::corners_in;
 use crate::identify::fit::Block;
-use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::parameters::{Circumstances, Coordinate, Parameters};
 use crate::motion::{Motion, Observation};
 use crate::record::Role;
 use impact_oscillator::model::flight::{Drive, State, free_flight};
@@ -58,6 +58,8 @@ pub struct FlightRecord {
     pub frequency_hz: f64,
     /// Half the gap, m.
     pub clearance_m: f64,
+    /// Place of the clearance among those that carry an error of their own.
+    pub gap: Option<usize>,
     /// Drive amplitude relative to the nominal one.
     pub drive_amplitude: f64,
     /// Its impacts, in their order, none missing between them.
@@ -68,7 +70,7 @@ pub struct FlightRecord {
 #[derive(Debug, Clone)]
 pub struct FlightBlock {
     /// One or two masses.
-    pub rig: Rig,
+    pub rig: RigKind,
     /// The records.
     pub records: Vec<FlightRecord>,
     /// On which corners the speeds depend, by their index.
@@ -84,18 +86,18 @@ const UNKNOWN: f64 = 30.0;
 
 impl FlightBlock {
     /// Collect the records with impacts that have no closed-form orbit.
-    pub fn new(rig: Rig, observations: &[Observation]) -> Self {
+    pub fn new(rig: RigKind, observations: &[Observation]) -> Self {
         let records = observations
             .iter()
             .enumerate()
-            .filter(|(_, o)| !o.excluded() && has_no_closed_form(&o.finding.motion))
+            .filter(|(_, o)| !o.excluded() && has_no_closed_form(&o.classification.motion))
             .filter_map(|(i, o)| flight_record(rig, i, o))
             .collect();
         Self::of_records(rig, records)
     }
 
     /// Of given records.
-    fn of_records(rig: Rig, records: Vec<FlightRecord>) -> Self {
+    fn of_records(rig: RigKind, records: Vec<FlightRecord>) -> Self {
         let nodes = records.iter().flat_map(|r| &r.nodes);
         let corners = corners_in(nodes.flat_map(|n| &n.corner_shifts));
         Self {
@@ -112,8 +114,8 @@ impl FlightBlock {
 }
 
 /// Whether a record is shot from impact to impact.
-pub fn is_flown(rig: Rig, o: &Observation) -> bool {
-    has_no_closed_form(&o.finding.motion) && flight_record(rig, 0, o).is_some()
+pub fn is_flown(rig: RigKind, o: &Observation) -> bool {
+    has_no_closed_form(&o.classification.motion) && flight_record(rig, 0, o).is_some()
 }
 
 fn has_no_closed_form(motion: &Motion) -> bool {
@@ -128,7 +130,7 @@ fn has_no_closed_form(motion: &Motion) -> bool {
     }
 }
 
-fn flight_record(rig: Rig, index: usize, o: &Observation) -> Option<FlightRecord> {
+fn flight_record(rig: RigKind, index: usize, o: &Observation) -> Option<FlightRecord> {
     let drive = o.drive?;
     let sound = o.impacts.iter().all(|i| i.dead_zone_s == 0.0);
     if !sound || o.unsupported_pulses > 0 || o.impacts.len() < FEWEST_IMPACTS {
@@ -143,14 +145,15 @@ fn flight_record(rig: Rig, index: usize, o: &Observation) -> Option<FlightRecord
         observation: index,
         frequency_hz: drive.frequency_hz,
         clearance_m: o.setting.clearance_m?,
+        gap: None,
         drive_amplitude: o.setting.drive_amplitude,
         nodes,
     })
 }
 
-fn node(rig: Rig, impact: &Impact, frequency_hz: f64) -> Option<Node> {
+fn node(rig: RigKind, impact: &Impact, frequency_hz: f64) -> Option<Node> {
     let (before_m_s, after_m_s, masses) = match rig {
-        Rig::Double => {
+        RigKind::Double => {
             let (x, y) = (impact.x?, impact.y?);
             (
                 [x.before_m_s, y.before_m_s],
@@ -158,13 +161,13 @@ fn node(rig: Rig, impact: &Impact, frequency_hz: f64) -> Option<Node> {
                 2.0f64,
             )
         }
-        Rig::Single => (
-            [impact.closing_speed_before_m_s?, 0.0],
-            [impact.closing_speed_after_m_s?, 0.0],
+        RigKind::Single => (
+            [impact.approach_speed_before_m_s?, 0.0],
+            [impact.approach_speed_after_m_s?, 0.0],
             1.0,
         ),
     };
-    let closing = impact.closing_speed_before_m_s?;
+    let closing = impact.approach_speed_before_m_s?;
     let noise = impact.speed_error_m_s? / masses.sqrt();
     (closing > 6.0 * noise && frequency_hz > 0.0).then_some(Node {
         time_s: impact.time_s,
@@ -256,11 +259,14 @@ impl Block for FlightBlock {
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let record = &self.records[item];
         let machine = parameters.machine(self.rig);
-        let setting = parameters.setting(
-            record.frequency_hz,
-            record.clearance_m,
-            record.drive_amplitude,
-        );
+        let (_, clearance_m) = parameters.own(&Circumstances {
+            frequency_hz: record.frequency_hz,
+            clearance_m: record.clearance_m,
+            gap: record.gap,
+            ..Circumstances::default()
+        });
+        let setting =
+            parameters.setting(record.frequency_hz, clearance_m, record.drive_amplitude);
         let gap = machine.gap(setting.clearance);
         let rate = parameters.natural_rate();
         let speed = parameters.static_deflection_m * record.drive_amplitude * rate;
@@ -304,7 +310,19 @@ impl Block for FlightBlock {
     fn touches(&self, coordinate: Coordinate) -> bool {
         match coordinate {
             Coordinate::Corner(index) => self.has_corner(index),
-            _ => !matches!(coordinate, Coordinate::Gain(2 | 3)),
+            Coordinate::Gap(_) => self.records.iter().any(|r| r.gap.map(Coordinate::Gap) == Some(coordinate)),
+            Coordinate::Gain(2 | 3)
+            | Coordinate::Delay(_)
+            | Coordinate::Effect(_)
+            | Coordinate::MassAsymmetry => false,
+            _ => true,
+        }
+    }
+
+    fn item_touches(&self, item: usize, coordinate: Coordinate) -> bool {
+        match coordinate {
+            Coordinate::Gap(i) => self.records[item].gap == Some(i),
+            _ => self.touches(coordinate),
         }
     }
 }
@@ -325,7 +343,7 @@ mod tests {
     }
 
     /// Impacts of irregular motions, exact but for the stated errors.
-    fn block(rig: Rig) -> FlightBlock {
+    fn block(rig: RigKind) -> FlightBlock {
         let p = truth();
         let speed = p.static_deflection_m * p.natural_rate();
         let records = [(24.0, 0.2e-3), (20.0, 0.1e-3), (29.0, 0.15e-3)]
@@ -347,6 +365,7 @@ mod tests {
                     observation: 0,
                     frequency_hz,
                     clearance_m,
+                    gap: None,
                     drive_amplitude: 1.0,
                     nodes: nodes.collect(),
                 }
@@ -357,13 +376,13 @@ mod tests {
 
     #[test]
     fn valid_exact_impacts_follow_from_each_other() {
-        for rig in [Rig::Double, Rig::Single] {
+        for rig in [RigKind::Double, RigKind::Single] {
             let block = block(rig);
             for item in 0..block.items() {
                 assert!(block.records[item].nodes.len() >= 10);
                 let residuals = block.residuals(item, &truth()).expect("residuals");
                 // The first node's own measurements meet a state of which nothing is known.
-                let first = if rig == Rig::Double { 3 } else { 2 };
+                let first = if rig == RigKind::Double { 3 } else { 2 };
                 let later = residuals[first..].iter();
                 let worst = later.fold(0.0f64, |m, r| m.max(r.abs()));
                 assert!(worst < 0.01, "{worst}");
@@ -373,7 +392,7 @@ mod tests {
 
     #[test]
     fn valid_irregular_motions_alone_tell_all_four_parameters() {
-        let block = block(Rig::Double);
+        let block = block(RigKind::Double);
         let start = Parameters {
             restitution: 0.77,
             natural_frequency_hz: 12.03,

@@ -66,15 +66,15 @@ impl ImpactBlock {
                 } else {
                     6.0
                 };
-                let speed = impact.closing_speed_before_m_s.unwrap_or(0.0);
+                let speed = impact.approach_speed_before_m_s.unwrap_or(0.0);
                 speed > least * impact.speed_error_m_s.unwrap_or(f64::INFINITY)
             })
             .filter_map(|(i, impact)| {
                 Some(SpeedPair {
                     observation: i,
                     time_s: impact.time_s,
-                    before_m_s: impact.closing_speed_before_m_s?,
-                    after_m_s: -impact.closing_speed_after_m_s?,
+                    before_m_s: impact.approach_speed_before_m_s?,
+                    after_m_s: -impact.approach_speed_after_m_s?,
                     error_m_s: impact.speed_error_m_s?,
                     corner_shifts: impact.corner_shifts,
                 })

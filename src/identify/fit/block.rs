@@ -36,6 +36,11 @@ pub trait Block: Sync {
 
     /// Which coordinates the block depends on.
     fn touches(&self, coordinate: Coordinate) -> bool;
+
+    /// Which coordinates one of its items depends on; as the whole block does, unless it knows better.
+    fn item_touches(&self, _item: usize, coordinate: Coordinate) -> bool {
+        self.touches(coordinate)
+    }
 }
 
 /// Mean square of each item's weighted residuals at given parameters, in the items' order; `None`

@@ -1,25 +1,31 @@
-//! Levenberg–Marquardt on the triangular factor of the residuals and their slopes.
+//! Levenberg–Marquardt on the triangular factor of the residuals and their slopes, as a solver of
+//! argmin's executor.
 //!
-//! The loop knows nothing of what is fitted: a problem gives its factor and its cost at a point and
-//! says where a step leads.
+//! The solver knows nothing of what is fitted: a problem gives its factor and its cost at a point and
+//! the point that a step leads to.
 
-use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use argmin::core::observers::{Observe, ObserverMode};
+use argmin::core::{
+    Error, Executor, IterState, KV, KvValue, Problem, Solver, State, TerminationReason,
+};
+use argmin::{argmin_error_closure, kv};
 
 use crate::identify::fit::factor::Factor;
+use crate::identify::fit::report::{FitReport, Iteration, STALLED};
 
-/// What is to be made least: a sum of squared residuals over some unknowns.
+/// A sum of squared residuals over some unknowns, which [`minimise`] makes least.
 pub trait LeastSquares {
     /// Where the residuals are taken.
     type Point: Clone;
 
-    /// Why they cannot be taken.
-    type Error;
-
     /// Factor of the residuals and of their slopes over the unknowns.
     ///
     /// # Errors
-    /// Where there is none at the point.
-    fn factor(&self, at: &Self::Point) -> Result<Factor, Self::Error>;
+    /// The problem's own, where there is no factor at the point.
+    fn factor(&self, at: &Self::Point) -> Result<Factor, Error>;
 
     /// Sum of squared residuals; `None` where there is none at the point.
     fn cost(&self, at: &Self::Point) -> Option<f64>;
@@ -28,18 +34,18 @@ pub trait LeastSquares {
     fn moved(&self, from: &Self::Point, step: &[f64]) -> Self::Point;
 }
 
-/// When the loop ends.
+/// When the solver ends, and how it begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
-    /// A step is negligible that is shorter than this, in standard errors.
+    /// A step shorter than this, in standard errors, is negligible.
     pub negligible: f64,
-    /// Variance of the residuals by which standard errors are meant.
+    /// Variance of the residuals in the standard errors.
     pub variance: Variance,
     /// Damping of the first step, as a share of the information: the larger, the less the start
     /// is trusted.
     pub damping: f64,
-    /// Most steps taken.
-    pub steps: usize,
+    /// Most iterations.
+    pub iterations: u64,
 }
 
 /// Variance of the residuals.
@@ -47,43 +53,92 @@ pub struct Limits {
 pub enum Variance {
     /// One: the residuals are weighted.
     Unit,
-    /// Told by the residuals themselves.
+    /// Estimated from the residuals.
     Estimated,
 }
 
-/// How a fit ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Ending {
-    /// The step became negligible.
-    Converged,
-    /// The steps ran out first.
-    TooManySteps,
-    /// No step in any direction lowers the cost further, though the gradient is not yet zero.
-    Stalled,
-}
-
-/// Where the loop ended.
+/// Where the solver ended.
 #[derive(Debug, Clone)]
 pub struct Minimum<Point> {
     /// The point.
     pub point: Point,
     /// Factor there.
     pub factor: Factor,
-    /// How it ended.
-    pub ending: Ending,
-    /// Number of steps taken.
-    pub steps: usize,
+    /// Iterations and termination.
+    pub report: FitReport,
 }
 
-enum Step<Point> {
-    Taken { to: Point, negligible: bool },
-    Negligible,
-    None,
+/// The point, and the factor there in place of a Jacobian.
+type FitState<Point> = IterState<Point, (), Factor, (), (), f64>;
+
+/// Least sum of squares from a start.
+///
+/// # Errors
+/// Those of the problem's factor, at the start and where a step leads.
+pub fn minimise<P: LeastSquares>(
+    problem: &P,
+    start: P::Point,
+    limits: &Limits,
+) -> Result<Minimum<P::Point>, Error>
+where
+    P::Point: 'static,
+{
+    let iterations = Rc::default();
+    let result = Executor::new(problem, DampedSteps::new(limits))
+        .configure(|state: FitState<P::Point>| state.param(start).max_iters(limits.iterations))
+        .add_observer(Recorder(Rc::clone(&iterations)), ObserverMode::Always)
+        .run()?;
+    let mut state = result.state;
+    let termination = state.get_termination_reason().cloned();
+    let (point, factor) = taken(&mut state)?;
+    Ok(Minimum {
+        point,
+        factor,
+        report: FitReport {
+            iterations: iterations.take(),
+            cost_evaluations: result.problem.counts.get(COST).copied().unwrap_or(0),
+            termination: termination.unwrap_or_default(),
+        },
+    })
 }
 
-/// How strongly steps are held back, and in which measure of the unknowns.
-struct Hold {
+/// The point of a state and its factor, which are moved out of it.
+fn taken<Point: Clone>(state: &mut FitState<Point>) -> Result<(Point, Factor), Error> {
+    state
+        .take_param()
+        .zip(state.take_jacobian())
+        .ok_or_else(argmin_error_closure!(
+            NotInitialized,
+            "a fit needs a point and its factor"
+        ))
+}
+
+/// Names under which argmin counts the evaluations.
+const COST: &str = "cost_count";
+const FACTOR: &str = "factor_count";
+/// Name of the damping among an iteration's values.
+const DAMPING: &str = "damping";
+
+/// Collects cost and damping of each iteration.
+struct Recorder(Rc<RefCell<Vec<Iteration>>>);
+
+impl<Point: Clone> Observe<FitState<Point>> for Recorder {
+    fn observe_iter(&mut self, state: &FitState<Point>, values: &KV) -> Result<(), Error> {
+        let damping = match values.get(DAMPING) {
+            Some(KvValue::Float(damping)) => *damping,
+            _ => f64::NAN,
+        };
+        self.0.borrow_mut().push(Iteration {
+            cost: state.get_cost(),
+            damping,
+        });
+        Ok(())
+    }
+}
+
+/// Levenberg–Marquardt: how strongly steps are damped, and in which measure of the unknowns.
+struct DampedSteps<'a> {
+    limits: &'a Limits,
     damping: f64,
     /// Scales of the unknowns: the norms of their slopes, falling slowly. A slope that vanishes
     /// suddenly does not set its unknown free (Moré 1978), and an old one is forgotten.
@@ -97,105 +152,133 @@ const LEAST_DAMPING: f64 = 1e-18;
 const REFUSED_DAMPING: f64 = 1e-10;
 const MOST_TRIALS: usize = 40;
 
-impl Hold {
-    fn remember(&mut self, factor: &Factor) {
+/// What the trials from a point led to.
+enum Trial<Point> {
+    /// A point of lower cost.
+    Lower { to: Point, negligible: bool },
+    /// No lower cost within a negligible step.
+    Negligible,
+    /// No lower cost at any damping.
+    Stalled,
+}
+
+impl<'a> DampedSteps<'a> {
+    fn new(limits: &'a Limits) -> Self {
+        Self {
+            limits,
+            damping: limits.damping,
+            scales: Vec::new(),
+        }
+    }
+
+    fn update_scales(&mut self, factor: &Factor) {
         for (scale, norm) in self.scales.iter_mut().zip(factor.norms()) {
             *scale = (MEMORY * *scale).max(norm);
         }
     }
 
-    /// Fall in cost that a step promises where the problem is linear.
-    fn promise(&self, step: &[f64], length: f64) -> f64 {
+    /// Fall in cost that a step of some length leads to where the problem is linear.
+    fn predicted_reduction(&self, step: &[f64], length: f64) -> f64 {
         let scaled = step.iter().zip(&self.scales);
-        let held: f64 = scaled.map(|(s, d)| (s * d).powi(2)).sum();
-        length * length + 2.0 * self.damping * held
+        let damped: f64 = scaled.map(|(s, d)| (s * d).powi(2)).sum();
+        length * length + 2.0 * self.damping * damped
     }
 
-    /// After a step that kept some share of its promise.
-    fn ease(&mut self, kept: f64) {
-        let factor = match kept {
-            k if k > 0.75 => 0.2,
-            k if k < 0.25 => 4.0,
+    /// After a step whose reduction is this share of the predicted one; a poor prediction increases
+    /// the damping nevertheless.
+    fn decrease_damping(&mut self, share: f64) {
+        let factor = match share {
+            s if s > 0.75 => 0.2,
+            s if s < 0.25 => 4.0,
             _ => 1.0,
         };
         self.damping = (self.damping * factor).max(LEAST_DAMPING);
     }
 
-    fn tighten(&mut self) {
+    fn increase_damping(&mut self) {
         self.damping = (self.damping * 4.0).max(REFUSED_DAMPING);
     }
-}
 
-/// Least sum of squares from a start.
-///
-/// # Errors
-/// Those of the problem, at the start and where a step leads.
-pub fn minimise<P: LeastSquares>(
-    problem: &P,
-    start: P::Point,
-    limits: &Limits,
-) -> Result<Minimum<P::Point>, P::Error> {
-    let mut minimum = Minimum {
-        factor: problem.factor(&start)?,
-        point: start,
-        ending: Ending::TooManySteps,
-        steps: 0,
-    };
-    let mut hold = Hold {
-        damping: limits.damping,
-        scales: vec![0.0; minimum.factor.unknowns()],
-    };
-    while minimum.steps < limits.steps {
-        hold.remember(&minimum.factor);
-        match step(problem, &minimum, limits, &mut hold) {
-            Step::Taken { to, negligible } => {
-                minimum.factor = problem.factor(&to)?;
-                minimum.point = to;
-                minimum.steps += 1;
-                if negligible {
-                    minimum.ending = Ending::Converged;
-                    break;
+    /// Try steps of increasing damping until one lowers the cost.
+    fn try_steps<P: LeastSquares>(
+        &mut self,
+        problem: &mut Problem<&P>,
+        from: &P::Point,
+        factor: &Factor,
+    ) -> Result<Trial<P::Point>, Error> {
+        let negligible = self.limits.negligible * deviation(factor, self.limits.variance);
+        for _ in 0..MOST_TRIALS {
+            let Some(step) = factor.step(self.damping, &self.scales) else {
+                self.increase_damping();
+                continue;
+            };
+            let length = factor.length(&step);
+            let (to, cost) = problem.problem(COST, |p| {
+                let to = p.moved(from, &step);
+                let cost = p.cost(&to);
+                Ok((to, cost))
+            })?;
+            match cost {
+                Some(cost) if cost < factor.cost => {
+                    let predicted = self.predicted_reduction(&step, length);
+                    self.decrease_damping((factor.cost - cost) / predicted);
+                    let negligible = length < negligible;
+                    return Ok(Trial::Lower { to, negligible });
                 }
-            }
-            Step::Negligible => {
-                minimum.ending = Ending::Converged;
-                break;
-            }
-            Step::None => {
-                minimum.ending = Ending::Stalled;
-                break;
+                _ if length < negligible => return Ok(Trial::Negligible),
+                _ => self.increase_damping(),
             }
         }
+        Ok(Trial::Stalled)
     }
-    Ok(minimum)
 }
 
-fn step<P: LeastSquares>(
-    problem: &P,
-    from: &Minimum<P::Point>,
-    limits: &Limits,
-    hold: &mut Hold,
-) -> Step<P::Point> {
-    let factor = &from.factor;
-    let negligible = limits.negligible * deviation(factor, limits.variance);
-    for _ in 0..MOST_TRIALS {
-        let Some(step) = factor.step(hold.damping, &hold.scales) else {
-            hold.tighten();
-            continue;
-        };
-        let to = problem.moved(&from.point, &step);
-        let length = factor.length(&step);
-        match problem.cost(&to) {
-            Some(cost) if cost < factor.cost => {
-                hold.ease((factor.cost - cost) / hold.promise(&step, length));
-                let negligible = length < negligible;
-                return Step::Taken { to, negligible };
-            }
-            _ if length < negligible => return Step::Negligible,
-            _ => hold.tighten(),
-        }
+impl<P: LeastSquares> Solver<&P, FitState<P::Point>> for DampedSteps<'_> {
+    fn name(&self) -> &str {
+        "Levenberg–Marquardt"
     }
-    Step::None
+
+    fn init(
+        &mut self,
+        problem: &mut Problem<&P>,
+        mut state: FitState<P::Point>,
+    ) -> Result<(FitState<P::Point>, Option<KV>), Error> {
+        let start = state
+            .take_param()
+            .ok_or_else(argmin_error_closure!(NotInitialized, "a fit needs a start"))?;
+        let factor = problem.problem(FACTOR, |p| p.factor(&start))?;
+        self.scales = vec![0.0; factor.unknowns()];
+        let state = state.param(start).cost(factor.cost).jacobian(factor);
+        Ok((state, None))
+    }
+
+    fn next_iter(
+        &mut self,
+        problem: &mut Problem<&P>,
+        mut state: FitState<P::Point>,
+    ) -> Result<(FitState<P::Point>, Option<KV>), Error> {
+        let (from, factor) = taken(&mut state)?;
+        self.update_scales(&factor);
+        let trial = self.try_steps(problem, &from, &factor)?;
+        let (point, factor, end) = match trial {
+            Trial::Lower { to, negligible } => {
+                let factor = problem.problem(FACTOR, |p| p.factor(&to))?;
+                let end = negligible.then_some(TerminationReason::SolverConverged);
+                (to, factor, end)
+            }
+            Trial::Negligible => (from, factor, Some(TerminationReason::SolverConverged)),
+            Trial::Stalled => {
+                let stalled = TerminationReason::SolverExit(STALLED.into());
+                (from, factor, Some(stalled))
+            }
+        };
+        let state = state.param(point).cost(factor.cost).jacobian(factor);
+        let state = match end {
+            Some(reason) => state.terminate_with(reason),
+            None => state,
+        };
+        Ok((state, Some(kv!(DAMPING => self.damping;))))
+    }
 }
 
 /// Standard deviation of the residuals.
@@ -204,6 +287,7 @@ fn deviation(factor: &Factor, variance: Variance) -> f64 {
         Variance::Unit => 1.0,
         Variance::Estimated => {
             let freedom = factor.count.saturating_sub(factor.unknowns()).max(1);
+            // counts of residuals are far below 2⁵³
             (factor.cost / freedom as f64).sqrt()
         }
     }

@@ -2,20 +2,22 @@
 //! them least.
 
 pub mod block;
+pub mod effect;
 pub mod factor;
 pub mod least_squares;
 pub mod normal;
 pub mod parameters;
 pub mod problem;
+pub mod report;
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 pub use block::{Block, mean_squares};
-use least_squares::Ending;
 use normal::inverse;
 use parameters::{Coordinate, Parameters};
 pub use problem::{Prior, Problem};
+use report::FitReport;
 
 /// A finished fit.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -31,8 +33,8 @@ pub struct Fit {
     pub cost: f64,
     /// Number of residuals, priors not counted.
     pub residuals: usize,
-    /// How it ended.
-    pub ending: Ending,
+    /// Iterations and termination.
+    pub report: FitReport,
 }
 
 impl Fit {
@@ -91,6 +93,9 @@ pub enum FitError {
     /// Nothing to fit.
     #[error("there are no observations to fit")]
     Empty,
+    /// The solver itself failed.
+    #[error("the solver failed: {0}")]
+    Solver(String),
     /// The slopes are dependent: the data do not tell the coordinates.
     #[error("the data do not tell the parameters apart")]
     Singular,

@@ -40,7 +40,7 @@ const LIMITS: Limits = Limits {
     negligible: 1e-4,
     variance: Variance::Unit,
     damping: 1e-4,
-    steps: 60,
+    iterations: 60,
 };
 
 impl Problem<'_> {
@@ -50,7 +50,10 @@ impl Problem<'_> {
     /// [`FitError`] where there is nothing to fit, where observations have no counterpart in the
     /// model at the start, or where the data do not determine the coordinates.
     pub fn fit(&self, start: Parameters) -> Result<Fit, FitError> {
-        let minimum = minimise(self, start, &LIMITS)?;
+        let minimum = minimise(self, start, &LIMITS).map_err(|error| {
+            let own = error.downcast::<FitError>();
+            own.unwrap_or_else(|other| FitError::Solver(other.to_string()))
+        })?;
         let factor = minimum.factor;
         Ok(Fit {
             parameters: minimum.point,
@@ -58,7 +61,7 @@ impl Problem<'_> {
             covariance: factor.covariance(LEAST_SHARE).ok_or(FitError::Singular)?,
             cost: factor.cost,
             residuals: factor.count - self.priors.len(),
-            ending: minimum.ending,
+            report: minimum.report,
         })
     }
 
@@ -160,17 +163,17 @@ impl Problem<'_> {
         let mut total = Factor::empty(self.free.len());
         let mut missing = Vec::new();
         for (b, (block, weight)) in self.blocks.iter().enumerate() {
-            let (places, coordinates) = self.touched(*block);
-            let parts: Vec<Option<Factor>> = (0..block.items())
+            let parts: Vec<Option<(Factor, Vec<usize>)>> = (0..block.items())
                 .into_par_iter()
                 .map(|i| {
+                    let (places, coordinates) = self.touched(*block, i);
                     let (residuals, columns) = block.slopes(i, parameters, &coordinates)?;
-                    Some(Factor::of(&residuals, &columns, *weight))
+                    Some((Factor::of(&residuals, &columns, *weight), places))
                 })
                 .collect();
             for (i, part) in parts.iter().enumerate() {
                 match part {
-                    Some(part) => total.add(part, &places),
+                    Some((part, places)) => total.add(part, places),
                     None => missing.push((b, i)),
                 }
             }
@@ -185,13 +188,13 @@ impl Problem<'_> {
         (total, missing)
     }
 
-    /// Places among the free coordinates, and the coordinates, that a block depends on.
-    fn touched(&self, block: &dyn Block) -> (Vec<usize>, Vec<Coordinate>) {
+    /// Places among the free coordinates, and the coordinates, that an item of a block depends on.
+    fn touched(&self, block: &dyn Block, item: usize) -> (Vec<usize>, Vec<Coordinate>) {
         self.free
             .iter()
             .copied()
             .enumerate()
-            .filter(|(_, c)| block.touches(*c))
+            .filter(|(_, c)| block.item_touches(item, *c))
             .unzip()
     }
 
@@ -202,7 +205,7 @@ impl Problem<'_> {
         weight: f64,
         at: &Parameters,
     ) -> Option<Normal> {
-        let (places, coordinates) = self.touched(block);
+        let (places, coordinates) = self.touched(block, item);
         let (residuals, columns) = block.slopes(item, at, &coordinates)?;
         let mut normal = Normal::zeros(self.free.len());
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
@@ -237,15 +240,14 @@ impl Problem<'_> {
 
 impl LeastSquares for Problem<'_> {
     type Point = Parameters;
-    type Error = FitError;
 
-    fn factor(&self, at: &Parameters) -> Result<Factor, FitError> {
+    fn factor(&self, at: &Parameters) -> Result<Factor, argmin::core::Error> {
         let (factor, missing) = self.known_factor(at);
         if !missing.is_empty() {
-            return Err(FitError::NoModel(missing));
+            return Err(FitError::NoModel(missing).into());
         }
         if factor.count == 0 {
-            return Err(FitError::Empty);
+            return Err(FitError::Empty.into());
         }
         Ok(factor)
     }

@@ -2,53 +2,41 @@
 
 use std::collections::BTreeMap;
 
+use crate::identify::estimate::{Estimate, Status};
 use crate::identify::fit::parameters::Coordinate;
-use crate::identify::{Agreement, Estimate, MethodResult, PairAgreement, Status};
+use crate::identify::identification::{Agreement, MethodResult};
+use crate::identify::messages::PairAgreement;
+use crate::identify::method::Method;
 
 /// Level of the whole test; divided by the number of pairs.
 const LEVEL: f64 = 0.01;
 
-/// Compare all methods that tell a common parameter. `boundaries` borrows f0, β and x_st from the
+/// Compare all methods that determine a common parameter. `boundaries` takes f0, β and x_st from the
 /// resonance curve, so these two are not compared on them.
-pub fn agreement(methods: &BTreeMap<String, MethodResult>) -> Agreement {
-    let names: Vec<&String> = methods.keys().collect();
+pub fn agreement(methods: &BTreeMap<Method, MethodResult>) -> Agreement {
+    let names: Vec<Method> = methods.keys().copied().collect();
     let mut pairs = Vec::new();
     for coordinate in Coordinate::PHYSICAL {
         for (i, a) in names.iter().enumerate() {
             for b in &names[i + 1..] {
-                if shares(a, b, coordinate) {
-                    continue;
+                if !shares(*a, *b, coordinate) {
+                    pairs.extend(pair(methods, [*a, *b], coordinate));
                 }
-                pairs.extend(pair(methods, [a.as_str(), b.as_str()], coordinate));
             }
         }
     }
     let limit = LEVEL / pairs.len().max(1) as f64;
-    let apart: Vec<&PairAgreement> = pairs.iter().filter(|p| p.p_value < limit).collect();
-    let (agree, summary) = match (pairs.len(), apart.len()) {
-        (0, _) => (
-            None,
-            "Only one method tells each parameter, so there is nothing to compare.".into(),
-        ),
-        (n, 0) => (
-            Some(true),
-            format!(
-                "The methods agree: none of the {n} comparisons differs by more than its uncertainty allows."
-            ),
-        ),
-        _ => (Some(false), disagreement(methods, &apart)),
-    };
+    let agree = pairs.iter().all(|p| p.p_value >= limit);
     Agreement {
-        agree,
-        summary,
+        agree: (!pairs.is_empty()).then_some(agree),
         pairs,
     }
 }
 
-fn shares(a: &str, b: &str, coordinate: Coordinate) -> bool {
+fn shares(a: Method, b: Method, coordinate: Coordinate) -> bool {
     coordinate != Coordinate::Restitution
-        && [a, b].contains(&"boundaries")
-        && [a, b].contains(&"resonance")
+        && [a, b].contains(&Method::Boundaries)
+        && [a, b].contains(&Method::Resonance)
 }
 
 fn known(estimate: &Estimate) -> Option<(f64, f64)> {
@@ -57,45 +45,20 @@ fn known(estimate: &Estimate) -> Option<(f64, f64)> {
 }
 
 fn pair(
-    methods: &BTreeMap<String, MethodResult>,
-    names: [&str; 2],
-    coordinate: Coordinate,
+    results: &BTreeMap<Method, MethodResult>,
+    methods: [Method; 2],
+    parameter: Coordinate,
 ) -> Option<PairAgreement> {
-    let of = |name: &str| known(methods.get(name)?.parameters.get(coordinate)?);
-    let ((a, ea), (b, eb)) = (of(names[0])?, of(names[1])?);
+    let of = |method: Method| known(results.get(&method)?.parameters.get(parameter)?);
+    let ((a, ea), (b, eb)) = (of(methods[0])?, of(methods[1])?);
     let z_score = (a - b) / ea.hypot(eb).max(f64::MIN_POSITIVE);
     Some(PairAgreement {
-        parameter: coordinate.name().into(),
-        methods: names.map(String::from),
+        parameter,
+        methods,
+        values: [a, b],
         z_score,
         p_value: two_sided(z_score),
     })
-}
-
-fn disagreement(methods: &BTreeMap<String, MethodResult>, apart: &[&PairAgreement]) -> String {
-    let worst = apart
-        .iter()
-        .max_by(|a, b| a.z_score.abs().total_cmp(&b.z_score.abs()));
-    let Some(worst) = worst else {
-        return String::new();
-    };
-    let coordinate = Coordinate::PHYSICAL
-        .into_iter()
-        .find(|c| c.name() == worst.parameter);
-    let value = |name: &String| {
-        let estimate = methods.get(name)?.parameters.get(coordinate?)?;
-        Some(format!("{:.5}", estimate.value?))
-    };
-    format!(
-        "The methods do not agree on {}: {} finds {}, {} finds {}, {:.1} standard errors apart. \
-         Trust the interval of neither until the cause is found.",
-        coordinate.map_or("?", Coordinate::symbol),
-        worst.methods[0],
-        value(&worst.methods[0]).unwrap_or_default(),
-        worst.methods[1],
-        value(&worst.methods[1]).unwrap_or_default(),
-        worst.z_score.abs()
-    )
 }
 
 /// Two-sided p-value of a standard normal score.

@@ -4,7 +4,9 @@
 use crate::identify::evidence::Blocks;
 use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
 use crate::identify::joint::Weights;
-use crate::identify::judgement::suspicion::{SURE, Suspicion};
+use crate::identify::judgement::suspicion::SURE;
+use crate::identify::messages::Finding;
+use crate::identify::method::Method;
 use crate::record::Role;
 
 /// Relative difference of two sums of squares that errors of the model may make.
@@ -15,7 +17,7 @@ const MODEL_CHANCE: f64 = 0.3;
 pub fn swapped(
     blocks: &Blocks,
     cost: &dyn Fn(&Blocks, &Weights) -> Option<(f64, usize)>,
-) -> Option<Suspicion> {
+) -> Option<Finding> {
     // An allowance for what the model leaves open would hide what the interchange explains.
     let mut here = blocks.clone();
     (
@@ -31,26 +33,19 @@ pub fn swapped(
             .min_by(|a, b| a.0.total_cmp(&b.0))
     };
     // Often the resonance curve alone speaks against it.
-    let alone = [Some(1.0), None, None, None, None];
+    let alone = Weights::from([(Method::Resonance, 1.0)]);
     if let (Some((here, _)), Some((there, _))) = (cost(&here, &alone), best(&alone))
         && there > 2.0 * here
     {
         return None;
     }
-    let both = [Some(1.0), Some(1.0), None, None, None];
+    let both = Weights::from([(Method::Resonance, 1.0), (Method::Trajectories, 1.0)]);
     let ((here, freedom), (there, _)) = (cost(&here, &both)?, best(&both)?);
     let typical = (there / freedom.max(1) as f64).max(1.0);
     let z_score = ((here - there) / typical).max(0.0).sqrt();
     // Where the model leaves more than noise, chance may favour either by some of it.
     let clearly = 1.0 + MODEL_CHANCE * (1.0 - typical.recip());
-    (z_score > SURE && here > clearly * there).then(|| Suspicion {
-        kind: "swapped_channels".into(),
-        subject: "velocity_x, velocity_y".into(),
-        z_score,
-        message: "all data fit far better with the velocities of both masses interchanged: swap \
-                  [channels.velocity_x] and [channels.velocity_y], or the displacements"
-            .into(),
-    })
+    (z_score > SURE && here > clearly * there).then_some(Finding::SwappedChannels { z_score })
 }
 
 /// Whose filter an interchanged velocity has passed.

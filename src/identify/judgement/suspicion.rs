@@ -5,26 +5,14 @@
 //! much better would all data then fit.
 
 use nalgebra::DVector;
-use serde::{Deserialize, Serialize};
 
 use crate::identify::evidence::Nominal;
 use crate::identify::evidence::trajectory::{TrajectoryBlock, TrajectoryRecord};
 use crate::identify::fit::factor::dot;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Fit, mean_squares};
-
-/// A mistake that the data give away.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Suspicion {
-    /// `wrong_clearance`, `wrong_gain`, `wrong_corner` or `swapped_channels`.
-    pub kind: String,
-    /// The channel's role, or the clearance as stated.
-    pub subject: String,
-    /// How sure: the deviation over its standard error.
-    pub z_score: f64,
-    /// In words, with the remedy.
-    pub message: String,
-}
+use crate::identify::messages::Finding;
+use crate::record::Role;
 
 /// Standard errors from which a deviation is named.
 pub(super) const SURE: f64 = 6.0;
@@ -33,52 +21,42 @@ const CHANNEL_LIMIT: f64 = 4.0;
 /// Least relative deviation of a gap that is named.
 const GAP_LIMIT: f64 = 2e-3;
 
-/// Gains and corners of channels that lie far outside what the laboratory states of them.
-pub fn channels(fit: &Fit, factor: f64, nominal: &Nominal) -> Vec<Suspicion> {
+/// The channels in the order of [`Parameters::gains`].
+const CHANNELS: [Role; 4] = [
+    Role::VelocityX,
+    Role::VelocityY,
+    Role::DisplacementX,
+    Role::DisplacementY,
+];
+
+/// Gains and corners of channels that are far outside what the laboratory states of them.
+pub fn channels(fit: &Fit, factor: f64, nominal: &Nominal) -> Vec<Finding> {
     let of = |coordinate: &Coordinate| {
-        let allowed = match coordinate {
-            Coordinate::Gain(_) => nominal.gain_uncertainty,
-            Coordinate::Corner(_) => nominal.corner_uncertainty,
+        let (allowed, index) = match coordinate {
+            Coordinate::Gain(index) => (nominal.gain_uncertainty, index),
+            Coordinate::Corner(index) => (nominal.corner_uncertainty, index),
             _ => return None,
         };
         let off = fit.parameters.coordinate(*coordinate);
         let error = fit.error(*coordinate)? * factor.sqrt();
         let z_score = off / allowed.hypot(error).max(f64::MIN_POSITIVE);
         let odd = z_score.abs() > CHANNEL_LIMIT && off.abs() > SURE * error;
-        odd.then(|| odd_channel(*coordinate, off, z_score))
+        let channel = *CHANNELS.get(*index).filter(|_| odd)?;
+        let deviation = off.exp_m1();
+        Some(match coordinate {
+            Coordinate::Corner(_) => Finding::WrongCorner {
+                channel,
+                deviation,
+                z_score,
+            },
+            _ => Finding::WrongGain {
+                channel,
+                deviation,
+                z_score,
+            },
+        })
     };
     fit.free.iter().filter_map(of).collect()
-}
-
-/// A gain or a corner that deviates; `off`: its logarithm over the stated one.
-fn odd_channel(coordinate: Coordinate, off: f64, z_score: f64) -> Suspicion {
-    let percent = 100.0 * (off.exp() - 1.0).abs();
-    let way = if off > 0.0 { "high" } else { "low" };
-    let name = coordinate.name();
-    let (kind, channel, message) = match name.strip_prefix("corner_") {
-        Some(channel) => {
-            let message = format!(
-                "the high-pass of {channel} has its corner {percent:.0} % too {way} for the \
-                 stated one: mend high_pass in [channels.{channel}], or state a larger \
-                 corner_uncertainty in [rig]"
-            );
-            ("wrong_corner", channel, message)
-        }
-        None => {
-            let channel = name.trim_start_matches("gain_");
-            let message = format!(
-                "{channel} reads {percent:.1} % too {way}: mend scale in [channels.{channel}], \
-                 or state a larger gain_uncertainty in [rig]"
-            );
-            ("wrong_gain", channel, message)
-        }
-    };
-    Suspicion {
-        kind: kind.into(),
-        message,
-        subject: channel.to_owned(),
-        z_score,
-    }
 }
 
 /// A gap that fits the other records only with another clearance.
@@ -92,19 +70,12 @@ pub struct OddGap {
     pub z_score: f64,
 }
 
-impl OddGap {
-    /// In words.
-    pub fn suspicion(&self) -> Suspicion {
-        let stated = format!("{:.4} mm", 1e3 * self.stated_m);
-        Suspicion {
-            kind: "wrong_clearance".into(),
-            message: format!(
-                "the gap stated with a clearance of {stated} moves like one of {:.4} mm: measure \
-                 it again and mend the run table; its records stay out of the fit",
-                1e3 * self.fitting_m
-            ),
-            subject: stated,
-            z_score: self.z_score,
+impl From<OddGap> for Finding {
+    fn from(odd: OddGap) -> Self {
+        Self::WrongClearance {
+            stated_m: odd.stated_m,
+            fitting_m: odd.fitting_m,
+            z_score: odd.z_score,
         }
     }
 }

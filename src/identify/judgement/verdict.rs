@@ -1,16 +1,17 @@
-//! Whether the model fits each method's data, and the verdict in plain words.
+//! Whether the model fits each method's data, and the verdict.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::identify::estimate::NORMAL_975;
+use crate::identify::estimate::{Estimate, NORMAL_975, Status};
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::impacts::ImpactBlock;
 use crate::identify::evidence::resonance::{self, ResonanceBlock};
 use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::judgement::suspicion::Suspicion;
-use crate::identify::{Agreement, Estimate, MethodResult, Status, Verdict, VerdictKind};
+use crate::identify::identification::{Agreement, MethodResult, Verdict, VerdictKind};
+use crate::identify::messages::{Finding, Note, Remark, Sentence, SpeedPoint, StatedValue};
+use crate::identify::method::Method;
 use crate::signal::robust;
 
 /// Relative deviation of responses from which one degree of freedom does not fit.
@@ -38,17 +39,9 @@ pub fn judge_resonance(result: &mut MethodResult, block: &ResonanceBlock, fitted
     }
     let deviation = robust::rms(&deviations);
     result.fits = Some(deviation < RESONANCE_DEVIATION);
-    result.remarks.push(if deviation < RESONANCE_DEVIATION {
-        format!(
-            "the responses follow one degree of freedom within {:.2} %",
-            100.0 * deviation
-        )
-    } else {
-        format!(
-            "the responses deviate by {:.0} % from the curve of one degree of freedom: there is \
-             more than one resonance, or the damping is not viscous",
-            100.0 * deviation
-        )
+    result.remarks.push(match deviation < RESONANCE_DEVIATION {
+        true => Remark::OneDegreeOfFreedom { deviation },
+        false => Remark::NotOneDegreeOfFreedom { deviation },
     });
 }
 
@@ -76,10 +69,8 @@ pub fn judge_trajectories(result: &mut MethodResult, block: &TrajectoryBlock, fi
         return;
     };
     result.fits = Some(deviation < WAVEFORM_DEVIATION);
-    result.remarks.push(format!(
-        "the simulated waveforms leave {:.2} % of the measured ones unexplained",
-        100.0 * deviation
-    ));
+    let share = deviation;
+    result.remarks.push(Remark::WaveformsUnexplained { share });
 }
 
 /// Judge by the contact law whether impacts are instantaneous with one R; the records of the impacts
@@ -95,35 +86,31 @@ pub fn judge_impacts(result: &mut MethodResult, block: &ImpactBlock, evidence: &
     };
     let change = (a.restitution - b.restitution).abs();
     let changes = law.is_not_constant() && change > RESTITUTION_CHANGE;
-    let speeds = match changes {
-        true => format!(
-            "R goes from {:.3} at {:.3} m/s to {:.3} at {:.3} m/s",
-            a.restitution, a.speed_m_s, b.restitution, b.speed_m_s
-        ),
-        false => format!(
-            "R is the same from {:.3} to {:.3} m/s within {:.3}",
-            slow.speed_m_s,
-            fast.speed_m_s,
-            change.max(NORMAL_975 * a.standard_error).max(1e-3)
-        ),
-    };
     result.fits = Some(!changes);
     if !changes {
-        result.remarks.push(speeds);
+        result.remarks.push(Remark::RestitutionConstant {
+            slow_m_s: slow.speed_m_s,
+            fast_m_s: fast.speed_m_s,
+            within: change.max(NORMAL_975 * a.standard_error).max(1e-3),
+        });
         return;
     }
+    let [slower, faster] = [a, b].map(|p| SpeedPoint {
+        speed_m_s: p.speed_m_s,
+        restitution: p.restitution,
+    });
     let samples = contact_samples(block, evidence);
-    result.remarks.push(if samples > 1.5 {
-        format!(
-            "{speeds}, and a contact lasts {samples:.0} samples: it is not an instantaneous \
-             impact, so one coefficient of restitution does not describe it"
-        )
-    } else {
-        format!("{speeds}: R depends on the speed, one constant does not describe it")
+    result.remarks.push(match samples > 1.5 {
+        true => Remark::LongContact {
+            slower,
+            faster,
+            samples,
+        },
+        false => Remark::RestitutionChanges { slower, faster },
     });
     if let Some(estimate) = &mut result.parameters.restitution {
         estimate.status = Status::Weak;
-        estimate.note = Some("R is not one number here: see the remark on its change".into());
+        estimate.note = Some(Note::NotOneNumber);
     }
 }
 
@@ -137,124 +124,100 @@ fn contact_samples(block: &ImpactBlock, evidence: &Evidence) -> f64 {
     robust::median(&samples).unwrap_or(1.0)
 }
 
-/// What the verdict rests on.
-pub struct Findings<'a> {
+/// What a verdict is made from.
+pub struct Basis<'a> {
     /// The joint result.
     pub joint: &'a MethodResult,
     /// Each method.
-    pub methods: &'a BTreeMap<String, MethodResult>,
+    pub methods: &'a BTreeMap<Method, MethodResult>,
     /// Their agreement.
     pub agreement: &'a Agreement,
     /// Mistakes of the laboratory that the data give away.
-    pub suspicions: &'a [Suspicion],
+    pub suspicions: &'a [Finding],
 }
 
-/// One word and plain sentences.
-pub fn verdict(found: &Findings) -> Verdict {
-    let mut findings: Vec<String> = found.suspicions.iter().map(|s| s.message.clone()).collect();
-    for (name, method) in found.methods {
-        if method.fits == Some(false) {
-            findings.extend(method.remarks.iter().map(|r| format!("{name}: {r}")));
-        }
-    }
-    let misfit = found.methods.values().any(|m| m.fits == Some(false));
-    let told: Vec<(Coordinate, &Estimate)> = Coordinate::PHYSICAL
+/// The verdict: the model does not fit if it does not fit the data of any one method.
+pub fn verdict(basis: &Basis) -> Verdict {
+    let estimates: Vec<(Coordinate, &Estimate)> = Coordinate::PHYSICAL
         .into_iter()
-        .filter_map(|c| Some((c, found.joint.parameters.get(c)?)))
+        .filter_map(|c| Some((c, basis.joint.parameters.get(c)?)))
         .collect();
-    let unknown: Vec<Coordinate> = with_status(&told, Status::NotIdentifiable);
-    let weak: Vec<Coordinate> = with_status(&told, Status::Weak);
-    for (coordinate, estimate) in &told {
-        if let Some(note) = &estimate.note {
-            findings.push(format!("{}: {note}", coordinate.symbol()));
-        }
-    }
-    if found.agreement.agree == Some(false) {
-        findings.push(found.agreement.summary.clone());
-    }
+    let unknown = with_status(&estimates, Status::NotIdentifiable);
+    let weak = with_status(&estimates, Status::Weak);
+    let misfit = basis.methods.values().any(|m| m.fits == Some(false));
     let kind = if misfit {
         VerdictKind::DoesNotFit
-    } else if told.is_empty() || !unknown.is_empty() {
+    } else if estimates.is_empty() || !unknown.is_empty() {
         VerdictKind::NotIdentifiable
     } else if !weak.is_empty() {
         VerdictKind::Weak
     } else {
         VerdictKind::Identified
     };
+    let values: Vec<StatedValue> = estimates.iter().filter_map(stated_value).collect();
+    let first = match kind {
+        VerdictKind::DoesNotFit => Sentence::DoesNotFit,
+        VerdictKind::NotIdentifiable if estimates.is_empty() => Sentence::NothingUsable,
+        VerdictKind::NotIdentifiable if values.is_empty() => Sentence::NotIdentifiable {
+            parameters: unknown,
+        },
+        VerdictKind::NotIdentifiable => Sentence::PartlyIdentifiable {
+            values,
+            parameters: unknown,
+        },
+        VerdictKind::Weak => Sentence::Weak {
+            values,
+            parameters: weak,
+        },
+        VerdictKind::Identified => Sentence::Identified { values },
+    };
+    let second = match basis.agreement.agree {
+        Some(true) => Sentence::MethodsAgree,
+        Some(false) => Sentence::MethodsDisagree,
+        None => Sentence::OneMethod,
+    };
     Verdict {
         kind,
-        summary: sentences(kind, &told, &unknown, &weak, found),
-        findings,
+        sentences: vec![first, second],
+        findings: findings(basis, &estimates),
     }
 }
 
-fn with_status(told: &[(Coordinate, &Estimate)], status: Status) -> Vec<Coordinate> {
-    told.iter()
-        .filter(|(_, e)| e.status == status)
-        .map(|(c, _)| *c)
-        .collect()
+/// Suspicions, remarks of methods that do not fit, notes of the parameters, disagreement.
+fn findings(basis: &Basis, estimates: &[(Coordinate, &Estimate)]) -> Vec<Finding> {
+    let mut findings = basis.suspicions.to_vec();
+    for (method, result) in basis.methods {
+        if result.fits == Some(false) {
+            let misfit = |remark: &Remark| Finding::Misfit {
+                method: *method,
+                remark: remark.clone(),
+            };
+            findings.extend(result.remarks.iter().map(misfit));
+        }
+    }
+    let noted = estimates.iter().filter_map(|(parameter, estimate)| {
+        Some(Finding::Parameter {
+            parameter: *parameter,
+            note: estimate.note.clone()?,
+        })
+    });
+    findings.extend(noted);
+    let disagreement = basis.agreement.disagreement().cloned();
+    findings.extend(disagreement.map(|pair| Finding::Disagreement { pair }));
+    findings
 }
 
-fn symbols(coordinates: &[Coordinate]) -> String {
-    coordinates
-        .iter()
-        .map(|c| c.symbol())
-        .collect::<Vec<_>>()
-        .join(", ")
+fn with_status(estimates: &[(Coordinate, &Estimate)], status: Status) -> Vec<Coordinate> {
+    let with = estimates.iter().filter(|(_, e)| e.status == status);
+    with.map(|(c, _)| *c).collect()
 }
 
-fn sentences(
-    kind: VerdictKind,
-    told: &[(Coordinate, &Estimate)],
-    unknown: &[Coordinate],
-    weak: &[Coordinate],
-    found: &Findings,
-) -> String {
-    let values: Vec<String> = told.iter().filter_map(|(c, e)| phrase(*c, e)).collect();
-    let first = match kind {
-        VerdictKind::DoesNotFit => {
-            "The model does not describe these data: see the findings.".to_owned()
-        }
-        VerdictKind::NotIdentifiable if told.is_empty() => {
-            "Nothing could be identified: no record is usable for any method.".to_owned()
-        }
-        VerdictKind::NotIdentifiable if values.is_empty() => {
-            format!("These data cannot tell {}.", symbols(unknown))
-        }
-        VerdictKind::NotIdentifiable => format!(
-            "The rig has {}, but these data cannot tell {}.",
-            values.join(", "),
-            symbols(unknown)
-        ),
-        VerdictKind::Weak => {
-            format!(
-                "The rig has {}; {} only weakly.",
-                values.join(", "),
-                symbols(weak)
-            )
-        }
-        VerdictKind::Identified => format!("The rig has {}.", values.join(", ")),
-    };
-    let second = match found.agreement.agree {
-        Some(true) => "The methods agree.",
-        Some(false) => "The methods do not agree.",
-        None => "Only one method tells each parameter.",
-    };
-    format!("{first} {second}")
-}
-
-fn phrase(coordinate: Coordinate, estimate: &Estimate) -> Option<String> {
-    let (value, interval) = (estimate.value?, estimate.interval95?);
-    let half = 0.5 * (interval[1] - interval[0]);
-    let (scale, unit) = match coordinate {
-        Coordinate::Frequency => (1.0, " Hz"),
-        Coordinate::Deflection => (1e3, " mm"),
-        _ => (1.0, ""),
-    };
-    let (value, half) = (value * scale, half * scale);
-    let digits = (1.0 - half.max(1e-9).log10().floor()).clamp(0.0, 8.0) as usize;
-    Some(format!(
-        "{} = {value:.digits$} ± {half:.digits$}{unit}",
-        coordinate.symbol()
-    ))
+/// A parameter with its value; `None` without a value or an interval.
+fn stated_value((parameter, estimate): &(Coordinate, &Estimate)) -> Option<StatedValue> {
+    let [low, high] = estimate.interval95?;
+    Some(StatedValue {
+        parameter: *parameter,
+        value: estimate.value?,
+        half_width: 0.5 * (high - low),
+    })
 }

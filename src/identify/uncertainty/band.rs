@@ -1,7 +1,7 @@
 //! How far a curve in the (η, ρ) plane may be off: what the fit leaves open in R and β, on which alone
 //! the boundaries of the symmetric machine depend there.
 
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::identify::estimate::NORMAL_975;
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::Coordinate;
@@ -18,7 +18,7 @@ pub struct Spread {
 
 impl Spread {
     /// Of a fit with a factor on its covariance; asymmetries are left out.
-    pub fn of(fit: &Fit, factor: f64, rig: Rig) -> Self {
+    pub fn of(fit: &Fit, factor: f64, rig: RigKind) -> Self {
         let told = [Coordinate::Restitution, Coordinate::Damping];
         let ends = told
             .into_iter()
@@ -59,8 +59,8 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::identify::fit::least_squares::Ending;
     use crate::identify::fit::parameters::Parameters;
+    use crate::identify::fit::report::FitReport;
 
     #[test]
     fn valid_the_band_of_r_and_beta_themselves_is_their_interval() {
@@ -72,9 +72,9 @@ mod tests {
             covariance: DMatrix::from_row_slice(2, 2, &[r * r, common, common, beta * beta]),
             cost: 0.0,
             residuals: 0,
-            ending: Ending::Converged,
+            report: FitReport::default(),
         };
-        let spread = Spread::of(&fit, 4.0, Rig::Double);
+        let spread = Spread::of(&fit, 4.0, RigKind::Double);
         let of_r = spread.half95(|m| Some(m.restitution().at(1.0)));
         assert!((of_r.expect("a band") - 2.0 * NORMAL_975 * r).abs() < 1e-9);
         let of_beta = spread.half95(|m| Some(m.x.damping_ratio.ln()));

@@ -132,7 +132,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_a_table_is_written_as_csv_and_parquet() {
+    fn a_table_is_written_as_csv_and_parquet() {
         let table = Table::new()
             .numbers("eta", [0.1, 2.0])
             .missing("lyapunov", [None, Some(-0.25)])

@@ -17,14 +17,14 @@ pub fn chosen_records(observations: &[Observation], named: &[String]) -> Vec<usi
     }
     let mut best: BTreeMap<(u8, String), usize> = Default::default();
     for (i, o) in observations.iter().enumerate() {
-        let rank = match &o.finding.motion {
+        let rank = match &o.classification.motion {
             _ if o.excluded() || o.drive.is_none() => continue,
             Motion::Periodic { .. } => 0,
             Motion::Impactless => 1,
             Motion::Beat | Motion::Chaotic => 2,
             _ => continue,
         };
-        let key = (rank, o.finding.motion.label());
+        let key = (rank, o.classification.motion.label());
         let better = |k: &usize| quality(o) > quality(&observations[*k]);
         if best.get(&key).is_none_or(better) {
             best.insert(key, i);
@@ -38,6 +38,6 @@ const SURE: f64 = 0.95;
 
 /// Sureness first, then the strength of the motion over its noise.
 fn quality(o: &Observation) -> f64 {
-    let noise = o.finding.evidence.noise_ratio.unwrap_or(1.0);
-    o.finding.confidence.min(SURE) - noise
+    let noise = o.classification.evidence.noise_ratio.unwrap_or(1.0);
+    o.classification.confidence.min(SURE) - noise
 }

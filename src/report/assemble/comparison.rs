@@ -42,7 +42,7 @@ fn comparison(
 ) -> Option<Comparison> {
     let drive = o.drive?;
     let detection = detect(record, gathered.campaign.rig, &DetectSettings::default());
-    let periods = match o.finding.motion {
+    let periods = match o.classification.motion {
         Motion::Periodic { periods_n, .. } => (2 * periods_n).max(SHOWN_PERIODS),
         Motion::Impactless => SHOWN_PERIODS,
         _ => IRREGULAR_PERIODS,
@@ -58,7 +58,7 @@ fn comparison(
         .and_then(|fitted| Replay::of(gathered.campaign.rig, *fitted, o, &stretch));
     let (eta, rho) = rows::place(gathered, o);
     let traces = traces(record, &detection, &window, simulation.as_ref());
-    let motion = &o.finding.motion;
+    let motion = &o.classification.motion;
     let simulated_motion = simulation.as_ref().map(|s| match apart(&traces) {
         apart if apart < SAME_MOTION => motion.clone(),
         _ => s.motion.clone(),
@@ -70,7 +70,7 @@ fn comparison(
         eta,
         rho,
         drive_period_s: Some(drive.period_s()),
-        motion: o.finding.motion.clone(),
+        motion: o.classification.motion.clone(),
         simulated_motion,
         portraits: portraits(&traces),
         traces,

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Gathered, moves};
+use crate::identify::Reason;
 use crate::motion::Observation;
 use crate::record::{Channel, Record};
 use crate::report::content::{FreeDecay, Signal};
@@ -41,12 +42,16 @@ pub fn shown_decays(observations: &[Observation]) -> Vec<usize> {
 
 pub(super) fn free_decays(gathered: &Gathered) -> Vec<FreeDecay> {
     let pairs = gathered.decays.iter().zip(gathered.decay_records);
+    let reasons = gathered.record_reasons();
     pairs
-        .filter_map(|(index, record)| free_decay(gathered, &gathered.observations[*index], record))
+        .filter_map(|(index, record)| {
+            let reason = reasons.get(index).copied();
+            free_decay(&gathered.observations[*index], record, reason)
+        })
         .collect()
 }
 
-fn free_decay(gathered: &Gathered, o: &Observation, record: &Record) -> Option<FreeDecay> {
+fn free_decay(o: &Observation, record: &Record, left: Option<&Reason>) -> Option<FreeDecay> {
     let decay = o.decay?;
     let fitted = decay.values(record.sample_rate_hz);
     let channel = record
@@ -54,7 +59,6 @@ fn free_decay(gathered: &Gathered, o: &Observation, record: &Record) -> Option<F
         .iter()
         .filter(|c| moves(c.role) && c.values.len() >= decay.first + decay.samples)
         .min_by(|a, b| apart(a, &decay, &fitted).total_cmp(&apart(b, &decay, &fitted)))?;
-    let left = gathered.left_out.iter().find(|(name, _)| *name == o.record);
     let name = match &o.setting.specimen {
         Some(specimen) => format!("{specimen}: {}", o.record),
         None => o.record.clone(),
@@ -71,7 +75,7 @@ fn free_decay(gathered: &Gathered, o: &Observation, record: &Record) -> Option<F
         natural_frequency_error_hz: Some(decay.natural_frequency_error_hz),
         damping_ratio: Some(decay.damping_ratio),
         damping_ratio_error: Some(decay.damping_ratio_error),
-        note: left.map(|(_, why)| why.clone()).unwrap_or_default(),
+        note: left.map(ToString::to_string).unwrap_or_default(),
     })
 }
 

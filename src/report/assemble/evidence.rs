@@ -1,7 +1,5 @@
 //! What each method rests on: resonance curve, speeds at impacts, residuals, correlation.
 
-use std::collections::HashSet;
-
 use super::{Gathered, moves};
 use crate::identify::evidence::impacts::SpeedPair;
 use crate::identify::evidence::resonance::predicted;
@@ -9,7 +7,7 @@ use crate::identify::evidence::{Blocks, Evidence, Nominal};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::judgement::contact_law::Law;
 use crate::identify::residuals::{MethodResiduals, residuals as methods_residuals};
-use crate::identify::{MethodResult, SpecimenResult};
+use crate::identify::{Method, MethodResult, SpecimenResult};
 use crate::motion::Observation;
 use crate::motion::response::Response;
 use crate::record::Role;
@@ -35,9 +33,10 @@ fn thinned<T>(points: &[T], most: usize) -> impl Iterator<Item = &T> {
     points.iter().step_by(points.len().div_ceil(most).max(1))
 }
 
-/// Names of the records that a fit left out.
-fn names_left_out<'a>(gathered: &Gathered<'a>) -> HashSet<&'a str> {
-    gathered.left_out.iter().map(|l| l.0.as_str()).collect()
+/// What a method noticed.
+fn remarks(method: &MethodResult) -> String {
+    let each: Vec<String> = method.remarks.iter().map(ToString::to_string).collect();
+    each.join("; ")
 }
 
 /// Impactless resonance curves of the channels that have one, velocities first.
@@ -50,18 +49,22 @@ pub(super) fn resonance(gathered: &Gathered) -> Vec<ResonanceCurve> {
 }
 
 fn curve(gathered: &Gathered, role: Role) -> Option<ResonanceCurve> {
-    let left = names_left_out(gathered);
-    let points = gathered.observations.iter().filter_map(|o| {
-        let response = o.response.iter().find(|r| r.role == role)?;
-        Some(point(o, response, left.contains(o.record.as_str())))
-    });
+    let left = gathered.record_reasons();
+    let points = gathered
+        .observations
+        .iter()
+        .enumerate()
+        .filter_map(|(i, o)| {
+            let response = o.response.iter().find(|r| r.role == role)?;
+            Some(point(o, response, left.contains_key(&i)))
+        });
     let points: Vec<ResonancePoint> = points.collect();
     let mut points: Vec<ResonancePoint> = thinned(&points, MOST_POINTS).cloned().collect();
     if points.len() < FEWEST_POINTS {
         return None;
     }
     points.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
-    let method = gathered.identification.methods.get("resonance");
+    let method = gathered.identification.methods.get(&Method::Resonance);
     Some(ResonanceCurve {
         name: role.name().replace('_', " "),
         dimension: role.dimension().unwrap_or(Dimension::Number),
@@ -69,7 +72,7 @@ fn curve(gathered: &Gathered, role: Role) -> Option<ResonanceCurve> {
         fitted: fitted(gathered, role, &points),
         points,
         fits: method.and_then(|m| m.fits),
-        note: method.map(|m| m.remarks.join("; ")).unwrap_or_default(),
+        note: method.map(remarks).unwrap_or_default(),
     })
 }
 
@@ -117,7 +120,7 @@ pub(super) fn impacts(gathered: &Gathered) -> Vec<ImpactScatter> {
     let block = Blocks::new(&evidence(gathered)).impact;
     let specimens = &gathered.identification.specimens;
     if specimens.is_empty() {
-        let method = gathered.identification.methods.get("impacts");
+        let method = gathered.identification.methods.get(&Method::Impacts);
         let pairs: Vec<&SpeedPair> = block.pairs.iter().collect();
         return scatter(gathered, "", &pairs, method).into_iter().collect();
     }
@@ -127,7 +130,7 @@ pub(super) fn impacts(gathered: &Gathered) -> Vec<ImpactScatter> {
             setting.specimen.as_ref() == Some(name)
         };
         let pairs: Vec<&SpeedPair> = block.pairs.iter().filter(specimen).collect();
-        scatter(gathered, name, &pairs, result.methods.get("impacts"))
+        scatter(gathered, name, &pairs, result.methods.get(&Method::Impacts))
     };
     specimens.iter().filter_map(of_specimen).collect()
 }
@@ -153,7 +156,7 @@ fn scatter(
         restitution: estimate.and_then(|e| e.value),
         interval95: estimate.and_then(|e| e.interval95),
         restitution_of_speed: method.map(law_curve).unwrap_or_default(),
-        note: method.map(|m| m.remarks.join("; ")).unwrap_or_default(),
+        note: method.map(remarks).unwrap_or_default(),
     })
 }
 
@@ -175,8 +178,8 @@ pub(super) fn residuals(gathered: &Gathered) -> Vec<ResidualSet> {
     let Some(parameters) = gathered.parameters() else {
         return Vec::new();
     };
-    let left = names_left_out(gathered);
-    let left_out = |i: usize| left.contains(gathered.observations[i].record.as_str());
+    let left = gathered.record_reasons();
+    let left_out = |i: usize| left.contains_key(&i);
     let found = methods_residuals(&evidence(gathered), parameters, left_out);
     found.into_iter().map(|m| set(gathered, m)).collect()
 }
@@ -192,7 +195,7 @@ fn set(gathered: &Gathered, found: MethodResiduals) -> ResidualSet {
         }
     };
     ResidualSet {
-        method: found.method.to_owned(),
+        method: found.method.name().to_owned(),
         total: found.residuals.len(),
         points: thinned(&found.residuals, MOST_RESIDUALS)
             .map(point)
@@ -204,7 +207,7 @@ fn set(gathered: &Gathered, found: MethodResiduals) -> ResidualSet {
 
 /// Correlation of the parameters that were fitted together.
 pub(super) fn correlation(gathered: &Gathered) -> Option<Correlation> {
-    let fit = gathered.fit?;
+    let fit = gathered.fit()?;
     let matrix = fit
         .free
         .iter()
@@ -224,21 +227,16 @@ pub(super) fn correlation(gathered: &Gathered) -> Option<Correlation> {
 /// Profile likelihoods of the joint estimate.
 pub(super) fn profiles(gathered: &Gathered) -> Vec<Profile> {
     let id = gathered.identification;
-    let best = |name: &str| {
-        Coordinate::PHYSICAL
-            .into_iter()
-            .find(|c| c.name() == name)
-            .and_then(|c| id.joint.parameters.get(c)?.value)
-    };
+    let best = |parameter: Coordinate| id.joint.parameters.get(parameter)?.value;
     id.uncertainty
         .profiles
         .iter()
         .map(|p| Profile {
-            parameter: p.parameter.clone(),
+            parameter: p.parameter.name().to_owned(),
             method: String::new(),
             values: p.values.clone(),
             delta_chi2: p.delta_chi2.clone(),
-            best: best(&p.parameter),
+            best: best(p.parameter),
             interval95: p.interval95,
         })
         .collect()

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::Gathered;
+use crate::identify::Item;
 use crate::motion::Motion;
 use crate::report::content::LeftOut;
 
@@ -19,7 +20,7 @@ pub(super) fn left_out(gathered: &Gathered) -> Vec<LeftOut> {
             let reason = flag.code.replace('_', " ") + &of.unwrap_or_default();
             note(reason, &flag.message);
         }
-        if let Motion::Undetermined { reason } = &o.finding.motion
+        if let Motion::Undetermined { reason } = &o.classification.motion
             && !o.excluded()
             && o.drive.is_some()
         {
@@ -34,9 +35,12 @@ pub(super) fn left_out(gathered: &Gathered) -> Vec<LeftOut> {
             count: (why.records.len() > 1).then_some(why.records.len()),
         })
         .collect();
-    out.extend(gathered.left_out.iter().map(|(what, why)| LeftOut {
-        what: what.clone(),
-        why: why.clone(),
+    // impacts are in a remark of their method
+    let left_out = gathered.identification.left_out.iter();
+    let left_out = left_out.filter(|l| !matches!(l.item, Item::Impact { .. }));
+    out.extend(left_out.map(|l| LeftOut {
+        what: l.item.to_string(),
+        why: l.reason.to_string(),
         count: None,
     }));
     out

@@ -14,10 +14,12 @@ mod window;
 pub use chosen::chosen_records;
 pub use decays::shown_decays;
 
-use crate::event::Rig;
-use crate::identify::Identification;
+use std::collections::BTreeMap;
+
+use crate::event::RigKind;
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::Parameters;
+use crate::identify::{Identification, Item, Provenance, Reason};
 use crate::motion::{Bracket, Observation};
 use crate::record::{Record, Role};
 use crate::report::content::ReportContent;
@@ -30,7 +32,7 @@ pub struct CampaignFacts {
     /// Name of the campaign.
     pub name: String,
     /// One or two masses.
-    pub rig: Rig,
+    pub rig: RigKind,
     /// Nominal values: name, value in SI, unit.
     pub nominal: Vec<(String, f64, String)>,
     /// Whether its records are simulated.
@@ -70,12 +72,8 @@ pub struct Gathered<'a> {
     pub brackets: &'a [Bracket],
     /// The answer.
     pub identification: &'a Identification,
-    /// The joint fit.
-    pub fit: Option<&'a Fit>,
-    /// Factor on its covariance.
-    pub factor: f64,
-    /// What a fit left out, and why.
-    pub left_out: &'a [(String, String)],
+    /// Where it comes from.
+    pub provenance: &'a Provenance,
     /// Indices of the records to be compared with their simulation.
     pub chosen: &'a [usize],
     /// These records, samples included.
@@ -89,9 +87,34 @@ pub struct Gathered<'a> {
 }
 
 impl Gathered<'_> {
+    /// The joint fit.
+    fn fit(&self) -> Option<&Fit> {
+        self.identification.joint_fit.as_ref().map(|j| &j.fit)
+    }
+
     /// The fitted parameters.
     fn parameters(&self) -> Option<&Parameters> {
-        self.fit.map(|fit| &fit.parameters)
+        self.fit().map(|fit| &fit.parameters)
+    }
+
+    /// Why a record was left out, the first reason of several; by its index.
+    fn record_reasons(&self) -> BTreeMap<usize, &Reason> {
+        let left_out = self.identification.left_out.iter().rev();
+        left_out
+            .filter_map(|l| match &l.item {
+                Item::Record { index, .. } => Some((*index, &l.reason)),
+                Item::Bracket { .. } | Item::Impact { .. } => None,
+            })
+            .collect()
+    }
+
+    /// Why a bracket was left out, by its index.
+    fn bracket_reason(&self, bracket: usize) -> Option<&Reason> {
+        let mut left_out = self.identification.left_out.iter();
+        left_out.find_map(|l| match &l.item {
+            Item::Bracket { index, .. } if *index == bracket => Some(&l.reason),
+            _ => None,
+        })
     }
 }
 
@@ -117,6 +140,7 @@ pub fn assemble(gathered: &Gathered) -> ReportContent {
     content.correlation = evidence::correlation(gathered);
     content.profiles = evidence::profiles(gathered);
     content.left_out = left_out::left_out(gathered);
+    content.provenance = gathered.provenance.clone();
     content.settings_text = gathered.campaign.settings.clone();
     content.command_line = gathered.command_line.to_owned();
     content

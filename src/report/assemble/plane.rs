@@ -8,8 +8,9 @@ use crate::identify::replay::LIVELY_SPEED;
 use crate::identify::uncertainty::band::Spread;
 use crate::motion::Motion;
 use crate::report::content::{BoundaryCurve, BoundaryKind, RegionMap};
+use impact_oscillator::SettledMotion;
 use impact_oscillator::atlas::map::even;
-use impact_oscillator::atlas::{CellMotion, MapGrid, MapSettings, region_map as simulate_map};
+use impact_oscillator::atlas::{MapGrid, MapSettings, region_map as simulate_map};
 use impact_oscillator::model::boundary::{rho_grazing, rho_s1, rho_s2};
 use impact_oscillator::model::orbit::stable_orbit;
 use impact_oscillator::model::params::{Initial, Machine, Setting};
@@ -80,19 +81,21 @@ fn machine(gathered: &Gathered) -> Option<Machine> {
 /// Without a fitted R there are no regions of impact motion to draw.
 fn tells_restitution(gathered: &Gathered) -> bool {
     gathered
-        .fit
+        .fit()
         .is_some_and(|fit| fit.free.contains(&Coordinate::Restitution))
 }
 
 /// s2 and s1 of z = 1/n and the grazing boundary, each with its 95 % band.
 pub(super) fn curves(gathered: &Gathered) -> Vec<BoundaryCurve> {
-    let (Some(view), Some(machine), Some(fit)) =
-        (View::of(gathered), machine(gathered), gathered.fit)
-    else {
+    let (Some(view), Some(machine), Some(joint)) = (
+        View::of(gathered),
+        machine(gathered),
+        &gathered.identification.joint_fit,
+    ) else {
         return Vec::new();
     };
     let etas = even((view.eta.0, view.eta.1, CURVE_POINTS));
-    let spread = Spread::of(fit, gathered.factor, gathered.campaign.rig);
+    let spread = Spread::of(&joint.fit, joint.variance_factor, gathered.campaign.rig);
     let mut wanted = vec![(BoundaryKind::Grazing, 1)];
     for n in 1..=MOST_PERIODS {
         wanted.extend([(BoundaryKind::S2, n), (BoundaryKind::S1, n)]);
@@ -191,7 +194,7 @@ pub(super) fn region_map(gathered: &Gathered) -> Option<RegionMap> {
     ))
 }
 
-fn motions(cells: &[CellMotion]) -> Vec<Motion> {
+fn motions(cells: &[SettledMotion]) -> Vec<Motion> {
     cells.iter().map(|cell| Motion::from(*cell)).collect()
 }
 

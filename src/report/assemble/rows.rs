@@ -1,10 +1,7 @@
 //! The campaign's summary and the rows of records and brackets.
 
-use std::collections::HashMap;
-
 use super::{ChannelFacts, Gathered};
-use crate::event::Rig;
-use crate::identify::evidence::flights::is_flown;
+use crate::identify::Reason;
 use crate::motion::{self, Motion, Observation};
 use crate::report::content::{
     BoundaryKind, BracketRow, CampaignSummary, ChannelRow, NominalValue, RecordRow,
@@ -26,8 +23,8 @@ pub(super) fn summary(gathered: &Gathered) -> CampaignSummary {
     CampaignSummary {
         name: gathered.campaign.name.clone(),
         rig: match gathered.campaign.rig {
-            crate::event::Rig::Double => "two masses against each other".into(),
-            crate::event::Rig::Single => "one mass against a stop".into(),
+            crate::event::RigKind::Double => "two masses against each other".into(),
+            crate::event::RigKind::Single => "one mass against a stop".into(),
         },
         records_total: all.len(),
         records_used: all.iter().filter(|o| !o.excluded()).count(),
@@ -89,29 +86,21 @@ pub(super) fn place(gathered: &Gathered, o: &Observation) -> (Option<f64>, Optio
 const MOST_RECORDS: usize = 6_000;
 
 pub(super) fn records(gathered: &Gathered) -> Vec<RecordRow> {
-    let left: HashMap<&str, &str> = gathered
-        .left_out
-        .iter()
-        .rev()
-        .map(|(name, why)| (name.as_str(), why.as_str()))
-        .collect();
+    let left = gathered.record_reasons();
     let all = gathered.observations;
     let stride = all.len().div_ceil(MOST_RECORDS).max(1);
     all.iter()
         .enumerate()
         .filter(|(i, _)| i.is_multiple_of(stride) || gathered.chosen.contains(i))
-        .map(|(_, o)| record(gathered, o, left.get(o.record.as_str()).copied()))
+        .map(|(i, o)| record(gathered, i, o, left.get(&i).copied()))
         .collect()
 }
 
-fn record(gathered: &Gathered, o: &Observation, left: Option<&str>) -> RecordRow {
+fn record(gathered: &Gathered, index: usize, o: &Observation, left: Option<&Reason>) -> RecordRow {
     let (eta, rho) = place(gathered, o);
-    let pair = o.finding.impacts_and_periods();
-    let used_by = if o.excluded() {
-        Vec::new()
-    } else {
-        used_by(gathered.campaign.rig, o, left.is_some())
-    };
+    let pair = o.classification.impacts_and_periods();
+    let using = gathered.identification.methods_using(index);
+    let used_by: Vec<String> = using.map(|m| m.name().to_owned()).collect();
     let excluded = o
         .flags
         .iter()
@@ -125,59 +114,34 @@ fn record(gathered: &Gathered, o: &Observation, left: Option<&str>) -> RecordRow
         clearance_m: o.setting.clearance_m,
         rho,
         sweep: o.setting.sweep,
-        motion: o.finding.motion.clone(),
+        motion: o.classification.motion.clone(),
         impacts_p: pair.map(|p| p.0),
         periods_n: pair.map(|p| p.1),
-        confidence: Some(o.finding.confidence),
+        confidence: Some(o.classification.confidence),
         impacts: o.impacts.len(),
         flags: o.flags.iter().map(|f| f.code.replace('_', " ")).collect(),
         left_out: excluded
-            .or_else(|| left.map(str::to_owned))
+            .or_else(|| left.map(ToString::to_string))
             .filter(|_| used_by.is_empty()),
         used_by,
     }
-}
-
-fn used_by(rig: Rig, o: &Observation, left_out: bool) -> Vec<String> {
-    let mut out = Vec::new();
-    let mut add = |name: &str, used: bool| {
-        if used {
-            out.push(name.to_owned());
-        }
-    };
-    add("resonance", !o.response.is_empty() && !left_out);
-    add("trajectories", o.folded.is_some() && !left_out);
-    add(
-        "impacts",
-        o.impacts
-            .iter()
-            .any(|i| i.closing_speed_before_m_s.is_some()),
-    );
-    add("flights", is_flown(rig, o) && !left_out);
-    add("free_decay", o.decay.is_some());
-    out
 }
 
 pub(super) fn brackets(gathered: &Gathered) -> Vec<BracketRow> {
     gathered
         .brackets
         .iter()
-        .map(|b| bracket(gathered, b))
+        .enumerate()
+        .map(|(i, b)| bracket(gathered, i, b))
         .collect()
 }
 
-fn bracket(gathered: &Gathered, b: &motion::Bracket) -> BracketRow {
+fn bracket(gathered: &Gathered, index: usize, b: &motion::Bracket) -> BracketRow {
     let parameters = gathered.parameters();
     let eta = |f: f64| parameters.map(|p| f / p.natural_frequency_hz);
     let closed_form = matches!(
         b.kind,
         motion::BoundaryKind::SaddleNode | motion::BoundaryKind::Grazing
-    );
-    let place = format!(
-        "bracket {} {:.2}–{:.2} Hz",
-        b.kind.name(),
-        b.frequency_low_hz,
-        b.frequency_high_hz
     );
     BracketRow {
         kind: match b.kind {
@@ -201,10 +165,6 @@ fn bracket(gathered: &Gathered, b: &motion::Bracket) -> BracketRow {
             crate::identify::evidence::boundary::predicted_hz(b, p, gathered.campaign.rig)
         }),
         records: Some(b.records.clone()),
-        left_out: gathered
-            .left_out
-            .iter()
-            .find(|(what, _)| what.starts_with(&place))
-            .map(|l| l.1.clone()),
+        left_out: gathered.bracket_reason(index).map(ToString::to_string),
     }
 }

@@ -13,12 +13,12 @@ pub use plane::*;
 
 use serde::{Deserialize, Serialize};
 
-use crate::identify::Identification;
+use crate::identify::{Identification, Provenance};
 use crate::motion::Motion;
 use crate::record::{Role, Sweep};
 
 /// Everything that a report shows.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ReportContent {
     /// Title of the report.
     pub title: String,
@@ -69,6 +69,9 @@ pub struct ReportContent {
     /// Further tables of numbers, printed with the methods.
     #[serde(default)]
     pub tables: Vec<DataTable>,
+    /// Versions and inputs.
+    #[serde(default)]
+    pub provenance: Provenance,
     /// The resolved settings, as text to be printed.
     #[serde(default)]
     pub settings_text: String,
@@ -101,6 +104,7 @@ impl ReportContent {
             correlation: None,
             left_out: Vec::new(),
             tables: Vec::new(),
+            provenance: Provenance::default(),
             settings_text: String::new(),
             command_line: String::new(),
             remarks: Vec::new(),

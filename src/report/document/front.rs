@@ -4,7 +4,7 @@ use super::facts::facts;
 use super::model::{Answer, Front, Rich};
 use super::prose::{prose, sentence, spoken};
 use super::{Drawn, tables};
-use crate::identify::{Estimate, VerdictKind};
+use crate::identify::{Estimate, Finding, VerdictKind};
 use crate::report::content::ReportContent;
 use crate::report::parameters::{self, PARAMETERS, ParameterLook};
 use crate::report::speech::Speech;
@@ -16,7 +16,7 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
         synthetic: content.summary.synthetic,
         verdict: verdict_name(id.verdict.kind),
         headline: campaign_headline(content, drawn.speech),
-        summary: prose(&drawn.speech.tell(&id.verdict.summary)).localised(drawn.speech),
+        summary: prose(&drawn.speech.tell(&id.verdict.to_string())).localised(drawn.speech),
         findings: localised(findings(content, drawn.speech), drawn.speech),
         answers: answers(content, drawn.speech),
         specimens: tables::specimens(content, drawn.speech),
@@ -26,7 +26,9 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
             None => "unknown",
         },
         agreement: match id.specimens.is_empty() {
-            true => prose(&agreement(&id.agreement.summary, drawn.speech)).localised(drawn.speech),
+            true => {
+                prose(&agreement(&id.agreement.to_string(), drawn.speech)).localised(drawn.speech)
+            }
             false => Rich::default(),
         },
         facts: facts(&content.summary, drawn.speech),
@@ -66,15 +68,13 @@ fn campaign_headline(content: &ReportContent, speech: Speech) -> String {
 /// Reasons and findings; where there are specimens, what was found of each in full.
 fn findings(content: &ReportContent, speech: Speech) -> Vec<Rich> {
     let id = &content.identification;
-    let of = |finding: &String| {
-        let specimen = id.specimens.iter().find(|(name, _)| {
-            let rest = finding.strip_prefix(name.as_str());
-            rest.is_some_and(|r| r.starts_with(':'))
-        });
-        let mut words = spoken(finding, speech);
-        if let Some((_, result)) = specimen {
+    let of = |finding: &Finding| {
+        let mut words = spoken(&finding.to_string(), speech);
+        if let Finding::Specimen { specimen, .. } = finding
+            && let Some(result) = id.specimens.get(specimen)
+        {
             for more in &result.verdict.findings {
-                words.push_str(&format!(" {}", spoken(more, speech)));
+                words.push_str(&format!(" {}", spoken(&more.to_string(), speech)));
             }
         }
         prose(&words)
@@ -130,7 +130,7 @@ fn answer(look: &ParameterLook, estimate: Option<&Estimate>, speech: Speech) -> 
         status: estimate.map_or("not_asked", |e| parameters::status_name(e.status)),
         note: estimate
             .and_then(|e| e.note.as_ref())
-            .map(|n| prose(&speech.tell(n)).localised(speech)),
+            .map(|n| prose(&speech.tell(&n.to_string())).localised(speech)),
     }
 }
 
@@ -168,7 +168,7 @@ mod tests {
             standard_error: None,
             interval95: None,
             status: Status::NotIdentifiable,
-            note: Some("no bracket".into()),
+            note: Some(crate::identify::Note::NotSeparable),
         };
         let answer = super::answer(&PARAMETERS[0], Some(&none), Speech::default());
         assert_eq!((answer.value, answer.interval), (None, None));

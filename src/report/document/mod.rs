@@ -81,6 +81,6 @@ fn subtitle(content: &ReportContent, speech: Speech) -> String {
 }
 
 fn footer(content: &ReportContent) -> String {
-    let version = content.identification.versions.get("impactid");
+    let version = content.provenance.versions.get("impactid");
     version.map_or("impactid".into(), |v| format!("impactid {v}"))
 }

@@ -5,6 +5,7 @@ use super::prose::{prose, sentence};
 use super::settings::settings;
 use super::tables;
 use super::{Drawn, captions, conventions};
+use crate::identify::Remark;
 use crate::report::content::ReportContent;
 use crate::report::figures::comparison;
 use crate::report::figures::plane::Plane;
@@ -150,12 +151,12 @@ fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
 
 /// What was found of each specimen, by method.
 fn specimens(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
-    let told = |remark: &String| sentence(&drawn.speech.tell(remark));
+    let told = |remark: &Remark| sentence(&drawn.speech.tell(&remark.to_string()));
     let table = tables::specimen_methods(content, drawn.speech).map(Block::Table);
     let mut blocks: Vec<Block> = table.into_iter().collect();
     for (specimen, result) in &content.identification.specimens {
         for (method, result) in &result.methods {
-            let name = drawn.speech.say(&method_name(method).to_lowercase());
+            let name = drawn.speech.say(&method_name(method.name()).to_lowercase());
             blocks.extend(
                 result
                     .remarks
@@ -168,7 +169,7 @@ fn specimens(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
 }
 
 fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
-    let told = |remark: &String| sentence(&drawn.speech.tell(remark));
+    let told = |remark: &Remark| sentence(&drawn.speech.tell(&remark.to_string()));
     let mut blocks = Vec::new();
     if content.identification.specimens.is_empty() {
         blocks.extend(tables::methods(content, drawn.speech).map(Block::Table));
@@ -179,7 +180,7 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
         .methods
         .iter()
         .flat_map(|(name, method)| {
-            let name = drawn.speech.say(&method_name(name));
+            let name = drawn.speech.say(&method_name(name.name()));
             method
                 .remarks
                 .iter()
@@ -233,7 +234,7 @@ fn conventions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
 
 /// Versions of program and formats.
 fn versions(content: &ReportContent, speech: Speech) -> Option<Block> {
-    let versions = &content.identification.versions;
+    let versions = &content.provenance.versions;
     let each: Vec<String> = versions.iter().map(|(k, v)| format!("{k} {v}")).collect();
     let list = each.join(", ");
     let text = speech.say_with("Versions of program and files: {list}.", &[("list", &list)]);

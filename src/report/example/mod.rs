@@ -11,6 +11,8 @@ use std::collections::BTreeMap;
 use oscillator::Parameters;
 
 use super::content::*;
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::messages::StatedValue;
 use crate::identify::*;
 use crate::motion::Motion;
 use crate::record::{Role, Sweep};
@@ -115,16 +117,16 @@ pub fn identification() -> Identification {
         [0.0697, 0.0009],
         [1.254e-3, 6e-6],
     ]);
-    methods.insert("boundaries".into(), method(boundaries, 27, 0.93));
+    methods.insert(Method::Boundaries, method(boundaries, 27, 0.93));
     let trajectories = all([
         [0.9006, 0.0011],
         [12.5991, 0.0021],
         [0.0702, 0.0003],
         [1.249e-3, 3e-6],
     ]);
-    methods.insert("trajectories".into(), method(trajectories, 48_212, 1.04));
+    methods.insert(Method::Trajectories, method(trajectories, 48_212, 1.04));
     methods.insert(
-        "impacts".into(),
+        Method::Impacts,
         method(set(estimate(0.9012, 0.0019), None, None, None), 5_310, 1.01),
     );
     let resonance = set(
@@ -133,10 +135,11 @@ pub fn identification() -> Identification {
         estimate(0.0706, 0.0005),
         estimate(1.252e-3, 5e-6),
     );
-    methods.insert("resonance".into(), method(resonance, 204, 0.98));
-    let pair = |parameter: &str, a: &str, b: &str, z: f64, p: f64| PairAgreement {
-        parameter: parameter.into(),
-        methods: [a.into(), b.into()],
+    methods.insert(Method::Resonance, method(resonance, 204, 0.98));
+    let pair = |parameter, methods, z: f64, p: f64| PairAgreement {
+        parameter,
+        methods,
+        values: [1.0, 1.0],
         z_score: z,
         p_value: p,
     };
@@ -146,38 +149,81 @@ pub fn identification() -> Identification {
         [0.0702, 0.0003],
         [1.2503e-3, 2.4e-6],
     ]);
+    use Coordinate::{Damping, Deflection, Frequency, Restitution};
+    use Method::{Boundaries, Impacts, Resonance, Trajectories};
+    let values = Coordinate::PHYSICAL.into_iter().filter_map(|c| {
+        let estimate = joint.get(c)?;
+        Some(StatedValue {
+            parameter: c,
+            value: estimate.value?,
+            half_width: 1.96 * estimate.standard_error?,
+        })
+    });
     Identification {
         suspicions: Vec::new(),
         uncertainty: Default::default(),
+        left_out: Vec::new(),
+        used_by: BTreeMap::new(),
+        joint_fit: None,
         verdict: Verdict {
             kind: VerdictKind::Identified,
-            summary: "The bodies rebound with R = 0.9005 ± 0.0018 of their closing speed, and the rig behaves as two damped oscillators that hit each other without any further loss. Four methods, three of them independent of each other, give the same parameters within their errors.".into(),
+            sentences: vec![
+                Sentence::Identified {
+                    values: values.collect(),
+                },
+                Sentence::MethodsAgree,
+            ],
             findings: vec![
-                "The restitution does not change over closing speeds from 30 to 420 mm/s.".into(),
-                "Two brackets of the saddle-node boundary were left out: the motion had jumped early.".into(),
+                Finding::Misfit {
+                    method: Impacts,
+                    remark: Remark::RestitutionConstant {
+                        slow_m_s: 0.03,
+                        fast_m_s: 0.42,
+                        within: 0.002,
+                    },
+                },
+                Finding::WrongClearance {
+                    stated_m: 1.5e-3,
+                    fitting_m: 1.45e-3,
+                    z_score: -9.1,
+                },
             ],
         },
         joint: method(joint, 53_753, 1.02),
         methods,
         agreement: Agreement {
             agree: Some(true),
-            summary: "The largest difference between two methods is 1.4 of its standard error ($f_0$, boundaries against trajectories).".into(),
             pairs: vec![
-                pair("restitution", "boundaries", "trajectories", -0.68, 0.50),
-                pair("restitution", "boundaries", "impacts", -0.76, 0.45),
-                pair("restitution", "trajectories", "impacts", -0.27, 0.79),
-                pair("natural_frequency_hz", "boundaries", "resonance", 0.14, 0.89),
-                pair("damping_ratio", "boundaries", "resonance", -0.87, 0.38),
-                pair("static_deflection_m", "trajectories", "resonance", -0.51, 0.61),
+                pair(Restitution, [Boundaries, Trajectories], -0.68, 0.50),
+                pair(Restitution, [Boundaries, Impacts], -0.76, 0.45),
+                pair(Restitution, [Trajectories, Impacts], -0.27, 0.79),
+                pair(Frequency, [Boundaries, Resonance], 0.14, 0.89),
+                pair(Damping, [Boundaries, Resonance], -0.87, 0.38),
+                pair(Deflection, [Trajectories, Resonance], -0.51, 0.61),
             ],
         },
         specimens: BTreeMap::new(),
+    }
+}
+
+/// Where the example's answer comes from.
+fn provenance() -> Provenance {
+    Provenance {
         settings: serde_json::json!({}),
-        versions: [("impactid", "0.1.0"), ("identification.json", "1"), ("polars", "0.55.2")]
-            .map(|(k, v)| (k.to_owned(), v.to_owned()))
-            .into(),
+        versions: [
+            ("impactid", "0.1.0"),
+            ("identification.json", "2"),
+            ("polars", "0.55.2"),
+        ]
+        .map(|(k, v)| (k.to_owned(), v.to_owned()))
+        .into(),
         inputs_sha256: (1..=3)
-            .map(|i| (format!("raw/sweep_{i:02}.h5"), format!("{:064x}", 0x1234_5678_9abc_def0_u128 * i * i)))
+            .map(|i| {
+                (
+                    format!("raw/sweep_{i:02}.h5"),
+                    format!("{:064x}", 0x1234_5678_9abc_def0_u128 * i * i),
+                )
+            })
             .collect(),
     }
 }
@@ -186,6 +232,7 @@ pub fn identification() -> Identification {
 pub fn content(extent: Extent) -> ReportContent {
     let id = identification();
     let mut content = ReportContent::new("Double impact oscillator, gap and frequency sweep", id);
+    content.provenance = provenance();
     content.records = records::records(extent);
     content.brackets = records::brackets(&content.records);
     content.curves = plane::curves();

@@ -3,21 +3,21 @@
 use super::*;
 use labfiles::units::Dimension;
 
-fn unknown(note: &str) -> Option<Estimate> {
+fn unknown(note: Note) -> Option<Estimate> {
     Some(Estimate {
         value: None,
         standard_error: None,
         interval95: None,
         status: Status::NotIdentifiable,
-        note: Some(note.into()),
+        note: Some(note),
     })
 }
 
-fn bare(kind: VerdictKind, summary: &str) -> Identification {
+fn bare(kind: VerdictKind, sentence: Sentence) -> Identification {
     let mut id = identification();
     id.verdict = Verdict {
         kind,
-        summary: summary.into(),
+        sentences: vec![sentence],
         findings: vec![],
     };
     id.methods.clear();
@@ -28,17 +28,14 @@ fn bare(kind: VerdictKind, summary: &str) -> Identification {
 
 /// Nine free decays and nothing else.
 pub fn decays_only() -> ReportContent {
-    let mut id = bare(
-        VerdictKind::Weak,
-        "The free decays give natural frequency and damping of each specimen. Nothing was hit, so the restitution cannot be told.",
-    );
+    let mut id = bare(VerdictKind::Weak, Sentence::Specimens { count: 4 });
     for (i, name) in ["mass 1", "mass 2", "mass 3", "mass 4"]
         .into_iter()
         .enumerate()
     {
         let joint = MethodResult {
             parameters: ParameterSet {
-                restitution: unknown("There is no impact in these records."),
+                restitution: unknown(Note::NothingToFit),
                 natural_frequency_hz: estimate(11.2 + 3.1 * i as f64, 0.004),
                 damping_ratio: estimate(0.0138 + 0.002 * i as f64, 0.0002),
                 static_deflection_m: None,
@@ -54,17 +51,20 @@ pub fn decays_only() -> ReportContent {
         } else {
             VerdictKind::DoesNotFit
         };
-        let summary = if i < 2 {
-            "The decays give f0 and β."
+        let sentence = if i < 2 {
+            Sentence::Weak {
+                values: Vec::new(),
+                parameters: vec![Coordinate::Restitution],
+            }
         } else {
-            "The forced runs show two resonances: not one degree of freedom."
+            Sentence::DoesNotFit
         };
         let verdict = Verdict {
             kind,
-            summary: summary.into(),
+            sentences: vec![sentence],
             findings: vec![],
         };
-        let methods = [("free_decay".to_owned(), joint.clone())].into();
+        let methods = [(Method::FreeDecay, joint.clone())].into();
         let agreement = Agreement::default();
         let result = SpecimenResult {
             verdict,
@@ -119,11 +119,17 @@ fn undriven(id: &str, impacts: usize) -> RecordRow {
 pub fn cart() -> ReportContent {
     let mut id = bare(
         VerdictKind::Identified,
-        "The cart with the spring bumper leaves the stop with R = 0.900 ± 0.004 of its speed. The magnet bumper is no instantaneous impact and was left out.",
+        Sentence::Identified {
+            values: vec![StatedValue {
+                parameter: Coordinate::Restitution,
+                value: 0.9003,
+                half_width: 0.0041,
+            }],
+        },
     );
     id.joint.parameters.restitution = estimate(0.9003, 0.0021);
     id.methods.insert(
-        "impacts".into(),
+        Method::Impacts,
         MethodResult {
             observations: 87,
             records: 5,
@@ -215,17 +221,23 @@ pub fn unidentified() -> ReportContent {
     let mut content = content(SMALL);
     let mut id = bare(
         VerdictKind::NotIdentifiable,
-        "These eight records do not tell the restitution: the motion jumped only once, far from the other bracket. Brackets at two further gaps would tell it.",
+        Sentence::NotIdentifiable {
+            parameters: vec![Coordinate::Restitution, Coordinate::Deflection],
+        },
     );
-    id.joint.parameters.restitution = unknown(
-        "One bracket alone cannot tell R while β and x_st are free; brackets at two further gaps would.",
-    );
+    id.joint.parameters.restitution = unknown(Note::Open {
+        parameter: Coordinate::Restitution,
+        standard_error: Some(0.31),
+    });
     id.joint.parameters.natural_frequency_hz = Some(Estimate {
         status: Status::Weak,
-        note: Some("leans on the nominal value".into()),
+        note: Some(Note::LeansOn {
+            parameter: Coordinate::Damping,
+            correlation: 0.91,
+        }),
         ..estimate(12.6, 0.2).unwrap_or_else(|| unreachable!())
     });
-    id.joint.parameters.static_deflection_m = unknown("No impactless resonance curve.");
+    id.joint.parameters.static_deflection_m = unknown(Note::NotSeparable);
     content.identification = id;
     content.curves.clear();
     content.region_map = None;

@@ -77,7 +77,7 @@ fn lines<'a>(content: &'a ReportContent, speech: Speech) -> Vec<Line<'a>> {
     let methods = id
         .methods
         .iter()
-        .map(|(key, m)| (method_name(key), false, &m.parameters));
+        .map(|(key, m)| (method_name(key.name()), false, &m.parameters));
     let all = methods.chain([(method_name("joint"), true, &id.joint.parameters)]);
     all.map(|(key, joint, parameters)| Line {
         name: speech.say(&key),

@@ -59,7 +59,7 @@ fn unlucky() -> ReportContent {
     for (record, motion) in content
         .records
         .iter_mut()
-        .zip([Motion::Beat, Motion::Joined])
+        .zip([Motion::Beat, Motion::Sticking])
     {
         record.motion = motion;
         record.sweep = Sweep::Unknown;
@@ -154,8 +154,6 @@ fn valid_no_phrase_of_the_words_is_idle() {
         "/src"
     ))));
     let (mut unsaid, mut idle) = (Vec::new(), Vec::new());
-    let unknown = |sentence: &&str| !source.contains(plainly(sentence).trim_matches(['{', '}']));
-    idle.extend(words::Words::sentences().filter(unknown));
     for (i, phrase) in words::Words::phrases().enumerate() {
         if !said.contains(&format!("⟦{i}⟧")) {
             unsaid.push(phrase);
@@ -236,99 +234,4 @@ fn valid_a_german_report_speaks_german() {
         assert!(page.contains("<html lang=\"de\">") && page.contains("Was gemessen wurde"));
         assert!(!page.contains("<h2>What was measured"));
     }
-}
-
-/// A template with a number in each of its places.
-fn filled(template: &str) -> String {
-    let places = words::places(template);
-    let numbers = places.into_iter().enumerate();
-    numbers.fold(template.to_owned(), |text, (i, name)| {
-        text.replace(&format!("{{{name}}}"), &format!("{i}.5"))
-    })
-}
-
-/// The example with every sentence that other rooms say, as verdict, finding, remark and reason.
-fn full_of_sentences() -> ReportContent {
-    let said: Vec<String> = words::Words::sentences().map(filled).collect();
-    let mut content = kind("small").clone();
-    let id = &mut content.identification;
-    id.verdict.summary = format!("{}.", said.join(". "));
-    id.verdict.findings = said.iter().map(|s| format!("impacts: {s}")).collect();
-    id.agreement.summary = "The methods do not agree on R: impacts finds 0.9, flights finds 0.8, 4.0 \
-                            standard errors apart. Trust the interval of neither until the cause is \
-                            found."
-        .into();
-    for method in id.methods.values_mut() {
-        method.remarks.clone_from(&said);
-    }
-    let estimate = id.joint.parameters.restitution.as_mut().expect("an R");
-    estimate.note = Some(said.join("; "));
-    content.resonance[0].note = said.join("; ");
-    content.impacts[0].note = said.join("; ");
-    let left_out = said.iter().map(|s| content::LeftOut {
-        what: s.clone(),
-        why: match s.contains("the others alike") {
-            true => s.clone(),
-            false => format!("clipped (x): {s} (so r1; the others alike)"),
-        },
-        count: None,
-    });
-    content.left_out = left_out.collect();
-    content.records[0].used_by.clear();
-    content.records[0].left_out = Some(said.join("; "));
-    content.records[0].flags = vec!["dropped samples".into()];
-    content.brackets.truncate(1);
-    content.brackets[0].left_out = Some(said.join("; "));
-    content.remarks = said;
-    // what these say of their own is no sentence of another room's
-    content.residuals.clear();
-    content.summary.notes.clear();
-    content
-}
-
-/// The words of a template that stand together in its text, the longest.
-fn longest_words(template: &str) -> String {
-    let pieces = template.split(['{', '}']).step_by(2);
-    pieces
-        .max_by_key(|p| p.len())
-        .unwrap_or_default()
-        .to_lowercase()
-}
-
-#[test]
-fn valid_a_german_report_says_no_english_sentence() {
-    let options = RenderOptions {
-        words: Some(words::Words::german().clone()),
-        ..RenderOptions::default()
-    };
-    let content = full_of_sentences();
-    let text = |options: &RenderOptions| {
-        let mut document = Report::new(&content, options).document;
-        // from the English to the reader's
-        document.words.clear();
-        serde_json::to_string(&document)
-            .expect("JSON")
-            .to_lowercase()
-    };
-    let (english, german) = (text(&RenderOptions::default()), text(&options));
-    // short ones are parts of German words
-    let long = words::Words::sentences().filter(|s| longest_words(s).len() > 12);
-    let mut met = 0;
-    for template in long {
-        let words = longest_words(template).replace('"', "\\\"");
-        met += usize::from(english.contains(&words));
-        if let Some(at) = german.find(&words) {
-            let from = german[..at]
-                .char_indices()
-                .rev()
-                .nth(200)
-                .map_or(0, |c| c.0);
-            let said: String = german[from..].chars().take(500).collect();
-            panic!("{template} is said: …{said}…");
-        }
-    }
-    assert!(met > 60, "{met} sentences are met");
-    assert!(
-        german.contains("einzelne stöße ergibt 0.9, stoß zu stoß ergibt 0.8, 4.0 standardfehler")
-    );
 }

@@ -73,7 +73,7 @@ fn with_impacts(portrait: &Portrait) -> Vec<Sample> {
                         vx,
                         y,
                         vy,
-                        joined: false,
+                        sticking: false,
                     });
                 }
             }
@@ -101,7 +101,7 @@ fn keys(portrait: &Portrait) -> Vec<Key> {
     if !portrait.impacts.is_empty() {
         keys.push(Key::new(Sign::dot(look::INK), "impact"));
     }
-    if portrait.samples.iter().any(|s| s.joined) {
+    if portrait.samples.iter().any(|s| s.sticking) {
         keys.push(Key::new(Sign::Patch(look::PALE), "masses together"));
     }
     keys
@@ -179,7 +179,7 @@ impl Drawing<'_> {
             canvas.rectangle((a.0, b.1), (b.0, a.1), look::PALE);
         };
         for s in &self.samples {
-            match (s.joined, first) {
+            match (s.sticking, first) {
                 (true, None) => first = Some(s.periods),
                 (false, Some(from)) => {
                     band(from, s.periods);

@@ -15,8 +15,9 @@ use crate::report::figures::path::{self, Rect};
 use crate::report::figures::placing::Occupancy;
 use crate::report::figures::regions::Regions;
 use crate::report::speech::Speech;
+use impact_oscillator::SettledMotion;
 use impact_oscillator::atlas::curves::Curve;
-use impact_oscillator::atlas::map::{CellMotion, MapGrid};
+use impact_oscillator::atlas::map::MapGrid;
 
 /// Room left of the panel, points.
 const LEFT: f64 = 34.0;
@@ -31,17 +32,18 @@ pub struct Plane<'a> {
     /// The cells.
     pub grid: &'a MapGrid,
     /// From one start, row by row.
-    pub first: &'a [CellMotion],
+    pub first: &'a [SettledMotion],
     /// From another; where it differs lies hysteresis.
-    pub second: &'a [CellMotion],
+    pub second: &'a [SettledMotion],
     /// The boundaries.
     pub curves: &'a [Curve],
 }
 
 /// Draws the plane; `None` where the grid has no area.
 pub fn draw(plane: &Plane<'_>, name: &str, title: &str, speech: Speech) -> Option<Figure> {
-    let motions =
-        |cells: &[CellMotion]| -> Vec<Motion> { cells.iter().map(|c| Motion::from(*c)).collect() };
+    let motions = |cells: &[SettledMotion]| -> Vec<Motion> {
+        cells.iter().map(|c| Motion::from(*c)).collect()
+    };
     let (first, second) = (motions(plane.first), motions(plane.second));
     let map = RegionMap::of_motions(
         plane.grid.eta.clone(),
@@ -88,7 +90,7 @@ fn curves(canvas: &mut Canvas, panel: &Panel, curves: &[Curve], occupancy: &mut 
             occupancy.take_line(&piece);
         }
         if curve.points.len() >= FEWEST_POINTS {
-            let full = stroke(&curve.kind);
+            let full = stroke(curve.kind.name());
             let minor = curve.p > 1 || curve.n > 5;
             let width = if minor { 0.6 * full.width } else { full.width };
             panel.curve(canvas, data(), Stroke { width, ..full });
@@ -141,7 +143,7 @@ fn keys(curves: &[Curve], hysteresis: bool) -> Vec<Key> {
     let mut keys = vec![Key::new(Sign::Nothing, "$z$ = $p$/$n$ in the regions;")];
     let met = KINDS
         .iter()
-        .filter(|k| curves.iter().any(|c| c.kind == k.0));
+        .filter(|k| curves.iter().any(|c| c.kind.name() == k.0));
     keys.extend(met.map(|k| Key::new(Sign::Line(k.2), k.1)));
     if hysteresis {
         keys.push(Key::new(Sign::Nothing, "hatched: another motion too"));

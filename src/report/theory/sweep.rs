@@ -52,7 +52,7 @@ const ROWS: [Row; 4] = [
     Row {
         title: "closing speed\n$X$′₋ + $Y$′₋ (1)",
         height: 110.0,
-        values: |p| p.closing_speeds.clone(),
+        values: |p| p.approach_speeds.clone(),
         zero: true,
         ticks: 6,
     },

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Column, table, verbatim};
-use crate::identify::{MethodResult, ParameterSet};
+use crate::identify::{Method, MethodResult, ParameterSet};
 use crate::report::content::ReportContent;
 use crate::report::document::front::headline;
 use crate::report::document::model::{Rich, Table};
@@ -92,11 +92,11 @@ fn estimate_cells(set: &ParameterSet, speech: Speech) -> Vec<Rich> {
 
 /// Rows of the methods that say anything, the joint estimate last.
 fn method_rows(
-    methods: &BTreeMap<String, MethodResult>,
+    methods: &BTreeMap<Method, MethodResult>,
     joint: &MethodResult,
     speech: Speech,
 ) -> Vec<Vec<Rich>> {
-    let all = methods.iter().map(|(k, m)| (method_name(k), m));
+    let all = methods.iter().map(|(k, m)| (method_name(k.name()), m));
     let all = all.chain([(method_name("joint"), joint)]);
     let says = |m: &MethodResult| PARAMETERS.iter().any(|p| (p.pick)(&m.parameters).is_some());
     all.filter(|(_, m)| says(m))
@@ -131,8 +131,8 @@ fn method_row(name: String, method: &MethodResult, speech: Speech) -> Vec<Rich> 
 /// Whether the methods agree, pair by pair.
 pub fn agreement(content: &ReportContent, speech: Speech) -> Option<Table> {
     let rows = content.identification.agreement.pairs.iter().map(|pair| {
-        let symbol =
-            parameters::parameter(&pair.parameter).map_or(pair.parameter.as_str(), |p| p.symbol);
+        let key = pair.parameter.name();
+        let symbol = parameters::parameter(key).map_or(key, |p| p.symbol);
         let p = if pair.p_value < LEAST_P {
             format!("< {}", speech.fixed(LEAST_P, 3))
         } else {
@@ -140,8 +140,8 @@ pub fn agreement(content: &ReportContent, speech: Speech) -> Option<Table> {
         };
         vec![
             Rich::from(symbol),
-            Rich::from(speech.say(&method_name(&pair.methods[0]))),
-            Rich::from(speech.say(&method_name(&pair.methods[1]))),
+            Rich::from(speech.say(&method_name(pair.methods[0].name()))),
+            Rich::from(speech.say(&method_name(pair.methods[1].name()))),
             Rich::from(speech.fixed(pair.z_score, 2)),
             Rich::from(p),
         ]

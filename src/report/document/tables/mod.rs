@@ -147,7 +147,7 @@ pub fn verbatim(text: String) -> Rich {
 
 /// SHA-256 of the inputs.
 pub fn hashes(content: &ReportContent, speech: Speech) -> Option<Table> {
-    let inputs = &content.identification.inputs_sha256;
+    let inputs = &content.provenance.inputs_sha256;
     let rows = inputs
         .iter()
         .map(|(k, v)| vec![verbatim(k.clone()), verbatim(v.clone())])

@@ -1,0 +1,327 @@
+//! What the verdict rests on: mistakes of the laboratory, methods that do not fit, notes, disagreement.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Note, PairAgreement, Reason, Remark, Sentence};
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::method::Method;
+use crate::message::{Language, Message, Value, kind_of};
+use crate::messages;
+use crate::record::Role;
+
+/// Something that the data give away. Deviations are relative (0.01 is 1 %); a z-score is a deviation
+/// over its standard error.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
+pub enum Finding {
+    /// A gap is not as stated.
+    WrongClearance {
+        /// The clearance as stated, m.
+        stated_m: f64,
+        /// The clearance that fits, m.
+        fitting_m: f64,
+        /// How sure.
+        z_score: f64,
+    },
+    /// The gain of a channel is far off the stated one.
+    WrongGain {
+        /// The channel.
+        channel: Role,
+        /// Relative deviation, positive where the channel reads too high.
+        deviation: f64,
+        /// How sure.
+        z_score: f64,
+    },
+    /// The corner of a channel's high-pass is far off the stated one.
+    WrongCorner {
+        /// The channel.
+        channel: Role,
+        /// Relative deviation, positive where the corner is above the stated one.
+        deviation: f64,
+        /// How sure.
+        z_score: f64,
+    },
+    /// The velocities of both masses are swapped.
+    SwappedChannels {
+        /// How sure.
+        z_score: f64,
+    },
+    /// The model does not fit a method's data.
+    Misfit {
+        /// The method.
+        method: Method,
+        /// What it noticed.
+        remark: Remark,
+    },
+    /// Why a parameter is weak or not identifiable.
+    Parameter {
+        /// The parameter.
+        parameter: Coordinate,
+        /// Why.
+        note: Note,
+    },
+    /// Two methods do not agree.
+    Disagreement {
+        /// The two of those that do not agree which are furthest apart.
+        pair: PairAgreement,
+    },
+    /// The verdict on a specimen.
+    Specimen {
+        /// Its name.
+        specimen: String,
+        /// The verdict.
+        verdict: Vec<Sentence>,
+    },
+    /// A record is filed under the wrong specimen.
+    MisfiledRecord {
+        /// The record's name.
+        record: String,
+        /// Why it looks so.
+        reason: Reason,
+    },
+    /// A printed damping ratio fits the published speeds.
+    PrintedDampingFits {
+        /// The printed damping ratio.
+        printed: f64,
+    },
+    /// A printed damping ratio does not fit the published speeds.
+    PrintedDampingDoesNotFit {
+        /// The printed damping ratio.
+        printed: f64,
+        /// Greatest relative deviation of a speed; `None` where one has no motion.
+        deviation: Option<f64>,
+        /// The settings of the speeds that have no motion with it.
+        without_motion: Vec<PublishedSetting>,
+    },
+}
+
+messages!(Finding);
+
+impl Message for Finding {
+    fn kind(&self) -> String {
+        kind_of(self)
+    }
+
+    fn template(&self, language: Language) -> &'static str {
+        match language {
+            Language::English => self.english(),
+            Language::German => self.german(),
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        let millimetres = |m: &f64| Value::Number(1e3 * m, 4);
+        match self {
+            Self::WrongClearance {
+                stated_m,
+                fitting_m,
+                ..
+            } => vec![
+                ("stated_mm", millimetres(stated_m)),
+                ("fitting_mm", millimetres(fitting_m)),
+            ],
+            Self::WrongGain {
+                channel, deviation, ..
+            } => vec![
+                ("channel", Value::Name(channel.name())),
+                ("share", Value::Number(100.0 * deviation.abs(), 1)),
+            ],
+            Self::WrongCorner {
+                channel, deviation, ..
+            } => vec![
+                ("channel", Value::Name(channel.name())),
+                ("share", Value::Number(100.0 * deviation.abs(), 0)),
+            ],
+            Self::SwappedChannels { .. } => Vec::new(),
+            Self::Misfit { method, remark } => vec![
+                ("method", Value::Message(method)),
+                ("remark", Value::Message(remark)),
+            ],
+            Self::Parameter { parameter, note } => vec![
+                ("parameter", Value::Message(parameter)),
+                ("note", Value::Message(note)),
+            ],
+            Self::Disagreement { pair } => pair.values(),
+            Self::Specimen { specimen, verdict } => vec![
+                ("specimen", Value::Name(specimen)),
+                ("verdict", sentences(verdict)),
+            ],
+            Self::MisfiledRecord { record, reason } => vec![
+                ("record", Value::Name(record)),
+                ("reason", Value::Message(reason)),
+            ],
+            Self::PrintedDampingFits { printed } => vec![("value", Value::Shortest(*printed))],
+            Self::PrintedDampingDoesNotFit {
+                printed,
+                deviation,
+                without_motion,
+            } => vec![
+                ("value", Value::Shortest(*printed)),
+                (
+                    "share",
+                    Value::Number(100.0 * deviation.unwrap_or_default(), 1),
+                ),
+                ("settings", settings(without_motion)),
+            ],
+        }
+    }
+}
+
+fn sentences(verdict: &[Sentence]) -> Value<'_> {
+    Value::Sentences(verdict.iter().map(|s| Value::Message(s)).collect())
+}
+
+fn settings(published: &[PublishedSetting]) -> Value<'_> {
+    Value::List(published.iter().map(|s| Value::Message(s)).collect())
+}
+
+impl Finding {
+    fn english(&self) -> &'static str {
+        match self {
+            Self::WrongClearance { .. } => {
+                "the gap stated with a clearance of {stated_mm} mm moves like one of {fitting_mm} \
+                 mm: measure it again and correct the run table; its records stay out of the fit"
+            }
+            Self::WrongGain { deviation, .. } => match *deviation > 0.0 {
+                true => {
+                    "{channel} reads {share} % too high: correct scale in [channels.{channel}], or \
+                     state a larger gain_uncertainty in [rig]"
+                }
+                false => {
+                    "{channel} reads {share} % too low: correct scale in [channels.{channel}], or \
+                     state a larger gain_uncertainty in [rig]"
+                }
+            },
+            Self::WrongCorner { deviation, .. } => match *deviation > 0.0 {
+                true => {
+                    "the corner of the high-pass of {channel} is {share} % too high for the stated \
+                     one: correct high_pass in [channels.{channel}], or state a larger \
+                     corner_uncertainty in [rig]"
+                }
+                false => {
+                    "the corner of the high-pass of {channel} is {share} % too low for the stated \
+                     one: correct high_pass in [channels.{channel}], or state a larger \
+                     corner_uncertainty in [rig]"
+                }
+            },
+            Self::SwappedChannels { .. } => {
+                "all data fit far better with the velocities of both masses swapped: swap \
+                 [channels.velocity_x] and [channels.velocity_y], or the displacements"
+            }
+            Self::Misfit { .. } => "{method}: {remark}",
+            Self::Parameter { .. } => "{parameter}: {note}",
+            Self::Disagreement { pair } => pair.template(Language::English),
+            Self::Specimen { .. } => "{specimen}: {verdict}",
+            Self::MisfiledRecord { .. } => "{record}: {reason}",
+            Self::PrintedDampingFits { .. } => "The printed $β$ = {value} fits the speeds.",
+            Self::PrintedDampingDoesNotFit {
+                deviation,
+                without_motion,
+                ..
+            } => match (deviation, without_motion.is_empty()) {
+                (Some(_), true) => {
+                    "The printed $β$ = {value} does not fit: a speed is off by {share} %."
+                }
+                (Some(_), false) => {
+                    "The printed $β$ = {value} does not fit: a speed is off by {share} %; the \
+                     motion for {settings} does not exist with it."
+                }
+                (None, _) => {
+                    "The printed $β$ = {value} does not fit: the motion for {settings} does not \
+                     exist with it."
+                }
+            },
+        }
+    }
+
+    fn german(&self) -> &'static str {
+        match self {
+            Self::WrongClearance { .. } => {
+                "der mit einem Spiel von {stated_mm} mm angegebene Abstand bewegt sich wie einer \
+                 von {fitting_mm} mm: nachmessen und die Versuchstabelle richtigstellen; seine \
+                 Aufzeichnungen bleiben außerhalb der Anpassung"
+            }
+            Self::WrongGain { deviation, .. } => match *deviation > 0.0 {
+                true => {
+                    "{channel} zeigt {share} % zu hoch: scale in [channels.{channel}] \
+                     richtigstellen, oder eine größere gain_uncertainty in [rig] angeben"
+                }
+                false => {
+                    "{channel} zeigt {share} % zu tief: scale in [channels.{channel}] \
+                     richtigstellen, oder eine größere gain_uncertainty in [rig] angeben"
+                }
+            },
+            Self::WrongCorner { deviation, .. } => match *deviation > 0.0 {
+                true => {
+                    "die Grenzfrequenz des Hochpasses von {channel} liegt {share} % zu hoch gegen \
+                     die angegebene: high_pass in [channels.{channel}] richtigstellen, oder eine \
+                     größere corner_uncertainty in [rig] angeben"
+                }
+                false => {
+                    "die Grenzfrequenz des Hochpasses von {channel} liegt {share} % zu tief gegen \
+                     die angegebene: high_pass in [channels.{channel}] richtigstellen, oder eine \
+                     größere corner_uncertainty in [rig] angeben"
+                }
+            },
+            Self::SwappedChannels { .. } => {
+                "alle Daten passen weit besser, wenn die Geschwindigkeiten beider Massen vertauscht \
+                 sind: [channels.velocity_x] und [channels.velocity_y] tauschen, oder die Wege"
+            }
+            Self::Misfit { .. } => "{method}: {remark}",
+            Self::Parameter { .. } => "{parameter}: {note}",
+            Self::Disagreement { pair } => pair.template(Language::German),
+            Self::Specimen { .. } => "{specimen}: {verdict}",
+            Self::MisfiledRecord { .. } => "{record}: {reason}",
+            Self::PrintedDampingFits { .. } => {
+                "Das gedruckte $β$ = {value} passt zu den Geschwindigkeiten."
+            }
+            Self::PrintedDampingDoesNotFit {
+                deviation,
+                without_motion,
+                ..
+            } => match (deviation, without_motion.is_empty()) {
+                (Some(_), true) => {
+                    "Das gedruckte $β$ = {value} passt nicht: Eine Geschwindigkeit liegt um {share} \
+                     % daneben."
+                }
+                (Some(_), false) => {
+                    "Das gedruckte $β$ = {value} passt nicht: Eine Geschwindigkeit liegt um {share} \
+                     % daneben; die Bewegung bei {settings} gibt es damit nicht."
+                }
+                (None, _) => {
+                    "Das gedruckte $β$ = {value} passt nicht: Die Bewegung bei {settings} gibt es \
+                     damit nicht."
+                }
+            },
+        }
+    }
+}
+
+/// A published speed's setting.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PublishedSetting {
+    /// R.
+    pub restitution: f64,
+    /// η.
+    pub frequency_ratio: f64,
+}
+
+impl Message for PublishedSetting {
+    fn kind(&self) -> String {
+        "published_setting".to_owned()
+    }
+
+    fn template(&self, language: Language) -> &'static str {
+        match language {
+            Language::English => "$R$ = {restitution} at $η$ = {frequency_ratio}",
+            Language::German => "$R$ = {restitution} und $η$ = {frequency_ratio}",
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        vec![
+            ("restitution", Value::Shortest(self.restitution)),
+            ("frequency_ratio", Value::Shortest(self.frequency_ratio)),
+        ]
+    }
+}

@@ -1,0 +1,577 @@
+//! Motion of a rig with effects beyond the model, by the classical Runge–Kutta method of fourth
+//! order between events: impacts, ends of contact, turns of a mass under dry friction. Each event
+//! is located to rounding, so no step crosses a discontinuity.
+
+use std::f64::consts::TAU;
+
+use super::equations::{ContactLaw, Equations, Phase4};
+
+/// Steps in a period of the drive or of the natural vibration, whichever is shorter.
+const STEPS_PER_PERIOD: f64 = 200.0;
+/// Steps in a contact of finite duration.
+const STEPS_PER_CONTACT: f64 = 30.0;
+/// Separation speed of an instantaneous impact below which pressed masses stay together.
+const STICKS_BELOW: f64 = 1e-6;
+/// Steps shorter than this count as none.
+const SHORTEST: f64 = 1e-11;
+
+/// Where the masses are relative to each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Touch {
+    /// Apart.
+    Apart,
+    /// In a compliant contact that presses.
+    Pressed,
+    /// Still overlapping, but separating faster than the contact recovers.
+    Recovering,
+    /// Together after an instantaneous impact (dead zone).
+    Joined,
+}
+
+/// Sliding direction of a mass under dry friction: 1, −1, or 0 while it sticks.
+type Direction = f64;
+
+/// One impact: dimensionless time since the recording began and speeds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// Time of first touch.
+    pub tau: f64,
+    /// Approach speed at first touch.
+    pub approach: f64,
+    /// Separation speed at the end of contact.
+    pub separation: f64,
+    /// How long the contact lasts, a dead zone included; infinite if it has not ended.
+    pub duration: f64,
+}
+
+/// A step with the motion's derivatives at both ends.
+#[derive(Debug, Clone, Copy)]
+struct Segment {
+    tau: f64,
+    length: f64,
+    from: Phase4,
+    from_rate: Phase4,
+    to: Phase4,
+    to_rate: Phase4,
+}
+
+impl Segment {
+    /// Cubic Hermite interpolation.
+    fn at(&self, tau: f64) -> Phase4 {
+        let t = ((tau - self.tau) / self.length.max(1e-300)).clamp(0.0, 1.0);
+        let (a, b) = (t * t * (3.0 - 2.0 * t), t * (1.0 - t));
+        std::array::from_fn(|i| {
+            (1.0 - a) * self.from[i]
+                + a * self.to[i]
+                + self.length * b * ((1.0 - t) * self.from_rate[i] - t * self.to_rate[i])
+        })
+    }
+}
+
+/// A recorded motion.
+#[derive(Debug, Clone, Default)]
+pub struct Recording {
+    segments: Vec<Segment>,
+    /// Impacts that began while recording.
+    pub hits: Vec<Hit>,
+}
+
+impl Recording {
+    /// The motion at many times in rising order.
+    pub fn sample(&self, taus: impl IntoIterator<Item = f64>) -> Vec<Phase4> {
+        let mut k = 0;
+        let at = |tau: f64| {
+            while k + 1 < self.segments.len() && self.segments[k + 1].tau <= tau {
+                k += 1;
+            }
+            self.segments.get(k).map_or([0.0; 4], |s| s.at(tau))
+        };
+        taus.into_iter().map(at).collect()
+    }
+}
+
+/// A motion that can be continued with other coefficients; phase and motion stay continuous.
+#[derive(Debug, Clone)]
+pub struct Integrator {
+    equations: Equations,
+    tau: f64,
+    phase: f64,
+    state: Phase4,
+    touch: Touch,
+    slides: [Direction; 2],
+    recording: Option<Recording>,
+    touched_at: f64,
+    hits: usize,
+    dead_zones: usize,
+}
+
+impl Integrator {
+    /// Both masses at rest, the drive at phase 0.
+    pub fn at_rest(equations: Equations) -> Self {
+        let mut new = Self {
+            equations,
+            tau: 0.0,
+            phase: 0.0,
+            state: [0.0; 4],
+            touch: Touch::Apart,
+            slides: [0.0; 2],
+            recording: None,
+            touched_at: 0.0,
+            hits: 0,
+            dead_zones: 0,
+        };
+        new.turn(0);
+        new.turn(1);
+        new
+    }
+
+    /// Continue with other coefficients.
+    pub fn set(&mut self, equations: Equations) {
+        self.equations = equations;
+    }
+
+    /// How the masses act on each other.
+    pub fn law(&self) -> ContactLaw {
+        self.equations.law
+    }
+
+    /// Dimensionless time.
+    pub fn tau(&self) -> f64 {
+        self.tau
+    }
+
+    /// Phase of the drive, rad in [0, 2π).
+    pub fn phase(&self) -> f64 {
+        self.phase
+    }
+
+    /// [X, X', Y, Y'].
+    pub fn state(&self) -> Phase4 {
+        self.state
+    }
+
+    /// Impacts since the start, and those with a dead zone.
+    pub fn counts(&self) -> [usize; 2] {
+        [self.hits, self.dead_zones]
+    }
+
+    /// Continue for a time.
+    pub fn advance(&mut self, duration: f64) {
+        let end = self.tau + duration;
+        while self.tau < end - SHORTEST {
+            self.step(end - self.tau);
+        }
+    }
+
+    /// Continue for a time and record it.
+    pub fn record(&mut self, duration: f64) -> Recording {
+        self.recording = Some(Recording::default());
+        self.advance(duration);
+        self.recording.take().unwrap_or_default()
+    }
+
+    /// One step of at most `limit`, shorter if an event comes first.
+    fn step(&mut self, limit: f64) {
+        let mut length = self.usual_step().min(limit);
+        let mut to = self.moved(length);
+        if let Some(apex) = self.grazing(length, &to) {
+            (length, to) = (apex, self.moved(apex));
+        }
+        let mut happening = None;
+        for event in Event::ALL {
+            if let Some(crossing) = self.crossing(event, length, &to) {
+                length = crossing.length;
+                to = self.moved(length);
+                happening = crossing.fires.then_some(event);
+            }
+        }
+        self.move_to(length, to);
+        if let Some(event) = happening {
+            self.happen(event);
+        }
+    }
+
+    fn usual_step(&self) -> f64 {
+        let smooth = TAU / self.equations.eta.max(1.0) / STEPS_PER_PERIOD;
+        match (self.touch, &self.equations.law) {
+            (Touch::Pressed | Touch::Recovering, ContactLaw::Compliant(c)) => {
+                smooth.min(c.duration / STEPS_PER_CONTACT)
+            }
+            _ => smooth,
+        }
+    }
+
+    /// Forces on both masses beside friction.
+    fn forces(&self, drive: f64, s: &Phase4) -> [f64; 2] {
+        let free = self.equations.free(drive, s);
+        match (self.touch, &self.equations.law) {
+            (Touch::Pressed, ContactLaw::Compliant(c)) => {
+                let press = c.press(self.equations.overlap(s), s[1] + s[3]);
+                free.map(|f| f - press)
+            }
+            _ => free,
+        }
+    }
+
+    fn rate(&self, drive: f64, s: &Phase4) -> Phase4 {
+        let friction = self.equations.friction;
+        let forces = self.forces(drive, s);
+        let mut a: [f64; 2] = std::array::from_fn(|i| {
+            let sticks = friction > 0.0 && self.slides[i] == 0.0;
+            if sticks {
+                0.0
+            } else {
+                forces[i] - friction * self.slides[i]
+            }
+        });
+        if self.touch == Touch::Joined {
+            let together = 0.5 * (a[0] - a[1]);
+            a = [together, -together];
+        }
+        [s[1], a[0], s[3], a[1]]
+    }
+
+    /// The state after a time, by one Runge–Kutta step.
+    fn moved(&self, t: f64) -> Phase4 {
+        let eta = self.equations.eta;
+        let drive = |share: f64| self.equations.drive(self.phase + share * eta * t);
+        let (p0, p1, p2) = (drive(0.0), drive(0.5), drive(1.0));
+        let s = &self.state;
+        let along = |k: &Phase4, h: f64| std::array::from_fn(|i| s[i] + h * k[i]);
+        let k1 = self.rate(p0, s);
+        let k2 = self.rate(p1, &along(&k1, 0.5 * t));
+        let k3 = self.rate(p1, &along(&k2, 0.5 * t));
+        let k4 = self.rate(p2, &along(&k3, t));
+        std::array::from_fn(|i| s[i] + t / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]))
+    }
+
+    fn move_to(&mut self, length: f64, to: Phase4) {
+        let phase = self.phase + self.equations.eta * length;
+        if self.recording.is_some() {
+            let segment = Segment {
+                tau: self.tau,
+                length,
+                from: self.state,
+                from_rate: self.rate(self.equations.drive(self.phase), &self.state),
+                to,
+                to_rate: self.rate(self.equations.drive(phase), &to),
+            };
+            if let Some(recording) = &mut self.recording {
+                recording.segments.push(segment);
+            }
+        }
+        self.tau += length;
+        self.phase = phase.rem_euclid(TAU);
+        self.state = to;
+    }
+
+    /// Time within a step at which masses that nearly touch come closest, if they overlap there:
+    /// both ends of such a step are apart.
+    fn grazing(&self, length: f64, to: &Phase4) -> Option<f64> {
+        let (from, e) = (&self.state, &self.equations);
+        let (closing, opening) = (from[1] + from[3], to[1] + to[3]);
+        if self.touch != Touch::Apart || closing <= 0.0 || opening >= 0.0 || e.overlap(to) > 0.0 {
+            return None;
+        }
+        let apex = closing / (closing - opening) * length;
+        let near = e.overlap(from) + 0.75 * closing * apex > 0.0;
+        (near && e.overlap(&self.moved(apex)) > 0.0).then_some(apex)
+    }
+}
+
+/// What ends a smooth piece of motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Event {
+    /// First touch, end of press, end of overlap or end of a dead zone, by the state of touch.
+    Contact,
+    /// Separating masses that overlap still are pressed together again.
+    PressedAgain,
+    /// Mass x turns, or starts to slide.
+    TurnX,
+    /// Mass y turns, or starts to slide.
+    TurnY,
+}
+
+impl Event {
+    const ALL: [Self; 4] = [Self::Contact, Self::PressedAgain, Self::TurnX, Self::TurnY];
+}
+
+/// Where a step must end for an event.
+struct Crossing {
+    length: f64,
+    /// Whether the event happens there; otherwise the step only comes closer.
+    fires: bool,
+}
+
+impl Integrator {
+    /// Positive until an event happens.
+    fn margin(&self, event: Event, t: f64, s: &Phase4) -> f64 {
+        let e = &self.equations;
+        let drive = || e.drive(self.phase + e.eta * t);
+        match event {
+            Event::Contact => match (self.touch, &e.law) {
+                (Touch::Apart, _) => -e.overlap(s),
+                (Touch::Pressed, ContactLaw::Compliant(c)) => c.press(e.overlap(s), s[1] + s[3]),
+                (Touch::Joined, _) => {
+                    let forces = e.free(drive(), s);
+                    let slides = self.slides[0] + self.slides[1];
+                    forces[0] + forces[1] - e.friction * slides
+                }
+                _ => e.overlap(s),
+            },
+            Event::PressedAgain => match (self.touch, &e.law) {
+                (Touch::Recovering, ContactLaw::Compliant(c)) => {
+                    -c.press(e.overlap(s), s[1] + s[3])
+                }
+                _ => f64::INFINITY,
+            },
+            Event::TurnX | Event::TurnY if e.friction == 0.0 => f64::INFINITY,
+            Event::TurnY if self.touch == Touch::Joined => f64::INFINITY,
+            Event::TurnX | Event::TurnY => {
+                let mass = usize::from(event == Event::TurnY);
+                if self.slides[mass] == 0.0 {
+                    e.friction - self.pull(mass, drive(), s).abs()
+                } else {
+                    self.slides[mass] * s[2 * mass + 1]
+                }
+            }
+        }
+    }
+
+    /// Force that friction has to hold, per sliding mass.
+    fn pull(&self, mass: usize, drive: f64, s: &Phase4) -> f64 {
+        let forces = self.forces(drive, s);
+        if self.touch == Touch::Joined {
+            0.5 * (forces[mass] - forces[1 - mass])
+        } else {
+            forces[mass]
+        }
+    }
+
+    /// Where an event's margin crosses zero within a step that ends at `to`.
+    fn crossing(&self, event: Event, length: f64, to: &Phase4) -> Option<Crossing> {
+        let margin = |t: f64| self.margin(event, t, &self.moved(t));
+        if self.margin(event, length, to) >= 0.0 {
+            return None;
+        }
+        let start = self.margin(event, 0.0, &self.state);
+        if start > 0.0 {
+            let end = self.margin(event, length, to);
+            return Some(Crossing {
+                length: root(&margin, (length, start, end)),
+                fires: true,
+            });
+        }
+        // The last event left the margin at zero: it must become positive before it can cross.
+        let mut shorter = 0.25 * length;
+        while shorter > SHORTEST {
+            if margin(shorter) > 0.0 {
+                return Some(Crossing {
+                    length: shorter,
+                    fires: false,
+                });
+            }
+            shorter *= 0.25;
+        }
+        Some(Crossing {
+            length: 0.0,
+            fires: true,
+        })
+    }
+
+    fn happen(&mut self, event: Event) {
+        match (event, self.touch, self.equations.law) {
+            (Event::TurnX, ..) => self.turn(0),
+            (Event::TurnY, ..) => self.turn(1),
+            (Event::PressedAgain, ..) => self.touch = Touch::Pressed,
+            (Event::Contact, Touch::Apart, ContactLaw::Newton(r)) => self.bounce(r),
+            (Event::Contact, Touch::Apart, ContactLaw::Compliant(_)) => {
+                self.begin_hit();
+                self.touch = Touch::Pressed;
+            }
+            (Event::Contact, Touch::Pressed, ContactLaw::Compliant(c)) => {
+                let overlaps = c.damping > 0.0 && self.equations.overlap(&self.state) > 0.0;
+                self.touch = if overlaps {
+                    Touch::Recovering
+                } else {
+                    Touch::Apart
+                };
+                self.end_hit(3.0 * c.duration);
+            }
+            (Event::Contact, Touch::Joined, _) => {
+                self.touch = Touch::Apart;
+                self.end_hit(0.0);
+            }
+            (Event::Contact, ..) => self.touch = Touch::Apart,
+        }
+    }
+
+    /// An instantaneous impact by Newton's law.
+    fn bounce(&mut self, restitution: f64) {
+        self.begin_hit();
+        let approach = self.state[1] + self.state[3];
+        let drive = self.equations.drive(self.phase);
+        let forces = self.forces(drive, &self.state);
+        let sticks = restitution * approach < STICKS_BELOW && forces[0] + forces[1] > 0.0;
+        let ratio = if sticks { 0.0 } else { restitution };
+        let change = 0.5 * (1.0 + ratio) * approach;
+        self.state[1] -= change;
+        self.state[3] -= change;
+        for mass in [0, 1] {
+            self.slides[mass] = self.state[2 * mass + 1].signum();
+        }
+        if sticks {
+            self.touch = Touch::Joined;
+        } else {
+            self.end_hit(f64::INFINITY);
+        }
+    }
+
+    /// A mass stands still for an instant: it sticks, or slides where it is pulled.
+    fn turn(&mut self, mass: usize) {
+        let pull = self.pull(mass, self.equations.drive(self.phase), &self.state);
+        let slides = if pull.abs() > self.equations.friction {
+            pull.signum()
+        } else {
+            0.0
+        };
+        self.state[2 * mass + 1] = 0.0;
+        self.slides[mass] = slides;
+        if self.touch == Touch::Joined {
+            self.state[3 - 2 * mass] = 0.0;
+            self.slides[1 - mass] = -slides;
+        }
+    }
+
+    fn begin_hit(&mut self) {
+        self.hits += 1;
+        self.touched_at = self.tau;
+        if let Some(recording) = &mut self.recording {
+            recording.hits.push(Hit {
+                tau: self.tau,
+                approach: self.state[1] + self.state[3],
+                separation: 0.0,
+                duration: f64::INFINITY,
+            });
+        }
+    }
+
+    /// The contact ends; one that lasted longer than `dead_zone` counts as a dead zone.
+    fn end_hit(&mut self, dead_zone: f64) {
+        let duration = self.tau - self.touched_at;
+        self.dead_zones += usize::from(duration > dead_zone);
+        // A contact that began before the recording is not in it.
+        if let Some(hit) = self.recording.as_mut().and_then(|r| r.hits.last_mut()) {
+            hit.separation = -(self.state[1] + self.state[3]);
+            hit.duration = duration;
+        }
+    }
+}
+
+/// Root of `f`, positive at 0 and negative at the bracket's end, by the Illinois method
+/// (Dowell and Jarratt 1971). `bracket`: its length, f at 0, f at the end.
+fn root(f: &impl Fn(f64) -> f64, (length, start, end): (f64, f64, f64)) -> f64 {
+    let (mut a, mut fa, mut b, mut fb) = (0.0, start, length, end);
+    let mut last_side = 0;
+    for _ in 0..80 {
+        if b - a <= 1e-15 * length.max(1e-3) {
+            break;
+        }
+        let c = (a * fb - b * fa) / (fb - fa);
+        let fc = f(c);
+        if fc == 0.0 {
+            return c;
+        }
+        let side = if fc < 0.0 { -1 } else { 1 };
+        if side < 0 {
+            (b, fb) = (c, fc);
+            fa *= if side == last_side { 0.5 } else { 1.0 };
+        } else {
+            (a, fa) = (c, fc);
+            fb *= if side == last_side { 0.5 } else { 1.0 };
+        }
+        last_side = side;
+    }
+    b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::equations::Compliance;
+
+    /// Turning points of mass x from displacement `a` at rest: time and displacement.
+    fn turning_points(equations: Equations, a: f64, count: usize) -> Vec<(f64, f64)> {
+        let mut motion = Integrator::at_rest(equations);
+        motion.state = [a, 0.0, 0.0, 0.0];
+        motion.turn(0);
+        let recording = motion.record(TAU * (count as f64 + 1.0));
+        let turns = recording
+            .segments
+            .iter()
+            .filter(|s| s.from[1] * s.to[1] < 0.0);
+        // Velocity is near linear in a step: its zero to second order, the displacement to fourth.
+        let at = turns.map(|s| {
+            let tau = s.tau + s.length * s.from[1] / (s.from[1] - s.to[1]);
+            (tau, s.at(tau)[0])
+        });
+        at.take(count).collect()
+    }
+
+    #[test]
+    fn valid_hardening_springs_vibrate_faster_by_three_eighths() {
+        // Backbone of the Duffing oscillator: Ω = 1 + 3/8 ε a² − 21/256 ε² a⁴ + …
+        let (epsilon, a) = (4e-3, 1.5f64);
+        let equations = Equations::undriven(1.0, epsilon, 0.0, ContactLaw::Newton(0.9));
+        let turns = turning_points(equations, a, 20);
+        let period = (turns[19].0 - turns[1].0) / 9.0;
+        let e = epsilon * a * a;
+        let expected = 1.0 + 0.375 * e - 21.0 / 256.0 * e * e;
+        assert!(
+            (TAU / period - expected).abs() < 1e-6,
+            "{} {expected}",
+            TAU / period
+        );
+    }
+
+    #[test]
+    fn valid_friction_takes_four_times_its_share_from_every_cycle() {
+        // free decay under Coulomb friction: the amplitude falls by 2μ/k in every half cycle
+        let mu = 0.01;
+        let equations = Equations::undriven(1.0, 0.0, mu, ContactLaw::Newton(0.9));
+        let mut motion = Integrator::at_rest(equations);
+        motion.state = [1.0, 0.0, 0.0, 0.0];
+        motion.turn(0);
+        for half in 1..=40 {
+            motion.advance(0.5 * TAU);
+            let expected = 1.0 - 2.0 * mu * f64::from(half);
+            assert!((motion.state[0].abs() - expected).abs() < 1e-7, "{half}");
+        }
+        // 1 − 2μ·49.5 = μ: after the fiftieth half cycle it sticks within ±μ
+        motion.advance(20.0 * TAU);
+        assert!(motion.state[0].abs() <= mu && motion.state[1] == 0.0);
+    }
+
+    #[test]
+    fn valid_a_contact_of_finite_duration_has_the_restitution_and_the_duration_asked_for() {
+        for (r, duration) in [(1.0, 0.05), (0.9, 0.08), (0.598, 0.05), (0.2, 0.003)] {
+            let law = ContactLaw::Compliant(Compliance::new(r, duration).unwrap());
+            let equations = Equations::undriven(0.0, 0.0, 0.0, law);
+            let mut motion = Integrator::at_rest(equations);
+            motion.state = [499.0, 2.0, 499.0, 1.0];
+            let recording = motion.record(3.0);
+            let hit = recording.hits[0];
+            assert!((hit.tau - 2.0 / 3.0).abs() < 1e-9 && recording.hits.len() == 1);
+            assert!(
+                (hit.separation / hit.approach - r).abs() < 1e-6,
+                "{r} {hit:?}"
+            );
+            assert!(
+                (hit.duration - duration).abs() < 1e-6 * duration.max(0.1),
+                "{r} {hit:?}"
+            );
+            // momentum of both masses: X' − Y'
+            assert!((motion.state[1] - motion.state[3] - 1.0).abs() < 1e-9);
+        }
+    }
+}
