@@ -278,8 +278,8 @@ mod tests {
                     let expected = dataset.read_raw_rows(start, count).unwrap();
                     assert_eq!(some, Some(expected), "{shape:?} from {start}");
                 }
-                let behind = Some(shape[0]..shape[0] + 1);
-                assert_eq!(rows(temporary.as_file(), &dataset, 8, behind), None);
+                let after = Some(shape[0]..shape[0] + 1);
+                assert_eq!(rows(temporary.as_file(), &dataset, 8, after), None);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! From a tree of groups and arrays to datasets (records) of channels.
 //!
-//! A two-dimensional array is a record: its columns are the channels (its rows, where the names
-//! say so). The one-dimensional arrays of a group are a record together. A three-dimensional
+//! A two-dimensional array is a record: its columns are the channels (its rows, if those are as
+//! many as the names). The one-dimensional arrays of a group are a record together. A three-dimensional
 //! array is a record for each entry of its first dimension. Arrays of one element beside longer
 //! ones are attributes of their group. Attributes are inherited downward.
 

@@ -121,7 +121,7 @@ fn shared_data_goldens_of_matlab_7_3() {
     use crate::conformance::{Statistics, goldens};
     let mut arrays = 0;
     for (path, golden) in goldens("mat73_conformance") {
-        // One of the goldens lies with the files of the older levels.
+        // One of the goldens is among the files of the older levels.
         let path = match path.exists() {
             true => path,
             false => path

@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::text;
 use super::tree::{Content, Leaf, Tree};
+use crate::bytes::to_usize;
+use crate::numbers::Spacing;
 use crate::source::{ChannelInfo, DatasetInfo};
 
 /// Matrices with more columns than this are one channel, not one per column.
@@ -20,6 +22,23 @@ pub(crate) enum Slice {
     Column(u64),
     /// One row of a matrix.
     Row(u64),
+}
+
+impl Slice {
+    /// The places of its numbers of `width` bytes among those of its array.
+    pub(crate) fn spacing(self, leaf: &Leaf, width: usize) -> Spacing {
+        let (rows, all) = (to_usize(leaf.dims[0]), to_usize(leaf.count()));
+        let (offset, stride, count) = match self {
+            Self::Whole => (0, width, all),
+            Self::Column(column) => (to_usize(column) * rows * width, width, rows),
+            Self::Row(row) => (to_usize(row) * width, rows * width, all / rows.max(1)),
+        };
+        Spacing {
+            offset,
+            stride,
+            count,
+        }
+    }
 }
 
 /// Where a channel's samples come from.
@@ -359,9 +378,9 @@ impl<'t> Builder<'t> {
 /// Whether a matrix holds a channel in each row: where the length of its rows is that of a
 /// vector beside it, or if it is far wider than tall.
 fn is_by_rows(rows: u64, columns: u64, lengths: &BTreeSet<u64>) -> bool {
-    let told = lengths.contains(&columns) && !lengths.contains(&rows);
+    let stated = lengths.contains(&columns) && !lengths.contains(&rows);
     let wide = columns >= rows.saturating_mul(WIDE) && !lengths.contains(&rows);
-    columns > rows && rows <= MOST_COLUMNS && (told || wide)
+    columns > rows && rows <= MOST_COLUMNS && (stated || wide)
 }
 
 /// `(:,2)` for a matrix, `(:,2,1)` for an array of three dimensions.

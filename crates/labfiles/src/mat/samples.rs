@@ -7,7 +7,7 @@ use super::inflate;
 use super::text;
 use super::tree::{Content, Leaf, Part, Place, Tree};
 use crate::bytes::{FileBytes, to_usize};
-use crate::numbers::{self, ByteOrder, Spacing};
+use crate::numbers::{self, ByteOrder};
 use crate::source::{ReadError, Samples};
 
 /// An inflated variable is kept for the next request up to this multiple of the file's size.
@@ -144,30 +144,8 @@ impl Bytes<'_> {
 
 /// Decode a slice of a column-major array.
 fn take(leaf: &Leaf, slice: Slice, bytes: &[u8], part: Part, order: ByteOrder) -> Vec<f64> {
-    let rows = to_usize(leaf.dims[0]);
-    let width = to_usize(part.number.bytes());
-    let mut out = Vec::new();
-    match slice {
-        Slice::Whole => {
-            out.reserve_exact(bytes.len() / width);
-            numbers::decode(part.number, order, bytes, &mut out);
-        }
-        Slice::Column(column) => {
-            let start = to_usize(column) * rows * width;
-            let column = bytes.get(start..start + rows * width).unwrap_or(&[]);
-            out.reserve_exact(rows);
-            numbers::decode(part.number, order, column, &mut out);
-        }
-        Slice::Row(row) => {
-            let columns = to_usize(leaf.count()) / rows.max(1);
-            let spacing = Spacing {
-                offset: to_usize(row) * width,
-                stride: rows * width,
-                count: columns,
-            };
-            out.reserve_exact(columns);
-            numbers::decode_spaced(part.number, order, bytes, spacing, &mut out);
-        }
-    }
+    let spacing = slice.spacing(leaf, to_usize(part.number.bytes()));
+    let mut out = Vec::with_capacity(spacing.count);
+    numbers::decode_spaced(part.number, order, bytes, spacing, &mut out);
     out
 }

@@ -64,7 +64,7 @@ fn valid_files_cut_off_are_refused() {
 #[test]
 fn prop_mutated_files_are_read_or_refused() {
     use crate::conformance::{Random, mutate, own_seeds, survive_within};
-    // The footer lies at the end of the file: half of the mutations go there.
+    // The footer is at the end of the file: half of the mutations go there.
     let change = |random: &mut Random, bytes: &mut Vec<u8>| {
         if random.below(2) == 0 {
             bytes.reverse();

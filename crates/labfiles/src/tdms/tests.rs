@@ -563,7 +563,7 @@ fn many_layouts_of_many_channels_are_refused_within_memory() {
 
 // ---- mutations ----
 
-/// Change a lead-in or the metadata behind it, or anything.
+/// Change a lead-in or the metadata after it, or anything.
 fn mutate_segment(random: &mut Random, bytes: &mut Vec<u8>) {
     let tags: Vec<usize> = (0..bytes.len().saturating_sub(4))
         .filter(|&at| bytes[at..].starts_with(b"TDSm"))

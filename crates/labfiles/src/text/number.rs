@@ -237,9 +237,9 @@ mod tests {
             }
             let expected: f64 = written.replace(['d', 'D'], "e").parse().unwrap();
             let written = written.replace('.', &char::from(mark).to_string());
-            let behind = [";", "\n", " ", ";8,8.8", "x1"][random.random_range(0..5)];
+            let after = [";", "\n", " ", ";8,8.8", "x1"][random.random_range(0..5)];
             for blanks in [0, 16] {
-                let text = format!("{:blanks$}{written}{behind}{:40}", "", "");
+                let text = format!("{:blanks$}{written}{after}{:40}", "", "");
                 let (value, end) = parse_at(text.as_bytes(), blanks, mark).unwrap();
                 assert_eq!(value.to_bits(), expected.to_bits(), "{written}");
                 assert_eq!(end, blanks + written.len(), "{written}");

@@ -1,9 +1,8 @@
-//! Numbers written as text, read fast and exactly.
+//! Numbers written as text by Fortran programs.
 
-use crate::text::decimal;
-use crate::text::digits::{MOST_DIGITS, few_digits, many_digits};
+use crate::text::number;
 
-/// Longest number that is accepted, bytes.
+/// Longest word that is accepted, bytes.
 const LONGEST: usize = 64;
 
 /// Why a number could not be read.
@@ -46,86 +45,36 @@ impl<'a> Numbers<'a> {
         }
     }
 
-    /// The exponent at `at`, of up to four digits, and the place after it.
-    #[inline]
-    #[expect(clippy::cast_possible_truncation, reason = "at most four digits")]
-    fn exponent(&self, mut at: usize) -> Option<(i32, usize)> {
-        let letter = matches!(self.peek(at), b'E' | b'e' | b'D' | b'd');
-        let signed = |at| matches!(self.peek(at), b'+' | b'-');
-        if !letter {
-            // A sign is an exponent's only before three digits (`1.5-100`); else a number begins.
-            if !signed(at) {
-                return Some((0, at));
-            }
-            let mut digits = 0;
-            let end = few_digits(self.text, at + 1, &mut digits);
-            let bare = end == at + 4 && !matches!(self.peek(end), b'.');
-            return Some(match bare {
-                true if self.peek(at) == b'-' => (-(digits as i32), end),
-                true => (digits as i32, end),
-                false => (0, at),
-            });
-        }
-        at += 1;
-        let negative = self.peek(at) == b'-';
-        at += usize::from(signed(at));
-        let mut value = 0;
-        let end = few_digits(self.text, at, &mut value);
-        if end == at || end > at + 4 {
-            return None;
-        }
-        Some((
-            if negative {
-                -(value as i32)
-            } else {
-                value as i32
-            },
-            end,
-        ))
-    }
-
     /// The number at the present place, which is no blank.
     #[inline]
-    #[expect(clippy::cast_possible_wrap, reason = "fewer digits than 2^63")]
     fn number(&mut self) -> Result<f64, NoNumber> {
-        let start = self.at;
-        let first = self.peek(start);
-        let begin = start + usize::from(matches!(first, b'-' | b'+'));
-        let mut mantissa = 0;
-        let whole = few_digits(self.text, begin, &mut mantissa);
-        let (mut end, mut places) = (whole, 0);
-        if self.peek(whole) == b'.' {
-            end = many_digits(self.text, whole + 1, &mut mantissa);
-            places = end - whole - 1;
-        }
-        let digits = whole - begin + places;
-        if digits == 0 {
+        let Some((value, end)) = number::parse_at(self.text, self.at, b'.') else {
             return self.word();
-        }
-        let Some((exponent, after)) = self.exponent(end) else {
-            return Err(NoNumber { at: end });
         };
-        if !matches!(self.peek(after), b' ' | b'\n' | b'\r' | b'\t' | b'-' | b'+') {
-            return Err(NoNumber { at: after });
+        match self.peek(end) {
+            b' ' | b'\n' | b'\r' | b'\t' => {}
+            b'-' | b'+' => return Ok(self.before_sign(value, end)),
+            _ => return Err(NoNumber { at: end }),
         }
-        self.at = after;
-        let power = i64::from(exponent) - places as i64;
-        let fits = digits <= MOST_DIGITS;
-        if let Some(value) = fits.then(|| decimal::nearest(mantissa, power)).flatten() {
-            return Ok(if first == b'-' { -value } else { value });
-        }
-        self.slowly(start, end, exponent)
+        self.at = end;
+        Ok(value)
     }
 
-    /// Any number, by the standard library.
+    /// A number that a sign follows: it is an exponent's before three digits (`1.5-100`), else the
+    /// next number begins.
     #[cold]
-    fn slowly(&self, start: usize, end: usize, exponent: i32) -> Result<f64, NoNumber> {
-        let mantissa = &self.text[start..end];
-        if mantissa.len() > LONGEST {
-            return Err(NoNumber { at: start });
+    fn before_sign(&mut self, value: f64, end: usize) -> f64 {
+        let field = &self.text[self.at..end];
+        let digits = self.text[end + 1..].iter();
+        let digits = digits.take_while(|b| b.is_ascii_digit()).count();
+        let lettered = field.iter().any(u8::is_ascii_alphabetic);
+        if digits != 3 || lettered || self.peek(end + 4) == b'.' {
+            self.at = end;
+            return value;
         }
-        let text = format!("{}e{exponent}", String::from_utf8_lossy(mantissa));
-        text.parse().map_err(|_| NoNumber { at: start })
+        let text = [field, b"e", &self.text[end..end + 4]].concat();
+        self.at = end + 4;
+        number::parse_prefix(&text, b'.').map_or(value, |(value, _)| value)
     }
 
     /// Not a number, or infinity, as programs write them.

@@ -3,10 +3,10 @@
 use crate::bytes::to_usize;
 use crate::hdf5::element::Element;
 use crate::hdf5::store::Array;
-use crate::mat::arrange::{Origin, Slice};
+use crate::mat::arrange::Origin;
 use crate::mat::text;
 use crate::mat::tree::{Content, Encoding, Leaf, Part};
-use crate::numbers::{ByteOrder, Number, Spacing};
+use crate::numbers::{ByteOrder, Number};
 use crate::source::Samples;
 
 /// What an array holds: numbers, or characters of 16 bits.
@@ -83,24 +83,6 @@ pub(crate) fn extract(leaf: &Leaf, array: &Array, origin: Origin, raw: &[u8]) ->
             ByteOrder::Little,
         )));
     }
-    let size = array.element.bytes();
-    let (rows, count) = (to_usize(leaf.dims[0]), to_usize(leaf.count()));
-    let spacing = match origin.slice {
-        Slice::Whole => Spacing {
-            offset: 0,
-            stride: size,
-            count,
-        },
-        Slice::Column(c) => Spacing {
-            offset: to_usize(c) * rows * size,
-            stride: size,
-            count: rows,
-        },
-        Slice::Row(r) => Spacing {
-            offset: to_usize(r) * size,
-            stride: rows * size,
-            count: count / rows.max(1),
-        },
-    };
+    let spacing = origin.slice.spacing(leaf, array.element.bytes());
     array.element.decode(raw, spacing)
 }
