@@ -10,8 +10,8 @@ use super::faults::{Fault, Notebook, Severity};
 use super::quantity::Desk;
 use super::run_table::{self, Row};
 use super::written::OneOrMany;
-use crate::record::Flag;
 use crate::record::calibrate::{self, ChannelKey, ChannelSetup};
+use crate::record::{Flag, FlagCode};
 use labfiles::{DatasetInfo, ReadError, Source};
 
 /// How a file is opened; [`labfiles::open`] but for tests.
@@ -115,13 +115,12 @@ fn list_file(path: &Path, shared: Shared<'_>, open: Opener<'_>) -> Vec<Listed> {
 }
 
 fn empty_file(path: &Path) -> Flag {
-    Flag {
-        code: "empty".to_owned(),
-        channel: None,
-        message: format!("{} holds no dataset", path.display()),
-        remedy: "remove the file, or record again".to_owned(),
-        excludes: true,
-    }
+    Flag::new(
+        FlagCode::Empty,
+        None,
+        format!("{} holds no dataset", path.display()),
+        "remove the file, or record again",
+    )
 }
 
 fn failed(path: &Path, row: Option<Row>, flag: Flag) -> Listed {
@@ -229,26 +228,25 @@ fn names(set: &DatasetInfo, name: &str) -> bool {
 
 fn no_dataset(row: &Row, sets: &[DatasetInfo]) -> Flag {
     let some: Vec<&str> = sets.iter().take(8).map(|s| s.name.as_str()).collect();
-    Flag {
-        code: "missing_dataset".to_owned(),
-        channel: None,
-        message: format!(
+    Flag::new(
+        FlagCode::MissingDataset,
+        None,
+        format!(
             "no dataset '{}' in it; it holds {}",
             row.dataset.as_deref().unwrap_or(""),
             some.join(", ")
         ),
-        remedy: "mend the column dataset of the run table".to_owned(),
-        excludes: true,
-    }
+        "mend the column dataset of the run table",
+    )
 }
 
 /// Tell the flags of the listing: what every record has is one fault of the campaign.
 pub(super) fn note_flags(listed: &[Listed], desk: &mut Desk<'_>) {
     let mut groups: Vec<(&Flag, Vec<&Listed>)> = Vec::new();
-    let mut index: HashMap<(&str, &str), usize> = HashMap::new();
+    let mut index: HashMap<(FlagCode, &str), usize> = HashMap::new();
     for one in listed {
         for flag in &one.flags {
-            let key = (flag.code.as_str(), flag.message.as_str());
+            let key = (flag.code, flag.message.as_str());
             let at = *index.entry(key).or_insert_with(|| {
                 groups.push((flag, Vec::new()));
                 groups.len() - 1

@@ -10,9 +10,8 @@ use std::fmt;
 use serde::{Deserialize, Deserializer, Serialize, de};
 use toml::Spanned;
 
-pub use crate::event::RigKind as Machine;
-pub use crate::event::detect::FlightKind as Flight;
-pub use crate::identify::uncertainty::Way;
+pub use crate::event::{FlightKind as Flight, RigKind as Machine};
+pub use crate::identify::uncertainty::IntervalMethod;
 use crate::record::calibrate::ChannelKey;
 pub use crate::record::{Excitation, Sweep};
 pub use crate::report::Format;
@@ -195,7 +194,7 @@ pub struct Analysis {
     /// Seed of everything random (resampling).
     pub seed: Placed<u64>,
     /// How intervals are found beside the covariance.
-    pub uncertainty: Placed<Way>,
+    pub uncertainty: Placed<IntervalMethod>,
     /// Replicas of a bootstrap.
     pub replicas: Placed<u32>,
 }
