@@ -15,7 +15,7 @@ use crate::report::words::Words;
 use crate::report::{
     CampaignFacts, Format, Logo, NominalValue, Paper, Report, ReportContent, ReportOptions, Subject,
 };
-use labfiles::open::open;
+use labfiles::open;
 use labfiles::output::{make_folder, write_bytes};
 
 /// Name of the report's file.

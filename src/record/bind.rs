@@ -4,8 +4,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Flag, FlagCode, Role};
-use labfiles::source::{ChannelInfo, DatasetInfo};
 use labfiles::units::{self, Dimension, Quantity, Scale, Unit};
+use labfiles::{ChannelInfo, DatasetInfo};
 
 /// A channel of a file, by name or by index.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
