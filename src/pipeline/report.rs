@@ -119,7 +119,7 @@ pub fn words(look: &Look) -> Result<Option<Words>, PipelineError> {
         let german = look.language == Language::De;
         return Ok(german.then(|| Words::german().clone()));
     };
-    let unusable = |reason: String| PipelineError::Look {
+    let unusable = |reason: String| PipelineError::ReportFile {
         path: path.display().to_string(),
         reason,
     };
@@ -129,7 +129,7 @@ pub fn words(look: &Look) -> Result<Option<Words>, PipelineError> {
 }
 
 fn options(look: &Look) -> Result<ReportOptions, PipelineError> {
-    let unreadable = |path: &Path, error: std::io::Error| PipelineError::Look {
+    let unreadable = |path: &Path, error: std::io::Error| PipelineError::ReportFile {
         path: path.display().to_string(),
         reason: error.to_string(),
     };
