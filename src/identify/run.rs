@@ -7,7 +7,8 @@ use crate::identify::fit::Problem;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::identification::{Identification, JointFit, MethodResult};
 use crate::identify::joint::{self, Weights};
-use crate::identify::judgement::agreement::agreement;
+use crate::identify::judgement::agreement::{agreement, between_methods};
+use crate::identify::judgement::beyond;
 use crate::identify::judgement::interchange;
 use crate::identify::judgement::suspicion::{self, OddGap};
 use crate::identify::judgement::verdict::{self, Basis};
@@ -15,9 +16,10 @@ use crate::identify::messages::{Finding, LeftOut, Reason};
 use crate::identify::method::Method;
 use crate::identify::methods::{self, Attempt, succeeded};
 use crate::identify::selection::Selection;
+use crate::identify::uncertainty::budget;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
-use crate::identify::{decay, results};
+use crate::identify::{decay, estimate, results};
 
 /// Identify from observations and brackets.
 pub fn identify(evidence: &Evidence) -> Identification {
@@ -42,9 +44,17 @@ pub fn identify(evidence: &Evidence) -> Identification {
     fits = work.without_pulling(fits);
     suspicions.extend(work.other_suspicions(&fits));
     let methods = work.results(&fits);
-    let joint = results::joint(evidence, fits.joint.as_ref(), &methods);
+    let mut joint = results::joint(evidence, fits.joint.as_ref(), &methods);
     let agreement = agreement(&methods);
+    let apart = between_methods(&methods, &agreement, &joint);
+    for (parameter, by) in &apart {
+        if let Some(Some(estimate)) = joint.parameters.slot(*parameter) {
+            *estimate = estimate::widened(*parameter, estimate, *by);
+        }
+    }
+    let beyond = succeeded(&fits.joint).map_or_else(Vec::new, beyond::beyond);
     let verdict = verdict::verdict(&Basis {
+        beyond: &beyond,
         joint: &joint,
         methods: &methods,
         agreement: &agreement,
@@ -54,7 +64,7 @@ pub fn identify(evidence: &Evidence) -> Identification {
         verdict,
         joint,
         agreement,
-        uncertainty: work.uncertainty(&fits),
+        uncertainty: work.uncertainty(&fits, &apart),
         suspicions,
         left_out: work.left_out(),
         used_by: work.used_by(&methods),
@@ -218,7 +228,7 @@ impl Work<'_> {
     }
 
     /// What is asked for of the joint fit's uncertainty.
-    fn uncertainty(&self, fits: &Fits) -> Uncertainty {
+    fn uncertainty(&self, fits: &Fits, apart: &[(Coordinate, f64)]) -> Uncertainty {
         let blocks = &self.selection.blocks;
         let problem = self.problem(blocks, fits.start, &fits.weights);
         let Some((problem, joint)) = problem.zip(succeeded(&fits.joint)) else {
@@ -226,7 +236,11 @@ impl Work<'_> {
         };
         let present = joint::present(blocks, &fits.weights);
         let asked = &self.evidence.uncertainty;
-        uncertainty::uncertainty(&problem, &present, &joint.fit, joint.factor, asked)
+        Uncertainty {
+            budget: budget::budget(&problem, &present, joint, blocks, apart),
+            scatter: joint.scatter.clone(),
+            ..uncertainty::uncertainty(&problem, &present, &joint.fit, joint.factor, asked)
+        }
     }
 
     /// The gap that deviates most from what the others say, if one does.
@@ -242,8 +256,11 @@ impl Work<'_> {
             ..
         } = &self.selection;
         let weight = 1.0 / succeeded(&fits.trajectories)?.factor;
-        suspicion::lost_gap(&blocks.trajectory, lost, &joint.fit.parameters, *typical)
-            .or_else(|| suspicion::odd_gap(&blocks.trajectory, weight, &joint.fit, joint.factor))
+        let uncertainty_m = self.evidence.nominal.clearance_uncertainty_m;
+        let lost = suspicion::lost_gap(&blocks.trajectory, lost, &joint.fit.parameters, *typical);
+        let allowed = |odd: &OddGap| (odd.fitting_m - odd.stated_m).abs() > 4.0 * uncertainty_m;
+        lost.filter(allowed)
+            .or_else(|| suspicion::odd_gap(blocks, weight, joint, uncertainty_m))
     }
 
     /// Gains and corners far off, and interchanged channels.
