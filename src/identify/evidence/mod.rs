@@ -27,7 +27,7 @@ use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::fit::effect::Effects;
 use crate::identify::fit::parameters::{Coordinate, MOST_GAPS, Parameters, gain_index};
 use crate::identify::fit::{Block, Prior};
-use crate::identify::uncertainty::Asked;
+use crate::identify::uncertainty::UncertaintyOptions;
 use crate::motion::observation::Amplitude;
 use crate::motion::{Bracket, Observation};
 use crate::record::Role;
@@ -95,7 +95,7 @@ pub struct Evidence<'a> {
     /// What is stated.
     pub nominal: Nominal,
     /// What is asked for of the uncertainty.
-    pub uncertainty: Asked,
+    pub uncertainty: UncertaintyOptions,
 }
 
 /// Relative error of instruments and model that noise does not show.

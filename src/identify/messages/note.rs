@@ -151,7 +151,7 @@ impl Message for Note {
             (Self::NothingToFit, German) => "es gibt keine Beobachtungen für eine Anpassung",
             (Self::SolverFailed { .. }, English) => "the solver failed: {report}",
             (Self::SolverFailed { .. }, German) => "der Löser versagte: {report}",
-            (Self::NotSeparable, English) => "the data do not tell the parameters apart",
+            (Self::NotSeparable, English) => "the data do not separate the parameters",
             (Self::NotSeparable, German) => "die Daten trennen die Parameter nicht",
         }
     }
