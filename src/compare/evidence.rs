@@ -1,15 +1,15 @@
 //! What each method used: resonance curves, speeds at impacts, residuals, correlation.
 
 use super::input::{Input, thinned};
+use crate::identify::diagnostics::contact_law::Law;
 use crate::identify::evidence::impacts::SpeedPair;
 use crate::identify::evidence::resonance::predicted;
 use crate::identify::evidence::{Blocks, Evidence, Nominal};
 use crate::identify::fit::parameters::Coordinate;
-use crate::identify::diagnostics::contact_law::Law;
 use crate::identify::residuals::{MethodResiduals, residuals as residuals_of_methods};
 use crate::identify::{Method, MethodResult, SpecimenResult};
 use crate::motion::Observation;
-use crate::motion::response::Response;
+use crate::motion::Response;
 use crate::record::Role;
 use impact_oscillator::atlas::map::even;
 use labfiles::units::Dimension;

@@ -5,8 +5,8 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 
 use super::{Compared, Input, compare};
-use crate::event::Rig;
-use crate::event::detect::DetectSettings;
+use crate::event::DetectSettings;
+use crate::event::RigKind;
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::{Identification, identify_campaign};
 use crate::motion::{ClassifySettings, brackets, observe, scale_drives};
@@ -24,7 +24,7 @@ pub(crate) struct Identified {
 /// The paper's setting: R = 0.9, f0 = 12.6 Hz, β = 0.07, x_st = 1.25 mm, two gaps up and down.
 pub(crate) fn whole() -> &'static Identified {
     static CAMPAIGN: OnceLock<Identified> = OnceLock::new();
-    CAMPAIGN.get_or_init(|| identified(&laboratory(), Rig::Double))
+    CAMPAIGN.get_or_init(|| identified(&laboratory(), RigKind::Double))
 }
 
 /// The same rig with its gap so wide that nothing touches: R cannot be identified.
@@ -34,7 +34,7 @@ pub(crate) fn nothing_touches() -> &'static Identified {
         let mut records = laboratory();
         let widest = records[0].setting.clearance_m;
         records.retain(|r| r.setting.clearance_m == widest);
-        identified(&records, Rig::Double)
+        identified(&records, RigKind::Double)
     })
 }
 
@@ -45,7 +45,7 @@ pub(crate) fn decays() -> &'static Identified {
         let masses = [11.0, 11.05, 10.96, 14.0, 14.06, 13.97, 17.2, 17.1, 14.01];
         let record = |(i, f0): (usize, f64)| decay(&format!("test{}", i + 1), i / 3, f0);
         let records: Vec<Record> = masses.into_iter().enumerate().map(record).collect();
-        identified(&records, Rig::Single)
+        identified(&records, RigKind::Single)
     })
 }
 
@@ -100,7 +100,7 @@ fn decay(id: &str, mass: usize, f0_hz: f64) -> Record {
     }
 }
 
-fn identified(records: &[Record], rig: Rig) -> Identified {
+fn identified(records: &[Record], rig: RigKind) -> Identified {
     let (detecting, classifying) = (DetectSettings::default(), ClassifySettings::default());
     let observed = records
         .par_iter()

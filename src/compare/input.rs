@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::{Identification, Item, Reason};
 use crate::motion::{Bracket, Observation};
@@ -11,7 +11,7 @@ use crate::record::Record;
 /// A campaign as observed and identified.
 pub struct Input<'a> {
     /// One or two masses.
-    pub rig: Rig,
+    pub rig: RigKind,
     /// All records as observed, in the order of acquisition.
     pub observations: &'a [Observation],
     /// All brackets of boundaries.

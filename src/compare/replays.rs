@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::input::Input;
-use crate::event::detect::DetectSettings;
+use crate::event::DetectSettings;
 use crate::event::{Detection, DriveTone, detect};
 use crate::identify::replay::{Replay, Stretch};
 use crate::motion::{Motion, Observation};
@@ -85,14 +85,14 @@ pub(super) fn chosen_records(input: &Input) -> Vec<usize> {
     }
     let mut best: BTreeMap<(u8, String), usize> = BTreeMap::new();
     for (i, o) in observations.iter().enumerate() {
-        let rank = match &o.finding.motion {
+        let rank = match &o.classification.motion {
             _ if o.excluded() || o.drive.is_none() => continue,
             Motion::Periodic { .. } => 0,
             Motion::Impactless => 1,
             Motion::Beat | Motion::Chaotic => 2,
             _ => continue,
         };
-        let key = (rank, o.finding.motion.label());
+        let key = (rank, o.classification.motion.label());
         let better = |k: &usize| quality(o) > quality(&observations[*k]);
         if best.get(&key).is_none_or(better) {
             best.insert(key, i);
@@ -103,8 +103,8 @@ pub(super) fn chosen_records(input: &Input) -> Vec<usize> {
 
 /// Confidence first, then the strength of the motion over its noise.
 fn quality(o: &Observation) -> f64 {
-    let noise = o.finding.evidence.noise_ratio.unwrap_or(1.0);
-    o.finding.confidence.min(SURE) - noise
+    let noise = o.classification.evidence.noise_ratio.unwrap_or(1.0);
+    o.classification.confidence.min(SURE) - noise
 }
 
 /// The chosen records with letters in their order; none for a record without a drive.
@@ -121,7 +121,7 @@ pub(super) fn comparisons(input: &Input, chosen: &[usize]) -> Vec<Comparison> {
 fn comparison(input: &Input, o: &Observation, record: &Record, letter: char) -> Option<Comparison> {
     let drive = o.drive?;
     let detection = detect(record, input.rig, &DetectSettings::default());
-    let periods = match o.finding.motion {
+    let periods = match o.classification.motion {
         Motion::Periodic { periods_n, .. } => (2 * periods_n).max(SHOWN_PERIODS),
         Motion::Impactless => SHOWN_PERIODS,
         _ => IRREGULAR_PERIODS,
@@ -132,7 +132,7 @@ fn comparison(input: &Input, o: &Observation, record: &Record, letter: char) -> 
         .and_then(|fitted| Replay::of(input.rig, *fitted, o, &stretch));
     let (eta, rho) = input.place(o);
     let traces = traces(record, &detection, &stretch, simulation.as_ref());
-    let motion = &o.finding.motion;
+    let motion = &o.classification.motion;
     let simulated_motion = simulation.as_ref().map(|s| {
         let same = largest_residual(&traces) < SAME_MOTION;
         if same { motion } else { &s.motion }.clone()

@@ -247,6 +247,7 @@ pub fn result(
                 observations,
                 records,
                 reduced_residual: Some(found.reduced.sqrt()),
+                fit_report: Some(found.fit.report.clone()),
                 ..MethodResult::default()
             };
             for coordinate in &found.fit.free {

@@ -9,7 +9,7 @@ use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::uncertainty::UncertaintyOptions;
 use crate::identify::{Identification, Provenance, identify_campaign};
-use crate::pipeline::store::write_json;
+use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, inputs};
 
 /// Name of the result's file.

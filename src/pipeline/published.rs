@@ -5,8 +5,8 @@ use std::path::Path;
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::campaign::written::Published;
 use crate::compare::Compared;
+use crate::identify::Identification;
 use crate::identify::published::{PublishedSpeed, Where, identify, predicted};
-use crate::identify::{Identification, Verdict};
 use crate::pipeline::identify::{IdentificationFile, provenance};
 use crate::pipeline::{PipelineError, report, store};
 use crate::report::{CampaignFacts, DataTable, ReportContent, Subject};
@@ -21,7 +21,7 @@ pub fn run(
     published: &Published,
     out: &Path,
     command_line: &str,
-) -> Result<Verdict, PipelineError> {
+) -> Result<Identification, PipelineError> {
     let speeds = read(&campaign.folder().join(&published.speeds))?;
     let found = IdentificationFile {
         identification: identify(&speeds, &published.damping_ratio_hypotheses),
@@ -46,7 +46,7 @@ pub fn run(
     store::write_resolved(campaign, out)?;
     super::identify::write(&found, out)?;
     report::write(&report, out)?;
-    Ok(found.identification.verdict)
+    Ok(found.identification)
 }
 
 fn found_damping(found: &Identification) -> Option<f64> {

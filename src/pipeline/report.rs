@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::campaign::resolved::{Report as Look, ResolvedCampaign};
 use crate::campaign::written::{Language, Paper as WrittenPaper};
 use crate::compare::{self, Input};
-use crate::event::Rig;
+use crate::event::RigKind;
 use crate::identify::Provenance;
 use crate::pipeline::identify::{IdentificationFile, settings};
 use crate::pipeline::observe::read_one;
@@ -119,7 +119,7 @@ pub fn words(look: &Look) -> Result<Option<Words>, PipelineError> {
         let german = look.language == Language::De;
         return Ok(german.then(|| Words::german().clone()));
     };
-    let unusable = |reason: String| PipelineError::Look {
+    let unusable = |reason: String| PipelineError::ReportFile {
         path: path.display().to_string(),
         reason,
     };
@@ -129,7 +129,7 @@ pub fn words(look: &Look) -> Result<Option<Words>, PipelineError> {
 }
 
 fn options(look: &Look) -> Result<ReportOptions, PipelineError> {
-    let unreadable = |path: &Path, error: std::io::Error| PipelineError::Look {
+    let unreadable = |path: &Path, error: std::io::Error| PipelineError::ReportFile {
         path: path.display().to_string(),
         reason: error.to_string(),
     };
@@ -167,8 +167,8 @@ fn facts(campaign: &ResolvedCampaign) -> CampaignFacts {
     CampaignFacts {
         name: campaign.name.clone(),
         subject: match campaign.machine {
-            Rig::Double => Subject::TwoMasses,
-            Rig::Single => Subject::OneMass,
+            RigKind::Double => Subject::TwoMasses,
+            RigKind::Single => Subject::OneMass,
         },
         laboratory: campaign.laboratory.clone(),
         dates: dates(campaign),

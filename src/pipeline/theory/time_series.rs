@@ -43,7 +43,7 @@ fn drawn(p: &Portrait) -> figure::Portrait {
         vx: s.vx,
         y: s.y,
         vy: s.vy,
-        together: s.joined,
+        together: s.sticking,
     });
     let impacts = p.impacts.iter().map(|i| figure::Strike {
         periods: i.periods,
@@ -74,7 +74,7 @@ fn series(p: &Portrait) -> Table {
     } else {
         table
     };
-    table.flags("joined", p.samples.iter().map(|s| s.joined))
+    table.flags("joined", p.samples.iter().map(|s| s.sticking))
 }
 
 fn impacts(p: &Portrait) -> Table {
@@ -83,8 +83,8 @@ fn impacts(p: &Portrait) -> Table {
     Table::new()
         .numbers("tau_over_period", of(|i| i.periods))
         .numbers("phase_rad", of(|i| i.phase))
-        .numbers("closing_speed_before", of(|i| i.closing_before))
-        .numbers("closing_speed_after", of(|i| i.closing_after))
+        .numbers("closing_speed_before", of(|i| i.approach_speed))
+        .numbers("closing_speed_after", of(|i| -i.separation_speed))
         .missing("x_velocity_before", maybe(|i| i.vx_before))
         .missing("x_velocity_after", maybe(|i| i.vx_after))
         .missing("y_velocity_before", maybe(|i| i.vy_before))

@@ -63,7 +63,7 @@ fn unlucky() -> ReportContent {
     for (record, motion) in compared
         .records
         .iter_mut()
-        .zip([Motion::Beat, Motion::Joined])
+        .zip([Motion::Beat, Motion::Sticking])
     {
         record.motion = motion;
         record.sweep = Sweep::Unknown;

@@ -39,7 +39,7 @@ fn tint_keys(map: &RegionMap, most: usize) -> Vec<Key> {
         let motion = &map.motions[*i];
         let text = match motion {
             Motion::Undetermined { reason } => reason.clone(),
-            Motion::Beat | Motion::Chaotic | Motion::Joined => motion.label(),
+            Motion::Beat | Motion::Chaotic | Motion::Sticking => motion.label(),
             _ => format!("$z$ = {}", motion.label()),
         };
         let tint = marks::of(motion).tint;
