@@ -12,7 +12,7 @@ use super::read::{self, Text};
 use super::records;
 use super::resolved::{Analysis, NominalValues, RecordEntry, Report, ResolvedCampaign};
 use super::written::{self, Flight, Format, Language, Machine, Paper, Placed, WrittenCampaign};
-use crate::identify::uncertainty::Way;
+use crate::identify::uncertainty::IntervalMethod;
 use crate::report::words::Words;
 use labfiles::units::Dimension;
 
@@ -237,7 +237,7 @@ fn analysis(written: &written::Analysis, context: &mut ResolveContext<'_>) -> An
         uncertainty: written
             .uncertainty
             .as_ref()
-            .map_or(Way::default(), |w| *w.get_ref()),
+            .map_or(IntervalMethod::default(), |w| *w.get_ref()),
         replicas: written
             .replicas
             .as_ref()

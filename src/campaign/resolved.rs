@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::written::{Excitation, Flight, Format, Language, Machine, Paper};
-use crate::identify::uncertainty::Way;
+use crate::identify::uncertainty::IntervalMethod;
 use crate::record::Setting;
 use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup};
 
@@ -88,7 +88,7 @@ pub struct Analysis {
     pub seed: u64,
     /// Method of the intervals, in addition to the covariance.
     #[serde(default)]
-    pub uncertainty: Way,
+    pub uncertainty: IntervalMethod,
     /// Replicas of a bootstrap.
     #[serde(default)]
     pub replicas: usize,

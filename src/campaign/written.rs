@@ -12,7 +12,7 @@ use toml::Spanned;
 
 pub use crate::event::RigKind as Machine;
 pub use crate::event::detect::FlightKind as Flight;
-pub use crate::identify::uncertainty::Way;
+pub use crate::identify::uncertainty::IntervalMethod;
 use crate::record::calibrate::ChannelKey;
 pub use crate::record::{Excitation, Sweep};
 pub use crate::report::Format;
@@ -195,7 +195,7 @@ pub struct Analysis {
     /// Seed of everything random (resampling).
     pub seed: Placed<u64>,
     /// Method of the intervals, in addition to the covariance.
-    pub uncertainty: Placed<Way>,
+    pub uncertainty: Placed<IntervalMethod>,
     /// Replicas of a bootstrap.
     pub replicas: Placed<u32>,
 }

@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_a_ramp_climbs_and_gaps_stay_blank() {
+    fn a_ramp_rises_and_gaps_stay_blank() {
         let ramp: Vec<f64> = (0..8).map(f64::from).collect();
         let lines = sketch(&ramp, 4, 2);
         assert_eq!(lines.len(), 2);

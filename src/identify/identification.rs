@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::identify::diagnostics::contact_law::ContactLaw;
 use crate::identify::estimate::{Estimate, ParameterSet};
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::fit::report::FitReport;
-use crate::identify::judgement::contact_law::ContactLaw;
 use crate::identify::messages::{Finding, LeftOut, PairAgreement, Remark, Sentence};
 use crate::identify::method::Method;
 use crate::identify::uncertainty::Uncertainty;

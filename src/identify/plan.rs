@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::trajectory::{TrajectoryBlock, TrajectoryRecord, distinct_phases};
-use crate::identify::fit::normal::inverse;
 use crate::identify::fit::effect::Effects;
+use crate::identify::fit::normal::inverse;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::identify::fit::{Fit, Problem};
 use crate::motion::Observation;
@@ -275,7 +275,7 @@ impl UsualRecord {
             drive_amplitude: 1.0,
             phases: distinct_phases(&folded),
             folded,
-            closing_speed_m_s: orbit.closing_speed * speed,
+            closing_speed_m_s: orbit.approach_speed * speed,
             frequency_error: self.frequency_error,
             phase_error_rad: self.phase_error_rad,
             gap: None,

@@ -117,7 +117,7 @@ pub fn classify(
     evidence.noise_ratio = noise_ratio;
     if rest && detection.closed_fraction > 0.9 {
         return Classification {
-            motion: Motion::Joined,
+            motion: Motion::Sticking,
             confidence: 0.95,
             evidence,
         };

@@ -57,7 +57,7 @@ pub fn plan(
     progress("map", 0, 1);
     make_folder(out)?;
     let mut content = report::content(campaign, &observed, &found, "")?;
-    content.comparisons.clear();
+    content.compared.comparisons.clear();
     content.proposals = plan.proposals.iter().map(point).collect();
     for (name, bytes) in crate::report::plan_map(&content, campaign.report.decimal_comma)? {
         write_bytes(&out.join(name), &bytes)?;

@@ -84,7 +84,7 @@ fn figure_2() -> Result<Vec<Check>, ModelError> {
         all.push(Check::new(
             format!("Fig. 2: closing speed of impact {n}"),
             *speed,
-            impact.closing_before,
+            impact.approach_speed,
             6e-5,
         ));
     }
@@ -143,7 +143,7 @@ fn figure_5() -> Result<Vec<Check>, ModelError> {
         for step in 0..1000 {
             let setting = Setting::new(1.0 + f64::from(step) * 1e-3, 3.0);
             let orbit = stable_orbit(&machine, setting, 1)?;
-            greatest = orbit.map_or(greatest, |o| greatest.max(o.closing_speed));
+            greatest = orbit.map_or(greatest, |o| greatest.max(o.approach_speed));
         }
         all.push(Check::new(
             format!("Fig. 5: greatest closing speed, R = {restitution}"),
@@ -153,7 +153,7 @@ fn figure_5() -> Result<Vec<Check>, ModelError> {
         ));
     }
     let orbit = stable_orbit(&Machine::symmetric(0.005, 0.9), Setting::new(1.5, 3.0), 1)?;
-    let speed = orbit.map_or(f64::NAN, |o| o.closing_speed);
+    let speed = orbit.map_or(f64::NAN, |o| o.approach_speed);
     all.push(Check::new(
         "Fig. 5: closing speed at η = 1.5, R = 0.9",
         13.65,

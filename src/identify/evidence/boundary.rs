@@ -286,7 +286,7 @@ impl Block for BoundaryBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::middles;
+    use crate::identify::bracket_midpoints;
     use crate::record::Sweep;
     use impact_oscillator::model::boundary::{rho_grazing, rho_s1, rho_s2};
 

@@ -41,7 +41,7 @@ impl NearestOrbit {
         let n = record.folded.periods_n;
         let branch = Branch::new(&machine, setting.frequency_ratio, n);
         let restitution = own.restitution.clamp(0.0, 1.0);
-        let speeds = branch.closing_speeds(restitution, machine.gap(setting.clearance))?;
+        let speeds = branch.approach_speeds(restitution, machine.gap(setting.clearance))?;
         let scale = own.static_deflection_m * record.drive_amplitude * own.natural_rate();
         let measured = record.closing_speed_m_s / scale;
         let closing_speed = speeds
@@ -274,7 +274,7 @@ impl<'a> RecordMotion<'a> {
             x: turned(&self.orbit.x),
             y: turned(&self.orbit.y),
             phase: 1.0,
-            closing_speed: 0.0,
+            approach_speed: 0.0,
         };
         let direction = Direction {
             orbit,
@@ -492,7 +492,8 @@ fn friction(states: &[[f64; 2]]) -> Vec<f64> {
         let (a, b) = (k.saturating_sub(1), (k + 1).min(states.len() - 1));
         0.5 * (states[b][1] - states[a][1]).abs()
     };
-    let of = |(k, s): (usize, &[f64; 2])| -(s[1] / change(k).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0);
+    let of =
+        |(k, s): (usize, &[f64; 2])| -(s[1] / change(k).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0);
     states.iter().enumerate().map(of).collect()
 }
 

@@ -71,6 +71,23 @@ impl Kept {
         output::write_json_line(&self.path(name), &block)
     }
 
+    /// A block of an earlier run, or one that is computed and saved now.
+    ///
+    /// # Errors
+    /// Those of the computation, or where the block cannot be written.
+    pub fn block<T: Serialize + DeserializeOwned, E: From<OutputError>>(
+        &self,
+        name: &str,
+        compute: impl FnOnce() -> Result<T, E>,
+    ) -> Result<T, E> {
+        if let Some(found) = self.load(name) {
+            return Ok(found);
+        }
+        let content = compute()?;
+        self.save(name, &content)?;
+        Ok(content)
+    }
+
     /// Remove all blocks: the work is done.
     pub fn remove(&self) {
         // what cannot be removed does no harm: a block is taken over by its key alone
@@ -91,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn prop_blocks_are_taken_over_by_the_same_work_alone() {
+    fn blocks_are_reused_by_the_same_work_alone() {
         let folder = tempfile::tempdir().unwrap();
         let kept = Kept::open(folder.path(), "work", false).unwrap();
         kept.save("rows 0", &vec![0.1, 0.2]).unwrap();

@@ -4,10 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use impact_oscillator::atlas::basins::BasinGrid;
-use impact_oscillator::atlas::map::{MapGrid, MapSettings};
 use impact_oscillator::atlas::portrait::PortraitPlan;
-use impact_oscillator::atlas::regions::AtlasSettings;
+use impact_oscillator::atlas::{AtlasSettings, BasinGrid, MapGrid, MapSettings};
 use impact_oscillator::model::params::Asymmetry;
 use impact_oscillator::model::{Initial, Machine, Restitution, Setting, Watch};
 
@@ -158,7 +156,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn prop_a_study_survives_being_written_and_read() {
+    fn a_study_is_the_same_after_writing_and_reading() {
         let mut study = Study::empty("R(v)", 0.07, Law::Law(Restitution::Table(vec![(0.0, 0.9)])));
         study.asymmetry.mass = 1.1;
         let plan = SweepPlan {

@@ -7,9 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::plan::SweepPlan;
 use super::table::Table;
 use super::{Desk, StudyError};
-use crate::motion::Motion;
 use crate::report::speech::Speech;
-use crate::report::theory::sweep::{Characteristics, draw};
+use crate::report::theory::sweep::{Characteristics, Step, draw};
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::atlas::sweep::{Carried, Impactless, LONGEST_LAG, SweepPoint, impactless};
 use impact_oscillator::model::Machine;
@@ -60,13 +59,25 @@ pub fn run(
     desk.table(name, &characteristics(machine, &forward, &backward))?;
     desk.table(&format!("{name}-impacts"), &impacts(&forward, &backward))?;
     let data = Characteristics {
-        forward: &forward,
-        backward: &backward,
-        impactless: &impactless,
-        two_masses: machine.y.is_some(),
+        forward: forward.iter().map(drawn).collect(),
+        backward: backward.iter().map(drawn).collect(),
+        impactless_x: impactless.iter().map(|i| i.x).collect(),
+        impactless_y: impactless.iter().filter_map(|i| i.y).collect(),
     };
     let title = "Quasi-stationary characteristics";
     desk.figure(&draw(&data, name, title, Speech::default()))
+}
+
+/// What the figure shows of a step.
+fn drawn(p: &SweepPoint) -> Step {
+    Step {
+        eta: p.eta,
+        rho: p.rho,
+        x_max: p.x_max,
+        approach_speeds: p.approach_speeds.clone(),
+        lyapunov: p.lyapunov,
+        autocorrelation: p.autocorrelation.first().copied(),
+    }
 }
 
 struct Walk<'a> {
@@ -130,15 +141,12 @@ fn characteristics(machine: &Machine, forward: &[SweepPoint], backward: &[SweepP
         .collect();
     let greatest = |v: &[f64]| v.iter().copied().reduce(f64::max);
     let least = |v: &[f64]| v.iter().copied().reduce(f64::min);
-    let speeds = all.clone().map(|(_, p)| &p.closing_speeds);
+    let speeds = all.clone().map(|(_, p)| &p.approach_speeds);
     let mut table = Table::new()
         .texts("direction", all.clone().map(|(way, _)| way))
         .numbers("eta", of(|p| p.eta))
         .numbers("rho", of(|p| p.rho))
-        .texts(
-            "motion",
-            all.clone().map(|(_, p)| Motion::from(p.motion).label()),
-        )
+        .texts("motion", all.clone().map(|(_, p)| p.motion.label()))
         .numbers("x_max", of(|p| p.x_max));
     if machine.y.is_some() {
         table = table.numbers("y_max", of(|p| p.y_max));
@@ -167,7 +175,7 @@ fn characteristics(machine: &Machine, forward: &[SweepPoint], backward: &[SweepP
 /// One row for every impact: one period's of a periodic motion, else the last ones.
 fn impacts(forward: &[SweepPoint], backward: &[SweepPoint]) -> Table {
     let rows: Vec<(Directed<'_>, usize)> = directed(forward, backward)
-        .flat_map(|d| (0..d.1.closing_speeds.len()).map(move |i| (d, i)))
+        .flat_map(|d| (0..d.1.approach_speeds.len()).map(move |i| (d, i)))
         .collect();
     let of = |f: fn(&SweepPoint, usize) -> f64| rows.iter().map(move |((_, p), i)| f(p, *i));
     Table::new()
@@ -175,6 +183,6 @@ fn impacts(forward: &[SweepPoint], backward: &[SweepPoint]) -> Table {
         .numbers("eta", of(|p, _| p.eta))
         .numbers("rho", of(|p, _| p.rho))
         .numbers("phase_rad", of(|p, i| p.phases[i]))
-        .numbers("closing_speed", of(|p, i| p.closing_speeds[i]))
+        .numbers("closing_speed", of(|p, i| p.approach_speeds[i]))
         .numbers("x_velocity_before", of(|p, i| p.x_speeds[i]))
 }

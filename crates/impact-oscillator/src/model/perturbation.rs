@@ -11,6 +11,7 @@
 //! the nodes' distance.
 
 use super::flight::exponent;
+use super::motion::count;
 use super::params::Oscillator;
 use super::path::C64;
 use super::sensitivity::MassMotion;
@@ -92,7 +93,7 @@ impl Sampled {
     /// Value at a time in 0 … T since the impact.
     pub fn at(&self, time: f64) -> f64 {
         let place = (time / self.grid.step).clamp(0.0, self.grid.intervals as f64);
-        let k = (place as usize).min(self.grid.intervals - 1);
+        let k = (count(place) as usize).min(self.grid.intervals - 1);
         let (s, h) = (place - k as f64, self.grid.step);
         let (a, b) = (self.values[k], self.values[k + 1]);
         let (da, db) = (h * self.slopes[k], h * self.slopes[k + 1]);
@@ -105,7 +106,12 @@ impl Sampled {
         // y = x − w with w' = −cw + cx.
         let fed: Vec<f64> = self.values.iter().map(|x| corner * x).collect();
         let lost = periodic(C64::new(-corner, 0.0), self.grid, &fed);
-        let values: Vec<f64> = self.values.iter().zip(&lost).map(|(x, w)| x - w.re).collect();
+        let values: Vec<f64> = self
+            .values
+            .iter()
+            .zip(&lost)
+            .map(|(x, w)| x - w.re)
+            .collect();
         let slopes = self.slopes.iter().zip(&values).map(|(d, y)| d - corner * y);
         Self {
             grid: self.grid,
@@ -194,7 +200,12 @@ mod tests {
 
     /// Approach speed and drive phase at the impact, after many periods of a simulation in small
     /// steps (classical Runge–Kutta, the impact by bisection of the step).
-    fn simulated(beta: f64, r: f64, [eta, gap]: [f64; 2], extra: &dyn Fn(f64, [f64; 2]) -> f64) -> [f64; 2] {
+    fn simulated(
+        beta: f64,
+        r: f64,
+        [eta, gap]: [f64; 2],
+        extra: &dyn Fn(f64, [f64; 2]) -> f64,
+    ) -> [f64; 2] {
         let f = |t: f64, s: [f64; 2]| {
             let a = (eta * t).cos() - 2.0 * beta * s[1] - s[0] + extra(eta * t, s);
             [s[1], a]
@@ -238,7 +249,7 @@ mod tests {
         let (beta, r, eta, gap) = (0.06, 0.7, 1.2, 1.1);
         let machine = Machine::single(beta, r);
         let branch = Branch::new(&machine, eta, 1);
-        let w = branch.closing_speeds(r, gap).unwrap()[1];
+        let w = branch.approach_speeds(r, gap).unwrap()[1];
         let sensitivity = Sensitivity::new(&machine, branch, 1, gap, w);
         let orbit = sensitivity.motion();
         let grid = Grid::new(std::f64::consts::TAU / eta, 256);
@@ -251,7 +262,9 @@ mod tests {
         ];
         for extra in extras {
             let times = grid.times().zip(&states);
-            let p: Vec<f64> = times.map(|(t, s)| extra(orbit.phase + eta * t, *s)).collect();
+            let p: Vec<f64> = times
+                .map(|(t, s)| extra(orbit.phase + eta * t, *s))
+                .collect();
             let [displacement, velocity] = PeriodicResponse::new(&machine.x, grid, &p).at_impact();
             let change = Change {
                 displacement,
@@ -263,8 +276,14 @@ mod tests {
             let at = |e: f64| simulated(beta, r, [eta, gap], &|theta, s| e * extra(theta, s));
             let (above, below) = (at(small), at(-small));
             let found = [0, 1].map(|i| (above[i] - below[i]) / (2.0 * small));
-            assert!((found[0] - slope.closing_speed).abs() < 0.01 * (0.1 + found[0].abs()), "{found:?} {slope:?}");
-            assert!((found[1] - slope.phase).abs() < 0.01 * (0.1 + found[1].abs()), "{found:?} {slope:?}");
+            assert!(
+                (found[0] - slope.approach_speed).abs() < 0.01 * (0.1 + found[0].abs()),
+                "{found:?} {slope:?}"
+            );
+            assert!(
+                (found[1] - slope.phase).abs() < 0.01 * (0.1 + found[1].abs()),
+                "{found:?} {slope:?}"
+            );
         }
     }
 }

@@ -1,10 +1,10 @@
 //! Whether the velocities of both masses were interchanged: all data are fitted once more as if
 //! they were.
 
+use crate::identify::diagnostics::suspicion::SURE;
 use crate::identify::evidence::Blocks;
 use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
 use crate::identify::joint::Weights;
-use crate::identify::judgement::suspicion::SURE;
 use crate::identify::messages::Finding;
 use crate::identify::method::Method;
 use crate::record::Role;

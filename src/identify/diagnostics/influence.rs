@@ -1,7 +1,7 @@
-//! How far single records pull a fit away from what all others say.
+//! How far single records draw a fit away from what all others state.
 //!
-//! A record that fits badly is seen in its residuals; one that few others can contradict drags the
-//! fit along and fits well. Of each record, the estimate without it is compared with the one with
+//! A record that fits badly is seen in its residuals; one that few others can contradict moves the
+//! fit and fits well. Of each record, the estimate without it is compared with the one with
 //! it, over the covariance of their difference, (AₖA⁻¹)-wise: with A the information of all and Aᵢ
 //! the record's own, both turned into the axes of A^{-1/2}AᵢA^{-1/2}, of eigenvalues h and gradient
 //! u, Σ u²/(h(1−h)) is χ² of as many degrees of freedom as the record informs directions.
@@ -11,9 +11,9 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use crate::identify::fit::normal::Normal;
 use crate::signal::robust;
 
-/// A record's pull.
+/// A record's influence on a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pull {
+pub struct Influence {
     /// χ² of the disagreement between the record and all others.
     pub chi2: f64,
     /// Directions in which the record informs.
@@ -25,8 +25,8 @@ const LEAST_SHARE: f64 = 1e-6;
 /// Share of the information in a direction that the others must have to contradict the record.
 const LEAST_OTHERS: f64 = 1e-6;
 
-/// The pulls of items at a fit's optimum; `None` where the information of all is singular.
-pub fn pulls(items: &[Normal], others: &[Normal]) -> Option<Vec<Pull>> {
+/// The influences of items at a fit's optimum; `None` where the information of all is singular.
+pub fn influences(items: &[Normal], others: &[Normal]) -> Option<Vec<Influence>> {
     let size = items.first()?.gradient.len();
     let mut all = Normal::zeros(size);
     items.iter().chain(others).for_each(|part| all.add(part));
@@ -35,45 +35,45 @@ pub fn pulls(items: &[Normal], others: &[Normal]) -> Option<Vec<Pull>> {
         DMatrix::from_fn(size, size, |i, k| matrix[(i, k)] * scale[i] * scale[k])
     };
     let lower = scaled(&all.matrix).cholesky()?.l();
-    let pull = |item: &Normal| {
+    let influence = |item: &Normal| {
         let half = lower.solve_lower_triangular(&scaled(&item.matrix))?;
         let share = lower.solve_lower_triangular(&half.transpose())?;
         let gradient = lower.solve_lower_triangular(&item.gradient.component_mul(&scale))?;
         let axes = SymmetricEigen::try_new(share, f64::EPSILON, 1000)?;
         let turned = axes.eigenvectors.tr_mul(&gradient);
-        let mut pull = Pull {
+        let mut influence = Influence {
             chi2: 0.0,
             directions: 0,
         };
         for (h, u) in axes.eigenvalues.iter().zip(turned.iter()) {
             if *h > LEAST_SHARE && *h < 1.0 - LEAST_OTHERS {
-                pull.chi2 += u * u / (h * (1.0 - h));
-                pull.directions += 1;
+                influence.chi2 += u * u / (h * (1.0 - h));
+                influence.directions += 1;
             }
         }
-        Some(pull)
+        Some(influence)
     };
-    items.iter().map(pull).collect()
+    items.iter().map(influence).collect()
 }
 
-/// Standard deviations of a normal variable from which a pull is no chance.
+/// Standard deviations of a normal variable from which an influence is not due to chance.
 const SURE: f64 = 5.0;
 /// The same for a record that there is another reason to doubt.
 const DOUBTED: f64 = 2.5;
-/// Of several that pull, those are left out at once that pull at least this share of the most.
+/// Of several influential ones, those are left out at once that have at least this share of the greatest.
 const TOGETHER: f64 = 0.5;
 
-/// The records that pull against the others beyond chance, the strongest of them only: without
-/// them, the rest is judged anew. Where all disagree more than noise explains, that much is
+/// The records that contradict the others beyond chance, the strongest of them only: without
+/// them, the rest is judged again. Where all disagree more than noise explains, that much is
 /// allowed to each.
-pub fn strongest(pulls: &[Pull], doubtful: &[bool]) -> Vec<usize> {
-    let per_direction: Vec<f64> = pulls
+pub fn strongest(influences: &[Influence], doubtful: &[bool]) -> Vec<usize> {
+    let per_direction: Vec<f64> = influences
         .iter()
         .filter(|p| p.directions > 0)
         .map(|p| p.chi2 / p.directions as f64)
         .collect();
     let usual = robust::median(&per_direction).unwrap_or(1.0).max(1.0);
-    let excess: Vec<f64> = pulls
+    let excess: Vec<f64> = influences
         .iter()
         .zip(doubtful)
         .map(|(p, doubted)| {
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_pull_is_the_squared_studentised_residual_of_one_measurement() {
+    fn valid_an_influence_is_the_squared_studentised_residual_of_one_measurement() {
         // Three equal measurements of one number: residuals from their mean.
         let values = [0.3, -1.0, 2.2];
         let mean = values.iter().sum::<f64>() / 3.0;
@@ -128,11 +128,11 @@ mod tests {
                 n
             })
             .collect();
-        let found = pulls(&items, &[]).expect("regular");
-        for (pull, value) in found.iter().zip(values) {
+        let found = influences(&items, &[]).expect("regular");
+        for (influence, value) in found.iter().zip(values) {
             // Against the mean of the other two: variance 1 + 1/2.
             let others = (3.0 * mean - value) / 2.0;
-            assert!((pull.chi2 - (value - others).powi(2) / 1.5).abs() < 1e-9);
+            assert!((influence.chi2 - (value - others).powi(2) / 1.5).abs() < 1e-9);
         }
     }
 
@@ -145,7 +145,7 @@ mod tests {
             .collect();
         items.push(item([0.0, 1.0], 10.0));
         items.push(item([0.0, 1.0], -10.0));
-        let found = pulls(&items, &[]).expect("regular");
+        let found = influences(&items, &[]).expect("regular");
         // Two that contradict each other accuse each other alike.
         assert_eq!(strongest(&found, &[false; 42]), vec![40, 41]);
         assert!((found[40].chi2 - 200.0).abs() < 1e-6);

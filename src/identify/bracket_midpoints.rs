@@ -1,4 +1,4 @@
-//! R by plain least squares on the middles of the brackets of s2, as a paper would do it by hand:
+//! R by plain least squares on the midpoints of the brackets of s2, as a paper would do it by hand:
 //! printed beside the posterior, which takes the brackets as the intervals that they are.
 
 use crate::event::RigKind;
@@ -9,13 +9,13 @@ use crate::identify::methods::fit_blocks;
 use crate::identify::{Estimate, estimate};
 use crate::motion::bracket::{BoundaryKind, Bracket};
 
-/// The brackets of s2 that the model reaches, their middles as measured values.
-struct Middles {
+/// The brackets of s2 that the model reaches, their midpoints as measured values.
+struct Midpoints {
     rig: RigKind,
     brackets: Vec<Bracket>,
 }
 
-impl Block for Middles {
+impl Block for Midpoints {
     fn items(&self) -> usize {
         self.brackets.len()
     }
@@ -35,7 +35,7 @@ impl Block for Middles {
 /// R alone, all else as given; `None` where no bracket of s2 lies in the model's reach.
 pub fn restitution(block: &BoundaryBlock, at: &Parameters) -> Option<Estimate> {
     let brackets = block.brackets.iter();
-    let middles = Middles {
+    let midpoints = Midpoints {
         rig: block.rig,
         brackets: brackets
             .filter(|b| b.kind == BoundaryKind::SaddleNode && b.width_hz() > 0.0)
@@ -44,7 +44,7 @@ pub fn restitution(block: &BoundaryBlock, at: &Parameters) -> Option<Estimate> {
             .collect(),
     };
     let free = vec![Coordinate::Restitution];
-    let found = fit_blocks(vec![(&middles, 1.0)], free, Vec::new(), *at).ok()?;
+    let found = fit_blocks(vec![(&midpoints, 1.0)], free, Vec::new(), *at).ok()?;
     let error = found.fit.error(Coordinate::Restitution)? * found.factor.sqrt();
     let value = found.fit.parameters.restitution;
     let name = Coordinate::Restitution;

@@ -1,5 +1,6 @@
 //! Types of motion z = p/n: p impacts in n drive periods.
 
+use impact_oscillator::{SettledMotion, periodic_label};
 use serde::{Deserialize, Serialize};
 
 /// The type of motion that a record shows.
@@ -22,8 +23,9 @@ pub enum Motion {
     Beat,
     /// Impacts without a period, irregular.
     Chaotic,
-    /// The bodies stay together all the time.
-    Joined,
+    /// The bodies stick together all the time.
+    #[serde(rename = "joined")]
+    Sticking,
     /// The record does not tell; the reason says why.
     Undetermined {
         /// Why the record does not tell.
@@ -50,17 +52,10 @@ impl Motion {
                 impacts_p,
                 periods_n,
                 dead_zone,
-            } => {
-                let j = if *dead_zone { "j" } else { "" };
-                match (impacts_p, periods_n) {
-                    (1, 1) => format!("1{j}"),
-                    (p, 1) if *dead_zone => format!("{p}j"),
-                    (p, n) => format!("{p}/{n}{j}"),
-                }
-            }
+            } => periodic_label(*impacts_p, *periods_n, *dead_zone),
             Self::Beat => "beat".into(),
             Self::Chaotic => "chaotic".into(),
-            Self::Joined => "joined".into(),
+            Self::Sticking => "joined".into(),
             Self::Undetermined { .. } => "undetermined".into(),
         }
     }
@@ -69,7 +64,7 @@ impl Motion {
     pub fn is_periodic(&self) -> bool {
         matches!(
             self,
-            Self::Impactless | Self::Periodic { .. } | Self::Joined
+            Self::Impactless | Self::Periodic { .. } | Self::Sticking
         )
     }
 }
@@ -77,5 +72,23 @@ impl Motion {
 impl std::fmt::Display for Motion {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(&self.label())
+    }
+}
+
+impl From<SettledMotion> for Motion {
+    fn from(m: SettledMotion) -> Self {
+        match m {
+            SettledMotion::Impactless => Self::Impactless,
+            SettledMotion::Periodic {
+                p, n, dead_zone, ..
+            } => Self::Periodic {
+                impacts_p: p,
+                periods_n: n,
+                dead_zone,
+            },
+            SettledMotion::Beat => Self::Beat,
+            SettledMotion::Chaotic => Self::Chaotic,
+            SettledMotion::Sticking => Self::Sticking,
+        }
     }
 }
