@@ -9,8 +9,8 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use impact_oscillator::model::params::ModelError;
+use impactid::event::DetectSettings;
 use impactid::event::RigKind;
-use impactid::event::detect::DetectSettings;
 use impactid::identify::evidence::{Evidence, Nominal};
 use impactid::identify::run::identify;
 use impactid::identify::uncertainty::{IntervalMethod, UncertaintyOptions};

@@ -10,10 +10,9 @@ use sha2::{Digest, Sha256};
 use super::diagnostic::{Code, Diagnostic, Place, Severity};
 use super::discovery::Opener;
 use super::resolved::{RecordEntry, ResolvedCampaign};
-use crate::event::DetectionSource;
-use crate::event::detect::{DetectSettings, Detection, detect};
+use crate::event::{DetectSettings, Detection, DetectionSource, detect};
 use crate::record::calibrate;
-use crate::record::{Flag, Record, Role};
+use crate::record::{Flag, FlagCode, Record, Role};
 use labfiles::source::Source;
 
 /// What reading all records found.
@@ -98,7 +97,7 @@ fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Sourc
     let diagnostics = record
         .flags
         .iter()
-        .filter(|f| !LISTED.contains(&f.code.as_str()))
+        .filter(|f| !LISTED.contains(&f.code))
         .map(|f| Diagnostic::of_record(&entry.file, &record.id, f))
         .collect();
     let usable = usize::from(!record.excluded());
@@ -123,17 +122,20 @@ fn contact_without_jump(record: &Record, found: &Detection) -> Option<Flag> {
         .filter(|i| i.source == DetectionSource::Both)
         .count();
     let channel = record.channel(Role::Contact)?;
-    (found.unsupported_pulses >= 3 && found.unsupported_pulses > 2 * supported).then(|| Flag {
-        code: "contact_without_jump".to_owned(),
-        channel: Some(channel.name.clone()),
-        message: format!(
+    (found.unsupported_pulses >= 3 && found.unsupported_pulses > 2 * supported).then(|| {
+        let message = format!(
             "the contact closes {} times without a jump of the velocity, {supported} times with one",
             found.unsupported_pulses
-        ),
-        remedy: "fix threshold or channel in [channels.contact], or check whether the velocity \
-                 channels belong to this record"
-            .to_owned(),
-        excludes: false,
+        );
+        let remedy = "fix threshold or channel in [channels.contact], or check whether the \
+                      velocity channels belong to this record";
+        Flag::new(
+            FlagCode::ContactWithoutJump,
+            Some(&channel.name),
+            message,
+            remedy,
+        )
+        .excluding(false)
     })
 }
 
@@ -219,4 +221,8 @@ impl Fingerprint {
 }
 
 /// Codes that the discovery of the records has reported already.
-const LISTED: [&str; 3] = ["missing_channel", "wrong_unit", "unit_missing"];
+const LISTED: [FlagCode; 3] = [
+    FlagCode::MissingChannel,
+    FlagCode::WrongUnit,
+    FlagCode::UnitMissing,
+];

@@ -7,7 +7,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use super::names::natural_key;
-use crate::record::Flag;
+use crate::record::{Flag, FlagCode};
 
 /// What a problem prevents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -46,7 +46,7 @@ pub enum Code {
     /// Much shorter than the usual record.
     ShortRecord,
     /// What calibration or detection found in a record.
-    Flag(String),
+    Flag(FlagCode),
 }
 
 /// Where a problem is.
@@ -100,7 +100,7 @@ impl Diagnostic {
     /// A flag of a record of the campaign.
     pub(super) fn of_record(file: &Path, record: &str, flag: &Flag) -> Self {
         Self {
-            code: Code::Flag(flag.code.clone()),
+            code: Code::Flag(flag.code),
             severity: match flag.excludes {
                 true => Severity::Record,
                 false => Severity::Note,

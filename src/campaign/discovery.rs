@@ -11,8 +11,8 @@ use super::diagnostic::{Code, Diagnostic, FaultCollector, Severity};
 use super::names::natural_key;
 use super::run_table::{self, Row};
 use super::written::OneOrMany;
-use crate::record::Flag;
 use crate::record::calibrate::{self, ChannelKey, ChannelSetup};
+use crate::record::{Flag, FlagCode};
 use labfiles::source::{DatasetInfo, ReadError, Source};
 
 /// How a file is opened; [`labfiles::open::open`] but for tests.
@@ -102,13 +102,12 @@ fn list_file(path: &Path, shared: Shared<'_>, open: Opener<'_>) -> Vec<Discovere
 }
 
 fn empty_file(path: &Path) -> Flag {
-    Flag {
-        code: "empty".to_owned(),
-        channel: None,
-        message: format!("{} holds no dataset", path.display()),
-        remedy: "remove the file, or record again".to_owned(),
-        excludes: true,
-    }
+    Flag::new(
+        FlagCode::Empty,
+        None,
+        format!("{} holds no dataset", path.display()),
+        "remove the file, or record again",
+    )
 }
 
 fn failed(path: &Path, row: Option<Row>, flag: Flag) -> Discovered {
@@ -229,26 +228,25 @@ fn names(set: &DatasetInfo, name: &str) -> bool {
 
 fn no_dataset(row: &Row, sets: &[DatasetInfo]) -> Flag {
     let some: Vec<&str> = sets.iter().take(8).map(|s| s.name.as_str()).collect();
-    Flag {
-        code: "missing_dataset".to_owned(),
-        channel: None,
-        message: format!(
+    Flag::new(
+        FlagCode::MissingDataset,
+        None,
+        format!(
             "no dataset '{}' in it; it holds {}",
             row.dataset.as_deref().unwrap_or(""),
             some.join(", ")
         ),
-        remedy: "fix the column dataset of the run table".to_owned(),
-        excludes: true,
-    }
+        "fix the column dataset of the run table",
+    )
 }
 
 /// Report the flags of the metadata: what every record has is one problem of the campaign.
 pub(super) fn note_flags(listed: &[Discovered], context: &mut ResolveContext<'_>) {
     let mut groups: Vec<(&Flag, Vec<&Discovered>)> = Vec::new();
-    let mut index: HashMap<(&str, &str), usize> = HashMap::new();
+    let mut index: HashMap<(FlagCode, &str), usize> = HashMap::new();
     for one in listed {
         for flag in &one.flags {
-            let key = (flag.code.as_str(), flag.message.as_str());
+            let key = (flag.code, flag.message.as_str());
             let at = *index.entry(key).or_insert_with(|| {
                 groups.push((flag, Vec::new()));
                 groups.len() - 1
@@ -261,13 +259,9 @@ pub(super) fn note_flags(listed: &[Discovered], context: &mut ResolveContext<'_>
         if all && listed.len() > 1 {
             let what = format!("in all {} records: {}", listed.len(), flag.message);
             let key = flag.channel.as_deref().unwrap_or("records").to_owned();
-            context.faults.fault(
-                Code::Flag(flag.code.clone()),
-                None,
-                &key,
-                what,
-                &flag.remedy,
-            );
+            context
+                .faults
+                .fault(Code::Flag(flag.code), None, &key, what, &flag.remedy);
             continue;
         }
         // a campaign of one record stops with it

@@ -10,8 +10,7 @@ use std::fmt;
 use serde::{Deserialize, Deserializer, Serialize, de};
 use toml::Spanned;
 
-pub use crate::event::RigKind as Machine;
-pub use crate::event::detect::FlightKind as Flight;
+pub use crate::event::{FlightKind as Flight, RigKind as Machine};
 pub use crate::identify::uncertainty::IntervalMethod;
 use crate::record::calibrate::ChannelKey;
 pub use crate::record::{Excitation, Sweep};

@@ -18,7 +18,12 @@ type Told = Result<AtlasPart, String>;
 ///
 /// # Errors
 /// [`Failure`] where MPI does not start, a rank has no part, or a file cannot be written.
-pub fn run(study: &Study, plan: &RegionsPlan, out: &OutArgs, verbosity: Verbosity) -> Result<Exit, Failure> {
+pub fn run(
+    study: &Study,
+    plan: &RegionsPlan,
+    out: &OutArgs,
+    verbosity: Verbosity,
+) -> Result<Exit, Failure> {
     let start_it = "start the program with mpirun, and only once in a process";
     let universe = mpi::initialize().ok_or_else(|| Failure::new("MPI does not start", start_it))?;
     let world = universe.world();

@@ -41,7 +41,12 @@ impl OutArgs {
     ///
     /// # Errors
     /// [`Failure`] where a parameter is out of range or an output cannot be written.
-    pub fn study(&self, study: &Study, what: &'static str, verbosity: Verbosity) -> Result<Exit, Failure> {
+    pub fn study(
+        &self,
+        study: &Study,
+        what: &'static str,
+        verbosity: Verbosity,
+    ) -> Result<Exit, Failure> {
         let text = written(study)?;
         let _lock = Lock::take(self.folder())?;
         interrupt::watch(self.folder().to_path_buf());

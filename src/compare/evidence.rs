@@ -9,7 +9,7 @@ use crate::identify::fit::parameters::Coordinate;
 use crate::identify::residuals::{MethodResiduals, residuals as residuals_of_methods};
 use crate::identify::{Method, MethodResult, SpecimenResult};
 use crate::motion::Observation;
-use crate::motion::response::Response;
+use crate::motion::Response;
 use crate::record::Role;
 use impact_oscillator::atlas::map::even;
 use labfiles::units::Dimension;

@@ -38,8 +38,8 @@ pub(super) fn unusable(observations: &[Observation]) -> Vec<Unusable> {
         for flag in o.flags.iter().filter(|f| f.excludes) {
             let channel = flag.channel.as_deref();
             let of = channel.map(|c| format!(" ({c})")).unwrap_or_default();
-            let key = flag.code.replace('_', " ") + &of;
-            note(o, key, Some(&flag.code), channel, &flag.message);
+            let key = flag.code.name().replace('_', " ") + &of;
+            note(o, key, Some(flag.code.name()), channel, &flag.message);
         }
         if let Motion::Undetermined { reason } = &o.classification.motion
             && !o.excluded()

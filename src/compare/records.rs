@@ -112,7 +112,7 @@ fn record(input: &Input, index: usize, reason: Option<&Reason>) -> RecordRow {
         motion: o.classification.motion.clone(),
         confidence: o.classification.confidence,
         impacts: o.impacts.len(),
-        flags: o.flags.iter().map(|f| f.code.clone()).collect(),
+        flags: o.flags.iter().map(|f| f.code.name().to_owned()).collect(),
         used_by: input.identification.methods_using(index).collect(),
         excluded: excluding.map(|f| f.message.clone()),
         left_out: reason.cloned(),

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::input::Input;
-use crate::event::detect::DetectSettings;
+use crate::event::DetectSettings;
 use crate::event::{Detection, DriveTone, detect};
 use crate::identify::replay::{Replay, Stretch};
 use crate::motion::{Motion, Observation};

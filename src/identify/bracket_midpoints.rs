@@ -7,7 +7,7 @@ use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::methods::fit_blocks;
 use crate::identify::{Estimate, estimate};
-use crate::motion::bracket::{BoundaryKind, Bracket};
+use crate::motion::{BoundaryKind, Bracket};
 
 /// The brackets of s2 that the model reaches, their midpoints as measured values.
 struct Midpoints {

@@ -8,12 +8,12 @@ use rayon::prelude::*;
 
 use crate::campaign::check::by_file;
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
-use crate::event::detect::DetectSettings;
+use crate::event::DetectSettings;
 use crate::motion::{ClassifySettings, Observation, observe};
 use crate::pipeline::Progress;
 use crate::pipeline::checkpoint::Checkpoint;
 use crate::record::calibrate::{calibrate, unreadable};
-use crate::record::{Flag, Record};
+use crate::record::{Flag, FlagCode, Record};
 use labfiles::open::open;
 use labfiles::output::OutputError;
 use labfiles::source::{ReadError, Source};
@@ -177,13 +177,12 @@ fn records_of<T: Send>(
 fn read(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Source) -> Record {
     let mut record = calibrate(source, &campaign.setup_of(entry));
     if entry.excluded {
-        record.flags.push(Flag {
-            code: "excluded".into(),
-            channel: None,
-            message: "campaign.toml excludes this record".into(),
-            remedy: "remove it from `exclude` in [analysis] to use it".into(),
-            excludes: true,
-        });
+        record.flags.push(Flag::new(
+            FlagCode::Excluded,
+            None,
+            "campaign.toml excludes this record",
+            "remove it from `exclude` in [analysis] to use it",
+        ));
     }
     record
 }

@@ -30,7 +30,7 @@ fn flags(o: &Observation) -> Option<String> {
         .iter()
         .map(|f| match &f.channel {
             Some(channel) => format!("{}({channel})", f.code),
-            None => f.code.clone(),
+            None => f.code.name().to_owned(),
         })
         .collect();
     Some(list.join(";"))

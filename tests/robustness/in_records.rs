@@ -306,11 +306,7 @@ fn values() -> Vec<Case> {
         refused(
             "a gap in a channel",
             |lab| spoil(lab, 3, ""),
-            &[
-                "r2.csv: vx",
-                "not numbers",
-                "2 of 3 records can be used",
-            ],
+            &["r2.csv: vx", "not numbers", "2 of 3 records can be used"],
         ),
         noted(
             "no values at a channel's beginning",
@@ -337,11 +333,7 @@ fn values() -> Vec<Case> {
         refused(
             "a constant drive",
             |lab| lab.column("r2.csv", 1, |_, _| "0".into()),
-            &[
-                "r2.csv: drive",
-                "is constant",
-                "2 of 3 records can be used",
-            ],
+            &["r2.csv: drive", "is constant", "2 of 3 records can be used"],
         ),
         refused(
             "a saturated velocity",
@@ -356,11 +348,7 @@ fn values() -> Vec<Case> {
         noted(
             "a saturated drive",
             |lab| lab.column("r2.csv", 1, |_, v| format!("{:.6}", v.clamp(-0.7, 0.7))),
-            &[
-                "r2.csv: drive",
-                "is clipped",
-                "3 of 3 records can be used",
-            ],
+            &["r2.csv: drive", "is clipped", "3 of 3 records can be used"],
         ),
         refused(
             "samples held by the converter",

@@ -14,7 +14,11 @@ fn header() -> Vec<Case> {
         refused(
             "the run table is not there",
             |lab| lab.remove("runs.csv"),
-            &["runs.csv", "the run table cannot be read", "check run_table"],
+            &[
+                "runs.csv",
+                "the run table cannot be read",
+                "check run_table",
+            ],
         ),
         refused(
             "the run table is empty",

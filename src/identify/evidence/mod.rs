@@ -26,7 +26,7 @@ use crate::identify::fit::effect::Effects;
 use crate::identify::fit::parameters::{Coordinate, MOST_GAPS, Parameters, gain_index};
 use crate::identify::fit::{Block, Prior};
 use crate::identify::uncertainty::UncertaintyOptions;
-use crate::motion::observation::Amplitude;
+use crate::motion::Amplitude;
 use crate::motion::{Bracket, Observation};
 use crate::record::Role;
 use crate::signal::robust;

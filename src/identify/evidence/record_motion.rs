@@ -10,7 +10,7 @@ use crate::identify::evidence::waveform::{
 };
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
-use crate::motion::fold::FoldedChannel;
+use crate::motion::FoldedChannel;
 use crate::record::Role;
 use impact_oscillator::model::orbit::Branch;
 use impact_oscillator::model::params::{Machine, Oscillator, Setting};
@@ -537,7 +537,7 @@ mod tests {
     use super::*;
     use crate::identify::evidence::trajectory::distinct_phases;
     use crate::identify::fit::effect::Effects;
-    use crate::motion::fold::{Folded, FoldedPoint};
+    use crate::motion::{Folded, FoldedPoint};
 
     const ROLES: [Role; 4] = [
         Role::VelocityX,

@@ -9,7 +9,7 @@ use crate::identify::fit::Block;
 use crate::identify::fit::effect::{Effect, EffectKind};
 use crate::identify::fit::parameters::{Circumstances, Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
-use crate::motion::response::Response;
+use crate::motion::Response;
 use crate::record::Role;
 use impact_oscillator::model::flight::{Drive, forced_amplitude};
 use impact_oscillator::model::params::{Machine, Oscillator};
