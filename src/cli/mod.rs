@@ -21,7 +21,7 @@ mod progress;
 #[cfg(feature = "mpi")]
 mod ranks;
 mod read_log;
-mod report_options;
+mod report_args;
 mod run;
 mod selftest;
 mod simulate;
