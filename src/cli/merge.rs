@@ -16,7 +16,7 @@ use labfiles::output::Lock;
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE)]
 pub struct Merge {
-    /// The parts that `impactid atlas --shard I/N` left, all N of them
+    /// The parts that `impactid atlas --shard I/N` wrote, all N of them
     #[arg(value_name = "PART.JSON", required = true)]
     parts: Vec<PathBuf>,
     #[command(flatten)]
@@ -33,7 +33,7 @@ A part that is missing, there twice, damaged or of another atlas is refused. The
 bit that of `impactid atlas` without --shard, with the study.toml that replays it.";
 
 impl Merge {
-    /// Put the parts together and leave the atlas.
+    /// Put the parts together and write the atlas.
     ///
     /// # Errors
     /// [`Failure`] where the parts do not make up one atlas, or a file cannot be written.
@@ -47,7 +47,7 @@ impl Merge {
     }
 }
 
-/// Put parts together and leave the atlas with its study.
+/// Put parts together and write the atlas with its study.
 ///
 /// # Errors
 /// As [`Merge::go`].

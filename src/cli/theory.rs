@@ -13,15 +13,15 @@ use labfiles::output::{Lock, write_bytes};
 /// Where results go.
 #[derive(Debug, Clone, Args)]
 pub struct OutArgs {
-    /// Folder for the results; it is made where it does not exist
+    /// Folder for the results; created if missing
     #[arg(long, short, value_name = "DIR", required = true)]
     pub out: Option<PathBuf>,
-    /// Go on where a run of the same work that was broken off had come
+    /// Resume an interrupted run of the same work
     #[arg(long)]
     pub resume: bool,
 }
 
-/// Name of the study beside its results; it is written last, so it tells that all is there.
+/// Name of the study beside its results; it is written last, so its presence marks complete results.
 pub const COPY: &str = "study.toml";
 
 impl From<StudyError> for Failure {
@@ -36,7 +36,7 @@ impl OutArgs {
         self.out.as_deref().unwrap_or(Path::new("."))
     }
 
-    /// Do a study's work into the folder and leave the study itself beside it, to be kept and
+    /// Do a study's work into the folder and write the study itself beside the results, to be
     /// replayed.
     ///
     /// # Errors
@@ -55,7 +55,7 @@ impl OutArgs {
         Ok(Exit::Done)
     }
 
-    /// Leave the study beside its results and say so.
+    /// Write the study beside its results and report it.
     ///
     /// # Errors
     /// [`Failure`] where it cannot be written.
@@ -79,18 +79,18 @@ pub fn written(study: &Study) -> Result<String, Failure> {
         .map_err(|e| Failure::new(e.to_string(), "give numbers that can be written as TOML"))
 }
 
-/// Work in a folder, of which a text says all.
+/// Work in a folder that a text describes in full.
 pub struct Work<'a> {
     /// The folder.
     pub folder: &'a Path,
     /// Everything that the results depend on.
     pub text: &'a str,
-    /// Whether to take over what is there.
+    /// Whether to reuse the blocks of an interrupted run.
     pub resume: bool,
 }
 
 impl Work<'_> {
-    /// Do it, with a progress bar; what is worth saying is said at its end.
+    /// Do it, with a progress bar; its messages are printed at its end.
     ///
     /// # Errors
     /// [`Failure`] of the work.

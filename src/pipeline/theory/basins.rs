@@ -12,7 +12,7 @@ use impact_oscillator::{Machine, MapSettings, Restitution, SettledMotion};
 /// Rows of a block.
 const BLOCK: usize = 8;
 
-/// Settle every start and leave everything.
+/// Settle every start and write table and figure.
 ///
 /// # Errors
 /// [`StudyError`] where a parameter is out of range or an output cannot be written.

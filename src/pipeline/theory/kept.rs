@@ -1,5 +1,5 @@
-//! Blocks of work kept while a long study goes on, so that one that was broken off can be
-//! resumed: a resumed study gives the bytes of an undisturbed one.
+//! Blocks of work saved while a long study runs, so that an interrupted one can be resumed: a
+//! resumed study gives the same bytes as an uninterrupted one.
 
 use std::path::{Path, PathBuf};
 
@@ -28,7 +28,7 @@ struct Block<T> {
 
 impl Kept {
     /// The blocks in an output folder, of work that a text describes in full. Without `resume`
-    /// what an earlier run left is removed.
+    /// the blocks of an earlier run are removed.
     ///
     /// # Errors
     /// Where the folder cannot be written into.
@@ -90,7 +90,7 @@ impl Kept {
 
     /// Remove all blocks: the work is done.
     pub fn remove(&self) {
-        // what cannot be removed does no harm: a block is taken over by its key alone
+        // a block that cannot be removed does no harm: blocks are reused by their key alone
         let _ = std::fs::remove_dir_all(&self.folder);
     }
 

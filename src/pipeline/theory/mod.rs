@@ -1,5 +1,5 @@
-//! Studies of the theory: small TOML files that say what to simulate, and what each leaves:
-//! tables as CSV and Parquet, a figure as SVG, PNG and PDF.
+//! Studies of the theory: small TOML files that list what to simulate. Each writes tables as CSV
+//! and Parquet, and a figure as SVG, PNG and PDF.
 
 pub mod basins;
 pub mod kept;
@@ -39,7 +39,7 @@ pub enum StudyError {
     Table {
         /// Which table.
         table: String,
-        /// What the library said.
+        /// The library's message.
         reason: String,
     },
     /// A figure could not be drawn.
@@ -67,20 +67,20 @@ impl StudyError {
     }
 }
 
-/// Where a piece of work leaves its results, and what it tells on the way.
+/// Where a piece of work writes its results, and to whom it reports.
 pub struct Desk<'a> {
     /// The folder.
     pub folder: &'a Path,
-    /// Blocks of an earlier run that was broken off.
+    /// Blocks of an earlier, interrupted run.
     pub kept: &'a Kept,
-    /// Told the steps done and the steps in all.
+    /// Receives the steps done and the number of steps.
     pub progress: &'a (dyn Fn(u64, u64) + Sync),
-    /// Told what is worth saying.
+    /// Receives messages for the user.
     pub say: &'a (dyn Fn(&str) + Sync),
 }
 
 impl Desk<'_> {
-    /// Leave a table as `NAME.csv` and `NAME.parquet`.
+    /// Write a table as `NAME.csv` and `NAME.parquet`.
     fn table(&self, name: &str, table: &Table) -> Result<(), StudyError> {
         self.bytes(&format!("{name}.csv"), table.csv().as_bytes())?;
         let parquet = table.parquet().map_err(|reason| StudyError::Table {
@@ -90,7 +90,7 @@ impl Desk<'_> {
         self.bytes(&format!("{name}.parquet"), &parquet)
     }
 
-    /// Leave a figure as SVG, PNG and PDF.
+    /// Write a figure as SVG, PNG and PDF.
     fn figure(&self, figure: &Figure) -> Result<(), StudyError> {
         for (name, bytes) in pictures(figure)? {
             self.bytes(&name, &bytes)?;
@@ -104,7 +104,7 @@ impl Desk<'_> {
     }
 }
 
-/// Do everything that a study asks for.
+/// Do all the work of a study.
 ///
 /// # Errors
 /// [`StudyError`] with the first piece of work that could not be done.

@@ -19,7 +19,7 @@ const BLOCK: usize = 16;
 /// Differing cells printed one by one.
 const PRINTED: usize = 20;
 
-/// Compute the regions and leave everything.
+/// Compute the regions and write tables and figure.
 ///
 /// # Errors
 /// [`StudyError`] where a parameter is out of range or an output cannot be written.
@@ -37,7 +37,7 @@ pub fn run(
     leave(&request, &maps, name, desk)
 }
 
-/// From the maps on: follow every motion, compare, and leave everything.
+/// From the maps on: follow every motion, compare, and write tables and figure.
 ///
 /// # Errors
 /// [`StudyError`] where an output cannot be written.

@@ -14,7 +14,7 @@ use impact_oscillator::atlas::sweep::{Carried, Impactless, LONGEST_LAG, SweepPoi
 use impact_oscillator::model::Machine;
 use impact_oscillator::model::simulate::Snapshot;
 
-/// Steps after which a sweep keeps what it has.
+/// Steps after which a sweep saves its points.
 const KEEP_EVERY: usize = 16;
 
 /// A sweep as far as it has come.
@@ -24,7 +24,7 @@ struct Walked {
     at: Option<Snapshot>,
 }
 
-/// Sweep there and back and leave everything.
+/// Sweep there and back and write tables and figure.
 ///
 /// # Errors
 /// [`StudyError`] where a parameter is out of range or an output cannot be written.
@@ -76,7 +76,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// One direction, from where a run that was broken off had come.
+    /// One direction, from where an interrupted run stopped.
     fn go(
         &self,
         way: &str,

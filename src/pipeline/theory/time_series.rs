@@ -7,7 +7,7 @@ use crate::report::theory::motion::draw;
 use impact_oscillator::atlas::portrait::{Portrait, PortraitPlan, Strike, portrait};
 use impact_oscillator::model::Machine;
 
-/// Simulate and leave everything.
+/// Simulate and write tables and figure.
 ///
 /// # Errors
 /// [`StudyError`] where a parameter is out of range or an output cannot be written.

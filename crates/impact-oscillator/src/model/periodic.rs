@@ -2,7 +2,7 @@
 //!
 //! Between impacts everything is linear, so the motion of X + Y with p impacts in n drive
 //! periods is u(t) = Re(F e^{iηt}) − Σ φₖ Γ(t − tₖ), φₖ = (1+R)wₖ, Γ = Σ μᵢGᵢ the mobility-weighted
-//! periodic Green's functions. The orbit is where u(tₖ) = G and u'(tₖ−) = wₖ for every k. Time t
+//! periodic Green's functions, eq. (7). The orbit is where u(tₖ) = G and u'(tₖ−) = wₖ for every k. Time t
 //! is counted so that the drive's phase is ηt.
 
 use std::f64::consts::TAU;

@@ -106,7 +106,12 @@ impl Sampled {
         // y = x − w with w' = −cw + cx.
         let fed: Vec<f64> = self.values.iter().map(|x| corner * x).collect();
         let lost = periodic(C64::new(-corner, 0.0), self.grid, &fed);
-        let values: Vec<f64> = self.values.iter().zip(&lost).map(|(x, w)| x - w.re).collect();
+        let values: Vec<f64> = self
+            .values
+            .iter()
+            .zip(&lost)
+            .map(|(x, w)| x - w.re)
+            .collect();
         let slopes = self.slopes.iter().zip(&values).map(|(d, y)| d - corner * y);
         Self {
             grid: self.grid,
@@ -195,7 +200,12 @@ mod tests {
 
     /// Approach speed and drive phase at the impact, after many periods of a simulation in small
     /// steps (classical Runge–Kutta, the impact by bisection of the step).
-    fn simulated(beta: f64, r: f64, [eta, gap]: [f64; 2], extra: &dyn Fn(f64, [f64; 2]) -> f64) -> [f64; 2] {
+    fn simulated(
+        beta: f64,
+        r: f64,
+        [eta, gap]: [f64; 2],
+        extra: &dyn Fn(f64, [f64; 2]) -> f64,
+    ) -> [f64; 2] {
         let f = |t: f64, s: [f64; 2]| {
             let a = (eta * t).cos() - 2.0 * beta * s[1] - s[0] + extra(eta * t, s);
             [s[1], a]
@@ -252,7 +262,9 @@ mod tests {
         ];
         for extra in extras {
             let times = grid.times().zip(&states);
-            let p: Vec<f64> = times.map(|(t, s)| extra(orbit.phase + eta * t, *s)).collect();
+            let p: Vec<f64> = times
+                .map(|(t, s)| extra(orbit.phase + eta * t, *s))
+                .collect();
             let [displacement, velocity] = PeriodicResponse::new(&machine.x, grid, &p).at_impact();
             let change = Change {
                 displacement,
@@ -264,8 +276,14 @@ mod tests {
             let at = |e: f64| simulated(beta, r, [eta, gap], &|theta, s| e * extra(theta, s));
             let (above, below) = (at(small), at(-small));
             let found = [0, 1].map(|i| (above[i] - below[i]) / (2.0 * small));
-            assert!((found[0] - slope.approach_speed).abs() < 0.01 * (0.1 + found[0].abs()), "{found:?} {slope:?}");
-            assert!((found[1] - slope.phase).abs() < 0.01 * (0.1 + found[1].abs()), "{found:?} {slope:?}");
+            assert!(
+                (found[0] - slope.approach_speed).abs() < 0.01 * (0.1 + found[0].abs()),
+                "{found:?} {slope:?}"
+            );
+            assert!(
+                (found[1] - slope.phase).abs() < 0.01 * (0.1 + found[1].abs()),
+                "{found:?} {slope:?}"
+            );
         }
     }
 }

@@ -240,7 +240,9 @@ impl Sensitivity {
         let shares = [&x, &y].into_iter().flatten();
         let [d_position, d_velocity] = shares
             .map(|(m, s)| m.share_slope(s))
-            .fold([0.0; 2], |sum, share| [sum[0] + share[0], sum[1] + share[1]]);
+            .fold([0.0; 2], |sum, share| {
+                [sum[0] + share[0], sum[1] + share[1]]
+            });
         let forced: C64 = [&x, &y].into_iter().flatten().map(|(_, s)| s.forced).sum();
         let d_alpha = -change.restitution * b.position - (1.0 + r) * d_position;
         let d_q = change.restitution * b.velocity + (1.0 + r) * d_velocity;

@@ -43,15 +43,13 @@ impl<F: FnMut(&Impact)> Sink for F {
 /// use impact_oscillator::{Impact, Initial, Machine, Setting, Simulator};
 ///
 /// let machine = Machine::symmetric(0.07, 0.9);
-/// let setting = Setting::new(1.2, 2.5);
+/// let setting = Setting::new(1.2, 6.0);
 /// let mut simulator = Simulator::new(&machine, setting, Initial::rest())?;
 /// let mut count = 0;
 /// simulator.advance(200.0 * setting.period(), &mut |_: &Impact| count += 1);
-/// let settled = count;
-/// simulator.advance(100.0 * setting.period(), &mut |_: &Impact| count += 1);
-/// assert_eq!(count, settled, "above grazing, ρ'(1.2) = 2.123, no impact is left");
+/// assert_eq!(count, 0, "far above grazing, ρ'(1.2) = 2.123");
 ///
-/// // with a smaller clearance it hits again, once per drive period
+/// // with a smaller clearance it hits once per drive period
 /// simulator.set(1.2, 2.0);
 /// simulator.advance(300.0 * setting.period(), &mut |_: &Impact| ());
 /// let mut speeds = Vec::new();
