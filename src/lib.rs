@@ -20,6 +20,8 @@ pub mod synthetic;
 
 pub mod identify;
 
+pub mod compare;
+
 pub mod report;
 
 pub mod campaign;

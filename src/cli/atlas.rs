@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 
 use super::machine::{MachineArgs, WatchArgs, range, refused};
 use super::theory::{OutArgs, written};
-use super::{Exit, Failure, Voice, interrupt};
+use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::theory::Study;
 use crate::pipeline::theory::plan::RegionsPlan;
 use impact_oscillator::atlas::map::{Kernel, MapSettings};
@@ -92,19 +92,19 @@ impl Atlas {
     ///
     /// # Errors
     /// [`Failure`] where a parameter is out of range or a file cannot be written.
-    pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let title = "Regions of existence and stability of all motions";
         let mut study = self.machine.study(title)?;
         let plan = self.plan()?;
         study.regions.insert(NAME.into(), plan.clone());
         if let Some(shard) = self.shard {
-            return self.part(&study, &plan, shard, voice);
+            return self.part(&study, &plan, shard, verbosity);
         }
         #[cfg(feature = "mpi")]
         if self.mpi {
-            return super::ranks::go(&study, &plan, &self.out, voice);
+            return super::ranks::run(&study, &plan, &self.out, verbosity);
         }
-        self.out.study(&study, "atlas", voice)
+        self.out.study(&study, "atlas", verbosity)
     }
 
     fn plan(&self) -> Result<RegionsPlan, Failure> {
@@ -137,7 +137,7 @@ impl Atlas {
         study: &Study,
         plan: &RegionsPlan,
         (number, of): (usize, usize),
-        voice: Voice,
+        verbosity: Verbosity,
     ) -> Result<Exit, Failure> {
         let file = self
             .out
@@ -151,7 +151,7 @@ impl Atlas {
         write_json_line(&file, &part)?;
         drop(_lock);
         let _ = std::fs::remove_dir(self.out.folder().join(format!(".part-{number}")));
-        voice.say(&format!("{}; next: impactid merge", file.display()));
+        verbosity.info(&format!("{}; next: impactid merge", file.display()));
         Ok(Exit::Done)
     }
 }

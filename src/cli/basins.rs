@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::machine::{MachineArgs, WatchArgs, range};
 use super::theory::OutArgs;
-use super::{Exit, Failure, Voice};
+use super::{Exit, Failure, Verbosity};
 use crate::pipeline::theory::plan::BasinPlan;
 use impact_oscillator::atlas::basins::{BasinGrid, Starts};
 use impact_oscillator::model::Setting;
@@ -62,7 +62,7 @@ impl Basins {
     ///
     /// # Errors
     /// [`Failure`] where a parameter is out of range or a file cannot be written.
-    pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let mut study = self.machine.study("Basins of attraction")?;
         let starts = if self.one_mass {
             Starts::OneMass
@@ -83,6 +83,6 @@ impl Basins {
             watch: self.watch.watch(),
         };
         study.basins.insert("basins".into(), plan);
-        self.out.study(&study, "basins", voice)
+        self.out.study(&study, "basins", verbosity)
     }
 }

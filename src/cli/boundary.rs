@@ -4,8 +4,8 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use super::machine::{MachineArgs, motion, refused};
-use super::voice::print;
-use super::{Exit, Failure, Voice};
+use super::stdout::print;
+use super::{Exit, Failure, Verbosity};
 use impact_oscillator::atlas::{At, Boundary as Sought, BoundaryQuery, Point, boundary_points};
 use impact_oscillator::{Existence, Machine};
 
@@ -89,7 +89,7 @@ impl Boundary {
     ///
     /// # Errors
     /// [`Failure`] where a parameter is out of range.
-    pub fn go(self, _voice: Voice) -> Result<Exit, Failure> {
+    pub fn run(self, _verbosity: Verbosity) -> Result<Exit, Failure> {
         let machine = self.machine.machine()?;
         let (p, n, dead_zone) = self.motion;
         let query = BoundaryQuery {

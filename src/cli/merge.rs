@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::atlas::NAME;
 use super::theory::{OutArgs, Work};
-use super::{Exit, Failure, Voice, interrupt};
+use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::theory::regions::leave;
 use impact_oscillator::atlas::shard::{AtlasPart, merge};
 use labfiles::output::Lock;
@@ -37,13 +37,13 @@ impl Merge {
     ///
     /// # Errors
     /// [`Failure`] where the parts do not make up one atlas, or a file cannot be written.
-    pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let parts: Vec<AtlasPart> = self
             .parts
             .iter()
             .map(|path| read(path))
             .collect::<Result<_, _>>()?;
-        whole(&parts, &self.out, voice)
+        whole(&parts, &self.out, verbosity)
     }
 }
 
@@ -51,7 +51,7 @@ impl Merge {
 ///
 /// # Errors
 /// As [`Merge::go`].
-pub fn whole(parts: &[AtlasPart], out: &OutArgs, voice: Voice) -> Result<Exit, Failure> {
+pub fn whole(parts: &[AtlasPart], out: &OutArgs, verbosity: Verbosity) -> Result<Exit, Failure> {
     let maps = merge(parts).map_err(|e| {
         let remedy = "give every part of one atlas once, all of one --shard …/N";
         Failure::new(e.to_string(), remedy)
@@ -61,7 +61,7 @@ pub fn whole(parts: &[AtlasPart], out: &OutArgs, voice: Voice) -> Result<Exit, F
     };
     let _lock = Lock::take(out.folder())?;
     interrupt::watch(out.folder().to_path_buf());
-    voice.say(&format!(
+    verbosity.info(&format!(
         "{} parts make {} cells",
         parts.len(),
         maps[0].len()
@@ -73,10 +73,10 @@ pub fn whole(parts: &[AtlasPart], out: &OutArgs, voice: Voice) -> Result<Exit, F
         text: &text,
         resume: out.resume,
     };
-    work.go(voice, "merge", |desk| {
+    work.run(verbosity, "merge", |desk| {
         Ok(leave(&first.request, &maps, NAME, desk)?)
     })?;
-    out.leave_copy(&first.study, voice)?;
+    out.leave_copy(&first.study, verbosity)?;
     Ok(Exit::Done)
 }
 

@@ -6,7 +6,7 @@ use mpi::traits::{Communicator, Destination, Source};
 use super::atlas::computed;
 use super::merge::whole;
 use super::theory::OutArgs;
-use super::{Exit, Failure, Voice};
+use super::{Exit, Failure, Verbosity};
 use crate::pipeline::theory::Study;
 use crate::pipeline::theory::plan::RegionsPlan;
 use impact_oscillator::atlas::shard::AtlasPart;
@@ -18,7 +18,12 @@ type Told = Result<AtlasPart, String>;
 ///
 /// # Errors
 /// [`Failure`] where MPI does not start, a rank has no part, or a file cannot be written.
-pub fn go(study: &Study, plan: &RegionsPlan, out: &OutArgs, voice: Voice) -> Result<Exit, Failure> {
+pub fn run(
+    study: &Study,
+    plan: &RegionsPlan,
+    out: &OutArgs,
+    verbosity: Verbosity,
+) -> Result<Exit, Failure> {
     let start_it = "start the program with mpirun, and only once in a process";
     let universe = mpi::initialize().ok_or_else(|| Failure::new("MPI does not start", start_it))?;
     let world = universe.world();
@@ -48,5 +53,5 @@ pub fn go(study: &Study, plan: &RegionsPlan, out: &OutArgs, voice: Voice) -> Res
             Failure::new(format!("rank {k}: {e}"), remedy)
         })?);
     }
-    whole(&parts, out, voice)
+    whole(&parts, out, verbosity)
 }

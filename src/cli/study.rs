@@ -7,7 +7,7 @@ use clap::{Args, Subcommand};
 
 use super::coverage::Coverage;
 use super::theory::{COPY, Work};
-use super::{Exit, Failure, Voice, interrupt};
+use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::theory::{self, Study as Written};
 use labfiles::output::{Lock, write_bytes};
 
@@ -49,9 +49,9 @@ impl Study {
     /// # Errors
     /// [`Failure`] where a study cannot be read, a parameter is out of range or a file cannot
     /// be written.
-    pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         if let Some(Kind::Coverage(verb)) = self.kind {
-            return verb.go(voice);
+            return verb.run(verbosity);
         }
         let out = self.out.unwrap_or_default();
         let files = all_files(&self.files)?;
@@ -66,16 +66,16 @@ impl Study {
             let folder = out.join(&name);
             let there = fs::read_to_string(folder.join(COPY)).is_ok_and(|copy| copy == text);
             if self.resume && there {
-                voice.say(&format!("{name}: results exist"));
+                verbosity.info(&format!("{name}: results exist"));
                 continue;
             }
-            voice.say(&format!("{name}: {}", study.title));
+            verbosity.info(&format!("{name}: {}", study.title));
             let work = Work {
                 folder: &folder,
                 text: &text,
                 resume: self.resume,
             };
-            work.go(voice, "study", |desk| Ok(theory::run(&study, desk)?))?;
+            work.run(verbosity, "study", |desk| Ok(theory::run(&study, desk)?))?;
             write_bytes(&folder.join(COPY), text.as_bytes())?;
         }
         Ok(Exit::Done)

@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::machine::{MachineArgs, StartArgs, WatchArgs, range};
 use super::theory::OutArgs;
-use super::{Exit, Failure, Voice};
+use super::{Exit, Failure, Verbosity};
 use crate::pipeline::theory::plan::SweepPlan;
 
 /// Arguments of `impactid sweep`.
@@ -52,7 +52,7 @@ impl Sweep {
     ///
     /// # Errors
     /// [`Failure`] where a parameter is out of range or a file cannot be written.
-    pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let mut study = self.machine.study("Quasi-stationary characteristics")?;
         let plan = SweepPlan {
             eta: self.eta,
@@ -62,6 +62,6 @@ impl Sweep {
             watch: self.watch.watch(),
         };
         study.sweep.insert("sweep".into(), plan);
-        self.out.study(&study, "sweep", voice)
+        self.out.study(&study, "sweep", verbosity)
     }
 }

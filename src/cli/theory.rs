@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use clap::Args;
 
-use super::{Exit, Failure, Progress, Voice, interrupt};
+use super::{Exit, Failure, Progress, Verbosity, interrupt};
 use crate::pipeline::theory::kept::Kept;
 use crate::pipeline::theory::{Desk, Study, StudyError, run};
 use labfiles::output::{Lock, write_bytes};
@@ -41,7 +41,12 @@ impl OutArgs {
     ///
     /// # Errors
     /// [`Failure`] where a parameter is out of range or an output cannot be written.
-    pub fn study(&self, study: &Study, what: &'static str, voice: Voice) -> Result<Exit, Failure> {
+    pub fn study(
+        &self,
+        study: &Study,
+        what: &'static str,
+        verbosity: Verbosity,
+    ) -> Result<Exit, Failure> {
         let text = written(study)?;
         let _lock = Lock::take(self.folder())?;
         interrupt::watch(self.folder().to_path_buf());
@@ -50,8 +55,8 @@ impl OutArgs {
             text: &text,
             resume: self.resume,
         };
-        work.go(voice, what, |desk| Ok(run(study, desk)?))?;
-        self.leave_copy(&text, voice)?;
+        work.run(verbosity, what, |desk| Ok(run(study, desk)?))?;
+        self.leave_copy(&text, verbosity)?;
         Ok(Exit::Done)
     }
 
@@ -59,9 +64,9 @@ impl OutArgs {
     ///
     /// # Errors
     /// [`Failure`] where it cannot be written.
-    pub fn leave_copy(&self, text: &str, voice: Voice) -> Result<(), Failure> {
+    pub fn leave_copy(&self, text: &str, verbosity: Verbosity) -> Result<(), Failure> {
         write_bytes(&self.folder().join(COPY), text.as_bytes())?;
-        voice.say(&format!(
+        verbosity.info(&format!(
             "{} holds the results; impactid study {} --out DIR replays them",
             self.folder().display(),
             self.folder().join(COPY).display()
@@ -94,16 +99,16 @@ impl Work<'_> {
     ///
     /// # Errors
     /// [`Failure`] of the work.
-    pub fn go(
+    pub fn run(
         &self,
-        voice: Voice,
+        verbosity: Verbosity,
         what: &'static str,
         work: impl FnOnce(&Desk<'_>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         labfiles::output::make_folder(self.folder)?;
         labfiles::output::clear_parts(self.folder);
         let kept = Kept::open(self.folder, self.text, self.resume)?;
-        let progress = Progress::new(voice, what, 1);
+        let progress = Progress::new(verbosity, what, 1);
         let said = Mutex::new(Vec::new());
         let done = work(&Desk {
             folder: self.folder,
@@ -117,7 +122,7 @@ impl Work<'_> {
         });
         drop(progress);
         for text in said.into_inner().unwrap_or_default() {
-            voice.say(&text);
+            verbosity.info(&text);
         }
         done?;
         kept.remove();

@@ -1,14 +1,14 @@
 //! Bounces under a constant force: velocity climbs steadily in flight, against friction of either
-//! sign, and falls while the body touches the stop, however many samples that takes.
+//! sign, and falls while the body touches the stop, for any number of samples.
 
-use crate::event::DetectionSource;
+use crate::event::impact::DetectionSource;
 use crate::event::jumps::Jump;
 use crate::event::kinematics::Series;
 use crate::event::refine::Candidate;
 use crate::signal::local_fit::LocalFit;
 use crate::signal::robust;
 
-/// Least samples of flight on either side of a bounce.
+/// Fewest samples of flight on either side of a bounce.
 const FEWEST: usize = 5;
 /// Drop of velocity that makes a fall a bounce, in steps of the flight and in noise deviations.
 const IN_STEPS: f64 = 2.5;
@@ -17,9 +17,9 @@ const IN_NOISE: f64 = 6.0;
 /// All bounces: falls of the velocity from toward the stop to away from it.
 ///
 /// A positive velocity is toward the stop. The jump spans from the last sample before the fall to
-/// the first one after it; samples next to the fall, which a differentiated position smears, are
-/// left to it where the flights are long enough.
-pub fn find(velocity: &Series) -> Vec<Candidate> {
+/// the first one after it. Samples next to the fall, which a differentiated position smears, are
+/// counted as part of the fall if the flights are long enough.
+pub(super) fn find(velocity: &Series) -> Vec<Candidate> {
     let values = &velocity.values;
     let steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).collect();
     let rises: Vec<f64> = steps.iter().copied().filter(|s| *s > 0.0).collect();

@@ -1,24 +1,14 @@
-//! What the corner of an integrator's high-pass has to do with the speeds at impacts.
+//! Effect of the corner of an integrator's high-pass on the speeds at impacts.
 //!
 //! With the corner ω_c(1 + ε) in place of the stated ω_c, undoing the high-pass leaves the velocity
-//! short by ε ω_c times the displacement (less its mean, which no such channel tells). At impacts
-//! the displacement is far from its mean, and the speeds before and after are off by the same.
+//! short by ε ω_c times the displacement (minus its mean, which such a channel does not contain). At
+//! impacts the displacement is far from its mean, and both speeds are off by the same amount.
 
-use serde::{Deserialize, Serialize};
-
+use crate::event::impact::CornerShift;
 use crate::event::kinematics::{Body, Kinematics, RelativeSource};
 use crate::record::Role;
 use crate::signal::interpolation::interpolate;
 use crate::signal::{drift, robust};
-
-/// Change of both approach speeds at an impact per unit of the logarithm of a corner.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct CornerShift {
-    /// The channel whose corner it is.
-    pub role: Role,
-    /// m/s, toward each other.
-    pub speed_m_s: f64,
-}
 
 /// A body's shift at all times.
 struct Shift {
@@ -26,12 +16,12 @@ struct Shift {
     speeds_m_s: Vec<f64>,
 }
 
-/// The shifts of the approach velocity of a record.
-pub struct Shifts([Option<Shift>; 2]);
+/// The shifts of the approach velocity of a record, one per mass.
+pub(super) struct Shifts([Option<Shift>; 2]);
 
 impl Shifts {
     /// Of a record whose velocities are free of drift.
-    pub fn of(kinematics: &Kinematics) -> Self {
+    pub(super) fn of(kinematics: &Kinematics) -> Self {
         let rate_hz = kinematics.rate_hz;
         let of = |body: &Body, times: f64| shift(body, times / rate_hz);
         let Kinematics { x, y, .. } = kinematics;
@@ -44,7 +34,7 @@ impl Shifts {
     }
 
     /// At a time in samples.
-    pub fn at(&self, time: f64) -> [Option<CornerShift>; 2] {
+    pub(super) fn at(&self, time: f64) -> [Option<CornerShift>; 2] {
         [0, 1].map(|i| {
             let shift = self.0[i].as_ref()?;
             Some(CornerShift {

@@ -1,14 +1,16 @@
 //! From a record to its impacts: contact pulses and velocity jumps fused, times refined.
 
 use crate::event::contact::{Closed, closed_intervals};
+use crate::event::drive::{self, DriveTone};
+use crate::event::impact::{DetectionSource, Impact};
 use crate::event::jumps::{Jump, JumpSearch, SUPPORTED};
-use crate::event::kinematics::{Kinematics, Series};
+use crate::event::kinematics::{Kinematics, RigKind, Series};
 use crate::event::refine::{self, ArcFit, Candidate};
-use crate::event::{DetectionSource, DriveTone, Impact, RigKind, bounce, drift, drive};
-use crate::record::{Flag, Record, Role};
+use crate::event::{bounce, drift};
+use crate::record::{Flag, FlagCode, Record, Role};
 use crate::signal::robust;
 
-/// What acts on a body between impacts, as far as the detection has to know.
+/// Forces on a body between impacts, as far as the detection depends on them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FlightKind {
@@ -29,9 +31,9 @@ pub struct DetectSettings {
     pub dead_zone_s: f64,
     /// One-sided window as a fraction of the drive period.
     pub window_periods: f64,
-    /// Relative difference from which the measured drive frequency contradicts the stated one.
+    /// Relative difference above which the measured drive frequency contradicts the stated one.
     pub drive_tolerance: f64,
-    /// What acts between impacts.
+    /// Forces between impacts.
     pub flight: FlightKind,
 }
 
@@ -56,7 +58,7 @@ pub struct Detection {
     pub kinematics: Kinematics,
     /// The impacts in order of time.
     pub impacts: Vec<Impact>,
-    /// Samples that a jump takes; more than one: the contact is long against the sample step.
+    /// Samples that a jump takes; more than one if the contact lasts longer than a sample step.
     pub jump_samples: usize,
     /// Contact pulses that show no jump of velocity, although velocity is measured.
     pub unsupported_pulses: usize,
@@ -64,7 +66,7 @@ pub struct Detection {
     pub missed_pulses: usize,
     /// Fraction of the record in which the contact was closed.
     pub closed_fraction: f64,
-    /// What was noticed.
+    /// Problems found.
     pub flags: Vec<Flag>,
 }
 
@@ -139,7 +141,7 @@ fn window_samples(drive: Option<&DriveTone>, rate_hz: f64, periods: f64) -> usiz
     }
 }
 
-/// Refine times, correct and remove the drift they tell, refine again, extrapolate the speeds.
+/// Refine the times, remove the drift that follows from them, refine again, extrapolate the speeds.
 fn refined(
     kinematics: &mut Kinematics,
     candidates: &[Candidate],
@@ -150,7 +152,7 @@ fn refined(
         return without_speeds(candidates, drive, kinematics.rate_hz);
     }
     if arc.same_way {
-        // Straight arcs are drawn from few samples: no drift is to be told from them.
+        // Straight arcs have few samples: no drift can be estimated from them.
         let instants = refine::instants(kinematics, candidates, arc);
         return refine::impacts(kinematics, candidates, &instants, drive, arc);
     }
@@ -167,13 +169,13 @@ fn refined(
     .into_iter()
     .filter_map(|b| b.velocity.as_mut())
     {
-        drift::settle(series, &times, drive, rate_hz);
+        drift::remove_drift(series, &times, drive, rate_hz);
     }
     let instants = refine::instants(kinematics, candidates, arc);
     refine::impacts(kinematics, candidates, &instants, drive, arc)
 }
 
-/// Where impacts may be, and what speaks for and against them.
+/// Candidates for impacts, and counts of what supports and contradicts them.
 #[derive(Default)]
 struct Fused {
     candidates: Vec<Candidate>,
@@ -183,7 +185,7 @@ struct Fused {
     unsupported: usize,
     /// Jumps without a contact pulse.
     missed: usize,
-    /// Jumps upward, as the approach velocity has none at an impact.
+    /// Jumps upward, which no impact makes.
     upward: usize,
     /// Jumps downward, as impacts make them.
     downward: usize,
@@ -201,8 +203,8 @@ fn bounces(velocity: &Series) -> Fused {
     }
 }
 
-/// Fuse jumps and contact pulses: a pulse belongs to the strongest jump inside it; a pulse without
-/// a jump lends support to a weaker one; a long pulse is a dead zone.
+/// Fuse jumps and contact pulses: a jump within reach of a pulse belongs to it; a pulse without a
+/// jump admits a weaker jump beside it; a long pulse is a dead zone.
 fn fuse(velocity: &Series, closed: &[Closed], width: usize, dead_from: usize) -> Fused {
     let search = JumpSearch::new(velocity, width);
     let mut jumps = search.find();
@@ -279,7 +281,8 @@ fn candidates(
     out
 }
 
-/// Without a contact channel: how long the approach velocity stays at zero after a jump.
+/// Samples for which the approach velocity stays at zero after a jump, for records without a
+/// contact channel.
 fn resting_samples(velocity: &Series, jump: &Jump, next: usize, dead_from: usize) -> f64 {
     let begin = jump.left + jump.gap;
     let rest_below = 4.0 * velocity.noise + 5e-3 * jump.height.abs();
@@ -345,24 +348,22 @@ fn without_speeds(
         .collect()
 }
 
-/// Upward jumps where impacts should jump down: a sign is wrong somewhere.
+/// Upward jumps, although impacts jump down: the sign of a channel is wrong.
 fn wrong_way(found: &Fused, record: &Record) -> Option<Flag> {
     (found.upward >= 3 && found.upward > 2 * found.downward).then(|| {
         let channel = record
             .channel(Role::VelocityX)
             .or_else(|| record.channel(Role::DisplacementX))
-            .map(|c| c.name.clone());
-        Flag {
-            code: "jumps_point_the_wrong_way".into(),
+            .map(|c| c.name.as_str());
+        Flag::new(
+            FlagCode::JumpsPointTheWrongWay,
             channel,
-            message: format!(
+            format!(
                 "{} jumps of the approach velocity go up, {} down; an impact jumps down",
                 found.upward, found.downward
             ),
-            remedy: "turn the `sign` of the velocity or displacement channels: positive is toward \
-                     the other mass"
-                .into(),
-            excludes: true,
-        }
+            "turn the `sign` of the velocity or displacement channels: positive is toward the other \
+             mass",
+        )
     })
 }

@@ -1,16 +1,21 @@
-//! Offset and ramp of a velocity signal, found from what kinematics demands: at every impact the
-//! bodies are at the same place, so between two impacts the mean approach velocity is zero.
+//! Offset and ramp of a velocity signal from kinematics: the bodies touch at every impact, so the
+//! mean approach velocity between two impacts is zero.
 
-use crate::event::DriveTone;
+use crate::event::drive::DriveTone;
 use crate::event::kinematics::Series;
 use crate::signal::interpolation::interpolate;
 use crate::signal::{drift, robust};
 
-/// Remove offset (and, where a high-pass was undone, ramp) from a approach velocity.
+/// Remove the offset (and the ramp, if a high-pass was undone) of an approach velocity.
 ///
-/// With two impacts or more, from the arcs between them (`times` in samples); else from whole
-/// drive periods.
-pub fn settle(velocity: &mut Series, times: &[f64], drive: Option<&DriveTone>, rate_hz: f64) {
+/// From the arcs between impacts (`times` in samples) if there are any, else from whole drive
+/// periods.
+pub(super) fn remove_drift(
+    velocity: &mut Series,
+    times: &[f64],
+    drive: Option<&DriveTone>,
+    rate_hz: f64,
+) {
     let arcs = arc_offsets(&velocity.values, times);
     let line = if arcs.is_empty() {
         period_line(velocity, drive, rate_hz)
@@ -34,9 +39,10 @@ fn arc_offsets(values: &[f64], times: &[f64]) -> Vec<(f64, f64, f64)> {
         .collect()
 }
 
-/// Integral of samples (step 1) between two instants, each arc taken with its own samples only:
-/// no sample outside the interval enters, so a jump at its ends does no harm.
-pub fn integral(values: &[f64], from: f64, to: f64) -> Option<f64> {
+/// Integral of samples (step 1) between two instants; `None` with fewer than three samples inside.
+///
+/// No sample outside the interval enters, so a jump at its ends does no harm.
+pub(super) fn integral(values: &[f64], from: f64, to: f64) -> Option<f64> {
     let first = from.ceil().max(0.0) as usize;
     let last = to.floor() as usize;
     if last >= values.len() || first + 1 >= last {

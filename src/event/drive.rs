@@ -1,19 +1,48 @@
 //! The drive's frequency and phase, measured from its channel.
 
-use crate::event::DriveTone;
+use serde::{Deserialize, Serialize};
+
 use crate::record::consistency::mistaken;
-use crate::record::{Flag, Record, Role};
+use crate::record::{Flag, FlagCode, Record, Role};
 use crate::signal::tone;
 
-/// Least ratio of residual to amplitude at which a drive no longer counts as harmonic.
+/// The drive as measured from its channel: amplitude · cos(2π f t + phase).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct DriveTone {
+    /// Measured frequency, Hz.
+    pub frequency_hz: f64,
+    /// Its standard error, Hz.
+    pub frequency_error_hz: f64,
+    /// Amplitude in the channel's SI unit.
+    pub amplitude: f64,
+    /// Phase at the first sample, rad.
+    pub phase_rad: f64,
+    /// Root mean square of the residual, relative to the amplitude.
+    pub residual_ratio: f64,
+}
+
+impl DriveTone {
+    /// Phase of the drive at a time since the first sample, rad in [0, 2π).
+    pub fn phase_at(&self, time_s: f64) -> f64 {
+        (std::f64::consts::TAU * self.frequency_hz * time_s + self.phase_rad)
+            .rem_euclid(std::f64::consts::TAU)
+    }
+
+    /// Drive period, s.
+    pub fn period_s(&self) -> f64 {
+        1.0 / self.frequency_hz
+    }
+}
+
+/// Ratio of residual to amplitude above which a drive does not count as harmonic.
 const NOT_HARMONIC: f64 = 0.5;
 
 /// Measure the drive of a record from its drive channel.
 ///
 /// Returns the tone, if the record has a drive channel that holds one, and flags: a drive that is
-/// no harmonic tone, and a measured frequency that contradicts the stated one by more than
-/// `tolerance` (relative) or three standard errors, whichever is greater.
-pub fn measure(record: &Record, tolerance: f64) -> (Option<DriveTone>, Vec<Flag>) {
+/// not a harmonic tone, and a measured frequency that differs from the stated one by more than
+/// `tolerance` (relative) and three standard errors.
+pub(super) fn measure(record: &Record, tolerance: f64) -> (Option<DriveTone>, Vec<Flag>) {
     let Some(channel) = record.channel(Role::Drive) else {
         return (None, Vec::new());
     };
@@ -38,13 +67,12 @@ pub fn measure(record: &Record, tolerance: f64) -> (Option<DriveTone>, Vec<Flag>
 }
 
 fn no_tone(channel: &str) -> Flag {
-    Flag {
-        code: "drive_not_harmonic".into(),
-        channel: Some(channel.into()),
-        message: "the drive channel holds no single harmonic tone".into(),
-        remedy: "check that the drive channel is named correctly and that the drive was on".into(),
-        excludes: true,
-    }
+    Flag::new(
+        FlagCode::DriveNotHarmonic,
+        Some(channel),
+        "the drive channel holds no single harmonic tone",
+        "check that the drive channel is named correctly and that the drive was on",
+    )
 }
 
 fn contradiction(
@@ -55,16 +83,18 @@ fn contradiction(
 ) -> Option<Flag> {
     let stated = record.setting.stated_frequency_hz?;
     let allowed = (tolerance * stated).max(3.0 * drive.frequency_error_hz);
-    ((drive.frequency_hz - stated).abs() > allowed).then(|| Flag {
-        code: "drive_frequency_contradicts".into(),
-        channel: Some(channel.into()),
-        message: format!(
-            "the drive channel shows {:.4} Hz, the campaign states {stated:.4} Hz{}",
-            drive.frequency_hz,
-            mistaken(stated / drive.frequency_hz)
-                .map_or(String::new(), |m| format!(": the factor {m}"))
-        ),
-        remedy: "the measured frequency is used; correct the run table or the file's name".into(),
-        excludes: false,
+    ((drive.frequency_hz - stated).abs() > allowed).then(|| {
+        Flag::new(
+            FlagCode::DriveFrequencyContradicts,
+            Some(channel),
+            format!(
+                "the drive channel shows {:.4} Hz, the campaign states {stated:.4} Hz{}",
+                drive.frequency_hz,
+                mistaken(stated / drive.frequency_hz)
+                    .map_or(String::new(), |m| format!(": the factor {m}"))
+            ),
+            "the measured frequency is used; correct the run table or the file's name",
+        )
+        .excluding(false)
     })
 }

@@ -1,18 +1,19 @@
-//! Jumps of the approach velocity: where one-sided extrapolations from left and right disagree.
+//! Jumps of the approach velocity: instants at which one-sided extrapolations from left and right
+//! disagree.
 
 use crate::event::kinematics::Series;
 use crate::signal::local_fit::LocalFit;
 use crate::signal::robust;
 
-/// Significance (in standard errors) from which a jump counts by itself.
+/// Significance (in standard errors) above which a jump counts by itself.
 const SIGNIFICANT: f64 = 6.0;
 
-/// Significance that suffices where the contact channel shows a pulse.
-pub const SUPPORTED: f64 = 3.0;
+/// Significance that suffices if the contact channel shows a pulse.
+pub(super) const SUPPORTED: f64 = 3.0;
 
 /// A jump of velocity between two samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Jump {
+pub(super) struct Jump {
     /// Last sample before the jump; the velocity is on the other branch `gap` samples later.
     pub left: usize,
     /// Samples from the last one before to the first one after the jump; 1 when instantaneous.
@@ -25,19 +26,19 @@ pub struct Jump {
 
 impl Jump {
     /// Middle of the gap, in samples.
-    pub fn middle(&self) -> f64 {
+    pub(super) fn middle(&self) -> f64 {
         self.left as f64 + 0.5 * self.gap as f64
     }
 
     /// Height over its standard error, positive for a jump down as impacts make it.
-    pub fn significance(&self) -> f64 {
+    pub(super) fn significance(&self) -> f64 {
         -self.height / self.error
     }
 }
 
 /// A search for jumps in one velocity signal.
 #[derive(Debug, Clone)]
-pub struct JumpSearch<'a> {
+pub(super) struct JumpSearch<'a> {
     velocity: &'a Series,
     /// Samples of each one-sided window.
     window: usize,
@@ -50,8 +51,8 @@ pub struct JumpSearch<'a> {
 impl<'a> JumpSearch<'a> {
     /// Scan a velocity with one-sided windows of `window` samples (at least 4).
     ///
-    /// The samples a jump takes (its gap) are found from the strongest jumps themselves.
-    pub fn new(velocity: &'a Series, window: usize) -> Self {
+    /// The samples that a jump takes (its gap) are estimated from the strongest jumps.
+    pub(super) fn new(velocity: &'a Series, window: usize) -> Self {
         let mut search = Self::with_gap(velocity, window.max(4), 1);
         let wanted = search.typical_gap();
         if wanted > 1 {
@@ -73,17 +74,17 @@ impl<'a> JumpSearch<'a> {
             scan[left] = height;
         }
         let theory = velocity.noise * factor * 2f64.sqrt();
-        let seen = quiet_deviation(&scan);
+        let observed = quiet_deviation(&scan);
         Self {
             velocity,
             window,
             gap,
-            scan_deviation: seen.max(theory),
+            scan_deviation: observed.max(theory),
             scan,
         }
     }
 
-    /// How many samples the strongest jumps take from branch to branch (median over up to ten).
+    /// Samples that the strongest jumps take from branch to branch (median of up to ten).
     fn typical_gap(&self) -> usize {
         let strongest = self.candidates(SIGNIFICANT, -1.0);
         let mut gaps: Vec<f64> = strongest
@@ -96,8 +97,8 @@ impl<'a> JumpSearch<'a> {
         robust::median(&gaps).map_or(1, |g| (g.round() as usize).clamp(1, self.window))
     }
 
-    /// Samples of the steep stretch around a jump: steps that exceed the flight's own slope beside
-    /// it by a good part of the jump.
+    /// Samples of the steep stretch around a jump: steps that exceed the slope of the flight beside
+    /// it by 15 % of the jump.
     fn transition_samples(&self, left: usize) -> Option<usize> {
         let values = &self.velocity.values;
         let height = self.scan[left].abs();
@@ -147,7 +148,7 @@ impl<'a> JumpSearch<'a> {
     }
 
     /// All significant downward jumps, in order of time.
-    pub fn find(&self) -> Vec<Jump> {
+    pub(super) fn find(&self) -> Vec<Jump> {
         let mut accepted: Vec<Jump> = Vec::new();
         for left in self.candidates(SIGNIFICANT, -1.0) {
             if let Some(jump) = self.measure(left, &accepted, SIGNIFICANT) {
@@ -158,9 +159,9 @@ impl<'a> JumpSearch<'a> {
         self.remeasured(accepted)
     }
 
-    /// Numbers of significant jumps upward and downward; of neighbours the strongest counts alone,
-    /// for the scan swings back beside a jump.
-    pub fn directions(&self) -> (usize, usize) {
+    /// Numbers of significant jumps upward and downward. Of neighbours only the strongest counts,
+    /// because the scan swings back beside a jump.
+    pub(super) fn directions(&self) -> (usize, usize) {
         let mut all = self.candidates(SIGNIFICANT, 1.0);
         all.extend(self.candidates(SIGNIFICANT, -1.0));
         all.sort_by(|&a, &b| {
@@ -182,8 +183,9 @@ impl<'a> JumpSearch<'a> {
         (upward, kept.len() - upward)
     }
 
-    /// A jump near a sample that need reach only `significance`, beside the accepted ones.
-    pub fn near(
+    /// The most significant jump whose left sample is in `first..=last` and whose significance
+    /// exceeds `significance`, with windows that end before the accepted jumps.
+    pub(super) fn near(
         &self,
         first: usize,
         last: usize,
@@ -195,7 +197,7 @@ impl<'a> JumpSearch<'a> {
             .max_by(|a, b| a.significance().total_cmp(&b.significance()))
     }
 
-    /// Measure a jump with windows that stop short of the accepted ones.
+    /// Measure a jump with windows that end before the accepted jumps.
     fn measure(&self, left: usize, accepted: &[Jump], significance: f64) -> Option<Jump> {
         let after = accepted.partition_point(|j| j.left < left);
         let low = match after.checked_sub(1).map(|i| &accepted[i]) {
@@ -205,8 +207,8 @@ impl<'a> JumpSearch<'a> {
         let high = accepted
             .get(after)
             .map_or(self.velocity.values.len(), |j| j.left + 1);
-        // Two samples between impacts are the least that tells a jump from a slope; at the
-        // record's edges, where no other impact vouches for them, five.
+        // At least two samples between impacts distinguish a jump from a slope; at the record's
+        // edges, which no impact bounds, at least five.
         let end = self.velocity.values.len();
         let before = if low == 0 { 5 } else { 2 };
         let behind = if high == end { 5 } else { 2 };
@@ -245,7 +247,8 @@ impl<'a> JumpSearch<'a> {
         Some((jump, before.residual_squares + after.residual_squares))
     }
 
-    /// Measure each accepted jump again now that its neighbours are known, dropping what fades.
+    /// Measure each accepted jump again with its neighbours known; drop those that are no longer
+    /// significant.
     fn remeasured(&self, accepted: Vec<Jump>) -> Vec<Jump> {
         (0..accepted.len())
             .filter_map(|i| {
@@ -261,8 +264,8 @@ impl<'a> JumpSearch<'a> {
     }
 }
 
-/// Deviation of the scan where nothing jumps, from the quarter of its values nearest to zero:
-/// impacts may follow each other so closely that half the scan is under their influence.
+/// Standard deviation of the scan away from jumps, from the quarter of its values nearest to zero:
+/// impacts may follow each other so closely that they affect half of the scan.
 fn quiet_deviation(scan: &[f64]) -> f64 {
     let mut sizes: Vec<f64> = scan.iter().map(|v| v.abs()).filter(|v| *v > 0.0).collect();
     let quarter = sizes.len() / 4;

@@ -1,29 +1,41 @@
-//! What moved: velocity and displacement of each body and of the relative motion, on one time
-//! axis, with the integrators' high-pass undone and the noise known.
+//! Velocity and displacement of each body and of their relative motion on one time axis, with the
+//! integrators' high-pass undone and the noise estimated.
 
-use crate::event::RigKind;
+use serde::{Deserialize, Serialize};
+
 use crate::record::{Record, Role};
 use crate::signal::{drift, robust};
+
+/// Kind of rig.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RigKind {
+    /// Two masses that hit each other; approach speed x' + y'.
+    Double,
+    /// One mass that hits a fixed stop; approach speed x'.
+    Single,
+}
 
 /// A signal in SI with its noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// The channel that it comes from; of a relative motion, the first.
+    /// The channel that it comes from; the first one for a relative motion.
     pub role: Role,
     /// Samples, SI.
     pub values: Vec<f64>,
     /// Standard deviation of the white noise, SI; at least the converter's step over √12.
     pub noise: f64,
-    /// Corner of the high-pass that was undone, Hz, so that a constant and a ramp remain unknown;
-    /// `None`: the signal had none.
+    /// Corner of the high-pass that was undone, Hz: a constant and a ramp remain unknown. `None` if
+    /// the signal had none.
     pub high_pass_hz: Option<f64>,
 }
 
 impl Series {
     /// Correct the undoing of the high-pass for a jump between two samples.
     ///
-    /// The integral ω_c ∫ y dt was taken by trapezoids, as if the jump stood in the middle of its
-    /// interval; at a fraction u of it the area differs by (before − after)(u − ½) of a step.
+    /// The integral ω_c ∫ y dt was taken by trapezoids, as if the jump were in the middle of its
+    /// interval; for a jump at a fraction u of the interval the area differs by
+    /// (before − after)(u − ½) steps.
     pub fn correct_jump(&mut self, time_steps: f64, before: f64, after: f64, rate_hz: f64) {
         let Some(corner_hz) = self.high_pass_hz else {
             return;
@@ -37,7 +49,7 @@ impl Series {
     }
 }
 
-/// Velocity and displacement of one body (or of the relative motion) toward the other.
+/// Velocity and displacement of one body toward the other, or of the relative motion.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Body {
     /// Velocity, m/s: measured, else differentiated displacement, else integrated acceleration.
@@ -46,14 +58,14 @@ pub struct Body {
     pub displacement: Option<Series>,
 }
 
-/// From which channels the relative motion was built.
+/// Channels from which the relative motion was built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RelativeSource {
     /// x + y, both measured.
     Both,
     /// x of a single mass against a stop.
     One,
-    /// Twice the one mass that was measured, taking the machine as symmetric.
+    /// Twice the one mass that was measured: the rig is assumed symmetric.
     Doubled,
 }
 
@@ -68,15 +80,15 @@ pub struct Kinematics {
     pub y: Body,
     /// The relative motion: displacement u = x + y, velocity u' (for one mass x alone).
     pub relative: Body,
-    /// From what the approach velocity was built; `None` without any velocity.
+    /// Channels of the approach velocity; `None` without any velocity.
     pub relative_from: Option<RelativeSource>,
-    /// The relative motion as it was measured (velocity, else displacement, else acceleration):
-    /// what is compared with itself a period later, free of any drift of integration.
+    /// The relative motion as it was measured (velocity, else displacement, else acceleration),
+    /// without drift of an integration: it is compared with itself a period later.
     pub waveform: Option<Series>,
 }
 
 impl Kinematics {
-    /// Build the kinematics of a record from whatever motion channels it has.
+    /// Build the kinematics of a record from the motion channels that it has.
     pub fn of(record: &Record, rig: RigKind) -> Self {
         let rate_hz = record.sample_rate_hz;
         let x = body(
@@ -115,7 +127,7 @@ impl Kinematics {
         }
     }
 
-    /// Build the relative motion anew after the bodies' signals were corrected.
+    /// Build the relative motion again after the bodies' signals were corrected.
     pub fn update_relative(&mut self, rig: RigKind) {
         (self.relative, self.relative_from) = relative_motion(&self.x, &self.y, rig);
     }
@@ -131,7 +143,7 @@ impl Kinematics {
 fn relative_motion(x: &Body, y: &Body, rig: RigKind) -> (Body, Option<RelativeSource>) {
     let (velocity, relative_from) = combined(&x.velocity, &y.velocity, rig);
     let (displacement, displacement_from) = combined(&x.displacement, &y.displacement, rig);
-    // A relative displacement of another making than the velocity would not fit to it.
+    // A relative displacement from other channels than the velocity would not fit to it.
     let displacement = displacement.filter(|_| displacement_from == relative_from);
     (
         Body {
@@ -179,7 +191,7 @@ fn series(record: &Record, role: Role) -> Option<Series> {
         high_pass_hz: channel.high_pass_hz,
     };
     if series.high_pass_hz.is_some() {
-        // The constant part is lost anyway; a measured one is kept until drift is told from arcs.
+        // The high-pass has removed the constant part; a measured one is kept for `remove_drift`.
         remove_mean(&mut series.values);
     }
     Some(series)

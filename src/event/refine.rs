@@ -1,17 +1,18 @@
-//! Times of impacts below the sample step, and the speeds extrapolated to them.
+//! Times of impacts to a fraction of the sample step, and the speeds extrapolated to them.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::event::corner::Shifts;
 use crate::event::drift::integral;
+use crate::event::drive::DriveTone;
+use crate::event::impact::{DetectionSource, Impact, MassSpeeds};
 use crate::event::jumps::Jump;
 use crate::event::kinematics::{Body, Kinematics, Series};
-use crate::event::{DetectionSource, DriveTone, Impact, MassSpeeds};
 use crate::signal::local_fit::{LocalFit, crossing};
 
-/// How the arcs beside an impact are fitted to carry speeds and places to it.
+/// How the arcs beside an impact are fitted to extrapolate velocity and displacement to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ArcFit {
+pub(super) struct ArcFit {
     /// Degree of the polynomials of velocity.
     pub degree: usize,
     /// Degree of the polynomials of displacement.
@@ -25,25 +26,25 @@ pub struct ArcFit {
 
 /// An impact's time in samples with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Instant {
+pub(super) struct Instant {
     /// Time, samples from the first.
     pub time: f64,
     /// Standard error, samples.
     pub error: f64,
 }
 
-/// A jump with what was found of it: the unit of refinement.
+/// A jump that may be an impact.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Candidate {
+pub(super) struct Candidate {
     /// The jump of velocity.
     pub jump: Jump,
-    /// How it was seen.
+    /// Channels that show it.
     pub source: DetectionSource,
     /// Samples the contact stayed closed beyond an ordinary pulse.
     pub dead_samples: f64,
 }
 
-/// Windows before and after one candidate: sample ranges that touch no other impact.
+/// Windows before and after one candidate: sample ranges that contain no other impact.
 #[derive(Debug, Clone, Copy)]
 struct Windows {
     before: (usize, usize),
@@ -62,7 +63,7 @@ fn windows(velocity: &Series, candidates: &[Candidate], index: usize, arc: ArcFi
         .map_or(samples, |c| c.jump.left + 1);
     let begin = jump.left + jump.gap;
     let dead = candidates[index].dead_samples as usize;
-    // Within a dead zone the bodies move together: only samples inside it belong to "after".
+    // Within a dead zone the bodies move together: "after" is limited to its samples.
     let end = if dead > 3 {
         begin + dead
     } else {
@@ -92,10 +93,14 @@ fn windows(velocity: &Series, candidates: &[Candidate], index: usize, arc: ArcFi
     found
 }
 
-/// Times of all candidates: from the kink of the displacement where it is measured, else from
-/// the condition that the relative motion returns to the same place at every impact, else the
-/// middle of the sample interval.
-pub fn instants(kinematics: &Kinematics, candidates: &[Candidate], arc: ArcFit) -> Vec<Instant> {
+/// Times of all candidates: from the kink of the displacement if it is measured, else from the
+/// condition that the relative displacement is the same at every impact, else the middle of the
+/// sample interval.
+pub(super) fn instants(
+    kinematics: &Kinematics,
+    candidates: &[Candidate],
+    arc: ArcFit,
+) -> Vec<Instant> {
     let middle = |c: &Candidate| Instant {
         time: c.jump.middle(),
         error: if arc.same_way {
@@ -106,7 +111,7 @@ pub fn instants(kinematics: &Kinematics, candidates: &[Candidate], arc: ArcFit) 
     };
     let plain: Vec<Instant> = candidates.iter().map(middle).collect();
     if arc.same_way {
-        // A contact of several samples: its middle stands for the instantaneous impact.
+        // A contact of several samples: its middle replaces the instant of the impact.
         return plain;
     }
     match (
@@ -233,7 +238,7 @@ fn speeds(
     let time = instant.time;
     let mut error = velocity.noise * before.error_factor(time).max(after.error_factor(time));
     if arc.same_way {
-        // Straight arcs are steep against the step: the middle's own uncertainty counts.
+        // Straight arcs are steep: the uncertainty of the middle adds to the error.
         let slope = before.slope(time).abs().max(after.slope(time).abs());
         error = error.hypot(slope * instant.error);
     }
@@ -244,9 +249,9 @@ fn speeds(
     Some((speeds, error))
 }
 
-/// Correct the undone high-pass of each body's velocity for every jump, now that the jumps' times
-/// within their sample intervals are known.
-pub fn correct_jumps(
+/// Correct the undone high-pass of each body's velocity for every jump, from the jumps' times
+/// within their sample intervals.
+pub(super) fn correct_jumps(
     kinematics: &mut Kinematics,
     candidates: &[Candidate],
     instants: &[Instant],
@@ -268,8 +273,8 @@ pub fn correct_jumps(
     }
 }
 
-/// Everything known of each impact, from refined times.
-pub fn impacts(
+/// The impacts at the refined times.
+pub(super) fn impacts(
     kinematics: &Kinematics,
     candidates: &[Candidate],
     instants: &[Instant],

@@ -37,14 +37,11 @@ pub struct MethodFit {
     pub reduced: f64,
 }
 
-/// A fit that was tried.
-pub type Tried = Result<MethodFit, FitError>;
+/// A method's fit, or why there is none; `None` in its place if there was nothing to fit.
+pub type FitResult = Result<MethodFit, FitError>;
 
-/// A fit where there may have been nothing to fit: `None`.
-pub type Attempt = Option<Tried>;
-
-/// The fit, where it was tried and succeeded.
-pub fn succeeded(attempt: &Attempt) -> Option<&MethodFit> {
+/// The fit, if there is one.
+pub fn succeeded(attempt: &Option<FitResult>) -> Option<&MethodFit> {
     attempt.as_ref().and_then(|a| a.as_ref().ok())
 }
 
@@ -54,7 +51,7 @@ pub fn fit_blocks(
     free: Vec<Coordinate>,
     priors: Vec<Prior>,
     start: Parameters,
-) -> Tried {
+) -> FitResult {
     let problem = Problem {
         blocks,
         priors,
@@ -72,7 +69,7 @@ pub fn fit_blocks(
 }
 
 /// f0, β and x_st from the impactless records; the gains' uncertainty enters x_st.
-pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Attempt {
+pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<FitResult> {
     if blocks.resonance.points.len() < 3 {
         return None;
     }
@@ -158,7 +155,7 @@ fn deflection_guess(blocks: &Blocks, unit: &Parameters) -> f64 {
 }
 
 /// R alone from the speeds at impacts, with the corners of the velocities' high-pass as nuisances.
-pub fn impacts(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt {
+pub fn impacts(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
     if blocks.impact.pairs.len() < 3 {
         return None;
     }
@@ -169,7 +166,7 @@ pub fn impacts(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt
 }
 
 /// s2, s1 and grazing brackets, with f0, β and x_st from the impactless records beside them.
-pub fn boundaries(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt {
+pub fn boundaries(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
     if blocks.boundary.brackets.is_empty() {
         return None;
     }
@@ -187,7 +184,7 @@ pub fn boundaries(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Atte
 }
 
 /// All four parameters from the folded waveforms.
-pub fn trajectories(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt {
+pub fn trajectories(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
     if blocks.trajectory.records.is_empty() {
         return None;
     }
@@ -195,7 +192,7 @@ pub fn trajectories(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> At
 }
 
 /// R, f0, β and x_st from one block alone, with the nuisances beside them.
-fn all_four(block: &dyn Block, blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Tried {
+fn all_four(block: &dyn Block, blocks: &Blocks, nominal: &Nominal, start: Parameters) -> FitResult {
     let mut free = Coordinate::PHYSICAL.to_vec();
     let mut priors = wide_priors(&start, &free);
     let list = vec![(block, 1.0)];
@@ -209,7 +206,7 @@ fn all_four(block: &dyn Block, blocks: &Blocks, nominal: &Nominal, start: Parame
 const SHARED_IN_FLIGHTS: f64 = 2.0;
 
 /// All four parameters from the states at the impacts of records without a closed-form orbit.
-pub fn flights(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt {
+pub fn flights(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
     if blocks.flight.records.is_empty() {
         return None;
     }
@@ -222,18 +219,19 @@ pub fn flights(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt
 
 /// A method's result from its fit.
 pub fn result(
-    tried: &Tried,
+    fitted: &FitResult,
     tells: &[Coordinate],
     observations: usize,
     records: usize,
 ) -> MethodResult {
-    match tried {
+    match fitted {
         Ok(found) => {
             let mut result = MethodResult {
                 parameters: estimate::parameter_set(&found.fit, found.factor, tells),
                 observations,
                 records,
                 reduced_residual: Some(found.reduced.sqrt()),
+                fit_report: Some(found.fit.report.clone()),
                 ..MethodResult::default()
             };
             for coordinate in &found.fit.free {

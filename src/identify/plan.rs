@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::trajectory::{TrajectoryBlock, TrajectoryRecord, distinct_phases};
-use crate::identify::fit::normal::inverse;
 use crate::identify::fit::effect::Effects;
+use crate::identify::fit::normal::inverse;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::identify::fit::{Fit, Problem};
 use crate::motion::Observation;
-use crate::motion::fold::{Folded, FoldedChannel, FoldedPoint};
+use crate::motion::{Folded, FoldedChannel, FoldedPoint};
 use crate::record::Role;
 use crate::signal::robust;
 use impact_oscillator::model::orbit::{Orbit, stable_orbit};

@@ -2,18 +2,18 @@
 
 use std::collections::BTreeMap;
 
+use crate::identify::diagnostics::agreement::agreement;
+use crate::identify::diagnostics::suspicion::{self, OddGap};
+use crate::identify::diagnostics::swapped_channels;
+use crate::identify::diagnostics::verdict::{self, Basis};
 use crate::identify::evidence::{Blocks, Evidence};
 use crate::identify::fit::Problem;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::identification::{Identification, JointFit, MethodResult};
 use crate::identify::joint::{self, Weights};
-use crate::identify::judgement::agreement::agreement;
-use crate::identify::judgement::interchange;
-use crate::identify::judgement::suspicion::{self, OddGap};
-use crate::identify::judgement::verdict::{self, Basis};
 use crate::identify::messages::{Finding, LeftOut, Reason};
 use crate::identify::method::Method;
-use crate::identify::methods::{self, Attempt, succeeded};
+use crate::identify::methods::{self, FitResult, succeeded};
 use crate::identify::selection::Selection;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
@@ -21,27 +21,27 @@ use crate::identify::{decay, results};
 
 /// Identify from observations and brackets.
 pub fn identify(evidence: &Evidence) -> Identification {
-    let mut work = Work {
+    let mut run = IdentificationRun {
         evidence,
         selection: Selection::new(evidence),
         posterior: None,
     };
-    let resonance = work.selection.resonance();
+    let resonance = run.selection.resonance();
     let start = start(evidence, &resonance);
-    let impacts = methods::impacts(&work.selection.blocks, &evidence.nominal, start);
+    let impacts = methods::impacts(&run.selection.blocks, &evidence.nominal, start);
     let start = with_restitution(start, &impacts);
-    let mut fits = work.fits(start, resonance, impacts);
+    let mut fits = run.fits(start, resonance, impacts);
     let mut suspicions = Vec::new();
-    while let Some(odd) = work.odd_gap(&fits, suspicions.len()) {
+    while let Some(odd) = run.odd_gap(&fits, suspicions.len()) {
         suspicions.push(odd.into());
-        if !work.selection.leave_out_gap(odd.stated_m) {
+        if !run.selection.leave_out_gap(odd.stated_m) {
             break;
         }
-        fits = work.fits(start, fits.resonance, fits.impacts);
+        fits = run.fits(start, fits.resonance, fits.impacts);
     }
-    fits = work.without_pulling(fits);
-    suspicions.extend(work.other_suspicions(&fits));
-    let methods = work.results(&fits);
+    fits = run.without_influential(fits);
+    suspicions.extend(run.other_suspicions(&fits));
+    let methods = run.results(&fits);
     let joint = results::joint(evidence, fits.joint.as_ref(), &methods);
     let agreement = agreement(&methods);
     let verdict = verdict::verdict(&Basis {
@@ -54,10 +54,10 @@ pub fn identify(evidence: &Evidence) -> Identification {
         verdict,
         joint,
         agreement,
-        uncertainty: work.uncertainty(&fits),
+        uncertainty: run.uncertainty(&fits),
         suspicions,
-        left_out: work.left_out(),
-        used_by: work.used_by(&methods),
+        left_out: run.left_out(),
+        used_by: run.used_by(&methods),
         methods,
         joint_fit: fits.joint.and_then(Result::ok).map(|found| JointFit {
             fit: found.fit,
@@ -69,12 +69,12 @@ pub fn identify(evidence: &Evidence) -> Identification {
 
 /// Every method's fit, and all together.
 struct Fits {
-    resonance: Attempt,
-    impacts: Attempt,
-    trajectories: Attempt,
-    boundaries: Attempt,
-    flights: Attempt,
-    joint: Attempt,
+    resonance: Option<FitResult>,
+    impacts: Option<FitResult>,
+    trajectories: Option<FitResult>,
+    boundaries: Option<FitResult>,
+    flights: Option<FitResult>,
+    joint: Option<FitResult>,
     /// Where the joint fit started, and the weights of its blocks.
     start: Parameters,
     weights: Weights,
@@ -83,11 +83,11 @@ struct Fits {
 /// Gaps that may be found wrong before the campaign as a whole is at fault.
 const MOST_ODD_GAPS: usize = 2;
 
-/// Rounds of leaving out records that pull the fit.
-const MOST_PULLING: usize = 8;
+/// Rounds of leaving out influential records.
+const MOST_ROUNDS: usize = 8;
 
 /// R as the impacts tell it.
-fn with_restitution(start: Parameters, impacts: &Attempt) -> Parameters {
+fn with_restitution(start: Parameters, impacts: &Option<FitResult>) -> Parameters {
     match succeeded(impacts) {
         Some(found) => Parameters {
             restitution: found.fit.parameters.restitution.clamp(0.0, 1.0),
@@ -98,7 +98,7 @@ fn with_restitution(start: Parameters, impacts: &Attempt) -> Parameters {
 }
 
 /// Starting values: the resonance curve's, else the stated ones, else guesses of scale.
-fn start(evidence: &Evidence, resonance: &Attempt) -> Parameters {
+fn start(evidence: &Evidence, resonance: &Option<FitResult>) -> Parameters {
     if let Some(found) = succeeded(resonance) {
         return found.fit.parameters;
     }
@@ -126,16 +126,21 @@ fn start(evidence: &Evidence, resonance: &Attempt) -> Parameters {
     ))
 }
 
-struct Work<'a> {
+struct IdentificationRun<'a> {
     evidence: &'a Evidence<'a>,
     selection: Selection<'a>,
     /// What the brackets say of R where the resonance curve tells the rest.
     posterior: Option<Posterior>,
 }
 
-impl Work<'_> {
+impl IdentificationRun<'_> {
     /// Trajectories, boundaries and all together, beside the resonance curve and the impacts.
-    fn fits(&mut self, start: Parameters, resonance: Attempt, impacts: Attempt) -> Fits {
+    fn fits(
+        &mut self,
+        start: Parameters,
+        resonance: Option<FitResult>,
+        impacts: Option<FitResult>,
+    ) -> Fits {
         let trajectories = self.selection.trajectories(start);
         let start = succeeded(&trajectories).map_or(start, |f| f.fit.parameters);
         let boundaries = self.selection.boundaries(start);
@@ -145,7 +150,7 @@ impl Work<'_> {
             posterior::of_brackets(&self.selection.blocks.boundary, &about, error.min(0.3))
         });
         let flights = self.selection.flights(start);
-        let weight = |attempt: &Attempt| succeeded(attempt).map(|f| 1.0 / f.factor);
+        let weight = |attempt: &Option<FitResult>| succeeded(attempt).map(|f| 1.0 / f.factor);
         // Flights rest on the speeds at impacts; waveforms tell the same better than either.
         let flown = weight(&flights).filter(|_| succeeded(&trajectories).is_none());
         let impact_weight = succeeded(&impacts).map(joint::impact_weight);
@@ -175,23 +180,23 @@ impl Work<'_> {
         }
     }
 
-    /// The fits without the records that pull them away from what all others say.
-    fn without_pulling(&mut self, mut fits: Fits) -> Fits {
-        for _ in 0..MOST_PULLING {
+    /// The fits without the records that draw them away from what all others state.
+    fn without_influential(&mut self, mut fits: Fits) -> Fits {
+        for _ in 0..MOST_ROUNDS {
             let Some(joint) = succeeded(&fits.joint) else {
                 break;
             };
             let start = joint.fit.parameters;
             let blocks = &self.selection.blocks;
             let present = joint::present(blocks, &fits.weights);
-            let pulling = self
+            let influential = self
                 .problem(blocks, fits.start, &fits.weights)
-                .map(|problem| self.selection.pulling(&problem, &present, &start));
-            let Some(pulling) = pulling.filter(|p| !p.is_empty()) else {
+                .map(|problem| self.selection.influential(&problem, &present, &start));
+            let Some(influential) = influential.filter(|p| !p.is_empty()) else {
                 break;
             };
-            self.selection.leave_out(&pulling);
-            let resonance = if pulling.resonance.is_empty() {
+            self.selection.leave_out(&influential);
+            let resonance = if influential.resonance.is_empty() {
                 fits.resonance
             } else {
                 methods::resonance(&self.selection.blocks, &self.evidence.nominal)
@@ -202,7 +207,7 @@ impl Work<'_> {
     }
 
     /// All blocks in one fit, each with its weight; those without one stay out.
-    fn joint(&self, blocks: &Blocks, start: Parameters, weights: &Weights) -> Attempt {
+    fn joint(&self, blocks: &Blocks, start: Parameters, weights: &Weights) -> Option<FitResult> {
         let problem = self.problem(blocks, start, weights)?;
         Some(joint::fit(&problem, start))
     }
@@ -217,7 +222,7 @@ impl Work<'_> {
         joint::problem(blocks, start, weights, &self.evidence.nominal, posterior)
     }
 
-    /// What is asked for of the joint fit's uncertainty.
+    /// The uncertainty of the joint fit as the options want it.
     fn uncertainty(&self, fits: &Fits) -> Uncertainty {
         let blocks = &self.selection.blocks;
         let problem = self.problem(blocks, fits.start, &fits.weights);
@@ -225,8 +230,8 @@ impl Work<'_> {
             return Uncertainty::default();
         };
         let present = joint::present(blocks, &fits.weights);
-        let asked = &self.evidence.uncertainty;
-        uncertainty::uncertainty(&problem, &present, &joint.fit, joint.factor, asked)
+        let options = &self.evidence.uncertainty;
+        uncertainty::uncertainty(&problem, &present, &joint.fit, joint.factor, options)
     }
 
     /// The gap that deviates most from what the others say, if one does.
@@ -257,7 +262,7 @@ impl Work<'_> {
             let found = succeeded(&attempt)?;
             Some((found.fit.cost, found.fit.residuals))
         };
-        if let Some(found) = interchange::swapped(&self.selection.blocks, &cost) {
+        if let Some(found) = swapped_channels::swapped(&self.selection.blocks, &cost) {
             return vec![found];
         }
         let nominal = &self.evidence.nominal;

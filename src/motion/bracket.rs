@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::motion::{Motion, Observation};
+use crate::motion::Motion;
+use crate::motion::observation::Observation;
 use crate::record::Sweep;
 
 /// Which boundary of motion a bracket holds.

@@ -382,8 +382,7 @@ fn shorter_factor(evidence: &Evidence) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::event::RigKind;
-    use crate::event::detect::{DetectSettings, detect};
+    use crate::event::{DetectSettings, RigKind, detect};
     use crate::record::{Channel, Record, Role, Setting};
     use labfiles::units::Dimension;
 

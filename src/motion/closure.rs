@@ -6,7 +6,7 @@ use crate::signal::robust;
 
 /// How well a waveform closes after n drive periods.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WaveformClosure {
+pub(super) struct WaveformClosure {
     /// Number of drive periods.
     pub periods_n: u32,
     /// Deviation of w(t + nT) − w(t) over √2 and over the waveform's root mean square.
@@ -20,7 +20,7 @@ pub struct WaveformClosure {
 /// `period` in samples, `impacts` in samples; a sample is left out when it, or its partner nT
 /// later, lies within `guard` samples of an impact, where no interpolation holds. A constant
 /// difference (drift) does not count.
-pub fn waveform(
+pub(super) fn waveform(
     values: &[f64],
     period: f64,
     impacts: &[f64],
@@ -75,7 +75,7 @@ fn blocked_samples(count: usize, impacts: &[f64], guard: f64) -> Vec<bool> {
 
 /// How many impacts fall into n drive periods, and how steadily so.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Count {
+pub(super) struct Count {
     /// Impacts in n drive periods, by majority of all windows within the record.
     pub impacts_p: u32,
     /// Fraction of windows that agree.
@@ -87,7 +87,7 @@ pub struct Count {
 /// Count impacts (times and period in one unit) in windows of n periods that lie wholly within
 /// the record and whose edges keep clear of impacts, so that the record's own edges never turn
 /// 1 into 12/13. `None` where no window fits.
-pub fn count(times: &[f64], period: f64, duration: f64, periods_n: u32) -> Option<Count> {
+pub(super) fn count(times: &[f64], period: f64, duration: f64, periods_n: u32) -> Option<Count> {
     let length = f64::from(periods_n) * period;
     let clear = 0.02 * period;
     let step = 0.125 * period;
@@ -126,7 +126,7 @@ pub struct ImpactClosure {
 }
 
 /// Closure of (phase, speed) between impacts i and i + p; `None` with fewer than p + 1 impacts.
-pub fn impacts(impacts: &[Impact], period_s: f64, p: u32, n: u32) -> Option<ImpactClosure> {
+pub(super) fn impacts(impacts: &[Impact], period_s: f64, p: u32, n: u32) -> Option<ImpactClosure> {
     let lag = p as usize;
     let pairs: Vec<(&Impact, &Impact)> = impacts.iter().zip(impacts.iter().skip(lag)).collect();
     if pairs.is_empty() || lag == 0 {

@@ -3,8 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::event::kinematics::Series;
-use crate::event::{Detection, DriveTone};
+use crate::event::{Detection, DriveTone, Series};
 use crate::record::{Channel, Record, Role};
 use crate::signal::interpolation::interpolate;
 
@@ -67,7 +66,12 @@ impl Folded {
 /// in: an offset is a nuisance that a fit must carry. A high-pass is left in too, for the model
 /// to pass: to undo it takes the integral of all noise, and of jumps whose instants are known but
 /// roughly.
-pub fn fold(record: &Record, detection: &Detection, drive: &DriveTone, periods_n: u32) -> Folded {
+pub(super) fn fold(
+    record: &Record,
+    detection: &Detection,
+    drive: &DriveTone,
+    periods_n: u32,
+) -> Folded {
     let rate_hz = detection.kinematics.rate_hz;
     let span = std::f64::consts::TAU * f64::from(periods_n);
     let first = detection.impacts.first().map(|i| i.time_s);

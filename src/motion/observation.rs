@@ -3,13 +3,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::event::detect::DetectSettings;
-use crate::event::{DriveTone, Impact, RigKind, detect};
+use crate::event::{DetectSettings, DriveTone, Impact, RigKind, detect};
 use crate::motion::Motion;
 use crate::motion::classify::{Classification, ClassifySettings, classify};
 use crate::motion::fold::{Folded, fold};
 use crate::motion::response::{Response, responses};
-use crate::record::{Excitation, Flag, Record, Role, Setting};
+use crate::record::{Excitation, Flag, FlagCode, Record, Role, Setting};
 use crate::signal::decay::{self, Decay};
 
 /// Greatest and least value of a motion channel, SI, about its mean.
@@ -155,14 +154,12 @@ fn observe_decay(record: &Record) -> Observation {
     let decay = free_decay(record);
     let mut flags = record.flags.clone();
     if decay.is_none() {
-        flags.push(Flag {
-            code: "no_free_decay".into(),
-            channel: None,
-            message: "no free decay of three periods or more was found".into(),
-            remedy: "check that the record is a free decay and that its motion channel is named"
-                .into(),
-            excludes: true,
-        });
+        flags.push(Flag::new(
+            FlagCode::NoFreeDecay,
+            None,
+            "no free decay of three periods or more was found",
+            "check that the record is a free decay and that its motion channel is named",
+        ));
     }
     Observation {
         record: record.id.clone(),
@@ -231,17 +228,17 @@ fn free_decay(record: &Record) -> Option<Decay> {
 }
 
 fn contact_flag(record: &Record, impacts: &[Impact], unsupported: usize) -> Option<Flag> {
-    (unsupported > 2 && unsupported > impacts.len()).then(|| Flag {
-        code: "contact_without_velocity_jump".into(),
-        channel: record.channel(Role::Contact).map(|c| c.name.clone()),
-        message: format!(
-            "{unsupported} contact pulses show no jump of velocity, {} impacts do",
-            impacts.len()
-        ),
-        remedy: "check the contact's threshold and wiring, and that the velocity channel belongs \
-                 to this record"
-            .into(),
-        excludes: true,
+    (unsupported > 2 && unsupported > impacts.len()).then(|| {
+        Flag::new(
+            FlagCode::ContactWithoutVelocityJump,
+            record.channel(Role::Contact).map(|c| c.name.as_str()),
+            format!(
+                "{unsupported} contact pulses show no jump of velocity, {} impacts do",
+                impacts.len()
+            ),
+            "check the contact's threshold and wiring, and that the velocity channel belongs \
+                 to this record",
+        )
     })
 }
 

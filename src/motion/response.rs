@@ -50,7 +50,7 @@ impl Response {
 }
 
 /// Response of all motion channels of a record to its drive.
-pub fn responses(record: &Record, drive: &DriveTone) -> Vec<Response> {
+pub(super) fn responses(record: &Record, drive: &DriveTone) -> Vec<Response> {
     record
         .channels
         .iter()

@@ -7,18 +7,17 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::event::RigKind;
-use crate::event::detect::DetectSettings;
+use crate::event::{DetectSettings, RigKind};
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::run::identify;
 use crate::identify::uncertainty::bound::bounds;
 use crate::identify::uncertainty::coverage::{Score, Trial, scores, table};
-use crate::identify::uncertainty::{Asked, Way};
+use crate::identify::uncertainty::{IntervalMethod, UncertaintyOptions};
 use crate::identify::{Finding, Identification};
 use crate::motion::{Bracket, ClassifySettings, Observation, brackets, observe, scale_drives};
 use crate::pipeline::{PipelineError, Progress};
-use crate::record::{Record, Role};
+use crate::record::{FlagCode, Record, Role};
 use crate::synthetic::run::calibrated;
 use crate::synthetic::{Draw, Reach, RigSpec, Truth, draw, records};
 
@@ -112,7 +111,7 @@ impl Mistake {
     /// Whether an outcome names it.
     fn is_named_by(self, seen: &Seen) -> bool {
         match self {
-            Self::SwappedChannels if seen.flag("swapped_masses") => true,
+            Self::SwappedChannels if seen.flag(FlagCode::SwappedMasses) => true,
             _ => seen.outcome.suspicions.iter().any(|s| self.is(s)),
         }
     }
@@ -154,7 +153,7 @@ struct Seen {
 }
 
 impl Seen {
-    fn flag(&self, code: &str) -> bool {
+    fn flag(&self, code: FlagCode) -> bool {
         let count = |o: &&Observation| o.flags.iter().any(|f| f.code == code);
         2 * self.observations.iter().filter(count).count() > self.observations.len()
     }
@@ -176,9 +175,9 @@ fn evidence<'a>(
             ..Nominal::default()
         },
         // Nobody reads profiles of hundreds of campaigns.
-        uncertainty: Asked {
-            way: Way::Covariance,
-            ..Asked::default()
+        uncertainty: UncertaintyOptions {
+            intervals: IntervalMethod::Covariance,
+            ..UncertaintyOptions::default()
         },
     }
 }

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::evidence::{Evidence, Nominal};
-use crate::identify::uncertainty::Asked;
+use crate::identify::uncertainty::UncertaintyOptions;
 use crate::identify::{Identification, Provenance, identify_campaign};
-use crate::pipeline::store::write_json;
+use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, inputs};
 
 /// Name of the result's file.
@@ -47,8 +47,8 @@ pub fn evidence<'a>(campaign: &ResolvedCampaign, observed: &'a Observed) -> Evid
         observations: &observed.observations,
         brackets: &observed.brackets,
         nominal: nominal(campaign),
-        uncertainty: Asked {
-            way: campaign.analysis.uncertainty,
+        uncertainty: UncertaintyOptions {
+            intervals: campaign.analysis.uncertainty,
             replicas: campaign.analysis.replicas,
             seed: campaign.analysis.seed,
         },
@@ -82,7 +82,7 @@ pub(super) fn provenance(campaign: &ResolvedCampaign) -> Result<Provenance, Pipe
 }
 
 /// The resolved settings without the list of records, which has its own table.
-fn settings(campaign: &ResolvedCampaign) -> Result<serde_json::Value, PipelineError> {
+pub(super) fn settings(campaign: &ResolvedCampaign) -> Result<serde_json::Value, PipelineError> {
     let short = ResolvedCampaign {
         records: Vec::new(),
         ..campaign.clone()

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Flag, Role};
+use super::{Flag, FlagCode, Role};
 use labfiles::source::{ChannelInfo, DatasetInfo};
 use labfiles::units::{self, Dimension, Quantity, Scale, Unit};
 
@@ -147,17 +147,11 @@ pub fn bind(setup: &ChannelSetup, dataset: &DatasetInfo) -> Result<Bound, Flag> 
 pub(super) fn flag(
     setup: &ChannelSetup,
     channel: &str,
-    code: &str,
+    code: FlagCode,
     message: String,
     remedy: &str,
 ) -> Flag {
-    Flag {
-        code: code.to_owned(),
-        channel: Some(channel.to_owned()),
-        message,
-        remedy: remedy.to_owned(),
-        excludes: !setup.role.is_frame(),
-    }
+    Flag::new(code, Some(channel), message, remedy).excluding(!setup.role.is_frame())
 }
 
 fn missing(setup: &ChannelSetup, dataset: &DatasetInfo) -> Flag {
@@ -173,7 +167,7 @@ fn missing(setup: &ChannelSetup, dataset: &DatasetInfo) -> Flag {
     flag(
         setup,
         &key,
-        "missing_channel",
+        FlagCode::MissingChannel,
         format!("no channel '{key}' for the role {role}; the channels are: {shown}"),
         &format!("name one of them in [channels.{role}], or leave the record out"),
     )
@@ -203,7 +197,7 @@ fn contradicts(setup: &ChannelSetup, info: &ChannelInfo, ours: Unit) -> Flag {
     flag(
         setup,
         &info.name,
-        "wrong_unit",
+        FlagCode::WrongUnit,
         format!(
             "the file states the unit '{stated}' for channel '{}', campaign.toml '{ours}'",
             info.name
@@ -224,7 +218,7 @@ fn without_unit(setup: &ChannelSetup, info: &ChannelInfo, stated: Option<&str>) 
     flag(
         setup,
         &info.name,
-        "unit_missing",
+        FlagCode::UnitMissing,
         format!("{found} for channel '{}'", info.name),
         &format!("write unit = \"…\" in [channels.{}]", setup.role.name()),
     )
@@ -235,7 +229,7 @@ fn unfit_scale(setup: &ChannelSetup, info: &ChannelInfo, unit: Unit) -> Flag {
     flag(
         setup,
         &info.name,
-        "wrong_unit",
+        FlagCode::WrongUnit,
         format!(
             "the scale of channel '{}' does not start from its unit, a {}",
             info.name,
@@ -257,7 +251,7 @@ fn check_dimension(setup: &ChannelSetup, info: &ChannelInfo, found: Dimension) -
             found.name()
         );
         let remedy = format!("mend unit and scale in [channels.{}]", role.name());
-        Err(flag(setup, &info.name, "wrong_unit", what, &remedy))
+        Err(flag(setup, &info.name, FlagCode::WrongUnit, what, &remedy))
     };
     match role.dimension() {
         Some(expected) if found != expected => return wrong(&format!("a {}", expected.name())),

@@ -4,7 +4,7 @@
 use super::bind::flag;
 pub use super::bind::{Bound, ChannelKey, ChannelSetup, bind};
 use super::time_axis::{self, TimeAxis};
-use super::{Channel, Flag, Record, Setting};
+use super::{Channel, Flag, FlagCode, Record, Setting};
 use super::{condition, consistency};
 use labfiles::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
 
@@ -46,13 +46,12 @@ pub fn read_flag(error: &ReadError) -> Flag {
         .byte
         .map(|b| format!(" (at byte {b})"))
         .unwrap_or_default();
-    Flag {
-        code: "unreadable".to_owned(),
-        channel: error.channel.clone(),
-        message: format!("{place}{}; expected {}{byte}", error.found, error.expected),
-        remedy: error.remedy.clone(),
-        excludes: true,
-    }
+    Flag::new(
+        FlagCode::Unreadable,
+        error.channel.as_deref(),
+        format!("{place}{}; expected {}{byte}", error.found, error.expected),
+        error.remedy.clone(),
+    )
 }
 
 fn empty(id: &str, setting: &Setting) -> Record {
@@ -103,17 +102,16 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
 }
 
 fn no_dataset(source: &dyn Source, index: usize) -> Flag {
-    Flag {
-        code: "unreadable".to_owned(),
-        channel: None,
-        message: format!(
+    Flag::new(
+        FlagCode::Unreadable,
+        None,
+        format!(
             "{} holds {} datasets, number {index} is asked for",
             source.path().display(),
             source.datasets().len()
         ),
-        remedy: "the file has changed since it was listed: run again".to_owned(),
-        excludes: true,
-    }
+        "the file has changed since it was listed: run again",
+    )
 }
 
 /// The time axis in s; `None` where it holds no real numbers.
@@ -186,7 +184,7 @@ fn scaled(
         return Err(flag(
             setup,
             &info.name,
-            "not_numbers",
+            FlagCode::NotNumbers,
             format!("channel '{}' holds no real numbers", info.name),
             "name the channel with the measured signal",
         ));
@@ -221,14 +219,12 @@ fn settle_rate(
     let rate = sample_rate_hz.or(stated).or(setup.sample_rate_hz);
     match rate.filter(|r| r.is_finite() && *r > 0.0) {
         Some(rate) => record.sample_rate_hz = rate,
-        None => record.flags.push(Flag {
-            code: "no_sample_rate".to_owned(),
-            channel: None,
-            message: "neither a time axis nor a sample rate tells when the samples were taken"
-                .to_owned(),
-            remedy: "write sample_rate = \"2 kHz\" or time = \"…\" in [records]".to_owned(),
-            excludes: true,
-        }),
+        None => record.flags.push(Flag::new(
+            FlagCode::NoSampleRate,
+            None,
+            "neither a time axis nor a sample rate tells when the samples were taken",
+            "write sample_rate = \"2 kHz\" or time = \"…\" in [records]",
+        )),
     }
 }
 
@@ -242,13 +238,12 @@ fn stated_rate(record: &mut Record, dataset: &DatasetInfo, bound: &[BoundRole<'_
     for (rate, name) in rates {
         let known = *first.get_or_insert(rate);
         if (rate / known - 1.0).abs() > 1e-6 {
-            record.flags.push(Flag {
-                code: "unequal_sample_rates".to_owned(),
-                channel: Some(name.clone()),
-                message: format!("channel '{name}' has {rate} samples a second, others {known}"),
-                remedy: "record all channels at one rate, or leave the channel out".to_owned(),
-                excludes: true,
-            });
+            record.flags.push(Flag::new(
+                FlagCode::UnequalSampleRates,
+                Some(name),
+                format!("channel '{name}' has {rate} samples a second, others {known}"),
+                "record all channels at one rate, or leave the channel out",
+            ));
         }
     }
     first
@@ -269,13 +264,12 @@ fn skip(record: &mut Record, skip_s: f64) {
 }
 
 fn all_skipped(duration_s: f64, skip_s: f64) -> Flag {
-    Flag {
-        code: "empty".to_owned(),
-        channel: None,
-        message: format!("the record lasts {duration_s} s, and {skip_s} s of it are skipped"),
-        remedy: "lower skip in [analysis]".to_owned(),
-        excludes: true,
-    }
+    Flag::new(
+        FlagCode::Empty,
+        None,
+        format!("the record lasts {duration_s} s, and {skip_s} s of it are skipped"),
+        "lower skip in [analysis]",
+    )
 }
 
 #[cfg(test)]
@@ -312,7 +306,12 @@ mod tests {
 
     #[test]
     fn valid_uneven_times_are_refused_by_name_and_equal_steps_give_the_rate() {
-        let uneven = |record: &Record| record.flags.iter().any(|f| f.code == "time_not_uniform");
+        let uneven = |record: &Record| {
+            record
+                .flags
+                .iter()
+                .any(|f| f.code == FlagCode::TimeNotUniform)
+        };
         let even = record((0..200).map(|i| f64::from(i) / 4000.0));
         assert!((even.sample_rate_hz - 4000.0).abs() < 1e-6 && !uneven(&even));
         assert!(uneven(&record((0..200).map(|i| f64::from(i * i) / 4000.0))));

@@ -1,7 +1,7 @@
 //! What is wrong with the samples of a record: unequal lengths, missing values, dead, clipped
 //! and held channels.
 
-use super::{Channel, Flag, Record, Role};
+use super::{Channel, Flag, FlagCode, Record, Role};
 
 /// Part of a channel's samples at the rail above which the record is left out.
 const CLIPPED_PART: f64 = 0.005;
@@ -9,18 +9,8 @@ const CLIPPED_PART: f64 = 0.005;
 /// Relative difference of lengths above which the record is left out.
 const LENGTH_DIFFERENCE: f64 = 0.01;
 
-fn flag(code: &str, channel: Option<&str>, message: String, remedy: &str) -> Flag {
-    Flag {
-        code: code.to_owned(),
-        channel: channel.map(str::to_owned),
-        message,
-        remedy: remedy.to_owned(),
-        excludes: true,
-    }
-}
-
 /// Cut all channels and the time axis to the shortest.
-pub fn equal_lengths(record: &mut Record, times: Option<&mut Vec<f64>>) {
+pub(super) fn equal_lengths(record: &mut Record, times: Option<&mut Vec<f64>>) {
     let of_time = times.as_ref().map(|t| t.len());
     let lengths = || {
         record
@@ -43,8 +33,8 @@ pub fn equal_lengths(record: &mut Record, times: Option<&mut Vec<f64>>) {
     if let Some(times) = times {
         times.truncate(shortest);
     }
-    let mut found = flag(
-        "unequal_lengths",
+    let mut found = Flag::new(
+        FlagCode::UnequalLengths,
         short.as_deref(),
         format!("the channels differ in length, from {shortest} to {longest} samples"),
         "record again, or export all channels with the same number of samples",
@@ -54,7 +44,7 @@ pub fn equal_lengths(record: &mut Record, times: Option<&mut Vec<f64>>) {
 }
 
 /// Cut samples off both ends where a channel has no value there (exports often pad so).
-pub fn trim_missing(record: &mut Record, times: Option<&mut Vec<f64>>) {
+pub(super) fn trim_missing(record: &mut Record, times: Option<&mut Vec<f64>>) {
     let samples = record.samples();
     if samples == 0 {
         return;
@@ -91,22 +81,22 @@ fn never_whole(record: &Record) -> Flag {
         .iter()
         .max_by_key(|c| c.values.iter().filter(|v| !v.is_finite()).count())
         .map(|c| c.name.clone());
-    flag(
-        "not_a_number",
+    Flag::new(
+        FlagCode::NotANumber,
         worst.as_deref(),
-        "at no sample do all channels have a value".to_owned(),
+        "at no sample do all channels have a value",
         "leave the channel without values out of campaign.toml, or record again",
     )
 }
 
 fn trimmed(channel: Option<String>, cut: usize) -> Flag {
-    Flag {
-        code: "trimmed".to_owned(),
-        channel,
-        message: format!("{cut} samples without a value at the ends are cut off"),
-        remedy: "nothing, where the export pads its ends so".to_owned(),
-        excludes: false,
-    }
+    Flag::new(
+        FlagCode::Trimmed,
+        channel.as_deref(),
+        format!("{cut} samples without a value at the ends are cut off"),
+        "nothing, where the export pads its ends so",
+    )
+    .excluding(false)
 }
 
 fn keep(values: &mut Vec<f64>, first: usize, last: usize) {
@@ -117,7 +107,7 @@ fn keep(values: &mut Vec<f64>, first: usize, last: usize) {
 /// Look at every channel: values that are no numbers, dead and clipped channels, held samples.
 /// `ranges`: greatest magnitude the converter gives, SI, per channel. `driven`: whether a drive
 /// must be seen.
-pub fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool) {
+pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool) {
     if record.channels.is_empty() || record.samples() == 0 {
         record.flags.push(no_samples(record));
         return;
@@ -146,8 +136,8 @@ fn no_samples(record: &Record) -> Flag {
         true => "none of the channels that campaign.toml names can be used",
         false => "the record is empty: it holds no samples",
     };
-    flag(
-        "empty",
+    Flag::new(
+        FlagCode::Empty,
         None,
         message.to_owned(),
         "remove the file, or record again",
@@ -157,8 +147,8 @@ fn no_samples(record: &Record) -> Flag {
 fn not_numbers(channel: &Channel) -> Option<Flag> {
     let count = channel.values.iter().filter(|v| !v.is_finite()).count();
     let first = channel.values.iter().position(|v| !v.is_finite())?;
-    Some(flag(
-        "not_a_number",
+    Some(Flag::new(
+        FlagCode::NotANumber,
         Some(&channel.name),
         format!(
             "channel '{}' has {count} values that are not numbers (NaN or infinite), the first \
@@ -194,8 +184,8 @@ fn dead(channel: &Channel, driven: bool) -> Option<Flag> {
     if high > low && high - low > 1.001 * step {
         return None;
     }
-    Some(flag(
-        "dead_channel",
+    Some(Flag::new(
+        FlagCode::DeadChannel,
         Some(&channel.name),
         format!("channel '{}' is constant at {low:.6e}", channel.name),
         "look for a loose cable or a wrong channel in campaign.toml; the record is left out",
@@ -222,8 +212,8 @@ fn clipped(channel: &Channel, range: Option<f64>) -> Option<Flag> {
         return None;
     }
     let part = count as f64 / channel.values.len() as f64;
-    let mut found = flag(
-        "clipped",
+    let mut found = Flag::new(
+        FlagCode::Clipped,
         Some(&channel.name),
         format!(
             "channel '{}' is clipped: {count} samples ({:.1} %) at {:.4e} or {:.4e}",
@@ -296,8 +286,8 @@ fn held(record: &Record) -> Option<Flag> {
     if longest < 6 || all > longest * 8 {
         return None;
     }
-    Some(flag(
-        "dropped_samples",
+    Some(Flag::new(
+        FlagCode::DroppedSamples,
         None,
         format!("all channels hold their value for {longest} samples from sample {at} on"),
         "record again with a larger buffer; the record is left out",

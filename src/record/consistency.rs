@@ -2,7 +2,7 @@
 //! integral of the velocity of the same mass, that of a velocity the integral of the
 //! acceleration.
 
-use super::{Flag, Record, Role};
+use super::{Flag, FlagCode, Record, Role};
 
 /// Correlation from which two channels count as the same motion.
 const SAME: f64 = 0.9;
@@ -104,14 +104,15 @@ fn compare(record: &Record, quantity: Role, rate: Role) -> Option<Match> {
     })
 }
 
-fn flag(record: &Record, role: Role, code: &str, message: String, remedy: String) -> Flag {
-    Flag {
-        code: code.to_owned(),
-        channel: record.channel(role).map(|c| c.name.clone()),
-        message,
-        remedy,
-        excludes: true,
-    }
+fn flag(
+    record: &Record,
+    role: Role,
+    code: FlagCode,
+    message: String,
+    remedy: impl Into<String>,
+) -> Flag {
+    let channel = record.channel(role).map(|c| c.name.as_str());
+    Flag::new(code, channel, message, remedy)
 }
 
 /// Each displacement follows the velocity of the other mass better than that of its own.
@@ -126,12 +127,12 @@ fn swapped(record: &Record, x: Option<Match>, y: Option<Match>) -> Option<Flag> 
         flag(
             record,
             Role::VelocityX,
-            "swapped_masses",
+            FlagCode::SwappedMasses,
             format!(
                 "the displacement of x follows the velocity of y (correlation {crossed_x:.2}) \
                  rather than that of x ({own_x:.2})"
             ),
-            "swap [channels.velocity_x] and [channels.velocity_y], or the displacements".to_owned(),
+            "swap [channels.velocity_x] and [channels.velocity_y], or the displacements",
         )
     })
 }
@@ -173,11 +174,10 @@ fn opposite_masses(record: &Record) -> Option<Flag> {
         flag(
             record,
             Role::VelocityY,
-            "opposite_sign",
+            FlagCode::OppositeSign,
             "at the contacts velocity_x and velocity_y jump in opposite directions".to_owned(),
             "turn the sign in [channels.velocity_x] or in [channels.velocity_y] (sign = -1, or 1 \
-             where it is -1): both count toward the other mass"
-                .to_owned(),
+             where it is -1): both count toward the other mass",
         )
     })
 }
@@ -187,7 +187,7 @@ fn contradiction(record: &Record, found: Match, d: Role, v: Role) -> Option<Flag
         return Some(flag(
             record,
             v,
-            "opposite_sign",
+            FlagCode::OppositeSign,
             format!("{} and {} have opposite signs", d.name(), v.name()),
             format!(
                 "turn the sign in [channels.{}] or in [channels.{}] (sign = -1, or 1 where it is \
@@ -208,7 +208,7 @@ fn contradiction(record: &Record, found: Match, d: Role, v: Role) -> Option<Flag
         flag(
             record,
             v,
-            "scales_contradict",
+            FlagCode::ScalesContradict,
             format!(
                 "{} {moves} {:.4} times as far as {} says{factor}",
                 d.name(),
@@ -268,10 +268,10 @@ mod tests {
         assert_eq!(mistaken(f64::NAN), None);
     }
 
-    fn codes(signals: &[(Role, &dyn Fn(f64) -> f64)]) -> Vec<String> {
+    fn codes(signals: &[(Role, &dyn Fn(f64) -> f64)]) -> Vec<&'static str> {
         inspect(&record(signals))
             .into_iter()
-            .map(|f| f.code)
+            .map(|f| f.code.name())
             .collect()
     }
 

@@ -4,15 +4,18 @@
 //! [`Record`]s. A simulated record is the same type, so that one detector and one classifier
 //! judge experiment and simulation alike. This room does not know the model.
 
-pub mod bind;
+mod bind;
 pub mod calibrate;
 mod condition;
 pub mod consistency;
+mod flag;
 pub mod time_axis;
 
 use serde::{Deserialize, Serialize};
 
 use labfiles::units::Dimension;
+
+pub use flag::{Flag, FlagCode};
 
 /// What a channel measures on the rig.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -193,22 +196,6 @@ impl Setting {
             excitation: Excitation::default(),
         }
     }
-}
-
-/// Something wrong or noteworthy with a record: what, where, and what to do about it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Flag {
-    /// Stable short name, e.g. `clipped`, `dead_channel`, `dropped_samples`, `not_a_number`,
-    /// `drive_frequency_contradicts`.
-    pub code: String,
-    /// The channel concerned (name in the file), where there is one.
-    pub channel: Option<String>,
-    /// One sentence: what was found and what was expected.
-    pub message: String,
-    /// One sentence: what the user can do.
-    pub remedy: String,
-    /// Whether the record must be left out of the identification for it.
-    pub excludes: bool,
 }
 
 /// A record: channels of one acquisition on one uniform time axis.

@@ -1,7 +1,7 @@
 //! The time axis of a record: which channel holds it, its step, and what is wrong with it.
 
-use super::Flag;
-use super::calibrate::ChannelKey;
+use super::bind::ChannelKey;
+use super::{Flag, FlagCode};
 use labfiles::source::DatasetInfo;
 use labfiles::units;
 
@@ -27,8 +27,9 @@ pub fn find(key: Option<&ChannelKey>, dataset: &DatasetInfo) -> Result<Option<us
     };
     let found = key.find(dataset);
     found.map(Some).ok_or_else(|| {
-        fault(
-            "missing_channel",
+        Flag::new(
+            FlagCode::MissingChannel,
+            None,
             format!("no channel '{}' for the time axis", key.text()),
             "mend time in [records], or leave it out where a sample rate is stated",
         )
@@ -48,16 +49,6 @@ fn by_name(dataset: &DatasetInfo) -> Option<usize> {
         let named = matches!(bare.to_lowercase().as_str(), "t" | "time" | "zeit");
         named && unit.is_none_or(|u| u.dimension == units::Dimension::Time)
     })
-}
-
-fn fault(code: &str, message: String, remedy: &str) -> Flag {
-    Flag {
-        code: code.to_owned(),
-        channel: None,
-        message,
-        remedy: remedy.to_owned(),
-        excludes: true,
-    }
 }
 
 /// Factor to seconds of a time axis from its unit or its name (`time_ms`); 1 where neither says.
@@ -101,8 +92,9 @@ pub fn inspect(times: &[f64]) -> TimeAxis {
 fn unreadable(times: &[f64]) -> TimeAxis {
     let flags = match times.len() {
         0 => Vec::new(),
-        _ => vec![fault(
-            "time_unreadable",
+        _ => vec![Flag::new(
+            FlagCode::TimeUnreadable,
+            None,
             "the time axis has a single sample or holds no numbers".to_owned(),
             "name the right channel in time of [records], or give sample_rate",
         )],
@@ -119,8 +111,9 @@ fn backward_at(times: &[f64], at: usize) -> TimeAxis {
         times[at],
         times[at + 1]
     );
-    let flag = fault(
-        "time_backward",
+    let flag = Flag::new(
+        FlagCode::TimeBackward,
+        None,
         what,
         "sort or re-export the record; it is left out",
     );
@@ -150,8 +143,9 @@ fn strays(times: &[f64], step: f64) -> f64 {
 }
 
 fn not_uniform(what: &str) -> Flag {
-    fault(
-        "time_not_uniform",
+    Flag::new(
+        FlagCode::TimeNotUniform,
+        None,
         format!("the time axis is not uniform: {what}"),
         "resample the record to a uniform rate before, or export it with its true rate",
     )
@@ -166,8 +160,9 @@ fn regular(times: &[f64], steps: &[f64], step: f64) -> TimeAxis {
         .map(|s| (s / step).round() - 1.0)
         .sum();
     if let Some(at) = steps.iter().position(|s| *s > 1.5 * step) {
-        flags.push(fault(
-            "dropped_samples",
+        flags.push(Flag::new(
+            FlagCode::DroppedSamples,
+            None,
             format!(
                 "{lost} samples are missing in the time axis, the first after {} s",
                 times[at]
@@ -177,8 +172,9 @@ fn regular(times: &[f64], steps: &[f64], step: f64) -> TimeAxis {
     }
     let repeated = steps.iter().filter(|s| **s < 0.5 * step).count();
     if repeated > 0 {
-        flags.push(fault(
-            "repeated_samples",
+        flags.push(Flag::new(
+            FlagCode::RepeatedSamples,
+            None,
             format!("{repeated} time stamps are repeated"),
             "remove the repetitions where the record was exported; it is left out",
         ));
@@ -210,7 +206,7 @@ mod tests {
     }
 
     fn codes(axis: &TimeAxis) -> Vec<&str> {
-        axis.flags.iter().map(|f| f.code.as_str()).collect()
+        axis.flags.iter().map(|f| f.code.name()).collect()
     }
 
     #[test]

@@ -1,9 +1,7 @@
-//! The report: its content as plain data first, then the figures, then the document.
-//!
-//! No result is computed here; what is drawn was found in the rooms to the left.
+//! The report: figures and documents of what was identified and compared. It formats what it is
+//! given and computes nothing.
 
-pub mod assemble;
-pub mod content;
+mod content;
 mod document;
 pub(crate) mod figures;
 mod html;
@@ -15,8 +13,8 @@ pub(crate) mod speech;
 pub(crate) mod theory;
 pub mod words;
 
-pub use content::{ProposedPoint, ReportContent};
-pub use options::{Format, Logo, Paper, RenderOptions};
+pub use content::{CampaignFacts, DataTable, NominalValue, ProposedPoint, ReportContent, Subject};
+pub use options::{Format, Logo, Paper, ReportOptions};
 
 use figures::Figure;
 use rayon::prelude::*;
@@ -55,12 +53,12 @@ pub struct Report {
     document: document::model::Document,
     /// The figures.
     figures: Vec<Figure>,
-    options: RenderOptions,
+    options: ReportOptions,
 }
 
 impl Report {
     /// Draws the figures of a content and builds the document's data.
-    pub fn new(content: &ReportContent, options: &RenderOptions) -> Self {
+    pub fn new(content: &ReportContent, options: &ReportOptions) -> Self {
         let speech = options.speech();
         let figures = figures::draw_all(content, speech);
         let document = document::document(content, &figures, speech);
@@ -121,7 +119,5 @@ pub fn plan_map(
     picture::pictures(&figure)
 }
 
-#[cfg(test)]
-mod example;
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 use crate::event::RigKind;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::motion::bracket::{BoundaryKind, Bracket};
+use crate::motion::{BoundaryKind, Bracket};
 use impact_oscillator::model::boundary::{s1_of_branch, s2_of_branch};
 use impact_oscillator::model::orbit::Branch;
 use impact_oscillator::model::params::Machine;
@@ -286,7 +286,7 @@ impl Block for BoundaryBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::middles;
+    use crate::identify::bracket_midpoints;
     use crate::record::Sweep;
     use impact_oscillator::model::boundary::{rho_grazing, rho_s1, rho_s2};
 

@@ -265,8 +265,7 @@ impl Block for FlightBlock {
             gap: record.gap,
             ..Circumstances::default()
         });
-        let setting =
-            parameters.setting(record.frequency_hz, clearance_m, record.drive_amplitude);
+        let setting = parameters.setting(record.frequency_hz, clearance_m, record.drive_amplitude);
         let gap = machine.gap(setting.clearance);
         let rate = parameters.natural_rate();
         let speed = parameters.static_deflection_m * record.drive_amplitude * rate;
@@ -310,7 +309,10 @@ impl Block for FlightBlock {
     fn touches(&self, coordinate: Coordinate) -> bool {
         match coordinate {
             Coordinate::Corner(index) => self.has_corner(index),
-            Coordinate::Gap(_) => self.records.iter().any(|r| r.gap.map(Coordinate::Gap) == Some(coordinate)),
+            Coordinate::Gap(_) => self
+                .records
+                .iter()
+                .any(|r| r.gap.map(Coordinate::Gap) == Some(coordinate)),
             Coordinate::Gain(2 | 3)
             | Coordinate::Delay(_)
             | Coordinate::Effect(_)

@@ -25,8 +25,8 @@ use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::fit::effect::Effects;
 use crate::identify::fit::parameters::{Coordinate, MOST_GAPS, Parameters, gain_index};
 use crate::identify::fit::{Block, Prior};
-use crate::identify::uncertainty::Asked;
-use crate::motion::observation::Amplitude;
+use crate::identify::uncertainty::UncertaintyOptions;
+use crate::motion::Amplitude;
 use crate::motion::{Bracket, Observation};
 use crate::record::Role;
 use crate::signal::robust;
@@ -93,7 +93,7 @@ pub struct Evidence<'a> {
     /// What is stated.
     pub nominal: Nominal,
     /// What is asked for of the uncertainty.
-    pub uncertainty: Asked,
+    pub uncertainty: UncertaintyOptions,
 }
 
 /// Relative error of instruments and model that noise does not show.
@@ -180,7 +180,12 @@ impl Blocks {
     /// shared error of its points where one has.
     fn give_gaps_errors(&mut self, uncertainty_m: f64) {
         let mut counts: Vec<(f64, usize)> = Vec::new();
-        let mut stated: Vec<f64> = self.trajectory.records.iter().map(|r| r.clearance_m).collect();
+        let mut stated: Vec<f64> = self
+            .trajectory
+            .records
+            .iter()
+            .map(|r| r.clearance_m)
+            .collect();
         stated.sort_by(f64::total_cmp);
         for clearance_m in stated {
             match counts.last_mut() {
@@ -248,7 +253,9 @@ impl Blocks {
             centre: 0.0,
             deviation,
         };
-        let gains = self.gains().map(|c| stated(c, nominal.gain_uncertainty.max(1e-6)));
+        let gains = self
+            .gains()
+            .map(|c| stated(c, nominal.gain_uncertainty.max(1e-6)));
         let corners = self.corners();
         let corners = corners.map(|c| stated(c, nominal.corner_uncertainty.max(1e-6)));
         let all = gains
@@ -256,7 +263,12 @@ impl Blocks {
             .chain(self.delays(nominal))
             .chain(self.asymmetries(nominal))
             .chain(self.clearances(nominal))
-            .chain(nominal.effects.iter().map(|e| stated(Coordinate::Effect(e), e.accepted())));
+            .chain(
+                nominal
+                    .effects
+                    .iter()
+                    .map(|e| stated(Coordinate::Effect(e), e.accepted())),
+            );
         for prior in all.filter(|p| p.deviation > 0.0 && touched(&p.coordinate)) {
             free.push(prior.coordinate);
             priors.push(prior);
@@ -320,7 +332,9 @@ fn places(observations: &[Observation]) -> Vec<f64> {
 /// Half the time between two samples in the median record, s.
 fn half_sample_s(observations: &[Observation]) -> f64 {
     let rates: Vec<f64> = observations.iter().map(|o| o.sample_rate_hz).collect();
-    robust::median(&rates).filter(|r| *r > 0.0).map_or(0.0, |r| 0.5 / r)
+    robust::median(&rates)
+        .filter(|r| *r > 0.0)
+        .map_or(0.0, |r| 0.5 / r)
 }
 
 /// The greatest displacement of the campaign, m: as measured, else by velocity and frequency.

@@ -10,7 +10,7 @@ use crate::identify::evidence::waveform::{
 };
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
-use crate::motion::fold::FoldedChannel;
+use crate::motion::FoldedChannel;
 use crate::record::Role;
 use impact_oscillator::model::orbit::Branch;
 use impact_oscillator::model::params::{Machine, Oscillator, Setting};
@@ -492,7 +492,8 @@ fn friction(states: &[[f64; 2]]) -> Vec<f64> {
         let (a, b) = (k.saturating_sub(1), (k + 1).min(states.len() - 1));
         0.5 * (states[b][1] - states[a][1]).abs()
     };
-    let of = |(k, s): (usize, &[f64; 2])| -(s[1] / change(k).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0);
+    let of =
+        |(k, s): (usize, &[f64; 2])| -(s[1] / change(k).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0);
     states.iter().enumerate().map(of).collect()
 }
 
@@ -536,7 +537,7 @@ mod tests {
     use super::*;
     use crate::identify::evidence::trajectory::distinct_phases;
     use crate::identify::fit::effect::Effects;
-    use crate::motion::fold::{Folded, FoldedPoint};
+    use crate::motion::{Folded, FoldedPoint};
 
     const ROLES: [Role; 4] = [
         Role::VelocityX,

@@ -9,7 +9,7 @@ use crate::identify::fit::Block;
 use crate::identify::fit::effect::{Effect, EffectKind};
 use crate::identify::fit::parameters::{Circumstances, Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
-use crate::motion::response::Response;
+use crate::motion::Response;
 use crate::record::Role;
 use impact_oscillator::model::flight::{Drive, forced_amplitude};
 use impact_oscillator::model::params::{Machine, Oscillator};
@@ -168,7 +168,8 @@ impl Predicted {
         let size = self.forced.norm();
         let compliance = self.forced / self.oscillator.drive_per_mass();
         let stiffening = self.forced * (0.75 * hardening * size * size);
-        let resisting = Complex::new(0.0, friction * 4.0 / std::f64::consts::PI / size) * self.forced;
+        let resisting =
+            Complex::new(0.0, friction * 4.0 / std::f64::consts::PI / size) * self.forced;
         let extra = [-compliance * stiffening, -compliance * resisting];
         let changes = EXTRA.iter().zip(extra);
         let change: Complex<f64> = changes.map(|(e, c)| c * parameters.effect(*e)).sum();

@@ -67,7 +67,11 @@ mod tests {
 
     #[test]
     fn valid_whitening_is_the_inverse_root_of_the_covariance() {
-        let shared = [vec![0.5, -2.0, 1.0], vec![3.0, 0.1, 0.4], vec![0.3, 0.2, -1.5]];
+        let shared = [
+            vec![0.5, -2.0, 1.0],
+            vec![3.0, 0.1, 0.4],
+            vec![0.3, 0.2, -1.5],
+        ];
         let v = DMatrix::from_fn(3, 3, |i, k| shared[k][i]);
         let covariance = DMatrix::identity(3, 3) + &v * v.transpose();
         let r = vec![1.0, -0.7, 2.5];

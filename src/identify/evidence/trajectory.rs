@@ -10,7 +10,7 @@ use crate::identify::fit::Block;
 use crate::identify::fit::effect::{Effect, Effects};
 use crate::identify::fit::parameters::{Circumstances, Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
-use crate::motion::fold::{Folded, FoldedChannel};
+use crate::motion::{Folded, FoldedChannel};
 use crate::record::Role;
 use impact_oscillator::model::flight::State;
 use impact_oscillator::model::orbit::orbit_with_speed;

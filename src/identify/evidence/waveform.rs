@@ -4,7 +4,7 @@
 //! A mass is a sum of exponentials of time; the mean of e^{λt} over t ± δ is e^{λt}(1 + λ²δ²/2)
 //! up to the fourth power of δ. What depends on the drive's phases alone is kept.
 
-use crate::motion::fold::FoldedPoint;
+use crate::motion::FoldedPoint;
 use impact_oscillator::model::path::C64;
 use impact_oscillator::model::sensitivity::MassMotion;
 

@@ -64,7 +64,10 @@ mod rows {
     use nalgebra::DMatrix;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    pub fn serialize<S: Serializer>(matrix: &DMatrix<f64>, to: S) -> Result<S::Ok, S::Error> {
+    pub(super) fn serialize<S: Serializer>(
+        matrix: &DMatrix<f64>,
+        to: S,
+    ) -> Result<S::Ok, S::Error> {
         let rows: Vec<Vec<f64>> = matrix
             .row_iter()
             .map(|row| row.iter().copied().collect())
@@ -72,7 +75,9 @@ mod rows {
         rows.serialize(to)
     }
 
-    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<DMatrix<f64>, D::Error> {
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        from: D,
+    ) -> Result<DMatrix<f64>, D::Error> {
         let rows: Vec<Vec<f64>> = Deserialize::deserialize(from)?;
         let width = rows.first().map_or(0, Vec::len);
         if rows.iter().any(|row| row.len() != width) {

@@ -184,10 +184,7 @@ impl Parameters {
             self.effect(Effect::ForceCurve),
         );
         let off = eta - 1.0;
-        [
-            1.0 + off * (slope + curve * off),
-            slope + 2.0 * curve * off,
-        ]
+        [1.0 + off * (slope + curve * off), slope + 2.0 * curve * off]
     }
 
     /// The parameters that a record has of its own, and its clearance, m: where drift, the force
@@ -224,7 +221,12 @@ impl Parameters {
             physical[i] = slope;
             Some(OwnSlope { physical, ..none })
         };
-        let clearance = |clearance_m: f64| Some(OwnSlope { clearance_m, ..none });
+        let clearance = |clearance_m: f64| {
+            Some(OwnSlope {
+                clearance_m,
+                ..none
+            })
+        };
         let eta = at.frequency_hz / self.natural_frequency_hz;
         let [lean, over_eta] = self.lean(eta);
         let r = self.restitution;
@@ -232,7 +234,8 @@ impl Parameters {
         match coordinate {
             Coordinate::Restitution => Some(OwnSlope {
                 physical: [1.0, 0.0, 0.0, 0.0],
-                clearance_m: 1e-3 * self.effect(Effect::ContactDuration) * speed / (1.0 + r).powi(2),
+                clearance_m: 1e-3 * self.effect(Effect::ContactDuration) * speed
+                    / (1.0 + r).powi(2),
             }),
             Coordinate::Frequency => Some(OwnSlope {
                 physical: [0.0, 1.0, 0.0, -eta * over_eta / lean],

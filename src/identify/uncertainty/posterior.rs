@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::identify::evidence::boundary::{BoundaryBlock, bracket_probability, predicted_hz};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::motion::bracket::Bracket;
+use crate::motion::Bracket;
 
 /// What brackets say of R and x_st.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,6 +3,8 @@
 use super::plan::BasinPlan;
 use super::table::Table;
 use super::{Desk, StudyError};
+use crate::compare::RegionMap;
+use crate::motion::Motion;
 use crate::report::speech::Speech;
 use crate::report::theory::basins::draw;
 use impact_oscillator::atlas::basins::{Basins, basin_rows};
@@ -34,10 +36,22 @@ pub fn run(
     desk.table(name, &table(&basins))?;
     (desk.say)(&shares(name, &basins));
     let title = format!("Basins of attraction at {}", setting(plan));
-    match draw(&basins, name, &title, Speech::default()) {
+    match draw(&motions(&basins), name, &title, Speech::default()) {
         Some(figure) => desk.figure(&figure),
         None => Ok(()),
     }
+}
+
+/// The motion to which each start leads.
+fn motions(basins: &Basins) -> RegionMap {
+    let motion = |cell: &Option<SettledMotion>| match cell {
+        Some(motion) => Motion::from(*motion),
+        None => Motion::Undetermined {
+            reason: "starts beyond the contact".into(),
+        },
+    };
+    let cells: Vec<Motion> = basins.cells.iter().map(motion).collect();
+    RegionMap::new(basins.x.clone(), basins.vx.clone(), &cells, &[])
 }
 
 fn setting(plan: &BasinPlan) -> String {

@@ -6,11 +6,11 @@ pub mod kept;
 pub mod plan;
 pub mod regions;
 pub mod sweep;
-pub mod table;
 pub mod time_series;
 
 use std::path::Path;
 
+use crate::pipeline::table::{self, Table};
 use crate::report::ReportError;
 use crate::report::figures::Figure;
 use crate::report::picture::pictures;
@@ -18,7 +18,6 @@ use impact_oscillator::model::ModelError;
 use kept::Kept;
 use labfiles::output::{OutputError, write_bytes};
 pub use plan::Study;
-use table::Table;
 
 /// Why a study stopped.
 #[derive(Debug, thiserror::Error)]
@@ -83,9 +82,9 @@ impl Desk<'_> {
     /// Write a table as `NAME.csv` and `NAME.parquet`.
     fn table(&self, name: &str, table: &Table) -> Result<(), StudyError> {
         self.bytes(&format!("{name}.csv"), table.csv().as_bytes())?;
-        let parquet = table.parquet().map_err(|reason| StudyError::Table {
+        let parquet = table.parquet().map_err(|e| StudyError::Table {
             table: name.to_owned(),
-            reason,
+            reason: e.to_string(),
         })?;
         self.bytes(&format!("{name}.parquet"), &parquet)
     }

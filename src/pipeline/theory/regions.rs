@@ -6,8 +6,10 @@ use serde_json::json;
 use super::plan::RegionsPlan;
 use super::table::Table;
 use super::{Desk, StudyError};
+use crate::compare::RegionMap;
+use crate::motion::Motion;
 use crate::report::speech::Speech;
-use crate::report::theory::regions::{Plane, draw};
+use crate::report::theory::regions as figure;
 use impact_oscillator::atlas::curves::{Curve, CurvePoint};
 use impact_oscillator::atlas::regions::{assemble, columns};
 use impact_oscillator::atlas::shard::AtlasRequest;
@@ -61,16 +63,30 @@ pub fn leave(
     });
     desk.bytes(&format!("{name}.json"), format!("{summary:#}\n").as_bytes())?;
     let second = atlas.other_motions(&settings.grid);
-    let plane = Plane {
-        grid: &settings.grid,
-        first: &atlas.maps[0],
-        second: &second,
-        curves: &atlas.curves,
+    let motions = |cells: &[SettledMotion]| -> Vec<Motion> {
+        cells.iter().map(|cell| Motion::from(*cell)).collect()
     };
+    let grid = settings.grid.clone();
+    let map = RegionMap::new(
+        grid.eta,
+        grid.rho,
+        &motions(&atlas.maps[0]),
+        &motions(&second),
+    );
+    let drawn: Vec<figure::Curve> = atlas.curves.iter().map(drawn).collect();
     let title = "Regions of existence and stability of all motions";
-    match draw(&plane, name, title, Speech::default()) {
+    match figure::draw((&map, &drawn), name, title, Speech::default()) {
         Some(figure) => desk.figure(&figure),
         None => Ok(()),
+    }
+}
+
+/// What the figure shows of a boundary.
+fn drawn(curve: &Curve) -> figure::Curve {
+    figure::Curve {
+        kind: curve.kind.name().to_owned(),
+        minor: curve.p > 1 || curve.n > 5,
+        points: curve.points.iter().map(|p| (p.eta, p.rho)).collect(),
     }
 }
 

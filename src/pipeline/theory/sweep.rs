@@ -8,7 +8,7 @@ use super::plan::SweepPlan;
 use super::table::Table;
 use super::{Desk, StudyError};
 use crate::report::speech::Speech;
-use crate::report::theory::sweep::{Characteristics, draw};
+use crate::report::theory::sweep::{Characteristics, Step, draw};
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::atlas::sweep::{Carried, Impactless, LONGEST_LAG, SweepPoint, impactless};
 use impact_oscillator::model::Machine;
@@ -59,13 +59,25 @@ pub fn run(
     desk.table(name, &characteristics(machine, &forward, &backward))?;
     desk.table(&format!("{name}-impacts"), &impacts(&forward, &backward))?;
     let data = Characteristics {
-        forward: &forward,
-        backward: &backward,
-        impactless: &impactless,
-        two_masses: machine.y.is_some(),
+        forward: forward.iter().map(drawn).collect(),
+        backward: backward.iter().map(drawn).collect(),
+        impactless_x: impactless.iter().map(|i| i.x).collect(),
+        impactless_y: impactless.iter().filter_map(|i| i.y).collect(),
     };
     let title = "Quasi-stationary characteristics";
     desk.figure(&draw(&data, name, title, Speech::default()))
+}
+
+/// What the figure shows of a step.
+fn drawn(p: &SweepPoint) -> Step {
+    Step {
+        eta: p.eta,
+        rho: p.rho,
+        x_max: p.x_max,
+        approach_speeds: p.approach_speeds.clone(),
+        lyapunov: p.lyapunov,
+        autocorrelation: p.autocorrelation.first().copied(),
+    }
 }
 
 struct Walk<'a> {

@@ -13,7 +13,7 @@ use crate::report::speech::Speech;
 pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
     let id = &content.identification;
     Front {
-        synthetic: content.summary.synthetic,
+        synthetic: content.campaign.synthetic,
         verdict: verdict_name(id.verdict.kind),
         headline: campaign_headline(content, drawn.speech),
         summary: prose(&drawn.speech.tell(&id.verdict.to_string())).localised(drawn.speech),
@@ -31,7 +31,7 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
             }
             false => Rich::default(),
         },
-        facts: facts(&content.summary, drawn.speech),
+        facts: facts(content, drawn.speech),
         map: drawn.figure("map_small", ""),
         estimates: drawn.figure("estimates", ""),
     }
@@ -50,7 +50,10 @@ fn campaign_headline(content: &ReportContent, speech: Speech) -> String {
         .filter(|s| s.verdict.kind == VerdictKind::Identified)
         .count();
     match specimens - identified {
-        _ if specimens == 0 => speech.say(headline(id.verdict.kind, !content.records.is_empty())),
+        _ if specimens == 0 => speech.say(headline(
+            id.verdict.kind,
+            !content.compared.records.is_empty(),
+        )),
         0 => speech.say_with(
             "Identified: the model fits each of the {count} specimens",
             &[("count", &specimens.to_string())],

@@ -65,11 +65,11 @@ pub fn document(content: &ReportContent, figures: &[Figure], speech: Speech<'_>)
 }
 
 fn subtitle(content: &ReportContent, speech: Speech) -> String {
-    let summary = &content.summary;
-    let dates = facts::dates(summary, speech);
+    let campaign = &content.campaign;
+    let dates = facts::dates(campaign, speech);
     let parts = [
-        Some(summary.name.clone()),
-        summary.laboratory.clone(),
+        Some(campaign.name.clone()),
+        campaign.laboratory.clone(),
         Some(dates),
     ];
     let parts: Vec<String> = parts

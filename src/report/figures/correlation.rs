@@ -11,7 +11,7 @@ use super::look;
 use super::marks::mix;
 use super::path::Rect;
 use super::richtext;
-use crate::report::content::Correlation;
+use crate::compare::Correlation;
 use crate::report::parameters::parameter;
 use crate::report::speech::Speech;
 
@@ -28,7 +28,7 @@ pub fn draw(correlation: &Correlation, speech: Speech) -> Option<Figure> {
     let names: Vec<String> = correlation
         .parameters
         .iter()
-        .map(|p| name(p, speech))
+        .map(|p| name(p.name(), speech))
         .collect();
     let columns = columns(correlation);
     let widths = names
@@ -67,7 +67,7 @@ pub fn draw(correlation: &Correlation, speech: Speech) -> Option<Figure> {
 /// The columns of the matrix: the parameters that are asked for.
 fn columns(correlation: &Correlation) -> Vec<usize> {
     let all = 0..correlation.parameters.len();
-    let asked = |i: &usize| parameter(&correlation.parameters[*i]).is_some();
+    let asked = |i: &usize| parameter(correlation.parameters[*i].name()).is_some();
     let main: Vec<usize> = all.clone().filter(asked).collect();
     if main.is_empty() { all.collect() } else { main }
 }
@@ -123,7 +123,9 @@ fn csv(correlation: &Correlation) -> String {
     let mut csv = Csv::new(&["parameter", "with", "correlation"]);
     for (a, row) in correlation.parameters.iter().zip(&correlation.matrix) {
         for (b, value) in correlation.parameters.iter().zip(row) {
-            csv.row().texts(&[a, b]).numbers(&[Some(*value)]);
+            csv.row()
+                .texts(&[a.name(), b.name()])
+                .numbers(&[Some(*value)]);
         }
     }
     csv.finish()

@@ -1,6 +1,7 @@
 //! The figures, one file each: from content to SVG, its data as CSV, its points for hovering.
 
 pub(super) mod axis;
+pub(super) mod boundaries;
 pub(super) mod boundary_fit;
 pub(super) mod canvas;
 mod compact;
@@ -31,6 +32,7 @@ use crate::report::speech::Speech;
 use canvas::Canvas;
 use rayon::prelude::*;
 
+use crate::identify::Method;
 use crate::report::content::ReportContent;
 
 /// A finished figure.
@@ -120,13 +122,17 @@ fn jobs<'a>(content: &'a ReportContent, speech: Speech<'a>) -> Vec<Job<'a>> {
         Box::new(move || map::draw(content, map::MapSize::Full, speech)),
         Box::new(move || map::draw(content, map::MapSize::Small, speech)),
     ];
-    for comparison in &content.comparisons {
+    for comparison in &content.compared.comparisons {
         jobs.push(Box::new(move || comparison::draw(comparison, speech)));
     }
     jobs.push(Box::new(move || estimates::draw(content, speech)));
-    jobs.push(Box::new(move || boundary_fit::draw(content, speech)));
-    jobs.push(Box::new(move || profiles::draw(&content.profiles, speech)));
-    if let Some(correlation) = &content.correlation {
+    jobs.push(Box::new(move || {
+        boundary_fit::draw(&content.compared.brackets, speech)
+    }));
+    jobs.push(Box::new(move || {
+        profiles::draw(&content.identification, speech)
+    }));
+    if let Some(correlation) = &content.compared.correlation {
         jobs.push(Box::new(move || correlation::draw(correlation, speech)));
     }
     method_jobs(content, speech, &mut jobs);
@@ -135,22 +141,29 @@ fn jobs<'a>(content: &'a ReportContent, speech: Speech<'a>) -> Vec<Job<'a>> {
 
 /// Figures of which there may be several.
 fn method_jobs<'a>(content: &'a ReportContent, speech: Speech<'a>, jobs: &mut Vec<Job<'a>>) {
-    for (i, scatter) in content.impacts.iter().enumerate() {
+    for (i, scatter) in content.compared.impacts.iter().enumerate() {
         jobs.push(Box::new(move || {
             impacts::draw(scatter, &numbered("impacts", i), speech)
         }));
     }
-    for (i, curve) in content.resonance.iter().enumerate() {
+    let method = content.identification.methods.get(&Method::Resonance);
+    let fits = method.and_then(|m| m.fits);
+    for (i, curve) in content.compared.resonance.iter().enumerate() {
         jobs.push(Box::new(move || {
-            resonance::draw(curve, &numbered("resonance", i), speech)
+            resonance::draw((curve, fits), &numbered("resonance", i), speech)
         }));
     }
-    for (i, few) in content.free_decays.chunks(decays::PER_FIGURE).enumerate() {
+    for (i, few) in content
+        .compared
+        .free_decays
+        .chunks(decays::PER_FIGURE)
+        .enumerate()
+    {
         jobs.push(Box::new(move || {
             decays::draw(few, &numbered("free_decays", i), speech)
         }));
     }
-    for (i, set) in content.residuals.iter().enumerate() {
+    for (i, set) in content.compared.residuals.iter().enumerate() {
         jobs.push(Box::new(move || {
             residuals::draw(set, &numbered("residuals", i), speech)
         }));

@@ -1,9 +1,10 @@
 //! The plane of the map: (η, ρ) where f0 and x_st are known, else frequency and clearance.
 
 use super::axis::{Axis, range};
+use crate::compare::{BracketRow, RecordRow};
 use crate::identify::Estimate;
 use crate::motion::Motion;
-use crate::report::content::{BracketRow, ProposedPoint, RecordRow, ReportContent};
+use crate::report::content::{ProposedPoint, ReportContent};
 
 /// Least and greatest value, where there is any.
 type Range = Option<(f64, f64)>;
@@ -41,10 +42,18 @@ impl Plane {
             static_deflection_m: value(&joint.static_deflection_m),
         };
         let placed = |p: Self| {
-            content.records.iter().any(|r| p.record(r).is_some())
-                || content.brackets.iter().any(|b| p.bracket(b).is_some())
+            content
+                .compared
+                .records
+                .iter()
+                .any(|r| p.record(r).is_some())
+                || content
+                    .compared
+                    .brackets
+                    .iter()
+                    .any(|b| p.bracket(b).is_some())
         };
-        let modelled = !content.curves.is_empty() || content.region_map.is_some();
+        let modelled = !content.compared.curves.is_empty() || content.compared.region_map.is_some();
         [plane(true), plane(false)]
             .into_iter()
             .find(|p| placed(*p) || (p.dimensionless && modelled))
@@ -62,7 +71,7 @@ impl Plane {
     /// Ends and height of a bracket.
     pub fn bracket(&self, bracket: &BracketRow) -> Option<((f64, f64), f64)> {
         if self.dimensionless {
-            Some(((bracket.eta_low?, bracket.eta_high?), bracket.rho?))
+            Some((bracket.eta?.into(), bracket.rho?))
         } else {
             let ends = (bracket.frequency_low_hz, bracket.frequency_high_hz);
             Some((ends, bracket.clearance_m * 1e3))
@@ -74,11 +83,18 @@ impl Plane {
     pub fn view(&self, content: &ReportContent) -> View {
         let records = || {
             content
+                .compared
                 .records
                 .iter()
                 .filter_map(|r| Some((r, self.record(r)?)))
         };
-        let brackets = || content.brackets.iter().filter_map(|b| self.bracket(b));
+        let brackets = || {
+            content
+                .compared
+                .brackets
+                .iter()
+                .filter_map(|b| self.bracket(b))
+        };
         let xs = records().map(|(_, p)| p.0);
         let x = pad(
             range(xs.chain(brackets().flat_map(|b| [b.0.0, b.0.1]))),
@@ -126,8 +142,8 @@ impl Plane {
     }
 
     fn with_map(&self, content: &ReportContent, x: Range, y: Range) -> (Range, Range) {
-        match &content.region_map {
-            Some(map) => (union(x, edges(&map.eta)), union(y, edges(&map.rho))),
+        match &content.compared.region_map {
+            Some(map) => (union(x, edges(&map.x)), union(y, edges(&map.y))),
             None => (x, y),
         }
     }

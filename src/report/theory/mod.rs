@@ -1,17 +1,16 @@
-//! Figures of the theory alone: motions, characteristics, basins, regions. What is drawn was
-//! computed in `atlas`.
+//! Figures of the theory alone: motions, characteristics, basins, regions.
 
 pub mod basins;
 pub mod motion;
 pub mod regions;
 pub mod sweep;
 
-use super::content::RegionMap;
 use super::figures::canvas::Canvas;
 use super::figures::legend::{self, Key, Sign};
 use super::figures::look;
 use super::figures::marks;
 use super::speech::Speech;
+use crate::compare::RegionMap;
 use crate::motion::Motion;
 
 /// Draws keys over the whole width of the figure's top; gives the height they take.

@@ -2,8 +2,7 @@
 //! tints (hatched where they differ), the boundaries as curves.
 
 use super::{keys_height, keys_on_top};
-use crate::motion::Motion;
-use crate::report::content::RegionMap;
+use crate::compare::RegionMap;
 use crate::report::figures::Figure;
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
@@ -15,44 +14,33 @@ use crate::report::figures::path::{self, Rect};
 use crate::report::figures::placing::Occupancy;
 use crate::report::figures::regions::Regions;
 use crate::report::speech::Speech;
-use impact_oscillator::SettledMotion;
-use impact_oscillator::atlas::curves::Curve;
-use impact_oscillator::atlas::map::MapGrid;
 
 /// Room left of the panel, points.
 const LEFT: f64 = 34.0;
 /// Height of the panel, points.
 const HEIGHT: f64 = 380.0;
-/// Shorter pieces of boundaries are told in the table alone.
+/// Shorter pieces of boundaries are in the table alone.
 const FEWEST_POINTS: usize = 3;
 
-/// What is drawn.
-#[derive(Debug, Clone, Copy)]
-pub struct Plane<'a> {
-    /// The cells.
-    pub grid: &'a MapGrid,
-    /// From one start, row by row.
-    pub first: &'a [SettledMotion],
-    /// From another; where it differs lies hysteresis.
-    pub second: &'a [SettledMotion],
-    /// The boundaries.
-    pub curves: &'a [Curve],
+/// A piece of a boundary of existence or stability.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// Which boundary, by its name in the table.
+    pub kind: String,
+    /// Whether it bounds a motion of more than one impact or of a long period, and is drawn thin.
+    pub minor: bool,
+    /// Points (η, ρ).
+    pub points: Vec<(f64, f64)>,
 }
 
-/// Draws the plane; `None` where the grid has no area.
-pub fn draw(plane: &Plane<'_>, name: &str, title: &str, speech: Speech) -> Option<Figure> {
-    let motions = |cells: &[SettledMotion]| -> Vec<Motion> {
-        cells.iter().map(|c| Motion::from(*c)).collect()
-    };
-    let (first, second) = (motions(plane.first), motions(plane.second));
-    let map = RegionMap::of_motions(
-        plane.grid.eta.clone(),
-        plane.grid.rho.clone(),
-        &first,
-        &second,
-        "",
-    );
-    let keys = keys(plane.curves, first != second);
+/// Draws the plane; `None` if the grid has no area.
+pub fn draw(
+    (map, curves): (&RegionMap, &[Curve]),
+    name: &str,
+    title: &str,
+    speech: Speech,
+) -> Option<Figure> {
+    let keys = keys(curves, map.cells != map.second);
     let top = keys_height(LEFT, &keys, speech);
     let size = (look::FULL_WIDTH, top + HEIGHT + 26.0);
     let mut canvas = Canvas::new(size.0, size.1);
@@ -62,14 +50,14 @@ pub fn draw(plane: &Plane<'_>, name: &str, title: &str, speech: Speech) -> Optio
     };
     let panel = Panel::new(
         Rect::new(LEFT, top, look::FULL_WIDTH - LEFT - 7.0, HEIGHT),
-        axis(&plane.grid.eta, "frequency ratio $η$ (1)", 8)?,
-        axis(&plane.grid.rho, "clearance ratio $ρ$ (1)", 7)?,
+        axis(&map.x, "frequency ratio $η$ (1)", 8)?,
+        axis(&map.y, "clearance ratio $ρ$ (1)", 7)?,
     );
-    let regions = Regions::new(&map, &panel)?;
+    let regions = Regions::new(map, &panel)?;
     canvas.layer(0);
     regions.draw(&mut canvas);
     let mut occupancy = Occupancy::new(size.0, size.1);
-    curves(&mut canvas, &panel, plane.curves, &mut occupancy);
+    draw_curves(&mut canvas, &panel, curves, &mut occupancy);
     canvas.layer(5);
     for label in regions.labels(&mut occupancy, 9.5, speech) {
         let text_look = TextLook::new(label.size, Anchor::Middle).face(Face::Bold);
@@ -81,19 +69,25 @@ pub fn draw(plane: &Plane<'_>, name: &str, title: &str, speech: Speech) -> Optio
     Some(Figure::new(name, title, canvas, String::new()))
 }
 
-fn curves(canvas: &mut Canvas, panel: &Panel, curves: &[Curve], occupancy: &mut Occupancy) {
+fn draw_curves(canvas: &mut Canvas, panel: &Panel, curves: &[Curve], occupancy: &mut Occupancy) {
     canvas.layer(3);
     for curve in curves {
-        let data = || curve.points.iter().map(|p| (p.eta, p.rho));
-        let points: Vec<_> = data().map(|(x, y)| panel.at(x, y)).collect();
+        let points: Vec<_> = curve.points.iter().map(|(x, y)| panel.at(*x, *y)).collect();
         for piece in path::clip(&points, &panel.rect) {
             occupancy.take_line(&piece);
         }
         if curve.points.len() >= FEWEST_POINTS {
-            let full = stroke(curve.kind.name());
-            let minor = curve.p > 1 || curve.n > 5;
-            let width = if minor { 0.6 * full.width } else { full.width };
-            panel.curve(canvas, data(), Stroke { width, ..full });
+            let full = stroke(&curve.kind);
+            let width = if curve.minor {
+                0.6 * full.width
+            } else {
+                full.width
+            };
+            panel.curve(
+                canvas,
+                curve.points.iter().copied(),
+                Stroke { width, ..full },
+            );
         }
     }
 }
@@ -143,7 +137,7 @@ fn keys(curves: &[Curve], hysteresis: bool) -> Vec<Key> {
     let mut keys = vec![Key::new(Sign::Nothing, "$z$ = $p$/$n$ in the regions;")];
     let met = KINDS
         .iter()
-        .filter(|k| curves.iter().any(|c| c.kind.name() == k.0));
+        .filter(|k| curves.iter().any(|c| c.kind == k.0));
     keys.extend(met.map(|k| Key::new(Sign::Line(k.2), k.1)));
     if hysteresis {
         keys.push(Key::new(Sign::Nothing, "hatched: another motion too"));

@@ -8,6 +8,8 @@ pub use brackets::brackets;
 pub use estimates::{agreement, methods, specimen_methods, specimens};
 pub use records::records;
 
+use crate::compare::Unusable;
+use crate::identify::Item;
 use crate::record::Sweep;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Align, Rich, Table};
@@ -87,7 +89,7 @@ fn without_empty_columns(table: Table) -> Table {
     }
 }
 
-/// Further tables of the content, as they stand.
+/// Further tables of the content.
 pub fn further<'a>(
     content: &'a ReportContent,
     speech: Speech<'a>,
@@ -117,11 +119,19 @@ fn arrow(sweep: Sweep) -> &'static str {
     }
 }
 
-/// What was left out and why.
+/// Records that no method could use, by reason, and what the fits left out.
 pub fn left_out(content: &ReportContent, speech: Speech) -> Option<Table> {
-    let rows = content.left_out.iter().map(|l| {
-        let count = l.count.map_or(String::new(), |c| c.to_string());
-        let (what, why) = (speech.tell(&l.what), speech.tell(&l.why));
+    let unusable = content.compared.unusable.iter().map(|u| {
+        let count = Some(u.records.len()).filter(|n| *n > 1);
+        (first_few(&u.records), count, reason(u))
+    });
+    // impacts are in a remark of their method
+    let fits = content.identification.left_out.iter();
+    let fits = fits.filter(|l| !matches!(l.item, Item::Impact { .. }));
+    let fits = fits.map(|l| (l.item.to_string(), None, l.reason.to_string()));
+    let rows = unusable.chain(fits).map(|(what, count, why)| {
+        let count = count.map_or(String::new(), |c| c.to_string());
+        let (what, why) = (speech.tell(&what), speech.tell(&why));
         vec![verbatim(what), Rich::from(count), prose(&why)]
     });
     let columns: [Column; 3] = [
@@ -130,6 +140,25 @@ pub fn left_out(content: &ReportContent, speech: Speech) -> Option<Table> {
         Column::wide("why", 5),
     ];
     table("", &columns, rows.collect(), speech)
+}
+
+/// The first few names.
+fn first_few(records: &[String]) -> String {
+    match records {
+        [a, b, c, _, ..] => format!("{a}, {b}, {c} …"),
+        few => few.join(", "),
+    }
+}
+
+fn reason(unusable: &Unusable) -> String {
+    let code = unusable.flag.as_deref().unwrap_or("motion_undetermined");
+    let code = code.replace('_', " ");
+    let of = unusable.channel.as_ref().map(|c| format!(" ({c})"));
+    let mut text = format!("{code}{}: {}", of.unwrap_or_default(), unusable.message);
+    if let (true, Some(record)) = (unusable.differ, unusable.records.first()) {
+        text.push_str(&format!(" (so {record}; the others alike)"));
+    }
+    text
 }
 
 /// A cell whose text has no markup, whatever signs it holds.

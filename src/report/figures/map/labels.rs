@@ -2,8 +2,9 @@
 //! units.
 
 use super::{Map, STRIP_HALF, STRIP_STEP};
-use crate::report::content::BoundaryCurve;
+use crate::compare::BoundaryCurve;
 use crate::report::figures::axis::Axis;
+use crate::report::figures::boundaries::symbol;
 use crate::report::figures::canvas::{Anchor, Point, Stroke, TextLook};
 use crate::report::figures::fonts::{self, Face};
 use crate::report::figures::look;
@@ -43,9 +44,10 @@ impl Map<'_> {
 
     pub(super) fn letters(&mut self) {
         let bounds = self.panel.rect;
-        for comparison in &self.content.comparisons {
+        for comparison in &self.content.compared.comparisons {
             let Some(record) = self
                 .content
+                .compared
                 .records
                 .iter()
                 .find(|r| r.id == comparison.record)
@@ -179,8 +181,8 @@ impl Map<'_> {
 
 fn curve_name(curve: &BoundaryCurve) -> String {
     match (curve.kind, curve.periods_n) {
-        (kind, 1) => kind.symbol().to_owned(),
-        (kind, n) => format!("{} (1/{n})", kind.symbol()),
+        (kind, 1) => symbol(kind).to_owned(),
+        (kind, n) => format!("{} (1/{n})", symbol(kind)),
     }
 }
 

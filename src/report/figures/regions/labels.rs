@@ -47,7 +47,7 @@ impl Regions<'_> {
             0.5 * fonts::width(&text, Face::Bold, size) + 3.0,
             0.5 * size + 1.5,
         );
-        let columns = self.map.eta.len();
+        let columns = self.map.x.len();
         let best = self
             .region
             .iter()

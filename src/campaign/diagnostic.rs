@@ -1,0 +1,489 @@
+//! Problems of a campaign's description and records: each with its place and its remedy, all of
+//! them at once, those that are alike in one group.
+
+use std::cmp::Reverse;
+use std::collections::HashMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use super::names::natural_key;
+use crate::record::{Flag, FlagCode};
+
+/// What a problem prevents.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Severity {
+    /// Worth knowing; nothing is left out.
+    Note,
+    /// The record is left out; the others are used.
+    Record,
+    /// Nothing can be computed before it is fixed.
+    Campaign,
+}
+
+/// What kind of problem it is.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Code {
+    /// A file that is named cannot be found or read.
+    UnreadableFile,
+    /// The text is not TOML, or a row is not CSV.
+    Syntax,
+    /// A key or a value that campaign.toml does not have.
+    UnknownEntry,
+    /// A key, column or cell that is needed is missing.
+    Missing,
+    /// Not a number, a unit or a word of the kind needed.
+    InvalidValue,
+    /// A value outside of its range.
+    OutOfRange,
+    /// Two entries that exclude each other, or the same entry twice.
+    Conflict,
+    /// No record has this name.
+    UnknownRecord,
+    /// An attribute of a file is missing or is not what campaign.toml expects.
+    Attribute,
+    /// The samples of another record.
+    DuplicateRecord,
+    /// Much shorter than the usual record.
+    ShortRecord,
+    /// What calibration or detection found in a record.
+    Flag(FlagCode),
+}
+
+/// Where a problem is.
+#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Place {
+    /// The file.
+    pub file: PathBuf,
+    /// Line in a text file, counted from 1.
+    pub line: Option<usize>,
+    /// Name of the record.
+    pub record: Option<String>,
+    /// Key of campaign.toml, column of the run table, attribute or channel of the record; empty
+    /// where the file or the record as a whole is meant.
+    pub item: String,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.file.display())?;
+        if let Some(line) = self.line {
+            write!(f, ":{line}")?;
+        }
+        // a record that is a file of its own is named by that file
+        let stem = self.file.file_stem().unwrap_or_default();
+        if let Some(record) = self.record.as_ref().filter(|r| stem != r.as_str()) {
+            write!(f, ": {record}")?;
+        }
+        match self.item.as_str() {
+            "" => Ok(()),
+            item => write!(f, ": {item}"),
+        }
+    }
+}
+
+/// One problem: where, what, and what to do about it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// What kind of problem it is.
+    pub code: Code,
+    /// What it prevents.
+    pub severity: Severity,
+    /// Where it is.
+    pub place: Place,
+    /// What was found, and what was expected.
+    pub message: String,
+    /// What the user can do.
+    pub remedy: String,
+}
+
+impl Diagnostic {
+    /// A flag of a record of the campaign.
+    pub(super) fn of_record(file: &Path, record: &str, flag: &Flag) -> Self {
+        Self {
+            code: Code::Flag(flag.code),
+            severity: match flag.excludes {
+                true => Severity::Record,
+                false => Severity::Note,
+            },
+            place: Place {
+                file: file.to_path_buf(),
+                line: None,
+                record: Some(record.to_owned()),
+                item: flag.channel.clone().unwrap_or_default(),
+            },
+            message: flag.message.clone(),
+            remedy: flag.remedy.clone(),
+        }
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}. {}", self.place, self.message, self.remedy)
+    }
+}
+
+/// All problems found.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Diagnostics(pub Vec<Diagnostic>);
+
+impl Diagnostics {
+    /// Number of problems of one severity.
+    pub fn count(&self, severity: Severity) -> usize {
+        self.0.iter().filter(|d| d.severity == severity).count()
+    }
+
+    /// Problems that differ only in the record, the line and the numbers of their message, in the
+    /// order of the first of each group.
+    pub fn groups(&self) -> Vec<Group<'_>> {
+        let mut groups: Vec<Group<'_>> = Vec::new();
+        let mut index = HashMap::new();
+        for one in &self.0 {
+            let key = (
+                &one.code,
+                one.severity,
+                one.place.record.is_some(),
+                &one.place.item,
+                &one.remedy,
+                Cut::of(&one.message).words(),
+            );
+            let at = *index.entry(key).or_insert(groups.len());
+            match groups.get_mut(at) {
+                Some(group) => group.0.push(one),
+                None => groups.push(Group(vec![one])),
+            }
+        }
+        groups
+    }
+
+    /// Sort by severity (the gravest first), place and message, and drop repetitions.
+    pub fn sort(&mut self) {
+        self.0.sort_by_cached_key(|one| {
+            let file = natural_key(&one.place.file.to_string_lossy());
+            let place = (file, one.place.clone(), one.message.clone());
+            (Reverse(one.severity), place)
+        });
+        self.0.dedup();
+    }
+}
+
+impl fmt::Display for Diagnostics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.iter().try_for_each(|one| writeln!(f, "{one}"))
+    }
+}
+
+impl std::error::Error for Diagnostics {}
+
+/// Problems that are alike, at least one.
+#[derive(Debug, Clone)]
+pub struct Group<'a>(pub Vec<&'a Diagnostic>);
+
+/// Places that a summary names.
+const NAMED: usize = 6;
+
+impl Group<'_> {
+    /// The group as one problem: ranges for the numbers that differ, the number of records (or
+    /// lines) and the first of them. `None` for an empty group.
+    pub fn summary(&self) -> Option<Diagnostic> {
+        let (first, others) = self.0.split_first()?;
+        let mut summary = (*first).clone();
+        if others.is_empty() {
+            return Some(summary);
+        }
+        let (noun, names) = self.names();
+        let more = if names.len() > NAMED { ", …" } else { "" };
+        summary.message = format!(
+            "{} (in {} {noun}: {}{more})",
+            self.message(),
+            names.len(),
+            names[..names.len().min(NAMED)].join(", ")
+        );
+        summary.place = Place {
+            file: self.common_path(),
+            item: first.place.item.clone(),
+            ..Place::default()
+        };
+        Some(summary)
+    }
+
+    /// What tells the members apart: records, lines or files.
+    fn names(&self) -> (&'static str, Vec<String>) {
+        let places = self.0.iter().map(|d| &d.place);
+        let records: Option<Vec<String>> = places.clone().map(|p| p.record.clone()).collect();
+        let line = |p: &Place| p.line.map(|l| l.to_string());
+        let lines: Option<Vec<String>> = places.clone().map(line).collect();
+        match (records, lines) {
+            (Some(records), _) => ("records", records),
+            (None, Some(lines)) => ("lines", lines),
+            (None, None) => (
+                "files",
+                places.map(|p| p.file.display().to_string()).collect(),
+            ),
+        }
+    }
+
+    /// The file that all share, else the folder.
+    fn common_path(&self) -> PathBuf {
+        let mut paths = self.0.iter().map(|d| d.place.file.as_path());
+        let first = paths.next().unwrap_or(Path::new(""));
+        paths.fold(first.to_path_buf(), |common, path| {
+            let same = common.iter().zip(path.iter()).take_while(|(a, b)| a == b);
+            same.map(|(part, _)| part).collect()
+        })
+    }
+
+    /// The message that all share, with the range of each number that differs.
+    fn message(&self) -> String {
+        let cuts: Vec<Cut<'_>> = self.0.iter().map(|d| Cut::of(&d.message)).collect();
+        let Some(first) = cuts.first() else {
+            return String::new();
+        };
+        let mut text = String::new();
+        for (i, words) in first.words.iter().enumerate() {
+            text.push_str(words);
+            let numbers: Vec<&str> = cuts
+                .iter()
+                .filter_map(|c| c.numbers.get(i).copied())
+                .collect();
+            text.push_str(&range(&numbers));
+        }
+        text
+    }
+}
+
+/// Numbers as one, or from the least to the greatest.
+fn range(numbers: &[&str]) -> String {
+    let value = |text: &&&str| text.parse::<f64>().unwrap_or(f64::NAN);
+    let by_value = |a: &&&str, b: &&&str| value(a).total_cmp(&value(b));
+    let least = numbers.iter().min_by(by_value);
+    let greatest = numbers.iter().max_by(by_value);
+    match (least, greatest) {
+        (Some(least), Some(greatest)) if least != greatest => format!("{least} to {greatest}"),
+        (Some(one), _) => (*one).to_owned(),
+        _ => String::new(),
+    }
+}
+
+/// A message cut at its numbers: words and numbers in turn, words first. Numbers that are part of a
+/// name (`run12`, `'12'`) are words.
+#[derive(Debug, PartialEq)]
+struct Cut<'a> {
+    words: Vec<&'a str>,
+    numbers: Vec<&'a str>,
+}
+
+impl<'a> Cut<'a> {
+    fn of(message: &'a str) -> Self {
+        let mut cut = Self {
+            words: Vec::new(),
+            numbers: Vec::new(),
+        };
+        let (mut begin, mut at, mut quoted) = (0, 0, false);
+        while let Some(letter) = message[at..].chars().next() {
+            let before = message[..at].chars().next_back();
+            let in_word = before.is_some_and(|c| c.is_alphanumeric() || "_.'".contains(c));
+            if letter == '\'' {
+                quoted = !quoted && !before.is_some_and(char::is_alphanumeric);
+            }
+            let length = number_length(&message[at..]);
+            if length > 0 && !quoted && !in_word {
+                cut.words.push(&message[begin..at]);
+                cut.numbers.push(&message[at..at + length]);
+                begin = at + length;
+                at = begin;
+            } else {
+                at += letter.len_utf8();
+            }
+        }
+        cut.words.push(&message[begin..]);
+        cut
+    }
+
+    fn words(self) -> Vec<&'a str> {
+        self.words
+    }
+}
+
+/// Bytes of the number that a text begins with; 0 where it begins with none, or with a word that
+/// has digits.
+fn number_length(text: &str) -> usize {
+    let digits = |from: usize| {
+        let rest = text.get(from..).unwrap_or("");
+        rest.bytes().take_while(u8::is_ascii_digit).count()
+    };
+    let sign = usize::from(text.starts_with('-'));
+    let whole = digits(sign);
+    if whole == 0 {
+        return 0;
+    }
+    let mut length = sign + whole;
+    if text[length..].starts_with('.') {
+        let decimals = digits(length + 1);
+        length += if decimals > 0 { 1 + decimals } else { 0 };
+    }
+    if text[length..].starts_with('e') {
+        let sign = usize::from(text[length + 1..].starts_with(['-', '+']));
+        let exponent = digits(length + 1 + sign);
+        length += if exponent > 0 { 1 + sign + exponent } else { 0 };
+    }
+    let next = text[length..].chars().next();
+    match next.is_some_and(|c| c.is_alphanumeric() || c == '_') {
+        true => 0,
+        false => length,
+    }
+}
+
+/// Collects the problems of one file while it is read.
+#[derive(Debug)]
+pub(super) struct FaultCollector {
+    file: PathBuf,
+    found: Vec<Diagnostic>,
+}
+
+impl FaultCollector {
+    /// An empty one for a file.
+    pub(super) fn new(file: &Path) -> Self {
+        Self {
+            file: file.to_path_buf(),
+            found: Vec::new(),
+        }
+    }
+
+    /// Note a problem that stops the campaign.
+    pub(super) fn fault(
+        &mut self,
+        code: Code,
+        line: Option<usize>,
+        item: &str,
+        message: impl Into<String>,
+        remedy: &str,
+    ) {
+        self.found.push(Diagnostic {
+            code,
+            severity: Severity::Campaign,
+            place: Place {
+                file: self.file.clone(),
+                line,
+                record: None,
+                item: item.to_owned(),
+            },
+            message: message.into(),
+            remedy: remedy.to_owned(),
+        });
+    }
+
+    /// Take over problems of another file.
+    pub(super) fn extend(&mut self, others: impl IntoIterator<Item = Diagnostic>) {
+        self.found.extend(others);
+    }
+
+    /// Whether a problem that stops the campaign was noted.
+    pub(super) fn blocks(&self) -> bool {
+        self.found.iter().any(|d| d.severity == Severity::Campaign)
+    }
+
+    /// The problems noted.
+    pub(super) fn into_diagnostics(self) -> Diagnostics {
+        Diagnostics(self.found)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of_record(record: &str, item: &str, message: &str) -> Diagnostic {
+        Diagnostic {
+            code: Code::ShortRecord,
+            severity: Severity::Note,
+            place: Place {
+                file: format!("day1/{record}.csv").into(),
+                line: None,
+                record: Some(record.to_owned()),
+                item: item.to_owned(),
+            },
+            message: message.to_owned(),
+            remedy: "copy the file again".to_owned(),
+        }
+    }
+
+    #[test]
+    fn messages_alike_but_for_numbers_become_one_with_ranges() {
+        let message = |n| format!("{n} samples, the usual record has 46");
+        let all = [34, 31, 33].map(|n| of_record(&format!("r{n}"), "", &message(n)));
+        let all = Diagnostics(all.to_vec());
+        let groups = all.groups();
+        assert_eq!(groups.len(), 1);
+        let summary = groups[0].summary().unwrap();
+        assert_eq!(
+            summary.to_string(),
+            "day1: 31 to 34 samples, the usual record has 46 (in 3 records: r34, r31, r33). \
+             copy the file again"
+        );
+    }
+
+    #[test]
+    fn a_group_names_records_and_its_channel_once() {
+        let names: Vec<String> = (0..8).map(|i| format!("r{i}")).collect();
+        let all = names
+            .iter()
+            .flat_map(|r| ["vx", "vy"].map(|c| of_record(r, c, "no unit")));
+        let all = Diagnostics(all.collect());
+        let summaries: Vec<String> = all
+            .groups()
+            .iter()
+            .map(|g| g.summary().unwrap())
+            .map(|d| format!("{}: {}", d.place, d.message))
+            .collect();
+        assert_eq!(
+            summaries,
+            ["vx", "vy"]
+                .map(|c| format!("day1: {c}: no unit (in 8 records: r0, r1, r2, r3, r4, r5, …)"))
+        );
+    }
+
+    #[test]
+    fn names_with_digits_are_not_numbers() {
+        let cut = Cut::of("the record 'r 12' has the file's 3 of -1.5e-3 V, run12 and 2kHz");
+        assert_eq!(cut.numbers, ["3", "-1.5e-3"]);
+        let other = |name| of_record("a", "", &format!("its samples are those of '{name}'"));
+        assert_eq!(
+            Diagnostics(vec![other("r1"), other("r2")]).groups().len(),
+            2
+        );
+    }
+
+    #[test]
+    fn lines_of_a_table_are_named_where_there_is_no_record() {
+        let mut faults = FaultCollector::new(Path::new("runs.csv"));
+        for line in [3, 5] {
+            faults.fault(
+                Code::InvalidValue,
+                Some(line),
+                "sweep",
+                "'x' is no word",
+                "write up",
+            );
+        }
+        let all = faults.into_diagnostics();
+        let summary = all.groups()[0].summary().unwrap();
+        assert_eq!(
+            format!("{}: {}", summary.place, summary.message),
+            "runs.csv: sweep: 'x' is no word (in 2 lines: 3, 5)"
+        );
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn prop_a_message_is_its_words_and_numbers_in_turn(text in "\\PC{0,40}[a-z0-9 .'e+-]{0,40}") {
+            let cut = Cut::of(&text);
+            let mut whole = String::new();
+            for (i, words) in cut.words.iter().enumerate() {
+                whole += words;
+                whole += cut.numbers.get(i).unwrap_or(&"");
+            }
+            proptest::prop_assert_eq!(whole, text);
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! Problems of a record, each with its kind, its place and a remedy.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// Defines [`FlagCode`] with the name of each code in files and tables.
+macro_rules! flag_codes {
+    ($($(#[$doc:meta])* $code:ident = $name:literal,)*) => {
+        /// Kind of a problem.
+        #[derive(
+            Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+        )]
+        pub enum FlagCode {
+            $($(#[$doc])* #[serde(rename = $name)] $code,)*
+        }
+
+        impl FlagCode {
+            /// The stable name in files and tables.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$code => $name,)*
+                }
+            }
+        }
+    };
+}
+
+flag_codes! {
+    /// The file or the dataset cannot be read.
+    Unreadable = "unreadable",
+    /// There are no samples.
+    Empty = "empty",
+    /// The dataset has no channel of the stated name.
+    MissingChannel = "missing_channel",
+    /// The file has no such dataset.
+    MissingDataset = "missing_dataset",
+    /// Unit, scale or threshold do not suit the channel's role.
+    WrongUnit = "wrong_unit",
+    /// Neither the file nor the campaign states a unit.
+    UnitMissing = "unit_missing",
+    /// The channel holds no real numbers.
+    NotNumbers = "not_numbers",
+    /// Some values are NaN or infinite.
+    NotANumber = "not_a_number",
+    /// The channels differ in length.
+    UnequalLengths = "unequal_lengths",
+    /// Samples without a value were cut off at the ends.
+    Trimmed = "trimmed",
+    /// A channel is constant.
+    DeadChannel = "dead_channel",
+    /// A channel reaches the limits of its converter.
+    Clipped = "clipped",
+    /// Samples are missing.
+    DroppedSamples = "dropped_samples",
+    /// Time stamps are repeated.
+    RepeatedSamples = "repeated_samples",
+    /// The time axis holds no numbers.
+    TimeUnreadable = "time_unreadable",
+    /// The time runs backward.
+    TimeBackward = "time_backward",
+    /// The time axis is not uniform.
+    TimeNotUniform = "time_not_uniform",
+    /// No sample rate is known.
+    NoSampleRate = "no_sample_rate",
+    /// The channels differ in sample rate.
+    UnequalSampleRates = "unequal_sample_rates",
+    /// Channels of the two masses are swapped.
+    SwappedMasses = "swapped_masses",
+    /// Two channels have opposite signs.
+    OppositeSign = "opposite_sign",
+    /// The scales of two channels contradict each other.
+    ScalesContradict = "scales_contradict",
+    /// The drive channel holds no harmonic tone.
+    DriveNotHarmonic = "drive_not_harmonic",
+    /// Measured and stated drive frequency differ.
+    DriveFrequencyContradicts = "drive_frequency_contradicts",
+    /// Jumps of the approach velocity go up.
+    JumpsPointTheWrongWay = "jumps_point_the_wrong_way",
+    /// No free decay was found.
+    NoFreeDecay = "no_free_decay",
+    /// Contact pulses without a jump of velocity, of a record that is identified.
+    ContactWithoutVelocityJump = "contact_without_velocity_jump",
+    /// Contact pulses without a jump of velocity, of a record that is checked.
+    ContactWithoutJump = "contact_without_jump",
+    /// The campaign excludes the record.
+    Excluded = "excluded",
+}
+
+impl fmt::Display for FlagCode {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A problem of a record: what, where, and what to do about it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Flag {
+    /// Its kind.
+    pub code: FlagCode,
+    /// The channel concerned (name in the file), where there is one.
+    pub channel: Option<String>,
+    /// One sentence: what was found and what was expected.
+    pub message: String,
+    /// One sentence: what the user can do.
+    pub remedy: String,
+    /// Whether it excludes the record from the identification.
+    pub excludes: bool,
+}
+
+impl Flag {
+    /// A problem that excludes the record.
+    pub fn new(
+        code: FlagCode,
+        channel: Option<&str>,
+        message: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self {
+            code,
+            channel: channel.map(str::to_owned),
+            message: message.into(),
+            remedy: remedy.into(),
+            excludes: true,
+        }
+    }
+
+    /// The same problem; it excludes the record if `excludes`.
+    #[must_use]
+    pub fn excluding(self, excludes: bool) -> Self {
+        Self { excludes, ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_a_code_is_stored_under_its_name() {
+        let code = FlagCode::JumpsPointTheWrongWay;
+        let stored = serde_json::to_string(&code).unwrap();
+        assert_eq!(stored, format!("\"{code}\""));
+        assert_eq!(serde_json::from_str::<FlagCode>(&stored).unwrap(), code);
+    }
+}
