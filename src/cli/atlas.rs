@@ -4,7 +4,7 @@
 use clap::{Args, ValueEnum};
 
 use super::machine::{MachineArgs, WatchArgs, range, refused};
-use super::theory::{OutArgs, written};
+use super::theory::{OutArgs, study_text};
 use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::theory::Study;
 use crate::pipeline::theory::plan::RegionsPlan;
@@ -102,7 +102,7 @@ impl Atlas {
         }
         #[cfg(feature = "mpi")]
         if self.mpi {
-            return super::ranks::run(&study, &plan, &self.out, verbosity);
+            return super::mpi::run(&study, &plan, &self.out, verbosity);
         }
         self.out.study(&study, "atlas", verbosity)
     }
@@ -168,7 +168,7 @@ pub fn computed(
     let request = AtlasRequest::new(study.machine(), plan.settings());
     let part = part(&request, number, of).map_err(|e| refused(&e))?;
     Ok(AtlasPart {
-        study: written(study)?,
+        study: study_text(study)?,
         ..part
     })
 }

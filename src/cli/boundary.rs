@@ -51,7 +51,8 @@ enum Kind {
     /// 1 | 1j, 2 | 2j: where the masses begin to stick together after an impact
     DeadZone,
     /// ρp: below it the masses never separate (−1 for equal masses)
-    Joined,
+    #[value(name = "joined")]
+    Sticking,
 }
 
 /// A motion z = p/n, with or without a dead zone.
@@ -79,7 +80,7 @@ impl Kind {
             Self::Grazing => Sought::ImpactlessGrazing,
             Self::FurtherImpact => Sought::FurtherImpact,
             Self::DeadZone => Sought::DeadZone,
-            Self::Joined => Sought::Sticking,
+            Self::Sticking => Sought::Sticking,
         }
     }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 
 use super::coverage::Coverage;
-use super::theory::{COPY, Work};
+use super::theory::{COPY, in_folder};
 use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::theory::{self, Study as Written};
 use labfiles::output::{Lock, write_bytes};
@@ -70,12 +70,10 @@ impl Study {
                 continue;
             }
             verbosity.info(&format!("{name}: {}", study.title));
-            let work = Work {
-                folder: &folder,
-                text: &text,
-                resume: self.resume,
-            };
-            work.run(verbosity, "study", |desk| Ok(theory::run(&study, desk)?))?;
+            let place = (folder.as_path(), text.as_str(), self.resume);
+            in_folder(place, "study", verbosity, |context| {
+                Ok(theory::run(&study, context)?)
+            })?;
             write_bytes(&folder.join(COPY), text.as_bytes())?;
         }
         Ok(Exit::Done)

@@ -2,7 +2,7 @@
 //! and Parquet, and a figure as SVG, PNG and PDF.
 
 pub mod basins;
-pub mod kept;
+pub mod block_cache;
 pub mod plan;
 pub mod regions;
 pub mod sweep;
@@ -14,8 +14,8 @@ use crate::pipeline::table::{self, Table};
 use crate::report::ReportError;
 use crate::report::figures::Figure;
 use crate::report::picture::pictures;
+use block_cache::BlockCache;
 use impact_oscillator::model::ModelError;
-use kept::Kept;
 use labfiles::output::{OutputError, write_bytes};
 pub use plan::Study;
 
@@ -67,18 +67,18 @@ impl StudyError {
 }
 
 /// Where a piece of work writes its results, and to whom it reports.
-pub struct Desk<'a> {
+pub struct StudyContext<'a> {
     /// The folder.
     pub folder: &'a Path,
     /// Blocks of an earlier, interrupted run.
-    pub kept: &'a Kept,
+    pub blocks: &'a BlockCache,
     /// Receives the steps done and the number of steps.
     pub progress: &'a (dyn Fn(u64, u64) + Sync),
     /// Receives messages for the user.
-    pub say: &'a (dyn Fn(&str) + Sync),
+    pub inform: &'a (dyn Fn(&str) + Sync),
 }
 
-impl Desk<'_> {
+impl StudyContext<'_> {
     /// Write a table as `NAME.csv` and `NAME.parquet`.
     fn table(&self, name: &str, table: &Table) -> Result<(), StudyError> {
         self.bytes(&format!("{name}.csv"), table.csv().as_bytes())?;
@@ -107,20 +107,20 @@ impl Desk<'_> {
 ///
 /// # Errors
 /// [`StudyError`] with the first piece of work that could not be done.
-pub fn run(study: &Study, desk: &Desk<'_>) -> Result<(), StudyError> {
+pub fn run(study: &Study, context: &StudyContext<'_>) -> Result<(), StudyError> {
     let machine = study.machine();
     machine.check().map_err(StudyError::of("machine"))?;
     for (name, plan) in &study.time_series {
-        time_series::run(&machine, name, plan, desk)?;
+        time_series::run(&machine, name, plan, context)?;
     }
     for (name, plan) in &study.sweep {
-        sweep::run(&machine, name, plan, desk)?;
+        sweep::run(&machine, name, plan, context)?;
     }
     for (name, plan) in &study.basins {
-        basins::run(&machine, name, plan, desk)?;
+        basins::run(&machine, name, plan, context)?;
     }
     for (name, plan) in &study.regions {
-        regions::run(&machine, name, plan, desk)?;
+        regions::run(&machine, name, plan, context)?;
     }
     Ok(())
 }

@@ -15,7 +15,7 @@ const FOLDER: &str = ".impactid-blocks";
 
 /// The blocks of one study.
 #[derive(Debug)]
-pub struct Kept {
+pub struct BlockCache {
     folder: PathBuf,
     key: String,
 }
@@ -26,7 +26,7 @@ struct Block<T> {
     content: T,
 }
 
-impl Kept {
+impl BlockCache {
     /// The blocks in an output folder, of work that a text describes in full. Without `resume`
     /// the blocks of an earlier run are removed.
     ///
@@ -40,16 +40,16 @@ impl Kept {
             impact_oscillator::atlas::map::Kernel::of_this_machine()
         ));
         hash.update(work);
-        let kept = Self {
+        let cache = Self {
             folder: out.join(FOLDER),
             key: hexadecimal(hash),
         };
         if !resume {
-            kept.remove();
+            cache.remove();
         }
-        output::make_folder(&kept.folder)?;
-        output::clear_parts(&kept.folder);
-        Ok(kept)
+        output::make_folder(&cache.folder)?;
+        output::clear_parts(&cache.folder);
+        Ok(cache)
     }
 
     /// A block; `None` where it is not there, of other work or unreadable.
@@ -110,13 +110,13 @@ mod tests {
     #[test]
     fn blocks_are_reused_by_the_same_work_alone() {
         let folder = tempfile::tempdir().unwrap();
-        let kept = Kept::open(folder.path(), "work", false).unwrap();
-        kept.save("rows 0", &vec![0.1, 0.2]).unwrap();
-        let again = Kept::open(folder.path(), "work", true).unwrap();
+        let cache = BlockCache::open(folder.path(), "work", false).unwrap();
+        cache.save("rows 0", &vec![0.1, 0.2]).unwrap();
+        let again = BlockCache::open(folder.path(), "work", true).unwrap();
         assert_eq!(again.load("rows 0"), Some(vec![0.1, 0.2]));
-        let other = Kept::open(folder.path(), "other work", true).unwrap();
+        let other = BlockCache::open(folder.path(), "other work", true).unwrap();
         assert_eq!(other.load::<Vec<f64>>("rows 0"), None);
-        let anew = Kept::open(folder.path(), "work", false).unwrap();
+        let anew = BlockCache::open(folder.path(), "work", false).unwrap();
         assert_eq!(anew.load::<Vec<f64>>("rows 0"), None);
     }
 }

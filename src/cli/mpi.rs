@@ -1,7 +1,7 @@
 //! An atlas over the ranks of an MPI run: each computes one part, the first puts them together, so
 //! that the files are those of one process, byte for byte.
 
-use mpi::traits::{Communicator, Destination, Source};
+use ::mpi::traits::{Communicator, Destination, Source};
 
 use super::atlas::computed;
 use super::merge::whole;
@@ -25,7 +25,8 @@ pub fn run(
     verbosity: Verbosity,
 ) -> Result<Exit, Failure> {
     let start_it = "start the program with mpirun, and only once in a process";
-    let universe = mpi::initialize().ok_or_else(|| Failure::new("MPI does not start", start_it))?;
+    let universe =
+        ::mpi::initialize().ok_or_else(|| Failure::new("MPI does not start", start_it))?;
     let world = universe.world();
     let (rank, size) = (world.rank(), world.size());
     let own = computed(
