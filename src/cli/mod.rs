@@ -21,7 +21,7 @@ mod mpi;
 mod plan;
 mod progress;
 mod read_log;
-mod report_options;
+mod report_args;
 mod run;
 mod selftest;
 mod simulate;

@@ -7,7 +7,7 @@ use clap::Args;
 use super::details::{print_fits, print_records};
 use super::load::load_campaign;
 use super::progress::{LATER, Progress};
-use super::report_options::{ReportOptions, print_report_paths, quoted};
+use super::report_args::{ReportArgs, print_report_paths, quoted};
 use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::{self, Destination, checkpoint};
 use labfiles::output::Lock;
@@ -26,7 +26,7 @@ pub(super) struct Run {
     #[arg(long)]
     resume: bool,
     #[command(flatten)]
-    options: ReportOptions,
+    options: ReportArgs,
 }
 
 const EXAMPLE: &str = "\

@@ -9,7 +9,7 @@ use clap::Args;
 use super::details::{print_fits, print_records};
 use super::load::load_campaign;
 use super::progress::Progress;
-use super::report_options::{ReportOptions, print_report_paths, quoted};
+use super::report_args::{ReportArgs, print_report_paths, quoted};
 use super::stdout::print;
 use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::{self, store};
@@ -103,7 +103,7 @@ pub(super) struct Report {
     #[arg(long, exclusive = true)]
     list_words: bool,
     #[command(flatten)]
-    options: ReportOptions,
+    options: ReportArgs,
 }
 
 const REPORT: &str = "\
@@ -116,7 +116,7 @@ Example:
 It reads the output of `impactid identify` there and writes report.pdf and the data of the figures.";
 
 /// The commands that make a report in stages.
-fn commands(campaign: &Path, folder: &Path, options: &ReportOptions) -> String {
+fn commands(campaign: &Path, folder: &Path, options: &ReportArgs) -> String {
     let (campaign, out) = (quoted(campaign), quoted(folder));
     format!(
         "impactid ingest {campaign} --out {out}\nimpactid classify {out}\n\

@@ -15,7 +15,7 @@ use crate::report::Format;
 /// Options of the report.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Report")]
-pub(super) struct ReportOptions {
+pub(super) struct ReportArgs {
     /// Formats of the report: pdf, html, svg, png (several: pdf,html)
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     format: Vec<Format>,
@@ -49,7 +49,7 @@ impl ValueEnum for Paper {
     }
 }
 
-impl ReportOptions {
+impl ReportArgs {
     /// Override the options of campaign.toml.
     pub(super) fn apply(&self, report: &mut Report, verbosity: Verbosity) -> Result<(), Failure> {
         let files = [&self.template, &self.words, &self.logo];
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn valid_options_are_typed_as_they_were_given() {
-        let options = ReportOptions {
+        let options = ReportArgs {
             format: vec![Format::Pdf, Format::Html],
             template: Some("my template.typ".into()),
             words: Some("de.toml".into()),
@@ -157,6 +157,6 @@ mod tests {
             options.typed(),
             " --format pdf,html --template 'my template.typ' --words de.toml --paper letter --decimal-comma"
         );
-        assert_eq!(ReportOptions::default().typed(), "");
+        assert_eq!(ReportArgs::default().typed(), "");
     }
 }
