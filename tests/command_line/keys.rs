@@ -172,7 +172,7 @@ fn published_pdf(lab: &Lab) {
 
 fn bootstrap(lab: &Lab) {
     synthetic(lab);
-    lab.edit("\"covariance\"", "\"bootstrap\"\nreplicas = 20");
+    lab.edit("\"covariance\"", "\"bootstrap\"\nreplicas = 4");
 }
 
 fn of_campaign() -> Vec<Change> {
@@ -373,7 +373,7 @@ fn of_analysis() -> Vec<Change> {
             lab.edit("\"covariance\"", "\"profile\"")
         }),
         between("analysis.replicas", Identify, bootstrap, |lab| {
-            lab.edit("replicas = 20", "replicas = 30")
+            lab.edit("replicas = 4", "replicas = 6")
         }),
     ]
 }
@@ -412,10 +412,9 @@ fn of_report() -> Vec<Change> {
         }),
         between("report.words", Html, published, |lab| {
             let blank = lab.run(&["report", "--list-words"]).said;
-            lab.write(
-                "words.toml",
-                &blank.replacen("= \"\"", "= \"Ein Wort\"", 400),
-            );
+            // each phrase with a dot behind it
+            let words = blank.replace("\"\n", "·\"\n").replace("en·", "en");
+            lab.write("words.toml", &words);
             add(lab, "report", "words = \"words.toml\"");
         }),
         between("report.language", Html, published, |lab| {
