@@ -4,7 +4,7 @@
 //! Data walks one street, and a room never imports from a room to its right:
 //!
 //! `units` < `output` < `signal` < `record` < `event` < `motion` < `model` < `atlas` <
-//! `synthetic` < `identify` < `report` < `campaign` < `pipeline` < `cli`.
+//! `synthetic` < `identify` < `compare` < `report` < `campaign` < `pipeline` < `cli`.
 
 pub mod message;
 

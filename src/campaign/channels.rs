@@ -105,6 +105,15 @@ fn resolve_one(
         offset: raw_level(&written.offset, &key("offset"), unit, context).unwrap_or(0.0),
         sign: sign(&written.sign, &key("sign"), context),
         high_pass_hz: context.positive(&written.high_pass, &key("high_pass"), Dimension::Frequency),
+        delay_s: context
+            .within(&written.delay, &key("delay"), Dimension::Time, [-1.0, 1.0])
+            .unwrap_or(0.0),
+        delay_uncertainty_s: context.within(
+            &written.delay_uncertainty,
+            &key("delay_uncertainty"),
+            Dimension::Time,
+            [0.0, 1.0],
+        ),
         threshold: threshold(role, &written.threshold, &key("threshold"), context),
         range: raw_level(&written.range, &key("range"), unit, context),
         ignore_file_unit: written

@@ -13,7 +13,7 @@ use super::resolved::{RecordEntry, ResolvedCampaign};
 use crate::event::{DetectSettings, Detection, DetectionSource, detect};
 use crate::record::calibrate;
 use crate::record::{Flag, FlagCode, Record, Role};
-use labfiles::source::Source;
+use labfiles::Source;
 
 /// What reading all records found.
 #[derive(Debug, Default)]

@@ -13,9 +13,9 @@ use super::run_table::{self, Row};
 use super::written::OneOrMany;
 use crate::record::calibrate::{self, ChannelKey, ChannelSetup};
 use crate::record::{Flag, FlagCode};
-use labfiles::source::{DatasetInfo, ReadError, Source};
+use labfiles::{DatasetInfo, ReadError, Source};
 
-/// How a file is opened; [`labfiles::open::open`] but for tests.
+/// How a file is opened; [`labfiles::open`] but for tests.
 pub type Opener<'a> = &'a (dyn Fn(&Path) -> Result<Box<dyn Source>, ReadError> + Sync);
 
 /// A record as its file's metadata and the run table describe it, before it is read.

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use super::discovery::Opener;
 use crate::record::Role;
-use labfiles::source::{ChannelInfo, DatasetInfo, Samples, Source};
 use labfiles::units::{self, Dimension};
+use labfiles::{ChannelInfo, DatasetInfo, Samples, Source};
 
 /// Depth of the search below the folder.
 const DEPTH: usize = 4;

@@ -12,7 +12,9 @@ use super::read::{self, Text};
 use super::records;
 use super::resolved::{Analysis, NominalValues, RecordEntry, Report, ResolvedCampaign};
 use super::written::{self, Flight, Format, Language, Machine, Paper, Placed, WrittenCampaign};
+use crate::identify::fit::effect::EffectKind;
 use crate::identify::uncertainty::IntervalMethod;
+use crate::record::calibrate::ChannelSetup;
 use crate::report::words::Words;
 use labfiles::units::Dimension;
 
@@ -89,6 +91,7 @@ fn resolve(
         None => records::resolve(&written.records, shared, open, context),
     };
     exclude(&mut records, &written.analysis.exclude, context);
+    refuse_long_delays(&channels, &records, &written.channels, context);
     let name = name(&written.campaign.name, folder);
     let flight = written
         .campaign
@@ -188,6 +191,7 @@ fn rig(rig: &written::Rig, context: &mut ResolveContext<'_>) -> NominalValues {
     let restitution = part(&rig.restitution, "restitution", [0.0, 1.0]);
     let gain = part(&rig.gain_uncertainty, "gain_uncertainty", [0.0, 0.5]);
     let corner = part(&rig.corner_uncertainty, "corner_uncertainty", [0.0, 0.5]);
+    let mass = part(&rig.mass_uncertainty, "mass_uncertainty", [0.0, 0.5]);
     let clearance = context.within(
         &rig.clearance_uncertainty,
         "rig.clearance_uncertainty",
@@ -204,6 +208,56 @@ fn rig(rig: &written::Rig, context: &mut ResolveContext<'_>) -> NominalValues {
         gain_uncertainty: gain.unwrap_or(0.005),
         corner_uncertainty: corner.unwrap_or(0.05),
         clearance_uncertainty_m: clearance.unwrap_or(1e-5),
+        mass_uncertainty: mass.unwrap_or(0.005),
+        effects: effects(&rig.effects, context),
+    }
+}
+
+/// The effects that the fit allows, by their names.
+fn effects(
+    placed: &Placed<Vec<String>>,
+    context: &mut ResolveContext<'_>,
+) -> Option<Vec<EffectKind>> {
+    let placed = placed.as_ref()?;
+    let mut kinds = Vec::new();
+    for name in placed.get_ref() {
+        match EffectKind::named(name) {
+            Some(kind) => kinds.push(kind),
+            None => {
+                let known = EffectKind::ALL.map(EffectKind::name).join(", ");
+                let what = format!("no effect is called '{name}'");
+                let remedy = format!("choose among {known}, or remove the line to allow all");
+                context.fault(Code::OutOfRange, placed, "rig.effects", what, &remedy);
+            }
+        }
+    }
+    Some(kinds)
+}
+
+/// A channel's delay is less than one period of the drive, or its phase says nothing.
+fn refuse_long_delays(
+    channels: &[ChannelSetup],
+    records: &[RecordEntry],
+    written: &written::Channels,
+    context: &mut ResolveContext<'_>,
+) {
+    let stated = records.iter().filter_map(|r| r.setting.stated_frequency_hz);
+    let fastest = stated.fold(0.0, f64::max);
+    for channel in channels.iter().filter(|c| c.delay_s.abs() * fastest >= 1.0) {
+        let Some(placed) = written.of(channel.role) else {
+            continue;
+        };
+        let what = format!(
+            "{:.4} s is longer than a period of the drive at {fastest} Hz",
+            channel.delay_s
+        );
+        context.fault(
+            Code::OutOfRange,
+            placed,
+            &format!("channels.{}.delay", channel.role.name()),
+            what,
+            "state the delay against the drive's channel, with its unit",
+        );
     }
 }
 

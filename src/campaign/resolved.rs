@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::written::{Excitation, Flight, Format, Language, Machine, Paper};
 use crate::identify::uncertainty::IntervalMethod;
+use crate::identify::fit::effect::EffectKind;
 use crate::record::Setting;
 use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup};
 
@@ -73,6 +74,12 @@ pub struct NominalValues {
     pub corner_uncertainty: f64,
     /// Standard uncertainty of the clearances, m.
     pub clearance_uncertainty_m: f64,
+    /// Standard uncertainty of the masses, relative.
+    #[serde(default)]
+    pub mass_uncertainty: f64,
+    /// Effects beyond the model that the fit allows; `None`: all.
+    #[serde(default)]
+    pub effects: Option<Vec<EffectKind>>,
 }
 
 /// Settings of the analysis.

@@ -133,6 +133,10 @@ pub struct Rig {
     pub corner_uncertainty: Placed<Quantity>,
     /// Standard uncertainty of the clearances.
     pub clearance_uncertainty: Placed<Quantity>,
+    /// Standard uncertainty of the masses, relative.
+    pub mass_uncertainty: Placed<Quantity>,
+    /// Effects beyond the model that the fit allows; all where it is not given.
+    pub effects: Placed<Vec<String>>,
 }
 
 /// `[channels]`: one table a role.
@@ -169,6 +173,10 @@ pub struct Channel {
     pub sign: Placed<f64>,
     /// Corner of the first-order high-pass (of an integrator, of an AC coupling).
     pub high_pass: Placed<Quantity>,
+    /// How much later than the drive's channel it shows what happens.
+    pub delay: Placed<Quantity>,
+    /// Standard uncertainty of the delay.
+    pub delay_uncertainty: Placed<Quantity>,
     /// Level between open and closed contact, in the unit after the scale.
     pub threshold: Placed<Quantity>,
     /// Full scale of the converter, in the unit of the file.

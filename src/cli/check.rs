@@ -35,7 +35,7 @@ impl Check {
         if let Some(campaign) = &outcome.campaign {
             let total = campaign.records.len() as u64;
             let progress = Progress::new(verbosity, "reading", total);
-            let open = labfiles::open::open;
+            let open = labfiles::open;
             let checked = check::read_all(campaign, &open, &|done| progress.set(done, total));
             outcome.diagnostics.0.extend(checked.diagnostics);
             outcome.diagnostics.sort();

@@ -6,8 +6,8 @@ use clap::{Args, ValueEnum};
 
 use super::read_log::ReadLog;
 use super::{Exit, Failure, Verbosity, interrupt};
+use labfiles::ReadError;
 use labfiles::convert::{self, ConvertError, Options, Target};
-use labfiles::source::ReadError;
 
 /// Arguments of `impactid convert`.
 #[derive(Debug, Args)]

@@ -7,15 +7,15 @@ use miette::{GraphicalReportHandler, GraphicalTheme};
 use super::Verbosity;
 use crate::campaign::diagnostic::{Diagnostic, Diagnostics, Severity};
 use crate::pipeline::PipelineError;
+use labfiles::ReadError;
 use labfiles::output::OutputError;
-use labfiles::parquet::guard;
-use labfiles::source::ReadError;
+use labfiles::panic_is_caught;
 
 /// Print no text for a panic of a library that a reader turns into an error: the error is printed.
 pub(super) fn hush_caught_panics() {
     let print = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
-        if !guard::is_caught() {
+        if !panic_is_caught() {
             print(panic);
         }
     }));

@@ -7,7 +7,7 @@ use clap::Args;
 use super::{Exit, Failure, Verbosity};
 use crate::campaign::infer::{self, FolderContents};
 use crate::campaign::template;
-use labfiles::open::open;
+use labfiles::open;
 use labfiles::output;
 
 /// Arguments of `impactid init`.

@@ -10,9 +10,9 @@ use serde::Serialize;
 use super::sketch::sketch;
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Verbosity};
-use labfiles::open::open;
-use labfiles::source::{DatasetInfo, ReadError, Samples, Source};
+use labfiles::open;
 use labfiles::summary::{Summary, summarise};
+use labfiles::{DatasetInfo, ReadError, Samples, Source};
 
 /// Arguments of `impactid inspect`.
 #[derive(Debug, Args)]

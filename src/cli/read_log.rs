@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use super::Verbosity;
-use labfiles::source::{ReadError, Source};
+use labfiles::{ReadError, Source};
 
 /// Opens files and keeps a line of each while details are asked for.
 #[derive(Debug)]
@@ -30,9 +30,9 @@ impl ReadLog {
     /// Open a file of any supported format.
     ///
     /// # Errors
-    /// As [`labfiles::open::open`].
+    /// As [`labfiles::open`].
     pub(super) fn open(&self, path: &Path) -> Result<Box<dyn Source>, ReadError> {
-        let source = labfiles::open::open(path)?;
+        let source = labfiles::open(path)?;
         if self.verbosity.is_detailed() {
             let entry = Entry {
                 format: source.format(),

@@ -51,12 +51,9 @@ pub(crate) fn decays() -> &'static Identified {
 
 fn laboratory() -> Vec<Record> {
     let truth = Truth {
-        restitution: 0.9,
-        natural_frequency_hz: 12.6,
-        damping_ratio: 0.07,
-        static_deflection_m: 1.25e-3,
         drive_asymmetry: 0.01,
         stiffness_asymmetry: -0.005,
+        ..Truth::symmetric(0.9, 12.6, 0.07, 1.25e-3)
     };
     let faults = Faults::default();
     let plan = Plan::for_rig(12.6, 0.07, 1.25e-3, 120);
@@ -65,7 +62,7 @@ fn laboratory() -> Vec<Record> {
 }
 
 /// Two seconds of a decay a(t) = 3 e^(−βΩt) cos(√(1−β²)Ωt) m/s² with β = 0.02, after 0.05 s of rest.
-fn decay(id: &str, mass: usize, f0_hz: f64) -> Record {
+pub(crate) fn decay(id: &str, mass: usize, f0_hz: f64) -> Record {
     let (rate_hz, beta) = (800.0, 0.02);
     let omega = std::f64::consts::TAU * f0_hz;
     let value = |i: usize| {

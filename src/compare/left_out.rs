@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use crate::motion::{Motion, Observation};
+use crate::record::FlagCode;
 
 /// Records that cannot be used for one reason.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unusable {
-    /// Code of the flag; `None`: the type of motion is undetermined.
-    pub flag: Option<String>,
+    /// The flag; `None`: the type of motion is undetermined.
+    pub flag: Option<FlagCode>,
     /// The channel concerned, if one is.
     pub channel: Option<String>,
     /// The records' names, in the order of acquisition.
@@ -22,10 +23,12 @@ pub struct Unusable {
 /// Records excluded by a flag or without a determined motion, sorted by reason.
 pub(super) fn unusable(observations: &[Observation]) -> Vec<Unusable> {
     let mut by_reason: BTreeMap<String, Unusable> = BTreeMap::new();
-    let mut note =
-        |o: &Observation, key: String, flag: Option<&str>, channel: Option<&str>, message: &str| {
+    for o in observations {
+        for (flag, channel, message) in reasons(o) {
+            let name = flag.map_or("motion undetermined", FlagCode::name);
+            let key = format!("{} {}", name.replace('_', " "), channel.unwrap_or_default());
             let entry = by_reason.entry(key).or_insert_with(|| Unusable {
-                flag: flag.map(str::to_owned),
+                flag,
                 channel: channel.map(str::to_owned),
                 records: Vec::new(),
                 message: message.to_owned(),
@@ -33,20 +36,21 @@ pub(super) fn unusable(observations: &[Observation]) -> Vec<Unusable> {
             });
             entry.differ |= entry.message != message;
             entry.records.push(o.record.clone());
-        };
-    for o in observations {
-        for flag in o.flags.iter().filter(|f| f.excludes) {
-            let channel = flag.channel.as_deref();
-            let of = channel.map(|c| format!(" ({c})")).unwrap_or_default();
-            let key = flag.code.name().replace('_', " ") + &of;
-            note(o, key, Some(flag.code.name()), channel, &flag.message);
-        }
-        if let Motion::Undetermined { reason } = &o.classification.motion
-            && !o.excluded()
-            && o.drive.is_some()
-        {
-            note(o, "motion undetermined".into(), None, None, reason);
         }
     }
     by_reason.into_values().collect()
+}
+
+/// Why a record cannot be used: flag, channel and details of each reason.
+fn reasons(o: &Observation) -> Vec<(Option<FlagCode>, Option<&str>, &str)> {
+    let excluding = o.flags.iter().filter(|f| f.excludes);
+    let flags = excluding.map(|f| (Some(f.code), f.channel.as_deref(), f.message.as_str()));
+    let mut reasons: Vec<_> = flags.collect();
+    if let Motion::Undetermined { reason } = &o.classification.motion
+        && reasons.is_empty()
+        && o.drive.is_some()
+    {
+        reasons.push((None, None, reason));
+    }
+    reasons
 }

@@ -4,7 +4,7 @@ use super::input::Input;
 use crate::identify::evidence::boundary::predicted_hz;
 use crate::identify::{Method, Reason};
 use crate::motion::{BoundaryKind, Bracket, Motion, Observation};
-use crate::record::Sweep;
+use crate::record::{FlagCode, Sweep};
 use crate::signal::robust;
 
 /// Counts and ranges of what was measured.
@@ -54,7 +54,7 @@ pub(super) fn overview(input: &Input) -> Overview {
 pub struct RecordRow {
     /// The record's name.
     pub id: String,
-    /// Rig, mass or bumper, if the campaign has several.
+    /// RigKind, mass or bumper, if the campaign has several.
     pub specimen: Option<String>,
     /// Measured drive frequency, Hz; `None` without a drive.
     pub frequency_hz: Option<f64>,
@@ -73,7 +73,7 @@ pub struct RecordRow {
     /// Number of impacts detected.
     pub impacts: usize,
     /// Codes of its flags.
-    pub flags: Vec<String>,
+    pub flags: Vec<FlagCode>,
     /// The methods whose fit used the record.
     pub used_by: Vec<Method>,
     /// Details of the flag that excludes it, if one does.
@@ -112,7 +112,7 @@ fn record(input: &Input, index: usize, reason: Option<&Reason>) -> RecordRow {
         motion: o.classification.motion.clone(),
         confidence: o.classification.confidence,
         impacts: o.impacts.len(),
-        flags: o.flags.iter().map(|f| f.code.name().to_owned()).collect(),
+        flags: o.flags.iter().map(|f| f.code).collect(),
         used_by: input.identification.methods_using(index).collect(),
         excluded: excluding.map(|f| f.message.clone()),
         left_out: reason.cloned(),

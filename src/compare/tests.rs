@@ -1,8 +1,11 @@
 //! Whole campaigns of known truth, compared with their fitted model.
 
-use super::fixture::{decays, nothing_touches, whole};
+use super::fixture::{decay, decays, nothing_touches, whole};
+use super::left_out::unusable;
+use crate::event::{DetectSettings, RigKind};
 use crate::identify::Method;
-use crate::motion::{BoundaryKind, Motion};
+use crate::motion::{BoundaryKind, ClassifySettings, Motion, observe};
+use crate::record::{Flag, FlagCode};
 
 #[test]
 fn the_fitted_model_replays_the_records_it_was_fitted_to() {
@@ -89,4 +92,41 @@ fn free_decays_are_shown_with_their_fit() {
     assert!((first.damping_ratio[0] - 0.02).abs() < 0.001);
     let misfiled = &compared.free_decays[8];
     assert!(misfiled.left_out.is_some(), "{}", misfiled.record);
+}
+
+#[test]
+fn unusable_records_are_grouped_by_flag_and_channel() {
+    let observation = |id: &str, channel: &str, message: &str, excludes: bool| {
+        let mut record = decay(id, 0, 11.0);
+        let flag = Flag::new(
+            FlagCode::Clipped,
+            Some(channel),
+            message,
+            "use a wider range",
+        );
+        record.flags.push(flag.excluding(excludes));
+        let detecting = DetectSettings::default();
+        observe(
+            &record,
+            RigKind::Single,
+            &detecting,
+            &ClassifySettings::default(),
+        )
+    };
+    let found = unusable(&[
+        observation("r1", "b", "at 5 V", true),
+        observation("r2", "a", "at 5 V", true),
+        observation("r3", "b", "at 4 V", true),
+        observation("r4", "b", "at 4 V", false),
+    ]);
+    assert_eq!(found.len(), 2);
+    assert_eq!(
+        (found[0].channel.as_deref(), found[0].differ),
+        (Some("a"), false)
+    );
+    assert_eq!(found[1].records, ["r1", "r3"]);
+    assert_eq!(
+        (found[1].message.as_str(), found[1].differ),
+        ("at 5 V", true)
+    );
 }

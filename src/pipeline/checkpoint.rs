@@ -131,7 +131,7 @@ mod tests {
     use crate::pipeline::observe::{observe_all, observe_in_chunks};
     use crate::pipeline::synthesise::{Recipe, write_campaign};
     use crate::synthetic::Truth;
-    use labfiles::open::open;
+    use labfiles::open;
 
     #[test]
     fn a_resumed_observation_is_that_of_an_uninterrupted_run() {

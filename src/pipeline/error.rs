@@ -1,7 +1,7 @@
 //! Why the pipeline stops, and how it reports its progress.
 
+use labfiles::ReadError;
 use labfiles::output::OutputError;
-use labfiles::source::ReadError;
 
 /// Called with the stage, the steps done and the total steps.
 pub type Progress<'a> = &'a (dyn Fn(&'static str, u64, u64) + Sync);

@@ -14,9 +14,9 @@ use crate::pipeline::Progress;
 use crate::pipeline::checkpoint::Checkpoint;
 use crate::record::calibrate::{calibrate, unreadable};
 use crate::record::{Flag, FlagCode, Record};
-use labfiles::open::open;
+use labfiles::open;
 use labfiles::output::OutputError;
-use labfiles::source::{ReadError, Source};
+use labfiles::{ReadError, Source};
 
 /// Settings of the detection as the campaign has them.
 fn detect_settings(campaign: &ResolvedCampaign) -> DetectSettings {

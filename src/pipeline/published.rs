@@ -10,7 +10,7 @@ use crate::identify::published::{PublishedSpeed, Where, identify, predicted};
 use crate::pipeline::identify::{IdentificationFile, provenance};
 use crate::pipeline::{PipelineError, report, store};
 use crate::report::{CampaignFacts, DataTable, ReportContent, Subject};
-use labfiles::source::ReadError;
+use labfiles::ReadError;
 
 /// Identify from published speeds and write identification.json and report.pdf.
 ///

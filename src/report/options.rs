@@ -14,7 +14,7 @@ pub enum Paper {
 }
 
 impl Paper {
-    /// The name the template knows.
+    /// Its name in the template.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::A4 => "a4",

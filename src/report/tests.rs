@@ -110,7 +110,7 @@ fn text_of(document: &document::model::Document) -> String {
 }
 
 #[test]
-fn valid_no_text_of_a_figure_is_overfull() {
+fn no_text_of_a_figure_is_overfull() {
     for (name, content) in kinds() {
         for decimal_comma in [false, true] {
             let options = ReportOptions {
@@ -130,7 +130,7 @@ fn valid_no_text_of_a_figure_is_overfull() {
 }
 
 #[test]
-fn valid_no_word_leaves_the_page_s_margins() {
+fn no_word_leaves_the_page_s_margins() {
     let folder = tempfile::tempdir().expect("a folder");
     let papers = [Paper::A4, Paper::Letter];
     for ((name, content), paper) in kinds().iter().zip(papers.into_iter().cycle()) {
@@ -186,7 +186,7 @@ fn prop_same_content_gives_same_bytes() {
 }
 
 #[test]
-fn valid_decimal_comma_reaches_text_and_figures() {
+fn decimal_comma_reaches_text_and_figures() {
     let options = ReportOptions {
         decimal_comma: true,
         ..ReportOptions::default()
@@ -203,7 +203,7 @@ fn valid_decimal_comma_reaches_text_and_figures() {
 }
 
 #[test]
-fn valid_own_template_and_logo_are_used() {
+fn own_template_and_logo_are_used() {
     let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='40' height='20'><rect width='40' height='20'/></svg>";
     let options = ReportOptions {
         template: Some("#let d = json(\"report.json\")\n= #d.title\n#image(d.logo)".into()),
@@ -228,7 +228,7 @@ fn valid_own_template_and_logo_are_used() {
 }
 
 #[test]
-fn valid_wrong_template_is_named_with_its_line() {
+fn wrong_template_is_named_with_its_line() {
     let options = ReportOptions {
         template: Some("text\n#unknown-thing".into()),
         ..ReportOptions::default()
@@ -242,7 +242,7 @@ fn valid_wrong_template_is_named_with_its_line() {
 }
 
 #[test]
-fn valid_every_format_has_its_files() {
+fn every_format_has_its_files() {
     let report = Report::new(kind("cart"), &ReportOptions::default());
     for format in Format::ALL {
         let files = report.files(format).expect("files");

@@ -92,7 +92,7 @@ fn valid_no_room_imports_from_its_right() {
 
 /// The report formats what it is given: it names neither the model nor what computes with it.
 #[test]
-fn valid_the_report_computes_nothing() {
+fn the_report_computes_nothing() {
     let computing = [
         "impact_oscillator",
         "crate::event",

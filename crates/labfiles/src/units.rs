@@ -1,12 +1,15 @@
-//! Every conversion factor of the program, in one place.
+//! Units of measurement and their factors to SI, and quantities written as text.
 //!
-//! Inside the program all quantities are SI; names carry the unit (`clearance_m`,
-//! `frequency_hz`). Conversions happen once, where a file is read.
+//! ```
+//! use labfiles::units::{Dimension, parse_quantity_of};
+//! assert_eq!(parse_quantity_of("1.5 mm", Dimension::Length), Ok(1.5e-3));
+//! assert!(parse_quantity_of("1.5 mm", Dimension::Time).is_err());
+//! ```
 
 /// Standard gravity, m/s² per g (exact by definition, CGPM 1901).
 pub const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 
-/// The physical dimension of a quantity, as far as the program has to tell one from another.
+/// The physical dimension of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Dimension {
@@ -66,12 +69,12 @@ impl Dimension {
     }
 }
 
-/// A unit as a file or campaign.toml spells it: its dimension and the factor to SI.
+/// A unit: its dimension and its factor to SI.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Unit {
     /// What the unit measures.
     pub dimension: Dimension,
-    /// Multiply a value in this unit by this to have it in SI.
+    /// A value in this unit times this is the value in SI.
     pub to_si: f64,
 }
 
@@ -129,8 +132,16 @@ const UNITS: &[(&str, Dimension, f64)] = &[
     ("%", Dimension::Number, 1e-2),
 ];
 
-/// Look a unit up by the symbol that a file or campaign.toml gives; surrounding blanks are
-/// ignored, letters keep their case (`mN` is not `MN`). `None`: the unit is not known.
+/// The unit of a symbol; surrounding blanks are ignored, letters keep their case (`mN` is not
+/// `MN`). `None`: the unit is not known.
+///
+/// ```
+/// use labfiles::units::{Dimension, parse_unit};
+/// let g = parse_unit("g").ok_or("unknown")?;
+/// assert_eq!((g.dimension, g.to_si), (Dimension::Acceleration, 9.80665));
+/// assert_eq!(parse_unit("furlong"), None);
+/// # Ok::<(), &str>(())
+/// ```
 pub fn parse_unit(symbol: &str) -> Option<Unit> {
     let symbol = symbol.trim();
     UNITS
@@ -139,7 +150,7 @@ pub fn parse_unit(symbol: &str) -> Option<Unit> {
         .map(|&(_, dimension, to_si)| Unit { dimension, to_si })
 }
 
-/// The symbol of a unit, the first where it has several; `None` for a factor that has none.
+/// The symbol of a unit, the first if it has several; `None` for a factor that has none.
 pub fn symbol_of(unit: Unit) -> Option<&'static str> {
     UNITS
         .iter()
@@ -168,7 +179,7 @@ pub struct Quantity {
 /// Why a text is not a quantity.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum QuantityError {
-    /// No number stands at its beginning.
+    /// It does not begin with a number.
     #[error("'{0}' does not begin with a number")]
     NoNumber(String),
     /// The number is written with a decimal comma.
@@ -190,15 +201,24 @@ pub enum QuantityError {
         /// Dimension needed.
         expected: &'static str,
     },
-    /// A scale that does not say what stands for what.
-    #[error("'{0}' says neither a plain factor nor one unit per another")]
+    /// A scale of one unit alone.
+    #[error("'{0}' is neither a plain factor nor one unit per another")]
     NoRatio(String),
 }
 
 /// Read a text such as `1.0 mm`, `12.6 Hz`, `0.5 %` or `7`; without a unit it is a plain number.
 ///
+/// ```
+/// use labfiles::units::{Dimension, parse_quantity};
+/// let half = parse_quantity("0.5 %")?;
+/// assert_eq!((half.si, half.dimension), (0.005, Dimension::Number));
+/// let error = parse_quantity("1,5 mm").unwrap_err();
+/// assert_eq!(error.to_string(), "'1,5 mm' is written with a comma");
+/// # Ok::<(), labfiles::units::QuantityError>(())
+/// ```
+///
 /// # Errors
-/// [`QuantityError`] where the number or the unit cannot be read.
+/// [`QuantityError`] if the number or the unit cannot be read.
 pub fn parse_quantity(text: &str) -> Result<Quantity, QuantityError> {
     let (number, symbol) = split_number(text)?;
     if symbol.is_empty() {
@@ -214,10 +234,10 @@ pub fn parse_quantity(text: &str) -> Result<Quantity, QuantityError> {
     })
 }
 
-/// Read a text as [`parse_quantity`] does and demand its dimension; gives SI.
+/// Read a text as [`parse_quantity`] does and require its dimension; gives the value in SI.
 ///
 /// # Errors
-/// [`QuantityError`], [`QuantityError::Dimension`] where it measures something else.
+/// [`QuantityError`], among them [`QuantityError::Dimension`] if it measures something else.
 pub fn parse_quantity_of(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
     let quantity = parse_quantity(text)?;
     if quantity.dimension == dimension {
@@ -284,9 +304,18 @@ pub enum Scale {
 /// Read a scale: a plain factor (`0.5`), or one unit per another (`50 mm/s per V`,
 /// `0.05 m/s/V`, or a sensor's sensitivity `100 mV/g`).
 ///
+/// ```
+/// use labfiles::units::{Dimension, parse_scale, parse_unit};
+/// let volts = parse_unit("V").ok_or("unknown")?;
+/// let scaled = parse_scale("100 mV/g")?.apply(volts).ok_or("another unit")?;
+/// assert_eq!(scaled.dimension, Dimension::Acceleration);
+/// assert!((scaled.to_si - 98.0665).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
-/// [`QuantityError`] where the number or a unit cannot be read, [`QuantityError::NoRatio`] where
-/// only one unit is given.
+/// [`QuantityError`] if the number or a unit cannot be read, among them
+/// [`QuantityError::NoRatio`] if only one unit is given.
 pub fn parse_scale(text: &str) -> Result<Scale, QuantityError> {
     let (number, symbols) = split_number(text)?;
     if symbols.is_empty() {
@@ -322,8 +351,8 @@ fn split_ratio(symbols: &str) -> Result<(Unit, Unit), QuantityError> {
 }
 
 impl Scale {
-    /// Factor to SI, and the dimension, of numbers that stand in the file's `unit`; `None` where
-    /// the scale does not start from that unit.
+    /// Factor to SI and dimension of numbers in the file's `unit` after scaling; `None` if the
+    /// scale does not start from that unit.
     pub fn apply(self, unit: Unit) -> Option<Unit> {
         match self {
             Self::Factor(factor) => Some(Unit {
@@ -357,7 +386,14 @@ impl Scale {
 
 /// Split the unit off a column's or attribute's name: `clearance [mm]`, `clearance (mm)` or
 /// `clearance_mm` (after an underscore `m_s` means m/s, `m_s2` m/s²). Gives the bare name and
-/// the unit's symbol as written; no symbol where the name carries none.
+/// the unit's symbol as written; no symbol if the name has none.
+///
+/// ```
+/// use labfiles::units::split_unit;
+/// assert_eq!(split_unit("clearance [mm]"), ("clearance", Some("mm")));
+/// assert_eq!(split_unit("drive_frequency_hz"), ("drive_frequency", Some("hz")));
+/// assert_eq!(split_unit("sweep"), ("sweep", None));
+/// ```
 pub fn split_unit(name: &str) -> (&str, Option<&str>) {
     let name = name.trim();
     for (open, close) in [('[', ']'), ('(', ')')] {
@@ -374,12 +410,12 @@ pub fn split_unit(name: &str) -> (&str, Option<&str>) {
     }
 }
 
-/// The unit that a symbol of [`split_unit`] stands for.
+/// The unit of a symbol that [`split_unit`] gives.
 pub fn parse_split_unit(symbol: &str) -> Option<Unit> {
     parse_unit(symbol).or_else(|| suffix_unit(symbol))
 }
 
-/// The unit that stands after an underscore: letters without case, `m_s` for m/s.
+/// The unit after an underscore: letters without case, `m_s` for m/s.
 fn suffix_unit(suffix: &str) -> Option<Unit> {
     let slashed = suffix.to_lowercase().replace('_', "/");
     UNITS
@@ -403,7 +439,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_quantities_are_read_in_si() {
+    fn quantities_are_read_in_si() {
         let read = |text| parse_quantity(text).unwrap();
         assert_eq!(
             read("1.5 mm"),
@@ -442,7 +478,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_scales_work_both_ways_round() {
+    fn scales_work_both_ways_round() {
         let volt = parse_unit("V").unwrap();
         for text in [
             "50 mm/s per V",
@@ -471,7 +507,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_units_are_split_off_names() {
+    fn units_are_split_off_names() {
         assert_eq!(split_unit("clearance [mm]"), ("clearance", Some("mm")));
         assert_eq!(split_unit("clearance_mm"), ("clearance", Some("mm")));
         assert_eq!(

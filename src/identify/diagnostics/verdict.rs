@@ -126,6 +126,8 @@ fn contact_samples(block: &ImpactBlock, evidence: &Evidence) -> f64 {
 
 /// What a verdict is made from.
 pub struct Basis<'a> {
+    /// Significant effects beyond the model.
+    pub beyond: &'a [Finding],
     /// The joint result.
     pub joint: &'a MethodResult,
     /// Each method.
@@ -186,6 +188,7 @@ pub fn verdict(basis: &Basis) -> Verdict {
 /// Suspicions, remarks of methods that do not fit, notes of the parameters, disagreement.
 fn findings(basis: &Basis, estimates: &[(Coordinate, &Estimate)]) -> Vec<Finding> {
     let mut findings = basis.suspicions.to_vec();
+    findings.extend(basis.beyond.iter().cloned());
     for (method, result) in basis.methods {
         if result.fits == Some(false) {
             let misfit = |remark: &Remark| Finding::Misfit {

@@ -1,4 +1,4 @@
-//! What stands under the figures; and which figures the methods' section shows, in order.
+//! Captions, and the figures of the methods' section in their order.
 
 use super::prose::sentence;
 use crate::compare::Comparison;
@@ -12,7 +12,7 @@ use crate::report::speech::Speech;
 /// A figure's name and its caption.
 type Captioned = (String, String);
 
-/// Groups of figures; those of one group stand side by side where they are narrow.
+/// Groups of figures; narrow ones of one group are side by side.
 pub fn method_figures(content: &ReportContent, speech: Speech) -> Vec<Vec<Captioned>> {
     let mut groups = vec![narrow(content, speech)];
     let alone = |captioned: Vec<Captioned>| captioned.into_iter().map(|c| vec![c]);
@@ -24,7 +24,7 @@ pub fn method_figures(content: &ReportContent, speech: Speech) -> Vec<Vec<Captio
     groups
 }
 
-/// What stands under a comparison, with markup.
+/// The caption of a comparison, with markup.
 pub fn comparison(comparison: &Comparison, speech: Speech) -> String {
     let letter = comparison.letter.to_string();
     let mut text = speech.say_with("Point ({letter})", &[("letter", &letter)]);

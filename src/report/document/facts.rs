@@ -1,4 +1,4 @@
-//! What the first page says of the measurement: labels and values.
+//! The measurement on the first page: labels and values.
 
 use super::model::Rich;
 use crate::compare::Overview;
@@ -149,7 +149,7 @@ fn nominal(values: &[NominalValue], speech: Speech) -> String {
     each.collect::<Vec<_>>().join(", ")
 }
 
-/// Without zeros at the end that a nominal value does not mean.
+/// Without trailing zeros.
 fn trimmed(number: &str) -> String {
     if number.contains(['.', ',']) && !number.contains('·') {
         number

@@ -2,8 +2,9 @@
 
 use super::model::Document;
 use super::world::{MemoryWorld, Unset};
+use crate::report::error::ReportError;
 use crate::report::figures::Figure;
-use crate::report::{ReportError, ReportOptions};
+use crate::report::options::ReportOptions;
 
 /// The built-in layout.
 const TEMPLATE: &str = include_str!("../template.typ");

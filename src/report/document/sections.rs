@@ -1,10 +1,11 @@
 //! The sections after the first page, each only where there is something to show.
 
+use super::drawn::Drawn;
 use super::model::{Block, Rich, Section};
 use super::prose::{prose, sentence};
 use super::settings::settings;
 use super::tables;
-use super::{Drawn, captions, conventions};
+use super::{captions, conventions};
 use crate::identify::Remark;
 use crate::report::content::ReportContent;
 use crate::report::figures::comparison;

@@ -5,10 +5,10 @@ use serde_json::Value;
 use super::model::Block;
 use labfiles::units::Dimension;
 
-/// From how many lines on the settings stand in columns.
+/// More lines of settings than these are set in columns.
 const MANY_LINES: usize = 12;
 
-/// What a channel has where nothing was said: not worth a line.
+/// Defaults of a channel: not worth a line.
 const DEFAULTS: [&str; 4] = [
     "offset = 0.0",
     "sign = 1.0",
@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_json_settings_become_lines() {
+    fn json_settings_become_lines() {
         let block = settings(&json!({"rig": {"f": 12.6, "r": null}, "channels": [{"unit": "V"}]}));
         let expected = "rig.f = 12.6\nchannels[0].unit = \"V\"";
         assert_eq!(

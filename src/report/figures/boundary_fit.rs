@@ -1,10 +1,10 @@
 //! The boundary fit: measured brackets less the simulated boundary, over the clearance.
 
-use super::Figure;
 use super::axis::Axis;
 use super::boundaries;
 use super::canvas::{Canvas, Colour};
 use super::csv::Csv;
+use super::figure::Figure;
 use super::legend::{self, Key, Sign};
 use super::look;
 use super::marks;
@@ -22,7 +22,7 @@ const LEFT: f64 = 34.0;
 /// Distance of brackets at one clearance, points.
 const STACK_STEP: f64 = 4.4;
 
-/// Draws the brackets against the fit; `None` where none has a simulated value.
+/// Draws the brackets against the fit; `None` if none has a simulated value.
 pub fn draw(brackets: &[BracketRow], speech: Speech) -> Option<Figure> {
     let rows: Vec<(&BracketRow, f64, f64)> = brackets
         .iter()

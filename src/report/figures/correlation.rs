@@ -3,9 +3,9 @@
 //! The columns are the parameters that are asked for; how the others hang together among
 //! themselves is in the figure's data.
 
-use super::Figure;
 use super::canvas::{Anchor, Canvas, Colour, TextLook};
 use super::csv::Csv;
+use super::figure::Figure;
 use super::fonts::Face;
 use super::look;
 use super::marks::mix;
@@ -18,7 +18,7 @@ use crate::report::speech::Speech;
 /// Room above the cells for the columns' symbols, points.
 const TOP: f64 = 14.0;
 
-/// Draws the matrix; `None` where it is empty or not square.
+/// Draws the matrix; `None` if it is empty or not square.
 pub fn draw(correlation: &Correlation, speech: Speech) -> Option<Figure> {
     let n = correlation.parameters.len();
     let square = correlation.matrix.len() == n && correlation.matrix.iter().all(|r| r.len() == n);

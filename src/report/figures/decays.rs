@@ -1,9 +1,9 @@
 //! Free decays with their fits, three to a row.
 
-use super::Figure;
 use super::axis::{Axis, range};
 use super::canvas::{Anchor, Canvas, Stroke, TextLook};
 use super::csv::Csv;
+use super::figure::Figure;
 use super::fonts::Face;
 use super::look;
 use super::panel::{Panel, Sides};

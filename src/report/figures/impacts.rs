@@ -4,11 +4,11 @@ use super::axis::{Axis, range};
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
+use super::figure::{Figure, Spot};
 use super::legend::{self, Key, Sign};
 use super::look;
 use super::panel::{PAIR_LEFT, Panel, Sides, pair};
 use super::units::{PrintUnit, print_unit};
-use super::{Figure, Spot};
 use crate::compare::{ImpactPoint, ImpactScatter};
 use crate::report::speech::Speech;
 use labfiles::units::Dimension;
@@ -18,7 +18,7 @@ const HEIGHT: f64 = 150.0;
 /// Room above the panels for the keys, points.
 const TOP: f64 = 15.0;
 
-/// Draws one group of impacts; `None` where it is empty.
+/// Draws one group of impacts; `None` if it is empty.
 pub fn draw(scatter: &ImpactScatter, name: &str, speech: Speech) -> Option<Figure> {
     let peak = scatter
         .points
@@ -112,7 +112,7 @@ fn lines(canvas: &mut Canvas, panels: &[Panel; 2], scatter: &ImpactScatter, unit
     speeds.curve(canvas, of_speed().map(|(v, r)| (v, v * r)), dashed);
 }
 
-/// Draws the impacts; gives what hovering over them tells.
+/// Draws the impacts; returns their texts for hovering.
 fn points(
     canvas: &mut Canvas,
     panels: &[Panel; 2],

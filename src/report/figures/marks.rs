@@ -217,7 +217,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_common_motions_differ_in_shape_and_in_colour() {
+    fn common_motions_differ_in_shape_and_in_colour() {
         let common: Vec<Motion> = vec![
             Motion::Impactless,
             Motion::periodic(1, 1),
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_legends_name_each_motion_once_in_order() {
+    fn legends_name_each_motion_once_in_order() {
         let motions = [
             Motion::Chaotic,
             Motion::periodic(1, 2),

@@ -11,6 +11,7 @@ pub(super) mod csv;
 pub(super) mod decays;
 pub(super) mod dots;
 pub(super) mod estimates;
+pub(super) mod figure;
 pub(super) mod fonts;
 pub(super) mod impacts;
 pub(super) mod legend;
@@ -28,83 +29,13 @@ pub(super) mod resonance;
 pub(super) mod richtext;
 pub(super) mod units;
 
-use crate::report::speech::Speech;
-use canvas::Canvas;
+pub use figure::{Figure, numbered};
+
 use rayon::prelude::*;
 
 use crate::identify::Method;
 use crate::report::content::ReportContent;
-
-/// A finished figure.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Figure {
-    /// Stem of its file name.
-    pub name: String,
-    /// What it shows, with markup.
-    pub title: String,
-    /// The drawing.
-    pub svg: String,
-    /// Width, points.
-    pub width: f64,
-    /// Height, points.
-    pub height: f64,
-    /// Its data.
-    pub csv: String,
-    /// Points that tell something when hovered over.
-    pub spots: Vec<Spot>,
-    /// Texts that reach beyond the drawing's edges.
-    pub overfull: Vec<String>,
-}
-
-/// A point of a figure that tells something.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct Spot {
-    /// From the left, points.
-    pub x: f64,
-    /// From the top, points.
-    pub y: f64,
-    /// What it tells; lines are parted by line feeds.
-    pub text: String,
-}
-
-/// Most points of one figure that tell something: more would only swell the page.
-const MOST_SPOTS: usize = 2500;
-
-impl Figure {
-    /// A figure from its drawing.
-    pub fn new(name: impl Into<String>, title: &str, canvas: Canvas, csv: String) -> Self {
-        let (width, height) = (canvas.width, canvas.height);
-        let overfull = canvas.overfull();
-        let svg = canvas.into_svg(title);
-        let (name, title) = (name.into(), title.to_owned());
-        Self {
-            name,
-            title,
-            svg,
-            width,
-            height,
-            csv,
-            spots: Vec::new(),
-            overfull,
-        }
-    }
-
-    /// With points that tell something.
-    pub fn with_spots(self, mut spots: Vec<Spot>) -> Self {
-        let stride = spots.len().div_ceil(MOST_SPOTS).max(1);
-        let mut index = 0;
-        spots.retain(|_| {
-            index += 1;
-            (index - 1) % stride == 0
-        });
-        // a hundredth of a point is finer than any screen shows
-        let coarse = |v: f64| (v * 100.0).round() / 100.0;
-        for spot in &mut spots {
-            (spot.x, spot.y) = (coarse(spot.x), coarse(spot.y));
-        }
-        Self { spots, ..self }
-    }
-}
+use crate::report::speech::Speech;
 
 /// A figure waiting to be drawn.
 type Job<'a> = Box<dyn Fn() -> Option<Figure> + Send + Sync + 'a>;
@@ -168,9 +99,4 @@ fn method_jobs<'a>(content: &'a ReportContent, speech: Speech<'a>, jobs: &mut Ve
             residuals::draw(set, &numbered("residuals", i), speech)
         }));
     }
-}
-
-/// Name of the i-th figure of a kind.
-pub fn numbered(kind: &str, index: usize) -> String {
-    format!("{kind}_{}", index + 1)
 }

@@ -32,7 +32,7 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// The plane in which the records can be shown; `None` where they have no place in any.
+    /// The plane in which the records can be shown; `None` if they have no place in any.
     pub fn of(content: &ReportContent) -> Option<Self> {
         let joint = &content.identification.joint.parameters;
         let value = |e: &Option<Estimate>| e.as_ref().and_then(|e| e.value).filter(|v| *v > 0.0);
@@ -59,7 +59,7 @@ impl Plane {
             .find(|p| placed(*p) || (p.dimensionless && modelled))
     }
 
-    /// Where a record lies.
+    /// Position of a record.
     pub fn record(&self, record: &RecordRow) -> Option<(f64, f64)> {
         if self.dimensionless {
             Some((record.eta?, record.rho?))
@@ -149,7 +149,7 @@ impl Plane {
     }
 }
 
-/// Whether a motion has impacts or none can be said of it: what a map is drawn for.
+/// Whether a motion is one that the map is drawn for: one with impacts.
 fn busy(motion: &Motion) -> bool {
     !matches!(motion, Motion::Impactless | Motion::Undetermined { .. })
 }
@@ -159,7 +159,7 @@ pub fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 5e-3 * a.abs().max(b.abs())
 }
 
-/// The clearances, ascending, that lie far above all that happens; none where they are many.
+/// The clearances, ascending, far above all impacts; none if they are many.
 fn strips(all: &[f64], busy: Range) -> Vec<f64> {
     /// More strips than this make a plane of their own.
     const MOST: usize = 3;
@@ -210,7 +210,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_clearances_far_above_all_impacts_stand_in_strips() {
+    fn clearances_far_above_all_impacts_stand_in_strips() {
         let all = [0.6, 1.4, 4.4, 8.9, 8.93];
         assert_eq!(strips(&all, Some((0.6, 4.4))), [8.9]);
         assert!(strips(&all, None).is_empty());

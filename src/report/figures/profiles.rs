@@ -1,9 +1,9 @@
 //! Profile likelihoods of the parameters, four to a row.
 
-use super::Figure;
 use super::axis::Axis;
 use super::canvas::{Anchor, Canvas, Stroke, TextLook};
 use super::csv::Csv;
+use super::figure::Figure;
 use super::look;
 use super::panel::{Panel, Sides};
 use super::path::Rect;

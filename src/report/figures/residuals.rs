@@ -4,11 +4,11 @@ use super::axis::{Axis, range};
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
+use super::figure::{Figure, Spot};
 use super::look;
 use super::marks;
 use super::panel::{Panel, Sides};
 use super::path::Rect;
-use super::{Figure, Spot};
 use crate::compare::{ResidualPoint, ResidualSet};
 use crate::report::parameters::NORMAL_95;
 use crate::report::speech::Speech;
@@ -18,7 +18,7 @@ const HEIGHT: f64 = 84.0;
 /// Room above the panels, points.
 const TOP: f64 = 3.0;
 
-/// Draws the diagnostics of one method; `None` where it has no residuals.
+/// Draws the diagnostics of one method; `None` if it has no residuals.
 pub fn draw<'a>(set: &'a ResidualSet, name: &str, speech: Speech<'a>) -> Option<Figure> {
     if set.points.is_empty() {
         return None;

@@ -4,12 +4,12 @@ use super::axis::Axis;
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
+use super::figure::{Figure, Spot};
 use super::legend::{self, Key, Sign};
 use super::look;
 use super::panel::{PAIR_LEFT, Panel, Sides, pair};
 use super::path::Rect;
 use super::units::{PrintUnit, print_unit};
-use super::{Figure, Spot};
 use crate::compare::{ResonanceCurve, ResonancePoint};
 use crate::report::speech::Speech;
 

@@ -5,10 +5,11 @@ mod base64;
 mod parts;
 
 use super::document::model::Document;
+use super::error::ReportError;
 use super::figures::Figure;
 use super::figures::canvas::escape;
 use super::figures::fonts::{self, FAMILY, Face};
-use super::{ReportError, ReportOptions};
+use super::options::ReportOptions;
 
 /// The page's look.
 const STYLE: &str = include_str!("style.css");

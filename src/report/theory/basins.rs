@@ -1,10 +1,10 @@
 //! Basins of attraction in the plane of the starts.
 
-use super::{keys_height, keys_on_top, tint_keys};
+use super::keys::{keys_height, keys_on_top, tint_keys};
 use crate::compare::RegionMap;
-use crate::report::figures::Figure;
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::Canvas;
+use crate::report::figures::figure::Figure;
 use crate::report::figures::look;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;

@@ -1,10 +1,10 @@
 //! One motion: time series, phase trajectories, Poincaré map, autocorrelation.
 
-use super::{keys_height, keys_on_top};
-use crate::report::figures::Figure;
+use super::keys::{keys_height, keys_on_top};
 use crate::report::figures::axis::{Axis, range};
 use crate::report::figures::canvas::{Canvas, Stroke};
 use crate::report::figures::dots::{self, DotLook, Dots};
+use crate::report::figures::figure::Figure;
 use crate::report::figures::legend::{Key, Sign};
 use crate::report::figures::look;
 use crate::report::figures::marks::mix;

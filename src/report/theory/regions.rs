@@ -1,11 +1,11 @@
 //! Regions of existence and stability of all motions in the (η, ρ) plane: the brute-force maps as
 //! tints (hatched where they differ), the boundaries as curves.
 
-use super::{keys_height, keys_on_top};
+use super::keys::{keys_height, keys_on_top};
 use crate::compare::RegionMap;
-use crate::report::figures::Figure;
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
+use crate::report::figures::figure::Figure;
 use crate::report::figures::fonts::Face;
 use crate::report::figures::legend::{Key, Sign};
 use crate::report::figures::look;

@@ -1,11 +1,11 @@
 //! Quasi-stationary characteristics: amplitude, closing speed, Lyapunov exponent,
 //! autocorrelation, and amplitude and phase of the impactless motion.
 
-use super::{keys_height, keys_on_top};
-use crate::report::figures::Figure;
+use super::keys::{keys_height, keys_on_top};
 use crate::report::figures::axis::{Axis, range};
 use crate::report::figures::canvas::{Canvas, Colour, Stroke};
 use crate::report::figures::dots::{self, DotLook, Dots};
+use crate::report::figures::figure::Figure;
 use crate::report::figures::legend::{Key, Sign};
 use crate::report::figures::look;
 use crate::report::figures::panel::{Panel, Sides};

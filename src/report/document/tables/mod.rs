@@ -10,7 +10,7 @@ pub use records::records;
 
 use crate::compare::Unusable;
 use crate::identify::Item;
-use crate::record::Sweep;
+use crate::record::{FlagCode, Sweep};
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Align, Rich, Table};
 use crate::report::document::prose::prose;
@@ -28,31 +28,31 @@ struct Column {
 }
 
 impl Column {
-    /// As wide as its content, from the left.
+    /// As wide as its content, left-aligned.
     const fn left(head: &'static str) -> Self {
         Self::wide(head, 0)
     }
 
-    /// With a share of the room that the others leave, from the left.
+    /// With a share of the width that the others leave, left-aligned.
     const fn wide(head: &'static str, width: u16) -> Self {
         let align = Align::Left;
         Self { head, align, width }
     }
 
-    /// As wide as its content, to the right: numbers.
+    /// As wide as its content, right-aligned: numbers.
     const fn right(head: &'static str) -> Self {
         let (align, width) = (Align::Right, 0);
         Self { head, align, width }
     }
 
-    /// As wide as its content, in the middle: signs.
+    /// As wide as its content, centred: signs.
     const fn center(head: &'static str) -> Self {
         let (align, width) = (Align::Center, 0);
         Self { head, align, width }
     }
 }
 
-/// A table of columns whose heads are phrases; `None` where it has no rows.
+/// A table of columns whose heads are phrases; `None` if it has no rows.
 fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>, speech: Speech) -> Option<Table> {
     let heads = columns.iter().map(|c| Rich::from(speech.say_title(c.head)));
     let table = Table {
@@ -65,7 +65,7 @@ fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>, speech: Speech
     (!table.rows.is_empty()).then(|| without_empty_columns(table))
 }
 
-/// Without the columns in which no row says anything; the first column stays.
+/// Without the columns that are empty in all rows; the first column is kept.
 fn without_empty_columns(table: Table) -> Table {
     let says = |i: usize| {
         table
@@ -151,7 +151,7 @@ fn first_few(records: &[String]) -> String {
 }
 
 fn reason(unusable: &Unusable) -> String {
-    let code = unusable.flag.as_deref().unwrap_or("motion_undetermined");
+    let code = unusable.flag.map_or("motion undetermined", FlagCode::name);
     let code = code.replace('_', " ");
     let of = unusable.channel.as_ref().map(|c| format!(" ({c})"));
     let mut text = format!("{code}{}: {}", of.unwrap_or_default(), unusable.message);

@@ -123,7 +123,7 @@ fn crowded(table: Table) -> Table {
     .densely()
 }
 
-/// A name cut at its front where it is wider than the room: a wrapped line would shift the rows.
+/// A name cut at its front if it is wider than its column: a wrapped line would shift the rows.
 fn shortened(name: &Rich, room: f64, size: f64) -> Rich {
     let plain = name.plain();
     let wide = |text: &str| fonts::width(text, Face::Bold, size) > room;
@@ -197,7 +197,10 @@ fn long_remark(r: &RecordRow, speech: Speech) -> String {
         )
     };
     let flags = (!r.flags.is_empty()).then(|| {
-        let flags = r.flags.iter().map(|f| speech.tell(&f.replace('_', " ")));
+        let flags = r
+            .flags
+            .iter()
+            .map(|f| speech.tell(&f.name().replace('_', " ")));
         flags.collect::<Vec<_>>().join(", ")
     });
     [used, flags]

@@ -10,12 +10,13 @@ use crate::compare::{Comparison, Signal};
 use crate::record::Role;
 use crate::report::figures::axis::{Axis, range};
 use crate::report::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
+use crate::report::figures::figure::Figure;
 use crate::report::figures::fonts::Face;
 use crate::report::figures::look;
 use crate::report::figures::marks;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
-use crate::report::figures::{Figure, richtext};
+use crate::report::figures::richtext;
 use crate::report::speech::Speech;
 use rows::{Row, root_mean_square, rows, shown, symbol};
 
@@ -40,7 +41,7 @@ const BOTTOM: f64 = 22.0;
 /// Width of the simulated curve behind the measured one, points.
 const BACK_WIDTH: f64 = 1.7;
 
-/// Draws one comparison; `None` where it has no trace at all.
+/// Draws one comparison; `None` if it has no trace at all.
 pub fn draw<'a>(comparison: &'a Comparison, speech: Speech<'a>) -> Option<Figure> {
     let rows = rows(comparison);
     let portraits = portraits::portraits(comparison);

@@ -150,7 +150,7 @@ pub fn shown(trace: &Trace, residual: bool) -> Vec<&Signal> {
     picked.into_iter().flatten().collect()
 }
 
-/// Root mean square of a signal; `None` where it is empty.
+/// Root mean square of a signal; `None` if it is empty.
 pub fn root_mean_square(signal: &Signal) -> Option<f64> {
     (!signal.values.is_empty()).then(|| rms(&signal.values))
 }

@@ -1,4 +1,4 @@
-//! The map's data: what hovering over a record tells, and all layers as CSV.
+//! The map's data: the records' texts for hovering, and all layers as CSV.
 
 use crate::compare::{Compared, RecordRow, RegionMap};
 use crate::motion::Motion;
@@ -7,7 +7,7 @@ use crate::report::figures::boundaries;
 use crate::report::figures::csv::Csv;
 use crate::report::speech::Speech;
 
-/// What hovering over a record tells.
+/// The text that is shown on hovering over a record.
 pub fn describe(record: &RecordRow, speech: Speech) -> String {
     let mut parts = vec![
         record.id.clone(),

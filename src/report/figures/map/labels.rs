@@ -1,4 +1,4 @@
-//! What the map says in words and numbers: names of curves, letters of points, axes in laboratory
+//! The map's labels: names of curves, letters of points, axes in laboratory
 //! units.
 
 use super::{Map, STRIP_HALF, STRIP_STEP};
@@ -68,7 +68,7 @@ impl Map<'_> {
         }
     }
 
-    /// A ring about a point and its letter beside it, where there is room.
+    /// A ring about a point and its letter beside it, if there is a free place.
     fn letter(&mut self, at: Point, text: &str, bounds: &Rect) {
         let size = (fonts::width(text, Face::Bold, 8.5) + 2.0, 9.0);
         let Some((_, place)) = self.occupancy.near(at, size, bounds) else {
@@ -87,7 +87,7 @@ impl Map<'_> {
         self.occupancy.take_rect(&rect);
     }
 
-    /// A thin line from a mark to its letter, where they stand apart.
+    /// A thin line from a mark to its letter, if they are apart.
     fn leader(&mut self, at: Point, place: Point, size: (f64, f64)) {
         let (dx, dy) = (place.0 - at.0, place.1 - at.1);
         let distance = dx.hypot(dy);

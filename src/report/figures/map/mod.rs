@@ -7,7 +7,9 @@ mod labels;
 use crate::compare::{BoundaryCurve, BracketRow, RecordRow, RegionMap};
 use crate::record::Sweep;
 use crate::report::content::ReportContent;
+use crate::report::figures::boundaries;
 use crate::report::figures::canvas::{Anchor, Canvas, Point, TextLook};
+use crate::report::figures::figure::{Figure, Spot};
 use crate::report::figures::fonts::Face;
 use crate::report::figures::legend::{self, Key};
 use crate::report::figures::look;
@@ -17,7 +19,6 @@ use crate::report::figures::path::{self, Rect};
 use crate::report::figures::placing::Occupancy;
 use crate::report::figures::plane::{Plane, View, same};
 use crate::report::figures::regions::Regions;
-use crate::report::figures::{Figure, Spot, boundaries};
 use crate::report::speech::Speech;
 
 /// Which of the two maps.
@@ -34,7 +35,7 @@ const STRIP_STEP: f64 = 15.0;
 /// Half the height of a strip's frame, points.
 const STRIP_HALF: f64 = 5.5;
 
-/// Draws the map; `None` where the records have no place in a plane.
+/// Draws the map; `None` if the records have no place in a plane.
 pub fn draw(content: &ReportContent, size: MapSize, speech: Speech) -> Option<Figure> {
     let plane = Plane::of(content)?;
     let keys = if size == MapSize::Full {
@@ -269,7 +270,7 @@ impl<'a> Map<'a> {
         by_area.min(0.44 * usual).clamp(least, most)
     }
 
-    /// Up-sweep records stand a little above their clearance, down-sweep ones below.
+    /// Offset of upward sweeps above their clearance, of downward sweeps below.
     fn lift(&self) -> f64 {
         0.95 * self.radius
     }

@@ -26,7 +26,7 @@ pub struct Regions<'a> {
 type Run = (Colour, Point, Point);
 
 impl<'a> Regions<'a> {
-    /// Lays a map on a panel. `None` where its axes and cells contradict each other.
+    /// Lays a map on a panel. `None` if its axes and cells contradict each other.
     pub fn new(map: &'a RegionMap, panel: &'a Panel) -> Option<Self> {
         let cells = map.x.len() * map.y.len();
         let in_range = map
