@@ -197,7 +197,10 @@ pub fn cases() -> Vec<Case> {
                 lab.write("r3.csv", &text);
                 lab.replace("runs.csv", "r3.csv,13", "r3.csv,11");
             },
-            &["r3.csv: its samples", "its samples are those of the record 'r1'"],
+            &[
+                "r3.csv: its samples",
+                "its samples are those of the record 'r1'",
+            ],
         ),
         noted(
             "a clearance of zero",
