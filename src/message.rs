@@ -22,8 +22,13 @@ pub enum Language {
 
 /// Something that a module states, to be printed in the language of the reader.
 pub trait Message {
-    /// Name of the kind: the key in a table of translations, and `kind` in JSON.
+    /// Name of the kind, `kind` in JSON.
     fn kind(&self) -> String;
+
+    /// Key in a table of translations: the kind, extended if the kind has several templates.
+    fn key(&self) -> String {
+        self.kind()
+    }
 
     /// The template: names in braces are replaced by the values, symbols are between dollars.
     fn template(&self, language: Language) -> &'static str;

@@ -4,8 +4,8 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use super::machine::{MachineArgs, motion, refused};
-use super::voice::print;
-use super::{Exit, Failure, Voice};
+use super::stdout::print;
+use super::{Exit, Failure, Verbosity};
 use impact_oscillator::atlas::{At, Boundary as Sought, BoundaryQuery, Point, boundary_points};
 use impact_oscillator::{Existence, Machine};
 
@@ -21,10 +21,10 @@ pub struct Boundary {
     motion: (u32, u32, bool),
     #[command(flatten)]
     machine: MachineArgs,
-    /// Frequency ratio η at which the clearance ρ is asked for
+    /// Frequency ratio η at which the clearance ρ is sought
     #[arg(long, value_name = "ETA", required_unless_present = "rho")]
     eta: Option<f64>,
-    /// Clearance ρ at which η is asked for, up to η = 2.5 n
+    /// Clearance ρ at which η is sought, up to η = 2.5 n
     #[arg(
         long,
         value_name = "RHO",
@@ -37,7 +37,7 @@ pub struct Boundary {
     json: bool,
 }
 
-/// The boundaries that can be asked for.
+/// The boundaries that can be sought.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Kind {
     /// Saddle-node: where an orbit meets its unstable twin
@@ -48,10 +48,11 @@ enum Kind {
     Grazing,
     /// Where a further impact begins within the motion
     FurtherImpact,
-    /// 1 | 1j, 2 | 2j: where the masses begin to stay together after an impact
+    /// 1 | 1j, 2 | 2j: where the masses begin to stick together after an impact
     DeadZone,
-    /// ρp: below it the masses stay together for ever (−1 for equal masses)
-    Joined,
+    /// ρp: below it the masses never separate (−1 for equal masses)
+    #[value(name = "joined")]
+    Sticking,
 }
 
 /// A motion z = p/n, with or without a dead zone.
@@ -67,7 +68,7 @@ Example:
   impactid boundary --kind dead-zone --motion 1j --restitution 0 --damping-ratio 0.002 --eta 0.8
   impactid boundary --kind s1 --motion 2/1 --restitution 0.9 --damping-ratio 0.07 --rho=-0.3
 
-`valid` tells whether the boundary is one that a machine shows: the marginal orbit closes, meets no
+`valid` states whether the boundary is one that a machine shows: the marginal orbit closes, meets no
 further contact, opens no dead zone, and no other multiplier has left the unit circle. Exit code 1:
 the motion has no such boundary there.";
 
@@ -79,7 +80,7 @@ impl Kind {
             Self::Grazing => Sought::ImpactlessGrazing,
             Self::FurtherImpact => Sought::FurtherImpact,
             Self::DeadZone => Sought::DeadZone,
-            Self::Joined => Sought::Sticking,
+            Self::Sticking => Sought::Sticking,
         }
     }
 }
@@ -89,7 +90,7 @@ impl Boundary {
     ///
     /// # Errors
     /// [`Failure`] where a parameter is out of range.
-    pub fn go(self, _voice: Voice) -> Result<Exit, Failure> {
+    pub fn run(self, _verbosity: Verbosity) -> Result<Exit, Failure> {
         let machine = self.machine.machine()?;
         let (p, n, dead_zone) = self.motion;
         let query = BoundaryQuery {

@@ -8,6 +8,7 @@ use crate::identify::diagnostics::contact_law::ContactLaw;
 use crate::identify::estimate::{Estimate, ParameterSet};
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::Coordinate;
+use crate::identify::fit::report::FitReport;
 use crate::identify::messages::{Finding, LeftOut, PairAgreement, Remark, Sentence};
 use crate::identify::method::Method;
 use crate::identify::uncertainty::Uncertainty;
@@ -39,6 +40,9 @@ pub struct MethodResult {
     /// R by plain least squares on the midpoints of the saddle-node brackets; of boundaries alone.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub restitution_by_midpoints: Option<Estimate>,
+    /// How its fit ended; printed by the command line, not written.
+    #[serde(skip)]
+    pub fit_report: Option<FitReport>,
     /// Estimates of what is fitted beside the parameters: gains, corners, asymmetries.
     #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
     pub further: BTreeMap<Coordinate, Estimate>,
@@ -161,6 +165,36 @@ pub struct JointFit {
 }
 
 /// A whole identification.
+///
+/// # Examples
+///
+/// What it states is typed; JSON adds the English sentence to each variant:
+///
+/// ```
+/// use impactid::identify::published::{PublishedSpeed, Where, identify};
+/// use impactid::identify::{Finding, Identification, Method};
+///
+/// let speed = |restitution, frequency_ratio, speed| PublishedSpeed {
+///     restitution,
+///     clearance_ratio: 3.0,
+///     frequency_ratio,
+///     closing_speed_ratio: speed,
+///     printed_step: 0.01,
+///     place: Where::Greatest,
+/// };
+/// let found = identify(&[speed(0.0, 1.19, 9.26), speed(0.3, 1.31, 9.53)], &[0.02]);
+/// assert!(found.methods.contains_key(&Method::PublishedSpeeds));
+/// assert!(!matches!(found.verdict.findings[0], Finding::PrintedDampingFits { .. }));
+/// println!("{}", found.verdict);
+///
+/// let json = serde_json::to_value(&found)?;
+/// let finding = &json["verdict"]["findings"][0];
+/// assert_eq!(finding["printed"], 0.02);
+/// assert_eq!(finding["text"], found.verdict.findings[0].to_string());
+/// let back: Identification = serde_json::from_value(json)?;
+/// assert_eq!(back.verdict, found.verdict);
+/// # Ok::<(), serde_json::Error>(())
+/// ```
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Identification {
     /// The verdict.

@@ -6,6 +6,7 @@ use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Fit, FitError, Prior, Problem, mean_squares};
 use crate::identify::identification::MethodResult;
 use crate::identify::messages::{Note, Remark};
+use crate::identify::uncertainty::scatter::{self, Scatter, Spread};
 
 /// Very wide priors that keep the equations regular where the data say nothing.
 pub fn wide_priors(start: &Parameters, free: &[Coordinate]) -> Vec<Prior> {
@@ -35,6 +36,26 @@ pub struct MethodFit {
     pub factor: f64,
     /// Reduced sum of squares as it came out.
     pub reduced: f64,
+    /// Scatter between groups of records beyond it.
+    pub scatter: Scatter,
+}
+
+impl MethodFit {
+    /// Of a fit of a problem, judged with degrees of freedom.
+    pub fn of(problem: &Problem<'_>, fit: Fit, freedom: usize) -> Self {
+        let reduced = fit.cost / freedom.max(1) as f64;
+        Self {
+            factor: reduced.max(1.0),
+            reduced,
+            scatter: scatter::scatter(problem, &fit),
+            fit,
+        }
+    }
+
+    /// Standard error of a coordinate by all that is allowed for; `None` where it was not free.
+    pub fn spread(&self, coordinate: Coordinate) -> Option<Spread> {
+        self.scatter.spread(&self.fit, self.factor, coordinate)
+    }
 }
 
 /// A method's fit, or why there is none; `None` in its place if there was nothing to fit.
@@ -59,13 +80,8 @@ pub fn fit_blocks(
     };
     let fit = problem.fit(start)?;
     let informed = problem.free.len().saturating_sub(problem.priors.len());
-    let freedom = fit.residuals.saturating_sub(informed).max(1) as f64;
-    let reduced = fit.cost / freedom;
-    Ok(MethodFit {
-        factor: reduced.max(1.0),
-        reduced,
-        fit,
-    })
+    let freedom = fit.residuals.saturating_sub(informed);
+    Ok(MethodFit::of(&problem, fit, freedom))
 }
 
 /// f0, β and x_st from the impactless records; the gains' uncertainty enters x_st.
@@ -227,20 +243,21 @@ pub fn result(
     match fitted {
         Ok(found) => {
             let mut result = MethodResult {
-                parameters: estimate::parameter_set(&found.fit, found.factor, tells),
+                parameters: estimate::parameter_set(found, tells),
                 observations,
                 records,
                 reduced_residual: Some(found.reduced.sqrt()),
+                fit_report: Some(found.fit.report.clone()),
                 ..MethodResult::default()
             };
             for coordinate in &found.fit.free {
                 if Coordinate::PHYSICAL.contains(coordinate) {
                     continue;
                 }
-                let error = found.fit.error(*coordinate).unwrap_or(f64::INFINITY);
-                let error = error * found.factor.sqrt();
+                let unknown = Spread::known(f64::INFINITY);
+                let spread = found.spread(*coordinate).unwrap_or(unknown);
                 let value = found.fit.parameters.coordinate(*coordinate);
-                let estimate = estimate::estimate(*coordinate, value, error, None);
+                let estimate = estimate::estimate_within(*coordinate, value, spread, None);
                 result.further.insert(*coordinate, estimate);
             }
             result

@@ -281,6 +281,7 @@ impl UsualRecord {
             gap: None,
             lone_clearance_error_m: 0.0,
             place: 0.0,
+            group: 0,
             shared: Vec::new(),
             perturbations: Vec::new(),
         }

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::diagnostics::agreement::agreement;
+use crate::identify::diagnostics::agreement::{agreement, between_methods};
+use crate::identify::diagnostics::beyond;
 use crate::identify::diagnostics::suspicion::{self, OddGap};
 use crate::identify::diagnostics::swapped_channels;
 use crate::identify::diagnostics::verdict::{self, Basis};
@@ -15,11 +16,67 @@ use crate::identify::messages::{Finding, LeftOut, Reason};
 use crate::identify::method::Method;
 use crate::identify::methods::{self, FitResult, succeeded};
 use crate::identify::selection::Selection;
+use crate::identify::uncertainty::budget;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
-use crate::identify::{decay, results};
+use crate::identify::{decay, estimate, results};
 
-/// Identify from observations and brackets.
+/// Identify from observations and brackets, as records of one specimen.
+///
+/// What cannot be identified has no value but a note; what was left out of the fits is in `left_out`.
+///
+/// # Examples
+///
+/// Records of a simulated rig whose masses never touch determine f0, β and x_st, but not R:
+///
+/// ```
+/// use impactid::event::{DetectSettings, RigKind};
+/// use impactid::identify::evidence::{Evidence, Nominal};
+/// use impactid::identify::run::identify;
+/// use impactid::identify::{Method, Status};
+/// use impactid::motion::{ClassifySettings, observe};
+/// use impactid::record::Sweep;
+/// use impactid::synthetic::run::calibrated;
+/// use impactid::synthetic::{Effects, Faults, Laboratory, Plan, Step, Truth, records};
+///
+/// let truth = Truth::symmetric(0.8, 12.0, 0.05, 1e-3);
+/// let step = |i: u32| Step {
+///     frequency_hz: 9.0 + 0.5 * f64::from(i),
+///     clearance_m: 20e-3,
+///     sweep: Sweep::Up,
+///     from_rest: i == 0,
+/// };
+/// let (faults, effects) = (Faults::default(), Effects::default());
+/// let laboratory = Laboratory {
+///     truth: &truth,
+///     faults: &faults,
+///     effects: &effects,
+///     plan: &Plan { steps: (0..14).map(step).collect() },
+///     seed: 1,
+/// };
+/// let observations: Vec<_> = records(&laboratory)?
+///     .iter()
+///     .map(|raw| calibrated(raw, &truth, &faults))
+///     .map(|record| {
+///         let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
+///         observe(&record, RigKind::Double, &detect, &classify)
+///     })
+///     .collect();
+/// let found = identify(&Evidence {
+///     rig: RigKind::Double,
+///     observations: &observations,
+///     brackets: &[],
+///     nominal: Nominal { gain_uncertainty: 5e-3, corner_uncertainty: 2e-2, ..Nominal::default() },
+///     uncertainty: Default::default(),
+/// });
+/// assert_eq!(found.used_by[&Method::Resonance].len(), 14);
+/// let f0 = found.joint.parameters.natural_frequency_hz.as_ref().expect("an estimate");
+/// assert_eq!(f0.status, Status::Identified);
+/// assert!((f0.value.expect("f0") - 12.0).abs() < 0.05);
+/// let r = found.joint.parameters.restitution.and_then(|r| r.value);
+/// assert_eq!(r, None);
+/// # Ok::<(), impact_oscillator::model::params::ModelError>(())
+/// ```
 pub fn identify(evidence: &Evidence) -> Identification {
     let mut run = IdentificationRun {
         evidence,
@@ -42,9 +99,17 @@ pub fn identify(evidence: &Evidence) -> Identification {
     fits = run.without_influential(fits);
     suspicions.extend(run.other_suspicions(&fits));
     let methods = run.results(&fits);
-    let joint = results::joint(evidence, fits.joint.as_ref(), &methods);
+    let mut joint = results::joint(evidence, fits.joint.as_ref(), &methods);
     let agreement = agreement(&methods);
+    let apart = between_methods(&methods, &agreement, &joint);
+    for (parameter, by) in &apart {
+        if let Some(Some(estimate)) = joint.parameters.slot(*parameter) {
+            *estimate = estimate::widened(*parameter, estimate, *by);
+        }
+    }
+    let beyond = succeeded(&fits.joint).map_or_else(Vec::new, beyond::beyond);
     let verdict = verdict::verdict(&Basis {
+        beyond: &beyond,
         joint: &joint,
         methods: &methods,
         agreement: &agreement,
@@ -54,7 +119,7 @@ pub fn identify(evidence: &Evidence) -> Identification {
         verdict,
         joint,
         agreement,
-        uncertainty: run.uncertainty(&fits),
+        uncertainty: run.uncertainty(&fits, &apart),
         suspicions,
         left_out: run.left_out(),
         used_by: run.used_by(&methods),
@@ -222,8 +287,9 @@ impl IdentificationRun<'_> {
         joint::problem(blocks, start, weights, &self.evidence.nominal, posterior)
     }
 
-    /// The uncertainty of the joint fit as the options want it.
-    fn uncertainty(&self, fits: &Fits) -> Uncertainty {
+    /// The uncertainty of the joint fit as the options want it; `apart`: what disagreement of methods
+    /// leaves open.
+    fn uncertainty(&self, fits: &Fits, apart: &[(Coordinate, f64)]) -> Uncertainty {
         let blocks = &self.selection.blocks;
         let problem = self.problem(blocks, fits.start, &fits.weights);
         let Some((problem, joint)) = problem.zip(succeeded(&fits.joint)) else {
@@ -231,7 +297,11 @@ impl IdentificationRun<'_> {
         };
         let present = joint::present(blocks, &fits.weights);
         let options = &self.evidence.uncertainty;
-        uncertainty::uncertainty(&problem, &present, &joint.fit, joint.factor, options)
+        Uncertainty {
+            budget: budget::budget(&problem, &present, joint, blocks, apart),
+            scatter: joint.scatter.clone(),
+            ..uncertainty::uncertainty(&problem, &present, &joint.fit, joint.factor, options)
+        }
     }
 
     /// The gap that deviates most from what the others say, if one does.
@@ -247,8 +317,11 @@ impl IdentificationRun<'_> {
             ..
         } = &self.selection;
         let weight = 1.0 / succeeded(&fits.trajectories)?.factor;
-        suspicion::lost_gap(&blocks.trajectory, lost, &joint.fit.parameters, *typical)
-            .or_else(|| suspicion::odd_gap(&blocks.trajectory, weight, &joint.fit, joint.factor))
+        let uncertainty_m = self.evidence.nominal.clearance_uncertainty_m;
+        let lost = suspicion::lost_gap(&blocks.trajectory, lost, &joint.fit.parameters, *typical);
+        let allowed = |odd: &OddGap| (odd.fitting_m - odd.stated_m).abs() > 4.0 * uncertainty_m;
+        lost.filter(allowed)
+            .or_else(|| suspicion::odd_gap(blocks, weight, joint, uncertainty_m))
     }
 
     /// Gains and corners far off, and interchanged channels.

@@ -5,12 +5,12 @@ use std::path::Path;
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::campaign::written::Published;
 use crate::compare::Compared;
+use crate::identify::Identification;
 use crate::identify::published::{PublishedSpeed, Where, identify, predicted};
-use crate::identify::{Identification, Verdict};
 use crate::pipeline::identify::{IdentificationFile, provenance};
 use crate::pipeline::{PipelineError, report, store};
 use crate::report::{CampaignFacts, DataTable, ReportContent, Subject};
-use labfiles::source::ReadError;
+use labfiles::ReadError;
 
 /// Identify from published speeds and write identification.json and report.pdf.
 ///
@@ -21,7 +21,7 @@ pub fn run(
     published: &Published,
     out: &Path,
     command_line: &str,
-) -> Result<Verdict, PipelineError> {
+) -> Result<Identification, PipelineError> {
     let speeds = read(&campaign.folder().join(&published.speeds))?;
     let found = IdentificationFile {
         identification: identify(&speeds, &published.damping_ratio_hypotheses),
@@ -46,7 +46,7 @@ pub fn run(
     store::write_resolved(campaign, out)?;
     super::identify::write(&found, out)?;
     report::write(&report, out)?;
-    Ok(found.identification.verdict)
+    Ok(found.identification)
 }
 
 fn found_damping(found: &Identification) -> Option<f64> {
@@ -69,6 +69,11 @@ fn table(speeds: &[PublishedSpeed], found: Option<f64>, published: &Published) -
             s.clearance_ratio.to_string(),
             eta,
         ];
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a small whole number, not negative"
+        )]
         let decimals = (-s.printed_step.log10().floor()).max(0.0) as usize;
         let model = dampings.iter().map(|b| match predicted(s, *b) {
             Some(speed) => format!("{speed:.0$}", decimals + 1),

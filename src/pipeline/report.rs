@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use crate::campaign::resolved::{Report as Look, ResolvedCampaign};
+use crate::campaign::resolved::{Report as StatedOptions, ResolvedCampaign};
 use crate::campaign::written::{Language, Paper as WrittenPaper};
 use crate::compare::{self, Input};
 use crate::event::RigKind;
@@ -15,7 +15,7 @@ use crate::report::catalog::Catalog;
 use crate::report::{
     CampaignFacts, Format, Logo, NominalValue, Paper, Report, ReportContent, ReportOptions, Subject,
 };
-use labfiles::open::open;
+use labfiles::open;
 use labfiles::output::{make_folder, write_bytes};
 
 /// Name of the report's file.
@@ -28,7 +28,7 @@ pub type ReportFile = (String, Vec<u8>);
 /// for, with the figures' data.
 ///
 /// # Errors
-/// Where the template or the logo cannot be read, or the document cannot be set.
+/// If the template or the logo cannot be read, or the document cannot be set.
 pub fn files(
     campaign: &ResolvedCampaign,
     observed: &Observed,
@@ -41,7 +41,7 @@ pub fn files(
 /// Draw a content as the campaign asks for it.
 ///
 /// # Errors
-/// Where the template or the logo cannot be read, or the document cannot be set.
+/// If the template or the logo cannot be read, or the document cannot be set.
 pub fn render(
     content: &ReportContent,
     campaign: &ResolvedCampaign,
@@ -60,7 +60,7 @@ pub fn render(
 /// Write the report's files into the results' folder.
 ///
 /// # Errors
-/// Where one cannot be written.
+/// If one cannot be written.
 pub fn write(files: &[ReportFile], out: &Path) -> Result<(), PipelineError> {
     for (name, bytes) in files {
         let path = out.join(name);
@@ -75,7 +75,7 @@ pub fn write(files: &[ReportFile], out: &Path) -> Result<(), PipelineError> {
 /// What the report shows, as plain data.
 ///
 /// # Errors
-/// Where the settings cannot be written as text.
+/// If the settings cannot be written as text.
 pub fn content(
     campaign: &ResolvedCampaign,
     observed: &Observed,
@@ -109,16 +109,17 @@ pub fn content(
     })
 }
 
-/// The report's catalog: that of the file that is named, else the program's in the language.
+/// The phrases of the report: those of the stated table, else those of the language that come with
+/// the program.
 ///
 /// # Errors
-/// If the file cannot be read, or is no catalog.
-pub fn catalog(look: &Look) -> Result<Option<Catalog>, PipelineError> {
-    let Some(path) = &look.words else {
-        let german = look.language == Language::De;
+/// If the table cannot be read, or is none.
+pub fn catalog(stated: &StatedOptions) -> Result<Option<Catalog>, PipelineError> {
+    let Some(path) = &stated.words else {
+        let german = stated.language == Language::De;
         return Ok(german.then(|| Catalog::german().clone()));
     };
-    let unusable = |reason: String| PipelineError::Look {
+    let unusable = |reason: String| PipelineError::ReportFile {
         path: path.display().to_string(),
         reason,
     };
@@ -127,8 +128,8 @@ pub fn catalog(look: &Look) -> Result<Option<Catalog>, PipelineError> {
     Ok(Some(catalog))
 }
 
-fn options(look: &Look) -> Result<ReportOptions, PipelineError> {
-    let unreadable = |path: &Path, error: std::io::Error| PipelineError::Look {
+fn options(stated: &StatedOptions) -> Result<ReportOptions, PipelineError> {
+    let unreadable = |path: &Path, error: std::io::Error| PipelineError::ReportFile {
         path: path.display().to_string(),
         reason: error.to_string(),
     };
@@ -143,20 +144,20 @@ fn options(look: &Look) -> Result<ReportOptions, PipelineError> {
         })
     };
     Ok(ReportOptions {
-        catalog: catalog(look)?,
-        paper: match look.paper {
+        catalog: catalog(stated)?,
+        paper: match stated.paper {
             WrittenPaper::A4 => Paper::A4,
             WrittenPaper::UsLetter => Paper::Letter,
         },
-        decimal_comma: look.decimal_comma,
-        language: match look.language {
+        decimal_comma: stated.decimal_comma,
+        language: match stated.language {
             Language::En => "en",
             Language::Cs => "cs",
             Language::De => "de",
         }
         .to_owned(),
-        template: look.template.as_ref().map(template).transpose()?,
-        logo: look.logo.as_ref().map(logo).transpose()?,
+        template: stated.template.as_ref().map(template).transpose()?,
+        logo: stated.logo.as_ref().map(logo).transpose()?,
     })
 }
 
@@ -195,8 +196,8 @@ fn nominal(campaign: &ResolvedCampaign) -> Vec<NominalValue> {
     stated.into_iter().filter_map(value).collect()
 }
 
-/// When it was measured: as campaign.toml says, else the days of the first and the last record,
-/// where their files tell.
+/// When it was measured: as stated in campaign.toml, else the days of the first and the last record,
+/// if their files state them.
 fn dates(campaign: &ResolvedCampaign) -> Option<[String; 2]> {
     if let Some(words) = &campaign.measured {
         return Some([words.clone(), words.clone()]);

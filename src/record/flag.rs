@@ -11,12 +11,17 @@ use crate::message::{Language, Message, Value};
 macro_rules! flag_codes {
     ($($(#[$doc:meta])* $code:ident = $name:literal, $english:literal, $german:literal,)*) => {
         /// Kind of a problem.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        #[derive(
+            Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+        )]
         pub enum FlagCode {
             $($(#[$doc])* #[serde(rename = $name)] $code,)*
         }
 
         impl FlagCode {
+            /// All codes.
+            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$code),*];
+
             /// The stable name in files and tables.
             pub fn name(self) -> &'static str {
                 match self {

@@ -18,7 +18,7 @@ pub struct Catalog {
     pub language: Option<String>,
     /// From the English phrase to the one printed.
     words: BTreeMap<String, String>,
-    /// From the kind of a message to its template.
+    /// From the key of a message to its template.
     #[serde(default)]
     findings: BTreeMap<String, String>,
 }
@@ -36,7 +36,7 @@ pub enum CatalogError {
         "\"{phrase}\" has {wanted}, its translation has {found}; write the same names in braces"
     )]
     Values {
-        /// The English phrase, or the kind of the message.
+        /// The English phrase, or the key of the message.
         phrase: String,
         /// The names in braces in it.
         wanted: String,
@@ -60,9 +60,9 @@ impl Catalog {
             check(phrase, phrase, translation)?;
         }
         let messages = messages();
-        for (kind, translation) in &catalog.findings {
-            let english = messages.get(kind.as_str());
-            check(kind, english.copied().unwrap_or(translation), translation)?;
+        for (key, translation) in &catalog.findings {
+            let english = messages.get(key.as_str());
+            check(key, english.copied().unwrap_or(translation), translation)?;
         }
         Ok(catalog)
     }
@@ -84,7 +84,7 @@ impl Catalog {
         let line = |phrase: &str| format!("{0} = {0}\n", quoted(phrase));
         let words: String = Self::phrases().map(line).collect();
         let messages = messages();
-        let message = |(kind, english): (&String, &&str)| format!("{kind} = {}\n", quoted(english));
+        let message = |(key, english): (&String, &&str)| format!("{key} = {}\n", quoted(english));
         let findings: String = messages.iter().map(message).collect();
         format!("language = \"en\"\n\n[words]\n{words}\n[findings]\n{findings}")
     }
@@ -94,20 +94,19 @@ impl Catalog {
         self.words.get(phrase).map_or(phrase, String::as_str)
     }
 
-    /// The template of a message: that of its kind in the catalog, else the program's in the
-    /// catalog's language, else the English one.
+    /// The template of a message: that of its key in the catalog, else the translation of its English
+    /// template, else the program's in the catalog's language, else the English one.
     pub fn template<'a>(&'a self, message: &dyn Message) -> &'a str {
         let language = match self.language.as_deref() {
             Some("de") => Language::German,
             _ => Language::English,
         };
-        let own = || self.findings.get(&message.kind()).map(String::as_str);
-        let own = if self.findings.is_empty() {
-            None
-        } else {
-            own()
+        let keyed = match self.findings.is_empty() {
+            true => None,
+            false => self.findings.get(&message.key()),
         };
-        own.unwrap_or_else(|| message.template(language))
+        let own = keyed.or_else(|| self.words.get(message.template(Language::English)));
+        own.map_or_else(|| message.template(language), String::as_str)
     }
 
     /// What is to be known of a catalog: phrases that it lacks, and entries that no report uses.
@@ -117,8 +116,11 @@ impl Catalog {
         let messages = messages();
         let lacking: Vec<&str> = phrases.difference(&here).copied().collect();
         let unknown = self.findings.keys().map(String::as_str);
-        let unknown = unknown.filter(|kind| !messages.contains_key(*kind));
-        let idle: Vec<&str> = here.difference(&phrases).copied().chain(unknown).collect();
+        let unknown = unknown.filter(|key| !messages.contains_key(*key));
+        let templates: BTreeSet<&str> = messages.values().copied().collect();
+        let idle = here.difference(&phrases).copied();
+        let idle = idle.filter(|phrase| !templates.contains(phrase));
+        let idle: Vec<&str> = idle.chain(unknown).collect();
         let mut remarks = Vec::new();
         if !lacking.is_empty() {
             remarks.push(format!(
@@ -139,10 +141,10 @@ impl Catalog {
     }
 }
 
-/// The English template of every kind of message.
+/// The English template of every message, by its key.
 fn messages() -> BTreeMap<String, &'static str> {
     let each = examples().into_iter();
-    each.map(|m| (m.kind(), m.template(Language::English)))
+    each.map(|m| (m.key(), m.template(Language::English)))
         .collect()
 }
 

@@ -2,6 +2,7 @@
 //! are influential, and which mistakes of the laboratory the data give away.
 
 pub mod agreement;
+pub mod beyond;
 pub mod contact_law;
 pub mod influence;
 pub mod suspicion;

@@ -6,12 +6,13 @@
 
 use nalgebra::DVector;
 
-use crate::identify::evidence::Nominal;
 use crate::identify::evidence::trajectory::{TrajectoryBlock, TrajectoryRecord};
+use crate::identify::evidence::{Blocks, Nominal};
 use crate::identify::fit::factor::dot;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Fit, mean_squares};
 use crate::identify::messages::Finding;
+use crate::identify::methods::MethodFit;
 use crate::record::Role;
 
 /// Standard errors from which a deviation is named.
@@ -20,6 +21,20 @@ pub(super) const SURE: f64 = 6.0;
 const CHANNEL_LIMIT: f64 = 4.0;
 /// Least relative deviation of a gap that is named.
 const GAP_LIMIT: f64 = 2e-3;
+/// Standard uncertainties, those of the clearances and of the fit combined, from which a gap is named
+/// whose uncertainty is stated.
+const GAP_SURE: f64 = 3.4;
+
+/// Whether a gap is so far off that it is named, where clearances have a standard uncertainty.
+fn is_named(odd: &OddGap, uncertainty_m: f64) -> bool {
+    match uncertainty_m > 0.0 {
+        true => odd.z_score.abs() > GAP_SURE,
+        false => {
+            let relative = (odd.fitting_m / odd.stated_m - 1.0).abs();
+            odd.z_score.abs() > SURE && relative > GAP_LIMIT
+        }
+    }
+}
 
 /// The channels in the order of [`Parameters::gains`].
 const CHANNELS: [Role; 4] = [
@@ -92,14 +107,50 @@ fn stated_gaps(records: &[TrajectoryRecord]) -> Vec<f64> {
 /// first order about a fit. `weight` is that of the trajectories in the fit.
 ///
 /// With the residuals' slopes J over the free coordinates and c over the gap, the shift is
-/// −cᵀr / (cᵀc − cᵀJ(JᵀJ)⁻¹Jᵀc), (15).
-pub fn odd_gap(block: &TrajectoryBlock, weight: f64, fit: &Fit, factor: f64) -> Option<OddGap> {
-    stated_gaps(&block.records)
-        .iter()
-        .filter_map(|gap| shift(block, weight, fit, factor, *gap))
+/// −cᵀr / (cᵀc − cᵀJ(JᵀJ)⁻¹Jᵀc), (15). Where clearances have a stated uncertainty, the fit carries the
+/// gap's error itself.
+pub fn odd_gap(
+    blocks: &Blocks,
+    weight: f64,
+    found: &MethodFit,
+    uncertainty_m: f64,
+) -> Option<OddGap> {
+    let block = &blocks.trajectory;
+    let odd: Vec<OddGap> = match uncertainty_m > 0.0 {
+        true => {
+            let gaps = blocks.gaps_m.iter().enumerate();
+            gaps.filter_map(|(i, gap)| beyond_stated(found, i, *gap, uncertainty_m))
+                .collect()
+        }
+        false => {
+            let gaps = stated_gaps(&block.records);
+            let shifts = gaps.iter();
+            shifts
+                .filter_map(|gap| shift(block, weight, &found.fit, found.factor, *gap))
+                .collect()
+        }
+    };
+    odd.into_iter()
         .max_by(|a, b| a.z_score.abs().total_cmp(&b.z_score.abs()))
-        .filter(|odd| odd.z_score.abs() > SURE)
-        .filter(|odd| (odd.fitting_m / odd.stated_m - 1.0).abs() > GAP_LIMIT)
+        .filter(|odd| is_named(odd, uncertainty_m))
+}
+
+/// The error of a gap that a fit carries with its prior of standard uncertainty u: an estimate e of
+/// variance C comes from one without the prior of e u²/(u² − C), which is e/√(u² − C) times the
+/// uncertainties of prior and fit combined.
+fn beyond_stated(found: &MethodFit, i: usize, gap: f64, uncertainty_m: f64) -> Option<OddGap> {
+    let coordinate = Coordinate::Gap(i);
+    let error_m = 1e-3 * found.spread(coordinate)?.error;
+    let informed = uncertainty_m.powi(2) - error_m.powi(2);
+    // A gap that the data hardly inform is not judged.
+    (informed > 0.1 * uncertainty_m.powi(2)).then(|| {
+        let off_m = 1e-3 * found.fit.parameters.coordinate(coordinate);
+        OddGap {
+            stated_m: gap,
+            fitting_m: gap + off_m * uncertainty_m.powi(2) / informed,
+            z_score: off_m / informed.sqrt(),
+        }
+    })
 }
 
 fn shift(block: &TrajectoryBlock, weight: f64, fit: &Fit, factor: f64, gap: f64) -> Option<OddGap> {

@@ -602,6 +602,7 @@ mod tests {
             gap: Some(1),
             lone_clearance_error_m: 0.0,
             place: 0.3,
+            group: 0,
             shared: Vec::new(),
             perturbations: Vec::new(),
         }

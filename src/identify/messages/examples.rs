@@ -1,9 +1,10 @@
 //! One example of each kind of message, so that all kinds can be listed.
 
 use super::*;
+use crate::identify::fit::effect::Effect;
 use crate::identify::method::Method;
 use crate::motion::BoundaryKind;
-use crate::record::Role;
+use crate::record::{FlagCode, Role};
 
 /// One example of each kind of message of an identification.
 pub fn examples() -> Vec<Box<dyn Message>> {
@@ -23,8 +24,13 @@ pub fn examples() -> Vec<Box<dyn Message>> {
     all.extend(remarks.map(|m| Box::new(m) as Box<dyn Message>));
     let reasons = reasons().into_iter();
     all.extend(reasons.map(|m| Box::new(m) as Box<dyn Message>));
-    let findings = findings().into_iter();
+    let findings = example_findings().into_iter();
     all.extend(findings.map(|m| Box::new(m) as Box<dyn Message>));
+    for strength in [0.01, -0.01] {
+        let effects = Effect::ALL.map(|effect| beyond(effect, strength));
+        all.extend(effects.map(|m| Box::new(m) as Box<dyn Message>));
+    }
+    all.extend(FlagCode::ALL.map(|m| Box::new(m) as Box<dyn Message>));
     let sentences = sentences().into_iter();
     all.extend(sentences.map(|m| Box::new(m) as Box<dyn Message>));
     all.push(Box::new(pair()));
@@ -39,6 +45,15 @@ fn pair() -> PairAgreement {
         values: [0.9, 0.8],
         z_score: 5.0,
         p_value: 6e-7,
+    }
+}
+
+fn beyond(effect: Effect, strength: f64) -> Finding {
+    Finding::BeyondModel {
+        effect,
+        strength,
+        standard_error: 0.002,
+        z_score: strength / 0.002,
     }
 }
 
@@ -83,6 +98,7 @@ fn notes() -> Vec<Note> {
         Note::SolverFailed {
             report: "…".into()
         },
+        Note::MethodsDisagree,
         Note::NotSeparable,
     ]
 }
@@ -163,7 +179,8 @@ fn reasons() -> Vec<Reason> {
     ]
 }
 
-fn findings() -> Vec<Finding> {
+/// One example of each kind of finding.
+pub fn example_findings() -> Vec<Finding> {
     let (deviation, z_score) = (-0.05, -9.0);
     vec![
         Finding::WrongClearance {
@@ -242,7 +259,7 @@ fn sentences() -> Vec<Sentence> {
         Sentence::NothingUsable,
         Sentence::DoesNotFit,
         Sentence::MethodsAgree,
-        Sentence::MethodsDisagree,
+        Sentence::MethodsDoNotAgree,
         Sentence::OneMethod,
         Sentence::Specimens { count: 3 },
         Sentence::MisfiledRecords { count: 2 },
@@ -268,10 +285,10 @@ mod tests {
 
     #[test]
     fn every_kind_has_its_own_name_and_templates_of_the_same_values() {
-        let mut kinds = BTreeSet::new();
+        let mut keys = BTreeSet::new();
         for message in examples() {
-            let kind = message.kind();
-            assert!(!kind.is_empty() && kinds.insert(kind.clone()), "{kind}");
+            let kind = message.key();
+            assert!(!kind.is_empty() && keys.insert(kind.clone()), "{kind}");
             let english = message.template(Language::English);
             let german = message.template(Language::German);
             assert_eq!(names(english), names(german), "{kind}");
@@ -283,20 +300,20 @@ mod tests {
 
     #[test]
     fn json_has_kind_numbers_and_text_and_reads_back() {
-        for finding in findings() {
+        for finding in example_findings() {
             let json = serde_json::to_value(&finding).expect("JSON");
             assert_eq!(json["kind"], Message::kind(&finding));
             assert_eq!(json["text"], finding.to_string());
             let back: Finding = serde_json::from_value(json).expect("a finding");
             assert_eq!(back, finding);
         }
-        let json = serde_json::to_value(&findings()[0]).expect("JSON");
+        let json = serde_json::to_value(&example_findings()[0]).expect("JSON");
         assert_eq!(json["stated_m"], 1e-3);
     }
 
     #[test]
     fn values_are_printed_at_their_places() {
-        let texts: Vec<String> = findings().iter().map(ToString::to_string).collect();
+        let texts: Vec<String> = example_findings().iter().map(ToString::to_string).collect();
         assert_eq!(
             texts[0],
             "the gap stated with a clearance of 1.0000 mm moves like one of 1.1000 mm: measure it \

@@ -9,7 +9,7 @@ mod reason;
 mod remark;
 mod sentence;
 
-pub use examples::examples;
+pub use examples::{example_findings, examples};
 pub use finding::{Finding, PublishedSetting};
 pub use note::Note;
 pub use pair::PairAgreement;

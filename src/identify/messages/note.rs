@@ -30,6 +30,8 @@ pub enum Note {
         /// Correlation of both estimates.
         correlation: f64,
     },
+    /// Methods do not agree on it; the interval covers them.
+    MethodsDisagree,
     /// R depends on the speed.
     NotOneNumber,
     /// Each specimen has parameters of its own.
@@ -85,6 +87,13 @@ impl Message for Note {
             (Self::LeansOn { .. }, German) => {
                 "hängt von {parameter} ab (Korrelation {correlation})"
             }
+            (Self::MethodsDisagree, English) => {
+                "the methods do not agree on it: the interval is widened by their disagreement"
+            }
+            (Self::MethodsDisagree, German) => {
+                "die Verfahren stimmen darin nicht überein: das Intervall ist um ihren Unterschied \
+                 verbreitert"
+            }
             (Self::NotOneNumber, English) => {
                 "$R$ is not one number here: see the remark on its change"
             }
@@ -137,6 +146,7 @@ impl Message for Note {
             Self::NoStart { observations } => vec![("count", Value::Count(*observations))],
             Self::SolverFailed { report } => vec![("report", Value::Name(report))],
             Self::NotOneNumber
+            | Self::MethodsDisagree
             | Self::SeveralSpecimens
             | Self::NoPublishedMotion
             | Self::NothingToFit

@@ -80,7 +80,7 @@ pub enum Sentence {
     /// The methods agree.
     MethodsAgree,
     /// They do not.
-    MethodsDisagree,
+    MethodsDoNotAgree,
     /// Each parameter is determined by one method only.
     OneMethod,
     /// The campaign holds several specimens.
@@ -129,7 +129,7 @@ impl Message for Sentence {
             Self::NothingUsable
             | Self::DoesNotFit
             | Self::MethodsAgree
-            | Self::MethodsDisagree
+            | Self::MethodsDoNotAgree
             | Self::OneMethod
             | Self::NoPublishedDamping => Vec::new(),
             Self::Specimens { count } | Self::MisfiledRecords { count } => {
@@ -151,7 +151,7 @@ impl Sentence {
     pub fn on_agreement(agree: Option<bool>) -> Self {
         match agree {
             Some(true) => Self::MethodsAgree,
-            Some(false) => Self::MethodsDisagree,
+            Some(false) => Self::MethodsDoNotAgree,
             None => Self::OneMethod,
         }
     }
@@ -169,7 +169,7 @@ impl Sentence {
             }
             Self::DoesNotFit => "The model does not describe these data: see the findings.",
             Self::MethodsAgree => "The methods agree.",
-            Self::MethodsDisagree => "The methods do not agree.",
+            Self::MethodsDoNotAgree => "The methods do not agree.",
             Self::OneMethod => "Each parameter is determined by one method only.",
             Self::Specimens { .. } => {
                 "The campaign has {count} specimens; each is identified by itself."
@@ -196,7 +196,7 @@ impl Sentence {
             }
             Self::DoesNotFit => "Das Modell beschreibt diese Daten nicht: siehe die Befunde.",
             Self::MethodsAgree => "Die Verfahren stimmen überein.",
-            Self::MethodsDisagree => "Die Verfahren stimmen nicht überein.",
+            Self::MethodsDoNotAgree => "Die Verfahren stimmen nicht überein.",
             Self::OneMethod => "Jeden Parameter bestimmt nur ein Verfahren.",
             Self::Specimens { .. } => {
                 "Die Messreihe hat {count} Prüflinge; jeder ist für sich identifiziert."

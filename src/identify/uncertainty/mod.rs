@@ -5,9 +5,11 @@
 
 pub mod band;
 pub mod bound;
+pub mod budget;
 pub mod coverage;
 mod options;
 pub mod posterior;
+pub mod scatter;
 
 pub use options::{IntervalMethod, UncertaintyOptions};
 
@@ -23,6 +25,8 @@ use crate::identify::fit::normal::{Normal, inverse};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::fit::{Fit, Problem};
 use crate::identify::method::Method;
+use crate::identify::uncertainty::budget::Budget;
+use crate::identify::uncertainty::scatter::Scatter;
 
 /// Likelihood of one parameter with all others fitted anew at each of its values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -54,6 +58,12 @@ pub struct Uncertainty {
     /// Share of each method (and of `stated`, the laboratory's own knowledge of its instruments) in
     /// what is known of each parameter; the shares of a parameter add up to 1.
     pub information_share: BTreeMap<Coordinate, BTreeMap<InformationSource, f64>>,
+    /// The sources of the joint estimate's uncertainty, and what they amount to.
+    #[serde(default)]
+    pub budget: Budget,
+    /// Scatter between groups of records beyond noise and what is stated.
+    #[serde(default)]
+    pub scatter: Scatter,
     /// Profile likelihoods, where asked for.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub profiles: Vec<ProfileCurve>,
@@ -105,6 +115,7 @@ pub fn uncertainty(
             IntervalMethod::Bootstrap => bootstrap(problem, fit, options, &told),
             _ => Vec::new(),
         },
+        ..Uncertainty::default()
     }
 }
 

@@ -10,7 +10,7 @@ pub use records::records;
 
 use crate::compare::Unusable;
 use crate::identify::Item;
-use crate::record::{FlagCode, Sweep};
+use crate::record::Sweep;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Align, Rich, Table};
 use crate::report::figures::richtext::{Level, Run};

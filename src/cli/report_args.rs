@@ -1,58 +1,63 @@
-//! How the report looks: options of every verb that writes one. They go before what campaign.toml
-//! says.
+//! Options of the report, shared by the commands that write one. They override those of
+//! campaign.toml.
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::builder::PossibleValue;
+use clap::{Args, ValueEnum};
 
-use super::{Failure, Voice};
-use crate::campaign::resolved::Report;
+use super::{Failure, Verbosity};
+use crate::campaign::resolved::{Report, ResolvedCampaign};
 use crate::campaign::written::Paper;
 use crate::pipeline;
 use crate::report::Format;
 
-/// Options of the report's look.
+/// Options of the report.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Report")]
-pub struct Look {
-    /// What the report is written as: pdf, html, svg, png (several: pdf,html)
+pub(super) struct ReportArgs {
+    /// Formats of the report: pdf, html, svg, png (several: pdf,html)
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     format: Vec<Format>,
-    /// A typst template instead of the built-in one
+    /// Typst template instead of the built-in one
     #[arg(long, value_name = "FILE")]
     template: Option<PathBuf>,
-    /// A table of the report's words in another language (report --list-words prints them)
+    /// Table of the report's phrases in another language (report --list-words prints them)
     #[arg(long, value_name = "FILE")]
     words: Option<PathBuf>,
-    /// An image for the first page: svg, png or jpg
+    /// Image for the first page: svg, png or jpg
     #[arg(long, value_name = "FILE")]
     logo: Option<PathBuf>,
-    /// Paper: a4 or letter
-    #[arg(long, value_name = "PAPER", value_parser = paper)]
+    /// Paper size
+    #[arg(long, value_name = "PAPER", value_enum)]
     paper: Option<Paper>,
     /// Print numbers with a decimal comma
     #[arg(long)]
     decimal_comma: bool,
 }
 
-fn paper(name: &str) -> Result<Paper, String> {
-    match name {
-        "a4" => Ok(Paper::A4),
-        "letter" | "us-letter" => Ok(Paper::UsLetter),
-        other => Err(format!("unknown paper '{other}'; known are a4 and letter")),
+impl ValueEnum for Paper {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::A4, Self::UsLetter]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(match self {
+            Self::A4 => PossibleValue::new("a4"),
+            Self::UsLetter => PossibleValue::new("letter").alias("us-letter"),
+        })
     }
 }
 
-impl Look {
-    /// Put these options before those of campaign.toml.
-    pub(super) fn apply(&self, report: &mut Report, voice: Voice) -> Result<(), Failure> {
+impl ReportArgs {
+    /// Override the options of campaign.toml.
+    pub(super) fn apply(&self, report: &mut Report, verbosity: Verbosity) -> Result<(), Failure> {
         let files = [&self.template, &self.words, &self.logo];
         for file in files.into_iter().flatten() {
             if !file.is_file() {
                 return Err(Failure::new(
-                    format!("{} is no file", file.display()),
-                    "name the template, the words and the logo as they lie on the disk, or leave them \
-                     out",
+                    format!("{} is not a file", file.display()),
+                    "check the path, or leave the option out",
                 ));
             }
         }
@@ -74,13 +79,13 @@ impl Look {
         report.decimal_comma |= self.decimal_comma;
         if let Some(catalog) = pipeline::report::catalog(report)? {
             for remark in catalog.remarks() {
-                voice.say(&format!("note: {remark}"));
+                verbosity.info(&format!("note: {remark}"));
             }
         }
         Ok(())
     }
 
-    /// These options as they are typed, with a space before each.
+    /// These options as on the command line, with a space before each.
     pub(super) fn typed(&self) -> String {
         let mut text = String::new();
         let mut add = |name: &str, value: &str| text.push_str(&format!(" --{name} {value}"));
@@ -107,7 +112,23 @@ impl Look {
     }
 }
 
-/// A path as a shell takes it.
+/// Print the paths of the report.
+pub(super) fn print_report_paths(campaign: &ResolvedCampaign, out: &Path, verbosity: Verbosity) {
+    for format in &campaign.report.formats {
+        let name = match format {
+            Format::Pdf => "report.pdf",
+            Format::Html => "report.html",
+            Format::Svg | Format::Png | Format::Csv => "figures/",
+        };
+        verbosity.info(&format!(
+            "Report ({}): {}",
+            format.name(),
+            out.join(name).display()
+        ));
+    }
+}
+
+/// A path quoted for a shell.
 pub(super) fn quoted(path: &Path) -> String {
     let text = path.display().to_string();
     let plain = |c: char| c.is_alphanumeric() || "/._-+:,=@%".contains(c);
@@ -124,7 +145,7 @@ mod tests {
 
     #[test]
     fn valid_options_are_typed_as_they_were_given() {
-        let look = Look {
+        let options = ReportArgs {
             format: vec![Format::Pdf, Format::Html],
             template: Some("my template.typ".into()),
             words: Some("de.toml".into()),
@@ -133,9 +154,9 @@ mod tests {
             decimal_comma: true,
         };
         assert_eq!(
-            look.typed(),
+            options.typed(),
             " --format pdf,html --template 'my template.typ' --words de.toml --paper letter --decimal-comma"
         );
-        assert_eq!(Look::default().typed(), "");
+        assert_eq!(ReportArgs::default().typed(), "");
     }
 }

@@ -1,19 +1,19 @@
-//! What a folder of files looks like: its records, and which channel may serve which role.
+//! The records in a folder of files, and the role that each channel probably has.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::listing::Opener;
+use super::discovery::Opener;
 use crate::record::Role;
-use labfiles::source::{ChannelInfo, DatasetInfo, Samples, Source};
 use labfiles::units::{self, Dimension};
+use labfiles::{ChannelInfo, DatasetInfo, Samples, Source};
 
-/// How deep below the folder files are looked for.
+/// Depth of the search below the folder.
 const DEPTH: usize = 4;
 
 /// What was found in a folder.
 #[derive(Debug, Default)]
-pub struct Found {
+pub struct FolderContents {
     /// Globs of the record files, relative to the folder.
     pub globs: Vec<String>,
     /// A CSV table that names files, relative to the folder.
@@ -27,18 +27,18 @@ pub struct Found {
     /// The first record file, relative to the folder.
     pub example: String,
     /// Its channels.
-    pub channels: Vec<Seen>,
+    pub channels: Vec<InferredChannel>,
     /// Attributes of its first dataset.
     pub attributes: BTreeMap<String, String>,
-    /// Files that no reader opens, with the reason.
+    /// Files that no reader accepts, with the reason.
     pub refused: Vec<(String, String)>,
-    /// Whether a time axis or a rate tells when samples were taken.
+    /// Whether the file has a time axis or a sample rate.
     pub timed: bool,
 }
 
-/// A channel as seen, and the role guessed for it.
+/// A channel and the role inferred for it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Seen {
+pub struct InferredChannel {
     /// Name in the file.
     pub name: String,
     /// Unit in the file.
@@ -49,18 +49,18 @@ pub struct Seen {
     pub range: Option<[f64; 2]>,
     /// Whether it holds the time.
     pub is_time: bool,
-    /// The role guessed.
+    /// The role inferred.
     pub role: Option<Role>,
     /// Levels of a signal that has only two.
     pub levels: Option<[f64; 2]>,
 }
 
-/// Look at a folder.
-pub fn look(folder: &Path, open: Opener<'_>) -> Found {
+/// Read the headers of all files below a folder, and infer the channels' roles.
+pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
     let mut paths = Vec::new();
     collect(folder, DEPTH, &mut paths);
     paths.sort();
-    let mut found = Found::default();
+    let mut found = FolderContents::default();
     let mut records = Vec::new();
     for path in paths {
         let relative = path.strip_prefix(folder).unwrap_or(&path).to_path_buf();
@@ -141,7 +141,7 @@ fn holds_record(source: &dyn Source) -> bool {
         .any(|d| d.channels.iter().any(|c| c.samples >= 16))
 }
 
-/// One glob a folder and ending; `**` where the files lie in many folders.
+/// One glob per folder and extension; `**` for files in many folders.
 fn globs(paths: &[PathBuf]) -> Vec<String> {
     let ending = |p: &PathBuf| {
         p.extension()
@@ -167,7 +167,7 @@ fn globs(paths: &[PathBuf]) -> Vec<String> {
     all
 }
 
-fn describe(source: &dyn Source, found: &mut Found) {
+fn describe(source: &dyn Source, found: &mut FolderContents) {
     found.format = source.format();
     found.datasets = source.datasets().len();
     let Some((index, set)) = source
@@ -185,14 +185,14 @@ fn describe(source: &dyn Source, found: &mut Found) {
     assign(&mut found.channels);
 }
 
-fn channels(source: &dyn Source, dataset: usize, set: &DatasetInfo) -> Vec<Seen> {
+fn channels(source: &dyn Source, dataset: usize, set: &DatasetInfo) -> Vec<InferredChannel> {
     let seen = |(i, info): (usize, &ChannelInfo)| {
         let samples = source.read(dataset, &[i]).ok().and_then(|mut s| s.pop());
         let values = match samples {
             Some(Samples::Real(values)) => values,
             _ => Vec::new(),
         };
-        Seen {
+        InferredChannel {
             name: info.name.clone(),
             unit: info.unit.clone(),
             samples: info.samples,
@@ -213,7 +213,7 @@ fn range(values: &[f64]) -> Option<[f64; 2]> {
     (low <= high).then_some([low, high])
 }
 
-/// The two levels of a signal that keeps to them, as a contact does.
+/// The two levels of a signal that is nearly always at one of them, as a contact.
 fn two_levels(values: &[f64]) -> Option<[f64; 2]> {
     let [low, high] = range(values)?;
     let near = |level: f64| {
@@ -229,7 +229,7 @@ fn two_levels(values: &[f64]) -> Option<[f64; 2]> {
         .windows(2)
         .filter(|w| (w[0] < 0.5 * (low + high)) != (w[1] < 0.5 * (low + high)))
         .count();
-    // a sine lingers at its crests too, but passes more slowly than two samples
+    // a sine is long near its crests too, but takes more than two samples between them
     let steep = values
         .windows(2)
         .filter(|w| (w[1] - w[0]).abs() > 0.4 * (high - low))
@@ -239,7 +239,7 @@ fn two_levels(values: &[f64]) -> Option<[f64; 2]> {
 }
 
 /// Give each role to the channel that fits best.
-fn assign(channels: &mut [Seen]) {
+fn assign(channels: &mut [InferredChannel]) {
     let y_first = sides(channels);
     for role in Role::ALL {
         let best = channels
@@ -255,8 +255,8 @@ fn assign(channels: &mut [Seen]) {
     }
 }
 
-/// Whether names tell two sides apart at all.
-fn sides(channels: &[Seen]) -> bool {
+/// Whether any name refers to the second mass.
+fn sides(channels: &[InferredChannel]) -> bool {
     channels.iter().any(|c| side(&c.name) == Some('y'))
 }
 
@@ -268,7 +268,7 @@ fn words(name: &str) -> Vec<String> {
         .collect()
 }
 
-/// Which mass a name speaks of.
+/// The mass that a name refers to.
 fn side(name: &str) -> Option<char> {
     let of = |word: &str| match word {
         "x" | "1" | "left" | "a" | "vx" | "ax" | "dx" | "x1" | "v1" | "mass1" => Some('x'),
@@ -279,7 +279,7 @@ fn side(name: &str) -> Option<char> {
 }
 
 /// How well a channel fits a role; 0: not at all.
-fn score(channel: &Seen, role: Role, two_sided: bool) -> u32 {
+fn score(channel: &InferredChannel, role: Role, two_sided: bool) -> u32 {
     let kind = kind(channel);
     let fits = match role {
         Role::Drive => kind == Kind::Drive,
@@ -318,8 +318,8 @@ enum Kind {
     Unknown,
 }
 
-/// What a channel measures, by its name, its unit and its shape.
-fn kind(channel: &Seen) -> Kind {
+/// Quantity of a channel, from its name, unit and shape.
+fn kind(channel: &InferredChannel) -> Kind {
     let words = words(&channel.name);
     let has = |stems: &[&str]| words.iter().any(|w| stems.iter().any(|s| w.starts_with(s)));
     if has(&["frame", "base", "found", "housing"]) {
@@ -353,8 +353,8 @@ fn kind(channel: &Seen) -> Kind {
 mod tests {
     use super::*;
 
-    fn seen(name: &str, unit: Option<&str>) -> Seen {
-        Seen {
+    fn seen(name: &str, unit: Option<&str>) -> InferredChannel {
+        InferredChannel {
             name: name.into(),
             unit: unit.map(str::to_owned),
             samples: 100,
@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_roles_are_guessed_from_names_and_units() {
+    fn roles_are_inferred_from_names_and_units() {
         let mut channels = vec![
             seen("ch1/generator", Some("V")),
             seen("ch2/vibrometer left", Some("V")),
@@ -391,7 +391,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_contact_keeps_to_two_levels_and_a_sine_does_not() {
+    fn a_contact_has_two_levels_and_a_sine_has_not() {
         let contact: Vec<f64> = (0..500)
             .map(|i| if i % 50 < 3 { 5.0 } else { 0.01 })
             .collect();

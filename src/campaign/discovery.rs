@@ -6,20 +6,23 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::faults::{Fault, Notebook, Severity};
-use super::quantity::Desk;
+use super::context::ResolveContext;
+use super::diagnostic::{Code, Diagnostic, FaultCollector, Severity};
+use super::names::natural_key;
 use super::run_table::{self, Row};
 use super::written::OneOrMany;
 use crate::record::calibrate::{self, ChannelKey, ChannelSetup};
 use crate::record::{Flag, FlagCode};
-use labfiles::source::{DatasetInfo, ReadError, Source};
+use labfiles::{DatasetInfo, ReadError, Source};
 
-/// How a file is opened; [`labfiles::open::open`] but for tests.
+/// How a file is opened; [`labfiles::open`] but for tests.
 pub type Opener<'a> = &'a (dyn Fn(&Path) -> Result<Box<dyn Source>, ReadError> + Sync);
 
-/// What a dataset is known by before it is read.
+/// A record as its file's metadata and the run table describe it, before it is read.
 #[derive(Debug, Clone)]
-pub(super) struct Listed {
+pub(super) struct Discovered {
+    /// Name in the campaign, once all records are known.
+    pub(super) id: String,
     pub(super) file: PathBuf,
     /// Line of the run table; `None` for a glob.
     pub(super) row: Option<Row>,
@@ -31,38 +34,39 @@ pub(super) struct Listed {
 
 /// What the records of a campaign share.
 #[derive(Debug, Clone, Copy)]
-pub struct Shared<'a> {
+pub(super) struct Shared<'a> {
     /// The folder of campaign.toml.
-    pub folder: &'a Path,
+    pub(super) folder: &'a Path,
     /// The channels by role.
-    pub channels: &'a [ChannelSetup],
+    pub(super) channels: &'a [ChannelSetup],
     /// The channel with the time.
-    pub time: Option<&'a ChannelKey>,
+    pub(super) time: Option<&'a ChannelKey>,
 }
 
 pub(super) fn list_files(
     files: &toml::Spanned<OneOrMany>,
     shared: Shared<'_>,
     open: Opener<'_>,
-    desk: &mut Desk<'_>,
-) -> Vec<Listed> {
+    context: &mut ResolveContext<'_>,
+) -> Vec<Discovered> {
     let mut paths = Vec::new();
     for pattern in &files.get_ref().0 {
         let found = expand(shared.folder, pattern);
         if found.is_empty() {
             let what = format!("no file matches '{pattern}' in {}", shared.folder.display());
-            desk.fault(
+            context.fault(
+                Code::UnreadableFile,
                 files,
                 "records.files",
                 what,
-                "mend the pattern; it is relative to campaign.toml",
+                "check the pattern; it is relative to campaign.toml",
             );
         }
         paths.extend(found);
     }
     paths.sort_by_cached_key(|p| natural_key(&p.to_string_lossy()));
     paths.dedup();
-    let listed: Vec<Vec<Listed>> = paths
+    let listed: Vec<Vec<Discovered>> = paths
         .par_iter()
         .map(|path| list_file(path, shared, open))
         .collect();
@@ -81,24 +85,7 @@ fn expand(folder: &Path, pattern: &str) -> Vec<PathBuf> {
         .collect()
 }
 
-/// A key that puts `run2` before `run10`.
-fn natural_key(name: &str) -> Vec<(u8, u64, String)> {
-    let mut key: Vec<(u8, u64, String)> = Vec::new();
-    for letter in name.chars() {
-        match (letter.to_digit(10), key.last_mut()) {
-            (Some(d), Some((0, number, text))) if number.checked_mul(10).is_some() => {
-                *number = number.saturating_mul(10).saturating_add(u64::from(d));
-                text.push(letter);
-            }
-            (Some(d), _) => key.push((0, u64::from(d), letter.to_string())),
-            (None, Some((1, _, text))) => text.push(letter),
-            (None, _) => key.push((1, 0, letter.to_string())),
-        }
-    }
-    key
-}
-
-fn list_file(path: &Path, shared: Shared<'_>, open: Opener<'_>) -> Vec<Listed> {
+fn list_file(path: &Path, shared: Shared<'_>, open: Opener<'_>) -> Vec<Discovered> {
     match open(path) {
         Ok(source) => {
             let sets = source.datasets();
@@ -123,8 +110,9 @@ fn empty_file(path: &Path) -> Flag {
     )
 }
 
-fn failed(path: &Path, row: Option<Row>, flag: Flag) -> Listed {
-    Listed {
+fn failed(path: &Path, row: Option<Row>, flag: Flag) -> Discovered {
+    Discovered {
+        id: String::new(),
         file: path.to_path_buf(),
         dataset_name: row
             .as_ref()
@@ -143,14 +131,15 @@ fn listed(
     set: &DatasetInfo,
     row: Option<Row>,
     shared: Shared<'_>,
-) -> Listed {
+) -> Discovered {
     let mut flags: Vec<Flag> = shared
         .channels
         .iter()
         .filter_map(|c| calibrate::bind(c, set).err())
         .collect();
     flags.extend(crate::record::time_axis::find(shared.time, set).err());
-    Listed {
+    Discovered {
+        id: String::new(),
         file: path.to_path_buf(),
         row,
         dataset: Some(index),
@@ -164,19 +153,19 @@ pub(super) fn list_rows(
     table: &str,
     shared: Shared<'_>,
     open: Opener<'_>,
-    desk: &mut Desk<'_>,
-) -> Vec<Listed> {
+    context: &mut ResolveContext<'_>,
+) -> Vec<Discovered> {
     let path = shared.folder.join(table);
-    let mut book = Notebook::new(&path);
-    let rows = run_table::read(&path, &mut book);
-    refuse_twice(&rows, &mut book);
-    desk.book.absorb(book.into_faults());
+    let mut faults = FaultCollector::new(&path);
+    let rows = run_table::read(&path, &mut faults);
+    refuse_twice(&rows, &mut faults);
+    context.faults.extend(faults.into_diagnostics().0);
     let mut by_file: HashMap<&str, Vec<&Row>> = HashMap::new();
     for row in &rows {
         by_file.entry(&row.file).or_default().push(row);
     }
     let by_file: Vec<(&str, Vec<&Row>)> = by_file.into_iter().collect();
-    let mut all: Vec<Listed> = by_file
+    let mut all: Vec<Discovered> = by_file
         .par_iter()
         .flat_map_iter(|(file, rows)| list_rows_of(&shared.folder.join(file), rows, shared, open))
         .collect();
@@ -185,18 +174,29 @@ pub(super) fn list_rows(
 }
 
 /// The same file and dataset in two rows is a record counted twice.
-fn refuse_twice(rows: &[Row], book: &mut Notebook) {
+fn refuse_twice(rows: &[Row], faults: &mut FaultCollector) {
     let mut seen: HashMap<(&str, Option<&str>), usize> = HashMap::new();
     for row in rows {
         let key = (row.file.as_str(), row.dataset.as_deref());
         if let Some(first) = seen.insert(key, row.line) {
-            let what = format!("'{}' already stands in line {first}", row.file);
-            book.fault(Some(row.line), "file", what, "remove one of the two rows");
+            let what = format!("'{}' is already in line {first}", row.file);
+            faults.fault(
+                Code::Conflict,
+                Some(row.line),
+                "file",
+                what,
+                "remove one of the two rows",
+            );
         }
     }
 }
 
-fn list_rows_of(path: &Path, rows: &[&Row], shared: Shared<'_>, open: Opener<'_>) -> Vec<Listed> {
+fn list_rows_of(
+    path: &Path,
+    rows: &[&Row],
+    shared: Shared<'_>,
+    open: Opener<'_>,
+) -> Vec<Discovered> {
     let source = match open(path) {
         Ok(source) => source,
         Err(error) => {
@@ -236,13 +236,13 @@ fn no_dataset(row: &Row, sets: &[DatasetInfo]) -> Flag {
             row.dataset.as_deref().unwrap_or(""),
             some.join(", ")
         ),
-        "mend the column dataset of the run table",
+        "fix the column dataset of the run table",
     )
 }
 
-/// Tell the flags of the listing: what every record has is one fault of the campaign.
-pub(super) fn note_flags(listed: &[Listed], desk: &mut Desk<'_>) {
-    let mut groups: Vec<(&Flag, Vec<&Listed>)> = Vec::new();
+/// Report the flags of the metadata: what every record has is one problem of the campaign.
+pub(super) fn note_flags(listed: &[Discovered], context: &mut ResolveContext<'_>) {
+    let mut groups: Vec<(&Flag, Vec<&Discovered>)> = Vec::new();
     let mut index: HashMap<(FlagCode, &str), usize> = HashMap::new();
     for one in listed {
         for flag in &one.flags {
@@ -259,33 +259,18 @@ pub(super) fn note_flags(listed: &[Listed], desk: &mut Desk<'_>) {
         if all && listed.len() > 1 {
             let what = format!("in all {} records: {}", listed.len(), flag.message);
             let key = flag.channel.as_deref().unwrap_or("records").to_owned();
-            desk.book.fault(None, &key, what, &flag.remedy);
+            context
+                .faults
+                .fault(Code::Flag(flag.code), None, &key, what, &flag.remedy);
             continue;
         }
-        let severity = match (all, flag.excludes) {
-            (true, _) => Severity::Campaign,
-            (false, true) => Severity::Record,
-            (false, false) => Severity::Note,
-        };
-        let faults = records
-            .iter()
-            .map(|one| record_fault(one, flag, severity))
-            .collect();
-        desk.book.absorb(faults);
-    }
-}
-
-fn record_fault(one: &Listed, flag: &Flag, severity: Severity) -> Fault {
-    Fault {
-        file: one.file.clone(),
-        line: None,
-        key: match (one.dataset_name.as_str(), &flag.channel) {
-            ("", Some(channel)) => channel.clone(),
-            (name, Some(channel)) => format!("{name}: {channel}"),
-            (name, None) => name.to_owned(),
-        },
-        what: flag.message.clone(),
-        remedy: flag.remedy.clone(),
-        severity,
+        // a campaign of one record stops with it
+        context.faults.extend(records.iter().map(|one| {
+            let mut problem = Diagnostic::of_record(&one.file, &one.id, flag);
+            if all {
+                problem.severity = Severity::Campaign;
+            }
+            problem
+        }));
     }
 }

@@ -1,4 +1,4 @@
-//! What a run keeps for itself: values as compressed JSON.
+//! Values as gzip-compressed JSON.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -12,10 +12,10 @@ use serde::de::DeserializeOwned;
 
 use labfiles::output::{OutputError, write_whole};
 
-/// Write a value as a whole.
+/// Write a value atomically.
 ///
 /// # Errors
-/// Where it cannot be written.
+/// If it cannot be written.
 pub fn write<T: Serialize>(path: &Path, value: &T) -> Result<(), OutputError> {
     write_whole(path, |writer| {
         let mut gzip = GzEncoder::new(writer, Compression::fast());
@@ -28,7 +28,7 @@ pub fn write<T: Serialize>(path: &Path, value: &T) -> Result<(), OutputError> {
 /// Read a value that [`write`] wrote.
 ///
 /// # Errors
-/// Where the file is missing, damaged or of another kind.
+/// If the file is missing, damaged or of another type.
 pub fn read<T: DeserializeOwned>(path: &Path) -> io::Result<T> {
     let mut text = String::new();
     GzDecoder::new(File::open(path)?).read_to_string(&mut text)?;

@@ -1,26 +1,32 @@
 //! An atlas over the ranks of an MPI run: each computes one part, the first puts them together, so
 //! that the files are those of one process, byte for byte.
 
-use mpi::traits::{Communicator, Destination, Source};
+use ::mpi::traits::{Communicator, Destination, Source};
 
 use super::atlas::computed;
 use super::merge::whole;
 use super::theory::OutArgs;
-use super::{Exit, Failure, Voice};
+use super::{Exit, Failure, Verbosity};
 use crate::pipeline::theory::Study;
 use crate::pipeline::theory::plan::RegionsPlan;
 use impact_oscillator::atlas::shard::AtlasPart;
 
-/// What a rank tells the first: its part as JSON, or why it has none.
+/// What a rank sends to the first: its part as JSON, or why it has none.
 type Told = Result<AtlasPart, String>;
 
-/// Compute this rank's part; the first rank gathers all of them and leaves the atlas.
+/// Compute this rank's part; the first rank gathers all of them and writes the atlas.
 ///
 /// # Errors
 /// [`Failure`] where MPI does not start, a rank has no part, or a file cannot be written.
-pub fn go(study: &Study, plan: &RegionsPlan, out: &OutArgs, voice: Voice) -> Result<Exit, Failure> {
+pub fn run(
+    study: &Study,
+    plan: &RegionsPlan,
+    out: &OutArgs,
+    verbosity: Verbosity,
+) -> Result<Exit, Failure> {
     let start_it = "start the program with mpirun, and only once in a process";
-    let universe = mpi::initialize().ok_or_else(|| Failure::new("MPI does not start", start_it))?;
+    let universe =
+        ::mpi::initialize().ok_or_else(|| Failure::new("MPI does not start", start_it))?;
     let world = universe.world();
     let (rank, size) = (world.rank(), world.size());
     let own = computed(
@@ -34,7 +40,7 @@ pub fn go(study: &Study, plan: &RegionsPlan, out: &OutArgs, voice: Voice) -> Res
         world.process_at_rank(0).send(&bytes[..]);
         return own.map(|_| Exit::Done);
     }
-    // every rank is heard, whatever became of this one, so that none waits for ever
+    // every rank's message is received even where this one failed, so that none waits without end
     let others: Vec<Told> = (1..size)
         .map(|k| {
             let (bytes, _) = world.process_at_rank(k).receive_vec::<u8>();
@@ -48,5 +54,5 @@ pub fn go(study: &Study, plan: &RegionsPlan, out: &OutArgs, voice: Voice) -> Res
             Failure::new(format!("rank {k}: {e}"), remedy)
         })?);
     }
-    whole(&parts, out, voice)
+    whole(&parts, out, verbosity)
 }
