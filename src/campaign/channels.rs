@@ -10,7 +10,7 @@ use crate::record::calibrate::{ChannelKey, ChannelSetup};
 use labfiles::units::{self, Dimension, Scale, Unit};
 
 impl Channels {
-    fn of(&self, role: Role) -> &Placed<Channel> {
+    pub(super) fn of(&self, role: Role) -> &Placed<Channel> {
         match role {
             Role::Drive => &self.drive,
             Role::Contact => &self.contact,

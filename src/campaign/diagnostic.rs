@@ -21,7 +21,7 @@ pub enum Severity {
 }
 
 /// What kind of problem it is.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Code {
     /// A file that is named cannot be found or read.
     UnreadableFile,
@@ -65,19 +65,20 @@ pub struct Place {
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.file.display())?;
-        if let Some(line) = self.line {
-            write!(f, ":{line}")?;
+        let mut parts = Vec::new();
+        if !self.file.as_os_str().is_empty() {
+            let line = self.line.map(|line| format!(":{line}"));
+            parts.push(format!(
+                "{}{}",
+                self.file.display(),
+                line.unwrap_or_default()
+            ));
         }
         // a record that is a file of its own is named by that file
         let stem = self.file.file_stem().unwrap_or_default();
-        if let Some(record) = self.record.as_ref().filter(|r| stem != r.as_str()) {
-            write!(f, ": {record}")?;
-        }
-        match self.item.as_str() {
-            "" => Ok(()),
-            item => write!(f, ": {item}"),
-        }
+        parts.extend(self.record.clone().filter(|r| stem != r.as_str()));
+        parts.extend(Some(self.item.clone()).filter(|item| !item.is_empty()));
+        f.write_str(&parts.join(": "))
     }
 }
 
@@ -140,7 +141,7 @@ impl Diagnostics {
         let mut index = HashMap::new();
         for one in &self.0 {
             let key = (
-                &one.code,
+                one.code,
                 one.severity,
                 one.place.record.is_some(),
                 &one.place.item,

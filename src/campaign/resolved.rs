@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::written::{Excitation, Flight, Format, Language, Machine, Paper};
-use crate::identify::uncertainty::IntervalMethod;
 use crate::identify::fit::effect::EffectKind;
+use crate::identify::uncertainty::IntervalMethod;
 use crate::record::Setting;
 use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup};
 

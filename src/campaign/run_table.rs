@@ -216,6 +216,11 @@ fn factor(column: usize, symbol: Option<&str>) -> Result<f64, Wrong> {
     }
 }
 
+/// Line of a position, from 1.
+fn line_of(position: &csv::Position) -> Option<usize> {
+    usize::try_from(position.line()).ok()
+}
+
 fn read_row(
     record: csv::Result<csv::StringRecord>,
     columns: usize,
@@ -225,7 +230,7 @@ fn read_row(
     let record = match record {
         Ok(record) => record,
         Err(error) => {
-            let line = error.position().map(|p| p.line() as usize);
+            let line = error.position().and_then(line_of);
             faults.fault(
                 Code::Syntax,
                 line,
@@ -236,7 +241,7 @@ fn read_row(
             return None;
         }
     };
-    let line = record.position().map_or(0, |p| p.line() as usize);
+    let line = record.position().and_then(line_of).unwrap_or(0);
     if record.len() != columns {
         let what = format!("the row has {} cells, the header {columns}", record.len());
         faults.fault(Code::Syntax, Some(line), "", what, "fix the row");

@@ -60,7 +60,7 @@ fn print_counts(all: &Diagnostics, usable: Option<(usize, u64)>, verbosity: Verb
         n => format!("{n} {noun}s"),
     };
     verbosity.info(&format!(
-        "{} (nothing can be computed), {} (a record is left out), {}.",
+        "{}, {}, {}.",
         count(Severity::Campaign, "error"),
         count(Severity::Record, "warning"),
         count(Severity::Note, "note")

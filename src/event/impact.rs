@@ -62,6 +62,15 @@ pub struct Impact {
     pub corner_shifts: [Option<CornerShift>; 2],
     /// How long the bodies stayed together after it, s; zero without a dead zone.
     pub dead_zone_s: f64,
+    /// Duration of the contact, s; `None` if it cannot be distinguished from an instant. The approach
+    /// speeds are those at its start and at its end; `time_s` is the centre of its impulse, to which the
+    /// speeds of each mass refer, as if the impact were instantaneous there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact_duration_s: Option<f64>,
+    /// What springs and drive, not the contact, added to the separation speed during the contact,
+    /// m/s (for a linear contact); `None` as above.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub external_push_m_s: Option<f64>,
     /// Channels that show it.
     #[serde(rename = "seen")]
     pub source: DetectionSource,

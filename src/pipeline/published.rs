@@ -69,6 +69,11 @@ fn table(speeds: &[PublishedSpeed], found: Option<f64>, published: &Published) -
             s.clearance_ratio.to_string(),
             eta,
         ];
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a small whole number, not negative"
+        )]
         let decimals = (-s.printed_step.log10().floor()).max(0.0) as usize;
         let model = dampings.iter().map(|b| match predicted(s, *b) {
             Some(speed) => format!("{speed:.0$}", decimals + 1),

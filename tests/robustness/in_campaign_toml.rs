@@ -138,7 +138,7 @@ fn quantities() -> Vec<Case> {
         refused(
             "a natural frequency below zero",
             |lab| lab.edit("\"12.6 Hz\"", "\"-12.6 Hz\""),
-            &["rig.natural_frequency", "it must be positive"],
+            &["rig.natural_frequency", "write a positive value"],
         ),
         refused(
             "a restitution above 1",
@@ -228,7 +228,7 @@ fn channels() -> Vec<Case> {
         refused(
             "a negative high-pass corner",
             |lab| lab.edit("\"0.5 Hz\"", "\"-0.5 Hz\""),
-            &["channels.velocity_x.high_pass", "it must be positive"],
+            &["channels.velocity_x.high_pass", "write a positive value"],
         ),
         refused(
             "a threshold for a velocity",

@@ -116,7 +116,7 @@ fn rows() -> Vec<Case> {
                 lab.write("runs.csv", "file,dataset\nr1.csv,run7\nr2.csv,\n");
             },
             &[
-                "r1.csv: run7",
+                "r1.csv: r1/run7",
                 "no dataset 'run7' in it",
                 "fix the column dataset",
             ],
@@ -127,12 +127,12 @@ fn rows() -> Vec<Case> {
                 lab.replace("runs.csv", "clearance_mm", "clearance_m");
                 lab.replace("runs.csv", "1.0", "15");
             },
-            &["a clearance of 15 m", "mend its unit: mm?"],
+            &["a clearance of 15 m", "check its unit: mm?"],
         ),
         refused(
             "a drive frequency of zero",
             |lab| lab.replace("runs.csv", "r2.csv,12", "r2.csv,0"),
-            &["r2: drive_frequency", "a drive frequency of 0 Hz"],
+            &["r2.csv: drive_frequency", "a drive frequency of 0 Hz"],
         ),
     ]
 }

@@ -80,7 +80,7 @@ fn test_all(cases: &[Case]) {
 }
 
 #[test]
-fn valid_the_good_campaign_has_no_fault() {
+fn the_good_campaign_has_no_fault() {
     let ran = Lab::new().run(CHECK);
     assert_eq!(ran.code, 0, "{}", ran.said);
     assert!(
@@ -91,7 +91,7 @@ fn valid_the_good_campaign_has_no_fault() {
 }
 
 #[test]
-fn valid_faults_in_campaign_toml() {
+fn faults_in_campaign_toml() {
     test_all(&in_campaign_toml::cases());
 }
 
@@ -145,22 +145,22 @@ fn valid_bombs_end_soon_and_in_little_memory() {
 }
 
 #[test]
-fn valid_faults_in_the_run_table() {
+fn faults_in_the_run_table() {
     test_all(&in_run_table::cases());
 }
 
 #[test]
-fn valid_faults_in_records() {
+fn faults_in_records() {
     test_all(&in_records::cases());
 }
 
 #[test]
-fn valid_contradictions() {
+fn contradictions() {
     test_all(&physical::cases());
 }
 
 #[test]
-fn valid_faults_of_command_and_output() {
+fn faults_of_command_and_output() {
     test_all(&in_outputs::cases());
 }
 

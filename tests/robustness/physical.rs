@@ -197,17 +197,20 @@ pub fn cases() -> Vec<Case> {
                 lab.write("r3.csv", &text);
                 lab.replace("runs.csv", "r3.csv,13", "r3.csv,11");
             },
-            &["r3.csv: r3", "its samples are those of the record 'r1'"],
+            &[
+                "r3.csv: its samples",
+                "its samples are those of the record 'r1'",
+            ],
         ),
         noted(
             "a clearance of zero",
             |lab| lab.replace("runs.csv", "r2.csv,12,1.0", "r2.csv,12,0"),
-            &["r2: clearance", "a preload, or a slip"],
+            &["r2.csv: clearance", "a preload, or a typing error"],
         ),
         noted(
             "a negative clearance",
             |lab| lab.replace("runs.csv", "r2.csv,12,1.0", "r2.csv,12,-1.0"),
-            &["a clearance of -0.001 m: a preload, or a slip"],
+            &["a clearance of -0.001 m: a preload, or a typing error"],
         ),
     ]
 }
