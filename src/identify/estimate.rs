@@ -62,8 +62,7 @@ pub(super) fn limits(coordinate: Coordinate) -> (f64, f64) {
         Coordinate::Frequency => (0.01, 0.08),
         Coordinate::Damping => (0.15, 0.9),
         Coordinate::Deflection => (0.05, 0.5),
-        Coordinate::Gain(_) | Coordinate::Corner(_) => (0.05, 0.5),
-        Coordinate::DriveAsymmetry | Coordinate::StiffnessAsymmetry => (0.05, 0.5),
+        _ => (0.05, 0.5),
     }
 }
 

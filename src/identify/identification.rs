@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::identify::estimate::{Estimate, ParameterSet};
-use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::Coordinate;
+use crate::identify::fit::{Fit, FitReport};
 use crate::identify::judgement::contact_law::ContactLaw;
 use crate::identify::messages::{Finding, LeftOut, PairAgreement, Remark, Sentence};
 use crate::identify::method::Method;
@@ -27,6 +27,9 @@ pub struct MethodResult {
     /// Root mean square of the weighted residuals (1: as the stated noise).
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub reduced_residual: Option<f64>,
+    /// Iterations and termination of its fit; `None` without one.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub fit_report: Option<FitReport>,
     /// Whether the model fits this method's data; `None`: cannot be judged.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub fits: Option<bool>,

@@ -83,7 +83,8 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Attempt {
     ];
     let list: [(&dyn Block, f64); 1] = [(&blocks.resonance, 1.0)];
     let mut priors = Vec::new();
-    blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
+    let told = free.clone();
+    blocks.add_nuisances(&nominal.ideal(), &list, (&mut free, &mut priors));
     let best = starts(blocks, nominal)
         .into_iter()
         .filter_map(|start| {
@@ -92,7 +93,13 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Attempt {
             fit_blocks(list.to_vec(), free.clone(), priors, start).ok()
         })
         .min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
-    Some(best.ok_or(FitError::Singular))
+    let Some(best) = best else {
+        return Some(Err(FitError::Singular));
+    };
+    let start = best.fit.parameters;
+    let (mut free, mut priors) = (told.clone(), wide_priors(&start, &told));
+    blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
+    Some(fit_blocks(list.to_vec(), free, priors, start))
 }
 
 /// Starting values of the resonance curve: the stated ones, and a coarse grid whose deflection
@@ -114,7 +121,7 @@ fn starts(blocks: &Blocks, nominal: &Nominal) -> Vec<Parameters> {
     for f0 in grid {
         for beta in [0.01, 0.05, 0.2] {
             let beta = nominal.damping_ratio.unwrap_or(beta);
-            let unit = Parameters::symmetric(0.8, f0, beta, 1.0);
+            let unit = nominal.applied(Parameters::symmetric(0.8, f0, beta, 1.0));
             out.push(Parameters {
                 static_deflection_m: deflection_guess(blocks, &unit),
                 ..unit
@@ -227,6 +234,7 @@ pub fn result(
                 observations,
                 records,
                 reduced_residual: Some(found.reduced.sqrt()),
+                fit_report: Some(found.fit.report.clone()),
                 ..MethodResult::default()
             };
             for coordinate in &found.fit.free {

@@ -114,7 +114,7 @@ fn start(evidence: &Evidence, resonance: &Attempt) -> Parameters {
         .filter_map(|o| o.setting.clearance_m)
         .collect();
     let median = |v: &[f64], default: f64| crate::signal::robust::median(v).unwrap_or(default);
-    Parameters::symmetric(
+    nominal.applied(Parameters::symmetric(
         nominal.restitution.unwrap_or(0.8),
         nominal
             .natural_frequency_hz
@@ -123,7 +123,7 @@ fn start(evidence: &Evidence, resonance: &Attempt) -> Parameters {
         nominal
             .static_deflection_m
             .unwrap_or_else(|| median(&clearances, 1e-3).abs() / 2.0),
-    )
+    ))
 }
 
 struct Work<'a> {

@@ -108,16 +108,21 @@ impl<'a> Selection<'a> {
         methods::resonance(&self.blocks, &self.evidence.nominal)
     }
 
-    /// Fit the folded records; those without an orbit at the start are tried again at the end,
-    /// and those that fit far worse than the bulk are left out and named.
+    /// Fit the folded records, first as if the rig were ideal, then with all that may add to it; those
+    /// without an orbit at the start are tried again, and those that fit far worse than the bulk are left out and named.
     pub fn trajectories(&mut self, start: Parameters) -> Attempt {
+        let nominal = self.evidence.nominal;
         let all = self.blocks.trajectory.records.clone();
-        let at_start = mean_squares(&self.blocks.trajectory, &start);
-        let mut has_orbit = at_start.iter().map(Option::is_some);
-        let records = &mut self.blocks.trajectory.records;
-        records.retain(|_| has_orbit.next().unwrap_or(false));
-        let mut found = match methods::trajectories(&self.blocks, &self.evidence.nominal, start)? {
-            Ok(first) => first,
+        self.keep_those_with_orbits(&start);
+        let first = match methods::trajectories(&self.blocks, &nominal.ideal(), start)? {
+            Ok(first) => first.fit.parameters,
+            failed => return Some(failed),
+        };
+        self.blocks.trajectory.records.clone_from(&all);
+        self.keep_those_with_orbits(&first);
+        self.blocks.weigh_trajectories(&first);
+        let mut found = match methods::trajectories(&self.blocks, &nominal, first)? {
+            Ok(found) => found,
             failed => return Some(failed),
         };
         self.blocks.trajectory.records = all;
@@ -130,6 +135,14 @@ impl<'a> Selection<'a> {
             };
         }
         Some(Ok(found))
+    }
+
+    /// Keep the periodic records that have an orbit at given parameters.
+    fn keep_those_with_orbits(&mut self, parameters: &Parameters) {
+        let at_start = mean_squares(&self.blocks.trajectory, parameters);
+        let mut has_orbit = at_start.iter().map(Option::is_some);
+        let records = &mut self.blocks.trajectory.records;
+        records.retain(|_| has_orbit.next().unwrap_or(false));
     }
 
     /// Keep the records that fit like the bulk, name the others, and find again what is allowed

@@ -159,7 +159,11 @@ impl Seen {
     }
 }
 
-fn evidence<'a>(observations: &'a [Observation], brackets: &'a [Bracket]) -> Evidence<'a> {
+fn evidence<'a>(
+    observations: &'a [Observation],
+    brackets: &'a [Bracket],
+    draw: &Draw,
+) -> Evidence<'a> {
     Evidence {
         rig: RigKind::Double,
         observations,
@@ -167,6 +171,7 @@ fn evidence<'a>(observations: &'a [Observation], brackets: &'a [Bracket]) -> Evi
         nominal: Nominal {
             gain_uncertainty: 5e-3,
             corner_uncertainty: 2e-2,
+            clearance_uncertainty_m: draw.clearance_uncertainty_m.unwrap_or(0.0),
             ..Nominal::default()
         },
         // Nobody reads profiles of hundreds of campaigns.
@@ -198,7 +203,7 @@ fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError
         .collect();
     scale_drives(&mut observations);
     let brackets = brackets(&observations);
-    let outcome = identify(&evidence(&observations, &brackets));
+    let outcome = identify(&evidence(&observations, &brackets, draw));
     Ok(Seen {
         observations,
         brackets,
@@ -207,9 +212,9 @@ fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError
 }
 
 /// What a campaign contributes to the scores.
-fn trial(seen: &Seen, truth: &Truth) -> Trial {
-    let truth = parameters(truth);
-    let bounds = bounds(&evidence(&seen.observations, &seen.brackets), &truth);
+fn trial(seen: &Seen, draw: &Draw) -> Trial {
+    let truth = parameters(&draw.truth);
+    let bounds = bounds(&evidence(&seen.observations, &seen.brackets, draw), &truth);
     Trial::new(truth, &seen.outcome.joint, &seen.outcome.methods, bounds)
 }
 
@@ -248,7 +253,7 @@ pub fn study(
         .map(|i| {
             let draw = draw(seed, i, Reach::Full, rig);
             let seen = campaign(&draw, None)?;
-            let trial = trial(&seen, &draw.truth);
+            let trial = trial(&seen, &draw);
             step();
             Ok((!seen.outcome.suspicions.is_empty(), trial))
         })

@@ -35,6 +35,8 @@ pub fn nominal(campaign: &ResolvedCampaign) -> Nominal {
         static_deflection_m: campaign.rig.static_deflection_m,
         gain_uncertainty: campaign.rig.gain_uncertainty,
         corner_uncertainty: campaign.rig.corner_uncertainty,
+        clearance_uncertainty_m: campaign.rig.clearance_uncertainty_m,
+        ..Nominal::default()
     }
 }
 

@@ -207,14 +207,6 @@ fn prop_same_content_gives_same_bytes() {
 }
 
 #[test]
-fn prop_content_survives_json() {
-    let content = kind("unidentified");
-    let text = serde_json::to_string(content).expect("JSON");
-    let back: ReportContent = serde_json::from_str(&text).expect("content");
-    assert_eq!(&back, content);
-}
-
-#[test]
 fn valid_decimal_comma_reaches_text_and_figures() {
     let options = RenderOptions {
         decimal_comma: true,

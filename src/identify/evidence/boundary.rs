@@ -275,7 +275,11 @@ impl Block for BoundaryBlock {
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {
-        !matches!(coordinate, Coordinate::Gain(_) | Coordinate::Corner(_))
+        Coordinate::PHYSICAL.contains(&coordinate)
+            || matches!(
+                coordinate,
+                Coordinate::DriveAsymmetry | Coordinate::StiffnessAsymmetry
+            )
     }
 }
 

@@ -168,6 +168,33 @@ pub fn velocity_slope(
     }
 }
 
+/// A motion seen later by a delay; of its jump, what lies within the delay is not shifted.
+pub fn delayed(motion: &MassMotion, eta: f64, delay: f64) -> MassMotion {
+    MassMotion {
+        force: motion.force * C64::from_polar(1.0, -eta * delay),
+        mode: motion.mode * (-motion.exponent * delay).exp(),
+        exponent: motion.exponent,
+    }
+}
+
+/// Differential of [`delayed`].
+pub fn delayed_slope(
+    motion: &MassMotion,
+    change: &MassMotion,
+    [eta, d_eta]: [f64; 2],
+    [delay, d_delay]: [f64; 2],
+) -> MassMotion {
+    let turn = C64::from_polar(1.0, -eta * delay);
+    let decay = (-motion.exponent * delay).exp();
+    let d_turn = C64::new(0.0, -(d_eta * delay + eta * d_delay));
+    let d_decay = -(change.exponent * delay + motion.exponent * d_delay);
+    MassMotion {
+        force: (change.force + motion.force * d_turn) * turn,
+        mode: (change.mode + motion.mode * d_decay) * decay,
+        exponent: change.exponent,
+    }
+}
+
 /// Re(ab)
 fn real(a: C64, b: C64) -> f64 {
     a.re * b.re - a.im * b.im

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::event::{CornerShift, RigKind};
+use crate::identify::fit::effect::Effect;
 use crate::record::Role;
 use impact_oscillator::model::params::{
     Contact, Flight, Machine, Oscillator, Restitution, Setting,
@@ -21,12 +22,88 @@ pub struct Parameters {
     pub static_deflection_m: f64,
     /// (F_x − F_y)/F0.
     pub drive_asymmetry: f64,
-    /// (k_x − k_y)/k.
+    /// (k_x − k_y)/k, per unit of mass.
     pub stiffness_asymmetry: f64,
+    /// (b_x − b_y)/b, per unit of mass.
+    #[serde(default)]
+    pub damping_asymmetry: f64,
+    /// (m_x − m_y)/m.
+    #[serde(default)]
+    pub mass_asymmetry: f64,
     /// Gain of the channels over the stated one: velocity x, y, displacement x, y.
     pub gains: [f64; 4],
     /// Corner of the channels' high-pass over the stated one, in the same order.
     pub corners: [f64; 4],
+    /// Delay of the channels against the drive's, s, in the same order.
+    #[serde(default)]
+    pub delays_s: [f64; 4],
+    /// Strengths of the effects beyond the model, by their places.
+    #[serde(default)]
+    pub effects: [f64; Effect::COUNT],
+    /// Common error of all clearances (the zero of the screw that sets them), m.
+    #[serde(default)]
+    pub screw_zero_m: f64,
+    /// Error of each stated clearance beside it, m, in the order of the stated ones.
+    #[serde(default)]
+    pub gap_errors_m: GapErrors,
+}
+
+/// Most stated clearances that carry an error of their own.
+pub const MOST_GAPS: usize = 48;
+
+/// Errors of the stated clearances, m.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(from = "Vec<f64>", into = "Vec<f64>")]
+pub struct GapErrors([f64; MOST_GAPS]);
+
+impl Default for GapErrors {
+    fn default() -> Self {
+        Self([0.0; MOST_GAPS])
+    }
+}
+
+impl From<Vec<f64>> for GapErrors {
+    fn from(errors: Vec<f64>) -> Self {
+        let mut all = Self::default();
+        for (place, error) in all.0.iter_mut().zip(errors) {
+            *place = error;
+        }
+        all
+    }
+}
+
+impl From<GapErrors> for Vec<f64> {
+    fn from(errors: GapErrors) -> Self {
+        let used = errors.0.iter().rposition(|e| *e != 0.0);
+        errors.0[..used.map_or(0, |last| last + 1)].to_vec()
+    }
+}
+
+/// Where and when a record was taken, as far as effects depend on it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Circumstances {
+    /// Drive frequency, Hz.
+    pub frequency_hz: f64,
+    /// Half the gap as stated, m (against a stop: the whole gap).
+    pub clearance_m: f64,
+    /// Place of the clearance among the stated ones that carry an error of their own.
+    pub gap: Option<usize>,
+    /// Place in the campaign: −½ (first record) to ½ (last).
+    pub place: f64,
+    /// Approach speed at the impacts, m/s; zero without impacts.
+    pub approach_m_s: f64,
+    /// Displacements that close the gap together: 2, or 1 against a stop.
+    pub masses: f64,
+}
+
+/// Derivative of a record's own parameters over one coordinate of the fit: of R, ln f0, ln β,
+/// ln x_st, and of the clearance in m.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct OwnSlope {
+    /// Of R, ln f0, ln β and ln x_st.
+    pub physical: [f64; 4],
+    /// Of the clearance, m.
+    pub clearance_m: f64,
 }
 
 impl Parameters {
@@ -44,20 +121,32 @@ impl Parameters {
             static_deflection_m,
             drive_asymmetry: 0.0,
             stiffness_asymmetry: 0.0,
+            damping_asymmetry: 0.0,
+            mass_asymmetry: 0.0,
             gains: [1.0; 4],
             corners: [1.0; 4],
+            delays_s: [0.0; 4],
+            effects: [0.0; Effect::COUNT],
+            screw_zero_m: 0.0,
+            gap_errors_m: GapErrors::default(),
         }
     }
 
-    /// The machine, dimensionless: masses about the nominal one.
+    /// The machine, dimensionless: masses about the nominal one. The coefficients of damping are
+    /// alike where stiffnesses differ (the paper's eq. 15); asymmetries are per unit of mass, so
+    /// that unlike masses change the impact alone.
     pub fn machine(&self, rig: RigKind) -> Machine {
-        let mass = |sign: f64| Oscillator {
-            mass: 1.0,
-            natural_frequency_ratio: (1.0 + 0.5 * sign * self.stiffness_asymmetry)
-                .max(0.01)
-                .sqrt(),
-            damping_ratio: self.damping_ratio,
-            drive_amplitude: 1.0 + 0.5 * sign * self.drive_asymmetry,
+        let mass = |sign: f64| {
+            let of = |asymmetry: f64| (1.0 + 0.5 * sign * asymmetry).max(0.01);
+            let natural_frequency_ratio = of(self.stiffness_asymmetry).sqrt();
+            let decay_rate = self.damping_ratio * of(self.damping_asymmetry);
+            let mass = of(self.mass_asymmetry);
+            Oscillator {
+                mass,
+                natural_frequency_ratio,
+                damping_ratio: decay_rate / natural_frequency_ratio,
+                drive_amplitude: mass * of(self.drive_asymmetry),
+            }
         };
         let restitution = Restitution::Constant(self.restitution.clamp(0.0, 1.0));
         let (x, y) = match rig {
@@ -77,8 +166,102 @@ impl Parameters {
         Self {
             drive_asymmetry: 0.0,
             stiffness_asymmetry: 0.0,
+            damping_asymmetry: 0.0,
+            mass_asymmetry: 0.0,
             ..self
         }
+    }
+
+    /// Strength of an effect beyond the model.
+    pub fn effect(&self, effect: Effect) -> f64 {
+        self.effects[effect.place()]
+    }
+
+    /// Force over its value at η = 1, and its derivative over η.
+    fn lean(&self, eta: f64) -> [f64; 2] {
+        let (slope, curve) = (
+            self.effect(Effect::ForceSlope),
+            self.effect(Effect::ForceCurve),
+        );
+        let off = eta - 1.0;
+        [1.0 + off * (slope + curve * off), slope + 2.0 * curve * off]
+    }
+
+    /// The parameters that a record has of its own, and its clearance, m: where drift, the force
+    /// against frequency, errors of the clearances and the length of contacts have been applied.
+    ///
+    /// A contact that lasts a time t acts outside of it like an impact at the instant where both
+    /// flights meet, R t/(1 + R) after its start: there the gap is wider by w R t/(1 + R).
+    pub fn own(&self, at: &Circumstances) -> (Self, f64) {
+        let drift = |effect| self.effect(effect) * at.place;
+        let bend = self.effect(Effect::FrequencyBend) * bend(at.place);
+        let [lean, _] = self.lean(at.frequency_hz / self.natural_frequency_hz);
+        let own = Self {
+            natural_frequency_hz: self.natural_frequency_hz
+                * (drift(Effect::FrequencyDrift) + bend).exp(),
+            damping_ratio: self.damping_ratio * drift(Effect::DampingDrift).exp(),
+            static_deflection_m: self.static_deflection_m
+                * lean.max(0.01)
+                * drift(Effect::DeflectionDrift).exp(),
+            ..*self
+        };
+        let error = at.gap.map_or(0.0, |i| self.gap_errors_m.0[i]);
+        let r = self.restitution;
+        let contact_s = 1e-3 * self.effect(Effect::ContactDuration);
+        let reach_m = at.approach_m_s * contact_s * r / (1.0 + r) / at.masses.max(1.0);
+        (own, at.clearance_m + self.screw_zero_m + error + reach_m)
+    }
+
+    /// How the parameters of [`Parameters::own`] change per unit of a coordinate; `None` where they
+    /// do not.
+    pub fn own_slope(&self, at: &Circumstances, coordinate: Coordinate) -> Option<OwnSlope> {
+        let none = OwnSlope::default();
+        let only = |i: usize, slope: f64| {
+            let mut physical = [0.0; 4];
+            physical[i] = slope;
+            Some(OwnSlope { physical, ..none })
+        };
+        let clearance = |clearance_m: f64| {
+            Some(OwnSlope {
+                clearance_m,
+                ..none
+            })
+        };
+        let eta = at.frequency_hz / self.natural_frequency_hz;
+        let [lean, over_eta] = self.lean(eta);
+        let r = self.restitution;
+        let speed = at.approach_m_s / at.masses.max(1.0);
+        match coordinate {
+            Coordinate::Restitution => Some(OwnSlope {
+                physical: [1.0, 0.0, 0.0, 0.0],
+                clearance_m: 1e-3 * self.effect(Effect::ContactDuration) * speed
+                    / (1.0 + r).powi(2),
+            }),
+            Coordinate::Frequency => Some(OwnSlope {
+                physical: [0.0, 1.0, 0.0, -eta * over_eta / lean],
+                ..none
+            }),
+            Coordinate::Damping => only(2, 1.0),
+            Coordinate::Deflection => only(3, 1.0),
+            Coordinate::ScrewZero => clearance(1e-3),
+            Coordinate::Gap(i) if at.gap == Some(i) => clearance(1e-3),
+            Coordinate::Effect(effect) => match effect {
+                Effect::ForceSlope => only(3, (eta - 1.0) / lean),
+                Effect::ForceCurve => only(3, (eta - 1.0).powi(2) / lean),
+                Effect::FrequencyDrift => only(1, at.place),
+                Effect::FrequencyBend => only(1, bend(at.place)),
+                Effect::DampingDrift => only(2, at.place),
+                Effect::DeflectionDrift => only(3, at.place),
+                Effect::ContactDuration => clearance(1e-3 * speed * r / (1.0 + r)),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// Delay of a channel against the drive's, s; 0 for channels that carry none.
+    pub fn delay_s(&self, role: Role) -> f64 {
+        gain_index(role).map_or(0.0, |i| self.delays_s[i])
     }
 
     /// η and ρ of a setting; the drive amplitude scales the static deflection.
@@ -118,8 +301,14 @@ impl Parameters {
             Coordinate::Deflection => self.static_deflection_m.ln(),
             Coordinate::DriveAsymmetry => self.drive_asymmetry,
             Coordinate::StiffnessAsymmetry => self.stiffness_asymmetry,
+            Coordinate::DampingAsymmetry => self.damping_asymmetry,
+            Coordinate::MassAsymmetry => self.mass_asymmetry,
             Coordinate::Gain(i) => self.gains[i].ln(),
             Coordinate::Corner(i) => self.corners[i].ln(),
+            Coordinate::Delay(i) => 1e3 * self.delays_s[i],
+            Coordinate::Effect(effect) => self.effect(effect),
+            Coordinate::ScrewZero => 1e3 * self.screw_zero_m,
+            Coordinate::Gap(i) => 1e3 * self.gap_errors_m.0[i],
         }
     }
 
@@ -132,8 +321,14 @@ impl Parameters {
             Coordinate::Deflection => self.static_deflection_m = value.exp(),
             Coordinate::DriveAsymmetry => self.drive_asymmetry = value,
             Coordinate::StiffnessAsymmetry => self.stiffness_asymmetry = value,
+            Coordinate::DampingAsymmetry => self.damping_asymmetry = value,
+            Coordinate::MassAsymmetry => self.mass_asymmetry = value,
             Coordinate::Gain(i) => self.gains[i] = value.exp(),
             Coordinate::Corner(i) => self.corners[i] = value.exp(),
+            Coordinate::Delay(i) => self.delays_s[i] = 1e-3 * value,
+            Coordinate::Effect(effect) => self.effects[effect.place()] = value,
+            Coordinate::ScrewZero => self.screw_zero_m = 1e-3 * value,
+            Coordinate::Gap(i) => self.gap_errors_m.0[i] = 1e-3 * value,
         }
         self
     }
@@ -144,6 +339,9 @@ impl Parameters {
             && self.damping_ratio < 0.95
             && self.drive_asymmetry.abs() < 1.0
             && self.stiffness_asymmetry.abs() < 1.0
+            && self.damping_asymmetry.abs() < 1.0
+            && self.mass_asymmetry.abs() < 1.0
+            && self.effects.iter().all(|e| e.abs() < 10.0)
             && self.natural_frequency_hz.is_finite()
             && self.static_deflection_m.is_finite()
     }
@@ -160,8 +358,14 @@ pub fn gain_index(role: Role) -> Option<usize> {
     }
 }
 
+/// What a drift that bends adds at a place −½ … ½ in the campaign: 1 in the middle of it, −1 at both
+/// ends.
+fn bend(place: f64) -> f64 {
+    1.0 - 8.0 * place * place
+}
+
 /// One coordinate of the fit: R itself, the logarithms of f0, β, x_st, the gains and the
-/// corners, the asymmetries themselves.
+/// corners, the asymmetries and effects themselves, delays in ms, errors of clearances in mm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub enum Coordinate {
@@ -177,10 +381,22 @@ pub enum Coordinate {
     DriveAsymmetry,
     /// (k_x − k_y)/k
     StiffnessAsymmetry,
+    /// (b_x − b_y)/b
+    DampingAsymmetry,
+    /// (m_x − m_y)/m
+    MassAsymmetry,
     /// ln of a channel's gain, by its index in [`Parameters::gains`]
     Gain(usize),
     /// ln of a channel's corner, by its index in [`Parameters::corners`]
     Corner(usize),
+    /// Delay of a channel, ms, by its index in [`Parameters::delays_s`]
+    Delay(usize),
+    /// Strength of an effect beyond the model
+    Effect(Effect),
+    /// Common error of all clearances, mm
+    ScrewZero,
+    /// Error of one stated clearance, mm, by its place among them
+    Gap(usize),
 }
 
 impl Coordinate {
@@ -201,6 +417,15 @@ impl Coordinate {
             Self::Deflection => "static_deflection_m",
             Self::DriveAsymmetry => "drive_asymmetry",
             Self::StiffnessAsymmetry => "stiffness_asymmetry",
+            Self::DampingAsymmetry => "damping_asymmetry",
+            Self::MassAsymmetry => "mass_asymmetry",
+            Self::Delay(0) => "delay_velocity_x_ms",
+            Self::Delay(1) => "delay_velocity_y_ms",
+            Self::Delay(2) => "delay_displacement_x_ms",
+            Self::Delay(_) => "delay_displacement_y_ms",
+            Self::Effect(effect) => effect.name(),
+            Self::ScrewZero => "screw_zero_mm",
+            Self::Gap(_) => "clearance_error_mm",
             Self::Gain(0) => "gain_velocity_x",
             Self::Gain(1) => "gain_velocity_y",
             Self::Gain(2) => "gain_displacement_x",
@@ -235,9 +460,9 @@ impl Coordinate {
 
     /// Whether the coordinate is a logarithm of the value.
     pub fn is_logarithm(self) -> bool {
-        !matches!(
+        matches!(
             self,
-            Self::Restitution | Self::DriveAsymmetry | Self::StiffnessAsymmetry
+            Self::Frequency | Self::Damping | Self::Deflection | Self::Gain(_) | Self::Corner(_)
         )
     }
 

@@ -38,10 +38,13 @@ pub enum Note {
     },
     /// There is nothing to fit.
     NothingToFit,
+    /// The solver failed.
+    SolverFailed {
+        /// What it reported, in English.
+        report: String,
+    },
     /// The data do not separate the parameters.
     NotSeparable,
-    /// The solver ended without a result.
-    SolverFailed,
 }
 
 impl From<&FitError> for Note {
@@ -51,8 +54,10 @@ impl From<&FitError> for Note {
                 observations: items.len(),
             },
             FitError::Empty => Self::NothingToFit,
+            FitError::Solver(report) => Self::SolverFailed {
+                report: report.clone(),
+            },
             FitError::Singular => Self::NotSeparable,
-            FitError::Solver(_) => Self::SolverFailed,
         }
     }
 }
@@ -135,10 +140,10 @@ impl Message for Note {
             }
             (Self::NothingToFit, English) => "there are no observations to fit",
             (Self::NothingToFit, German) => "es gibt keine Beobachtungen für eine Anpassung",
+            (Self::SolverFailed { .. }, English) => "the solver failed: {report}",
+            (Self::SolverFailed { .. }, German) => "der Löser versagte: {report}",
             (Self::NotSeparable, English) => "the data do not separate the parameters",
             (Self::NotSeparable, German) => "die Daten trennen die Parameter nicht",
-            (Self::SolverFailed, English) => "the solver ended without a result",
-            (Self::SolverFailed, German) => "der Löser endete ohne Ergebnis",
         }
     }
 
@@ -163,12 +168,12 @@ impl Message for Note {
                 ("correlation", Value::Number(*correlation, 2)),
             ],
             Self::NoStart { observations } => vec![("count", Value::Count(*observations))],
+            Self::SolverFailed { report } => vec![("report", Value::Name(report))],
             Self::NotOneNumber
             | Self::SeveralSpecimens
             | Self::NoPublishedMotion
             | Self::NothingToFit
-            | Self::NotSeparable
-            | Self::SolverFailed => Vec::new(),
+            | Self::NotSeparable => Vec::new(),
         }
     }
 }

@@ -12,6 +12,7 @@ pub mod orbit;
 pub mod params;
 pub mod path;
 pub mod periodic;
+pub mod perturbation;
 pub mod recurrence;
 pub mod restitution;
 pub mod sensitivity;

@@ -19,9 +19,11 @@ pub struct MassChange {
     pub decay_rate: f64,
     /// Of the driving amplitude over the mass.
     pub drive_per_mass: f64,
+    /// Of the share of an impact's change of speed that the mass takes.
+    pub mobility: f64,
 }
 
-/// A direction in which machine and setting change; masses keep theirs.
+/// A direction in which machine, setting and what acts beyond them change.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Change {
     /// The first mass.
@@ -34,6 +36,11 @@ pub struct Change {
     pub eta: f64,
     /// Of the gap at X = Y = 0.
     pub gap: f64,
+    /// Of X + Y at the impact, by a small extra acceleration of the masses
+    /// ([`PeriodicResponse`](super::perturbation::PeriodicResponse)).
+    pub displacement: f64,
+    /// Of X' + Y' just before the impact, likewise.
+    pub velocity: f64,
 }
 
 /// One mass on an orbit: Re(force · e^{iθ}) + Re(mode · e^{exponent · t}), θ the drive's phase and
@@ -92,6 +99,7 @@ struct MassSlope {
     position: f64,
     velocity: f64,
     forced: C64,
+    mobility: f64,
 }
 
 impl Mass {
@@ -125,6 +133,7 @@ impl Mass {
             position: (sum.im - self.sum.im * d_omega / omega) / omega,
             velocity: (before.im - self.before.im * d_omega / omega) / omega,
             forced: forced_slope(&self.oscillator, d, self.forced, eta),
+            mobility: d.mobility,
         }
     }
 
@@ -135,9 +144,19 @@ impl Mass {
 
     fn mode_slope(&self, slope: &MassSlope, change: [f64; 2]) -> C64 {
         let [change, d_change] = change;
-        let unit = C64::new(0.0, self.mobility / self.lambda.im);
+        let unit = C64::new(0.0, self.lambda.im.recip());
         let relative = slope.lambda.im / self.lambda.im;
-        unit * (slope.sum * change + self.sum * (d_change - change * relative))
+        let own = slope.sum * change + self.sum * (d_change - change * relative);
+        unit * (own * self.mobility + self.sum * change * slope.mobility)
+    }
+
+    /// Displacement and velocity before of the Green's function, each times the mobility.
+    fn share_slope(&self, slope: &MassSlope) -> [f64; 2] {
+        let omega = self.lambda.im;
+        [
+            self.mobility * slope.position + slope.mobility * self.sum.im / omega,
+            self.mobility * slope.velocity + slope.mobility * self.before.im / omega,
+        ]
     }
 
     fn motion(&self, change: f64) -> MassMotion {
@@ -218,21 +237,21 @@ impl Sensitivity {
                 .as_ref()
                 .map(|m| (m, m.slope(d, eta, period)))
         });
-        let sum = |part: fn(&MassSlope) -> f64| -> f64 {
-            let of = |m: &Option<(&Mass, MassSlope)>| {
-                m.as_ref().map_or(0.0, |(m, s)| m.mobility * part(s))
-            };
-            of(&x) + of(&y)
-        };
+        let shares = [&x, &y].into_iter().flatten();
+        let [d_position, d_velocity] = shares
+            .map(|(m, s)| m.share_slope(s))
+            .fold([0.0; 2], |sum, share| {
+                [sum[0] + share[0], sum[1] + share[1]]
+            });
         let forced: C64 = [&x, &y].into_iter().flatten().map(|(_, s)| s.forced).sum();
-        let d_alpha = -change.restitution * b.position - (1.0 + r) * sum(|s| s.position);
-        let d_q = change.restitution * b.velocity + (1.0 + r) * sum(|s| s.velocity);
+        let d_alpha = -change.restitution * b.position - (1.0 + r) * d_position;
+        let d_q = change.restitution * b.velocity + (1.0 + r) * d_velocity;
         // |u|² = |F|² holds along the change; u is linear in w.
         let u = self.at_impact();
         let per_w = C64::new(-b.alpha(r), -b.q(r) / b.eta);
         let held = C64::new(
-            change.gap - d_alpha * w,
-            (b.q(r) * change.eta / b.eta - d_q) * w / b.eta,
+            change.gap - change.displacement - d_alpha * w,
+            ((b.q(r) * change.eta / b.eta - d_q) * w + change.velocity) / b.eta,
         );
         let product = |a: C64, b: C64| (a.conj() * b).re;
         let d_w = (product(b.forced, forced) - product(u, held)) / product(u, per_w);
