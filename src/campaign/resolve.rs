@@ -5,34 +5,37 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 
 use super::channels;
-use super::faults::{Faults, Notebook, Severity};
-use super::listing::{Opener, Shared};
-use super::quantity::Desk;
+use super::context::ResolveContext;
+use super::diagnostic::{Code, Diagnostics, FaultCollector};
+use super::discovery::{Opener, Shared};
 use super::read::{self, Text};
 use super::records;
-use super::resolved::{Analysis, RecordEntry, Report, ResolvedCampaign, Rig};
+use super::resolved::{Analysis, NominalValues, RecordEntry, Report, ResolvedCampaign};
 use super::written::{self, Flight, Format, Language, Machine, Paper, Placed, WrittenCampaign};
-use crate::identify::uncertainty::Way;
+use crate::identify::fit::effect::EffectKind;
+use crate::identify::uncertainty::IntervalMethod;
+use crate::record::calibrate::ChannelSetup;
 use crate::report::words::Words;
 use labfiles::units::Dimension;
 
-/// A campaign as far as it could be resolved, and all that is wrong with it.
+/// A campaign as far as it could be resolved, and everything that is wrong with it.
 #[derive(Debug)]
 pub struct Outcome {
-    /// The campaign; `None` where a fault stops it.
+    /// The campaign; `None` if a problem stops it.
     pub campaign: Option<ResolvedCampaign>,
-    /// All faults, the gravest first.
-    pub faults: Faults,
+    /// All problems, the gravest first.
+    pub diagnostics: Diagnostics,
 }
 
 /// Read campaign.toml and list its records, opening files by `open`.
 pub fn load(path: &Path, open: Opener<'_>) -> Outcome {
-    let mut book = Notebook::new(path);
+    let mut faults = FaultCollector::new(path);
     let text = match std::fs::read_to_string(path) {
         Ok(text) => text,
         Err(error) => {
             let what = format!("campaign.toml cannot be read: {error}");
-            book.fault(
+            faults.fault(
+                Code::UnreadableFile,
                 None,
                 "",
                 what,
@@ -40,22 +43,22 @@ pub fn load(path: &Path, open: Opener<'_>) -> Outcome {
             );
             return Outcome {
                 campaign: None,
-                faults: Faults(book.into_faults()),
+                diagnostics: faults.into_diagnostics(),
             };
         }
     };
-    let written = read::read(&text, &mut book);
-    let mut desk = Desk {
+    let written = read::read(&text, &mut faults);
+    let mut context = ResolveContext {
         text: Text::new(&text),
-        book,
+        faults,
     };
-    let campaign = resolve(path, &written, open, &mut desk);
-    let blocks = desk.book.blocks();
-    let mut faults = Faults(desk.book.into_faults());
-    faults.tidy();
+    let campaign = resolve(path, &written, open, &mut context);
+    let blocks = context.faults.blocks();
+    let mut diagnostics = context.faults.into_diagnostics();
+    diagnostics.sort();
     Outcome {
         campaign: (!blocks).then_some(campaign),
-        faults,
+        diagnostics,
     }
 }
 
@@ -63,18 +66,18 @@ fn resolve(
     path: &Path,
     written: &WrittenCampaign,
     open: Opener<'_>,
-    desk: &mut Desk<'_>,
+    context: &mut ResolveContext<'_>,
 ) -> ResolvedCampaign {
     let machine = required(
         &written.campaign.machine,
         "campaign.machine",
         MACHINES,
-        desk,
+        context,
     );
     let machine = machine.unwrap_or(Machine::Double);
     let channels = match written.published {
         Some(_) => Vec::new(),
-        None => channels::resolve(&written.channels, machine, desk),
+        None => channels::resolve(&written.channels, machine, context),
     };
     let time = written.records.time.as_ref().map(|t| t.get_ref().0.clone());
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -85,16 +88,17 @@ fn resolve(
     };
     let mut records = match written.published {
         Some(_) => Vec::new(),
-        None => records::resolve(&written.records, shared, open, desk),
+        None => records::resolve(&written.records, shared, open, context),
     };
-    exclude(&mut records, &written.analysis.exclude, desk);
+    exclude(&mut records, &written.analysis.exclude, context);
+    refuse_long_delays(&channels, &records, &written.channels, context);
     let name = name(&written.campaign.name, folder);
     let flight = written
         .campaign
         .flight
         .as_ref()
         .map_or(Flight::Harmonic, |f| *f.get_ref());
-    demand_one_mass(machine, flight, &written.campaign.flight, desk);
+    demand_one_mass(machine, flight, &written.campaign.flight, context);
     let run_table = written
         .records
         .run_table
@@ -104,14 +108,14 @@ fn resolve(
         run_table,
         machine,
         flight,
-        rig: rig(&written.rig, desk),
-        sample_rate_hz: desk.positive(
+        rig: rig(&written.rig, context),
+        sample_rate_hz: context.positive(
             &written.records.sample_rate,
             "records.sample_rate",
             Dimension::Frequency,
         ),
-        analysis: analysis(&written.analysis, desk),
-        report: report(&written.report, &name, (folder, &records), desk),
+        analysis: analysis(&written.analysis, context),
+        report: report(&written.report, &name, (folder, &records), context),
         synthetic: written.campaign.synthetic,
         laboratory: words(&written.campaign.laboratory),
         measured: words(&written.campaign.measured),
@@ -130,19 +134,35 @@ fn required<T: Copy>(
     placed: &Placed<T>,
     key: &str,
     remedy: &str,
-    desk: &mut Desk<'_>,
+    context: &mut ResolveContext<'_>,
 ) -> Option<T> {
-    if placed.is_none() && !desk.book.blocks() {
-        desk.book
-            .fault(None, key, "it is not given".to_owned(), remedy);
+    if placed.is_none() && !context.faults.blocks() {
+        context.faults.fault(
+            Code::Missing,
+            None,
+            key,
+            "it is not given".to_owned(),
+            remedy,
+        );
     }
     placed.as_ref().map(|p| *p.get_ref())
 }
 
-fn demand_one_mass(machine: Machine, flight: Flight, placed: &Placed<Flight>, desk: &mut Desk<'_>) {
+fn demand_one_mass(
+    machine: Machine,
+    flight: Flight,
+    placed: &Placed<Flight>,
+    context: &mut ResolveContext<'_>,
+) {
     if let (Machine::Double, Flight::ConstantForce, Some(placed)) = (machine, flight, placed) {
         let what = "a flight under constant force is for one mass against a stop".to_owned();
-        desk.fault(placed, "campaign.flight", what, "set machine = \"single\"");
+        context.fault(
+            Code::Conflict,
+            placed,
+            "campaign.flight",
+            what,
+            "set machine = \"single\"",
+        );
     }
 }
 
@@ -158,26 +178,27 @@ fn name(placed: &Placed<String>, folder: &Path) -> String {
         .unwrap_or_else(|| "campaign".to_owned())
 }
 
-fn rig(rig: &written::Rig, desk: &mut Desk<'_>) -> Rig {
+fn rig(rig: &written::Rig, context: &mut ResolveContext<'_>) -> NominalValues {
     use Dimension::{Frequency, Length, Mass, Number};
-    let mut positive = |placed, name: &str, d| desk.positive(placed, &format!("rig.{name}"), d);
+    let mut positive = |placed, name: &str, d| context.positive(placed, &format!("rig.{name}"), d);
     let natural_frequency_hz = positive(&rig.natural_frequency, "natural_frequency", Frequency);
     let static_deflection_m = positive(&rig.static_deflection, "static_deflection", Length);
     let mass_x_kg = positive(&rig.mass_x, "mass_x", Mass);
     let mass_y_kg = positive(&rig.mass_y, "mass_y", Mass);
     let mut part =
-        |placed, name: &str, range| desk.within(placed, &format!("rig.{name}"), Number, range);
+        |placed, name: &str, range| context.within(placed, &format!("rig.{name}"), Number, range);
     let damping_ratio = part(&rig.damping_ratio, "damping_ratio", [0.0, 0.999]);
     let restitution = part(&rig.restitution, "restitution", [0.0, 1.0]);
     let gain = part(&rig.gain_uncertainty, "gain_uncertainty", [0.0, 0.5]);
     let corner = part(&rig.corner_uncertainty, "corner_uncertainty", [0.0, 0.5]);
-    let clearance = desk.within(
+    let mass = part(&rig.mass_uncertainty, "mass_uncertainty", [0.0, 0.5]);
+    let clearance = context.within(
         &rig.clearance_uncertainty,
         "rig.clearance_uncertainty",
         Length,
         [0.0, 1.0],
     );
-    Rig {
+    NominalValues {
         natural_frequency_hz,
         damping_ratio,
         static_deflection_m,
@@ -187,11 +208,61 @@ fn rig(rig: &written::Rig, desk: &mut Desk<'_>) -> Rig {
         gain_uncertainty: gain.unwrap_or(0.005),
         corner_uncertainty: corner.unwrap_or(0.05),
         clearance_uncertainty_m: clearance.unwrap_or(1e-5),
+        mass_uncertainty: mass.unwrap_or(0.005),
+        effects: effects(&rig.effects, context),
     }
 }
 
-fn analysis(written: &written::Analysis, desk: &mut Desk<'_>) -> Analysis {
-    let skip = desk.within(
+/// The effects that the fit allows, by their names.
+fn effects(
+    placed: &Placed<Vec<String>>,
+    context: &mut ResolveContext<'_>,
+) -> Option<Vec<EffectKind>> {
+    let placed = placed.as_ref()?;
+    let mut kinds = Vec::new();
+    for name in placed.get_ref() {
+        match EffectKind::named(name) {
+            Some(kind) => kinds.push(kind),
+            None => {
+                let known = EffectKind::ALL.map(EffectKind::name).join(", ");
+                let what = format!("no effect is called '{name}'");
+                let remedy = format!("choose among {known}, or remove the line to allow all");
+                context.fault(Code::OutOfRange, placed, "rig.effects", what, &remedy);
+            }
+        }
+    }
+    Some(kinds)
+}
+
+/// A channel's delay is less than one period of the drive, or its phase says nothing.
+fn refuse_long_delays(
+    channels: &[ChannelSetup],
+    records: &[RecordEntry],
+    written: &written::Channels,
+    context: &mut ResolveContext<'_>,
+) {
+    let stated = records.iter().filter_map(|r| r.setting.stated_frequency_hz);
+    let fastest = stated.fold(0.0, f64::max);
+    for channel in channels.iter().filter(|c| c.delay_s.abs() * fastest >= 1.0) {
+        let Some(placed) = written.of(channel.role) else {
+            continue;
+        };
+        let what = format!(
+            "{:.4} s is longer than a period of the drive at {fastest} Hz",
+            channel.delay_s
+        );
+        context.fault(
+            Code::OutOfRange,
+            placed,
+            &format!("channels.{}.delay", channel.role.name()),
+            what,
+            "state the delay against the drive's channel, with its unit",
+        );
+    }
+}
+
+fn analysis(written: &written::Analysis, context: &mut ResolveContext<'_>) -> Analysis {
+    let skip = context.within(
         &written.skip,
         "analysis.skip",
         Dimension::Time,
@@ -201,8 +272,14 @@ fn analysis(written: &written::Analysis, desk: &mut Desk<'_>) -> Analysis {
         let Some(placed) = placed else { return default };
         let value = *placed.get_ref();
         if !(1..=64).contains(&value) {
-            let what = format!("{value} is outside of what can be told");
-            desk.fault(placed, key, what, "it lies between 1 and 64");
+            let what = format!("{value} is out of range");
+            context.fault(
+                Code::OutOfRange,
+                placed,
+                key,
+                what,
+                "write a number from 1 to 64",
+            );
         }
         value
     };
@@ -214,7 +291,7 @@ fn analysis(written: &written::Analysis, desk: &mut Desk<'_>) -> Analysis {
         uncertainty: written
             .uncertainty
             .as_ref()
-            .map_or(Way::default(), |w| *w.get_ref()),
+            .map_or(IntervalMethod::default(), |w| *w.get_ref()),
         replicas: written
             .replicas
             .as_ref()
@@ -227,12 +304,12 @@ fn report(
     written: &written::Report,
     name: &str,
     (folder, records): (&Path, &[RecordEntry]),
-    desk: &mut Desk<'_>,
+    context: &mut ResolveContext<'_>,
 ) -> Report {
     if let Some(points) = &written.points {
         for point in points.get_ref() {
             if !records.iter().any(|r| r.id == *point) && !records.is_empty() {
-                unknown_record(points, "report.points", point, records, desk);
+                unknown_record(points, "report.points", point, records, context);
             }
         }
     }
@@ -256,21 +333,31 @@ fn report(
             Some(formats) if !formats.get_ref().is_empty() => formats.get_ref().clone(),
             _ => vec![Format::Pdf],
         },
-        template: beside(&written.template, "report.template", folder, desk),
-        words: words_file(&written.words, folder, desk),
-        logo: beside(&written.logo, "report.logo", folder, desk),
+        template: beside(&written.template, "report.template", folder, context),
+        words: words_file(&written.words, folder, context),
+        logo: beside(&written.logo, "report.logo", folder, context),
     }
 }
 
 /// A table of words that campaign.toml names; a fault where it cannot be used.
-fn words_file(placed: &Placed<String>, folder: &Path, desk: &mut Desk<'_>) -> Option<PathBuf> {
+fn words_file(
+    placed: &Placed<String>,
+    folder: &Path,
+    context: &mut ResolveContext<'_>,
+) -> Option<PathBuf> {
     let key = "report.words";
-    let path = beside(placed, key, folder, desk)?;
+    let path = beside(placed, key, folder, context)?;
     if let (Some(placed), Ok(text)) = (placed, std::fs::read_to_string(&path))
         && let Err(error) = Words::read(&text)
     {
         let what = format!("{}: {error}", path.display());
-        desk.fault(placed, key, what, "mend the table, or remove the line");
+        context.fault(
+            Code::UnreadableFile,
+            placed,
+            key,
+            what,
+            "fix the table, or remove the line",
+        );
     }
     Some(path)
 }
@@ -280,14 +367,14 @@ fn beside(
     placed: &Placed<String>,
     key: &str,
     folder: &Path,
-    desk: &mut Desk<'_>,
+    context: &mut ResolveContext<'_>,
 ) -> Option<PathBuf> {
     let placed = placed.as_ref()?;
     let path = folder.join(placed.get_ref());
     if !path.is_file() {
-        let what = format!("{} is no file", path.display());
+        let what = format!("{} is not a file", path.display());
         let remedy = "write its path as seen from campaign.toml's folder, or remove the line";
-        desk.fault(placed, key, what, remedy);
+        context.fault(Code::UnreadableFile, placed, key, what, remedy);
     }
     Some(path)
 }
@@ -302,7 +389,7 @@ fn unknown_record<T>(
     key: &str,
     name: &str,
     records: &[RecordEntry],
-    desk: &mut Desk<'_>,
+    context: &mut ResolveContext<'_>,
 ) {
     let names: Vec<&str> = records.iter().map(|r| r.id.as_str()).collect();
     let what = format!("no record is called '{name}'");
@@ -313,16 +400,14 @@ fn unknown_record<T>(
             names[..names.len().min(4)].join(", ")
         ),
     };
-    desk.book.push(
-        Severity::Campaign,
-        desk.text.line_of(placed),
-        key,
-        what,
-        &remedy,
-    );
+    context.fault(Code::UnknownRecord, placed, key, what, &remedy);
 }
 
-fn exclude(records: &mut [RecordEntry], placed: &Placed<Vec<String>>, desk: &mut Desk<'_>) {
+fn exclude(
+    records: &mut [RecordEntry],
+    placed: &Placed<Vec<String>>,
+    context: &mut ResolveContext<'_>,
+) {
     let Some(placed) = placed else { return };
     let options = glob::MatchOptions::default();
     for name in placed.get_ref() {
@@ -339,7 +424,7 @@ fn exclude(records: &mut [RecordEntry], placed: &Placed<Vec<String>>, desk: &mut
             found = true;
         }
         if !found && !records.is_empty() {
-            unknown_record(placed, "analysis.exclude", name, records, desk);
+            unknown_record(placed, "analysis.exclude", name, records, context);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::event::contact::{Closed, closed_intervals};
 use crate::event::drive::{self, DriveTone};
+use crate::event::finite_contact::{self, FiniteContact};
 use crate::event::impact::{DetectionSource, Impact};
 use crate::event::jumps::{Jump, JumpSearch, SUPPORTED};
 use crate::event::kinematics::{Kinematics, RigKind, Series};
@@ -190,8 +191,27 @@ fn refined(
     if arc.same_way {
         // Straight arcs have few samples: no drift can be estimated from them.
         let instants = refine::instants(kinematics, candidates, arc);
-        return refine::impacts(kinematics, candidates, &instants, drive, arc);
+        return refine::impacts(kinematics, candidates, &instants, drive, (arc, None));
     }
+    let Some(contact) = finite_contact::measure(kinematics, candidates, arc) else {
+        return undrifted(kinematics, candidates, drive, (rig, arc, None));
+    };
+    let instants = refine::instants(kinematics, candidates, arc);
+    let spanned = contact.spanned(candidates, &instants);
+    let instants = refine::instants(kinematics, &spanned, arc);
+    let spanned = contact.spanned(candidates, &instants);
+    finite_contact::bridge(kinematics, &spanned, &instants, &contact, arc);
+    kinematics.update_relative(rig);
+    undrifted(kinematics, &spanned, drive, (rig, arc, Some(&contact)))
+}
+
+/// Correct the velocities for jumps and drift, then refine the impacts.
+fn undrifted(
+    kinematics: &mut Kinematics,
+    candidates: &[Candidate],
+    drive: Option<&DriveTone>,
+    (rig, arc, contact): (RigKind, ArcFit, Option<&FiniteContact>),
+) -> Vec<Impact> {
     let first = refine::instants(kinematics, candidates, arc);
     refine::correct_jumps(kinematics, candidates, &first, arc);
     kinematics.update_relative(rig);
@@ -208,7 +228,7 @@ fn refined(
         drift::remove_drift(series, &times, drive, rate_hz);
     }
     let instants = refine::instants(kinematics, candidates, arc);
-    refine::impacts(kinematics, candidates, &instants, drive, arc)
+    refine::impacts(kinematics, candidates, &instants, drive, (arc, contact))
 }
 
 /// Candidates for impacts, and counts of what supports and contradicts them.
@@ -378,6 +398,8 @@ fn without_speeds(
                 y: None,
                 corner_shifts: [None, None],
                 dead_zone_s: c.dead_samples / rate_hz,
+                contact_duration_s: None,
+                external_push_m_s: None,
                 source: c.source,
             }
         })

@@ -84,7 +84,8 @@ impl<'a> JumpSearch<'a> {
         }
     }
 
-    /// Samples that the strongest jumps take from branch to branch (median of up to ten).
+    /// Samples that the strongest jumps take from branch to branch (upper quartile of up to
+    /// ten).
     fn typical_gap(&self) -> usize {
         let strongest = self.candidates(SIGNIFICANT, -1.0);
         let mut gaps: Vec<f64> = strongest
@@ -93,19 +94,21 @@ impl<'a> JumpSearch<'a> {
             .filter_map(|&left| self.transition_samples(left))
             .map(|n| n as f64)
             .collect();
-        gaps.truncate(10);
-        robust::median(&gaps).map_or(1, |g| (g.round() as usize).clamp(1, self.window))
+        gaps.sort_by(f64::total_cmp);
+        // A contact that lasts about as long as a step takes one step or two, by where it falls.
+        gaps.get(gaps.len() * 3 / 4)
+            .map_or(1, |g| (*g as usize).clamp(1, self.window))
     }
 
-    /// Samples of the steep stretch around a jump: steps that exceed the slope of the flight beside
-    /// it by 15 % of the jump.
+    /// Samples of the steep stretch around a jump: steps that exceed the flight's own slope beside
+    /// it by more than noise and a twentieth of the jump.
     fn transition_samples(&self, left: usize) -> Option<usize> {
         let values = &self.velocity.values;
         let height = self.scan[left].abs();
         let slope = self.slope_beside(left);
         let steep = |i: usize| {
             let step = values.get(i)? - values.get(i + 1)? - slope;
-            Some(step > (0.15 * height).max(4.0 * self.velocity.noise))
+            Some(step > (0.05 * height).max(4.0 * self.velocity.noise))
         };
         let centre = (left.saturating_sub(1)..=left + 1).find(|&i| steep(i) == Some(true))?;
         let mut first = centre;

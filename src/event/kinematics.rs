@@ -49,7 +49,21 @@ impl Series {
     }
 }
 
-/// Velocity and displacement of one body toward the other, or of the relative motion.
+impl Series {
+    /// Correct the undoing of the high-pass for samples whose sum, before one of them, was changed
+    /// by `area` (in samples).
+    pub(super) fn correct_area(&mut self, from: usize, area: f64, rate_hz: f64) {
+        let Some(corner_hz) = self.high_pass_hz else {
+            return;
+        };
+        let step = std::f64::consts::TAU * corner_hz * area / rate_hz;
+        for value in self.values.iter_mut().skip(from) {
+            *value += step;
+        }
+    }
+}
+
+/// Velocity and displacement of one body (or of the relative motion) toward the other.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Body {
     /// Velocity, m/s: measured, else differentiated displacement, else integrated acceleration.

@@ -10,6 +10,7 @@ mod corner;
 mod detect;
 mod drift;
 mod drive;
+mod finite_contact;
 mod impact;
 mod jumps;
 mod kinematics;

@@ -5,6 +5,8 @@ use serde::{Deserialize, Serialize};
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::messages::Note;
+use crate::identify::methods::MethodFit;
+use crate::identify::uncertainty::scatter::Spread;
 
 /// How well the data determine a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -69,6 +71,17 @@ pub(super) fn limits(coordinate: Coordinate) -> (f64, f64) {
 /// Estimate of one coordinate from its value and standard error (both of the coordinate); a weak one
 /// carries the note.
 pub fn estimate(coordinate: Coordinate, value: f64, error: f64, note: Option<Note>) -> Estimate {
+    estimate_within(coordinate, value, Spread::known(error), note)
+}
+
+/// Estimate of one coordinate from its value and how far it may be off.
+pub fn estimate_within(
+    coordinate: Coordinate,
+    value: f64,
+    spread: Spread,
+    note: Option<Note>,
+) -> Estimate {
+    let error = spread.error;
     let (weak, unknown) = limits(coordinate);
     if !error.is_finite() || error >= unknown {
         return not_identifiable(Note::Open {
@@ -76,7 +89,7 @@ pub fn estimate(coordinate: Coordinate, value: f64, error: f64, note: Option<Not
             standard_error: error.is_finite().then_some(error),
         });
     }
-    let half = NORMAL_975 * error;
+    let half = spread.half95();
     let (value, standard_error, interval) = if coordinate.is_logarithm() {
         let v = value.exp();
         (v, v * error, [v * (-half).exp(), v * half.exp()])
@@ -101,6 +114,30 @@ pub fn estimate(coordinate: Coordinate, value: f64, error: f64, note: Option<Not
     }
 }
 
+/// An estimate that a disagreement of methods leaves further open: by a standard uncertainty, of R
+/// absolute, of the others relative.
+pub fn widened(coordinate: Coordinate, estimate: &Estimate, by: f64) -> Estimate {
+    let (Some(value), Some(error), Some([low, high])) =
+        (estimate.value, estimate.standard_error, estimate.interval95)
+    else {
+        return estimate.clone();
+    };
+    let logarithm = coordinate.is_logarithm();
+    let unit = if logarithm { value } else { 1.0 };
+    let half = (0.5 * (high - low) / unit).hypot(NORMAL_975 * by);
+    let interval = match logarithm {
+        true => [value * (-half).exp(), value * half.exp()],
+        false => [(value - half).max(0.0), (value + half).min(1.0)],
+    };
+    Estimate {
+        value: Some(value),
+        standard_error: Some(error.hypot(by * unit)),
+        interval95: Some(interval),
+        status: Status::Weak,
+        note: Some(Note::MethodsDisagree),
+    }
+}
+
 /// A missing estimate with the reason.
 pub fn not_identifiable(why: Note) -> Estimate {
     Estimate {
@@ -112,15 +149,17 @@ pub fn not_identifiable(why: Note) -> Estimate {
     }
 }
 
-/// Estimates of the physical parameters that a fit left free; `factor` multiplies the covariance.
-pub fn parameter_set(fit: &Fit, factor: f64, tells: &[Coordinate]) -> ParameterSet {
+/// Estimates of the physical parameters that a fit left free.
+pub fn parameter_set(found: &MethodFit, tells: &[Coordinate]) -> ParameterSet {
+    let fit = &found.fit;
     let of = |coordinate: Coordinate| {
         if !tells.contains(&coordinate) {
             return None;
         }
-        let error = fit.error(coordinate)? * factor.sqrt();
+        let spread = found.spread(coordinate)?;
         let value = fit.parameters.coordinate(coordinate);
-        Some(estimate(coordinate, value, error, leaning(fit, coordinate)))
+        let note = leaning(fit, coordinate);
+        Some(estimate_within(coordinate, value, spread, note))
     };
     ParameterSet {
         restitution: of(Coordinate::Restitution),

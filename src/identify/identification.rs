@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::identify::diagnostics::contact_law::ContactLaw;
 use crate::identify::estimate::{Estimate, ParameterSet};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::fit::{Fit, FitReport};
-use crate::identify::judgement::contact_law::ContactLaw;
 use crate::identify::messages::{Finding, LeftOut, PairAgreement, Remark, Sentence};
 use crate::identify::method::Method;
 use crate::identify::uncertainty::Uncertainty;
@@ -27,9 +27,6 @@ pub struct MethodResult {
     /// Root mean square of the weighted residuals (1: as the stated noise).
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub reduced_residual: Option<f64>,
-    /// Iterations and termination of its fit; `None` without one.
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub fit_report: Option<FitReport>,
     /// Whether the model fits this method's data; `None`: cannot be judged.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub fits: Option<bool>,
@@ -42,6 +39,9 @@ pub struct MethodResult {
     /// R by plain least squares on the midpoints of the saddle-node brackets; of boundaries alone.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub restitution_by_midpoints: Option<Estimate>,
+    /// How its fit ended; printed by the command line, not written.
+    #[serde(skip)]
+    pub fit_report: Option<FitReport>,
     /// Estimates of what is fitted beside the parameters: gains, corners, asymmetries.
     #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
     pub further: BTreeMap<Coordinate, Estimate>,

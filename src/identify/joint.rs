@@ -92,11 +92,6 @@ pub fn problem<'b>(
 /// Fit all blocks together from a start that each of them accepts.
 pub fn fit(problem: &Problem<'_>, start: Parameters) -> Result<MethodFit, FitError> {
     let fit = problem.fit(start)?;
-    let freedom = fit.residuals.saturating_sub(4).max(1) as f64;
-    let reduced = fit.cost / freedom;
-    Ok(MethodFit {
-        factor: reduced.max(1.0),
-        reduced,
-        fit,
-    })
+    let freedom = fit.residuals.saturating_sub(4);
+    Ok(MethodFit::of(problem, fit, freedom))
 }

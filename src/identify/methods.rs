@@ -6,6 +6,7 @@ use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Fit, FitError, Prior, Problem, mean_squares};
 use crate::identify::identification::MethodResult;
 use crate::identify::messages::{Note, Remark};
+use crate::identify::uncertainty::scatter::{self, Scatter, Spread};
 
 /// Very wide priors that keep the equations regular where the data say nothing.
 pub fn wide_priors(start: &Parameters, free: &[Coordinate]) -> Vec<Prior> {
@@ -35,16 +36,33 @@ pub struct MethodFit {
     pub factor: f64,
     /// Reduced sum of squares as it came out.
     pub reduced: f64,
+    /// Scatter between groups of records beyond it.
+    pub scatter: Scatter,
 }
 
-/// A fit that was tried.
-pub type Tried = Result<MethodFit, FitError>;
+impl MethodFit {
+    /// Of a fit of a problem, judged with degrees of freedom.
+    pub fn of(problem: &Problem<'_>, fit: Fit, freedom: usize) -> Self {
+        let reduced = fit.cost / freedom.max(1) as f64;
+        Self {
+            factor: reduced.max(1.0),
+            reduced,
+            scatter: scatter::scatter(problem, &fit),
+            fit,
+        }
+    }
 
-/// A fit where there may have been nothing to fit: `None`.
-pub type Attempt = Option<Tried>;
+    /// Standard error of a coordinate by all that is allowed for; `None` where it was not free.
+    pub fn spread(&self, coordinate: Coordinate) -> Option<Spread> {
+        self.scatter.spread(&self.fit, self.factor, coordinate)
+    }
+}
 
-/// The fit, where it was tried and succeeded.
-pub fn succeeded(attempt: &Attempt) -> Option<&MethodFit> {
+/// A method's fit, or why there is none; `None` in its place if there was nothing to fit.
+pub type FitResult = Result<MethodFit, FitError>;
+
+/// The fit, if there is one.
+pub fn succeeded(attempt: &Option<FitResult>) -> Option<&MethodFit> {
     attempt.as_ref().and_then(|a| a.as_ref().ok())
 }
 
@@ -54,7 +72,7 @@ pub fn fit_blocks(
     free: Vec<Coordinate>,
     priors: Vec<Prior>,
     start: Parameters,
-) -> Tried {
+) -> FitResult {
     let problem = Problem {
         blocks,
         priors,
@@ -62,17 +80,12 @@ pub fn fit_blocks(
     };
     let fit = problem.fit(start)?;
     let informed = problem.free.len().saturating_sub(problem.priors.len());
-    let freedom = fit.residuals.saturating_sub(informed).max(1) as f64;
-    let reduced = fit.cost / freedom;
-    Ok(MethodFit {
-        factor: reduced.max(1.0),
-        reduced,
-        fit,
-    })
+    let freedom = fit.residuals.saturating_sub(informed);
+    Ok(MethodFit::of(&problem, fit, freedom))
 }
 
 /// f0, β and x_st from the impactless records; the gains' uncertainty enters x_st.
-pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Attempt {
+pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<FitResult> {
     if blocks.resonance.points.len() < 3 {
         return None;
     }
@@ -158,7 +171,7 @@ fn deflection_guess(blocks: &Blocks, unit: &Parameters) -> f64 {
 }
 
 /// R alone from the speeds at impacts, with the corners of the velocities' high-pass as nuisances.
-pub fn impacts(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt {
+pub fn impacts(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
     if blocks.impact.pairs.len() < 3 {
         return None;
     }
@@ -169,7 +182,7 @@ pub fn impacts(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt
 }
 
 /// s2, s1 and grazing brackets, with f0, β and x_st from the impactless records beside them.
-pub fn boundaries(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt {
+pub fn boundaries(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
     if blocks.boundary.brackets.is_empty() {
         return None;
     }
@@ -187,7 +200,7 @@ pub fn boundaries(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Atte
 }
 
 /// All four parameters from the folded waveforms.
-pub fn trajectories(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt {
+pub fn trajectories(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
     if blocks.trajectory.records.is_empty() {
         return None;
     }
@@ -195,7 +208,7 @@ pub fn trajectories(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> At
 }
 
 /// R, f0, β and x_st from one block alone, with the nuisances beside them.
-fn all_four(block: &dyn Block, blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Tried {
+fn all_four(block: &dyn Block, blocks: &Blocks, nominal: &Nominal, start: Parameters) -> FitResult {
     let mut free = Coordinate::PHYSICAL.to_vec();
     let mut priors = wide_priors(&start, &free);
     let list = vec![(block, 1.0)];
@@ -209,7 +222,7 @@ fn all_four(block: &dyn Block, blocks: &Blocks, nominal: &Nominal, start: Parame
 const SHARED_IN_FLIGHTS: f64 = 2.0;
 
 /// All four parameters from the states at the impacts of records without a closed-form orbit.
-pub fn flights(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt {
+pub fn flights(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
     if blocks.flight.records.is_empty() {
         return None;
     }
@@ -222,15 +235,15 @@ pub fn flights(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt
 
 /// A method's result from its fit.
 pub fn result(
-    tried: &Tried,
+    fitted: &FitResult,
     tells: &[Coordinate],
     observations: usize,
     records: usize,
 ) -> MethodResult {
-    match tried {
+    match fitted {
         Ok(found) => {
             let mut result = MethodResult {
-                parameters: estimate::parameter_set(&found.fit, found.factor, tells),
+                parameters: estimate::parameter_set(found, tells),
                 observations,
                 records,
                 reduced_residual: Some(found.reduced.sqrt()),
@@ -241,10 +254,10 @@ pub fn result(
                 if Coordinate::PHYSICAL.contains(coordinate) {
                     continue;
                 }
-                let error = found.fit.error(*coordinate).unwrap_or(f64::INFINITY);
-                let error = error * found.factor.sqrt();
+                let unknown = Spread::known(f64::INFINITY);
+                let spread = found.spread(*coordinate).unwrap_or(unknown);
                 let value = found.fit.parameters.coordinate(*coordinate);
-                let estimate = estimate::estimate(*coordinate, value, error, None);
+                let estimate = estimate::estimate_within(*coordinate, value, spread, None);
                 result.further.insert(*coordinate, estimate);
             }
             result

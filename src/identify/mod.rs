@@ -2,20 +2,20 @@
 //!
 //! The result is plain data ([`Identification`]), written as `identification.json`. [`run`] leads from
 //! [`evidence`] (what was measured, as residuals of the model) over [`fit`] (least squares) to
-//! [`uncertainty`] and [`judgement`] (does the model fit, do the methods agree, was there a mistake). What it states is typed
+//! [`uncertainty`] and [`diagnostics`] (does the model fit, do the methods agree, was there a mistake). What it states is typed
 //! ([`messages`]); sentences are made when it is printed.
 
+pub mod bracket_midpoints;
 pub mod decay;
+pub mod diagnostics;
 pub mod estimate;
 pub mod evidence;
 pub mod fit;
 mod identification;
 pub mod joint;
-pub mod judgement;
 pub mod messages;
 pub mod method;
 pub mod methods;
-pub mod middles;
 pub mod plan;
 pub mod published;
 pub mod replay;

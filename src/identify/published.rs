@@ -56,7 +56,7 @@ fn speed_at(published: &PublishedSpeed, damping_ratio: f64, eta: f64) -> Option<
     let branch = Branch::new(&machine, eta, 1);
     let gap = machine.gap(published.clearance_ratio);
     branch
-        .closing_speeds(published.restitution, gap)
+        .approach_speeds(published.restitution, gap)
         .map(|[_, larger]| larger)
 }
 

@@ -2,17 +2,17 @@
 
 use std::collections::BTreeMap;
 
+use crate::identify::diagnostics::{contact_law, verdict};
 use crate::identify::evidence::impacts::SpeedPair;
 use crate::identify::evidence::{Blocks, Evidence, IMPACT_BIAS};
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::judgement::{contact_law, verdict};
-use crate::identify::methods::{self, Tried};
+use crate::identify::methods::{self, FitResult};
 use crate::identify::uncertainty::posterior::Posterior;
-use crate::identify::{Estimate, Item, Method, MethodResult, Remark, estimate, middles};
+use crate::identify::{Estimate, Item, Method, MethodResult, Remark, bracket_midpoints, estimate};
 
 /// f0, β and x_st from the impactless records.
-pub fn resonance(blocks: &Blocks, tried: &Tried) -> MethodResult {
+pub fn resonance(blocks: &Blocks, fitted: &FitResult) -> MethodResult {
     let tells = [
         Coordinate::Frequency,
         Coordinate::Damping,
@@ -20,8 +20,8 @@ pub fn resonance(blocks: &Blocks, tried: &Tried) -> MethodResult {
     ];
     let block = &blocks.resonance;
     let observations = block.points.iter().map(|p| 2 * p.responses.len()).sum();
-    let mut result = methods::result(tried, &tells, observations, block.points.len());
-    if let Ok(fit) = tried {
+    let mut result = methods::result(fitted, &tells, observations, block.points.len());
+    if let Ok(fit) = fitted {
         verdict::judge_resonance(&mut result, block, &fit.fit.parameters);
     }
     result
@@ -31,11 +31,11 @@ pub fn resonance(blocks: &Blocks, tried: &Tried) -> MethodResult {
 /// judged with the corners of the velocities' high-pass as all data together have them.
 pub fn impacts(
     blocks: &Blocks,
-    tried: &Tried,
+    fitted: &FitResult,
     evidence: &Evidence,
     together: Option<&Fit>,
 ) -> MethodResult {
-    let fit = together.or(tried.as_ref().ok().map(|a| &a.fit));
+    let fit = together.or(fitted.as_ref().ok().map(|a| &a.fit));
     let block = &match fit {
         Some(fit) => blocks.impact.corrected(&fit.parameters),
         None => blocks.impact.clone(),
@@ -43,7 +43,7 @@ pub fn impacts(
     let mut records: Vec<usize> = block.pairs.iter().map(|p| p.observation).collect();
     records.dedup();
     let mut result = methods::result(
-        tried,
+        fitted,
         &[Coordinate::Restitution],
         block.pairs.len(),
         records.len(),
@@ -80,16 +80,16 @@ pub fn impact(pair: &SpeedPair, evidence: &Evidence) -> Item {
 }
 
 /// All four parameters from the waveforms.
-pub fn trajectories(blocks: &Blocks, tried: &Tried, evidence: &Evidence) -> MethodResult {
+pub fn trajectories(blocks: &Blocks, fitted: &FitResult, evidence: &Evidence) -> MethodResult {
     let block = &blocks.trajectory;
-    let observations = tried.as_ref().map_or(0, |f| f.fit.residuals);
+    let observations = fitted.as_ref().map_or(0, |f| f.fit.residuals);
     let mut result = methods::result(
-        tried,
+        fitted,
         &Coordinate::PHYSICAL,
         observations,
         block.records.len(),
     );
-    if let Ok(fit) = tried {
+    if let Ok(fit) = fitted {
         verdict::judge_trajectories(&mut result, block, &fit.fit.parameters);
     }
     result.remarks.extend(thinned(evidence));
@@ -97,10 +97,10 @@ pub fn trajectories(blocks: &Blocks, tried: &Tried, evidence: &Evidence) -> Meth
 }
 
 /// All four parameters from records that are shot from impact to impact.
-pub fn flights(blocks: &Blocks, tried: &Tried) -> MethodResult {
+pub fn flights(blocks: &Blocks, fitted: &FitResult) -> MethodResult {
     let records = &blocks.flight.records;
     let impacts = records.iter().map(|r| r.nodes.len()).sum();
-    let mut result = methods::result(tried, &Coordinate::PHYSICAL, impacts, records.len());
+    let mut result = methods::result(fitted, &Coordinate::PHYSICAL, impacts, records.len());
     if let Some(reduced) = result.reduced_residual {
         result
             .remarks
@@ -123,13 +123,17 @@ fn thinned(evidence: &Evidence) -> Option<Remark> {
 }
 
 /// R from the brackets, by its posterior where the resonance curve tells the rest.
-pub fn boundaries(blocks: &Blocks, tried: &Tried, posterior: Option<&Posterior>) -> MethodResult {
+pub fn boundaries(
+    blocks: &Blocks,
+    fitted: &FitResult,
+    posterior: Option<&Posterior>,
+) -> MethodResult {
     let brackets = blocks.boundary.brackets.len();
-    let tells = match tried {
+    let tells = match fitted {
         Ok(found) => found.fit.free.clone(),
         Err(_) => Coordinate::PHYSICAL.to_vec(),
     };
-    let mut result = methods::result(tried, &tells, brackets, 2 * brackets);
+    let mut result = methods::result(fitted, &tells, brackets, 2 * brackets);
     if let Some(posterior) = posterior {
         let (value, error) = posterior.restitution;
         let mut estimate = estimate::estimate(Coordinate::Restitution, value, error, None);
@@ -142,11 +146,11 @@ pub fn boundaries(blocks: &Blocks, tried: &Tried, posterior: Option<&Posterior>)
             error,
             None,
         ));
-        let about = tried.as_ref().ok().map(|found| Parameters {
+        let about = fitted.as_ref().ok().map(|found| Parameters {
             restitution: posterior.restitution.0,
             ..found.fit.parameters
         });
-        let midpoints = about.and_then(|at| middles::restitution(&blocks.boundary, &at));
+        let midpoints = about.and_then(|at| bracket_midpoints::restitution(&blocks.boundary, &at));
         result
             .remarks
             .extend(midpoints.as_ref().and_then(by_midpoints));
@@ -165,7 +169,7 @@ fn by_midpoints(estimate: &Estimate) -> Option<Remark> {
 /// The joint result; without a joint fit, what the free decays determine.
 pub fn joint(
     evidence: &Evidence,
-    attempt: Option<&Tried>,
+    attempt: Option<&FitResult>,
     methods: &BTreeMap<Method, MethodResult>,
 ) -> MethodResult {
     let Some(attempt) = attempt else {

@@ -2,49 +2,59 @@
 
 use std::collections::BTreeMap;
 
+use crate::identify::diagnostics::agreement::{agreement, between_methods};
+use crate::identify::diagnostics::beyond;
+use crate::identify::diagnostics::suspicion::{self, OddGap};
+use crate::identify::diagnostics::swapped_channels;
+use crate::identify::diagnostics::verdict::{self, Basis};
 use crate::identify::evidence::{Blocks, Evidence};
 use crate::identify::fit::Problem;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::identification::{Identification, JointFit, MethodResult};
 use crate::identify::joint::{self, Weights};
-use crate::identify::judgement::agreement::agreement;
-use crate::identify::judgement::interchange;
-use crate::identify::judgement::suspicion::{self, OddGap};
-use crate::identify::judgement::verdict::{self, Basis};
 use crate::identify::messages::{Finding, LeftOut, Reason};
 use crate::identify::method::Method;
-use crate::identify::methods::{self, Attempt, succeeded};
+use crate::identify::methods::{self, FitResult, succeeded};
 use crate::identify::selection::Selection;
+use crate::identify::uncertainty::budget;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
-use crate::identify::{decay, results};
+use crate::identify::{decay, estimate, results};
 
 /// Identify from observations and brackets.
 pub fn identify(evidence: &Evidence) -> Identification {
-    let mut work = Work {
+    let mut run = IdentificationRun {
         evidence,
         selection: Selection::new(evidence),
         posterior: None,
     };
-    let resonance = work.selection.resonance();
+    let resonance = run.selection.resonance();
     let start = start(evidence, &resonance);
-    let impacts = methods::impacts(&work.selection.blocks, &evidence.nominal, start);
+    let impacts = methods::impacts(&run.selection.blocks, &evidence.nominal, start);
     let start = with_restitution(start, &impacts);
-    let mut fits = work.fits(start, resonance, impacts);
+    let mut fits = run.fits(start, resonance, impacts);
     let mut suspicions = Vec::new();
-    while let Some(odd) = work.odd_gap(&fits, suspicions.len()) {
+    while let Some(odd) = run.odd_gap(&fits, suspicions.len()) {
         suspicions.push(odd.into());
-        if !work.selection.leave_out_gap(odd.stated_m) {
+        if !run.selection.leave_out_gap(odd.stated_m) {
             break;
         }
-        fits = work.fits(start, fits.resonance, fits.impacts);
+        fits = run.fits(start, fits.resonance, fits.impacts);
     }
-    fits = work.without_pulling(fits);
-    suspicions.extend(work.other_suspicions(&fits));
-    let methods = work.results(&fits);
-    let joint = results::joint(evidence, fits.joint.as_ref(), &methods);
+    fits = run.without_influential(fits);
+    suspicions.extend(run.other_suspicions(&fits));
+    let methods = run.results(&fits);
+    let mut joint = results::joint(evidence, fits.joint.as_ref(), &methods);
     let agreement = agreement(&methods);
+    let apart = between_methods(&methods, &agreement, &joint);
+    for (parameter, by) in &apart {
+        if let Some(Some(estimate)) = joint.parameters.slot(*parameter) {
+            *estimate = estimate::widened(*parameter, estimate, *by);
+        }
+    }
+    let beyond = succeeded(&fits.joint).map_or_else(Vec::new, beyond::beyond);
     let verdict = verdict::verdict(&Basis {
+        beyond: &beyond,
         joint: &joint,
         methods: &methods,
         agreement: &agreement,
@@ -54,10 +64,10 @@ pub fn identify(evidence: &Evidence) -> Identification {
         verdict,
         joint,
         agreement,
-        uncertainty: work.uncertainty(&fits),
+        uncertainty: run.uncertainty(&fits, &apart),
         suspicions,
-        left_out: work.left_out(),
-        used_by: work.used_by(&methods),
+        left_out: run.left_out(),
+        used_by: run.used_by(&methods),
         methods,
         joint_fit: fits.joint.and_then(Result::ok).map(|found| JointFit {
             fit: found.fit,
@@ -69,12 +79,12 @@ pub fn identify(evidence: &Evidence) -> Identification {
 
 /// Every method's fit, and all together.
 struct Fits {
-    resonance: Attempt,
-    impacts: Attempt,
-    trajectories: Attempt,
-    boundaries: Attempt,
-    flights: Attempt,
-    joint: Attempt,
+    resonance: Option<FitResult>,
+    impacts: Option<FitResult>,
+    trajectories: Option<FitResult>,
+    boundaries: Option<FitResult>,
+    flights: Option<FitResult>,
+    joint: Option<FitResult>,
     /// Where the joint fit started, and the weights of its blocks.
     start: Parameters,
     weights: Weights,
@@ -83,11 +93,11 @@ struct Fits {
 /// Gaps that may be found wrong before the campaign as a whole is at fault.
 const MOST_ODD_GAPS: usize = 2;
 
-/// Rounds of leaving out records that pull the fit.
-const MOST_PULLING: usize = 8;
+/// Rounds of leaving out influential records.
+const MOST_ROUNDS: usize = 8;
 
 /// R as the impacts tell it.
-fn with_restitution(start: Parameters, impacts: &Attempt) -> Parameters {
+fn with_restitution(start: Parameters, impacts: &Option<FitResult>) -> Parameters {
     match succeeded(impacts) {
         Some(found) => Parameters {
             restitution: found.fit.parameters.restitution.clamp(0.0, 1.0),
@@ -98,7 +108,7 @@ fn with_restitution(start: Parameters, impacts: &Attempt) -> Parameters {
 }
 
 /// Starting values: the resonance curve's, else the stated ones, else guesses of scale.
-fn start(evidence: &Evidence, resonance: &Attempt) -> Parameters {
+fn start(evidence: &Evidence, resonance: &Option<FitResult>) -> Parameters {
     if let Some(found) = succeeded(resonance) {
         return found.fit.parameters;
     }
@@ -126,16 +136,21 @@ fn start(evidence: &Evidence, resonance: &Attempt) -> Parameters {
     ))
 }
 
-struct Work<'a> {
+struct IdentificationRun<'a> {
     evidence: &'a Evidence<'a>,
     selection: Selection<'a>,
     /// What the brackets say of R where the resonance curve tells the rest.
     posterior: Option<Posterior>,
 }
 
-impl Work<'_> {
+impl IdentificationRun<'_> {
     /// Trajectories, boundaries and all together, beside the resonance curve and the impacts.
-    fn fits(&mut self, start: Parameters, resonance: Attempt, impacts: Attempt) -> Fits {
+    fn fits(
+        &mut self,
+        start: Parameters,
+        resonance: Option<FitResult>,
+        impacts: Option<FitResult>,
+    ) -> Fits {
         let trajectories = self.selection.trajectories(start);
         let start = succeeded(&trajectories).map_or(start, |f| f.fit.parameters);
         let boundaries = self.selection.boundaries(start);
@@ -145,7 +160,7 @@ impl Work<'_> {
             posterior::of_brackets(&self.selection.blocks.boundary, &about, error.min(0.3))
         });
         let flights = self.selection.flights(start);
-        let weight = |attempt: &Attempt| succeeded(attempt).map(|f| 1.0 / f.factor);
+        let weight = |attempt: &Option<FitResult>| succeeded(attempt).map(|f| 1.0 / f.factor);
         // Flights rest on the speeds at impacts; waveforms tell the same better than either.
         let flown = weight(&flights).filter(|_| succeeded(&trajectories).is_none());
         let impact_weight = succeeded(&impacts).map(joint::impact_weight);
@@ -175,23 +190,23 @@ impl Work<'_> {
         }
     }
 
-    /// The fits without the records that pull them away from what all others say.
-    fn without_pulling(&mut self, mut fits: Fits) -> Fits {
-        for _ in 0..MOST_PULLING {
+    /// The fits without the records that draw them away from what all others state.
+    fn without_influential(&mut self, mut fits: Fits) -> Fits {
+        for _ in 0..MOST_ROUNDS {
             let Some(joint) = succeeded(&fits.joint) else {
                 break;
             };
             let start = joint.fit.parameters;
             let blocks = &self.selection.blocks;
             let present = joint::present(blocks, &fits.weights);
-            let pulling = self
+            let influential = self
                 .problem(blocks, fits.start, &fits.weights)
-                .map(|problem| self.selection.pulling(&problem, &present, &start));
-            let Some(pulling) = pulling.filter(|p| !p.is_empty()) else {
+                .map(|problem| self.selection.influential(&problem, &present, &start));
+            let Some(influential) = influential.filter(|p| !p.is_empty()) else {
                 break;
             };
-            self.selection.leave_out(&pulling);
-            let resonance = if pulling.resonance.is_empty() {
+            self.selection.leave_out(&influential);
+            let resonance = if influential.resonance.is_empty() {
                 fits.resonance
             } else {
                 methods::resonance(&self.selection.blocks, &self.evidence.nominal)
@@ -202,7 +217,7 @@ impl Work<'_> {
     }
 
     /// All blocks in one fit, each with its weight; those without one stay out.
-    fn joint(&self, blocks: &Blocks, start: Parameters, weights: &Weights) -> Attempt {
+    fn joint(&self, blocks: &Blocks, start: Parameters, weights: &Weights) -> Option<FitResult> {
         let problem = self.problem(blocks, start, weights)?;
         Some(joint::fit(&problem, start))
     }
@@ -217,16 +232,21 @@ impl Work<'_> {
         joint::problem(blocks, start, weights, &self.evidence.nominal, posterior)
     }
 
-    /// What is asked for of the joint fit's uncertainty.
-    fn uncertainty(&self, fits: &Fits) -> Uncertainty {
+    /// The uncertainty of the joint fit as the options want it; `apart`: what disagreement of methods
+    /// leaves open.
+    fn uncertainty(&self, fits: &Fits, apart: &[(Coordinate, f64)]) -> Uncertainty {
         let blocks = &self.selection.blocks;
         let problem = self.problem(blocks, fits.start, &fits.weights);
         let Some((problem, joint)) = problem.zip(succeeded(&fits.joint)) else {
             return Uncertainty::default();
         };
         let present = joint::present(blocks, &fits.weights);
-        let asked = &self.evidence.uncertainty;
-        uncertainty::uncertainty(&problem, &present, &joint.fit, joint.factor, asked)
+        let options = &self.evidence.uncertainty;
+        Uncertainty {
+            budget: budget::budget(&problem, &present, joint, blocks, apart),
+            scatter: joint.scatter.clone(),
+            ..uncertainty::uncertainty(&problem, &present, &joint.fit, joint.factor, options)
+        }
     }
 
     /// The gap that deviates most from what the others say, if one does.
@@ -242,8 +262,11 @@ impl Work<'_> {
             ..
         } = &self.selection;
         let weight = 1.0 / succeeded(&fits.trajectories)?.factor;
-        suspicion::lost_gap(&blocks.trajectory, lost, &joint.fit.parameters, *typical)
-            .or_else(|| suspicion::odd_gap(&blocks.trajectory, weight, &joint.fit, joint.factor))
+        let uncertainty_m = self.evidence.nominal.clearance_uncertainty_m;
+        let lost = suspicion::lost_gap(&blocks.trajectory, lost, &joint.fit.parameters, *typical);
+        let allowed = |odd: &OddGap| (odd.fitting_m - odd.stated_m).abs() > 4.0 * uncertainty_m;
+        lost.filter(allowed)
+            .or_else(|| suspicion::odd_gap(blocks, weight, joint, uncertainty_m))
     }
 
     /// Gains and corners far off, and interchanged channels.
@@ -257,7 +280,7 @@ impl Work<'_> {
             let found = succeeded(&attempt)?;
             Some((found.fit.cost, found.fit.residuals))
         };
-        if let Some(found) = interchange::swapped(&self.selection.blocks, &cost) {
+        if let Some(found) = swapped_channels::swapped(&self.selection.blocks, &cost) {
             return vec![found];
         }
         let nominal = &self.evidence.nominal;

@@ -2,31 +2,31 @@
 
 use std::collections::BTreeSet;
 
+use crate::identify::diagnostics::influence;
 use crate::identify::evidence::trajectory::TrajectoryRecord;
 use crate::identify::evidence::weighing::Bulk;
 use crate::identify::evidence::{Blocks, Evidence};
 use crate::identify::fit::normal::Normal;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::fit::{Problem, mean_squares};
-use crate::identify::judgement::pull;
 use crate::identify::messages::{Item, LeftOut, Reason};
 use crate::identify::method::Method;
-use crate::identify::methods::{self, Attempt};
+use crate::identify::methods::{self, FitResult};
 use crate::motion::Bracket;
 
 /// Rounds of leaving outlying records out and fitting again.
 const ROUNDS: usize = 2;
 
-/// Records that pull a fit, by their place in the blocks, rising.
+/// Influential records, by their place in the blocks, rising.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Pulling {
+pub struct Influential {
     /// Impactless records.
     pub resonance: Vec<usize>,
     /// Periodic records.
     pub trajectory: Vec<usize>,
 }
 
-impl Pulling {
+impl Influential {
     /// Whether none does.
     pub fn is_empty(&self) -> bool {
         self.resonance.is_empty() && self.trajectory.is_empty()
@@ -81,7 +81,7 @@ impl<'a> Selection<'a> {
     }
 
     /// Fit the impactless records; those that fit far worse than the bulk are named and left out.
-    pub fn resonance(&mut self) -> Attempt {
+    pub fn resonance(&mut self) -> Option<FitResult> {
         let first = match methods::resonance(&self.blocks, &self.evidence.nominal)? {
             Ok(first) => first,
             failed => return Some(failed),
@@ -110,7 +110,7 @@ impl<'a> Selection<'a> {
 
     /// Fit the folded records, first as if the rig were ideal, then with all that may add to it; those
     /// without an orbit at the start are tried again, and those that fit far worse than the bulk are left out and named.
-    pub fn trajectories(&mut self, start: Parameters) -> Attempt {
+    pub fn trajectories(&mut self, start: Parameters) -> Option<FitResult> {
         let nominal = self.evidence.nominal;
         let all = self.blocks.trajectory.records.clone();
         self.keep_those_with_orbits(&start);
@@ -171,7 +171,7 @@ impl<'a> Selection<'a> {
     }
 
     /// Fit the brackets; those that no boundary reaches, or that lie far from it, are named.
-    pub fn boundaries(&mut self, start: Parameters) -> Attempt {
+    pub fn boundaries(&mut self, start: Parameters) -> Option<FitResult> {
         let rig = self.evidence.rig;
         let mut kept = Vec::new();
         for bracket in std::mem::take(&mut self.blocks.boundary.brackets) {
@@ -218,7 +218,7 @@ impl<'a> Selection<'a> {
 
     /// Fit the records that are shot from impact to impact; those that fit far worse than the bulk,
     /// as where an impact was missed, are left out and named.
-    pub fn flights(&mut self, start: Parameters) -> Attempt {
+    pub fn flights(&mut self, start: Parameters) -> Option<FitResult> {
         let mut parameters = start;
         for _ in 0..ROUNDS {
             let scores = mean_squares(&self.blocks.flight, &parameters);
@@ -240,8 +240,13 @@ impl<'a> Selection<'a> {
         methods::flights(&self.blocks, &self.evidence.nominal, parameters)
     }
 
-    /// The records that pull a joint fit hardest against all others.
-    pub fn pulling(&self, problem: &Problem, present: &[Method], at: &Parameters) -> Pulling {
+    /// The records that draw a joint fit away from what all others state.
+    pub fn influential(
+        &self,
+        problem: &Problem,
+        present: &[Method],
+        at: &Parameters,
+    ) -> Influential {
         let (mut items, mut others) = (Vec::new(), Vec::new());
         for (part, method) in problem.item_parts(at).into_iter().zip(present) {
             match method {
@@ -264,15 +269,15 @@ impl<'a> Selection<'a> {
             .iter()
             .map(|(method, i)| *method == Method::Trajectories && self.settles_slowly(*i, at))
             .collect();
-        let mut pulling = Pulling::default();
-        let pulls = pull::pulls(&parts, &others).unwrap_or_default();
-        for i in pull::strongest(&pulls, &doubtful) {
+        let mut influential = Influential::default();
+        let influences = influence::influences(&parts, &others).unwrap_or_default();
+        for i in influence::strongest(&influences, &doubtful) {
             match owners[i] {
-                (Method::Resonance, point) => pulling.resonance.push(point),
-                (_, record) => pulling.trajectory.push(record),
+                (Method::Resonance, point) => influential.resonance.push(point),
+                (_, record) => influential.trajectory.push(record),
             }
         }
-        pulling
+        influential
     }
 
     /// Whether a periodic record's motion, once disturbed, decays by less than a factor e while it
@@ -287,14 +292,14 @@ impl<'a> Selection<'a> {
         slowest.powf(evidence.cycles_observed) > (-1f64).exp()
     }
 
-    /// Leave records out that pull the fit, and name them.
-    pub fn leave_out(&mut self, pulling: &Pulling) {
-        for i in pulling.resonance.iter().rev() {
+    /// Leave influential records out, and note them.
+    pub fn leave_out(&mut self, influential: &Influential) {
+        for i in influential.resonance.iter().rev() {
             let point = self.blocks.resonance.points.remove(*i);
             let method = Method::Resonance;
             self.note(point.observation, Reason::Influential { method });
         }
-        for i in pulling.trajectory.iter().rev() {
+        for i in influential.trajectory.iter().rev() {
             let record = self.blocks.trajectory.records.remove(*i);
             let method = Method::Trajectories;
             self.note(record.observation, Reason::Influential { method });

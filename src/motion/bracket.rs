@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::motion::kind::Motion;
 use crate::motion::observation::Observation;
 use crate::record::Sweep;
-use impact_oscillator::Motion;
 
 /// Which boundary of motion a bracket holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]

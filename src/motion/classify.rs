@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::event::{Detection, Impact};
 use crate::motion::aperiodic::Irregularity;
 use crate::motion::closure::{self, Count, ImpactClosure, WaveformClosure};
-use impact_oscillator::Motion;
+use crate::motion::kind::Motion;
 
 /// Settings of the classification.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -159,7 +159,7 @@ pub fn classify(
     evidence.noise_ratio = noise_ratio;
     if rest && detection.closed_fraction > 0.9 {
         return Classification {
-            motion: Motion::Joined,
+            motion: Motion::Sticking,
             confidence: 0.95,
             evidence,
         };

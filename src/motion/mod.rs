@@ -9,13 +9,13 @@ mod bracket;
 mod classify;
 mod closure;
 mod fold;
+mod kind;
 mod observation;
 mod response;
 
 pub use bracket::{BoundaryKind, Bracket, brackets};
 pub use classify::{Classification, ClassifySettings, Evidence, classify};
 pub use fold::{Folded, FoldedChannel, FoldedPoint};
+pub use kind::Motion;
 pub use observation::{Amplitude, Observation, observe, scale_drives};
 pub use response::Response;
-
-pub use impact_oscillator::Motion;

@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use crate::event::{DetectSettings, DriveTone, Impact, RigKind, detect};
 use crate::motion::classify::{Classification, ClassifySettings, classify};
 use crate::motion::fold::{Folded, fold};
+use crate::motion::kind::Motion;
 use crate::motion::response::{Response, responses};
 use crate::record::{Excitation, Flag, FlagCode, Record, Role, Setting};
 use crate::signal::decay::{self, Decay};
-use impact_oscillator::Motion;
 
 /// Greatest and least value of a motion channel, SI, about its mean.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

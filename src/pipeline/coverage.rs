@@ -13,7 +13,7 @@ use crate::identify::fit::parameters::Parameters;
 use crate::identify::run::identify;
 use crate::identify::uncertainty::bound::bounds;
 use crate::identify::uncertainty::coverage::{Score, Trial, scores, table};
-use crate::identify::uncertainty::{Asked, Way};
+use crate::identify::uncertainty::{IntervalMethod, UncertaintyOptions};
 use crate::identify::{Finding, Identification};
 use crate::motion::{Bracket, ClassifySettings, Observation, brackets, observe, scale_drives};
 use crate::pipeline::{PipelineError, Progress};
@@ -175,9 +175,9 @@ fn evidence<'a>(
             ..Nominal::default()
         },
         // Nobody reads profiles of hundreds of campaigns.
-        uncertainty: Asked {
-            way: Way::Covariance,
-            ..Asked::default()
+        uncertainty: UncertaintyOptions {
+            intervals: IntervalMethod::Covariance,
+            ..UncertaintyOptions::default()
         },
     }
 }

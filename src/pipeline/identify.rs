@@ -5,12 +5,15 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::campaign::resolved::ResolvedCampaign;
+use crate::campaign::resolved::{NominalValues, ResolvedCampaign};
 use crate::identify::evidence::{Evidence, Nominal};
-use crate::identify::uncertainty::Asked;
+use crate::identify::fit::effect::Effects;
+use crate::identify::fit::parameters::gain_index;
+use crate::identify::uncertainty::UncertaintyOptions;
 use crate::identify::{Identification, Provenance, identify_campaign};
-use crate::pipeline::store::write_json;
+use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, inputs};
+use crate::record::calibrate::ChannelSetup;
 
 /// Name of the result's file.
 pub const FILE: &str = "identification.json";
@@ -36,8 +39,32 @@ pub fn nominal(campaign: &ResolvedCampaign) -> Nominal {
         gain_uncertainty: campaign.rig.gain_uncertainty,
         corner_uncertainty: campaign.rig.corner_uncertainty,
         clearance_uncertainty_m: campaign.rig.clearance_uncertainty_m,
-        ..Nominal::default()
+        mass_asymmetry: mass_asymmetry(&campaign.rig),
+        effects: match &campaign.rig.effects {
+            Some(kinds) => Effects::of(kinds),
+            None => Effects::all(),
+        },
+        ..delays(&campaign.channels)
     }
+}
+
+/// (m_x − m_y)/m of the stated masses, with its standard uncertainty; `None` unless both are stated.
+fn mass_asymmetry(rig: &NominalValues) -> Option<[f64; 2]> {
+    let (x, y) = rig.mass_x_kg.zip(rig.mass_y_kg)?;
+    let deviation = rig.mass_uncertainty * std::f64::consts::SQRT_2;
+    Some([2.0 * (x - y) / (x + y), deviation])
+}
+
+/// The stated delays of the motion channels.
+fn delays(channels: &[ChannelSetup]) -> Nominal {
+    let mut nominal = Nominal::default();
+    for channel in channels {
+        if let Some(i) = gain_index(channel.role) {
+            nominal.delays_s[i] = channel.delay_s;
+            nominal.delay_uncertainties_s[i] = channel.delay_uncertainty_s;
+        }
+    }
+    nominal
 }
 
 /// What an identification of a campaign starts from.
@@ -47,8 +74,8 @@ pub fn evidence<'a>(campaign: &ResolvedCampaign, observed: &'a Observed) -> Evid
         observations: &observed.observations,
         brackets: &observed.brackets,
         nominal: nominal(campaign),
-        uncertainty: Asked {
-            way: campaign.analysis.uncertainty,
+        uncertainty: UncertaintyOptions {
+            intervals: campaign.analysis.uncertainty,
             replicas: campaign.analysis.replicas,
             seed: campaign.analysis.seed,
         },
@@ -82,7 +109,7 @@ pub(super) fn provenance(campaign: &ResolvedCampaign) -> Result<Provenance, Pipe
 }
 
 /// The resolved settings without the list of records, which has its own table.
-fn settings(campaign: &ResolvedCampaign) -> Result<serde_json::Value, PipelineError> {
+pub(super) fn settings(campaign: &ResolvedCampaign) -> Result<serde_json::Value, PipelineError> {
     let short = ResolvedCampaign {
         records: Vec::new(),
         ..campaign.clone()

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::campaign::written::Published;
+use crate::compare::Compared;
+use crate::identify::Identification;
 use crate::identify::published::{PublishedSpeed, Where, identify, predicted};
-use crate::identify::{Identification, Verdict};
 use crate::pipeline::identify::{IdentificationFile, provenance};
 use crate::pipeline::{PipelineError, report, store};
-use crate::report::ReportContent;
-use crate::report::content::DataTable;
-use labfiles::source::ReadError;
+use crate::report::{CampaignFacts, DataTable, ReportContent, Subject};
+use labfiles::ReadError;
 
 /// Identify from published speeds and write identification.json and report.pdf.
 ///
@@ -21,26 +21,32 @@ pub fn run(
     published: &Published,
     out: &Path,
     command_line: &str,
-) -> Result<Verdict, PipelineError> {
+) -> Result<Identification, PipelineError> {
     let speeds = read(&campaign.folder().join(&published.speeds))?;
     let found = IdentificationFile {
         identification: identify(&speeds, &published.damping_ratio_hypotheses),
         provenance: provenance(campaign)?,
     };
-    let mut content =
-        ReportContent::new(campaign.report.title.clone(), found.identification.clone());
-    content.summary.name = campaign.name.clone();
-    content.summary.rig = "closing speeds as published; nothing was measured here".into();
     let damping_ratio = found_damping(&found.identification);
-    content.tables = vec![table(&speeds, damping_ratio, published)];
-    content.settings_text = format!("{:#}", found.provenance.settings);
-    content.provenance = found.provenance.clone();
-    content.command_line = command_line.to_owned();
+    let content = ReportContent {
+        title: campaign.report.title.clone(),
+        campaign: CampaignFacts {
+            name: campaign.name.clone(),
+            subject: Subject::PublishedSpeeds,
+            ..CampaignFacts::default()
+        },
+        identification: found.identification.clone(),
+        provenance: found.provenance.clone(),
+        compared: Compared::default(),
+        proposals: Vec::new(),
+        tables: vec![table(&speeds, damping_ratio, published)],
+        command_line: command_line.to_owned(),
+    };
     let report = report::render(&content, campaign)?;
     store::write_resolved(campaign, out)?;
     super::identify::write(&found, out)?;
     report::write(&report, out)?;
-    Ok(found.identification.verdict)
+    Ok(found.identification)
 }
 
 fn found_damping(found: &Identification) -> Option<f64> {
@@ -63,6 +69,11 @@ fn table(speeds: &[PublishedSpeed], found: Option<f64>, published: &Published) -
             s.clearance_ratio.to_string(),
             eta,
         ];
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a small whole number, not negative"
+        )]
         let decimals = (-s.printed_step.log10().floor()).max(0.0) as usize;
         let model = dampings.iter().map(|b| match predicted(s, *b) {
             Some(speed) => format!("{speed:.0$}", decimals + 1),

@@ -4,8 +4,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Flag, FlagCode, Role};
-use labfiles::source::{ChannelInfo, DatasetInfo};
 use labfiles::units::{self, Dimension, Quantity, Scale, Unit};
+use labfiles::{ChannelInfo, DatasetInfo};
 
 /// A channel of a file, by name or by index.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -73,6 +73,12 @@ pub struct ChannelSetup {
     pub sign: f64,
     /// Corner of the first-order high-pass that the signal carries, Hz.
     pub high_pass_hz: Option<f64>,
+    /// How much later than the drive's channel it shows what happens, s.
+    #[serde(default)]
+    pub delay_s: f64,
+    /// Standard uncertainty of the delay, s; `None`: half a sample.
+    #[serde(default)]
+    pub delay_uncertainty_s: Option<f64>,
     /// Level between open and closed contact, after the scale.
     pub threshold: Option<Quantity>,
     /// Greatest magnitude the converter gives, SI of the file's unit.
@@ -95,6 +101,8 @@ impl ChannelSetup {
             offset: 0.0,
             sign: 1.0,
             high_pass_hz: None,
+            delay_s: 0.0,
+            delay_uncertainty_s: None,
             threshold: None,
             range: None,
             ignore_file_unit: false,

@@ -6,7 +6,7 @@ pub use super::bind::{Bound, ChannelKey, ChannelSetup, bind};
 use super::time_axis::{self, TimeAxis};
 use super::{Channel, Flag, FlagCode, Record, Setting};
 use super::{condition, consistency};
-use labfiles::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
+use labfiles::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
 
 /// Everything that turns one dataset into one record.
 #[derive(Debug, Clone)]
@@ -327,7 +327,7 @@ mod tests {
             .map(|(i, t)| format!("{t},{}\n", [1.0, -2.0][i % 2]))
             .collect();
         std::fs::write(&path, format!("time [s],x\n{rows}")).unwrap();
-        let source = labfiles::open::open(&path).unwrap();
+        let source = labfiles::open(&path).unwrap();
         let channels = [ChannelSetup::plain(
             Role::Drive,
             ChannelKey::Name("x".into()),

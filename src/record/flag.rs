@@ -8,7 +8,9 @@ use serde::{Deserialize, Serialize};
 macro_rules! flag_codes {
     ($($(#[$doc:meta])* $code:ident = $name:literal,)*) => {
         /// Kind of a problem.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        #[derive(
+            Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+        )]
         pub enum FlagCode {
             $($(#[$doc])* #[serde(rename = $name)] $code,)*
         }

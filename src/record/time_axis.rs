@@ -2,7 +2,7 @@
 
 use super::bind::ChannelKey;
 use super::{Flag, FlagCode};
-use labfiles::source::DatasetInfo;
+use labfiles::DatasetInfo;
 use labfiles::units;
 
 /// Most steps by which a time axis without gaps may stray from equal steps.

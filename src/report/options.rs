@@ -14,7 +14,7 @@ pub enum Paper {
 }
 
 impl Paper {
-    /// The name the template knows.
+    /// Its name in the template.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::A4 => "a4",
@@ -81,7 +81,7 @@ pub struct Logo {
 
 /// What the reader chose about the report's look.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct RenderOptions {
+pub struct ReportOptions {
     /// Paper.
     pub paper: Paper,
     /// Language that a template of the user's own may go by, as ISO 639-1 writes it.
@@ -96,7 +96,7 @@ pub struct RenderOptions {
     pub logo: Option<Logo>,
 }
 
-impl Default for RenderOptions {
+impl Default for ReportOptions {
     fn default() -> Self {
         Self {
             paper: Paper::default(),
@@ -109,7 +109,7 @@ impl Default for RenderOptions {
     }
 }
 
-impl RenderOptions {
+impl ReportOptions {
     pub(super) fn speech(&self) -> Speech<'_> {
         Speech {
             decimal_comma: self.decimal_comma,

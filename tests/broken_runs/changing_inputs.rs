@@ -5,8 +5,8 @@ use std::io::Write;
 use std::path::Path;
 
 use impactid::pipeline::Observed;
-use labfiles::open::open;
-use labfiles::source::{Samples, Source};
+use labfiles::open;
+use labfiles::{Samples, Source};
 
 use crate::support::{Lab, wav_format};
 

@@ -286,7 +286,7 @@ impl Block for BoundaryBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::middles;
+    use crate::identify::bracket_midpoints;
     use crate::record::Sweep;
     use impact_oscillator::model::boundary::{rho_grazing, rho_s1, rho_s2};
 
@@ -343,7 +343,7 @@ mod tests {
             ..p
         };
         let r = |off| {
-            let found = middles::restitution(&of(BoundaryKind::SaddleNode, off), &wrong);
+            let found = bracket_midpoints::restitution(&of(BoundaryKind::SaddleNode, off), &wrong);
             found.and_then(|e| e.value).expect("R")
         };
         assert!((r(0.0) - 0.7).abs() < 1e-6);

@@ -60,6 +60,8 @@ pub struct FlightRecord {
     pub clearance_m: f64,
     /// Place of the clearance among those that carry an error of their own.
     pub gap: Option<usize>,
+    /// The group of records that it belongs to.
+    pub group: usize,
     /// Drive amplitude relative to the nominal one.
     pub drive_amplitude: f64,
     /// Its impacts, in their order, none missing between them.
@@ -146,6 +148,7 @@ fn flight_record(rig: RigKind, index: usize, o: &Observation) -> Option<FlightRe
         frequency_hz: drive.frequency_hz,
         clearance_m: o.setting.clearance_m?,
         gap: None,
+        group: 0,
         drive_amplitude: o.setting.drive_amplitude,
         nodes,
     })
@@ -321,6 +324,10 @@ impl Block for FlightBlock {
         }
     }
 
+    fn group(&self, item: usize) -> Option<usize> {
+        Some(self.records[item].group)
+    }
+
     fn item_touches(&self, item: usize, coordinate: Coordinate) -> bool {
         match coordinate {
             Coordinate::Gap(i) => self.records[item].gap == Some(i),
@@ -368,6 +375,7 @@ mod tests {
                     frequency_hz,
                     clearance_m,
                     gap: None,
+                    group: 0,
                     drive_amplitude: 1.0,
                     nodes: nodes.collect(),
                 }

@@ -16,6 +16,8 @@ pub mod trajectory;
 pub mod waveform;
 pub mod weighing;
 
+use std::collections::BTreeMap;
+
 use crate::event::RigKind;
 use crate::identify::evidence::boundary::BoundaryBlock;
 use crate::identify::evidence::flights::FlightBlock;
@@ -25,7 +27,7 @@ use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::fit::effect::Effects;
 use crate::identify::fit::parameters::{Coordinate, MOST_GAPS, Parameters, gain_index};
 use crate::identify::fit::{Block, Prior};
-use crate::identify::uncertainty::Asked;
+use crate::identify::uncertainty::UncertaintyOptions;
 use crate::motion::Amplitude;
 use crate::motion::{Bracket, Observation};
 use crate::record::Role;
@@ -93,7 +95,7 @@ pub struct Evidence<'a> {
     /// What is stated.
     pub nominal: Nominal,
     /// What is asked for of the uncertainty.
-    pub uncertainty: Asked,
+    pub uncertainty: UncertaintyOptions,
 }
 
 /// Relative error of instruments and model that noise does not show.
@@ -158,7 +160,7 @@ impl Blocks {
             gaps_m: Vec::new(),
             half_sample_s: half_sample_s(observations),
         };
-        blocks.place(&places(observations));
+        blocks.place(&places(observations), &groups(observations));
         blocks.give_gaps_errors(evidence.nominal.clearance_uncertainty_m);
         let reach_m = reach_m(observations);
         (blocks.trajectory.reach_m, blocks.resonance.reach_m) = (reach_m, reach_m);
@@ -166,13 +168,18 @@ impl Blocks {
         blocks
     }
 
-    /// Set when in the campaign each record was taken.
-    fn place(&mut self, places: &[f64]) {
+    /// Set when in the campaign each record was taken, and its group.
+    fn place(&mut self, places: &[f64], groups: &[usize]) {
         for point in &mut self.resonance.points {
             point.place = places[point.observation];
+            point.group = groups[point.observation];
         }
         for record in &mut self.trajectory.records {
             record.place = places[record.observation];
+            record.group = groups[record.observation];
+        }
+        for record in &mut self.flight.records {
+            record.group = groups[record.observation];
         }
     }
 
@@ -327,6 +334,30 @@ fn places(observations: &[Observation]) -> Vec<f64> {
         places[i] = rank as f64 / last - 0.5;
     }
     places
+}
+
+/// Fewest groups that are looked for.
+const FEWEST_GROUPS: usize = 8;
+
+/// The group of each record: those of one gap and direction of the sweep; parts of them, in the order
+/// of acquisition, where that makes too few.
+fn groups(observations: &[Observation]) -> Vec<usize> {
+    let mut of: BTreeMap<(u64, &str), Vec<usize>> = BTreeMap::new();
+    let mut order: Vec<usize> = (0..observations.len()).collect();
+    order.sort_by_key(|i| observations[*i].setting.sequence);
+    for i in order {
+        let setting = &observations[i].setting;
+        let gap = setting.clearance_m.unwrap_or(f64::NAN).to_bits();
+        of.entry((gap, setting.sweep.name())).or_default().push(i);
+    }
+    let parts = FEWEST_GROUPS.div_ceil(of.len().max(1));
+    let mut groups = vec![0; observations.len()];
+    for (number, records) in of.values().enumerate() {
+        for (rank, i) in records.iter().enumerate() {
+            groups[*i] = number * parts + rank * parts / records.len();
+        }
+    }
+    groups
 }
 
 /// Half the time between two samples in the median record, s.

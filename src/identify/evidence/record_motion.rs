@@ -41,7 +41,7 @@ impl NearestOrbit {
         let n = record.folded.periods_n;
         let branch = Branch::new(&machine, setting.frequency_ratio, n);
         let restitution = own.restitution.clamp(0.0, 1.0);
-        let speeds = branch.closing_speeds(restitution, machine.gap(setting.clearance))?;
+        let speeds = branch.approach_speeds(restitution, machine.gap(setting.clearance))?;
         let scale = own.static_deflection_m * record.drive_amplitude * own.natural_rate();
         let measured = record.closing_speed_m_s / scale;
         let closing_speed = speeds
@@ -274,7 +274,7 @@ impl<'a> RecordMotion<'a> {
             x: turned(&self.orbit.x),
             y: turned(&self.orbit.y),
             phase: 1.0,
-            closing_speed: 0.0,
+            approach_speed: 0.0,
         };
         let direction = Direction {
             orbit,
@@ -602,6 +602,7 @@ mod tests {
             gap: Some(1),
             lone_clearance_error_m: 0.0,
             place: 0.3,
+            group: 0,
             shared: Vec::new(),
             perturbations: Vec::new(),
         }

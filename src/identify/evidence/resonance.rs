@@ -30,6 +30,8 @@ pub struct ResonancePoint {
     pub phase_error_rad: f64,
     /// Place in the campaign, −½ … ½.
     pub place: f64,
+    /// The group of records that it belongs to.
+    pub group: usize,
     /// Responses of the channels.
     pub responses: Vec<Response>,
 }
@@ -73,6 +75,7 @@ impl ResonanceBlock {
                     phase_error_rad: o.drive_phase_error_rad(),
                     drive_amplitude: o.setting.drive_amplitude,
                     place: 0.0,
+                    group: 0,
                     responses: o
                         .response
                         .iter()
@@ -352,6 +355,10 @@ impl Block for ResonanceBlock {
         Some((white(self.apart(point, &found)), columns))
     }
 
+    fn group(&self, item: usize) -> Option<usize> {
+        Some(self.points[item].group)
+    }
+
     fn touches(&self, coordinate: Coordinate) -> bool {
         match coordinate {
             Coordinate::Restitution
@@ -389,6 +396,7 @@ mod tests {
                 frequency_error: 0.0,
                 phase_error_rad: 0.0,
                 place: 0.2,
+                group: 0,
                 responses: roles
                     .map(|role| Response {
                         role,

@@ -42,6 +42,8 @@ pub struct TrajectoryRecord {
     pub lone_clearance_error_m: f64,
     /// Place in the campaign, −½ … ½.
     pub place: f64,
+    /// The group of records that it belongs to.
+    pub group: usize,
     /// Changes of all points' values, SI, by one standard error of phase, of frequency and of a lone
     /// clearance; empty until they are found at good parameters.
     pub shared: Vec<Vec<f64>>,
@@ -177,6 +179,7 @@ fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> 
         gap: None,
         lone_clearance_error_m: 0.0,
         place: 0.0,
+        group: 0,
         shared: Vec::new(),
         perturbations: Vec::new(),
         clearance_m: o.setting.clearance_m?,
@@ -256,6 +259,10 @@ impl Block for TrajectoryBlock {
 
     fn touches(&self, coordinate: Coordinate) -> bool {
         (0..self.records.len()).any(|item| self.item_touches(item, coordinate))
+    }
+
+    fn group(&self, item: usize) -> Option<usize> {
+        Some(self.records[item].group)
     }
 
     fn item_touches(&self, item: usize, coordinate: Coordinate) -> bool {

@@ -37,6 +37,11 @@ pub trait Block: Sync {
     /// Which coordinates the block depends on.
     fn touches(&self, coordinate: Coordinate) -> bool;
 
+    /// The group of records that an item belongs to, whose misfits may be alike; `None`: no group.
+    fn group(&self, _item: usize) -> Option<usize> {
+        None
+    }
+
     /// Which coordinates one of its items depends on; as the whole block does, unless it knows better.
     fn item_touches(&self, _item: usize, coordinate: Coordinate) -> bool {
         self.touches(coordinate)

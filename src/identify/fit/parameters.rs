@@ -51,6 +51,58 @@ pub struct Parameters {
 /// Most stated clearances that carry an error of their own.
 pub const MOST_GAPS: usize = 48;
 
+/// Names of those errors.
+const GAP_NAMES: [&str; MOST_GAPS] = [
+    "clearance_error_1_mm",
+    "clearance_error_2_mm",
+    "clearance_error_3_mm",
+    "clearance_error_4_mm",
+    "clearance_error_5_mm",
+    "clearance_error_6_mm",
+    "clearance_error_7_mm",
+    "clearance_error_8_mm",
+    "clearance_error_9_mm",
+    "clearance_error_10_mm",
+    "clearance_error_11_mm",
+    "clearance_error_12_mm",
+    "clearance_error_13_mm",
+    "clearance_error_14_mm",
+    "clearance_error_15_mm",
+    "clearance_error_16_mm",
+    "clearance_error_17_mm",
+    "clearance_error_18_mm",
+    "clearance_error_19_mm",
+    "clearance_error_20_mm",
+    "clearance_error_21_mm",
+    "clearance_error_22_mm",
+    "clearance_error_23_mm",
+    "clearance_error_24_mm",
+    "clearance_error_25_mm",
+    "clearance_error_26_mm",
+    "clearance_error_27_mm",
+    "clearance_error_28_mm",
+    "clearance_error_29_mm",
+    "clearance_error_30_mm",
+    "clearance_error_31_mm",
+    "clearance_error_32_mm",
+    "clearance_error_33_mm",
+    "clearance_error_34_mm",
+    "clearance_error_35_mm",
+    "clearance_error_36_mm",
+    "clearance_error_37_mm",
+    "clearance_error_38_mm",
+    "clearance_error_39_mm",
+    "clearance_error_40_mm",
+    "clearance_error_41_mm",
+    "clearance_error_42_mm",
+    "clearance_error_43_mm",
+    "clearance_error_44_mm",
+    "clearance_error_45_mm",
+    "clearance_error_46_mm",
+    "clearance_error_47_mm",
+    "clearance_error_48_mm",
+];
+
 /// Errors of the stated clearances, m.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(from = "Vec<f64>", into = "Vec<f64>")]
@@ -425,7 +477,7 @@ impl Coordinate {
             Self::Delay(_) => "delay_displacement_y_ms",
             Self::Effect(effect) => effect.name(),
             Self::ScrewZero => "screw_zero_mm",
-            Self::Gap(_) => "clearance_error_mm",
+            Self::Gap(i) => GAP_NAMES.get(i).copied().unwrap_or("clearance_error_mm"),
             Self::Gain(0) => "gain_velocity_x",
             Self::Gain(1) => "gain_velocity_y",
             Self::Gain(2) => "gain_displacement_x",
@@ -439,12 +491,20 @@ impl Coordinate {
 
     /// All coordinates.
     pub fn all() -> impl Iterator<Item = Coordinate> {
-        let asymmetries = [Self::DriveAsymmetry, Self::StiffnessAsymmetry];
+        let single = [
+            Self::DriveAsymmetry,
+            Self::StiffnessAsymmetry,
+            Self::DampingAsymmetry,
+            Self::MassAsymmetry,
+            Self::ScrewZero,
+        ];
         let channels = (0..4).map(Self::Gain).chain((0..4).map(Self::Corner));
         Self::PHYSICAL
             .into_iter()
-            .chain(asymmetries)
-            .chain(channels)
+            .chain(single)
+            .chain(channels.chain((0..4).map(Self::Delay)))
+            .chain(Effect::ALL.map(Self::Effect))
+            .chain((0..MOST_GAPS).map(Self::Gap))
     }
 
     /// Symbol in running text.

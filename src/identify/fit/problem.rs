@@ -3,6 +3,8 @@
 //! Of each item only the triangular factor is kept, and the factors are combined in the items' order,
 //! so that the same bytes come out on any number of threads.
 
+use std::collections::BTreeMap;
+
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
@@ -108,6 +110,30 @@ impl Problem<'_> {
                     .collect()
             })
             .collect()
+    }
+
+    /// Normal equations of the items of each group, by the group's number, over the items that have a
+    /// model; those of the blocks and priors that belong to no group last.
+    pub fn groups(&self, parameters: &Parameters) -> (BTreeMap<usize, Normal>, Normal) {
+        let zeros = || Normal::zeros(self.free.len());
+        let (mut groups, mut rest) = (BTreeMap::new(), zeros());
+        for (block, weight) in &self.blocks {
+            let parts: Vec<Option<Normal>> = (0..block.items())
+                .into_par_iter()
+                .map(|i| self.item_normal(*block, i, *weight, parameters))
+                .collect();
+            for (i, part) in parts.iter().enumerate() {
+                let Some(part) = part else { continue };
+                match block.group(i) {
+                    Some(group) => groups.entry(group).or_insert_with(zeros).add(part),
+                    None => rest.add(part),
+                }
+            }
+        }
+        for prior in &self.priors {
+            rest.add(&self.prior_normal(prior, parameters));
+        }
+        (groups, rest)
     }
 
     /// Normal equations of each block, then those of all priors.

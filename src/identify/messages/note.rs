@@ -25,6 +25,8 @@ pub enum Note {
         /// Correlation of both estimates.
         correlation: f64,
     },
+    /// Methods do not agree on it; the interval covers them.
+    MethodsDisagree,
     /// R depends on the speed.
     NotOneNumber,
     /// Each specimen has parameters of its own.
@@ -118,6 +120,13 @@ impl Message for Note {
             (Self::LeansOn { .. }, German) => {
                 "stützt sich auf {parameter} (Korrelation {correlation})"
             }
+            (Self::MethodsDisagree, English) => {
+                "the methods do not agree on it: the interval is widened by their disagreement"
+            }
+            (Self::MethodsDisagree, German) => {
+                "die Verfahren stimmen darin nicht überein: das Intervall ist um ihren Unterschied \
+                 verbreitert"
+            }
             (Self::NotOneNumber, English) => {
                 "$R$ is not one number here: see the remark on its change"
             }
@@ -170,6 +179,7 @@ impl Message for Note {
             Self::NoStart { observations } => vec![("count", Value::Count(*observations))],
             Self::SolverFailed { report } => vec![("report", Value::Name(report))],
             Self::NotOneNumber
+            | Self::MethodsDisagree
             | Self::SeveralSpecimens
             | Self::NoPublishedMotion
             | Self::NothingToFit

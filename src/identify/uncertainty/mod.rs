@@ -5,8 +5,13 @@
 
 pub mod band;
 pub mod bound;
+pub mod budget;
 pub mod coverage;
+mod options;
 pub mod posterior;
+pub mod scatter;
+
+pub use options::{IntervalMethod, UncertaintyOptions};
 
 use std::collections::BTreeMap;
 
@@ -20,40 +25,8 @@ use crate::identify::fit::normal::{Normal, inverse};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::fit::{Fit, Problem};
 use crate::identify::method::Method;
-
-/// How intervals are found beside the covariance.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Way {
-    /// The covariance at the optimum alone.
-    Covariance,
-    /// Profile likelihood of each parameter.
-    #[default]
-    Profile,
-    /// Bootstrap over records.
-    Bootstrap,
-}
-
-/// What is asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Asked {
-    /// The way.
-    pub way: Way,
-    /// Replicas of a bootstrap.
-    pub replicas: usize,
-    /// Seed of everything random.
-    pub seed: u64,
-}
-
-impl Default for Asked {
-    fn default() -> Self {
-        Self {
-            way: Way::default(),
-            replicas: 1000,
-            seed: 1,
-        }
-    }
-}
+use crate::identify::uncertainty::budget::Budget;
+use crate::identify::uncertainty::scatter::Scatter;
 
 /// Likelihood of one parameter with all others fitted anew at each of its values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -85,6 +58,12 @@ pub struct Uncertainty {
     /// Share of each method (and of `stated`, the laboratory's own knowledge of its instruments) in
     /// what is known of each parameter; the shares of a parameter add up to 1.
     pub information_share: BTreeMap<Coordinate, BTreeMap<InformationSource, f64>>,
+    /// The sources of the joint estimate's uncertainty, and what they amount to.
+    #[serde(default)]
+    pub budget: Budget,
+    /// Scatter between groups of records beyond noise and what is stated.
+    #[serde(default)]
+    pub scatter: Scatter,
     /// Profile likelihoods, where asked for.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub profiles: Vec<ProfileCurve>,
@@ -117,7 +96,7 @@ pub fn uncertainty(
     methods: &[Method],
     fit: &Fit,
     factor: f64,
-    asked: &Asked,
+    options: &UncertaintyOptions,
 ) -> Uncertainty {
     let told: Vec<Coordinate> = Coordinate::PHYSICAL
         .into_iter()
@@ -125,17 +104,18 @@ pub fn uncertainty(
         .collect();
     Uncertainty {
         information_share: shares(problem, methods, fit, &told),
-        profiles: match asked.way {
-            Way::Profile => told
+        profiles: match options.intervals {
+            IntervalMethod::Profile => told
                 .iter()
                 .filter_map(|c| profile(problem, fit, factor, *c))
                 .collect(),
             _ => Vec::new(),
         },
-        bootstrap: match asked.way {
-            Way::Bootstrap => bootstrap(problem, fit, asked, &told),
+        bootstrap: match options.intervals {
+            IntervalMethod::Bootstrap => bootstrap(problem, fit, options, &told),
             _ => Vec::new(),
         },
+        ..Uncertainty::default()
     }
 }
 
@@ -214,13 +194,13 @@ fn reaches(points: &[(f64, f64)]) -> Option<f64> {
 fn bootstrap(
     problem: &Problem<'_>,
     fit: &Fit,
-    asked: &Asked,
+    options: &UncertaintyOptions,
     told: &[Coordinate],
 ) -> Vec<Bootstrapped> {
     let blocks = problem.item_parts(&fit.parameters);
-    let replicas: Vec<Vec<f64>> = (0..asked.replicas as u64)
+    let replicas: Vec<Vec<f64>> = (0..options.replicas as u64)
         .into_par_iter()
-        .filter_map(|i| replica(problem, fit, &blocks, (asked.seed, i)))
+        .filter_map(|i| replica(problem, fit, &blocks, (options.seed, i)))
         .collect();
     told.iter()
         .filter_map(|coordinate| {

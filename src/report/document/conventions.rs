@@ -1,4 +1,4 @@
-//! The quantities that the report names, as the paper defines them.
+//! The quantities of the report, as the paper defines them.
 
 use super::model::{Definition, Rich};
 use crate::report::speech::Speech;

@@ -1,9 +1,11 @@
 //! The first page's data: the verdict, the answer, the agreement, what was measured.
 
+use super::drawn::Drawn;
 use super::facts::facts;
 use super::model::{Answer, Front, Rich};
 use super::prose::{prose, sentence, spoken};
-use super::{Drawn, tables};
+use super::tables;
+use super::verdict::{headline, verdict_name};
 use crate::identify::{Estimate, Finding, VerdictKind};
 use crate::report::content::ReportContent;
 use crate::report::parameters::{self, PARAMETERS, ParameterLook};
@@ -13,7 +15,7 @@ use crate::report::speech::Speech;
 pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
     let id = &content.identification;
     Front {
-        synthetic: content.summary.synthetic,
+        synthetic: content.campaign.synthetic,
         verdict: verdict_name(id.verdict.kind),
         headline: campaign_headline(content, drawn.speech),
         summary: prose(&drawn.speech.tell(&id.verdict.to_string())).localised(drawn.speech),
@@ -31,7 +33,7 @@ pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
             }
             false => Rich::default(),
         },
-        facts: facts(&content.summary, drawn.speech),
+        facts: facts(content, drawn.speech),
         map: drawn.figure("map_small", ""),
         estimates: drawn.figure("estimates", ""),
     }
@@ -50,7 +52,10 @@ fn campaign_headline(content: &ReportContent, speech: Speech) -> String {
         .filter(|s| s.verdict.kind == VerdictKind::Identified)
         .count();
     match specimens - identified {
-        _ if specimens == 0 => speech.say(headline(id.verdict.kind, !content.records.is_empty())),
+        _ if specimens == 0 => speech.say(headline(
+            id.verdict.kind,
+            !content.compared.records.is_empty(),
+        )),
         0 => speech.say_with(
             "Identified: the model fits each of the {count} specimens",
             &[("count", &specimens.to_string())],
@@ -97,7 +102,7 @@ fn answers(content: &ReportContent, speech: Speech) -> Vec<Answer> {
     estimates.map(|(look, e)| answer(look, e, speech)).collect()
 }
 
-/// The words on agreement without the headline that stands before them.
+/// The sentence on agreement without the headline that precedes it.
 fn agreement(summary: &str, speech: Speech) -> String {
     if let Some(rest) = summary.strip_prefix("The methods do not agree on ") {
         return sentence(&speech.tell(&format!("This concerns {rest}")));
@@ -134,35 +139,13 @@ fn answer(look: &ParameterLook, estimate: Option<&Estimate>, speech: Speech) -> 
     }
 }
 
-/// Name of a verdict in the document.
-fn verdict_name(kind: VerdictKind) -> &'static str {
-    match kind {
-        VerdictKind::Identified => "identified",
-        VerdictKind::Weak => "weak",
-        VerdictKind::NotIdentifiable => "not_identifiable",
-        VerdictKind::DoesNotFit => "does_not_fit",
-    }
-}
-
-/// A verdict as a headline, a phrase; of a rig where records of one were measured.
-pub(super) fn headline(kind: VerdictKind, of_a_rig: bool) -> &'static str {
-    match (kind, of_a_rig) {
-        (VerdictKind::Identified, true) => "Identified: the model fits the rig",
-        (VerdictKind::Identified, false) => "Identified: the model fits",
-        (VerdictKind::Weak, _) => "Identified in part",
-        (VerdictKind::NotIdentifiable, _) => "Not identifiable from these data",
-        (VerdictKind::DoesNotFit, true) => "The model does not fit the rig",
-        (VerdictKind::DoesNotFit, false) => "The model does not fit",
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::identify::Status;
 
     #[test]
-    fn valid_what_is_not_identifiable_has_no_number() {
+    fn what_is_not_identifiable_has_no_number() {
         let none = Estimate {
             value: None,
             standard_error: None,

@@ -1,4 +1,4 @@
-//! Phrases that the template and the page say themselves, in the reader's words.
+//! Phrases of the template and of the page, translated.
 
 use std::collections::BTreeMap;
 

@@ -2,6 +2,7 @@
 
 mod captions;
 mod conventions;
+mod drawn;
 mod facts;
 mod front;
 mod layout_phrases;
@@ -11,45 +12,17 @@ mod prose;
 mod sections;
 mod settings;
 mod tables;
+mod verdict;
 pub(super) mod world;
 
 pub use pdf::pdf;
 
-use model::{Block, Document, FigureRef, Rich};
+use drawn::Drawn;
+use model::{Document, Rich};
 
 use crate::report::content::ReportContent;
-use crate::report::figures::{Figure, richtext};
+use crate::report::figures::Figure;
 use crate::report::speech::Speech;
-
-/// The figures as drawn, to be referred to by name.
-pub struct Drawn<'a> {
-    figures: &'a [Figure],
-    /// How numbers are printed.
-    pub speech: Speech<'a>,
-}
-
-impl Drawn<'_> {
-    /// Refers to a figure by its name; `None` where it was not drawn.
-    pub fn figure(&self, name: &str, caption: &str) -> Option<FigureRef> {
-        let figure = self.figures.iter().find(|f| f.name == name)?;
-        Some(FigureRef {
-            name: figure.name.clone(),
-            width: figure.width,
-            height: figure.height,
-            caption: Rich::from(caption),
-            alt: richtext::plain(&figure.title),
-        })
-    }
-
-    /// A block of those of the named figures that were drawn.
-    fn figures_block(&self, named: &[(&str, &str)]) -> Option<Block> {
-        let figures: Vec<FigureRef> = named
-            .iter()
-            .filter_map(|(name, caption)| self.figure(name, caption))
-            .collect();
-        (!figures.is_empty()).then_some(Block::Figures { figures })
-    }
-}
 
 /// Builds the document's data.
 pub fn document(content: &ReportContent, figures: &[Figure], speech: Speech<'_>) -> Document {
@@ -65,11 +38,11 @@ pub fn document(content: &ReportContent, figures: &[Figure], speech: Speech<'_>)
 }
 
 fn subtitle(content: &ReportContent, speech: Speech) -> String {
-    let summary = &content.summary;
-    let dates = facts::dates(summary, speech);
+    let campaign = &content.campaign;
+    let dates = facts::dates(campaign, speech);
     let parts = [
-        Some(summary.name.clone()),
-        summary.laboratory.clone(),
+        Some(campaign.name.clone()),
+        campaign.laboratory.clone(),
         Some(dates),
     ];
     let parts: Vec<String> = parts

@@ -1,10 +1,11 @@
 //! The sections after the first page, each only where there is something to show.
 
+use super::drawn::Drawn;
 use super::model::{Block, Rich, Section};
 use super::prose::{prose, sentence};
 use super::settings::settings;
 use super::tables;
-use super::{Drawn, captions, conventions};
+use super::{captions, conventions};
 use crate::identify::Remark;
 use crate::report::content::ReportContent;
 use crate::report::figures::comparison;
@@ -105,24 +106,20 @@ fn map_caption(content: &ReportContent, speech: Speech) -> String {
     if strips.is_some_and(|s| !s.is_empty()) {
         add(&speech.say("Clearances far above all impacts stand in a strip of their own."));
     }
-    if let Some(map) = &content.region_map {
-        add(&speech.say(match map.second.is_empty() {
-            true => {
-                "Tinted regions: simulated with the fitted parameters, labelled by $z$ = $p$/$n$."
-            }
-            false => {
-                "Tinted regions: simulated with the fitted parameters, labelled by $z$ = $p$/$n$; \
-                 hatched, with two labels, where two motions are possible (hysteresis)."
-            }
-        }));
-        if !map.note.is_empty() {
-            add(&speech.say(&sentence(&map.note)));
-        }
+    if content.compared.region_map.is_some() {
+        add(&speech.say(
+            "Tinted regions: simulated with the fitted parameters, labelled by $z$ = $p$/$n$; \
+             hatched, with two labels, where two motions are possible (hysteresis).",
+        ));
+        add(&speech.say(
+            "Every cell simulated from rest and from a lively start, and the stable orbits z = 1/n \
+             in closed form; where they differ, both motions exist.",
+        ));
     }
-    if content.curves.iter().any(|c| !c.band95.is_empty()) {
+    if content.compared.curves.iter().any(|c| !c.band95.is_empty()) {
         add(&speech.say("Grey bands: 95 % bands of the simulated boundaries."));
     }
-    if !content.comparisons.is_empty() {
+    if !content.compared.comparisons.is_empty() {
         add(&speech.say("Letters: the points compared in the next figures."));
     }
     text
@@ -130,7 +127,7 @@ fn map_caption(content: &ReportContent, speech: Speech) -> String {
 
 fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
-    for comparison in &content.comparisons {
+    for comparison in &content.compared.comparisons {
         let name = comparison::name(comparison);
         let caption = captions::comparison(comparison, drawn.speech);
         blocks.extend(drawn.figures_block(&[(&name, &caption)]));
@@ -199,18 +196,9 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
 }
 
 fn left_out(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
-    let mut blocks: Vec<Block> = tables::left_out(content, drawn.speech)
-        .map(Block::Table)
-        .into_iter()
-        .collect();
-    let remarks = content.remarks.iter();
-    let remarks = remarks.map(|r| remark(&drawn.speech.tell(r)));
-    let title = match blocks.is_empty() {
-        true => "Remarks",
-        false => "What was left out, and why",
-    };
-    blocks.extend(remarks);
-    section(drawn.speech.say(title), false, blocks)
+    let table = tables::left_out(content, drawn.speech).map(Block::Table);
+    let title = drawn.speech.say("What was left out, and why");
+    section(title, false, table.into_iter().collect())
 }
 
 fn records(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
@@ -219,7 +207,7 @@ fn records(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
 }
 
 fn conventions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
-    let records = &content.records;
+    let records = &content.compared.records;
     let driven = records.is_empty() || records.iter().any(|r| r.frequency_hz.is_some());
     let intervals = "Intervals are at 95 % confidence; a number after ± is half of that interval. \
                      All quantities are in SI units.";
@@ -258,9 +246,9 @@ fn provenance(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     }
     blocks.extend(versions(content, drawn.speech));
     blocks.extend(tables::hashes(content, drawn.speech).map(Block::Table));
-    if !content.settings_text.is_empty() {
+    if !content.provenance.settings.is_null() {
         blocks.push(paragraph(drawn.speech.say("Settings, as resolved:")));
-        blocks.push(settings(&content.settings_text));
+        blocks.push(settings(&content.provenance.settings));
     }
     appendix(drawn.speech.say("Settings, versions, inputs"), blocks)
 }

@@ -79,7 +79,7 @@ impl Axis {
         let wanted = self.ticks.max(1);
         let tries = (wanted..=wanted + 4).map(|ticks| nice_step(span / ticks as f64));
         let ticks = tries.map(|step| (multiples(self.low, self.high, step), decimals_of(step)));
-        // One number alone does not tell a scale.
+        // One number alone is no scale.
         let mut best = (Vec::new(), 0);
         for found in ticks {
             best = found;
@@ -156,7 +156,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn valid_ticks_are_round_numbers() {
+    fn ticks_are_round_numbers() {
         let (ticks, decimals) = Axis::new(0.93, 2.07, "").major();
         assert_eq!(decimals, 1);
         let labels: Vec<_> = ticks.iter().map(|t| format!("{t:.1}")).collect();

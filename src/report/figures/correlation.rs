@@ -3,22 +3,22 @@
 //! The columns are the parameters that are asked for; how the others hang together among
 //! themselves is in the figure's data.
 
-use super::Figure;
 use super::canvas::{Anchor, Canvas, Colour, TextLook};
 use super::csv::Csv;
+use super::figure::Figure;
 use super::fonts::Face;
 use super::look;
 use super::marks::mix;
 use super::path::Rect;
 use super::richtext;
-use crate::report::content::Correlation;
+use crate::compare::Correlation;
 use crate::report::parameters::parameter;
 use crate::report::speech::Speech;
 
 /// Room above the cells for the columns' symbols, points.
 const TOP: f64 = 14.0;
 
-/// Draws the matrix; `None` where it is empty or not square.
+/// Draws the matrix; `None` if it is empty or not square.
 pub fn draw(correlation: &Correlation, speech: Speech) -> Option<Figure> {
     let n = correlation.parameters.len();
     let square = correlation.matrix.len() == n && correlation.matrix.iter().all(|r| r.len() == n);
@@ -28,7 +28,7 @@ pub fn draw(correlation: &Correlation, speech: Speech) -> Option<Figure> {
     let names: Vec<String> = correlation
         .parameters
         .iter()
-        .map(|p| name(p, speech))
+        .map(|p| name(p.name(), speech))
         .collect();
     let columns = columns(correlation);
     let widths = names
@@ -67,7 +67,7 @@ pub fn draw(correlation: &Correlation, speech: Speech) -> Option<Figure> {
 /// The columns of the matrix: the parameters that are asked for.
 fn columns(correlation: &Correlation) -> Vec<usize> {
     let all = 0..correlation.parameters.len();
-    let asked = |i: &usize| parameter(&correlation.parameters[*i]).is_some();
+    let asked = |i: &usize| parameter(correlation.parameters[*i].name()).is_some();
     let main: Vec<usize> = all.clone().filter(asked).collect();
     if main.is_empty() { all.collect() } else { main }
 }
@@ -123,7 +123,9 @@ fn csv(correlation: &Correlation) -> String {
     let mut csv = Csv::new(&["parameter", "with", "correlation"]);
     for (a, row) in correlation.parameters.iter().zip(&correlation.matrix) {
         for (b, value) in correlation.parameters.iter().zip(row) {
-            csv.row().texts(&[a, b]).numbers(&[Some(*value)]);
+            csv.row()
+                .texts(&[a.name(), b.name()])
+                .numbers(&[Some(*value)]);
         }
     }
     csv.finish()

@@ -1,10 +1,10 @@
 //! The estimates of all methods beside the joint one, a panel for each parameter.
 
-use super::Figure;
 use super::axis::{Axis, range};
 use super::canvas::{Anchor, Canvas, Stroke, TextLook};
 use super::csv::Csv;
 use super::dots::{DotLook, Dots};
+use super::figure::Figure;
 use super::fonts::{self, Face};
 use super::look;
 use super::panel::{Panel, Sides};
@@ -36,7 +36,7 @@ impl Line<'_> {
     }
 }
 
-/// Draws the estimates; `None` where no parameter has a value.
+/// Draws the estimates; `None` if no parameter has a value.
 pub fn draw(content: &ReportContent, speech: Speech) -> Option<Figure> {
     let lines = lines(content, speech);
     let shown: Vec<usize> = (0..PARAMETERS.len())

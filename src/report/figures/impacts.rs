@@ -4,12 +4,12 @@ use super::axis::{Axis, range};
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
+use super::figure::{Figure, Spot};
 use super::legend::{self, Key, Sign};
 use super::look;
 use super::panel::{PAIR_LEFT, Panel, Sides, pair};
 use super::units::{PrintUnit, print_unit};
-use super::{Figure, Spot};
-use crate::report::content::ImpactScatter;
+use crate::compare::{ImpactPoint, ImpactScatter};
 use crate::report::speech::Speech;
 use labfiles::units::Dimension;
 
@@ -18,7 +18,7 @@ const HEIGHT: f64 = 150.0;
 /// Room above the panels for the keys, points.
 const TOP: f64 = 15.0;
 
-/// Draws one group of impacts; `None` where it is empty.
+/// Draws one group of impacts; `None` if it is empty.
 pub fn draw(scatter: &ImpactScatter, name: &str, speech: Speech) -> Option<Figure> {
     let peak = scatter
         .points
@@ -49,7 +49,7 @@ pub fn draw(scatter: &ImpactScatter, name: &str, speech: Speech) -> Option<Figur
 
 /// The two panels: speed after, and restitution, over speed before.
 fn panels(scatter: &ImpactScatter, unit: PrintUnit) -> [Panel; 2] {
-    let peak = |f: fn(&crate::report::content::ImpactPoint) -> f64| {
+    let peak = |f: fn(&ImpactPoint) -> f64| {
         scatter.points.iter().map(f).fold(0.0, f64::max) * unit.factor * 1.04
     };
     let before = || {
@@ -112,7 +112,7 @@ fn lines(canvas: &mut Canvas, panels: &[Panel; 2], scatter: &ImpactScatter, unit
     speeds.curve(canvas, of_speed().map(|(v, r)| (v, v * r)), dashed);
 }
 
-/// Draws the impacts; gives what hovering over them tells.
+/// Draws the impacts; returns their texts for hovering.
 fn points(
     canvas: &mut Canvas,
     panels: &[Panel; 2],
@@ -123,13 +123,12 @@ fn points(
     canvas.layer(1);
     let radius = dots::radius(scatter.points.len());
     let mut taken = [Dots::default(), Dots::default()];
+    let dot = DotLook {
+        radius,
+        colour: look::BLUE,
+        open: false,
+    };
     for p in &scatter.points {
-        let colour = if p.used { look::BLUE } else { look::QUIET };
-        let dot = DotLook {
-            radius,
-            colour,
-            open: !p.used,
-        };
         let before = p.before_m_s * unit.factor;
         let values = [p.after_m_s * unit.factor, p.after_m_s / p.before_m_s];
         for ((panel, dots), value) in panels.iter().zip(&mut taken).zip(values) {
@@ -149,20 +148,13 @@ fn points(
 
 fn keys(scatter: &ImpactScatter, speech: Speech) -> Vec<Key> {
     let mut keys = Vec::new();
-    if !scatter.name.is_empty() {
-        keys.push(Key::new(Sign::Nothing, scatter.name.clone()));
+    if let Some(specimen) = &scatter.specimen {
+        keys.push(Key::new(Sign::Nothing, specimen));
     }
-    let unused = scatter.points.iter().filter(|p| !p.used).count();
     keys.push(Key::new(
         Sign::dot(look::BLUE),
-        format!("impacts used ({})", scatter.used()),
+        format!("impacts used ({})", scatter.total),
     ));
-    if unused > 0 {
-        keys.push(Key::new(
-            Sign::ring(look::QUIET),
-            format!("not used ({unused})"),
-        ));
-    }
     if let Some(r) = scatter.restitution {
         let stroke = Stroke::solid(look::VERMILION, 1.0);
         keys.push(Key::new(
@@ -183,9 +175,11 @@ fn keys(scatter: &ImpactScatter, speech: Speech) -> Vec<Key> {
 fn csv(scatter: &ImpactScatter) -> String {
     let mut csv = Csv::new(&["record", "used", "before_m_s", "after_m_s", "error_m_s"]);
     for p in &scatter.points {
-        csv.row()
-            .texts(&[&p.record, if p.used { "yes" } else { "no" }])
-            .numbers(&[Some(p.before_m_s), Some(p.after_m_s), p.error_m_s]);
+        csv.row().texts(&[&p.record, "yes"]).numbers(&[
+            Some(p.before_m_s),
+            Some(p.after_m_s),
+            Some(p.error_m_s),
+        ]);
     }
     csv.finish()
 }

@@ -7,7 +7,7 @@ use super::marks::{self, MotionLook, Shape};
 use super::richtext;
 use crate::report::speech::Speech;
 
-/// What stands before a key's text.
+/// The sign before a key's text.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sign {
     /// A mark of a motion.
@@ -41,7 +41,7 @@ impl Sign {
         })
     }
 
-    /// Its width, points; a heading takes back the room that signs are given.
+    /// Its width, points; that of a heading takes back the gap after a sign.
     fn width(self) -> f64 {
         match self {
             Sign::Mark(_) => 7.0,

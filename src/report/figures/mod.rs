@@ -1,6 +1,7 @@
 //! The figures, one file each: from content to SVG, its data as CSV, its points for hovering.
 
 pub(super) mod axis;
+pub(super) mod boundaries;
 pub(super) mod boundary_fit;
 pub(super) mod canvas;
 mod compact;
@@ -10,6 +11,7 @@ pub(super) mod csv;
 pub(super) mod decays;
 pub(super) mod dots;
 pub(super) mod estimates;
+pub(super) mod figure;
 pub(super) mod fonts;
 pub(super) mod impacts;
 pub(super) mod legend;
@@ -27,82 +29,13 @@ pub(super) mod resonance;
 pub(super) mod richtext;
 pub(super) mod units;
 
-use crate::report::speech::Speech;
-use canvas::Canvas;
+pub use figure::{Figure, numbered};
+
 use rayon::prelude::*;
 
+use crate::identify::Method;
 use crate::report::content::ReportContent;
-
-/// A finished figure.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Figure {
-    /// Stem of its file name.
-    pub name: String,
-    /// What it shows, with markup.
-    pub title: String,
-    /// The drawing.
-    pub svg: String,
-    /// Width, points.
-    pub width: f64,
-    /// Height, points.
-    pub height: f64,
-    /// Its data.
-    pub csv: String,
-    /// Points that tell something when hovered over.
-    pub spots: Vec<Spot>,
-    /// Texts that reach beyond the drawing's edges.
-    pub overfull: Vec<String>,
-}
-
-/// A point of a figure that tells something.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct Spot {
-    /// From the left, points.
-    pub x: f64,
-    /// From the top, points.
-    pub y: f64,
-    /// What it tells; lines are parted by line feeds.
-    pub text: String,
-}
-
-/// Most points of one figure that tell something: more would only swell the page.
-const MOST_SPOTS: usize = 2500;
-
-impl Figure {
-    /// A figure from its drawing.
-    pub fn new(name: impl Into<String>, title: &str, canvas: Canvas, csv: String) -> Self {
-        let (width, height) = (canvas.width, canvas.height);
-        let overfull = canvas.overfull();
-        let svg = canvas.into_svg(title);
-        let (name, title) = (name.into(), title.to_owned());
-        Self {
-            name,
-            title,
-            svg,
-            width,
-            height,
-            csv,
-            spots: Vec::new(),
-            overfull,
-        }
-    }
-
-    /// With points that tell something.
-    pub fn with_spots(self, mut spots: Vec<Spot>) -> Self {
-        let stride = spots.len().div_ceil(MOST_SPOTS).max(1);
-        let mut index = 0;
-        spots.retain(|_| {
-            index += 1;
-            (index - 1) % stride == 0
-        });
-        // a hundredth of a point is finer than any screen shows
-        let coarse = |v: f64| (v * 100.0).round() / 100.0;
-        for spot in &mut spots {
-            (spot.x, spot.y) = (coarse(spot.x), coarse(spot.y));
-        }
-        Self { spots, ..self }
-    }
-}
+use crate::report::speech::Speech;
 
 /// A figure waiting to be drawn.
 type Job<'a> = Box<dyn Fn() -> Option<Figure> + Send + Sync + 'a>;
@@ -120,13 +53,17 @@ fn jobs<'a>(content: &'a ReportContent, speech: Speech<'a>) -> Vec<Job<'a>> {
         Box::new(move || map::draw(content, map::MapSize::Full, speech)),
         Box::new(move || map::draw(content, map::MapSize::Small, speech)),
     ];
-    for comparison in &content.comparisons {
+    for comparison in &content.compared.comparisons {
         jobs.push(Box::new(move || comparison::draw(comparison, speech)));
     }
     jobs.push(Box::new(move || estimates::draw(content, speech)));
-    jobs.push(Box::new(move || boundary_fit::draw(content, speech)));
-    jobs.push(Box::new(move || profiles::draw(&content.profiles, speech)));
-    if let Some(correlation) = &content.correlation {
+    jobs.push(Box::new(move || {
+        boundary_fit::draw(&content.compared.brackets, speech)
+    }));
+    jobs.push(Box::new(move || {
+        profiles::draw(&content.identification, speech)
+    }));
+    if let Some(correlation) = &content.compared.correlation {
         jobs.push(Box::new(move || correlation::draw(correlation, speech)));
     }
     method_jobs(content, speech, &mut jobs);
@@ -135,29 +72,31 @@ fn jobs<'a>(content: &'a ReportContent, speech: Speech<'a>) -> Vec<Job<'a>> {
 
 /// Figures of which there may be several.
 fn method_jobs<'a>(content: &'a ReportContent, speech: Speech<'a>, jobs: &mut Vec<Job<'a>>) {
-    for (i, scatter) in content.impacts.iter().enumerate() {
+    for (i, scatter) in content.compared.impacts.iter().enumerate() {
         jobs.push(Box::new(move || {
             impacts::draw(scatter, &numbered("impacts", i), speech)
         }));
     }
-    for (i, curve) in content.resonance.iter().enumerate() {
+    let method = content.identification.methods.get(&Method::Resonance);
+    let fits = method.and_then(|m| m.fits);
+    for (i, curve) in content.compared.resonance.iter().enumerate() {
         jobs.push(Box::new(move || {
-            resonance::draw(curve, &numbered("resonance", i), speech)
+            resonance::draw((curve, fits), &numbered("resonance", i), speech)
         }));
     }
-    for (i, few) in content.free_decays.chunks(decays::PER_FIGURE).enumerate() {
+    for (i, few) in content
+        .compared
+        .free_decays
+        .chunks(decays::PER_FIGURE)
+        .enumerate()
+    {
         jobs.push(Box::new(move || {
             decays::draw(few, &numbered("free_decays", i), speech)
         }));
     }
-    for (i, set) in content.residuals.iter().enumerate() {
+    for (i, set) in content.compared.residuals.iter().enumerate() {
         jobs.push(Box::new(move || {
             residuals::draw(set, &numbered("residuals", i), speech)
         }));
     }
-}
-
-/// Name of the i-th figure of a kind.
-pub fn numbered(kind: &str, index: usize) -> String {
-    format!("{kind}_{}", index + 1)
 }

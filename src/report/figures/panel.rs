@@ -48,7 +48,7 @@ pub struct Panel {
     pub x: Axis,
     /// Upward.
     pub y: Axis,
-    /// How far left of the frame the title of the upward axis stands; `None`: beside its numbers.
+    /// Distance of the title of the upward axis from the frame; `None`: beside its numbers.
     title_reach: Option<f64>,
 }
 
@@ -71,7 +71,7 @@ impl Panel {
         }
     }
 
-    /// Where a pair of values lies on paper.
+    /// Position of a pair of values on paper.
     pub fn at(&self, x: f64, y: f64) -> Point {
         (
             self.rect.left + self.x.share(x) * self.rect.width(),
@@ -79,7 +79,7 @@ impl Panel {
         )
     }
 
-    /// Whether a pair of values lies within the axes.
+    /// Whether a pair of values is within the axes.
     pub fn shows(&self, x: f64, y: f64) -> bool {
         x >= self.x.low && x <= self.x.high && y >= self.y.low && y <= self.y.high
     }
@@ -182,7 +182,7 @@ impl Panel {
         }
     }
 
-    /// Where numbers on the left would stand on each other: those that are multiples of this are
+    /// If numbers on the left would overlap: those that are multiples of this are
     /// printed.
     fn label_stride(&self, ticks: &[f64]) -> Option<f64> {
         let [first, second, ..] = ticks else {

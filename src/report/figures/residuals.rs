@@ -4,12 +4,12 @@ use super::axis::{Axis, range};
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
+use super::figure::{Figure, Spot};
 use super::look;
 use super::marks;
 use super::panel::{Panel, Sides};
 use super::path::Rect;
-use super::{Figure, Spot};
-use crate::report::content::{ResidualPoint, ResidualSet};
+use crate::compare::{ResidualPoint, ResidualSet};
 use crate::report::parameters::NORMAL_95;
 use crate::report::speech::Speech;
 
@@ -18,7 +18,7 @@ const HEIGHT: f64 = 84.0;
 /// Room above the panels, points.
 const TOP: f64 = 3.0;
 
-/// Draws the diagnostics of one method; `None` where it has no residuals.
+/// Draws the diagnostics of one method; `None` if it has no residuals.
 pub fn draw<'a>(set: &'a ResidualSet, name: &str, speech: Speech<'a>) -> Option<Figure> {
     if set.points.is_empty() {
         return None;
@@ -109,7 +109,7 @@ impl Sheet<'_> {
     /// Stems from lag 1, with the band in which white residuals stay.
     fn autocorrelation(&mut self, rect: Rect) {
         let rho = &self.set.autocorrelation;
-        let limit = NORMAL_95 / (self.set.count() as f64).sqrt();
+        let limit = NORMAL_95 / (self.set.total as f64).sqrt();
         let (low, high) = range(rho[1..].iter().copied()).unwrap_or((0.0, 0.0));
         let x = Axis::new(0.0, rho.len() as f64, "lag (observations)").with_ticks(4);
         let reach = (1.2 * low.abs().max(high.abs())).max(2.0 * limit).min(1.0);

@@ -1,7 +1,7 @@
 //! The parts of the page, from the document's data.
 
-use crate::report::ReportError;
 use crate::report::document::model::*;
+use crate::report::error::ReportError;
 use crate::report::figures::Figure;
 use crate::report::figures::canvas::escape;
 use crate::report::figures::look;
@@ -273,7 +273,7 @@ fn table(table: &Table) -> String {
     }
 }
 
-/// The rows as HTML; those of a dense table are found again in its columns.
+/// The rows as HTML; those of a dense table are taken from its columns.
 fn html_rows(table: &Table) -> Vec<Vec<String>> {
     if !table.dense {
         return table

@@ -2,9 +2,14 @@
 
 use std::path::Path;
 
-use super::{kind, kinds};
-use crate::report::content::{self, ReportContent};
-use crate::report::{RenderOptions, Report, document, words};
+use super::contents::{kind, kinds};
+use crate::compare::{BracketRow, Correlation};
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::{Method, Reason};
+use crate::motion::Motion;
+use crate::record::calibrate::{ChannelKey, ChannelSetup};
+use crate::record::{Role, Sweep};
+use crate::report::{NominalValue, Report, ReportContent, ReportOptions, Subject, document, words};
 
 /// A table that prints each phrase as its number in brackets, with the values that it carries.
 fn marks_for_phrases() -> words::Words {
@@ -22,80 +27,82 @@ fn marks_for_phrases() -> words::Words {
 
 /// A campaign to which all happened that the others were spared.
 fn unlucky() -> ReportContent {
-    use crate::motion::Motion;
-    use crate::record::{Role, Sweep};
     let mut content = kind("small").clone();
-    let summary = &mut content.summary;
-    summary.files_total = 1;
-    summary.rig = "one mass against a stop".into();
-    summary.notes.push("a remark".into());
-    let channel = summary.channels[0].clone();
-    let roles = [
-        Role::VelocityY,
-        Role::DisplacementY,
-        Role::AccelerationX,
-        Role::AccelerationY,
-        Role::FrameX,
-        Role::FrameY,
+    let campaign = &mut content.campaign;
+    campaign.files = 1;
+    campaign.subject = Subject::OneMass;
+    let channels = Role::ALL.map(|role| ChannelSetup {
+        high_pass_hz: Some(0.5),
+        ..ChannelSetup::plain(role, ChannelKey::Name("channel".into()))
+    });
+    campaign.channels = channels.into();
+    let names = [
+        "static deflection $x_st$",
+        "uncertainty of the gains",
+        "restitution $R$",
     ];
-    summary
-        .channels
-        .extend(roles.map(|role| content::ChannelRow {
-            role,
-            high_pass_hz: Some(0.5),
-            ..channel.clone()
-        }));
-    for name in ["static deflection $x_st$", "uncertainty of the gains"] {
-        let mut value = summary.nominal[0].clone();
-        value.name = name.into();
-        summary.nominal.push(value);
-    }
-    let fitted = ["restitution", "gain_velocity_x", "corner_velocity_y"];
-    let others = ["drive_asymmetry", "stiffness_asymmetry"];
-    content.correlation = Some(content::Correlation {
-        parameters: fitted.iter().chain(&others).map(|p| (*p).into()).collect(),
+    campaign.nominal = names
+        .map(|name| NominalValue {
+            name,
+            value: 0.1,
+            unit: "",
+        })
+        .into();
+    let compared = &mut content.compared;
+    let fitted = [
+        Coordinate::Restitution,
+        Coordinate::Gain(0),
+        Coordinate::Corner(1),
+        Coordinate::DriveAsymmetry,
+        Coordinate::StiffnessAsymmetry,
+    ];
+    compared.correlation = Some(Correlation {
+        parameters: fitted.into(),
         matrix: vec![vec![0.5; 5]; 5],
     });
-    for (record, motion) in content
+    for (record, motion) in compared
         .records
         .iter_mut()
-        .zip([Motion::Beat, Motion::Joined])
+        .zip([Motion::Beat, Motion::Sticking])
     {
         record.motion = motion;
         record.sweep = Sweep::Unknown;
-        record.used_by = ["boundaries", "resonance", "impacts", "flights"]
-            .map(String::from)
-            .into();
+        record.used_by = vec![
+            Method::Boundaries,
+            Method::Resonance,
+            Method::Impacts,
+            Method::Flights,
+        ];
     }
-    content.records[2].used_by.clear();
-    content.records[2].left_out = Some("it is short".into());
-    for (bracket, off) in content.brackets.iter_mut().zip([-1.0, 1.0]) {
+    compared.records[2].used_by.clear();
+    compared.records[2].excluded = Some("it is short".into());
+    for (bracket, off) in compared.brackets.iter_mut().zip([-1.0, 1.0]) {
         bracket.left_out = None;
         let middle = 0.5 * (bracket.frequency_low_hz + bracket.frequency_high_hz);
         bracket.simulated_hz = Some(middle + off * bracket.frequency_low_hz);
     }
-    content.brackets.push(content::BracketRow {
-        left_out: Some("it jumped".into()),
-        ..content.brackets[0].clone()
+    compared.brackets.push(BracketRow {
+        left_out: Some(Reason::FarFromBoundary),
+        ..compared.brackets[0].clone()
     });
-    content.comparisons[0].simulated_motion = Some(Motion::Beat);
-    content.resonance[0].fits = Some(false);
-    content.free_decays = kind("decays").free_decays.clone();
-    content.free_decays[0].natural_frequency_hz = None;
-    content.free_decays[0].damping_ratio = None;
-    if let Some(map) = &mut content.region_map {
-        map.second.clear();
+    compared.comparisons[0].motion = Motion::periodic(1, 1);
+    compared.comparisons[0].simulated_motion = Some(Motion::Beat);
+    compared.comparisons[1].motion = Motion::Chaotic;
+    compared.resonance[0].points[0].used = false;
+    if let Some(method) = content.identification.methods.get_mut(&Method::Resonance) {
+        method.fits = Some(false);
     }
-    content.remarks.push("a remark".into());
-    content.left_out.clear();
+    compared.free_decays = kind("decays").compared.free_decays.clone();
+    compared.unusable.clear();
+    content.identification.left_out.clear();
     content
 }
 
 /// All kinds of report with a mark for each phrase.
 fn marked() -> Vec<Report> {
-    let options = RenderOptions {
+    let options = ReportOptions {
         words: Some(marks_for_phrases()),
-        ..RenderOptions::default()
+        ..ReportOptions::default()
     };
     let each = kinds().iter().map(|(_, content)| content);
     each.chain([&unlucky()])
@@ -211,11 +218,11 @@ fn valid_all_words_of_figures_and_headings_are_the_reader_s() {
 
 #[test]
 fn valid_a_german_report_speaks_german() {
-    let options = RenderOptions {
+    let options = ReportOptions {
         words: Some(words::Words::german().clone()),
-        ..RenderOptions::default()
+        ..ReportOptions::default()
     };
-    for (name, content) in kinds().iter().filter(|k| k.0 != "large") {
+    for (name, content) in kinds().iter().filter(|k| k.0 != "whole") {
         let report = Report::new(content, &options);
         for figure in &report.figures {
             assert!(figure.overfull.is_empty(), "{name}: {:?}", figure.overfull);

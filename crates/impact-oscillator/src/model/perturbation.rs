@@ -11,6 +11,7 @@
 //! the nodes' distance.
 
 use super::flight::exponent;
+use super::motion::count;
 use super::params::Oscillator;
 use super::path::C64;
 use super::sensitivity::MassMotion;
@@ -92,7 +93,7 @@ impl Sampled {
     /// Value at a time in 0 … T since the impact.
     pub fn at(&self, time: f64) -> f64 {
         let place = (time / self.grid.step).clamp(0.0, self.grid.intervals as f64);
-        let k = (place as usize).min(self.grid.intervals - 1);
+        let k = (count(place) as usize).min(self.grid.intervals - 1);
         let (s, h) = (place - k as f64, self.grid.step);
         let (a, b) = (self.values[k], self.values[k + 1]);
         let (da, db) = (h * self.slopes[k], h * self.slopes[k + 1]);
@@ -248,7 +249,7 @@ mod tests {
         let (beta, r, eta, gap) = (0.06, 0.7, 1.2, 1.1);
         let machine = Machine::single(beta, r);
         let branch = Branch::new(&machine, eta, 1);
-        let w = branch.closing_speeds(r, gap).unwrap()[1];
+        let w = branch.approach_speeds(r, gap).unwrap()[1];
         let sensitivity = Sensitivity::new(&machine, branch, 1, gap, w);
         let orbit = sensitivity.motion();
         let grid = Grid::new(std::f64::consts::TAU / eta, 256);
@@ -276,7 +277,7 @@ mod tests {
             let (above, below) = (at(small), at(-small));
             let found = [0, 1].map(|i| (above[i] - below[i]) / (2.0 * small));
             assert!(
-                (found[0] - slope.closing_speed).abs() < 0.01 * (0.1 + found[0].abs()),
+                (found[0] - slope.approach_speed).abs() < 0.01 * (0.1 + found[0].abs()),
                 "{found:?} {slope:?}"
             );
             assert!(

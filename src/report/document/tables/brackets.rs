@@ -1,8 +1,10 @@
 //! The table of measured brackets.
 
 use super::{Column, arrow, table};
-use crate::report::content::{BracketRow, ReportContent};
+use crate::compare::BracketRow;
+use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
+use crate::report::figures::boundaries::symbol;
 use crate::report::speech::Speech;
 
 /// From how many brackets on their table is set small and in two columns.
@@ -10,8 +12,9 @@ const MANY_BRACKETS: usize = 14;
 
 /// The measured brackets beside the simulated boundary; many of them small and in two columns.
 pub fn brackets(content: &ReportContent, speech: Speech) -> Option<Table> {
-    let many = content.brackets.len() > MANY_BRACKETS;
+    let many = content.compared.brackets.len() > MANY_BRACKETS;
     let rows = content
+        .compared
         .brackets
         .iter()
         .map(|b| bracket_row(b, many, speech))
@@ -47,11 +50,11 @@ pub fn brackets(content: &ReportContent, speech: Speech) -> Option<Table> {
 fn bracket_row(b: &BracketRow, many: bool, speech: Speech) -> Vec<Rich> {
     let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
     vec![
-        Rich::from(speech.say(b.kind.symbol())),
+        Rich::from(speech.say(symbol(b.kind))),
         Rich::from(speech.say(&b.motion.label())),
         Rich::from(speech.significant(1e3 * b.clearance_m, 3)),
         Rich::from(b.rho.map_or("–".into(), |r| speech.fixed(r, 3))),
-        Rich::from(arrow(b.direction)),
+        Rich::from(arrow(b.sweep)),
         Rich::from(format!(
             "{} … {}",
             speech.fixed(low, 3),
@@ -83,7 +86,7 @@ fn bracket_remark(b: &BracketRow, speech: Speech) -> String {
     let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
     match (&b.left_out, b.simulated_hz) {
         (Some(why), _) => {
-            let why = speech.tell(why);
+            let why = speech.tell(&why.to_string());
             speech.say_with("not used: {why}", &[("why", &why)])
         }
         (None, Some(f)) if f < low => by("below by {distance} Hz", low - f),

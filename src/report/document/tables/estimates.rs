@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use super::{Column, table, verbatim};
 use crate::identify::{Method, MethodResult, ParameterSet};
 use crate::report::content::ReportContent;
-use crate::report::document::front::headline;
 use crate::report::document::model::{Rich, Table};
+use crate::report::document::verdict::headline;
 use crate::report::parameters::{self, PARAMETERS, method_name};
 use crate::report::speech::Speech;
 
@@ -90,7 +90,7 @@ fn estimate_cells(set: &ParameterSet, speech: Speech) -> Vec<Rich> {
     PARAMETERS.iter().map(cell).collect()
 }
 
-/// Rows of the methods that say anything, the joint estimate last.
+/// Rows of the methods that have an estimate, the joint one last.
 fn method_rows(
     methods: &BTreeMap<Method, MethodResult>,
     joint: &MethodResult,

@@ -8,7 +8,9 @@ pub use brackets::brackets;
 pub use estimates::{agreement, methods, specimen_methods, specimens};
 pub use records::records;
 
-use crate::record::Sweep;
+use crate::compare::Unusable;
+use crate::identify::Item;
+use crate::record::{FlagCode, Sweep};
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Align, Rich, Table};
 use crate::report::document::prose::prose;
@@ -26,31 +28,31 @@ struct Column {
 }
 
 impl Column {
-    /// As wide as its content, from the left.
+    /// As wide as its content, left-aligned.
     const fn left(head: &'static str) -> Self {
         Self::wide(head, 0)
     }
 
-    /// With a share of the room that the others leave, from the left.
+    /// With a share of the width that the others leave, left-aligned.
     const fn wide(head: &'static str, width: u16) -> Self {
         let align = Align::Left;
         Self { head, align, width }
     }
 
-    /// As wide as its content, to the right: numbers.
+    /// As wide as its content, right-aligned: numbers.
     const fn right(head: &'static str) -> Self {
         let (align, width) = (Align::Right, 0);
         Self { head, align, width }
     }
 
-    /// As wide as its content, in the middle: signs.
+    /// As wide as its content, centred: signs.
     const fn center(head: &'static str) -> Self {
         let (align, width) = (Align::Center, 0);
         Self { head, align, width }
     }
 }
 
-/// A table of columns whose heads are phrases; `None` where it has no rows.
+/// A table of columns whose heads are phrases; `None` if it has no rows.
 fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>, speech: Speech) -> Option<Table> {
     let heads = columns.iter().map(|c| Rich::from(speech.say_title(c.head)));
     let table = Table {
@@ -63,7 +65,7 @@ fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>, speech: Speech
     (!table.rows.is_empty()).then(|| without_empty_columns(table))
 }
 
-/// Without the columns in which no row says anything; the first column stays.
+/// Without the columns that are empty in all rows; the first column is kept.
 fn without_empty_columns(table: Table) -> Table {
     let says = |i: usize| {
         table
@@ -87,7 +89,7 @@ fn without_empty_columns(table: Table) -> Table {
     }
 }
 
-/// Further tables of the content, as they stand.
+/// Further tables of the content.
 pub fn further<'a>(
     content: &'a ReportContent,
     speech: Speech<'a>,
@@ -117,11 +119,19 @@ fn arrow(sweep: Sweep) -> &'static str {
     }
 }
 
-/// What was left out and why.
+/// Records that no method could use, by reason, and what the fits left out.
 pub fn left_out(content: &ReportContent, speech: Speech) -> Option<Table> {
-    let rows = content.left_out.iter().map(|l| {
-        let count = l.count.map_or(String::new(), |c| c.to_string());
-        let (what, why) = (speech.tell(&l.what), speech.tell(&l.why));
+    let unusable = content.compared.unusable.iter().map(|u| {
+        let count = Some(u.records.len()).filter(|n| *n > 1);
+        (first_few(&u.records), count, reason(u))
+    });
+    // impacts are in a remark of their method
+    let fits = content.identification.left_out.iter();
+    let fits = fits.filter(|l| !matches!(l.item, Item::Impact { .. }));
+    let fits = fits.map(|l| (l.item.to_string(), None, l.reason.to_string()));
+    let rows = unusable.chain(fits).map(|(what, count, why)| {
+        let count = count.map_or(String::new(), |c| c.to_string());
+        let (what, why) = (speech.tell(&what), speech.tell(&why));
         vec![verbatim(what), Rich::from(count), prose(&why)]
     });
     let columns: [Column; 3] = [
@@ -130,6 +140,25 @@ pub fn left_out(content: &ReportContent, speech: Speech) -> Option<Table> {
         Column::wide("why", 5),
     ];
     table("", &columns, rows.collect(), speech)
+}
+
+/// The first few names.
+fn first_few(records: &[String]) -> String {
+    match records {
+        [a, b, c, _, ..] => format!("{a}, {b}, {c} …"),
+        few => few.join(", "),
+    }
+}
+
+fn reason(unusable: &Unusable) -> String {
+    let code = unusable.flag.map_or("motion undetermined", FlagCode::name);
+    let code = code.replace('_', " ");
+    let of = unusable.channel.as_ref().map(|c| format!(" ({c})"));
+    let mut text = format!("{code}{}: {}", of.unwrap_or_default(), unusable.message);
+    if let (true, Some(record)) = (unusable.differ, unusable.records.first()) {
+        text.push_str(&format!(" (so {record}; the others alike)"));
+    }
+    text
 }
 
 /// A cell whose text has no markup, whatever signs it holds.

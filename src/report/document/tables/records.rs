@@ -1,8 +1,9 @@
 //! The table of all records.
 
 use super::{Column, arrow, table, verbatim};
+use crate::compare::RecordRow;
 use crate::motion::Motion;
-use crate::report::content::{RecordRow, ReportContent};
+use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
 use crate::report::figures::fonts::{self, Face};
 use crate::report::figures::look;
@@ -14,8 +15,9 @@ const MANY_RECORDS: usize = 45;
 
 /// All records; many of them small and in two columns.
 pub fn records(content: &ReportContent, speech: Speech) -> Option<Table> {
-    let many = content.records.len() > MANY_RECORDS;
+    let many = content.compared.records.len() > MANY_RECORDS;
     let planar = content
+        .compared
         .records
         .iter()
         .any(|r| r.eta.is_some() && r.rho.is_some());
@@ -39,14 +41,19 @@ pub fn records(content: &ReportContent, speech: Speech) -> Option<Table> {
         Column::wide("used by; flags", 1)
     });
     let row = |r: &RecordRow| record_row(r, planar, many, speech);
-    let rows = content.records.iter().map(row).collect();
+    let rows = content.compared.records.iter().map(row).collect();
     let caption = if many {
         let signs = "{records}: sweep, measured drive frequency, clearance, motion, confidence. \
                      ? undetermined; • used in the identification; ! flagged. Reasons and flags \
                      in full are in records.parquet.";
         speech.say_with(signs, &[("records", &which(content, speech))])
     } else {
-        match content.records.iter().any(|r| r.frequency_hz.is_some()) {
+        match content
+            .compared
+            .records
+            .iter()
+            .any(|r| r.frequency_hz.is_some())
+        {
             true => {
                 "All records: sweep, measured drive frequency, clearance, motion and confidence."
             }
@@ -64,7 +71,10 @@ pub fn records(content: &ReportContent, speech: Speech) -> Option<Table> {
 
 /// Which records the table lists: all, or an even choice of very many.
 fn which(content: &ReportContent, speech: Speech) -> String {
-    let (listed, all) = (content.records.len(), content.summary.records_total);
+    let (listed, all) = (
+        content.compared.records.len(),
+        content.compared.overview.records,
+    );
     if listed < all {
         speech.say_with(
             "{some} of the {count} records, evenly chosen (records.parquet holds all)",
@@ -113,7 +123,7 @@ fn crowded(table: Table) -> Table {
     .densely()
 }
 
-/// A name cut at its front where it is wider than the room: a wrapped line would shift the rows.
+/// A name cut at its front if it is wider than its column: a wrapped line would shift the rows.
 fn shortened(name: &Rich, room: f64, size: f64) -> Rich {
     let plain = name.plain();
     let wide = |text: &str| fonts::width(text, Face::Bold, size) > room;
@@ -143,7 +153,7 @@ fn record_row(r: &RecordRow, planar: bool, many: bool, speech: Speech) -> Vec<Ri
     let driven = r.frequency_hz.is_some();
     row.extend([
         motion_label(r, many, speech),
-        number(r.confidence.filter(|_| driven), 2),
+        number(driven.then_some(r.confidence), 2),
     ]);
     if !driven && r.impacts > 0 {
         row.push(r.impacts.to_string());
@@ -174,21 +184,24 @@ fn short_remark(r: &RecordRow) -> String {
 
 fn long_remark(r: &RecordRow, speech: Speech) -> String {
     let used = if r.used_by.is_empty() {
-        let not_used =
-            |why: &str| speech.say_with("not used: {why}", &[("why", &speech.tell(why))]);
-        r.left_out.as_deref().map(not_used)
+        let reason = r.left_out.as_ref().map(ToString::to_string);
+        let why = r.excluded.clone().or(reason);
+        why.map(|why| speech.say_with("not used: {why}", &[("why", &speech.tell(&why))]))
     } else {
         Some(
             r.used_by
                 .iter()
-                .map(|m| speech.say(&method_name(m).to_lowercase()))
+                .map(|m| speech.say(&method_name(m.name()).to_lowercase()))
                 .collect::<Vec<_>>()
                 .join(", "),
         )
     };
     let flags = (!r.flags.is_empty()).then(|| {
-        let told = r.flags.iter().map(|f| speech.tell(f));
-        told.collect::<Vec<_>>().join(", ")
+        let flags = r
+            .flags
+            .iter()
+            .map(|f| speech.tell(&f.name().replace('_', " ")));
+        flags.collect::<Vec<_>>().join(", ")
     });
     [used, flags]
         .into_iter()

@@ -1,9 +1,10 @@
-//! What the map says in words and numbers: names of curves, letters of points, axes in laboratory
+//! The map's labels: names of curves, letters of points, axes in laboratory
 //! units.
 
 use super::{Map, STRIP_HALF, STRIP_STEP};
-use crate::report::content::BoundaryCurve;
+use crate::compare::BoundaryCurve;
 use crate::report::figures::axis::Axis;
+use crate::report::figures::boundaries::symbol;
 use crate::report::figures::canvas::{Anchor, Point, Stroke, TextLook};
 use crate::report::figures::fonts::{self, Face};
 use crate::report::figures::look;
@@ -43,9 +44,10 @@ impl Map<'_> {
 
     pub(super) fn letters(&mut self) {
         let bounds = self.panel.rect;
-        for comparison in &self.content.comparisons {
+        for comparison in &self.content.compared.comparisons {
             let Some(record) = self
                 .content
+                .compared
                 .records
                 .iter()
                 .find(|r| r.id == comparison.record)
@@ -66,7 +68,7 @@ impl Map<'_> {
         }
     }
 
-    /// A ring about a point and its letter beside it, where there is room.
+    /// A ring about a point and its letter beside it, if there is a free place.
     fn letter(&mut self, at: Point, text: &str, bounds: &Rect) {
         let size = (fonts::width(text, Face::Bold, 8.5) + 2.0, 9.0);
         let Some((_, place)) = self.occupancy.near(at, size, bounds) else {
@@ -85,7 +87,7 @@ impl Map<'_> {
         self.occupancy.take_rect(&rect);
     }
 
-    /// A thin line from a mark to its letter, where they stand apart.
+    /// A thin line from a mark to its letter, if they are apart.
     fn leader(&mut self, at: Point, place: Point, size: (f64, f64)) {
         let (dx, dy) = (place.0 - at.0, place.1 - at.1);
         let distance = dx.hypot(dy);
@@ -179,8 +181,8 @@ impl Map<'_> {
 
 fn curve_name(curve: &BoundaryCurve) -> String {
     match (curve.kind, curve.periods_n) {
-        (kind, 1) => kind.symbol().to_owned(),
-        (kind, n) => format!("{} (1/{n})", kind.symbol()),
+        (kind, 1) => symbol(kind).to_owned(),
+        (kind, n) => format!("{} (1/{n})", symbol(kind)),
     }
 }
 

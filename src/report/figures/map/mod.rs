@@ -4,9 +4,12 @@ mod data;
 mod keys;
 mod labels;
 
+use crate::compare::{BoundaryCurve, BracketRow, RecordRow, RegionMap};
 use crate::record::Sweep;
-use crate::report::content::{BoundaryCurve, BracketRow, RecordRow, RegionMap, ReportContent};
+use crate::report::content::ReportContent;
+use crate::report::figures::boundaries;
 use crate::report::figures::canvas::{Anchor, Canvas, Point, TextLook};
+use crate::report::figures::figure::{Figure, Spot};
 use crate::report::figures::fonts::Face;
 use crate::report::figures::legend::{self, Key};
 use crate::report::figures::look;
@@ -16,7 +19,6 @@ use crate::report::figures::path::{self, Rect};
 use crate::report::figures::placing::Occupancy;
 use crate::report::figures::plane::{Plane, View, same};
 use crate::report::figures::regions::Regions;
-use crate::report::figures::{Figure, Spot};
 use crate::report::speech::Speech;
 
 /// Which of the two maps.
@@ -33,13 +35,13 @@ const STRIP_STEP: f64 = 15.0;
 /// Half the height of a strip's frame, points.
 const STRIP_HALF: f64 = 5.5;
 
-/// Draws the map; `None` where the records have no place in a plane.
+/// Draws the map; `None` if the records have no place in a plane.
 pub fn draw(content: &ReportContent, size: MapSize, speech: Speech) -> Option<Figure> {
     let plane = Plane::of(content)?;
     let keys = if size == MapSize::Full {
-        keys::full(content, plane)
+        keys::full(&content.compared, plane)
     } else {
-        keys::motions(content)
+        keys::motions(&content.compared)
     };
     let mut map = Map::new(content, plane, size, (&keys, speech));
     // Labels go where records and curves leave room.
@@ -72,19 +74,18 @@ struct Map<'a> {
 
 /// Every other column and row of a region map: enough for a small figure.
 fn every_other(map: &RegionMap) -> RegionMap {
-    let columns = map.eta.len().max(1);
+    let columns = map.x.len().max(1);
     let kept = |i: usize| (i / columns).is_multiple_of(2) && (i % columns).is_multiple_of(2);
     let of = |cells: &[u16]| -> Vec<u16> {
         let cells = cells.iter().enumerate();
         cells.filter(|(i, _)| kept(*i)).map(|(_, c)| *c).collect()
     };
     RegionMap {
-        eta: map.eta.iter().copied().step_by(2).collect(),
-        rho: map.rho.iter().copied().step_by(2).collect(),
+        x: map.x.iter().copied().step_by(2).collect(),
+        y: map.y.iter().copied().step_by(2).collect(),
         motions: map.motions.clone(),
         cells: of(&map.cells),
         second: of(&map.second),
-        note: String::new(),
     }
 }
 
@@ -96,7 +97,7 @@ impl<'a> Map<'a> {
         (keys, speech): (&[Key], Speech),
     ) -> Self {
         let full = size == MapSize::Full;
-        let flat = content.region_map.is_none() && heights(content, plane) <= 3;
+        let flat = content.compared.region_map.is_none() && heights(content, plane) <= 3;
         let (width, height) = match (full, flat) {
             (true, false) => (look::FULL_WIDTH, 370.0),
             (true, true) => (look::FULL_WIDTH, 200.0),
@@ -139,6 +140,7 @@ impl<'a> Map<'a> {
     fn regions(&mut self, speech: Speech) {
         let Some(map) = self
             .content
+            .compared
             .region_map
             .as_ref()
             .filter(|_| self.plane.dimensionless)
@@ -171,12 +173,12 @@ impl<'a> Map<'a> {
 
     fn take_records_and_curves(&mut self) {
         let radius = self.radius;
-        for record in &self.content.records {
+        for record in &self.content.compared.records {
             if let Some(at) = self.place(record) {
                 self.occupancy.take_spot(at, radius + 0.5);
             }
         }
-        for curve in &self.content.curves {
+        for curve in &self.content.compared.curves {
             let points: Vec<Point> = curve
                 .points
                 .iter()
@@ -192,13 +194,13 @@ impl<'a> Map<'a> {
         if !self.plane.dimensionless {
             return;
         }
-        for curve in &self.content.curves {
+        for curve in &self.content.compared.curves {
             self.canvas.layer(1);
             self.band(curve);
         }
-        for curve in &self.content.curves {
+        for curve in &self.content.compared.curves {
             self.canvas.layer(2);
-            let stroke = keys::boundary_stroke(curve.kind, if self.full() { 1.1 } else { 0.8 });
+            let stroke = boundaries::stroke(curve.kind, if self.full() { 1.1 } else { 0.8 });
             let data = curve.points.iter().map(|p| (p[0], p[1]));
             let pieces = self.panel.curve(&mut self.canvas, data, stroke);
             if self.full() {
@@ -220,13 +222,13 @@ impl<'a> Map<'a> {
     /// The brackets that the panel shows, with their ends and their height on paper.
     fn brackets(&self) -> Vec<(&'a BracketRow, (f64, f64), f64)> {
         let lift = self.lift();
-        let shown = self.content.brackets.iter().filter_map(|bracket| {
+        let shown = self.content.compared.brackets.iter().filter_map(|bracket| {
             let ((low, high), height) = self.plane.bracket(bracket)?;
             if !self.panel.shows(low, height) || !self.panel.shows(high, height) {
                 return None;
             }
             let (from, to) = (self.panel.at(low, height), self.panel.at(high, height));
-            let y = from.1 - lift * direction(bracket.direction);
+            let y = from.1 - lift * direction(bracket.sweep);
             Some((bracket, (from.0, to.0), y))
         });
         shown.collect()
@@ -254,7 +256,7 @@ impl<'a> Map<'a> {
     /// Radius of the marks: smaller where there are many, or where they follow closely.
     fn fitting_radius(&self) -> f64 {
         let area = self.panel.rect.width() * self.panel.rect.height();
-        let records = &self.content.records;
+        let records = &self.content.compared.records;
         let (least, most) = if self.full() { (1.2, 2.9) } else { (0.6, 1.8) };
         let mut steps: Vec<f64> = records
             .windows(2)
@@ -268,7 +270,7 @@ impl<'a> Map<'a> {
         by_area.min(0.44 * usual).clamp(least, most)
     }
 
-    /// Up-sweep records stand a little above their clearance, down-sweep ones below.
+    /// Offset of upward sweeps above their clearance, of downward sweeps below.
     fn lift(&self) -> f64 {
         0.95 * self.radius
     }
@@ -293,7 +295,7 @@ impl<'a> Map<'a> {
         let radius = self.radius;
         let mut drawn: Vec<(Point, String)> = Vec::new();
         self.canvas.layer(4);
-        for record in &self.content.records {
+        for record in &self.content.compared.records {
             let Some(at) = self.place(record) else {
                 continue;
             };
@@ -328,7 +330,7 @@ impl<'a> Map<'a> {
     }
 
     fn finish(self, speech: Speech) -> Figure {
-        let csv = data::csv(self.content);
+        let csv = data::csv(&self.content.compared);
         let (name, title) = match self.size {
             MapSize::Full => ("map", "Regions of motion, simulated and measured"),
             MapSize::Small => ("map_small", "Measured motions and boundaries"),
@@ -340,7 +342,12 @@ impl<'a> Map<'a> {
 /// How many clearances the records have.
 fn heights(content: &ReportContent, plane: Plane) -> usize {
     let mut seen: Vec<f64> = Vec::new();
-    for (_, y) in content.records.iter().filter_map(|r| plane.record(r)) {
+    for (_, y) in content
+        .compared
+        .records
+        .iter()
+        .filter_map(|r| plane.record(r))
+    {
         if !seen.iter().any(|s| (s - y).abs() <= 1e-6 * y.abs()) {
             seen.push(y);
         }

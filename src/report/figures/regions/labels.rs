@@ -1,4 +1,4 @@
-//! Where the regions' labels stand.
+//! The labels of the regions.
 
 use super::{LEAST_SHARE, Regions};
 use crate::report::figures::canvas::Point;
@@ -7,7 +7,7 @@ use crate::report::figures::path::Rect;
 use crate::report::figures::placing::Occupancy;
 use crate::report::speech::Speech;
 
-/// Where a region's label may stand.
+/// A region's label in its place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RegionLabel {
     /// Its text.
@@ -19,7 +19,7 @@ pub struct RegionLabel {
 }
 
 impl Regions<'_> {
-    /// A label for each region that is large enough, where its text stands free.
+    /// A label for each region that is large enough, placed where nothing else is drawn.
     pub fn labels(&self, occupancy: &mut Occupancy, size: f64, speech: Speech) -> Vec<RegionLabel> {
         let mut order: Vec<usize> = (0..self.areas.len()).collect();
         order.sort_by_key(|&r| std::cmp::Reverse(self.areas[r]));
@@ -47,7 +47,7 @@ impl Regions<'_> {
             0.5 * fonts::width(&text, Face::Bold, size) + 3.0,
             0.5 * size + 1.5,
         );
-        let columns = self.map.eta.len();
+        let columns = self.map.x.len();
         let best = self
             .region
             .iter()
@@ -82,7 +82,7 @@ impl Regions<'_> {
         }
     }
 
-    /// How well a text of a half size stands at a place: `None` where it leaves the region.
+    /// How much free area surrounds a text of a half size at a place: `None` if it leaves the region.
     fn room(&self, region: usize, at: Point, half: Point, taken: &Occupancy) -> Option<f64> {
         let inside = |grow: f64| {
             let (w, h) = (half.0 + grow, half.1 + grow);
