@@ -7,7 +7,7 @@ use clap::Args;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::sketch::sketch;
+use super::sparkline::sparkline;
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Verbosity};
 use labfiles::open;
@@ -259,7 +259,7 @@ fn draw(summaries: &[Summary], samples: &[Samples], text: &mut String) {
             Samples::Complex(values) => values.iter().map(|v| v.0.hypot(v.1)).collect(),
             Samples::Text(_) => continue,
         };
-        let lines = sketch(&real, PICTURE.0, PICTURE.1);
+        let lines = sparkline(&real, PICTURE.0, PICTURE.1);
         let unit = summary.unit.as_deref().unwrap_or("");
         let _ = writeln!(text, "\n  {} {unit}", summary.name);
         for (i, line) in lines.iter().enumerate() {

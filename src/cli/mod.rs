@@ -16,16 +16,16 @@ mod interrupt;
 mod load;
 mod machine;
 mod merge;
+#[cfg(feature = "mpi")]
+mod mpi;
 mod plan;
 mod progress;
-#[cfg(feature = "mpi")]
-mod ranks;
 mod read_log;
 mod report_args;
 mod run;
 mod selftest;
 mod simulate;
-mod sketch;
+mod sparkline;
 mod stage;
 mod stdout;
 mod study;

@@ -35,7 +35,7 @@ Example:
   impactid simulate --eta 2 --rho 0.2 --skip-periods 300 --periods 12 --out chaos/
   impactid simulate campaign --seed 1 --restitution 0.9 --damping-ratio 0.07 --out synthetic/
 
-A motion leaves its time series (motion), motion-impacts, motion-poincare and
+A motion writes its time series (motion), motion-impacts, motion-poincare and
 motion-autocorrelation as CSV and Parquet, a figure with phase trajectories and Poincaré map as
 SVG, PNG and PDF, and study.toml to replay it.";
 
@@ -71,7 +71,7 @@ pub struct MotionArgs {
     phase: f64,
     #[command(flatten)]
     start: StartArgs,
-    /// Drive periods left out first
+    /// Drive periods skipped first
     #[arg(long, value_name = "N", default_value_t = 0.0)]
     skip_periods: f64,
     /// Drive periods of the time series

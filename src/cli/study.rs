@@ -1,4 +1,4 @@
-//! `impactid study`: studies of the theory from small TOML files that can be kept and replayed.
+//! `impactid study`: studies of the theory from small TOML files that can be replayed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 
 use super::coverage::Coverage;
-use super::theory::{COPY, Work};
+use super::theory::{COPY, in_folder};
 use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::theory::{self, Study as Written};
 use labfiles::output::{Lock, write_bytes};
@@ -17,13 +17,13 @@ use labfiles::output::{Lock, write_bytes};
 pub struct Study {
     #[command(subcommand)]
     kind: Option<Kind>,
-    /// The studies; a folder stands for all *.toml in it
+    /// The studies; a folder means all *.toml in it
     #[arg(value_name = "STUDY.TOML", required = true)]
     files: Vec<PathBuf>,
     /// Folder for the results, one folder in it for each study
     #[arg(long, short, value_name = "DIR", required = true)]
     out: Option<PathBuf>,
-    /// Go on after an interruption: leave studies out whose results are there
+    /// Resume an interrupted run: skip studies whose results exist
     #[arg(long)]
     resume: bool,
 }
@@ -39,7 +39,7 @@ const EXAMPLE: &str = "\
 Example:
   impactid study data-samples/studies --out studies/
 
-replays the studies of the paper's Figs. 2 to 8. Each leaves its tables (CSV, Parquet) and figures
+replays the studies of the paper's Figs. 2 to 8. Each writes its tables (CSV, Parquet) and figures
 (SVG, PNG, PDF) in a folder of its own. `impactid simulate`, `sweep`, `basins` and `atlas` write
 the study.toml of what they did, to be replayed in the same way.";
 
@@ -66,16 +66,14 @@ impl Study {
             let folder = out.join(&name);
             let there = fs::read_to_string(folder.join(COPY)).is_ok_and(|copy| copy == text);
             if self.resume && there {
-                verbosity.info(&format!("{name}: there already"));
+                verbosity.info(&format!("{name}: results exist"));
                 continue;
             }
             verbosity.info(&format!("{name}: {}", study.title));
-            let work = Work {
-                folder: &folder,
-                text: &text,
-                resume: self.resume,
-            };
-            work.run(verbosity, "study", |desk| Ok(theory::run(&study, desk)?))?;
+            let place = (folder.as_path(), text.as_str(), self.resume);
+            in_folder(place, "study", verbosity, |context| {
+                Ok(theory::run(&study, context)?)
+            })?;
             write_bytes(&folder.join(COPY), text.as_bytes())?;
         }
         Ok(Exit::Done)

@@ -35,7 +35,7 @@ Example:
   impactid sweep --eta 0.78..1.4 --rho 3 --restitution 0 --damping-ratio 0.002 --out fig4/
   impactid sweep --eta 1.2 --rho 0.1..5 --out over-rho/
 
-It leaves sweep.csv and .parquet (amplitudes, closing speeds, Lyapunov exponents, autocorrelation,
+It writes sweep.csv and .parquet (amplitudes, approach speeds, Lyapunov exponents, autocorrelation,
 amplitude and phase of the impactless motion), sweep-impacts (every impact's speeds), the figure
 as SVG, PNG and PDF, and study.toml to replay it.";
 

@@ -12,7 +12,7 @@ use crate::identify::{Identification, identify_campaign};
 use crate::motion::{ClassifySettings, brackets, observe, scale_drives};
 use crate::record::{Channel, Excitation, Record, Role, Setting, Sweep};
 use crate::synthetic::run::calibrated;
-use crate::synthetic::{Faults, Plan, Truth, records};
+use crate::synthetic::{Effects, Faults, Laboratory, Plan, Truth, records};
 use labfiles::units::Dimension;
 
 /// A campaign identified and compared.
@@ -57,7 +57,14 @@ fn laboratory() -> Vec<Record> {
     };
     let faults = Faults::default();
     let plan = Plan::for_rig(12.6, 0.07, 1.25e-3, 120);
-    let raw = records(&truth, &faults, &plan, 2026).expect("a campaign");
+    let laboratory = Laboratory {
+        truth: &truth,
+        faults: &faults,
+        effects: &Effects::default(),
+        plan: &plan,
+        seed: 2026,
+    };
+    let raw = records(&laboratory).expect("a campaign");
     raw.iter().map(|r| calibrated(r, &truth, &faults)).collect()
 }
 

@@ -84,7 +84,8 @@ impl<'a> JumpSearch<'a> {
         }
     }
 
-    /// Samples that the strongest jumps take from branch to branch (median of up to ten).
+    /// Samples that the strongest jumps take from branch to branch (upper quartile of up to
+    /// ten).
     fn typical_gap(&self) -> usize {
         let strongest = self.candidates(SIGNIFICANT, -1.0);
         let mut gaps: Vec<f64> = strongest
@@ -93,19 +94,21 @@ impl<'a> JumpSearch<'a> {
             .filter_map(|&left| self.transition_samples(left))
             .map(|n| n as f64)
             .collect();
-        gaps.truncate(10);
-        robust::median(&gaps).map_or(1, |g| (g.round() as usize).clamp(1, self.window))
+        gaps.sort_by(f64::total_cmp);
+        // A contact that lasts about as long as a step takes one step or two, by where it falls.
+        gaps.get(gaps.len() * 3 / 4)
+            .map_or(1, |g| (*g as usize).clamp(1, self.window))
     }
 
-    /// Samples of the steep stretch around a jump: steps that exceed the slope of the flight beside
-    /// it by 15 % of the jump.
+    /// Samples of the steep stretch around a jump: steps that exceed the flight's own slope beside
+    /// it by more than noise and a twentieth of the jump.
     fn transition_samples(&self, left: usize) -> Option<usize> {
         let values = &self.velocity.values;
         let height = self.scan[left].abs();
         let slope = self.slope_beside(left);
         let steep = |i: usize| {
             let step = values.get(i)? - values.get(i + 1)? - slope;
-            Some(step > (0.15 * height).max(4.0 * self.velocity.noise))
+            Some(step > (0.05 * height).max(4.0 * self.velocity.noise))
         };
         let centre = (left.saturating_sub(1)..=left + 1).find(|&i| steep(i) == Some(true))?;
         let mut first = centre;
@@ -272,7 +275,7 @@ fn quiet_deviation(scan: &[f64]) -> f64 {
     if sizes.is_empty() {
         return 0.0;
     }
-    // A quarter of a normal distribution lies within 0.3186 deviations of its centre.
+    // A quarter of a normal distribution is within 0.3186 deviations of its centre.
     *sizes.select_nth_unstable_by(quarter, f64::total_cmp).1 / 0.3186
 }
 
@@ -288,4 +291,63 @@ fn one_sided_weights(count: usize, ahead: f64) -> (Vec<f64>, f64) {
         .collect();
     let factor = weights.iter().map(|w| w * w).sum::<f64>().sqrt();
     (weights, factor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A line of slope 0.01 per sample that steps by `height` after sample 50, over `gap` samples.
+    fn stepped(height: f64, gap: usize) -> Series {
+        let share = |i: usize| (i.saturating_sub(50) as f64 / gap as f64).min(1.0);
+        Series::clean(
+            (0..120)
+                .map(|i| 0.01 * i as f64 + height * share(i))
+                .collect(),
+        )
+    }
+
+    #[test]
+    fn valid_a_step_between_two_lines_is_found_with_its_height() {
+        let velocity = stepped(-0.8, 1);
+        let found = JumpSearch::new(&velocity, 8).find();
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].left, found[0].gap), (50, 1));
+        assert_eq!(found[0].middle(), 50.5);
+        // Both lines, extrapolated to sample 50.5, differ by the step and the slope over no time.
+        assert!((found[0].height + 0.8).abs() < 1e-9, "{}", found[0].height);
+        assert!(found[0].significance() > SIGNIFICANT);
+    }
+
+    #[test]
+    fn valid_a_step_over_three_samples_is_measured_over_its_gap() {
+        let velocity = stepped(-0.9, 3);
+        let search = JumpSearch::new(&velocity, 8);
+        let found = search.find();
+        assert_eq!((search.gap, found.len(), found[0].left), (3, 1, 50));
+        assert!((found[0].height + 0.9).abs() < 1e-9, "{}", found[0].height);
+    }
+
+    #[test]
+    fn valid_a_step_counts_once_and_with_its_direction() {
+        for (height, counted) in [(0.8, (1, 0)), (-0.8, (0, 1))] {
+            let velocity = stepped(height, 1);
+            assert_eq!(JumpSearch::new(&velocity, 8).directions(), counted);
+        }
+    }
+
+    #[test]
+    fn valid_a_step_within_the_noise_is_found_only_with_support() {
+        // The step is 4 standard errors of its height: too few alone, enough beside a pulse.
+        let flat = stepped(0.0, 1);
+        let error = JumpSearch::new(&flat, 8)
+            .measure(50, &[], f64::NEG_INFINITY)
+            .unwrap()
+            .error;
+        let velocity = stepped(-4.0 * error, 1);
+        let search = JumpSearch::new(&velocity, 8);
+        assert!(search.find().is_empty());
+        let near = search.near(48, 52, &[], SUPPORTED).unwrap();
+        assert_eq!(near.left, 50);
+    }
 }

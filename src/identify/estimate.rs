@@ -117,11 +117,9 @@ pub fn estimate_within(
 /// An estimate that a disagreement of methods leaves further open: by a standard uncertainty, of R
 /// absolute, of the others relative.
 pub fn widened(coordinate: Coordinate, estimate: &Estimate, by: f64) -> Estimate {
-    let (Some(value), Some(error), Some([low, high])) = (
-        estimate.value,
-        estimate.standard_error,
-        estimate.interval95,
-    ) else {
+    let (Some(value), Some(error), Some([low, high])) =
+        (estimate.value, estimate.standard_error, estimate.interval95)
+    else {
         return estimate.clone();
     };
     let logarithm = coordinate.is_logarithm();

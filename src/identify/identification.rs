@@ -6,9 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::diagnostics::contact_law::ContactLaw;
 use crate::identify::estimate::{Estimate, ParameterSet};
-use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::Coordinate;
-use crate::identify::fit::report::FitReport;
+use crate::identify::fit::{Fit, FitReport};
 use crate::identify::messages::{Finding, LeftOut, PairAgreement, Remark, Sentence};
 use crate::identify::method::Method;
 use crate::identify::uncertainty::Uncertainty;

@@ -19,16 +19,16 @@ pub enum Motion {
         /// Whether a dead zone follows impacts.
         dead_zone: bool,
     },
-    /// Impacts whose speeds swell and die away again, with impactless drive periods between.
+    /// Impacts whose speeds grow and decay again, with impactless drive periods between.
     Beat,
     /// Impacts without a period, irregular.
     Chaotic,
     /// The bodies stick together all the time.
     #[serde(rename = "joined")]
     Sticking,
-    /// The record does not tell; the reason says why.
+    /// The record does not determine the motion.
     Undetermined {
-        /// Why the record does not tell.
+        /// Why it does not.
         reason: String,
     },
 }

@@ -12,8 +12,8 @@ use crate::identify::fit::parameters::gain_index;
 use crate::identify::uncertainty::UncertaintyOptions;
 use crate::identify::{Identification, Provenance, identify_campaign};
 use crate::pipeline::json::write_json;
-use crate::record::calibrate::ChannelSetup;
 use crate::pipeline::{Observed, PipelineError, inputs};
+use crate::record::calibrate::ChannelSetup;
 
 /// Name of the result's file.
 pub const FILE: &str = "identification.json";

@@ -93,12 +93,12 @@ impl fmt::Display for FlagCode {
     }
 }
 
-/// A problem of a record: what, where, and what to do about it.
+/// A problem of a record: its kind, its channel, and a remedy.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Flag {
     /// Its kind.
     pub code: FlagCode,
-    /// The channel concerned (name in the file), where there is one.
+    /// The channel concerned (name in the file), if there is one.
     pub channel: Option<String>,
     /// One sentence: what was found and what was expected.
     pub message: String,

@@ -140,7 +140,7 @@ pub fn cases() -> Vec<Case> {
         refused(
             "a displacement in the wrong unit",
             |lab| with_displacement(lab, 25.4),
-            &["displacement_x moves 25.", "mend unit or scale"],
+            &["displacement_x moves 25.", "correct unit or scale"],
         ),
         refused(
             "a displacement in m that was meant in mm",
@@ -197,7 +197,10 @@ pub fn cases() -> Vec<Case> {
                 lab.write("r3.csv", &text);
                 lab.replace("runs.csv", "r3.csv,13", "r3.csv,11");
             },
-            &["r3.csv: its samples", "its samples are those of the record 'r1'"],
+            &[
+                "r3.csv: its samples",
+                "its samples are those of the record 'r1'",
+            ],
         ),
         noted(
             "a clearance of zero",

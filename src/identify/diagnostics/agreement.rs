@@ -94,7 +94,9 @@ fn shares(a: Method, b: Method, coordinate: Coordinate) -> bool {
 /// distribution with that interval.
 fn known(estimate: &Estimate) -> Option<(f64, f64)> {
     let [low, high] = estimate.interval95?;
-    let error = estimate.standard_error?.max(0.5 * (high - low) / NORMAL_975);
+    let error = estimate
+        .standard_error?
+        .max(0.5 * (high - low) / NORMAL_975);
     (estimate.status != Status::NotIdentifiable).then_some((estimate.value?, error))
 }
 

@@ -6,8 +6,8 @@
 
 use nalgebra::DVector;
 
-use crate::identify::evidence::{Blocks, Nominal};
 use crate::identify::evidence::trajectory::{TrajectoryBlock, TrajectoryRecord};
+use crate::identify::evidence::{Blocks, Nominal};
 use crate::identify::fit::factor::dot;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Fit, mean_squares};
@@ -109,7 +109,12 @@ fn stated_gaps(records: &[TrajectoryRecord]) -> Vec<f64> {
 /// With the residuals' slopes J over the free coordinates and c over the gap, the shift is
 /// −cᵀr / (cᵀc − cᵀJ(JᵀJ)⁻¹Jᵀc), (15). Where clearances have a stated uncertainty, the fit carries the
 /// gap's error itself.
-pub fn odd_gap(blocks: &Blocks, weight: f64, found: &MethodFit, uncertainty_m: f64) -> Option<OddGap> {
+pub fn odd_gap(
+    blocks: &Blocks,
+    weight: f64,
+    found: &MethodFit,
+    uncertainty_m: f64,
+) -> Option<OddGap> {
     let block = &blocks.trajectory;
     let odd: Vec<OddGap> = match uncertainty_m > 0.0 {
         true => {

@@ -343,7 +343,7 @@ mod tests {
             ..p
         };
         let r = |off| {
-            let found = middles::restitution(&of(BoundaryKind::SaddleNode, off), &wrong);
+            let found = bracket_midpoints::restitution(&of(BoundaryKind::SaddleNode, off), &wrong);
             found.and_then(|e| e.value).expect("R")
         };
         assert!((r(0.0) - 0.7).abs() < 1e-6);

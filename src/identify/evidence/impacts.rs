@@ -61,7 +61,8 @@ impl ImpactBlock {
             .flat_map(|(i, o)| o.impacts.iter().map(move |impact| (i, impact)))
             .filter(|(_, impact)| impact.dead_zone_s == 0.0)
             .filter(|(i, impact)| {
-                let least = if observations[*i].jump_samples > 2 {
+                let unresolved = impact.contact_duration_s.is_none();
+                let least = if unresolved && observations[*i].jump_samples > 2 {
                     12.0
                 } else {
                     6.0
@@ -74,7 +75,8 @@ impl ImpactBlock {
                     observation: i,
                     time_s: impact.time_s,
                     before_m_s: impact.approach_speed_before_m_s?,
-                    after_m_s: -impact.approach_speed_after_m_s?,
+                    after_m_s: -impact.approach_speed_after_m_s?
+                        - impact.external_push_m_s.unwrap_or(0.0),
                     error_m_s: impact.speed_error_m_s?,
                     corner_shifts: impact.corner_shifts,
                 })

@@ -150,7 +150,11 @@ impl Message for Finding {
                 standard_error,
                 ..
             } => {
-                let scale = if *effect == Effect::ContactDuration { 1.0 } else { 100.0 };
+                let scale = if *effect == Effect::ContactDuration {
+                    1.0
+                } else {
+                    100.0
+                };
                 vec![
                     ("strength", Value::Number(scale * strength.abs(), 3)),
                     ("error", Value::Number(1.96 * scale * standard_error, 3)),

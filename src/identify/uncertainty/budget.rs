@@ -162,7 +162,10 @@ pub fn budget(
         });
     }
     let spreads: Vec<_> = told.iter().filter_map(|(_, c)| found.spread(*c)).collect();
-    let freedom = spreads.iter().map(|s| s.freedom).fold(f64::INFINITY, f64::min);
+    let freedom = spreads
+        .iter()
+        .map(|s| s.freedom)
+        .fold(f64::INFINITY, f64::min);
     rows.push(Row {
         source: Source::BetweenGroups {
             groups: found.scatter.groups,
@@ -236,7 +239,10 @@ impl Budget {
                 Source::Stated {
                     coordinate,
                     clearance_m: Some(m),
-                } => ("stated", format!("{} at {:.6} mm", coordinate.name(), 1e3 * m)),
+                } => (
+                    "stated",
+                    format!("{} at {:.6} mm", coordinate.name(), 1e3 * m),
+                ),
                 Source::Stated { coordinate, .. } => ("stated", coordinate.name().to_owned()),
             };
             for c in &row.contributions {

@@ -5,8 +5,8 @@
 
 pub mod band;
 pub mod bound;
-pub mod coverage;
 pub mod budget;
+pub mod coverage;
 mod options;
 pub mod posterior;
 pub mod scatter;
@@ -21,12 +21,12 @@ use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::identify::uncertainty::budget::Budget;
-use crate::identify::uncertainty::scatter::Scatter;
 use crate::identify::fit::normal::{Normal, inverse};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::fit::{Fit, Problem};
 use crate::identify::method::Method;
+use crate::identify::uncertainty::budget::Budget;
+use crate::identify::uncertainty::scatter::Scatter;
 
 /// Likelihood of one parameter with all others fitted anew at each of its values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -205,7 +205,9 @@ mod tests {
             }],
             free: vec![Coordinate::Restitution],
         };
-        let fit = problem.fit(Parameters::symmetric(0.5, 10.0, 0.05, 1e-3)).expect("a fit");
+        let fit = problem
+            .fit(Parameters::symmetric(0.5, 10.0, 0.05, 1e-3))
+            .expect("a fit");
         let scatter = scatter(&problem, &fit);
         (fit, scatter)
     }
@@ -214,7 +216,10 @@ mod tests {
     fn valid_students_quantiles() {
         // Tables: 12.706 (1, not met), 4.303 (2), 3.182 (3), 2.571 (5), 2.228 (10), 1.960.
         for (freedom, want) in [(2.0, 4.303), (3.0, 3.182), (5.0, 2.571), (10.0, 2.228)] {
-            assert!((student_975(freedom) / want - 1.0).abs() < 0.01, "{freedom}");
+            assert!(
+                (student_975(freedom) / want - 1.0).abs() < 0.01,
+                "{freedom}"
+            );
         }
         assert!((student_975(f64::INFINITY) - NORMAL_975).abs() < 1e-12);
     }
@@ -233,7 +238,9 @@ mod tests {
         let excess = scatter.excess[0];
         assert!((excess.ratio / want - 1.0).abs() < 1e-6, "{excess:?}");
         assert!((excess.freedom - 3.0).abs() < 1e-6);
-        let spread = scatter.spread(&fit, 1.0, Coordinate::Restitution).expect("a spread");
+        let spread = scatter
+            .spread(&fit, 1.0, Coordinate::Restitution)
+            .expect("a spread");
         // The standard error of the mean of four groups, √(Σ(m − m̄)²/3/4).
         assert!((spread.error - (0.05f64 / 12.0).sqrt()).abs() < 1e-6);
     }
@@ -245,7 +252,9 @@ mod tests {
             error: 0.01,
         };
         let (fit, scatter) = found(&groups);
-        let spread = scatter.spread(&fit, 1.0, Coordinate::Restitution).expect("a spread");
+        let spread = scatter
+            .spread(&fit, 1.0, Coordinate::Restitution)
+            .expect("a spread");
         assert_eq!(spread.between_groups, 0.0);
         assert_eq!(Some(spread.error), fit.error(Coordinate::Restitution));
     }

@@ -2,7 +2,7 @@
 
 use super::plan::BasinPlan;
 use super::table::Table;
-use super::{Desk, StudyError};
+use super::{StudyContext, StudyError};
 use crate::compare::RegionMap;
 use crate::motion::Motion;
 use crate::report::speech::Speech;
@@ -14,7 +14,7 @@ use impact_oscillator::{Machine, MapSettings, Restitution, SettledMotion};
 /// Rows of a block.
 const BLOCK: usize = 8;
 
-/// Settle every start and leave everything.
+/// Settle every start and write table and figure.
 ///
 /// # Errors
 /// [`StudyError`] where a parameter is out of range or an output cannot be written.
@@ -22,7 +22,7 @@ pub fn run(
     machine: &Machine,
     name: &str,
     plan: &BasinPlan,
-    desk: &Desk<'_>,
+    context: &StudyContext<'_>,
 ) -> Result<(), StudyError> {
     let machine = match plan.restitution {
         Some(r) => machine.clone().with_restitution(Restitution::Constant(r)),
@@ -31,13 +31,13 @@ pub fn run(
     let basins = Basins {
         x: even(plan.grid.x),
         vx: even(plan.grid.vx),
-        cells: cells(&machine, name, plan, desk)?,
+        cells: cells(&machine, name, plan, context)?,
     };
-    desk.table(name, &table(&basins))?;
-    (desk.say)(&shares(name, &basins));
+    context.table(name, &table(&basins))?;
+    (context.inform)(&shares(name, &basins));
     let title = format!("Basins of attraction at {}", setting(plan));
     match draw(&motions(&basins), name, &title, Speech::default()) {
-        Some(figure) => desk.figure(&figure),
+        Some(figure) => context.figure(&figure),
         None => Ok(()),
     }
 }
@@ -66,7 +66,7 @@ fn cells(
     machine: &Machine,
     name: &str,
     plan: &BasinPlan,
-    desk: &Desk<'_>,
+    context: &StudyContext<'_>,
 ) -> Result<Vec<Option<SettledMotion>>, StudyError> {
     let settings = MapSettings {
         watch: plan.watch,
@@ -77,12 +77,12 @@ fn cells(
     for first in (0..rows).step_by(BLOCK) {
         let last = (first + BLOCK).min(rows);
         let found: Vec<Option<SettledMotion>> =
-            desk.kept.block(&format!("{name} rows {first}"), || {
+            context.blocks.block(&format!("{name} rows {first}"), || {
                 basin_rows(machine, plan.setting, &plan.grid, &settings, first..last)
                     .map_err(StudyError::of(name))
             })?;
         cells.extend(found);
-        (desk.progress)(last as u64, rows as u64);
+        (context.progress)(last as u64, rows as u64);
     }
     Ok(cells)
 }

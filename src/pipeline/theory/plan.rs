@@ -9,7 +9,7 @@ use impact_oscillator::atlas::{AtlasSettings, BasinGrid, MapGrid, MapSettings};
 use impact_oscillator::model::params::Asymmetry;
 use impact_oscillator::model::{Initial, Machine, Restitution, Setting, Watch};
 
-/// A study: a machine and what is to be computed of it, each piece by its name.
+/// A study: a machine and the pieces of work to compute of it, each by its name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Study {
@@ -45,7 +45,7 @@ pub struct Study {
 pub enum Law {
     /// The same at every speed.
     Constant(f64),
-    /// By the closing speed.
+    /// By the approach speed.
     Law(Restitution),
 }
 
@@ -101,9 +101,9 @@ pub struct RegionsPlan {
     pub eta: (f64, f64, usize),
     /// First and last ρ, number of rows.
     pub rho: (f64, f64, usize),
-    /// Most impacts in a period of the motion.
+    /// Greatest number of impacts in a period of the motion.
     pub largest_p: u32,
-    /// Most drive periods in a period of the motion.
+    /// Greatest number of drive periods in a period of the motion.
     pub largest_n: u32,
     /// How the brute-force maps are marched.
     #[serde(default)]

@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::plan::RegionsPlan;
 use super::table::Table;
-use super::{Desk, StudyError};
+use super::{StudyContext, StudyError};
 use crate::compare::RegionMap;
 use crate::motion::Motion;
 use crate::report::speech::Speech;
@@ -21,7 +21,7 @@ const BLOCK: usize = 16;
 /// Differing cells printed one by one.
 const PRINTED: usize = 20;
 
-/// Compute the regions and leave everything.
+/// Compute the regions and write tables and figure.
 ///
 /// # Errors
 /// [`StudyError`] where a parameter is out of range or an output cannot be written.
@@ -29,39 +29,39 @@ pub fn run(
     machine: &Machine,
     name: &str,
     plan: &RegionsPlan,
-    desk: &Desk<'_>,
+    context: &StudyContext<'_>,
 ) -> Result<(), StudyError> {
     let request = AtlasRequest::new(machine.clone(), plan.settings());
-    let maps: Maps = desk.kept.block(&format!("{name} maps"), || {
+    let maps: Maps = context.blocks.block(&format!("{name} maps"), || {
         brute_maps(machine, &request.settings.grid, &request.settings.map)
             .map_err(StudyError::of(name))
     })?;
-    leave(&request, &maps, name, desk)
+    write_atlas(&request, &maps, name, context)
 }
 
-/// From the maps on: follow every motion, compare, and leave everything.
+/// From the maps on: follow every motion, compare, and write tables and figure.
 ///
 /// # Errors
 /// [`StudyError`] where an output cannot be written.
-pub fn leave(
+pub fn write_atlas(
     request: &AtlasRequest,
     maps: &Maps,
     name: &str,
-    desk: &Desk<'_>,
+    context: &StudyContext<'_>,
 ) -> Result<(), StudyError> {
-    let slices = all_columns(request, maps, name, desk)?;
+    let slices = all_columns(request, maps, name, context)?;
     let (machine, settings) = (&request.machine, &request.settings);
     let atlas = assemble(machine, settings, maps, slices);
-    tell(&atlas, desk);
-    desk.table(&format!("{name}-curves"), &curves(&atlas.curves))?;
-    desk.table(&format!("{name}-map"), &map(&settings.grid, &atlas.maps))?;
+    report_agreement(&atlas, context);
+    context.table(&format!("{name}-curves"), &curves(&atlas.curves))?;
+    context.table(&format!("{name}-map"), &map(&settings.grid, &atlas.maps))?;
     let summary = json!({
         "version": env!("CARGO_PKG_VERSION"),
         "machine": machine,
         "settings": settings,
         "agreement": atlas.agreement,
     });
-    desk.bytes(&format!("{name}.json"), format!("{summary:#}\n").as_bytes())?;
+    context.bytes(&format!("{name}.json"), format!("{summary:#}\n").as_bytes())?;
     let second = atlas.other_motions(&settings.grid);
     let motions = |cells: &[SettledMotion]| -> Vec<Motion> {
         cells.iter().map(|cell| Motion::from(*cell)).collect()
@@ -76,7 +76,7 @@ pub fn leave(
     let drawn: Vec<figure::Curve> = atlas.curves.iter().map(drawn).collect();
     let title = "Regions of existence and stability of all motions";
     match figure::draw((&map, &drawn), name, title, Speech::default()) {
-        Some(figure) => desk.figure(&figure),
+        Some(figure) => context.figure(&figure),
         None => Ok(()),
     }
 }
@@ -94,26 +94,29 @@ fn all_columns(
     request: &AtlasRequest,
     maps: &Maps,
     name: &str,
-    desk: &Desk<'_>,
+    context: &StudyContext<'_>,
 ) -> Result<Vec<Vec<Slice>>, StudyError> {
     let count = request.settings.grid.eta.len();
     let mut slices = Vec::with_capacity(count);
     for first in (0..count).step_by(BLOCK) {
         let last = (first + BLOCK).min(count);
-        let found: Vec<Vec<Slice>> = desk.kept.block(&format!("{name} columns {first}"), || {
-            let chosen = first..last;
-            Ok::<_, StudyError>(columns(&request.machine, &request.settings, maps, chosen))
-        })?;
+        let found: Vec<Vec<Slice>> =
+            context
+                .blocks
+                .block(&format!("{name} columns {first}"), || {
+                    let chosen = first..last;
+                    Ok::<_, StudyError>(columns(&request.machine, &request.settings, maps, chosen))
+                })?;
         slices.extend(found);
-        (desk.progress)(last as u64, count as u64);
+        (context.progress)(last as u64, count as u64);
     }
     Ok(slices)
 }
 
 /// How curves and maps agree, as every run prints it.
-fn tell(atlas: &Atlas, desk: &Desk<'_>) {
+fn report_agreement(atlas: &Atlas, context: &StudyContext<'_>) {
     let a = &atlas.agreement;
-    (desk.say)(&format!(
+    (context.inform)(&format!(
         "{} curves; brute force: {} cells compared, {} differ from the curves, {} aperiodic, {} \
          beyond the largest p or n",
         atlas.curves.len(),
@@ -123,11 +126,11 @@ fn tell(atlas: &Atlas, desk: &Desk<'_>) {
         a.beyond
     ));
     if atlas.resting.is_empty() {
-        (desk.say)("no motion rests in a dead zone here");
+        (context.inform)("no motion rests in a dead zone here");
     }
     for d in a.differing.iter().take(PRINTED) {
         let (z, way) = (d.motion, d.seeding.name());
-        (desk.say)(&format!(
+        (context.inform)(&format!(
             "  η = {:.4}  ρ = {:.4}  {way}  z = {z}: {}",
             d.eta,
             d.rho,
@@ -135,7 +138,7 @@ fn tell(atlas: &Atlas, desk: &Desk<'_>) {
         ));
     }
     if a.differing.len() > PRINTED {
-        (desk.say)("  … all of them in the JSON file");
+        (context.inform)("  … all of them in the JSON file");
     }
 }
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::plan::SweepPlan;
 use super::table::Table;
-use super::{Desk, StudyError};
+use super::{StudyContext, StudyError};
 use crate::report::speech::Speech;
 use crate::report::theory::sweep::{Characteristics, Step, draw};
 use impact_oscillator::atlas::map::even;
@@ -14,7 +14,7 @@ use impact_oscillator::atlas::sweep::{Carried, Impactless, LONGEST_LAG, SweepPoi
 use impact_oscillator::model::Machine;
 use impact_oscillator::model::simulate::Snapshot;
 
-/// Steps after which a sweep keeps what it has.
+/// Steps after which a sweep saves its points.
 const KEEP_EVERY: usize = 16;
 
 /// A sweep as far as it has come.
@@ -24,7 +24,7 @@ struct Walked {
     at: Option<Snapshot>,
 }
 
-/// Sweep there and back and leave everything.
+/// Sweep there and back and write tables and figure.
 ///
 /// # Errors
 /// [`StudyError`] where a parameter is out of range or an output cannot be written.
@@ -32,7 +32,7 @@ pub fn run(
     machine: &Machine,
     name: &str,
     plan: &SweepPlan,
-    desk: &Desk<'_>,
+    context: &StudyContext<'_>,
 ) -> Result<(), StudyError> {
     let (eta, rho) = (
         even((plan.eta.0, plan.eta.1, plan.steps)),
@@ -42,22 +42,22 @@ pub fn run(
     let back: Vec<(f64, f64)> = steps.iter().rev().copied().collect();
     let (done, all) = (AtomicU64::new(0), 2 * steps.len() as u64);
     let tick = |count: u64| {
-        (desk.progress)(done.fetch_add(count, Ordering::Relaxed) + count, all);
+        (context.progress)(done.fetch_add(count, Ordering::Relaxed) + count, all);
     };
     let walk = |way: &str, steps: &[(f64, f64)]| {
         let walk = Walk {
             machine,
             name,
             plan,
-            desk,
+            context,
         };
         walk.go(way, steps, &tick)
     };
     let (forward, backward) = rayon::join(|| walk("forward", &steps), || walk("backward", &back));
     let (forward, backward) = (forward?, backward?);
     let impactless: Vec<Impactless> = steps.iter().map(|s| impactless(machine, s.0)).collect();
-    desk.table(name, &characteristics(machine, &forward, &backward))?;
-    desk.table(&format!("{name}-impacts"), &impacts(&forward, &backward))?;
+    context.table(name, &characteristics(machine, &forward, &backward))?;
+    context.table(&format!("{name}-impacts"), &impacts(&forward, &backward))?;
     let data = Characteristics {
         forward: forward.iter().map(drawn).collect(),
         backward: backward.iter().map(drawn).collect(),
@@ -65,7 +65,7 @@ pub fn run(
         impactless_y: impactless.iter().filter_map(|i| i.y).collect(),
     };
     let title = "Quasi-stationary characteristics";
-    desk.figure(&draw(&data, name, title, Speech::default()))
+    context.figure(&draw(&data, name, title, Speech::default()))
 }
 
 /// What the figure shows of a step.
@@ -84,11 +84,11 @@ struct Walk<'a> {
     machine: &'a Machine,
     name: &'a str,
     plan: &'a SweepPlan,
-    desk: &'a Desk<'a>,
+    context: &'a StudyContext<'a>,
 }
 
 impl Walk<'_> {
-    /// One direction, from where a run that was broken off had come.
+    /// One direction, from where an interrupted run stopped.
     fn go(
         &self,
         way: &str,
@@ -97,7 +97,7 @@ impl Walk<'_> {
     ) -> Result<Vec<SweepPoint>, StudyError> {
         let block = format!("{} {way}", self.name);
         let refused = StudyError::of(self.name);
-        let mut walked: Walked = self.desk.kept.load(&block).unwrap_or_default();
+        let mut walked: Walked = self.context.blocks.load(&block).unwrap_or_default();
         tick(walked.points.len() as u64);
         let Some(&first) = steps.first() else {
             return Ok(Vec::new());
@@ -113,7 +113,7 @@ impl Walk<'_> {
             tick(1);
             if walked.points.len().is_multiple_of(KEEP_EVERY) {
                 walked.at = Some(carried.snapshot());
-                self.desk.kept.save(&block, &walked)?;
+                self.context.blocks.save(&block, &walked)?;
             }
         }
         Ok(walked.points)

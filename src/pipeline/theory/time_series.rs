@@ -1,13 +1,13 @@
 //! A motion in full: time series, impacts, Poincaré map, autocorrelation, and their figure.
 
 use super::table::Table;
-use super::{Desk, StudyError};
+use super::{StudyContext, StudyError};
 use crate::report::speech::Speech;
 use crate::report::theory::motion as figure;
 use impact_oscillator::atlas::portrait::{Portrait, PortraitPlan, Strike, portrait};
 use impact_oscillator::model::Machine;
 
-/// Simulate and leave everything.
+/// Simulate and write tables and figure.
 ///
 /// # Errors
 /// [`StudyError`] where a parameter is out of range or an output cannot be written.
@@ -15,23 +15,23 @@ pub fn run(
     machine: &Machine,
     name: &str,
     plan: &PortraitPlan,
-    desk: &Desk<'_>,
+    context: &StudyContext<'_>,
 ) -> Result<(), StudyError> {
-    (desk.progress)(0, 2);
+    (context.progress)(0, 2);
     let portrait = portrait(machine, plan).map_err(StudyError::of(name))?;
-    (desk.progress)(1, 2);
-    desk.table(name, &series(&portrait))?;
-    desk.table(&format!("{name}-impacts"), &impacts(&portrait))?;
-    desk.table(&format!("{name}-poincare"), &poincare(&portrait))?;
-    desk.table(
+    (context.progress)(1, 2);
+    context.table(name, &series(&portrait))?;
+    context.table(&format!("{name}-impacts"), &impacts(&portrait))?;
+    context.table(&format!("{name}-poincare"), &poincare(&portrait))?;
+    context.table(
         &format!("{name}-autocorrelation"),
         &autocorrelation(&portrait),
     )?;
     let s = &plan.setting;
     let title = format!("Motion at η = {}, ρ = {}", s.frequency_ratio, s.clearance);
     let drawn = figure::draw(&drawn(&portrait), name, &title, Speech::default());
-    desk.figure(&drawn)?;
-    (desk.progress)(2, 2);
+    context.figure(&drawn)?;
+    (context.progress)(2, 2);
     Ok(())
 }
 

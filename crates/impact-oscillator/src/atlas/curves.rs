@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::continuation::EdgeKind;
+use super::edge::{EdgeKind, RestingEdge};
 use super::line::Slice;
-use super::resting::{RestingEdge, RestingSlice};
+use super::resting::RestingSlice;
 use crate::model::orbit::stable_orbit;
 use crate::model::{BoundaryPoint, Machine, Orbit, Setting, rho_grazing, rho_s1, rho_s2};
 use crate::parallel;

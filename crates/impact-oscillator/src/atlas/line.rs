@@ -5,7 +5,8 @@ use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
-use super::continuation::{Along, Edge, EdgeKind, Walk, branch_at_doubling, follow};
+use super::continuation::{Along, Walk, branch_at_doubling, follow};
+use super::edge::{Edge, EdgeKind};
 use super::map::{End, clear_of};
 use super::settings::AtlasSettings;
 use crate::model::boundary::etas_s2;

@@ -15,16 +15,19 @@ use crate::model::{Impact, ImpactKind, Machine, Restitution};
 ///
 /// ```
 /// use impact_oscillator::atlas::Lyapunov;
+/// use impact_oscillator::model::orbit::stable_orbit;
 /// use impact_oscillator::{Impact, Initial, Machine, Setting, Simulator};
 ///
-/// // at η = 2, ρ = 0.2 the motion is chaotic
-/// let machine = Machine::symmetric(0.07, 0.9);
-/// let setting = Setting::new(2.0, 0.2);
+/// let machine = Machine::single(0.07, 0.9);
+/// let setting = Setting::new(1.2, 2.0);
 /// let mut simulator = Simulator::new(&machine, setting, Initial::rest())?;
-/// simulator.advance(200.0 * setting.period(), &mut |_: &Impact| ());
+/// simulator.advance(300.0 * setting.period(), &mut |_: &Impact| ());
 /// let mut lyapunov = Lyapunov::new(&machine, setting.frequency_ratio);
-/// simulator.advance(500.0 * setting.period(), &mut lyapunov);
-/// assert!(lyapunov.exponent() > 0.0);
+/// simulator.advance(2000.0 * setting.period(), &mut lyapunov);
+/// // a stable orbit has the logarithm of its largest multiplier per period
+/// let orbit = stable_orbit(&machine, setting, 1)?.expect("z = 1");
+/// let expected = orbit.multipliers[0].norm().ln() / setting.period();
+/// assert!(expected < 0.0 && (lyapunov.exponent() - expected).abs() < 1e-3);
 /// # Ok::<(), impact_oscillator::ModelError>(())
 /// ```
 #[derive(Debug, Clone)]

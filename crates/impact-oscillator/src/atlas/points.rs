@@ -4,10 +4,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::brute::{Seeding, brute_map};
-use super::continuation::{Edge, EdgeKind};
+use super::edge::{Edge, EdgeKind, RestingEdge};
 use super::map::{MapGrid, MapSettings};
 use super::regions::{slices_at, spans_at_clearance};
-use super::resting::{RestingEdge, resting_etas, resting_slices};
+use super::resting::{resting_etas, resting_slices};
 use super::settings::AtlasSettings;
 use crate::model::boundary::{
     BoundaryPoint, etas_grazing, etas_s1, etas_s2, etas_sticking, rho_grazing, rho_s1, rho_s2,

@@ -9,8 +9,8 @@
 use std::collections::BTreeSet;
 
 use nalgebra::{Matrix2, Vector2};
-use serde::{Deserialize, Serialize};
 
+use super::edge::RestingEdge;
 use crate::model::boundary::rho_sticking;
 use crate::model::recurrence::observe;
 use crate::model::simulate::{Arc, Sink};
@@ -20,29 +20,6 @@ use crate::model::{
 
 /// p and n.
 pub(super) type Label = (u32, u32);
-
-/// What bounds a motion with a dead zone.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum RestingEdge {
-    /// ρp: the masses stick together for all time below.
-    Sticking,
-    /// The dead zone closes, or the number of impacts between two of them changes.
-    DeadZone,
-    /// The motion loses its stability (asymmetric machines).
-    Unstable,
-}
-
-impl RestingEdge {
-    /// The name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Sticking => "joined",
-            Self::DeadZone => "dead_zone",
-            Self::Unstable => "stability_lost",
-        }
-    }
-}
 
 /// J and J'.
 type Difference = Vector2<f64>;

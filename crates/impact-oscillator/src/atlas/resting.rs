@@ -8,11 +8,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::edge::RestingEdge;
 use super::kernel::Cell;
 use super::map::{
     End as MapEnd, Kernel, MapGrid, MapSettings, Start, UnitMass, clear_of, march_all,
 };
-pub use super::release::RestingEdge;
 use super::release::{Label, Releases as ExactReleases, RestingStart, Run, RunEnd, label};
 use crate::model::{Initial, Machine, Watch};
 use crate::parallel;

@@ -2,7 +2,7 @@
 
 use super::agreement::Cause;
 use super::brute::brute_maps;
-use super::continuation::EdgeKind;
+use super::edge::EdgeKind;
 use super::line::Slice;
 use super::map::{Kernel, even};
 use super::regions::slices_at;
@@ -403,7 +403,7 @@ fn one_and_one_with_a_dead_zone_share_their_edge() {
             let resting = resting_at(&machine, eta, 41);
             let resting = resting.iter().find(|s| s.is(1, 1)).unwrap();
             let (rho, kind) = resting.high.unwrap();
-            assert_eq!(kind, super::resting::RestingEdge::DeadZone);
+            assert_eq!(kind, super::edge::RestingEdge::DeadZone);
             let other = moving.low.orbit.rho;
             assert!((rho - other).abs() < 1e-6, "{eta}: {rho} {other}");
             shared += 1;

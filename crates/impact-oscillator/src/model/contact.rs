@@ -13,7 +13,8 @@ use super::params::{Flight, Machine, Oscillator};
 pub enum ImpactKind {
     /// The masses separate again.
     Bounce,
-    /// Plastic, but nothing presses the masses together: they separate without a dead zone (eq. 6).
+    /// Plastic, but nothing presses the masses together: they separate without a dead zone (the
+    /// paper's eq. 6).
     Plastic,
     /// Plastic, followed by a dead zone.
     Stick,
@@ -34,7 +35,8 @@ impl ImpactKind {
     }
 }
 
-/// One impact of a simulated motion, dimensionless.
+/// One impact of a simulated motion, dimensionless; speeds in units of x_st Ω. All of it is exact,
+/// unlike an impact that is detected in a measured signal.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Impact {
     /// τ of the impact.
@@ -75,7 +77,7 @@ pub(crate) struct Outcome {
 }
 
 /// Velocities after an impact: X'₊ = X'₋ − μ₁(1+R)w, Y'₊ = Y'₋ − μ₂(1+R)w with the approach
-/// speed w and the mobilities μ of [`Machine::mobility`]; for equal masses eq. (4).
+/// speed w and the mobilities μ of [`Machine::mobility`]: eq. (4).
 pub(crate) fn newton(machine: &Machine, before: &State) -> State {
     let w = before.vx + before.vy;
     let change = (1.0 + machine.restitution().at(w)) * w;
@@ -147,7 +149,7 @@ pub(crate) fn impact(machine: &Machine, drive: Drive, before: &State, size: f64)
     }
 }
 
-/// Sum of the flights of a chatter that starts with separation speed v under relative
+/// Sum of the flights of a chatter, eq. (6), that starts with separation speed v under relative
 /// acceleration a: Σ 2vₖ/a with vₖ₊₁ = R vₖ; on an incline each flight also loses to friction.
 fn rest_after(machine: &Machine, v: f64, a: f64) -> f64 {
     let law = machine.restitution();

@@ -2,7 +2,7 @@
 //!
 //! With g = f(t) the distance left, v = −f', a = −f'', j = −f''' and K ≥ |f''''| for all later
 //! time, every h ≤ hm satisfies −f(t+h) ≤ −g + vh + M h²/2, M = a + max(0, j·hm/3 + K·hm²/12).
-//! The first root of the right side is a safe step; the steps converge to the zero from below.
+//! The first root of the right side is a safe step, eq. (3); the steps converge to the zero from below.
 
 use super::path::{Jet, Path};
 

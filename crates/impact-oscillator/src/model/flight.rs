@@ -1,4 +1,5 @@
-//! The exact flight of each mass between impacts: homogeneous and forced response, eqs. (1), (2).
+//! The exact flight of each mass between impacts: homogeneous and forced response, eqs. (1), (2);
+//! and of masses that stick together, eq. (5).
 
 use super::params::{Flight, Machine, Oscillator};
 use super::path::{C64, Mode, Path};
@@ -101,7 +102,7 @@ pub(crate) fn harmonic_path(o: &Oscillator, drive: Drive, x0: f64, v0: f64) -> P
     path
 }
 
-/// Flight of both masses from a state.
+/// Flight of both masses from a state, eq. (2).
 pub fn free_flight(machine: &Machine, drive: Drive, start: &State) -> FlightPaths {
     match machine.flight {
         Flight::Harmonic => {
@@ -145,8 +146,7 @@ pub(crate) fn with_friction(force: f64, friction: f64, v: f64) -> (f64, f64) {
 }
 
 /// Paths while the masses stay together, X = ρ + J, Y = ρ − J:
-/// (m₁+m₂)J'' + (b₁+b₂)J' + (k₁+k₂)J = (k₂−k₁)ρ + (F₁−F₂)cos(ητ+φ), for equal masses eq. (7)
-/// of the paper. Against a stop X rests at ρ.
+/// (m₁+m₂)J'' + (b₁+b₂)J' + (k₁+k₂)J = (k₂−k₁)ρ + (F₁−F₂)cos(ητ+φ), eq. (5). Against a stop X rests at ρ.
 pub(crate) fn sticking_flight(
     machine: &Machine,
     drive: Drive,

@@ -7,7 +7,7 @@
 //!
 //! Re(F e^{iψ}) = G − αw,  −Im(F e^{iψ}) = Qw/η,  hence (G − αw)² + (Qw/η)² = |F|²,
 //!
-//! a quadratic for w. With Pᵢ, Dᵢ the Green's functions' position and velocity just before the
+//! a quadratic for w, eq. (9). With Pᵢ, Dᵢ the Green's functions' position and velocity just before the
 //! impact, α = −(1+R)Σ μᵢPᵢ and Q = 1 + (1+R)Σ μᵢDᵢ.
 
 use super::contact::{free_accelerations, is_plastic, newton};

@@ -2,7 +2,7 @@
 //!
 //! Between impacts everything is linear, so the motion of X + Y with p impacts in n drive
 //! periods is u(t) = Re(F e^{iηt}) − Σ φₖ Γ(t − tₖ), φₖ = (1+R)wₖ, Γ = Σ μᵢGᵢ the mobility-weighted
-//! periodic Green's functions. The orbit is where u(tₖ) = G and u'(tₖ−) = wₖ for every k. Time t
+//! periodic Green's functions, eq. (7). The orbit is where u(tₖ) = G and u'(tₖ−) = wₖ for every k. Time t
 //! is counted so that the drive's phase is ηt.
 
 use std::f64::consts::TAU;
@@ -23,7 +23,6 @@ use super::variation::{eigenvalues, free_flow, saltation};
 /// use impact_oscillator::{Existence, Initial, Machine, PeriodicOrbit, Setting, SettledMotion};
 /// use impact_oscillator::{Watch, settle};
 ///
-/// // a simulated motion as the start of Newton's method
 /// let machine = Machine::symmetric(0.07, 0.9);
 /// let setting = Setting::new(1.3, 1.0);
 /// let (motion, impacts) = settle(&machine, setting, Initial::rest(), &Watch::default())?;
@@ -177,11 +176,10 @@ impl PeriodicOrbit {
             .collect();
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (times, speeds) = pairs.into_iter().unzip();
-        let (eta, rho) = (setting.frequency_ratio, setting.clearance);
         Some(Self {
             n,
-            eta,
-            rho,
+            eta: setting.frequency_ratio,
+            rho: setting.clearance,
             times,
             speeds,
         })
@@ -222,7 +220,7 @@ impl PeriodicOrbit {
 
     /// Residual of the orbit's equations, times' closures first.
     pub fn residual(&self, machine: &Machine) -> DVector<f64> {
-        linearise(machine, &Response::new(machine, self.eta, self.n), self).residual
+        self.linearised(machine).0
     }
 
     /// Residual and Jacobian by the unknowns.
@@ -308,9 +306,8 @@ impl PeriodicOrbit {
     /// Map of a variation over one period, starting just before the first impact: the product
     /// of saltation matrices and free flows.
     pub fn monodromy(&self, machine: &Machine) -> Matrix4<f64> {
-        let states = self.impact_states(machine);
         let mut map = Matrix4::identity();
-        for (k, (before, after)) in states.iter().enumerate() {
+        for (k, (before, after)) in self.impact_states(machine).iter().enumerate() {
             map = free_flow(machine, self.flight_time(k)) * saltation(machine, before, after) * map;
         }
         map

@@ -3,8 +3,9 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::header::Header;
+use super::origin::{Origin, Side};
 use super::samples;
-use super::sets::{Function, Origin, Sets, Side};
+use super::sets::{Function, Sets};
 use crate::bytes::FileBytes;
 use crate::source::{ChannelInfo, DatasetInfo, StoredType};
 

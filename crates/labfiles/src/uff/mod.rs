@@ -20,6 +20,7 @@
 mod arrange;
 mod ascii;
 mod header;
+mod origin;
 mod samples;
 mod sets;
 #[cfg(test)]
@@ -27,7 +28,8 @@ mod tests;
 
 use std::path::Path;
 
-use sets::{Origin, Sets};
+use origin::Origin;
+use sets::Sets;
 
 use super::bytes::FileBytes;
 use super::source::{Opened, ReadError, Reader, Samples, Source};

@@ -1,7 +1,8 @@
 //! Samples of functions, from text or binary.
 
 use super::ascii::Numbers;
-use super::sets::{Form, Function, Origin, Side, snippet};
+use super::origin::{Origin, Side};
+use super::sets::{Form, Function, snippet};
 use crate::bytes::{FileBytes, to_usize};
 use crate::numbers::{self, ByteOrder, Number, Spacing};
 use crate::source::{ReadError, Samples};

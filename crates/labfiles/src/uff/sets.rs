@@ -44,24 +44,6 @@ pub(super) struct Function {
     pub system: Option<usize>,
 }
 
-/// What a channel is of its function.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Side {
-    /// The abscissa.
-    Abscissa,
-    /// The ordinate.
-    Ordinate,
-}
-
-/// Where a channel's samples come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Origin {
-    /// Index into [`Sets::functions`].
-    pub function: usize,
-    /// Abscissa or ordinate.
-    pub side: Side,
-}
-
 /// All that opening a file finds.
 #[derive(Debug, Default)]
 pub(super) struct Sets {
@@ -143,8 +125,7 @@ impl<'a> Scanner<'a> {
             "58" => self.ascii(at),
             "58b" => self.binary(at, &text),
             "151" => {
-                let lines = self.short_set();
-                self.sets.model = super::header::model(&lines);
+                self.sets.model = super::header::model(&self.short_set());
                 Ok(())
             }
             "164" => {

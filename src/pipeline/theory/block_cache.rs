@@ -1,5 +1,5 @@
-//! Blocks of work kept while a long study goes on, so that one that was broken off can be
-//! resumed: a resumed study gives the bytes of an undisturbed one.
+//! Blocks of work saved while a long study runs, so that an interrupted one can be resumed: a
+//! resumed study gives the same bytes as an uninterrupted one.
 
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,7 @@ const FOLDER: &str = ".impactid-blocks";
 
 /// The blocks of one study.
 #[derive(Debug)]
-pub struct Kept {
+pub struct BlockCache {
     folder: PathBuf,
     key: String,
 }
@@ -26,9 +26,9 @@ struct Block<T> {
     content: T,
 }
 
-impl Kept {
+impl BlockCache {
     /// The blocks in an output folder, of work that a text describes in full. Without `resume`
-    /// what an earlier run left is removed.
+    /// the blocks of an earlier run are removed.
     ///
     /// # Errors
     /// Where the folder cannot be written into.
@@ -40,16 +40,16 @@ impl Kept {
             impact_oscillator::atlas::map::Kernel::of_this_machine()
         ));
         hash.update(work);
-        let kept = Self {
+        let cache = Self {
             folder: out.join(FOLDER),
             key: hexadecimal(hash),
         };
         if !resume {
-            kept.remove();
+            cache.remove();
         }
-        output::make_folder(&kept.folder)?;
-        output::clear_parts(&kept.folder);
-        Ok(kept)
+        output::make_folder(&cache.folder)?;
+        output::clear_parts(&cache.folder);
+        Ok(cache)
     }
 
     /// A block; `None` where it is not there, of other work or unreadable.
@@ -90,7 +90,7 @@ impl Kept {
 
     /// Remove all blocks: the work is done.
     pub fn remove(&self) {
-        // what cannot be removed does no harm: a block is taken over by its key alone
+        // a block that cannot be removed does no harm: blocks are reused by their key alone
         let _ = std::fs::remove_dir_all(&self.folder);
     }
 
@@ -110,13 +110,13 @@ mod tests {
     #[test]
     fn blocks_are_reused_by_the_same_work_alone() {
         let folder = tempfile::tempdir().unwrap();
-        let kept = Kept::open(folder.path(), "work", false).unwrap();
-        kept.save("rows 0", &vec![0.1, 0.2]).unwrap();
-        let again = Kept::open(folder.path(), "work", true).unwrap();
+        let cache = BlockCache::open(folder.path(), "work", false).unwrap();
+        cache.save("rows 0", &vec![0.1, 0.2]).unwrap();
+        let again = BlockCache::open(folder.path(), "work", true).unwrap();
         assert_eq!(again.load("rows 0"), Some(vec![0.1, 0.2]));
-        let other = Kept::open(folder.path(), "other work", true).unwrap();
+        let other = BlockCache::open(folder.path(), "other work", true).unwrap();
         assert_eq!(other.load::<Vec<f64>>("rows 0"), None);
-        let anew = Kept::open(folder.path(), "work", false).unwrap();
+        let anew = BlockCache::open(folder.path(), "work", false).unwrap();
         assert_eq!(anew.load::<Vec<f64>>("rows 0"), None);
     }
 }

@@ -1,4 +1,4 @@
-//! A small picture of a signal in characters.
+//! A small curve of a signal in characters.
 
 /// Bits of the eight dots of a braille character, by column and row from the top.
 const DOTS: [[u32; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
@@ -8,7 +8,7 @@ const BLANK: u32 = 0x2800;
 /// Draw values over their index: `width` × `height` characters, each of 2 × 4 dots. Every dot
 /// column shows the whole range of the samples that fall into it; gaps are samples that are no
 /// numbers. Without a finite value there are no lines.
-pub fn sketch(values: &[f64], width: usize, height: usize) -> Vec<String> {
+pub fn sparkline(values: &[f64], width: usize, height: usize) -> Vec<String> {
     let finite = || values.iter().copied().filter(|v| v.is_finite());
     let (low, high) = (
         finite().fold(f64::INFINITY, f64::min),
@@ -61,15 +61,15 @@ mod tests {
     #[test]
     fn a_ramp_rises_and_gaps_stay_blank() {
         let ramp: Vec<f64> = (0..8).map(f64::from).collect();
-        let lines = sketch(&ramp, 4, 2);
+        let lines = sparkline(&ramp, 4, 2);
         assert_eq!(lines.len(), 2);
         assert!(lines.iter().all(|l| l.chars().count() == 4));
         assert_eq!(lines[0].chars().next(), char::from_u32(BLANK));
         assert_ne!(lines[1].chars().next(), char::from_u32(BLANK));
-        let gap = sketch(&[0.0, f64::NAN, f64::NAN, 1.0], 4, 1);
+        let gap = sparkline(&[0.0, f64::NAN, f64::NAN, 1.0], 4, 1);
         assert_eq!(gap[0].chars().nth(1), char::from_u32(BLANK));
-        assert!(sketch(&[f64::NAN], 4, 1).is_empty());
-        assert_eq!(sketch(&[2.0; 5], 3, 1)[0].chars().count(), 3);
-        assert!(!sketch(&[-f64::MAX, f64::MAX], 3, 1).is_empty());
+        assert!(sparkline(&[f64::NAN], 4, 1).is_empty());
+        assert_eq!(sparkline(&[2.0; 5], 3, 1)[0].chars().count(), 3);
+        assert!(!sparkline(&[-f64::MAX, f64::MAX], 3, 1).is_empty());
     }
 }

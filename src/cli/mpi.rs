@@ -1,7 +1,7 @@
 //! An atlas over the ranks of an MPI run: each computes one part, the first puts them together, so
 //! that the files are those of one process, byte for byte.
 
-use mpi::traits::{Communicator, Destination, Source};
+use ::mpi::traits::{Communicator, Destination, Source};
 
 use super::atlas::computed;
 use super::merge::whole;
@@ -11,10 +11,10 @@ use crate::pipeline::theory::Study;
 use crate::pipeline::theory::plan::RegionsPlan;
 use impact_oscillator::atlas::shard::AtlasPart;
 
-/// What a rank tells the first: its part as JSON, or why it has none.
+/// What a rank sends to the first: its part as JSON, or why it has none.
 type Told = Result<AtlasPart, String>;
 
-/// Compute this rank's part; the first rank gathers all of them and leaves the atlas.
+/// Compute this rank's part; the first rank gathers all of them and writes the atlas.
 ///
 /// # Errors
 /// [`Failure`] where MPI does not start, a rank has no part, or a file cannot be written.
@@ -25,7 +25,8 @@ pub fn run(
     verbosity: Verbosity,
 ) -> Result<Exit, Failure> {
     let start_it = "start the program with mpirun, and only once in a process";
-    let universe = mpi::initialize().ok_or_else(|| Failure::new("MPI does not start", start_it))?;
+    let universe =
+        ::mpi::initialize().ok_or_else(|| Failure::new("MPI does not start", start_it))?;
     let world = universe.world();
     let (rank, size) = (world.rank(), world.size());
     let own = computed(
@@ -39,7 +40,7 @@ pub fn run(
         world.process_at_rank(0).send(&bytes[..]);
         return own.map(|_| Exit::Done);
     }
-    // every rank is heard, whatever became of this one, so that none waits for ever
+    // every rank's message is received even where this one failed, so that none waits without end
     let others: Vec<Told> = (1..size)
         .map(|k| {
             let (bytes, _) = world.process_at_rank(k).receive_vec::<u8>();
