@@ -162,6 +162,9 @@ fn with_restitution(start: Parameters, impacts: &Option<FitResult>) -> Parameter
     }
 }
 
+/// Influential records that may always be left out.
+const MOST_INFLUENTIAL: usize = 2;
+
 /// Starting values: the resonance curve's, else the stated ones, else guesses of scale.
 fn start(evidence: &Evidence, resonance: &Option<FitResult>) -> Parameters {
     if let Some(found) = succeeded(resonance) {
@@ -218,7 +221,7 @@ impl IdentificationRun<'_> {
         let weight = |attempt: &Option<FitResult>| succeeded(attempt).map(|f| 1.0 / f.factor);
         // Flights rest on the speeds at impacts; waveforms tell the same better than either.
         let flown = weight(&flights).filter(|_| succeeded(&trajectories).is_none());
-        let impact_weight = succeeded(&impacts).map(joint::impact_weight);
+        let impact_weight = succeeded(&impacts).map(|found| joint::impact_weight(found, &start));
         let weights: Weights = [
             (Method::Resonance, weight(&resonance)),
             (Method::Trajectories, weight(&trajectories)),
@@ -247,6 +250,7 @@ impl IdentificationRun<'_> {
 
     /// The fits without the records that draw them away from what all others state.
     fn without_influential(&mut self, mut fits: Fits) -> Fits {
+        let mut left_out = 0;
         for _ in 0..MOST_ROUNDS {
             let Some(joint) = succeeded(&fits.joint) else {
                 break;
@@ -260,6 +264,11 @@ impl IdentificationRun<'_> {
             let Some(influential) = influential.filter(|p| !p.is_empty()) else {
                 break;
             };
+            left_out += influential.count();
+            if left_out > MOST_INFLUENTIAL.max(self.selection.judged() / 30) {
+                // That many do not err alone: it is the model, and their scatter widens the intervals.
+                break;
+            }
             self.selection.leave_out(&influential);
             let resonance = if influential.resonance.is_empty() {
                 fits.resonance
