@@ -54,7 +54,7 @@ pub struct Document {
 
 impl Document {
     /// What is printed for a phrase of the layout.
-    pub fn say<'a>(&'a self, phrase: &'a str) -> &'a str {
+    pub fn translate<'a>(&'a self, phrase: &'a str) -> &'a str {
         self.words.get(phrase).map_or(phrase, String::as_str)
     }
 }
