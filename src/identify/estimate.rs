@@ -216,8 +216,8 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
+    use crate::identify::fit::FitReport;
     use crate::identify::fit::parameters::Parameters;
-    use crate::identify::fit::report::FitReport;
 
     #[test]
     fn valid_an_interval_is_1_96_errors_to_either_side_of_the_coordinate() {

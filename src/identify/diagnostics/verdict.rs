@@ -224,7 +224,7 @@ fn stated_value((parameter, estimate): &(Coordinate, &Estimate)) -> Option<State
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::estimate::{estimate, not_identifiable};
+    use crate::identify::estimate::estimate;
     use crate::identify::messages::PairAgreement;
 
     /// A joint result with standard errors of R and ln f0.
