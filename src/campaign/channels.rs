@@ -4,7 +4,7 @@ use toml::Spanned;
 
 use super::context::{ResolveContext, remedy};
 use super::diagnostic::Code;
-use super::written::{Channel, Channels, Machine, Placed, Quantity};
+use super::written::{Channel, Channels, Machine, Placed, Quantity, value};
 use crate::record::Role;
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
 use labfiles::units::{self, Dimension, Scale, Unit};
@@ -116,11 +116,8 @@ fn resolve_one(
         ),
         threshold: threshold(role, &written.threshold, &key("threshold"), context),
         range: raw_level(&written.range, &key("range"), unit, context),
-        ignore_file_unit: written
-            .ignore_file_unit
-            .as_ref()
-            .is_some_and(|b| *b.get_ref()),
-        instrument: written.instrument.as_ref().map(|i| i.get_ref().clone()),
+        ignore_file_unit: value(&written.ignore_file_unit).unwrap_or(false),
+        instrument: value(&written.instrument),
         ..ChannelSetup::plain(role, source(role, placed, context)?)
     };
     Some(setup)

@@ -12,6 +12,7 @@ mod read;
 mod records;
 mod resolve;
 pub mod resolved;
+mod rig;
 mod run_table;
 mod settings;
 pub mod template;

@@ -10,12 +10,12 @@ use super::diagnostic::{Code, Diagnostics, FaultCollector};
 use super::discovery::{Opener, Shared};
 use super::read::{self, Text};
 use super::records;
-use super::resolved::{Analysis, NominalValues, RecordEntry, Report, ResolvedCampaign};
-use super::written::{self, Flight, Format, Language, Machine, Paper, Placed, WrittenCampaign};
-use crate::identify::fit::effect::EffectKind;
-use crate::identify::uncertainty::IntervalMethod;
-use crate::record::calibrate::ChannelSetup;
-use crate::report::words::Words;
+use super::resolved::{Analysis, RecordEntry, Report, ResolvedCampaign};
+use super::rig;
+use super::written::{
+    self, Flight, Format, Language, Machine, Paper, Placed, WrittenCampaign, value,
+};
+use crate::report::catalog::Catalog;
 use labfiles::units::Dimension;
 
 /// A campaign as far as it could be resolved, and everything that is wrong with it.
@@ -79,7 +79,7 @@ fn resolve(
         Some(_) => Vec::new(),
         None => channels::resolve(&written.channels, machine, context),
     };
-    let time = written.records.time.as_ref().map(|t| t.get_ref().0.clone());
+    let time = value(&written.records.time).map(|t| t.0);
     let folder = path.parent().unwrap_or(Path::new(""));
     let shared = Shared {
         folder,
@@ -91,24 +91,16 @@ fn resolve(
         None => records::resolve(&written.records, shared, open, context),
     };
     exclude(&mut records, &written.analysis.exclude, context);
-    refuse_long_delays(&channels, &records, &written.channels, context);
+    rig::refuse_long_delays(&channels, &records, &written.channels, context);
     let name = name(&written.campaign.name, folder);
-    let flight = written
-        .campaign
-        .flight
-        .as_ref()
-        .map_or(Flight::Harmonic, |f| *f.get_ref());
+    let flight = value(&written.campaign.flight).unwrap_or(Flight::Harmonic);
     demand_one_mass(machine, flight, &written.campaign.flight, context);
-    let run_table = written
-        .records
-        .run_table
-        .as_ref()
-        .map(|t| folder.join(t.get_ref()));
+    let run_table = value(&written.records.run_table).map(|t| folder.join(t));
     ResolvedCampaign {
         run_table,
         machine,
         flight,
-        rig: rig(&written.rig, context),
+        rig: rig::resolve(&written.rig, context),
         sample_rate_hz: context.positive(
             &written.records.sample_rate,
             "records.sample_rate",
@@ -117,8 +109,8 @@ fn resolve(
         analysis: analysis(&written.analysis, context),
         report: report(&written.report, &name, (folder, &records), context),
         synthetic: written.campaign.synthetic,
-        laboratory: words(&written.campaign.laboratory),
-        measured: words(&written.campaign.measured),
+        laboratory: value(&written.campaign.laboratory),
+        measured: value(&written.campaign.measured),
         file: path.to_path_buf(),
         name,
         channels,
@@ -137,15 +129,11 @@ fn required<T: Copy>(
     context: &mut ResolveContext<'_>,
 ) -> Option<T> {
     if placed.is_none() && !context.faults.blocks() {
-        context.faults.fault(
-            Code::Missing,
-            None,
-            key,
-            "it is not given".to_owned(),
-            remedy,
-        );
+        context
+            .faults
+            .fault(Code::Missing, None, key, "it is not given", remedy);
     }
-    placed.as_ref().map(|p| *p.get_ref())
+    value(placed)
 }
 
 fn demand_one_mass(
@@ -171,94 +159,9 @@ fn name(placed: &Placed<String>, folder: &Path) -> String {
         let whole = std::path::absolute(Path::new(".").join(folder)).ok()?;
         whole.file_name().map(|n| n.to_string_lossy().into_owned())
     };
-    placed
-        .as_ref()
-        .map(|n| n.get_ref().clone())
+    value(placed)
         .or_else(folder_name)
         .unwrap_or_else(|| "campaign".to_owned())
-}
-
-fn rig(rig: &written::Rig, context: &mut ResolveContext<'_>) -> NominalValues {
-    use Dimension::{Frequency, Length, Mass, Number};
-    let mut positive = |placed, name: &str, d| context.positive(placed, &format!("rig.{name}"), d);
-    let natural_frequency_hz = positive(&rig.natural_frequency, "natural_frequency", Frequency);
-    let static_deflection_m = positive(&rig.static_deflection, "static_deflection", Length);
-    let mass_x_kg = positive(&rig.mass_x, "mass_x", Mass);
-    let mass_y_kg = positive(&rig.mass_y, "mass_y", Mass);
-    let mut part =
-        |placed, name: &str, range| context.within(placed, &format!("rig.{name}"), Number, range);
-    let damping_ratio = part(&rig.damping_ratio, "damping_ratio", [0.0, 0.999]);
-    let restitution = part(&rig.restitution, "restitution", [0.0, 1.0]);
-    let gain = part(&rig.gain_uncertainty, "gain_uncertainty", [0.0, 0.5]);
-    let corner = part(&rig.corner_uncertainty, "corner_uncertainty", [0.0, 0.5]);
-    let mass = part(&rig.mass_uncertainty, "mass_uncertainty", [0.0, 0.5]);
-    let clearance = context.within(
-        &rig.clearance_uncertainty,
-        "rig.clearance_uncertainty",
-        Length,
-        [0.0, 1.0],
-    );
-    NominalValues {
-        natural_frequency_hz,
-        damping_ratio,
-        static_deflection_m,
-        restitution,
-        mass_x_kg,
-        mass_y_kg,
-        gain_uncertainty: gain.unwrap_or(0.005),
-        corner_uncertainty: corner.unwrap_or(0.05),
-        clearance_uncertainty_m: clearance.unwrap_or(1e-5),
-        mass_uncertainty: mass.unwrap_or(0.005),
-        effects: effects(&rig.effects, context),
-    }
-}
-
-/// The effects that the fit allows, by their names.
-fn effects(
-    placed: &Placed<Vec<String>>,
-    context: &mut ResolveContext<'_>,
-) -> Option<Vec<EffectKind>> {
-    let placed = placed.as_ref()?;
-    let mut kinds = Vec::new();
-    for name in placed.get_ref() {
-        match EffectKind::named(name) {
-            Some(kind) => kinds.push(kind),
-            None => {
-                let known = EffectKind::ALL.map(EffectKind::name).join(", ");
-                let what = format!("no effect is called '{name}'");
-                let remedy = format!("choose among {known}, or remove the line to allow all");
-                context.fault(Code::OutOfRange, placed, "rig.effects", what, &remedy);
-            }
-        }
-    }
-    Some(kinds)
-}
-
-/// A channel's delay is less than one period of the drive, or its phase says nothing.
-fn refuse_long_delays(
-    channels: &[ChannelSetup],
-    records: &[RecordEntry],
-    written: &written::Channels,
-    context: &mut ResolveContext<'_>,
-) {
-    let stated = records.iter().filter_map(|r| r.setting.stated_frequency_hz);
-    let fastest = stated.fold(0.0, f64::max);
-    for channel in channels.iter().filter(|c| c.delay_s.abs() * fastest >= 1.0) {
-        let Some(placed) = written.of(channel.role) else {
-            continue;
-        };
-        let what = format!(
-            "{:.4} s is longer than a period of the drive at {fastest} Hz",
-            channel.delay_s
-        );
-        context.fault(
-            Code::OutOfRange,
-            placed,
-            &format!("channels.{}.delay", channel.role.name()),
-            what,
-            "state the delay against the drive's channel, with its unit",
-        );
-    }
 }
 
 fn analysis(written: &written::Analysis, context: &mut ResolveContext<'_>) -> Analysis {
@@ -287,16 +190,9 @@ fn analysis(written: &written::Analysis, context: &mut ResolveContext<'_>) -> An
         skip_s: skip.unwrap_or(0.0),
         longest_period_n: count(&written.longest_period_n, "analysis.longest_period_n", 6),
         most_impacts_p: count(&written.most_impacts_p, "analysis.most_impacts_p", 12),
-        seed: written.seed.as_ref().map_or(1, |s| *s.get_ref()),
-        uncertainty: written
-            .uncertainty
-            .as_ref()
-            .map_or(IntervalMethod::default(), |w| *w.get_ref()),
-        replicas: written
-            .replicas
-            .as_ref()
-            .map_or(1000, |r| *r.get_ref())
-            .max(2) as usize,
+        seed: value(&written.seed).unwrap_or(1),
+        uncertainty: value(&written.uncertainty).unwrap_or_default(),
+        replicas: value(&written.replicas).unwrap_or(1000).max(2) as usize,
     }
 }
 
@@ -314,25 +210,14 @@ fn report(
         }
     }
     Report {
-        title: written
-            .title
-            .as_ref()
-            .map_or_else(|| name.to_owned(), |t| t.get_ref().clone()),
-        points: written
-            .points
-            .as_ref()
-            .map(|p| p.get_ref().clone())
-            .unwrap_or_default(),
-        paper: written.paper.as_ref().map_or(Paper::A4, |p| *p.get_ref()),
-        language: written
-            .language
-            .as_ref()
-            .map_or(Language::En, |l| *l.get_ref()),
-        decimal_comma: written.decimal_comma.as_ref().is_some_and(|d| *d.get_ref()),
-        formats: match &written.formats {
-            Some(formats) if !formats.get_ref().is_empty() => formats.get_ref().clone(),
-            _ => vec![Format::Pdf],
-        },
+        title: value(&written.title).unwrap_or_else(|| name.to_owned()),
+        points: value(&written.points).unwrap_or_default(),
+        paper: value(&written.paper).unwrap_or(Paper::A4),
+        language: value(&written.language).unwrap_or(Language::En),
+        decimal_comma: value(&written.decimal_comma).unwrap_or(false),
+        formats: value(&written.formats)
+            .filter(|formats| !formats.is_empty())
+            .unwrap_or_else(|| vec![Format::Pdf]),
         template: beside(&written.template, "report.template", folder, context),
         words: words_file(&written.words, folder, context),
         logo: beside(&written.logo, "report.logo", folder, context),
@@ -348,7 +233,7 @@ fn words_file(
     let key = "report.words";
     let path = beside(placed, key, folder, context)?;
     if let (Some(placed), Ok(text)) = (placed, std::fs::read_to_string(&path))
-        && let Err(error) = Words::read(&text)
+        && let Err(error) = Catalog::read(&text)
     {
         let what = format!("{}: {error}", path.display());
         context.fault(
@@ -377,11 +262,6 @@ fn beside(
         context.fault(Code::UnreadableFile, placed, key, what, remedy);
     }
     Some(path)
-}
-
-/// A text as written.
-fn words(placed: &Placed<String>) -> Option<String> {
-    placed.as_ref().map(|p| p.get_ref().clone())
 }
 
 fn unknown_record<T>(

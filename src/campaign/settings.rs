@@ -7,7 +7,7 @@ use super::diagnostic::{Code, Diagnostic, Place, Severity};
 use super::discovery::Discovered;
 use super::resolved::RecordEntry;
 use super::run_table::SWEEPS;
-use super::written::{Attributes, Excitation, Placed, Records};
+use super::written::{Attributes, Placed, Records, value};
 use crate::record::{Setting, Sweep};
 use labfiles::units::{self, Dimension};
 
@@ -34,7 +34,7 @@ pub(super) fn defaults(records: &Records, context: &mut ResolveContext<'_>) -> D
             "check its unit: mm?",
         );
     }
-    let amplitude = records.drive_amplitude.as_ref().map(|a| *a.get_ref());
+    let amplitude = value(&records.drive_amplitude);
     if let (Some(placed), Some(value)) = (&records.drive_amplitude, amplitude)
         && (!value.is_finite() || value < 0.0)
     {
@@ -51,17 +51,11 @@ pub(super) fn defaults(records: &Records, context: &mut ResolveContext<'_>) -> D
         setting: Setting {
             stated_frequency_hz: frequency,
             clearance_m: clearance,
-            sweep: records
-                .sweep
-                .as_ref()
-                .map_or(Sweep::Unknown, |s| *s.get_ref()),
+            sweep: value(&records.sweep).unwrap_or(Sweep::Unknown),
             drive_amplitude: amplitude.unwrap_or(1.0),
             sequence: 0,
             specimen: None,
-            excitation: records
-                .excitation
-                .as_ref()
-                .map_or(Excitation::Harmonic, |e| *e.get_ref()),
+            excitation: value(&records.excitation).unwrap_or_default(),
         },
     }
 }
@@ -107,8 +101,8 @@ impl Wanted {
                 Dimension::Number,
                 context,
             ),
-            sweep: written.sweep.as_ref().map(|s| s.get_ref().clone()),
-            specimen: written.specimen.as_ref().map(|s| s.get_ref().clone()),
+            sweep: value(&written.sweep),
+            specimen: value(&written.specimen),
         }
     }
 }

@@ -19,6 +19,11 @@ pub use crate::report::Format;
 /// A value with its place in the file.
 pub type Placed<T> = Option<Spanned<T>>;
 
+/// The value without its place.
+pub(super) fn value<T: Clone>(placed: &Placed<T>) -> Option<T> {
+    placed.as_ref().map(|p| p.get_ref().clone())
+}
+
 /// The whole of campaign.toml.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]

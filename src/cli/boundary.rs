@@ -132,94 +132,112 @@ struct Answer<'a> {
     name: &'a str,
 }
 
-/// A point in JSON, or why there is none. The first holds the further ones under `others`.
-#[derive(Default, Serialize)]
-struct Row<'a> {
+/// A point in JSON, or why there is none.
+#[derive(Serialize)]
+struct Row {
     rho: Option<f64>,
     valid: bool,
     eta: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    closing_speed: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    phase_at_impact_rad: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    existence: Option<Existence>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    ends_stability: Option<bool>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    side: Option<&'static str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    of: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    reason: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    kind: Option<&'a str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    motion: Option<String>,
+    #[serde(flatten)]
+    detail: Detail,
+}
+
+/// What is known of a point beside its place.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Detail {
+    Missing {
+        reason: String,
+    },
+    Value {
+        closing_speed: f64,
+    },
+    ClosedForm {
+        closing_speed: f64,
+        phase_at_impact_rad: f64,
+        existence: Existence,
+        ends_stability: bool,
+    },
+    Followed {
+        closing_speed: f64,
+        side: &'static str,
+    },
+    Resting {
+        closing_speed: f64,
+        side: &'static str,
+        of: String,
+    },
+}
+
+/// The first point with the boundary's name, the further ones under `others`.
+#[derive(Serialize)]
+struct Rows<'a> {
+    #[serde(flatten)]
+    first: Row,
+    kind: &'a str,
+    motion: String,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    others: Vec<Row<'a>>,
+    others: Vec<Row>,
 }
 
 impl Answer<'_> {
     /// One object on one line.
     fn json(&self) -> Result<String, Failure> {
         let mut rows = self.points.iter().map(|point| self.row(point));
-        let first = rows.next().unwrap_or_else(|| {
-            let (eta, rho) = match self.query.at {
-                At::FrequencyRatio(eta) => (Some(eta), None),
-                At::Clearance(rho) => (None, Some(rho)),
-            };
-            let reason = Some(self.none());
-            Row {
-                rho,
-                eta,
-                reason,
-                ..Row::default()
-            }
-        });
-        let row = Row {
-            kind: Some(self.name),
-            motion: Some(self.motion()),
+        let rows = Rows {
+            first: rows.next().unwrap_or_else(|| self.missing()),
+            kind: self.name,
+            motion: self.motion(),
             others: rows.collect(),
-            ..first
         };
-        let text = serde_json::to_string(&row)
+        let text = serde_json::to_string(&rows)
             .map_err(|e| Failure::new(e.to_string(), "please report it with the command line"))?;
         Ok(format!("{text}\n"))
     }
 
-    fn row(&self, point: &Point) -> Row<'static> {
-        let side = |upper: bool| Some(if upper { "high" } else { "low" });
-        let row = Row {
-            rho: Some(point.rho()),
-            valid: point.is_valid(),
-            eta: Some(point.eta()),
-            closing_speed: Some(0.0),
-            ..Row::default()
+    fn missing(&self) -> Row {
+        let (eta, rho) = match self.query.at {
+            At::FrequencyRatio(eta) => (Some(eta), None),
+            At::Clearance(rho) => (None, Some(rho)),
         };
-        match *point {
-            Point::Value { .. } => row,
-            Point::ClosedForm(p) => Row {
-                closing_speed: Some(p.approach_speed),
-                phase_at_impact_rad: Some(p.phase),
-                existence: Some(p.existence),
-                ends_stability: Some(p.ends_stability),
-                ..row
+        let reason = self.none();
+        Row {
+            rho,
+            valid: false,
+            eta,
+            detail: Detail::Missing { reason },
+        }
+    }
+
+    fn row(&self, point: &Point) -> Row {
+        let side = |upper: bool| if upper { "high" } else { "low" };
+        let detail = match *point {
+            Point::Value { .. } => Detail::Value { closing_speed: 0.0 },
+            Point::ClosedForm(p) => Detail::ClosedForm {
+                closing_speed: p.approach_speed,
+                phase_at_impact_rad: p.phase,
+                existence: p.existence,
+                ends_stability: p.ends_stability,
             },
             Point::Followed {
                 approach_speed,
                 upper,
                 ..
-            } => Row {
-                closing_speed: Some(approach_speed),
+            } => Detail::Followed {
+                closing_speed: approach_speed,
                 side: side(upper),
-                ..row
             },
-            Point::Resting { upper, .. } => Row {
+            Point::Resting { upper, .. } => Detail::Resting {
+                closing_speed: 0.0,
                 side: side(upper),
-                of: Some(format!("{}/{}j", self.query.p, self.query.n)),
-                ..row
+                of: format!("{}/{}j", self.query.p, self.query.n),
             },
+        };
+        Row {
+            rho: Some(point.rho()),
+            valid: point.is_valid(),
+            eta: Some(point.eta()),
+            detail,
         }
     }
 

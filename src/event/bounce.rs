@@ -91,3 +91,32 @@ fn candidate(velocity: &Series, falls: &[(usize, usize)], index: usize) -> Optio
         dead_samples: 0.0,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_bounces_of_two_samples_are_found_between_straight_flights() {
+        // Flights of 40 samples from −0.4 by 0.02 per sample, one sample of contact at 0 between.
+        let value = |i: usize| match i % 41 {
+            40 => 0.0,
+            k => -0.4 + 0.02 * k as f64,
+        };
+        let velocity = Series::clean((0..164).map(value).collect());
+        let found = find(&velocity);
+        assert_eq!(found.len(), 3);
+        // Falls from sample 39 to 41; the neighbours 38 and 42 bound the jump.
+        let jump = found[0].jump;
+        assert_eq!((jump.left, jump.gap), (38, 4));
+        // At sample 40 the flight before reaches 0.4, the one after starts at −0.42.
+        assert!((jump.height + 0.82).abs() < 1e-9, "{}", jump.height);
+        assert_eq!(found[2].jump.left, 120);
+    }
+
+    #[test]
+    fn valid_flights_without_a_fall_hold_no_bounce() {
+        let climbing = Series::clean((0..80).map(|i| 0.02 * f64::from(i) - 0.4).collect());
+        assert!(find(&climbing).is_empty());
+    }
+}

@@ -62,3 +62,31 @@ fn shift(body: &Body, step_s: f64) -> Option<Shift> {
         speeds_m_s,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::event::kinematics::RigKind;
+    use crate::record::Record;
+
+    #[test]
+    fn valid_the_shift_of_a_sine_is_its_displacement_times_the_corner() {
+        // v = sin ωt over whole periods: displacement −cos(ωt)/ω, so the shift is −(ω_c/ω) cos ωt.
+        let (rate_hz, frequency_hz, corner_hz) = (2000.0, 10.0, 0.5);
+        let angle = |i: f64| std::f64::consts::TAU * frequency_hz * i / rate_hz;
+        let values: Vec<f64> = (0..2000).map(|i| angle(f64::from(i)).sin()).collect();
+        let mut kinematics = Kinematics::of(
+            &Record::of(rate_hz, &[(Role::VelocityX, &values)]),
+            RigKind::Single,
+        );
+        assert!(Shifts::of(&kinematics).at(700.0)[0].is_none());
+        kinematics.x.velocity.as_mut().unwrap().high_pass_hz = Some(corner_hz);
+        let shifts = Shifts::of(&kinematics);
+        for time in [300.0, 450.5, 1234.25] {
+            let [of_x, of_y] = shifts.at(time);
+            let want = -corner_hz / frequency_hz * angle(time).cos();
+            assert!((of_x.unwrap().speed_m_s - want).abs() < 2e-5, "{time}");
+            assert!(of_y.is_none());
+        }
+    }
+}

@@ -75,6 +75,42 @@ pub struct Detection {
 ///
 /// Impacts come from the contact channel and from jumps of the approach velocity, fused; a record
 /// without any velocity gives impacts without speeds. No parameter of the model enters.
+///
+/// A mass against a stop whose velocity climbs from −1 to 1 m/s and turns every 0.1 s:
+///
+/// ```
+/// use impactid::event::{DetectSettings, RigKind, detect};
+/// use impactid::record::{Channel, Excitation, Record, Role, Setting, Sweep};
+/// use labfiles::units::Dimension;
+///
+/// let values = (0..800).map(|i| (i % 100) as f64 / 49.5 - 1.0).collect();
+/// let record = Record {
+///     id: "r1".into(),
+///     sample_rate_hz: 1000.0,
+///     channels: vec![Channel {
+///         role: Role::VelocityX,
+///         name: "v".into(),
+///         dimension: Dimension::Velocity,
+///         values,
+///         high_pass_hz: None,
+///         threshold: None,
+///     }],
+///     setting: Setting {
+///         stated_frequency_hz: None,
+///         clearance_m: None,
+///         sweep: Sweep::Unknown,
+///         drive_amplitude: 1.0,
+///         sequence: 0,
+///         specimen: None,
+///         excitation: Excitation::Harmonic,
+///     },
+///     flags: Vec::new(),
+/// };
+/// let found = detect(&record, RigKind::Single, &DetectSettings::default());
+/// assert_eq!(found.impacts.len(), 7);
+/// assert!((found.impacts[0].time_s - 0.0995).abs() < 1e-4);
+/// assert!((found.impacts[0].approach_speed_before_m_s.unwrap() - 1.01).abs() < 1e-3);
+/// ```
 pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detection {
     let (drive, mut flags) = drive::measure(record, settings.drive_tolerance);
     let mut kinematics = Kinematics::of(record, rig);
@@ -388,4 +424,77 @@ fn wrong_way(found: &Fused, record: &Record) -> Option<Flag> {
              mass",
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A velocity that climbs from −1 to 1 within 100 samples and falls back at 99.5, 199.5, …
+    fn sawtooth(samples: usize) -> Vec<f64> {
+        let value = |i: usize| (i % 100) as f64 / 49.5 - 1.0;
+        (0..samples).map(value).collect()
+    }
+
+    fn pulse(first: usize, last: usize) -> Closed {
+        Closed {
+            first,
+            last,
+            pulses: 1,
+        }
+    }
+
+    #[test]
+    fn valid_a_pulse_belongs_to_the_jump_within_its_reach() {
+        let velocity = Series::clean(sawtooth(400));
+        let closed = [pulse(100, 102), pulse(245, 247)];
+        let found = fuse(&velocity, &closed, 8, 10);
+        let sources: Vec<_> = found.candidates.iter().map(|c| c.source).collect();
+        use DetectionSource::{Both, Velocity};
+        assert_eq!(sources, [Both, Velocity, Velocity]);
+        assert_eq!((found.missed, found.unsupported), (2, 1));
+        assert_eq!((found.upward, found.downward), (0, 3));
+        assert_eq!(found.candidates[0].jump.left, 99);
+        assert!(found.candidates.iter().all(|c| c.dead_samples == 0.0));
+    }
+
+    #[test]
+    fn valid_a_long_pulse_is_a_dead_zone_that_ends_at_the_next_jump() {
+        let velocity = Series::clean(sawtooth(400));
+        let found = fuse(&velocity, &[pulse(100, 120), pulse(200, 330)], 8, 10);
+        let dead: Vec<f64> = found.candidates.iter().map(|c| c.dead_samples).collect();
+        // From the jump's left sample 99 to 120; from 199 to the next jump at 299.
+        assert_eq!(dead[..2], [21.0, 100.0]);
+    }
+
+    #[test]
+    fn valid_without_velocity_the_pulses_alone_are_impacts() {
+        let mut contact = vec![0.0; 400];
+        contact[50..53].fill(5.0);
+        contact[150..190].fill(5.0);
+        let record = Record::of(1000.0, &[(Role::Contact, &contact)]);
+        let found = detect(&record, RigKind::Double, &DetectSettings::default());
+        assert_eq!(found.impacts.len(), 2);
+        // The contact closed between samples 49 and 50.
+        assert!((found.impacts[0].time_s - 0.0495).abs() < 1e-12);
+        assert_eq!(found.impacts[0].source, DetectionSource::Contact);
+        assert_eq!(found.impacts[0].approach_speed_before_m_s, None);
+        assert_eq!(found.impacts[0].dead_zone_s, 0.0);
+        assert!((found.impacts[1].dead_zone_s - 0.040).abs() < 1e-12);
+        assert!((found.closed_fraction - 43.0 / 400.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn valid_a_velocity_of_the_wrong_sign_is_flagged() {
+        let wrong: Vec<f64> = sawtooth(800).iter().map(|v| -v).collect();
+        let record = Record::of(1000.0, &[(Role::VelocityX, &wrong)]);
+        let found = detect(&record, RigKind::Single, &DetectSettings::default());
+        assert_eq!(found.flags[0].code, FlagCode::JumpsPointTheWrongWay);
+        assert!(found.flags[0].excludes);
+        let right = sawtooth(800);
+        let record = Record::of(1000.0, &[(Role::VelocityX, &right)]);
+        let found = detect(&record, RigKind::Single, &DetectSettings::default());
+        assert!(found.flags.is_empty());
+        assert_eq!(found.impacts.len(), 7);
+    }
 }

@@ -104,3 +104,65 @@ fn strobed_slope(values: &[f64], period: f64) -> f64 {
         .collect();
     robust::median(&differences).unwrap_or(0.0) / period
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Flights of 20.3 samples, each a line from −1 to 1, so that its mean is zero.
+    const FLIGHT: f64 = 20.3;
+
+    fn flights() -> (Vec<f64>, Vec<f64>) {
+        let value = |i: usize| 2.0 * (i as f64 / FLIGHT).fract() - 1.0;
+        let times = (1..10).map(|k| FLIGHT * f64::from(k)).collect();
+        ((0..210).map(value).collect(), times)
+    }
+
+    #[test]
+    fn valid_the_integral_of_a_line_is_exact_between_any_instants() {
+        let line: Vec<f64> = (0..20).map(|i| 3.0 + 2.0 * f64::from(i)).collect();
+        // ∫ 3 + 2t from 2.25 to 9.5 = 3 · 7.25 + 9.5² − 2.25² = 106.9375.
+        assert!((integral(&line, 2.25, 9.5).unwrap() - 106.9375).abs() < 1e-12);
+        assert_eq!(integral(&line, 2.25, 20.0), None);
+        assert_eq!(integral(&line, 2.2, 3.8), None);
+    }
+
+    #[test]
+    fn valid_offset_and_ramp_between_impacts_are_removed() {
+        let (clean, times) = flights();
+        let mut velocity = Series::clean(clean.iter().map(|v| v + 0.3).collect());
+        remove_drift(&mut velocity, &times, None, 2000.0);
+        let worst = |v: &[f64]| {
+            let apart = v.iter().zip(&clean).map(|(a, b)| (a - b).abs());
+            apart.fold(0.0, f64::max)
+        };
+        assert!(worst(&velocity.values) < 1e-12);
+        // A ramp is looked for only if a high-pass was undone.
+        let drifted = clean
+            .iter()
+            .enumerate()
+            .map(|(i, v)| v + 0.3 - 2e-3 * i as f64);
+        let mut velocity = Series::clean(drifted.collect());
+        velocity.high_pass_hz = Some(0.5);
+        remove_drift(&mut velocity, &times, None, 2000.0);
+        assert!(worst(&velocity.values) < 1e-12);
+    }
+
+    #[test]
+    fn valid_without_impacts_whole_drive_periods_give_the_offset() {
+        let drive = DriveTone {
+            frequency_hz: 20.0,
+            frequency_error_hz: 0.0,
+            amplitude: 1.0,
+            phase_rad: 0.0,
+            residual_ratio: 0.0,
+        };
+        // 2.5 periods of 100 samples: the plain mean would be off by the half period.
+        let tone = |i: usize| (std::f64::consts::TAU * i as f64 / 100.0).sin();
+        let mut velocity = Series::clean((0..250).map(|i| tone(i) + 0.7).collect());
+        remove_drift(&mut velocity, &[], Some(&drive), 2000.0);
+        for i in [0, 60, 240] {
+            assert!((velocity.values[i] - tone(i)).abs() < 1e-3, "{i}");
+        }
+    }
+}

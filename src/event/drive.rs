@@ -98,3 +98,56 @@ fn contradiction(
         .excluding(false)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tone(frequency_hz: f64, phase_rad: f64) -> impl Fn(usize) -> f64 {
+        move |i| (std::f64::consts::TAU * frequency_hz * i as f64 / 2000.0 + phase_rad).cos()
+    }
+
+    fn record(of: impl Fn(usize) -> f64) -> Record {
+        let values: Vec<f64> = (0..2000).map(of).collect();
+        Record::of(2000.0, &[(Role::Drive, &values)])
+    }
+
+    #[test]
+    fn valid_the_tone_is_measured_and_gives_phases() {
+        let clean = tone(12.6, 0.4);
+        let (found, flags) = measure(&record(|i| 2.0 * clean(i)), 5e-3);
+        let drive = found.unwrap();
+        assert!(flags.is_empty());
+        assert!((drive.frequency_hz - 12.6).abs() < 1e-8);
+        assert!((drive.amplitude - 2.0).abs() < 1e-8);
+        // A quarter period after the first sample the phase is 0.4 + π/2.
+        let quarter = drive.phase_at(0.25 * drive.period_s());
+        assert!((quarter - 0.4 - std::f64::consts::FRAC_PI_2).abs() < 1e-7);
+    }
+
+    #[test]
+    fn valid_a_frequency_in_another_unit_is_named() {
+        let mut stated = record(tone(12.6, 0.0));
+        stated.setting.stated_frequency_hz = Some(12.6 * std::f64::consts::TAU);
+        let (found, flags) = measure(&stated, 5e-3);
+        assert!(found.is_some());
+        assert_eq!(flags[0].code, FlagCode::DriveFrequencyContradicts);
+        assert!(
+            flags[0].message.contains("between Hz and rad/s"),
+            "{}",
+            flags[0].message
+        );
+        assert!(!flags[0].excludes);
+        stated.setting.stated_frequency_hz = Some(12.62);
+        assert!(measure(&stated, 5e-3).1.is_empty());
+    }
+
+    #[test]
+    fn valid_two_equal_tones_are_no_drive() {
+        let (low, high) = (tone(12.6, 0.0), tone(47.0, 0.0));
+        let (found, flags) = measure(&record(|i| low(i) + high(i)), 5e-3);
+        assert_eq!(found, None);
+        assert_eq!(flags[0].code, FlagCode::DriveNotHarmonic);
+        assert!(measure(&Record::of(2000.0, &[]), 5e-3).1.is_empty());
+    }
+}

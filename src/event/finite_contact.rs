@@ -39,7 +39,7 @@ const LATEST: f64 = 1.0;
 /// With u'' + 2ζω u' + ω² u = 0 from u = 0 until the press ends, ω√(1−ζ²)T = φ = π − 2α and
 /// ζ = sin α, where R = e^{−κ}, κ = φ tan α.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ContactProfile {
+pub(super) struct ContactProfile {
     restitution: f64,
     decay: f64,
     angle: f64,
@@ -47,7 +47,7 @@ pub struct ContactProfile {
 
 impl ContactProfile {
     /// The profile for R; it is that of R = 0.15 below (a linear contact has R > 0.135).
-    pub fn new(restitution: f64) -> Self {
+    pub(super) fn new(restitution: f64) -> Self {
         let restitution = restitution.clamp(0.15, 1.0);
         let decay = -restitution.ln();
         let (mut low, mut high) = (0.0, std::f64::consts::FRAC_PI_2);
@@ -67,7 +67,7 @@ impl ContactProfile {
     }
 
     /// Share of the change of velocity that is done at a share of the duration.
-    pub fn done(&self, share: f64) -> f64 {
+    pub(super) fn done(&self, share: f64) -> f64 {
         if share <= 0.0 {
             return 0.0;
         }
@@ -80,20 +80,20 @@ impl ContactProfile {
     }
 
     /// Share of the duration by which the mean instant of the impulse follows first touch.
-    pub fn centre(&self) -> f64 {
+    pub(super) fn centre(&self) -> f64 {
         (self.restitution + self.drift()) / (1.0 + self.restitution)
     }
 
     /// Change of the speed at the end of contact by a constant acceleration that acts beside the
     /// contact, over what it would be without the contact's spring: R sin φ/φ.
-    pub fn drift(&self) -> f64 {
+    pub(super) fn drift(&self) -> f64 {
         self.restitution * self.angle.sin() / self.angle
     }
 }
 
 /// How long the impacts of a record last, and how late each velocity shows them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FiniteContact {
+pub(super) struct FiniteContact {
     /// Duration, samples; zero if it is not told from an instant.
     pub duration: f64,
     /// Delay of each body's velocity against the kink of the displacement, samples.
@@ -104,7 +104,7 @@ pub struct FiniteContact {
 
 impl FiniteContact {
     /// Start and end of a contact whose centre is at a time, in samples, without delays.
-    pub fn span(&self, time: f64) -> (f64, f64) {
+    pub(super) fn span(&self, time: f64) -> (f64, f64) {
         let centre = self.profile.centre();
         (
             time - centre * self.duration,
@@ -113,7 +113,7 @@ impl FiniteContact {
     }
 
     /// Candidates whose jumps span all samples that a contact may touch.
-    pub fn spanned(&self, candidates: &[Candidate], instants: &[Instant]) -> Vec<Candidate> {
+    pub(super) fn spanned(&self, candidates: &[Candidate], instants: &[Instant]) -> Vec<Candidate> {
         let [first, last] = [
             self.delays[0].min(self.delays[1]).min(0.0),
             self.delays[0].max(self.delays[1]).max(0.0),
@@ -147,7 +147,7 @@ struct Passage {
 
 /// How long the impacts of a record last; `None` if they are instants, or if nothing shows it
 /// (it takes measured velocity and displacement).
-pub fn measure(
+pub(super) fn measure(
     kinematics: &Kinematics,
     candidates: &[Candidate],
     arc: ArcFit,
@@ -338,7 +338,7 @@ impl Search {
 
 /// Replace the samples that a contact touches by the flights on either side of its centre, as if
 /// the impact were an instant: integrals over the velocities are right then.
-pub fn bridge(
+pub(super) fn bridge(
     kinematics: &mut Kinematics,
     candidates: &[Candidate],
     instants: &[Instant],

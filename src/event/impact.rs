@@ -48,7 +48,8 @@ pub struct Impact {
     /// Approach speed before the impact (x' + y'; for one mass x'), m/s, positive.
     #[serde(rename = "closing_speed_before_m_s")]
     pub approach_speed_before_m_s: Option<f64>,
-    /// Approach speed after the impact, m/s: minus the separation speed, so negative while the bodies separate.
+    /// Approach speed after the impact, m/s: minus the separation speed, so negative while the
+    /// bodies separate.
     #[serde(rename = "closing_speed_after_m_s")]
     pub approach_speed_after_m_s: Option<f64>,
     /// Standard error of either approach speed, m/s.
@@ -83,4 +84,26 @@ pub struct CornerShift {
     pub role: Role,
     /// m/s, toward each other.
     pub speed_m_s: f64,
+}
+
+#[cfg(test)]
+impl Impact {
+    /// An impact of a time and an approach speed; nothing else is known.
+    pub(crate) fn at(time_s: f64, approach_speed_m_s: f64) -> Self {
+        Self {
+            time_s,
+            time_error_s: 1e-5,
+            drive_phase_rad: None,
+            approach_speed_before_m_s: Some(approach_speed_m_s),
+            approach_speed_after_m_s: None,
+            speed_error_m_s: None,
+            x: None,
+            y: None,
+            corner_shifts: [None, None],
+            dead_zone_s: 0.0,
+            contact_duration_s: None,
+            external_push_m_s: None,
+            source: DetectionSource::Both,
+        }
+    }
 }

@@ -275,7 +275,7 @@ fn quiet_deviation(scan: &[f64]) -> f64 {
     if sizes.is_empty() {
         return 0.0;
     }
-    // A quarter of a normal distribution lies within 0.3186 deviations of its centre.
+    // A quarter of a normal distribution is within 0.3186 deviations of its centre.
     *sizes.select_nth_unstable_by(quarter, f64::total_cmp).1 / 0.3186
 }
 
@@ -291,4 +291,63 @@ fn one_sided_weights(count: usize, ahead: f64) -> (Vec<f64>, f64) {
         .collect();
     let factor = weights.iter().map(|w| w * w).sum::<f64>().sqrt();
     (weights, factor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A line of slope 0.01 per sample that steps by `height` after sample 50, over `gap` samples.
+    fn stepped(height: f64, gap: usize) -> Series {
+        let share = |i: usize| (i.saturating_sub(50) as f64 / gap as f64).min(1.0);
+        Series::clean(
+            (0..120)
+                .map(|i| 0.01 * i as f64 + height * share(i))
+                .collect(),
+        )
+    }
+
+    #[test]
+    fn valid_a_step_between_two_lines_is_found_with_its_height() {
+        let velocity = stepped(-0.8, 1);
+        let found = JumpSearch::new(&velocity, 8).find();
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].left, found[0].gap), (50, 1));
+        assert_eq!(found[0].middle(), 50.5);
+        // Both lines, extrapolated to sample 50.5, differ by the step and the slope over no time.
+        assert!((found[0].height + 0.8).abs() < 1e-9, "{}", found[0].height);
+        assert!(found[0].significance() > SIGNIFICANT);
+    }
+
+    #[test]
+    fn valid_a_step_over_three_samples_is_measured_over_its_gap() {
+        let velocity = stepped(-0.9, 3);
+        let search = JumpSearch::new(&velocity, 8);
+        let found = search.find();
+        assert_eq!((search.gap, found.len(), found[0].left), (3, 1, 50));
+        assert!((found[0].height + 0.9).abs() < 1e-9, "{}", found[0].height);
+    }
+
+    #[test]
+    fn valid_a_step_counts_once_and_with_its_direction() {
+        for (height, counted) in [(0.8, (1, 0)), (-0.8, (0, 1))] {
+            let velocity = stepped(height, 1);
+            assert_eq!(JumpSearch::new(&velocity, 8).directions(), counted);
+        }
+    }
+
+    #[test]
+    fn valid_a_step_within_the_noise_is_found_only_with_support() {
+        // The step is 4 standard errors of its height: too few alone, enough beside a pulse.
+        let flat = stepped(0.0, 1);
+        let error = JumpSearch::new(&flat, 8)
+            .measure(50, &[], f64::NEG_INFINITY)
+            .unwrap()
+            .error;
+        let velocity = stepped(-4.0 * error, 1);
+        let search = JumpSearch::new(&velocity, 8);
+        assert!(search.find().is_empty());
+        let near = search.near(48, 52, &[], SUPPORTED).unwrap();
+        assert_eq!(near.left, 50);
+    }
 }

@@ -307,3 +307,80 @@ fn combined(
         _ => (None, None),
     }
 }
+
+#[cfg(test)]
+impl Series {
+    /// A velocity of mass x with a noise of 1e-3 that never passed a high-pass.
+    pub(super) fn clean(values: Vec<f64>) -> Self {
+        Self {
+            role: Role::VelocityX,
+            values,
+            noise: 1e-3,
+            high_pass_hz: None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Record;
+
+    fn sine(samples: usize, step: f64) -> Vec<f64> {
+        (0..samples).map(|i| (step * i as f64).sin()).collect()
+    }
+
+    #[test]
+    fn valid_the_relative_motion_of_two_masses_is_their_sum() {
+        let x = sine(200, 0.1);
+        let y: Vec<f64> = sine(200, 0.1).iter().map(|v| 2.0 * v).collect();
+        let record = Record::of(2000.0, &[(Role::VelocityX, &x), (Role::VelocityY, &y)]);
+        let both = Kinematics::of(&record, RigKind::Double);
+        let velocity = both.relative.velocity.unwrap();
+        assert!(
+            velocity
+                .values
+                .iter()
+                .zip(&x)
+                .all(|(u, x)| (u - 3.0 * x).abs() < 1e-12)
+        );
+        assert_eq!(both.relative_from, Some(RelativeSource::Both));
+        // One mass against a stop moves alone; one measured mass of two counts twice.
+        let record = Record::of(2000.0, &[(Role::VelocityX, &x)]);
+        let one = Kinematics::of(&record, RigKind::Single);
+        assert_eq!(one.relative.velocity.unwrap().values, x);
+        let doubled = Kinematics::of(&record, RigKind::Double);
+        assert_eq!(doubled.relative.velocity.unwrap().values[7], 2.0 * x[7]);
+        assert_eq!(doubled.relative_from, Some(RelativeSource::Doubled));
+    }
+
+    #[test]
+    fn valid_a_displacement_is_differentiated_and_an_acceleration_integrated() {
+        // x = t² at 100 Hz: the central difference of a parabola is exact, 2t.
+        let parabola: Vec<f64> = (0..50).map(|i| (f64::from(i) / 100.0).powi(2)).collect();
+        let record = Record::of(100.0, &[(Role::DisplacementX, &parabola)]);
+        let velocity = Kinematics::of(&record, RigKind::Single).x.velocity.unwrap();
+        assert!((velocity.values[10] - 0.2).abs() < 1e-12);
+        // a = 3 from t = 0: v = 3t without its mean, which integration loses.
+        let mut constant = vec![3.0; 51];
+        constant[50] = 3.0 + 1e-9;
+        let record = Record::of(100.0, &[(Role::AccelerationX, &constant)]);
+        let velocity = Kinematics::of(&record, RigKind::Single).x.velocity.unwrap();
+        assert!((velocity.values[40] - velocity.values[10] - 0.9).abs() < 1e-9);
+        assert_eq!(velocity.high_pass_hz, Some(0.0));
+    }
+
+    #[test]
+    fn valid_a_jump_off_the_middle_of_its_interval_shifts_all_later_samples() {
+        // ω_c = 2π/s, jump from 1 to −1 at a quarter of the interval 10…11, 100 samples per s:
+        // 2π · 2 · (0.25 − 0.5)/100 = −π/100.
+        let mut series = Series {
+            high_pass_hz: Some(1.0),
+            ..Series::clean(vec![0.0; 20])
+        };
+        series.correct_jump(10.25, 1.0, -1.0, 100.0);
+        assert_eq!(series.values[10], 0.0);
+        assert!((series.values[11] + std::f64::consts::PI / 100.0).abs() < 1e-15);
+        assert_eq!(series.values[11], series.values[19]);
+    }
+}

@@ -1,5 +1,8 @@
 //! Impacts of a record, from the contact channel and from velocity jumps, and the drive's tone that
 //! gives their phase. This module uses no parameter of the model.
+//!
+//! Times become sample indices by `as usize`, which saturates (negative and NaN give 0); an index is
+//! bounded by the number of samples before it is used.
 
 mod bounce;
 mod contact;

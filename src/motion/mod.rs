@@ -1,5 +1,8 @@
 //! Types of motion z = p/n (p impacts in n drive periods), each with its evidence. This module uses
 //! no parameter of the model.
+//!
+//! Times become sample indices by `as usize`, which saturates (negative and NaN give 0); an index is
+//! bounded by the number of samples before it is used.
 
 mod aperiodic;
 mod bracket;

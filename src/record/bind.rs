@@ -1,5 +1,5 @@
-//! Channels found in a dataset: which one serves a role, in which unit, and how its numbers
-//! become SI. All of it from metadata, before a sample is read.
+//! Channels of a dataset: which one has a role, in which unit, and how its numbers become SI. From
+//! metadata alone, before a sample is read.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ use labfiles::{ChannelInfo, DatasetInfo};
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ChannelKey {
-    /// By name; a name without its group serves where only one channel ends so.
+    /// By name; a name without its group is accepted if only one channel ends with it.
     Name(String),
     /// By index in the dataset, from 0.
     Index(usize),
@@ -26,7 +26,7 @@ impl ChannelKey {
         }
     }
 
-    /// Index of the channel in a dataset; `None` where it has none such, or several.
+    /// Index of the channel in a dataset; `None` if it has none, or several.
     pub fn find(&self, dataset: &DatasetInfo) -> Option<usize> {
         match self {
             Self::Index(index) => (*index < dataset.channels.len()).then_some(*index),
@@ -65,7 +65,7 @@ pub struct ChannelSetup {
     pub source: ChannelKey,
     /// Unit of the numbers in the file; `None`: as the file states.
     pub unit: Option<Unit>,
-    /// What the numbers stand for.
+    /// Scale from the numbers to the measured quantity.
     pub scale: Scale,
     /// Value at rest, SI of the file's unit; subtracted before the scale.
     pub offset: f64,
@@ -83,7 +83,7 @@ pub struct ChannelSetup {
     pub threshold: Option<Quantity>,
     /// Greatest magnitude the converter gives, SI of the file's unit.
     pub range: Option<f64>,
-    /// Believe `unit` where the file states another.
+    /// Use `unit` although the file states another.
     pub ignore_file_unit: bool,
     /// What recorded it, in words.
     #[serde(default)]
@@ -127,7 +127,7 @@ pub struct Bound {
 /// Find a role's channel in a dataset and settle its conversion, from metadata alone.
 ///
 /// # Errors
-/// The [`Flag`] that says why the channel cannot be used.
+/// A [`Flag`] with the reason why the channel cannot be used.
 pub fn bind(setup: &ChannelSetup, dataset: &DatasetInfo) -> Result<Bound, Flag> {
     let index = setup
         .source
@@ -181,7 +181,7 @@ fn missing(setup: &ChannelSetup, dataset: &DatasetInfo) -> Flag {
     )
 }
 
-/// The unit of the numbers in the file: as stated there, or as the set-up says.
+/// The unit of the numbers in the file: as stated there, or in the set-up.
 fn settle_unit(setup: &ChannelSetup, info: &ChannelInfo) -> Result<Unit, Flag> {
     let stated = info.unit.as_deref().filter(|u| !u.trim().is_empty());
     let known = stated.and_then(units::parse_unit);
@@ -211,8 +211,8 @@ fn contradicts(setup: &ChannelSetup, info: &ChannelInfo, ours: Unit) -> Flag {
             info.name
         ),
         &format!(
-            "set unit = \"{stated}\" in [channels.{}], or ignore_file_unit = true where the \
-             file is wrong",
+            "set unit = \"{stated}\" in [channels.{}], or ignore_file_unit = true if the file \
+             is wrong",
             setup.role.name()
         ),
     )
@@ -244,7 +244,7 @@ fn unfit_scale(setup: &ChannelSetup, info: &ChannelInfo, unit: Unit) -> Flag {
             unit.dimension.name()
         ),
         &format!(
-            "mend scale or unit in [channels.{role}]: scale = \"50 mm/s per V\", unit = \"V\""
+            "correct scale or unit in [channels.{role}]: scale = \"50 mm/s per V\", unit = \"V\""
         ),
     )
 }
@@ -258,7 +258,7 @@ fn check_dimension(setup: &ChannelSetup, info: &ChannelInfo, found: Dimension) -
             role.name(),
             found.name()
         );
-        let remedy = format!("mend unit and scale in [channels.{}]", role.name());
+        let remedy = format!("correct unit and scale in [channels.{}]", role.name());
         Err(flag(setup, &info.name, FlagCode::WrongUnit, what, &remedy))
     };
     match role.dimension() {
@@ -275,7 +275,7 @@ fn check_dimension(setup: &ChannelSetup, info: &ChannelInfo, found: Dimension) -
     }
 }
 
-/// Which dimensions serve for the roles that take several.
+/// Whether a role that accepts several dimensions accepts this one.
 fn serves(role: Role, found: Dimension) -> bool {
     use Dimension::{Acceleration, Force, Length, Number, Velocity, Voltage};
     match role {

@@ -17,9 +17,9 @@ pub struct RecordSetup<'a> {
     pub dataset: usize,
     /// The channels by role.
     pub channels: &'a [ChannelSetup],
-    /// The channel with the time, where the file's reader cannot tell.
+    /// The channel with the time, if the file's reader cannot find it.
     pub time: Option<&'a ChannelKey>,
-    /// Samples per second, Hz, for files that do not tell.
+    /// Samples per second, Hz, for files that do not state it.
     pub sample_rate_hz: Option<f64>,
     /// The setting as the laboratory states it.
     pub setting: &'a Setting,
@@ -36,7 +36,7 @@ pub fn unreadable(id: &str, setting: &Setting, error: &ReadError) -> Record {
     record
 }
 
-/// What a reader says, as a flag of the record; the file is named beside it.
+/// A reader's error as a flag of the record; the caller names the file.
 pub fn read_flag(error: &ReadError) -> Flag {
     let place = match &error.channel {
         Some(channel) => format!("channel '{channel}': "),
@@ -66,6 +66,47 @@ fn empty(id: &str, setting: &Setting) -> Record {
 
 /// Read one dataset and calibrate it. Never fails: what is wrong becomes a flag of the record,
 /// and a channel that cannot be used is left out.
+///
+/// ```
+/// use impactid::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
+/// use impactid::record::{Excitation, Role, Setting, Sweep};
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("run.csv");
+/// let rows: String = (0..200)
+///     .map(|i| format!("{},{}\n", f64::from(i) / 2000.0, (0.1 * f64::from(i)).sin()))
+///     .collect();
+/// std::fs::write(&path, format!("time [s],v [mm/s]\n{rows}"))?;
+/// let source = labfiles::open::open(&path)?;
+/// let setting = Setting {
+///     stated_frequency_hz: None,
+///     clearance_m: None,
+///     sweep: Sweep::Unknown,
+///     drive_amplitude: 1.0,
+///     sequence: 0,
+///     specimen: None,
+///     excitation: Excitation::Harmonic,
+/// };
+/// let channels = [ChannelSetup::plain(Role::VelocityX, ChannelKey::Name("v".into()))];
+/// let record = calibrate(
+///     source.as_ref(),
+///     &RecordSetup {
+///         id: "run",
+///         dataset: 0,
+///         channels: &channels,
+///         time: None,
+///         sample_rate_hz: None,
+///         setting: &setting,
+///         driven: false,
+///         skip_s: 0.0,
+///     },
+/// );
+/// assert!(record.flags.is_empty());
+/// assert!((record.sample_rate_hz - 2000.0).abs() < 1e-6);
+/// let velocity = record.values(Role::VelocityX).unwrap();
+/// assert!((velocity[10] - 1e-3 * 1f64.sin()).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
     let mut record = empty(setup.id, setup.setting);
     let Some(dataset) = source.datasets().get(setup.dataset) else {
@@ -114,7 +155,7 @@ fn no_dataset(source: &dyn Source, index: usize) -> Flag {
     )
 }
 
-/// The time axis in s; `None` where it holds no real numbers.
+/// The time axis in s; `None` if it holds no real numbers.
 fn seconds(samples: Option<Samples>, dataset: &DatasetInfo, index: usize) -> Option<Vec<f64>> {
     let Some(Samples::Real(mut times)) = samples else {
         return None;
@@ -222,13 +263,13 @@ fn settle_rate(
         None => record.flags.push(Flag::new(
             FlagCode::NoSampleRate,
             None,
-            "neither a time axis nor a sample rate tells when the samples were taken",
+            "neither a time axis nor a sample rate states when the samples were taken",
             "write sample_rate = \"2 kHz\" or time = \"…\" in [records]",
         )),
     }
 }
 
-/// The rate that the file states for the channels; a flag where they differ.
+/// The rate that the file states for the channels; a flag if they differ.
 fn stated_rate(record: &mut Record, dataset: &DatasetInfo, bound: &[BoundRole<'_>]) -> Option<f64> {
     let rates = bound.iter().filter_map(|(_, b)| {
         let info = &dataset.channels[b.index];

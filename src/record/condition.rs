@@ -43,7 +43,7 @@ pub(super) fn equal_lengths(record: &mut Record, times: Option<&mut Vec<f64>>) {
     record.flags.push(found);
 }
 
-/// Cut samples off both ends where a channel has no value there (exports often pad so).
+/// Cut samples off both ends if a channel has no value there (exports often pad so).
 pub(super) fn trim_missing(record: &mut Record, times: Option<&mut Vec<f64>>) {
     let samples = record.samples();
     if samples == 0 {
@@ -94,7 +94,7 @@ fn trimmed(channel: Option<String>, cut: usize) -> Flag {
         FlagCode::Trimmed,
         channel.as_deref(),
         format!("{cut} samples without a value at the ends are cut off"),
-        "nothing, where the export pads its ends so",
+        "nothing, if the export pads its ends so",
     )
     .excluding(false)
 }
@@ -104,7 +104,7 @@ fn keep(values: &mut Vec<f64>, first: usize, last: usize) {
     values.drain(..first);
 }
 
-/// Look at every channel: values that are no numbers, dead and clipped channels, held samples.
+/// Check every channel: values that are no numbers, dead and clipped channels, held samples.
 /// `ranges`: greatest magnitude the converter gives, SI, per channel. `driven`: whether a drive
 /// must be seen.
 pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool) {
@@ -155,7 +155,7 @@ fn not_numbers(channel: &Channel) -> Option<Flag> {
              at sample {first}",
             channel.name
         ),
-        "record again, or mend the export; the record is left out",
+        "record again, or correct the export; the record is left out",
     ))
 }
 
@@ -188,7 +188,7 @@ fn dead(channel: &Channel, driven: bool) -> Option<Flag> {
         FlagCode::DeadChannel,
         Some(&channel.name),
         format!("channel '{}' is constant at {low:.6e}", channel.name),
-        "look for a loose cable or a wrong channel in campaign.toml; the record is left out",
+        "check for a loose cable or a wrong channel in campaign.toml; the record is left out",
     ))
 }
 
@@ -292,4 +292,96 @@ fn held(record: &Record) -> Option<Flag> {
         format!("all channels hold their value for {longest} samples from sample {at} on"),
         "record again with a larger buffer; the record is left out",
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sine(i: usize) -> f64 {
+        (0.05 * i as f64).sin()
+    }
+
+    fn record(of: impl Fn(usize) -> f64) -> Record {
+        let values: Vec<f64> = (0..1000).map(of).collect();
+        let drive: Vec<f64> = (0..1000).map(|i| (0.07 * i as f64).cos()).collect();
+        Record::of(2000.0, &[(Role::Drive, &drive), (Role::VelocityX, &values)])
+    }
+
+    fn inspected(mut record: Record, ranges: &[Option<f64>]) -> Vec<Flag> {
+        inspect(&mut record, ranges, true);
+        record.flags
+    }
+
+    #[test]
+    fn valid_each_defect_of_samples_has_its_flag() {
+        let code = |of: &dyn Fn(usize) -> f64| {
+            let flags = inspected(record(of), &[None, None]);
+            flags.first().map(|f| f.code)
+        };
+        assert_eq!(code(&sine), None);
+        assert_eq!(code(&|_| 0.25), Some(FlagCode::DeadChannel));
+        let gap = |i: usize| if i == 7 { f64::NAN } else { sine(i) };
+        assert_eq!(code(&gap), Some(FlagCode::NotANumber));
+        // A sine cut at 0.9 stays there for 18 samples of every crest: 2 · 0.451/0.05.
+        assert_eq!(code(&|i| sine(i).clamp(-0.9, 0.9)), Some(FlagCode::Clipped));
+    }
+
+    #[test]
+    fn valid_a_few_clipped_samples_do_not_exclude_a_record() {
+        // One crest above a stated range of 0.999: 2 · arccos(0.999)/0.05 = 1.8 samples.
+        let once = |i: usize| {
+            if i < 60 {
+                sine(i).min(0.999)
+            } else {
+                0.5 * sine(i)
+            }
+        };
+        let flags = inspected(record(once), &[None, Some(0.999)]);
+        assert_eq!(flags[0].code, FlagCode::Clipped);
+        assert!(!flags[0].excludes);
+        let all = inspected(record(|i| sine(i).clamp(-0.9, 0.9)), &[None, Some(0.9)]);
+        assert!(all[0].excludes);
+    }
+
+    #[test]
+    fn valid_samples_that_all_channels_hold_were_lost() {
+        let mut held = record(sine);
+        for channel in &mut held.channels {
+            let last = channel.values[499];
+            channel.values[500..520].fill(last);
+        }
+        let flags = inspected(held, &[None, None]);
+        assert_eq!(flags[0].code, FlagCode::DroppedSamples);
+        assert!(
+            flags[0].message.contains("20 samples from sample 499"),
+            "{}",
+            flags[0].message
+        );
+    }
+
+    #[test]
+    fn valid_ends_without_values_are_cut_and_lengths_made_equal() {
+        let mut padded = record(|i| {
+            if (3..990).contains(&i) {
+                sine(i)
+            } else {
+                f64::NAN
+            }
+        });
+        let mut times: Vec<f64> = (0..1000).map(f64::from).collect();
+        trim_missing(&mut padded, Some(&mut times));
+        assert_eq!((padded.samples(), times.len(), times[0]), (987, 987, 3.0));
+        assert_eq!(padded.flags[0].code, FlagCode::Trimmed);
+        assert!(!padded.excluded());
+        // 5 of 1000 samples less are tolerated, 50 are not.
+        for (short, excluded) in [(995, false), (950, true)] {
+            let mut unequal = record(sine);
+            unequal.channels[1].values.truncate(short);
+            equal_lengths(&mut unequal, None);
+            assert_eq!(unequal.channels[0].values.len(), short);
+            assert_eq!(unequal.flags[0].code, FlagCode::UnequalLengths);
+            assert_eq!(unequal.excluded(), excluded);
+        }
+    }
 }

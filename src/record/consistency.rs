@@ -10,7 +10,7 @@ const SAME: f64 = 0.9;
 /// Ratio of scales from which one of them must be wrong.
 const SCALE_RATIO: f64 = 1.5;
 
-/// Factors that lie between two units or conventions that are taken for each other.
+/// Factors between two units or conventions that are often mistaken for each other.
 const MISTAKEN: [(f64, &str); 6] = [
     (1000.0, "between m and mm"),
     (std::f64::consts::TAU, "between Hz and rad/s"),
@@ -26,7 +26,7 @@ const MISTAKEN: [(f64, &str); 6] = [
 /// How near a ratio must be to such a factor: the gains of a rig are known to a per cent or two.
 const MISTAKEN_WITHIN: f64 = 0.02;
 
-/// The units or conventions that a ratio of two numbers, or its reciprocal, betrays.
+/// The units or conventions that a ratio of two numbers, or its reciprocal, suggests.
 pub fn mistaken(ratio: f64) -> Option<&'static str> {
     let near = |factor: f64| (ratio.abs() / factor - 1.0).abs() < MISTAKEN_WITHIN;
     MISTAKEN
@@ -35,7 +35,7 @@ pub fn mistaken(ratio: f64) -> Option<&'static str> {
         .map(|m| m.1)
 }
 
-/// Look for swapped masses, opposite signs and contradicting scales.
+/// Check for swapped masses, opposite signs and contradicting scales.
 pub fn inspect(record: &Record) -> Vec<Flag> {
     let x = compare(record, Role::DisplacementX, Role::VelocityX);
     let y = compare(record, Role::DisplacementY, Role::VelocityY);
@@ -143,8 +143,8 @@ const AROUND_CONTACT: usize = 4;
 /// Contacts below which nothing is said about them.
 const FEWEST_CONTACTS: usize = 4;
 
-/// An impact takes speed from both masses: where their velocities, counted toward each other,
-/// jump in opposite directions, one of them is counted the wrong way.
+/// An impact takes speed from both masses: if their velocities, counted toward each other, jump in
+/// opposite directions, one of them has the wrong sign.
 fn opposite_masses(record: &Record) -> Option<Flag> {
     let contact = record.channel(Role::Contact)?;
     let level = contact.threshold?;
@@ -177,7 +177,7 @@ fn opposite_masses(record: &Record) -> Option<Flag> {
             FlagCode::OppositeSign,
             "at the contacts velocity_x and velocity_y jump in opposite directions".to_owned(),
             "turn the sign in [channels.velocity_x] or in [channels.velocity_y] (sign = -1, or 1 \
-             where it is -1): both count toward the other mass",
+             if it is -1): both count toward the other mass",
         )
     })
 }
@@ -190,20 +190,20 @@ fn contradiction(record: &Record, found: Match, d: Role, v: Role) -> Option<Flag
             FlagCode::OppositeSign,
             format!("{} and {} have opposite signs", d.name(), v.name()),
             format!(
-                "turn the sign in [channels.{}] or in [channels.{}] (sign = -1, or 1 where it is \
+                "turn the sign in [channels.{}] or in [channels.{}] (sign = -1, or 1 if it is \
                  -1): both count toward the other mass",
                 v.name(),
                 d.name()
             ),
         ));
     }
-    let betrayed = mistaken(found.gain);
-    let off = found.gain > SCALE_RATIO || found.gain < 1.0 / SCALE_RATIO || betrayed.is_some();
+    let suspected = mistaken(found.gain);
+    let off = found.gain > SCALE_RATIO || found.gain < 1.0 / SCALE_RATIO || suspected.is_some();
     let moves = match d {
         Role::DisplacementX | Role::DisplacementY => "moves",
         _ => "changes",
     };
-    let factor = betrayed.map_or(String::new(), |b| format!(": the factor {b}"));
+    let factor = suspected.map_or(String::new(), |m| format!(": the factor {m}"));
     (found.correlation > SAME && off).then(|| {
         flag(
             record,
@@ -216,7 +216,7 @@ fn contradiction(record: &Record, found: Match, d: Role, v: Role) -> Option<Flag
                 v.name()
             ),
             format!(
-                "mend unit or scale in [channels.{}] or in [channels.{}]",
+                "correct unit or scale in [channels.{}] or in [channels.{}]",
                 v.name(),
                 d.name()
             ),

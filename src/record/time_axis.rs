@@ -8,16 +8,16 @@ use labfiles::units;
 /// Most steps by which a time axis without gaps may stray from equal steps.
 const MOST_STRAY_STEPS: f64 = 2.0;
 
-/// What a time axis says.
+/// The result for a time axis.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TimeAxis {
-    /// Samples per second, Hz; `None` where no step can be told.
+    /// Samples per second, Hz; `None` if no step can be determined.
     pub sample_rate_hz: Option<f64>,
-    /// What is wrong with it.
+    /// Problems found.
     pub flags: Vec<Flag>,
 }
 
-/// Index of the channel that holds the time: as campaign.toml says, else as the reader found.
+/// Index of the channel that holds the time: as campaign.toml states, else as the reader found.
 ///
 /// # Errors
 /// The flag for a channel that campaign.toml names and the dataset lacks.
@@ -31,13 +31,13 @@ pub fn find(key: Option<&ChannelKey>, dataset: &DatasetInfo) -> Result<Option<us
             FlagCode::MissingChannel,
             None,
             format!("no channel '{}' for the time axis", key.text()),
-            "mend time in [records], or leave it out where a sample rate is stated",
+            "correct time in [records], or remove it if a sample rate is stated",
         )
     })
 }
 
 /// A channel in units of time by name and unit, which a reader did not take for a time axis,
-/// perhaps since it runs backward; only where no rate tells when the samples were taken.
+/// perhaps because it runs backward; only if no sample rate is stated.
 fn by_name(dataset: &DatasetInfo) -> Option<usize> {
     if dataset.channels.iter().any(|c| c.sample_rate_hz.is_some()) {
         return None;
@@ -51,7 +51,7 @@ fn by_name(dataset: &DatasetInfo) -> Option<usize> {
     })
 }
 
-/// Factor to seconds of a time axis from its unit or its name (`time_ms`); 1 where neither says.
+/// Factor to seconds of a time axis from its unit or its name (`time_ms`); 1 if neither states it.
 pub fn seconds_per_unit(dataset: &DatasetInfo, index: usize) -> f64 {
     let info = &dataset.channels[index];
     let of_name = units::split_unit(&info.name)
@@ -65,7 +65,7 @@ pub fn seconds_per_unit(dataset: &DatasetInfo, index: usize) -> f64 {
         .map_or(1.0, |u| u.to_si)
 }
 
-/// Judge a time axis in s.
+/// Check a time axis in s.
 ///
 /// Time stamps printed with few digits are taken as uniform as long as no stamp strays from a
 /// straight line by more than their own rounding.
@@ -176,7 +176,7 @@ fn regular(times: &[f64], steps: &[f64], step: f64) -> TimeAxis {
             FlagCode::RepeatedSamples,
             None,
             format!("{repeated} time stamps are repeated"),
-            "remove the repetitions where the record was exported; it is left out",
+            "remove the repetitions when exporting the record; it is left out",
         ));
     }
     let whole = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;

@@ -213,7 +213,7 @@ fn channels() -> Vec<Case> {
             |lab| lab.edit("scale = \"50 mm/s per V\"\nhigh", "high"),
             &[
                 "comes out as a voltage, not as a velocity",
-                "mend unit and scale",
+                "correct unit and scale",
             ],
         ),
         refused(

@@ -140,7 +140,7 @@ pub fn cases() -> Vec<Case> {
         refused(
             "a displacement in the wrong unit",
             |lab| with_displacement(lab, 25.4),
-            &["displacement_x moves 25.", "mend unit or scale"],
+            &["displacement_x moves 25.", "correct unit or scale"],
         ),
         refused(
             "a displacement in m that was meant in mm",

@@ -1,5 +1,5 @@
-//! Least squares: parameters as the coordinates of a fit, blocks of residuals, and the fit that makes
-//! them least.
+//! Least squares: parameters as the coordinates of a fit, blocks of residuals, and the fit that
+//! minimises them.
 
 pub mod block;
 pub mod effect;
@@ -8,7 +8,7 @@ pub mod least_squares;
 pub mod normal;
 pub mod parameters;
 pub mod problem;
-pub mod report;
+mod report;
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ pub use block::{Block, mean_squares};
 use normal::inverse;
 use parameters::{Coordinate, Parameters};
 pub use problem::{Prior, Problem};
-use report::FitReport;
+pub use report::FitReport;
 
 /// A finished fit.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -33,18 +33,19 @@ pub struct Fit {
     pub cost: f64,
     /// Number of residuals, priors not counted.
     pub residuals: usize,
-    /// Iterations and termination.
+    /// Iterations and termination; stored with the method's result.
+    #[serde(skip)]
     pub report: FitReport,
 }
 
 impl Fit {
-    /// Standard error of a coordinate; `None` where it was not free.
+    /// Standard error of a coordinate; `None` if it was not free.
     pub fn error(&self, coordinate: Coordinate) -> Option<f64> {
         let i = self.free.iter().position(|c| *c == coordinate)?;
         Some(self.covariance[(i, i)].max(0.0).sqrt())
     }
 
-    /// Variance of a coordinate where all others are known; `None` where it was not free.
+    /// Variance of a coordinate if all others are known; `None` if it was not free.
     pub fn conditional_variance(&self, coordinate: Coordinate) -> Option<f64> {
         let i = self.free.iter().position(|c| *c == coordinate)?;
         Some(inverse(&self.covariance)?[(i, i)].recip())
@@ -101,7 +102,7 @@ pub enum FitError {
     /// The solver itself failed.
     #[error("the solver failed: {0}")]
     Solver(String),
-    /// The slopes are dependent: the data do not tell the coordinates.
-    #[error("the data do not tell the parameters apart")]
+    /// The slopes are dependent: the data do not determine the coordinates.
+    #[error("the data do not separate the parameters")]
     Singular,
 }

@@ -36,7 +36,7 @@ pub struct Problem<'a> {
     pub free: Vec<Coordinate>,
 }
 
-/// Least share of a column of slopes that must stand off the others: differences do not tell less.
+/// Least orthogonal share of a column of slopes: differences do not resolve less.
 const LEAST_SHARE: f64 = 1e-8;
 const LIMITS: Limits = Limits {
     negligible: 1e-4,
@@ -49,8 +49,8 @@ impl Problem<'_> {
     /// Fit from a start.
     ///
     /// # Errors
-    /// [`FitError`] where there is nothing to fit, where observations have no counterpart in the
-    /// model at the start, or where the data do not determine the coordinates.
+    /// [`FitError`] if there is nothing to fit, if observations have no counterpart in the model at the
+    /// start, or if the data do not determine the coordinates.
     pub fn fit(&self, start: Parameters) -> Result<Fit, FitError> {
         let minimum = minimise(self, start, &LIMITS).map_err(|error| {
             let own = error.downcast::<FitError>();
@@ -67,7 +67,7 @@ impl Problem<'_> {
         })
     }
 
-    /// Sum of squared weighted residuals at given parameters; `None` where an item has no model.
+    /// Sum of squared weighted residuals at given parameters; `None` if an item has no model.
     pub fn cost(&self, parameters: &Parameters) -> Option<f64> {
         if !parameters.in_range() {
             return None;
@@ -94,7 +94,7 @@ impl Problem<'_> {
     }
 
     /// Inverse of the information at given parameters, over the items that have a model there;
-    /// `None` where it is singular.
+    /// `None` if it is singular.
     pub fn covariance_at(&self, parameters: &Parameters) -> Option<DMatrix<f64>> {
         self.known_factor(parameters).0.covariance(LEAST_SHARE)
     }
@@ -153,8 +153,8 @@ impl Problem<'_> {
         parts
     }
 
-    /// Least cost with one coordinate held at a value, all others fitted anew from where the
-    /// covariance of a fit expects them; `None` where no fit is found.
+    /// Least cost with one coordinate held at a value, all others fitted again from where the
+    /// covariance of a fit expects them; `None` if no fit is found.
     pub fn cost_with(&self, fit: &Fit, coordinate: Coordinate, value: f64) -> Option<f64> {
         let at = fit.free.iter().position(|c| *c == coordinate)?;
         let step = value - fit.parameters.coordinate(coordinate);
@@ -163,8 +163,8 @@ impl Problem<'_> {
             let share = fit.covariance[(i, at)] / fit.covariance[(at, at)];
             start = start.with(*free, fit.parameters.coordinate(*free) + share * step);
         }
-        // Where the problem is as good as linear, the others already lie where a fit would put
-        // them, up to second order, and the cost is right up to fourth.
+        // If the problem is nearly linear, the others are already at their fitted values up to
+        // second order, and the cost is right up to fourth.
         let linear = step * step / fit.covariance[(at, at)];
         if let Some(cost) = self.cost(&start)
             && (cost - fit.cost - linear).abs() < 0.02 * linear
