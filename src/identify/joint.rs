@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::evidence::{Blocks, IMPACT_BIAS, Nominal};
+use crate::identify::evidence::{Blocks, Nominal, impact_bias};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, FitError, Prior, Problem};
 use crate::identify::method::Method;
@@ -26,10 +26,11 @@ pub type Weights = BTreeMap<Method, f64>;
 
 /// Weight of the impacts among the other methods: what the extrapolation of speeds leaves open is
 /// common to all impacts, so that all together tell no more than that.
-pub fn impact_weight(found: &MethodFit) -> f64 {
+pub fn impact_weight(found: &MethodFit, waveforms: &Parameters) -> f64 {
+    let bias = impact_bias(waveforms);
     let square = found.fit.conditional_variance(Coordinate::Restitution);
     let square = square.unwrap_or(0.0) * found.factor;
-    square / (square + IMPACT_BIAS * IMPACT_BIAS) / found.factor
+    square / (square + bias * bias) / found.factor
 }
 
 /// The methods that a joint fit uses, in its problem's order.

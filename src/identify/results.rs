@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::identify::diagnostics::{contact_law, verdict};
 use crate::identify::evidence::impacts::SpeedPair;
-use crate::identify::evidence::{Blocks, Evidence, IMPACT_BIAS};
+use crate::identify::evidence::{Blocks, Evidence, impact_bias};
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::methods::{self, FitResult};
@@ -49,7 +49,7 @@ pub fn impacts(
         records.len(),
     );
     if let Some(estimate) = &mut result.parameters.restitution {
-        widen(estimate, IMPACT_BIAS);
+        widen(estimate, fit.map_or(0.0, |fit| impact_bias(&fit.parameters)));
     }
     result.remarks.extend(outlying(blocks, evidence));
     result.contact_law = contact_law::contact_law(block);

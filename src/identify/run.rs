@@ -21,7 +21,62 @@ use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
 use crate::identify::{decay, estimate, results};
 
-/// Identify from observations and brackets.
+/// Identify from observations and brackets, as records of one specimen.
+///
+/// What cannot be identified has no value but a note; what was left out of the fits is in `left_out`.
+///
+/// # Examples
+///
+/// Records of a simulated rig whose masses never touch determine f0, β and x_st, but not R:
+///
+/// ```
+/// use impactid::event::{DetectSettings, RigKind};
+/// use impactid::identify::evidence::{Evidence, Nominal};
+/// use impactid::identify::run::identify;
+/// use impactid::identify::{Method, Status};
+/// use impactid::motion::{ClassifySettings, observe};
+/// use impactid::record::Sweep;
+/// use impactid::synthetic::run::calibrated;
+/// use impactid::synthetic::{Effects, Faults, Laboratory, Plan, Step, Truth, records};
+///
+/// let truth = Truth::symmetric(0.8, 12.0, 0.05, 1e-3);
+/// let step = |i: u32| Step {
+///     frequency_hz: 9.0 + 0.5 * f64::from(i),
+///     clearance_m: 20e-3,
+///     sweep: Sweep::Up,
+///     from_rest: i == 0,
+/// };
+/// let (faults, effects) = (Faults::default(), Effects::default());
+/// let laboratory = Laboratory {
+///     truth: &truth,
+///     faults: &faults,
+///     effects: &effects,
+///     plan: &Plan { steps: (0..14).map(step).collect() },
+///     seed: 1,
+/// };
+/// let observations: Vec<_> = records(&laboratory)?
+///     .iter()
+///     .map(|raw| calibrated(raw, &truth, &faults))
+///     .map(|record| {
+///         let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
+///         observe(&record, RigKind::Double, &detect, &classify)
+///     })
+///     .collect();
+/// let found = identify(&Evidence {
+///     rig: RigKind::Double,
+///     observations: &observations,
+///     brackets: &[],
+///     nominal: Nominal { gain_uncertainty: 5e-3, corner_uncertainty: 2e-2, ..Nominal::default() },
+///     uncertainty: Default::default(),
+/// });
+/// assert_eq!(found.used_by[&Method::Resonance].len(), 14);
+/// let f0 = found.joint.parameters.natural_frequency_hz.as_ref().expect("an estimate");
+/// assert_eq!(f0.status, Status::Identified);
+/// assert!((f0.value.expect("f0") - 12.0).abs() < 0.05);
+/// let r = found.joint.parameters.restitution.and_then(|r| r.value);
+/// assert_eq!(r, None);
+/// # Ok::<(), impact_oscillator::model::params::ModelError>(())
+/// ```
 pub fn identify(evidence: &Evidence) -> Identification {
     let mut run = IdentificationRun {
         evidence,
@@ -107,6 +162,9 @@ fn with_restitution(start: Parameters, impacts: &Option<FitResult>) -> Parameter
     }
 }
 
+/// Influential records that may always be left out.
+const MOST_INFLUENTIAL: usize = 2;
+
 /// Starting values: the resonance curve's, else the stated ones, else guesses of scale.
 fn start(evidence: &Evidence, resonance: &Option<FitResult>) -> Parameters {
     if let Some(found) = succeeded(resonance) {
@@ -163,7 +221,7 @@ impl IdentificationRun<'_> {
         let weight = |attempt: &Option<FitResult>| succeeded(attempt).map(|f| 1.0 / f.factor);
         // Flights rest on the speeds at impacts; waveforms tell the same better than either.
         let flown = weight(&flights).filter(|_| succeeded(&trajectories).is_none());
-        let impact_weight = succeeded(&impacts).map(joint::impact_weight);
+        let impact_weight = succeeded(&impacts).map(|found| joint::impact_weight(found, &start));
         let weights: Weights = [
             (Method::Resonance, weight(&resonance)),
             (Method::Trajectories, weight(&trajectories)),
@@ -192,6 +250,7 @@ impl IdentificationRun<'_> {
 
     /// The fits without the records that draw them away from what all others state.
     fn without_influential(&mut self, mut fits: Fits) -> Fits {
+        let mut left_out = 0;
         for _ in 0..MOST_ROUNDS {
             let Some(joint) = succeeded(&fits.joint) else {
                 break;
@@ -205,6 +264,11 @@ impl IdentificationRun<'_> {
             let Some(influential) = influential.filter(|p| !p.is_empty()) else {
                 break;
             };
+            left_out += influential.count();
+            if left_out > MOST_INFLUENTIAL.max(self.selection.judged() / 30) {
+                // That many do not err alone: it is the model, and their scatter widens the intervals.
+                break;
+            }
             self.selection.leave_out(&influential);
             let resonance = if influential.resonance.is_empty() {
                 fits.resonance

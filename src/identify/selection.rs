@@ -27,9 +27,14 @@ pub struct Influential {
 }
 
 impl Influential {
-    /// Whether none does.
+    /// Whether there is none.
     pub fn is_empty(&self) -> bool {
-        self.resonance.is_empty() && self.trajectory.is_empty()
+        self.count() == 0
+    }
+
+    /// How many.
+    pub fn count(&self) -> usize {
+        self.resonance.len() + self.trajectory.len()
     }
 }
 
@@ -290,6 +295,11 @@ impl<'a> Selection<'a> {
             .evidence;
         let slowest = block.slowest_multiplier(item, at).unwrap_or(1.0);
         slowest.powf(evidence.cycles_observed) > (-1f64).exp()
+    }
+
+    /// Number of records whose influence is judged.
+    pub fn judged(&self) -> usize {
+        self.blocks.resonance.points.len() + self.blocks.trajectory.records.len()
     }
 
     /// Leave influential records out, and note them.

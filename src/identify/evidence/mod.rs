@@ -24,7 +24,7 @@ use crate::identify::evidence::flights::FlightBlock;
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
 use crate::identify::evidence::resonance::ResonanceBlock;
 use crate::identify::evidence::trajectory::TrajectoryBlock;
-use crate::identify::fit::effect::Effects;
+use crate::identify::fit::effect::{Effect, Effects};
 use crate::identify::fit::parameters::{Coordinate, MOST_GAPS, Parameters, gain_index};
 use crate::identify::fit::{Block, Prior};
 use crate::identify::uncertainty::UncertaintyOptions;
@@ -103,7 +103,16 @@ const RELATIVE_ERROR: f64 = 3e-4;
 /// Scatter of single impacts' ratios beside the noise.
 const IMPACT_SCATTER: f64 = 1e-3;
 /// What the extrapolation of speeds to the impact leaves open in R.
-pub const IMPACT_BIAS: f64 = 2e-4;
+const IMPACT_BIAS: f64 = 2e-4;
+/// What it leaves open beside that where a contact has a length, per ms.
+const CONTACT_BIAS_PER_MS: f64 = 1e-2;
+
+/// What the extrapolation of speeds to the impacts leaves open in R, with the length of a contact that
+/// waveforms tell.
+pub fn impact_bias(parameters: &Parameters) -> f64 {
+    let contact_ms = parameters.effect(Effect::ContactDuration);
+    IMPACT_BIAS.hypot(CONTACT_BIAS_PER_MS * contact_ms)
+}
 /// Asymmetry that a well-made rig may have.
 const ASYMMETRY: f64 = 0.05;
 /// Asymmetry of masses that were made alike.
