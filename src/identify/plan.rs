@@ -282,6 +282,7 @@ impl UsualRecord {
             lone_clearance_error_m: 0.0,
             place: 0.0,
             group: 0,
+            press_per_s: 0.0,
             shared: Vec::new(),
             perturbations: Vec::new(),
         }

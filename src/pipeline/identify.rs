@@ -14,9 +14,12 @@ use crate::identify::{Identification, Provenance, identify_campaign};
 use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, inputs};
 use crate::record::calibrate::ChannelSetup;
+use labfiles::output::write_bytes;
 
 /// Name of the result's file.
 pub const FILE: &str = "identification.json";
+/// Name of the table of the joint estimate's uncertainty budget.
+pub const BUDGET: &str = "uncertainty_budget.csv";
 
 /// An identification with its provenance: identification.json.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -132,10 +135,14 @@ pub fn versions() -> BTreeMap<String, String> {
     .collect()
 }
 
-/// Write identification.json.
+/// Write identification.json and the uncertainty budget.
 ///
 /// # Errors
 /// Where it cannot be written.
 pub fn write(identification: &IdentificationFile, out: &Path) -> Result<(), PipelineError> {
+    let budget = &identification.identification.uncertainty.budget;
+    if !budget.rows.is_empty() {
+        write_bytes(&out.join(BUDGET), budget.table().as_bytes())?;
+    }
     write_json(&out.join(FILE), identification)
 }

@@ -293,6 +293,25 @@ impl<'a> RecordMotion<'a> {
         self.along(values, &self.direction(&change, None))
     }
 
+    /// Acceleration of the masses toward each other at the impact over the approach speed, 1/s: what
+    /// acts on a contact of finite length while it lasts. The weight of the accelerations before and
+    /// after the impact is a fit to the exact contact.
+    pub fn press_per_s(&self) -> f64 {
+        const AFTER: f64 = 1.15;
+        let turn = C64::from_polar(1.0, self.orbit.phase);
+        let masses = [&self.orbit.x, &self.orbit.y].into_iter();
+        let press: f64 = masses
+            .map(|mass| {
+                let square = mass.exponent * mass.exponent;
+                let forced = -self.eta * self.eta * (mass.force * turn).re;
+                let after = (square * mass.mode).re;
+                let before = (square * mass.mode * (mass.exponent * self.period()).exp()).re;
+                forced + before + AFTER * (after - before)
+            })
+            .sum();
+        press / self.orbit.closing_speed * self.own.natural_rate()
+    }
+
     /// Change of the values by an effect that acts as a small extra acceleration, per unit of its
     /// strength, to first order; `reach_m` is the displacement at which springs harden by that much.
     pub fn perturbation(&self, values: &[f64], effect: Effect, reach_m: f64) -> Vec<f64> {
@@ -603,6 +622,7 @@ mod tests {
             lone_clearance_error_m: 0.0,
             place: 0.3,
             group: 0,
+            press_per_s: -40.0,
             shared: Vec::new(),
             perturbations: Vec::new(),
         }

@@ -44,6 +44,9 @@ pub struct TrajectoryRecord {
     pub place: f64,
     /// The group of records that it belongs to.
     pub group: usize,
+    /// Acceleration of the masses toward each other at the impacts over the approach speed, 1/s; zero
+    /// until it is found at good parameters.
+    pub press_per_s: f64,
     /// Changes of all points' values, SI, by one standard error of phase, of frequency and of a lone
     /// clearance; empty until they are found at good parameters.
     pub shared: Vec<Vec<f64>>,
@@ -61,6 +64,7 @@ impl TrajectoryRecord {
             gap: self.gap,
             place: self.place,
             approach_m_s: self.closing_speed_m_s,
+            press_per_s: self.press_per_s,
             masses: if rig == RigKind::Double { 2.0 } else { 1.0 },
         }
     }
@@ -130,6 +134,7 @@ impl TrajectoryBlock {
         for (record, change) in self.records.iter_mut().zip(changes) {
             let change = change.unwrap_or_default();
             (record.shared, record.perturbations) = (change.shared, change.perturbations);
+            record.press_per_s = change.press_per_s;
         }
     }
 
@@ -152,6 +157,7 @@ impl TrajectoryBlock {
         Some(Changes {
             shared,
             perturbations,
+            press_per_s: motion.press_per_s(),
         })
     }
 }
@@ -161,6 +167,7 @@ impl TrajectoryBlock {
 struct Changes {
     shared: Vec<Vec<f64>>,
     perturbations: Vec<(Effect, Vec<f64>)>,
+    press_per_s: f64,
 }
 
 fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> {
@@ -180,6 +187,7 @@ fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> 
         lone_clearance_error_m: 0.0,
         place: 0.0,
         group: 0,
+        press_per_s: 0.0,
         shared: Vec::new(),
         perturbations: Vec::new(),
         clearance_m: o.setting.clearance_m?,

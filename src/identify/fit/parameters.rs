@@ -144,6 +144,8 @@ pub struct Circumstances {
     pub place: f64,
     /// Approach speed at the impacts, m/s; zero without impacts.
     pub approach_m_s: f64,
+    /// Acceleration of the masses toward each other at the impacts over the approach speed, 1/s.
+    pub press_per_s: f64,
     /// Displacements that close the gap together: 2, or 1 against a stop.
     pub masses: f64,
 }
@@ -242,13 +244,16 @@ impl Parameters {
     /// The parameters that a record has of its own, and its clearance, m: where drift, the force
     /// against frequency, errors of the clearances and the length of contacts have been applied.
     ///
-    /// A contact that lasts a time t acts outside of it like an impact at the instant where both
-    /// flights meet, R t/(1 + R) after its start: there the gap is wider by w R t/(1 + R).
+    /// A contact that lasts a time acts outside of it like an impact where both flights meet.
     pub fn own(&self, at: &Circumstances) -> (Self, f64) {
         let drift = |effect| self.effect(effect) * at.place;
         let bend = self.effect(Effect::FrequencyBend) * bend(at.place);
         let [lean, _] = self.lean(at.frequency_hz / self.natural_frequency_hz);
+        let contact_s = 1e-3 * self.effect(Effect::ContactDuration);
+        let contact = short_contact(self.restitution);
+        let restitution = self.restitution + contact_s * contact.press * at.press_per_s;
         let own = Self {
+            restitution: restitution.clamp(0.0, 1.0),
             natural_frequency_hz: self.natural_frequency_hz
                 * (drift(Effect::FrequencyDrift) + bend).exp(),
             damping_ratio: self.damping_ratio * drift(Effect::DampingDrift).exp(),
@@ -258,9 +263,7 @@ impl Parameters {
             ..*self
         };
         let error = at.gap.map_or(0.0, |i| self.gap_errors_m.0[i]);
-        let r = self.restitution;
-        let contact_s = 1e-3 * self.effect(Effect::ContactDuration);
-        let reach_m = at.approach_m_s * contact_s * r / (1.0 + r) / at.masses.max(1.0);
+        let reach_m = at.approach_m_s * contact_s * contact.reach / at.masses.max(1.0);
         (own, at.clearance_m + self.screw_zero_m + error + reach_m)
     }
 
@@ -281,13 +284,18 @@ impl Parameters {
         };
         let eta = at.frequency_hz / self.natural_frequency_hz;
         let [lean, over_eta] = self.lean(eta);
-        let r = self.restitution;
+        let contact = short_contact(self.restitution);
+        let contact_s = 1e-3 * self.effect(Effect::ContactDuration);
         let speed = at.approach_m_s / at.masses.max(1.0);
         match coordinate {
             Coordinate::Restitution => Some(OwnSlope {
-                physical: [1.0, 0.0, 0.0, 0.0],
-                clearance_m: 1e-3 * self.effect(Effect::ContactDuration) * speed
-                    / (1.0 + r).powi(2),
+                physical: [
+                    1.0 + contact_s * contact.press_slope * at.press_per_s,
+                    0.0,
+                    0.0,
+                    0.0,
+                ],
+                clearance_m: contact_s * speed * contact.reach_slope,
             }),
             Coordinate::Frequency => Some(OwnSlope {
                 physical: [0.0, 1.0, 0.0, -eta * over_eta / lean],
@@ -304,7 +312,10 @@ impl Parameters {
                 Effect::FrequencyBend => only(1, bend(at.place)),
                 Effect::DampingDrift => only(2, at.place),
                 Effect::DeflectionDrift => only(3, at.place),
-                Effect::ContactDuration => clearance(1e-3 * speed * r / (1.0 + r)),
+                Effect::ContactDuration => Some(OwnSlope {
+                    physical: [1e-3 * contact.press * at.press_per_s, 0.0, 0.0, 0.0],
+                    clearance_m: 1e-3 * speed * contact.reach,
+                }),
                 _ => None,
             },
             _ => None,
@@ -407,6 +418,34 @@ pub fn gain_index(role: Role) -> Option<usize> {
         Role::DisplacementX => Some(2),
         Role::DisplacementY => Some(3),
         _ => None,
+    }
+}
+
+/// What a short contact of unit duration, a spring and a damper that only press, makes of the impact
+/// outside of it, and the slopes over R.
+struct ShortContact {
+    /// Where both flights meet, beyond the gap, over the approach speed.
+    reach: f64,
+    reach_slope: f64,
+    /// What the ratio of the speeds there is above R, over a/w.
+    press: f64,
+    press_slope: f64,
+}
+
+/// Least R for which a contact's effect is taken.
+const LEAST_RESTITUTION: f64 = 0.05;
+
+/// With a contact of duration t, both flights meet at ½R^{1/3} w t beyond the gap, where their speeds
+/// are in the ratio R + 0.635 (1 − R) t a/w, a being the masses' acceleration toward each other: a fit
+/// to the exact contact, within 2 % of its size for R of 0.4 to 1.
+fn short_contact(restitution: f64) -> ShortContact {
+    let r = restitution.max(LEAST_RESTITUTION);
+    let reach = 0.5 * r.cbrt();
+    ShortContact {
+        reach,
+        reach_slope: reach / (3.0 * r),
+        press: 0.635 * (1.0 - r),
+        press_slope: -0.635,
     }
 }
 
