@@ -203,7 +203,12 @@ fn refined(
     let spanned = contact.spanned(candidates, &instants);
     finite_contact::bridge(kinematics, &spanned, &instants, &contact, arc);
     kinematics.update_relative(rig);
-    undrifted(kinematics, &spanned, drive, (rig, arc, Some((&contact, &instants))))
+    undrifted(
+        kinematics,
+        &spanned,
+        drive,
+        (rig, arc, Some((&contact, &instants))),
+    )
 }
 
 /// Correct the velocities for jumps and drift, then refine the impacts.

@@ -132,7 +132,10 @@ impl FiniteContact {
         if self.duration == 0.0 {
             return out;
         }
-        let bodies = [(&kinematics.x, self.delays[0]), (&kinematics.y, self.delays[1])];
+        let bodies = [
+            (&kinematics.x, self.delays[0]),
+            (&kinematics.y, self.delays[1]),
+        ];
         for (i, instant) in out.iter_mut().enumerate() {
             if candidates[i].dead_samples > 0.0 {
                 continue;
@@ -155,8 +158,12 @@ impl FiniteContact {
         let centre = self.profile.centre() * self.duration;
         let cost = |shift: f64| -> f64 {
             let deviation = |(p, delay): &(Passage, f64)| {
-                let done = self.profile.done((p.offset - shift - delay + centre) / self.duration);
-                ((p.share - done) / p.share_error.max(PLACE_ERROR)).powi(2).min(OUTLYING)
+                let done = self
+                    .profile
+                    .done((p.offset - shift - delay + centre) / self.duration);
+                ((p.share - done) / p.share_error.max(PLACE_ERROR))
+                    .powi(2)
+                    .min(OUTLYING)
             };
             (shift / first.error).powi(2) + samples.iter().map(deviation).sum::<f64>()
         };
@@ -169,7 +176,9 @@ impl FiniteContact {
         };
         // mean and deviation of the likelihood e^{−cost/2}
         let weights = costs.iter().map(|(c, s)| ((-0.5 * (c - least)).exp(), *s));
-        let sums = weights.fold([0.0; 3], |[w, a, b], (p, s)| [w + p, a + p * s, b + p * s * s]);
+        let sums = weights.fold([0.0; 3], |[w, a, b], (p, s)| {
+            [w + p, a + p * s, b + p * s * s]
+        });
         let mean = sums[1] / sums[0];
         Instant {
             time: first.time + mean,
