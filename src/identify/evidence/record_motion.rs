@@ -309,7 +309,7 @@ impl<'a> RecordMotion<'a> {
                 forced + before + AFTER * (after - before)
             })
             .sum();
-        press / self.orbit.closing_speed * self.own.natural_rate()
+        press / self.orbit.approach_speed * self.own.natural_rate()
     }
 
     /// Change of the values by an effect that acts as a small extra acceleration, per unit of its
