@@ -22,8 +22,13 @@ pub enum Language {
 
 /// Something that a module states, to be printed in the language of the reader.
 pub trait Message {
-    /// Name of the kind, the key in a table of translations and `kind` in JSON.
+    /// Name of the kind, `kind` in JSON.
     fn kind(&self) -> String;
+
+    /// Key in a table of translations: the kind, extended if the kind has several templates.
+    fn key(&self) -> String {
+        self.kind()
+    }
 
     /// The template: names in braces are replaced by the values, symbols are between dollars.
     fn template(&self, language: Language) -> &'static str;
@@ -38,6 +43,8 @@ pub enum Value<'a> {
     Number(f64, usize),
     /// A number with as many decimals as it needs.
     Shortest(f64),
+    /// A share as a percentage with a count of decimals (0.01 is 1 %).
+    Percent(f64, usize),
     /// A count.
     Count(usize),
     /// A name that is the same in every language and carries no markup.
@@ -74,6 +81,10 @@ pub trait Print {
     fn value(&self, value: &Value<'_>) -> String {
         match value {
             Value::Number(value, decimals) => self.number(format!("{value:.decimals$}")),
+            Value::Percent(share, decimals) => {
+                let percent = 100.0 * share;
+                format!("{} %", self.number(format!("{percent:.decimals$}")))
+            }
             Value::Shortest(value) => self.number(value.to_string()),
             Value::Count(count) => count.to_string(),
             Value::Name(name) => self.name(name),
@@ -127,6 +138,24 @@ impl Print for Plain {
 /// A message in English without markup.
 pub fn plain(message: &dyn Message) -> String {
     Plain.print(message)
+}
+
+/// A text as a sentence: a capital at its start, a full stop at its end.
+pub fn sentence(text: &str) -> String {
+    let text = text.trim();
+    let mut chars = text.chars();
+    // a symbol or a record's name keeps its small letter
+    let word = text.split_whitespace().next().unwrap_or("");
+    let plain = word.chars().count() > 1 && word.chars().all(char::is_lowercase);
+    let start = match chars.next() {
+        Some(first) if plain => first.to_uppercase().chain(chars).collect(),
+        _ => text.to_owned(),
+    };
+    if start.ends_with(['.', '!', '?']) || start.is_empty() {
+        start
+    } else {
+        format!("{start}.")
+    }
 }
 
 /// Several messages in English without markup, separated by blanks.
@@ -190,4 +219,25 @@ macro_rules! serialised_with_text {
             }
         }
     };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_become_sentences() {
+        assert_eq!(sentence("the responses follow"), "The responses follow.");
+        assert_eq!(sentence("x is clipped."), "x is clipped.");
+        assert_eq!(sentence("r0012 was left out"), "r0012 was left out.");
+        assert_eq!(sentence("$R$ is constant"), "$R$ is constant.");
+        assert_eq!(sentence(""), "");
+    }
+
+    #[test]
+    fn values_take_the_places_of_their_names() {
+        let value = |name: &str| (name == "a").then(|| "1".to_owned());
+        assert_eq!(filled("{a} of {b}, {a}", value), "1 of {b}, 1");
+        assert_eq!(filled("no { end", value), "no { end");
+    }
 }

@@ -15,7 +15,7 @@ use super::rig;
 use super::written::{
     self, Flight, Format, Language, Machine, Paper, Placed, WrittenCampaign, value,
 };
-use crate::report::words::Words;
+use crate::report::catalog::Catalog;
 use labfiles::units::Dimension;
 
 /// A campaign as far as it could be resolved, and everything that is wrong with it.
@@ -233,7 +233,7 @@ fn words_file(
     let key = "report.words";
     let path = beside(placed, key, folder, context)?;
     if let (Some(placed), Ok(text)) = (placed, std::fs::read_to_string(&path))
-        && let Err(error) = Words::read(&text)
+        && let Err(error) = Catalog::read(&text)
     {
         let what = format!("{}: {error}", path.display());
         context.fault(

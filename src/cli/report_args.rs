@@ -77,8 +77,8 @@ impl ReportArgs {
             report.paper = paper;
         }
         report.decimal_comma |= self.decimal_comma;
-        if let Some(words) = pipeline::report::words(report)? {
-            for remark in words.remarks() {
+        if let Some(catalog) = pipeline::report::catalog(report)? {
+            for remark in catalog.remarks() {
                 verbosity.info(&format!("note: {remark}"));
             }
         }

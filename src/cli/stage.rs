@@ -13,7 +13,7 @@ use super::report_args::{ReportArgs, print_report_paths, quoted};
 use super::stdout::print;
 use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::{self, store};
-use crate::report::words::Words;
+use crate::report::catalog::Catalog;
 use labfiles::output::Lock;
 
 /// Arguments of `impactid ingest`.
@@ -180,7 +180,7 @@ impl Identify {
 impl Report {
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let Some(folder) = self.folder.filter(|_| !self.list_words) else {
-            print(&Words::blank())?;
+            print(&Catalog::blank())?;
             return Ok(Exit::Done);
         };
         let (folder, _lock) = folder.take()?;

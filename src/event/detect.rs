@@ -6,7 +6,7 @@ use crate::event::finite_contact::{self, FiniteContact};
 use crate::event::impact::{DetectionSource, Impact};
 use crate::event::jumps::{Jump, JumpSearch, SUPPORTED};
 use crate::event::kinematics::{Kinematics, RigKind, Series};
-use crate::event::refine::{self, ArcFit, Candidate};
+use crate::event::refine::{self, ArcFit, Candidate, Instant};
 use crate::event::{bounce, drift};
 use crate::record::{Flag, FlagCode, Record, Role};
 use crate::signal::robust;
@@ -199,10 +199,16 @@ fn refined(
     let instants = refine::instants(kinematics, candidates, arc);
     let spanned = contact.spanned(candidates, &instants);
     let instants = refine::instants(kinematics, &spanned, arc);
+    let instants = contact.placed(kinematics, &spanned, &instants, arc);
     let spanned = contact.spanned(candidates, &instants);
     finite_contact::bridge(kinematics, &spanned, &instants, &contact, arc);
     kinematics.update_relative(rig);
-    undrifted(kinematics, &spanned, drive, (rig, arc, Some(&contact)))
+    undrifted(
+        kinematics,
+        &spanned,
+        drive,
+        (rig, arc, Some((&contact, &instants))),
+    )
 }
 
 /// Correct the velocities for jumps and drift, then refine the impacts.
@@ -210,9 +216,14 @@ fn undrifted(
     kinematics: &mut Kinematics,
     candidates: &[Candidate],
     drive: Option<&DriveTone>,
-    (rig, arc, contact): (RigKind, ArcFit, Option<&FiniteContact>),
+    (rig, arc, contact): (RigKind, ArcFit, Option<(&FiniteContact, &[Instant])>),
 ) -> Vec<Impact> {
-    let first = refine::instants(kinematics, candidates, arc);
+    // The times of a contact that lasts are known from its samples.
+    let instants = |kinematics: &Kinematics| match contact {
+        Some((_, placed)) => placed.to_vec(),
+        None => refine::instants(kinematics, candidates, arc),
+    };
+    let first = instants(kinematics);
     refine::correct_jumps(kinematics, candidates, &first, arc);
     kinematics.update_relative(rig);
     let times: Vec<f64> = first.iter().map(|i| i.time).collect();
@@ -227,7 +238,8 @@ fn undrifted(
     {
         drift::remove_drift(series, &times, drive, rate_hz);
     }
-    let instants = refine::instants(kinematics, candidates, arc);
+    let instants = instants(kinematics);
+    let contact = contact.map(|(contact, _)| contact);
     refine::impacts(kinematics, candidates, &instants, drive, (arc, contact))
 }
 

@@ -25,8 +25,16 @@ const SHARE_ERROR: f64 = 0.01;
 /// Fall of the sum of squares, over an instantaneous impact, from which a contact lasts or a
 /// velocity is delayed.
 const SIGNIFICANT: f64 = 25.0;
+/// Greatest error of an impact's time, in samples, with which its samples are used.
+const LEAST_PLACED: f64 = 0.6;
+/// Error of a sample's share where it places the impact: the contact's true profile.
+const PLACE_ERROR: f64 = 0.04;
 /// Squared deviation beyond which a sample counts no more.
 const OUTLYING: f64 = 16.0;
+/// Squared deviation of one impact's samples that noise explains.
+const EXPLAINED: f64 = 8.0;
+/// Looser times of the impacts, in samples, in the coarse search: the mean delay is not searched.
+const LOOSE: f64 = 0.3;
 /// Shortest duration and delay, in samples, that make a difference.
 const SHORTEST: f64 = 0.04;
 /// Longest duration looked for, in samples.
@@ -112,6 +120,72 @@ impl FiniteContact {
         )
     }
 
+    /// Times of impacts from the kink of the displacement and the samples within the contact.
+    pub fn placed(
+        &self,
+        kinematics: &Kinematics,
+        candidates: &[Candidate],
+        instants: &[Instant],
+        arc: ArcFit,
+    ) -> Vec<Instant> {
+        let mut out = instants.to_vec();
+        if self.duration == 0.0 {
+            return out;
+        }
+        let bodies = [
+            (&kinematics.x, self.delays[0]),
+            (&kinematics.y, self.delays[1]),
+        ];
+        for (i, instant) in out.iter_mut().enumerate() {
+            if candidates[i].dead_samples > 0.0 {
+                continue;
+            }
+            let samples: Vec<(Passage, f64)> = bodies
+                .iter()
+                .filter_map(|(body, delay)| Some((measured_velocity(body)?, *delay)))
+                .flat_map(|(velocity, delay)| {
+                    let samples = beside(velocity, candidates, i, *instant, arc);
+                    samples.into_iter().map(move |p| (p, delay))
+                })
+                .collect();
+            *instant = self.best_time(*instant, &samples);
+        }
+        out
+    }
+
+    /// The time that fits the samples of an impact and its first time, each by its error.
+    fn best_time(&self, first: Instant, samples: &[(Passage, f64)]) -> Instant {
+        let centre = self.profile.centre() * self.duration;
+        let cost = |shift: f64| -> f64 {
+            let deviation = |(p, delay): &(Passage, f64)| {
+                let done = self
+                    .profile
+                    .done((p.offset - shift - delay + centre) / self.duration);
+                ((p.share - done) / p.share_error.max(PLACE_ERROR))
+                    .powi(2)
+                    .min(OUTLYING)
+            };
+            (shift / first.error).powi(2) + samples.iter().map(deviation).sum::<f64>()
+        };
+        let reach = (3.0 * first.error).min(self.duration);
+        let step = reach / 60.0;
+        let shifts = (-60..=60).map(|i| step * f64::from(i));
+        let costs: Vec<(f64, f64)> = shifts.map(|s| (cost(s), s)).collect();
+        let Some(least) = costs.iter().map(|c| c.0).min_by(f64::total_cmp) else {
+            return first;
+        };
+        // mean and deviation of the likelihood e^{−cost/2}
+        let weights = costs.iter().map(|(c, s)| ((-0.5 * (c - least)).exp(), *s));
+        let sums = weights.fold([0.0; 3], |[w, a, b], (p, s)| {
+            [w + p, a + p * s, b + p * s * s]
+        });
+        let mean = sums[1] / sums[0];
+        Instant {
+            time: first.time + mean,
+            error: (sums[2] / sums[0] - mean * mean).max(0.0).sqrt(),
+        }
+    }
+
     /// Candidates whose jumps span all samples that a contact may touch.
     pub(super) fn spanned(&self, candidates: &[Candidate], instants: &[Instant]) -> Vec<Candidate> {
         let [first, last] = [
@@ -140,9 +214,15 @@ impl FiniteContact {
 #[derive(Debug, Clone, Copy)]
 struct Passage {
     offset: f64,
-    offset_error: f64,
     share: f64,
     share_error: f64,
+}
+
+/// The samples of both bodies (x: 0, y: 1) beside one impact.
+#[derive(Debug, Clone)]
+struct Samples {
+    time_error: f64,
+    passages: Vec<(Passage, usize)>,
 }
 
 /// How long the impacts of a record last; `None` if they are instants, or if nothing shows it
@@ -155,14 +235,15 @@ pub(super) fn measure(
     kinematics.relative.displacement.as_ref()?;
     let wide: Vec<Candidate> = candidates.iter().map(widened).collect();
     let instants = instants(kinematics, &wide, arc);
-    let passages = [&kinematics.x, &kinematics.y]
-        .map(|body| passages(measured_velocity(body)?, &wide, &instants, arc));
-    if passages.iter().all(Option::is_none) {
+    let bodies = [&kinematics.x, &kinematics.y].map(measured_velocity);
+    let impacts: Vec<Samples> = (0..wide.len())
+        .filter_map(|i| samples(bodies, &wide, i, instants[i], arc))
+        .collect();
+    if impacts.len() < FEWEST {
         return None;
     }
     let profile = ContactProfile::new(typical_ratio(kinematics, &wide, &instants, arc)?);
-    let passages = passages.map(Option::unwrap_or_default);
-    Search { profile, passages }.best()
+    Search { profile, impacts }.best()
 }
 
 /// The candidate with one sample more on either side left to the contact.
@@ -199,130 +280,135 @@ fn typical_ratio(
     robust::median(&ratios)
 }
 
-/// Samples beside the impacts of one velocity, from one sample before the jump to one after.
-fn passages(
-    velocity: &Series,
+/// The samples of one impact, with the error of its time; `None` if it is too weak or its time
+/// too uncertain.
+fn samples(
+    bodies: [Option<&Series>; 2],
     candidates: &[Candidate],
-    instants: &[Instant],
+    index: usize,
+    instant: Instant,
     arc: ArcFit,
-) -> Option<Vec<Passage>> {
-    let mut out = Vec::new();
-    let mut impacts = 0;
-    for (i, instant) in instants.iter().enumerate() {
-        if candidates[i].dead_samples > 0.0 {
-            continue;
-        }
-        let Some([before, after]) = arcs(velocity, candidates, i, arc) else {
-            continue;
-        };
-        let jump = candidates[i].jump;
+) -> Option<Samples> {
+    if candidates[index].dead_samples > 0.0 || instant.error > LEAST_PLACED {
+        return None;
+    }
+    let mut out = Samples {
+        time_error: instant.error,
+        passages: Vec::new(),
+    };
+    for (body, velocity) in bodies.into_iter().enumerate() {
+        let Some(velocity) = velocity else { continue };
+        let [before, after] = arcs(velocity, candidates, index, arc)?;
         let height = before.value(instant.time) - after.value(instant.time);
         let full = before.samples.min(after.samples) > arc.degree + 1;
-        if !full || height < CLEAR_JUMP * velocity.noise || instant.error > 0.1 {
-            continue;
+        if !full || height < CLEAR_JUMP * velocity.noise {
+            return None;
         }
-        impacts += 1;
-        for k in jump.left + 1..jump.left + jump.gap {
+        let found = beside(velocity, candidates, index, instant, arc);
+        out.passages.extend(found.into_iter().map(|p| (p, body)));
+    }
+    (!out.passages.is_empty()).then_some(out)
+}
+
+/// Samples within the jump of one impact.
+fn beside(
+    velocity: &Series,
+    candidates: &[Candidate],
+    index: usize,
+    instant: Instant,
+    arc: ArcFit,
+) -> Vec<Passage> {
+    let jump = candidates[index].jump;
+    let Some([before, after]) = arcs(velocity, candidates, index, arc) else {
+        return Vec::new();
+    };
+    let height = before.value(instant.time) - after.value(instant.time);
+    let last = (jump.left + jump.gap).min(velocity.values.len());
+    (jump.left + 1..last)
+        .map(|k| {
             let at = k as f64;
             let (b, a) = (before.value(at), after.value(at));
             let spread = 1f64.hypot(before.error_factor(at).max(after.error_factor(at)));
-            out.push(Passage {
+            Passage {
                 offset: at - instant.time,
-                offset_error: instant.error,
                 share: (b - velocity.values[k]) / (b - a),
                 share_error: (velocity.noise * spread / height).hypot(SHARE_ERROR),
-            });
-        }
-    }
-    (impacts >= FEWEST).then_some(out)
+            }
+        })
+        .collect()
 }
 
-/// Least squares over duration and delays.
+/// Least squares over duration and delays; each impact's time is free within its error.
 struct Search {
     profile: ContactProfile,
-    passages: [Vec<Passage>; 2],
+    impacts: Vec<Samples>,
 }
+
+/// Duration, mean delay of both bodies, delay of x less that of y; in samples.
+type Place = [f64; 3];
 
 impl Search {
     fn best(&self) -> Option<FiniteContact> {
-        let unexplained: f64 = [0, 1].map(|body| self.excess(body)).iter().sum();
+        let instant: Vec<f64> = self.costs(&[0.0; 3], 0.0).collect();
+        let unexplained: f64 = instant.iter().map(|c| (c - EXPLAINED).max(0.0)).sum();
         if unexplained < SIGNIFICANT {
             return None;
         }
-        let instant: f64 = [0, 1].map(|body| self.cost(body, 0.0, 0.0)).iter().sum();
-        let coarse = (0..=12).map(|i| {
+        let grid = (0..=12).flat_map(|i| {
             let duration = LONGEST * (f64::from(i) / 12.0).powi(2);
-            let [x, y] = [0, 1].map(|body| self.best_delay(body, duration));
-            (x.0 + y.0, [duration, x.1, y.1])
+            (-4..=4).map(move |k| [duration, 0.0, LATEST * f64::from(k) / 4.0])
         });
-        let (cost, start) = coarse.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let (cost, [duration, x, y]) = self.refined(cost, start);
-        let told = |v: f64| if v.abs() < SHORTEST { 0.0 } else { v };
+        let coarse = grid.map(|place| (self.costs(&place, LOOSE).sum::<f64>(), place));
+        let (_, start) = coarse.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let (cost, [duration, mean, apart]) = self.refined(start);
+        let known = |v: f64| if v.abs() < SHORTEST { 0.0 } else { v };
         let found = FiniteContact {
-            duration: told(duration),
-            delays: [told(x), told(y)],
+            duration: known(duration),
+            delays: [known(mean + 0.5 * apart), known(mean - 0.5 * apart)],
             profile: self.profile,
         };
         let differs = found.duration > 0.0 || found.delays != [0.0; 2];
-        (differs && instant - cost > SIGNIFICANT).then_some(found)
+        (differs && instant.iter().sum::<f64>() - cost > SIGNIFICANT).then_some(found)
     }
 
-    /// How badly instants explain the samples, noise left aside.
-    fn excess(&self, body: usize) -> f64 {
-        let samples = self.passages[body].iter();
-        samples
-            .map(|p| (self.squared_deviation(p, 0.0, 0.0) - 6.0).max(0.0))
-            .sum()
+    /// Cost of each impact; `loose` is added to the errors of their times.
+    fn costs(&self, place: &Place, loose: f64) -> impl Iterator<Item = f64> {
+        self.impacts.iter().map(move |i| self.cost(i, place, loose))
     }
 
-    fn cost(&self, body: usize, duration: f64, delay: f64) -> f64 {
-        let samples = self.passages[body].iter();
-        samples
-            .map(|p| self.squared_deviation(p, duration, delay))
-            .sum()
-    }
-
-    /// Squared deviation of a sample over its variance; its place in the contact is known within an
-    /// error, over which the profile is averaged.
-    fn squared_deviation(&self, p: &Passage, duration: f64, delay: f64) -> f64 {
+    /// Least squared deviation of an impact's samples over its time.
+    fn cost(&self, impact: &Samples, [duration, mean, apart]: &Place, loose: f64) -> f64 {
+        let error = impact.time_error.hypot(loose);
         let centre = self.profile.centre() * duration;
-        let done = |offset: f64| {
-            if duration > 0.0 {
-                self.profile.done((offset - delay + centre) / duration)
-            } else {
-                f64::from(offset > delay)
-            }
+        let delays = [mean + 0.5 * apart, mean - 0.5 * apart];
+        let at = |shift: f64| -> f64 {
+            let deviation = |(p, body): &(Passage, usize)| {
+                let since = p.offset - shift - delays[*body];
+                let done = if *duration > 0.0 {
+                    self.profile.done((since + centre) / duration)
+                } else {
+                    f64::from(since > 0.0)
+                };
+                ((p.share - done) / p.share_error).powi(2).min(OUTLYING)
+            };
+            (shift / error).powi(2) + impact.passages.iter().map(deviation).sum::<f64>()
         };
-        let (low, middle, high) = (
-            done(p.offset - 1.2 * p.offset_error),
-            done(p.offset),
-            done(p.offset + 1.2 * p.offset_error),
-        );
-        let mean = 0.25 * (low + high) + 0.5 * middle;
-        let spread = 0.5 * (high - low);
-        let variance = p.share_error * p.share_error + spread * spread;
-        ((p.share - mean).powi(2) / variance).min(OUTLYING)
-    }
-
-    /// Least cost of one body's samples over its delay, and that delay.
-    fn best_delay(&self, body: usize, duration: f64) -> (f64, f64) {
-        let delays = (-10..=10).map(|i| LATEST * f64::from(i) / 10.0);
-        let costs = delays.map(|delay| (self.cost(body, duration, delay), delay));
-        let least = costs.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.abs().total_cmp(&b.1.abs())));
-        least.unwrap_or_default()
+        let steps = (-8..=8).map(|k| 0.3 * f64::from(k) * error);
+        steps.map(at).fold(f64::INFINITY, f64::min)
     }
 
     /// Search along the coordinates in steps that are halved.
-    fn refined(&self, mut least: f64, mut at: [f64; 3]) -> (f64, [f64; 3]) {
+    fn refined(&self, mut at: Place) -> (f64, Place) {
+        let mut least: f64 = self.costs(&at, 0.0).sum();
         let mut step = 0.16f64;
-        while step > 0.002 {
+        while step > 0.004 {
             let mut better = false;
             for axis in 0..3 {
                 for sign in [-1.0, 1.0] {
                     let mut next = at;
                     next[axis] += sign * step;
                     next[0] = next[0].max(0.0);
-                    let cost = self.cost(0, next[0], next[1]) + self.cost(1, next[0], next[2]);
+                    let cost: f64 = self.costs(&next, 0.0).sum();
                     if cost < least {
                         (least, at, better) = (cost, next, true);
                     }

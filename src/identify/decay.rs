@@ -116,12 +116,19 @@ pub fn misfiled(observations: &[Observation]) -> Vec<LeftOut> {
                     index: *index,
                     record: observations[*index].record.clone(),
                 },
-                reason: Reason::Misfiled {
-                    specimen: (*name).to_owned(),
-                    specimen_hz: own,
-                    frequency_hz: *f,
-                    like: other.map(|(other, _)| (*other).to_owned()),
-                    like_hz: other.map(|(_, centre)| *centre),
+                reason: match other {
+                    Some((like, like_hz)) => Reason::MisfiledLike {
+                        specimen: (*name).to_owned(),
+                        specimen_hz: own,
+                        frequency_hz: *f,
+                        like: (*like).to_owned(),
+                        like_hz: *like_hz,
+                    },
+                    None => Reason::Misfiled {
+                        specimen: (*name).to_owned(),
+                        specimen_hz: own,
+                        frequency_hz: *f,
+                    },
                 },
             });
         }

@@ -84,9 +84,13 @@ pub fn estimate_within(
     let error = spread.error;
     let (weak, unknown) = limits(coordinate);
     if !error.is_finite() || error >= unknown {
-        return not_identifiable(Note::Open {
-            parameter: coordinate,
-            standard_error: error.is_finite().then_some(error),
+        let parameter = coordinate;
+        return not_identifiable(match error.is_finite() {
+            true => Note::Open {
+                parameter,
+                standard_error: error,
+            },
+            false => Note::NotDetermined { parameter },
         });
     }
     let half = spread.half95();
@@ -204,5 +208,86 @@ impl ParameterSet {
             Coordinate::Deflection => Some(&mut self.static_deflection_m),
             _ => None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::identify::fit::FitReport;
+    use crate::identify::fit::parameters::Parameters;
+
+    #[test]
+    fn valid_an_interval_is_1_96_errors_to_either_side_of_the_coordinate() {
+        let r = estimate(Coordinate::Restitution, 0.8, 0.01, None);
+        assert_eq!(r.status, Status::Identified);
+        let [low, high] = r.interval95.expect("an interval");
+        assert!((low - 0.780_400_36).abs() < 1e-8 && (high - 0.819_599_64).abs() < 1e-8);
+        // of a logarithm: 12 Hz ± 0.5 %, [12·e^−0.0098, 12·e^0.0098]
+        let f = estimate(Coordinate::Frequency, 12f64.ln(), 0.005, None);
+        assert!((f.standard_error.expect("an error") - 0.06).abs() < 1e-12);
+        let [low, high] = f.interval95.expect("an interval");
+        assert!((low - 11.882_976).abs() < 1e-6 && (high - 12.118_176).abs() < 1e-6);
+    }
+
+    #[test]
+    fn r_stays_between_0_and_1() {
+        let near_one = estimate(Coordinate::Restitution, 0.99, 0.02, None);
+        assert_eq!(near_one.interval95.map(|i| i[1]), Some(1.0));
+    }
+
+    #[test]
+    fn an_error_above_its_limit_leaves_no_value_and_a_note() {
+        let weak = estimate(
+            Coordinate::Damping,
+            0.05f64.ln(),
+            0.2,
+            Some(Note::NotSeparable),
+        );
+        assert_eq!(
+            (weak.status, weak.note),
+            (Status::Weak, Some(Note::NotSeparable))
+        );
+        let parameter = Coordinate::Damping;
+        let open = estimate(parameter, 0.05f64.ln(), 0.95, None);
+        let note = Note::Open {
+            parameter,
+            standard_error: 0.95,
+        };
+        assert_eq!((open.value, open.note), (None, Some(note)));
+        let unbounded = estimate(parameter, 0.0, f64::INFINITY, None);
+        assert_eq!(unbounded.note, Some(Note::NotDetermined { parameter }));
+    }
+
+    #[test]
+    fn a_weak_estimate_names_the_parameter_that_it_is_most_correlated_with() {
+        let free = vec![
+            Coordinate::Restitution,
+            Coordinate::Damping,
+            Coordinate::Deflection,
+        ];
+        let covariance =
+            DMatrix::from_row_slice(3, 3, &[1.0, -0.9, 0.2, -0.9, 1.0, 0.1, 0.2, 0.1, 1.0]);
+        let fit = Fit {
+            parameters: Parameters::symmetric(0.8, 12.0, 0.05, 1e-3),
+            free,
+            covariance,
+            cost: 0.0,
+            residuals: 0,
+            report: FitReport::default(),
+        };
+        let note = leaning(&fit, Coordinate::Restitution);
+        let Some(Note::LeansOn {
+            parameter,
+            correlation,
+        }) = note
+        else {
+            panic!("{note:?}");
+        };
+        assert_eq!(parameter, Coordinate::Damping);
+        assert!((correlation + 0.9).abs() < 1e-12);
+        assert_eq!(leaning(&fit, Coordinate::Deflection), None);
     }
 }

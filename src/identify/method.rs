@@ -56,24 +56,30 @@ impl Message for Method {
     fn template(&self, language: Language) -> &'static str {
         use Language::{English, German};
         match (self, language) {
-            (Self::Boundaries, English) => "boundaries",
+            (Self::Boundaries, English) => "Boundaries",
             (Self::Boundaries, German) => "Grenzen",
-            (Self::Flights, English) => "flights",
-            (Self::Flights, German) => "Stoß zu Stoß",
-            (Self::FreeDecay, English) => "free_decay",
+            (Self::Flights, English) => "Multiple shooting",
+            (Self::Flights, German) => "Mehrfachschießen",
+            (Self::FreeDecay, English) => "Free decay",
             (Self::FreeDecay, German) => "Ausschwingen",
-            (Self::Impacts, English) => "impacts",
+            (Self::Impacts, English) => "Speeds at impact",
             (Self::Impacts, German) => "Einzelne Stöße",
-            (Self::PublishedSpeeds, English) => "published_speeds",
+            (Self::PublishedSpeeds, English) => "Published speeds",
             (Self::PublishedSpeeds, German) => "Veröffentlichte Geschwindigkeiten",
-            (Self::Resonance, English) => "resonance",
+            (Self::Resonance, English) => "Resonance curve",
             (Self::Resonance, German) => "Resonanzkurve",
-            (Self::Trajectories, English) => "trajectories",
+            (Self::Trajectories, English) => "Trajectories",
             (Self::Trajectories, German) => "Verläufe",
         }
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {
         Vec::new()
+    }
+}
+
+impl std::fmt::Display for Method {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.template(Language::English))
     }
 }

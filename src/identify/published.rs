@@ -218,7 +218,7 @@ fn worst_deviation(speeds: &[PublishedSpeed], beta: f64) -> Option<f64> {
 
 /// Whether a printed damping ratio fits.
 fn judge(speeds: &[PublishedSpeed], printed: f64, (beta, error): (f64, f64)) -> Finding {
-    let without_motion: Vec<PublishedSetting> = speeds
+    let settings: Vec<PublishedSetting> = speeds
         .iter()
         .filter(|s| speed_at(s, printed, s.frequency_ratio).is_none())
         .map(|s| PublishedSetting {
@@ -227,13 +227,16 @@ fn judge(speeds: &[PublishedSpeed], printed: f64, (beta, error): (f64, f64)) -> 
         })
         .collect();
     let far = (printed / beta).ln().abs() > NORMAL_975 * error;
-    if without_motion.is_empty() && !far {
-        return Finding::PrintedDampingFits { printed };
-    }
-    Finding::PrintedDampingDoesNotFit {
-        printed,
-        deviation: worst_deviation(speeds, printed),
-        without_motion,
+    match worst_deviation(speeds, printed) {
+        Some(deviation) if settings.is_empty() => match far {
+            true => Finding::PrintedDampingDoesNotFit { printed, deviation },
+            false => Finding::PrintedDampingFits { printed },
+        },
+        deviation => Finding::PrintedDampingWithoutMotion {
+            printed,
+            deviation,
+            settings,
+        },
     }
 }
 
@@ -268,11 +271,13 @@ mod tests {
         assert!((beta.value.unwrap() - 0.005).abs() < 5e-4, "{beta:?}");
         assert_eq!(found.verdict.kind, VerdictKind::Identified);
         let findings = &found.verdict.findings;
-        let without_motion = findings.iter().map(|f| match f {
-            Finding::PrintedDampingDoesNotFit { without_motion, .. } => without_motion.len(),
-            other => panic!("{other}"),
-        });
-        let without_motion: Vec<usize> = without_motion.collect();
-        assert!(without_motion[0] > 0, "{findings:?}");
+        assert!(
+            matches!(findings[0], Finding::PrintedDampingWithoutMotion { .. }),
+            "{findings:?}"
+        );
+        assert!(
+            !matches!(findings[1], Finding::PrintedDampingFits { .. }),
+            "{findings:?}"
+        );
     }
 }

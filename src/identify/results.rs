@@ -49,7 +49,10 @@ pub fn impacts(
         records.len(),
     );
     if let Some(estimate) = &mut result.parameters.restitution {
-        widen(estimate, fit.map_or(0.0, |fit| impact_bias(&fit.parameters)));
+        widen(
+            estimate,
+            fit.map_or(0.0, |fit| impact_bias(&fit.parameters)),
+        );
     }
     result.remarks.extend(outlying(blocks, evidence));
     result.contact_law = contact_law::contact_law(block);

@@ -11,7 +11,7 @@ use crate::identify::Provenance;
 use crate::pipeline::identify::{IdentificationFile, settings};
 use crate::pipeline::observe::read_one;
 use crate::pipeline::{Observed, PipelineError};
-use crate::report::words::Words;
+use crate::report::catalog::Catalog;
 use crate::report::{
     CampaignFacts, Format, Logo, NominalValue, Paper, Report, ReportContent, ReportOptions, Subject,
 };
@@ -114,18 +114,18 @@ pub fn content(
 ///
 /// # Errors
 /// If the table cannot be read, or is none.
-pub fn words(stated: &StatedOptions) -> Result<Option<Words>, PipelineError> {
+pub fn catalog(stated: &StatedOptions) -> Result<Option<Catalog>, PipelineError> {
     let Some(path) = &stated.words else {
         let german = stated.language == Language::De;
-        return Ok(german.then(|| Words::german().clone()));
+        return Ok(german.then(|| Catalog::german().clone()));
     };
     let unusable = |reason: String| PipelineError::ReportFile {
         path: path.display().to_string(),
         reason,
     };
     let text = std::fs::read_to_string(path).map_err(|error| unusable(error.to_string()))?;
-    let words = Words::read(&text).map_err(|error| unusable(error.to_string()))?;
-    Ok(Some(words))
+    let catalog = Catalog::read(&text).map_err(|error| unusable(error.to_string()))?;
+    Ok(Some(catalog))
 }
 
 fn options(stated: &StatedOptions) -> Result<ReportOptions, PipelineError> {
@@ -144,7 +144,7 @@ fn options(stated: &StatedOptions) -> Result<ReportOptions, PipelineError> {
         })
     };
     Ok(ReportOptions {
-        words: words(stated)?,
+        catalog: catalog(stated)?,
         paper: match stated.paper {
             WrittenPaper::A4 => Paper::A4,
             WrittenPaper::UsLetter => Paper::Letter,

@@ -4,9 +4,12 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// Defines [`FlagCode`] with the name of each code in files and tables.
+use crate::message::{Language, Message, Value};
+
+/// Defines [`FlagCode`] with the name of each code in files and tables, and its text in English and
+/// German.
 macro_rules! flag_codes {
-    ($($(#[$doc:meta])* $code:ident = $name:literal,)*) => {
+    ($($(#[$doc:meta])* $code:ident = $name:literal, $english:literal, $german:literal,)*) => {
         /// Kind of a problem.
         #[derive(
             Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
@@ -16,6 +19,9 @@ macro_rules! flag_codes {
         }
 
         impl FlagCode {
+            /// All codes.
+            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$code),*];
+
             /// The stable name in files and tables.
             pub fn name(self) -> &'static str {
                 match self {
@@ -23,68 +29,85 @@ macro_rules! flag_codes {
                 }
             }
         }
+
+        impl Message for FlagCode {
+            fn kind(&self) -> String {
+                self.name().to_owned()
+            }
+
+            fn template(&self, language: Language) -> &'static str {
+                match (self, language) {
+                    $((Self::$code, Language::English) => $english,)*
+                    $((Self::$code, Language::German) => $german,)*
+                }
+            }
+
+            fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+                Vec::new()
+            }
+        }
     };
 }
 
 flag_codes! {
     /// The file or the dataset cannot be read.
-    Unreadable = "unreadable",
+    Unreadable = "unreadable", "unreadable", "nicht lesbar",
     /// There are no samples.
-    Empty = "empty",
+    Empty = "empty", "empty", "leer",
     /// The dataset has no channel of the stated name.
-    MissingChannel = "missing_channel",
+    MissingChannel = "missing_channel", "missing channel", "fehlender Kanal",
     /// The file has no such dataset.
-    MissingDataset = "missing_dataset",
+    MissingDataset = "missing_dataset", "missing dataset", "fehlender Datensatz",
     /// Unit, scale or threshold do not suit the channel's role.
-    WrongUnit = "wrong_unit",
+    WrongUnit = "wrong_unit", "wrong unit", "falsche Einheit",
     /// Neither the file nor the campaign states a unit.
-    UnitMissing = "unit_missing",
+    UnitMissing = "unit_missing", "unit missing", "fehlende Einheit",
     /// The channel holds no real numbers.
-    NotNumbers = "not_numbers",
+    NotNumbers = "not_numbers", "not numbers", "keine Zahlen",
     /// Some values are NaN or infinite.
-    NotANumber = "not_a_number",
+    NotANumber = "not_a_number", "not a number", "keine Zahl",
     /// The channels differ in length.
-    UnequalLengths = "unequal_lengths",
+    UnequalLengths = "unequal_lengths", "unequal lengths", "ungleiche Längen",
     /// Samples without a value were cut off at the ends.
-    Trimmed = "trimmed",
+    Trimmed = "trimmed", "trimmed", "beschnitten",
     /// A channel is constant.
-    DeadChannel = "dead_channel",
+    DeadChannel = "dead_channel", "dead channel", "toter Kanal",
     /// A channel reaches the limits of its converter.
-    Clipped = "clipped",
+    Clipped = "clipped", "clipped", "übersteuert",
     /// Samples are missing.
-    DroppedSamples = "dropped_samples",
+    DroppedSamples = "dropped_samples", "dropped samples", "fehlende Abtastwerte",
     /// Time stamps are repeated.
-    RepeatedSamples = "repeated_samples",
+    RepeatedSamples = "repeated_samples", "repeated samples", "wiederholte Abtastwerte",
     /// The time axis holds no numbers.
-    TimeUnreadable = "time_unreadable",
+    TimeUnreadable = "time_unreadable", "time unreadable", "Zeit nicht lesbar",
     /// The time runs backward.
-    TimeBackward = "time_backward",
+    TimeBackward = "time_backward", "time backward", "Zeit läuft zurück",
     /// The time axis is not uniform.
-    TimeNotUniform = "time_not_uniform",
+    TimeNotUniform = "time_not_uniform", "time not uniform", "Zeit nicht gleichmäßig",
     /// No sample rate is known.
-    NoSampleRate = "no_sample_rate",
+    NoSampleRate = "no_sample_rate", "no sample rate", "keine Abtastrate",
     /// The channels differ in sample rate.
-    UnequalSampleRates = "unequal_sample_rates",
+    UnequalSampleRates = "unequal_sample_rates", "unequal sample rates", "ungleiche Abtastraten",
     /// Channels of the two masses are swapped.
-    SwappedMasses = "swapped_masses",
+    SwappedMasses = "swapped_masses", "swapped masses", "vertauschte Massen",
     /// Two channels have opposite signs.
-    OppositeSign = "opposite_sign",
+    OppositeSign = "opposite_sign", "opposite sign", "entgegengesetzte Vorzeichen",
     /// The scales of two channels contradict each other.
-    ScalesContradict = "scales_contradict",
+    ScalesContradict = "scales_contradict", "scales contradict", "Maßstäbe widersprechen sich",
     /// The drive channel holds no harmonic tone.
-    DriveNotHarmonic = "drive_not_harmonic",
+    DriveNotHarmonic = "drive_not_harmonic", "drive not harmonic", "Erregung nicht harmonisch",
     /// Measured and stated drive frequency differ.
-    DriveFrequencyContradicts = "drive_frequency_contradicts",
+    DriveFrequencyContradicts = "drive_frequency_contradicts", "drive frequency contradicts", "Erregerfrequenz widerspricht",
     /// Jumps of the approach velocity go up.
-    JumpsPointTheWrongWay = "jumps_point_the_wrong_way",
+    JumpsPointTheWrongWay = "jumps_point_the_wrong_way", "jumps point the wrong way", "Sprünge in falscher Richtung",
     /// No free decay was found.
-    NoFreeDecay = "no_free_decay",
+    NoFreeDecay = "no_free_decay", "no free decay", "kein Ausschwingen",
     /// Contact pulses without a jump of velocity, of a record that is identified.
-    ContactWithoutVelocityJump = "contact_without_velocity_jump",
+    ContactWithoutVelocityJump = "contact_without_velocity_jump", "contact without velocity jump", "Kontakt ohne Sprung der Geschwindigkeit",
     /// Contact pulses without a jump of velocity, of a record that is checked.
-    ContactWithoutJump = "contact_without_jump",
+    ContactWithoutJump = "contact_without_jump", "contact without jump", "Kontakt ohne Sprung",
     /// The campaign excludes the record.
-    Excluded = "excluded",
+    Excluded = "excluded", "excluded", "ausgeschlossen",
 }
 
 impl fmt::Display for FlagCode {

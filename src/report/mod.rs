@@ -1,26 +1,26 @@
 //! The report: figures and documents of what was identified and compared. It formats what it is
 //! given and computes nothing.
 
+pub mod catalog;
 mod content;
 mod document;
 mod error;
 pub(crate) mod figures;
 mod html;
+pub(crate) mod locale;
 mod options;
 mod parameters;
 pub(crate) mod picture;
 mod png;
-pub(crate) mod speech;
 pub(crate) mod theory;
-pub mod words;
 
 pub use content::{CampaignFacts, DataTable, NominalValue, ProposedPoint, ReportContent, Subject};
 pub use error::ReportError;
 pub use options::{Format, Logo, Paper, ReportOptions};
 
 use figures::Figure;
+use locale::Locale;
 use rayon::prelude::*;
-use speech::Speech;
 
 /// A report with its figures drawn, ready for every format.
 pub struct Report {
@@ -34,9 +34,9 @@ pub struct Report {
 impl Report {
     /// Draws the figures of a content and builds the document's data.
     pub fn new(content: &ReportContent, options: &ReportOptions) -> Self {
-        let speech = options.speech();
-        let figures = figures::draw_all(content, speech);
-        let document = document::document(content, &figures, speech);
+        let locale = options.locale();
+        let figures = figures::draw_all(content, locale);
+        let document = document::document(content, &figures, locale);
         Self {
             document,
             figures,
@@ -83,11 +83,11 @@ pub fn plan_map(
     content: &ReportContent,
     decimal_comma: bool,
 ) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
-    let speech = Speech {
+    let locale = Locale {
         decimal_comma,
-        words: None,
+        catalog: None,
     };
-    let Some(mut figure) = figures::map::draw(content, figures::map::MapSize::Full, speech) else {
+    let Some(mut figure) = figures::map::draw(content, figures::map::MapSize::Full, locale) else {
         return Ok(Vec::new());
     };
     figure.name = "plan".into();

@@ -1,7 +1,7 @@
 //! What a report is written as, and what the reader chose about its look.
 
-use super::speech::Speech;
-use super::words::Words;
+use super::catalog::Catalog;
+use super::locale::Locale;
 
 /// Paper of the document.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -86,8 +86,8 @@ pub struct ReportOptions {
     pub paper: Paper,
     /// Language that a template of the user's own may go by, as ISO 639-1 writes it.
     pub language: String,
-    /// The report's own words in another language than English.
-    pub words: Option<Words>,
+    /// Phrases and messages in another language than English.
+    pub catalog: Option<Catalog>,
     /// Whether numbers have a decimal comma.
     pub decimal_comma: bool,
     /// A typst template instead of the built-in one; it reads `report.json` and the figures.
@@ -101,7 +101,7 @@ impl Default for ReportOptions {
         Self {
             paper: Paper::default(),
             language: "en".to_owned(),
-            words: None,
+            catalog: None,
             decimal_comma: false,
             template: None,
             logo: None,
@@ -110,16 +110,16 @@ impl Default for ReportOptions {
 }
 
 impl ReportOptions {
-    pub(super) fn speech(&self) -> Speech<'_> {
-        Speech {
+    pub(super) fn locale(&self) -> Locale<'_> {
+        Locale {
             decimal_comma: self.decimal_comma,
-            words: self.words.as_ref(),
+            catalog: self.catalog.as_ref(),
         }
     }
 
-    /// The language that the report's own words are in.
+    /// The language of the report's texts, as ISO 639-1 writes it.
     pub(super) fn spoken(&self) -> &str {
-        let words = self.words.as_ref();
-        words.map_or("en", |w| w.language.as_deref().unwrap_or(&self.language))
+        let catalog = self.catalog.as_ref();
+        catalog.map_or("en", |c| c.language.as_deref().unwrap_or(&self.language))
     }
 }

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
-use std::sync::{Mutex, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use serde_json::Value;
 
@@ -539,17 +539,17 @@ type Outputs = (Option<String>, BTreeMap<String, Vec<u8>>);
 
 /// What a campaign gives before its key is changed; once for all changes that begin alike.
 fn outputs_before(change: &Change, lab: &Lab) -> Outputs {
-    static KNOWN: Mutex<BTreeMap<(String, Level), Outputs>> = Mutex::new(BTreeMap::new());
-    let files = ["campaign.toml", "runs.csv", "r1.csv"]
-        .map(|name| lab.read(name))
-        .concat();
-    let key = (files, change.level);
-    let known = KNOWN.lock().expect("no panic").get(&key).cloned();
-    known.unwrap_or_else(|| {
-        let found = outputs(lab, change.level);
-        KNOWN.lock().expect("no panic").insert(key, found.clone());
-        found
-    })
+    type Known = Arc<OnceLock<Outputs>>;
+    static KNOWN: Mutex<BTreeMap<(String, Level), Known>> = Mutex::new(BTreeMap::new());
+    let files = ["campaign.toml", "runs.csv", "r1.csv"].map(|name| lab.read(name));
+    let key = (files.concat(), change.level);
+    let known = KNOWN
+        .lock()
+        .expect("no panic")
+        .entry(key)
+        .or_default()
+        .clone();
+    known.get_or_init(|| outputs(lab, change.level)).clone()
 }
 
 fn outputs(lab: &Lab, level: Level) -> Outputs {
@@ -564,7 +564,7 @@ fn outputs(lab: &Lab, level: Level) -> Outputs {
     }
     let mut outputs = BTreeMap::new();
     for command in commands {
-        let Ran { code, said } = lab.run(command);
+        let Ran { code, said } = lab.run(&[&["-j", "1"][..], command].concat());
         if code == 2 {
             outputs.insert("refused".to_owned(), said.into_bytes());
             return (None, outputs);

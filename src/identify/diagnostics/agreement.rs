@@ -125,6 +125,76 @@ pub fn two_sided(z: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identify::estimate::{estimate, not_identifiable};
+    use crate::identify::messages::Note;
+
+    /// A method with R and its standard error.
+    fn with_restitution(value: f64, error: f64) -> MethodResult {
+        let mut result = MethodResult::default();
+        result.parameters.restitution = Some(estimate(Coordinate::Restitution, value, error, None));
+        result
+    }
+
+    /// A method with f0 and its relative standard error.
+    fn with_frequency(value: f64, error: f64) -> MethodResult {
+        let mut result = MethodResult::default();
+        result.parameters.natural_frequency_hz =
+            Some(estimate(Coordinate::Frequency, value.ln(), error, None));
+        result
+    }
+
+    #[test]
+    fn valid_two_estimates_are_compared_over_the_error_of_their_difference() {
+        // 0.90 ± 0.01 and 0.95 ± 0.01: z = 0.05/√(2·10⁻⁴) = 3.5355, p = erfc(2.5) = 4.0695e-4
+        // (Python's math.erfc), below the level of 1 % of a single comparison.
+        let methods = BTreeMap::from([
+            (Method::Trajectories, with_restitution(0.95, 0.01)),
+            (Method::Impacts, with_restitution(0.90, 0.01)),
+        ]);
+        let found = agreement(&methods);
+        let [pair] = &found.pairs[..] else {
+            panic!("{found:?}");
+        };
+        assert_eq!(pair.methods, [Method::Impacts, Method::Trajectories]);
+        assert_eq!(pair.values, [0.90, 0.95]);
+        assert!((pair.z_score + 0.05 / 2e-4f64.sqrt()).abs() < 1e-9);
+        assert!((pair.p_value - 4.069_520_174_449_589e-4).abs() < 1e-9);
+        assert_eq!(found.agree, Some(false));
+        assert_eq!(found.disagreement(), Some(pair));
+    }
+
+    #[test]
+    fn the_level_is_shared_by_all_comparisons() {
+        // z = 2.6, p = 0.0093: below 1 %, but three comparisons share that level
+        let off = 2.6 * 2e-4f64.sqrt();
+        let two = BTreeMap::from([
+            (Method::Impacts, with_restitution(0.8, 0.01)),
+            (Method::Trajectories, with_restitution(0.8 + off, 0.01)),
+        ]);
+        assert_eq!(agreement(&two).agree, Some(false));
+        let mut three = two;
+        three.insert(Method::Flights, with_restitution(0.8 + 0.5 * off, 0.01));
+        let found = agreement(&three);
+        assert_eq!((found.pairs.len(), found.agree), (3, Some(true)));
+        assert_eq!(found.disagreement(), None);
+    }
+
+    #[test]
+    fn nothing_is_compared_that_is_shared_or_missing() {
+        // the boundaries take f0 from the resonance curve
+        let shared = BTreeMap::from([
+            (Method::Boundaries, with_frequency(12.0, 1e-4)),
+            (Method::Resonance, with_frequency(13.0, 1e-4)),
+        ]);
+        assert_eq!(agreement(&shared), Agreement::default());
+        let mut missing = MethodResult::default();
+        missing.parameters.restitution = Some(not_identifiable(Note::NotSeparable));
+        let with_missing = BTreeMap::from([
+            (Method::Impacts, with_restitution(0.8, 0.01)),
+            (Method::Trajectories, missing),
+        ]);
+        assert_eq!(agreement(&with_missing).agree, None);
+    }
 
     #[test]
     fn valid_what_two_methods_leave_open_is_half_their_distance() {

@@ -173,11 +173,7 @@ pub fn verdict(basis: &Basis) -> Verdict {
         },
         VerdictKind::Identified => Sentence::Identified { values },
     };
-    let second = match basis.agreement.agree {
-        Some(true) => Sentence::MethodsAgree,
-        Some(false) => Sentence::MethodsDisagree,
-        None => Sentence::OneMethod,
-    };
+    let second = Sentence::on_agreement(basis.agreement.agree);
     Verdict {
         kind,
         sentences: vec![first, second],
@@ -223,4 +219,108 @@ fn stated_value((parameter, estimate): &(Coordinate, &Estimate)) -> Option<State
         value: estimate.value?,
         half_width: 0.5 * (high - low),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::estimate::estimate;
+    use crate::identify::messages::PairAgreement;
+
+    /// A joint result with standard errors of R and ln f0.
+    fn joint(restitution: f64, frequency: f64) -> MethodResult {
+        let of = |c: Coordinate, value: f64, error| {
+            Some(estimate(c, value, error, Some(Note::NotSeparable)))
+        };
+        let mut result = MethodResult::default();
+        result.parameters.restitution = of(Coordinate::Restitution, 0.8, restitution);
+        result.parameters.natural_frequency_hz = of(Coordinate::Frequency, 12f64.ln(), frequency);
+        result
+    }
+
+    fn judged(joint: &MethodResult, methods: &[(Method, MethodResult)], agree: bool) -> Verdict {
+        let pair = PairAgreement {
+            parameter: Coordinate::Restitution,
+            methods: [Method::Impacts, Method::Trajectories],
+            values: [0.8, 0.9],
+            z_score: if agree { 0.1 } else { 9.0 },
+            p_value: if agree { 0.9 } else { 1e-19 },
+        };
+        verdict(&Basis {
+            beyond: &[],
+            joint,
+            methods: &methods.iter().cloned().collect(),
+            agreement: &Agreement {
+                agree: Some(agree),
+                pairs: vec![pair],
+            },
+            suspicions: &[],
+        })
+    }
+
+    #[test]
+    fn the_verdict_is_that_of_the_worst_parameter() {
+        // R is weak from 0.03 on and not identifiable from 0.15, f0 from 0.01 and 0.08
+        let kind = |r, f| judged(&joint(r, f), &[], true).kind;
+        assert_eq!(kind(0.001, 0.001), VerdictKind::Identified);
+        assert_eq!(kind(0.04, 0.001), VerdictKind::Weak);
+        assert_eq!(kind(0.04, 0.09), VerdictKind::NotIdentifiable);
+        let nothing = judged(&MethodResult::default(), &[], true);
+        assert_eq!(nothing.kind, VerdictKind::NotIdentifiable);
+        assert_eq!(nothing.sentences[0], Sentence::NothingUsable);
+    }
+
+    #[test]
+    fn the_sentences_state_values_and_what_is_missing() {
+        let found = judged(&joint(0.2, 0.001), &[], true);
+        let unknown = vec![Coordinate::Restitution];
+        let Sentence::PartlyIdentifiable { values, parameters } = &found.sentences[0] else {
+            panic!("{found:?}");
+        };
+        assert_eq!((values.len(), parameters), (1, &unknown));
+        assert_eq!(found.sentences[1], Sentence::MethodsAgree);
+        // half of [12·e^−a, 12·e^a] with a = 1.959964·0.001
+        let a = NORMAL_975 * 1e-3;
+        let half = 0.5 * 12.0 * (a.exp() - (-a).exp());
+        assert!((values[0].half_width - half).abs() < 1e-12);
+        assert_eq!(
+            found.to_string(),
+            "The rig has f0 = 12.000 ± 0.024 Hz, but these data do not determine R. The methods \
+             agree."
+        );
+        let note = found.findings.iter().find_map(|f| match f {
+            Finding::Parameter { parameter, note } => Some((*parameter, note)),
+            _ => None,
+        });
+        let (parameter, note) = note.expect("a note");
+        assert_eq!(parameter, Coordinate::Restitution);
+        assert!(matches!(note, Note::Open { standard_error, .. } if *standard_error == 0.2));
+    }
+
+    #[test]
+    fn one_method_that_does_not_fit_decides_and_its_remarks_are_findings() {
+        let remark = Remark::NotOneDegreeOfFreedom { deviation: 0.4 };
+        let misfit = MethodResult {
+            fits: Some(false),
+            remarks: vec![remark.clone()],
+            ..MethodResult::default()
+        };
+        let fitting = MethodResult {
+            fits: Some(true),
+            remarks: vec![Remark::StatesDeviate { ratio: 1.0 }],
+            ..MethodResult::default()
+        };
+        let methods = [(Method::Resonance, misfit), (Method::Flights, fitting)];
+        let found = judged(&joint(0.001, 0.001), &methods, false);
+        assert_eq!(found.kind, VerdictKind::DoesNotFit);
+        assert_eq!(
+            found.findings[0],
+            Finding::Misfit {
+                method: Method::Resonance,
+                remark
+            }
+        );
+        assert!(matches!(found.findings[1], Finding::Disagreement { .. }));
+        assert_eq!(found.findings.len(), 2);
+    }
 }

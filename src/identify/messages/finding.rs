@@ -100,10 +100,17 @@ pub enum Finding {
     PrintedDampingDoesNotFit {
         /// The printed damping ratio.
         printed: f64,
-        /// Greatest relative deviation of a speed; `None` where one has no motion.
+        /// Greatest relative deviation of a speed.
+        deviation: f64,
+    },
+    /// Some of the published speeds have no motion with a printed damping ratio.
+    PrintedDampingWithoutMotion {
+        /// The printed damping ratio.
+        printed: f64,
+        /// Greatest relative deviation of a speed; `None` if one has no motion at any setting.
         deviation: Option<f64>,
-        /// The settings of the speeds that have no motion with it.
-        without_motion: Vec<PublishedSetting>,
+        /// The settings without a motion.
+        settings: Vec<PublishedSetting>,
     },
 }
 
@@ -112,6 +119,18 @@ messages!(Finding);
 impl Message for Finding {
     fn kind(&self) -> String {
         kind_of(self)
+    }
+
+    fn key(&self) -> String {
+        match self {
+            Self::BeyondModel {
+                effect, strength, ..
+            } => {
+                let way = if *strength > 0.0 { "above" } else { "below" };
+                format!("{}_{}_zero", effect.name(), way)
+            }
+            _ => self.kind(),
+        }
     }
 
     fn template(&self, language: Language) -> &'static str {
@@ -136,13 +155,15 @@ impl Message for Finding {
                 channel, deviation, ..
             } => vec![
                 ("channel", Value::Name(channel.name())),
-                ("share", Value::Number(100.0 * deviation.abs(), 1)),
+                ("share", Value::Percent(deviation.abs(), 1)),
+                ("direction", direction(*deviation)),
             ],
             Self::WrongCorner {
                 channel, deviation, ..
             } => vec![
                 ("channel", Value::Name(channel.name())),
-                ("share", Value::Number(100.0 * deviation.abs(), 0)),
+                ("share", Value::Percent(deviation.abs(), 0)),
+                ("direction", direction(*deviation)),
             ],
             Self::BeyondModel {
                 effect,
@@ -169,7 +190,7 @@ impl Message for Finding {
                 ("parameter", Value::Message(parameter)),
                 ("note", Value::Message(note)),
             ],
-            Self::Disagreement { pair } => pair.values(),
+            Self::Disagreement { pair } => vec![("pair", Value::Message(pair))],
             Self::Specimen { specimen, verdict } => vec![
                 ("specimen", Value::Name(specimen)),
                 ("verdict", sentences(verdict)),
@@ -179,17 +200,18 @@ impl Message for Finding {
                 ("reason", Value::Message(reason)),
             ],
             Self::PrintedDampingFits { printed } => vec![("value", Value::Shortest(*printed))],
-            Self::PrintedDampingDoesNotFit {
-                printed,
-                deviation,
-                without_motion,
+            Self::PrintedDampingDoesNotFit { printed, deviation } => vec![
+                ("value", Value::Shortest(*printed)),
+                ("share", Value::Percent(*deviation, 1)),
+            ],
+            Self::PrintedDampingWithoutMotion {
+                printed, settings, ..
             } => vec![
                 ("value", Value::Shortest(*printed)),
                 (
-                    "share",
-                    Value::Number(100.0 * deviation.unwrap_or_default(), 1),
+                    "settings",
+                    Value::List(settings.iter().map(|s| Value::Message(s)).collect()),
                 ),
-                ("settings", settings(without_motion)),
             ],
         }
     }
@@ -199,8 +221,42 @@ fn sentences(verdict: &[Sentence]) -> Value<'_> {
     Value::Sentences(verdict.iter().map(|s| Value::Message(s)).collect())
 }
 
-fn settings(published: &[PublishedSetting]) -> Value<'_> {
-    Value::List(published.iter().map(|s| Value::Message(s)).collect())
+/// Whether something is too high or too low.
+#[derive(Debug, Clone, Copy)]
+enum Direction {
+    High,
+    Low,
+}
+
+fn direction(deviation: f64) -> Value<'static> {
+    match deviation > 0.0 {
+        true => Value::Message(&Direction::High),
+        false => Value::Message(&Direction::Low),
+    }
+}
+
+impl Message for Direction {
+    fn kind(&self) -> String {
+        match self {
+            Self::High => "high",
+            Self::Low => "low",
+        }
+        .to_owned()
+    }
+
+    fn template(&self, language: Language) -> &'static str {
+        use Language::{English, German};
+        match (self, language) {
+            (Self::High, English) => "high",
+            (Self::High, German) => "hoch",
+            (Self::Low, English) => "low",
+            (Self::Low, German) => "tief",
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        Vec::new()
+    }
 }
 
 impl Finding {
@@ -210,28 +266,15 @@ impl Finding {
                 "the gap stated with a clearance of {stated_mm} mm moves like one of {fitting_mm} \
                  mm: measure it again and correct the run table; its records stay out of the fit"
             }
-            Self::WrongGain { deviation, .. } => match *deviation > 0.0 {
-                true => {
-                    "{channel} reads {share} % too high: correct scale in [channels.{channel}], or \
-                     state a larger gain_uncertainty in [rig]"
-                }
-                false => {
-                    "{channel} reads {share} % too low: correct scale in [channels.{channel}], or \
-                     state a larger gain_uncertainty in [rig]"
-                }
-            },
-            Self::WrongCorner { deviation, .. } => match *deviation > 0.0 {
-                true => {
-                    "the corner of the high-pass of {channel} is {share} % too high for the stated \
-                     one: correct high_pass in [channels.{channel}], or state a larger \
-                     corner_uncertainty in [rig]"
-                }
-                false => {
-                    "the corner of the high-pass of {channel} is {share} % too low for the stated \
-                     one: correct high_pass in [channels.{channel}], or state a larger \
-                     corner_uncertainty in [rig]"
-                }
-            },
+            Self::WrongGain { .. } => {
+                "{channel} reads {share} too {direction}: correct scale in [channels.{channel}], or \
+                 state a larger gain_uncertainty in [rig]"
+            }
+            Self::WrongCorner { .. } => {
+                "the corner of the high-pass of {channel} is {share} too {direction} for the stated \
+                 one: correct high_pass in [channels.{channel}], or state a larger \
+                 corner_uncertainty in [rig]"
+            }
             Self::SwappedChannels { .. } => {
                 "all data fit far better with the velocities of both masses swapped: swap \
                  [channels.velocity_x] and [channels.velocity_y], or the displacements"
@@ -241,27 +284,17 @@ impl Finding {
             } => beyond_english(*effect, *strength > 0.0),
             Self::Misfit { .. } => "{method}: {remark}",
             Self::Parameter { .. } => "{parameter}: {note}",
-            Self::Disagreement { pair } => pair.template(Language::English),
+            Self::Disagreement { .. } => "the methods do not agree on {pair}",
             Self::Specimen { .. } => "{specimen}: {verdict}",
             Self::MisfiledRecord { .. } => "{record}: {reason}",
             Self::PrintedDampingFits { .. } => "The printed $β$ = {value} fits the speeds.",
-            Self::PrintedDampingDoesNotFit {
-                deviation,
-                without_motion,
-                ..
-            } => match (deviation, without_motion.is_empty()) {
-                (Some(_), true) => {
-                    "The printed $β$ = {value} does not fit: a speed is off by {share} %."
-                }
-                (Some(_), false) => {
-                    "The printed $β$ = {value} does not fit: a speed is off by {share} %; the \
-                     motion for {settings} does not exist with it."
-                }
-                (None, _) => {
-                    "The printed $β$ = {value} does not fit: the motion for {settings} does not \
-                     exist with it."
-                }
-            },
+            Self::PrintedDampingDoesNotFit { .. } => {
+                "The printed $β$ = {value} does not fit: a speed is off by {share}."
+            }
+            Self::PrintedDampingWithoutMotion { .. } => {
+                "The printed $β$ = {value} does not fit: the motion for {settings} does not exist \
+                 with it."
+            }
         }
     }
 
@@ -272,28 +305,15 @@ impl Finding {
                  von {fitting_mm} mm: nachmessen und die Versuchstabelle richtigstellen; seine \
                  Aufzeichnungen bleiben außerhalb der Anpassung"
             }
-            Self::WrongGain { deviation, .. } => match *deviation > 0.0 {
-                true => {
-                    "{channel} zeigt {share} % zu hoch: scale in [channels.{channel}] \
-                     richtigstellen, oder eine größere gain_uncertainty in [rig] angeben"
-                }
-                false => {
-                    "{channel} zeigt {share} % zu tief: scale in [channels.{channel}] \
-                     richtigstellen, oder eine größere gain_uncertainty in [rig] angeben"
-                }
-            },
-            Self::WrongCorner { deviation, .. } => match *deviation > 0.0 {
-                true => {
-                    "die Grenzfrequenz des Hochpasses von {channel} liegt {share} % zu hoch gegen \
-                     die angegebene: high_pass in [channels.{channel}] richtigstellen, oder eine \
-                     größere corner_uncertainty in [rig] angeben"
-                }
-                false => {
-                    "die Grenzfrequenz des Hochpasses von {channel} liegt {share} % zu tief gegen \
-                     die angegebene: high_pass in [channels.{channel}] richtigstellen, oder eine \
-                     größere corner_uncertainty in [rig] angeben"
-                }
-            },
+            Self::WrongGain { .. } => {
+                "{channel} zeigt {share} zu {direction}: scale in [channels.{channel}] \
+                 richtigstellen, oder eine größere gain_uncertainty in [rig] angeben"
+            }
+            Self::WrongCorner { .. } => {
+                "die Grenzfrequenz des Hochpasses von {channel} liegt {share} zu {direction} gegen \
+                 die angegebene: high_pass in [channels.{channel}] richtigstellen, oder eine \
+                 größere corner_uncertainty in [rig] angeben"
+            }
             Self::SwappedChannels { .. } => {
                 "alle Daten passen weit besser, wenn die Geschwindigkeiten beider Massen vertauscht \
                  sind: [channels.velocity_x] und [channels.velocity_y] tauschen, oder die Wege"
@@ -303,30 +323,20 @@ impl Finding {
             } => beyond_german(*effect, *strength > 0.0),
             Self::Misfit { .. } => "{method}: {remark}",
             Self::Parameter { .. } => "{parameter}: {note}",
-            Self::Disagreement { pair } => pair.template(Language::German),
+            Self::Disagreement { .. } => "die Verfahren stimmen nicht überein bei {pair}",
             Self::Specimen { .. } => "{specimen}: {verdict}",
             Self::MisfiledRecord { .. } => "{record}: {reason}",
             Self::PrintedDampingFits { .. } => {
                 "Das gedruckte $β$ = {value} passt zu den Geschwindigkeiten."
             }
-            Self::PrintedDampingDoesNotFit {
-                deviation,
-                without_motion,
-                ..
-            } => match (deviation, without_motion.is_empty()) {
-                (Some(_), true) => {
-                    "Das gedruckte $β$ = {value} passt nicht: Eine Geschwindigkeit liegt um {share} \
-                     % daneben."
-                }
-                (Some(_), false) => {
-                    "Das gedruckte $β$ = {value} passt nicht: Eine Geschwindigkeit liegt um {share} \
-                     % daneben; die Bewegung bei {settings} gibt es damit nicht."
-                }
-                (None, _) => {
-                    "Das gedruckte $β$ = {value} passt nicht: Die Bewegung bei {settings} gibt es \
-                     damit nicht."
-                }
-            },
+            Self::PrintedDampingDoesNotFit { .. } => {
+                "Das gedruckte $β$ = {value} passt nicht: Eine Geschwindigkeit liegt um {share} \
+                 daneben."
+            }
+            Self::PrintedDampingWithoutMotion { .. } => {
+                "Das gedruckte $β$ = {value} passt nicht: Die Bewegung bei {settings} gibt es damit \
+                 nicht."
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What an identification states: notes on parameters, remarks of methods, reasons why something was
 //! left out, findings, and the sentences of the verdict; each a variant with its numbers in SI.
 
+mod examples;
 mod finding;
 mod note;
 mod pair;
@@ -8,6 +9,7 @@ mod reason;
 mod remark;
 mod sentence;
 
+pub use examples::{example_findings, examples};
 pub use finding::{Finding, PublishedSetting};
 pub use note::Note;
 pub use pair::PairAgreement;

@@ -15,8 +15,13 @@ pub enum Note {
     Open {
         /// The parameter.
         parameter: Coordinate,
-        /// Standard error, of R absolute, of the others relative; `None` if nothing bounds it.
-        standard_error: Option<f64>,
+        /// Standard error, of R absolute, of the others relative.
+        standard_error: f64,
+    },
+    /// Nothing bounds the parameter.
+    NotDetermined {
+        /// The parameter.
+        parameter: Coordinate,
     },
     /// The estimate depends strongly on another parameter.
     LeansOn {
@@ -74,51 +79,13 @@ impl Message for Note {
     fn template(&self, language: Language) -> &'static str {
         use Language::{English, German};
         match (self, language) {
-            (
-                Self::Open {
-                    parameter: p,
-                    standard_error: Some(_),
-                },
-                English,
-            ) if p.is_logarithm() => "the data leave {parameter} open by ± {width} %",
-            (
-                Self::Open {
-                    parameter: p,
-                    standard_error: Some(_),
-                },
-                German,
-            ) if p.is_logarithm() => "die Daten lassen {parameter} um ± {width} % offen",
-            (
-                Self::Open {
-                    standard_error: Some(_),
-                    ..
-                },
-                English,
-            ) => "the data leave {parameter} open by ± {width}",
-            (
-                Self::Open {
-                    standard_error: Some(_),
-                    ..
-                },
-                German,
-            ) => "die Daten lassen {parameter} um ± {width} offen",
-            (
-                Self::Open {
-                    standard_error: None,
-                    ..
-                },
-                English,
-            ) => "the data do not determine {parameter}",
-            (
-                Self::Open {
-                    standard_error: None,
-                    ..
-                },
-                German,
-            ) => "die Daten bestimmen {parameter} nicht",
-            (Self::LeansOn { .. }, English) => "leans on {parameter} (correlation {correlation})",
+            (Self::Open { .. }, English) => "the data leave {parameter} open by ± {width}",
+            (Self::Open { .. }, German) => "die Daten lassen {parameter} um ± {width} offen",
+            (Self::NotDetermined { .. }, English) => "the data do not determine {parameter}",
+            (Self::NotDetermined { .. }, German) => "die Daten bestimmen {parameter} nicht",
+            (Self::LeansOn { .. }, English) => "depends on {parameter} (correlation {correlation})",
             (Self::LeansOn { .. }, German) => {
-                "stützt sich auf {parameter} (Korrelation {correlation})"
+                "hängt von {parameter} ab (Korrelation {correlation})"
             }
             (Self::MethodsDisagree, English) => {
                 "the methods do not agree on it: the interval is widened by their disagreement"
@@ -134,7 +101,7 @@ impl Message for Note {
                 "$R$ ist hier nicht eine Zahl: siehe die Anmerkung zu seiner Änderung"
             }
             (Self::SeveralSpecimens, English) => {
-                "the campaign holds several specimens; each has its own parameters"
+                "the campaign has several specimens; each has its own parameters"
             }
             (Self::SeveralSpecimens, German) => {
                 "die Messreihe hat mehrere Prüflinge; jeder hat seine eigenen Parameter"
@@ -162,13 +129,13 @@ impl Message for Note {
                 parameter,
                 standard_error,
             } => {
-                let scale = if parameter.is_logarithm() { 100.0 } else { 1.0 };
-                let width = scale * standard_error.unwrap_or(f64::INFINITY);
-                vec![
-                    ("parameter", Value::Message(parameter)),
-                    ("width", Value::Number(width, 2)),
-                ]
+                let width = match parameter.is_logarithm() {
+                    true => Value::Percent(*standard_error, 2),
+                    false => Value::Number(*standard_error, 2),
+                };
+                vec![("parameter", Value::Message(parameter)), ("width", width)]
             }
+            Self::NotDetermined { parameter } => vec![("parameter", Value::Message(parameter))],
             Self::LeansOn {
                 parameter,
                 correlation,

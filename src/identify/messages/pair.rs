@@ -6,7 +6,7 @@ use crate::identify::fit::parameters::Coordinate;
 use crate::identify::method::Method;
 use crate::message::{Language, Message, Value};
 
-/// The estimates of a parameter by two methods, compared; as a message, that they do not agree.
+/// The estimates of a parameter by two methods, compared; as a message, how far they are apart.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PairAgreement {
     /// The parameter.
@@ -23,20 +23,19 @@ pub struct PairAgreement {
 
 impl Message for PairAgreement {
     fn kind(&self) -> String {
-        "disagreement".to_owned()
+        "pair".to_owned()
     }
 
     fn template(&self, language: Language) -> &'static str {
         match language {
             Language::English => {
-                "The methods do not agree on {parameter}: {first} finds {value}, {second} finds \
-                 {other}, {distance} standard errors apart. Trust the interval of neither until the \
-                 cause is found."
+                "{parameter}: {value} ({first}) and {other} ({second}) are {distance} standard \
+                 errors apart; trust neither interval until the cause is found"
             }
             Language::German => {
-                "Die Verfahren stimmen nicht überein: {parameter}: {first} ergibt {value}, {second} \
-                 ergibt {other}, {distance} Standardfehler auseinander. Keinem der beiden Intervalle \
-                 ist zu trauen, bis die Ursache gefunden ist."
+                "{parameter}: {value} ({first}) und {other} ({second}) liegen {distance} \
+                 Standardfehler auseinander; keinem der beiden Intervalle ist zu trauen, bis die \
+                 Ursache gefunden ist"
             }
         }
     }

@@ -77,7 +77,7 @@ pub enum Reason {
         /// Separation speed after, m/s.
         after_m_s: f64,
     },
-    /// The natural frequency is that of another specimen, or of none.
+    /// The natural frequency is not that of the stated specimen.
     Misfiled {
         /// The specimen as stated.
         specimen: String,
@@ -85,10 +85,19 @@ pub enum Reason {
         specimen_hz: f64,
         /// Natural frequency of the record, Hz.
         frequency_hz: f64,
-        /// The specimen whose natural frequency the record has.
-        like: Option<String>,
-        /// Natural frequency of that one, Hz.
-        like_hz: Option<f64>,
+    },
+    /// The natural frequency is that of another specimen.
+    MisfiledLike {
+        /// The specimen as stated.
+        specimen: String,
+        /// Natural frequency of that specimen, Hz.
+        specimen_hz: f64,
+        /// Natural frequency of the record, Hz.
+        frequency_hz: f64,
+        /// The other specimen.
+        like: String,
+        /// Natural frequency of the other specimen, Hz.
+        like_hz: f64,
     },
 }
 
@@ -169,8 +178,8 @@ impl Message for Reason {
             Self::NoSuchMotion
             | Self::FarFromBoundary
             | Self::GapNotAsStated
-            | Self::ImpactsDoNotFollow
-            | Self::Influential { .. } => Vec::new(),
+            | Self::ImpactsDoNotFollow => Vec::new(),
+            Self::Influential { method } => vec![("method", Value::Message(method))],
             Self::OutlyingImpact {
                 before_m_s,
                 after_m_s,
@@ -182,17 +191,29 @@ impl Message for Reason {
                 specimen,
                 specimen_hz,
                 frequency_hz,
+            } => misfiled(specimen, *specimen_hz, *frequency_hz),
+            Self::MisfiledLike {
+                specimen,
+                specimen_hz,
+                frequency_hz,
                 like,
                 like_hz,
-            } => vec![
-                ("specimen", Value::Name(specimen)),
-                ("own", Value::Number(*specimen_hz, 2)),
-                ("frequency", Value::Number(*frequency_hz, 2)),
-                ("like", Value::Name(like.as_deref().unwrap_or_default())),
-                ("other", Value::Number(like_hz.unwrap_or_default(), 2)),
-            ],
+            } => {
+                let mut values = misfiled(specimen, *specimen_hz, *frequency_hz);
+                values.push(("like", Value::Name(like)));
+                values.push(("other", Value::Number(*like_hz, 2)));
+                values
+            }
         }
     }
+}
+
+fn misfiled(specimen: &str, own_hz: f64, frequency_hz: f64) -> Vec<(&'static str, Value<'_>)> {
+    vec![
+        ("specimen", Value::Name(specimen)),
+        ("own", Value::Number(own_hz, 2)),
+        ("frequency", Value::Number(frequency_hz, 2)),
+    ]
 }
 
 impl Reason {
@@ -218,34 +239,20 @@ impl Reason {
                 "its gap is not as stated: left out of trajectories and boundaries"
             }
             Self::ImpactsDoNotFollow => {
-                "its impacts do not follow from each other (one missed?): left out of the flights"
+                "its impacts do not follow from each other (one missed?): left out of multiple shooting"
             }
-            Self::Influential { method } => match method {
-                Method::Resonance => {
-                    "it pulls the fit away from what all other records say: left out of the \
-                     resonance curve"
-                }
-                Method::Trajectories => {
-                    "it pulls the fit away from what all other records say: left out of the \
-                     trajectories"
-                }
-                Method::Boundaries
-                | Method::Flights
-                | Method::FreeDecay
-                | Method::Impacts
-                | Method::PublishedSpeeds => {
-                    "it pulls the fit away from what all other records say"
-                }
-            },
+            Self::Influential { .. } => {
+                "it draws the fit away from what all other records state: left out of {method}"
+            }
             Self::OutlyingImpact { .. } => {
                 "its speeds, {before} m/s before and {after} m/s after, are far from those of the \
                  others"
             }
-            Self::Misfiled { like: Some(_), .. } => {
+            Self::MisfiledLike { .. } => {
                 "filed under {specimen} ({own} Hz) but its natural frequency is {frequency} Hz: it \
                  behaves as {like} ({other} Hz); it looks misfiled"
             }
-            Self::Misfiled { like: None, .. } => {
+            Self::Misfiled { .. } => {
                 "filed under {specimen} ({own} Hz) but its natural frequency is {frequency} Hz; it \
                  looks misfiled"
             }
@@ -274,35 +281,22 @@ impl Reason {
                 "ihr Abstand ist nicht der angegebene: aus Verläufen und Grenzen ausgelassen"
             }
             Self::ImpactsDoNotFollow => {
-                "ihre Stöße folgen nicht auseinander (einer nicht erkannt?): aus Stoß zu Stoß \
-                 ausgelassen"
+                "ihre Stöße folgen nicht auseinander (einer nicht erkannt?): aus dem \
+                 Mehrfachschießen ausgelassen"
             }
-            Self::Influential { method } => match method {
-                Method::Resonance => {
-                    "sie zieht die Anpassung von dem fort, was alle anderen Aufzeichnungen sagen: \
-                     aus der Resonanzkurve ausgelassen"
-                }
-                Method::Trajectories => {
-                    "sie zieht die Anpassung von dem fort, was alle anderen Aufzeichnungen sagen: \
-                     aus den Verläufen ausgelassen"
-                }
-                Method::Boundaries
-                | Method::Flights
-                | Method::FreeDecay
-                | Method::Impacts
-                | Method::PublishedSpeeds => {
-                    "sie zieht die Anpassung von dem fort, was alle anderen Aufzeichnungen sagen"
-                }
-            },
+            Self::Influential { .. } => {
+                "sie zieht die Anpassung von dem fort, was alle anderen Aufzeichnungen sagen: \
+                 ausgelassen aus {method}"
+            }
             Self::OutlyingImpact { .. } => {
                 "seine Geschwindigkeiten, {before} m/s davor und {after} m/s danach, liegen weit \
                  von denen der übrigen"
             }
-            Self::Misfiled { like: Some(_), .. } => {
+            Self::MisfiledLike { .. } => {
                 "unter {specimen} ({own} Hz) abgelegt, aber die Eigenfrequenz ist {frequency} Hz: \
                  Sie verhält sich wie {like} ({other} Hz); sie sieht falsch abgelegt aus"
             }
-            Self::Misfiled { like: None, .. } => {
+            Self::Misfiled { .. } => {
                 "unter {specimen} ({own} Hz) abgelegt, aber die Eigenfrequenz ist {frequency} Hz; \
                  sie sieht falsch abgelegt aus"
             }

@@ -125,9 +125,13 @@ impl Message for Remark {
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {
         match self {
-            Self::OneDegreeOfFreedom { deviation } => vec![("share", percent(*deviation, 2))],
-            Self::NotOneDegreeOfFreedom { deviation } => vec![("share", percent(*deviation, 0))],
-            Self::WaveformsUnexplained { share } => vec![("share", percent(*share, 2))],
+            Self::OneDegreeOfFreedom { deviation } => {
+                vec![("share", Value::Percent(*deviation, 2))]
+            }
+            Self::NotOneDegreeOfFreedom { deviation } => {
+                vec![("share", Value::Percent(*deviation, 0))]
+            }
+            Self::WaveformsUnexplained { share } => vec![("share", Value::Percent(*share, 2))],
             Self::WaveformsThinned { fitted, periodic } => vec![
                 ("some", Value::Count(*fitted)),
                 ("count", Value::Count(*periodic)),
@@ -159,29 +163,26 @@ impl Message for Remark {
                 values.push(("count", Value::Number(*samples, 0)));
                 values
             }
-            Self::OutlyingImpacts { count, first } => vec![
-                ("count", Value::Count(*count)),
-                (
-                    "which",
-                    Value::List(first.iter().map(|i| Value::Message(i)).collect()),
-                ),
-            ],
-            Self::DecaysUnexplained { share } => vec![("share", percent(*share, 1))],
-            Self::DecaysDiffer { spread } => vec![("share", percent(*spread, 1))],
+            Self::OutlyingImpacts { count, first } => {
+                let mut which: Vec<Value> = first.iter().map(|i| Value::Message(i)).collect();
+                which.extend((*count > first.len()).then_some(Value::Name("…")));
+                vec![
+                    ("count", Value::Count(*count)),
+                    ("which", Value::List(which)),
+                ]
+            }
+            Self::DecaysUnexplained { share } => vec![("share", Value::Percent(*share, 1))],
+            Self::DecaysDiffer { spread } => vec![("share", Value::Percent(*spread, 1))],
             Self::NoResult { why } => vec![("why", Value::Message(why))],
             Self::PublishedSpeedsMet {
                 damping_ratio,
                 deviation,
             } => vec![
                 ("value", Value::Number(*damping_ratio, 4)),
-                ("share", percent(*deviation, 2)),
+                ("share", Value::Percent(*deviation, 2)),
             ],
         }
     }
-}
-
-fn percent(share: f64, decimals: usize) -> Value<'static> {
-    Value::Number(100.0 * share, decimals)
 }
 
 fn change(slower: &SpeedPoint, faster: &SpeedPoint) -> Vec<(&'static str, Value<'static>)> {
@@ -197,14 +198,14 @@ impl Remark {
     fn english(&self) -> &'static str {
         match self {
             Self::OneDegreeOfFreedom { .. } => {
-                "the responses follow one degree of freedom within {share} %"
+                "the responses follow one degree of freedom within {share}"
             }
             Self::NotOneDegreeOfFreedom { .. } => {
-                "the responses deviate by {share} % from the curve of one degree of freedom: there \
+                "the responses deviate by {share} from the curve of one degree of freedom: there \
                  is more than one resonance, or the damping is not viscous"
             }
             Self::WaveformsUnexplained { .. } => {
-                "the simulated waveforms leave {share} % of the measured ones unexplained"
+                "the simulated waveforms leave {share} of the measured ones unexplained"
             }
             Self::WaveformsThinned { .. } => {
                 "waveforms of {some} of {count} periodic records are fitted, evenly chosen"
@@ -227,24 +228,17 @@ impl Remark {
                  {count} samples: it is not an instantaneous impact, so one coefficient of \
                  restitution does not describe it"
             }
-            Self::OutlyingImpacts { count, first } => match (count, *count > first.len()) {
-                (1, _) => "1 impact is far from the others and was left out: {which}",
-                (_, false) => "{count} impacts are far from the others and were left out: {which}",
-                (_, true) => {
-                    "{count} impacts are far from the others and were left out: {which}, … (all \
-                     in identification.json)"
-                }
-            },
-            Self::DecaysUnexplained { .. } => {
-                "the decays leave {share} % of the signal unexplained"
+            Self::OutlyingImpacts { .. } => {
+                "impacts with speeds far from those of the others, left out: {count} ({which})"
             }
+            Self::DecaysUnexplained { .. } => "the decays leave {share} of the signal unexplained",
             Self::DecaysDiffer { .. } => {
-                "the decays' natural frequencies differ by up to {share} %: they are not of one \
+                "the decays' natural frequencies differ by up to {share}: they are not of one \
                  oscillator"
             }
             Self::NoResult { .. } => "{why}",
             Self::PublishedSpeedsMet { .. } => {
-                "with $β$ = {value} the speeds are met within {share} %"
+                "with $β$ = {value} the speeds are met within {share}"
             }
         }
     }
@@ -252,14 +246,14 @@ impl Remark {
     fn german(&self) -> &'static str {
         match self {
             Self::OneDegreeOfFreedom { .. } => {
-                "die Antworten folgen einem Freiheitsgrad auf {share} %"
+                "die Antworten folgen einem Freiheitsgrad auf {share}"
             }
             Self::NotOneDegreeOfFreedom { .. } => {
-                "die Antworten weichen um {share} % von der Kurve eines Freiheitsgrads ab: Es gibt \
+                "die Antworten weichen um {share} von der Kurve eines Freiheitsgrads ab: Es gibt \
                  mehr als eine Resonanz, oder die Dämpfung ist nicht zäh"
             }
             Self::WaveformsUnexplained { .. } => {
-                "die simulierten Verläufe lassen {share} % der gemessenen unerklärt"
+                "die simulierten Verläufe lassen {share} der gemessenen unerklärt"
             }
             Self::WaveformsThinned { .. } => {
                 "angepasst sind die Verläufe von {some} der {count} periodischen Aufzeichnungen, \
@@ -284,18 +278,12 @@ impl Remark {
                  dauert {count} Abtastwerte: Es ist kein augenblicklicher Stoß, und eine Stoßzahl \
                  beschreibt ihn nicht"
             }
-            Self::OutlyingImpacts { count, first } => match (count, *count > first.len()) {
-                (1, _) => "1 Stoß liegt weit von den übrigen und wurde ausgelassen: {which}",
-                (_, false) => {
-                    "{count} Stöße liegen weit von den übrigen und wurden ausgelassen: {which}"
-                }
-                (_, true) => {
-                    "{count} Stöße liegen weit von den übrigen und wurden ausgelassen: {which}, … \
-                     (alle in identification.json)"
-                }
-            },
+            Self::OutlyingImpacts { .. } => {
+                "Stöße mit Geschwindigkeiten weit von denen der übrigen, ausgelassen: {count} \
+                 ({which})"
+            }
             Self::DecaysUnexplained { .. } => {
-                "die Ausschwingversuche lassen {share} % des Signals unerklärt"
+                "die Ausschwingversuche lassen {share} des Signals unerklärt"
             }
             Self::DecaysDiffer { .. } => {
                 "die Eigenfrequenzen der Ausschwingversuche unterscheiden sich um bis zu {share} \
@@ -303,7 +291,7 @@ impl Remark {
             }
             Self::NoResult { .. } => "{why}",
             Self::PublishedSpeedsMet { .. } => {
-                "mit $β$ = {value} sind die Geschwindigkeiten auf {share} % getroffen"
+                "mit $β$ = {value} sind die Geschwindigkeiten auf {share} getroffen"
             }
         }
     }

@@ -24,17 +24,14 @@ impl Message for StatedValue {
     }
 
     fn template(&self, _: Language) -> &'static str {
-        match self.parameter {
-            Coordinate::Frequency => "{parameter} = {value} ± {half} Hz",
-            Coordinate::Deflection => "{parameter} = {value} ± {half} mm",
-            _ => "{parameter} = {value} ± {half}",
-        }
+        "{parameter} = {value} ± {half}{unit}"
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        let scale = match self.parameter {
-            Coordinate::Deflection => 1e3,
-            _ => 1.0,
+        let (scale, unit) = match self.parameter {
+            Coordinate::Frequency => (1.0, " Hz"),
+            Coordinate::Deflection => (1e3, " mm"),
+            _ => (1.0, ""),
         };
         let (value, half) = (scale * self.value, scale * self.half_width);
         // two significant digits of the half width; the cast is of 0 to 8
@@ -43,6 +40,7 @@ impl Message for StatedValue {
             ("parameter", Value::Message(&self.parameter)),
             ("value", Value::Number(value, decimals)),
             ("half", Value::Number(half, decimals)),
+            ("unit", Value::Name(unit)),
         ]
     }
 }
@@ -82,7 +80,7 @@ pub enum Sentence {
     /// The methods agree.
     MethodsAgree,
     /// They do not.
-    MethodsDisagree,
+    MethodsDoNotAgree,
     /// Each parameter is determined by one method only.
     OneMethod,
     /// The campaign holds several specimens.
@@ -131,7 +129,7 @@ impl Message for Sentence {
             Self::NothingUsable
             | Self::DoesNotFit
             | Self::MethodsAgree
-            | Self::MethodsDisagree
+            | Self::MethodsDoNotAgree
             | Self::OneMethod
             | Self::NoPublishedDamping => Vec::new(),
             Self::Specimens { count } | Self::MisfiledRecords { count } => {
@@ -149,26 +147,34 @@ fn stated(values: &[StatedValue]) -> Value<'_> {
 }
 
 impl Sentence {
+    /// Whether the methods agree; `None` if there is nothing to compare.
+    pub fn on_agreement(agree: Option<bool>) -> Self {
+        match agree {
+            Some(true) => Self::MethodsAgree,
+            Some(false) => Self::MethodsDoNotAgree,
+            None => Self::OneMethod,
+        }
+    }
+
     fn english(&self) -> &'static str {
         match self {
             Self::Identified { .. } => "The rig has {values}.",
             Self::Weak { .. } => "The rig has {values}; {parameters} only weakly.",
             Self::PartlyIdentifiable { .. } => {
-                "The rig has {values}, but these data cannot tell {parameters}."
+                "The rig has {values}, but these data do not determine {parameters}."
             }
-            Self::NotIdentifiable { .. } => "These data cannot tell {parameters}.",
+            Self::NotIdentifiable { .. } => "These data do not determine {parameters}.",
             Self::NothingUsable => {
                 "Nothing could be identified: no record is usable for any method."
             }
             Self::DoesNotFit => "The model does not describe these data: see the findings.",
             Self::MethodsAgree => "The methods agree.",
-            Self::MethodsDisagree => "The methods do not agree.",
-            Self::OneMethod => "Only one method tells each parameter.",
+            Self::MethodsDoNotAgree => "The methods do not agree.",
+            Self::OneMethod => "Each parameter is determined by one method only.",
             Self::Specimens { .. } => {
-                "The campaign holds {count} specimens; each is identified by itself."
+                "The campaign has {count} specimens; each is identified by itself."
             }
-            Self::MisfiledRecords { count: 1 } => "One record looks misfiled.",
-            Self::MisfiledRecords { .. } => "{count} records look misfiled.",
+            Self::MisfiledRecords { .. } => "Records that look misfiled: {count}.",
             Self::PublishedDamping { .. } => {
                 "The published speeds belong to a damping ratio $β$ of {value}."
             }
@@ -190,13 +196,14 @@ impl Sentence {
             }
             Self::DoesNotFit => "Das Modell beschreibt diese Daten nicht: siehe die Befunde.",
             Self::MethodsAgree => "Die Verfahren stimmen überein.",
-            Self::MethodsDisagree => "Die Verfahren stimmen nicht überein.",
+            Self::MethodsDoNotAgree => "Die Verfahren stimmen nicht überein.",
             Self::OneMethod => "Jeden Parameter bestimmt nur ein Verfahren.",
             Self::Specimens { .. } => {
                 "Die Messreihe hat {count} Prüflinge; jeder ist für sich identifiziert."
             }
-            Self::MisfiledRecords { count: 1 } => "Eine Aufzeichnung sieht falsch abgelegt aus.",
-            Self::MisfiledRecords { .. } => "{count} Aufzeichnungen sehen falsch abgelegt aus.",
+            Self::MisfiledRecords { .. } => {
+                "Aufzeichnungen, die falsch abgelegt aussehen: {count}."
+            }
             Self::PublishedDamping { .. } => {
                 "Die veröffentlichten Geschwindigkeiten gehören zu einem Dämpfungsgrad $β$ von \
                  {value}."

@@ -5,7 +5,7 @@ use super::table::Table;
 use super::{StudyContext, StudyError};
 use crate::compare::RegionMap;
 use crate::motion::Motion;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 use crate::report::theory::basins::draw;
 use impact_oscillator::atlas::basins::{Basins, basin_rows};
 use impact_oscillator::atlas::map::even;
@@ -36,7 +36,7 @@ pub fn run(
     context.table(name, &table(&basins))?;
     (context.inform)(&shares(name, &basins));
     let title = format!("Basins of attraction at {}", setting(plan));
-    match draw(&motions(&basins), name, &title, Speech::default()) {
+    match draw(&motions(&basins), name, &title, Locale::default()) {
         Some(figure) => context.figure(&figure),
         None => Ok(()),
     }

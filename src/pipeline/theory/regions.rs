@@ -8,7 +8,7 @@ use super::table::Table;
 use super::{StudyContext, StudyError};
 use crate::compare::RegionMap;
 use crate::motion::Motion;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 use crate::report::theory::regions as figure;
 use impact_oscillator::atlas::curves::{Curve, CurvePoint};
 use impact_oscillator::atlas::regions::{assemble, columns};
@@ -75,7 +75,7 @@ pub fn write_atlas(
     );
     let drawn: Vec<figure::Curve> = atlas.curves.iter().map(drawn).collect();
     let title = "Regions of existence and stability of all motions";
-    match figure::draw((&map, &drawn), name, title, Speech::default()) {
+    match figure::draw((&map, &drawn), name, title, Locale::default()) {
         Some(figure) => context.figure(&figure),
         None => Ok(()),
     }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::plan::SweepPlan;
 use super::table::Table;
 use super::{StudyContext, StudyError};
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 use crate::report::theory::sweep::{Characteristics, Step, draw};
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::atlas::sweep::{Carried, Impactless, LONGEST_LAG, SweepPoint, impactless};
@@ -65,7 +65,7 @@ pub fn run(
         impactless_y: impactless.iter().filter_map(|i| i.y).collect(),
     };
     let title = "Quasi-stationary characteristics";
-    context.figure(&draw(&data, name, title, Speech::default()))
+    context.figure(&draw(&data, name, title, Locale::default()))
 }
 
 /// What the figure shows of a step.

@@ -2,7 +2,7 @@
 
 use super::table::Table;
 use super::{StudyContext, StudyError};
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 use crate::report::theory::motion as figure;
 use impact_oscillator::atlas::portrait::{Portrait, PortraitPlan, Strike, portrait};
 use impact_oscillator::model::Machine;
@@ -29,7 +29,7 @@ pub fn run(
     )?;
     let s = &plan.setting;
     let title = format!("Motion at η = {}, ρ = {}", s.frequency_ratio, s.clearance);
-    let drawn = figure::draw(&drawn(&portrait), name, &title, Speech::default());
+    let drawn = figure::draw(&drawn(&portrait), name, &title, Locale::default());
     context.figure(&drawn)?;
     (context.progress)(2, 2);
     Ok(())

@@ -2,14 +2,14 @@
 
 use super::model::{Block, FigureRef, Rich};
 use crate::report::figures::{Figure, richtext};
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// The figures as drawn, to be referred to by name.
 pub struct Drawn<'a> {
     /// The figures.
     pub figures: &'a [Figure],
     /// How numbers are printed.
-    pub speech: Speech<'a>,
+    pub locale: Locale<'a>,
 }
 
 impl Drawn<'_> {

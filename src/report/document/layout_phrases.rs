@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// Those of template.typ, of the page and of its script.
 const PHRASES: [&str; 13] = [
@@ -22,7 +22,8 @@ const PHRASES: [&str; 13] = [
 ];
 
 /// From each phrase to what is printed for it.
-pub fn words(speech: Speech) -> BTreeMap<&'static str, String> {
+pub fn words(locale: Locale) -> BTreeMap<&'static str, String> {
     let each = PHRASES.into_iter();
-    each.map(|phrase| (phrase, speech.say(phrase))).collect()
+    each.map(|phrase| (phrase, locale.translate(phrase)))
+        .collect()
 }

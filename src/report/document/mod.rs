@@ -8,7 +8,6 @@ mod front;
 mod layout_phrases;
 pub mod model;
 mod pdf;
-mod prose;
 mod sections;
 mod settings;
 mod tables;
@@ -22,24 +21,24 @@ use model::{Document, Rich};
 
 use crate::report::content::ReportContent;
 use crate::report::figures::Figure;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// Builds the document's data.
-pub fn document(content: &ReportContent, figures: &[Figure], speech: Speech<'_>) -> Document {
-    let drawn = Drawn { figures, speech };
+pub fn document(content: &ReportContent, figures: &[Figure], locale: Locale<'_>) -> Document {
+    let drawn = Drawn { figures, locale };
     Document {
         title: content.title.clone(),
-        subtitle: Rich::from(subtitle(content, speech)),
+        subtitle: Rich::from(subtitle(content, locale)),
         footer: Rich::from(footer(content)),
         front: front::front(content, &drawn),
         sections: sections::sections(content, &drawn),
-        words: layout_phrases::words(speech),
+        words: layout_phrases::words(locale),
     }
 }
 
-fn subtitle(content: &ReportContent, speech: Speech) -> String {
+fn subtitle(content: &ReportContent, locale: Locale) -> String {
     let campaign = &content.campaign;
-    let dates = facts::dates(campaign, speech);
+    let dates = facts::dates(campaign, locale);
     let parts = [
         Some(campaign.name.clone()),
         campaign.laboratory.clone(),

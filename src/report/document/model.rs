@@ -5,21 +5,12 @@ use std::collections::BTreeMap;
 use serde::{Serialize, Serializer};
 
 use crate::report::figures::richtext::{self, Run};
-use crate::report::speech::Speech;
 
 /// A text with markup, split into runs; serialised as a string where it has none.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Rich(pub Vec<Run>);
 
 impl Rich {
-    /// The same with the decimal sign of the reader's choice.
-    pub fn localised(mut self, speech: Speech) -> Self {
-        for run in &mut self.0 {
-            run.text = speech.localised(&run.text);
-        }
-        self
-    }
-
     /// The text without markup.
     pub fn plain(&self) -> String {
         self.0.iter().map(|r| r.text.as_str()).collect()
@@ -63,7 +54,7 @@ pub struct Document {
 
 impl Document {
     /// What is printed for a phrase of the layout.
-    pub fn say<'a>(&'a self, phrase: &'a str) -> &'a str {
+    pub fn translate<'a>(&'a self, phrase: &'a str) -> &'a str {
         self.words.get(phrase).map_or(phrase, String::as_str)
     }
 }

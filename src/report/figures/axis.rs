@@ -1,6 +1,6 @@
 //! An axis: its range in data, its title, its ticks.
 
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// One axis: its range in data and its title with unit, in the report's markup.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,11 +108,11 @@ impl Axis {
     }
 
     /// Label of a tick.
-    pub fn label(&self, value: f64, decimals: usize, speech: Speech) -> String {
+    pub fn label(&self, value: f64, decimals: usize, locale: Locale) -> String {
         if self.log {
-            speech.significant(value, 1)
+            locale.significant(value, 1)
         } else {
-            speech.fixed(value, decimals)
+            locale.fixed(value, decimals)
         }
     }
 }

@@ -13,7 +13,7 @@ use super::path::Rect;
 use super::plane::same;
 use crate::compare::BracketRow;
 use crate::motion::BoundaryKind;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// Height of the panel, points.
 const HEIGHT: f64 = 132.0;
@@ -23,7 +23,7 @@ const LEFT: f64 = 34.0;
 const STACK_STEP: f64 = 4.4;
 
 /// Draws the brackets against the fit; `None` if none has a simulated value.
-pub fn draw(brackets: &[BracketRow], speech: Speech) -> Option<Figure> {
+pub fn draw(brackets: &[BracketRow], locale: Locale) -> Option<Figure> {
     let rows: Vec<(&BracketRow, f64, f64)> = brackets
         .iter()
         .filter_map(|b| {
@@ -35,7 +35,7 @@ pub fn draw(brackets: &[BracketRow], speech: Speech) -> Option<Figure> {
         return None;
     }
     let keys = keys(&rows);
-    let top = legend::height(&keys, look::HALF_WIDTH - LEFT, speech) + 4.0;
+    let top = legend::height(&keys, look::HALF_WIDTH - LEFT, locale) + 4.0;
     let rect = Rect::new(LEFT, top, look::HALF_WIDTH - LEFT - 4.0, HEIGHT);
     let x = Axis::around(
         rows.iter().flat_map(|r| [r.1, r.2, 0.0]),
@@ -74,11 +74,11 @@ pub fn draw(brackets: &[BracketRow], speech: Speech) -> Option<Figure> {
         };
         legend::bracket(&mut canvas, (from, to), y - lift, shade);
     }
-    panel.frame(&mut canvas, Sides::BOTH, speech);
-    legend::draw(&mut canvas, (rect.left, 0.0), rect.width(), &keys, speech);
+    panel.frame(&mut canvas, Sides::BOTH, locale);
+    legend::draw(&mut canvas, (rect.left, 0.0), rect.width(), &keys, locale);
     Some(Figure::new(
         "boundary_fit",
-        &speech.say("Measured brackets against the fitted boundary"),
+        &locale.translate("Measured brackets against the fitted boundary"),
         canvas,
         csv(&rows),
     ))

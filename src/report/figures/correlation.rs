@@ -12,14 +12,14 @@ use super::marks::mix;
 use super::path::Rect;
 use super::richtext;
 use crate::compare::Correlation;
+use crate::report::locale::Locale;
 use crate::report::parameters::parameter;
-use crate::report::speech::Speech;
 
 /// Room above the cells for the columns' symbols, points.
 const TOP: f64 = 14.0;
 
 /// Draws the matrix; `None` if it is empty or not square.
-pub fn draw(correlation: &Correlation, speech: Speech) -> Option<Figure> {
+pub fn draw(correlation: &Correlation, locale: Locale) -> Option<Figure> {
     let n = correlation.parameters.len();
     let square = correlation.matrix.len() == n && correlation.matrix.iter().all(|r| r.len() == n);
     if n < 2 || !square {
@@ -28,7 +28,7 @@ pub fn draw(correlation: &Correlation, speech: Speech) -> Option<Figure> {
     let names: Vec<String> = correlation
         .parameters
         .iter()
-        .map(|p| name(p.name(), speech))
+        .map(|p| name(p.name(), locale))
         .collect();
     let columns = columns(correlation);
     let widths = names
@@ -53,12 +53,12 @@ pub fn draw(correlation: &Correlation, speech: Speech) -> Option<Figure> {
             let x = left + i as f64 * wide;
             let rect = Rect::new(x, y, wide, high);
             let value = (column != j).then_some(row[column]);
-            cell(&mut canvas, &rect, value, speech);
+            cell(&mut canvas, &rect, value, locale);
         }
     }
     Some(Figure::new(
         "correlation",
-        &speech.say("Correlation of the parameters"),
+        &locale.translate("Correlation of the parameters"),
         canvas,
         csv(correlation),
     ))
@@ -73,7 +73,7 @@ fn columns(correlation: &Correlation) -> Vec<usize> {
 }
 
 /// A tinted cell with its number; `None` for a parameter with itself.
-fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, speech: Speech) {
+fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, locale: Locale) {
     let (from, to) = (
         (rect.left + 0.5, rect.top + 0.5),
         (rect.right - 0.5, rect.bottom - 0.5),
@@ -83,7 +83,7 @@ fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, speech: Speech) {
     let size = (0.34 * rect.width()).min(look::TICK_SIZE);
     let text_look =
         TextLook::new(size, Anchor::Middle).colour(if dark { look::PAPER } else { look::INK });
-    let text = value.map_or("1".into(), |v| speech.fixed(v, 2));
+    let text = value.map_or("1".into(), |v| locale.fixed(v, 2));
     let middle = (
         0.5 * (rect.left + rect.right),
         0.5 * (rect.top + rect.bottom) + 2.4,
@@ -91,18 +91,18 @@ fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, speech: Speech) {
     canvas.text(middle, &text, text_look);
 }
 
-fn name(key: &str, speech: Speech) -> String {
+fn name(key: &str, locale: Locale) -> String {
     if let Some(shown) = parameter(key) {
         return shown.symbol.to_owned();
     }
     let of = |phrase: &str, role: &str| {
-        let channel = speech.say(&role.replace('_', " "));
-        speech.say_with(phrase, &[("channel", &channel)])
+        let channel = locale.translate(&role.replace('_', " "));
+        locale.translate_with(phrase, &[("channel", &channel)])
     };
     match key.split_once('_') {
         Some(("gain", role)) => of("gain of {channel}", role),
         Some(("corner", role)) => of("corner of {channel}", role),
-        _ => speech.say(&key.replace('_', " ")),
+        _ => locale.translate(&key.replace('_', " ")),
     }
 }
 

@@ -10,8 +10,8 @@ use super::panel::{Panel, Sides};
 use super::path::Rect;
 use super::units::print_unit;
 use crate::compare::{FreeDecay, Signal};
+use crate::report::locale::Locale;
 use crate::report::parameters::decimals_for;
-use crate::report::speech::Speech;
 use labfiles::units::Dimension;
 
 /// How many decays one figure holds.
@@ -25,7 +25,7 @@ const PANEL_HEIGHT: f64 = 74.0;
 const ROW_HEIGHT: f64 = PANEL_HEIGHT + 48.0;
 
 /// Draws up to [`PER_FIGURE`] decays; `None` for none.
-pub fn draw(decays: &[FreeDecay], name: &str, speech: Speech) -> Option<Figure> {
+pub fn draw(decays: &[FreeDecay], name: &str, locale: Locale) -> Option<Figure> {
     if decays.is_empty() {
         return None;
     }
@@ -38,18 +38,18 @@ pub fn draw(decays: &[FreeDecay], name: &str, speech: Speech) -> Option<Figure> 
             &mut canvas,
             decay,
             Rect::new(left, top, 122.0, PANEL_HEIGHT),
-            speech,
+            locale,
         );
     }
     Some(Figure::new(
         name,
-        &speech.say("Free decays and their fits"),
+        &locale.translate("Free decays and their fits"),
         canvas,
         csv(decays),
     ))
 }
 
-fn one(canvas: &mut Canvas, decay: &FreeDecay, rect: Rect, speech: Speech) {
+fn one(canvas: &mut Canvas, decay: &FreeDecay, rect: Rect, locale: Locale) {
     let peak = decay
         .measured
         .values
@@ -86,8 +86,8 @@ fn one(canvas: &mut Canvas, decay: &FreeDecay, rect: Rect, speech: Speech) {
         Stroke::solid(look::VERMILION, 0.6),
     );
     canvas.layer(2);
-    panel.frame(canvas, Sides::BOTH, speech);
-    heading(canvas, decay, &rect, speech);
+    panel.frame(canvas, Sides::BOTH, locale);
+    heading(canvas, decay, &rect, locale);
 }
 
 fn signal(canvas: &mut Canvas, panel: &Panel, signal: &Signal, factor: f64, stroke: Stroke) {
@@ -95,16 +95,16 @@ fn signal(canvas: &mut Canvas, panel: &Panel, signal: &Signal, factor: f64, stro
     panel.curve(canvas, data.map(|(t, v)| (*t, v * factor)), stroke);
 }
 
-fn heading(canvas: &mut Canvas, decay: &FreeDecay, rect: &Rect, speech: Speech) {
+fn heading(canvas: &mut Canvas, decay: &FreeDecay, rect: &Rect, locale: Locale) {
     let bold = TextLook::new(look::NOTE_SIZE, Anchor::Left)
         .face(Face::Bold)
         .colour(look::INK);
     canvas.text((rect.left, rect.top - 13.5), &title(decay), bold);
     let plain = TextLook::new(look::TICK_SIZE, Anchor::Right).colour(look::QUIET);
-    let frequency = with_error(decay.natural_frequency_hz, speech);
+    let frequency = with_error(decay.natural_frequency_hz, locale);
     let lines = [
         format!("$f_0$ = {frequency}\u{2009}Hz"),
-        format!("$β$ = {}", with_error(decay.damping_ratio, speech)),
+        format!("$β$ = {}", with_error(decay.damping_ratio, locale)),
     ];
     for (i, line) in lines.iter().enumerate() {
         canvas.text((rect.right, rect.top - 13.5 + 9.5 * i as f64), line, plain);
@@ -119,13 +119,13 @@ pub fn title(decay: &FreeDecay) -> String {
     }
 }
 
-fn with_error([value, error]: [f64; 2], speech: Speech) -> String {
+fn with_error([value, error]: [f64; 2], locale: Locale) -> String {
     if error > 0.0 {
         let decimals = decimals_for(error);
-        let [value, error] = [value, error].map(|v| speech.fixed(v, decimals));
+        let [value, error] = [value, error].map(|v| locale.fixed(v, decimals));
         format!("{value} ± {error}")
     } else {
-        speech.significant(value, 4)
+        locale.significant(value, 4)
     }
 }
 

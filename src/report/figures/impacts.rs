@@ -10,7 +10,7 @@ use super::look;
 use super::panel::{PAIR_LEFT, Panel, Sides, pair};
 use super::units::{PrintUnit, print_unit};
 use crate::compare::{ImpactPoint, ImpactScatter};
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 use labfiles::units::Dimension;
 
 /// Height of the panels, points.
@@ -19,7 +19,7 @@ const HEIGHT: f64 = 150.0;
 const TOP: f64 = 15.0;
 
 /// Draws one group of impacts; `None` if it is empty.
-pub fn draw(scatter: &ImpactScatter, name: &str, speech: Speech) -> Option<Figure> {
+pub fn draw(scatter: &ImpactScatter, name: &str, locale: Locale) -> Option<Figure> {
     let peak = scatter
         .points
         .iter()
@@ -32,18 +32,18 @@ pub fn draw(scatter: &ImpactScatter, name: &str, speech: Speech) -> Option<Figur
     let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + look::BELOW_PANEL);
     let panels = panels(scatter, unit);
     lines(&mut canvas, &panels, scatter, unit);
-    let spots = points(&mut canvas, &panels, scatter, (unit, speech));
+    let spots = points(&mut canvas, &panels, scatter, (unit, locale));
     for panel in &panels {
-        panel.frame(&mut canvas, Sides::BOTH, speech);
+        panel.frame(&mut canvas, Sides::BOTH, locale);
     }
     legend::draw(
         &mut canvas,
         (PAIR_LEFT, 0.0),
         look::FULL_WIDTH - PAIR_LEFT,
-        &keys(scatter, speech),
-        speech,
+        &keys(scatter, locale),
+        locale,
     );
-    let title = speech.say("Speeds after over before impact");
+    let title = locale.translate("Speeds after over before impact");
     Some(Figure::new(name, &title, canvas, csv(scatter)).with_spots(spots))
 }
 
@@ -117,7 +117,7 @@ fn points(
     canvas: &mut Canvas,
     panels: &[Panel; 2],
     scatter: &ImpactScatter,
-    (unit, speech): (PrintUnit, Speech),
+    (unit, locale): (PrintUnit, Locale),
 ) -> Vec<Spot> {
     let mut spots = Vec::new();
     canvas.layer(1);
@@ -137,7 +137,7 @@ fn points(
                 spots.push(Spot {
                     x,
                     y,
-                    text: format!("{}\nR = {}", p.record, speech.fixed(ratio, 3)),
+                    text: format!("{}\nR = {}", p.record, locale.fixed(ratio, 3)),
                 });
             }
         }
@@ -146,7 +146,7 @@ fn points(
     spots
 }
 
-fn keys(scatter: &ImpactScatter, speech: Speech) -> Vec<Key> {
+fn keys(scatter: &ImpactScatter, locale: Locale) -> Vec<Key> {
     let mut keys = Vec::new();
     if let Some(specimen) = &scatter.specimen {
         keys.push(Key::new(Sign::Nothing, specimen));
@@ -159,7 +159,7 @@ fn keys(scatter: &ImpactScatter, speech: Speech) -> Vec<Key> {
         let stroke = Stroke::solid(look::VERMILION, 1.0);
         keys.push(Key::new(
             Sign::Line(stroke),
-            format!("$R$ = {}", speech.fixed(r, 4)),
+            format!("$R$ = {}", locale.fixed(r, 4)),
         ));
     }
     if scatter.interval95.is_some() {

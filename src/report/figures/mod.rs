@@ -35,53 +35,53 @@ use rayon::prelude::*;
 
 use crate::identify::Method;
 use crate::report::content::ReportContent;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// A figure waiting to be drawn.
 type Job<'a> = Box<dyn Fn() -> Option<Figure> + Send + Sync + 'a>;
 
 /// Draws all figures that the content allows, side by side on all cores, in a fixed order.
-pub fn draw_all(content: &ReportContent, speech: Speech) -> Vec<Figure> {
-    jobs(content, speech)
+pub fn draw_all(content: &ReportContent, locale: Locale) -> Vec<Figure> {
+    jobs(content, locale)
         .par_iter()
         .filter_map(|job| job())
         .collect()
 }
 
-fn jobs<'a>(content: &'a ReportContent, speech: Speech<'a>) -> Vec<Job<'a>> {
+fn jobs<'a>(content: &'a ReportContent, locale: Locale<'a>) -> Vec<Job<'a>> {
     let mut jobs: Vec<Job<'a>> = vec![
-        Box::new(move || map::draw(content, map::MapSize::Full, speech)),
-        Box::new(move || map::draw(content, map::MapSize::Small, speech)),
+        Box::new(move || map::draw(content, map::MapSize::Full, locale)),
+        Box::new(move || map::draw(content, map::MapSize::Small, locale)),
     ];
     for comparison in &content.compared.comparisons {
-        jobs.push(Box::new(move || comparison::draw(comparison, speech)));
+        jobs.push(Box::new(move || comparison::draw(comparison, locale)));
     }
-    jobs.push(Box::new(move || estimates::draw(content, speech)));
+    jobs.push(Box::new(move || estimates::draw(content, locale)));
     jobs.push(Box::new(move || {
-        boundary_fit::draw(&content.compared.brackets, speech)
+        boundary_fit::draw(&content.compared.brackets, locale)
     }));
     jobs.push(Box::new(move || {
-        profiles::draw(&content.identification, speech)
+        profiles::draw(&content.identification, locale)
     }));
     if let Some(correlation) = &content.compared.correlation {
-        jobs.push(Box::new(move || correlation::draw(correlation, speech)));
+        jobs.push(Box::new(move || correlation::draw(correlation, locale)));
     }
-    method_jobs(content, speech, &mut jobs);
+    method_jobs(content, locale, &mut jobs);
     jobs
 }
 
 /// Figures of which there may be several.
-fn method_jobs<'a>(content: &'a ReportContent, speech: Speech<'a>, jobs: &mut Vec<Job<'a>>) {
+fn method_jobs<'a>(content: &'a ReportContent, locale: Locale<'a>, jobs: &mut Vec<Job<'a>>) {
     for (i, scatter) in content.compared.impacts.iter().enumerate() {
         jobs.push(Box::new(move || {
-            impacts::draw(scatter, &numbered("impacts", i), speech)
+            impacts::draw(scatter, &numbered("impacts", i), locale)
         }));
     }
     let method = content.identification.methods.get(&Method::Resonance);
     let fits = method.and_then(|m| m.fits);
     for (i, curve) in content.compared.resonance.iter().enumerate() {
         jobs.push(Box::new(move || {
-            resonance::draw((curve, fits), &numbered("resonance", i), speech)
+            resonance::draw((curve, fits), &numbered("resonance", i), locale)
         }));
     }
     for (i, few) in content
@@ -91,12 +91,12 @@ fn method_jobs<'a>(content: &'a ReportContent, speech: Speech<'a>, jobs: &mut Ve
         .enumerate()
     {
         jobs.push(Box::new(move || {
-            decays::draw(few, &numbered("free_decays", i), speech)
+            decays::draw(few, &numbered("free_decays", i), locale)
         }));
     }
     for (i, set) in content.compared.residuals.iter().enumerate() {
         jobs.push(Box::new(move || {
-            residuals::draw(set, &numbered("residuals", i), speech)
+            residuals::draw(set, &numbered("residuals", i), locale)
         }));
     }
 }

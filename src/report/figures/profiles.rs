@@ -9,8 +9,8 @@ use super::panel::{Panel, Sides};
 use super::path::Rect;
 use crate::identify::Identification;
 use crate::identify::uncertainty::ProfileCurve;
+use crate::report::locale::Locale;
 use crate::report::parameters::parameter;
-use crate::report::speech::Speech;
 
 /// Rise of χ² at the ends of a 95 % interval of one parameter.
 const RISE_95: f64 = 3.841_458_820_694_124;
@@ -22,7 +22,7 @@ const HEIGHT: f64 = 80.0;
 const ROW: f64 = HEIGHT + 36.0;
 
 /// Draws all profiles; `None` for none.
-pub fn draw(id: &Identification, speech: Speech) -> Option<Figure> {
+pub fn draw(id: &Identification, locale: Locale) -> Option<Figure> {
     let profiles = id.uncertainty.profiles.iter();
     let drawn: Vec<&ProfileCurve> = profiles.filter(|p| p.values.len() > 2).collect();
     if drawn.is_empty() {
@@ -38,9 +38,9 @@ pub fn draw(id: &Identification, speech: Speech) -> Option<Figure> {
         let rect = Rect::new(left, top, step - 36.0, HEIGHT);
         let best = id.joint.parameters.get(profile.parameter);
         let best = best.and_then(|e| e.value);
-        one(&mut canvas, (profile, best), rect, speech);
+        one(&mut canvas, (profile, best), rect, locale);
     }
-    let title = speech.say("Profile likelihoods");
+    let title = locale.translate("Profile likelihoods");
     Some(Figure::new("profiles", &title, canvas, csv(&drawn)))
 }
 
@@ -48,13 +48,13 @@ fn one(
     canvas: &mut Canvas,
     (profile, best): (&ProfileCurve, Option<f64>),
     rect: Rect,
-    speech: Speech,
+    locale: Locale,
 ) {
     let key = profile.parameter.name();
     let shown = parameter(key);
     let factor = shown.map_or(1.0, |p| p.factor);
     let title = shown.map_or_else(
-        || speech.say(&key.replace('_', " ")),
+        || locale.translate(&key.replace('_', " ")),
         |p| {
             format!(
                 "{} ({})",
@@ -88,11 +88,11 @@ fn one(
     if let Some(best) = best {
         panel.upright(canvas, best * factor, Stroke::solid(look::INK, 0.5));
     }
-    panel.frame(canvas, Sides::BOTH, speech);
+    panel.frame(canvas, Sides::BOTH, locale);
     let quiet = TextLook::new(look::NOTE_SIZE, Anchor::Middle).colour(look::QUIET);
     canvas.text(
         (0.5 * (rect.left + rect.right), rect.top - 3.5),
-        &speech.say("joint"),
+        &locale.translate("joint"),
         quiet,
     );
 }

@@ -11,7 +11,7 @@ use super::panel::{PAIR_LEFT, Panel, Sides, pair};
 use super::path::Rect;
 use super::units::{PrintUnit, print_unit};
 use crate::compare::{ResonanceCurve, ResonancePoint};
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// Height of the panels, points.
 const HEIGHT: f64 = 128.0;
@@ -22,7 +22,7 @@ const TOP: f64 = 15.0;
 pub fn draw(
     (curve, fits): (&ResonanceCurve, Option<bool>),
     name: &str,
-    speech: Speech,
+    locale: Locale,
 ) -> Option<Figure> {
     if curve.points.is_empty() {
         return None;
@@ -36,20 +36,20 @@ pub fn draw(
     let value = |p: &ResonancePoint| [p.amplitude, p.amplitude_error].map(|v| v * unit.factor);
     let fitted = curve.fitted.iter();
     let fit = fitted.map(|f| (f[0], f[1] * unit.factor)).collect();
-    Series { curve, panel, fit }.draw(&mut canvas, value, speech, &mut spots);
+    Series { curve, panel, fit }.draw(&mut canvas, value, locale, &mut spots);
     let panel = phase_panel(curve, right);
     let value = |p: &ResonancePoint| [p.phase_rad, p.phase_error_rad].map(f64::to_degrees);
     let fitted = curve.fitted.iter();
     let fit = fitted.map(|f| (f[0], f[2].to_degrees())).collect();
-    Series { curve, panel, fit }.draw(&mut canvas, value, speech, &mut spots);
+    Series { curve, panel, fit }.draw(&mut canvas, value, locale, &mut spots);
     legend::draw(
         &mut canvas,
         (PAIR_LEFT, 0.0),
         look::FULL_WIDTH - PAIR_LEFT,
         &keys(curve, fits),
-        speech,
+        locale,
     );
-    let title = speech.say("Resonance curve without impacts");
+    let title = locale.translate("Resonance curve without impacts");
     Some(Figure::new(name, &title, canvas, csv(curve)).with_spots(spots))
 }
 
@@ -104,7 +104,7 @@ impl Series<'_> {
         &self,
         canvas: &mut Canvas,
         value: impl Fn(&ResonancePoint) -> [f64; 2],
-        speech: Speech,
+        locale: Locale,
         spots: &mut Vec<Spot>,
     ) {
         let radius = dots::radius(self.curve.points.len()) + 0.2;
@@ -127,7 +127,7 @@ impl Series<'_> {
                 open: !point.used,
             };
             if let Some((x, y)) = taken.put(canvas, &self.panel, (point.frequency_hz, y), dot) {
-                let f = speech.fixed(point.frequency_hz, 3);
+                let f = locale.fixed(point.frequency_hz, 3);
                 spots.push(Spot {
                     x,
                     y,
@@ -142,7 +142,7 @@ impl Series<'_> {
             Stroke::solid(look::VERMILION, 1.0),
         );
         canvas.layer(3);
-        self.panel.frame(canvas, Sides::BOTH, speech);
+        self.panel.frame(canvas, Sides::BOTH, locale);
     }
 }
 

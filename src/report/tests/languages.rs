@@ -5,24 +5,36 @@ use std::path::Path;
 use super::contents::{kind, kinds};
 use crate::compare::{BracketRow, Correlation};
 use crate::identify::fit::parameters::Coordinate;
-use crate::identify::{Method, Reason};
+use crate::identify::messages::examples;
+use crate::identify::{Identification, Method, Reason};
 use crate::motion::Motion;
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
 use crate::record::{Role, Sweep};
-use crate::report::{NominalValue, Report, ReportContent, ReportOptions, Subject, document, words};
+use crate::report::{
+    NominalValue, Report, ReportContent, ReportOptions, Subject, catalog, document,
+};
 
-/// A table that prints each phrase as its number in brackets, with the values that it carries.
-fn marks_for_phrases() -> words::Words {
+/// A catalog that prints each phrase and each message as its number in brackets, with its values.
+fn marks_for_phrases() -> catalog::Catalog {
     let mut text = String::from("[words]\n");
-    for (i, phrase) in words::Words::phrases().enumerate() {
-        let values: String = words::places(phrase)
+    for (i, phrase) in catalog::Catalog::phrases().enumerate() {
+        let values: String = catalog::places(phrase)
             .iter()
             .map(|n| format!("{{{n}}}"))
             .collect();
         let key = toml::Value::from(phrase);
         text.push_str(&format!("{key} = \"⟦{i}⟧{values}\"\n"));
     }
-    words::Words::read(&text).expect("a table of words")
+    text.push_str("\n[findings]\n");
+    for (i, message) in examples().iter().enumerate() {
+        let names: String = message
+            .values()
+            .iter()
+            .map(|(name, _)| format!("{{{name}}}"))
+            .collect();
+        text.push_str(&format!("{} = \"⟦{}⟧{names}\"\n", message.key(), 1000 + i));
+    }
+    catalog::Catalog::read(&text).expect("a catalog")
 }
 
 /// A campaign to which all happened that the others were spared.
@@ -101,7 +113,7 @@ fn unlucky() -> ReportContent {
 /// All kinds of report with a mark for each phrase.
 fn marked() -> Vec<Report> {
     let options = ReportOptions {
-        words: Some(marks_for_phrases()),
+        catalog: Some(marks_for_phrases()),
         ..ReportOptions::default()
     };
     let each = kinds().iter().map(|(_, content)| content);
@@ -161,7 +173,7 @@ fn valid_no_phrase_of_the_words_is_idle() {
         "/src"
     ))));
     let (mut unsaid, mut idle) = (Vec::new(), Vec::new());
-    for (i, phrase) in words::Words::phrases().enumerate() {
+    for (i, phrase) in catalog::Catalog::phrases().enumerate() {
         if !said.contains(&format!("⟦{i}⟧")) {
             unsaid.push(phrase);
             if !source.contains(&plainly(phrase)) {
@@ -219,7 +231,7 @@ fn valid_all_words_of_figures_and_headings_are_the_reader_s() {
 #[test]
 fn valid_a_german_report_speaks_german() {
     let options = ReportOptions {
-        words: Some(words::Words::german().clone()),
+        catalog: Some(catalog::Catalog::german().clone()),
         ..ReportOptions::default()
     };
     for (name, content) in kinds().iter().filter(|k| k.0 != "whole") {
@@ -240,5 +252,90 @@ fn valid_a_german_report_speaks_german() {
         let page = report.html().expect("a page");
         assert!(page.contains("<html lang=\"de\">") && page.contains("Was gemessen wurde"));
         assert!(!page.contains("<h2>What was measured"));
+    }
+}
+
+/// An identification as it would be read if each of its sentences were another.
+fn with_other_sentences(identification: &Identification) -> Identification {
+    fn replace(value: &mut serde_json::Value) {
+        match value {
+            serde_json::Value::Object(fields) => {
+                for (key, field) in fields {
+                    match field {
+                        serde_json::Value::String(text) if key == "text" || key == "summary" => {
+                            *text = "?".to_owned();
+                        }
+                        _ => replace(field),
+                    }
+                }
+            }
+            serde_json::Value::Array(items) => items.iter_mut().for_each(replace),
+            _ => {}
+        }
+    }
+    let mut json = serde_json::to_value(identification).expect("JSON");
+    let before = json.clone();
+    replace(&mut json);
+    assert_ne!(json, before, "there are sentences");
+    serde_json::from_value(json).expect("an identification")
+}
+
+/// Nothing in a report is taken from a sentence of identification.json, in any language.
+#[test]
+fn a_report_is_made_from_kinds_and_numbers_alone() {
+    let german = ReportOptions {
+        catalog: Some(catalog::Catalog::german().clone()),
+        decimal_comma: true,
+        ..ReportOptions::default()
+    };
+    for (name, content) in kinds().iter().filter(|k| k.0 != "whole") {
+        let other = ReportContent {
+            identification: with_other_sentences(&content.identification),
+            ..content.clone()
+        };
+        for options in [&ReportOptions::default(), &german] {
+            let (one, two) = (Report::new(content, options), Report::new(&other, options));
+            let json = |r: &Report| serde_json::to_string(&r.document).expect("JSON");
+            assert_eq!(json(&one), json(&two), "{name}");
+            for (a, b) in one.figures.iter().zip(&two.figures) {
+                assert!(a.svg == b.svg && a.csv == b.csv, "{name}: {}", a.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_german_report_has_german_findings_and_no_english_ones() {
+    let mut content = kind("small").clone();
+    let id = &mut content.identification;
+    let findings = crate::identify::messages::example_findings();
+    id.verdict.findings.clone_from(&findings);
+    let german = ReportOptions {
+        catalog: Some(catalog::Catalog::german().clone()),
+        ..ReportOptions::default()
+    };
+    let text = |options: &ReportOptions| {
+        let document = Report::new(&content, options).document;
+        serde_json::to_string(&document.front).expect("JSON")
+    };
+    let (english, german) = (text(&ReportOptions::default()), text(&german));
+    for finding in &findings {
+        let words = |language| {
+            let template = crate::message::Message::template(finding, language);
+            let pieces = template.split(['{', '}', '$']).step_by(2);
+            let longest = pieces.max_by_key(|p| p.len()).unwrap_or_default();
+            // a sentence begins with a capital
+            let rest: String = longest.chars().skip(1).collect();
+            rest.replace('"', "\\\"")
+        };
+        let (en, de) = (
+            words(crate::message::Language::English),
+            words(crate::message::Language::German),
+        );
+        // only templates with words of their own
+        if en.len() > 12 {
+            assert!(english.contains(&en) && german.contains(&de), "{en} {de}");
+            assert!(!german.contains(&en), "{en}");
+        }
     }
 }

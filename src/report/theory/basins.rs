@@ -9,7 +9,7 @@ use crate::report::figures::look;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
 use crate::report::figures::regions::Regions;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// Room left of the panel, points.
 const LEFT: f64 = 36.0;
@@ -19,11 +19,11 @@ const HEIGHT: f64 = 300.0;
 const MOST_KEYS: usize = 12;
 
 /// Draws the motion to which each start (X, X′) leads; `None` if the grid has no area.
-pub fn draw(basins: &RegionMap, name: &str, title: &str, speech: Speech) -> Option<Figure> {
+pub fn draw(basins: &RegionMap, name: &str, title: &str, locale: Locale) -> Option<Figure> {
     let keys = tint_keys(basins, MOST_KEYS);
-    let top = keys_height(LEFT, &keys, speech);
+    let top = keys_height(LEFT, &keys, locale);
     let mut canvas = Canvas::new(look::FULL_WIDTH, top + HEIGHT + 26.0);
-    keys_on_top(&mut canvas, LEFT, &keys, speech);
+    keys_on_top(&mut canvas, LEFT, &keys, locale);
     let axis = |v: &[f64], title: &str| {
         let half = 0.5 * (v.get(1)? - v.first()?);
         Some(Axis::new(v.first()? - half, v.last()? + half, title).with_ticks(7))
@@ -36,6 +36,6 @@ pub fn draw(basins: &RegionMap, name: &str, title: &str, speech: Speech) -> Opti
     canvas.layer(0);
     Regions::new(basins, &panel)?.draw(&mut canvas);
     canvas.layer(4);
-    panel.frame(&mut canvas, Sides::BOTH, speech);
+    panel.frame(&mut canvas, Sides::BOTH, locale);
     Some(Figure::new(name, title, canvas, String::new()))
 }

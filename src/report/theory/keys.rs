@@ -6,17 +6,17 @@ use crate::report::figures::canvas::Canvas;
 use crate::report::figures::legend::{self, Key, Sign};
 use crate::report::figures::look;
 use crate::report::figures::marks;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// Draws keys over the whole width of the figure's top; gives the height they take.
-pub fn keys_on_top(canvas: &mut Canvas, left: f64, keys: &[Key], speech: Speech) {
+pub fn keys_on_top(canvas: &mut Canvas, left: f64, keys: &[Key], locale: Locale) {
     let width = look::FULL_WIDTH - left;
-    legend::draw(canvas, (left, 1.0), width, keys, speech);
+    legend::draw(canvas, (left, 1.0), width, keys, locale);
 }
 
 /// Height of keys on the figure's top.
-pub fn keys_height(left: f64, keys: &[Key], speech: Speech) -> f64 {
-    legend::height(keys, look::FULL_WIDTH - left, speech) + 4.0
+pub fn keys_height(left: f64, keys: &[Key], locale: Locale) -> f64 {
+    legend::height(keys, look::FULL_WIDTH - left, locale) + 4.0
 }
 
 /// Keys of the motions that a map shows, each with its tint; the rare ones last and left out

@@ -10,7 +10,7 @@ use crate::report::figures::look;
 use crate::report::figures::marks::mix;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// Room left of the panels, points.
 const LEFT: f64 = 36.0;
@@ -71,16 +71,16 @@ pub struct Strike {
 }
 
 /// Draws a portrait.
-pub fn draw(portrait: &Portrait, name: &str, title: &str, speech: Speech<'_>) -> Figure {
+pub fn draw(portrait: &Portrait, name: &str, title: &str, locale: Locale<'_>) -> Figure {
     let keys = keys(portrait);
-    let top = keys_height(LEFT, &keys, speech);
+    let top = keys_height(LEFT, &keys, locale);
     let squares = top + SERIES_HEIGHT + 8.0 + SPEED_HEIGHT + 40.0;
     let mut canvas = Canvas::new(look::FULL_WIDTH, squares + SQUARE + 26.0);
-    keys_on_top(&mut canvas, LEFT, &keys, speech);
+    keys_on_top(&mut canvas, LEFT, &keys, locale);
     let drawing = Drawing {
         portrait,
         samples: with_impacts(portrait),
-        speech,
+        locale,
     };
     drawing.series(&mut canvas, top);
     drawing.speeds(&mut canvas, top + SERIES_HEIGHT + 8.0);
@@ -151,7 +151,7 @@ fn keys(portrait: &Portrait) -> Vec<Key> {
 struct Drawing<'a> {
     portrait: &'a Portrait,
     samples: Vec<Sample>,
-    speech: Speech<'a>,
+    locale: Locale<'a>,
 }
 
 impl Drawing<'_> {
@@ -208,7 +208,7 @@ impl Drawing<'_> {
             below: false,
             left: true,
         };
-        panel.frame(canvas, sides, self.speech);
+        panel.frame(canvas, sides, self.locale);
     }
 
     /// Shades the times at which the masses are together.
@@ -252,7 +252,7 @@ impl Drawing<'_> {
         let data: Vec<_> = self.samples.iter().map(|s| (s.periods, s.vx)).collect();
         panel.curve(canvas, data, Stroke::solid(look::BLUE, 0.8));
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.speech);
+        panel.frame(canvas, Sides::BOTH, self.locale);
     }
 
     fn phase_plane(&self, canvas: &mut Canvas, rect: Rect) {
@@ -279,12 +279,12 @@ impl Drawing<'_> {
         let data: Vec<_> = self.samples.iter().map(|s| (s.x, s.vx)).collect();
         panel.curve(canvas, data, Stroke::solid(look::BLUE, 0.6));
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.speech);
+        panel.frame(canvas, Sides::BOTH, self.locale);
     }
 
     fn poincare(&self, canvas: &mut Canvas, rect: Rect) {
         let points = &self.portrait.poincare;
-        let phase = self.speech.fixed(self.portrait.poincare_phase, 2);
+        let phase = self.locale.fixed(self.portrait.poincare_phase, 2);
         let title = format!("$X$ at drive phase {phase} (1)");
         let wide = |values: Vec<f64>| {
             let (low, high) = range(values).unwrap_or((0.0, 1.0));
@@ -309,7 +309,7 @@ impl Drawing<'_> {
             taken.put(canvas, &panel, (p[0], p[1]), dot);
         }
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.speech);
+        panel.frame(canvas, Sides::BOTH, self.locale);
     }
 
     fn autocorrelation(&self, canvas: &mut Canvas, rect: Rect) {
@@ -322,6 +322,6 @@ impl Drawing<'_> {
         let stroke = Stroke::solid(mix(look::BLUE, 0.9), 0.6);
         panel.curve(canvas, values.iter().copied(), stroke);
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.speech);
+        panel.frame(canvas, Sides::BOTH, self.locale);
     }
 }

@@ -13,7 +13,7 @@ use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::{self, Rect};
 use crate::report::figures::placing::Occupancy;
 use crate::report::figures::regions::Regions;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// Room left of the panel, points.
 const LEFT: f64 = 34.0;
@@ -38,13 +38,13 @@ pub fn draw(
     (map, curves): (&RegionMap, &[Curve]),
     name: &str,
     title: &str,
-    speech: Speech,
+    locale: Locale,
 ) -> Option<Figure> {
     let keys = keys(curves, map.cells != map.second);
-    let top = keys_height(LEFT, &keys, speech);
+    let top = keys_height(LEFT, &keys, locale);
     let size = (look::FULL_WIDTH, top + HEIGHT + 26.0);
     let mut canvas = Canvas::new(size.0, size.1);
-    keys_on_top(&mut canvas, LEFT, &keys, speech);
+    keys_on_top(&mut canvas, LEFT, &keys, locale);
     let axis = |v: &[f64], title: &str, ticks| {
         Some(Axis::new(*v.first()?, *v.last()?, title).with_ticks(ticks))
     };
@@ -59,13 +59,13 @@ pub fn draw(
     let mut occupancy = Occupancy::new(size.0, size.1);
     draw_curves(&mut canvas, &panel, curves, &mut occupancy);
     canvas.layer(5);
-    for label in regions.labels(&mut occupancy, 9.5, speech) {
+    for label in regions.labels(&mut occupancy, 9.5, locale) {
         let text_look = TextLook::new(label.size, Anchor::Middle).face(Face::Bold);
         let at = (label.at.0, label.at.1 + 0.33 * label.size);
         canvas.text(at, &label.text, text_look.colour(look::INK));
     }
     canvas.layer(6);
-    panel.frame(&mut canvas, Sides::BOTH, speech);
+    panel.frame(&mut canvas, Sides::BOTH, locale);
     Some(Figure::new(name, title, canvas, String::new()))
 }
 

@@ -10,7 +10,7 @@ use crate::report::figures::legend::{Key, Sign};
 use crate::report::figures::look;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// Room left of the panels, points.
 const LEFT: f64 = 42.0;
@@ -91,13 +91,13 @@ const ROWS: [Row; 4] = [
 const PHASE_HEIGHT: f64 = 62.0;
 
 /// Draws the characteristics over the quantity that moves.
-pub fn draw(data: &Characteristics, name: &str, title: &str, speech: Speech) -> Figure {
+pub fn draw(data: &Characteristics, name: &str, title: &str, locale: Locale) -> Figure {
     let keys = keys(!data.impactless_y.is_empty());
-    let top = keys_height(LEFT, &keys, speech);
+    let top = keys_height(LEFT, &keys, locale);
     let rows: f64 = ROWS.iter().map(|r| r.height + GAP).sum();
     let mut canvas = Canvas::new(look::FULL_WIDTH, top + rows + PHASE_HEIGHT + 26.0);
-    keys_on_top(&mut canvas, LEFT, &keys, speech);
-    let drawing = Drawing { data, speech };
+    keys_on_top(&mut canvas, LEFT, &keys, locale);
+    let drawing = Drawing { data, locale };
     let mut y = top;
     for (i, row) in ROWS.iter().enumerate() {
         drawing.row(&mut canvas, y, row, i == 0);
@@ -131,7 +131,7 @@ const IMPACTLESS: Colour = look::QUIET;
 
 struct Drawing<'a> {
     data: &'a Characteristics,
-    speech: Speech<'a>,
+    locale: Locale<'a>,
 }
 
 impl Drawing<'_> {
@@ -197,7 +197,7 @@ impl Drawing<'_> {
             below: false,
             left: true,
         };
-        panel.frame(canvas, sides, self.speech);
+        panel.frame(canvas, sides, self.locale);
     }
 
     /// The impactless motion's curve of X, and of Y where there is one.
@@ -217,6 +217,6 @@ impl Drawing<'_> {
         let panel = self.panel(top, PHASE_HEIGHT, y, true);
         self.impactless(canvas, &panel, |p| p.1.to_degrees());
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.speech);
+        panel.frame(canvas, Sides::BOTH, self.locale);
     }
 }

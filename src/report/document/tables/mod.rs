@@ -10,12 +10,11 @@ pub use records::records;
 
 use crate::compare::Unusable;
 use crate::identify::Item;
-use crate::record::{FlagCode, Sweep};
+use crate::record::Sweep;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Align, Rich, Table};
-use crate::report::document::prose::prose;
 use crate::report::figures::richtext::{Level, Run};
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// A column of a table.
 #[derive(Debug, Clone, Copy)]
@@ -53,10 +52,12 @@ impl Column {
 }
 
 /// A table of columns whose heads are phrases; `None` if it has no rows.
-fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>, speech: Speech) -> Option<Table> {
-    let heads = columns.iter().map(|c| Rich::from(speech.say_title(c.head)));
+fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>, locale: Locale) -> Option<Table> {
+    let heads = columns
+        .iter()
+        .map(|c| Rich::from(locale.translate_title(c.head)));
     let table = Table {
-        caption: Rich::from(speech.say(caption)),
+        caption: Rich::from(locale.translate(caption)),
         heads: heads.collect(),
         align: columns.iter().map(|c| c.align).collect(),
         widths: columns.iter().map(|c| c.width).collect(),
@@ -92,7 +93,7 @@ fn without_empty_columns(table: Table) -> Table {
 /// Further tables of the content.
 pub fn further<'a>(
     content: &'a ReportContent,
-    speech: Speech<'a>,
+    locale: Locale<'a>,
 ) -> impl Iterator<Item = Table> + 'a {
     let with_rows = content.tables.iter().filter(|t| !t.rows.is_empty());
     with_rows.map(move |t| {
@@ -100,9 +101,12 @@ pub fn further<'a>(
             .rows
             .iter()
             .map(|row| row.iter().map(Rich::from).collect());
-        let heads = t.heads.iter().map(|h| Rich::from(speech.say_title(h)));
+        let heads = t
+            .heads
+            .iter()
+            .map(|h| Rich::from(locale.translate_title(h)));
         Table {
-            caption: Rich::from(speech.say(&t.caption)),
+            caption: Rich::from(locale.translate(&t.caption)),
             heads: heads.collect(),
             align: vec![Align::Right; t.heads.len()],
             widths: vec![0; t.heads.len()],
@@ -120,26 +124,28 @@ fn arrow(sweep: Sweep) -> &'static str {
 }
 
 /// Records that no method could use, by reason, and what the fits left out.
-pub fn left_out(content: &ReportContent, speech: Speech) -> Option<Table> {
-    let unusable = content.compared.unusable.iter().map(|u| {
+pub fn left_out(content: &ReportContent, locale: Locale) -> Option<Table> {
+    let records = content.compared.unusable.iter().map(|u| {
         let count = Some(u.records.len()).filter(|n| *n > 1);
-        (first_few(&u.records), count, reason(u))
+        (first_few(&u.records), count, verbatim(unusable(u, locale)))
     });
     // impacts are in a remark of their method
     let fits = content.identification.left_out.iter();
     let fits = fits.filter(|l| !matches!(l.item, Item::Impact { .. }));
-    let fits = fits.map(|l| (l.item.to_string(), None, l.reason.to_string()));
-    let rows = unusable.chain(fits).map(|(what, count, why)| {
+    let fits = fits.map(|l| {
+        let why = Rich::from(locale.message(&l.reason));
+        (locale.message(&l.item), None, why)
+    });
+    let rows = records.chain(fits).map(|(what, count, why)| {
         let count = count.map_or(String::new(), |c| c.to_string());
-        let (what, why) = (speech.tell(&what), speech.tell(&why));
-        vec![verbatim(what), Rich::from(count), prose(&why)]
+        vec![verbatim(what), Rich::from(count), why]
     });
     let columns: [Column; 3] = [
         Column::wide("left out", 2),
         Column::right("count"),
         Column::wide("why", 5),
     ];
-    table("", &columns, rows.collect(), speech)
+    table("", &columns, rows.collect(), locale)
 }
 
 /// The first few names.
@@ -150,15 +156,22 @@ fn first_few(records: &[String]) -> String {
     }
 }
 
-fn reason(unusable: &Unusable) -> String {
-    let code = unusable.flag.map_or("motion undetermined", FlagCode::name);
-    let code = code.replace('_', " ");
+/// Why records are unusable: the flag, then its details in English.
+fn unusable(unusable: &Unusable, locale: Locale) -> String {
+    let flag = unusable.flag.as_ref();
+    let flag = flag.map_or_else(
+        || locale.translate("motion undetermined"),
+        |flag| locale.message(flag),
+    );
     let of = unusable.channel.as_ref().map(|c| format!(" ({c})"));
-    let mut text = format!("{code}{}: {}", of.unwrap_or_default(), unusable.message);
-    if let (true, Some(record)) = (unusable.differ, unusable.records.first()) {
-        text.push_str(&format!(" (so {record}; the others alike)"));
+    let text = format!("{flag}{}: {}", of.unwrap_or_default(), unusable.message);
+    match unusable.records.first().filter(|_| unusable.differ) {
+        Some(record) => {
+            let values = [("details", text.as_str()), ("record", record.as_str())];
+            locale.translate_with("{details} (in {record}; similar in the others)", &values)
+        }
+        None => text,
     }
-    text
 }
 
 /// A cell whose text has no markup, whatever signs it holds.
@@ -175,7 +188,7 @@ pub fn verbatim(text: String) -> Rich {
 }
 
 /// SHA-256 of the inputs.
-pub fn hashes(content: &ReportContent, speech: Speech) -> Option<Table> {
+pub fn hashes(content: &ReportContent, locale: Locale) -> Option<Table> {
     let inputs = &content.provenance.inputs_sha256;
     let rows = inputs
         .iter()
@@ -186,7 +199,7 @@ pub fn hashes(content: &ReportContent, speech: Speech) -> Option<Table> {
         caption,
         &[Column::wide("input", 2), Column::left("SHA-256")],
         rows,
-        speech,
+        locale,
     )
     .map(|t| Table { size: 6.2, ..t })
 }

@@ -17,7 +17,7 @@ use crate::report::figures::marks;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
 use crate::report::figures::richtext;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 use rows::{Row, root_mean_square, rows, shown, symbol};
 
 /// Room left of the first column, for numbers and titles, points.
@@ -42,7 +42,7 @@ const BOTTOM: f64 = 22.0;
 const BACK_WIDTH: f64 = 1.7;
 
 /// Draws one comparison; `None` if it has no trace at all.
-pub fn draw<'a>(comparison: &'a Comparison, speech: Speech<'a>) -> Option<Figure> {
+pub fn draw<'a>(comparison: &'a Comparison, locale: Locale<'a>) -> Option<Figure> {
     let rows = rows(comparison);
     let portraits = portraits::portraits(comparison);
     if rows.is_empty() {
@@ -52,7 +52,7 @@ pub fn draw<'a>(comparison: &'a Comparison, speech: Speech<'a>) -> Option<Figure
     let stack = stack.max(if portraits.is_empty() { 0.0 } else { 100.0 });
     let mut sheet = Sheet {
         comparison,
-        speech,
+        locale,
         canvas: Canvas::new(look::FULL_WIDTH, TOP + stack + BOTTOM),
         time: time_axis(comparison, &rows),
         column: COLUMNS[usize::from(portraits.is_empty())],
@@ -63,7 +63,7 @@ pub fn draw<'a>(comparison: &'a Comparison, speech: Speech<'a>) -> Option<Figure
     let name = name(comparison);
     let letter = comparison.letter.to_string();
     let values = [("letter", letter.as_str())];
-    let title = speech.say_with("Point ({letter}): simulated and measured", &values);
+    let title = locale.translate_with("Point ({letter}): simulated and measured", &values);
     Some(Figure::new(
         name,
         &title,
@@ -117,7 +117,7 @@ enum Side {
 
 struct Sheet<'a> {
     comparison: &'a Comparison,
-    speech: Speech<'a>,
+    locale: Locale<'a>,
     canvas: Canvas,
     time: TimeAxis,
     column: f64,
@@ -155,7 +155,7 @@ impl Sheet<'_> {
         if !rows.is_empty() {
             for (side, word) in [(Side::Simulated, "simulated"), (Side::Measured, "measured")] {
                 let at = (middle(self, side), TOP - 4.0);
-                self.canvas.text(at, &self.speech.say(word), title);
+                self.canvas.text(at, &self.locale.translate(word), title);
             }
         }
         let last_plain = rows.iter().rposition(|r| !r.residual);
@@ -210,7 +210,7 @@ impl Sheet<'_> {
         }
         self.canvas.layer(2);
         let left = side == Side::Simulated || row.residual;
-        panel.frame(&mut self.canvas, Sides { below, left }, self.speech);
+        panel.frame(&mut self.canvas, Sides { below, left }, self.locale);
         self.empty_note(row, side, &panel);
     }
 
@@ -253,7 +253,7 @@ impl Sheet<'_> {
         let at = (0.5 * (r.left + r.right), 0.5 * (r.top + r.bottom) + 2.5);
         let quiet = TextLook::new(look::NOTE_SIZE, Anchor::Middle).colour(look::QUIET);
         self.canvas
-            .text(at, &self.speech.say("not modelled"), quiet);
+            .text(at, &self.locale.translate("not modelled"), quiet);
     }
 
     /// The impacts of the simulation as stems on a level line.
@@ -272,13 +272,13 @@ impl Sheet<'_> {
         let lines = row.traces.iter().filter_map(|(trace, _)| {
             let rms = root_mean_square(trace.residual.as_ref()?)?;
             let whole = root_mean_square(&trace.measured)?;
-            let value = self.speech.significant(rms * row.unit.factor, 2);
-            let share = self.speech.significant(100.0 * rms / whole, 2);
+            let value = self.locale.significant(rms * row.unit.factor, 2);
+            let share = self.locale.significant(100.0 * rms / whole, 2);
             let name = symbol(trace.role);
             let text = "{name}: rms residual {value} = {share} % of rms";
             let value = format!("{value} {}", row.unit.symbol);
             let values = [("name", name), ("value", &value), ("share", &share)];
-            Some(self.speech.say_with(text, &values))
+            Some(self.locale.translate_with(text, &values))
         });
         // up to the two lines of the residual's title
         let room = self.column + COLUMN_GAP - TITLE_REACH - 2.0 * look::TITLE_SIZE;

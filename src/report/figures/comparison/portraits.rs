@@ -68,7 +68,7 @@ impl Sheet<'_> {
         let middle = PORTRAIT_LEFT + 0.5 * PORTRAIT_WIDTH;
         self.canvas.text(
             (middle, TOP - 4.0),
-            &self.speech.say("phase portraits"),
+            &self.locale.translate("phase portraits"),
             title,
         );
         let units = units(shown);
@@ -119,6 +119,6 @@ impl Sheet<'_> {
             panel.curve(&mut self.canvas, data, stroke);
         }
         self.canvas.layer(2);
-        panel.frame(&mut self.canvas, Sides::BOTH, self.speech);
+        panel.frame(&mut self.canvas, Sides::BOTH, self.locale);
     }
 }

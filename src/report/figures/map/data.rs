@@ -5,25 +5,25 @@ use crate::motion::Motion;
 use crate::record::Sweep;
 use crate::report::figures::boundaries;
 use crate::report::figures::csv::Csv;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// The text that is shown on hovering over a record.
-pub fn describe(record: &RecordRow, speech: Speech) -> String {
+pub fn describe(record: &RecordRow, locale: Locale) -> String {
     let mut parts = vec![
         record.id.clone(),
-        format!("z = {}", speech.say(&record.motion.label())),
+        format!("z = {}", locale.translate(&record.motion.label())),
     ];
     if let Some(f) = record.frequency_hz {
-        parts.push(format!("f = {} Hz", speech.fixed(f, 3)));
+        parts.push(format!("f = {} Hz", locale.fixed(f, 3)));
     }
     if let Some(r) = record.clearance_m {
-        parts.push(format!("r = {} mm", speech.significant(1e3 * r, 4)));
+        parts.push(format!("r = {} mm", locale.significant(1e3 * r, 4)));
     }
     if let (Some(eta), Some(rho)) = (record.eta, record.rho) {
         parts.push(format!(
             "η = {}, ρ = {}",
-            speech.fixed(eta, 4),
-            speech.fixed(rho, 3)
+            locale.fixed(eta, 4),
+            locale.fixed(rho, 3)
         ));
     }
     let sweep = match record.sweep {
@@ -31,9 +31,9 @@ pub fn describe(record: &RecordRow, speech: Speech) -> String {
         Sweep::Down => "sweep down",
         Sweep::Unknown => "sweep unknown",
     };
-    parts.push(speech.say(sweep));
-    let share = speech.fixed(record.confidence, 2);
-    parts.push(speech.say_with("confidence {share}", &[("share", &share)]));
+    parts.push(locale.translate(sweep));
+    let share = locale.fixed(record.confidence, 2);
+    parts.push(locale.translate_with("confidence {share}", &[("share", &share)]));
     parts.join("\n")
 }
 

@@ -10,7 +10,7 @@ use crate::report::figures::fonts::{self, Face};
 use crate::report::figures::look;
 use crate::report::figures::path::Rect;
 use crate::report::figures::richtext;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 impl Map<'_> {
     /// Names a curve beside the middle of its longest visible piece.
@@ -101,7 +101,7 @@ impl Map<'_> {
     }
 
     /// Frames and values of the strips above the panel.
-    pub(super) fn strip_frames(&mut self, speech: Speech) {
+    pub(super) fn strip_frames(&mut self, locale: Locale) {
         let r = self.panel.rect;
         for (i, value) in self.strips.clone().into_iter().enumerate() {
             let middle = self.strip_middle(i);
@@ -118,12 +118,12 @@ impl Map<'_> {
             let text_look = TextLook::new(look::TICK_SIZE, Anchor::Right).colour(look::INK);
             self.canvas.text(
                 (r.left - 3.0, middle + 2.3),
-                &speech.fixed(value, 1),
+                &locale.fixed(value, 1),
                 text_look,
             );
             let x_st = self.plane.static_deflection_m.filter(|_| self.full());
             if let Some(x_st) = x_st.filter(|_| self.plane.dimensionless) {
-                let millimetres = speech.fixed(1e3 * x_st * value, 1);
+                let millimetres = locale.fixed(1e3 * x_st * value, 1);
                 let text_look = TextLook::new(look::TICK_SIZE, Anchor::Left).colour(look::QUIET);
                 self.canvas
                     .text((r.right + 3.0, middle + 2.3), &millimetres, text_look);
@@ -132,7 +132,7 @@ impl Map<'_> {
     }
 
     /// Frequency in Hz above and clearance in mm on the right.
-    pub(super) fn laboratory_axes(&mut self, speech: Speech) {
+    pub(super) fn laboratory_axes(&mut self, locale: Locale) {
         let r = self.panel.rect;
         let top = r.top - STRIP_STEP * self.strips.len() as f64;
         let small = TextLook::new(look::TICK_SIZE, Anchor::Middle).colour(look::QUIET);
@@ -145,10 +145,10 @@ impl Map<'_> {
                 self.canvas
                     .segment((x, top), (x, top + 2.5), look::FRAME_STROKE);
                 self.canvas
-                    .text((x, top - 3.0), &speech.fixed(v, decimals), small);
+                    .text((x, top - 3.0), &locale.fixed(v, decimals), small);
             }
             let at = (0.5 * (r.left + r.right), top - 14.0);
-            let name = speech.say_title("drive frequency $f$ (Hz)");
+            let name = locale.translate_title("drive frequency $f$ (Hz)");
             self.canvas.text(at, &name, title);
         }
         if let Some(x_st) = self.plane.static_deflection_m.map(|x| 1e3 * x) {
@@ -164,12 +164,12 @@ impl Map<'_> {
                 self.canvas
                     .segment((r.right, y), (r.right - 2.5, y), look::FRAME_STROKE);
                 self.canvas
-                    .text((r.right + 3.0, y + 2.3), &speech.fixed(v, decimals), left);
+                    .text((r.right + 3.0, y + 2.3), &locale.fixed(v, decimals), left);
             }
             let at = (r.right + 24.0, 0.5 * (r.top + r.bottom));
             self.canvas.text(
                 at,
-                &speech.say_title("clearance $r$ (mm)"),
+                &locale.translate_title("clearance $r$ (mm)"),
                 TextLook {
                     upward: true,
                     ..title

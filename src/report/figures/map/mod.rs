@@ -19,7 +19,7 @@ use crate::report::figures::path::{self, Rect};
 use crate::report::figures::placing::Occupancy;
 use crate::report::figures::plane::{Plane, View, same};
 use crate::report::figures::regions::Regions;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// Which of the two maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,26 +36,26 @@ const STRIP_STEP: f64 = 15.0;
 const STRIP_HALF: f64 = 5.5;
 
 /// Draws the map; `None` if the records have no place in a plane.
-pub fn draw(content: &ReportContent, size: MapSize, speech: Speech) -> Option<Figure> {
+pub fn draw(content: &ReportContent, size: MapSize, locale: Locale) -> Option<Figure> {
     let plane = Plane::of(content)?;
     let keys = if size == MapSize::Full {
         keys::full(&content.compared, plane)
     } else {
         keys::motions(&content.compared)
     };
-    let mut map = Map::new(content, plane, size, (&keys, speech));
+    let mut map = Map::new(content, plane, size, (&keys, locale));
     // Labels go where records and curves leave room.
     map.take_records_and_curves();
     map.take_brackets();
-    map.regions(speech);
+    map.regions(locale);
     map.curves();
     map.draw_brackets();
-    map.records(speech);
+    map.records(locale);
     if size == MapSize::Full {
         map.letters();
     }
-    map.frame(speech, &keys);
-    Some(map.finish(speech))
+    map.frame(locale, &keys);
+    Some(map.finish(locale))
 }
 
 struct Map<'a> {
@@ -94,7 +94,7 @@ impl<'a> Map<'a> {
         content: &'a ReportContent,
         plane: Plane,
         size: MapSize,
-        (keys, speech): (&[Key], Speech),
+        (keys, locale): (&[Key], Locale),
     ) -> Self {
         let full = size == MapSize::Full;
         let flat = content.compared.region_map.is_none() && heights(content, plane) <= 3;
@@ -105,7 +105,7 @@ impl<'a> Map<'a> {
             (false, true) => (look::FRONT_WIDTH, 130.0),
         };
         let keys_height =
-            legend::height(keys, width, speech) + if keys.is_empty() { 0.0 } else { 3.0 };
+            legend::height(keys, width, locale) + if keys.is_empty() { 0.0 } else { 3.0 };
         let both_units = full && plane.dimensionless;
         let (left, right) = (33.0, if both_units { 30.0 } else { 4.0 });
         let View { x, y, strips } = plane.view(content);
@@ -137,7 +137,7 @@ impl<'a> Map<'a> {
         self.size == MapSize::Full
     }
 
-    fn regions(&mut self, speech: Speech) {
+    fn regions(&mut self, locale: Locale) {
         let Some(map) = self
             .content
             .compared
@@ -162,7 +162,7 @@ impl<'a> Map<'a> {
         regions.draw(&mut self.canvas);
         let size = if self.full() { 10.0 } else { 8.0 };
         self.canvas.layer(6);
-        for label in regions.labels(&mut self.occupancy, size, speech) {
+        for label in regions.labels(&mut self.occupancy, size, locale) {
             let text_look = TextLook::new(label.size, Anchor::Middle).face(Face::Bold);
             let (x, y) = label.at;
             let baseline = (x, y + 0.33 * label.size);
@@ -291,7 +291,7 @@ impl<'a> Map<'a> {
         self.panel.rect.top - STRIP_STEP * (index as f64 + 0.5) - 1.0
     }
 
-    fn records(&mut self, speech: Speech) {
+    fn records(&mut self, locale: Locale) {
         let radius = self.radius;
         let mut drawn: Vec<(Point, String)> = Vec::new();
         self.canvas.layer(4);
@@ -299,7 +299,7 @@ impl<'a> Map<'a> {
             let Some(at) = self.place(record) else {
                 continue;
             };
-            let text = data::describe(record, speech);
+            let text = data::describe(record, locale);
             self.spots.push(Spot {
                 x: at.0,
                 y: at.1,
@@ -318,24 +318,24 @@ impl<'a> Map<'a> {
         }
     }
 
-    fn frame(&mut self, speech: Speech, keys: &[Key]) {
+    fn frame(&mut self, locale: Locale, keys: &[Key]) {
         self.canvas.layer(7);
-        self.panel.frame(&mut self.canvas, Sides::BOTH, speech);
+        self.panel.frame(&mut self.canvas, Sides::BOTH, locale);
         if self.full() && self.plane.dimensionless {
-            self.laboratory_axes(speech);
+            self.laboratory_axes(locale);
         }
-        self.strip_frames(speech);
+        self.strip_frames(locale);
         let width = self.canvas.width;
-        legend::draw(&mut self.canvas, (0.0, 0.0), width, keys, speech);
+        legend::draw(&mut self.canvas, (0.0, 0.0), width, keys, locale);
     }
 
-    fn finish(self, speech: Speech) -> Figure {
+    fn finish(self, locale: Locale) -> Figure {
         let csv = data::csv(&self.content.compared);
         let (name, title) = match self.size {
             MapSize::Full => ("map", "Regions of motion, simulated and measured"),
             MapSize::Small => ("map_small", "Measured motions and boundaries"),
         };
-        Figure::new(name, &speech.say(title), self.canvas, csv).with_spots(self.spots)
+        Figure::new(name, &locale.translate(title), self.canvas, csv).with_spots(self.spots)
     }
 }
 

@@ -5,7 +5,7 @@ use crate::report::figures::canvas::Point;
 use crate::report::figures::fonts::{self, Face};
 use crate::report::figures::path::Rect;
 use crate::report::figures::placing::Occupancy;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// A region's label in its place.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +20,7 @@ pub struct RegionLabel {
 
 impl Regions<'_> {
     /// A label for each region that is large enough, placed where nothing else is drawn.
-    pub fn labels(&self, occupancy: &mut Occupancy, size: f64, speech: Speech) -> Vec<RegionLabel> {
+    pub fn labels(&self, occupancy: &mut Occupancy, size: f64, locale: Locale) -> Vec<RegionLabel> {
         let mut order: Vec<usize> = (0..self.areas.len()).collect();
         order.sort_by_key(|&r| std::cmp::Reverse(self.areas[r]));
         let least = LEAST_SHARE * self.region.len() as f64;
@@ -30,19 +30,19 @@ impl Regions<'_> {
         let place = |r| {
             [size, 0.8 * size]
                 .into_iter()
-                .find_map(|s| self.label((r, speech), occupancy, s))
+                .find_map(|s| self.label((r, locale), occupancy, s))
         };
         large.filter_map(place).collect()
     }
 
     fn label(
         &self,
-        (region, speech): (usize, Speech),
+        (region, locale): (usize, Locale),
         occupancy: &mut Occupancy,
         size: f64,
     ) -> Option<RegionLabel> {
         let first_cell = self.region.iter().position(|&r| r == region)?;
-        let text = self.name(first_cell, speech);
+        let text = self.name(first_cell, locale);
         let half = (
             0.5 * fonts::width(&text, Face::Bold, size) + 3.0,
             0.5 * size + 1.5,
@@ -72,9 +72,9 @@ impl Regions<'_> {
         })
     }
 
-    fn name(&self, cell: usize, speech: Speech) -> String {
+    fn name(&self, cell: usize, locale: Locale) -> String {
         let (first, second) = self.kind(cell);
-        let label = |k: u16| speech.say(&self.map.motions[usize::from(k)].label());
+        let label = |k: u16| locale.translate(&self.map.motions[usize::from(k)].label());
         if first == second {
             label(first)
         } else {
