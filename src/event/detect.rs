@@ -5,7 +5,7 @@ use crate::event::finite_contact::{self, FiniteContact};
 use crate::event::jumps::{Jump, JumpSearch, SUPPORTED};
 use crate::event::kinematics::{Kinematics, Series};
 use crate::event::refine::{self, ArcFit, Candidate, Instant};
-use crate::event::{DetectionSource, DriveTone, Impact, RigKind, bounce, drift, drive};
+use crate::event::{DetectionSource, DriveTone, Impact, RigKind, bounce, drift, drive, impacts};
 use crate::record::{Flag, Record, Role};
 use crate::signal::robust;
 
@@ -153,7 +153,7 @@ fn refined(
     if arc.same_way {
         // Straight arcs are drawn from few samples: no drift is to be told from them.
         let instants = refine::instants(kinematics, candidates, arc);
-        return refine::impacts(kinematics, candidates, &instants, drive, (arc, None));
+        return impacts::impacts(kinematics, candidates, &instants, drive, (arc, None));
     }
     let Some(contact) = finite_contact::measure(kinematics, candidates, arc) else {
         return undrifted(kinematics, candidates, drive, (rig, arc, None));
@@ -165,7 +165,12 @@ fn refined(
     let spanned = contact.spanned(candidates, &instants);
     finite_contact::bridge(kinematics, &spanned, &instants, &contact, arc);
     kinematics.update_relative(rig);
-    undrifted(kinematics, &spanned, drive, (rig, arc, Some((&contact, &instants))))
+    undrifted(
+        kinematics,
+        &spanned,
+        drive,
+        (rig, arc, Some((&contact, &instants))),
+    )
 }
 
 /// Correct the velocities for jumps and drift, then refine the impacts.
@@ -197,7 +202,7 @@ fn undrifted(
     }
     let instants = instants(kinematics);
     let contact = contact.map(|(contact, _)| contact);
-    refine::impacts(kinematics, candidates, &instants, drive, (arc, contact))
+    impacts::impacts(kinematics, candidates, &instants, drive, (arc, contact))
 }
 
 /// Where impacts may be, and what speaks for and against them.

@@ -10,6 +10,7 @@
 //! displacements cross there. So the kink of the displacement places the contact, and T gives its
 //! start and end. Each body's velocity channel may lag by a delay of its own.
 
+use crate::event::contact_profile::ContactProfile;
 use crate::event::jumps::Jump;
 use crate::event::kinematics::{Body, Kinematics, Series};
 use crate::event::refine::{ArcFit, Candidate, Instant, arcs, instants};
@@ -42,67 +43,10 @@ const LONGEST: f64 = 6.0;
 /// Greatest delay looked for, in samples.
 const LATEST: f64 = 1.0;
 
-/// A linear contact of a given restitution, in shares of its duration.
-///
-/// With u'' + 2ζω u' + ω² u = 0 from u = 0 until the press ends, ω√(1−ζ²)T = φ = π − 2α and
-/// ζ = sin α, where R = e^{−κ}, κ = φ tan α.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ContactProfile {
-    restitution: f64,
-    decay: f64,
-    angle: f64,
-}
-
-impl ContactProfile {
-    /// The profile for R; it is that of R = 0.15 below (a linear contact has R > 0.135).
-    pub fn new(restitution: f64) -> Self {
-        let restitution = restitution.clamp(0.15, 1.0);
-        let decay = -restitution.ln();
-        let (mut low, mut high) = (0.0, std::f64::consts::FRAC_PI_2);
-        for _ in 0..50 {
-            let middle = 0.5 * (low + high);
-            if (std::f64::consts::PI - 2.0 * middle) * middle.tan() < decay {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        Self {
-            restitution,
-            decay,
-            angle: std::f64::consts::PI - 2.0 * low,
-        }
-    }
-
-    /// Share of the change of velocity that is done at a share of the duration.
-    pub fn done(&self, share: f64) -> f64 {
-        if share <= 0.0 {
-            return 0.0;
-        }
-        if share >= 1.0 {
-            return 1.0;
-        }
-        let (sin, cos) = (self.angle * share).sin_cos();
-        let speed = (-self.decay * share).exp() * (cos - self.decay / self.angle * sin);
-        (1.0 - speed) / (1.0 + self.restitution)
-    }
-
-    /// Share of the duration by which the mean instant of the impulse follows first touch.
-    pub fn centre(&self) -> f64 {
-        (self.restitution + self.drift()) / (1.0 + self.restitution)
-    }
-
-    /// Change of the speed at the end of contact by a constant acceleration that acts beside the
-    /// contact, over what it would be without the contact's spring: R sin φ/φ.
-    pub fn drift(&self) -> f64 {
-        self.restitution * self.angle.sin() / self.angle
-    }
-}
-
 /// How long the impacts of a record last, and how late each velocity shows them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FiniteContact {
-    /// Duration, samples; zero if it is not told from an instant.
+    /// Duration, samples; zero if it is indistinguishable from an instant.
     pub duration: f64,
     /// Delay of each body's velocity against the kink of the displacement, samples.
     pub delays: [f64; 2],
@@ -132,7 +76,10 @@ impl FiniteContact {
         if self.duration == 0.0 {
             return out;
         }
-        let bodies = [(&kinematics.x, self.delays[0]), (&kinematics.y, self.delays[1])];
+        let bodies = [
+            (&kinematics.x, self.delays[0]),
+            (&kinematics.y, self.delays[1]),
+        ];
         for (i, instant) in out.iter_mut().enumerate() {
             if candidates[i].dead_samples > 0.0 {
                 continue;
@@ -155,8 +102,12 @@ impl FiniteContact {
         let centre = self.profile.centre() * self.duration;
         let cost = |shift: f64| -> f64 {
             let deviation = |(p, delay): &(Passage, f64)| {
-                let done = self.profile.done((p.offset - shift - delay + centre) / self.duration);
-                ((p.share - done) / p.share_error.max(PLACE_ERROR)).powi(2).min(OUTLYING)
+                let done = self
+                    .profile
+                    .done((p.offset - shift - delay + centre) / self.duration);
+                ((p.share - done) / p.share_error.max(PLACE_ERROR))
+                    .powi(2)
+                    .min(OUTLYING)
             };
             (shift / first.error).powi(2) + samples.iter().map(deviation).sum::<f64>()
         };
@@ -169,7 +120,9 @@ impl FiniteContact {
         };
         // mean and deviation of the likelihood e^{−cost/2}
         let weights = costs.iter().map(|(c, s)| ((-0.5 * (c - least)).exp(), *s));
-        let sums = weights.fold([0.0; 3], |[w, a, b], (p, s)| [w + p, a + p * s, b + p * s * s]);
+        let sums = weights.fold([0.0; 3], |[w, a, b], (p, s)| {
+            [w + p, a + p * s, b + p * s * s]
+        });
         let mean = sums[1] / sums[0];
         Instant {
             time: first.time + mean,
@@ -441,40 +394,15 @@ pub fn bridge(
             let mut area = 0.0;
             for k in jump.left + 1..(jump.left + jump.gap).min(velocity.values.len()) {
                 let at = k as f64;
-                let flight = if at < instant.time + delay { &before } else { &after };
+                let flight = if at < instant.time + delay {
+                    &before
+                } else {
+                    &after
+                };
                 area += flight.value(at) - velocity.values[k];
                 velocity.values[k] = flight.value(at);
             }
             velocity.correct_area(jump.left + jump.gap, area, rate_hz);
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn valid_the_profile_of_an_elastic_contact_is_a_half_sine_force() {
-        let profile = ContactProfile::new(1.0);
-        for share in [0.1, 0.5, 0.7] {
-            let expected = 0.5 * (1.0 - (std::f64::consts::PI * share).cos());
-            assert!((profile.done(share) - expected).abs() < 1e-9);
-        }
-        assert!((profile.centre() - 0.5).abs() < 1e-9 && profile.drift() < 1e-9);
-    }
-
-    #[test]
-    fn prop_the_profile_rises_from_nothing_to_all_about_its_centre() {
-        for restitution in [0.2, 0.5, 0.8, 0.95] {
-            let profile = ContactProfile::new(restitution);
-            let shares: Vec<f64> = (0..=2000).map(|i| f64::from(i) / 2000.0).collect();
-            let done: Vec<f64> = shares.iter().map(|s| profile.done(*s)).collect();
-            assert!(done.windows(2).all(|w| w[1] >= w[0]));
-            assert!((profile.done(1.0 - 1e-9) - 1.0).abs() < 1e-6, "{restitution}");
-            // mean instant of the impulse: the integral of what is not yet done
-            let left: f64 = done.iter().map(|d| (1.0 - d) / 2000.0).sum();
-            assert!((left - 0.5 / 2000.0 - profile.centre()).abs() < 1e-6, "{restitution}");
         }
     }
 }

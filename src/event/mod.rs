@@ -3,11 +3,13 @@
 
 pub mod bounce;
 pub mod contact;
+pub mod contact_profile;
 pub mod corner;
 pub mod detect;
 pub mod drift;
 pub mod drive;
 pub mod finite_contact;
+pub mod impacts;
 pub mod jumps;
 pub mod kinematics;
 pub mod refine;
@@ -85,13 +87,13 @@ pub struct Impact {
     pub corner_shifts: [Option<CornerShift>; 2],
     /// How long the bodies stayed together after it, s; zero without a dead zone.
     pub dead_zone_s: f64,
-    /// How long the contact lasted, s; `None`: not told from an instant. The approach speeds are
+    /// How long the contact lasted, s; `None`: indistinguishable from an instant. The approach speeds are
     /// those at its start and at its end; `time_s` is the centre of its impulse, to which the
     /// speeds of each mass belong, as if the impact were an instant there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact_duration_s: Option<f64>,
     /// What springs and drive, not the contact, added to the separation speed while the contact
-    /// lasted, m/s (a linear contact taken); `None`: not told from an instant.
+    /// lasted, m/s (a linear contact taken); `None`: indistinguishable from an instant.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub external_push_m_s: Option<f64>,
     /// How it was seen.
