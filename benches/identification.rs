@@ -9,11 +9,11 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use impact_oscillator::model::params::ModelError;
+use impactid::event::DetectSettings;
 use impactid::event::RigKind;
-use impactid::event::detect::DetectSettings;
 use impactid::identify::evidence::{Evidence, Nominal};
 use impactid::identify::run::identify;
-use impactid::identify::uncertainty::{Asked, Way};
+use impactid::identify::uncertainty::{IntervalMethod, UncertaintyOptions};
 use impactid::motion::{ClassifySettings, Observation, brackets, observe, scale_drives};
 use impactid::synthetic::run::calibrated;
 use impactid::synthetic::{Effects, Faults, Laboratory, Plan, Truth, records};
@@ -32,10 +32,14 @@ fn main() -> Result<(), ModelError> {
         observations.len(),
         brackets.len()
     );
-    for (name, way, runs) in [
-        ("all fits", Way::Covariance, 9),
-        ("all fits and profiles", Way::Profile, 5),
-        ("all fits and 1,000 bootstrap replicas", Way::Bootstrap, 3),
+    for (name, intervals, runs) in [
+        ("all fits", IntervalMethod::Covariance, 9),
+        ("all fits and profiles", IntervalMethod::Profile, 5),
+        (
+            "all fits and 1,000 bootstrap replicas",
+            IntervalMethod::Bootstrap,
+            3,
+        ),
     ] {
         let evidence = Evidence {
             rig: RigKind::Double,
@@ -45,9 +49,9 @@ fn main() -> Result<(), ModelError> {
                 gain_uncertainty: 5e-3,
                 ..Nominal::default()
             },
-            uncertainty: Asked {
-                way,
-                ..Asked::default()
+            uncertainty: UncertaintyOptions {
+                intervals,
+                ..UncertaintyOptions::default()
             },
         };
         let mut seconds: Vec<f64> = (0..runs).map(|_| time(&evidence)).collect();
@@ -62,7 +66,7 @@ fn time(evidence: &Evidence) -> f64 {
     let start = Instant::now();
     let outcome = identify(evidence);
     let seconds = start.elapsed().as_secs_f64();
-    assert!(outcome.fit.is_some(), "nothing was fitted");
+    assert!(outcome.joint_fit.is_some(), "nothing was fitted");
     seconds
 }
 

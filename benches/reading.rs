@@ -8,10 +8,10 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use labfiles::Samples;
 use labfiles::convert::{Options, Target, convert};
 use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
-use labfiles::open::open;
-use labfiles::source::Samples;
+use labfiles::open;
 
 const RECORDS: usize = 200;
 const CHANNELS: usize = 16;

@@ -1,8 +1,8 @@
-//! What the theory costs on this machine: the marching kernel a drive period and core, scaling over
-//! threads, closed forms a point, the whole atlas of Fig. 11.
+//! Run times of the theory on this machine: the marching kernel per drive period and core, scaling
+//! over threads, closed forms per point, the whole atlas of Fig. 11.
 //!
 //! `cargo bench --bench theory`. Times are by the clock, each the least and the
-//! median of several runs: the least is what the machine can do, the median tells how much other
+//! median of several runs: the least is what the machine can do, the median shows how much other
 //! work disturbed. No harness beyond this file.
 
 use std::hint::black_box;
@@ -12,10 +12,10 @@ use impact_oscillator::atlas::kernel::{Cell, Outcome};
 use impact_oscillator::atlas::map::{
     Kernel, MapGrid, MapSettings, Start, UnitMass, march_all, region_map,
 };
-use impact_oscillator::atlas::regions::{AtlasSettings, atlas};
-use impact_oscillator::model::boundary::s2_of_branch;
+use impact_oscillator::atlas::{AtlasSettings, atlas};
+use impact_oscillator::model::boundary::{s1_of_branch, s2_of_branch};
 use impact_oscillator::model::orbit::Branch;
-use impact_oscillator::model::{Initial, Machine, rho_grazing, rho_s1, rho_s2};
+use impact_oscillator::{Initial, Machine, rho_grazing, rho_s1, rho_s2};
 
 const KERNELS: [Kernel; 3] = [Kernel::Scalar, Kernel::Avx2, Kernel::Avx512];
 const PERIODS: f64 = 260.0;
@@ -67,7 +67,7 @@ fn rig() -> Machine {
     Machine::symmetric(0.07, 0.9)
 }
 
-/// What the kernel alone makes of every cell; the exact simulator follows nothing up.
+/// Outcomes of the kernel alone; the exact simulator checks none of them again.
 fn march(kernel: Kernel, leave_early: bool) -> Vec<Outcome> {
     let settings = MapSettings {
         leave_early,
@@ -90,7 +90,7 @@ fn kernels() {
     println!(
         "\n64 × 64 cells, η 0.6–3.0, ρ 0.05–3.0, R = 0.9, β = 0.07, from rest, 200 + 60 periods"
     );
-    println!("kernel   exits  ns a drive period and core (least, median)   cells/s and core");
+    println!("kernel   exits  ns per drive period and core (least, median)   cells/s and core");
     let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(1).build() else {
         return;
     };
@@ -140,10 +140,10 @@ fn threads() {
 }
 
 fn closed_forms() {
-    println!("\nclosed forms, ns a point (least, median), n = 1, η 1.05–1.95");
+    println!("\nclosed forms, ns per point (least, median), n = 1, η 1.05–1.95");
     let machine = rig();
     let etas: Vec<f64> = (0..10_000).map(|i| 1.05 + 9e-5 * f64::from(i)).collect();
-    let tell = |name: &str, of: &dyn Fn(f64) -> f64| {
+    let print = |name: &str, of: &dyn Fn(f64) -> f64| {
         let work = || black_box(etas.iter().map(|&eta| of(eta)).sum::<f64>());
         let (least, median) = measured(9, || {
             work();
@@ -151,22 +151,17 @@ fn closed_forms() {
         let per = 1e9 / etas.len() as f64;
         println!("{name:38} {:8.1} {:8.1}", least * per, median * per);
     };
-    tell("s2", &|eta| {
+    print("s2", &|eta| {
         s2_of_branch(&Branch::new(&machine, eta, 1), 0.9).0
     });
-    tell("s1", &|eta| {
-        impact_oscillator::model::boundary::s1_of_branch(
-            &machine,
-            &Branch::new(&machine, eta, 1),
-            0.9,
-        )
-        .map_or(0.0, |p| p.0)
+    print("s1", &|eta| {
+        s1_of_branch(&machine, &Branch::new(&machine, eta, 1), 0.9).map_or(0.0, |p| p.0)
     });
-    tell("ρ'", &|eta| rho_grazing(&machine, eta));
-    tell("s2 with its orbit's existence checked", &|eta| {
+    print("ρ'", &|eta| rho_grazing(&machine, eta));
+    print("s2 with its orbit's existence checked", &|eta| {
         rho_s2(&machine, eta, 1).map_or(0.0, |p| p.rho)
     });
-    tell("s1 with its orbit's existence checked", &|eta| {
+    print("s1 with its orbit's existence checked", &|eta| {
         rho_s1(&machine, eta, 1).map_or(0.0, |p| p.rho)
     });
 }

@@ -1,8 +1,8 @@
-"""Read every output of `impactid run` with polars or pandas, and draw the records' map.
+"""Read every output of `impactid run` with polars or pandas, and plot the map of the records.
 
     python docs/read_results.py results/
 
-It needs polars (or pandas with pyarrow); with matplotlib it also writes results/records.png.
+It requires polars (or pandas with pyarrow); with matplotlib it also writes results/records.png.
 """
 
 import json
@@ -16,12 +16,12 @@ except ImportError:
 
 
 def columns(table, *names):
-    """Columns as lists, whichever of the two libraries read the table."""
+    """Columns as lists, with either library."""
     return [list(table[name]) for name in names]
 
 
 def answer(folder):
-    """R, f0, β and x_st with their intervals, as identification.json states them."""
+    """R, f0, β and x_st with their intervals, from identification.json."""
     identification = json.loads((folder / "identification.json").read_text())
     print(identification["verdict"]["summary"])
     for name, estimate in identification["joint"].items():
@@ -38,7 +38,7 @@ def read(folder):
         "boundaries": tables.read_csv(folder / "boundaries.csv"),
     }
     for path in sorted((folder / "figures").glob("*.csv")):
-        # a figure's remarks stand behind #; a column may hold numbers and words
+        # comments begin with #; a column may contain numbers and text
         if tables.__name__ == "polars":
             found[path.stem] = tables.read_csv(path, comment_prefix="#", infer_schema_length=None)
         else:
@@ -46,12 +46,12 @@ def read(folder):
     return found
 
 
-def draw(records, path):
+def plot(records, path):
     """Each record at its frequency and clearance, coloured by its motion z = p/n."""
     try:
         import matplotlib
     except ImportError:
-        print("matplotlib is not installed: no picture")
+        print("matplotlib is not installed: no plot")
         return
     matplotlib.use("Agg")
     from matplotlib import pyplot
@@ -66,7 +66,7 @@ def draw(records, path):
     pyplot.ylabel("clearance, mm")
     pyplot.legend()
     pyplot.savefig(path)
-    print(f"drawn: {path}")
+    print(f"written: {path}")
 
 
 def main():
@@ -77,7 +77,7 @@ def main():
         print(f"{name}: {table.shape[0]} rows, columns {', '.join(map(str, table.columns))}")
     resolved = json.loads((folder / "campaign.resolved.json").read_text())
     print(f"campaign.resolved.json: {len(resolved['records'])} records")
-    draw(found["records"], folder / "records.png")
+    plot(found["records"], folder / "records.png")
 
 
 if __name__ == "__main__":

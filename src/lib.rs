@@ -4,7 +4,9 @@
 //! Data walks one street, and a room never imports from a room to its right:
 //!
 //! `units` < `output` < `signal` < `record` < `event` < `motion` < `model` < `atlas` <
-//! `synthetic` < `identify` < `report` < `campaign` < `pipeline` < `cli`.
+//! `synthetic` < `identify` < `compare` < `report` < `campaign` < `pipeline` < `cli`.
+
+pub mod message;
 
 pub mod signal;
 
@@ -17,6 +19,8 @@ pub mod motion;
 pub mod synthetic;
 
 pub mod identify;
+
+pub mod compare;
 
 pub mod report;
 

@@ -2,14 +2,15 @@
 
 use toml::Spanned;
 
-use super::quantity::{Desk, remedy};
-use super::written::{Channel, Channels, Machine, Placed, Quantity};
+use super::context::{ResolveContext, remedy};
+use super::diagnostic::Code;
+use super::written::{Channel, Channels, Machine, Placed, Quantity, value};
 use crate::record::Role;
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
 use labfiles::units::{self, Dimension, Scale, Unit};
 
 impl Channels {
-    fn of(&self, role: Role) -> &Placed<Channel> {
+    pub(super) fn of(&self, role: Role) -> &Placed<Channel> {
         match role {
             Role::Drive => &self.drive,
             Role::Contact => &self.contact,
@@ -26,14 +27,19 @@ impl Channels {
 }
 
 /// All channels that campaign.toml names, in the order of the roles.
-pub fn resolve(channels: &Channels, machine: Machine, desk: &mut Desk<'_>) -> Vec<ChannelSetup> {
+pub(super) fn resolve(
+    channels: &Channels,
+    machine: Machine,
+    context: &mut ResolveContext<'_>,
+) -> Vec<ChannelSetup> {
     let mut setups = Vec::new();
     for role in Role::ALL {
         let Some(placed) = channels.of(role) else {
             continue;
         };
         if machine == Machine::Single && role.is_on_y_side() {
-            desk.fault(
+            context.fault(
+                Code::Conflict,
                 placed,
                 &format!("channels.{}", role.name()),
                 "one mass against a stop has no mass y".to_owned(),
@@ -41,18 +47,19 @@ pub fn resolve(channels: &Channels, machine: Machine, desk: &mut Desk<'_>) -> Ve
             );
             continue;
         }
-        setups.extend(resolve_one(role, placed, desk));
+        setups.extend(resolve_one(role, placed, context));
     }
-    demand_motion(&setups, desk);
-    refuse_twice(&setups, channels, desk);
+    demand_motion(&setups, context);
+    refuse_twice(&setups, channels, context);
     setups
 }
 
-fn demand_motion(setups: &[ChannelSetup], desk: &mut Desk<'_>) {
+fn demand_motion(setups: &[ChannelSetup], context: &mut ResolveContext<'_>) {
     if setups.iter().any(|s| s.role.is_motion()) {
         return;
     }
-    desk.book.fault(
+    context.faults.fault(
+        Code::Missing,
         None,
         "channels",
         "no channel of motion is named".to_owned(),
@@ -61,7 +68,7 @@ fn demand_motion(setups: &[ChannelSetup], desk: &mut Desk<'_>) {
     );
 }
 
-fn refuse_twice(setups: &[ChannelSetup], channels: &Channels, desk: &mut Desk<'_>) {
+fn refuse_twice(setups: &[ChannelSetup], channels: &Channels, context: &mut ResolveContext<'_>) {
     for (i, one) in setups.iter().enumerate() {
         let Some(other) = setups[..i].iter().find(|o| o.source == one.source) else {
             continue;
@@ -69,7 +76,8 @@ fn refuse_twice(setups: &[ChannelSetup], channels: &Channels, desk: &mut Desk<'_
         let Some(placed) = channels.of(one.role) else {
             continue;
         };
-        desk.fault(
+        context.fault(
+            Code::Conflict,
             placed,
             &format!("channels.{}.channel", one.role.name()),
             format!(
@@ -82,36 +90,51 @@ fn refuse_twice(setups: &[ChannelSetup], channels: &Channels, desk: &mut Desk<'_
     }
 }
 
-fn resolve_one(role: Role, placed: &Spanned<Channel>, desk: &mut Desk<'_>) -> Option<ChannelSetup> {
+fn resolve_one(
+    role: Role,
+    placed: &Spanned<Channel>,
+    context: &mut ResolveContext<'_>,
+) -> Option<ChannelSetup> {
     let written = placed.get_ref();
     let key = |name: &str| format!("channels.{}.{name}", role.name());
-    let unit = unit(&written.unit, &key("unit"), desk);
-    let scale = scale(&written.scale, &key("scale"), desk);
+    let unit = unit(&written.unit, &key("unit"), context);
+    let scale = scale(&written.scale, &key("scale"), context);
     let setup = ChannelSetup {
         unit,
         scale: scale.unwrap_or(Scale::Factor(1.0)),
-        offset: raw_level(&written.offset, &key("offset"), unit, desk).unwrap_or(0.0),
-        sign: sign(&written.sign, &key("sign"), desk),
-        high_pass_hz: desk.positive(&written.high_pass, &key("high_pass"), Dimension::Frequency),
-        threshold: threshold(role, &written.threshold, &key("threshold"), desk),
-        range: raw_level(&written.range, &key("range"), unit, desk),
-        ignore_file_unit: written
-            .ignore_file_unit
-            .as_ref()
-            .is_some_and(|b| *b.get_ref()),
-        instrument: written.instrument.as_ref().map(|i| i.get_ref().clone()),
-        ..ChannelSetup::plain(role, source(role, placed, desk)?)
+        offset: raw_level(&written.offset, &key("offset"), unit, context).unwrap_or(0.0),
+        sign: sign(&written.sign, &key("sign"), context),
+        high_pass_hz: context.positive(&written.high_pass, &key("high_pass"), Dimension::Frequency),
+        delay_s: context
+            .within(&written.delay, &key("delay"), Dimension::Time, [-1.0, 1.0])
+            .unwrap_or(0.0),
+        delay_uncertainty_s: context.within(
+            &written.delay_uncertainty,
+            &key("delay_uncertainty"),
+            Dimension::Time,
+            [0.0, 1.0],
+        ),
+        threshold: threshold(role, &written.threshold, &key("threshold"), context),
+        range: raw_level(&written.range, &key("range"), unit, context),
+        ignore_file_unit: value(&written.ignore_file_unit).unwrap_or(false),
+        instrument: value(&written.instrument),
+        ..ChannelSetup::plain(role, source(role, placed, context)?)
     };
     Some(setup)
 }
 
-fn source(role: Role, placed: &Spanned<Channel>, desk: &mut Desk<'_>) -> Option<ChannelKey> {
+fn source(
+    role: Role,
+    placed: &Spanned<Channel>,
+    context: &mut ResolveContext<'_>,
+) -> Option<ChannelKey> {
     let key = format!("channels.{}.channel", role.name());
     let Some(channel) = &placed.get_ref().channel else {
-        desk.fault(
+        context.fault(
+            Code::Missing,
             placed,
             &key,
-            "which channel of the file is not said".to_owned(),
+            "the channel of the file is not given".to_owned(),
             "write channel = \"name\" or its index from 0",
         );
         return None;
@@ -119,13 +142,14 @@ fn source(role: Role, placed: &Spanned<Channel>, desk: &mut Desk<'_>) -> Option<
     Some(channel.get_ref().0.clone())
 }
 
-fn unit(placed: &Placed<String>, key: &str, desk: &mut Desk<'_>) -> Option<Unit> {
+fn unit(placed: &Placed<String>, key: &str, context: &mut ResolveContext<'_>) -> Option<Unit> {
     let placed = placed.as_ref()?;
     let symbol = placed.get_ref();
     let found = units::parse_unit(symbol);
     if found.is_none() {
         let what = format!("the unit '{symbol}' is not known");
-        desk.fault(
+        context.fault(
+            Code::InvalidValue,
             placed,
             key,
             what,
@@ -135,7 +159,7 @@ fn unit(placed: &Placed<String>, key: &str, desk: &mut Desk<'_>) -> Option<Unit>
     found
 }
 
-fn scale(placed: &Placed<Quantity>, key: &str, desk: &mut Desk<'_>) -> Option<Scale> {
+fn scale(placed: &Placed<Quantity>, key: &str, context: &mut ResolveContext<'_>) -> Option<Scale> {
     let placed = placed.as_ref()?;
     let scale = match placed.get_ref() {
         Quantity::Bare(factor) => Ok(Scale::Factor(*factor)),
@@ -145,7 +169,8 @@ fn scale(placed: &Placed<Quantity>, key: &str, desk: &mut Desk<'_>) -> Option<Sc
         Ok(scale) if size(scale) > 0.0 => Some(scale),
         Ok(_) => {
             let what = "a scale must be positive and finite".to_owned();
-            desk.fault(
+            context.fault(
+                Code::OutOfRange,
                 placed,
                 key,
                 what,
@@ -160,7 +185,7 @@ fn scale(placed: &Placed<Quantity>, key: &str, desk: &mut Desk<'_>) -> Option<Sc
                 }
                 _ => remedy(&error, Dimension::Number),
             };
-            desk.fault(placed, key, error.to_string(), &remedy);
+            context.fault(Code::InvalidValue, placed, key, error.to_string(), &remedy);
             None
         }
     }
@@ -174,12 +199,18 @@ fn size(scale: Scale) -> f64 {
     if value.is_finite() { value } else { 0.0 }
 }
 
-fn sign(placed: &Placed<f64>, key: &str, desk: &mut Desk<'_>) -> f64 {
+fn sign(placed: &Placed<f64>, key: &str, context: &mut ResolveContext<'_>) -> f64 {
     match placed {
         Some(placed) if placed.get_ref().abs() == 1.0 => *placed.get_ref(),
         Some(placed) => {
             let what = format!("a sign is 1 or -1, not {}", placed.get_ref());
-            desk.fault(placed, key, what, "put a factor into scale");
+            context.fault(
+                Code::InvalidValue,
+                placed,
+                key,
+                what,
+                "put a factor into scale",
+            );
             1.0
         }
         None => 1.0,
@@ -191,9 +222,9 @@ fn raw_level(
     placed: &Placed<Quantity>,
     key: &str,
     unit: Option<Unit>,
-    desk: &mut Desk<'_>,
+    context: &mut ResolveContext<'_>,
 ) -> Option<f64> {
-    let found = any_quantity(placed, key, desk)?;
+    let found = any_quantity(placed, key, context)?;
     match unit {
         Some(unit) if unit.dimension != found.dimension => {
             let what = format!(
@@ -202,7 +233,8 @@ fn raw_level(
                 unit.dimension.name()
             );
             if let Some(placed) = placed {
-                desk.fault(
+                context.fault(
+                    Code::InvalidValue,
                     placed,
                     key,
                     what,
@@ -218,38 +250,39 @@ fn raw_level(
 fn any_quantity(
     placed: &Placed<Quantity>,
     key: &str,
-    desk: &mut Desk<'_>,
+    context: &mut ResolveContext<'_>,
 ) -> Option<units::Quantity> {
     let placed = placed.as_ref()?;
     let found = match placed.get_ref() {
-        Quantity::Bare(value) => Err(format!("a level without unit: {value}")),
         Quantity::Text(text) => units::parse_quantity(text).map_err(|e| e.to_string()),
+        Quantity::Bare(value) => Err(format!("a level without unit: {value}")),
     };
-    found
-        .map_err(|what| {
-            desk.fault(
-                placed,
-                key,
-                what,
-                "write number and unit in quotes, such as \"2.5 V\"",
-            );
-        })
-        .ok()
+    if let Err(message) = &found {
+        let remedy = "write number and unit in quotes, such as \"2.5 V\"";
+        context.fault(Code::InvalidValue, placed, key, message.as_str(), remedy);
+    }
+    found.ok()
 }
 
 fn threshold(
     role: Role,
     placed: &Placed<Quantity>,
     key: &str,
-    desk: &mut Desk<'_>,
+    context: &mut ResolveContext<'_>,
 ) -> Option<units::Quantity> {
-    let found = any_quantity(placed, key, desk)?;
+    let found = any_quantity(placed, key, context)?;
     if role == Role::Contact {
         return Some(found);
     }
     if let Some(placed) = placed {
         let what = format!("a threshold means nothing for {}", role.name());
-        desk.fault(placed, key, what, "move it to [channels.contact]");
+        context.fault(
+            Code::Conflict,
+            placed,
+            key,
+            what,
+            "move it to [channels.contact]",
+        );
     }
     None
 }

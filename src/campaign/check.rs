@@ -1,35 +1,34 @@
 //! Reading all records for their faults alone, a record at a time.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
-use super::faults::{Fault, Severity};
-use super::listing::Opener;
+use super::diagnostic::{Code, Diagnostic, Place, Severity};
+use super::discovery::Opener;
 use super::resolved::{RecordEntry, ResolvedCampaign};
-use crate::event::DetectionSource;
-use crate::event::detect::{DetectSettings, Detection, detect};
+use crate::event::{DetectSettings, Detection, DetectionSource, detect};
 use crate::record::calibrate;
-use crate::record::{Flag, Record, Role};
-use labfiles::source::Source;
+use crate::record::{Flag, FlagCode, Record, Role};
+use labfiles::Source;
 
 /// What reading all records found.
 #[derive(Debug, Default)]
 pub struct Checked {
-    /// One fault a flag.
-    pub faults: Vec<Fault>,
+    /// One problem per flag.
+    pub diagnostics: Vec<Diagnostic>,
     /// Records that can be used.
     pub usable: usize,
-    /// What tells each record from others.
-    prints: Vec<Print>,
+    /// What distinguishes each record from the others.
+    fingerprints: Vec<Fingerprint>,
 }
 
-/// What tells a record from others.
+/// What distinguishes a record from others.
 #[derive(Debug)]
-struct Print {
+struct Fingerprint {
     /// Hash of the samples; `None` where there are none.
     hash: Option<[u8; 32]>,
     samples: usize,
@@ -42,8 +41,8 @@ pub fn by_file(records: &[RecordEntry]) -> Vec<&[RecordEntry]> {
     records.chunk_by(|a, b| a.file == b.file).collect()
 }
 
-/// Read every record of the campaign and list what is wrong with it. `done` is told the number
-/// of records read so far.
+/// Read every record of the campaign and list what is wrong with it. `done` is called with the
+/// number of records read so far.
 pub fn read_all(
     campaign: &ResolvedCampaign,
     open: Opener<'_>,
@@ -60,17 +59,17 @@ pub fn read_all(
         .collect();
     let mut all = Checked::default();
     for one in found {
-        all.faults.extend(one.faults);
+        all.diagnostics.extend(one.diagnostics);
         all.usable += one.usable;
-        all.prints.extend(one.prints);
+        all.fingerprints.extend(one.fingerprints);
     }
-    all.faults.extend(duplicates(&all.prints));
-    all.faults.extend(cut_short(&all.prints));
+    all.diagnostics.extend(duplicates(&all.fingerprints));
+    all.diagnostics.extend(cut_short(&all.fingerprints));
     all
 }
 
 fn read_file(campaign: &ResolvedCampaign, entries: &[RecordEntry], open: Opener<'_>) -> Checked {
-    // a file that cannot be opened was told when the records were listed
+    // a file that cannot be opened was reported when the records were listed
     let Ok(source) = open(&entries[0].file) else {
         return Checked::default();
     };
@@ -81,9 +80,9 @@ fn read_file(campaign: &ResolvedCampaign, entries: &[RecordEntry], open: Opener<
         .collect();
     let mut all = Checked::default();
     for part in parts {
-        all.faults.extend(part.faults);
+        all.diagnostics.extend(part.diagnostics);
         all.usable += part.usable;
-        all.prints.extend(part.prints);
+        all.fingerprints.extend(part.fingerprints);
     }
     all
 }
@@ -95,23 +94,23 @@ fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Sourc
         record.flags.extend(contact_without_jump(&record, &found));
         record.flags.extend(found.flags);
     }
-    let faults = record
+    let diagnostics = record
         .flags
         .iter()
-        .filter(|f| !LISTED.contains(&f.code.as_str()))
-        .map(|f| fault_of(f, &record, &entry.file))
+        .filter(|f| !LISTED.contains(&f.code))
+        .map(|f| Diagnostic::of_record(&entry.file, &record.id, f))
         .collect();
     let usable = usize::from(!record.excluded());
-    let print = Print {
+    let print = Fingerprint {
         hash: fingerprint(&record),
         samples: record.samples(),
         id: record.id,
         file: entry.file.clone(),
     };
     Checked {
-        faults,
+        diagnostics,
         usable,
-        prints: vec![print],
+        fingerprints: vec![print],
     }
 }
 
@@ -123,17 +122,20 @@ fn contact_without_jump(record: &Record, found: &Detection) -> Option<Flag> {
         .filter(|i| i.source == DetectionSource::Both)
         .count();
     let channel = record.channel(Role::Contact)?;
-    (found.unsupported_pulses >= 3 && found.unsupported_pulses > 2 * supported).then(|| Flag {
-        code: "contact_without_jump".to_owned(),
-        channel: Some(channel.name.clone()),
-        message: format!(
+    (found.unsupported_pulses >= 3 && found.unsupported_pulses > 2 * supported).then(|| {
+        let message = format!(
             "the contact closes {} times without a jump of the velocity, {supported} times with one",
             found.unsupported_pulses
-        ),
-        remedy: "mend threshold or channel in [channels.contact], or look whether the velocity \
-                 channels belong to this record"
-            .to_owned(),
-        excludes: false,
+        );
+        let remedy = "fix threshold or channel in [channels.contact], or check whether the \
+                      velocity channels belong to this record";
+        Flag::new(
+            FlagCode::ContactWithoutJump,
+            Some(&channel.name),
+            message,
+            remedy,
+        )
+        .excluding(false)
     })
 }
 
@@ -153,75 +155,74 @@ fn fingerprint(record: &Record) -> Option<[u8; 32]> {
     Some(hash.finalize().into())
 }
 
-/// Records whose samples stand in the campaign twice.
-fn duplicates(prints: &[Print]) -> Vec<Fault> {
+/// Records whose samples are in the campaign twice.
+fn duplicates(fingerprints: &[Fingerprint]) -> Vec<Diagnostic> {
     let mut first: HashMap<[u8; 32], &str> = HashMap::new();
-    let mut faults = Vec::new();
-    for print in prints {
+    let mut found = Vec::new();
+    for print in fingerprints {
         let Some(hash) = print.hash else { continue };
         match first.get(&hash) {
             None => drop(first.insert(hash, &print.id)),
-            Some(other) => faults.push(Fault {
-                file: print.file.clone(),
-                line: None,
-                key: print.id.clone(),
-                what: format!("its samples are those of the record '{other}'"),
-                remedy: "remove one of the two: a record counted twice makes intervals too narrow"
-                    .to_owned(),
-                severity: Severity::Record,
-            }),
+            Some(other) => found.push(print.diagnostic(
+                Code::DuplicateRecord,
+                Severity::Record,
+                format!("its samples are those of the record '{other}'"),
+                "remove one of the two: a record counted twice makes intervals too narrow",
+            )),
         }
     }
-    faults
+    found
 }
 
 /// Records much shorter than the usual one of the campaign.
-fn cut_short(prints: &[Print]) -> Vec<Fault> {
-    let mut lengths: Vec<usize> = prints
-        .iter()
-        .map(|p| p.samples)
-        .filter(|n| *n > 0)
-        .collect();
+fn cut_short(fingerprints: &[Fingerprint]) -> Vec<Diagnostic> {
+    let lengths = fingerprints.iter().map(|p| p.samples).filter(|n| *n > 0);
+    let mut lengths: Vec<usize> = lengths.collect();
     lengths.sort_unstable();
-    let Some(usual) = lengths
-        .get(lengths.len() / 2)
-        .copied()
-        .filter(|_| lengths.len() >= 3)
-    else {
+    let Some(usual) = lengths.get(lengths.len() / 2).copied() else {
         return Vec::new();
     };
-    let short = |p: &&Print| p.samples > 0 && 10 * p.samples < 8 * usual;
-    prints
-        .iter()
-        .filter(short)
-        .map(|p| Fault {
-            file: p.file.clone(),
-            line: None,
-            key: p.id.clone(),
-            what: format!("it holds {} samples, the usual record {usual}", p.samples),
-            remedy: "copy the file anew, where it was cut off".to_owned(),
-            severity: Severity::Note,
-        })
-        .collect()
+    if lengths.len() < 3 {
+        return Vec::new();
+    }
+    let short = |p: &&Fingerprint| p.samples > 0 && 10 * p.samples < 8 * usual;
+    let diagnostic = |p: &Fingerprint| {
+        p.diagnostic(
+            Code::ShortRecord,
+            Severity::Note,
+            format!("it holds {} samples, the usual record {usual}", p.samples),
+            "copy the file again if it was cut off",
+        )
+    };
+    fingerprints.iter().filter(short).map(diagnostic).collect()
 }
 
-/// Codes that the listing of the records tells already.
-const LISTED: [&str; 3] = ["missing_channel", "wrong_unit", "unit_missing"];
-
-fn fault_of(flag: &Flag, record: &Record, file: &Path) -> Fault {
-    Fault {
-        file: file.to_path_buf(),
-        line: None,
-        key: match &flag.channel {
-            Some(channel) => format!("{}: {channel}", record.id),
-            None => record.id.clone(),
-        },
-        what: flag.message.clone(),
-        remedy: flag.remedy.clone(),
-        severity: if flag.excludes {
-            Severity::Record
-        } else {
-            Severity::Note
-        },
+impl Fingerprint {
+    fn diagnostic(
+        &self,
+        code: Code,
+        severity: Severity,
+        message: String,
+        remedy: &str,
+    ) -> Diagnostic {
+        Diagnostic {
+            code,
+            severity,
+            place: Place {
+                file: self.file.clone(),
+                line: None,
+                record: Some(self.id.clone()),
+                item: String::new(),
+            },
+            message,
+            remedy: remedy.to_owned(),
+        }
     }
 }
+
+/// Codes that the discovery of the records has reported already.
+const LISTED: [FlagCode; 3] = [
+    FlagCode::MissingChannel,
+    FlagCode::WrongUnit,
+    FlagCode::UnitMissing,
+];

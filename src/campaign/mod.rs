@@ -1,21 +1,22 @@
 //! campaign.toml: as written ([`written`]), then resolved ([`resolved`]) with every default made
-//! explicit, or every fault at once ([`faults`]).
+//! explicit, or every problem at once ([`diagnostic`]).
 
 mod channels;
 pub mod check;
-pub mod faults;
-pub mod guess;
-mod listing;
+mod context;
+pub mod diagnostic;
+mod discovery;
+pub mod infer;
 mod names;
-mod quantity;
-pub mod read;
+mod read;
 mod records;
 mod resolve;
 pub mod resolved;
+mod rig;
 mod run_table;
 mod settings;
 pub mod template;
 pub mod written;
 
-pub use listing::Opener;
+pub use discovery::Opener;
 pub use resolve::{Outcome, load};

@@ -1,23 +1,23 @@
-//! Names of records: short, unique, and the same on every machine.
+//! Names of records: short, unique, the same on every machine, and in natural order.
 
 use std::collections::HashMap;
 use std::path::Path;
 
-/// What a record is known by.
+/// What the name of a record is made of.
 #[derive(Debug, Clone, Copy)]
-pub struct Known<'a> {
-    /// Its file, whole path.
-    pub file: &'a Path,
-    /// Its dataset; empty where the file is the dataset.
-    pub dataset: &'a str,
+pub(super) struct Known<'a> {
+    /// Its file.
+    pub(super) file: &'a Path,
+    /// Its dataset; empty if the file is the dataset.
+    pub(super) dataset: &'a str,
     /// The name that the run table gives.
-    pub given: Option<&'a str>,
+    pub(super) given: Option<&'a str>,
 }
 
-/// One name a record: as given; else its dataset where these alone tell all records apart; else
-/// the file's name without extension, with as many folders before it as tell the files apart and
-/// the dataset after it.
-pub fn of<'a>(records: impl Iterator<Item = Known<'a>>) -> Vec<String> {
+/// One name per record: as given; else its dataset if these alone are unique; else
+/// the file's name without extension, after as many folders as make the names unique, and followed by
+/// the dataset.
+pub(super) fn of<'a>(records: impl Iterator<Item = Known<'a>>) -> Vec<String> {
     let records: Vec<Known<'a>> = records.collect();
     let depth = if datasets_suffice(&records) {
         0
@@ -74,7 +74,7 @@ fn depth_needed(records: &[Known<'_>]) -> usize {
         .unwrap_or(1)
 }
 
-/// Append a number to names that stand more than once.
+/// Append a number to names that occur more than once.
 fn number_repeated(names: &mut [String]) {
     let mut count: HashMap<String, usize> = HashMap::new();
     for name in names.iter() {
@@ -86,6 +86,23 @@ fn number_repeated(names: &mut [String]) {
         *number += 1;
         *name = format!("{name}#{number}");
     }
+}
+
+/// A key that puts `run2` before `run10`.
+pub(super) fn natural_key(name: &str) -> Vec<(u8, u64, String)> {
+    let mut key: Vec<(u8, u64, String)> = Vec::new();
+    for letter in name.chars() {
+        match (letter.to_digit(10), key.last_mut()) {
+            (Some(d), Some((0, number, text))) if number.checked_mul(10).is_some() => {
+                *number = number.saturating_mul(10).saturating_add(u64::from(d));
+                text.push(letter);
+            }
+            (Some(d), _) => key.push((0, u64::from(d), letter.to_string())),
+            (None, Some((1, _, text))) => text.push(letter),
+            (None, _) => key.push((1, 0, letter.to_string())),
+        }
+    }
+    key
 }
 
 #[cfg(test)]
@@ -101,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_names_are_as_short_as_tells_the_files_apart() {
+    fn names_are_as_short_as_unique_names_can_be() {
         let short = of([known("/a/b/one.h5", "run1"), known("/a/b/two.csv", "")].into_iter());
         assert_eq!(short, ["one/run1", "two"]);
         let sets = of([known("/a/b/one.h5", "run1"), known("/a/b/two.h5", "/run2")].into_iter());

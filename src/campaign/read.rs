@@ -7,23 +7,23 @@ use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue, Deserializer};
 
-use super::faults::Notebook;
+use super::diagnostic::{Code, FaultCollector};
 use super::written::WrittenCampaign;
 
 /// The text of campaign.toml with the lines' places.
 #[derive(Debug)]
-pub struct Text<'a> {
+pub(super) struct Text<'a> {
     text: &'a str,
 }
 
 impl<'a> Text<'a> {
     /// Wrap a text.
-    pub fn new(text: &'a str) -> Self {
+    pub(super) fn new(text: &'a str) -> Self {
         Self { text }
     }
 
     /// Line, counted from 1, of a byte offset.
-    pub fn line(&self, offset: usize) -> usize {
+    pub(super) fn line(&self, offset: usize) -> usize {
         let end = offset.min(self.text.len());
         1 + self.text.as_bytes()[..end]
             .iter()
@@ -32,17 +32,17 @@ impl<'a> Text<'a> {
     }
 
     /// Line of a placed value.
-    pub fn line_of<T>(&self, placed: &Spanned<T>) -> Option<usize> {
+    pub(super) fn line_of<T>(&self, placed: &Spanned<T>) -> Option<usize> {
         Some(self.line(placed.span().start))
     }
 }
 
-/// Read the text; what cannot be read is noted in `book` and left at its default.
-pub fn read(text: &str, book: &mut Notebook) -> WrittenCampaign {
+/// Read the text; what cannot be read is noted in `faults` and left at its default.
+pub(super) fn read(text: &str, faults: &mut FaultCollector) -> WrittenCampaign {
     let places = Text::new(text);
     let (mut document, syntax) = DeTable::parse_recoverable(text);
     for fault in &syntax {
-        note_syntax(&places, fault, book);
+        note_syntax(&places, fault, faults);
     }
     if !syntax.is_empty() {
         return WrittenCampaign::default();
@@ -54,7 +54,7 @@ pub fn read(text: &str, book: &mut Notebook) -> WrittenCampaign {
                 let path = fault
                     .span()
                     .and_then(|span| take_out(document.get_mut(), &span));
-                note_form(&places, &fault, path.as_deref(), book);
+                note_form(&places, &fault, path.as_deref(), faults);
                 if path.is_none() {
                     return WrittenCampaign::default();
                 }
@@ -63,25 +63,37 @@ pub fn read(text: &str, book: &mut Notebook) -> WrittenCampaign {
     }
 }
 
-fn note_syntax(places: &Text<'_>, fault: &toml::de::Error, book: &mut Notebook) {
+fn note_syntax(places: &Text<'_>, fault: &toml::de::Error, faults: &mut FaultCollector) {
     let line = fault.span().map(|s| places.line(s.start));
     let what = format!("not valid TOML: {}", one_line(fault.message()));
-    book.fault(
+    faults.fault(
+        Code::Syntax,
         line,
         "",
         what,
-        "mend the line; texts stand in quotes, tables in [brackets]",
+        "fix the line; texts are written in quotes, tables in [brackets]",
     );
 }
 
-fn note_form(places: &Text<'_>, fault: &toml::de::Error, path: Option<&str>, book: &mut Notebook) {
+fn note_form(
+    places: &Text<'_>,
+    fault: &toml::de::Error,
+    path: Option<&str>,
+    faults: &mut FaultCollector,
+) {
     let line = fault.span().map(|s| places.line(s.start));
     let message = one_line(fault.message());
     let remedy = match unknown_name(&message) {
         Some((name, expected)) => remedy_for_unknown(name, &expected),
         None => "see the comments that `impactid init` writes for what the key takes".to_owned(),
     };
-    book.fault(line, path.unwrap_or(""), message, &remedy);
+    faults.fault(
+        Code::UnknownEntry,
+        line,
+        path.unwrap_or(""),
+        message,
+        &remedy,
+    );
 }
 
 fn one_line(message: &str) -> String {
@@ -107,7 +119,7 @@ fn remedy_for_unknown(name: &str, expected: &[&str]) -> String {
 }
 
 /// The candidate nearest to a name, where one is near enough to be meant.
-pub fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
+pub(super) fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
     let limit = 1 + name.chars().count() / 3;
     candidates
         .iter()
@@ -178,12 +190,12 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::campaign::faults::Fault;
+    use crate::campaign::diagnostic::Diagnostic;
 
-    fn faults_of(text: &str) -> (WrittenCampaign, Vec<Fault>) {
-        let mut book = Notebook::new(Path::new("campaign.toml"));
-        let written = read(text, &mut book);
-        (written, book.into_faults())
+    fn faults_of(text: &str) -> (WrittenCampaign, Vec<Diagnostic>) {
+        let mut faults = FaultCollector::new(Path::new("campaign.toml"));
+        let written = read(text, &mut faults);
+        (written, faults.into_diagnostics().0)
     }
 
     #[test]
@@ -194,7 +206,7 @@ mod tests {
         let (written, faults) = faults_of(text);
         let mut lines: Vec<_> = faults
             .iter()
-            .map(|f| (f.line.unwrap(), f.key.as_str()))
+            .map(|f| (f.place.line.unwrap(), f.place.item.as_str()))
             .collect();
         lines.sort();
         assert_eq!(
@@ -225,8 +237,8 @@ mod tests {
     #[test]
     fn valid_broken_syntax_is_one_fault_with_its_line() {
         let (_, faults) = faults_of("[campaign]\nname = \"x\n");
-        assert_eq!(faults[0].line, Some(2));
-        assert!(faults[0].what.contains("TOML"));
+        assert_eq!(faults[0].place.line, Some(2));
+        assert!(faults[0].message.contains("TOML"));
     }
 
     proptest::proptest! {

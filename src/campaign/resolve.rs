@@ -5,34 +5,37 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 
 use super::channels;
-use super::faults::{Faults, Notebook, Severity};
-use super::listing::{Opener, Shared};
-use super::quantity::Desk;
+use super::context::ResolveContext;
+use super::diagnostic::{Code, Diagnostics, FaultCollector};
+use super::discovery::{Opener, Shared};
 use super::read::{self, Text};
 use super::records;
-use super::resolved::{Analysis, RecordEntry, Report, ResolvedCampaign, Rig};
-use super::written::{self, Flight, Format, Language, Machine, Paper, Placed, WrittenCampaign};
-use crate::identify::uncertainty::Way;
-use crate::report::words::Words;
+use super::resolved::{Analysis, RecordEntry, Report, ResolvedCampaign};
+use super::rig;
+use super::written::{
+    self, Flight, Format, Language, Machine, Paper, Placed, WrittenCampaign, value,
+};
+use crate::report::catalog::Catalog;
 use labfiles::units::Dimension;
 
-/// A campaign as far as it could be resolved, and all that is wrong with it.
+/// A campaign as far as it could be resolved, and everything that is wrong with it.
 #[derive(Debug)]
 pub struct Outcome {
-    /// The campaign; `None` where a fault stops it.
+    /// The campaign; `None` if a problem stops it.
     pub campaign: Option<ResolvedCampaign>,
-    /// All faults, the gravest first.
-    pub faults: Faults,
+    /// All problems, the gravest first.
+    pub diagnostics: Diagnostics,
 }
 
 /// Read campaign.toml and list its records, opening files by `open`.
 pub fn load(path: &Path, open: Opener<'_>) -> Outcome {
-    let mut book = Notebook::new(path);
+    let mut faults = FaultCollector::new(path);
     let text = match std::fs::read_to_string(path) {
         Ok(text) => text,
         Err(error) => {
             let what = format!("campaign.toml cannot be read: {error}");
-            book.fault(
+            faults.fault(
+                Code::UnreadableFile,
                 None,
                 "",
                 what,
@@ -40,22 +43,22 @@ pub fn load(path: &Path, open: Opener<'_>) -> Outcome {
             );
             return Outcome {
                 campaign: None,
-                faults: Faults(book.into_faults()),
+                diagnostics: faults.into_diagnostics(),
             };
         }
     };
-    let written = read::read(&text, &mut book);
-    let mut desk = Desk {
+    let written = read::read(&text, &mut faults);
+    let mut context = ResolveContext {
         text: Text::new(&text),
-        book,
+        faults,
     };
-    let campaign = resolve(path, &written, open, &mut desk);
-    let blocks = desk.book.blocks();
-    let mut faults = Faults(desk.book.into_faults());
-    faults.tidy();
+    let campaign = resolve(path, &written, open, &mut context);
+    let blocks = context.faults.blocks();
+    let mut diagnostics = context.faults.into_diagnostics();
+    diagnostics.sort();
     Outcome {
         campaign: (!blocks).then_some(campaign),
-        faults,
+        diagnostics,
     }
 }
 
@@ -63,20 +66,20 @@ fn resolve(
     path: &Path,
     written: &WrittenCampaign,
     open: Opener<'_>,
-    desk: &mut Desk<'_>,
+    context: &mut ResolveContext<'_>,
 ) -> ResolvedCampaign {
     let machine = required(
         &written.campaign.machine,
         "campaign.machine",
         MACHINES,
-        desk,
+        context,
     );
     let machine = machine.unwrap_or(Machine::Double);
     let channels = match written.published {
         Some(_) => Vec::new(),
-        None => channels::resolve(&written.channels, machine, desk),
+        None => channels::resolve(&written.channels, machine, context),
     };
-    let time = written.records.time.as_ref().map(|t| t.get_ref().0.clone());
+    let time = value(&written.records.time).map(|t| t.0);
     let folder = path.parent().unwrap_or(Path::new(""));
     let shared = Shared {
         folder,
@@ -85,36 +88,29 @@ fn resolve(
     };
     let mut records = match written.published {
         Some(_) => Vec::new(),
-        None => records::resolve(&written.records, shared, open, desk),
+        None => records::resolve(&written.records, shared, open, context),
     };
-    exclude(&mut records, &written.analysis.exclude, desk);
+    exclude(&mut records, &written.analysis.exclude, context);
+    rig::refuse_long_delays(&channels, &records, &written.channels, context);
     let name = name(&written.campaign.name, folder);
-    let flight = written
-        .campaign
-        .flight
-        .as_ref()
-        .map_or(Flight::Harmonic, |f| *f.get_ref());
-    demand_one_mass(machine, flight, &written.campaign.flight, desk);
-    let run_table = written
-        .records
-        .run_table
-        .as_ref()
-        .map(|t| folder.join(t.get_ref()));
+    let flight = value(&written.campaign.flight).unwrap_or(Flight::Harmonic);
+    demand_one_mass(machine, flight, &written.campaign.flight, context);
+    let run_table = value(&written.records.run_table).map(|t| folder.join(t));
     ResolvedCampaign {
         run_table,
         machine,
         flight,
-        rig: rig(&written.rig, desk),
-        sample_rate_hz: desk.positive(
+        rig: rig::resolve(&written.rig, context),
+        sample_rate_hz: context.positive(
             &written.records.sample_rate,
             "records.sample_rate",
             Dimension::Frequency,
         ),
-        analysis: analysis(&written.analysis, desk),
-        report: report(&written.report, &name, (folder, &records), desk),
+        analysis: analysis(&written.analysis, context),
+        report: report(&written.report, &name, (folder, &records), context),
         synthetic: written.campaign.synthetic,
-        laboratory: words(&written.campaign.laboratory),
-        measured: words(&written.campaign.measured),
+        laboratory: value(&written.campaign.laboratory),
+        measured: value(&written.campaign.measured),
         file: path.to_path_buf(),
         name,
         channels,
@@ -130,19 +126,31 @@ fn required<T: Copy>(
     placed: &Placed<T>,
     key: &str,
     remedy: &str,
-    desk: &mut Desk<'_>,
+    context: &mut ResolveContext<'_>,
 ) -> Option<T> {
-    if placed.is_none() && !desk.book.blocks() {
-        desk.book
-            .fault(None, key, "it is not given".to_owned(), remedy);
+    if placed.is_none() && !context.faults.blocks() {
+        context
+            .faults
+            .fault(Code::Missing, None, key, "it is not given", remedy);
     }
-    placed.as_ref().map(|p| *p.get_ref())
+    value(placed)
 }
 
-fn demand_one_mass(machine: Machine, flight: Flight, placed: &Placed<Flight>, desk: &mut Desk<'_>) {
+fn demand_one_mass(
+    machine: Machine,
+    flight: Flight,
+    placed: &Placed<Flight>,
+    context: &mut ResolveContext<'_>,
+) {
     if let (Machine::Double, Flight::ConstantForce, Some(placed)) = (machine, flight, placed) {
         let what = "a flight under constant force is for one mass against a stop".to_owned();
-        desk.fault(placed, "campaign.flight", what, "set machine = \"single\"");
+        context.fault(
+            Code::Conflict,
+            placed,
+            "campaign.flight",
+            what,
+            "set machine = \"single\"",
+        );
     }
 }
 
@@ -151,47 +159,13 @@ fn name(placed: &Placed<String>, folder: &Path) -> String {
         let whole = std::path::absolute(Path::new(".").join(folder)).ok()?;
         whole.file_name().map(|n| n.to_string_lossy().into_owned())
     };
-    placed
-        .as_ref()
-        .map(|n| n.get_ref().clone())
+    value(placed)
         .or_else(folder_name)
         .unwrap_or_else(|| "campaign".to_owned())
 }
 
-fn rig(rig: &written::Rig, desk: &mut Desk<'_>) -> Rig {
-    use Dimension::{Frequency, Length, Mass, Number};
-    let mut positive = |placed, name: &str, d| desk.positive(placed, &format!("rig.{name}"), d);
-    let natural_frequency_hz = positive(&rig.natural_frequency, "natural_frequency", Frequency);
-    let static_deflection_m = positive(&rig.static_deflection, "static_deflection", Length);
-    let mass_x_kg = positive(&rig.mass_x, "mass_x", Mass);
-    let mass_y_kg = positive(&rig.mass_y, "mass_y", Mass);
-    let mut part =
-        |placed, name: &str, range| desk.within(placed, &format!("rig.{name}"), Number, range);
-    let damping_ratio = part(&rig.damping_ratio, "damping_ratio", [0.0, 0.999]);
-    let restitution = part(&rig.restitution, "restitution", [0.0, 1.0]);
-    let gain = part(&rig.gain_uncertainty, "gain_uncertainty", [0.0, 0.5]);
-    let corner = part(&rig.corner_uncertainty, "corner_uncertainty", [0.0, 0.5]);
-    let clearance = desk.within(
-        &rig.clearance_uncertainty,
-        "rig.clearance_uncertainty",
-        Length,
-        [0.0, 1.0],
-    );
-    Rig {
-        natural_frequency_hz,
-        damping_ratio,
-        static_deflection_m,
-        restitution,
-        mass_x_kg,
-        mass_y_kg,
-        gain_uncertainty: gain.unwrap_or(0.005),
-        corner_uncertainty: corner.unwrap_or(0.05),
-        clearance_uncertainty_m: clearance.unwrap_or(1e-5),
-    }
-}
-
-fn analysis(written: &written::Analysis, desk: &mut Desk<'_>) -> Analysis {
-    let skip = desk.within(
+fn analysis(written: &written::Analysis, context: &mut ResolveContext<'_>) -> Analysis {
+    let skip = context.within(
         &written.skip,
         "analysis.skip",
         Dimension::Time,
@@ -201,8 +175,14 @@ fn analysis(written: &written::Analysis, desk: &mut Desk<'_>) -> Analysis {
         let Some(placed) = placed else { return default };
         let value = *placed.get_ref();
         if !(1..=64).contains(&value) {
-            let what = format!("{value} is outside of what can be told");
-            desk.fault(placed, key, what, "it lies between 1 and 64");
+            let what = format!("{value} is out of range");
+            context.fault(
+                Code::OutOfRange,
+                placed,
+                key,
+                what,
+                "write a number from 1 to 64",
+            );
         }
         value
     };
@@ -210,16 +190,9 @@ fn analysis(written: &written::Analysis, desk: &mut Desk<'_>) -> Analysis {
         skip_s: skip.unwrap_or(0.0),
         longest_period_n: count(&written.longest_period_n, "analysis.longest_period_n", 6),
         most_impacts_p: count(&written.most_impacts_p, "analysis.most_impacts_p", 12),
-        seed: written.seed.as_ref().map_or(1, |s| *s.get_ref()),
-        uncertainty: written
-            .uncertainty
-            .as_ref()
-            .map_or(Way::default(), |w| *w.get_ref()),
-        replicas: written
-            .replicas
-            .as_ref()
-            .map_or(1000, |r| *r.get_ref())
-            .max(2) as usize,
+        seed: value(&written.seed).unwrap_or(1),
+        uncertainty: value(&written.uncertainty).unwrap_or_default(),
+        replicas: value(&written.replicas).unwrap_or(1000).max(2) as usize,
     }
 }
 
@@ -227,50 +200,49 @@ fn report(
     written: &written::Report,
     name: &str,
     (folder, records): (&Path, &[RecordEntry]),
-    desk: &mut Desk<'_>,
+    context: &mut ResolveContext<'_>,
 ) -> Report {
     if let Some(points) = &written.points {
         for point in points.get_ref() {
             if !records.iter().any(|r| r.id == *point) && !records.is_empty() {
-                unknown_record(points, "report.points", point, records, desk);
+                unknown_record(points, "report.points", point, records, context);
             }
         }
     }
     Report {
-        title: written
-            .title
-            .as_ref()
-            .map_or_else(|| name.to_owned(), |t| t.get_ref().clone()),
-        points: written
-            .points
-            .as_ref()
-            .map(|p| p.get_ref().clone())
-            .unwrap_or_default(),
-        paper: written.paper.as_ref().map_or(Paper::A4, |p| *p.get_ref()),
-        language: written
-            .language
-            .as_ref()
-            .map_or(Language::En, |l| *l.get_ref()),
-        decimal_comma: written.decimal_comma.as_ref().is_some_and(|d| *d.get_ref()),
-        formats: match &written.formats {
-            Some(formats) if !formats.get_ref().is_empty() => formats.get_ref().clone(),
-            _ => vec![Format::Pdf],
-        },
-        template: beside(&written.template, "report.template", folder, desk),
-        words: words_file(&written.words, folder, desk),
-        logo: beside(&written.logo, "report.logo", folder, desk),
+        title: value(&written.title).unwrap_or_else(|| name.to_owned()),
+        points: value(&written.points).unwrap_or_default(),
+        paper: value(&written.paper).unwrap_or(Paper::A4),
+        language: value(&written.language).unwrap_or(Language::En),
+        decimal_comma: value(&written.decimal_comma).unwrap_or(false),
+        formats: value(&written.formats)
+            .filter(|formats| !formats.is_empty())
+            .unwrap_or_else(|| vec![Format::Pdf]),
+        template: beside(&written.template, "report.template", folder, context),
+        words: words_file(&written.words, folder, context),
+        logo: beside(&written.logo, "report.logo", folder, context),
     }
 }
 
 /// A table of words that campaign.toml names; a fault where it cannot be used.
-fn words_file(placed: &Placed<String>, folder: &Path, desk: &mut Desk<'_>) -> Option<PathBuf> {
+fn words_file(
+    placed: &Placed<String>,
+    folder: &Path,
+    context: &mut ResolveContext<'_>,
+) -> Option<PathBuf> {
     let key = "report.words";
-    let path = beside(placed, key, folder, desk)?;
+    let path = beside(placed, key, folder, context)?;
     if let (Some(placed), Ok(text)) = (placed, std::fs::read_to_string(&path))
-        && let Err(error) = Words::read(&text)
+        && let Err(error) = Catalog::read(&text)
     {
         let what = format!("{}: {error}", path.display());
-        desk.fault(placed, key, what, "mend the table, or remove the line");
+        context.fault(
+            Code::UnreadableFile,
+            placed,
+            key,
+            what,
+            "fix the table, or remove the line",
+        );
     }
     Some(path)
 }
@@ -280,21 +252,16 @@ fn beside(
     placed: &Placed<String>,
     key: &str,
     folder: &Path,
-    desk: &mut Desk<'_>,
+    context: &mut ResolveContext<'_>,
 ) -> Option<PathBuf> {
     let placed = placed.as_ref()?;
     let path = folder.join(placed.get_ref());
     if !path.is_file() {
-        let what = format!("{} is no file", path.display());
+        let what = format!("{} is not a file", path.display());
         let remedy = "write its path as seen from campaign.toml's folder, or remove the line";
-        desk.fault(placed, key, what, remedy);
+        context.fault(Code::UnreadableFile, placed, key, what, remedy);
     }
     Some(path)
-}
-
-/// A text as written.
-fn words(placed: &Placed<String>) -> Option<String> {
-    placed.as_ref().map(|p| p.get_ref().clone())
 }
 
 fn unknown_record<T>(
@@ -302,7 +269,7 @@ fn unknown_record<T>(
     key: &str,
     name: &str,
     records: &[RecordEntry],
-    desk: &mut Desk<'_>,
+    context: &mut ResolveContext<'_>,
 ) {
     let names: Vec<&str> = records.iter().map(|r| r.id.as_str()).collect();
     let what = format!("no record is called '{name}'");
@@ -313,16 +280,14 @@ fn unknown_record<T>(
             names[..names.len().min(4)].join(", ")
         ),
     };
-    desk.book.push(
-        Severity::Campaign,
-        desk.text.line_of(placed),
-        key,
-        what,
-        &remedy,
-    );
+    context.fault(Code::UnknownRecord, placed, key, what, &remedy);
 }
 
-fn exclude(records: &mut [RecordEntry], placed: &Placed<Vec<String>>, desk: &mut Desk<'_>) {
+fn exclude(
+    records: &mut [RecordEntry],
+    placed: &Placed<Vec<String>>,
+    context: &mut ResolveContext<'_>,
+) {
     let Some(placed) = placed else { return };
     let options = glob::MatchOptions::default();
     for name in placed.get_ref() {
@@ -339,7 +304,7 @@ fn exclude(records: &mut [RecordEntry], placed: &Placed<Vec<String>>, desk: &mut
             found = true;
         }
         if !found && !records.is_empty() {
-            unknown_record(placed, "analysis.exclude", name, records, desk);
+            unknown_record(placed, "analysis.exclude", name, records, context);
         }
     }
 }

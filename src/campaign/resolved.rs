@@ -1,16 +1,17 @@
-//! The campaign as resolved: SI, every default explicit, relative paths made whole. It is
-//! written beside the results as `campaign.resolved.json`.
+//! The campaign as resolved: SI, every default explicit, paths from the working directory. It is
+//! written to the results as `campaign.resolved.json`.
 
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use super::written::{Excitation, Flight, Format, Language, Machine, Paper};
-use crate::identify::uncertainty::Way;
+use crate::identify::fit::effect::EffectKind;
+use crate::identify::uncertainty::IntervalMethod;
 use crate::record::Setting;
 use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup};
 
-/// A campaign ready to be computed.
+/// A campaign ready to be analysed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ResolvedCampaign {
     /// Name on the report's first page.
@@ -34,27 +35,27 @@ pub struct ResolvedCampaign {
     #[serde(default)]
     pub run_table: Option<PathBuf>,
     /// Nominal values of the rig.
-    pub rig: Rig,
+    pub rig: NominalValues,
     /// The channels by role, in the order of the roles.
     pub channels: Vec<ChannelSetup>,
-    /// The channel with the time, where the files' reader cannot tell.
+    /// The channel with the time, if the reader of the files cannot find it.
     pub time: Option<ChannelKey>,
-    /// Samples per second, Hz, for files that do not tell.
+    /// Samples per second, Hz, for files that state none.
     pub sample_rate_hz: Option<f64>,
     /// The records in the order of acquisition.
     pub records: Vec<RecordEntry>,
-    /// How the records are judged.
+    /// Settings of the analysis.
     pub analysis: Analysis,
-    /// How the report looks.
+    /// Settings of the report.
     pub report: Report,
     /// Published speeds to be identified from, instead of records.
     #[serde(default)]
     pub published: Option<super::written::Published>,
 }
 
-/// Nominal values of the rig; `None`: not stated.
+/// Nominal values of the rig (`None`: not stated) and their standard uncertainties.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Rig {
+pub struct NominalValues {
     /// Natural frequency f0, Hz.
     pub natural_frequency_hz: Option<f64>,
     /// Damping ratio β.
@@ -73,28 +74,34 @@ pub struct Rig {
     pub corner_uncertainty: f64,
     /// Standard uncertainty of the clearances, m.
     pub clearance_uncertainty_m: f64,
+    /// Standard uncertainty of the masses, relative.
+    #[serde(default)]
+    pub mass_uncertainty: f64,
+    /// Effects beyond the model that the fit allows; `None`: all.
+    #[serde(default)]
+    pub effects: Option<Vec<EffectKind>>,
 }
 
-/// How the records are judged.
+/// Settings of the analysis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Analysis {
-    /// Part of each record left out at its start, s.
+    /// Part of each record skipped at its start, s.
     pub skip_s: f64,
-    /// Longest motion looked for, in drive periods.
+    /// Longest motion searched, in drive periods.
     pub longest_period_n: u32,
-    /// Most impacts looked for in one period of a motion.
+    /// Most impacts searched in one period of a motion.
     pub most_impacts_p: u32,
     /// Seed of everything random.
     pub seed: u64,
-    /// How intervals are found beside the covariance.
+    /// Method of the intervals, in addition to the covariance.
     #[serde(default)]
-    pub uncertainty: Way,
+    pub uncertainty: IntervalMethod,
     /// Replicas of a bootstrap.
     #[serde(default)]
     pub replicas: usize,
 }
 
-/// How the report looks.
+/// Settings of the report.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// Title.
@@ -107,7 +114,7 @@ pub struct Report {
     pub language: Language,
     /// Whether numbers are printed with a decimal comma.
     pub decimal_comma: bool,
-    /// What it is written as; the figures' data is always written beside it.
+    /// Formats; the data of the figures are always written.
     #[serde(default)]
     pub formats: Vec<Format>,
     /// A typst template instead of the built-in one.
@@ -126,9 +133,9 @@ pub struct Report {
 pub struct RecordEntry {
     /// Name, unique in the campaign.
     pub id: String,
-    /// The file, whole path.
+    /// The file, absolute or relative to the working directory.
     pub file: PathBuf,
-    /// Index of the dataset in the file; `None` where the file could not be opened.
+    /// Index of the dataset in the file; `None` if the file could not be opened.
     pub dataset: Option<usize>,
     /// The setting as stated.
     pub setting: Setting,
@@ -137,12 +144,12 @@ pub struct RecordEntry {
 }
 
 impl ResolvedCampaign {
-    /// The folder that campaign.toml lies in.
+    /// The folder of campaign.toml.
     pub fn folder(&self) -> &Path {
         self.file.parent().unwrap_or(Path::new("."))
     }
 
-    /// Whether a harmonic drive must be seen in a record.
+    /// Whether a record must contain a harmonic drive.
     pub fn driven(&self, entry: &RecordEntry) -> bool {
         self.flight == Flight::Harmonic && entry.setting.excitation == Excitation::Harmonic
     }

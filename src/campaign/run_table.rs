@@ -1,8 +1,9 @@
-//! The run table: a CSV file with one row a record, units in its header.
+//! The run table: a CSV file with one row per record, units in its header.
 
 use std::path::Path;
 
-use super::faults::Notebook;
+use super::context::Wrong;
+use super::diagnostic::{Code, FaultCollector};
 use super::read::nearest;
 use super::written::Excitation;
 use crate::record::Sweep;
@@ -23,27 +24,27 @@ const COLUMNS: [&str; 9] = [
 
 /// One row; `None` where the cell is empty or the column missing.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub(super) struct Row {
     /// Line in the table, from 1.
-    pub line: usize,
+    pub(super) line: usize,
     /// The file, as written.
-    pub file: String,
+    pub(super) file: String,
     /// The dataset in it.
-    pub dataset: Option<String>,
+    pub(super) dataset: Option<String>,
     /// The record's name.
-    pub record: Option<String>,
+    pub(super) record: Option<String>,
     /// Stated drive frequency, Hz.
-    pub drive_frequency_hz: Option<f64>,
+    pub(super) drive_frequency_hz: Option<f64>,
     /// Clearance r, m.
-    pub clearance_m: Option<f64>,
+    pub(super) clearance_m: Option<f64>,
     /// Direction of the sweep.
-    pub sweep: Option<Sweep>,
+    pub(super) sweep: Option<Sweep>,
     /// Drive amplitude, relative.
-    pub drive_amplitude: Option<f64>,
+    pub(super) drive_amplitude: Option<f64>,
     /// How the record was excited.
-    pub excitation: Option<Excitation>,
+    pub(super) excitation: Option<Excitation>,
     /// Which rig, mass or bumper it was taken on.
-    pub specimen: Option<String>,
+    pub(super) specimen: Option<String>,
 }
 
 /// Index and unit factor of each column found.
@@ -54,12 +55,18 @@ struct Header {
 }
 
 /// Read a run table; rows with a fault are left out, and each fault is noted.
-pub fn read(path: &Path, book: &mut Notebook) -> Vec<Row> {
+pub(super) fn read(path: &Path, faults: &mut FaultCollector) -> Vec<Row> {
     let bytes = match std::fs::read(path) {
         Ok(bytes) => bytes,
         Err(error) => {
             let what = format!("the run table cannot be read: {error}");
-            book.fault(None, "", what, "mend run_table in [records]");
+            faults.fault(
+                Code::UnreadableFile,
+                None,
+                "",
+                what,
+                "check run_table in [records]",
+            );
             return Vec::new();
         }
     };
@@ -71,29 +78,30 @@ pub fn read(path: &Path, book: &mut Notebook) -> Vec<Row> {
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
     let header = match reader.headers() {
-        Ok(names) if names.iter().any(|n| !n.is_empty()) => read_header(&names.clone(), book),
+        Ok(names) if names.iter().any(|n| !n.is_empty()) => read_header(&names.clone(), faults),
         _ => {
             let what = "the run table is empty".to_owned();
-            book.fault(
+            faults.fault(
+                Code::Missing,
                 Some(1),
                 "",
                 what,
-                "write a header line and one line a record",
+                "write a header line and one line per record",
             );
             return Vec::new();
         }
     };
-    if book.blocks() {
+    if faults.blocks() {
         return Vec::new();
     }
     let columns = reader.headers().map_or(0, csv::StringRecord::len);
     let rows: Vec<Row> = reader
         .records()
-        .filter_map(|record| read_row(record, columns, &header, book))
+        .filter_map(|record| read_row(record, columns, &header, faults))
         .collect();
-    if rows.is_empty() && !book.blocks() {
+    if rows.is_empty() && !faults.blocks() {
         let what = "the run table has a header and no records".to_owned();
-        book.fault(None, "", what, "write one line a record");
+        faults.fault(Code::Missing, None, "", what, "write one line per record");
     }
     rows
 }
@@ -118,7 +126,7 @@ fn delimiter(text: &str) -> u8 {
         .unwrap_or(b',')
 }
 
-fn read_header(names: &csv::StringRecord, book: &mut Notebook) -> Header {
+fn read_header(names: &csv::StringRecord, faults: &mut FaultCollector) -> Header {
     let mut header = Header {
         factor: [1.0; COLUMNS.len()],
         ..Header::default()
@@ -129,31 +137,40 @@ fn read_header(names: &csv::StringRecord, book: &mut Notebook) -> Header {
             false => units::split_unit(name),
         };
         let Some(column) = COLUMNS.iter().position(|c| *c == bare) else {
-            note_unknown(name, bare, book);
+            note_unknown(name, bare, faults);
             continue;
         };
         if header.at[column].replace(index).is_some() {
-            let what = format!("the column '{bare}' stands twice");
-            book.fault(Some(1), name, what, "remove one of them");
+            let what = format!("the column '{bare}' is there twice");
+            faults.fault(Code::Conflict, Some(1), name, what, "remove one of them");
         }
         match factor(column, symbol) {
             Ok(factor) => header.factor[column] = factor,
-            Err((what, remedy)) => book.fault(Some(1), name, what, &remedy),
+            Err(wrong) => {
+                faults.fault(
+                    Code::InvalidValue,
+                    Some(1),
+                    name,
+                    wrong.message,
+                    &wrong.remedy,
+                );
+            }
         }
     }
     if header.at[0].is_none() {
         let what = "the run table has no column 'file'".to_owned();
-        book.fault(
+        faults.fault(
+            Code::Missing,
             Some(1),
             "file",
             what,
-            "add it: the files' names, one a record",
+            "add it: the names of the files, one per record",
         );
     }
     header
 }
 
-fn note_unknown(name: &str, bare: &str, book: &mut Notebook) {
+fn note_unknown(name: &str, bare: &str, faults: &mut FaultCollector) {
     let remedy = match nearest(bare, &COLUMNS) {
         Some(near) => format!("did you mean '{near}'? Otherwise begin its name with 'note'"),
         None => format!(
@@ -162,7 +179,8 @@ fn note_unknown(name: &str, bare: &str, book: &mut Notebook) {
         ),
     };
     if !bare.starts_with("note") {
-        book.fault(
+        faults.fault(
+            Code::UnknownEntry,
             Some(1),
             name,
             format!("the column '{name}' is not known"),
@@ -172,7 +190,7 @@ fn note_unknown(name: &str, bare: &str, book: &mut Notebook) {
 }
 
 /// Factor to SI of a column, from the unit in its name.
-fn factor(column: usize, symbol: Option<&str>) -> Result<f64, (String, String)> {
+fn factor(column: usize, symbol: Option<&str>) -> Result<f64, Wrong> {
     let name = COLUMNS[column];
     let expected = match name {
         "drive_frequency" => Dimension::Frequency,
@@ -183,43 +201,50 @@ fn factor(column: usize, symbol: Option<&str>) -> Result<f64, (String, String)> 
         Dimension::Frequency => "call it drive_frequency_hz or \"drive_frequency [Hz]\"",
         _ => "call it clearance_mm or \"clearance [mm]\"",
     };
+    let wrong = |message| Wrong {
+        message,
+        remedy: remedy.to_owned(),
+    };
     let unit = symbol.map(|s| (s, units::parse_split_unit(s)));
     match unit {
-        None => Err((
-            format!("a {} without unit", name.replace('_', " ")),
-            remedy.to_owned(),
-        )),
+        None => Err(wrong(format!("a {} without unit", name.replace('_', " ")))),
         Some((_, Some(unit))) if unit.dimension == expected => Ok(unit.to_si),
-        Some((symbol, _)) => Err((
-            format!("'{symbol}' is no unit of {}", expected.name()),
-            remedy.to_owned(),
-        )),
+        Some((symbol, _)) => Err(wrong(format!(
+            "'{symbol}' is no unit of {}",
+            expected.name()
+        ))),
     }
+}
+
+/// Line of a position, from 1.
+fn line_of(position: &csv::Position) -> Option<usize> {
+    usize::try_from(position.line()).ok()
 }
 
 fn read_row(
     record: csv::Result<csv::StringRecord>,
     columns: usize,
     header: &Header,
-    book: &mut Notebook,
+    faults: &mut FaultCollector,
 ) -> Option<Row> {
     let record = match record {
         Ok(record) => record,
         Err(error) => {
-            let line = error.position().map(|p| p.line() as usize);
-            book.fault(
+            let line = error.position().and_then(line_of);
+            faults.fault(
+                Code::Syntax,
                 line,
                 "",
                 format!("the row cannot be read: {error}"),
-                "mend the row",
+                "fix the row",
             );
             return None;
         }
     };
-    let line = record.position().map_or(0, |p| p.line() as usize);
+    let line = record.position().and_then(line_of).unwrap_or(0);
     if record.len() != columns {
         let what = format!("the row has {} cells, the header {columns}", record.len());
-        book.fault(Some(line), "", what, "mend the row");
+        faults.fault(Code::Syntax, Some(line), "", what, "fix the row");
         return None;
     }
     let cells = Cells {
@@ -228,7 +253,8 @@ fn read_row(
         line,
     };
     let Some(file) = cells.text(0) else {
-        book.fault(
+        faults.fault(
+            Code::Missing,
             Some(line),
             "file",
             "no file is named".to_owned(),
@@ -241,17 +267,17 @@ fn read_row(
         file,
         dataset: cells.text(1),
         record: cells.text(2),
-        drive_frequency_hz: cells.number(3, book),
-        clearance_m: cells.number(4, book),
-        sweep: cells.word(5, &SWEEPS, book),
-        drive_amplitude: cells.number(6, book),
-        excitation: cells.word(7, &EXCITATIONS, book),
+        drive_frequency_hz: cells.number(3, faults),
+        clearance_m: cells.number(4, faults),
+        sweep: cells.word(5, &SWEEPS, faults),
+        drive_amplitude: cells.number(6, faults),
+        excitation: cells.word(7, &EXCITATIONS, faults),
         specimen: cells.text(8),
     })
 }
 
 /// Words for the sweep direction.
-pub const SWEEPS: [(&str, Sweep); 3] = [
+pub(super) const SWEEPS: [(&str, Sweep); 3] = [
     ("up", Sweep::Up),
     ("down", Sweep::Down),
     ("unknown", Sweep::Unknown),
@@ -274,7 +300,7 @@ impl Cells<'_> {
         (!cell.is_empty()).then(|| cell.to_owned())
     }
 
-    fn number(&self, column: usize, book: &mut Notebook) -> Option<f64> {
+    fn number(&self, column: usize, faults: &mut FaultCollector) -> Option<f64> {
         let cell = self.text(column)?;
         match cell.parse::<f64>() {
             Ok(value) if value.is_finite() => Some(value * self.header.factor[column]),
@@ -282,15 +308,26 @@ impl Cells<'_> {
                 let what = format!("'{cell}' is not a number");
                 let remedy = match cell.contains(',') {
                     true => "write a decimal point",
-                    false => "write a number; the unit stands in the header",
+                    false => "write a number; the unit belongs in the header",
                 };
-                book.fault(Some(self.line), COLUMNS[column], what, remedy);
+                faults.fault(
+                    Code::InvalidValue,
+                    Some(self.line),
+                    COLUMNS[column],
+                    what,
+                    remedy,
+                );
                 None
             }
         }
     }
 
-    fn word<T: Copy>(&self, column: usize, words: &[(&str, T)], book: &mut Notebook) -> Option<T> {
+    fn word<T: Copy>(
+        &self,
+        column: usize,
+        words: &[(&str, T)],
+        faults: &mut FaultCollector,
+    ) -> Option<T> {
         let cell = self.text(column)?;
         let found = words
             .iter()
@@ -298,7 +335,8 @@ impl Cells<'_> {
         if found.is_none() {
             let names: Vec<&str> = words.iter().map(|(w, _)| *w).collect();
             let what = format!("'{cell}' is not one of {}", names.join(", "));
-            book.fault(
+            faults.fault(
+                Code::InvalidValue,
                 Some(self.line),
                 COLUMNS[column],
                 what,

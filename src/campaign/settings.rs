@@ -1,11 +1,13 @@
 //! The setting of each record, joined from run table, attributes and defaults.
 
-use super::faults::{Fault, Severity};
-use super::listing::Listed;
-use super::quantity::Desk;
+use std::path::Path;
+
+use super::context::ResolveContext;
+use super::diagnostic::{Code, Diagnostic, Place, Severity};
+use super::discovery::Discovered;
 use super::resolved::RecordEntry;
 use super::run_table::SWEEPS;
-use super::written::{Attributes, Excitation, Placed, Records};
+use super::written::{Attributes, Placed, Records, value};
 use crate::record::{Setting, Sweep};
 use labfiles::units::{self, Dimension};
 
@@ -15,24 +17,30 @@ pub(super) struct Defaults {
     pub(super) setting: Setting,
 }
 
-pub(super) fn defaults(records: &Records, desk: &mut Desk<'_>) -> Defaults {
-    let frequency = desk.positive(
+pub(super) fn defaults(records: &Records, context: &mut ResolveContext<'_>) -> Defaults {
+    let frequency = context.positive(
         &records.drive_frequency,
         "records.drive_frequency",
         Dimension::Frequency,
     );
-    let clearance = desk.quantity(&records.clearance, "records.clearance", Dimension::Length);
+    let clearance = context.quantity(&records.clearance, "records.clearance", Dimension::Length);
     if clearance.is_some_and(|c| c.abs() > 1.0) {
         let what = "a clearance of more than 1 m".to_owned();
-        desk.book
-            .fault(None, "records.clearance", what, "mend its unit: mm?");
+        context.faults.fault(
+            Code::OutOfRange,
+            None,
+            "records.clearance",
+            what,
+            "check its unit: mm?",
+        );
     }
-    let amplitude = records.drive_amplitude.as_ref().map(|a| *a.get_ref());
+    let amplitude = value(&records.drive_amplitude);
     if let (Some(placed), Some(value)) = (&records.drive_amplitude, amplitude)
         && (!value.is_finite() || value < 0.0)
     {
         let what = format!("a drive amplitude of {value}");
-        desk.fault(
+        context.fault(
+            Code::OutOfRange,
             placed,
             "records.drive_amplitude",
             what,
@@ -43,17 +51,11 @@ pub(super) fn defaults(records: &Records, desk: &mut Desk<'_>) -> Defaults {
         setting: Setting {
             stated_frequency_hz: frequency,
             clearance_m: clearance,
-            sweep: records
-                .sweep
-                .as_ref()
-                .map_or(Sweep::Unknown, |s| *s.get_ref()),
+            sweep: value(&records.sweep).unwrap_or(Sweep::Unknown),
             drive_amplitude: amplitude.unwrap_or(1.0),
             sequence: 0,
             specimen: None,
-            excitation: records
-                .excitation
-                .as_ref()
-                .map_or(Excitation::Harmonic, |e| *e.get_ref()),
+            excitation: value(&records.excitation).unwrap_or_default(),
         },
     }
 }
@@ -76,7 +78,7 @@ struct Attribute {
 }
 
 impl Attribute {
-    fn text<'a>(&self, of: &'a Listed) -> Option<&'a String> {
+    fn text<'a>(&self, of: &'a Discovered) -> Option<&'a String> {
         of.attributes
             .get(&self.name)
             .or_else(|| of.attributes.get(&self.bare))
@@ -84,23 +86,23 @@ impl Attribute {
 }
 
 impl Wanted {
-    pub(super) fn of(written: &Attributes, desk: &mut Desk<'_>) -> Self {
+    pub(super) fn of(written: &Attributes, context: &mut ResolveContext<'_>) -> Self {
         Self {
-            clearance: attribute(&written.clearance, "clearance", Dimension::Length, desk),
+            clearance: attribute(&written.clearance, "clearance", Dimension::Length, context),
             frequency: attribute(
                 &written.drive_frequency,
                 "drive_frequency",
                 Dimension::Frequency,
-                desk,
+                context,
             ),
             amplitude: attribute(
                 &written.drive_amplitude,
                 "drive_amplitude",
                 Dimension::Number,
-                desk,
+                context,
             ),
-            sweep: written.sweep.as_ref().map(|s| s.get_ref().clone()),
-            specimen: written.specimen.as_ref().map(|s| s.get_ref().clone()),
+            sweep: value(&written.sweep),
+            specimen: value(&written.specimen),
         }
     }
 }
@@ -109,7 +111,7 @@ fn attribute(
     placed: &Placed<String>,
     key: &str,
     dimension: Dimension,
-    desk: &mut Desk<'_>,
+    context: &mut ResolveContext<'_>,
 ) -> Option<Attribute> {
     let placed = placed.as_ref()?;
     let name = placed.get_ref();
@@ -127,7 +129,13 @@ fn attribute(
                 "write the unit after it in brackets, such as \"{bare} [{}]\"",
                 units::symbols_of(dimension).first().unwrap_or(&"1")
             );
-            desk.fault(placed, &format!("records.attributes.{key}"), what, &remedy);
+            context.fault(
+                Code::InvalidValue,
+                placed,
+                &format!("records.attributes.{key}"),
+                what,
+                &remedy,
+            );
             return None;
         }
     };
@@ -139,15 +147,15 @@ fn attribute(
 }
 
 pub(super) fn setting(
-    one: &Listed,
+    one: &Discovered,
     wanted: &Wanted,
     defaults: &Defaults,
-    desk: &mut Desk<'_>,
+    context: &mut ResolveContext<'_>,
 ) -> Setting {
     let row = one.row.as_ref();
     let mut number = |attribute: &Option<Attribute>| {
         let attribute = attribute.as_ref()?;
-        attribute_number(one, attribute, desk)
+        attribute_number(one, attribute, context)
     };
     let frequency = number(&wanted.frequency);
     let clearance = number(&wanted.clearance);
@@ -155,7 +163,7 @@ pub(super) fn setting(
     let sweep = wanted
         .sweep
         .as_ref()
-        .and_then(|name| attribute_sweep(one, name, desk));
+        .and_then(|name| attribute_sweep(one, name, context));
     let specimen = wanted
         .specimen
         .as_ref()
@@ -181,99 +189,116 @@ pub(super) fn setting(
     }
 }
 
-fn attribute_number(one: &Listed, wanted: &Attribute, desk: &mut Desk<'_>) -> Option<f64> {
+fn attribute_number(
+    one: &Discovered,
+    wanted: &Attribute,
+    context: &mut ResolveContext<'_>,
+) -> Option<f64> {
     one.dataset?;
     let Some(text) = wanted.text(one) else {
         let what = format!("it has no attribute '{}'", wanted.name);
-        desk.book
-            .absorb(vec![attribute_fault(one, &wanted.name, what)]);
+        context
+            .faults
+            .extend([attribute_fault(one, &wanted.name, what)]);
         return None;
     };
     match text.trim().parse::<f64>() {
         Ok(value) if value.is_finite() => Some(value * wanted.to_si),
         _ => {
             let what = format!("its attribute '{}' is '{text}', not a number", wanted.name);
-            desk.book
-                .absorb(vec![attribute_fault(one, &wanted.name, what)]);
+            context
+                .faults
+                .extend([attribute_fault(one, &wanted.name, what)]);
             None
         }
     }
 }
 
-fn attribute_sweep(one: &Listed, name: &str, desk: &mut Desk<'_>) -> Option<Sweep> {
+fn attribute_sweep(
+    one: &Discovered,
+    name: &str,
+    context: &mut ResolveContext<'_>,
+) -> Option<Sweep> {
     let text = one.attributes.get(name)?;
     let found = SWEEPS
         .iter()
         .find(|(word, _)| word.eq_ignore_ascii_case(text.trim()));
     if found.is_none() {
         let what = format!("its attribute '{name}' is '{text}', not up, down or unknown");
-        desk.book.absorb(vec![attribute_fault(one, name, what)]);
+        context.faults.extend([attribute_fault(one, name, what)]);
     }
     found.map(|(_, sweep)| *sweep)
 }
 
-fn attribute_fault(one: &Listed, name: &str, what: String) -> Fault {
-    Fault {
-        file: one.file.clone(),
-        line: None,
-        key: match one.dataset_name.as_str() {
-            "" => name.to_owned(),
-            dataset => format!("{dataset}: {name}"),
+fn attribute_fault(one: &Discovered, name: &str, message: String) -> Diagnostic {
+    of_record(
+        (&one.file, &one.id),
+        (Code::Attribute, Severity::Record),
+        name,
+        message,
+        "fix [records.attributes], or write a run table",
+    )
+}
+
+fn of_record(
+    (file, record): (&Path, &str),
+    (code, severity): (Code, Severity),
+    item: &str,
+    message: String,
+    remedy: &str,
+) -> Diagnostic {
+    Diagnostic {
+        code,
+        severity,
+        place: Place {
+            file: file.to_path_buf(),
+            line: None,
+            record: Some(record.to_owned()),
+            item: item.to_owned(),
         },
-        what,
-        remedy: "mend [records.attributes], or write a run table".to_owned(),
-        severity: Severity::Record,
+        message,
+        remedy: remedy.to_owned(),
     }
 }
 
-/// Settings that cannot be.
-pub(super) fn note_settings(entries: &[RecordEntry], desk: &mut Desk<'_>) {
+/// Settings that are impossible.
+pub(super) fn note_settings(entries: &[RecordEntry], context: &mut ResolveContext<'_>) {
     for entry in entries {
         let setting = &entry.setting;
-        let mut note = |severity, key: &str, what: String, remedy: &str| {
-            desk.book.absorb(vec![Fault {
-                file: entry.file.clone(),
-                line: None,
-                key: format!("{}: {key}", entry.id),
-                what,
-                remedy: remedy.to_owned(),
-                severity,
-            }]);
+        let mut note = |severity, item: &str, message: String, remedy: &str| {
+            let record = (entry.file.as_path(), entry.id.as_str());
+            let code = (Code::OutOfRange, severity);
+            context
+                .faults
+                .extend([of_record(record, code, item, message, remedy)]);
         };
         if let Some(c) = setting.clearance_m.filter(|c| c.abs() > 1.0) {
+            let message = format!("a clearance of {c} m");
             note(
                 Severity::Record,
                 "clearance",
-                format!("a clearance of {c} m"),
-                "mend its unit: mm?",
+                message,
+                "check its unit: mm?",
             );
         }
         if let Some(c) = setting.clearance_m.filter(|c| *c <= 0.0) {
-            let what = format!("a clearance of {c} m: a preload, or a slip");
-            note(
-                Severity::Note,
-                "clearance",
-                what,
-                "nothing, where the rig was so preloaded",
-            );
+            let message = format!("a clearance of {c} m: a preload, or a typing error");
+            let remedy = "nothing, if the rig was preloaded like this";
+            note(Severity::Note, "clearance", message, remedy);
         }
         if let Some(f) = setting.stated_frequency_hz.filter(|f| *f <= 0.0) {
-            let what = format!("a drive frequency of {f} Hz");
+            let message = format!("a drive frequency of {f} Hz");
             note(
                 Severity::Record,
                 "drive_frequency",
-                what,
-                "mend the run table",
+                message,
+                "fix the run table",
             );
         }
         if setting.drive_amplitude <= 0.0 {
-            let what = format!("a drive amplitude of {}", setting.drive_amplitude);
-            note(
-                Severity::Record,
-                "drive_amplitude",
-                what,
-                "write it relative to the nominal one: 1",
-            );
+            let message = format!("a drive amplitude of {}", setting.drive_amplitude);
+            let remedy = "write it relative to the nominal one: 1";
+            note(Severity::Record, "drive_amplitude", message, remedy);
         }
     }
 }

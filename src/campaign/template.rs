@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
-use super::guess::{Found, Seen};
+use super::infer::{FolderContents, InferredChannel};
 use crate::record::Role;
 use labfiles::units::{self, Dimension};
 
 /// The text of campaign.toml for what was found in a folder named so.
-pub fn campaign_toml(name: &str, found: &Found) -> String {
+pub fn campaign_toml(name: &str, found: &FolderContents) -> String {
     let mut text = String::new();
     // writing to a String cannot fail
     let _ = head(&mut text, name, found)
@@ -23,11 +23,11 @@ fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
 
-fn has_role(found: &Found, role: Role) -> bool {
+fn has_role(found: &FolderContents, role: Role) -> bool {
     found.channels.iter().any(|c| c.role == Some(role))
 }
 
-fn head(text: &mut String, name: &str, found: &Found) -> std::fmt::Result {
+fn head(text: &mut String, name: &str, found: &FolderContents) -> std::fmt::Result {
     let two = [Role::VelocityY, Role::DisplacementY, Role::AccelerationY];
     let machine = if two.iter().any(|r| has_role(found, *r)) {
         "double"
@@ -36,7 +36,7 @@ fn head(text: &mut String, name: &str, found: &Found) -> std::fmt::Result {
     };
     writeln!(
         text,
-        "# A campaign for impactid, guessed from {} files ({}); look through every line.\n\
+        "# A campaign for impactid, inferred from {} files ({}); check every line.\n\
          # Every quantity with a dimension is written with its unit in quotes: \"1.0 mm\".\n\
          # Then: impactid check campaign.toml; impactid run campaign.toml --out results\n\n\
          [campaign]\n\
@@ -49,7 +49,7 @@ fn head(text: &mut String, name: &str, found: &Found) -> std::fmt::Result {
     )
 }
 
-fn records(text: &mut String, found: &Found) -> std::fmt::Result {
+fn records(text: &mut String, found: &FolderContents) -> std::fmt::Result {
     writeln!(text, "[records]")?;
     match (&found.run_table, found.globs.as_slice()) {
         (Some(table), _) => writeln!(text, "run_table = {}", quoted(table))?,
@@ -65,7 +65,7 @@ fn records(text: &mut String, found: &Found) -> std::fmt::Result {
     if !found.timed {
         writeln!(
             text,
-            "sample_rate = \"2 kHz\"       # FILL IN: the files do not tell"
+            "sample_rate = \"2 kHz\"       # FILL IN: the files state none"
         )?;
     }
     let attributes = attributes(found);
@@ -92,7 +92,7 @@ fn records(text: &mut String, found: &Found) -> std::fmt::Result {
 }
 
 /// Which attributes may hold the setting; where the name bears no unit, the usual one.
-fn attributes(found: &Found) -> Vec<(&'static str, String)> {
+fn attributes(found: &FolderContents) -> Vec<(&'static str, String)> {
     /// Key, stems of attribute names, dimension and usual unit.
     type Key = (
         &'static str,
@@ -135,7 +135,7 @@ fn with_unit(name: &str, unit: Option<(Dimension, &str)>) -> String {
     }
 }
 
-fn channels(text: &mut String, found: &Found) -> std::fmt::Result {
+fn channels(text: &mut String, found: &FolderContents) -> std::fmt::Result {
     writeln!(text, "# The channels of {}:", found.example)?;
     for (index, channel) in found.channels.iter().enumerate() {
         writeln!(text, "#   {index:>2}  {}", describe(channel))?;
@@ -152,13 +152,13 @@ fn channels(text: &mut String, found: &Found) -> std::fmt::Result {
     if named == 0 {
         writeln!(
             text,
-            "# FILL IN: no channel could be guessed\n# [channels.velocity_x]\n# channel = \"…\"\n"
+            "# FILL IN: no channel could be assigned to a role\n# [channels.velocity_x]\n# channel = \"…\"\n"
         )?;
     }
     Ok(())
 }
 
-fn describe(channel: &Seen) -> String {
+fn describe(channel: &InferredChannel) -> String {
     let unit = channel.unit.as_deref().unwrap_or("no unit");
     let time = if channel.is_time { ", the time" } else { "" };
     let range = match channel.range {
@@ -169,7 +169,7 @@ fn describe(channel: &Seen) -> String {
     format!("{name} ({unit}, {} samples{range}{time})", channel.samples)
 }
 
-fn table(text: &mut String, role: Role, channel: &Seen) -> std::fmt::Result {
+fn table(text: &mut String, role: Role, channel: &InferredChannel) -> std::fmt::Result {
     writeln!(text, "[channels.{}]", role.name())?;
     writeln!(text, "channel = {}", quoted(&channel.name))?;
     let known = channel.unit.as_deref().and_then(units::parse_unit);
@@ -193,7 +193,7 @@ fn table(text: &mut String, role: Role, channel: &Seen) -> std::fmt::Result {
             let symbol = dimension.si_symbol().replace('²', "2");
             writeln!(
                 text,
-                "# scale = \"0.05 {symbol} per V\"   # FILL IN: what one volt stands for"
+                "# scale = \"0.05 {symbol} per V\"   # FILL IN: what one volt corresponds to"
             )?;
         }
         (None, Role::Contact) => threshold(text, channel, unit)?,
@@ -202,7 +202,7 @@ fn table(text: &mut String, role: Role, channel: &Seen) -> std::fmt::Result {
     if role.dimension().is_some() {
         writeln!(
             text,
-            "sign = 1                     # -1 where it counts away from the other mass"
+            "sign = 1                     # -1 if it is positive away from the other mass"
         )?;
     }
     if matches!(role, Role::VelocityX | Role::VelocityY) {
@@ -214,7 +214,11 @@ fn table(text: &mut String, role: Role, channel: &Seen) -> std::fmt::Result {
     writeln!(text)
 }
 
-fn threshold(text: &mut String, channel: &Seen, unit: Option<units::Unit>) -> std::fmt::Result {
+fn threshold(
+    text: &mut String,
+    channel: &InferredChannel,
+    unit: Option<units::Unit>,
+) -> std::fmt::Result {
     let symbol = unit.and_then(units::symbol_of).unwrap_or("V");
     match channel.levels {
         Some([low, high]) => {
@@ -232,14 +236,14 @@ fn threshold(text: &mut String, channel: &Seen, unit: Option<units::Unit>) -> st
 }
 
 const RUN_TABLE: &str = "\
-# run_table = \"runs.csv\"      # instead of files: one row a record, with the columns file, dataset,
+# run_table = \"runs.csv\"      # instead of files: one row per record, with the columns file, dataset,
 #                             # drive_frequency_hz, clearance_mm, sweep (up, down), drive_amplitude
 ";
 
 const RECORD_DEFAULTS: &str = "\
-# sweep = \"up\"               # of the records that state none: up, down or unknown
+# sweep = \"up\"               # of records that state none: up, down or unknown
 # drive_frequency = \"12 Hz\"  # measured from the drive channel; a stated one is compared with it
-# excitation = \"free_decay\"  # where the records are decays after a blow
+# excitation = \"free_decay\"  # if the records are free decays after a blow
 ";
 
 const RIG: &str = "\
@@ -251,13 +255,16 @@ const RIG: &str = "\
 # restitution = 0.9
 gain_uncertainty = \"0.5 %\"       # of the channels' scales
 corner_uncertainty = \"5 %\"       # of the corners of the channels' high-pass
-clearance_uncertainty = \"10 um\"
+clearance_uncertainty = \"10 um\"  # of each stated clearance, and of the zero that all share
+# mass_x = \"1.50 kg\"             # both masses, if weighed, with mass_uncertainty = \"0.5 %\"
+# effects = [\"harmonics\", \"force_frequency\", \"hardening\", \"friction\", \"drift\", \"contact_duration\"]
+#                                # what springs, drive and contact may add to the model; all by default
 
 ";
 
 const CHANNELS: &str = "\
-# One table a role: drive, contact, velocity_x, velocity_y, displacement_x, displacement_y,
-# acceleration_x, acceleration_y, frame_x, frame_y. x and y count toward the other mass.
+# One table per role: drive, contact, velocity_x, velocity_y, displacement_x, displacement_y,
+# acceleration_x, acceleration_y, frame_x, frame_y. x and y are positive toward the other mass.
 ";
 
 const TAIL: &str = "\
@@ -272,8 +279,8 @@ seed = 1
 paper = \"a4\"                 # or \"us-letter\"
 language = \"en\"              # en, cs or de
 decimal_comma = false
-formats = [\"pdf\"]            # any of pdf, html, svg, png; the figures' data comes as CSV with each
-# points = [\"record_12\"]     # records to draw; chosen by the program where not given
+formats = [\"pdf\"]            # any of pdf, html, svg, png; the data of the figures are always written as CSV
+# points = [\"record_12\"]     # records to draw; chosen by the program if not given
 # logo = \"logo.svg\"          # an image for the first page (svg, png or jpg)
 # template = \"report.typ\"    # a typst template instead of the built-in one
 # words = \"words.toml\"       # the report's words in another language

@@ -1,24 +1,28 @@
 //! campaign.toml exactly as written, before anything is checked against anything else.
 //!
 //! Every quantity with a dimension is a string with number and unit (`clearance = "1.0 mm"`,
-//! `natural_frequency = "12.6 Hz"`); a bare number is taken for plain numbers alone
-//! (`damping_ratio = 0.07`). Unknown keys are refused. All keys are optional here: what is
-//! missing is a matter of [`super::resolve`], so that every fault is told at once.
+//! `natural_frequency = "12.6 Hz"`); only dimensionless quantities may be bare numbers
+//! (`damping_ratio = 0.07`). Unknown keys are refused. All keys are optional here: missing ones
+//! are handled by [`super::resolve`], so that every problem is reported at once.
 
 use std::fmt;
 
 use serde::{Deserialize, Deserializer, Serialize, de};
 use toml::Spanned;
 
-pub use crate::event::RigKind as Machine;
-pub use crate::event::detect::FlightKind as Flight;
-pub use crate::identify::uncertainty::Way;
+pub use crate::event::{FlightKind as Flight, RigKind as Machine};
+pub use crate::identify::uncertainty::IntervalMethod;
 use crate::record::calibrate::ChannelKey;
 pub use crate::record::{Excitation, Sweep};
 pub use crate::report::Format;
 
 /// A value with its place in the file.
 pub type Placed<T> = Option<Spanned<T>>;
+
+/// The value without its place.
+pub(super) fn value<T: Clone>(placed: &Placed<T>) -> Option<T> {
+    placed.as_ref().map(|p| p.get_ref().clone())
+}
 
 /// The whole of campaign.toml.
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -28,13 +32,13 @@ pub struct WrittenCampaign {
     pub campaign: About,
     /// Where the records are and at which setting each was taken.
     pub records: Records,
-    /// Nominal values of the rig: where the fit starts.
+    /// Nominal values of the rig.
     pub rig: Rig,
     /// The channels by role.
     pub channels: Channels,
-    /// How the records are judged.
+    /// Settings of the analysis.
     pub analysis: Analysis,
-    /// How the report looks.
+    /// Settings of the report.
     pub report: Report,
     /// Published speeds to be identified from, instead of records.
     pub published: Option<Published>,
@@ -61,11 +65,11 @@ pub struct About {
     pub machine: Placed<Machine>,
     /// What acts on the masses between impacts.
     pub flight: Placed<Flight>,
-    /// Whether its records are simulated: the report then says so.
+    /// Whether its records are simulated: the report then states so.
     pub synthetic: bool,
     /// Who measured, and where.
     pub laboratory: Placed<String>,
-    /// When it was measured, in words; the files' own times where it is not given.
+    /// When it was measured, as text; default: the times in the files.
     pub measured: Placed<String>,
 }
 
@@ -75,11 +79,11 @@ pub struct About {
 pub struct Records {
     /// A glob or a list of globs, relative to campaign.toml's folder.
     pub files: Placed<OneOrMany>,
-    /// A CSV table with one row a record, relative to campaign.toml's folder.
+    /// A CSV table with one row per record, relative to campaign.toml's folder.
     pub run_table: Placed<String>,
-    /// Samples per second, for files that do not tell.
+    /// Samples per second, for files that state none.
     pub sample_rate: Placed<Quantity>,
-    /// Name or index of the channel that holds the time, where the file's reader cannot tell.
+    /// Name or index of the channel that holds the time, if the reader of the file cannot find it.
     pub time: Placed<WrittenKey>,
     /// Clearance of the records that state none: r, half the gap of two masses.
     pub clearance: Placed<Quantity>,
@@ -87,7 +91,7 @@ pub struct Records {
     pub drive_frequency: Placed<Quantity>,
     /// Drive amplitude, relative to the nominal one, of the records that state none.
     pub drive_amplitude: Placed<f64>,
-    /// Sweep direction of the records that state none: up, down or unknown.
+    /// Sweep direction of records that state none: up, down or unknown.
     pub sweep: Placed<Sweep>,
     /// Excitation of the records that state none.
     pub excitation: Placed<Excitation>,
@@ -134,6 +138,10 @@ pub struct Rig {
     pub corner_uncertainty: Placed<Quantity>,
     /// Standard uncertainty of the clearances.
     pub clearance_uncertainty: Placed<Quantity>,
+    /// Standard uncertainty of the masses, relative.
+    pub mass_uncertainty: Placed<Quantity>,
+    /// Effects beyond the model that the fit allows; all where it is not given.
+    pub effects: Placed<Vec<String>>,
 }
 
 /// `[channels]`: one table a role.
@@ -159,24 +167,28 @@ pub struct Channels {
 pub struct Channel {
     /// Which channel of the file: its name, or its index counted from 0.
     pub channel: Placed<WrittenKey>,
-    /// Unit of the numbers in the file; needed where the file does not tell.
+    /// Unit of the numbers in the file; needed if the file states none.
     pub unit: Placed<String>,
     /// A ratio from the file's unit to the quantity's (`"50 mm/s per V"`, or a sensor's
     /// sensitivity `"100 mV/g"`), or a plain factor.
     pub scale: Placed<Quantity>,
-    /// What the file shows at rest, in the file's unit; it is subtracted first.
+    /// Value at rest, in the unit of the file; it is subtracted first.
     pub offset: Placed<Quantity>,
-    /// 1, or -1 where the sensor counts away from the other mass.
+    /// 1, or -1 if the sensor is positive away from the other mass.
     pub sign: Placed<f64>,
     /// Corner of the first-order high-pass (of an integrator, of an AC coupling).
     pub high_pass: Placed<Quantity>,
+    /// How much later than the drive's channel it shows what happens.
+    pub delay: Placed<Quantity>,
+    /// Standard uncertainty of the delay.
+    pub delay_uncertainty: Placed<Quantity>,
     /// Level between open and closed contact, in the unit after the scale.
     pub threshold: Placed<Quantity>,
-    /// Greatest magnitude the converter can give, in the file's unit.
+    /// Full scale of the converter, in the unit of the file.
     pub range: Placed<Quantity>,
-    /// Believe this table's unit where the file states another.
+    /// Use the unit of this table even if the file states another.
     pub ignore_file_unit: Placed<bool>,
-    /// What recorded it, in words: sensor, amplifier, serial number.
+    /// What recorded it, as text: sensor, amplifier, serial number.
     pub instrument: Placed<String>,
 }
 
@@ -188,14 +200,14 @@ pub struct Analysis {
     pub exclude: Placed<Vec<String>>,
     /// Part of each record to leave out at its start, while the motion settles.
     pub skip: Placed<Quantity>,
-    /// Longest motion looked for, in drive periods.
+    /// Longest motion searched, in drive periods.
     pub longest_period_n: Placed<u32>,
-    /// Most impacts looked for in one period of a motion.
+    /// Most impacts searched in one period of a motion.
     pub most_impacts_p: Placed<u32>,
     /// Seed of everything random (resampling).
     pub seed: Placed<u64>,
-    /// How intervals are found beside the covariance.
-    pub uncertainty: Placed<Way>,
+    /// Method of the intervals, in addition to the covariance.
+    pub uncertainty: Placed<IntervalMethod>,
     /// Replicas of a bootstrap.
     pub replicas: Placed<u32>,
 }

@@ -4,8 +4,8 @@
 use clap::{Args, ValueEnum};
 
 use super::machine::{MachineArgs, WatchArgs, range, refused};
-use super::theory::{OutArgs, written};
-use super::{Exit, Failure, Voice, interrupt};
+use super::theory::{OutArgs, study_text};
+use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::theory::Study;
 use crate::pipeline::theory::plan::RegionsPlan;
 use impact_oscillator::atlas::map::{Kernel, MapSettings};
@@ -31,21 +31,21 @@ pub struct Atlas {
     /// Rows (ρ) of the grid
     #[arg(long, value_name = "N", default_value_t = 120)]
     rows: usize,
-    /// Most impacts p in a period of the motion
+    /// Greatest number of impacts p per period of the motion
     #[arg(long, value_name = "P", default_value_t = 4)]
     largest_p: u32,
-    /// Most drive periods n in a period of the motion
+    /// Greatest number of drive periods n per period of the motion
     #[arg(long, value_name = "N", default_value_t = 6)]
     largest_n: u32,
     #[command(flatten)]
     watch: WatchArgs,
-    /// Instruction set; the widest that this processor runs where it is not given
+    /// Instruction set [default: the widest that this processor runs]
     #[arg(long, value_enum, value_name = "SET")]
     kernel: Option<Instructions>,
     /// Compute only part I of N, I from 0, for `impactid merge`
     #[arg(long, value_name = "I/N", value_parser = shard)]
     shard: Option<(usize, usize)>,
-    /// Share the work among the ranks of `mpirun`; the first leaves the results
+    /// Share the work among the ranks of `mpirun`; the first writes the results
     #[cfg(feature = "mpi")]
     #[arg(long, conflicts_with_all = ["shard", "resume"])]
     mpi: bool,
@@ -53,7 +53,7 @@ pub struct Atlas {
     out: OutArgs,
 }
 
-/// The atlas' name in its study and in its files.
+/// The atlas' name in its study and its files.
 pub const NAME: &str = "atlas";
 
 /// Instruction sets of the marching kernel.
@@ -73,7 +73,7 @@ Example:
   impactid atlas --columns 2000 --rows 1500 --shard 3/16 --out parts/
   impactid merge parts/*.json --out atlas/
 
-It leaves atlas-curves and atlas-map as CSV and Parquet, the figure atlas as SVG, PNG and PDF,
+It writes atlas-curves and atlas-map as CSV and Parquet, the figure atlas as SVG, PNG and PDF,
 atlas.json with how curves and brute force agree, and study.toml to replay it; with --shard only
 part-I-of-N.json. Rounding differs between instruction sets: parts for machines of several kinds
 need one --kernel.";
@@ -92,19 +92,19 @@ impl Atlas {
     ///
     /// # Errors
     /// [`Failure`] where a parameter is out of range or a file cannot be written.
-    pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let title = "Regions of existence and stability of all motions";
         let mut study = self.machine.study(title)?;
         let plan = self.plan()?;
         study.regions.insert(NAME.into(), plan.clone());
         if let Some(shard) = self.shard {
-            return self.part(&study, &plan, shard, voice);
+            return self.part(&study, &plan, shard, verbosity);
         }
         #[cfg(feature = "mpi")]
         if self.mpi {
-            return super::ranks::go(&study, &plan, &self.out, voice);
+            return super::mpi::run(&study, &plan, &self.out, verbosity);
         }
-        self.out.study(&study, "atlas", voice)
+        self.out.study(&study, "atlas", verbosity)
     }
 
     fn plan(&self) -> Result<RegionsPlan, Failure> {
@@ -137,7 +137,7 @@ impl Atlas {
         study: &Study,
         plan: &RegionsPlan,
         (number, of): (usize, usize),
-        voice: Voice,
+        verbosity: Verbosity,
     ) -> Result<Exit, Failure> {
         let file = self
             .out
@@ -151,7 +151,7 @@ impl Atlas {
         write_json_line(&file, &part)?;
         drop(_lock);
         let _ = std::fs::remove_dir(self.out.folder().join(format!(".part-{number}")));
-        voice.say(&format!("{}; next: impactid merge", file.display()));
+        verbosity.info(&format!("{}; next: impactid merge", file.display()));
         Ok(Exit::Done)
     }
 }
@@ -168,7 +168,7 @@ pub fn computed(
     let request = AtlasRequest::new(study.machine(), plan.settings());
     let part = part(&request, number, of).map_err(|e| refused(&e))?;
     Ok(AtlasPart {
-        study: written(study)?,
+        study: study_text(study)?,
         ..part
     })
 }

@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::machine::{MachineArgs, WatchArgs, range};
 use super::theory::OutArgs;
-use super::{Exit, Failure, Voice};
+use super::{Exit, Failure, Verbosity};
 use crate::pipeline::theory::plan::BasinPlan;
 use impact_oscillator::atlas::basins::{BasinGrid, Starts};
 use impact_oscillator::model::Setting;
@@ -55,14 +55,14 @@ Example:
   impactid basins --eta 1.19 --rho 3 --restitution 0 --damping-ratio 0.005 \\
       --x -12..3 --vx -12..12 --settle-periods 600 --out fig5a/
 
-It leaves basins.csv and .parquet, the figure as SVG, PNG and PDF, and study.toml to replay it.";
+It writes basins.csv and .parquet, the figure as SVG, PNG and PDF, and study.toml to replay it.";
 
 impl Basins {
     /// Settle every start.
     ///
     /// # Errors
     /// [`Failure`] where a parameter is out of range or a file cannot be written.
-    pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let mut study = self.machine.study("Basins of attraction")?;
         let starts = if self.one_mass {
             Starts::OneMass
@@ -83,6 +83,6 @@ impl Basins {
             watch: self.watch.watch(),
         };
         study.basins.insert("basins".into(), plan);
-        self.out.study(&study, "basins", voice)
+        self.out.study(&study, "basins", verbosity)
     }
 }

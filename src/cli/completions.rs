@@ -1,18 +1,18 @@
-//! `impactid completions` and `impactid man`: what shells and readers of manuals want.
+//! `impactid completions` and `impactid man`.
 
 use std::path::PathBuf;
 
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 
-use super::voice::print;
-use super::{Cli, Exit, Failure, Voice};
+use super::stdout::print;
+use super::{Cli, Exit, Failure, Verbosity};
 use labfiles::output;
 
 /// Arguments of `impactid completions`.
 #[derive(Debug, Args)]
 #[command(after_help = COMPLETIONS)]
-pub struct Completions {
+pub(super) struct Completions {
     /// The shell
     shell: Shell,
 }
@@ -22,7 +22,7 @@ Example:
   impactid completions bash > ~/.local/share/bash-completion/completions/impactid";
 
 impl Completions {
-    pub(super) fn go(self, _voice: Voice) -> Result<Exit, Failure> {
+    pub(super) fn run(self, _verbosity: Verbosity) -> Result<Exit, Failure> {
         let mut text = Vec::new();
         clap_complete::generate(self.shell, &mut Cli::command(), "impactid", &mut text);
         print(&String::from_utf8_lossy(&text))?;
@@ -33,8 +33,8 @@ impl Completions {
 /// Arguments of `impactid man`.
 #[derive(Debug, Args)]
 #[command(after_help = MAN)]
-pub struct Man {
-    /// Folder for the pages; it is made where it does not exist
+pub(super) struct Man {
+    /// Folder for the pages; created if it does not exist
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
 }
@@ -44,13 +44,13 @@ Example:
   impactid man --out ~/.local/share/man/man1";
 
 impl Man {
-    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         output::make_folder(&self.out)?;
         let mut command = Cli::command();
         command.build();
         let mut pages = 0;
         self.write(&command, "impactid", &mut pages)?;
-        voice.say(&format!("{pages} pages in {}", self.out.display()));
+        verbosity.info(&format!("{pages} pages in {}", self.out.display()));
         Ok(Exit::Done)
     }
 

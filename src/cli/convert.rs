@@ -4,28 +4,28 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::{Exit, Failure, Voice, interrupt};
+use super::read_log::ReadLog;
+use super::{Exit, Failure, Verbosity, interrupt};
+use labfiles::ReadError;
 use labfiles::convert::{self, ConvertError, Options, Target};
-use labfiles::open::open;
-use labfiles::source::ReadError;
 
 /// Arguments of `impactid convert`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE)]
-pub struct Convert {
+pub(super) struct Convert {
     /// Record files of any supported format
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// The file to write (several records as CSV: a folder of that name)
+    /// File to write (several records as CSV: a folder of that name)
     #[arg(long, short, value_name = "PATH")]
     out: PathBuf,
-    /// What to write; without it the extension of --out says
+    /// Format to write [default: from the extension of --out]
     #[arg(long, value_enum, value_name = "FORMAT")]
     to: Option<To>,
-    /// Keep numbers in single precision
+    /// Store numbers in single precision
     #[arg(long)]
     single: bool,
-    /// An attribute for every record, unit in its name: clearance_m=0.0005
+    /// Attribute for every record, with the unit in its name: clearance_m=0.0005
     #[arg(long, value_name = "NAME=VALUE", value_parser = name_and_value)]
     set: Vec<(String, String)>,
 }
@@ -33,11 +33,11 @@ pub struct Convert {
 /// The formats that are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum To {
-    /// HDF5: one table a record
+    /// HDF5: one table per record
     Hdf5,
-    /// Parquet: a row group a record
+    /// Parquet: one row group per record
     Parquet,
-    /// CSV: a file a record
+    /// CSV: one file per record
     Csv,
 }
 
@@ -47,19 +47,24 @@ Example:
   impactid convert campaign.h5 --out records.parquet
 
 The layout of the HDF5 file is described in docs/formats.md.
-Exit codes: 0 done; 2 a file could not be read or written, and nothing is left of the output.";
+Exit codes: 0 success; 2 a file could not be read or written (then no output is left).";
 
-fn name_and_value(text: &str) -> Result<(String, String), String> {
+/// An attribute that is not a name and a value.
+#[derive(Debug, thiserror::Error)]
+#[error("write it as NAME=VALUE, for example clearance_m=0.0005")]
+struct NotNameAndValue;
+
+fn name_and_value(text: &str) -> Result<(String, String), NotNameAndValue> {
     match text.split_once('=') {
         Some((name, value)) if !name.trim().is_empty() => {
             Ok((name.trim().to_owned(), value.trim().to_owned()))
         }
-        _ => Err("write it as NAME=VALUE, for example clearance_m=0.0005".to_owned()),
+        _ => Err(NotNameAndValue),
     }
 }
 
 impl Convert {
-    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let target = match self.to {
             Some(To::Hdf5) => Some(Target::Hdf5),
             Some(To::Parquet) => Some(Target::Parquet),
@@ -67,28 +72,27 @@ impl Convert {
             None => Target::of(&self.out),
         };
         let unknown = || {
-            let message = format!("{}: its extension names no format", self.out.display());
-            Failure::new(message, "End it in .h5, .parquet or .csv, or state --to.")
+            let message = format!(
+                "{}: the extension is not that of a format",
+                self.out.display()
+            );
+            Failure::new(message, "end it in .h5, .parquet or .csv, or give --to")
         };
         let target = target.ok_or_else(unknown)?;
+        let log = ReadLog::new(verbosity);
         let sources = self
             .files
             .iter()
-            .map(|p| open(p))
+            .map(|p| log.open(p))
             .collect::<Result<Vec<_>, ReadError>>()?;
-        for source in &sources {
-            source
-                .notes()
-                .iter()
-                .for_each(|n| voice.detail(&format!("{}: {n}", source.path().display())));
-        }
+        log.print();
         interrupt::watch(self.out.parent().map(Path::to_path_buf).unwrap_or_default());
         let options = Options {
             single_precision: self.single,
             attributes: self.set.into_iter().collect(),
         };
         let done = convert::convert(&sources, target, &self.out, &options).map_err(failure)?;
-        done.notes.iter().for_each(|note| voice.say(note));
+        done.notes.iter().for_each(|note| verbosity.info(note));
         let count = done.records;
         let many = target == Target::Csv && count > 1;
         let written = if many {
@@ -97,7 +101,7 @@ impl Convert {
             self.out
         };
         let records = if count == 1 { "record" } else { "records" };
-        voice.say(&format!(
+        verbosity.info(&format!(
             "{count} {records} written to {}",
             written.display()
         ));

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::voice::{print, print_json};
-use super::{Exit, Failure, Progress, Voice};
+use super::stdout::{print, print_json};
+use super::{Exit, Failure, Progress, Verbosity};
 use crate::identify::uncertainty::coverage::Score;
 use crate::pipeline::coverage::{self, Tally};
 use crate::synthetic::RigSpec;
@@ -46,8 +46,8 @@ impl Coverage {
     ///
     /// # Errors
     /// [`Failure`] where a simulation refuses its parameters.
-    pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
-        let bar = Progress::new(voice, "campaigns", self.campaigns as u64);
+    pub fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+        let bar = Progress::new(verbosity, "campaigns", self.campaigns as u64);
         let found = coverage::study(self.campaigns, self.seed, &self.rig, &|_, done, total| {
             bar.set(done, total);
         })?;

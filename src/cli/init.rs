@@ -1,23 +1,23 @@
-//! `impactid init`: look at the files in a folder and write a commented campaign.toml.
+//! `impactid init`: write a commented campaign.toml for the files in a folder.
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Exit, Failure, Voice};
-use crate::campaign::guess::{self, Found};
+use super::{Exit, Failure, Verbosity};
+use crate::campaign::infer::{self, FolderContents};
 use crate::campaign::template;
-use labfiles::open::open;
+use labfiles::open;
 use labfiles::output;
 
 /// Arguments of `impactid init`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE)]
-pub struct Init {
+pub(super) struct Init {
     /// Folder with the records
     #[arg(value_name = "DIR", default_value = ".")]
     folder: PathBuf,
-    /// Write over a campaign.toml that is there
+    /// Overwrite an existing campaign.toml
     #[arg(long)]
     force: bool,
 }
@@ -27,9 +27,9 @@ Example:
   impactid init records/      writes records/campaign.toml";
 
 impl Init {
-    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         if !self.folder.is_dir() {
-            let message = format!("{} is no folder", self.folder.display());
+            let message = format!("{} is not a folder", self.folder.display());
             return Err(Failure::new(
                 message,
                 "name the folder that holds the records",
@@ -38,17 +38,17 @@ impl Init {
         let path = self.folder.join("campaign.toml");
         if path.exists() && !self.force {
             return Err(Failure::new(
-                format!("{} is there already", path.display()),
-                "add --force to write over it",
+                format!("{} exists already", path.display()),
+                "add --force to overwrite it",
             ));
         }
-        let found = guess::look(&self.folder, &open);
+        let found = infer::inspect_folder(&self.folder, &open);
         if found.files == 0 {
             return Err(none_found(&self.folder, &found));
         }
         let text = template::campaign_toml(&name_of(&self.folder), &found);
         output::write_bytes(&path, text.as_bytes())?;
-        tell(&path, &found, voice);
+        print_summary(&path, &found, verbosity);
         Ok(Exit::Done)
     }
 }
@@ -61,24 +61,24 @@ fn name_of(folder: &Path) -> String {
     )
 }
 
-fn none_found(folder: &Path, found: &Found) -> Failure {
+fn none_found(folder: &Path, found: &FolderContents) -> Failure {
     let refused = match found.refused.first() {
         Some((file, why)) => format!("; {file}: {why}"),
         None => String::new(),
     };
     Failure::new(
-        format!("no record was found in {}{refused}", folder.display()),
+        format!("no record found in {}{refused}", folder.display()),
         "name the folder that holds HDF5, CSV, LVM, TDMS, UFF, MATLAB, WAV or Parquet files",
     )
 }
 
-fn tell(path: &Path, found: &Found, voice: Voice) {
+fn print_summary(path: &Path, found: &FolderContents, verbosity: Verbosity) {
     for (file, why) in &found.refused {
-        voice.detail(&format!("{file} is not a record: {why}"));
+        verbosity.detail(&format!("{file} is not a record: {why}"));
     }
-    let guessed = found.channels.iter().filter(|c| c.role.is_some()).count();
-    voice.say(&format!(
-        "{}: {} files ({}), {guessed} of {} channels given a role. Fill it in, then: impactid \
+    let assigned = found.channels.iter().filter(|c| c.role.is_some()).count();
+    verbosity.info(&format!(
+        "{}: {} files ({}), {assigned} of {} channels assigned to a role. Complete it, then run: impactid \
          check {}",
         path.display(),
         found.files,

@@ -1,4 +1,4 @@
-//! `impactid inspect`: what record files hold.
+//! `impactid inspect`: the channels of record files.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -7,30 +7,30 @@ use clap::Args;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::sketch::sketch;
-use super::voice::{print, print_json};
-use super::{Exit, Failure, Voice};
-use labfiles::open::open;
-use labfiles::source::{DatasetInfo, ReadError, Samples, Source};
+use super::sparkline::sparkline;
+use super::stdout::{print, print_json};
+use super::{Exit, Failure, Verbosity};
+use labfiles::open;
 use labfiles::summary::{Summary, summarise};
+use labfiles::{DatasetInfo, ReadError, Samples, Source};
 
 /// Arguments of `impactid inspect`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE)]
-pub struct Inspect {
+pub(super) struct Inspect {
     /// Record files of any supported format
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// Print a list of channels for programs instead
+    /// Print the channels as JSON
     #[arg(long)]
     json: bool,
-    /// Draw each channel
+    /// Plot each channel
     #[arg(long, conflicts_with = "json")]
     plot: bool,
     /// Only this dataset (record) of the files
     #[arg(long, value_name = "NAME")]
     dataset: Option<String>,
-    /// Show the channels of every dataset, however many there are
+    /// Show the channels of every dataset, also of many
     #[arg(long)]
     all: bool,
 }
@@ -41,14 +41,14 @@ Example:
   impactid inspect campaign.h5 --dataset run0001 --json
 
 Formats: HDF5, CSV and other text tables, LVM, TDMS, UFF 58, MATLAB 4 to 7.3, WAV, Parquet.
-Exit codes: 0 done; 2 a file could not be read.";
+Exit codes: 0 success; 2 a file could not be read.";
 
-/// With more datasets than this a file is listed a line a dataset.
+/// A file of more datasets is listed with one line per dataset.
 const FEW: usize = 4;
 /// Characters of a picture.
 const PICTURE: (usize, usize) = (72, 6);
 
-/// A channel in the list for programs.
+/// A channel in the JSON output.
 #[derive(Serialize)]
 struct Listed {
     #[serde(flatten)]
@@ -58,17 +58,17 @@ struct Listed {
 }
 
 impl Inspect {
-    pub(super) fn go(self, _voice: Voice) -> Result<Exit, Failure> {
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let mut exit = Exit::Done;
         let mut listed = Vec::new();
         let mut text = String::new();
         for path in &self.files {
             let done = open(path).and_then(|s| match self.json {
                 true => self.list(&*s, &mut listed),
-                false => self.tell(&*s, &mut text),
+                false => self.describe(&*s, &mut text),
             });
             if let Err(error) = done {
-                Failure::from(error).print();
+                Failure::from(error).print(verbosity);
                 exit = Exit::BadInput;
             }
             print(&std::mem::take(&mut text))?;
@@ -120,14 +120,14 @@ impl Inspect {
         Ok(())
     }
 
-    fn tell(&self, source: &dyn Source, text: &mut String) -> Result<(), ReadError> {
+    fn describe(&self, source: &dyn Source, text: &mut String) -> Result<(), ReadError> {
         let chosen = self.chosen(source)?;
         heading(source, text);
         if chosen.len() > FEW && !self.all && !self.plot {
             for &d in &chosen {
                 one_line(&source.datasets()[d], text);
             }
-            let _ = writeln!(text, "--dataset NAME or --all shows channels");
+            let _ = writeln!(text, "--dataset NAME or --all shows the channels");
             return Ok(());
         }
         for d in chosen {
@@ -226,7 +226,7 @@ fn describe(info: &DatasetInfo, summaries: &[Summary], text: &mut String) {
     table(&rows, text);
 }
 
-/// Rows of cells under each other: words to the left, numbers to the right.
+/// Aligned columns: words to the left, numbers to the right.
 fn table(rows: &[[String; 9]], text: &mut String) {
     let width = |column: usize| {
         rows.iter()
@@ -259,7 +259,7 @@ fn draw(summaries: &[Summary], samples: &[Samples], text: &mut String) {
             Samples::Complex(values) => values.iter().map(|v| v.0.hypot(v.1)).collect(),
             Samples::Text(_) => continue,
         };
-        let lines = sketch(&real, PICTURE.0, PICTURE.1);
+        let lines = sparkline(&real, PICTURE.0, PICTURE.1);
         let unit = summary.unit.as_deref().unwrap_or("");
         let _ = writeln!(text, "\n  {} {unit}", summary.name);
         for (i, line) in lines.iter().enumerate() {

@@ -11,7 +11,7 @@ use impact_oscillator::model::{Initial, Machine, Restitution, Watch};
 /// The dimensionless machine.
 #[derive(Debug, Clone, Args)]
 pub struct MachineArgs {
-    /// Coefficient of restitution R, 0 to 1, or a law of the closing speed: `table = [[0, 0.95],
+    /// Coefficient of restitution R, 0 to 1, or a law of the approach speed: `table = [[0, 0.95],
     /// [6, 0.85]]`, `power_law = {…}`, `exponential = {…}`
     #[arg(long, value_name = "R|LAW", default_value = "0.9", value_parser = law)]
     pub restitution: Law,
@@ -60,7 +60,7 @@ impl MachineArgs {
     }
 }
 
-/// R as a number, or a law of the closing speed as a key and its value in TOML.
+/// R as a number, or a law of the approach speed as a key and its value in TOML.
 fn law(text: &str) -> Result<Law, String> {
     #[derive(serde::Deserialize)]
     struct Wrapped {
@@ -114,10 +114,10 @@ impl StartArgs {
 /// How long a motion settles and is watched.
 #[derive(Debug, Clone, Args)]
 pub struct WatchArgs {
-    /// Drive periods that a motion settles before it is looked at
+    /// Drive periods that a motion settles before it is observed
     #[arg(long, value_name = "N", default_value_t = 200.0)]
     pub settle_periods: f64,
-    /// Drive periods in which it is looked at
+    /// Drive periods observed
     #[arg(long, value_name = "N", default_value_t = 60.0)]
     pub watch_periods: f64,
 }
@@ -133,7 +133,7 @@ impl WatchArgs {
     }
 }
 
-/// A model's refusal as the user sees it.
+/// A model's error as the user sees it.
 pub fn refused(error: &impact_oscillator::model::ModelError) -> Failure {
     Failure::new(
         error.to_string(),

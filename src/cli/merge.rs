@@ -6,17 +6,16 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::atlas::NAME;
-use super::theory::{OutArgs, Work};
-use super::{Exit, Failure, Voice, interrupt};
-use crate::pipeline::theory::regions::leave;
+use super::theory::OutArgs;
+use super::{Exit, Failure, Verbosity};
+use crate::pipeline::theory::regions::write_atlas;
 use impact_oscillator::atlas::shard::{AtlasPart, merge};
-use labfiles::output::Lock;
 
 /// Arguments of `impactid merge`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE)]
 pub struct Merge {
-    /// The parts that `impactid atlas --shard I/N` left, all N of them
+    /// The parts that `impactid atlas --shard I/N` wrote, all N of them
     #[arg(value_name = "PART.JSON", required = true)]
     parts: Vec<PathBuf>,
     #[command(flatten)]
@@ -33,25 +32,25 @@ A part that is missing, there twice, damaged or of another atlas is refused. The
 bit that of `impactid atlas` without --shard, with the study.toml that replays it.";
 
 impl Merge {
-    /// Put the parts together and leave the atlas.
+    /// Put the parts together and write the atlas.
     ///
     /// # Errors
     /// [`Failure`] where the parts do not make up one atlas, or a file cannot be written.
-    pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let parts: Vec<AtlasPart> = self
             .parts
             .iter()
             .map(|path| read(path))
             .collect::<Result<_, _>>()?;
-        whole(&parts, &self.out, voice)
+        whole(&parts, &self.out, verbosity)
     }
 }
 
-/// Put parts together and leave the atlas with its study.
+/// Put parts together and write the atlas with its study.
 ///
 /// # Errors
 /// As [`Merge::go`].
-pub fn whole(parts: &[AtlasPart], out: &OutArgs, voice: Voice) -> Result<Exit, Failure> {
+pub fn whole(parts: &[AtlasPart], out: &OutArgs, verbosity: Verbosity) -> Result<Exit, Failure> {
     let maps = merge(parts).map_err(|e| {
         let remedy = "give every part of one atlas once, all of one --shard …/N";
         Failure::new(e.to_string(), remedy)
@@ -59,25 +58,16 @@ pub fn whole(parts: &[AtlasPart], out: &OutArgs, voice: Voice) -> Result<Exit, F
     let Some(first) = parts.first() else {
         return Ok(Exit::Done);
     };
-    let _lock = Lock::take(out.folder())?;
-    interrupt::watch(out.folder().to_path_buf());
-    voice.say(&format!(
+    verbosity.info(&format!(
         "{} parts make {} cells",
         parts.len(),
         maps[0].len()
     ));
-    let text = serde_json::to_string(&first.request)
+    let key = serde_json::to_string(&first.request)
         .map_err(|e| Failure::new(e.to_string(), "please report it with the command line"))?;
-    let work = Work {
-        folder: out.folder(),
-        text: &text,
-        resume: out.resume,
-    };
-    work.go(voice, "merge", |desk| {
-        Ok(leave(&first.request, &maps, NAME, desk)?)
-    })?;
-    out.leave_copy(&first.study, voice)?;
-    Ok(Exit::Done)
+    out.complete((&key, &first.study), "merge", verbosity, |context| {
+        Ok(write_atlas(&first.request, &maps, NAME, context)?)
+    })
 }
 
 fn read(path: &Path) -> Result<AtlasPart, Failure> {

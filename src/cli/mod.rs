@@ -1,4 +1,4 @@
-//! The command line: one file per verb; the only room that prints or exits.
+//! The command line: one file per command; the only module that prints or exits.
 
 mod atlas;
 mod basins;
@@ -7,36 +7,43 @@ mod check;
 mod completions;
 mod convert;
 mod coverage;
+mod details;
 mod exit;
-mod fail;
+mod failure;
 mod init;
 mod inspect;
 mod interrupt;
-mod look;
+mod load;
 mod machine;
 mod merge;
+#[cfg(feature = "mpi")]
+mod mpi;
 mod plan;
 mod progress;
-#[cfg(feature = "mpi")]
-mod ranks;
+mod read_log;
+mod report_args;
 mod run;
 mod selftest;
 mod simulate;
-mod sketch;
+mod sparkline;
 mod stage;
+mod stdout;
 mod study;
 mod sweep;
 mod theory;
-mod voice;
+mod verbosity;
 
 use std::process::ExitCode;
+use std::time::Instant;
 
 use clap::{Args, Parser, Subcommand};
 
 pub use exit::Exit;
-pub use fail::Failure;
+pub use failure::Failure;
 pub use progress::Progress;
-pub use voice::Voice;
+pub use verbosity::Verbosity;
+
+use crate::pipeline;
 
 /// From a laboratory campaign on an impact oscillator to restitution, natural frequency,
 /// damping and a comparison report.
@@ -46,7 +53,7 @@ pub struct Cli {
     #[command(flatten)]
     common: Common,
     #[command(subcommand)]
-    verb: Verb,
+    command: Command,
 }
 
 const EXAMPLE: &str = "\
@@ -55,98 +62,99 @@ Example:
   impactid check records/campaign.toml
   impactid run   records/campaign.toml --out results/
 
-Exit codes: 0 done; 1 done, but the answer is \"does not fit\" or \"not identifiable\";
-2 bad input.";
+Exit codes: 0 success; 1 the model does not fit or a parameter is not identifiable;
+2 bad input or output.";
 
-/// What every verb takes.
+/// Options of every command.
 #[derive(Debug, Clone, Args)]
 pub struct Common {
-    /// Say nothing but errors
+    /// Print errors only
     #[arg(long, short, global = true)]
     quiet: bool,
-    /// Say more; twice for everything
+    /// Print versions, files, stage times and how each fit ended; -vv also every record and the notes
+    /// of the readers
     #[arg(long, short, global = true, action = clap::ArgAction::Count, conflicts_with = "quiet")]
     verbose: u8,
-    /// Number of threads; all processors where it is not given
+    /// Number of threads [default: all processors]
     #[arg(long, short = 'j', global = true, value_name = "N")]
     threads: Option<std::num::NonZeroUsize>,
 }
 
-/// The verbs, in the order in which they are needed.
+/// The commands, in the order in which they are needed.
 #[derive(Debug, Subcommand)]
-enum Verb {
-    /// Look at the files in a folder and write a commented campaign.toml to fill in
+enum Command {
+    /// Write a commented campaign.toml for the files in a folder
     Init(init::Init),
-    /// Read everything, list every fault at once, change nothing
+    /// Read all records and list every problem; change nothing
     Check(check::Check),
-    /// All stages: from campaign.toml to identification.json and report.pdf
+    /// Run all stages, from campaign.toml to identification.json and report.pdf
     Run(run::Run),
-    /// First stage: read the records and keep them calibrated
+    /// Stage 1: read and calibrate the records
     Ingest(stage::Ingest),
-    /// Second stage: measure the drive, find the impacts, tell the motion of each record
+    /// Stage 2: detect the impacts and classify the motion of each record
     Classify(stage::Classify),
-    /// Third stage: fit the parameters
+    /// Stage 3: fit the parameters
     Identify(stage::Identify),
-    /// Fourth stage: write the report
+    /// Stage 4: write the report
     Report(stage::Report),
     /// Propose the settings to measure next
     Plan(plan::Plan),
-    /// What record files hold: channels, units, rates, ranges
+    /// List the channels of record files: units, rates, ranges
     Inspect(inspect::Inspect),
-    /// Write records of any format as HDF5, Parquet or CSV
+    /// Convert record files to HDF5, Parquet or CSV
     Convert(convert::Convert),
-    /// Regions and boundaries of all motions in the (η, ρ) plane
+    /// Compute regions and boundaries of all motions in the (η, ρ) plane
     Atlas(atlas::Atlas),
-    /// Put the parts of an atlas together
+    /// Merge the parts of an atlas
     Merge(merge::Merge),
-    /// A single point of a boundary
+    /// Compute a single point of a boundary
     Boundary(boundary::Boundary),
-    /// Quasi-stationary characteristics over η or ρ, there and back
+    /// Sweep η or ρ in both directions (quasi-stationary)
     Sweep(sweep::Sweep),
-    /// Basins of attraction in the plane of the starts
+    /// Compute basins of attraction in the plane of initial states
     Basins(basins::Basins),
-    /// Studies of the theory from TOML files: time series, sweeps, basins, regions
+    /// Run studies from TOML files: time series, sweeps, basins, regions, coverage
     Study(study::Study),
-    /// Simulate a motion, or a campaign with known truth
+    /// Simulate a motion, or a campaign with known parameters
     Simulate(simulate::Simulate),
-    /// Compute the paper's published numbers on this machine
+    /// Reproduce the paper's published numbers on this machine
     Selftest(selftest::SelfTest),
-    /// Print the completions of a shell
+    /// Print shell completions
     Completions(completions::Completions),
-    /// Write the manual's pages
+    /// Write manual pages
     Man(completions::Man),
 }
 
-impl Verb {
-    fn go(self, voice: Voice) -> Result<Exit, Failure> {
+impl Command {
+    fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         match self {
-            Self::Init(verb) => verb.go(voice),
-            Self::Check(verb) => verb.go(voice),
-            Self::Run(verb) => verb.go(voice),
-            Self::Ingest(verb) => verb.go(voice),
-            Self::Classify(verb) => verb.go(voice),
-            Self::Identify(verb) => verb.go(voice),
-            Self::Report(verb) => verb.go(voice),
-            Self::Plan(verb) => verb.go(voice),
-            Self::Inspect(verb) => verb.go(voice),
-            Self::Convert(verb) => verb.go(voice),
-            Self::Atlas(verb) => verb.go(voice),
-            Self::Merge(verb) => verb.go(voice),
-            Self::Boundary(verb) => verb.go(voice),
-            Self::Sweep(verb) => verb.go(voice),
-            Self::Basins(verb) => verb.go(voice),
-            Self::Study(verb) => verb.go(voice),
-            Self::Simulate(verb) => verb.go(voice),
-            Self::Selftest(verb) => verb.go(voice),
-            Self::Completions(verb) => verb.go(voice),
-            Self::Man(verb) => verb.go(voice),
+            Self::Init(command) => command.run(verbosity),
+            Self::Check(command) => command.run(verbosity),
+            Self::Run(command) => command.run(verbosity),
+            Self::Ingest(command) => command.run(verbosity),
+            Self::Classify(command) => command.run(verbosity),
+            Self::Identify(command) => command.run(verbosity),
+            Self::Report(command) => command.run(verbosity),
+            Self::Plan(command) => command.run(verbosity),
+            Self::Inspect(command) => command.run(verbosity),
+            Self::Convert(command) => command.run(verbosity),
+            Self::Atlas(command) => command.run(verbosity),
+            Self::Merge(command) => command.run(verbosity),
+            Self::Boundary(command) => command.run(verbosity),
+            Self::Sweep(command) => command.run(verbosity),
+            Self::Basins(command) => command.run(verbosity),
+            Self::Study(command) => command.run(verbosity),
+            Self::Simulate(command) => command.run(verbosity),
+            Self::Selftest(command) => command.run(verbosity),
+            Self::Completions(command) => command.run(verbosity),
+            Self::Man(command) => command.run(verbosity),
         }
     }
 }
 
 /// Run the program on the process's own arguments.
 pub fn main() -> ExitCode {
-    fail::hush_caught_panics();
+    failure::hush_caught_panics();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
@@ -159,23 +167,31 @@ pub fn main() -> ExitCode {
             .into();
         }
     };
-    let voice = Voice::new(cli.common.quiet, cli.common.verbose);
+    let verbosity = Verbosity::new(cli.common.quiet, cli.common.verbose);
     if let Some(threads) = cli.common.threads {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads.get())
             .build_global();
         if let Err(error) = pool {
-            voice.detail(&format!("the number of threads stays as it is: {error}"));
+            verbosity.detail(&format!("the number of threads is unchanged: {error}"));
         }
     }
-    match cli.verb.go(voice) {
-        Ok(exit) => exit.into(),
-        Err(failure) => {
-            interrupt::give_way();
-            failure.print();
-            Exit::BadInput.into()
-        }
-    }
+    let begin = Instant::now();
+    verbosity.detail(&versions());
+    let exit = cli.command.run(verbosity).unwrap_or_else(|failure| {
+        interrupt::give_way();
+        failure.print(verbosity);
+        Exit::BadInput
+    });
+    verbosity.detail(&format!("total: {:.2} s", begin.elapsed().as_secs_f64()));
+    exit.into()
+}
+
+/// Versions of the program and of the layouts that it writes.
+fn versions() -> String {
+    let versions = pipeline::identify::versions();
+    let named: Vec<String> = versions.iter().map(|(n, v)| format!("{n} {v}")).collect();
+    format!("versions: {}", named.join(", "))
 }
 
 #[cfg(test)]
@@ -185,23 +201,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_the_command_line_is_consistent_and_every_verb_shows_an_example() {
+    fn valid_the_command_line_is_consistent_and_every_command_shows_an_example() {
         let command = Cli::command();
         command.clone().debug_assert();
-        for verb in command.get_subcommands() {
-            let help = verb
+        for sub in command.get_subcommands() {
+            let help = sub
                 .get_after_help()
                 .map(ToString::to_string)
                 .unwrap_or_default();
             assert!(
                 help.contains("Example:"),
                 "{} shows no example",
-                verb.get_name()
+                sub.get_name()
             );
             assert!(
-                verb.get_about().is_some(),
-                "{} says nothing",
-                verb.get_name()
+                sub.get_about().is_some(),
+                "{} has no description",
+                sub.get_name()
             );
         }
     }

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::voice::print_json;
-use super::{Exit, Failure, Progress, Voice, interrupt};
+use super::stdout::print_json;
+use super::{Exit, Failure, Progress, Verbosity, interrupt};
 use crate::motion::Motion;
 use crate::pipeline::plan;
 use labfiles::output::Lock;
@@ -13,7 +13,7 @@ use labfiles::output::Lock;
 /// Arguments of `impactid plan`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE)]
-pub struct Plan {
+pub(super) struct Plan {
     /// The campaign as measured so far
     #[arg(value_name = "CAMPAIGN.TOML")]
     campaign: PathBuf,
@@ -32,34 +32,35 @@ const EXAMPLE: &str = "\
 Example:
   impactid plan data-samples/double-oscillator/campaign.toml --out plan/
 
-The settings lie within the frequencies and gaps that the campaign has visited. Each takes those
-above it as measured, with records as long and as noisy as the campaign's own.
-Exit codes: 0 done; 1 nothing can be proposed; 2 bad input.";
+The settings are within the frequencies and gaps of the campaign. Each assumes that those above it
+are measured, with records as long and as noisy as those of the campaign.
+Exit codes: 0 success; 1 nothing can be proposed; 2 bad input.";
 
 impl Plan {
     /// Identify, propose, draw.
     ///
     /// # Errors
     /// [`Failure`] where the campaign cannot be used or an output cannot be written.
-    pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
-        let campaign = super::stage::load_campaign(&self.campaign, voice)?;
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+        let campaign = super::load::load_campaign(&self.campaign, verbosity)?;
         let _lock = Lock::take(&self.out)?;
         interrupt::watch(self.out.clone());
-        let bar = Progress::new(voice, "observe", campaign.records.len() as u64);
-        let told = |stage: &'static str, done: u64, total: u64| {
+        let bar = Progress::new(verbosity, "observe", campaign.records.len() as u64);
+        let progress = |stage: &'static str, done: u64, total: u64| {
             bar.stage(stage);
             bar.set(done, total);
         };
-        let found = plan::plan(&campaign, self.settings, &self.out, &told)?;
+        let found = plan::plan(&campaign, self.settings, &self.out, &progress)?;
         drop(bar);
         if self.json {
             print_json(&found)?;
-        } else if !voice.is_quiet() {
+        } else if !verbosity.is_quiet() {
             print_table(&found);
         }
         if found.proposals.is_empty() {
-            voice
-                .say("Nothing can be proposed: R was not fitted from velocities or displacements.");
+            verbosity.info(
+                "Nothing can be proposed: R was not fitted from velocities or displacements.",
+            );
             return Ok(Exit::AnswerIsNo);
         }
         Ok(Exit::Done)

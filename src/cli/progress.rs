@@ -7,23 +7,36 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
-use super::voice::Voice;
+use super::Verbosity;
 
-/// The progress of one stage; shared by threads.
-#[derive(Debug, Clone)]
+/// The progress of the stages of a command; shared by threads.
+#[derive(Debug)]
 pub struct Progress {
     bar: ProgressBar,
     pace: Pace,
+    verbosity: Verbosity,
+    /// The stage that runs, and when it began.
+    stage: Mutex<(&'static str, Instant)>,
 }
 
 impl Progress {
-    /// A bar for `total` steps of a stage named so.
-    pub fn new(voice: Voice, stage: &'static str, total: u64) -> Self {
+    /// A bar for `total` steps of a stage.
+    pub fn new(verbosity: Verbosity, stage: &'static str, total: u64) -> Self {
         let pace = Pace::default();
-        if voice.is_quiet() || !std::io::stderr().is_terminal() {
-            let bar = ProgressBar::hidden();
-            return Self { bar, pace };
+        let visible = !verbosity.is_quiet() && std::io::stderr().is_terminal();
+        let bar = match visible {
+            true => Self::bar(&pace, stage, total),
+            false => ProgressBar::hidden(),
+        };
+        Self {
+            bar,
+            pace,
+            verbosity,
+            stage: Mutex::new((stage, Instant::now())),
         }
+    }
+
+    fn bar(pace: &Pace, stage: &'static str, total: u64) -> ProgressBar {
         let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
         if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
             let pace = pace.clone();
@@ -36,7 +49,7 @@ impl Progress {
         }
         bar.set_message(stage);
         bar.enable_steady_tick(Duration::from_millis(250));
-        Self { bar, pace }
+        bar
     }
 
     /// Steps done so far and steps in all.
@@ -53,19 +66,33 @@ impl Progress {
         self
     }
 
-    /// Another stage begins.
+    /// Another stage begins; with `-v` the time of the one before is printed.
     pub fn stage(&self, stage: &'static str) {
-        if self.bar.message() != stage {
-            let total = self.bar.length().unwrap_or(0);
-            self.pace.next(Instant::now(), self.bar.position(), total);
-            self.bar.set_message(stage);
-        }
+        let now = Instant::now();
+        let ended = {
+            let mut running = self.stage.lock().unwrap_or_else(PoisonError::into_inner);
+            if running.0 == stage {
+                return;
+            }
+            std::mem::replace(&mut *running, (stage, now))
+        };
+        let total = self.bar.length().unwrap_or(0);
+        self.pace.next(now, self.bar.position(), total);
+        self.bar.set_message(stage);
+        self.bar.suspend(|| self.print_time(ended));
+    }
+
+    fn print_time(&self, (stage, begin): (&'static str, Instant)) {
+        let seconds = begin.elapsed().as_secs_f64();
+        self.verbosity.detail(&format!("{stage}: {seconds:.2} s"));
     }
 }
 
 impl Drop for Progress {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
+        let running = *self.stage.lock().unwrap_or_else(PoisonError::into_inner);
+        self.print_time(running);
     }
 }
 
@@ -77,14 +104,14 @@ const TEMPLATE: &str = "{msg:12} {wide_bar} {pos}/{len}  {left}";
 pub struct Later {
     /// Their time as a part of the first stage's.
     pub part: f64,
-    /// A further part, which grows no more from so many steps on.
+    /// A further part, constant from that many steps on.
     pub bounded: (f64, u64),
     /// What they take however few steps there are.
     pub fixed: Duration,
 }
 
 impl Later {
-    /// After so many steps that take so many seconds each.
+    /// Seconds after `total` steps that take `each` seconds.
     fn seconds(&self, each: f64, total: u64) -> f64 {
         let (bounded, most) = self.bounded;
         let steps = self.part * total as f64 + bounded * total.min(most) as f64;
@@ -92,14 +119,22 @@ impl Later {
     }
 }
 
+/// Time of fitting, report and writing, measured on campaigns of 846 to 100,000 records
+/// (docs/validation.md): of very long campaigns not all waveforms are fitted and not all rows printed.
+pub(super) const LATER: Later = Later {
+    part: 0.45,
+    bounded: (0.4, 10_000),
+    fixed: Duration::from_secs(1),
+};
+
 /// The clock of a bar, shared by threads.
 #[derive(Debug, Clone, Default)]
 struct Pace(Arc<Mutex<Clock>>);
 
 #[derive(Debug, Default)]
 struct Clock {
-    /// When a stage's first step was done and how many steps that was: those that an earlier run
-    /// had done say nothing about the pace.
+    /// When a stage's first step was done and how many steps that was: those of an earlier run do
+    /// not count for the pace.
     first: Option<(Instant, u64)>,
     /// What comes after the first stage.
     later: Option<Later>,
@@ -116,7 +151,7 @@ impl Pace {
         self.clock().first.get_or_insert((now, done));
     }
 
-    /// The next stage begins; the one before has done so many steps.
+    /// The next stage begins; `done` of `total` steps of the one before are done.
     fn next(&self, now: Instant, done: u64, total: u64) {
         let mut clock = self.clock();
         if clock.due.is_none() {
@@ -135,8 +170,8 @@ impl Pace {
 
 impl Clock {
     /// Time left at the mean pace so far. The mean over all steps is steadier than the last few:
-    /// records of one kind of motion follow each other, and each kind has its own pace. A run
-    /// that is late tells none.
+    /// records of one kind of motion follow each other, and each kind has its own pace. `None` for
+    /// a run that is late.
     fn left(&self, now: Instant, done: u64, total: u64) -> Option<Duration> {
         if let Some(due) = self.due {
             return due.checked_duration_since(now);
@@ -193,7 +228,7 @@ mod tests {
             (100_000, 387.0, 193.0),
         ] {
             let (pace, begin) = (Pace::default(), Instant::now());
-            pace.clock().later = Some(crate::cli::run::LATER);
+            pace.clock().later = Some(LATER);
             let at = |seconds| begin + Duration::from_secs_f64(seconds);
             pace.begin(begin, 0);
             let seconds = |left: Option<Duration>| left.map_or(0.0, |l| l.as_secs_f64());

@@ -1,33 +1,32 @@
 //! `impactid run`: all stages, from campaign.toml to the report.
 
-use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::path::PathBuf;
 
 use clap::Args;
 
-use super::look::{Look, quoted};
-use super::progress::{Later, Progress};
-use super::{Exit, Failure, Voice, interrupt};
-use crate::campaign::resolved::ResolvedCampaign;
+use super::details::{print_fits, print_records};
+use super::load::load_campaign;
+use super::progress::{LATER, Progress};
+use super::report_args::{ReportArgs, print_report_paths, quoted};
+use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::{self, Destination, checkpoint};
-use crate::report::Format;
 use labfiles::output::Lock;
 
 /// Arguments of `impactid run`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE)]
-pub struct Run {
+pub(super) struct Run {
     /// The campaign's description
     #[arg(value_name = "CAMPAIGN.TOML")]
     campaign: PathBuf,
-    /// Folder for the results; it is made where it does not exist
+    /// Folder for the results; created if it does not exist
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
-    /// Take over what a run that was broken off left in DIR
+    /// Resume an interrupted run in DIR
     #[arg(long)]
     resume: bool,
     #[command(flatten)]
-    look: Look,
+    options: ReportArgs,
 }
 
 const EXAMPLE: &str = "\
@@ -35,35 +34,12 @@ Example:
   impactid run data-samples/double-oscillator/campaign.toml --out results/
   impactid run campaign.toml --out results/ --format pdf,html,svg,png --paper letter
 
-It leaves report.pdf, the figures' data in figures/, identification.json, records.parquet, impacts.parquet and boundaries.csv.
-Exit codes: 0 done; 1 done, but the answer is \"does not fit\" or \"not identifiable\"; 2 bad input.";
+Outputs: report.pdf, the data of the figures in figures/, identification.json, records.parquet, impacts.parquet, boundaries.csv.
+Outputs are written atomically.
+Exit codes: 0 success; 1 the model does not fit or a parameter is not identifiable; 2 bad input.";
 
-/// Say where the report lies.
-pub(super) fn say_report(campaign: &ResolvedCampaign, out: &Path, voice: Voice) {
-    for format in &campaign.report.formats {
-        let name = match format {
-            Format::Pdf => "report.pdf",
-            Format::Html => "report.html",
-            Format::Svg | Format::Png | Format::Csv => "figures/",
-        };
-        voice.say(&format!(
-            "Report ({}): {}",
-            format.name(),
-            out.join(name).display()
-        ));
-    }
-}
-
-/// What fitting, report and writing take, measured on campaigns of 846 to 100,000 records
-/// (docs/validation.md): of very long campaigns not all waveforms are fitted and not all rows printed.
-pub(super) const LATER: Later = Later {
-    part: 0.45,
-    bounded: (0.4, 10_000),
-    fixed: Duration::from_secs(1),
-};
-
-/// From how many records on observations are kept; `IMPACTID_KEEP_FROM` sets another number, so
-/// that small campaigns can be tried.
+/// From how many records on checkpoints are written; `IMPACTID_KEEP_FROM` sets another number, for
+/// trials with small campaigns.
 fn keep_from() -> usize {
     let set = std::env::var("IMPACTID_KEEP_FROM").ok();
     set.and_then(|n| n.parse().ok())
@@ -71,23 +47,22 @@ fn keep_from() -> usize {
 }
 
 impl Run {
-    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
-        let mut campaign = super::stage::load_campaign(&self.campaign, voice)?;
-        self.look.apply(&mut campaign.report, voice)?;
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+        let mut campaign = load_campaign(&self.campaign, verbosity)?;
+        self.options.apply(&mut campaign.report, verbosity)?;
         let _lock = Lock::take(&self.out)?;
         interrupt::watch(self.out.clone());
-        voice.detail(&format!("{} records", campaign.records.len()));
         let records = campaign.records.len() as u64;
-        let progress = Progress::new(voice, "observe", records).with_later(LATER);
-        let told = |stage: &'static str, done: u64, total: u64| {
-            progress.stage(stage);
-            progress.set(done, total);
+        let bar = Progress::new(verbosity, "observe", records).with_later(LATER);
+        let progress = |stage: &'static str, done: u64, total: u64| {
+            bar.stage(stage);
+            bar.set(done, total);
         };
         let command = format!(
             "impactid run {} --out {}{}",
             quoted(&self.campaign),
             quoted(&self.out),
-            self.look.typed()
+            self.options.typed()
         );
         let destination = Destination {
             out: &self.out,
@@ -95,13 +70,16 @@ impl Run {
             keep_from: keep_from(),
             command_line: &command,
         };
-        let found = pipeline::run(&campaign, &destination, &told)?;
-        drop(progress);
-        voice.say(&found.summary);
-        for finding in &found.findings {
-            voice.say(&format!("  - {finding}"));
+        let done = pipeline::run(&campaign, &destination, &progress)?;
+        drop(bar);
+        print_records(&done.observations, verbosity);
+        print_fits(&done.identification, verbosity);
+        let verdict = &done.identification.verdict;
+        verbosity.info(&verdict.to_string());
+        for finding in &verdict.findings {
+            verbosity.info(&format!("  - {finding}"));
         }
-        say_report(&campaign, &self.out, voice);
-        Ok(Exit::of(found.kind))
+        print_report_paths(&campaign, &self.out, verbosity);
+        Ok(Exit::of(verdict.kind))
     }
 }

@@ -2,35 +2,35 @@
 
 use clap::Args;
 
-use super::voice::print;
-use super::{Exit, Failure, Voice};
+use super::stdout::print;
+use super::{Exit, Failure, Verbosity};
 use crate::pipeline::selftest::{Check, checks};
 
 /// Arguments of `impactid selftest`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE)]
-pub struct SelfTest {}
+pub(super) struct SelfTest {}
 
 const EXAMPLE: &str = "\
 Example:
   impactid selftest
 
-Exit codes: 0 all numbers are met; 1 some are not.";
+Exit codes: 0 all numbers are reproduced; 1 some are not.";
 
 impl SelfTest {
-    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let all = checks().map_err(|e| {
             Failure::new(
                 e.to_string(),
-                "please report it: the program is not what it should be",
+                "please report it with the version of the program",
             )
         })?;
-        if !voice.is_quiet() {
+        if !verbosity.is_quiet() {
             print(&table(&all))?;
         }
         let missed = all.iter().filter(|c| !c.agrees()).count();
-        voice.say(&format!(
-            "{} of {} published numbers are met.",
+        verbosity.info(&format!(
+            "{} of {} published numbers are reproduced.",
             all.len() - missed,
             all.len()
         ));

@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 
 use super::machine::{MachineArgs, StartArgs};
 use super::theory::OutArgs;
-use super::{Exit, Failure, Voice, interrupt};
+use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::synthesise::{Recipe, write_campaign};
 use crate::synthetic::truth::draw_asymmetry;
 use crate::synthetic::{Faults, RigSpec, Truth};
@@ -35,7 +35,7 @@ Example:
   impactid simulate --eta 2 --rho 0.2 --skip-periods 300 --periods 12 --out chaos/
   impactid simulate campaign --seed 1 --restitution 0.9 --damping-ratio 0.07 --out synthetic/
 
-A motion leaves its time series (motion), motion-impacts, motion-poincare and
+A motion writes its time series (motion), motion-impacts, motion-poincare and
 motion-autocorrelation as CSV and Parquet, a figure with phase trajectories and Poincaré map as
 SVG, PNG and PDF, and study.toml to replay it.";
 
@@ -71,7 +71,7 @@ pub struct MotionArgs {
     phase: f64,
     #[command(flatten)]
     start: StartArgs,
-    /// Drive periods left out first
+    /// Drive periods skipped first
     #[arg(long, value_name = "N", default_value_t = 0.0)]
     skip_periods: f64,
     /// Drive periods of the time series
@@ -100,7 +100,7 @@ pub struct MotionArgs {
 }
 
 impl MotionArgs {
-    fn go(&self, voice: Voice) -> Result<Exit, Failure> {
+    fn run(&self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let mut study = self.machine.study("A motion")?;
         let plan = PortraitPlan {
             setting: Setting {
@@ -116,7 +116,7 @@ impl MotionArgs {
             soft: self.contact_stiffness.map(|stiffness| Soft { stiffness }),
         };
         study.time_series.insert("motion".into(), plan);
-        self.out.study(&study, "simulate", voice)
+        self.out.study(&study, "simulate", verbosity)
     }
 }
 
@@ -209,16 +209,16 @@ fn number_within(text: &str, low: f64, high: f64) -> Result<f64, String> {
 }
 
 impl Simulate {
-    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         match self.what {
-            Some(What::Campaign(campaign)) => campaign.go(voice),
-            None => self.motion.go(voice),
+            Some(What::Campaign(campaign)) => campaign.run(verbosity),
+            None => self.motion.run(verbosity),
         }
     }
 }
 
 impl Campaign {
-    fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let _lock = Lock::take(&self.out)?;
         if self.out.join("campaign.toml").exists() && !self.force {
             return Err(Failure::new(
@@ -252,7 +252,7 @@ impl Campaign {
             seed: self.seed,
         };
         let count = write_campaign(&recipe, &self.out)?;
-        voice.say(&format!(
+        verbosity.info(&format!(
             "{count} synthetic records in {0}; next: impactid run {0}/campaign.toml --out results/",
             self.out.display()
         ));

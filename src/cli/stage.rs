@@ -1,4 +1,4 @@
-//! The stages alone: `ingest`, `classify`, `identify`, `report`, each from what the one before
+//! The single stages: `ingest`, `classify`, `identify`, `report`; each reads what the one before
 //! wrote.
 
 use std::collections::BTreeMap;
@@ -6,28 +6,24 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::fail::rendered_fault;
-use super::look::{Look, quoted};
+use super::details::{print_fits, print_records};
+use super::load::load_campaign;
 use super::progress::Progress;
-use super::run::say_report;
-use super::voice::print;
-use super::{Exit, Failure, Voice, interrupt};
-use crate::campaign::faults::Severity;
-use crate::campaign::load;
-use crate::campaign::resolved::ResolvedCampaign;
+use super::report_args::{ReportArgs, print_report_paths, quoted};
+use super::stdout::print;
+use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::{self, store};
-use crate::report::words::Words;
-use labfiles::open::open;
+use crate::report::catalog::Catalog;
 use labfiles::output::Lock;
 
 /// Arguments of `impactid ingest`.
 #[derive(Debug, Args)]
 #[command(after_help = INGEST)]
-pub struct Ingest {
+pub(super) struct Ingest {
     /// The campaign's description
     #[arg(value_name = "CAMPAIGN.TOML")]
     campaign: PathBuf,
-    /// Folder for the results; it is made where it does not exist
+    /// Folder for the results; created if it does not exist
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
 }
@@ -39,13 +35,13 @@ Example:
   impactid identify results/
   impactid report   results/";
 
-/// The folder that the stage before wrote into.
+/// The folder of the previous stage.
 #[derive(Debug, Args)]
-pub struct Folder {
-    /// Folder that the stage before wrote into (or campaign.toml, with the folder as --out)
+pub(super) struct Folder {
+    /// Folder of the previous stage (or campaign.toml, with the folder as --out)
     #[arg(value_name = "DIR")]
     given: PathBuf,
-    /// Folder that the stage before wrote into, where DIR names campaign.toml
+    /// Folder of the previous stage, if DIR names campaign.toml
     #[arg(long, short, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -56,8 +52,8 @@ impl Folder {
         let folder = self.out.as_ref().unwrap_or(&self.given);
         if !folder.is_dir() {
             return Err(Failure::new(
-                format!("{} is no folder with results", folder.display()),
-                "name the folder that the stage before wrote into; the first stage is \
+                format!("{} is not a folder with results", folder.display()),
+                "name the folder of the previous stage; the first stage is \
                  `impactid ingest campaign.toml --out DIR`",
             ));
         }
@@ -70,7 +66,7 @@ impl Folder {
 /// Arguments of `impactid classify`.
 #[derive(Debug, Args)]
 #[command(after_help = CLASSIFY)]
-pub struct Classify {
+pub(super) struct Classify {
     #[command(flatten)]
     folder: Folder,
 }
@@ -79,13 +75,13 @@ const CLASSIFY: &str = "\
 Example:
   impactid classify results/
 
-It reads what `impactid ingest` left there and writes records.parquet, impacts.parquet and
-boundaries.csv.";
+It reads the output of `impactid ingest` there and writes records.parquet, impacts.parquet and
+boundaries.csv. With -vv it lists the classification of each record.";
 
 /// Arguments of `impactid identify`.
 #[derive(Debug, Args)]
 #[command(after_help = IDENTIFY)]
-pub struct Identify {
+pub(super) struct Identify {
     #[command(flatten)]
     folder: Folder,
 }
@@ -94,20 +90,20 @@ const IDENTIFY: &str = "\
 Example:
   impactid identify results/
 
-It reads what `impactid classify` left there and writes identification.json.
-Exit codes: 0 done; 1 done, but the answer is \"does not fit\" or \"not identifiable\"; 2 bad input.";
+It reads the output of `impactid classify` there and writes identification.json.
+Exit codes: 0 success; 1 the model does not fit or a parameter is not identifiable; 2 bad input.";
 
 /// Arguments of `impactid report`.
 #[derive(Debug, Args)]
 #[command(after_help = REPORT)]
-pub struct Report {
+pub(super) struct Report {
     #[command(flatten)]
     folder: Option<Folder>,
-    /// Print every phrase of a report as a table of words to be filled in, and do nothing else
+    /// Print every phrase of a report as a table to translate, and exit
     #[arg(long, exclusive = true)]
     list_words: bool,
     #[command(flatten)]
-    look: Look,
+    options: ReportArgs,
 }
 
 const REPORT: &str = "\
@@ -117,27 +113,27 @@ Example:
   impactid report --list-words > words.toml
   impactid report results/ --words words.toml
 
-It reads what `impactid identify` left there and writes report.pdf and the figures' data.";
+It reads the output of `impactid identify` there and writes report.pdf and the data of the figures.";
 
 /// The commands that make a report in stages.
-fn commands(campaign: &Path, folder: &Path, look: &Look) -> String {
+fn commands(campaign: &Path, folder: &Path, options: &ReportArgs) -> String {
     let (campaign, out) = (quoted(campaign), quoted(folder));
     format!(
         "impactid ingest {campaign} --out {out}\nimpactid classify {out}\n\
          impactid identify {out}\nimpactid report {out}{}",
-        look.typed()
+        options.typed()
     )
 }
 
 impl Ingest {
-    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
-        let campaign = load_campaign(&self.campaign, voice)?;
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+        let campaign = load_campaign(&self.campaign, verbosity)?;
         let _lock = Lock::take(&self.out)?;
         interrupt::watch(self.out.clone());
-        let bar = Progress::new(voice, "ingest", campaign.records.len() as u64);
+        let bar = Progress::new(verbosity, "ingest", campaign.records.len() as u64);
         let usable = store::ingest(&campaign, &self.out, &|_, done, total| bar.set(done, total))?;
         drop(bar);
-        voice.say(&format!(
+        verbosity.info(&format!(
             "{usable} of {} records are usable.",
             campaign.records.len()
         ));
@@ -146,9 +142,9 @@ impl Ingest {
 }
 
 impl Classify {
-    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let (folder, _lock) = self.folder.take()?;
-        let bar = Progress::new(voice, "classify", 0);
+        let bar = Progress::new(verbosity, "classify", 0);
         let observed = store::classify(&folder, &|_, done, total| bar.set(done, total))?;
         drop(bar);
         let mut counts: BTreeMap<String, usize> = BTreeMap::new();
@@ -157,56 +153,47 @@ impl Classify {
                 .entry(observation.classification.motion.label())
                 .or_default() += 1;
         }
+        print_records(&observed.observations, verbosity);
         for (motion, count) in counts {
-            voice.say(&format!("{count:6}  {motion}"));
+            verbosity.info(&format!("{count:6}  {motion}"));
         }
         Ok(Exit::Done)
     }
 }
 
 impl Identify {
-    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let (folder, _lock) = self.folder.take()?;
         let campaign = store::read_resolved(&folder)?;
         let observed = store::read_observed(&folder)?;
+        let bar = Progress::new(verbosity, "identify", 1);
         let found = pipeline::identify::identify(&campaign, &observed)?;
-        pipeline::identify::write(&found.identification, &folder)?;
-        store::write_fit(&found.outcome, &folder)?;
+        pipeline::identify::write(&found, &folder)?;
+        drop(bar);
+        print_fits(&found.identification, verbosity);
         let verdict = &found.identification.verdict;
-        voice.say(&verdict.summary);
+        verbosity.info(&verdict.to_string());
         Ok(Exit::of(verdict.kind))
     }
 }
 
 impl Report {
-    pub(super) fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let Some(folder) = self.folder.filter(|_| !self.list_words) else {
-            print(&Words::blank())?;
+            print(&Catalog::blank())?;
             return Ok(Exit::Done);
         };
         let (folder, _lock) = folder.take()?;
         let mut campaign = store::read_resolved(&folder)?;
-        self.look.apply(&mut campaign.report, voice)?;
+        self.options.apply(&mut campaign.report, verbosity)?;
         let observed = store::read_observed(&folder)?;
-        let found = store::read_found(&folder)?;
-        let command = commands(&campaign.file, &folder, &self.look);
+        let found = store::read_identification(&folder)?;
+        let command = commands(&campaign.file, &folder, &self.options);
+        let bar = Progress::new(verbosity, "report", 1);
         let report = pipeline::report::files(&campaign, &observed, &found, &command)?;
         pipeline::report::write(&report, &folder)?;
-        say_report(&campaign, &folder, voice);
+        drop(bar);
+        print_report_paths(&campaign, &folder, verbosity);
         Ok(Exit::Done)
     }
-}
-
-/// The resolved campaign; faults that stop it are an error, the others are said.
-pub fn load_campaign(path: &Path, voice: Voice) -> Result<ResolvedCampaign, Failure> {
-    let outcome = load(path, &open);
-    let Some(campaign) = outcome.campaign else {
-        return Err(outcome.faults.into());
-    };
-    for fault in &outcome.faults.0 {
-        if fault.severity == Severity::Record && !voice.is_quiet() {
-            eprint!("{}", rendered_fault(fault));
-        }
-    }
-    Ok(campaign)
 }

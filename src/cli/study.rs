@@ -1,4 +1,4 @@
-//! `impactid study`: studies of the theory from small TOML files that can be kept and replayed.
+//! `impactid study`: studies of the theory from small TOML files that can be replayed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 
 use super::coverage::Coverage;
-use super::theory::{COPY, Work};
-use super::{Exit, Failure, Voice, interrupt};
+use super::theory::{COPY, in_folder};
+use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::theory::{self, Study as Written};
 use labfiles::output::{Lock, write_bytes};
 
@@ -17,13 +17,13 @@ use labfiles::output::{Lock, write_bytes};
 pub struct Study {
     #[command(subcommand)]
     kind: Option<Kind>,
-    /// The studies; a folder stands for all *.toml in it
+    /// The studies; a folder means all *.toml in it
     #[arg(value_name = "STUDY.TOML", required = true)]
     files: Vec<PathBuf>,
     /// Folder for the results, one folder in it for each study
     #[arg(long, short, value_name = "DIR", required = true)]
     out: Option<PathBuf>,
-    /// Go on after an interruption: leave studies out whose results are there
+    /// Resume an interrupted run: skip studies whose results exist
     #[arg(long)]
     resume: bool,
 }
@@ -39,7 +39,7 @@ const EXAMPLE: &str = "\
 Example:
   impactid study data-samples/studies --out studies/
 
-replays the studies of the paper's Figs. 2 to 8. Each leaves its tables (CSV, Parquet) and figures
+replays the studies of the paper's Figs. 2 to 8. Each writes its tables (CSV, Parquet) and figures
 (SVG, PNG, PDF) in a folder of its own. `impactid simulate`, `sweep`, `basins` and `atlas` write
 the study.toml of what they did, to be replayed in the same way.";
 
@@ -49,9 +49,9 @@ impl Study {
     /// # Errors
     /// [`Failure`] where a study cannot be read, a parameter is out of range or a file cannot
     /// be written.
-    pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         if let Some(Kind::Coverage(verb)) = self.kind {
-            return verb.go(voice);
+            return verb.run(verbosity);
         }
         let out = self.out.unwrap_or_default();
         let files = all_files(&self.files)?;
@@ -66,16 +66,14 @@ impl Study {
             let folder = out.join(&name);
             let there = fs::read_to_string(folder.join(COPY)).is_ok_and(|copy| copy == text);
             if self.resume && there {
-                voice.say(&format!("{name}: there already"));
+                verbosity.info(&format!("{name}: results exist"));
                 continue;
             }
-            voice.say(&format!("{name}: {}", study.title));
-            let work = Work {
-                folder: &folder,
-                text: &text,
-                resume: self.resume,
-            };
-            work.go(voice, "study", |desk| Ok(theory::run(&study, desk)?))?;
+            verbosity.info(&format!("{name}: {}", study.title));
+            let place = (folder.as_path(), text.as_str(), self.resume);
+            in_folder(place, "study", verbosity, |context| {
+                Ok(theory::run(&study, context)?)
+            })?;
             write_bytes(&folder.join(COPY), text.as_bytes())?;
         }
         Ok(Exit::Done)

@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::machine::{MachineArgs, StartArgs, WatchArgs, range};
 use super::theory::OutArgs;
-use super::{Exit, Failure, Voice};
+use super::{Exit, Failure, Verbosity};
 use crate::pipeline::theory::plan::SweepPlan;
 
 /// Arguments of `impactid sweep`.
@@ -35,7 +35,7 @@ Example:
   impactid sweep --eta 0.78..1.4 --rho 3 --restitution 0 --damping-ratio 0.002 --out fig4/
   impactid sweep --eta 1.2 --rho 0.1..5 --out over-rho/
 
-It leaves sweep.csv and .parquet (amplitudes, closing speeds, Lyapunov exponents, autocorrelation,
+It writes sweep.csv and .parquet (amplitudes, approach speeds, Lyapunov exponents, autocorrelation,
 amplitude and phase of the impactless motion), sweep-impacts (every impact's speeds), the figure
 as SVG, PNG and PDF, and study.toml to replay it.";
 
@@ -52,7 +52,7 @@ impl Sweep {
     ///
     /// # Errors
     /// [`Failure`] where a parameter is out of range or a file cannot be written.
-    pub fn go(self, voice: Voice) -> Result<Exit, Failure> {
+    pub fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let mut study = self.machine.study("Quasi-stationary characteristics")?;
         let plan = SweepPlan {
             eta: self.eta,
@@ -62,6 +62,6 @@ impl Sweep {
             watch: self.watch.watch(),
         };
         study.sweep.insert("sweep".into(), plan);
-        self.out.study(&study, "sweep", voice)
+        self.out.study(&study, "sweep", verbosity)
     }
 }

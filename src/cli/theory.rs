@@ -5,23 +5,23 @@ use std::sync::Mutex;
 
 use clap::Args;
 
-use super::{Exit, Failure, Progress, Voice, interrupt};
-use crate::pipeline::theory::kept::Kept;
-use crate::pipeline::theory::{Desk, Study, StudyError, run};
+use super::{Exit, Failure, Progress, Verbosity, interrupt};
+use crate::pipeline::theory::block_cache::BlockCache;
+use crate::pipeline::theory::{Study, StudyContext, StudyError, run};
 use labfiles::output::{Lock, write_bytes};
 
 /// Where results go.
 #[derive(Debug, Clone, Args)]
 pub struct OutArgs {
-    /// Folder for the results; it is made where it does not exist
+    /// Folder for the results; created if missing
     #[arg(long, short, value_name = "DIR", required = true)]
     pub out: Option<PathBuf>,
-    /// Go on where a run of the same work that was broken off had come
+    /// Resume an interrupted run of the same work
     #[arg(long)]
     pub resume: bool,
 }
 
-/// Name of the study beside its results; it is written last, so it tells that all is there.
+/// Name of the study beside its results; it is written last, so its presence marks complete results.
 pub const COPY: &str = "study.toml";
 
 impl From<StudyError> for Failure {
@@ -36,37 +36,46 @@ impl OutArgs {
         self.out.as_deref().unwrap_or(Path::new("."))
     }
 
-    /// Do a study's work into the folder and leave the study itself beside it, to be kept and
-    /// replayed.
+    /// Do a study's work into the folder.
     ///
     /// # Errors
     /// [`Failure`] where a parameter is out of range or an output cannot be written.
-    pub fn study(&self, study: &Study, what: &'static str, voice: Voice) -> Result<Exit, Failure> {
-        let text = written(study)?;
-        let _lock = Lock::take(self.folder())?;
-        interrupt::watch(self.folder().to_path_buf());
-        let work = Work {
-            folder: self.folder(),
-            text: &text,
-            resume: self.resume,
-        };
-        work.go(voice, what, |desk| Ok(run(study, desk)?))?;
-        self.leave_copy(&text, voice)?;
-        Ok(Exit::Done)
+    pub fn study(
+        &self,
+        study: &Study,
+        what: &'static str,
+        verbosity: Verbosity,
+    ) -> Result<Exit, Failure> {
+        let text = study_text(study)?;
+        self.complete((&text, &text), what, verbosity, |context| {
+            Ok(run(study, context)?)
+        })
     }
 
-    /// Leave the study beside its results and say so.
+    /// Do work that a key describes in full, and write the study that replays it beside the
+    /// results.
     ///
     /// # Errors
-    /// [`Failure`] where it cannot be written.
-    pub fn leave_copy(&self, text: &str, voice: Voice) -> Result<(), Failure> {
-        write_bytes(&self.folder().join(COPY), text.as_bytes())?;
-        voice.say(&format!(
+    /// [`Failure`] of the work, or where an output cannot be written.
+    pub fn complete(
+        &self,
+        (key, study): (&str, &str),
+        what: &'static str,
+        verbosity: Verbosity,
+        work: impl FnOnce(&StudyContext<'_>) -> Result<(), Failure>,
+    ) -> Result<Exit, Failure> {
+        let folder = self.folder();
+        let _lock = Lock::take(folder)?;
+        interrupt::watch(folder.to_path_buf());
+        in_folder((folder, key, self.resume), what, verbosity, work)?;
+        let copy = folder.join(COPY);
+        write_bytes(&copy, study.as_bytes())?;
+        verbosity.info(&format!(
             "{} holds the results; impactid study {} --out DIR replays them",
-            self.folder().display(),
-            self.folder().join(COPY).display()
+            folder.display(),
+            copy.display()
         ));
-        Ok(())
+        Ok(Exit::Done)
     }
 }
 
@@ -74,53 +83,42 @@ impl OutArgs {
 ///
 /// # Errors
 /// [`Failure`] where a number has no place in TOML.
-pub fn written(study: &Study) -> Result<String, Failure> {
+pub fn study_text(study: &Study) -> Result<String, Failure> {
     toml::to_string(study)
         .map_err(|e| Failure::new(e.to_string(), "give numbers that can be written as TOML"))
 }
 
-/// Work in a folder, of which a text says all.
-pub struct Work<'a> {
-    /// The folder.
-    pub folder: &'a Path,
-    /// Everything that the results depend on.
-    pub text: &'a str,
-    /// Whether to take over what is there.
-    pub resume: bool,
-}
-
-impl Work<'_> {
-    /// Do it, with a progress bar; what is worth saying is said at its end.
-    ///
-    /// # Errors
-    /// [`Failure`] of the work.
-    pub fn go(
-        &self,
-        voice: Voice,
-        what: &'static str,
-        work: impl FnOnce(&Desk<'_>) -> Result<(), Failure>,
-    ) -> Result<(), Failure> {
-        labfiles::output::make_folder(self.folder)?;
-        labfiles::output::clear_parts(self.folder);
-        let kept = Kept::open(self.folder, self.text, self.resume)?;
-        let progress = Progress::new(voice, what, 1);
-        let said = Mutex::new(Vec::new());
-        let done = work(&Desk {
-            folder: self.folder,
-            kept: &kept,
-            progress: &|done, all| progress.set(done, all),
-            say: &|text| {
-                if let Ok(mut said) = said.lock() {
-                    said.push(text.to_owned());
-                }
-            },
-        });
-        drop(progress);
-        for text in said.into_inner().unwrap_or_default() {
-            voice.say(&text);
-        }
-        done?;
-        kept.remove();
-        Ok(())
+/// Do work that a key describes in full into a folder, with a progress bar; its messages are printed
+/// at its end. With `resume` the blocks of an interrupted run are reused.
+///
+/// # Errors
+/// [`Failure`] of the work, or where the folder cannot be written into.
+pub fn in_folder(
+    (folder, key, resume): (&Path, &str, bool),
+    what: &'static str,
+    verbosity: Verbosity,
+    work: impl FnOnce(&StudyContext<'_>) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    labfiles::output::make_folder(folder)?;
+    labfiles::output::clear_parts(folder);
+    let blocks = BlockCache::open(folder, key, resume)?;
+    let progress = Progress::new(verbosity, what, 1);
+    let messages = Mutex::new(Vec::new());
+    let done = work(&StudyContext {
+        folder,
+        blocks: &blocks,
+        progress: &|done, all| progress.set(done, all),
+        inform: &|text| {
+            if let Ok(mut messages) = messages.lock() {
+                messages.push(text.to_owned());
+            }
+        },
+    });
+    drop(progress);
+    for text in messages.into_inner().unwrap_or_default() {
+        verbosity.info(&text);
     }
+    done?;
+    blocks.remove();
+    Ok(())
 }

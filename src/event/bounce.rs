@@ -1,14 +1,14 @@
 //! Bounces under a constant force: velocity climbs steadily in flight, against friction of either
-//! sign, and falls while the body touches the stop, however many samples that takes.
+//! sign, and falls while the body touches the stop, for any number of samples.
 
-use crate::event::DetectionSource;
+use crate::event::impact::DetectionSource;
 use crate::event::jumps::Jump;
 use crate::event::kinematics::Series;
 use crate::event::refine::Candidate;
 use crate::signal::local_fit::LocalFit;
 use crate::signal::robust;
 
-/// Least samples of flight on either side of a bounce.
+/// Fewest samples of flight on either side of a bounce.
 const FEWEST: usize = 5;
 /// Drop of velocity that makes a fall a bounce, in steps of the flight and in noise deviations.
 const IN_STEPS: f64 = 2.5;
@@ -17,9 +17,9 @@ const IN_NOISE: f64 = 6.0;
 /// All bounces: falls of the velocity from toward the stop to away from it.
 ///
 /// A positive velocity is toward the stop. The jump spans from the last sample before the fall to
-/// the first one after it; samples next to the fall, which a differentiated position smears, are
-/// left to it where the flights are long enough.
-pub fn find(velocity: &Series) -> Vec<Candidate> {
+/// the first one after it. Samples next to the fall, which a differentiated position smears, are
+/// counted as part of the fall if the flights are long enough.
+pub(super) fn find(velocity: &Series) -> Vec<Candidate> {
     let values = &velocity.values;
     let steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).collect();
     let rises: Vec<f64> = steps.iter().copied().filter(|s| *s > 0.0).collect();
@@ -90,4 +90,33 @@ fn candidate(velocity: &Series, falls: &[(usize, usize)], index: usize) -> Optio
         source: DetectionSource::Velocity,
         dead_samples: 0.0,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_bounces_of_two_samples_are_found_between_straight_flights() {
+        // Flights of 40 samples from −0.4 by 0.02 per sample, one sample of contact at 0 between.
+        let value = |i: usize| match i % 41 {
+            40 => 0.0,
+            k => -0.4 + 0.02 * k as f64,
+        };
+        let velocity = Series::clean((0..164).map(value).collect());
+        let found = find(&velocity);
+        assert_eq!(found.len(), 3);
+        // Falls from sample 39 to 41; the neighbours 38 and 42 bound the jump.
+        let jump = found[0].jump;
+        assert_eq!((jump.left, jump.gap), (38, 4));
+        // At sample 40 the flight before reaches 0.4, the one after starts at −0.42.
+        assert!((jump.height + 0.82).abs() < 1e-9, "{}", jump.height);
+        assert_eq!(found[2].jump.left, 120);
+    }
+
+    #[test]
+    fn valid_flights_without_a_fall_hold_no_bounce() {
+        let climbing = Series::clean((0..80).map(|i| 0.02 * f64::from(i) - 0.4).collect());
+        assert!(find(&climbing).is_empty());
+    }
 }

@@ -4,7 +4,7 @@ use crate::record::Channel;
 
 /// An interval in which the contact was closed; bounces are merged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Closed {
+pub(super) struct Closed {
     /// First closed sample.
     pub first: usize,
     /// Last closed sample.
@@ -15,19 +15,19 @@ pub struct Closed {
 
 impl Closed {
     /// Number of samples from first to last closed.
-    pub fn samples(&self) -> usize {
+    pub(super) fn samples(&self) -> usize {
         self.last - self.first + 1
     }
 }
 
 /// Intervals in which the contact channel is beyond its threshold.
 ///
-/// The threshold is the channel's own, else halfway between its least and greatest sample where
+/// The threshold is the channel's own, else halfway between its least and greatest sample if
 /// these differ by more than eight noise deviations (else the contact never closed). The side of
 /// the threshold on which the channel rests most of the time is "open" unless a threshold is
-/// stated, in which case closed is above it (below it for a negative threshold). Pulses less
-/// than `bounce_samples` apart are one contact that bounced.
-pub fn closed_intervals(channel: &Channel, bounce_samples: usize) -> Vec<Closed> {
+/// stated: closed is then above it (below it for a negative threshold). Pulses at most
+/// `bounce_samples` apart are one contact that bounced.
+pub(super) fn closed_intervals(channel: &Channel, bounce_samples: usize) -> Vec<Closed> {
     let Some(is_closed) = closed_test(channel) else {
         return Vec::new();
     };

@@ -5,7 +5,7 @@
 /// With u'' + 2ζω u' + ω² u = 0 from u = 0 until the press ends, ω√(1−ζ²)T = φ = π − 2α and
 /// ζ = sin α, where R = e^{−κ}, κ = φ tan α.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ContactProfile {
+pub(super) struct ContactProfile {
     restitution: f64,
     decay: f64,
     angle: f64,
@@ -13,7 +13,7 @@ pub struct ContactProfile {
 
 impl ContactProfile {
     /// The profile for R; it is that of R = 0.15 below (a linear contact has R > 0.135).
-    pub fn new(restitution: f64) -> Self {
+    pub(super) fn new(restitution: f64) -> Self {
         let restitution = restitution.clamp(0.15, 1.0);
         let decay = -restitution.ln();
         let (mut low, mut high) = (0.0, std::f64::consts::FRAC_PI_2);
@@ -33,7 +33,7 @@ impl ContactProfile {
     }
 
     /// Share of the change of velocity that is done at a share of the duration.
-    pub fn done(&self, share: f64) -> f64 {
+    pub(super) fn done(&self, share: f64) -> f64 {
         if share <= 0.0 {
             return 0.0;
         }
@@ -46,13 +46,13 @@ impl ContactProfile {
     }
 
     /// Share of the duration by which the mean instant of the impulse follows first touch.
-    pub fn centre(&self) -> f64 {
+    pub(super) fn centre(&self) -> f64 {
         (self.restitution + self.drift()) / (1.0 + self.restitution)
     }
 
     /// Change of the speed at the end of contact by a constant acceleration that acts beside the
     /// contact, over what it would be without the contact's spring: R sin φ/φ.
-    pub fn drift(&self) -> f64 {
+    pub(super) fn drift(&self) -> f64 {
         self.restitution * self.angle.sin() / self.angle
     }
 }

@@ -1,24 +1,14 @@
-//! What the corner of an integrator's high-pass has to do with the speeds at impacts.
+//! Effect of the corner of an integrator's high-pass on the speeds at impacts.
 //!
 //! With the corner ω_c(1 + ε) in place of the stated ω_c, undoing the high-pass leaves the velocity
-//! short by ε ω_c times the displacement (less its mean, which no such channel tells). At impacts
-//! the displacement is far from its mean, and the speeds before and after are off by the same.
+//! short by ε ω_c times the displacement (minus its mean, which such a channel does not contain). At
+//! impacts the displacement is far from its mean, and both speeds are off by the same amount.
 
-use serde::{Deserialize, Serialize};
-
+use crate::event::impact::CornerShift;
 use crate::event::kinematics::{Body, Kinematics, RelativeSource};
 use crate::record::Role;
 use crate::signal::interpolation::interpolate;
 use crate::signal::{drift, robust};
-
-/// Change of both approach speeds at an impact per unit of the logarithm of a corner.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct CornerShift {
-    /// The channel whose corner it is.
-    pub role: Role,
-    /// m/s, toward each other.
-    pub speed_m_s: f64,
-}
 
 /// A body's shift at all times.
 struct Shift {
@@ -26,12 +16,12 @@ struct Shift {
     speeds_m_s: Vec<f64>,
 }
 
-/// The shifts of the approach velocity of a record.
-pub struct Shifts([Option<Shift>; 2]);
+/// The shifts of the approach velocity of a record, one per mass.
+pub(super) struct Shifts([Option<Shift>; 2]);
 
 impl Shifts {
     /// Of a record whose velocities are free of drift.
-    pub fn of(kinematics: &Kinematics) -> Self {
+    pub(super) fn of(kinematics: &Kinematics) -> Self {
         let rate_hz = kinematics.rate_hz;
         let of = |body: &Body, times: f64| shift(body, times / rate_hz);
         let Kinematics { x, y, .. } = kinematics;
@@ -44,7 +34,7 @@ impl Shifts {
     }
 
     /// At a time in samples.
-    pub fn at(&self, time: f64) -> [Option<CornerShift>; 2] {
+    pub(super) fn at(&self, time: f64) -> [Option<CornerShift>; 2] {
         [0, 1].map(|i| {
             let shift = self.0[i].as_ref()?;
             Some(CornerShift {
@@ -71,4 +61,32 @@ fn shift(body: &Body, step_s: f64) -> Option<Shift> {
         role: velocity.role,
         speeds_m_s,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::event::kinematics::RigKind;
+    use crate::record::Record;
+
+    #[test]
+    fn valid_the_shift_of_a_sine_is_its_displacement_times_the_corner() {
+        // v = sin ωt over whole periods: displacement −cos(ωt)/ω, so the shift is −(ω_c/ω) cos ωt.
+        let (rate_hz, frequency_hz, corner_hz) = (2000.0, 10.0, 0.5);
+        let angle = |i: f64| std::f64::consts::TAU * frequency_hz * i / rate_hz;
+        let values: Vec<f64> = (0..2000).map(|i| angle(f64::from(i)).sin()).collect();
+        let mut kinematics = Kinematics::of(
+            &Record::of(rate_hz, &[(Role::VelocityX, &values)]),
+            RigKind::Single,
+        );
+        assert!(Shifts::of(&kinematics).at(700.0)[0].is_none());
+        kinematics.x.velocity.as_mut().unwrap().high_pass_hz = Some(corner_hz);
+        let shifts = Shifts::of(&kinematics);
+        for time in [300.0, 450.5, 1234.25] {
+            let [of_x, of_y] = shifts.at(time);
+            let want = -corner_hz / frequency_hz * angle(time).cos();
+            assert!((of_x.unwrap().speed_m_s - want).abs() < 2e-5, "{time}");
+            assert!(of_y.is_none());
+        }
+    }
 }

@@ -1,15 +1,17 @@
 //! From a record to its impacts: contact pulses and velocity jumps fused, times refined.
 
 use crate::event::contact::{Closed, closed_intervals};
+use crate::event::drive::{self, DriveTone};
 use crate::event::finite_contact::{self, FiniteContact};
+use crate::event::impact::{DetectionSource, Impact};
 use crate::event::jumps::{Jump, JumpSearch, SUPPORTED};
-use crate::event::kinematics::{Kinematics, Series};
+use crate::event::kinematics::{Kinematics, RigKind, Series};
 use crate::event::refine::{self, ArcFit, Candidate, Instant};
-use crate::event::{DetectionSource, DriveTone, Impact, RigKind, bounce, drift, drive, impacts};
-use crate::record::{Flag, Record, Role};
+use crate::event::{bounce, drift, impact_speeds};
+use crate::record::{Flag, FlagCode, Record, Role};
 use crate::signal::robust;
 
-/// What acts on a body between impacts, as far as the detection has to know.
+/// Forces on a body between impacts, as far as the detection depends on them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FlightKind {
@@ -30,9 +32,9 @@ pub struct DetectSettings {
     pub dead_zone_s: f64,
     /// One-sided window as a fraction of the drive period.
     pub window_periods: f64,
-    /// Relative difference from which the measured drive frequency contradicts the stated one.
+    /// Relative difference above which the measured drive frequency contradicts the stated one.
     pub drive_tolerance: f64,
-    /// What acts between impacts.
+    /// Forces between impacts.
     pub flight: FlightKind,
 }
 
@@ -57,7 +59,7 @@ pub struct Detection {
     pub kinematics: Kinematics,
     /// The impacts in order of time.
     pub impacts: Vec<Impact>,
-    /// Samples that a jump takes; more than one: the contact is long against the sample step.
+    /// Samples that a jump takes; more than one if the contact lasts longer than a sample step.
     pub jump_samples: usize,
     /// Contact pulses that show no jump of velocity, although velocity is measured.
     pub unsupported_pulses: usize,
@@ -65,7 +67,7 @@ pub struct Detection {
     pub missed_pulses: usize,
     /// Fraction of the record in which the contact was closed.
     pub closed_fraction: f64,
-    /// What was noticed.
+    /// Problems found.
     pub flags: Vec<Flag>,
 }
 
@@ -73,6 +75,42 @@ pub struct Detection {
 ///
 /// Impacts come from the contact channel and from jumps of the approach velocity, fused; a record
 /// without any velocity gives impacts without speeds. No parameter of the model enters.
+///
+/// A mass against a stop whose velocity climbs from −1 to 1 m/s and turns every 0.1 s:
+///
+/// ```
+/// use impactid::event::{DetectSettings, RigKind, detect};
+/// use impactid::record::{Channel, Excitation, Record, Role, Setting, Sweep};
+/// use labfiles::units::Dimension;
+///
+/// let values = (0..800).map(|i| (i % 100) as f64 / 49.5 - 1.0).collect();
+/// let record = Record {
+///     id: "r1".into(),
+///     sample_rate_hz: 1000.0,
+///     channels: vec![Channel {
+///         role: Role::VelocityX,
+///         name: "v".into(),
+///         dimension: Dimension::Velocity,
+///         values,
+///         high_pass_hz: None,
+///         threshold: None,
+///     }],
+///     setting: Setting {
+///         stated_frequency_hz: None,
+///         clearance_m: None,
+///         sweep: Sweep::Unknown,
+///         drive_amplitude: 1.0,
+///         sequence: 0,
+///         specimen: None,
+///         excitation: Excitation::Harmonic,
+///     },
+///     flags: Vec::new(),
+/// };
+/// let found = detect(&record, RigKind::Single, &DetectSettings::default());
+/// assert_eq!(found.impacts.len(), 7);
+/// assert!((found.impacts[0].time_s - 0.0995).abs() < 1e-4);
+/// assert!((found.impacts[0].approach_speed_before_m_s.unwrap() - 1.01).abs() < 1e-3);
+/// ```
 pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detection {
     let (drive, mut flags) = drive::measure(record, settings.drive_tolerance);
     let mut kinematics = Kinematics::of(record, rig);
@@ -140,7 +178,7 @@ fn window_samples(drive: Option<&DriveTone>, rate_hz: f64, periods: f64) -> usiz
     }
 }
 
-/// Refine times, correct and remove the drift they tell, refine again, extrapolate the speeds.
+/// Refine the times, remove the drift that follows from them, refine again, extrapolate the speeds.
 fn refined(
     kinematics: &mut Kinematics,
     candidates: &[Candidate],
@@ -151,9 +189,9 @@ fn refined(
         return without_speeds(candidates, drive, kinematics.rate_hz);
     }
     if arc.same_way {
-        // Straight arcs are drawn from few samples: no drift is to be told from them.
+        // Straight arcs have few samples: no drift can be estimated from them.
         let instants = refine::instants(kinematics, candidates, arc);
-        return impacts::impacts(kinematics, candidates, &instants, drive, (arc, None));
+        return impact_speeds::impacts(kinematics, candidates, &instants, drive, (arc, None));
     }
     let Some(contact) = finite_contact::measure(kinematics, candidates, arc) else {
         return undrifted(kinematics, candidates, drive, (rig, arc, None));
@@ -198,14 +236,14 @@ fn undrifted(
     .into_iter()
     .filter_map(|b| b.velocity.as_mut())
     {
-        drift::settle(series, &times, drive, rate_hz);
+        drift::remove_drift(series, &times, drive, rate_hz);
     }
     let instants = instants(kinematics);
     let contact = contact.map(|(contact, _)| contact);
-    impacts::impacts(kinematics, candidates, &instants, drive, (arc, contact))
+    impact_speeds::impacts(kinematics, candidates, &instants, drive, (arc, contact))
 }
 
-/// Where impacts may be, and what speaks for and against them.
+/// Candidates for impacts, and counts of what supports and contradicts them.
 #[derive(Default)]
 struct Fused {
     candidates: Vec<Candidate>,
@@ -215,7 +253,7 @@ struct Fused {
     unsupported: usize,
     /// Jumps without a contact pulse.
     missed: usize,
-    /// Jumps upward, as the approach velocity has none at an impact.
+    /// Jumps upward, which no impact makes.
     upward: usize,
     /// Jumps downward, as impacts make them.
     downward: usize,
@@ -233,8 +271,8 @@ fn bounces(velocity: &Series) -> Fused {
     }
 }
 
-/// Fuse jumps and contact pulses: a pulse belongs to the strongest jump inside it; a pulse without
-/// a jump lends support to a weaker one; a long pulse is a dead zone.
+/// Fuse jumps and contact pulses: a jump within reach of a pulse belongs to it; a pulse without a
+/// jump admits a weaker jump beside it; a long pulse is a dead zone.
 fn fuse(velocity: &Series, closed: &[Closed], width: usize, dead_from: usize) -> Fused {
     let search = JumpSearch::new(velocity, width);
     let mut jumps = search.find();
@@ -311,7 +349,8 @@ fn candidates(
     out
 }
 
-/// Without a contact channel: how long the approach velocity stays at zero after a jump.
+/// Samples for which the approach velocity stays at zero after a jump, for records without a
+/// contact channel.
 fn resting_samples(velocity: &Series, jump: &Jump, next: usize, dead_from: usize) -> f64 {
     let begin = jump.left + jump.gap;
     let rest_below = 4.0 * velocity.noise + 5e-3 * jump.height.abs();
@@ -379,24 +418,95 @@ fn without_speeds(
         .collect()
 }
 
-/// Upward jumps where impacts should jump down: a sign is wrong somewhere.
+/// Upward jumps, although impacts jump down: the sign of a channel is wrong.
 fn wrong_way(found: &Fused, record: &Record) -> Option<Flag> {
     (found.upward >= 3 && found.upward > 2 * found.downward).then(|| {
         let channel = record
             .channel(Role::VelocityX)
             .or_else(|| record.channel(Role::DisplacementX))
-            .map(|c| c.name.clone());
-        Flag {
-            code: "jumps_point_the_wrong_way".into(),
+            .map(|c| c.name.as_str());
+        Flag::new(
+            FlagCode::JumpsPointTheWrongWay,
             channel,
-            message: format!(
+            format!(
                 "{} jumps of the approach velocity go up, {} down; an impact jumps down",
                 found.upward, found.downward
             ),
-            remedy: "turn the `sign` of the velocity or displacement channels: positive is toward \
-                     the other mass"
-                .into(),
-            excludes: true,
-        }
+            "turn the `sign` of the velocity or displacement channels: positive is toward the other \
+             mass",
+        )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A velocity that climbs from −1 to 1 within 100 samples and falls back at 99.5, 199.5, …
+    fn sawtooth(samples: usize) -> Vec<f64> {
+        let value = |i: usize| (i % 100) as f64 / 49.5 - 1.0;
+        (0..samples).map(value).collect()
+    }
+
+    fn pulse(first: usize, last: usize) -> Closed {
+        Closed {
+            first,
+            last,
+            pulses: 1,
+        }
+    }
+
+    #[test]
+    fn valid_a_pulse_belongs_to_the_jump_within_its_reach() {
+        let velocity = Series::clean(sawtooth(400));
+        let closed = [pulse(100, 102), pulse(245, 247)];
+        let found = fuse(&velocity, &closed, 8, 10);
+        let sources: Vec<_> = found.candidates.iter().map(|c| c.source).collect();
+        use DetectionSource::{Both, Velocity};
+        assert_eq!(sources, [Both, Velocity, Velocity]);
+        assert_eq!((found.missed, found.unsupported), (2, 1));
+        assert_eq!((found.upward, found.downward), (0, 3));
+        assert_eq!(found.candidates[0].jump.left, 99);
+        assert!(found.candidates.iter().all(|c| c.dead_samples == 0.0));
+    }
+
+    #[test]
+    fn valid_a_long_pulse_is_a_dead_zone_that_ends_at_the_next_jump() {
+        let velocity = Series::clean(sawtooth(400));
+        let found = fuse(&velocity, &[pulse(100, 120), pulse(200, 330)], 8, 10);
+        let dead: Vec<f64> = found.candidates.iter().map(|c| c.dead_samples).collect();
+        // From the jump's left sample 99 to 120; from 199 to the next jump at 299.
+        assert_eq!(dead[..2], [21.0, 100.0]);
+    }
+
+    #[test]
+    fn valid_without_velocity_the_pulses_alone_are_impacts() {
+        let mut contact = vec![0.0; 400];
+        contact[50..53].fill(5.0);
+        contact[150..190].fill(5.0);
+        let record = Record::of(1000.0, &[(Role::Contact, &contact)]);
+        let found = detect(&record, RigKind::Double, &DetectSettings::default());
+        assert_eq!(found.impacts.len(), 2);
+        // The contact closed between samples 49 and 50.
+        assert!((found.impacts[0].time_s - 0.0495).abs() < 1e-12);
+        assert_eq!(found.impacts[0].source, DetectionSource::Contact);
+        assert_eq!(found.impacts[0].approach_speed_before_m_s, None);
+        assert_eq!(found.impacts[0].dead_zone_s, 0.0);
+        assert!((found.impacts[1].dead_zone_s - 0.040).abs() < 1e-12);
+        assert!((found.closed_fraction - 43.0 / 400.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn valid_a_velocity_of_the_wrong_sign_is_flagged() {
+        let wrong: Vec<f64> = sawtooth(800).iter().map(|v| -v).collect();
+        let record = Record::of(1000.0, &[(Role::VelocityX, &wrong)]);
+        let found = detect(&record, RigKind::Single, &DetectSettings::default());
+        assert_eq!(found.flags[0].code, FlagCode::JumpsPointTheWrongWay);
+        assert!(found.flags[0].excludes);
+        let right = sawtooth(800);
+        let record = Record::of(1000.0, &[(Role::VelocityX, &right)]);
+        let found = detect(&record, RigKind::Single, &DetectSettings::default());
+        assert!(found.flags.is_empty());
+        assert_eq!(found.impacts.len(), 7);
+    }
 }

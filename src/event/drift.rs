@@ -1,16 +1,21 @@
-//! Offset and ramp of a velocity signal, found from what kinematics demands: at every impact the
-//! bodies are at the same place, so between two impacts the mean approach velocity is zero.
+//! Offset and ramp of a velocity signal from kinematics: the bodies touch at every impact, so the
+//! mean approach velocity between two impacts is zero.
 
-use crate::event::DriveTone;
+use crate::event::drive::DriveTone;
 use crate::event::kinematics::Series;
 use crate::signal::interpolation::interpolate;
 use crate::signal::{drift, robust};
 
-/// Remove offset (and, where a high-pass was undone, ramp) from a approach velocity.
+/// Remove the offset (and the ramp, if a high-pass was undone) of an approach velocity.
 ///
-/// With two impacts or more, from the arcs between them (`times` in samples); else from whole
-/// drive periods.
-pub fn settle(velocity: &mut Series, times: &[f64], drive: Option<&DriveTone>, rate_hz: f64) {
+/// From the arcs between impacts (`times` in samples) if there are any, else from whole drive
+/// periods.
+pub(super) fn remove_drift(
+    velocity: &mut Series,
+    times: &[f64],
+    drive: Option<&DriveTone>,
+    rate_hz: f64,
+) {
     let arcs = arc_offsets(&velocity.values, times);
     let line = if arcs.is_empty() {
         period_line(velocity, drive, rate_hz)
@@ -34,9 +39,10 @@ fn arc_offsets(values: &[f64], times: &[f64]) -> Vec<(f64, f64, f64)> {
         .collect()
 }
 
-/// Integral of samples (step 1) between two instants, each arc taken with its own samples only:
-/// no sample outside the interval enters, so a jump at its ends does no harm.
-pub fn integral(values: &[f64], from: f64, to: f64) -> Option<f64> {
+/// Integral of samples (step 1) between two instants; `None` with fewer than three samples inside.
+///
+/// No sample outside the interval enters, so a jump at its ends does no harm.
+pub(super) fn integral(values: &[f64], from: f64, to: f64) -> Option<f64> {
     let first = from.ceil().max(0.0) as usize;
     let last = to.floor() as usize;
     if last >= values.len() || first + 1 >= last {
@@ -97,4 +103,66 @@ fn strobed_slope(values: &[f64], period: f64) -> f64 {
         .map_while(|i| interpolate(values, i as f64 + period).map(|v| v - values[i]))
         .collect();
     robust::median(&differences).unwrap_or(0.0) / period
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Flights of 20.3 samples, each a line from −1 to 1, so that its mean is zero.
+    const FLIGHT: f64 = 20.3;
+
+    fn flights() -> (Vec<f64>, Vec<f64>) {
+        let value = |i: usize| 2.0 * (i as f64 / FLIGHT).fract() - 1.0;
+        let times = (1..10).map(|k| FLIGHT * f64::from(k)).collect();
+        ((0..210).map(value).collect(), times)
+    }
+
+    #[test]
+    fn valid_the_integral_of_a_line_is_exact_between_any_instants() {
+        let line: Vec<f64> = (0..20).map(|i| 3.0 + 2.0 * f64::from(i)).collect();
+        // ∫ 3 + 2t from 2.25 to 9.5 = 3 · 7.25 + 9.5² − 2.25² = 106.9375.
+        assert!((integral(&line, 2.25, 9.5).unwrap() - 106.9375).abs() < 1e-12);
+        assert_eq!(integral(&line, 2.25, 20.0), None);
+        assert_eq!(integral(&line, 2.2, 3.8), None);
+    }
+
+    #[test]
+    fn valid_offset_and_ramp_between_impacts_are_removed() {
+        let (clean, times) = flights();
+        let mut velocity = Series::clean(clean.iter().map(|v| v + 0.3).collect());
+        remove_drift(&mut velocity, &times, None, 2000.0);
+        let worst = |v: &[f64]| {
+            let apart = v.iter().zip(&clean).map(|(a, b)| (a - b).abs());
+            apart.fold(0.0, f64::max)
+        };
+        assert!(worst(&velocity.values) < 1e-12);
+        // A ramp is looked for only if a high-pass was undone.
+        let drifted = clean
+            .iter()
+            .enumerate()
+            .map(|(i, v)| v + 0.3 - 2e-3 * i as f64);
+        let mut velocity = Series::clean(drifted.collect());
+        velocity.high_pass_hz = Some(0.5);
+        remove_drift(&mut velocity, &times, None, 2000.0);
+        assert!(worst(&velocity.values) < 1e-12);
+    }
+
+    #[test]
+    fn valid_without_impacts_whole_drive_periods_give_the_offset() {
+        let drive = DriveTone {
+            frequency_hz: 20.0,
+            frequency_error_hz: 0.0,
+            amplitude: 1.0,
+            phase_rad: 0.0,
+            residual_ratio: 0.0,
+        };
+        // 2.5 periods of 100 samples: the plain mean would be off by the half period.
+        let tone = |i: usize| (std::f64::consts::TAU * i as f64 / 100.0).sin();
+        let mut velocity = Series::clean((0..250).map(|i| tone(i) + 0.7).collect());
+        remove_drift(&mut velocity, &[], Some(&drive), 2000.0);
+        for i in [0, 60, 240] {
+            assert!((velocity.values[i] - tone(i)).abs() < 1e-3, "{i}");
+        }
+    }
 }

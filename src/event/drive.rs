@@ -1,19 +1,48 @@
 //! The drive's frequency and phase, measured from its channel.
 
-use crate::event::DriveTone;
+use serde::{Deserialize, Serialize};
+
 use crate::record::consistency::mistaken;
-use crate::record::{Flag, Record, Role};
+use crate::record::{Flag, FlagCode, Record, Role};
 use crate::signal::tone;
 
-/// Least ratio of residual to amplitude at which a drive no longer counts as harmonic.
+/// The drive as measured from its channel: amplitude · cos(2π f t + phase).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct DriveTone {
+    /// Measured frequency, Hz.
+    pub frequency_hz: f64,
+    /// Its standard error, Hz.
+    pub frequency_error_hz: f64,
+    /// Amplitude in the channel's SI unit.
+    pub amplitude: f64,
+    /// Phase at the first sample, rad.
+    pub phase_rad: f64,
+    /// Root mean square of the residual, relative to the amplitude.
+    pub residual_ratio: f64,
+}
+
+impl DriveTone {
+    /// Phase of the drive at a time since the first sample, rad in [0, 2π).
+    pub fn phase_at(&self, time_s: f64) -> f64 {
+        (std::f64::consts::TAU * self.frequency_hz * time_s + self.phase_rad)
+            .rem_euclid(std::f64::consts::TAU)
+    }
+
+    /// Drive period, s.
+    pub fn period_s(&self) -> f64 {
+        1.0 / self.frequency_hz
+    }
+}
+
+/// Ratio of residual to amplitude above which a drive does not count as harmonic.
 const NOT_HARMONIC: f64 = 0.5;
 
 /// Measure the drive of a record from its drive channel.
 ///
 /// Returns the tone, if the record has a drive channel that holds one, and flags: a drive that is
-/// no harmonic tone, and a measured frequency that contradicts the stated one by more than
-/// `tolerance` (relative) or three standard errors, whichever is greater.
-pub fn measure(record: &Record, tolerance: f64) -> (Option<DriveTone>, Vec<Flag>) {
+/// not a harmonic tone, and a measured frequency that differs from the stated one by more than
+/// `tolerance` (relative) and three standard errors.
+pub(super) fn measure(record: &Record, tolerance: f64) -> (Option<DriveTone>, Vec<Flag>) {
     let Some(channel) = record.channel(Role::Drive) else {
         return (None, Vec::new());
     };
@@ -38,13 +67,12 @@ pub fn measure(record: &Record, tolerance: f64) -> (Option<DriveTone>, Vec<Flag>
 }
 
 fn no_tone(channel: &str) -> Flag {
-    Flag {
-        code: "drive_not_harmonic".into(),
-        channel: Some(channel.into()),
-        message: "the drive channel holds no single harmonic tone".into(),
-        remedy: "check that the drive channel is named correctly and that the drive was on".into(),
-        excludes: true,
-    }
+    Flag::new(
+        FlagCode::DriveNotHarmonic,
+        Some(channel),
+        "the drive channel holds no single harmonic tone",
+        "check that the drive channel is named correctly and that the drive was on",
+    )
 }
 
 fn contradiction(
@@ -55,16 +83,71 @@ fn contradiction(
 ) -> Option<Flag> {
     let stated = record.setting.stated_frequency_hz?;
     let allowed = (tolerance * stated).max(3.0 * drive.frequency_error_hz);
-    ((drive.frequency_hz - stated).abs() > allowed).then(|| Flag {
-        code: "drive_frequency_contradicts".into(),
-        channel: Some(channel.into()),
-        message: format!(
-            "the drive channel shows {:.4} Hz, the campaign states {stated:.4} Hz{}",
-            drive.frequency_hz,
-            mistaken(stated / drive.frequency_hz)
-                .map_or(String::new(), |m| format!(": the factor {m}"))
-        ),
-        remedy: "the measured frequency is used; correct the run table or the file's name".into(),
-        excludes: false,
+    ((drive.frequency_hz - stated).abs() > allowed).then(|| {
+        Flag::new(
+            FlagCode::DriveFrequencyContradicts,
+            Some(channel),
+            format!(
+                "the drive channel shows {:.4} Hz, the campaign states {stated:.4} Hz{}",
+                drive.frequency_hz,
+                mistaken(stated / drive.frequency_hz)
+                    .map_or(String::new(), |m| format!(": the factor {m}"))
+            ),
+            "the measured frequency is used; correct the run table or the file's name",
+        )
+        .excluding(false)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tone(frequency_hz: f64, phase_rad: f64) -> impl Fn(usize) -> f64 {
+        move |i| (std::f64::consts::TAU * frequency_hz * i as f64 / 2000.0 + phase_rad).cos()
+    }
+
+    fn record(of: impl Fn(usize) -> f64) -> Record {
+        let values: Vec<f64> = (0..2000).map(of).collect();
+        Record::of(2000.0, &[(Role::Drive, &values)])
+    }
+
+    #[test]
+    fn valid_the_tone_is_measured_and_gives_phases() {
+        let clean = tone(12.6, 0.4);
+        let (found, flags) = measure(&record(|i| 2.0 * clean(i)), 5e-3);
+        let drive = found.unwrap();
+        assert!(flags.is_empty());
+        assert!((drive.frequency_hz - 12.6).abs() < 1e-8);
+        assert!((drive.amplitude - 2.0).abs() < 1e-8);
+        // A quarter period after the first sample the phase is 0.4 + π/2.
+        let quarter = drive.phase_at(0.25 * drive.period_s());
+        assert!((quarter - 0.4 - std::f64::consts::FRAC_PI_2).abs() < 1e-7);
+    }
+
+    #[test]
+    fn valid_a_frequency_in_another_unit_is_named() {
+        let mut stated = record(tone(12.6, 0.0));
+        stated.setting.stated_frequency_hz = Some(12.6 * std::f64::consts::TAU);
+        let (found, flags) = measure(&stated, 5e-3);
+        assert!(found.is_some());
+        assert_eq!(flags[0].code, FlagCode::DriveFrequencyContradicts);
+        assert!(
+            flags[0].message.contains("between Hz and rad/s"),
+            "{}",
+            flags[0].message
+        );
+        assert!(!flags[0].excludes);
+        stated.setting.stated_frequency_hz = Some(12.62);
+        assert!(measure(&stated, 5e-3).1.is_empty());
+    }
+
+    #[test]
+    fn valid_two_equal_tones_are_no_drive() {
+        let (low, high) = (tone(12.6, 0.0), tone(47.0, 0.0));
+        let (found, flags) = measure(&record(|i| low(i) + high(i)), 5e-3);
+        assert_eq!(found, None);
+        assert_eq!(flags[0].code, FlagCode::DriveNotHarmonic);
+        assert!(measure(&Record::of(2000.0, &[]), 5e-3).1.is_empty());
+    }
 }

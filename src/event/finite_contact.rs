@@ -11,23 +11,17 @@
 //! start and end. Each body's velocity channel may lag by a delay of its own.
 
 use crate::event::contact_profile::ContactProfile;
+use crate::event::contact_samples::{Passage, Samples, beside, measured_velocity, samples};
 use crate::event::jumps::Jump;
-use crate::event::kinematics::{Body, Kinematics, Series};
+use crate::event::kinematics::Kinematics;
 use crate::event::refine::{ArcFit, Candidate, Instant, arcs, instants};
-use crate::record::Role;
 use crate::signal::robust;
 
 /// Fewest impacts that show how long they last.
 const FEWEST: usize = 5;
-/// Least height of a jump, in noise deviations, from which its samples are used.
-const CLEAR_JUMP: f64 = 25.0;
-/// Error of a sample's share beside the noise: what the flights' extrapolation leaves open.
-const SHARE_ERROR: f64 = 0.01;
 /// Fall of the sum of squares, over an instantaneous impact, from which a contact lasts or a
 /// velocity is delayed.
 const SIGNIFICANT: f64 = 25.0;
-/// Greatest error of an impact's time, in samples, with which its samples are used.
-const LEAST_PLACED: f64 = 0.6;
 /// Error of a sample's share where it places the impact: the contact's true profile.
 const PLACE_ERROR: f64 = 0.04;
 /// Squared deviation beyond which a sample counts no more.
@@ -45,7 +39,7 @@ const LATEST: f64 = 1.0;
 
 /// How long the impacts of a record last, and how late each velocity shows them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FiniteContact {
+pub(super) struct FiniteContact {
     /// Duration, samples; zero if it is indistinguishable from an instant.
     pub duration: f64,
     /// Delay of each body's velocity against the kink of the displacement, samples.
@@ -56,7 +50,7 @@ pub struct FiniteContact {
 
 impl FiniteContact {
     /// Start and end of a contact whose centre is at a time, in samples, without delays.
-    pub fn span(&self, time: f64) -> (f64, f64) {
+    pub(super) fn span(&self, time: f64) -> (f64, f64) {
         let centre = self.profile.centre();
         (
             time - centre * self.duration,
@@ -131,7 +125,7 @@ impl FiniteContact {
     }
 
     /// Candidates whose jumps span all samples that a contact may touch.
-    pub fn spanned(&self, candidates: &[Candidate], instants: &[Instant]) -> Vec<Candidate> {
+    pub(super) fn spanned(&self, candidates: &[Candidate], instants: &[Instant]) -> Vec<Candidate> {
         let [first, last] = [
             self.delays[0].min(self.delays[1]).min(0.0),
             self.delays[0].max(self.delays[1]).max(0.0),
@@ -154,24 +148,9 @@ impl FiniteContact {
     }
 }
 
-/// A sample beside an impact: when, from the contact's centre, and how far the velocity has gone.
-#[derive(Debug, Clone, Copy)]
-struct Passage {
-    offset: f64,
-    share: f64,
-    share_error: f64,
-}
-
-/// The samples of both bodies (x: 0, y: 1) beside one impact.
-#[derive(Debug, Clone)]
-struct Samples {
-    time_error: f64,
-    passages: Vec<(Passage, usize)>,
-}
-
 /// How long the impacts of a record last; `None` if they are instants, or if nothing shows it
 /// (it takes measured velocity and displacement).
-pub fn measure(
+pub(super) fn measure(
     kinematics: &Kinematics,
     candidates: &[Candidate],
     arc: ArcFit,
@@ -198,12 +177,6 @@ fn widened(candidate: &Candidate) -> Candidate {
     wide
 }
 
-/// A body's velocity if it was measured as such: differentiated displacements smear every jump.
-fn measured_velocity(body: &Body) -> Option<&Series> {
-    let velocity = body.velocity.as_ref()?;
-    matches!(velocity.role, Role::VelocityX | Role::VelocityY).then_some(velocity)
-}
-
 /// Speed after over before the impacts, median.
 fn typical_ratio(
     kinematics: &Kinematics,
@@ -222,64 +195,6 @@ fn typical_ratio(
         })
         .collect();
     robust::median(&ratios)
-}
-
-/// The samples of one impact, with the error of its time; `None` if it is too weak or its time
-/// too uncertain.
-fn samples(
-    bodies: [Option<&Series>; 2],
-    candidates: &[Candidate],
-    index: usize,
-    instant: Instant,
-    arc: ArcFit,
-) -> Option<Samples> {
-    if candidates[index].dead_samples > 0.0 || instant.error > LEAST_PLACED {
-        return None;
-    }
-    let mut out = Samples {
-        time_error: instant.error,
-        passages: Vec::new(),
-    };
-    for (body, velocity) in bodies.into_iter().enumerate() {
-        let Some(velocity) = velocity else { continue };
-        let [before, after] = arcs(velocity, candidates, index, arc)?;
-        let height = before.value(instant.time) - after.value(instant.time);
-        let full = before.samples.min(after.samples) > arc.degree + 1;
-        if !full || height < CLEAR_JUMP * velocity.noise {
-            return None;
-        }
-        let found = beside(velocity, candidates, index, instant, arc);
-        out.passages.extend(found.into_iter().map(|p| (p, body)));
-    }
-    (!out.passages.is_empty()).then_some(out)
-}
-
-/// Samples within the jump of one impact.
-fn beside(
-    velocity: &Series,
-    candidates: &[Candidate],
-    index: usize,
-    instant: Instant,
-    arc: ArcFit,
-) -> Vec<Passage> {
-    let jump = candidates[index].jump;
-    let Some([before, after]) = arcs(velocity, candidates, index, arc) else {
-        return Vec::new();
-    };
-    let height = before.value(instant.time) - after.value(instant.time);
-    let last = (jump.left + jump.gap).min(velocity.values.len());
-    (jump.left + 1..last)
-        .map(|k| {
-            let at = k as f64;
-            let (b, a) = (before.value(at), after.value(at));
-            let spread = 1f64.hypot(before.error_factor(at).max(after.error_factor(at)));
-            Passage {
-                offset: at - instant.time,
-                share: (b - velocity.values[k]) / (b - a),
-                share_error: (velocity.noise * spread / height).hypot(SHARE_ERROR),
-            }
-        })
-        .collect()
 }
 
 /// Least squares over duration and delays; each impact's time is free within its error.
@@ -368,7 +283,7 @@ impl Search {
 
 /// Replace the samples that a contact touches by the flights on either side of its centre, as if
 /// the impact were an instant: integrals over the velocities are right then.
-pub fn bridge(
+pub(super) fn bridge(
     kinematics: &mut Kinematics,
     candidates: &[Candidate],
     instants: &[Instant],

@@ -1,18 +1,19 @@
-//! Jumps of the approach velocity: where one-sided extrapolations from left and right disagree.
+//! Jumps of the approach velocity: instants at which one-sided extrapolations from left and right
+//! disagree.
 
 use crate::event::kinematics::Series;
 use crate::signal::local_fit::LocalFit;
 use crate::signal::robust;
 
-/// Significance (in standard errors) from which a jump counts by itself.
+/// Significance (in standard errors) above which a jump counts by itself.
 const SIGNIFICANT: f64 = 6.0;
 
-/// Significance that suffices where the contact channel shows a pulse.
-pub const SUPPORTED: f64 = 3.0;
+/// Significance that suffices if the contact channel shows a pulse.
+pub(super) const SUPPORTED: f64 = 3.0;
 
 /// A jump of velocity between two samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Jump {
+pub(super) struct Jump {
     /// Last sample before the jump; the velocity is on the other branch `gap` samples later.
     pub left: usize,
     /// Samples from the last one before to the first one after the jump; 1 when instantaneous.
@@ -25,19 +26,19 @@ pub struct Jump {
 
 impl Jump {
     /// Middle of the gap, in samples.
-    pub fn middle(&self) -> f64 {
+    pub(super) fn middle(&self) -> f64 {
         self.left as f64 + 0.5 * self.gap as f64
     }
 
     /// Height over its standard error, positive for a jump down as impacts make it.
-    pub fn significance(&self) -> f64 {
+    pub(super) fn significance(&self) -> f64 {
         -self.height / self.error
     }
 }
 
 /// A search for jumps in one velocity signal.
 #[derive(Debug, Clone)]
-pub struct JumpSearch<'a> {
+pub(super) struct JumpSearch<'a> {
     velocity: &'a Series,
     /// Samples of each one-sided window.
     window: usize,
@@ -50,8 +51,8 @@ pub struct JumpSearch<'a> {
 impl<'a> JumpSearch<'a> {
     /// Scan a velocity with one-sided windows of `window` samples (at least 4).
     ///
-    /// The samples a jump takes (its gap) are found from the strongest jumps themselves.
-    pub fn new(velocity: &'a Series, window: usize) -> Self {
+    /// The samples that a jump takes (its gap) are estimated from the strongest jumps.
+    pub(super) fn new(velocity: &'a Series, window: usize) -> Self {
         let mut search = Self::with_gap(velocity, window.max(4), 1);
         let wanted = search.typical_gap();
         if wanted > 1 {
@@ -73,17 +74,17 @@ impl<'a> JumpSearch<'a> {
             scan[left] = height;
         }
         let theory = velocity.noise * factor * 2f64.sqrt();
-        let seen = quiet_deviation(&scan);
+        let observed = quiet_deviation(&scan);
         Self {
             velocity,
             window,
             gap,
-            scan_deviation: seen.max(theory),
+            scan_deviation: observed.max(theory),
             scan,
         }
     }
 
-    /// How many samples the strongest jumps take from branch to branch (upper quartile of up to
+    /// Samples that the strongest jumps take from branch to branch (upper quartile of up to
     /// ten).
     fn typical_gap(&self) -> usize {
         let strongest = self.candidates(SIGNIFICANT, -1.0);
@@ -150,7 +151,7 @@ impl<'a> JumpSearch<'a> {
     }
 
     /// All significant downward jumps, in order of time.
-    pub fn find(&self) -> Vec<Jump> {
+    pub(super) fn find(&self) -> Vec<Jump> {
         let mut accepted: Vec<Jump> = Vec::new();
         for left in self.candidates(SIGNIFICANT, -1.0) {
             if let Some(jump) = self.measure(left, &accepted, SIGNIFICANT) {
@@ -161,9 +162,9 @@ impl<'a> JumpSearch<'a> {
         self.remeasured(accepted)
     }
 
-    /// Numbers of significant jumps upward and downward; of neighbours the strongest counts alone,
-    /// for the scan swings back beside a jump.
-    pub fn directions(&self) -> (usize, usize) {
+    /// Numbers of significant jumps upward and downward. Of neighbours only the strongest counts,
+    /// because the scan swings back beside a jump.
+    pub(super) fn directions(&self) -> (usize, usize) {
         let mut all = self.candidates(SIGNIFICANT, 1.0);
         all.extend(self.candidates(SIGNIFICANT, -1.0));
         all.sort_by(|&a, &b| {
@@ -185,8 +186,9 @@ impl<'a> JumpSearch<'a> {
         (upward, kept.len() - upward)
     }
 
-    /// A jump near a sample that need reach only `significance`, beside the accepted ones.
-    pub fn near(
+    /// The most significant jump whose left sample is in `first..=last` and whose significance
+    /// exceeds `significance`, with windows that end before the accepted jumps.
+    pub(super) fn near(
         &self,
         first: usize,
         last: usize,
@@ -198,7 +200,7 @@ impl<'a> JumpSearch<'a> {
             .max_by(|a, b| a.significance().total_cmp(&b.significance()))
     }
 
-    /// Measure a jump with windows that stop short of the accepted ones.
+    /// Measure a jump with windows that end before the accepted jumps.
     fn measure(&self, left: usize, accepted: &[Jump], significance: f64) -> Option<Jump> {
         let after = accepted.partition_point(|j| j.left < left);
         let low = match after.checked_sub(1).map(|i| &accepted[i]) {
@@ -208,8 +210,8 @@ impl<'a> JumpSearch<'a> {
         let high = accepted
             .get(after)
             .map_or(self.velocity.values.len(), |j| j.left + 1);
-        // Two samples between impacts are the least that tells a jump from a slope; at the
-        // record's edges, where no other impact vouches for them, five.
+        // At least two samples between impacts distinguish a jump from a slope; at the record's
+        // edges, which no impact bounds, at least five.
         let end = self.velocity.values.len();
         let before = if low == 0 { 5 } else { 2 };
         let behind = if high == end { 5 } else { 2 };
@@ -248,7 +250,8 @@ impl<'a> JumpSearch<'a> {
         Some((jump, before.residual_squares + after.residual_squares))
     }
 
-    /// Measure each accepted jump again now that its neighbours are known, dropping what fades.
+    /// Measure each accepted jump again with its neighbours known; drop those that are no longer
+    /// significant.
     fn remeasured(&self, accepted: Vec<Jump>) -> Vec<Jump> {
         (0..accepted.len())
             .filter_map(|i| {
@@ -264,15 +267,15 @@ impl<'a> JumpSearch<'a> {
     }
 }
 
-/// Deviation of the scan where nothing jumps, from the quarter of its values nearest to zero:
-/// impacts may follow each other so closely that half the scan is under their influence.
+/// Standard deviation of the scan away from jumps, from the quarter of its values nearest to zero:
+/// impacts may follow each other so closely that they affect half of the scan.
 fn quiet_deviation(scan: &[f64]) -> f64 {
     let mut sizes: Vec<f64> = scan.iter().map(|v| v.abs()).filter(|v| *v > 0.0).collect();
     let quarter = sizes.len() / 4;
     if sizes.is_empty() {
         return 0.0;
     }
-    // A quarter of a normal distribution lies within 0.3186 deviations of its centre.
+    // A quarter of a normal distribution is within 0.3186 deviations of its centre.
     *sizes.select_nth_unstable_by(quarter, f64::total_cmp).1 / 0.3186
 }
 
@@ -288,4 +291,63 @@ fn one_sided_weights(count: usize, ahead: f64) -> (Vec<f64>, f64) {
         .collect();
     let factor = weights.iter().map(|w| w * w).sum::<f64>().sqrt();
     (weights, factor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A line of slope 0.01 per sample that steps by `height` after sample 50, over `gap` samples.
+    fn stepped(height: f64, gap: usize) -> Series {
+        let share = |i: usize| (i.saturating_sub(50) as f64 / gap as f64).min(1.0);
+        Series::clean(
+            (0..120)
+                .map(|i| 0.01 * i as f64 + height * share(i))
+                .collect(),
+        )
+    }
+
+    #[test]
+    fn valid_a_step_between_two_lines_is_found_with_its_height() {
+        let velocity = stepped(-0.8, 1);
+        let found = JumpSearch::new(&velocity, 8).find();
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].left, found[0].gap), (50, 1));
+        assert_eq!(found[0].middle(), 50.5);
+        // Both lines, extrapolated to sample 50.5, differ by the step and the slope over no time.
+        assert!((found[0].height + 0.8).abs() < 1e-9, "{}", found[0].height);
+        assert!(found[0].significance() > SIGNIFICANT);
+    }
+
+    #[test]
+    fn valid_a_step_over_three_samples_is_measured_over_its_gap() {
+        let velocity = stepped(-0.9, 3);
+        let search = JumpSearch::new(&velocity, 8);
+        let found = search.find();
+        assert_eq!((search.gap, found.len(), found[0].left), (3, 1, 50));
+        assert!((found[0].height + 0.9).abs() < 1e-9, "{}", found[0].height);
+    }
+
+    #[test]
+    fn valid_a_step_counts_once_and_with_its_direction() {
+        for (height, counted) in [(0.8, (1, 0)), (-0.8, (0, 1))] {
+            let velocity = stepped(height, 1);
+            assert_eq!(JumpSearch::new(&velocity, 8).directions(), counted);
+        }
+    }
+
+    #[test]
+    fn valid_a_step_within_the_noise_is_found_only_with_support() {
+        // The step is 4 standard errors of its height: too few alone, enough beside a pulse.
+        let flat = stepped(0.0, 1);
+        let error = JumpSearch::new(&flat, 8)
+            .measure(50, &[], f64::NEG_INFINITY)
+            .unwrap()
+            .error;
+        let velocity = stepped(-4.0 * error, 1);
+        let search = JumpSearch::new(&velocity, 8);
+        assert!(search.find().is_empty());
+        let near = search.near(48, 52, &[], SUPPORTED).unwrap();
+        assert_eq!(near.left, 50);
+    }
 }

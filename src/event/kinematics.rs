@@ -1,29 +1,41 @@
-//! What moved: velocity and displacement of each body and of the relative motion, on one time
-//! axis, with the integrators' high-pass undone and the noise known.
+//! Velocity and displacement of each body and of their relative motion on one time axis, with the
+//! integrators' high-pass undone and the noise estimated.
 
-use crate::event::RigKind;
+use serde::{Deserialize, Serialize};
+
 use crate::record::{Record, Role};
 use crate::signal::{drift, robust};
+
+/// Kind of rig.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RigKind {
+    /// Two masses that hit each other; approach speed x' + y'.
+    Double,
+    /// One mass that hits a fixed stop; approach speed x'.
+    Single,
+}
 
 /// A signal in SI with its noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// The channel that it comes from; of a relative motion, the first.
+    /// The channel that it comes from; the first one for a relative motion.
     pub role: Role,
     /// Samples, SI.
     pub values: Vec<f64>,
     /// Standard deviation of the white noise, SI; at least the converter's step over √12.
     pub noise: f64,
-    /// Corner of the high-pass that was undone, Hz, so that a constant and a ramp remain unknown;
-    /// `None`: the signal had none.
+    /// Corner of the high-pass that was undone, Hz: a constant and a ramp remain unknown. `None` if
+    /// the signal had none.
     pub high_pass_hz: Option<f64>,
 }
 
 impl Series {
     /// Correct the undoing of the high-pass for a jump between two samples.
     ///
-    /// The integral ω_c ∫ y dt was taken by trapezoids, as if the jump stood in the middle of its
-    /// interval; at a fraction u of it the area differs by (before − after)(u − ½) of a step.
+    /// The integral ω_c ∫ y dt was taken by trapezoids, as if the jump were in the middle of its
+    /// interval; for a jump at a fraction u of the interval the area differs by
+    /// (before − after)(u − ½) steps.
     pub fn correct_jump(&mut self, time_steps: f64, before: f64, after: f64, rate_hz: f64) {
         let Some(corner_hz) = self.high_pass_hz else {
             return;
@@ -40,7 +52,7 @@ impl Series {
 impl Series {
     /// Correct the undoing of the high-pass for samples whose sum, before one of them, was changed
     /// by `area` (in samples).
-    pub fn correct_area(&mut self, from: usize, area: f64, rate_hz: f64) {
+    pub(super) fn correct_area(&mut self, from: usize, area: f64, rate_hz: f64) {
         let Some(corner_hz) = self.high_pass_hz else {
             return;
         };
@@ -60,14 +72,14 @@ pub struct Body {
     pub displacement: Option<Series>,
 }
 
-/// From which channels the relative motion was built.
+/// Channels from which the relative motion was built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RelativeSource {
     /// x + y, both measured.
     Both,
     /// x of a single mass against a stop.
     One,
-    /// Twice the one mass that was measured, taking the machine as symmetric.
+    /// Twice the one mass that was measured: the rig is assumed symmetric.
     Doubled,
 }
 
@@ -82,15 +94,15 @@ pub struct Kinematics {
     pub y: Body,
     /// The relative motion: displacement u = x + y, velocity u' (for one mass x alone).
     pub relative: Body,
-    /// From what the approach velocity was built; `None` without any velocity.
+    /// Channels of the approach velocity; `None` without any velocity.
     pub relative_from: Option<RelativeSource>,
-    /// The relative motion as it was measured (velocity, else displacement, else acceleration):
-    /// what is compared with itself a period later, free of any drift of integration.
+    /// The relative motion as it was measured (velocity, else displacement, else acceleration),
+    /// without drift of an integration: it is compared with itself a period later.
     pub waveform: Option<Series>,
 }
 
 impl Kinematics {
-    /// Build the kinematics of a record from whatever motion channels it has.
+    /// Build the kinematics of a record from the motion channels that it has.
     pub fn of(record: &Record, rig: RigKind) -> Self {
         let rate_hz = record.sample_rate_hz;
         let x = body(
@@ -129,7 +141,7 @@ impl Kinematics {
         }
     }
 
-    /// Build the relative motion anew after the bodies' signals were corrected.
+    /// Build the relative motion again after the bodies' signals were corrected.
     pub fn update_relative(&mut self, rig: RigKind) {
         (self.relative, self.relative_from) = relative_motion(&self.x, &self.y, rig);
     }
@@ -145,7 +157,7 @@ impl Kinematics {
 fn relative_motion(x: &Body, y: &Body, rig: RigKind) -> (Body, Option<RelativeSource>) {
     let (velocity, relative_from) = combined(&x.velocity, &y.velocity, rig);
     let (displacement, displacement_from) = combined(&x.displacement, &y.displacement, rig);
-    // A relative displacement of another making than the velocity would not fit to it.
+    // A relative displacement from other channels than the velocity would not fit to it.
     let displacement = displacement.filter(|_| displacement_from == relative_from);
     (
         Body {
@@ -193,7 +205,7 @@ fn series(record: &Record, role: Role) -> Option<Series> {
         high_pass_hz: channel.high_pass_hz,
     };
     if series.high_pass_hz.is_some() {
-        // The constant part is lost anyway; a measured one is kept until drift is told from arcs.
+        // The high-pass has removed the constant part; a measured one is kept for `remove_drift`.
         remove_mean(&mut series.values);
     }
     Some(series)
@@ -293,5 +305,82 @@ fn combined(
             (Some(series), Some(RelativeSource::Doubled))
         }
         _ => (None, None),
+    }
+}
+
+#[cfg(test)]
+impl Series {
+    /// A velocity of mass x with a noise of 1e-3 that never passed a high-pass.
+    pub(super) fn clean(values: Vec<f64>) -> Self {
+        Self {
+            role: Role::VelocityX,
+            values,
+            noise: 1e-3,
+            high_pass_hz: None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Record;
+
+    fn sine(samples: usize, step: f64) -> Vec<f64> {
+        (0..samples).map(|i| (step * i as f64).sin()).collect()
+    }
+
+    #[test]
+    fn valid_the_relative_motion_of_two_masses_is_their_sum() {
+        let x = sine(200, 0.1);
+        let y: Vec<f64> = sine(200, 0.1).iter().map(|v| 2.0 * v).collect();
+        let record = Record::of(2000.0, &[(Role::VelocityX, &x), (Role::VelocityY, &y)]);
+        let both = Kinematics::of(&record, RigKind::Double);
+        let velocity = both.relative.velocity.unwrap();
+        assert!(
+            velocity
+                .values
+                .iter()
+                .zip(&x)
+                .all(|(u, x)| (u - 3.0 * x).abs() < 1e-12)
+        );
+        assert_eq!(both.relative_from, Some(RelativeSource::Both));
+        // One mass against a stop moves alone; one measured mass of two counts twice.
+        let record = Record::of(2000.0, &[(Role::VelocityX, &x)]);
+        let one = Kinematics::of(&record, RigKind::Single);
+        assert_eq!(one.relative.velocity.unwrap().values, x);
+        let doubled = Kinematics::of(&record, RigKind::Double);
+        assert_eq!(doubled.relative.velocity.unwrap().values[7], 2.0 * x[7]);
+        assert_eq!(doubled.relative_from, Some(RelativeSource::Doubled));
+    }
+
+    #[test]
+    fn valid_a_displacement_is_differentiated_and_an_acceleration_integrated() {
+        // x = t² at 100 Hz: the central difference of a parabola is exact, 2t.
+        let parabola: Vec<f64> = (0..50).map(|i| (f64::from(i) / 100.0).powi(2)).collect();
+        let record = Record::of(100.0, &[(Role::DisplacementX, &parabola)]);
+        let velocity = Kinematics::of(&record, RigKind::Single).x.velocity.unwrap();
+        assert!((velocity.values[10] - 0.2).abs() < 1e-12);
+        // a = 3 from t = 0: v = 3t without its mean, which integration loses.
+        let mut constant = vec![3.0; 51];
+        constant[50] = 3.0 + 1e-9;
+        let record = Record::of(100.0, &[(Role::AccelerationX, &constant)]);
+        let velocity = Kinematics::of(&record, RigKind::Single).x.velocity.unwrap();
+        assert!((velocity.values[40] - velocity.values[10] - 0.9).abs() < 1e-9);
+        assert_eq!(velocity.high_pass_hz, Some(0.0));
+    }
+
+    #[test]
+    fn valid_a_jump_off_the_middle_of_its_interval_shifts_all_later_samples() {
+        // ω_c = 2π/s, jump from 1 to −1 at a quarter of the interval 10…11, 100 samples per s:
+        // 2π · 2 · (0.25 − 0.5)/100 = −π/100.
+        let mut series = Series {
+            high_pass_hz: Some(1.0),
+            ..Series::clean(vec![0.0; 20])
+        };
+        series.correct_jump(10.25, 1.0, -1.0, 100.0);
+        assert_eq!(series.values[10], 0.0);
+        assert!((series.values[11] + std::f64::consts::PI / 100.0).abs() < 1e-15);
+        assert_eq!(series.values[11], series.values[19]);
     }
 }

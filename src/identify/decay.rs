@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::MethodResult;
 use crate::identify::estimate;
 use crate::identify::fit::parameters::Coordinate;
+use crate::identify::identification::MethodResult;
+use crate::identify::messages::{Item, LeftOut, Reason, Remark};
 use crate::motion::Observation;
 use crate::signal::decay::Decay;
 use crate::signal::robust;
@@ -60,16 +61,11 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         .fold(0.0, f64::max);
     if spread > ONE_OSCILLATOR {
         result.fits = Some(false);
-        result.remarks.push(format!(
-            "the decays' natural frequencies differ by up to {:.1} %: they are not of one oscillator",
-            100.0 * spread
-        ));
+        result.remarks.push(Remark::DecaysDiffer { spread });
     } else if let Some(residual) = residual {
         result.fits = Some(residual < 0.2);
-        result.remarks.push(format!(
-            "the decays leave {:.1} % of the signal unexplained",
-            100.0 * residual
-        ));
+        let share = residual;
+        result.remarks.push(Remark::DecaysUnexplained { share });
     }
     Some(result)
 }
@@ -87,16 +83,13 @@ fn weighted_mean(values: &[(f64, f64)]) -> (f64, f64) {
     (mean, inner.max(outer))
 }
 
-/// Records whose natural frequency is not that of their specimen but that of another: (record,
-/// sentence).
-pub fn misfiled(observations: &[Observation]) -> Vec<(String, String)> {
-    let mut groups: BTreeMap<&str, Vec<(&str, f64)>> = BTreeMap::new();
-    for o in observations {
+/// Records whose natural frequency is not that of their specimen but that of another.
+pub fn misfiled(observations: &[Observation]) -> Vec<LeftOut> {
+    let mut groups: BTreeMap<&str, Vec<(usize, f64)>> = BTreeMap::new();
+    for (index, o) in observations.iter().enumerate() {
         if let (Some(specimen), Some(decay)) = (&o.setting.specimen, &o.decay) {
-            groups
-                .entry(specimen)
-                .or_default()
-                .push((&o.record, decay.natural_frequency_hz));
+            let group = groups.entry(specimen).or_default();
+            group.push((index, decay.natural_frequency_hz));
         }
     }
     let centres: BTreeMap<&str, f64> = groups
@@ -108,7 +101,7 @@ pub fn misfiled(observations: &[Observation]) -> Vec<(String, String)> {
         .collect();
     let mut out = Vec::new();
     for (name, members) in &groups {
-        for (record, f) in members {
+        for (index, f) in members {
             let own = centres[name];
             if members.len() < 3 || (f / own - 1.0).abs() < STRANGE {
                 continue;
@@ -116,20 +109,28 @@ pub fn misfiled(observations: &[Observation]) -> Vec<(String, String)> {
             let other = centres
                 .iter()
                 .filter(|(other, _)| *other != name)
-                .min_by(|a, b| (a.1 / f - 1.0).abs().total_cmp(&(b.1 / f - 1.0).abs()));
-            let like = match other {
-                Some((other, centre)) if (centre / f - 1.0).abs() < 0.5 * STRANGE => {
-                    format!(": it behaves as {other} ({centre:.2} Hz)")
-                }
-                _ => String::new(),
-            };
-            out.push((
-                (*record).to_owned(),
-                format!(
-                    "filed under {name} ({own:.2} Hz) but its natural frequency is {f:.2} Hz{like}; \
-                     it looks misfiled"
-                ),
-            ));
+                .min_by(|a, b| (a.1 / f - 1.0).abs().total_cmp(&(b.1 / f - 1.0).abs()))
+                .filter(|(_, centre)| (*centre / f - 1.0).abs() < 0.5 * STRANGE);
+            out.push(LeftOut {
+                item: Item::Record {
+                    index: *index,
+                    record: observations[*index].record.clone(),
+                },
+                reason: match other {
+                    Some((like, like_hz)) => Reason::MisfiledLike {
+                        specimen: (*name).to_owned(),
+                        specimen_hz: own,
+                        frequency_hz: *f,
+                        like: (*like).to_owned(),
+                        like_hz: *like_hz,
+                    },
+                    None => Reason::Misfiled {
+                        specimen: (*name).to_owned(),
+                        specimen_hz: own,
+                        frequency_hz: *f,
+                    },
+                },
+            });
         }
     }
     out

@@ -1,8 +1,57 @@
-//! From a fit's covariance to estimates with intervals and a status.
+//! Estimates with intervals and a status, from a fit's covariance.
+
+use serde::{Deserialize, Serialize};
 
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::Coordinate;
-use crate::identify::{Estimate, ParameterSet, Status};
+use crate::identify::messages::Note;
+use crate::identify::methods::MethodFit;
+use crate::identify::uncertainty::scatter::Spread;
+
+/// How well the data determine a parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// Well.
+    Identified,
+    /// Poorly; the note states what the estimate depends on.
+    Weak,
+    /// Not at all: there is no value.
+    NotIdentifiable,
+}
+
+/// An estimate of one parameter with its interval.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// Best value in SI; `None` where not identifiable.
+    pub value: Option<f64>,
+    /// Standard error in the same unit.
+    pub standard_error: Option<f64>,
+    /// 95 % interval, low and high.
+    pub interval95: Option<[f64; 2]>,
+    /// How well the data determine it.
+    pub status: Status,
+    /// Why weak or not identifiable.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub note: Option<Note>,
+}
+
+/// The parameters of the oscillator, as far as a method determines them.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct ParameterSet {
+    /// Coefficient of restitution R.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub restitution: Option<Estimate>,
+    /// Natural frequency f0, Hz.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub natural_frequency_hz: Option<Estimate>,
+    /// Damping ratio β = b/(2√(km)).
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub damping_ratio: Option<Estimate>,
+    /// Static deflection x_st = F0/k, m.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub static_deflection_m: Option<Estimate>,
+}
 
 /// 97.5 % point of the normal distribution.
 pub const NORMAL_975: f64 = 1.959_963_984_540_054;
@@ -15,33 +64,36 @@ pub(super) fn limits(coordinate: Coordinate) -> (f64, f64) {
         Coordinate::Frequency => (0.01, 0.08),
         Coordinate::Damping => (0.15, 0.9),
         Coordinate::Deflection => (0.05, 0.5),
-        Coordinate::Gain(_) | Coordinate::Corner(_) => (0.05, 0.5),
-        Coordinate::DriveAsymmetry | Coordinate::StiffnessAsymmetry => (0.05, 0.5),
+        _ => (0.05, 0.5),
     }
 }
 
-/// Estimate of one coordinate from its value and standard error (both of the coordinate).
-pub fn estimate(
+/// Estimate of one coordinate from its value and standard error (both of the coordinate); a weak one
+/// carries the note.
+pub fn estimate(coordinate: Coordinate, value: f64, error: f64, note: Option<Note>) -> Estimate {
+    estimate_within(coordinate, value, Spread::known(error), note)
+}
+
+/// Estimate of one coordinate from its value and how far it may be off.
+pub fn estimate_within(
     coordinate: Coordinate,
     value: f64,
-    error: f64,
-    leans_on: Option<String>,
+    spread: Spread,
+    note: Option<Note>,
 ) -> Estimate {
+    let error = spread.error;
     let (weak, unknown) = limits(coordinate);
     if !error.is_finite() || error >= unknown {
-        return not_identifiable(format!(
-            "the data leave {} open by ± {:.2}{}",
-            coordinate.symbol(),
-            error
-                * if coordinate.is_logarithm() {
-                    100.0
-                } else {
-                    1.0
-                },
-            if coordinate.is_logarithm() { " %" } else { "" },
-        ));
+        let parameter = coordinate;
+        return not_identifiable(match error.is_finite() {
+            true => Note::Open {
+                parameter,
+                standard_error: error,
+            },
+            false => Note::NotDetermined { parameter },
+        });
     }
-    let half = NORMAL_975 * error;
+    let half = spread.half95();
     let (value, standard_error, interval) = if coordinate.is_logarithm() {
         let v = value.exp();
         (v, v * error, [v * (-half).exp(), v * half.exp()])
@@ -62,34 +114,56 @@ pub fn estimate(
         standard_error: Some(standard_error),
         interval95: Some(interval),
         status,
-        note: if status == Status::Weak {
-            leans_on
-        } else {
-            None
-        },
+        note: note.filter(|_| status == Status::Weak),
     }
 }
 
-/// An estimate that says why there is none.
-pub fn not_identifiable(reason: impl Into<String>) -> Estimate {
+/// An estimate that a disagreement of methods leaves further open: by a standard uncertainty, of R
+/// absolute, of the others relative.
+pub fn widened(coordinate: Coordinate, estimate: &Estimate, by: f64) -> Estimate {
+    let (Some(value), Some(error), Some([low, high])) =
+        (estimate.value, estimate.standard_error, estimate.interval95)
+    else {
+        return estimate.clone();
+    };
+    let logarithm = coordinate.is_logarithm();
+    let unit = if logarithm { value } else { 1.0 };
+    let half = (0.5 * (high - low) / unit).hypot(NORMAL_975 * by);
+    let interval = match logarithm {
+        true => [value * (-half).exp(), value * half.exp()],
+        false => [(value - half).max(0.0), (value + half).min(1.0)],
+    };
+    Estimate {
+        value: Some(value),
+        standard_error: Some(error.hypot(by * unit)),
+        interval95: Some(interval),
+        status: Status::Weak,
+        note: Some(Note::MethodsDisagree),
+    }
+}
+
+/// A missing estimate with the reason.
+pub fn not_identifiable(why: Note) -> Estimate {
     Estimate {
         value: None,
         standard_error: None,
         interval95: None,
         status: Status::NotIdentifiable,
-        note: Some(reason.into()),
+        note: Some(why),
     }
 }
 
-/// Estimates of the physical parameters that a fit left free; `factor` multiplies the covariance.
-pub fn parameter_set(fit: &Fit, factor: f64, tells: &[Coordinate]) -> ParameterSet {
+/// Estimates of the physical parameters that a fit left free.
+pub fn parameter_set(found: &MethodFit, tells: &[Coordinate]) -> ParameterSet {
+    let fit = &found.fit;
     let of = |coordinate: Coordinate| {
         if !tells.contains(&coordinate) {
             return None;
         }
-        let error = fit.error(coordinate)? * factor.sqrt();
+        let spread = found.spread(coordinate)?;
         let value = fit.parameters.coordinate(coordinate);
-        Some(estimate(coordinate, value, error, leaning(fit, coordinate)))
+        let note = leaning(fit, coordinate);
+        Some(estimate_within(coordinate, value, spread, note))
     };
     ParameterSet {
         restitution: of(Coordinate::Restitution),
@@ -99,16 +173,18 @@ pub fn parameter_set(fit: &Fit, factor: f64, tells: &[Coordinate]) -> ParameterS
     }
 }
 
-/// On which other parameter an estimate leans, in words.
-fn leaning(fit: &Fit, coordinate: Coordinate) -> Option<String> {
-    let (other, correlation) = fit
+/// The other parameter with which an estimate is strongly correlated.
+fn leaning(fit: &Fit, coordinate: Coordinate) -> Option<Note> {
+    let (parameter, correlation) = fit
         .free
         .iter()
         .filter(|c| **c != coordinate)
         .filter_map(|c| Some((*c, fit.correlation(coordinate, *c)?)))
         .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-    (correlation.abs() > 0.7)
-        .then(|| format!("leans on {} (correlation {correlation:.2})", other.symbol()))
+    (correlation.abs() > 0.7).then_some(Note::LeansOn {
+        parameter,
+        correlation,
+    })
 }
 
 impl ParameterSet {
@@ -132,5 +208,86 @@ impl ParameterSet {
             Coordinate::Deflection => Some(&mut self.static_deflection_m),
             _ => None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::identify::fit::FitReport;
+    use crate::identify::fit::parameters::Parameters;
+
+    #[test]
+    fn valid_an_interval_is_1_96_errors_to_either_side_of_the_coordinate() {
+        let r = estimate(Coordinate::Restitution, 0.8, 0.01, None);
+        assert_eq!(r.status, Status::Identified);
+        let [low, high] = r.interval95.expect("an interval");
+        assert!((low - 0.780_400_36).abs() < 1e-8 && (high - 0.819_599_64).abs() < 1e-8);
+        // of a logarithm: 12 Hz ± 0.5 %, [12·e^−0.0098, 12·e^0.0098]
+        let f = estimate(Coordinate::Frequency, 12f64.ln(), 0.005, None);
+        assert!((f.standard_error.expect("an error") - 0.06).abs() < 1e-12);
+        let [low, high] = f.interval95.expect("an interval");
+        assert!((low - 11.882_976).abs() < 1e-6 && (high - 12.118_176).abs() < 1e-6);
+    }
+
+    #[test]
+    fn r_stays_between_0_and_1() {
+        let near_one = estimate(Coordinate::Restitution, 0.99, 0.02, None);
+        assert_eq!(near_one.interval95.map(|i| i[1]), Some(1.0));
+    }
+
+    #[test]
+    fn an_error_above_its_limit_leaves_no_value_and_a_note() {
+        let weak = estimate(
+            Coordinate::Damping,
+            0.05f64.ln(),
+            0.2,
+            Some(Note::NotSeparable),
+        );
+        assert_eq!(
+            (weak.status, weak.note),
+            (Status::Weak, Some(Note::NotSeparable))
+        );
+        let parameter = Coordinate::Damping;
+        let open = estimate(parameter, 0.05f64.ln(), 0.95, None);
+        let note = Note::Open {
+            parameter,
+            standard_error: 0.95,
+        };
+        assert_eq!((open.value, open.note), (None, Some(note)));
+        let unbounded = estimate(parameter, 0.0, f64::INFINITY, None);
+        assert_eq!(unbounded.note, Some(Note::NotDetermined { parameter }));
+    }
+
+    #[test]
+    fn a_weak_estimate_names_the_parameter_that_it_is_most_correlated_with() {
+        let free = vec![
+            Coordinate::Restitution,
+            Coordinate::Damping,
+            Coordinate::Deflection,
+        ];
+        let covariance =
+            DMatrix::from_row_slice(3, 3, &[1.0, -0.9, 0.2, -0.9, 1.0, 0.1, 0.2, 0.1, 1.0]);
+        let fit = Fit {
+            parameters: Parameters::symmetric(0.8, 12.0, 0.05, 1e-3),
+            free,
+            covariance,
+            cost: 0.0,
+            residuals: 0,
+            report: FitReport::default(),
+        };
+        let note = leaning(&fit, Coordinate::Restitution);
+        let Some(Note::LeansOn {
+            parameter,
+            correlation,
+        }) = note
+        else {
+            panic!("{note:?}");
+        };
+        assert_eq!(parameter, Coordinate::Damping);
+        assert!((correlation + 0.9).abs() < 1e-12);
+        assert_eq!(leaning(&fit, Coordinate::Deflection), None);
     }
 }

@@ -1,10 +1,12 @@
 //! The methods, each alone: boundaries, trajectories, impacts, resonance.
 
-use crate::identify::MethodResult;
 use crate::identify::estimate;
 use crate::identify::evidence::{Blocks, Nominal};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Fit, FitError, Prior, Problem, mean_squares};
+use crate::identify::identification::MethodResult;
+use crate::identify::messages::{Note, Remark};
+use crate::identify::uncertainty::scatter::{self, Scatter, Spread};
 
 /// Very wide priors that keep the equations regular where the data say nothing.
 pub fn wide_priors(start: &Parameters, free: &[Coordinate]) -> Vec<Prior> {
@@ -34,16 +36,33 @@ pub struct MethodFit {
     pub factor: f64,
     /// Reduced sum of squares as it came out.
     pub reduced: f64,
+    /// Scatter between groups of records beyond it.
+    pub scatter: Scatter,
 }
 
-/// A fit that was tried.
-pub type Tried = Result<MethodFit, FitError>;
+impl MethodFit {
+    /// Of a fit of a problem, judged with degrees of freedom.
+    pub fn of(problem: &Problem<'_>, fit: Fit, freedom: usize) -> Self {
+        let reduced = fit.cost / freedom.max(1) as f64;
+        Self {
+            factor: reduced.max(1.0),
+            reduced,
+            scatter: scatter::scatter(problem, &fit),
+            fit,
+        }
+    }
 
-/// A fit where there may have been nothing to fit: `None`.
-pub type Attempt = Option<Tried>;
+    /// Standard error of a coordinate by all that is allowed for; `None` where it was not free.
+    pub fn spread(&self, coordinate: Coordinate) -> Option<Spread> {
+        self.scatter.spread(&self.fit, self.factor, coordinate)
+    }
+}
 
-/// The fit, where it was tried and succeeded.
-pub fn succeeded(attempt: &Attempt) -> Option<&MethodFit> {
+/// A method's fit, or why there is none; `None` in its place if there was nothing to fit.
+pub type FitResult = Result<MethodFit, FitError>;
+
+/// The fit, if there is one.
+pub fn succeeded(attempt: &Option<FitResult>) -> Option<&MethodFit> {
     attempt.as_ref().and_then(|a| a.as_ref().ok())
 }
 
@@ -53,7 +72,7 @@ pub fn fit_blocks(
     free: Vec<Coordinate>,
     priors: Vec<Prior>,
     start: Parameters,
-) -> Tried {
+) -> FitResult {
     let problem = Problem {
         blocks,
         priors,
@@ -61,17 +80,12 @@ pub fn fit_blocks(
     };
     let fit = problem.fit(start)?;
     let informed = problem.free.len().saturating_sub(problem.priors.len());
-    let freedom = fit.residuals.saturating_sub(informed).max(1) as f64;
-    let reduced = fit.cost / freedom;
-    Ok(MethodFit {
-        factor: reduced.max(1.0),
-        reduced,
-        fit,
-    })
+    let freedom = fit.residuals.saturating_sub(informed);
+    Ok(MethodFit::of(&problem, fit, freedom))
 }
 
 /// f0, β and x_st from the impactless records; the gains' uncertainty enters x_st.
-pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Attempt {
+pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<FitResult> {
     if blocks.resonance.points.len() < 3 {
         return None;
     }
@@ -82,7 +96,8 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Attempt {
     ];
     let list: [(&dyn Block, f64); 1] = [(&blocks.resonance, 1.0)];
     let mut priors = Vec::new();
-    blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
+    let told = free.clone();
+    blocks.add_nuisances(&nominal.ideal(), &list, (&mut free, &mut priors));
     let best = starts(blocks, nominal)
         .into_iter()
         .filter_map(|start| {
@@ -91,7 +106,13 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Attempt {
             fit_blocks(list.to_vec(), free.clone(), priors, start).ok()
         })
         .min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
-    Some(best.ok_or(FitError::Singular))
+    let Some(best) = best else {
+        return Some(Err(FitError::Singular));
+    };
+    let start = best.fit.parameters;
+    let (mut free, mut priors) = (told.clone(), wide_priors(&start, &told));
+    blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
+    Some(fit_blocks(list.to_vec(), free, priors, start))
 }
 
 /// Starting values of the resonance curve: the stated ones, and a coarse grid whose deflection
@@ -113,7 +134,7 @@ fn starts(blocks: &Blocks, nominal: &Nominal) -> Vec<Parameters> {
     for f0 in grid {
         for beta in [0.01, 0.05, 0.2] {
             let beta = nominal.damping_ratio.unwrap_or(beta);
-            let unit = Parameters::symmetric(0.8, f0, beta, 1.0);
+            let unit = nominal.applied(Parameters::symmetric(0.8, f0, beta, 1.0));
             out.push(Parameters {
                 static_deflection_m: deflection_guess(blocks, &unit),
                 ..unit
@@ -150,7 +171,7 @@ fn deflection_guess(blocks: &Blocks, unit: &Parameters) -> f64 {
 }
 
 /// R alone from the speeds at impacts, with the corners of the velocities' high-pass as nuisances.
-pub fn impacts(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt {
+pub fn impacts(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
     if blocks.impact.pairs.len() < 3 {
         return None;
     }
@@ -161,7 +182,7 @@ pub fn impacts(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt
 }
 
 /// s2, s1 and grazing brackets, with f0, β and x_st from the impactless records beside them.
-pub fn boundaries(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt {
+pub fn boundaries(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
     if blocks.boundary.brackets.is_empty() {
         return None;
     }
@@ -179,7 +200,7 @@ pub fn boundaries(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Atte
 }
 
 /// All four parameters from the folded waveforms.
-pub fn trajectories(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt {
+pub fn trajectories(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
     if blocks.trajectory.records.is_empty() {
         return None;
     }
@@ -187,7 +208,7 @@ pub fn trajectories(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> At
 }
 
 /// R, f0, β and x_st from one block alone, with the nuisances beside them.
-fn all_four(block: &dyn Block, blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Tried {
+fn all_four(block: &dyn Block, blocks: &Blocks, nominal: &Nominal, start: Parameters) -> FitResult {
     let mut free = Coordinate::PHYSICAL.to_vec();
     let mut priors = wide_priors(&start, &free);
     let list = vec![(block, 1.0)];
@@ -201,7 +222,7 @@ fn all_four(block: &dyn Block, blocks: &Blocks, nominal: &Nominal, start: Parame
 const SHARED_IN_FLIGHTS: f64 = 2.0;
 
 /// All four parameters from the states at the impacts of records without a closed-form orbit.
-pub fn flights(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt {
+pub fn flights(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
     if blocks.flight.records.is_empty() {
         return None;
     }
@@ -214,31 +235,30 @@ pub fn flights(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Attempt
 
 /// A method's result from its fit.
 pub fn result(
-    tried: &Tried,
+    fitted: &FitResult,
     tells: &[Coordinate],
     observations: usize,
     records: usize,
 ) -> MethodResult {
-    match tried {
+    match fitted {
         Ok(found) => {
             let mut result = MethodResult {
-                parameters: estimate::parameter_set(&found.fit, found.factor, tells),
+                parameters: estimate::parameter_set(found, tells),
                 observations,
                 records,
                 reduced_residual: Some(found.reduced.sqrt()),
+                fit_report: Some(found.fit.report.clone()),
                 ..MethodResult::default()
             };
             for coordinate in &found.fit.free {
                 if Coordinate::PHYSICAL.contains(coordinate) {
                     continue;
                 }
-                let error = found.fit.error(*coordinate).unwrap_or(f64::INFINITY);
-                let error = error * found.factor.sqrt();
+                let unknown = Spread::known(f64::INFINITY);
+                let spread = found.spread(*coordinate).unwrap_or(unknown);
                 let value = found.fit.parameters.coordinate(*coordinate);
-                result.further.insert(
-                    coordinate.name().into(),
-                    estimate::estimate(*coordinate, value, error, None),
-                );
+                let estimate = estimate::estimate_within(*coordinate, value, spread, None);
+                result.further.insert(*coordinate, estimate);
             }
             result
         }
@@ -250,10 +270,11 @@ pub fn result(
             };
             for coordinate in tells {
                 if let Some(slot) = result.parameters.slot(*coordinate) {
-                    *slot = Some(estimate::not_identifiable(error.to_string()));
+                    *slot = Some(estimate::not_identifiable(Note::from(error)));
                 }
             }
-            result.remarks.push(error.to_string());
+            let why = Note::from(error);
+            result.remarks.push(Remark::NoResult { why });
             result
         }
     }

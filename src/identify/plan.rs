@@ -7,11 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::trajectory::{TrajectoryBlock, TrajectoryRecord, distinct_phases};
+use crate::identify::fit::effect::Effects;
 use crate::identify::fit::normal::inverse;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::identify::fit::{Fit, Problem};
 use crate::motion::Observation;
-use crate::motion::fold::{Folded, FoldedChannel, FoldedPoint};
+use crate::motion::{Folded, FoldedChannel, FoldedPoint};
 use crate::record::Role;
 use crate::signal::robust;
 use impact_oscillator::model::orbit::{Orbit, stable_orbit};
@@ -170,8 +171,10 @@ fn information(evidence: &Evidence, fit: &Fit, record: TrajectoryRecord) -> Opti
         rig: evidence.rig,
         records: vec![record],
         relative_error: 1e-6,
+        effects: Effects::none(),
+        reach_m: 1.0,
     };
-    block.find_shared_errors(&fit.parameters);
+    block.find_changes(&fit.parameters);
     let problem = Problem {
         blocks: vec![(&block, 1.0)],
         priors: Vec::new(),
@@ -272,10 +275,16 @@ impl UsualRecord {
             drive_amplitude: 1.0,
             phases: distinct_phases(&folded),
             folded,
-            closing_speed_m_s: orbit.closing_speed * speed,
+            closing_speed_m_s: orbit.approach_speed * speed,
             frequency_error: self.frequency_error,
             phase_error_rad: self.phase_error_rad,
+            gap: None,
+            lone_clearance_error_m: 0.0,
+            place: 0.0,
+            group: 0,
+            press_per_s: 0.0,
             shared: Vec::new(),
+            perturbations: Vec::new(),
         }
     }
 }

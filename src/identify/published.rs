@@ -7,9 +7,13 @@ use argmin::core::{CostFunction, Executor};
 use argmin::solver::brent::BrentOpt;
 use serde::Deserialize;
 
-use crate::identify::estimate::{NORMAL_975, estimate};
+use crate::identify::estimate::{NORMAL_975, estimate, not_identifiable};
 use crate::identify::fit::parameters::Coordinate;
-use crate::identify::{Agreement, MethodResult, Verdict, VerdictKind};
+use crate::identify::identification::{
+    Agreement, Identification, MethodResult, Verdict, VerdictKind,
+};
+use crate::identify::messages::{Finding, Note, PublishedSetting, Remark, Sentence};
+use crate::identify::method::Method;
 use impact_oscillator::model::orbit::Branch;
 use impact_oscillator::model::params::Machine;
 
@@ -52,7 +56,7 @@ fn speed_at(published: &PublishedSpeed, damping_ratio: f64, eta: f64) -> Option<
     let branch = Branch::new(&machine, eta, 1);
     let gap = machine.gap(published.clearance_ratio);
     branch
-        .closing_speeds(published.restitution, gap)
+        .approach_speeds(published.restitution, gap)
         .map(|[_, larger]| larger)
 }
 
@@ -123,70 +127,68 @@ fn best(speeds: &[PublishedSpeed]) -> Option<f64> {
     Some(log.exp())
 }
 
-/// What the published speeds tell, and whether printed damping ratios fit them.
-#[derive(Debug, Clone)]
-pub struct PublishedOutcome {
-    /// The method's result.
-    pub result: MethodResult,
-    /// The verdict.
-    pub verdict: Verdict,
-    /// Sentences on each hypothesis.
-    pub hypotheses: Vec<String>,
-}
+/// Greatest relative deviation of a speed at which a damping ratio fits them.
+const FITTING: f64 = 0.01;
 
 /// Identify β from published speeds and test printed values of it.
-pub fn identify(speeds: &[PublishedSpeed], hypotheses: &[f64]) -> PublishedOutcome {
+pub fn identify(speeds: &[PublishedSpeed], printed: &[f64]) -> Identification {
     let mut result = MethodResult {
         observations: speeds.len(),
         ..MethodResult::default()
     };
     let Some(beta) = best(speeds) else {
-        result.parameters.damping_ratio = Some(crate::identify::estimate::not_identifiable(
-            "no damping ratio gives all of these motions",
-        ));
-        return outcome(result, VerdictKind::DoesNotFit, Vec::new());
+        result.parameters.damping_ratio = Some(not_identifiable(Note::NoPublishedMotion));
+        return identification(
+            result,
+            Verdict {
+                kind: VerdictKind::DoesNotFit,
+                sentences: vec![Sentence::NoPublishedDamping],
+                findings: Vec::new(),
+            },
+        );
     };
     let squares = cost(speeds, beta).unwrap_or(f64::INFINITY);
     let factor = (squares / speeds.len().saturating_sub(1).max(1) as f64).max(1.0);
     let error = log_error(speeds, beta) * factor.sqrt();
-    result.parameters.damping_ratio = Some(estimate(Coordinate::Damping, beta.ln(), error, None));
-    result.reduced_residual = Some(factor.sqrt());
-    let worst = worst_deviation(speeds, beta);
-    result.fits = Some(worst < 0.01);
-    result.remarks.push(format!(
-        "with β = {beta:.4} the speeds are met within {:.2} %",
-        100.0 * worst
-    ));
-    let hypotheses: Vec<String> = hypotheses
-        .iter()
-        .map(|h| judge(speeds, *h, (beta, error)))
-        .collect();
-    let kind = if worst < 0.01 {
-        VerdictKind::Identified
-    } else {
-        VerdictKind::DoesNotFit
+    let estimate = estimate(Coordinate::Damping, beta.ln(), error, None);
+    let sentence = match estimate.value {
+        Some(damping_ratio) => Sentence::PublishedDamping { damping_ratio },
+        None => Sentence::NoPublishedDamping,
     };
-    outcome(result, kind, hypotheses)
+    result.parameters.damping_ratio = Some(estimate);
+    result.reduced_residual = Some(factor.sqrt());
+    // `best` finds only ratios with which every speed has a motion
+    let deviation = worst_deviation(speeds, beta).unwrap_or(f64::MAX);
+    let fits = deviation < FITTING;
+    result.fits = Some(fits);
+    result.remarks.push(Remark::PublishedSpeedsMet {
+        damping_ratio: beta,
+        deviation,
+    });
+    let judged = printed.iter().map(|p| judge(speeds, *p, (beta, error)));
+    let verdict = Verdict {
+        kind: match fits {
+            true => VerdictKind::Identified,
+            false => VerdictKind::DoesNotFit,
+        },
+        sentences: vec![sentence],
+        findings: judged.collect(),
+    };
+    identification(result, verdict)
 }
 
-fn outcome(result: MethodResult, kind: VerdictKind, hypotheses: Vec<String>) -> PublishedOutcome {
-    let value = result
-        .parameters
-        .damping_ratio
-        .as_ref()
-        .and_then(|e| e.value);
-    let summary = match value {
-        Some(beta) => format!("The published speeds belong to a damping ratio β of {beta:.4}."),
-        None => "No damping ratio gives the published speeds.".to_owned(),
-    };
-    PublishedOutcome {
-        verdict: Verdict {
-            kind,
-            summary,
-            findings: hypotheses.clone(),
-        },
-        result,
-        hypotheses,
+fn identification(result: MethodResult, verdict: Verdict) -> Identification {
+    Identification {
+        verdict,
+        joint: result.clone(),
+        methods: BTreeMap::from([(Method::PublishedSpeeds, result)]),
+        agreement: Agreement::default(),
+        uncertainty: Default::default(),
+        suspicions: Vec::new(),
+        left_out: Vec::new(),
+        used_by: BTreeMap::new(),
+        joint_fit: None,
+        specimens: BTreeMap::new(),
     }
 }
 
@@ -204,50 +206,38 @@ fn log_error(speeds: &[PublishedSpeed], beta: f64) -> f64 {
     information.sqrt().recip()
 }
 
-fn worst_deviation(speeds: &[PublishedSpeed], beta: f64) -> f64 {
+/// Greatest relative deviation of a speed; `None` where one has no motion.
+fn worst_deviation(speeds: &[PublishedSpeed], beta: f64) -> Option<f64> {
+    let deviation =
+        |s: &PublishedSpeed| Some((predicted(s, beta)? / s.closing_speed_ratio - 1.0).abs());
     speeds
         .iter()
-        .map(|s| match predicted(s, beta) {
-            Some(speed) => (speed / s.closing_speed_ratio - 1.0).abs(),
-            None => f64::INFINITY,
-        })
-        .fold(0.0, f64::max)
+        .map(deviation)
+        .try_fold(0.0, |worst: f64, d| Some(worst.max(d?)))
 }
 
-/// Whether a printed damping ratio fits, in one sentence.
-fn judge(speeds: &[PublishedSpeed], printed: f64, (beta, error): (f64, f64)) -> String {
-    let missing: Vec<String> = speeds
+/// Whether a printed damping ratio fits.
+fn judge(speeds: &[PublishedSpeed], printed: f64, (beta, error): (f64, f64)) -> Finding {
+    let settings: Vec<PublishedSetting> = speeds
         .iter()
         .filter(|s| speed_at(s, printed, s.frequency_ratio).is_none())
-        .map(|s| format!("R = {} at η = {}", s.restitution, s.frequency_ratio))
+        .map(|s| PublishedSetting {
+            restitution: s.restitution,
+            frequency_ratio: s.frequency_ratio,
+        })
         .collect();
-    let worst = worst_deviation(speeds, printed);
     let far = (printed / beta).ln().abs() > NORMAL_975 * error;
-    if missing.is_empty() && !far {
-        return format!("The printed β = {printed} fits the speeds.");
+    match worst_deviation(speeds, printed) {
+        Some(deviation) if settings.is_empty() => match far {
+            true => Finding::PrintedDampingDoesNotFit { printed, deviation },
+            false => Finding::PrintedDampingFits { printed },
+        },
+        deviation => Finding::PrintedDampingWithoutMotion {
+            printed,
+            deviation,
+            settings,
+        },
     }
-    let orbits = match missing.as_slice() {
-        [] => String::new(),
-        list => format!(
-            "; the motion for {} does not exist with it",
-            list.join(" and ")
-        ),
-    };
-    format!(
-        "The printed β = {printed} does not fit: a speed is off by {:.1} %{orbits}.",
-        100.0 * worst
-    )
-}
-
-/// Methods and agreement as an identification holds them.
-pub fn methods(outcome: &PublishedOutcome) -> (BTreeMap<String, MethodResult>, Agreement) {
-    let methods = [("published_speeds".to_owned(), outcome.result.clone())].into();
-    let agreement = Agreement {
-        agree: None,
-        summary: "Only one method tells each parameter.".into(),
-        pairs: Vec::new(),
-    };
-    (methods, agreement)
 }
 
 #[cfg(test)]
@@ -277,18 +267,17 @@ mod tests {
     #[test]
     fn valid_the_papers_speeds_belong_to_a_damping_ratio_of_0_005() {
         let found = identify(&paper(), &[0.02, 0.002]);
-        let beta = found.result.parameters.damping_ratio.unwrap();
+        let beta = found.joint.parameters.damping_ratio.unwrap();
         assert!((beta.value.unwrap() - 0.005).abs() < 5e-4, "{beta:?}");
         assert_eq!(found.verdict.kind, VerdictKind::Identified);
+        let findings = &found.verdict.findings;
         assert!(
-            found.hypotheses.iter().all(|h| h.contains("does not fit")),
-            "{:?}",
-            found.hypotheses
+            matches!(findings[0], Finding::PrintedDampingWithoutMotion { .. }),
+            "{findings:?}"
         );
         assert!(
-            found.hypotheses[0].contains("does not exist"),
-            "{:?}",
-            found.hypotheses
+            !matches!(findings[1], Finding::PrintedDampingFits { .. }),
+            "{findings:?}"
         );
     }
 }

@@ -184,7 +184,7 @@ fn cycle_shift(simulator: &Simulator, o: &Observation, stretch: &Stretch, settin
     let simulated: Vec<(f64, f64)> = run
         .impacts
         .iter()
-        .map(|i| ((i.tau - begin) / setting.period(), i.closing_before))
+        .map(|i| ((i.tau - begin) / setting.period(), i.approach_speed))
         .collect();
     let measured: Vec<(f64, f64)> = o
         .impacts

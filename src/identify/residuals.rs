@@ -3,6 +3,7 @@
 use crate::identify::evidence::{Blocks, Evidence};
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::Parameters;
+use crate::identify::method::Method;
 use crate::signal::robust;
 
 /// Lags of the autocorrelation.
@@ -13,8 +14,8 @@ const FEWEST: usize = 5;
 /// The residuals of one method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MethodResiduals {
-    /// The method: `resonance`, `trajectories` or `impacts`.
-    pub method: &'static str,
+    /// The method: resonance, trajectories or impacts.
+    pub method: Method,
     /// Each residual over its standard error, with the index of its observation.
     pub residuals: Vec<(usize, f64)>,
     /// Their autocorrelation at lags 0, 1, 2 … up to twenty.
@@ -48,9 +49,13 @@ pub fn residuals(
         }
     };
     let all = [
-        of("resonance", &blocks.resonance, resonance.collect()),
-        of("trajectories", &blocks.trajectory, trajectory.collect()),
-        of("impacts", &blocks.impact, impact.collect()),
+        of(Method::Resonance, &blocks.resonance, resonance.collect()),
+        of(
+            Method::Trajectories,
+            &blocks.trajectory,
+            trajectory.collect(),
+        ),
+        of(Method::Impacts, &blocks.impact, impact.collect()),
     ];
     let enough = |m: &MethodResiduals| m.residuals.len() >= FEWEST;
     all.into_iter().filter(enough).collect()

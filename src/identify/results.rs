@@ -2,16 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::evidence::{Blocks, Evidence, IMPACT_BIAS};
+use crate::identify::diagnostics::{contact_law, verdict};
+use crate::identify::evidence::impacts::SpeedPair;
+use crate::identify::evidence::{Blocks, Evidence, impact_bias};
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::judgement::{contact_law, verdict};
-use crate::identify::methods::{self, Attempt, Tried};
+use crate::identify::methods::{self, FitResult};
 use crate::identify::uncertainty::posterior::Posterior;
-use crate::identify::{Estimate, MethodResult, OutlyingImpact, estimate, middles};
+use crate::identify::{Estimate, Item, Method, MethodResult, Remark, bracket_midpoints, estimate};
 
 /// f0, β and x_st from the impactless records.
-pub fn resonance(blocks: &Blocks, tried: &Tried) -> MethodResult {
+pub fn resonance(blocks: &Blocks, fitted: &FitResult) -> MethodResult {
     let tells = [
         Coordinate::Frequency,
         Coordinate::Damping,
@@ -19,8 +20,8 @@ pub fn resonance(blocks: &Blocks, tried: &Tried) -> MethodResult {
     ];
     let block = &blocks.resonance;
     let observations = block.points.iter().map(|p| 2 * p.responses.len()).sum();
-    let mut result = methods::result(tried, &tells, observations, block.points.len());
-    if let Ok(fit) = tried {
+    let mut result = methods::result(fitted, &tells, observations, block.points.len());
+    if let Ok(fit) = fitted {
         verdict::judge_resonance(&mut result, block, &fit.fit.parameters);
     }
     result
@@ -30,11 +31,11 @@ pub fn resonance(blocks: &Blocks, tried: &Tried) -> MethodResult {
 /// judged with the corners of the velocities' high-pass as all data together have them.
 pub fn impacts(
     blocks: &Blocks,
-    tried: &Tried,
+    fitted: &FitResult,
     evidence: &Evidence,
     together: Option<&Fit>,
 ) -> MethodResult {
-    let fit = together.or(tried.as_ref().ok().map(|a| &a.fit));
+    let fit = together.or(fitted.as_ref().ok().map(|a| &a.fit));
     let block = &match fit {
         Some(fit) => blocks.impact.corrected(&fit.parameters),
         None => blocks.impact.clone(),
@@ -42,71 +43,56 @@ pub fn impacts(
     let mut records: Vec<usize> = block.pairs.iter().map(|p| p.observation).collect();
     records.dedup();
     let mut result = methods::result(
-        tried,
+        fitted,
         &[Coordinate::Restitution],
         block.pairs.len(),
         records.len(),
     );
     if let Some(estimate) = &mut result.parameters.restitution {
-        widen(estimate, IMPACT_BIAS);
+        widen(
+            estimate,
+            fit.map_or(0.0, |fit| impact_bias(&fit.parameters)),
+        );
     }
-    result.outlying_impacts = outlying(blocks, evidence);
-    result.remarks.extend(told(&result.outlying_impacts));
+    result.remarks.extend(outlying(blocks, evidence));
     result.contact_law = contact_law::contact_law(block);
     verdict::judge_impacts(&mut result, block, evidence);
     result
 }
 
-/// Impacts that were left out, by their records' names.
-fn outlying(blocks: &Blocks, evidence: &Evidence) -> Vec<OutlyingImpact> {
-    let pairs = blocks.impact_outliers.iter();
-    pairs
-        .map(|pair| OutlyingImpact {
-            record: evidence.observations[pair.observation].record.clone(),
-            time_s: pair.time_s,
-            before_m_s: pair.before_m_s,
-            after_m_s: pair.after_m_s,
-        })
-        .collect()
-}
-
-/// Outlying impacts that a remark names; `identification.json` names all.
+/// Outlying impacts that a remark names; `left_out` names all.
 const NAMED: usize = 3;
 
-fn told(outlying: &[OutlyingImpact]) -> Option<String> {
-    let named: Vec<String> = outlying
-        .iter()
-        .take(NAMED)
-        .map(|i| format!("{} at {:.3} s", i.record, i.time_s))
-        .collect();
-    let count = outlying.len();
-    if count == 0 {
-        return None;
+/// The impacts that were left out.
+fn outlying(blocks: &Blocks, evidence: &Evidence) -> Option<Remark> {
+    let outlying = &blocks.impact_outliers;
+    let first = outlying.iter().take(NAMED);
+    (!outlying.is_empty()).then(|| Remark::OutlyingImpacts {
+        count: outlying.len(),
+        first: first.map(|pair| impact(pair, evidence)).collect(),
+    })
+}
+
+/// An impact of a record.
+pub fn impact(pair: &SpeedPair, evidence: &Evidence) -> Item {
+    Item::Impact {
+        index: pair.observation,
+        record: evidence.observations[pair.observation].record.clone(),
+        time_s: pair.time_s,
     }
-    let more = if count > NAMED {
-        ", … (all in identification.json)"
-    } else {
-        ""
-    };
-    let which = named.join(", ");
-    let lie = match count {
-        1 => "1 impact lies far from the bulk and was left out".to_owned(),
-        _ => format!("{count} impacts lie far from the bulk and were left out"),
-    };
-    Some(format!("{lie}: {which}{more}"))
 }
 
 /// All four parameters from the waveforms.
-pub fn trajectories(blocks: &Blocks, tried: &Tried, evidence: &Evidence) -> MethodResult {
+pub fn trajectories(blocks: &Blocks, fitted: &FitResult, evidence: &Evidence) -> MethodResult {
     let block = &blocks.trajectory;
-    let observations = tried.as_ref().map_or(0, |f| f.fit.residuals);
+    let observations = fitted.as_ref().map_or(0, |f| f.fit.residuals);
     let mut result = methods::result(
-        tried,
+        fitted,
         &Coordinate::PHYSICAL,
         observations,
         block.records.len(),
     );
-    if let Ok(fit) = tried {
+    if let Ok(fit) = fitted {
         verdict::judge_trajectories(&mut result, block, &fit.fit.parameters);
     }
     result.remarks.extend(thinned(evidence));
@@ -114,42 +100,43 @@ pub fn trajectories(blocks: &Blocks, tried: &Tried, evidence: &Evidence) -> Meth
 }
 
 /// All four parameters from records that are shot from impact to impact.
-pub fn flights(blocks: &Blocks, tried: &Tried) -> MethodResult {
+pub fn flights(blocks: &Blocks, fitted: &FitResult) -> MethodResult {
     let records = &blocks.flight.records;
     let impacts = records.iter().map(|r| r.nodes.len()).sum();
-    let mut result = methods::result(tried, &Coordinate::PHYSICAL, impacts, records.len());
+    let mut result = methods::result(fitted, &Coordinate::PHYSICAL, impacts, records.len());
     if let Some(reduced) = result.reduced_residual {
-        result.remarks.push(format!(
-            "from impact to impact, the states deviate {reduced:.1} times their errors"
-        ));
+        result
+            .remarks
+            .push(Remark::StatesDeviate { ratio: reduced });
     }
     result
 }
 
 /// How many waveforms the trajectories rest on where not all were kept.
-fn thinned(evidence: &Evidence) -> Option<String> {
+fn thinned(evidence: &Evidence) -> Option<Remark> {
     let periodic = evidence.observations.iter().filter(|o| {
         let pair = o.classification.impacts_and_periods();
         !o.excluded() && pair.is_some_and(|(impacts_p, _)| impacts_p == 1)
     });
     let (kept, let_go): (Vec<_>, Vec<_>) = periodic.partition(|o| o.folded.is_some());
-    (3 * let_go.len() > kept.len()).then(|| {
-        let all = kept.len() + let_go.len();
-        format!(
-            "waveforms of {} of {all} periodic records are fitted, evenly chosen",
-            kept.len()
-        )
+    (3 * let_go.len() > kept.len()).then(|| Remark::WaveformsThinned {
+        fitted: kept.len(),
+        periodic: kept.len() + let_go.len(),
     })
 }
 
 /// R from the brackets, by its posterior where the resonance curve tells the rest.
-pub fn boundaries(blocks: &Blocks, tried: &Tried, posterior: Option<&Posterior>) -> MethodResult {
+pub fn boundaries(
+    blocks: &Blocks,
+    fitted: &FitResult,
+    posterior: Option<&Posterior>,
+) -> MethodResult {
     let brackets = blocks.boundary.brackets.len();
-    let tells = match tried {
+    let tells = match fitted {
         Ok(found) => found.fit.free.clone(),
         Err(_) => Coordinate::PHYSICAL.to_vec(),
     };
-    let mut result = methods::result(tried, &tells, brackets, 2 * brackets);
+    let mut result = methods::result(fitted, &tells, brackets, 2 * brackets);
     if let Some(posterior) = posterior {
         let (value, error) = posterior.restitution;
         let mut estimate = estimate::estimate(Coordinate::Restitution, value, error, None);
@@ -162,49 +149,44 @@ pub fn boundaries(blocks: &Blocks, tried: &Tried, posterior: Option<&Posterior>)
             error,
             None,
         ));
-        let about = tried.as_ref().ok().map(|found| Parameters {
+        let about = fitted.as_ref().ok().map(|found| Parameters {
             restitution: posterior.restitution.0,
             ..found.fit.parameters
         });
-        let middles = about.and_then(|at| middles::restitution(&blocks.boundary, &at));
-        result.remarks.extend(middles.as_ref().and_then(in_words));
-        let named = middles.map(|estimate| ("restitution_by_middles".to_owned(), estimate));
-        result.further.extend(named);
+        let midpoints = about.and_then(|at| bracket_midpoints::restitution(&blocks.boundary, &at));
+        result
+            .remarks
+            .extend(midpoints.as_ref().and_then(by_midpoints));
+        result.restitution_by_midpoints = midpoints;
     }
     result
 }
 
-fn in_words(middles: &Estimate) -> Option<String> {
-    let (value, error) = (middles.value?, middles.standard_error?);
-    Some(format!(
-        "plain least squares on the middles of the s2 brackets: R = {value:.3} ± {:.3}",
-        estimate::NORMAL_975 * error
-    ))
+fn by_midpoints(estimate: &Estimate) -> Option<Remark> {
+    Some(Remark::BracketMidpoints {
+        restitution: estimate.value?,
+        half_width: estimate::NORMAL_975 * estimate.standard_error?,
+    })
 }
 
-/// The joint result with its fit and the factor on its covariance; without one, what the free
-/// decays tell.
+/// The joint result; without a joint fit, what the free decays determine.
 pub fn joint(
     evidence: &Evidence,
-    attempt: Attempt,
-    methods: &BTreeMap<String, MethodResult>,
-) -> (MethodResult, Option<Fit>, f64) {
+    attempt: Option<&FitResult>,
+    methods: &BTreeMap<Method, MethodResult>,
+) -> MethodResult {
     let Some(attempt) = attempt else {
-        let only = methods.get("free_decay").cloned().unwrap_or_default();
-        return (only, None, 1.0);
+        let only = methods.get(&Method::FreeDecay);
+        return only.cloned().unwrap_or_default();
     };
-    let tells: Vec<Coordinate> = match &attempt {
+    let tells: Vec<Coordinate> = match attempt {
         Ok(found) => found.fit.free.clone(),
         Err(_) => Coordinate::PHYSICAL.to_vec(),
     };
     let observations = evidence.observations.iter();
     let records = observations.filter(|o| !o.excluded()).count();
     let observations = attempt.as_ref().map_or(0, |f| f.fit.residuals);
-    let result = methods::result(&attempt, &tells, observations, records);
-    match attempt {
-        Ok(found) => (result, Some(found.fit), found.factor),
-        Err(_) => (result, None, 1.0),
-    }
+    methods::result(attempt, &tells, observations, records)
 }
 
 /// Add a systematic part to the standard error of R.

@@ -2,96 +2,144 @@
 
 use std::collections::BTreeMap;
 
+use crate::identify::diagnostics::agreement::{agreement, between_methods};
+use crate::identify::diagnostics::beyond;
+use crate::identify::diagnostics::suspicion::{self, OddGap};
+use crate::identify::diagnostics::swapped_channels;
+use crate::identify::diagnostics::verdict::{self, Basis};
 use crate::identify::evidence::{Blocks, Evidence};
+use crate::identify::fit::Problem;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::{Fit, Problem};
-use crate::identify::joint::{self, Method, Weights};
-use crate::identify::judgement::agreement::agreement;
-use crate::identify::judgement::interchange;
-use crate::identify::judgement::suspicion::{self, OddGap, Suspicion};
-use crate::identify::judgement::verdict::{self, Findings};
-use crate::identify::methods::{self, Attempt, succeeded};
+use crate::identify::identification::{Identification, JointFit, MethodResult};
+use crate::identify::joint::{self, Weights};
+use crate::identify::messages::{Finding, LeftOut, Reason};
+use crate::identify::method::Method;
+use crate::identify::methods::{self, FitResult, succeeded};
 use crate::identify::selection::Selection;
+use crate::identify::uncertainty::budget;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
-use crate::identify::{Agreement, MethodResult, Verdict, decay, results};
+use crate::identify::{decay, estimate, results};
 
-/// What an identification leads to; settings, versions and hashes are the caller's to add.
-#[derive(Debug, Clone)]
-pub struct Outcome {
-    /// The verdict.
-    pub verdict: Verdict,
-    /// All methods together.
-    pub joint: MethodResult,
-    /// Each method alone.
-    pub methods: BTreeMap<String, MethodResult>,
-    /// Whether they agree.
-    pub agreement: Agreement,
-    /// The joint fit, for simulation beside the measurement; `None` without one.
-    pub fit: Option<Fit>,
-    /// Factor on the joint fit's covariance.
-    pub factor: f64,
-    /// Records or impacts that were left out of a fit, each with the reason.
-    pub left_out: Vec<(String, String)>,
-    /// Mistakes of the laboratory that the data give away.
-    pub suspicions: Vec<Suspicion>,
-    /// What each method contributed, profiles and bootstrap.
-    pub uncertainty: Uncertainty,
-}
-
-/// Identify from observations and brackets.
-pub fn identify(evidence: &Evidence) -> Outcome {
-    let mut work = Work {
+/// Identify from observations and brackets, as records of one specimen.
+///
+/// What cannot be identified has no value but a note; what was left out of the fits is in `left_out`.
+///
+/// # Examples
+///
+/// Records of a simulated rig whose masses never touch determine f0, β and x_st, but not R:
+///
+/// ```
+/// use impactid::event::{DetectSettings, RigKind};
+/// use impactid::identify::evidence::{Evidence, Nominal};
+/// use impactid::identify::run::identify;
+/// use impactid::identify::{Method, Status};
+/// use impactid::motion::{ClassifySettings, observe};
+/// use impactid::record::Sweep;
+/// use impactid::synthetic::run::calibrated;
+/// use impactid::synthetic::{Effects, Faults, Laboratory, Plan, Step, Truth, records};
+///
+/// let truth = Truth::symmetric(0.8, 12.0, 0.05, 1e-3);
+/// let step = |i: u32| Step {
+///     frequency_hz: 9.0 + 0.5 * f64::from(i),
+///     clearance_m: 20e-3,
+///     sweep: Sweep::Up,
+///     from_rest: i == 0,
+/// };
+/// let (faults, effects) = (Faults::default(), Effects::default());
+/// let laboratory = Laboratory {
+///     truth: &truth,
+///     faults: &faults,
+///     effects: &effects,
+///     plan: &Plan { steps: (0..14).map(step).collect() },
+///     seed: 1,
+/// };
+/// let observations: Vec<_> = records(&laboratory)?
+///     .iter()
+///     .map(|raw| calibrated(raw, &truth, &faults))
+///     .map(|record| {
+///         let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
+///         observe(&record, RigKind::Double, &detect, &classify)
+///     })
+///     .collect();
+/// let found = identify(&Evidence {
+///     rig: RigKind::Double,
+///     observations: &observations,
+///     brackets: &[],
+///     nominal: Nominal { gain_uncertainty: 5e-3, corner_uncertainty: 2e-2, ..Nominal::default() },
+///     uncertainty: Default::default(),
+/// });
+/// assert_eq!(found.used_by[&Method::Resonance].len(), 14);
+/// let f0 = found.joint.parameters.natural_frequency_hz.as_ref().expect("an estimate");
+/// assert_eq!(f0.status, Status::Identified);
+/// assert!((f0.value.expect("f0") - 12.0).abs() < 0.05);
+/// let r = found.joint.parameters.restitution.and_then(|r| r.value);
+/// assert_eq!(r, None);
+/// # Ok::<(), impact_oscillator::model::params::ModelError>(())
+/// ```
+pub fn identify(evidence: &Evidence) -> Identification {
+    let mut run = IdentificationRun {
         evidence,
         selection: Selection::new(evidence),
         posterior: None,
     };
-    let resonance = work.selection.resonance();
+    let resonance = run.selection.resonance();
     let start = start(evidence, &resonance);
-    let impacts = methods::impacts(&work.selection.blocks, &evidence.nominal, start);
+    let impacts = methods::impacts(&run.selection.blocks, &evidence.nominal, start);
     let start = with_restitution(start, &impacts);
-    let mut fits = work.fits(start, resonance, impacts);
+    let mut fits = run.fits(start, resonance, impacts);
     let mut suspicions = Vec::new();
-    while let Some(odd) = work.odd_gap(&fits, suspicions.len()) {
-        suspicions.push(odd.suspicion());
-        if !work.selection.leave_out_gap(odd.stated_m) {
+    while let Some(odd) = run.odd_gap(&fits, suspicions.len()) {
+        suspicions.push(odd.into());
+        if !run.selection.leave_out_gap(odd.stated_m) {
             break;
         }
-        fits = work.fits(start, fits.resonance, fits.impacts);
+        fits = run.fits(start, fits.resonance, fits.impacts);
     }
-    fits = work.without_pulling(fits);
-    suspicions.extend(work.other_suspicions(&fits));
-    let uncertainty = work.uncertainty(&fits);
-    let found = work.results(&fits);
-    let (joint_result, fit, factor) = results::joint(evidence, fits.joint, &found);
-    let agreement = agreement(&found);
-    let verdict = verdict::verdict(&Findings {
-        joint: &joint_result,
-        methods: &found,
+    fits = run.without_influential(fits);
+    suspicions.extend(run.other_suspicions(&fits));
+    let methods = run.results(&fits);
+    let mut joint = results::joint(evidence, fits.joint.as_ref(), &methods);
+    let agreement = agreement(&methods);
+    let apart = between_methods(&methods, &agreement, &joint);
+    for (parameter, by) in &apart {
+        if let Some(Some(estimate)) = joint.parameters.slot(*parameter) {
+            *estimate = estimate::widened(*parameter, estimate, *by);
+        }
+    }
+    let beyond = succeeded(&fits.joint).map_or_else(Vec::new, beyond::beyond);
+    let verdict = verdict::verdict(&Basis {
+        beyond: &beyond,
+        joint: &joint,
+        methods: &methods,
         agreement: &agreement,
         suspicions: &suspicions,
     });
-    Outcome {
+    Identification {
         verdict,
-        joint: joint_result,
-        methods: found,
+        joint,
         agreement,
-        fit,
-        factor,
-        left_out: work.selection.left_out,
+        uncertainty: run.uncertainty(&fits, &apart),
         suspicions,
-        uncertainty,
+        left_out: run.left_out(),
+        used_by: run.used_by(&methods),
+        methods,
+        joint_fit: fits.joint.and_then(Result::ok).map(|found| JointFit {
+            fit: found.fit,
+            variance_factor: found.factor,
+        }),
+        specimens: BTreeMap::new(),
     }
 }
 
 /// Every method's fit, and all together.
 struct Fits {
-    resonance: Attempt,
-    impacts: Attempt,
-    trajectories: Attempt,
-    boundaries: Attempt,
-    flights: Attempt,
-    joint: Attempt,
+    resonance: Option<FitResult>,
+    impacts: Option<FitResult>,
+    trajectories: Option<FitResult>,
+    boundaries: Option<FitResult>,
+    flights: Option<FitResult>,
+    joint: Option<FitResult>,
     /// Where the joint fit started, and the weights of its blocks.
     start: Parameters,
     weights: Weights,
@@ -100,11 +148,11 @@ struct Fits {
 /// Gaps that may be found wrong before the campaign as a whole is at fault.
 const MOST_ODD_GAPS: usize = 2;
 
-/// Rounds of leaving out records that pull the fit.
-const MOST_PULLING: usize = 8;
+/// Rounds of leaving out influential records.
+const MOST_ROUNDS: usize = 8;
 
 /// R as the impacts tell it.
-fn with_restitution(start: Parameters, impacts: &Attempt) -> Parameters {
+fn with_restitution(start: Parameters, impacts: &Option<FitResult>) -> Parameters {
     match succeeded(impacts) {
         Some(found) => Parameters {
             restitution: found.fit.parameters.restitution.clamp(0.0, 1.0),
@@ -114,8 +162,11 @@ fn with_restitution(start: Parameters, impacts: &Attempt) -> Parameters {
     }
 }
 
+/// Influential records that may always be left out.
+const MOST_INFLUENTIAL: usize = 2;
+
 /// Starting values: the resonance curve's, else the stated ones, else guesses of scale.
-fn start(evidence: &Evidence, resonance: &Attempt) -> Parameters {
+fn start(evidence: &Evidence, resonance: &Option<FitResult>) -> Parameters {
     if let Some(found) = succeeded(resonance) {
         return found.fit.parameters;
     }
@@ -131,7 +182,7 @@ fn start(evidence: &Evidence, resonance: &Attempt) -> Parameters {
         .filter_map(|o| o.setting.clearance_m)
         .collect();
     let median = |v: &[f64], default: f64| crate::signal::robust::median(v).unwrap_or(default);
-    Parameters::symmetric(
+    nominal.applied(Parameters::symmetric(
         nominal.restitution.unwrap_or(0.8),
         nominal
             .natural_frequency_hz
@@ -140,19 +191,24 @@ fn start(evidence: &Evidence, resonance: &Attempt) -> Parameters {
         nominal
             .static_deflection_m
             .unwrap_or_else(|| median(&clearances, 1e-3).abs() / 2.0),
-    )
+    ))
 }
 
-struct Work<'a> {
+struct IdentificationRun<'a> {
     evidence: &'a Evidence<'a>,
     selection: Selection<'a>,
     /// What the brackets say of R where the resonance curve tells the rest.
     posterior: Option<Posterior>,
 }
 
-impl Work<'_> {
+impl IdentificationRun<'_> {
     /// Trajectories, boundaries and all together, beside the resonance curve and the impacts.
-    fn fits(&mut self, start: Parameters, resonance: Attempt, impacts: Attempt) -> Fits {
+    fn fits(
+        &mut self,
+        start: Parameters,
+        resonance: Option<FitResult>,
+        impacts: Option<FitResult>,
+    ) -> Fits {
         let trajectories = self.selection.trajectories(start);
         let start = succeeded(&trajectories).map_or(start, |f| f.fit.parameters);
         let boundaries = self.selection.boundaries(start);
@@ -162,18 +218,23 @@ impl Work<'_> {
             posterior::of_brackets(&self.selection.blocks.boundary, &about, error.min(0.3))
         });
         let flights = self.selection.flights(start);
-        let weight = |attempt: &Attempt| succeeded(attempt).map(|f| 1.0 / f.factor);
+        let weight = |attempt: &Option<FitResult>| succeeded(attempt).map(|f| 1.0 / f.factor);
         // Flights rest on the speeds at impacts; waveforms tell the same better than either.
         let flown = weight(&flights).filter(|_| succeeded(&trajectories).is_none());
-        let weights = [
-            weight(&resonance),
-            weight(&trajectories),
-            weight(&boundaries).filter(|_| self.posterior.is_none()),
-            succeeded(&impacts)
-                .map(joint::impact_weight)
-                .filter(|_| flown.is_none()),
-            flown,
-        ];
+        let impact_weight = succeeded(&impacts).map(|found| joint::impact_weight(found, &start));
+        let weights: Weights = [
+            (Method::Resonance, weight(&resonance)),
+            (Method::Trajectories, weight(&trajectories)),
+            (
+                Method::Boundaries,
+                weight(&boundaries).filter(|_| self.posterior.is_none()),
+            ),
+            (Method::Impacts, impact_weight.filter(|_| flown.is_none())),
+            (Method::Flights, flown),
+        ]
+        .into_iter()
+        .filter_map(|(method, weight)| Some((method, weight?)))
+        .collect();
         let joint = self.joint(&self.selection.blocks, start, &weights);
         Fits {
             resonance,
@@ -187,23 +248,29 @@ impl Work<'_> {
         }
     }
 
-    /// The fits without the records that pull them away from what all others say.
-    fn without_pulling(&mut self, mut fits: Fits) -> Fits {
-        for _ in 0..MOST_PULLING {
+    /// The fits without the records that draw them away from what all others state.
+    fn without_influential(&mut self, mut fits: Fits) -> Fits {
+        let mut left_out = 0;
+        for _ in 0..MOST_ROUNDS {
             let Some(joint) = succeeded(&fits.joint) else {
                 break;
             };
             let start = joint.fit.parameters;
             let blocks = &self.selection.blocks;
             let present = joint::present(blocks, &fits.weights);
-            let pulling = self
+            let influential = self
                 .problem(blocks, fits.start, &fits.weights)
-                .map(|problem| self.selection.pulling(&problem, &present, &start));
-            let Some(pulling) = pulling.filter(|p| !p.is_empty()) else {
+                .map(|problem| self.selection.influential(&problem, &present, &start));
+            let Some(influential) = influential.filter(|p| !p.is_empty()) else {
                 break;
             };
-            self.selection.leave_out(&pulling);
-            let resonance = if pulling.resonance.is_empty() {
+            left_out += influential.count();
+            if left_out > MOST_INFLUENTIAL.max(self.selection.judged() / 30) {
+                // That many do not err alone: it is the model, and their scatter widens the intervals.
+                break;
+            }
+            self.selection.leave_out(&influential);
+            let resonance = if influential.resonance.is_empty() {
                 fits.resonance
             } else {
                 methods::resonance(&self.selection.blocks, &self.evidence.nominal)
@@ -214,7 +281,7 @@ impl Work<'_> {
     }
 
     /// All blocks in one fit, each with its weight; those without one stay out.
-    fn joint(&self, blocks: &Blocks, start: Parameters, weights: &Weights) -> Attempt {
+    fn joint(&self, blocks: &Blocks, start: Parameters, weights: &Weights) -> Option<FitResult> {
         let problem = self.problem(blocks, start, weights)?;
         Some(joint::fit(&problem, start))
     }
@@ -229,17 +296,21 @@ impl Work<'_> {
         joint::problem(blocks, start, weights, &self.evidence.nominal, posterior)
     }
 
-    /// What is asked for of the joint fit's uncertainty.
-    fn uncertainty(&self, fits: &Fits) -> Uncertainty {
+    /// The uncertainty of the joint fit as the options want it; `apart`: what disagreement of methods
+    /// leaves open.
+    fn uncertainty(&self, fits: &Fits, apart: &[(Coordinate, f64)]) -> Uncertainty {
         let blocks = &self.selection.blocks;
         let problem = self.problem(blocks, fits.start, &fits.weights);
         let Some((problem, joint)) = problem.zip(succeeded(&fits.joint)) else {
             return Uncertainty::default();
         };
         let present = joint::present(blocks, &fits.weights);
-        let names: Vec<&str> = present.into_iter().map(Method::name).collect();
-        let asked = &self.evidence.uncertainty;
-        uncertainty::uncertainty(&problem, &names, &joint.fit, joint.factor, asked)
+        let options = &self.evidence.uncertainty;
+        Uncertainty {
+            budget: budget::budget(&problem, &present, joint, blocks, apart),
+            scatter: joint.scatter.clone(),
+            ..uncertainty::uncertainty(&problem, &present, &joint.fit, joint.factor, options)
+        }
     }
 
     /// The gap that deviates most from what the others say, if one does.
@@ -255,12 +326,15 @@ impl Work<'_> {
             ..
         } = &self.selection;
         let weight = 1.0 / succeeded(&fits.trajectories)?.factor;
-        suspicion::lost_gap(&blocks.trajectory, lost, &joint.fit.parameters, *typical)
-            .or_else(|| suspicion::odd_gap(&blocks.trajectory, weight, &joint.fit, joint.factor))
+        let uncertainty_m = self.evidence.nominal.clearance_uncertainty_m;
+        let lost = suspicion::lost_gap(&blocks.trajectory, lost, &joint.fit.parameters, *typical);
+        let allowed = |odd: &OddGap| (odd.fitting_m - odd.stated_m).abs() > 4.0 * uncertainty_m;
+        lost.filter(allowed)
+            .or_else(|| suspicion::odd_gap(blocks, weight, joint, uncertainty_m))
     }
 
     /// Gains and corners far off, and interchanged channels.
-    fn other_suspicions(&self, fits: &Fits) -> Vec<Suspicion> {
+    fn other_suspicions(&self, fits: &Fits) -> Vec<Finding> {
         let Some(joint) = succeeded(&fits.joint) else {
             return Vec::new();
         };
@@ -270,41 +344,64 @@ impl Work<'_> {
             let found = succeeded(&attempt)?;
             Some((found.fit.cost, found.fit.residuals))
         };
-        if let Some(found) = interchange::swapped(&self.selection.blocks, &cost) {
+        if let Some(found) = swapped_channels::swapped(&self.selection.blocks, &cost) {
             return vec![found];
         }
         let nominal = &self.evidence.nominal;
         suspicion::channels(&joint.fit, joint.factor, nominal)
     }
 
+    /// What was left out: records and brackets by the selection, outlying impacts.
+    fn left_out(&self) -> Vec<LeftOut> {
+        let outlying = &self.selection.blocks.impact_outliers;
+        let impacts = outlying.iter().map(|pair| LeftOut {
+            item: results::impact(pair, self.evidence),
+            reason: Reason::OutlyingImpact {
+                before_m_s: pair.before_m_s,
+                after_m_s: pair.after_m_s,
+            },
+        });
+        let selected = self.selection.left_out.iter().cloned();
+        selected.chain(impacts).collect()
+    }
+
+    /// The records that each method's fit used, by their indices.
+    fn used_by(&self, methods: &BTreeMap<Method, MethodResult>) -> BTreeMap<Method, Vec<usize>> {
+        let fitted = methods.keys().map(|method| {
+            let mut records = self.selection.records_of(*method);
+            records.sort_unstable();
+            records.dedup();
+            (*method, records)
+        });
+        fitted.collect()
+    }
+
     /// What each method found.
-    fn results(&self, fits: &Fits) -> BTreeMap<String, MethodResult> {
+    fn results(&self, fits: &Fits) -> BTreeMap<Method, MethodResult> {
         let blocks = &self.selection.blocks;
         let posterior = self.posterior.as_ref();
         let together = succeeded(&fits.joint).map(|j| &j.fit);
         let found = [
             fits.resonance
                 .as_ref()
-                .map(|a| results::resonance(blocks, a)),
-            fits.trajectories
+                .map(|a| (Method::Resonance, results::resonance(blocks, a))),
+            fits.trajectories.as_ref().map(|a| {
+                let result = results::trajectories(blocks, a, self.evidence);
+                (Method::Trajectories, result)
+            }),
+            fits.boundaries.as_ref().map(|a| {
+                let result = results::boundaries(blocks, a, posterior);
+                (Method::Boundaries, result)
+            }),
+            fits.impacts.as_ref().map(|a| {
+                let result = results::impacts(blocks, a, self.evidence, together);
+                (Method::Impacts, result)
+            }),
+            fits.flights
                 .as_ref()
-                .map(|a| results::trajectories(blocks, a, self.evidence)),
-            fits.boundaries
-                .as_ref()
-                .map(|a| results::boundaries(blocks, a, posterior)),
-            fits.impacts
-                .as_ref()
-                .map(|a| results::impacts(blocks, a, self.evidence, together)),
-            fits.flights.as_ref().map(|a| results::flights(blocks, a)),
+                .map(|a| (Method::Flights, results::flights(blocks, a))),
+            decay::pooled(self.evidence.observations).map(|result| (Method::FreeDecay, result)),
         ];
-        let mut named: BTreeMap<String, MethodResult> = Method::ALL
-            .into_iter()
-            .zip(found)
-            .filter_map(|(method, result)| Some((method.name().to_owned(), result?)))
-            .collect();
-        if let Some(result) = decay::pooled(self.evidence.observations) {
-            named.insert("free_decay".into(), result);
-        }
-        named
+        found.into_iter().flatten().collect()
     }
 }

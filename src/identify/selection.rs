@@ -1,31 +1,40 @@
 //! Which records and brackets the fits rest on; the others are named with the reason.
 
+use std::collections::BTreeSet;
+
+use crate::identify::diagnostics::influence;
 use crate::identify::evidence::trajectory::TrajectoryRecord;
 use crate::identify::evidence::weighing::Bulk;
 use crate::identify::evidence::{Blocks, Evidence};
 use crate::identify::fit::normal::Normal;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::fit::{Problem, mean_squares};
-use crate::identify::joint::Method;
-use crate::identify::judgement::pull;
-use crate::identify::methods::{self, Attempt};
+use crate::identify::messages::{Item, LeftOut, Reason};
+use crate::identify::method::Method;
+use crate::identify::methods::{self, FitResult};
+use crate::motion::Bracket;
 
 /// Rounds of leaving outlying records out and fitting again.
 const ROUNDS: usize = 2;
 
-/// Records that pull a fit, by their place in the blocks, rising.
+/// Influential records, by their place in the blocks, rising.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Pulling {
+pub struct Influential {
     /// Impactless records.
     pub resonance: Vec<usize>,
     /// Periodic records.
     pub trajectory: Vec<usize>,
 }
 
-impl Pulling {
-    /// Whether none does.
+impl Influential {
+    /// Whether there is none.
     pub fn is_empty(&self) -> bool {
-        self.resonance.is_empty() && self.trajectory.is_empty()
+        self.count() == 0
+    }
+
+    /// How many.
+    pub fn count(&self) -> usize {
+        self.resonance.len() + self.trajectory.len()
     }
 }
 
@@ -35,7 +44,7 @@ pub struct Selection<'a> {
     /// The observations that the fits rest on.
     pub blocks: Blocks,
     /// Records or brackets left out, each with the reason.
-    pub left_out: Vec<(String, String)>,
+    pub left_out: Vec<LeftOut>,
     /// Periodic records that the trajectories' fit lost.
     pub lost: Vec<TrajectoryRecord>,
     /// The typical mean square of the records that it kept.
@@ -54,14 +63,30 @@ impl<'a> Selection<'a> {
         }
     }
 
-    /// Name a record that is left out, with the reason.
-    fn name(&mut self, observation: usize, reason: impl Into<String>) {
-        let record = self.evidence.observations[observation].record.clone();
-        self.left_out.push((record, reason.into()));
+    /// Note a record that is left out, with the reason.
+    fn note(&mut self, index: usize, reason: Reason) {
+        let record = self.evidence.observations[index].record.clone();
+        let item = Item::Record { index, record };
+        self.left_out.push(LeftOut { item, reason });
+    }
+
+    /// Note a bracket that is left out, with the reason.
+    fn note_bracket(&mut self, bracket: &Bracket, reason: Reason) {
+        let all = self.evidence.brackets;
+        if let Some(index) = all.iter().position(|b| b == bracket) {
+            let item = Item::Bracket {
+                index,
+                boundary: bracket.kind,
+                frequency_low_hz: bracket.frequency_low_hz,
+                frequency_high_hz: bracket.frequency_high_hz,
+                clearance_m: bracket.clearance_m,
+            };
+            self.left_out.push(LeftOut { item, reason });
+        }
     }
 
     /// Fit the impactless records; those that fit far worse than the bulk are named and left out.
-    pub fn resonance(&mut self) -> Attempt {
+    pub fn resonance(&mut self) -> Option<FitResult> {
         let first = match methods::resonance(&self.blocks, &self.evidence.nominal)? {
             Ok(first) => first,
             failed => return Some(failed),
@@ -78,27 +103,31 @@ impl<'a> Selection<'a> {
             if score <= bulk.limit {
                 self.blocks.resonance.points.push(point);
             } else {
-                let reason = format!(
-                    "its response fits {:.0} times worse than the others (still settling?): left \
-                     out of the resonance curve",
-                    bulk.times_worse(score)
+                let times_worse = bulk.times_worse(score);
+                self.note(
+                    point.observation,
+                    Reason::ResponseUnlikeOthers { times_worse },
                 );
-                self.name(point.observation, reason);
             }
         }
         methods::resonance(&self.blocks, &self.evidence.nominal)
     }
 
-    /// Fit the folded records; those without an orbit at the start are tried again at the end,
-    /// and those that fit far worse than the bulk are left out and named.
-    pub fn trajectories(&mut self, start: Parameters) -> Attempt {
+    /// Fit the folded records, first as if the rig were ideal, then with all that may add to it; those
+    /// without an orbit at the start are tried again, and those that fit far worse than the bulk are left out and named.
+    pub fn trajectories(&mut self, start: Parameters) -> Option<FitResult> {
+        let nominal = self.evidence.nominal;
         let all = self.blocks.trajectory.records.clone();
-        let at_start = mean_squares(&self.blocks.trajectory, &start);
-        let mut has_orbit = at_start.iter().map(Option::is_some);
-        let records = &mut self.blocks.trajectory.records;
-        records.retain(|_| has_orbit.next().unwrap_or(false));
-        let mut found = match methods::trajectories(&self.blocks, &self.evidence.nominal, start)? {
-            Ok(first) => first,
+        self.keep_those_with_orbits(&start);
+        let first = match methods::trajectories(&self.blocks, &nominal.ideal(), start)? {
+            Ok(first) => first.fit.parameters,
+            failed => return Some(failed),
+        };
+        self.blocks.trajectory.records.clone_from(&all);
+        self.keep_those_with_orbits(&first);
+        self.blocks.weigh_trajectories(&first);
+        let mut found = match methods::trajectories(&self.blocks, &nominal, first)? {
+            Ok(found) => found,
             failed => return Some(failed),
         };
         self.blocks.trajectory.records = all;
@@ -111,6 +140,14 @@ impl<'a> Selection<'a> {
             };
         }
         Some(Ok(found))
+    }
+
+    /// Keep the periodic records that have an orbit at given parameters.
+    fn keep_those_with_orbits(&mut self, parameters: &Parameters) {
+        let at_start = mean_squares(&self.blocks.trajectory, parameters);
+        let mut has_orbit = at_start.iter().map(Option::is_some);
+        let records = &mut self.blocks.trajectory.records;
+        records.retain(|_| has_orbit.next().unwrap_or(false));
     }
 
     /// Keep the records that fit like the bulk, name the others, and find again what is allowed
@@ -127,23 +164,19 @@ impl<'a> Selection<'a> {
                     self.blocks.trajectory.records.push(record);
                     continue;
                 }
-                Some(s) => format!(
-                    "its waveform fits {:.1} times worse than the others: left out of the \
-                     trajectories",
-                    bulk.times_worse(s)
-                ),
-                None => "the model has no such periodic motion at the fitted parameters: left \
-                         out of the trajectories"
-                    .to_owned(),
+                Some(s) => Reason::WaveformUnlikeOthers {
+                    times_worse: bulk.times_worse(s),
+                },
+                None => Reason::NoSuchMotion,
             };
-            self.name(record.observation, reason);
+            self.note(record.observation, reason);
             self.lost.push(record);
         }
         self.blocks.weigh_trajectories(parameters);
     }
 
     /// Fit the brackets; those that no boundary reaches, or that lie far from it, are named.
-    pub fn boundaries(&mut self, start: Parameters) -> Attempt {
+    pub fn boundaries(&mut self, start: Parameters) -> Option<FitResult> {
         let rig = self.evidence.rig;
         let mut kept = Vec::new();
         for bracket in std::mem::take(&mut self.blocks.boundary.brackets) {
@@ -155,16 +188,7 @@ impl<'a> Selection<'a> {
             if near {
                 kept.push(bracket);
             } else {
-                let place = format!(
-                    "bracket {} {:.2}–{:.2} Hz at {:.3} mm",
-                    bracket.kind.name(),
-                    bracket.frequency_low_hz,
-                    bracket.frequency_high_hz,
-                    bracket.clearance_m * 1e3
-                );
-                let reason = "the motion changed far from the simulated boundary: a disturbance, \
-                              or another boundary";
-                self.left_out.push((place, reason.into()));
+                self.note_bracket(&bracket, Reason::FarFromBoundary);
             }
         }
         self.blocks.boundary.brackets = kept;
@@ -178,23 +202,28 @@ impl<'a> Selection<'a> {
         if records.iter().all(|r| r.clearance_m == clearance_m) {
             return false;
         }
-        let reason = "its gap is not as stated: left out of trajectories and boundaries";
         let (gone, kept): (Vec<_>, Vec<_>) = std::mem::take(records)
             .into_iter()
             .partition(|r| r.clearance_m == clearance_m);
         *records = kept;
         for record in gone {
-            self.name(record.observation, reason);
+            self.note(record.observation, Reason::GapNotAsStated);
         }
         self.lost.retain(|r| r.clearance_m != clearance_m);
-        let brackets = &mut self.blocks.boundary.brackets;
-        brackets.retain(|b| b.clearance_m != clearance_m);
+        let brackets = std::mem::take(&mut self.blocks.boundary.brackets);
+        let (gone, kept): (Vec<_>, Vec<_>) = brackets
+            .into_iter()
+            .partition(|b| b.clearance_m == clearance_m);
+        self.blocks.boundary.brackets = kept;
+        for bracket in gone {
+            self.note_bracket(&bracket, Reason::GapNotAsStated);
+        }
         true
     }
 
     /// Fit the records that are shot from impact to impact; those that fit far worse than the bulk,
     /// as where an impact was missed, are left out and named.
-    pub fn flights(&mut self, start: Parameters) -> Attempt {
+    pub fn flights(&mut self, start: Parameters) -> Option<FitResult> {
         let mut parameters = start;
         for _ in 0..ROUNDS {
             let scores = mean_squares(&self.blocks.flight, &parameters);
@@ -205,9 +234,7 @@ impl<'a> Selection<'a> {
                 if score.is_some_and(|s| s <= limit) {
                     self.blocks.flight.records.push(record);
                 } else {
-                    let reason = "its impacts do not follow from each other (one missed?): left \
-                                  out of the flights";
-                    self.name(record.observation, reason);
+                    self.note(record.observation, Reason::ImpactsDoNotFollow);
                 }
             }
             match methods::flights(&self.blocks, &self.evidence.nominal, parameters)? {
@@ -218,13 +245,22 @@ impl<'a> Selection<'a> {
         methods::flights(&self.blocks, &self.evidence.nominal, parameters)
     }
 
-    /// The records that pull a joint fit hardest against all others.
-    pub fn pulling(&self, problem: &Problem, present: &[Method], at: &Parameters) -> Pulling {
+    /// The records that draw a joint fit away from what all others state.
+    pub fn influential(
+        &self,
+        problem: &Problem,
+        present: &[Method],
+        at: &Parameters,
+    ) -> Influential {
         let (mut items, mut others) = (Vec::new(), Vec::new());
         for (part, method) in problem.item_parts(at).into_iter().zip(present) {
             match method {
                 Method::Resonance | Method::Trajectories => items.push((*method, part)),
-                Method::Boundaries | Method::Impacts | Method::Flights => others.extend(part),
+                Method::Boundaries
+                | Method::Impacts
+                | Method::Flights
+                | Method::FreeDecay
+                | Method::PublishedSpeeds => others.extend(part),
             }
         }
         let priors = problem.priors.iter();
@@ -238,15 +274,15 @@ impl<'a> Selection<'a> {
             .iter()
             .map(|(method, i)| *method == Method::Trajectories && self.settles_slowly(*i, at))
             .collect();
-        let mut pulling = Pulling::default();
-        let pulls = pull::pulls(&parts, &others).unwrap_or_default();
-        for i in pull::strongest(&pulls, &doubtful) {
+        let mut influential = Influential::default();
+        let influences = influence::influences(&parts, &others).unwrap_or_default();
+        for i in influence::strongest(&influences, &doubtful) {
             match owners[i] {
-                (Method::Resonance, point) => pulling.resonance.push(point),
-                (_, record) => pulling.trajectory.push(record),
+                (Method::Resonance, point) => influential.resonance.push(point),
+                (_, record) => influential.trajectory.push(record),
             }
         }
-        pulling
+        influential
     }
 
     /// Whether a periodic record's motion, once disturbed, decays by less than a factor e while it
@@ -261,18 +297,68 @@ impl<'a> Selection<'a> {
         slowest.powf(evidence.cycles_observed) > (-1f64).exp()
     }
 
-    /// Leave records out that pull the fit, and name them.
-    pub fn leave_out(&mut self, pulling: &Pulling) {
-        let reason = "it pulls the fit away from what all other records say";
-        for i in pulling.resonance.iter().rev() {
+    /// Number of records whose influence is judged.
+    pub fn judged(&self) -> usize {
+        self.blocks.resonance.points.len() + self.blocks.trajectory.records.len()
+    }
+
+    /// Leave influential records out, and note them.
+    pub fn leave_out(&mut self, influential: &Influential) {
+        for i in influential.resonance.iter().rev() {
             let point = self.blocks.resonance.points.remove(*i);
-            let reason = format!("{reason}: left out of the resonance curve");
-            self.name(point.observation, reason);
+            let method = Method::Resonance;
+            self.note(point.observation, Reason::Influential { method });
         }
-        for i in pulling.trajectory.iter().rev() {
+        for i in influential.trajectory.iter().rev() {
             let record = self.blocks.trajectory.records.remove(*i);
-            let reason = format!("{reason}: left out of the trajectories");
-            self.name(record.observation, reason);
+            let method = Method::Trajectories;
+            self.note(record.observation, Reason::Influential { method });
+        }
+    }
+
+    /// The records that a method's fit uses, by their indices; one may come several times.
+    pub fn records_of(&self, method: Method) -> Vec<usize> {
+        let observations = self.evidence.observations;
+        let blocks = &self.blocks;
+        match method {
+            Method::Resonance => blocks
+                .resonance
+                .points
+                .iter()
+                .map(|p| p.observation)
+                .collect(),
+            Method::Trajectories => {
+                let records = &blocks.trajectory.records;
+                records.iter().map(|r| r.observation).collect()
+            }
+            Method::Boundaries => {
+                let names: BTreeSet<&String> = blocks
+                    .boundary
+                    .brackets
+                    .iter()
+                    .flat_map(|b| &b.records)
+                    .collect();
+                let indexed = observations.iter().enumerate();
+                indexed
+                    .filter(|(_, o)| names.contains(&o.record))
+                    .map(|(i, _)| i)
+                    .collect()
+            }
+            Method::Impacts => blocks.impact.pairs.iter().map(|p| p.observation).collect(),
+            Method::Flights => blocks
+                .flight
+                .records
+                .iter()
+                .map(|r| r.observation)
+                .collect(),
+            Method::FreeDecay => {
+                let indexed = observations.iter().enumerate();
+                indexed
+                    .filter(|(_, o)| !o.excluded() && o.decay.is_some())
+                    .map(|(i, _)| i)
+                    .collect()
+            }
+            Method::PublishedSpeeds => Vec::new(),
         }
     }
 }

@@ -1,121 +1,162 @@
 //! Campaigns that hold several specimens (rigs, masses, bumpers): each identified by itself.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::identify::evidence::Evidence;
-use crate::identify::run::{Outcome, identify};
-use crate::identify::{
-    Agreement, MethodResult, SpecimenResult, Verdict, VerdictKind, decay, estimate,
+use crate::identify::identification::{
+    Agreement, Identification, MethodResult, SpecimenResult, Verdict, VerdictKind,
 };
+use crate::identify::messages::{Finding, Item, LeftOut, Note, Sentence};
+use crate::identify::method::Method;
+use crate::identify::run::identify;
+use crate::identify::{decay, estimate};
 use crate::motion::{Bracket, Observation};
 
-/// Identify a campaign: as a whole where it holds one specimen, else each specimen by itself.
+/// Identify a campaign: as a whole if it holds one specimen, else each specimen by itself.
 ///
-/// Records that look misfiled are named and left out.
-pub fn identify_campaign(evidence: &Evidence) -> (Outcome, BTreeMap<String, SpecimenResult>) {
-    let misfiled = decay::misfiled(evidence.observations);
-    let names: std::collections::BTreeSet<&str> = evidence
+/// Records that look misfiled are noted and left out.
+pub fn identify_campaign(evidence: &Evidence) -> Identification {
+    let names: BTreeSet<&str> = evidence
         .observations
         .iter()
         .filter_map(|o| o.setting.specimen.as_deref())
         .collect();
     if names.len() < 2 {
-        return (identify(evidence), BTreeMap::new());
+        return identify(evidence);
     }
-    let mut results = BTreeMap::new();
-    let mut left_out: Vec<(String, String)> = misfiled.clone();
+    let misfiled = decay::misfiled(evidence.observations);
+    let mut whole = Whole {
+        left_out: misfiled.clone(),
+        ..Whole::default()
+    };
     for name in names {
-        let of_specimen = |o: &&Observation| {
-            o.setting.specimen.as_deref() == Some(name)
-                && !misfiled.iter().any(|(record, _)| *record == o.record)
-        };
-        let observations: Vec<Observation> = evidence
-            .observations
-            .iter()
-            .filter(of_specimen)
-            .cloned()
-            .collect();
-        let brackets: Vec<Bracket> = evidence
-            .brackets
-            .iter()
-            .filter(|b| observations.iter().any(|o| b.records.contains(&o.record)))
-            .cloned()
-            .collect();
-        let outcome = identify(&Evidence {
-            observations: &observations,
-            brackets: &brackets,
+        let part = Part::of(evidence, name, &misfiled);
+        let found = identify(&Evidence {
+            observations: &part.observations,
+            brackets: &part.brackets,
             ..*evidence
         });
-        left_out.extend(outcome.left_out);
-        results.insert(
-            name.to_owned(),
-            SpecimenResult {
-                verdict: outcome.verdict,
-                joint: outcome.joint,
-                methods: outcome.methods,
-                agreement: outcome.agreement,
-            },
-        );
+        whole.add(name, &part, found);
     }
-    (summary(&results, &misfiled, left_out), results)
+    whole.identification(&misfiled)
 }
 
-/// The campaign's own outcome where each specimen has its own.
-fn summary(
-    results: &BTreeMap<String, SpecimenResult>,
-    misfiled: &[(String, String)],
-    left_out: Vec<(String, String)>,
-) -> Outcome {
-    let rank = |kind: VerdictKind| match kind {
-        VerdictKind::Identified => 0,
-        VerdictKind::Weak => 1,
-        VerdictKind::NotIdentifiable => 2,
-        VerdictKind::DoesNotFit => 3,
-    };
-    let kind = results
-        .values()
-        .map(|r| r.verdict.kind)
-        .max_by_key(|k| rank(*k))
-        .unwrap_or(VerdictKind::NotIdentifiable);
-    let mut findings: Vec<String> = results
-        .iter()
-        .map(|(name, r)| format!("{name}: {}", r.verdict.summary))
-        .collect();
-    findings.extend(
-        misfiled
-            .iter()
-            .map(|(record, why)| format!("{record}: {why}")),
-    );
-    let mut joint = MethodResult::default();
-    let why = "the campaign holds several specimens; each has its own parameters";
-    joint.parameters.restitution = Some(estimate::not_identifiable(why));
-    joint.parameters.natural_frequency_hz = Some(estimate::not_identifiable(why));
-    joint.parameters.damping_ratio = Some(estimate::not_identifiable(why));
-    Outcome {
-        verdict: Verdict {
-            kind,
-            summary: format!(
-                "The campaign holds {} specimens; each is identified by itself.{}",
-                results.len(),
-                match misfiled.len() {
-                    0 => String::new(),
-                    1 => " One record looks misfiled.".to_owned(),
-                    n => format!(" {n} records look misfiled."),
-                }
-            ),
-            findings,
-        },
-        joint,
-        methods: BTreeMap::new(),
-        agreement: Agreement {
-            agree: None,
-            summary: "See each specimen.".into(),
-            pairs: Vec::new(),
-        },
-        suspicions: Vec::new(),
-        uncertainty: Default::default(),
-        fit: None,
-        factor: 1.0,
-        left_out,
+/// The observations and brackets of one specimen, with their indices in the campaign.
+struct Part {
+    records: Vec<usize>,
+    observations: Vec<Observation>,
+    bracket_indices: Vec<usize>,
+    brackets: Vec<Bracket>,
+}
+
+impl Part {
+    fn of(evidence: &Evidence, name: &str, misfiled: &[LeftOut]) -> Self {
+        let is_misfiled = |record: usize| {
+            let mut items = misfiled.iter().map(|m| &m.item);
+            items.any(|item| matches!(item, Item::Record { index, .. } if *index == record))
+        };
+        let of_specimen = |(i, o): &(usize, &Observation)| {
+            o.setting.specimen.as_deref() == Some(name) && !is_misfiled(*i)
+        };
+        let indexed = evidence.observations.iter().enumerate();
+        let (records, observations): (Vec<usize>, Vec<Observation>) = indexed
+            .filter(of_specimen)
+            .map(|(i, o)| (i, o.clone()))
+            .unzip();
+        let within = |b: &Bracket| observations.iter().any(|o| b.records.contains(&o.record));
+        let indexed = evidence.brackets.iter().enumerate();
+        let (bracket_indices, brackets) = indexed
+            .filter(|(_, b)| within(b))
+            .map(|(i, b)| (i, b.clone()))
+            .unzip();
+        Self {
+            records,
+            observations,
+            bracket_indices,
+            brackets,
+        }
+    }
+
+    /// What was left out, with the indices of the campaign.
+    fn in_campaign(&self, mut left: LeftOut) -> LeftOut {
+        match &mut left.item {
+            Item::Record { index, .. } | Item::Impact { index, .. } => {
+                *index = self.records[*index]
+            }
+            Item::Bracket { index, .. } => *index = self.bracket_indices[*index],
+        }
+        left
+    }
+}
+
+/// What all specimens together give.
+#[derive(Default)]
+struct Whole {
+    results: BTreeMap<String, SpecimenResult>,
+    left_out: Vec<LeftOut>,
+    used_by: BTreeMap<Method, Vec<usize>>,
+}
+
+impl Whole {
+    fn add(&mut self, name: &str, part: &Part, found: Identification) {
+        let left_out = found.left_out.into_iter();
+        self.left_out.extend(left_out.map(|l| part.in_campaign(l)));
+        for (method, records) in found.used_by {
+            let all = self.used_by.entry(method).or_default();
+            all.extend(records.into_iter().map(|i| part.records[i]));
+            all.sort_unstable();
+        }
+        let result = SpecimenResult {
+            verdict: found.verdict,
+            joint: found.joint,
+            methods: found.methods,
+            agreement: found.agreement,
+        };
+        self.results.insert(name.to_owned(), result);
+    }
+
+    /// The campaign's own result: the worst of the verdicts, no parameters.
+    fn identification(self, misfiled: &[LeftOut]) -> Identification {
+        let kinds = self.results.values().map(|r| r.verdict.kind);
+        let mut sentences = vec![Sentence::Specimens {
+            count: self.results.len(),
+        }];
+        if !misfiled.is_empty() {
+            let count = misfiled.len();
+            sentences.push(Sentence::MisfiledRecords { count });
+        }
+        let of_specimens = self.results.iter().map(|(name, r)| Finding::Specimen {
+            specimen: name.clone(),
+            verdict: r.verdict.sentences.clone(),
+        });
+        let of_records = misfiled.iter().filter_map(|m| match &m.item {
+            Item::Record { record, .. } => Some(Finding::MisfiledRecord {
+                record: record.clone(),
+                reason: m.reason.clone(),
+            }),
+            Item::Bracket { .. } | Item::Impact { .. } => None,
+        });
+        let verdict = Verdict {
+            kind: kinds.max().unwrap_or(VerdictKind::NotIdentifiable),
+            sentences,
+            findings: of_specimens.chain(of_records).collect(),
+        };
+        let mut joint = MethodResult::default();
+        let unknown = || Some(estimate::not_identifiable(Note::SeveralSpecimens));
+        joint.parameters.restitution = unknown();
+        joint.parameters.natural_frequency_hz = unknown();
+        joint.parameters.damping_ratio = unknown();
+        Identification {
+            verdict,
+            joint,
+            methods: BTreeMap::new(),
+            agreement: Agreement::default(),
+            uncertainty: Default::default(),
+            suspicions: Vec::new(),
+            left_out: self.left_out,
+            used_by: self.used_by,
+            joint_fit: None,
+            specimens: self.results,
+        }
     }
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::event::Impact;
 
-/// What tells a beat from chaos.
+/// Measures that distinguish a beat from chaos.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Irregularity {
     /// Fraction of the drive periods without an impact.
@@ -56,5 +56,29 @@ fn roughness(impacts: &[Impact]) -> f64 {
         steps / variance
     } else {
         2.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn irregularity(impacts: &[(f64, f64)]) -> Option<Irregularity> {
+        let impacts: Vec<Impact> = impacts.iter().map(|(t, v)| Impact::at(*t, *v)).collect();
+        Irregularity::of(&impacts, 0.1, 1.0)
+    }
+
+    #[test]
+    fn valid_roughness_and_impactless_periods_of_four_impacts() {
+        // Variance sum 5 and step sum 3: 0.6; four of ten periods hold an impact.
+        let rising = irregularity(&[(0.05, 1.0), (0.15, 2.0), (0.25, 3.0), (0.35, 4.0)]).unwrap();
+        assert!((rising.speed_roughness - 0.6).abs() < 1e-12);
+        assert!((rising.impactless_periods - 0.6).abs() < 1e-12);
+        assert!(rising.is_beat());
+        // Variance sum 1 and step sum 3: 3; an alternating sequence is no beat.
+        let rough = irregularity(&[(0.05, 1.0), (0.15, 2.0), (0.25, 1.0), (0.35, 2.0)]).unwrap();
+        assert!((rough.speed_roughness - 3.0).abs() < 1e-12);
+        assert!(!rough.is_beat());
+        assert_eq!(irregularity(&[(0.05, 1.0), (0.15, 2.0), (0.25, 3.0)]), None);
     }
 }

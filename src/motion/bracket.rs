@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::motion::{Motion, Observation};
+use crate::motion::kind::Motion;
+use crate::motion::observation::Observation;
 use crate::record::Sweep;
 
 /// Which boundary of motion a bracket holds.
@@ -71,6 +72,38 @@ impl Bracket {
 /// All brackets of a campaign: observations in the order of acquisition, grouped into runs of one
 /// clearance and one sweep direction. Records that are excluded or undetermined are passed over;
 /// the bracket then spans them.
+///
+/// ```
+/// use impactid::event::{DetectSettings, RigKind};
+/// use impactid::motion::{BoundaryKind, ClassifySettings, Motion, brackets, observe};
+/// use impactid::record::{Excitation, Record, Setting, Sweep};
+///
+/// let observed = |sequence: usize, frequency_hz: f64, motion: Motion| {
+///     let record = Record {
+///         id: format!("r{sequence}"),
+///         sample_rate_hz: 2000.0,
+///         channels: Vec::new(),
+///         setting: Setting {
+///             stated_frequency_hz: Some(frequency_hz),
+///             clearance_m: Some(1e-3),
+///             sweep: Sweep::Up,
+///             drive_amplitude: 1.0,
+///             sequence,
+///             specimen: None,
+///             excitation: Excitation::Harmonic,
+///         },
+///         flags: Vec::new(),
+///     };
+///     let (detect, classify) = (DetectSettings::default(), ClassifySettings::default());
+///     let mut observation = observe(&record, RigKind::Double, &detect, &classify);
+///     observation.classification.motion = motion;
+///     observation
+/// };
+/// let one = Motion::Periodic { impacts_p: 1, periods_n: 1, dead_zone: false };
+/// let found = brackets(&[observed(0, 13.8, one), observed(1, 13.9, Motion::Impactless)]);
+/// assert_eq!(found[0].kind, BoundaryKind::SaddleNode);
+/// assert_eq!([found[0].frequency_low_hz, found[0].frequency_high_hz], [13.8, 13.9]);
+/// ```
 pub fn brackets(observations: &[Observation]) -> Vec<Bracket> {
     let mut usable: Vec<&Observation> = observations
         .iter()
@@ -144,5 +177,103 @@ fn doubled(one: &Motion, two: &Motion) -> Option<u32> {
             },
         ) if *m == 2 * n => Some(*n),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::{Flag, FlagCode};
+
+    fn periodic(impacts_p: u32, periods_n: u32) -> Motion {
+        Motion::Periodic {
+            impacts_p,
+            periods_n,
+            dead_zone: false,
+        }
+    }
+
+    /// Records in the order of acquisition, named a, b, c …
+    fn run(list: &[(f64, Motion)]) -> Vec<Observation> {
+        let named = list.iter().zip('a'..);
+        named
+            .enumerate()
+            .map(|(i, ((frequency_hz, motion), name))| {
+                let mut o = Observation::of(&name.to_string(), *frequency_hz, motion.clone());
+                o.setting.sequence = i;
+                o
+            })
+            .collect()
+    }
+
+    fn found(observations: &[Observation]) -> Vec<(BoundaryKind, u32, [String; 2])> {
+        let all = brackets(observations).into_iter();
+        all.map(|b| (b.kind, b.periods_n, b.records)).collect()
+    }
+
+    fn pair(a: &str, b: &str) -> [String; 2] {
+        [a.to_owned(), b.to_owned()]
+    }
+
+    use BoundaryKind::{Grazing, PeriodDoubling, SaddleNode};
+
+    #[test]
+    fn valid_an_upward_sweep_brackets_grazing_doubling_and_saddle_node() {
+        let list = run(&[
+            (11.0, Motion::Impactless),
+            (11.1, periodic(1, 1)),
+            (11.2, periodic(1, 1)),
+            (11.3, periodic(2, 2)),
+            (11.4, periodic(1, 1)),
+            (11.5, Motion::Impactless),
+        ]);
+        let want = [
+            (Grazing, 1, pair("a", "b")),
+            (PeriodDoubling, 1, pair("c", "d")),
+            (PeriodDoubling, 1, pair("d", "e")),
+            (SaddleNode, 1, pair("e", "f")),
+        ];
+        assert_eq!(found(&list), want);
+        let first = &brackets(&list)[0];
+        assert_eq!(
+            (first.frequency_low_hz, first.frequency_high_hz),
+            (11.0, 11.1)
+        );
+        assert_eq!((first.from.as_str(), first.to.as_str()), ("0", "1"));
+    }
+
+    #[test]
+    fn valid_excluded_and_undetermined_records_are_passed_over() {
+        let reason = String::new();
+        let mut list = run(&[
+            (11.0, periodic(1, 2)),
+            (11.1, Motion::Undetermined { reason }),
+            (11.2, periodic(1, 2)),
+            (11.3, Motion::Impactless),
+        ]);
+        list[2]
+            .flags
+            .push(Flag::new(FlagCode::Clipped, None, "", ""));
+        assert_eq!(found(&list), [(SaddleNode, 2, pair("a", "d"))]);
+    }
+
+    #[test]
+    fn valid_another_gap_drive_or_direction_begins_another_run() {
+        let base = || run(&[(11.0, periodic(1, 1)), (11.1, Motion::Impactless)]);
+        assert_eq!(found(&base()).len(), 1);
+        let mut gap = base();
+        gap[1].setting.clearance_m = Some(2e-3);
+        assert!(found(&gap).is_empty());
+        let mut drive = base();
+        drive[1].setting.drive_amplitude = 1.03;
+        assert!(found(&drive).is_empty());
+        // A stated downward sweep whose frequency rises is the start of another one.
+        let mut down = base();
+        down.iter_mut().for_each(|o| o.setting.sweep = Sweep::Down);
+        assert!(found(&down).is_empty());
+        down.swap(0, 1);
+        down[0].setting.sequence = 0;
+        down[1].setting.sequence = 1;
+        assert_eq!(found(&down), [(Grazing, 1, pair("b", "a"))]);
     }
 }

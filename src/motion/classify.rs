@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::event::{Detection, Impact};
-use crate::motion::Motion;
 use crate::motion::aperiodic::Irregularity;
 use crate::motion::closure::{self, Count, ImpactClosure, WaveformClosure};
+use crate::motion::kind::Motion;
 
 /// Settings of the classification.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -39,7 +39,7 @@ pub struct Evidence {
     pub periods_observed: f64,
     /// Periods of the motion in the record.
     pub cycles_observed: f64,
-    /// Waveform closure at the chosen n (the best one where none was chosen), relative.
+    /// Waveform closure at the chosen n (the best one if none was chosen), relative.
     pub waveform_closure: Option<f64>,
     /// Waveform closure of the best shorter period, relative.
     pub shorter_closure: Option<f64>,
@@ -51,7 +51,7 @@ pub struct Evidence {
     pub count_agreement: Option<f64>,
     /// Number of impacts in the record.
     pub impacts: usize,
-    /// What tells a beat from chaos, where the motion does not close.
+    /// Measures that distinguish a beat from chaos, if the motion does not close.
     pub irregularity: Option<Irregularity>,
 }
 
@@ -92,6 +92,48 @@ fn undetermined(reason: impl Into<String>, evidence: Evidence) -> Classification
 }
 
 /// Classify the motion of a record from what was detected in it.
+///
+/// A contact that closes once in each of ten drive periods is the motion z = 1:
+///
+/// ```
+/// use impactid::event::{DetectSettings, RigKind, detect};
+/// use impactid::motion::{ClassifySettings, classify};
+/// use impactid::record::{Channel, Excitation, Record, Role, Setting, Sweep};
+/// use labfiles::units::Dimension;
+///
+/// let channel = |role: Role, values: Vec<f64>| Channel {
+///     role,
+///     name: role.name().into(),
+///     dimension: Dimension::Voltage,
+///     values,
+///     high_pass_hz: None,
+///     threshold: (role == Role::Contact).then_some(2.5),
+/// };
+/// let phase = |i: usize| std::f64::consts::TAU * i as f64 / 200.0;
+/// let closed = |i: usize| if (20..23).contains(&(i % 200)) { 5.0 } else { 0.0 };
+/// let record = Record {
+///     id: "r1".into(),
+///     sample_rate_hz: 2000.0,
+///     channels: vec![
+///         channel(Role::Drive, (0..2000).map(|i| phase(i).cos()).collect()),
+///         channel(Role::Contact, (0..2000).map(closed).collect()),
+///     ],
+///     setting: Setting {
+///         stated_frequency_hz: Some(10.0),
+///         clearance_m: Some(1e-3),
+///         sweep: Sweep::Up,
+///         drive_amplitude: 1.0,
+///         sequence: 0,
+///         specimen: None,
+///         excitation: Excitation::Harmonic,
+///     },
+///     flags: Vec::new(),
+/// };
+/// let found = detect(&record, RigKind::Double, &DetectSettings::default());
+/// let motion = classify(&found, record.duration_s(), &ClassifySettings::default());
+/// assert_eq!(motion.motion.label(), "1");
+/// assert_eq!(motion.impacts_and_periods(), Some((1, 1)));
+/// ```
 pub fn classify(
     detection: &Detection,
     duration_s: f64,
@@ -117,7 +159,7 @@ pub fn classify(
     evidence.noise_ratio = noise_ratio;
     if rest && detection.closed_fraction > 0.9 {
         return Classification {
-            motion: Motion::Joined,
+            motion: Motion::Sticking,
             confidence: 0.95,
             evidence,
         };
@@ -382,35 +424,143 @@ fn shorter_factor(evidence: &Evidence) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::event::RigKind;
-    use crate::event::detect::{DetectSettings, detect};
-    use crate::record::{Channel, Record, Role, Setting};
-    use labfiles::units::Dimension;
+    use crate::event::{DetectSettings, DriveTone, Kinematics, RigKind, detect};
+    use crate::record::{Record, Role};
+
+    const PERIOD_S: f64 = 0.1;
+    const SAMPLES: usize = 2000;
+    const RATE_HZ: f64 = 2000.0;
+
+    /// What was detected in a second of a drive at 10 Hz, with a velocity if one is given.
+    fn detection(impacts: Vec<Impact>, velocity: Option<&dyn Fn(f64) -> f64>) -> Detection {
+        let values = velocity.map(|of| {
+            let turns = (0..SAMPLES).map(|i| i as f64 / RATE_HZ / PERIOD_S);
+            turns.map(of).collect::<Vec<f64>>()
+        });
+        let channels = values.iter().map(|v| (Role::VelocityX, v.as_slice()));
+        let record = Record::of(RATE_HZ, &channels.collect::<Vec<_>>());
+        Detection {
+            drive: Some(DriveTone {
+                frequency_hz: 1.0 / PERIOD_S,
+                frequency_error_hz: 1e-6,
+                amplitude: 1.0,
+                phase_rad: 0.0,
+                residual_ratio: 0.0,
+            }),
+            kinematics: Kinematics::of(&record, RigKind::Single),
+            impacts,
+            jump_samples: 1,
+            unsupported_pulses: 0,
+            missed_pulses: 0,
+            closed_fraction: 0.0,
+            flags: Vec::new(),
+        }
+    }
+
+    /// Impacts at these drive periods, with these speeds.
+    fn at(list: impl IntoIterator<Item = (f64, f64)>) -> Vec<Impact> {
+        let impact = |(turns, speed): (f64, f64)| Impact::at(PERIOD_S * turns, speed);
+        list.into_iter().map(impact).collect()
+    }
+
+    fn of(detection: &Detection) -> Classification {
+        classify(
+            detection,
+            SAMPLES as f64 / RATE_HZ,
+            &ClassifySettings::default(),
+        )
+    }
+
+    fn label(impacts: Vec<Impact>, velocity: Option<&dyn Fn(f64) -> f64>) -> String {
+        of(&detection(impacts, velocity)).motion.label()
+    }
+
+    const TURN: f64 = std::f64::consts::TAU;
+
+    #[test]
+    fn valid_hand_made_sequences_of_impacts_alone() {
+        let every = |step: f64, speed: f64| move |k: i32| (0.3 + step * f64::from(k), speed);
+        assert_eq!(label(at((0..10).map(every(1.0, 1.0))), None), "1");
+        assert_eq!(label(at((0..5).map(every(2.0, 1.0))), None), "1/2");
+        // Two impacts in one period; two in two periods at unequal distances.
+        let pair = |k: i32| [(f64::from(k) + 0.2, 1.0), (f64::from(k) + 0.6, 0.7)];
+        assert_eq!(label(at((0..10).flat_map(pair)), None), "2/1");
+        let doubled = |k: i32| [(f64::from(2 * k) + 0.2, 1.0), (f64::from(2 * k) + 1.4, 0.7)];
+        assert_eq!(label(at((0..5).flat_map(doubled)), None), "2/2");
+        let irregular = [0.3, 1.7, 2.1, 3.9, 4.4, 6.2, 6.8, 8.5, 9.4].map(|t| (t, 1.0));
+        assert_eq!(label(at(irregular), None), "undetermined");
+        assert_eq!(label(Vec::new(), None), "undetermined");
+    }
+
+    #[test]
+    fn valid_a_dead_zone_after_most_impacts_marks_the_motion() {
+        let mut impacts = at((0..10).map(|k| (0.3 + f64::from(k), 1.0)));
+        for impact in &mut impacts[..4] {
+            impact.dead_zone_s = 0.01;
+        }
+        assert_eq!(label(impacts.clone(), None), "1");
+        impacts[4].dead_zone_s = 0.01;
+        assert_eq!(label(impacts, None), "1j");
+    }
+
+    #[test]
+    fn valid_waveforms_with_their_impacts() {
+        let tone = |t: f64| (TURN * t).cos();
+        let sub = |t: f64| (TURN * t).cos() + 0.3 * (0.5 * TURN * t).sin();
+        let once = || at((0..10).map(|k| (0.3 + f64::from(k), 1.0)));
+        assert_eq!(label(Vec::new(), Some(&tone)), "0");
+        assert_eq!(label(once(), Some(&tone)), "1");
+        let half = at((0..5).map(|k| (0.3 + 2.0 * f64::from(k), 1.0)));
+        assert_eq!(label(half, Some(&sub)), "1/2");
+        // A subharmonic without any impact is not believed: an impact was too slow to see.
+        assert_eq!(label(Vec::new(), Some(&sub)), "undetermined");
+        let sure = of(&detection(once(), Some(&tone)));
+        assert!(sure.confidence > 0.9, "{}", sure.confidence);
+        assert!(sure.evidence.waveform_closure.unwrap() < 1e-3);
+    }
+
+    #[test]
+    fn valid_beats_swell_and_chaos_does_not() {
+        // Two tones of an irrational ratio never close within eight periods.
+        let open = |t: f64| (TURN * t).cos() + 0.8 * (TURN * t * 2f64.sqrt() / 1.3).sin();
+        let swelling = [0.2, 0.5, 0.9, 1.2, 1.0, 0.6, 0.3];
+        let bursts = |begin: f64| {
+            let speeds = swelling.into_iter().enumerate();
+            speeds.map(move |(i, v)| (begin + 0.5 * i as f64 + 0.1, v))
+        };
+        assert_eq!(
+            label(at(bursts(0.0).chain(bursts(5.0))), Some(&open)),
+            "beat"
+        );
+        let speeds = [0.9, 0.1, 0.6, 0.2, 1.0, 0.3, 0.8, 0.1, 0.7];
+        let chaos = speeds.into_iter().enumerate();
+        let chaos = at(chaos.map(|(i, v)| (1.07 * i as f64 + 0.2, v)));
+        assert_eq!(label(chaos, Some(&open)), "chaotic");
+        assert_eq!(
+            label(at([(0.3, 1.0), (4.1, 0.2)]), Some(&open)),
+            "undetermined"
+        );
+    }
+
+    #[test]
+    fn valid_without_a_drive_or_with_too_few_periods_nothing_is_decided() {
+        let mut without = detection(at([(0.3, 1.0)]), None);
+        without.drive = None;
+        assert_eq!(of(&without).motion.label(), "undetermined");
+        let with = detection(at([(0.3, 1.0)]), None);
+        let short = classify(&with, 1.9 * PERIOD_S, &ClassifySettings::default());
+        assert_eq!(short.motion.label(), "undetermined");
+    }
 
     /// A second of a contact that closes twice in each of ten drive periods.
     fn two_pulses_a_period() -> Record {
-        let voltage = |role: Role, values: Vec<f64>| Channel {
-            role,
-            name: role.name().to_owned(),
-            dimension: Dimension::Voltage,
-            values,
-            high_pass_hz: None,
-            threshold: (role == Role::Contact).then_some(2.5),
-        };
-        let phase = |i: usize| std::f64::consts::TAU * i as f64 / 200.0;
-        let drive = (0..2000).map(|i| phase(i).cos()).collect();
+        let phase = |i: usize| TURN * i as f64 / 200.0;
+        let drive: Vec<f64> = (0..2000).map(|i| phase(i).cos()).collect();
         let closed = |i: usize| matches!(i % 200, 20..23 | 95..98);
-        let contact = (0..2000).map(|i| if closed(i) { 5.0 } else { 0.0 });
-        Record {
-            id: "two pulses".to_owned(),
-            sample_rate_hz: 2000.0,
-            channels: vec![
-                voltage(Role::Drive, drive),
-                voltage(Role::Contact, contact.collect()),
-            ],
-            setting: Setting::unstated(),
-            flags: Vec::new(),
-        }
+        let contact: Vec<f64> = (0..2000)
+            .map(|i| if closed(i) { 5.0 } else { 0.0 })
+            .collect();
+        Record::of(2000.0, &[(Role::Drive, &drive), (Role::Contact, &contact)])
     }
 
     #[test]

@@ -6,7 +6,7 @@ use crate::signal::robust;
 
 /// How well a waveform closes after n drive periods.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WaveformClosure {
+pub(super) struct WaveformClosure {
     /// Number of drive periods.
     pub periods_n: u32,
     /// Deviation of w(t + nT) − w(t) over √2 and over the waveform's root mean square.
@@ -18,9 +18,9 @@ pub struct WaveformClosure {
 /// Closure of a waveform for n = 1 … `most`, samples near impacts left out.
 ///
 /// `period` in samples, `impacts` in samples; a sample is left out when it, or its partner nT
-/// later, lies within `guard` samples of an impact, where no interpolation holds. A constant
+/// later, is within `guard` samples of an impact, where interpolation fails. A constant
 /// difference (drift) does not count.
-pub fn waveform(
+pub(super) fn waveform(
     values: &[f64],
     period: f64,
     impacts: &[f64],
@@ -75,7 +75,7 @@ fn blocked_samples(count: usize, impacts: &[f64], guard: f64) -> Vec<bool> {
 
 /// How many impacts fall into n drive periods, and how steadily so.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Count {
+pub(super) struct Count {
     /// Impacts in n drive periods, by majority of all windows within the record.
     pub impacts_p: u32,
     /// Fraction of windows that agree.
@@ -84,10 +84,10 @@ pub struct Count {
     pub windows: usize,
 }
 
-/// Count impacts (times and period in one unit) in windows of n periods that lie wholly within
+/// Count impacts (times and period in one unit) in windows of n periods that are wholly within
 /// the record and whose edges keep clear of impacts, so that the record's own edges never turn
-/// 1 into 12/13. `None` where no window fits.
-pub fn count(times: &[f64], period: f64, duration: f64, periods_n: u32) -> Option<Count> {
+/// 1 into 12/13. `None` if no window fits.
+pub(super) fn count(times: &[f64], period: f64, duration: f64, periods_n: u32) -> Option<Count> {
     let length = f64::from(periods_n) * period;
     let clear = 0.02 * period;
     let step = 0.125 * period;
@@ -126,7 +126,7 @@ pub struct ImpactClosure {
 }
 
 /// Closure of (phase, speed) between impacts i and i + p; `None` with fewer than p + 1 impacts.
-pub fn impacts(impacts: &[Impact], period_s: f64, p: u32, n: u32) -> Option<ImpactClosure> {
+pub(super) fn impacts(impacts: &[Impact], period_s: f64, p: u32, n: u32) -> Option<ImpactClosure> {
     let lag = p as usize;
     let pairs: Vec<(&Impact, &Impact)> = impacts.iter().zip(impacts.iter().skip(lag)).collect();
     if pairs.is_empty() || lag == 0 {
@@ -194,5 +194,33 @@ mod tests {
         assert!(found[0].ratio > 0.05);
         assert!(found[1].ratio < 1e-5);
         assert!(found[3].ratio < 1e-5);
+    }
+
+    #[test]
+    fn valid_two_unequal_impacts_close_after_their_own_number() {
+        // Impacts at 0.2 and 0.7 of every period of 0.1 s with speeds 1 and 0.5.
+        let list: Vec<Impact> = (0..8)
+            .flat_map(|k| {
+                let begin = 0.1 * f64::from(k);
+                [Impact::at(begin + 0.02, 1.0), Impact::at(begin + 0.07, 0.5)]
+            })
+            .collect();
+        let closed = impacts(&list, 0.1, 2, 1).unwrap();
+        assert_eq!(closed.pairs, 14);
+        assert!(closed.phase_rad < 1e-9 && closed.speed_ratio.unwrap() < 1e-9);
+        // Taken as one impact in one period, phases miss by π and speeds by 0.5 of a mean of 0.75;
+        // the scale for normal errors is 1.4826.
+        let open = impacts(&list, 0.1, 1, 1).unwrap();
+        assert!((open.phase_rad - 1.4826 * std::f64::consts::PI).abs() < 1e-6);
+        assert!((open.speed_ratio.unwrap() - 1.4826 * 0.5 / 0.75).abs() < 1e-6);
+        assert_eq!(impacts(&list[..1], 0.1, 1, 1), None);
+    }
+
+    #[test]
+    fn valid_samples_beside_impacts_are_blocked() {
+        // 4.5 ± 1 blocks samples 4 and 5, the first and the last impact reach over the edges.
+        let blocked = blocked_samples(10, &[4.5, 0.2, 9.6], 1.0);
+        let list: Vec<usize> = (0..10).filter(|i| blocked[*i]).collect();
+        assert_eq!(list, [0, 1, 4, 5, 9]);
     }
 }

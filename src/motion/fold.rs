@@ -1,10 +1,9 @@
 //! A periodic record folded onto one period of its motion: means over narrow bins of phase, the
-//! few numbers that carry all a periodic waveform can tell.
+//! few numbers that carry all the information of a periodic waveform.
 
 use serde::{Deserialize, Serialize};
 
-use crate::event::kinematics::Series;
-use crate::event::{Detection, DriveTone};
+use crate::event::{Detection, DriveTone, Series};
 use crate::record::{Channel, Record, Role};
 use crate::signal::interpolation::interpolate;
 
@@ -64,10 +63,14 @@ impl Folded {
 /// Fold a record with at most one impact in n drive periods.
 ///
 /// Bins within two samples of an impact are left out. A constant part of each channel is left
-/// in: an offset is a nuisance that a fit must carry. A high-pass is left in too, for the model
-/// to pass: to undo it takes the integral of all noise, and of jumps whose instants are known but
-/// roughly.
-pub fn fold(record: &Record, detection: &Detection, drive: &DriveTone, periods_n: u32) -> Folded {
+/// in: an offset is a nuisance of the fit. A high-pass is left in too, and the model is filtered:
+/// undoing it would integrate the noise, and jumps whose instants are known only roughly.
+pub(super) fn fold(
+    record: &Record,
+    detection: &Detection,
+    drive: &DriveTone,
+    periods_n: u32,
+) -> Folded {
     let rate_hz = detection.kinematics.rate_hz;
     let span = std::f64::consts::TAU * f64::from(periods_n);
     let first = detection.impacts.first().map(|i| i.time_s);
@@ -91,7 +94,7 @@ pub fn fold(record: &Record, detection: &Detection, drive: &DriveTone, periods_n
         bins: BINS_PER_PERIOD * periods_n as usize,
     };
     if let Some(impact) = impact_phase_rad {
-        // Also those at the record's very edges, where no impact could be detected.
+        // Also at the record's edges, where no impact can be detected.
         axis.block_phase(impact, guard_s * std::f64::consts::TAU * drive.frequency_hz);
     }
     Folded {
@@ -146,9 +149,9 @@ struct Axis {
 }
 
 impl Axis {
-    /// How a shape in time stands in values whose motion is periodic: the amplitude by which it
-    /// explains, in least squares, that values a period apart differ. `shape`: its value at a
-    /// sample.
+    /// Amplitude of a shape in time that is added to a periodic motion: the least-squares fit of the
+    /// shape's change over a period to the differences of values a period apart. `shape`: its value
+    /// at a sample.
     fn amplitude(&self, values: &[f64], shape: impl Fn(f64) -> f64) -> f64 {
         let step = if self.phases.len() < 2 {
             return 0.0;
@@ -171,7 +174,7 @@ impl Axis {
         if square > 0.0 { product / square } else { 0.0 }
     }
 
-    /// Take a shape in time out of values whose motion is periodic.
+    /// Subtract a shape in time from values whose motion is periodic.
     fn remove(&self, values: &mut [f64], shape: impl Fn(f64) -> f64) {
         let amplitude = self.amplitude(values, &shape);
         for (i, value) in values.iter_mut().enumerate() {
@@ -255,4 +258,69 @@ fn points(values: &[f64], axis: &Axis) -> Vec<FoldedPoint> {
             samples: *n as u32,
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::event::{DetectSettings, Impact, RigKind, detect};
+
+    const RATE_HZ: f64 = 2000.0;
+    const FREQUENCY_HZ: f64 = 12.6;
+
+    fn theta(i: usize) -> f64 {
+        std::f64::consts::TAU * FREQUENCY_HZ * i as f64 / RATE_HZ + 0.7
+    }
+
+    /// A record of a waveform over the drive's phase, its detection with given impacts, its drive.
+    fn record(of: impl Fn(f64) -> f64, impacts: Vec<Impact>) -> (Record, Detection, DriveTone) {
+        let drive: Vec<f64> = (0..2000).map(|i| theta(i).cos()).collect();
+        let velocity: Vec<f64> = (0..2000).map(|i| of(theta(i))).collect();
+        let channels: [(Role, &[f64]); 2] = [(Role::Drive, &drive), (Role::VelocityX, &velocity)];
+        let record = Record::of(RATE_HZ, &channels);
+        let mut found = detect(&record, RigKind::Single, &DetectSettings::default());
+        found.impacts = impacts;
+        let drive = found.drive.unwrap();
+        (record, found, drive)
+    }
+
+    #[test]
+    fn valid_a_known_waveform_is_found_in_every_bin() {
+        let wave = |theta: f64| 0.5 * (theta - 0.3).cos() + 0.1 * (2.0 * theta).sin();
+        let (record, detection, drive) = record(wave, Vec::new());
+        let folded = fold(&record, &detection, &drive, 1);
+        assert_eq!((folded.periods_n, folded.impact_phase_rad), (1, None));
+        let points = &folded.channels[0].points;
+        assert_eq!(points.len(), BINS_PER_PERIOD);
+        assert_eq!(points.iter().map(|p| p.samples).sum::<u32>(), 2000);
+        for point in points {
+            // A mean over a bin is below the crest by curvature · spread²/2.
+            let allowed = 0.5 * 0.9 * point.spread_rad.powi(2) + 1e-5;
+            assert!((point.value - wave(point.phase_rad)).abs() < allowed);
+            assert!(point.spread_rad < 0.05);
+        }
+    }
+
+    #[test]
+    fn valid_a_subharmonic_is_folded_on_two_periods_with_its_impact_left_out() {
+        let wave = |theta: f64| (0.5 * theta).sin();
+        // An impact at phase 1.2 of every other period: (2πf t + 0.7) mod 4π = 1.2 + 2π.
+        let time = |k: usize| {
+            let phase = 1.2 + std::f64::consts::TAU * (2 * k + 1) as f64 - 0.7;
+            phase / (std::f64::consts::TAU * FREQUENCY_HZ)
+        };
+        let impacts = (0..6).map(|k| Impact::at(time(k), 1.0)).collect();
+        let (record, detection, drive) = record(wave, impacts);
+        let folded = fold(&record, &detection, &drive, 2);
+        // The first impact is put into the first period, so the fold starts one turn later.
+        let impact = folded.impact_phase_rad.unwrap();
+        assert!((impact - 1.2).abs() < 1e-6, "{impact}");
+        assert!((folded.on_fold(1.3 - 2.0 * std::f64::consts::TAU) - 1.3).abs() < 1e-12);
+        let guard = 2.0 / RATE_HZ * std::f64::consts::TAU * FREQUENCY_HZ;
+        for point in &folded.channels[0].points {
+            let shifted = wave(point.phase_rad + std::f64::consts::TAU);
+            assert!((point.value - shifted).abs() < 1e-3);
+            assert!((point.phase_rad - impact).abs() > 0.5 * guard);
+        }
+    }
 }

@@ -1,15 +1,14 @@
-//! All that is kept of a record once it has been looked at: its motion, its impacts, and the few
-//! numbers that the identification needs. The samples themselves are let go.
+//! The summary of a record that is kept: its motion, its impacts and the numbers that the
+//! identification needs, without the samples.
 
 use serde::{Deserialize, Serialize};
 
-use crate::event::detect::DetectSettings;
-use crate::event::{DriveTone, Impact, RigKind, detect};
-use crate::motion::Motion;
+use crate::event::{DetectSettings, DriveTone, Impact, RigKind, detect};
 use crate::motion::classify::{Classification, ClassifySettings, classify};
 use crate::motion::fold::{Folded, fold};
+use crate::motion::kind::Motion;
 use crate::motion::response::{Response, responses};
-use crate::record::{Excitation, Flag, Record, Role, Setting};
+use crate::record::{Excitation, Flag, FlagCode, Record, Role, Setting};
 use crate::signal::decay::{self, Decay};
 
 /// Greatest and least value of a motion channel, SI, about its mean.
@@ -55,12 +54,12 @@ pub struct Observation {
     pub folded: Option<Folded>,
     /// The free decay; only of records without drive and impacts.
     pub decay: Option<Decay>,
-    /// What was noticed.
+    /// Problems found.
     pub flags: Vec<Flag>,
 }
 
 impl Observation {
-    /// Measured drive frequency, Hz; the stated one where the drive was not recorded.
+    /// Measured drive frequency, Hz; the stated one if the drive was not recorded.
     pub fn frequency_hz(&self) -> Option<f64> {
         self.drive
             .map(|d| d.frequency_hz)
@@ -68,7 +67,7 @@ impl Observation {
     }
 
     /// Standard error of the measured phase of the drive at the middle of the record, rad: that of
-    /// a tone in as many samples whose rest is noise. Zero where the drive was not recorded.
+    /// a tone with white noise in as many samples. Zero if the drive was not recorded.
     pub fn drive_phase_error_rad(&self) -> f64 {
         let samples = (self.duration_s * self.sample_rate_hz).max(1.0);
         self.drive
@@ -80,8 +79,8 @@ impl Observation {
         self.flags.iter().any(|f| f.excludes)
     }
 
-    /// Whether nothing touched: no impact was seen, and none of the evidence speaks of one. What
-    /// is not harmonic in such a record widens the error of its response.
+    /// Whether the masses never touched: no impact was detected and nothing indicates one. Motion
+    /// that is not harmonic widens the error of such a record's response.
     fn has_no_impact(&self) -> bool {
         self.impacts.is_empty()
             && self.unsupported_pulses == 0
@@ -155,14 +154,12 @@ fn observe_decay(record: &Record) -> Observation {
     let decay = free_decay(record);
     let mut flags = record.flags.clone();
     if decay.is_none() {
-        flags.push(Flag {
-            code: "no_free_decay".into(),
-            channel: None,
-            message: "no free decay of three periods or more was found".into(),
-            remedy: "check that the record is a free decay and that its motion channel is named"
-                .into(),
-            excludes: true,
-        });
+        flags.push(Flag::new(
+            FlagCode::NoFreeDecay,
+            None,
+            "no free decay of three periods or more was found",
+            "check that the record is a free decay and that its motion channel is named",
+        ));
     }
     Observation {
         record: record.id.clone(),
@@ -190,8 +187,7 @@ fn observe_decay(record: &Record) -> Observation {
 }
 
 /// Scale each record's drive amplitude by what was measured, relative to the median of its
-/// specimen, where the measured amplitudes differ; the static deflection then belongs to that
-/// median.
+/// specimen, if it differs from the stated one; the static deflection then refers to that median.
 pub fn scale_drives(observations: &mut [Observation]) {
     let groups: std::collections::BTreeSet<Option<String>> = observations
         .iter()
@@ -231,17 +227,17 @@ fn free_decay(record: &Record) -> Option<Decay> {
 }
 
 fn contact_flag(record: &Record, impacts: &[Impact], unsupported: usize) -> Option<Flag> {
-    (unsupported > 2 && unsupported > impacts.len()).then(|| Flag {
-        code: "contact_without_velocity_jump".into(),
-        channel: record.channel(Role::Contact).map(|c| c.name.clone()),
-        message: format!(
-            "{unsupported} contact pulses show no jump of velocity, {} impacts do",
-            impacts.len()
-        ),
-        remedy: "check the contact's threshold and wiring, and that the velocity channel belongs \
-                 to this record"
-            .into(),
-        excludes: true,
+    (unsupported > 2 && unsupported > impacts.len()).then(|| {
+        Flag::new(
+            FlagCode::ContactWithoutVelocityJump,
+            record.channel(Role::Contact).map(|c| c.name.as_str()),
+            format!(
+                "{unsupported} contact pulses show no jump of velocity, {} impacts do",
+                impacts.len()
+            ),
+            "check the contact's threshold and wiring, and that the velocity channel belongs \
+                 to this record",
+        )
     })
 }
 
@@ -262,4 +258,84 @@ fn amplitudes(record: &Record) -> Vec<Amplitude> {
             }
         })
         .collect()
+}
+
+#[cfg(test)]
+impl Observation {
+    /// A record of a motion at a drive frequency in an upward sweep at a clearance of 1 mm.
+    pub(crate) fn of(record: &str, frequency_hz: f64, motion: Motion) -> Self {
+        let setting = Setting {
+            stated_frequency_hz: Some(frequency_hz),
+            clearance_m: Some(1e-3),
+            sweep: crate::record::Sweep::Up,
+            ..Setting::unstated()
+        };
+        Self {
+            record: record.to_owned(),
+            setting,
+            sample_rate_hz: 2000.0,
+            duration_s: 1.0,
+            drive: None,
+            classification: Classification {
+                motion,
+                confidence: 1.0,
+                evidence: Default::default(),
+            },
+            impacts: Vec::new(),
+            unsupported_pulses: 0,
+            missed_pulses: 0,
+            jump_samples: 1,
+            amplitudes: Vec::new(),
+            response: Vec::new(),
+            folded: None,
+            decay: None,
+            flags: Vec::new(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_drive_amplitudes_are_relative_to_the_median_of_their_specimen() {
+        let measured = |specimen: &str, amplitude: f64| {
+            let mut o = Observation::of("r", 12.0, Motion::Impactless);
+            o.setting.specimen = Some(specimen.to_owned());
+            o.drive = Some(DriveTone {
+                frequency_hz: 12.0,
+                frequency_error_hz: 0.0,
+                amplitude,
+                phase_rad: 0.0,
+                residual_ratio: 0.0,
+            });
+            o
+        };
+        let mut all = [
+            measured("a", 1.0),
+            measured("a", 2.0),
+            measured("a", 2.005),
+            measured("b", 30.0),
+        ];
+        scale_drives(&mut all);
+        // 2.005/2 differs by less than 0.5 %: the stated amplitude stays.
+        let amplitudes = all.map(|o| o.setting.drive_amplitude);
+        assert_eq!(amplitudes, [0.5, 1.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn valid_pulses_without_jumps_exclude_a_record_if_they_outnumber_the_impacts() {
+        let contact = [0.0; 10];
+        let record = Record::of(2000.0, &[(Role::Contact, &contact)]);
+        let impacts = [
+            Impact::at(0.1, 1.0),
+            Impact::at(0.2, 1.0),
+            Impact::at(0.3, 1.0),
+        ];
+        assert_eq!(contact_flag(&record, &impacts, 3), None);
+        let flag = contact_flag(&record, &impacts, 4).unwrap();
+        assert_eq!(flag.code, FlagCode::ContactWithoutVelocityJump);
+        assert_eq!(flag.channel.as_deref(), Some("contact"));
+    }
 }

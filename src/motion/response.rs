@@ -19,7 +19,7 @@ pub struct Response {
     pub imaginary: f64,
     /// Standard error of either part, SI.
     pub error: f64,
-    /// Root mean square of what the tone leaves over, SI.
+    /// Root mean square of the residual, SI.
     pub residual_rms: f64,
     /// Corner of the first-order high-pass that was divided out, Hz; `None`: none.
     #[serde(default)]
@@ -32,7 +32,7 @@ impl Response {
         self.real.hypot(self.imaginary)
     }
 
-    /// The same measured values where the channel has passed another high-pass than was taken.
+    /// The same measured values if the channel has passed another high-pass than was assumed.
     pub fn behind(&self, high_pass_hz: Option<f64>, frequency_hz: f64) -> Self {
         // To divide by iω/(iω + ω_c) is to multiply by 1 − iω_c/ω.
         let undoing =
@@ -50,7 +50,7 @@ impl Response {
 }
 
 /// Response of all motion channels of a record to its drive.
-pub fn responses(record: &Record, drive: &DriveTone) -> Vec<Response> {
+pub(super) fn responses(record: &Record, drive: &DriveTone) -> Vec<Response> {
     record
         .channels
         .iter()
@@ -99,4 +99,53 @@ fn tone_at_drive(values: &[f64], rate_hz: f64, drive: &DriveTone) -> Option<(f64
     let rms = (squares / count as f64).sqrt();
     // a cos θ + b sin θ = Re[(a − i b) e^{iθ}].
     Some((solution[2], -solution[3], error, rms))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RATE_HZ: f64 = 2000.0;
+
+    fn drive() -> DriveTone {
+        DriveTone {
+            frequency_hz: 12.6,
+            frequency_error_hz: 0.0,
+            amplitude: 1.0,
+            phase_rad: 0.4,
+            residual_ratio: 0.0,
+        }
+    }
+
+    fn record(of: impl Fn(f64, f64) -> f64) -> Record {
+        let value = |i: usize| {
+            let time = i as f64 / RATE_HZ;
+            of(drive().phase_at(time), time)
+        };
+        let values: Vec<f64> = (0..2000).map(value).collect();
+        Record::of(RATE_HZ, &[(Role::VelocityX, &values)])
+    }
+
+    #[test]
+    fn valid_parts_in_phase_and_ahead_are_separated_from_a_drifting_offset() {
+        // Re[(0.3 + 0.2i) e^{iθ}] = 0.3 cos θ − 0.2 sin θ.
+        let record = record(|theta, t| 0.3 * theta.cos() - 0.2 * theta.sin() + 0.5 - 0.1 * t);
+        let found = responses(&record, &drive());
+        assert_eq!(found.len(), 1);
+        assert!((found[0].real - 0.3).abs() < 1e-9);
+        assert!((found[0].imaginary - 0.2).abs() < 1e-9);
+        assert!((found[0].amplitude() - 0.13f64.sqrt()).abs() < 1e-9);
+        assert!(found[0].residual_rms < 1e-9);
+    }
+
+    #[test]
+    fn valid_a_high_pass_is_divided_out_and_can_be_exchanged() {
+        // Behind a corner at the drive's own frequency 1 becomes i/(1 + i) = (1 + i)/2.
+        let mut record = record(|theta, _| 0.5 * theta.cos() - 0.5 * theta.sin());
+        record.channels[0].high_pass_hz = Some(12.6);
+        let found = responses(&record, &drive())[0];
+        assert!((found.real - 1.0).abs() < 1e-9 && found.imaginary.abs() < 1e-9);
+        let raw = found.behind(None, 12.6);
+        assert!((raw.real - 0.5).abs() < 1e-9 && (raw.imaginary - 0.5).abs() < 1e-9);
+    }
 }

@@ -1,9 +1,9 @@
-//! Observations kept while a long run goes on, so that a run that was broken off can be resumed.
+//! Checkpoints of the observations of a long run, so that an interrupted run can be resumed.
 //!
 //! The records are observed in chunks; each chunk's observations are written as a whole under a
 //! key of everything they depend on: the program's version, the resolved campaign, and length
-//! and time of change of every file. A chunk of another key, or one that cannot be read, is
-//! observed anew, so a resumed run gives the bytes of an undisturbed one.
+//! and time of change of every file. A chunk with another key, or one that cannot be read, is
+//! observed again, so a resumed run gives the same bytes as an uninterrupted one.
 
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
@@ -12,24 +12,24 @@ use sha2::{Digest, Sha256};
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::motion::Observation;
+use crate::pipeline::gzip_json;
 use crate::pipeline::inputs::hexadecimal;
-use crate::pipeline::packed;
 use labfiles::output::{self, OutputError};
 
 /// Folder of the chunks in the output folder; it is removed when the run is done.
 const FOLDER: &str = ".impactid-observed";
 
-/// Campaigns of fewer records are quicker observed anew than kept: the usual
+/// Campaigns of fewer records are faster to observe again than to save: the default of
 /// [`Destination::keep_from`](crate::pipeline::Destination::keep_from).
 pub const FEWEST: usize = 2000;
 
-/// Records a chunk holds, for a campaign of so many: a sixteenth, so that little is lost, but
-/// enough that keeping takes no time.
+/// Records per chunk for a campaign of `records`: a sixteenth, so that little is lost, but enough
+/// that saving takes no time.
 pub fn chunk_of(records: usize) -> usize {
     (records / 16).clamp(8, 512)
 }
 
-/// Where the chunks of one run lie.
+/// The chunks of one run in its output folder.
 #[derive(Debug)]
 pub struct Checkpoint {
     folder: PathBuf,
@@ -44,10 +44,10 @@ struct Chunk<T> {
 }
 
 impl Checkpoint {
-    /// The chunks in an output folder. Without `resume` what an earlier run left is removed.
+    /// The chunks in an output folder. Without `resume` those of an earlier run are removed.
     ///
     /// # Errors
-    /// Where the folder cannot be written into.
+    /// If the folder cannot be written into.
     pub fn open(
         campaign: &ResolvedCampaign,
         out: &Path,
@@ -69,35 +69,35 @@ impl Checkpoint {
         self.folder.join(format!("{number:06}.json.gz"))
     }
 
-    /// The observations of a chunk; `None` where it is not there, of another run or unreadable.
+    /// The observations of a chunk; `None` if it is missing, of another run or unreadable.
     pub fn load(&self, number: usize, records: usize) -> Option<Vec<Observation>> {
-        let chunk: Chunk<Vec<Observation>> = packed::read(&self.path(number)).ok()?;
+        let chunk: Chunk<Vec<Observation>> = gzip_json::read(&self.path(number)).ok()?;
         (chunk.key == self.key && chunk.observations.len() == records).then_some(chunk.observations)
     }
 
-    /// Keep the observations of a chunk.
+    /// Save the observations of a chunk.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// If it cannot be written.
     pub fn save(&self, number: usize, observations: &[Observation]) -> Result<(), OutputError> {
         let chunk = Chunk {
             key: self.key.clone(),
             observations,
         };
-        packed::write(&self.path(number), &chunk)
+        gzip_json::write(&self.path(number), &chunk)
     }
 }
 
 /// Remove all chunks in an output folder: the run is done.
 pub fn remove(out: &Path) {
-    // what cannot be removed does no harm: a chunk is taken over by its key alone
+    // a chunk that cannot be removed is harmless: it is loaded only if its key matches
     let _ = std::fs::remove_dir_all(out.join(FOLDER));
 }
 
-/// Number of the layout of kept observations; another one is not taken over.
+/// Version of the layout of saved observations; another one is not loaded.
 const LAYOUT: u32 = 2;
 
-/// A number for everything that observations depend on.
+/// A hash of everything that observations depend on.
 fn key(campaign: &ResolvedCampaign) -> String {
     let mut hash = Sha256::new();
     hash.update(env!("CARGO_PKG_VERSION"));
@@ -131,10 +131,10 @@ mod tests {
     use crate::pipeline::observe::{observe_all, observe_in_chunks};
     use crate::pipeline::synthesise::{Recipe, write_campaign};
     use crate::synthetic::Truth;
-    use labfiles::open::open;
+    use labfiles::open;
 
     #[test]
-    fn valid_a_resumed_observation_is_that_of_an_undisturbed_run() {
+    fn a_resumed_observation_is_that_of_an_uninterrupted_run() {
         let folder = tempfile::tempdir().unwrap();
         let recipe = Recipe {
             truth: Truth::symmetric(0.9, 12.6, 0.07, 1e-3),
@@ -153,7 +153,7 @@ mod tests {
         let kept = Checkpoint::open(&campaign, &out, false).unwrap();
         let first = observe_in_chunks(&campaign, &kept, 5, &quiet).unwrap();
         assert_eq!(json(&whole), json(&first));
-        // broken off: one chunk was not yet written, one is damaged
+        // interrupted: one chunk was not yet written, one is damaged
         std::fs::remove_file(kept.path(1)).unwrap();
         std::fs::write(kept.path(2), b"half").unwrap();
         let kept = Checkpoint::open(&campaign, &out, true).unwrap();
@@ -161,7 +161,7 @@ mod tests {
         let resumed = observe_in_chunks(&campaign, &kept, 5, &quiet).unwrap();
         assert_eq!(json(&whole), json(&resumed));
 
-        // another campaign takes nothing over
+        // another campaign loads nothing
         let mut other = campaign.clone();
         other.analysis.skip_s = 0.1;
         let kept = Checkpoint::open(&other, &out, true).unwrap();

@@ -7,17 +7,17 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::event::RigKind;
-use crate::event::detect::DetectSettings;
+use crate::event::{DetectSettings, RigKind};
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::fit::parameters::Parameters;
-use crate::identify::run::{Outcome, identify};
+use crate::identify::run::identify;
 use crate::identify::uncertainty::bound::bounds;
 use crate::identify::uncertainty::coverage::{Score, Trial, scores, table};
-use crate::identify::uncertainty::{Asked, Way};
+use crate::identify::uncertainty::{IntervalMethod, UncertaintyOptions};
+use crate::identify::{Finding, Identification};
 use crate::motion::{Bracket, ClassifySettings, Observation, brackets, observe, scale_drives};
 use crate::pipeline::{PipelineError, Progress};
-use crate::record::{Record, Role};
+use crate::record::{FlagCode, Record, Role};
 use crate::synthetic::run::calibrated;
 use crate::synthetic::{Draw, Reach, RigSpec, Truth, draw, records};
 
@@ -99,15 +99,20 @@ impl Mistake {
         }
     }
 
+    /// Whether a finding is this mistake.
+    fn is(self, finding: &Finding) -> bool {
+        match self {
+            Self::WrongClearance => matches!(finding, Finding::WrongClearance { .. }),
+            Self::SwappedChannels => matches!(finding, Finding::SwappedChannels { .. }),
+            Self::WrongGain => matches!(finding, Finding::WrongGain { .. }),
+        }
+    }
+
     /// Whether an outcome names it.
     fn is_named_by(self, seen: &Seen) -> bool {
         match self {
-            Self::SwappedChannels if seen.flag("swapped_masses") => true,
-            _ => seen
-                .outcome
-                .suspicions
-                .iter()
-                .any(|s| s.kind == self.name()),
+            Self::SwappedChannels if seen.flag(FlagCode::SwappedMasses) => true,
+            _ => seen.outcome.suspicions.iter().any(|s| self.is(s)),
         }
     }
 }
@@ -144,17 +149,21 @@ fn swap_roles(record: &mut Record, a: Role, b: Role) {
 struct Seen {
     observations: Vec<Observation>,
     brackets: Vec<Bracket>,
-    outcome: Outcome,
+    outcome: Identification,
 }
 
 impl Seen {
-    fn flag(&self, code: &str) -> bool {
+    fn flag(&self, code: FlagCode) -> bool {
         let count = |o: &&Observation| o.flags.iter().any(|f| f.code == code);
         2 * self.observations.iter().filter(count).count() > self.observations.len()
     }
 }
 
-fn evidence<'a>(observations: &'a [Observation], brackets: &'a [Bracket]) -> Evidence<'a> {
+fn evidence<'a>(
+    observations: &'a [Observation],
+    brackets: &'a [Bracket],
+    draw: &Draw,
+) -> Evidence<'a> {
     Evidence {
         rig: RigKind::Double,
         observations,
@@ -162,12 +171,13 @@ fn evidence<'a>(observations: &'a [Observation], brackets: &'a [Bracket]) -> Evi
         nominal: Nominal {
             gain_uncertainty: 5e-3,
             corner_uncertainty: 2e-2,
+            clearance_uncertainty_m: draw.clearance_uncertainty_m.unwrap_or(0.0),
             ..Nominal::default()
         },
         // Nobody reads profiles of hundreds of campaigns.
-        uncertainty: Asked {
-            way: Way::Covariance,
-            ..Asked::default()
+        uncertainty: UncertaintyOptions {
+            intervals: IntervalMethod::Covariance,
+            ..UncertaintyOptions::default()
         },
     }
 }
@@ -193,7 +203,7 @@ fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError
         .collect();
     scale_drives(&mut observations);
     let brackets = brackets(&observations);
-    let outcome = identify(&evidence(&observations, &brackets));
+    let outcome = identify(&evidence(&observations, &brackets, draw));
     Ok(Seen {
         observations,
         brackets,
@@ -202,9 +212,9 @@ fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError
 }
 
 /// What a campaign contributes to the scores.
-fn trial(seen: &Seen, truth: &Truth) -> Trial {
-    let truth = parameters(truth);
-    let bounds = bounds(&evidence(&seen.observations, &seen.brackets), &truth);
+fn trial(seen: &Seen, draw: &Draw) -> Trial {
+    let truth = parameters(&draw.truth);
+    let bounds = bounds(&evidence(&seen.observations, &seen.brackets, draw), &truth);
     Trial::new(truth, &seen.outcome.joint, &seen.outcome.methods, bounds)
 }
 
@@ -243,7 +253,7 @@ pub fn study(
         .map(|i| {
             let draw = draw(seed, i, Reach::Full, rig);
             let seen = campaign(&draw, None)?;
-            let trial = trial(&seen, &draw.truth);
+            let trial = trial(&seen, &draw);
             step();
             Ok((!seen.outcome.suspicions.is_empty(), trial))
         })

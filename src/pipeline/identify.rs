@@ -5,36 +5,31 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::campaign::resolved::ResolvedCampaign;
-use crate::identify::Identification;
+use crate::campaign::resolved::{NominalValues, ResolvedCampaign};
 use crate::identify::evidence::{Evidence, Nominal};
-use crate::identify::fit::Fit;
-use crate::identify::specimens::identify_campaign;
-use crate::identify::uncertainty::Asked;
-use crate::pipeline::store::write_json;
+use crate::identify::fit::effect::Effects;
+use crate::identify::fit::parameters::gain_index;
+use crate::identify::uncertainty::UncertaintyOptions;
+use crate::identify::{Identification, Provenance, identify_campaign};
+use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, inputs};
+use crate::record::calibrate::ChannelSetup;
+use labfiles::output::write_bytes;
 
 /// Name of the result's file.
 pub const FILE: &str = "identification.json";
+/// Name of the table of the joint estimate's uncertainty budget.
+pub const BUDGET: &str = "uncertainty_budget.csv";
 
-/// An identification with what the report needs beside it.
-#[derive(Debug, Clone)]
-pub struct Found {
-    /// What is written.
-    pub identification: Identification,
-    /// Fit and records left out.
-    pub outcome: Kept,
-}
-
-/// What of an outcome the report needs beside identification.json.
+/// An identification with its provenance: identification.json.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Kept {
-    /// The joint fit.
-    pub fit: Option<Fit>,
-    /// Factor on its covariance.
-    pub factor: f64,
-    /// What a fit left out, and why.
-    pub left_out: Vec<(String, String)>,
+pub struct IdentificationFile {
+    /// The result.
+    #[serde(flatten)]
+    pub identification: Identification,
+    /// Settings, versions and inputs.
+    #[serde(flatten)]
+    pub provenance: Provenance,
 }
 
 /// What the campaign states about its rig.
@@ -46,7 +41,33 @@ pub fn nominal(campaign: &ResolvedCampaign) -> Nominal {
         static_deflection_m: campaign.rig.static_deflection_m,
         gain_uncertainty: campaign.rig.gain_uncertainty,
         corner_uncertainty: campaign.rig.corner_uncertainty,
+        clearance_uncertainty_m: campaign.rig.clearance_uncertainty_m,
+        mass_asymmetry: mass_asymmetry(&campaign.rig),
+        effects: match &campaign.rig.effects {
+            Some(kinds) => Effects::of(kinds),
+            None => Effects::all(),
+        },
+        ..delays(&campaign.channels)
     }
+}
+
+/// (m_x − m_y)/m of the stated masses, with its standard uncertainty; `None` unless both are stated.
+fn mass_asymmetry(rig: &NominalValues) -> Option<[f64; 2]> {
+    let (x, y) = rig.mass_x_kg.zip(rig.mass_y_kg)?;
+    let deviation = rig.mass_uncertainty * std::f64::consts::SQRT_2;
+    Some([2.0 * (x - y) / (x + y), deviation])
+}
+
+/// The stated delays of the motion channels.
+fn delays(channels: &[ChannelSetup]) -> Nominal {
+    let mut nominal = Nominal::default();
+    for channel in channels {
+        if let Some(i) = gain_index(channel.role) {
+            nominal.delays_s[i] = channel.delay_s;
+            nominal.delay_uncertainties_s[i] = channel.delay_uncertainty_s;
+        }
+    }
+    nominal
 }
 
 /// What an identification of a campaign starts from.
@@ -56,8 +77,8 @@ pub fn evidence<'a>(campaign: &ResolvedCampaign, observed: &'a Observed) -> Evid
         observations: &observed.observations,
         brackets: &observed.brackets,
         nominal: nominal(campaign),
-        uncertainty: Asked {
-            way: campaign.analysis.uncertainty,
+        uncertainty: UncertaintyOptions {
+            intervals: campaign.analysis.uncertainty,
             replicas: campaign.analysis.replicas,
             seed: campaign.analysis.seed,
         },
@@ -68,28 +89,25 @@ pub fn evidence<'a>(campaign: &ResolvedCampaign, observed: &'a Observed) -> Evid
 ///
 /// # Errors
 /// Where the settings cannot be written as JSON.
-pub fn identify(campaign: &ResolvedCampaign, observed: &Observed) -> Result<Found, PipelineError> {
-    let (outcome, specimens) = identify_campaign(&evidence(campaign, observed));
-    let identification = Identification {
-        verdict: outcome.verdict,
-        joint: outcome.joint,
-        methods: outcome.methods,
-        agreement: outcome.agreement,
-        suspicions: outcome.suspicions,
-        uncertainty: outcome.uncertainty,
-        specimens,
+pub fn identify(
+    campaign: &ResolvedCampaign,
+    observed: &Observed,
+) -> Result<IdentificationFile, PipelineError> {
+    Ok(IdentificationFile {
+        identification: identify_campaign(&evidence(campaign, observed)),
+        provenance: provenance(campaign)?,
+    })
+}
+
+/// Where an identification of a campaign comes from.
+///
+/// # Errors
+/// Where the settings cannot be written as JSON.
+pub(super) fn provenance(campaign: &ResolvedCampaign) -> Result<Provenance, PipelineError> {
+    Ok(Provenance {
         settings: settings(campaign)?,
         versions: versions(),
         inputs_sha256: inputs::hashes(campaign),
-    };
-    let outcome = Kept {
-        fit: outcome.fit,
-        factor: outcome.factor,
-        left_out: outcome.left_out,
-    };
-    Ok(Found {
-        identification,
-        outcome,
     })
 }
 
@@ -109,7 +127,7 @@ pub(super) fn settings(campaign: &ResolvedCampaign) -> Result<serde_json::Value,
 pub fn versions() -> BTreeMap<String, String> {
     [
         ("impactid", env!("CARGO_PKG_VERSION")),
-        ("identification.json", "1"),
+        ("identification.json", "2"),
         ("records.parquet", "1"),
     ]
     .into_iter()
@@ -117,10 +135,14 @@ pub fn versions() -> BTreeMap<String, String> {
     .collect()
 }
 
-/// Write identification.json.
+/// Write identification.json and the uncertainty budget.
 ///
 /// # Errors
 /// Where it cannot be written.
-pub fn write(identification: &Identification, out: &Path) -> Result<(), PipelineError> {
+pub fn write(identification: &IdentificationFile, out: &Path) -> Result<(), PipelineError> {
+    let budget = &identification.identification.uncertainty.budget;
+    if !budget.rows.is_empty() {
+        write_bytes(&out.join(BUDGET), budget.table().as_bytes())?;
+    }
     write_json(&out.join(FILE), identification)
 }

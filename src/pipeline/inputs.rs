@@ -1,4 +1,4 @@
-//! Fingerprints of everything that was read.
+//! Hashes of all inputs.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read;
@@ -9,8 +9,8 @@ use sha2::{Digest, Sha256};
 
 use crate::campaign::resolved::ResolvedCampaign;
 
-/// SHA-256 of campaign.toml and of every record file, by path relative to campaign.toml's folder
-/// where they lie in it. A file that cannot be read has the hash "unreadable".
+/// SHA-256 of campaign.toml and of every record file, by path (relative to the folder of campaign.toml
+/// if the file is in it). A file that cannot be read has the hash "unreadable".
 pub fn hashes(campaign: &ResolvedCampaign) -> BTreeMap<String, String> {
     let mut files: BTreeSet<PathBuf> = campaign.records.iter().map(|r| r.file.clone()).collect();
     files.insert(campaign.file.clone());

@@ -1,4 +1,4 @@
-//! Reading and observing all records, file by file, in parallel; samples are let go at once.
+//! Reading and observing all records, file by file, in parallel; samples are dropped at once.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -8,15 +8,15 @@ use rayon::prelude::*;
 
 use crate::campaign::check::by_file;
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
-use crate::event::detect::DetectSettings;
+use crate::event::DetectSettings;
 use crate::motion::{ClassifySettings, Observation, observe};
 use crate::pipeline::Progress;
 use crate::pipeline::checkpoint::Checkpoint;
 use crate::record::calibrate::{calibrate, unreadable};
-use crate::record::{Flag, Record};
-use labfiles::open::open;
+use crate::record::{Flag, FlagCode, Record};
+use labfiles::open;
 use labfiles::output::OutputError;
-use labfiles::source::{ReadError, Source};
+use labfiles::{ReadError, Source};
 
 /// Settings of the detection as the campaign has them.
 fn detect_settings(campaign: &ResolvedCampaign) -> DetectSettings {
@@ -36,27 +36,32 @@ fn classify_settings(campaign: &ResolvedCampaign) -> ClassifySettings {
 }
 
 /// Most records of a campaign whose folded waveforms are kept. Of more records those of every
-/// second, third … are kept, so that memory does not grow with them; each waveform alone tells
-/// the parameters, and thousands leave nothing to be told.
+/// second, third … are kept, so that memory does not grow with them: thousands of waveforms
+/// determine the parameters as well as all of them.
 const MOST_WAVEFORMS: usize = 4_000;
 
-/// Records that are read ahead of the one that is worked on.
+/// Records read ahead of the one that is processed.
 const READ_AHEAD: usize = 256;
 
 /// Observe every record, in the order of the campaign.
 pub fn observe_all(campaign: &ResolvedCampaign, progress: Progress) -> Vec<Observation> {
     let total = campaign.records.len() as u64;
     let done = AtomicU64::new(0);
-    observe_some(campaign, &campaign.records, &Shelf::default(), &|| {
-        progress("observe", done.fetch_add(1, Ordering::Relaxed) + 1, total);
-    })
+    observe_some(
+        campaign,
+        &campaign.records,
+        &SourceCache::default(),
+        &|| {
+            progress("observe", done.fetch_add(1, Ordering::Relaxed) + 1, total);
+        },
+    )
 }
 
-/// Observe every record in chunks of so many; a chunk that an earlier run kept is taken over,
-/// another is kept when it is done.
+/// Observe every record in chunks of `chunk` records; chunks in the checkpoint are loaded, the others
+/// are saved there.
 ///
 /// # Errors
-/// Where a chunk cannot be written.
+/// If a chunk cannot be written.
 pub fn observe_in_chunks(
     campaign: &ResolvedCampaign,
     checkpoint: &Checkpoint,
@@ -65,7 +70,7 @@ pub fn observe_in_chunks(
 ) -> Result<Vec<Observation>, OutputError> {
     let total = campaign.records.len() as u64;
     let done = AtomicU64::new(0);
-    let shelf = Shelf::default();
+    let cache = SourceCache::default();
     let mut all = Vec::with_capacity(campaign.records.len());
     for (number, entries) in campaign.records.chunks(chunk.max(1)).enumerate() {
         if let Some(kept) = checkpoint.load(number, entries.len()) {
@@ -73,7 +78,7 @@ pub fn observe_in_chunks(
             all.extend(kept);
             continue;
         }
-        let observed = observe_some(campaign, entries, &shelf, &|| {
+        let observed = observe_some(campaign, entries, &cache, &|| {
             progress("observe", done.fetch_add(1, Ordering::Relaxed) + 1, total);
         });
         checkpoint.save(number, &observed)?;
@@ -84,9 +89,9 @@ pub fn observe_in_chunks(
 
 /// The file that was opened last, so that the next chunk need not open it again.
 #[derive(Default)]
-struct Shelf(Mutex<Option<Arc<dyn Source>>>);
+struct SourceCache(Mutex<Option<Arc<dyn Source>>>);
 
-impl Shelf {
+impl SourceCache {
     fn open(&self, path: &Path) -> Result<Arc<dyn Source>, ReadError> {
         let held = self.0.lock().ok().and_then(|held| held.clone());
         if let Some(source) = held.filter(|s| s.path() == path) {
@@ -104,7 +109,7 @@ impl Shelf {
 fn observe_some(
     campaign: &ResolvedCampaign,
     entries: &[RecordEntry],
-    shelf: &Shelf,
+    cache: &SourceCache,
     each: &(dyn Fn() + Sync),
 ) -> Vec<Observation> {
     let settings = classify_settings(campaign);
@@ -112,7 +117,7 @@ fn observe_some(
     let parts: Vec<Vec<Observation>> = by_file(entries)
         .into_par_iter()
         .map(|entries| {
-            records_of(campaign, entries, shelf, |entry, record| {
+            records_of(campaign, entries, cache, |entry, record| {
                 let detect = detect_settings(campaign);
                 let mut observation = observe(&record, campaign.machine, &detect, &settings);
                 if !entry.setting.sequence.is_multiple_of(stride) {
@@ -126,18 +131,18 @@ fn observe_some(
     parts.into_iter().flatten().collect()
 }
 
-/// Do something with every record in turn; they are read in parallel, a few hundred at a time.
+/// Call `act` on every record in turn; they are read in parallel, a few hundred at a time.
 ///
 /// # Errors
-/// What `act` says.
+/// Those of `act`.
 pub fn each_record<E>(
     campaign: &ResolvedCampaign,
     mut act: impl FnMut(&RecordEntry, Record) -> Result<(), E>,
 ) -> Result<(), E> {
-    let shelf = Shelf::default();
+    let cache = SourceCache::default();
     for group in by_file(&campaign.records) {
         for entries in group.chunks(READ_AHEAD) {
-            let records = records_of(campaign, entries, &shelf, |_, record| record);
+            let records = records_of(campaign, entries, &cache, |_, record| record);
             for (entry, record) in entries.iter().zip(records) {
                 act(entry, record)?;
             }
@@ -149,13 +154,13 @@ pub fn each_record<E>(
 fn records_of<T: Send>(
     campaign: &ResolvedCampaign,
     entries: &[RecordEntry],
-    shelf: &Shelf,
+    cache: &SourceCache,
     act: impl Fn(&RecordEntry, Record) -> T + Sync,
 ) -> Vec<T> {
     let Some(first) = entries.first() else {
         return Vec::new();
     };
-    let source = shelf.open(&first.file);
+    let source = cache.open(&first.file);
     entries
         .par_iter()
         .map(|entry| {
@@ -172,13 +177,12 @@ fn records_of<T: Send>(
 fn read(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Source) -> Record {
     let mut record = calibrate(source, &campaign.setup_of(entry));
     if entry.excluded {
-        record.flags.push(Flag {
-            code: "excluded".into(),
-            channel: None,
-            message: "campaign.toml leaves this record out".into(),
-            remedy: "remove it from `exclude` in [analysis] to use it".into(),
-            excludes: true,
-        });
+        record.flags.push(Flag::new(
+            FlagCode::Excluded,
+            None,
+            "campaign.toml excludes this record",
+            "remove it from `exclude` in [analysis] to use it",
+        ));
     }
     record
 }

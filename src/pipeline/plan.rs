@@ -1,4 +1,4 @@
-//! What to measure next: proposals from a campaign's own fit, on the map of its motions.
+//! Proposals of the settings to measure next, from the fit of a campaign, on the map of its motions.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::plan::{Proposal, Reach, propose};
 use crate::motion::Motion;
-use crate::pipeline::store::write_json;
+use crate::pipeline::json::write_json;
 use crate::pipeline::{Observed, PipelineError, Progress, identify, report};
 use crate::report::ProposedPoint;
 use labfiles::output::{make_folder, write_bytes};
@@ -15,7 +15,7 @@ use labfiles::output::{make_folder, write_bytes};
 /// What is written as plan.json.
 #[derive(Debug, Clone, Serialize)]
 pub struct Plan {
-    /// R as identified now; `None` where these data cannot tell it.
+    /// R as identified now; `None` if it is not identifiable.
     pub restitution: Option<f64>,
     /// Its standard error now.
     pub restitution_error_now: Option<f64>,
@@ -26,11 +26,11 @@ pub struct Plan {
 /// Name of the result.
 pub const FILE: &str = "plan.json";
 
-/// Observe and identify a campaign, propose so many settings, and leave plan.json, plan.csv and the
-/// map as SVG, PNG and PDF in a folder.
+/// Observe and identify a campaign, propose `count` settings, and write plan.json, plan.csv and the
+/// map as SVG, PNG and PDF into a folder.
 ///
 /// # Errors
-/// Where no record can be used or an output cannot be written.
+/// If no record can be used or an output cannot be written.
 pub fn plan(
     campaign: &ResolvedCampaign,
     count: usize,
@@ -42,8 +42,10 @@ pub fn plan(
     let found = identify::identify(campaign, &observed)?;
     let evidence = identify::evidence(campaign, &observed);
     let reach = Reach::of(&observed.observations);
-    let proposals = match (found.outcome.fit.as_ref(), reach) {
-        (Some(fit), Some(reach)) => propose(&evidence, fit, found.outcome.factor, reach, count),
+    let proposals = match (&found.identification.joint_fit, reach) {
+        (Some(joint), Some(reach)) => {
+            propose(&evidence, &joint.fit, joint.variance_factor, reach, count)
+        }
         _ => Vec::new(),
     };
     let now = found.identification.joint.parameters.restitution.as_ref();
@@ -55,7 +57,7 @@ pub fn plan(
     progress("map", 0, 1);
     make_folder(out)?;
     let mut content = report::content(campaign, &observed, &found, "")?;
-    content.comparisons.clear();
+    content.compared.comparisons.clear();
     content.proposals = plan.proposals.iter().map(point).collect();
     for (name, bytes) in crate::report::plan_map(&content, campaign.report.decimal_comma)? {
         write_bytes(&out.join(name), &bytes)?;

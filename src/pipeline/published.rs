@@ -4,15 +4,13 @@ use std::path::Path;
 
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::campaign::written::Published;
-use crate::identify::published::{
-    PublishedOutcome, PublishedSpeed, Where, identify, methods, predicted,
-};
-use crate::identify::{Identification, Verdict};
-use crate::pipeline::identify::{settings, versions};
-use crate::pipeline::{PipelineError, inputs, report, store};
-use crate::report::ReportContent;
-use crate::report::content::DataTable;
-use labfiles::source::ReadError;
+use crate::compare::Compared;
+use crate::identify::Identification;
+use crate::identify::published::{PublishedSpeed, Where, identify, predicted};
+use crate::pipeline::identify::{IdentificationFile, provenance};
+use crate::pipeline::{PipelineError, report, store};
+use crate::report::{CampaignFacts, DataTable, ReportContent, Subject};
+use labfiles::ReadError;
 
 /// Identify from published speeds and write identification.json and report.pdf.
 ///
@@ -23,37 +21,36 @@ pub fn run(
     published: &Published,
     out: &Path,
     command_line: &str,
-) -> Result<Verdict, PipelineError> {
+) -> Result<Identification, PipelineError> {
     let speeds = read(&campaign.folder().join(&published.speeds))?;
-    let found = identify(&speeds, &published.damping_ratio_hypotheses);
-    let (methods, agreement) = methods(&found);
-    let identification = Identification {
-        verdict: found.verdict.clone(),
-        joint: found.result.clone(),
-        methods,
-        agreement,
-        suspicions: Vec::new(),
-        uncertainty: Default::default(),
-        specimens: std::collections::BTreeMap::new(),
-        settings: settings(campaign)?,
-        versions: versions(),
-        inputs_sha256: inputs::hashes(campaign),
+    let found = IdentificationFile {
+        identification: identify(&speeds, &published.damping_ratio_hypotheses),
+        provenance: provenance(campaign)?,
     };
-    let mut content = ReportContent::new(campaign.report.title.clone(), identification);
-    content.summary.name = campaign.name.clone();
-    content.summary.rig = "closing speeds as published; nothing was measured here".into();
-    content.tables = vec![table(&speeds, found_damping(&found), published)];
-    content.settings_text = format!("{:#}", content.identification.settings);
-    content.command_line = command_line.to_owned();
+    let damping_ratio = found_damping(&found.identification);
+    let content = ReportContent {
+        title: campaign.report.title.clone(),
+        campaign: CampaignFacts {
+            name: campaign.name.clone(),
+            subject: Subject::PublishedSpeeds,
+            ..CampaignFacts::default()
+        },
+        identification: found.identification.clone(),
+        provenance: found.provenance.clone(),
+        compared: Compared::default(),
+        proposals: Vec::new(),
+        tables: vec![table(&speeds, damping_ratio, published)],
+        command_line: command_line.to_owned(),
+    };
     let report = report::render(&content, campaign)?;
     store::write_resolved(campaign, out)?;
-    super::identify::write(&content.identification, out)?;
+    super::identify::write(&found, out)?;
     report::write(&report, out)?;
-    Ok(found.verdict)
+    Ok(found.identification)
 }
 
-fn found_damping(found: &PublishedOutcome) -> Option<f64> {
-    found.result.parameters.damping_ratio.as_ref()?.value
+fn found_damping(found: &Identification) -> Option<f64> {
+    found.joint.parameters.damping_ratio.as_ref()?.value
 }
 
 /// Each published speed beside the model's for the damping ratio found and those printed.
@@ -72,6 +69,11 @@ fn table(speeds: &[PublishedSpeed], found: Option<f64>, published: &Published) -
             s.clearance_ratio.to_string(),
             eta,
         ];
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a small whole number, not negative"
+        )]
         let decimals = (-s.printed_step.log10().floor()).max(0.0) as usize;
         let model = dampings.iter().map(|b| match predicted(s, *b) {
             Some(speed) => format!("{speed:.0$}", decimals + 1),

@@ -1,21 +1,21 @@
 //! The report of a campaign.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
-
-use crate::campaign::resolved::{Report as Look, ResolvedCampaign};
+use crate::campaign::resolved::{Report as StatedOptions, ResolvedCampaign};
 use crate::campaign::written::{Language, Paper as WrittenPaper};
-use crate::pipeline::identify::Found;
+use crate::compare::{self, Input};
+use crate::event::RigKind;
+use crate::identify::Provenance;
+use crate::pipeline::identify::{IdentificationFile, settings};
 use crate::pipeline::observe::read_one;
 use crate::pipeline::{Observed, PipelineError};
-use crate::record::Record;
-use crate::report::assemble::{
-    CampaignFacts, ChannelFacts, Gathered, assemble, chosen_records, shown_decays,
+use crate::report::catalog::Catalog;
+use crate::report::{
+    CampaignFacts, Format, Logo, NominalValue, Paper, Report, ReportContent, ReportOptions, Subject,
 };
-use crate::report::words::Words;
-use crate::report::{Format, Logo, Paper, RenderOptions, Report, ReportContent};
-use labfiles::open::open;
+use labfiles::open;
 use labfiles::output::{make_folder, write_bytes};
 
 /// Name of the report's file.
@@ -28,11 +28,11 @@ pub type ReportFile = (String, Vec<u8>);
 /// for, with the figures' data.
 ///
 /// # Errors
-/// Where the template or the logo cannot be read, or the document cannot be set.
+/// If the template or the logo cannot be read, or the document cannot be set.
 pub fn files(
     campaign: &ResolvedCampaign,
     observed: &Observed,
-    found: &Found,
+    found: &IdentificationFile,
     command_line: &str,
 ) -> Result<Vec<ReportFile>, PipelineError> {
     render(&content(campaign, observed, found, command_line)?, campaign)
@@ -41,7 +41,7 @@ pub fn files(
 /// Draw a content as the campaign asks for it.
 ///
 /// # Errors
-/// Where the template or the logo cannot be read, or the document cannot be set.
+/// If the template or the logo cannot be read, or the document cannot be set.
 pub fn render(
     content: &ReportContent,
     campaign: &ResolvedCampaign,
@@ -60,7 +60,7 @@ pub fn render(
 /// Write the report's files into the results' folder.
 ///
 /// # Errors
-/// Where one cannot be written.
+/// If one cannot be written.
 pub fn write(files: &[ReportFile], out: &Path) -> Result<(), PipelineError> {
     for (name, bytes) in files {
         let path = out.join(name);
@@ -75,57 +75,61 @@ pub fn write(files: &[ReportFile], out: &Path) -> Result<(), PipelineError> {
 /// What the report shows, as plain data.
 ///
 /// # Errors
-/// Where the settings cannot be written as text.
+/// If the settings cannot be written as text.
 pub fn content(
     campaign: &ResolvedCampaign,
     observed: &Observed,
-    found: &Found,
+    found: &IdentificationFile,
     command_line: &str,
 ) -> Result<ReportContent, PipelineError> {
-    let chosen = chosen_records(&observed.observations, &campaign.report.points);
-    let decays = shown_decays(&observed.observations);
-    Ok(assemble(&Gathered {
-        campaign: &facts(campaign)?,
+    let read = |index: usize| {
+        let entry = campaign.records.get(index)?;
+        Some(read_one(campaign, entry))
+    };
+    let compared = compare::compare(&Input {
+        rig: campaign.machine,
         observations: &observed.observations,
         brackets: &observed.brackets,
         identification: &found.identification,
-        fit: found.outcome.fit.as_ref(),
-        factor: found.outcome.factor,
-        left_out: &found.outcome.left_out,
-        chosen: &chosen,
-        chosen_records: &records(campaign, &chosen),
-        decays: &decays,
-        decay_records: &records(campaign, &decays),
-        command_line,
-    }))
+        points: &campaign.report.points,
+        read: &read,
+    });
+    Ok(ReportContent {
+        title: campaign.report.title.clone(),
+        campaign: facts(campaign),
+        identification: found.identification.clone(),
+        provenance: Provenance {
+            settings: settings(campaign)?,
+            ..found.provenance.clone()
+        },
+        compared,
+        proposals: Vec::new(),
+        tables: Vec::new(),
+        command_line: command_line.to_owned(),
+    })
 }
 
-fn records(campaign: &ResolvedCampaign, indices: &[usize]) -> Vec<Record> {
-    let entries = indices.par_iter().filter_map(|i| campaign.records.get(*i));
-    entries.map(|entry| read_one(campaign, entry)).collect()
-}
-
-/// The words of the report: of the table that is named, else of the language where the program
-/// has them.
+/// The phrases of the report: those of the stated table, else those of the language that come with
+/// the program.
 ///
 /// # Errors
-/// Where the table cannot be read, or is none.
-pub fn words(look: &Look) -> Result<Option<Words>, PipelineError> {
-    let Some(path) = &look.words else {
-        let german = look.language == Language::De;
-        return Ok(german.then(|| Words::german().clone()));
+/// If the table cannot be read, or is none.
+pub fn catalog(stated: &StatedOptions) -> Result<Option<Catalog>, PipelineError> {
+    let Some(path) = &stated.words else {
+        let german = stated.language == Language::De;
+        return Ok(german.then(|| Catalog::german().clone()));
     };
-    let unusable = |reason: String| PipelineError::Look {
+    let unusable = |reason: String| PipelineError::ReportFile {
         path: path.display().to_string(),
         reason,
     };
     let text = std::fs::read_to_string(path).map_err(|error| unusable(error.to_string()))?;
-    let words = Words::read(&text).map_err(|error| unusable(error.to_string()))?;
-    Ok(Some(words))
+    let catalog = Catalog::read(&text).map_err(|error| unusable(error.to_string()))?;
+    Ok(Some(catalog))
 }
 
-fn options(look: &Look) -> Result<RenderOptions, PipelineError> {
-    let unreadable = |path: &Path, error: std::io::Error| PipelineError::Look {
+fn options(stated: &StatedOptions) -> Result<ReportOptions, PipelineError> {
+    let unreadable = |path: &Path, error: std::io::Error| PipelineError::ReportFile {
         path: path.display().to_string(),
         reason: error.to_string(),
     };
@@ -139,78 +143,61 @@ fn options(look: &Look) -> Result<RenderOptions, PipelineError> {
             extension: extension.to_lowercase(),
         })
     };
-    Ok(RenderOptions {
-        words: words(look)?,
-        paper: match look.paper {
+    Ok(ReportOptions {
+        catalog: catalog(stated)?,
+        paper: match stated.paper {
             WrittenPaper::A4 => Paper::A4,
             WrittenPaper::UsLetter => Paper::Letter,
         },
-        decimal_comma: look.decimal_comma,
-        language: match look.language {
+        decimal_comma: stated.decimal_comma,
+        language: match stated.language {
             Language::En => "en",
             Language::Cs => "cs",
             Language::De => "de",
         }
         .to_owned(),
-        template: look.template.as_ref().map(template).transpose()?,
-        logo: look.logo.as_ref().map(logo).transpose()?,
+        template: stated.template.as_ref().map(template).transpose()?,
+        logo: stated.logo.as_ref().map(logo).transpose()?,
     })
 }
 
-/// What the report says of the campaign itself.
-fn facts(campaign: &ResolvedCampaign) -> Result<CampaignFacts, PipelineError> {
-    Ok(CampaignFacts {
-        title: campaign.report.title.clone(),
+/// What the campaign states about itself.
+fn facts(campaign: &ResolvedCampaign) -> CampaignFacts {
+    let files: BTreeSet<_> = campaign.records.iter().map(|r| &r.file).collect();
+    CampaignFacts {
         name: campaign.name.clone(),
-        rig: campaign.machine,
-        synthetic: campaign.synthetic,
+        subject: match campaign.machine {
+            RigKind::Double => Subject::TwoMasses,
+            RigKind::Single => Subject::OneMass,
+        },
         laboratory: campaign.laboratory.clone(),
         dates: dates(campaign),
+        files: files.len(),
         nominal: nominal(campaign),
-        channels: campaign
-            .channels
-            .iter()
-            .map(|c| ChannelFacts {
-                role: c.role,
-                name: c.source.text(),
-                high_pass_hz: c.high_pass_hz,
-                instrument: c.instrument.clone(),
-            })
-            .collect(),
-        files: {
-            let mut files: Vec<_> = campaign.records.iter().map(|r| &r.file).collect();
-            files.sort();
-            files.dedup();
-            files.len()
-        },
-        settings: serde_json::to_string_pretty(&ResolvedCampaign {
-            records: Vec::new(),
-            ..campaign.clone()
-        })
-        .map_err(|e| PipelineError::Table {
-            table: "the settings".to_owned(),
-            reason: e.to_string(),
-        })?,
-    })
+        channels: campaign.channels.clone(),
+        synthetic: campaign.synthetic,
+    }
 }
 
-fn nominal(campaign: &ResolvedCampaign) -> Vec<(String, f64, String)> {
+fn nominal(campaign: &ResolvedCampaign) -> Vec<NominalValue> {
     let rig = &campaign.rig;
     let gain = (!campaign.channels.is_empty()).then_some(rig.gain_uncertainty);
-    [
+    let stated = [
         ("natural frequency $f_0$", rig.natural_frequency_hz, "Hz"),
         ("damping ratio $β$", rig.damping_ratio, ""),
         ("static deflection $x_st$", rig.static_deflection_m, "m"),
         ("restitution $R$", rig.restitution, ""),
         ("uncertainty of the gains", gain, ""),
-    ]
-    .into_iter()
-    .filter_map(|(name, value, unit)| Some((name.to_owned(), value?, unit.to_owned())))
-    .collect()
+    ];
+    let value = |(name, value, unit)| {
+        let value: Option<f64> = value;
+        value.map(|value| NominalValue { name, value, unit })
+    };
+    stated.into_iter().filter_map(value).collect()
 }
 
-/// When it was measured: as campaign.toml says, else the days of the first and the last record,
-/// where their files tell.
+/// When it was measured: as stated in campaign.toml, else the days of the first and the last record,
+/// if their files state them.
 fn dates(campaign: &ResolvedCampaign) -> Option<[String; 2]> {
     if let Some(words) = &campaign.measured {
         return Some([words.clone(), words.clone()]);

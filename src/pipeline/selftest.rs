@@ -7,16 +7,16 @@ use impact_oscillator::model::orbit::stable_orbit;
 use impact_oscillator::model::params::{Initial, Machine, ModelError, Setting};
 use impact_oscillator::model::simulate::simulate;
 
-/// One published number and what the program makes of it.
+/// One published number and the computed one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Check {
-    /// Where it stands and what it is.
+    /// The figure and the quantity.
     pub what: String,
     /// As published, or as an independent simulation gave it.
     pub published: f64,
     /// As computed here.
     pub computed: f64,
-    /// Greatest difference that the printed digits and the paper's steps allow.
+    /// Greatest difference allowed by the printed digits and the paper's steps.
     pub tolerance: f64,
 }
 
@@ -39,7 +39,7 @@ impl Check {
 /// All checks, in the order of the paper's figures.
 ///
 /// # Errors
-/// [`ModelError`] where the simulation refuses a setting of the paper.
+/// [`ModelError`] if the simulation refuses a setting of the paper.
 pub fn checks() -> Result<Vec<Check>, ModelError> {
     let mut all = figure_2()?;
     all.extend(figure_4());
@@ -84,7 +84,7 @@ fn figure_2() -> Result<Vec<Check>, ModelError> {
         all.push(Check::new(
             format!("Fig. 2: closing speed of impact {n}"),
             *speed,
-            impact.closing_before,
+            impact.approach_speed,
             6e-5,
         ));
     }
@@ -134,7 +134,7 @@ fn root(function: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Fig. 5: greatest closing speed of z = 1 at ρ = 3; β = 0.005, which the speeds themselves tell.
+/// Fig. 5: greatest closing speed of z = 1 at ρ = 3; β = 0.005, which follows from the speeds.
 fn figure_5() -> Result<Vec<Check>, ModelError> {
     let mut all = Vec::new();
     for (restitution, published) in [(0.0, 9.26), (0.3, 9.53), (0.6, 11.9), (0.9, 28.16)] {
@@ -143,7 +143,7 @@ fn figure_5() -> Result<Vec<Check>, ModelError> {
         for step in 0..1000 {
             let setting = Setting::new(1.0 + f64::from(step) * 1e-3, 3.0);
             let orbit = stable_orbit(&machine, setting, 1)?;
-            greatest = orbit.map_or(greatest, |o| greatest.max(o.closing_speed));
+            greatest = orbit.map_or(greatest, |o| greatest.max(o.approach_speed));
         }
         all.push(Check::new(
             format!("Fig. 5: greatest closing speed, R = {restitution}"),
@@ -153,7 +153,7 @@ fn figure_5() -> Result<Vec<Check>, ModelError> {
         ));
     }
     let orbit = stable_orbit(&Machine::symmetric(0.005, 0.9), Setting::new(1.5, 3.0), 1)?;
-    let speed = orbit.map_or(f64::NAN, |o| o.closing_speed);
+    let speed = orbit.map_or(f64::NAN, |o| o.approach_speed);
     all.push(Check::new(
         "Fig. 5: closing speed at η = 1.5, R = 0.9",
         13.65,

@@ -1,89 +1,69 @@
-//! What the stages leave for each other: the resolved campaign, the calibrated records, the
+//! The files that the stages exchange: the resolved campaign, the calibrated records, the
 //! observations.
 
 use std::path::Path;
 
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
 use crate::motion::{Observation, brackets};
-use crate::pipeline::identify::{Found, Kept};
+use crate::pipeline::identify::IdentificationFile;
+use crate::pipeline::json::{read_json, store_error, write_json};
 use crate::pipeline::observe::each_record;
-use crate::pipeline::{Observed, PipelineError, Progress, packed};
+use crate::pipeline::{Observed, PipelineError, Progress, gzip_json};
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
 use crate::record::{Flag, Record, Role};
 use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
-use labfiles::output::write_bytes;
 use labfiles::units::{Quantity, Unit};
 
 const RESOLVED: &str = "campaign.resolved.json";
 const INGESTED: &str = "ingested.h5";
 const INGESTED_CAMPAIGN: &str = "ingested.json";
-const FIT: &str = "fit.json";
 const OBSERVATIONS: &str = "observations.json.gz";
-
-fn store_error(path: &Path, reason: impl std::fmt::Display) -> PipelineError {
-    PipelineError::Store {
-        path: path.display().to_string(),
-        reason: reason.to_string(),
-    }
-}
-
-/// Write a value as JSON.
-pub(super) fn write_json<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), PipelineError> {
-    let mut text = serde_json::to_string_pretty(value).map_err(|e| store_error(path, e))?;
-    text.push('\n');
-    Ok(write_bytes(path, text.as_bytes())?)
-}
-
-fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, PipelineError> {
-    let text = std::fs::read_to_string(path).map_err(|e| store_error(path, e))?;
-    serde_json::from_str(&text).map_err(|e| store_error(path, e))
-}
 
 /// Write the resolved campaign beside the results.
 ///
 /// # Errors
-/// Where it cannot be written.
+/// If it cannot be written.
 pub fn write_resolved(campaign: &ResolvedCampaign, out: &Path) -> Result<(), PipelineError> {
     write_json(&out.join(RESOLVED), campaign)
 }
 
-/// Read the resolved campaign that a stage before wrote.
+/// Read the resolved campaign of a previous stage.
 ///
 /// # Errors
-/// Where it is missing or unreadable.
+/// If it is missing or unreadable.
 pub fn read_resolved(out: &Path) -> Result<ResolvedCampaign, PipelineError> {
     read_json(&out.join(RESOLVED))
 }
 
-/// The calibrated campaign: records in SI in one file of ours, with the flags that reading gave.
+/// The calibrated campaign: records in SI in our own HDF5 files, with the flags of the calibration.
 #[derive(Debug, serde::Serialize, serde::Deserialize)]
 struct Ingested {
     campaign: ResolvedCampaign,
     flags: Vec<Vec<Flag>>,
 }
 
-/// Stage one: read and calibrate every record and keep it in SI.
+/// Stage 1: read and calibrate every record and write it in SI; returns the number of usable records.
 ///
 /// # Errors
-/// Where nothing is usable or the outputs cannot be written.
+/// If nothing is usable or the outputs cannot be written.
 pub fn ingest(
     campaign: &ResolvedCampaign,
     out: &Path,
     progress: Progress,
 ) -> Result<usize, PipelineError> {
-    let mut kept = Keeping::new(out);
+    let mut writer = IngestWriter::new(out);
     let total = campaign.records.len() as u64;
     each_record(campaign, |entry, record| {
-        kept.add(entry, record)?;
-        progress("ingest", kept.entries.len() as u64, total);
+        writer.add(entry, record)?;
+        progress("ingest", writer.entries.len() as u64, total);
         Ok::<_, PipelineError>(())
     })?;
-    let Keeping {
+    let IngestWriter {
         roles,
         entries,
         flags,
         ..
-    } = kept.finish()?;
+    } = writer.finish()?;
     if entries.iter().all(|e| e.dataset.is_none()) {
         return Err(PipelineError::NothingUsable(entries.len()));
     }
@@ -107,15 +87,15 @@ pub fn ingest(
     Ok(usable)
 }
 
-/// Most records of one file of ours: what memory holds of them at a time, for each thread.
+/// Most records in one of our HDF5 files: that many are in memory at a time, for each thread.
 pub(super) const RECORDS_A_FILE: usize = 1000;
 
-/// Calibrated records on their way to the disk, file by file.
-struct Keeping<'a> {
+/// Writes calibrated records, file by file.
+struct IngestWriter<'a> {
     out: &'a Path,
     writer: CampaignWriter,
     file: std::path::PathBuf,
-    /// Records in the file that is being filled.
+    /// Records in the current file.
     held: usize,
     files: usize,
     entries: Vec<RecordEntry>,
@@ -123,7 +103,7 @@ struct Keeping<'a> {
     roles: Vec<ChannelSetup>,
 }
 
-impl<'a> Keeping<'a> {
+impl<'a> IngestWriter<'a> {
     fn new(out: &'a Path) -> Self {
         let file = out.join(INGESTED);
         Self {
@@ -157,7 +137,7 @@ impl<'a> Keeping<'a> {
         Ok(())
     }
 
-    /// The file is full: write it, and begin another.
+    /// Write the current file and begin another.
     fn next_file(&mut self) -> Result<(), PipelineError> {
         self.files += 1;
         self.file = self.out.join(format!("ingested_{}.h5", self.files));
@@ -172,7 +152,7 @@ impl<'a> Keeping<'a> {
     }
 }
 
-/// A record as it is kept: named by its place in the file, so that readers, which sort names,
+/// A record as it is written: named by its place in the file, so that readers, which sort names,
 /// keep the order of acquisition.
 fn table(place: usize, record: &Record) -> RecordTable {
     RecordTable {
@@ -189,7 +169,7 @@ fn table(place: usize, record: &Record) -> RecordTable {
     }
 }
 
-/// Set-ups that read the calibrated channels as they are.
+/// Set-ups that read the calibrated channels without conversion.
 fn note_roles(roles: &mut Vec<ChannelSetup>, record: &Record) {
     for channel in &record.channels {
         if roles.iter().any(|r| r.role == channel.role) {
@@ -214,10 +194,10 @@ fn note_roles(roles: &mut Vec<ChannelSetup>, record: &Record) {
     }
 }
 
-/// Stage two: observe the calibrated records and keep what was seen.
+/// Stage 2: observe the calibrated records and write the observations.
 ///
 /// # Errors
-/// Where stage one's files are missing or the outputs cannot be written.
+/// If the files of stage 1 are missing or the outputs cannot be written.
 pub fn classify(out: &Path, progress: Progress) -> Result<Observed, PipelineError> {
     let ingested: Ingested = read_json(&out.join(INGESTED_CAMPAIGN))?;
     let mut observed = Observed::of(&ingested.campaign, progress)?;
@@ -230,36 +210,26 @@ pub fn classify(out: &Path, progress: Progress) -> Result<Observed, PipelineErro
     }
     observed.brackets = brackets(&observed.observations);
     super::tables::write_all(&observed, out)?;
-    packed::write(&out.join(OBSERVATIONS), &observed.observations)?;
+    gzip_json::write(&out.join(OBSERVATIONS), &observed.observations)?;
     Ok(observed)
-}
-
-/// Keep what the report needs of stage three beside identification.json.
-///
-/// # Errors
-/// Where it cannot be written.
-pub fn write_fit(kept: &Kept, out: &Path) -> Result<(), PipelineError> {
-    write_json(&out.join(FIT), kept)
 }
 
 /// What stage three left.
 ///
 /// # Errors
 /// Where it is missing or unreadable.
-pub fn read_found(out: &Path) -> Result<Found, PipelineError> {
-    Ok(Found {
-        identification: read_json(&out.join(super::identify::FILE))?,
-        outcome: read_json(&out.join(FIT))?,
-    })
+pub fn read_identification(out: &Path) -> Result<IdentificationFile, PipelineError> {
+    read_json(&out.join(super::identify::FILE))
 }
 
-/// What stage two kept.
+/// The observations of stage 2.
 ///
 /// # Errors
-/// Where it is missing or unreadable.
+/// If they are missing or unreadable.
 pub fn read_observed(out: &Path) -> Result<Observed, PipelineError> {
     let path = out.join(OBSERVATIONS);
-    let observations: Vec<Observation> = packed::read(&path).map_err(|e| store_error(&path, e))?;
+    let observations: Vec<Observation> =
+        gzip_json::read(&path).map_err(|e| store_error(&path, e))?;
     let brackets = brackets(&observations);
     Ok(Observed {
         observations,

@@ -1,33 +1,14 @@
-//! records.parquet, impacts.parquet and boundaries.csv: one table of columns each, with the
-//! column's name (unit included) and how to get it.
+//! records.parquet, impacts.parquet and boundaries.csv: the names of their columns (units included)
+//! and their values.
 
 use std::path::Path;
 
-use polars::prelude::{Column, DataFrame};
-use polars_io::parquet::write::ParquetWriter;
-
 use crate::event::{Impact, MassSpeeds};
 use crate::motion::{Bracket, Motion, Observation};
+use crate::pipeline::table::{Get, Table};
 use crate::pipeline::{Observed, PipelineError};
 use crate::record::Role;
 use labfiles::output::write_bytes;
-
-/// How a column's value is got from a row.
-enum Get<T> {
-    Text(fn(&T) -> Option<String>),
-    Number(fn(&T) -> Option<f64>),
-    Count(fn(&T) -> Option<u32>),
-    Flag(fn(&T) -> Option<bool>),
-}
-
-fn column<T>(name: &str, rows: &[T], get: &Get<T>) -> Column {
-    match get {
-        Get::Text(f) => Column::new(name.into(), rows.iter().map(f).collect::<Vec<_>>()),
-        Get::Number(f) => Column::new(name.into(), rows.iter().map(f).collect::<Vec<_>>()),
-        Get::Count(f) => Column::new(name.into(), rows.iter().map(f).collect::<Vec<_>>()),
-        Get::Flag(f) => Column::new(name.into(), rows.iter().map(f).collect::<Vec<_>>()),
-    }
-}
 
 fn amplitude(o: &Observation, role: Role) -> Option<f64> {
     o.amplitudes
@@ -49,7 +30,7 @@ fn flags(o: &Observation) -> Option<String> {
         .iter()
         .map(|f| match &f.channel {
             Some(channel) => format!("{}({channel})", f.code),
-            None => f.code.clone(),
+            None => f.code.name().to_owned(),
         })
         .collect();
     Some(list.join(";"))
@@ -59,7 +40,7 @@ fn flags(o: &Observation) -> Option<String> {
 const RECORDS: &[(&str, Get<Observation>)] = &[
     ("record", Get::Text(|o| Some(o.record.clone()))),
     ("specimen", Get::Text(|o| o.setting.specimen.clone())),
-    ("sequence", Get::Count(|o| Some(o.setting.sequence as u32))),
+    ("sequence", Get::Count(|o| Some(o.setting.sequence))),
     ("frequency_hz", Get::Number(Observation::frequency_hz)),
     (
         "frequency_error_hz",
@@ -81,25 +62,25 @@ const RECORDS: &[(&str, Get<Observation>)] = &[
     ),
     (
         "impacts_p",
-        Get::Count(|o| o.classification.impacts_and_periods().map(|p| p.0)),
+        Get::Count(|o| o.classification.impacts_and_periods().map(|p| p.0 as usize)),
     ),
     (
         "periods_n",
-        Get::Count(|o| o.classification.impacts_and_periods().map(|p| p.1)),
+        Get::Count(|o| o.classification.impacts_and_periods().map(|p| p.1 as usize)),
     ),
     (
         "confidence",
         Get::Number(|o| Some(o.classification.confidence)),
     ),
     ("reason", Get::Text(reason)),
-    ("impacts", Get::Count(|o| Some(o.impacts.len() as u32))),
+    ("impacts", Get::Count(|o| Some(o.impacts.len()))),
     (
         "missed_contact_pulses",
-        Get::Count(|o| Some(o.missed_pulses as u32)),
+        Get::Count(|o| Some(o.missed_pulses)),
     ),
     (
         "contact_pulses_without_jump",
-        Get::Count(|o| Some(o.unsupported_pulses as u32)),
+        Get::Count(|o| Some(o.unsupported_pulses)),
     ),
     (
         "periods_observed",
@@ -215,88 +196,51 @@ const IMPACTS: &[(&str, Get<ImpactRow>)] = &[
     ("seen", Get::Text(|r| Some(r.1.source.name().to_owned()))),
 ];
 
-fn frame<T>(
-    table: &str,
-    rows: &[T],
-    columns: &[(&str, Get<T>)],
-) -> Result<DataFrame, PipelineError> {
-    let columns = columns
-        .iter()
-        .map(|(name, get)| column(name, rows, get))
-        .collect();
-    DataFrame::new(rows.len(), columns).map_err(|e| failed(table, &e))
-}
-
-fn failed(table: &str, error: &dyn std::fmt::Display) -> PipelineError {
-    PipelineError::Table {
-        table: table.to_owned(),
-        reason: error.to_string(),
-    }
-}
-
-fn write_parquet(out: &Path, name: &str, mut frame: DataFrame) -> Result<(), PipelineError> {
-    let mut bytes = Vec::new();
-    ParquetWriter::new(&mut bytes)
-        .finish(&mut frame)
-        .map_err(|e| failed(name, &e))?;
-    Ok(write_bytes(&out.join(name), &bytes)?)
-}
+/// Columns of boundaries.csv.
+const BOUNDARIES: &[(&str, Get<Bracket>)] = &[
+    ("kind", Get::Text(|b| Some(b.kind.name().to_owned()))),
+    ("periods_n", Get::Count(|b| Some(b.periods_n as usize))),
+    ("clearance_m", Get::Number(|b| Some(b.clearance_m))),
+    ("drive_amplitude", Get::Number(|b| Some(b.drive_amplitude))),
+    (
+        "frequency_low_hz",
+        Get::Number(|b| Some(b.frequency_low_hz)),
+    ),
+    (
+        "frequency_high_hz",
+        Get::Number(|b| Some(b.frequency_high_hz)),
+    ),
+    ("direction", Get::Text(|b| Some(b.sweep.name().to_owned()))),
+    ("motion_before", Get::Text(|b| Some(b.from.clone()))),
+    ("motion_after", Get::Text(|b| Some(b.to.clone()))),
+    ("record_before", Get::Text(|b| Some(b.records[0].clone()))),
+    ("record_after", Get::Text(|b| Some(b.records[1].clone()))),
+];
 
 /// Write records.parquet, impacts.parquet and boundaries.csv.
 ///
 /// # Errors
-/// Where a file cannot be written.
+/// If a file cannot be written.
 pub fn write_all(observed: &Observed, out: &Path) -> Result<(), PipelineError> {
-    let records = frame("records.parquet", &observed.observations, RECORDS)?;
-    write_parquet(out, "records.parquet", records)?;
-    let rows: Vec<ImpactRow> = observed
+    let impacts: Vec<ImpactRow> = observed
         .observations
         .iter()
         .flat_map(|o| o.impacts.iter().map(|i| (o.record.clone(), i.clone())))
         .collect();
-    write_parquet(
-        out,
-        "impacts.parquet",
-        frame("impacts.parquet", &rows, IMPACTS)?,
-    )?;
+    let records = Table::of(&observed.observations, RECORDS);
+    write_parquet(&records, &out.join("records.parquet"))?;
+    write_parquet(&Table::of(&impacts, IMPACTS), &out.join("impacts.parquet"))?;
+    let boundaries = Table::of(&observed.brackets, BOUNDARIES).csv();
     Ok(write_bytes(
         &out.join("boundaries.csv"),
-        &boundaries(&observed.brackets)?,
+        boundaries.as_bytes(),
     )?)
 }
 
-fn boundaries(brackets: &[Bracket]) -> Result<Vec<u8>, PipelineError> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let error = |e: &dyn std::fmt::Display| failed("boundaries.csv", e);
-    let header = [
-        "kind",
-        "periods_n",
-        "clearance_m",
-        "drive_amplitude",
-        "frequency_low_hz",
-        "frequency_high_hz",
-        "direction",
-        "motion_before",
-        "motion_after",
-        "record_before",
-        "record_after",
-    ];
-    writer.write_record(header).map_err(|e| error(&e))?;
-    for b in brackets {
-        let row = [
-            b.kind.name().to_owned(),
-            b.periods_n.to_string(),
-            b.clearance_m.to_string(),
-            b.drive_amplitude.to_string(),
-            b.frequency_low_hz.to_string(),
-            b.frequency_high_hz.to_string(),
-            b.sweep.name().to_owned(),
-            b.from.clone(),
-            b.to.clone(),
-            b.records[0].clone(),
-            b.records[1].clone(),
-        ];
-        writer.write_record(&row).map_err(|e| error(&e))?;
-    }
-    writer.into_inner().map_err(|e| error(&e))
+fn write_parquet(table: &Table, path: &Path) -> Result<(), PipelineError> {
+    let bytes = table.parquet().map_err(|e| PipelineError::Table {
+        table: path.display().to_string(),
+        reason: e.to_string(),
+    })?;
+    Ok(write_bytes(path, &bytes)?)
 }

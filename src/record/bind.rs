@@ -1,17 +1,17 @@
-//! Channels found in a dataset: which one serves a role, in which unit, and how its numbers
-//! become SI. All of it from metadata, before a sample is read.
+//! Channels of a dataset: which one has a role, in which unit, and how its numbers become SI. From
+//! metadata alone, before a sample is read.
 
 use serde::{Deserialize, Serialize};
 
-use super::{Flag, Role};
-use labfiles::source::{ChannelInfo, DatasetInfo};
+use super::{Flag, FlagCode, Role};
 use labfiles::units::{self, Dimension, Quantity, Scale, Unit};
+use labfiles::{ChannelInfo, DatasetInfo};
 
 /// A channel of a file, by name or by index.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ChannelKey {
-    /// By name; a name without its group serves where only one channel ends so.
+    /// By name; a name without its group is accepted if only one channel ends with it.
     Name(String),
     /// By index in the dataset, from 0.
     Index(usize),
@@ -26,7 +26,7 @@ impl ChannelKey {
         }
     }
 
-    /// Index of the channel in a dataset; `None` where it has none such, or several.
+    /// Index of the channel in a dataset; `None` if it has none, or several.
     pub fn find(&self, dataset: &DatasetInfo) -> Option<usize> {
         match self {
             Self::Index(index) => (*index < dataset.channels.len()).then_some(*index),
@@ -65,7 +65,7 @@ pub struct ChannelSetup {
     pub source: ChannelKey,
     /// Unit of the numbers in the file; `None`: as the file states.
     pub unit: Option<Unit>,
-    /// What the numbers stand for.
+    /// Scale from the numbers to the measured quantity.
     pub scale: Scale,
     /// Value at rest, SI of the file's unit; subtracted before the scale.
     pub offset: f64,
@@ -73,11 +73,17 @@ pub struct ChannelSetup {
     pub sign: f64,
     /// Corner of the first-order high-pass that the signal carries, Hz.
     pub high_pass_hz: Option<f64>,
+    /// How much later than the drive's channel it shows what happens, s.
+    #[serde(default)]
+    pub delay_s: f64,
+    /// Standard uncertainty of the delay, s; `None`: half a sample.
+    #[serde(default)]
+    pub delay_uncertainty_s: Option<f64>,
     /// Level between open and closed contact, after the scale.
     pub threshold: Option<Quantity>,
     /// Greatest magnitude the converter gives, SI of the file's unit.
     pub range: Option<f64>,
-    /// Believe `unit` where the file states another.
+    /// Use `unit` although the file states another.
     pub ignore_file_unit: bool,
     /// What recorded it, in words.
     #[serde(default)]
@@ -95,6 +101,8 @@ impl ChannelSetup {
             offset: 0.0,
             sign: 1.0,
             high_pass_hz: None,
+            delay_s: 0.0,
+            delay_uncertainty_s: None,
             threshold: None,
             range: None,
             ignore_file_unit: false,
@@ -119,7 +127,7 @@ pub struct Bound {
 /// Find a role's channel in a dataset and settle its conversion, from metadata alone.
 ///
 /// # Errors
-/// The [`Flag`] that says why the channel cannot be used.
+/// A [`Flag`] with the reason why the channel cannot be used.
 pub fn bind(setup: &ChannelSetup, dataset: &DatasetInfo) -> Result<Bound, Flag> {
     let index = setup
         .source
@@ -147,17 +155,11 @@ pub fn bind(setup: &ChannelSetup, dataset: &DatasetInfo) -> Result<Bound, Flag> 
 pub(super) fn flag(
     setup: &ChannelSetup,
     channel: &str,
-    code: &str,
+    code: FlagCode,
     message: String,
     remedy: &str,
 ) -> Flag {
-    Flag {
-        code: code.to_owned(),
-        channel: Some(channel.to_owned()),
-        message,
-        remedy: remedy.to_owned(),
-        excludes: !setup.role.is_frame(),
-    }
+    Flag::new(code, Some(channel), message, remedy).excluding(!setup.role.is_frame())
 }
 
 fn missing(setup: &ChannelSetup, dataset: &DatasetInfo) -> Flag {
@@ -173,13 +175,13 @@ fn missing(setup: &ChannelSetup, dataset: &DatasetInfo) -> Flag {
     flag(
         setup,
         &key,
-        "missing_channel",
+        FlagCode::MissingChannel,
         format!("no channel '{key}' for the role {role}; the channels are: {shown}"),
         &format!("name one of them in [channels.{role}], or leave the record out"),
     )
 }
 
-/// The unit of the numbers in the file: as stated there, or as the set-up says.
+/// The unit of the numbers in the file: as stated there, or in the set-up.
 fn settle_unit(setup: &ChannelSetup, info: &ChannelInfo) -> Result<Unit, Flag> {
     let stated = info.unit.as_deref().filter(|u| !u.trim().is_empty());
     let known = stated.and_then(units::parse_unit);
@@ -203,14 +205,14 @@ fn contradicts(setup: &ChannelSetup, info: &ChannelInfo, ours: Unit) -> Flag {
     flag(
         setup,
         &info.name,
-        "wrong_unit",
+        FlagCode::WrongUnit,
         format!(
             "the file states the unit '{stated}' for channel '{}', campaign.toml '{ours}'",
             info.name
         ),
         &format!(
-            "set unit = \"{stated}\" in [channels.{}], or ignore_file_unit = true where the \
-             file is wrong",
+            "set unit = \"{stated}\" in [channels.{}], or ignore_file_unit = true if the file \
+             is wrong",
             setup.role.name()
         ),
     )
@@ -224,7 +226,7 @@ fn without_unit(setup: &ChannelSetup, info: &ChannelInfo, stated: Option<&str>) 
     flag(
         setup,
         &info.name,
-        "unit_missing",
+        FlagCode::UnitMissing,
         format!("{found} for channel '{}'", info.name),
         &format!("write unit = \"…\" in [channels.{}]", setup.role.name()),
     )
@@ -235,14 +237,14 @@ fn unfit_scale(setup: &ChannelSetup, info: &ChannelInfo, unit: Unit) -> Flag {
     flag(
         setup,
         &info.name,
-        "wrong_unit",
+        FlagCode::WrongUnit,
         format!(
             "the scale of channel '{}' does not start from its unit, a {}",
             info.name,
             unit.dimension.name()
         ),
         &format!(
-            "mend scale or unit in [channels.{role}]: scale = \"50 mm/s per V\", unit = \"V\""
+            "correct scale or unit in [channels.{role}]: scale = \"50 mm/s per V\", unit = \"V\""
         ),
     )
 }
@@ -256,8 +258,8 @@ fn check_dimension(setup: &ChannelSetup, info: &ChannelInfo, found: Dimension) -
             role.name(),
             found.name()
         );
-        let remedy = format!("mend unit and scale in [channels.{}]", role.name());
-        Err(flag(setup, &info.name, "wrong_unit", what, &remedy))
+        let remedy = format!("correct unit and scale in [channels.{}]", role.name());
+        Err(flag(setup, &info.name, FlagCode::WrongUnit, what, &remedy))
     };
     match role.dimension() {
         Some(expected) if found != expected => return wrong(&format!("a {}", expected.name())),
@@ -273,7 +275,7 @@ fn check_dimension(setup: &ChannelSetup, info: &ChannelInfo, found: Dimension) -
     }
 }
 
-/// Which dimensions serve for the roles that take several.
+/// Whether a role that accepts several dimensions accepts this one.
 fn serves(role: Role, found: Dimension) -> bool {
     use Dimension::{Acceleration, Force, Length, Number, Velocity, Voltage};
     match role {

@@ -4,9 +4,9 @@
 use super::bind::flag;
 pub use super::bind::{Bound, ChannelKey, ChannelSetup, bind};
 use super::time_axis::{self, TimeAxis};
-use super::{Channel, Flag, Record, Setting};
+use super::{Channel, Flag, FlagCode, Record, Setting};
 use super::{condition, consistency};
-use labfiles::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
+use labfiles::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
 
 /// Everything that turns one dataset into one record.
 #[derive(Debug, Clone)]
@@ -17,9 +17,9 @@ pub struct RecordSetup<'a> {
     pub dataset: usize,
     /// The channels by role.
     pub channels: &'a [ChannelSetup],
-    /// The channel with the time, where the file's reader cannot tell.
+    /// The channel with the time, if the file's reader cannot find it.
     pub time: Option<&'a ChannelKey>,
-    /// Samples per second, Hz, for files that do not tell.
+    /// Samples per second, Hz, for files that do not state it.
     pub sample_rate_hz: Option<f64>,
     /// The setting as the laboratory states it.
     pub setting: &'a Setting,
@@ -36,7 +36,7 @@ pub fn unreadable(id: &str, setting: &Setting, error: &ReadError) -> Record {
     record
 }
 
-/// What a reader says, as a flag of the record; the file is named beside it.
+/// A reader's error as a flag of the record; the caller names the file.
 pub fn read_flag(error: &ReadError) -> Flag {
     let place = match &error.channel {
         Some(channel) => format!("channel '{channel}': "),
@@ -46,13 +46,12 @@ pub fn read_flag(error: &ReadError) -> Flag {
         .byte
         .map(|b| format!(" (at byte {b})"))
         .unwrap_or_default();
-    Flag {
-        code: "unreadable".to_owned(),
-        channel: error.channel.clone(),
-        message: format!("{place}{}; expected {}{byte}", error.found, error.expected),
-        remedy: error.remedy.clone(),
-        excludes: true,
-    }
+    Flag::new(
+        FlagCode::Unreadable,
+        error.channel.as_deref(),
+        format!("{place}{}; expected {}{byte}", error.found, error.expected),
+        error.remedy.clone(),
+    )
 }
 
 fn empty(id: &str, setting: &Setting) -> Record {
@@ -67,6 +66,47 @@ fn empty(id: &str, setting: &Setting) -> Record {
 
 /// Read one dataset and calibrate it. Never fails: what is wrong becomes a flag of the record,
 /// and a channel that cannot be used is left out.
+///
+/// ```
+/// use impactid::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
+/// use impactid::record::{Excitation, Role, Setting, Sweep};
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("run.csv");
+/// let rows: String = (0..200)
+///     .map(|i| format!("{},{}\n", f64::from(i) / 2000.0, (0.1 * f64::from(i)).sin()))
+///     .collect();
+/// std::fs::write(&path, format!("time [s],v [mm/s]\n{rows}"))?;
+/// let source = labfiles::open::open(&path)?;
+/// let setting = Setting {
+///     stated_frequency_hz: None,
+///     clearance_m: None,
+///     sweep: Sweep::Unknown,
+///     drive_amplitude: 1.0,
+///     sequence: 0,
+///     specimen: None,
+///     excitation: Excitation::Harmonic,
+/// };
+/// let channels = [ChannelSetup::plain(Role::VelocityX, ChannelKey::Name("v".into()))];
+/// let record = calibrate(
+///     source.as_ref(),
+///     &RecordSetup {
+///         id: "run",
+///         dataset: 0,
+///         channels: &channels,
+///         time: None,
+///         sample_rate_hz: None,
+///         setting: &setting,
+///         driven: false,
+///         skip_s: 0.0,
+///     },
+/// );
+/// assert!(record.flags.is_empty());
+/// assert!((record.sample_rate_hz - 2000.0).abs() < 1e-6);
+/// let velocity = record.values(Role::VelocityX).unwrap();
+/// assert!((velocity[10] - 1e-3 * 1f64.sin()).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
     let mut record = empty(setup.id, setup.setting);
     let Some(dataset) = source.datasets().get(setup.dataset) else {
@@ -103,20 +143,19 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
 }
 
 fn no_dataset(source: &dyn Source, index: usize) -> Flag {
-    Flag {
-        code: "unreadable".to_owned(),
-        channel: None,
-        message: format!(
+    Flag::new(
+        FlagCode::Unreadable,
+        None,
+        format!(
             "{} holds {} datasets, number {index} is asked for",
             source.path().display(),
             source.datasets().len()
         ),
-        remedy: "the file has changed since it was listed: run again".to_owned(),
-        excludes: true,
-    }
+        "the file has changed since it was listed: run again",
+    )
 }
 
-/// The time axis in s; `None` where it holds no real numbers.
+/// The time axis in s; `None` if it holds no real numbers.
 fn seconds(samples: Option<Samples>, dataset: &DatasetInfo, index: usize) -> Option<Vec<f64>> {
     let Some(Samples::Real(mut times)) = samples else {
         return None;
@@ -186,7 +225,7 @@ fn scaled(
         return Err(flag(
             setup,
             &info.name,
-            "not_numbers",
+            FlagCode::NotNumbers,
             format!("channel '{}' holds no real numbers", info.name),
             "name the channel with the measured signal",
         ));
@@ -221,18 +260,16 @@ fn settle_rate(
     let rate = sample_rate_hz.or(stated).or(setup.sample_rate_hz);
     match rate.filter(|r| r.is_finite() && *r > 0.0) {
         Some(rate) => record.sample_rate_hz = rate,
-        None => record.flags.push(Flag {
-            code: "no_sample_rate".to_owned(),
-            channel: None,
-            message: "neither a time axis nor a sample rate tells when the samples were taken"
-                .to_owned(),
-            remedy: "write sample_rate = \"2 kHz\" or time = \"…\" in [records]".to_owned(),
-            excludes: true,
-        }),
+        None => record.flags.push(Flag::new(
+            FlagCode::NoSampleRate,
+            None,
+            "neither a time axis nor a sample rate states when the samples were taken",
+            "write sample_rate = \"2 kHz\" or time = \"…\" in [records]",
+        )),
     }
 }
 
-/// The rate that the file states for the channels; a flag where they differ.
+/// The rate that the file states for the channels; a flag if they differ.
 fn stated_rate(record: &mut Record, dataset: &DatasetInfo, bound: &[BoundRole<'_>]) -> Option<f64> {
     let rates = bound.iter().filter_map(|(_, b)| {
         let info = &dataset.channels[b.index];
@@ -242,13 +279,12 @@ fn stated_rate(record: &mut Record, dataset: &DatasetInfo, bound: &[BoundRole<'_
     for (rate, name) in rates {
         let known = *first.get_or_insert(rate);
         if (rate / known - 1.0).abs() > 1e-6 {
-            record.flags.push(Flag {
-                code: "unequal_sample_rates".to_owned(),
-                channel: Some(name.clone()),
-                message: format!("channel '{name}' has {rate} samples a second, others {known}"),
-                remedy: "record all channels at one rate, or leave the channel out".to_owned(),
-                excludes: true,
-            });
+            record.flags.push(Flag::new(
+                FlagCode::UnequalSampleRates,
+                Some(name),
+                format!("channel '{name}' has {rate} samples a second, others {known}"),
+                "record all channels at one rate, or leave the channel out",
+            ));
         }
     }
     first
@@ -269,13 +305,12 @@ fn skip(record: &mut Record, skip_s: f64) {
 }
 
 fn all_skipped(duration_s: f64, skip_s: f64) -> Flag {
-    Flag {
-        code: "empty".to_owned(),
-        channel: None,
-        message: format!("the record lasts {duration_s} s, and {skip_s} s of it are skipped"),
-        remedy: "lower skip in [analysis]".to_owned(),
-        excludes: true,
-    }
+    Flag::new(
+        FlagCode::Empty,
+        None,
+        format!("the record lasts {duration_s} s, and {skip_s} s of it are skipped"),
+        "lower skip in [analysis]",
+    )
 }
 
 #[cfg(test)]
@@ -292,7 +327,7 @@ mod tests {
             .map(|(i, t)| format!("{t},{}\n", [1.0, -2.0][i % 2]))
             .collect();
         std::fs::write(&path, format!("time [s],x\n{rows}")).unwrap();
-        let source = labfiles::open::open(&path).unwrap();
+        let source = labfiles::open(&path).unwrap();
         let channels = [ChannelSetup::plain(
             Role::Drive,
             ChannelKey::Name("x".into()),
@@ -312,7 +347,12 @@ mod tests {
 
     #[test]
     fn valid_uneven_times_are_refused_by_name_and_equal_steps_give_the_rate() {
-        let uneven = |record: &Record| record.flags.iter().any(|f| f.code == "time_not_uniform");
+        let uneven = |record: &Record| {
+            record
+                .flags
+                .iter()
+                .any(|f| f.code == FlagCode::TimeNotUniform)
+        };
         let even = record((0..200).map(|i| f64::from(i) / 4000.0));
         assert!((even.sample_rate_hz - 4000.0).abs() < 1e-6 && !uneven(&even));
         assert!(uneven(&record((0..200).map(|i| f64::from(i * i) / 4000.0))));

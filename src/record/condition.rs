@@ -1,7 +1,7 @@
 //! What is wrong with the samples of a record: unequal lengths, missing values, dead, clipped
 //! and held channels.
 
-use super::{Channel, Flag, Record, Role};
+use super::{Channel, Flag, FlagCode, Record, Role};
 
 /// Part of a channel's samples at the rail above which the record is left out.
 const CLIPPED_PART: f64 = 0.005;
@@ -9,18 +9,8 @@ const CLIPPED_PART: f64 = 0.005;
 /// Relative difference of lengths above which the record is left out.
 const LENGTH_DIFFERENCE: f64 = 0.01;
 
-fn flag(code: &str, channel: Option<&str>, message: String, remedy: &str) -> Flag {
-    Flag {
-        code: code.to_owned(),
-        channel: channel.map(str::to_owned),
-        message,
-        remedy: remedy.to_owned(),
-        excludes: true,
-    }
-}
-
 /// Cut all channels and the time axis to the shortest.
-pub fn equal_lengths(record: &mut Record, times: Option<&mut Vec<f64>>) {
+pub(super) fn equal_lengths(record: &mut Record, times: Option<&mut Vec<f64>>) {
     let of_time = times.as_ref().map(|t| t.len());
     let lengths = || {
         record
@@ -43,8 +33,8 @@ pub fn equal_lengths(record: &mut Record, times: Option<&mut Vec<f64>>) {
     if let Some(times) = times {
         times.truncate(shortest);
     }
-    let mut found = flag(
-        "unequal_lengths",
+    let mut found = Flag::new(
+        FlagCode::UnequalLengths,
         short.as_deref(),
         format!("the channels differ in length, from {shortest} to {longest} samples"),
         "record again, or export all channels with the same number of samples",
@@ -53,8 +43,8 @@ pub fn equal_lengths(record: &mut Record, times: Option<&mut Vec<f64>>) {
     record.flags.push(found);
 }
 
-/// Cut samples off both ends where a channel has no value there (exports often pad so).
-pub fn trim_missing(record: &mut Record, times: Option<&mut Vec<f64>>) {
+/// Cut samples off both ends if a channel has no value there (exports often pad so).
+pub(super) fn trim_missing(record: &mut Record, times: Option<&mut Vec<f64>>) {
     let samples = record.samples();
     if samples == 0 {
         return;
@@ -91,22 +81,22 @@ fn never_whole(record: &Record) -> Flag {
         .iter()
         .max_by_key(|c| c.values.iter().filter(|v| !v.is_finite()).count())
         .map(|c| c.name.clone());
-    flag(
-        "not_a_number",
+    Flag::new(
+        FlagCode::NotANumber,
         worst.as_deref(),
-        "at no sample do all channels have a value".to_owned(),
+        "at no sample do all channels have a value",
         "leave the channel without values out of campaign.toml, or record again",
     )
 }
 
 fn trimmed(channel: Option<String>, cut: usize) -> Flag {
-    Flag {
-        code: "trimmed".to_owned(),
-        channel,
-        message: format!("{cut} samples without a value at the ends are cut off"),
-        remedy: "nothing, where the export pads its ends so".to_owned(),
-        excludes: false,
-    }
+    Flag::new(
+        FlagCode::Trimmed,
+        channel.as_deref(),
+        format!("{cut} samples without a value at the ends are cut off"),
+        "nothing, if the export pads its ends so",
+    )
+    .excluding(false)
 }
 
 fn keep(values: &mut Vec<f64>, first: usize, last: usize) {
@@ -114,10 +104,10 @@ fn keep(values: &mut Vec<f64>, first: usize, last: usize) {
     values.drain(..first);
 }
 
-/// Look at every channel: values that are no numbers, dead and clipped channels, held samples.
+/// Check every channel: values that are no numbers, dead and clipped channels, held samples.
 /// `ranges`: greatest magnitude the converter gives, SI, per channel. `driven`: whether a drive
 /// must be seen.
-pub fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool) {
+pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool) {
     if record.channels.is_empty() || record.samples() == 0 {
         record.flags.push(no_samples(record));
         return;
@@ -146,8 +136,8 @@ fn no_samples(record: &Record) -> Flag {
         true => "none of the channels that campaign.toml names can be used",
         false => "the record is empty: it holds no samples",
     };
-    flag(
-        "empty",
+    Flag::new(
+        FlagCode::Empty,
         None,
         message.to_owned(),
         "remove the file, or record again",
@@ -157,15 +147,15 @@ fn no_samples(record: &Record) -> Flag {
 fn not_numbers(channel: &Channel) -> Option<Flag> {
     let count = channel.values.iter().filter(|v| !v.is_finite()).count();
     let first = channel.values.iter().position(|v| !v.is_finite())?;
-    Some(flag(
-        "not_a_number",
+    Some(Flag::new(
+        FlagCode::NotANumber,
         Some(&channel.name),
         format!(
             "channel '{}' has {count} values that are not numbers (NaN or infinite), the first \
              at sample {first}",
             channel.name
         ),
-        "record again, or mend the export; the record is left out",
+        "record again, or correct the export; the record is left out",
     ))
 }
 
@@ -194,11 +184,11 @@ fn dead(channel: &Channel, driven: bool) -> Option<Flag> {
     if high > low && high - low > 1.001 * step {
         return None;
     }
-    Some(flag(
-        "dead_channel",
+    Some(Flag::new(
+        FlagCode::DeadChannel,
         Some(&channel.name),
         format!("channel '{}' is constant at {low:.6e}", channel.name),
-        "look for a loose cable or a wrong channel in campaign.toml; the record is left out",
+        "check for a loose cable or a wrong channel in campaign.toml; the record is left out",
     ))
 }
 
@@ -222,8 +212,8 @@ fn clipped(channel: &Channel, range: Option<f64>) -> Option<Flag> {
         return None;
     }
     let part = count as f64 / channel.values.len() as f64;
-    let mut found = flag(
-        "clipped",
+    let mut found = Flag::new(
+        FlagCode::Clipped,
         Some(&channel.name),
         format!(
             "channel '{}' is clipped: {count} samples ({:.1} %) at {:.4e} or {:.4e}",
@@ -296,10 +286,102 @@ fn held(record: &Record) -> Option<Flag> {
     if longest < 6 || all > longest * 8 {
         return None;
     }
-    Some(flag(
-        "dropped_samples",
+    Some(Flag::new(
+        FlagCode::DroppedSamples,
         None,
         format!("all channels hold their value for {longest} samples from sample {at} on"),
         "record again with a larger buffer; the record is left out",
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sine(i: usize) -> f64 {
+        (0.05 * i as f64).sin()
+    }
+
+    fn record(of: impl Fn(usize) -> f64) -> Record {
+        let values: Vec<f64> = (0..1000).map(of).collect();
+        let drive: Vec<f64> = (0..1000).map(|i| (0.07 * i as f64).cos()).collect();
+        Record::of(2000.0, &[(Role::Drive, &drive), (Role::VelocityX, &values)])
+    }
+
+    fn inspected(mut record: Record, ranges: &[Option<f64>]) -> Vec<Flag> {
+        inspect(&mut record, ranges, true);
+        record.flags
+    }
+
+    #[test]
+    fn valid_each_defect_of_samples_has_its_flag() {
+        let code = |of: &dyn Fn(usize) -> f64| {
+            let flags = inspected(record(of), &[None, None]);
+            flags.first().map(|f| f.code)
+        };
+        assert_eq!(code(&sine), None);
+        assert_eq!(code(&|_| 0.25), Some(FlagCode::DeadChannel));
+        let gap = |i: usize| if i == 7 { f64::NAN } else { sine(i) };
+        assert_eq!(code(&gap), Some(FlagCode::NotANumber));
+        // A sine cut at 0.9 stays there for 18 samples of every crest: 2 · 0.451/0.05.
+        assert_eq!(code(&|i| sine(i).clamp(-0.9, 0.9)), Some(FlagCode::Clipped));
+    }
+
+    #[test]
+    fn valid_a_few_clipped_samples_do_not_exclude_a_record() {
+        // One crest above a stated range of 0.999: 2 · arccos(0.999)/0.05 = 1.8 samples.
+        let once = |i: usize| {
+            if i < 60 {
+                sine(i).min(0.999)
+            } else {
+                0.5 * sine(i)
+            }
+        };
+        let flags = inspected(record(once), &[None, Some(0.999)]);
+        assert_eq!(flags[0].code, FlagCode::Clipped);
+        assert!(!flags[0].excludes);
+        let all = inspected(record(|i| sine(i).clamp(-0.9, 0.9)), &[None, Some(0.9)]);
+        assert!(all[0].excludes);
+    }
+
+    #[test]
+    fn valid_samples_that_all_channels_hold_were_lost() {
+        let mut held = record(sine);
+        for channel in &mut held.channels {
+            let last = channel.values[499];
+            channel.values[500..520].fill(last);
+        }
+        let flags = inspected(held, &[None, None]);
+        assert_eq!(flags[0].code, FlagCode::DroppedSamples);
+        assert!(
+            flags[0].message.contains("20 samples from sample 499"),
+            "{}",
+            flags[0].message
+        );
+    }
+
+    #[test]
+    fn valid_ends_without_values_are_cut_and_lengths_made_equal() {
+        let mut padded = record(|i| {
+            if (3..990).contains(&i) {
+                sine(i)
+            } else {
+                f64::NAN
+            }
+        });
+        let mut times: Vec<f64> = (0..1000).map(f64::from).collect();
+        trim_missing(&mut padded, Some(&mut times));
+        assert_eq!((padded.samples(), times.len(), times[0]), (987, 987, 3.0));
+        assert_eq!(padded.flags[0].code, FlagCode::Trimmed);
+        assert!(!padded.excluded());
+        // 5 of 1000 samples less are tolerated, 50 are not.
+        for (short, excluded) in [(995, false), (950, true)] {
+            let mut unequal = record(sine);
+            unequal.channels[1].values.truncate(short);
+            equal_lengths(&mut unequal, None);
+            assert_eq!(unequal.channels[0].values.len(), short);
+            assert_eq!(unequal.flags[0].code, FlagCode::UnequalLengths);
+            assert_eq!(unequal.excluded(), excluded);
+        }
+    }
 }

@@ -2,7 +2,7 @@
 //! integral of the velocity of the same mass, that of a velocity the integral of the
 //! acceleration.
 
-use super::{Flag, Record, Role};
+use super::{Flag, FlagCode, Record, Role};
 
 /// Correlation from which two channels count as the same motion.
 const SAME: f64 = 0.9;
@@ -10,7 +10,7 @@ const SAME: f64 = 0.9;
 /// Ratio of scales from which one of them must be wrong.
 const SCALE_RATIO: f64 = 1.5;
 
-/// Factors that lie between two units or conventions that are taken for each other.
+/// Factors between two units or conventions that are often mistaken for each other.
 const MISTAKEN: [(f64, &str); 6] = [
     (1000.0, "between m and mm"),
     (std::f64::consts::TAU, "between Hz and rad/s"),
@@ -26,7 +26,7 @@ const MISTAKEN: [(f64, &str); 6] = [
 /// How near a ratio must be to such a factor: the gains of a rig are known to a per cent or two.
 const MISTAKEN_WITHIN: f64 = 0.02;
 
-/// The units or conventions that a ratio of two numbers, or its reciprocal, betrays.
+/// The units or conventions that a ratio of two numbers, or its reciprocal, suggests.
 pub fn mistaken(ratio: f64) -> Option<&'static str> {
     let near = |factor: f64| (ratio.abs() / factor - 1.0).abs() < MISTAKEN_WITHIN;
     MISTAKEN
@@ -35,7 +35,7 @@ pub fn mistaken(ratio: f64) -> Option<&'static str> {
         .map(|m| m.1)
 }
 
-/// Look for swapped masses, opposite signs and contradicting scales.
+/// Check for swapped masses, opposite signs and contradicting scales.
 pub fn inspect(record: &Record) -> Vec<Flag> {
     let x = compare(record, Role::DisplacementX, Role::VelocityX);
     let y = compare(record, Role::DisplacementY, Role::VelocityY);
@@ -104,14 +104,15 @@ fn compare(record: &Record, quantity: Role, rate: Role) -> Option<Match> {
     })
 }
 
-fn flag(record: &Record, role: Role, code: &str, message: String, remedy: String) -> Flag {
-    Flag {
-        code: code.to_owned(),
-        channel: record.channel(role).map(|c| c.name.clone()),
-        message,
-        remedy,
-        excludes: true,
-    }
+fn flag(
+    record: &Record,
+    role: Role,
+    code: FlagCode,
+    message: String,
+    remedy: impl Into<String>,
+) -> Flag {
+    let channel = record.channel(role).map(|c| c.name.as_str());
+    Flag::new(code, channel, message, remedy)
 }
 
 /// Each displacement follows the velocity of the other mass better than that of its own.
@@ -126,12 +127,12 @@ fn swapped(record: &Record, x: Option<Match>, y: Option<Match>) -> Option<Flag> 
         flag(
             record,
             Role::VelocityX,
-            "swapped_masses",
+            FlagCode::SwappedMasses,
             format!(
                 "the displacement of x follows the velocity of y (correlation {crossed_x:.2}) \
                  rather than that of x ({own_x:.2})"
             ),
-            "swap [channels.velocity_x] and [channels.velocity_y], or the displacements".to_owned(),
+            "swap [channels.velocity_x] and [channels.velocity_y], or the displacements",
         )
     })
 }
@@ -142,8 +143,8 @@ const AROUND_CONTACT: usize = 4;
 /// Contacts below which nothing is said about them.
 const FEWEST_CONTACTS: usize = 4;
 
-/// An impact takes speed from both masses: where their velocities, counted toward each other,
-/// jump in opposite directions, one of them is counted the wrong way.
+/// An impact takes speed from both masses: if their velocities, counted toward each other, jump in
+/// opposite directions, one of them has the wrong sign.
 fn opposite_masses(record: &Record) -> Option<Flag> {
     let contact = record.channel(Role::Contact)?;
     let level = contact.threshold?;
@@ -173,11 +174,10 @@ fn opposite_masses(record: &Record) -> Option<Flag> {
         flag(
             record,
             Role::VelocityY,
-            "opposite_sign",
+            FlagCode::OppositeSign,
             "at the contacts velocity_x and velocity_y jump in opposite directions".to_owned(),
             "turn the sign in [channels.velocity_x] or in [channels.velocity_y] (sign = -1, or 1 \
-             where it is -1): both count toward the other mass"
-                .to_owned(),
+             if it is -1): both count toward the other mass",
         )
     })
 }
@@ -187,28 +187,28 @@ fn contradiction(record: &Record, found: Match, d: Role, v: Role) -> Option<Flag
         return Some(flag(
             record,
             v,
-            "opposite_sign",
+            FlagCode::OppositeSign,
             format!("{} and {} have opposite signs", d.name(), v.name()),
             format!(
-                "turn the sign in [channels.{}] or in [channels.{}] (sign = -1, or 1 where it is \
+                "turn the sign in [channels.{}] or in [channels.{}] (sign = -1, or 1 if it is \
                  -1): both count toward the other mass",
                 v.name(),
                 d.name()
             ),
         ));
     }
-    let betrayed = mistaken(found.gain);
-    let off = found.gain > SCALE_RATIO || found.gain < 1.0 / SCALE_RATIO || betrayed.is_some();
+    let suspected = mistaken(found.gain);
+    let off = found.gain > SCALE_RATIO || found.gain < 1.0 / SCALE_RATIO || suspected.is_some();
     let moves = match d {
         Role::DisplacementX | Role::DisplacementY => "moves",
         _ => "changes",
     };
-    let factor = betrayed.map_or(String::new(), |b| format!(": the factor {b}"));
+    let factor = suspected.map_or(String::new(), |m| format!(": the factor {m}"));
     (found.correlation > SAME && off).then(|| {
         flag(
             record,
             v,
-            "scales_contradict",
+            FlagCode::ScalesContradict,
             format!(
                 "{} {moves} {:.4} times as far as {} says{factor}",
                 d.name(),
@@ -216,7 +216,7 @@ fn contradiction(record: &Record, found: Match, d: Role, v: Role) -> Option<Flag
                 v.name()
             ),
             format!(
-                "mend unit or scale in [channels.{}] or in [channels.{}]",
+                "correct unit or scale in [channels.{}] or in [channels.{}]",
                 v.name(),
                 d.name()
             ),
@@ -268,10 +268,10 @@ mod tests {
         assert_eq!(mistaken(f64::NAN), None);
     }
 
-    fn codes(signals: &[(Role, &dyn Fn(f64) -> f64)]) -> Vec<String> {
+    fn codes(signals: &[(Role, &dyn Fn(f64) -> f64)]) -> Vec<&'static str> {
         inspect(&record(signals))
             .into_iter()
-            .map(|f| f.code)
+            .map(|f| f.code.name())
             .collect()
     }
 

@@ -2,17 +2,20 @@
 //!
 //! [`labfiles`] opens files of any supported format; calibration turns what they hold into
 //! [`Record`]s. A simulated record is the same type, so that one detector and one classifier
-//! judge experiment and simulation alike. This room does not know the model.
+//! judge experiment and simulation alike. This module does not use the model.
 
-pub mod bind;
+mod bind;
 pub mod calibrate;
 mod condition;
 pub mod consistency;
+mod flag;
 pub mod time_axis;
 
 use serde::{Deserialize, Serialize};
 
 use labfiles::units::Dimension;
+
+pub use flag::{Flag, FlagCode};
 
 /// What a channel measures on the rig.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -79,7 +82,7 @@ impl Role {
         )
     }
 
-    /// Whether a channel of this role lies on the side of the second mass: that mass or its frame.
+    /// Whether a channel of this role is on the side of the second mass: that mass or its frame.
     pub fn is_on_y_side(self) -> bool {
         self.is_of_y() || self == Role::FrameY
     }
@@ -94,7 +97,7 @@ impl Role {
         self.dimension().is_some()
     }
 
-    /// The dimension a channel of this role must have once in SI; `None` where several serve
+    /// The dimension a channel of this role must have once in SI; `None` if several are accepted
     /// (a drive in V or N, a contact in V or N, a frame in m, m/s or m/s²).
     pub fn dimension(self) -> Option<Dimension> {
         match self {
@@ -131,7 +134,7 @@ pub enum Sweep {
     Up,
     /// Frequency stepped downward.
     Down,
-    /// Not stated: the record says nothing about hysteresis.
+    /// Not stated: the record holds no information about hysteresis.
     Unknown,
 }
 
@@ -170,7 +173,7 @@ pub struct Setting {
     pub drive_amplitude: f64,
     /// Position in the order of acquisition.
     pub sequence: usize,
-    /// Which rig, mass or bumper it was taken on, where a campaign holds several (column
+    /// Which rig, mass or bumper it was taken on, if a campaign holds several (column
     /// `specimen` of the run table); parameters are identified for each.
     #[serde(default)]
     pub specimen: Option<String>,
@@ -195,26 +198,10 @@ impl Setting {
     }
 }
 
-/// Something wrong or noteworthy with a record: what, where, and what to do about it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Flag {
-    /// Stable short name, e.g. `clipped`, `dead_channel`, `dropped_samples`, `not_a_number`,
-    /// `drive_frequency_contradicts`.
-    pub code: String,
-    /// The channel concerned (name in the file), where there is one.
-    pub channel: Option<String>,
-    /// One sentence: what was found and what was expected.
-    pub message: String,
-    /// One sentence: what the user can do.
-    pub remedy: String,
-    /// Whether the record must be left out of the identification for it.
-    pub excludes: bool,
-}
-
 /// A record: channels of one acquisition on one uniform time axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
-    /// Name, unique in the campaign: the file's name, with the dataset where a file holds many.
+    /// Name, unique in the campaign: the file's name, with the dataset if a file holds many.
     pub id: String,
     /// Samples per second, Hz.
     pub sample_rate_hz: f64,
@@ -222,12 +209,12 @@ pub struct Record {
     pub channels: Vec<Channel>,
     /// The setting at which it was taken.
     pub setting: Setting,
-    /// What was found wrong with it while it was read.
+    /// Problems found while it was read.
     pub flags: Vec<Flag>,
 }
 
 impl Record {
-    /// The channel of a role, where the record has one.
+    /// The channel of a role, if the record has one.
     pub fn channel(&self, role: Role) -> Option<&Channel> {
         self.channels.iter().find(|c| c.role == role)
     }
@@ -247,8 +234,30 @@ impl Record {
         self.samples() as f64 / self.sample_rate_hz
     }
 
-    /// Whether a flag forbids its use in the identification.
+    /// Whether a flag excludes it from the identification.
     pub fn excluded(&self) -> bool {
         self.flags.iter().any(|f| f.excludes)
+    }
+}
+
+#[cfg(test)]
+impl Record {
+    /// A record of some channels at a sample rate; a contact closes above 2.5 V.
+    pub(crate) fn of(sample_rate_hz: f64, channels: &[(Role, &[f64])]) -> Self {
+        let channel = |(role, values): &(Role, &[f64])| Channel {
+            role: *role,
+            name: role.name().to_owned(),
+            dimension: role.dimension().unwrap_or(Dimension::Voltage),
+            values: values.to_vec(),
+            high_pass_hz: None,
+            threshold: (*role == Role::Contact).then_some(2.5),
+        };
+        Self {
+            id: "record".into(),
+            sample_rate_hz,
+            channels: channels.iter().map(channel).collect(),
+            setting: Setting::unstated(),
+            flags: Vec::new(),
+        }
     }
 }

@@ -1,23 +1,23 @@
 //! The time axis of a record: which channel holds it, its step, and what is wrong with it.
 
-use super::Flag;
-use super::calibrate::ChannelKey;
-use labfiles::source::DatasetInfo;
+use super::bind::ChannelKey;
+use super::{Flag, FlagCode};
+use labfiles::DatasetInfo;
 use labfiles::units;
 
 /// Most steps by which a time axis without gaps may stray from equal steps.
 const MOST_STRAY_STEPS: f64 = 2.0;
 
-/// What a time axis says.
+/// The result for a time axis.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TimeAxis {
-    /// Samples per second, Hz; `None` where no step can be told.
+    /// Samples per second, Hz; `None` if no step can be determined.
     pub sample_rate_hz: Option<f64>,
-    /// What is wrong with it.
+    /// Problems found.
     pub flags: Vec<Flag>,
 }
 
-/// Index of the channel that holds the time: as campaign.toml says, else as the reader found.
+/// Index of the channel that holds the time: as campaign.toml states, else as the reader found.
 ///
 /// # Errors
 /// The flag for a channel that campaign.toml names and the dataset lacks.
@@ -27,16 +27,17 @@ pub fn find(key: Option<&ChannelKey>, dataset: &DatasetInfo) -> Result<Option<us
     };
     let found = key.find(dataset);
     found.map(Some).ok_or_else(|| {
-        fault(
-            "missing_channel",
+        Flag::new(
+            FlagCode::MissingChannel,
+            None,
             format!("no channel '{}' for the time axis", key.text()),
-            "mend time in [records], or leave it out where a sample rate is stated",
+            "correct time in [records], or remove it if a sample rate is stated",
         )
     })
 }
 
 /// A channel in units of time by name and unit, which a reader did not take for a time axis,
-/// perhaps since it runs backward; only where no rate tells when the samples were taken.
+/// perhaps because it runs backward; only if no sample rate is stated.
 fn by_name(dataset: &DatasetInfo) -> Option<usize> {
     if dataset.channels.iter().any(|c| c.sample_rate_hz.is_some()) {
         return None;
@@ -50,17 +51,7 @@ fn by_name(dataset: &DatasetInfo) -> Option<usize> {
     })
 }
 
-fn fault(code: &str, message: String, remedy: &str) -> Flag {
-    Flag {
-        code: code.to_owned(),
-        channel: None,
-        message,
-        remedy: remedy.to_owned(),
-        excludes: true,
-    }
-}
-
-/// Factor to seconds of a time axis from its unit or its name (`time_ms`); 1 where neither says.
+/// Factor to seconds of a time axis from its unit or its name (`time_ms`); 1 if neither states it.
 pub fn seconds_per_unit(dataset: &DatasetInfo, index: usize) -> f64 {
     let info = &dataset.channels[index];
     let of_name = units::split_unit(&info.name)
@@ -74,7 +65,7 @@ pub fn seconds_per_unit(dataset: &DatasetInfo, index: usize) -> f64 {
         .map_or(1.0, |u| u.to_si)
 }
 
-/// Judge a time axis in s.
+/// Check a time axis in s.
 ///
 /// Time stamps printed with few digits are taken as uniform as long as no stamp strays from a
 /// straight line by more than their own rounding.
@@ -101,8 +92,9 @@ pub fn inspect(times: &[f64]) -> TimeAxis {
 fn unreadable(times: &[f64]) -> TimeAxis {
     let flags = match times.len() {
         0 => Vec::new(),
-        _ => vec![fault(
-            "time_unreadable",
+        _ => vec![Flag::new(
+            FlagCode::TimeUnreadable,
+            None,
             "the time axis has a single sample or holds no numbers".to_owned(),
             "name the right channel in time of [records], or give sample_rate",
         )],
@@ -119,8 +111,9 @@ fn backward_at(times: &[f64], at: usize) -> TimeAxis {
         times[at],
         times[at + 1]
     );
-    let flag = fault(
-        "time_backward",
+    let flag = Flag::new(
+        FlagCode::TimeBackward,
+        None,
         what,
         "sort or re-export the record; it is left out",
     );
@@ -150,8 +143,9 @@ fn strays(times: &[f64], step: f64) -> f64 {
 }
 
 fn not_uniform(what: &str) -> Flag {
-    fault(
-        "time_not_uniform",
+    Flag::new(
+        FlagCode::TimeNotUniform,
+        None,
         format!("the time axis is not uniform: {what}"),
         "resample the record to a uniform rate before, or export it with its true rate",
     )
@@ -166,8 +160,9 @@ fn regular(times: &[f64], steps: &[f64], step: f64) -> TimeAxis {
         .map(|s| (s / step).round() - 1.0)
         .sum();
     if let Some(at) = steps.iter().position(|s| *s > 1.5 * step) {
-        flags.push(fault(
-            "dropped_samples",
+        flags.push(Flag::new(
+            FlagCode::DroppedSamples,
+            None,
             format!(
                 "{lost} samples are missing in the time axis, the first after {} s",
                 times[at]
@@ -177,10 +172,11 @@ fn regular(times: &[f64], steps: &[f64], step: f64) -> TimeAxis {
     }
     let repeated = steps.iter().filter(|s| **s < 0.5 * step).count();
     if repeated > 0 {
-        flags.push(fault(
-            "repeated_samples",
+        flags.push(Flag::new(
+            FlagCode::RepeatedSamples,
+            None,
             format!("{repeated} time stamps are repeated"),
-            "remove the repetitions where the record was exported; it is left out",
+            "remove the repetitions when exporting the record; it is left out",
         ));
     }
     let whole = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
@@ -210,7 +206,7 @@ mod tests {
     }
 
     fn codes(axis: &TimeAxis) -> Vec<&str> {
-        axis.flags.iter().map(|f| f.code.as_str()).collect()
+        axis.flags.iter().map(|f| f.code.name()).collect()
     }
 
     #[test]

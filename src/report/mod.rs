@@ -1,53 +1,26 @@
-//! The report: its content as plain data first, then the figures, then the document.
-//!
-//! No result is computed here; what is drawn was found in the rooms to the left.
+//! The report: figures and documents of what was identified and compared. It formats what it is
+//! given and computes nothing.
 
-pub mod assemble;
-pub mod content;
+pub mod catalog;
+mod content;
 mod document;
+mod error;
 pub(crate) mod figures;
 mod html;
+pub(crate) mod locale;
 mod options;
 mod parameters;
 pub(crate) mod picture;
 mod png;
-pub(crate) mod speech;
 pub(crate) mod theory;
-pub mod words;
 
-pub use content::{ProposedPoint, ReportContent};
-pub use options::{Format, Logo, Paper, RenderOptions};
+pub use content::{CampaignFacts, DataTable, NominalValue, ProposedPoint, ReportContent, Subject};
+pub use error::ReportError;
+pub use options::{Format, Logo, Paper, ReportOptions};
 
 use figures::Figure;
+use locale::Locale;
 use rayon::prelude::*;
-use speech::Speech;
-
-/// Why a report could not be made.
-#[derive(Debug, thiserror::Error)]
-pub enum ReportError {
-    /// The template is wrong, or an image could not be read.
-    #[error(
-        "the report's template cannot be set: {0}. Check the file given as template, or leave it out to use the built-in one"
-    )]
-    Template(String),
-    /// The PDF could not be written.
-    #[error("the report cannot be exported as PDF: {0}. A logo in another format may help")]
-    Pdf(String),
-    /// The content cannot be written as JSON.
-    #[error("the report's content cannot be written as JSON: {0}")]
-    Data(#[source] serde_json::Error),
-    /// A figure could not be turned into a picture.
-    #[error("figure '{name}' cannot be turned into a PNG: {why}. Ask for svg instead")]
-    Picture {
-        /// The figure.
-        name: String,
-        /// What the renderer said.
-        why: String,
-    },
-    /// A file name is not fit for the document.
-    #[error("the logo's file extension is not fit for the document; use svg, png or jpg")]
-    FileName,
-}
 
 /// A report with its figures drawn, ready for every format.
 pub struct Report {
@@ -55,15 +28,15 @@ pub struct Report {
     document: document::model::Document,
     /// The figures.
     figures: Vec<Figure>,
-    options: RenderOptions,
+    options: ReportOptions,
 }
 
 impl Report {
     /// Draws the figures of a content and builds the document's data.
-    pub fn new(content: &ReportContent, options: &RenderOptions) -> Self {
-        let speech = options.speech();
-        let figures = figures::draw_all(content, speech);
-        let document = document::document(content, &figures, speech);
+    pub fn new(content: &ReportContent, options: &ReportOptions) -> Self {
+        let locale = options.locale();
+        let figures = figures::draw_all(content, locale);
+        let document = document::document(content, &figures, locale);
         Self {
             document,
             figures,
@@ -110,18 +83,16 @@ pub fn plan_map(
     content: &ReportContent,
     decimal_comma: bool,
 ) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
-    let speech = Speech {
+    let locale = Locale {
         decimal_comma,
-        words: None,
+        catalog: None,
     };
-    let Some(mut figure) = figures::map::draw(content, figures::map::MapSize::Full, speech) else {
+    let Some(mut figure) = figures::map::draw(content, figures::map::MapSize::Full, locale) else {
         return Ok(Vec::new());
     };
     figure.name = "plan".into();
     picture::pictures(&figure)
 }
 
-#[cfg(test)]
-mod example;
 #[cfg(test)]
 mod tests;

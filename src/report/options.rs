@@ -1,7 +1,7 @@
 //! What a report is written as, and what the reader chose about its look.
 
-use super::speech::Speech;
-use super::words::Words;
+use super::catalog::Catalog;
+use super::locale::Locale;
 
 /// Paper of the document.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -14,7 +14,7 @@ pub enum Paper {
 }
 
 impl Paper {
-    /// The name the template knows.
+    /// Its name in the template.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::A4 => "a4",
@@ -81,13 +81,13 @@ pub struct Logo {
 
 /// What the reader chose about the report's look.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct RenderOptions {
+pub struct ReportOptions {
     /// Paper.
     pub paper: Paper,
     /// Language that a template of the user's own may go by, as ISO 639-1 writes it.
     pub language: String,
-    /// The report's own words in another language than English.
-    pub words: Option<Words>,
+    /// Phrases and messages in another language than English.
+    pub catalog: Option<Catalog>,
     /// Whether numbers have a decimal comma.
     pub decimal_comma: bool,
     /// A typst template instead of the built-in one; it reads `report.json` and the figures.
@@ -96,12 +96,12 @@ pub struct RenderOptions {
     pub logo: Option<Logo>,
 }
 
-impl Default for RenderOptions {
+impl Default for ReportOptions {
     fn default() -> Self {
         Self {
             paper: Paper::default(),
             language: "en".to_owned(),
-            words: None,
+            catalog: None,
             decimal_comma: false,
             template: None,
             logo: None,
@@ -109,17 +109,17 @@ impl Default for RenderOptions {
     }
 }
 
-impl RenderOptions {
-    pub(super) fn speech(&self) -> Speech<'_> {
-        Speech {
+impl ReportOptions {
+    pub(super) fn locale(&self) -> Locale<'_> {
+        Locale {
             decimal_comma: self.decimal_comma,
-            words: self.words.as_ref(),
+            catalog: self.catalog.as_ref(),
         }
     }
 
-    /// The language that the report's own words are in.
+    /// The language of the report's texts, as ISO 639-1 writes it.
     pub(super) fn spoken(&self) -> &str {
-        let words = self.words.as_ref();
-        words.map_or("en", |w| w.language.as_deref().unwrap_or(&self.language))
+        let catalog = self.catalog.as_ref();
+        catalog.map_or("en", |c| c.language.as_deref().unwrap_or(&self.language))
     }
 }

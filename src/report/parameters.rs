@@ -1,7 +1,7 @@
 //! Parameters and methods as printed: names, symbols, units, digits.
 
-use super::speech::{Speech, decimal_exponent};
-use crate::identify::{Estimate, ParameterSet, Status};
+use super::locale::{Locale, decimal_exponent};
+use crate::identify::{Estimate, Method, ParameterSet, Status};
 
 /// How a parameter is named and printed.
 #[derive(Debug, Clone, Copy)]
@@ -61,23 +61,12 @@ pub fn parameter(key: &str) -> Option<&'static ParameterLook> {
     PARAMETERS.iter().find(|p| p.key == key)
 }
 
-/// Name of a method in words.
-pub fn method_name(key: &str) -> String {
-    match key {
-        "boundaries" => "Boundaries".into(),
-        "trajectories" => "Trajectories".into(),
-        "impacts" => "Speeds at impact".into(),
-        "flights" => "Impact to impact".into(),
-        "resonance" => "Resonance curve".into(),
-        "free_decay" => "Free decay".into(),
-        "joint" => "Joint".into(),
-        other => {
-            let text = other.replace('_', " ");
-            let mut chars = text.chars();
-            chars
-                .next()
-                .map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
-        }
+/// Name of a method inside a sentence or a list.
+pub fn method_inline(method: Method, locale: Locale) -> String {
+    let name = locale.message(&method);
+    match locale.is_english() {
+        true => name.to_lowercase(),
+        false => name,
     }
 }
 
@@ -125,18 +114,18 @@ pub fn interval95(estimate: &Estimate) -> Option<(f64, f64)> {
 
 /// `value ± half width` with unit, `not identifiable` where there is no value, `–` where the
 /// parameter was not asked for.
-pub fn short(look: &ParameterLook, estimate: Option<&Estimate>, speech: Speech) -> String {
+pub fn short(look: &ParameterLook, estimate: Option<&Estimate>, locale: Locale) -> String {
     let Some(estimate) = estimate else {
         return "–".into();
     };
     let Some(value) = estimate.value else {
-        return speech.say("not identifiable");
+        return locale.translate("not identifiable");
     };
     let half = half_width(estimate).map(|h| h * look.factor);
     let decimals = decimals_for(half.unwrap_or(0.0));
-    let mut text = speech.fixed(value * look.factor, decimals);
+    let mut text = locale.fixed(value * look.factor, decimals);
     if let Some(half) = half {
-        text.push_str(&format!(" ± {}", speech.fixed(half, decimals)));
+        text.push_str(&format!(" ± {}", locale.fixed(half, decimals)));
     }
     if !look.unit.is_empty() {
         text.push_str(&format!("\u{2009}{}", look.unit));
@@ -160,17 +149,17 @@ mod tests {
 
     #[test]
     fn valid_estimates_show_two_digits_of_their_uncertainty() {
-        let speech = Speech::default();
+        let locale = Locale::default();
         let r = estimate(0.901_34, 0.002_41);
-        assert_eq!(short(&PARAMETERS[0], Some(&r), speech), "0.9013 ± 0.0024");
+        assert_eq!(short(&PARAMETERS[0], Some(&r), locale), "0.9013 ± 0.0024");
         let x = estimate(0.001_234_5, 0.000_009_96);
         assert_eq!(
-            short(&PARAMETERS[3], Some(&x), speech),
+            short(&PARAMETERS[3], Some(&x), locale),
             "1.234 ± 0.010\u{2009}mm"
         );
-        let comma = Speech {
+        let comma = Locale {
             decimal_comma: true,
-            words: None,
+            catalog: None,
         };
         assert_eq!(short(&PARAMETERS[0], Some(&r), comma), "0,9013 ± 0,0024");
     }

@@ -1,7 +1,7 @@
 //! One figure by itself, as SVG, PNG and PDF.
 
-use super::ReportError;
 use super::document::world::{MemoryWorld, Unset};
+use super::error::ReportError;
 use super::figures::Figure;
 
 /// A page as large as the figure.

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb::Database};
 
-use super::ReportError;
+use super::error::ReportError;
 use super::figures::{Figure, fonts};
 
 /// Dots per inch of the pictures.

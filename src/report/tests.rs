@@ -1,35 +1,14 @@
 //! Tests of the whole report.
 
+use super::*;
+use contents::{kind, kinds};
 use std::path::Path;
 use std::process::Command;
-use std::sync::OnceLock;
 
-use super::content::ReportContent;
-use super::example::{self, others};
-use super::*;
-
+mod contents;
 mod languages;
 
-/// All kinds of campaign that the examples know.
-fn kinds() -> &'static [(&'static str, ReportContent)] {
-    static KINDS: OnceLock<Vec<(&'static str, ReportContent)>> = OnceLock::new();
-    KINDS.get_or_init(|| {
-        vec![
-            ("small", example::content(example::SMALL)),
-            ("large", example::content(example::LARGE)),
-            ("decays", others::decays_only()),
-            ("cart", others::cart()),
-            ("unidentified", others::unidentified()),
-        ]
-    })
-}
-
-fn kind(name: &str) -> &'static ReportContent {
-    let found = kinds().iter().find(|(n, _)| *n == name);
-    &found.expect("one of the kinds").1
-}
-
-fn pdf_of(content: &ReportContent, options: &RenderOptions) -> Result<Vec<u8>, ReportError> {
+fn pdf_of(content: &ReportContent, options: &ReportOptions) -> Result<Vec<u8>, ReportError> {
     Report::new(content, options).pdf()
 }
 
@@ -56,7 +35,7 @@ fn written(folder: &Path, name: &str, bytes: &[u8]) -> String {
 fn regress_examples_can_be_looked_at() {
     let folder = std::env::var("IMPACTID_REPORT_LOOKS").expect("IMPACTID_REPORT_LOOKS");
     for (name, content) in kinds() {
-        let report = Report::new(content, &RenderOptions::default());
+        let report = Report::new(content, &ReportOptions::default());
         let pdf = report.pdf().expect("a PDF");
         written(Path::new(&folder), &format!("{name}.pdf"), &pdf);
         let page = report.html().expect("a page");
@@ -68,7 +47,7 @@ fn regress_examples_can_be_looked_at() {
 fn regress_documents_as_text() {
     for name in ["decays", "unidentified"] {
         let content = kind(name);
-        let report = Report::new(content, &RenderOptions::default());
+        let report = Report::new(content, &ReportOptions::default());
         insta::assert_snapshot!(name, text_of(&report.document));
     }
 }
@@ -131,12 +110,12 @@ fn text_of(document: &document::model::Document) -> String {
 }
 
 #[test]
-fn valid_no_text_of_a_figure_is_overfull() {
+fn no_text_of_a_figure_is_overfull() {
     for (name, content) in kinds() {
         for decimal_comma in [false, true] {
-            let options = RenderOptions {
+            let options = ReportOptions {
                 decimal_comma,
-                ..RenderOptions::default()
+                ..ReportOptions::default()
             };
             for figure in Report::new(content, &options).figures {
                 assert!(
@@ -151,13 +130,13 @@ fn valid_no_text_of_a_figure_is_overfull() {
 }
 
 #[test]
-fn valid_no_word_leaves_the_page_s_margins() {
+fn no_word_leaves_the_page_s_margins() {
     let folder = tempfile::tempdir().expect("a folder");
     let papers = [Paper::A4, Paper::Letter];
     for ((name, content), paper) in kinds().iter().zip(papers.into_iter().cycle()) {
-        let options = RenderOptions {
+        let options = ReportOptions {
             paper,
-            ..RenderOptions::default()
+            ..ReportOptions::default()
         };
         let pdf = pdf_of(content, &options).expect("a PDF");
         assert!(pdf.len() < 5_000_000, "{name}: {} bytes", pdf.len());
@@ -199,7 +178,7 @@ fn words_within_margins(name: &str, boxes: &str) {
 #[test]
 fn prop_same_content_gives_same_bytes() {
     let content = kind("cart");
-    let options = RenderOptions::default();
+    let options = ReportOptions::default();
     let pdf = || pdf_of(content, &options).ok();
     assert!(pdf().is_some() && pdf() == pdf());
     let page = || Report::new(content, &options).html().ok();
@@ -207,24 +186,14 @@ fn prop_same_content_gives_same_bytes() {
 }
 
 #[test]
-fn prop_content_survives_json() {
-    let content = kind("unidentified");
-    let text = serde_json::to_string(content).expect("JSON");
-    let back: ReportContent = serde_json::from_str(&text).expect("content");
-    assert_eq!(&back, content);
-}
-
-#[test]
-fn valid_decimal_comma_reaches_text_and_figures() {
-    let options = RenderOptions {
+fn decimal_comma_reaches_text_and_figures() {
+    let options = ReportOptions {
         decimal_comma: true,
-        ..RenderOptions::default()
+        ..ReportOptions::default()
     };
     let report = Report::new(kind("small"), &options);
-    assert_eq!(
-        report.document.front.answers[0].value.as_deref(),
-        Some("0,9005")
-    );
+    let value = report.document.front.answers[0].value.as_deref();
+    assert!(value.is_some_and(|v| v.starts_with("0,")), "{value:?}");
     let map = report
         .figures
         .iter()
@@ -234,23 +203,23 @@ fn valid_decimal_comma_reaches_text_and_figures() {
 }
 
 #[test]
-fn valid_own_template_and_logo_are_used() {
+fn own_template_and_logo_are_used() {
     let svg = "<svg xmlns='http://www.w3.org/2000/svg' width='40' height='20'><rect width='40' height='20'/></svg>";
-    let options = RenderOptions {
+    let options = ReportOptions {
         template: Some("#let d = json(\"report.json\")\n= #d.title\n#image(d.logo)".into()),
         logo: Some(Logo {
             bytes: svg.into(),
             extension: "svg".into(),
         }),
-        ..RenderOptions::default()
+        ..ReportOptions::default()
     };
     let own = pdf_of(kind("cart"), &options).expect("a PDF");
-    let with_logo = RenderOptions {
+    let with_logo = ReportOptions {
         template: None,
         ..options
     };
     let ours = pdf_of(kind("cart"), &with_logo).expect("a PDF");
-    let plain = pdf_of(kind("cart"), &RenderOptions::default()).expect("a PDF");
+    let plain = pdf_of(kind("cart"), &ReportOptions::default()).expect("a PDF");
     assert!(
         own.len() < plain.len(),
         "the own template holds a title and a logo alone"
@@ -259,10 +228,10 @@ fn valid_own_template_and_logo_are_used() {
 }
 
 #[test]
-fn valid_wrong_template_is_named_with_its_line() {
-    let options = RenderOptions {
+fn wrong_template_is_named_with_its_line() {
+    let options = ReportOptions {
         template: Some("text\n#unknown-thing".into()),
-        ..RenderOptions::default()
+        ..ReportOptions::default()
     };
     let error = pdf_of(kind("cart"), &options).expect_err("a wrong template");
     let text = error.to_string();
@@ -273,8 +242,8 @@ fn valid_wrong_template_is_named_with_its_line() {
 }
 
 #[test]
-fn valid_every_format_has_its_files() {
-    let report = Report::new(kind("cart"), &RenderOptions::default());
+fn every_format_has_its_files() {
+    let report = Report::new(kind("cart"), &ReportOptions::default());
     for format in Format::ALL {
         let files = report.files(format).expect("files");
         assert!(!files.is_empty() && files.iter().all(|(_, bytes)| !bytes.is_empty()));

@@ -42,7 +42,7 @@ impl Decay {
     }
 }
 
-/// Earliest start of a fit, s from the first sample: records of blows are triggered by them.
+/// Earliest start of a fit, s from the first sample: records of a blow are triggered by it.
 const FROM_S: f64 = 0.1;
 /// Least time between the blow and the start of a fit, s.
 const WAIT_S: f64 = 0.05;
@@ -52,9 +52,22 @@ const OTHER_STARTS: usize = 4;
 /// Fit the free decay that follows the greatest excursion of the samples.
 ///
 /// The fit begins 0.1 s into the record, and at least 0.05 s after the blow. Fits from later
-/// starts within one period show how far another mode or a drift sways the answer; their spread
-/// is part of the standard errors. `None` where there are fewer than three periods to fit, or
-/// nothing decays.
+/// starts within one period show how much another mode or a drift changes the result; their spread
+/// is part of the standard errors. `None` with fewer than three periods to fit, or if nothing
+/// decays.
+///
+/// ```
+/// use impactid::signal::decay;
+///
+/// // f0 = 14 Hz, β = 0.02, released at t = 0.
+/// let natural = std::f64::consts::TAU * 14.0;
+/// let damped = natural * f64::sqrt(1.0 - 0.02 * 0.02);
+/// let value = |t: f64| (-0.02 * natural * t).exp() * (damped * t).cos();
+/// let samples: Vec<f64> = (0..2000).map(|i| value(f64::from(i) / 1000.0)).collect();
+/// let found = decay::fit(&samples, 1000.0).unwrap();
+/// assert!((found.natural_frequency_hz - 14.0).abs() < 1e-6);
+/// assert!((found.damping_ratio - 0.02).abs() < 1e-6);
+/// ```
 pub fn fit(samples: &[f64], rate_hz: f64) -> Option<Decay> {
     let centre = super::robust::median(samples)?;
     let peak = samples
@@ -171,8 +184,8 @@ impl Point {
         })
     }
 
-    /// Covariance of the rates from the full five-parameter Jacobian, widened for residuals that
-    /// hang together from sample to sample.
+    /// Covariance of the rates from the full five-parameter Jacobian, widened for the
+    /// autocorrelation of the residuals.
     fn covariance(&self, tail: &[f64]) -> Option<Matrix2<f64>> {
         let mut normal = nalgebra::SMatrix::<f64, 5, 5>::zeros();
         let mut residuals = Vec::with_capacity(tail.len());

@@ -5,6 +5,17 @@
 /// The high-pass takes x to y by y' + ω_c y = x', so the inverse is exact but for one constant
 /// (the filter's state at the first sample); an offset b of the samples becomes the ramp ω_c b t.
 /// Both are left in the result: see [`remove_line`].
+///
+/// ```
+/// use impactid::signal::drift::undo_high_pass;
+///
+/// // The step response e^{−ω_c t} becomes the step again.
+/// let (rate_hz, corner_hz) = (2000.0, 0.5);
+/// let decay = |i: i32| (-std::f64::consts::TAU * corner_hz * f64::from(i) / rate_hz).exp();
+/// let samples: Vec<f64> = (0..2000).map(decay).collect();
+/// let step = undo_high_pass(&samples, rate_hz, corner_hz);
+/// assert!(step.iter().all(|v| (v - 1.0).abs() < 1e-6));
+/// ```
 pub fn undo_high_pass(samples: &[f64], rate_hz: f64, corner_hz: f64) -> Vec<f64> {
     let half_step = std::f64::consts::PI * corner_hz / rate_hz;
     let mut integral = 0.0;
@@ -20,7 +31,7 @@ pub fn undo_high_pass(samples: &[f64], rate_hz: f64, corner_hz: f64) -> Vec<f64>
 }
 
 /// Offset and slope of the straight line through values over times, by least squares; the slope is
-/// zero where all times are one.
+/// zero if all times are equal.
 pub fn fitted_line(times: &[f64], values: &[f64]) -> (f64, f64) {
     let (mean_time, mean) = (super::robust::mean(times), super::robust::mean(values));
     let (mut shear, mut spread) = (0.0, 0.0);

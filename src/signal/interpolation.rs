@@ -2,6 +2,14 @@
 
 /// Value between samples by a cubic through the four samples around it (linear at the edges);
 /// `None` outside the samples.
+///
+/// ```
+/// use impactid::signal::interpolation::interpolate;
+///
+/// let cubes: Vec<f64> = (0..6).map(|i| f64::from(i).powi(3)).collect();
+/// assert!((interpolate(&cubes, 2.5).unwrap() - 15.625).abs() < 1e-12);
+/// assert_eq!(interpolate(&cubes, 5.1), None);
+/// ```
 pub fn interpolate(samples: &[f64], position: f64) -> Option<f64> {
     let last = samples.len().checked_sub(1)?;
     if !(0.0..=last as f64).contains(&position) {

@@ -18,8 +18,18 @@ pub struct LocalFit {
 impl LocalFit {
     /// Fit a polynomial of at most `degree` to samples `first..last` (index = time in steps).
     ///
-    /// The degree is lowered where the samples are too few for it (at least one more sample than
+    /// The degree is lowered if the samples are too few for it (at least one more sample than
     /// coefficients, except for a constant). `None` for an empty range.
+    ///
+    /// ```
+    /// use impactid::signal::local_fit::LocalFit;
+    ///
+    /// let squares: Vec<f64> = (0..10).map(|i| f64::from(i).powi(2)).collect();
+    /// let fit = LocalFit::new(&squares, 2, 8, 2).unwrap();
+    /// assert!((fit.value(9.5) - 90.25).abs() < 1e-9);
+    /// assert!((fit.slope(3.0) - 6.0).abs() < 1e-9);
+    /// assert!(fit.residual_squares < 1e-18);
+    /// ```
     pub fn new(samples: &[f64], first: usize, last: usize, degree: usize) -> Option<Self> {
         let last = last.min(samples.len());
         let count = last.checked_sub(first).filter(|n| *n > 0)?;
@@ -77,9 +87,9 @@ impl LocalFit {
     }
 }
 
-/// Time between `low` and `high` (in steps) where two fits cross, nearest to the middle.
+/// Time between `low` and `high` (in steps) at which two fits cross, nearest to the middle.
 ///
-/// Newton from the middle; `None` where the fits do not cross within the interval.
+/// Newton from the middle; `None` if the fits do not cross within the interval.
 pub fn crossing(before: &LocalFit, after: &LocalFit, low: f64, high: f64) -> Option<f64> {
     let mut time = 0.5 * (low + high);
     for _ in 0..20 {

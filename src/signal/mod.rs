@@ -7,5 +7,5 @@ pub mod drift;
 pub mod interpolation;
 pub mod local_fit;
 pub mod robust;
-pub mod spectrum;
+mod spectrum;
 pub mod tone;

@@ -31,6 +31,16 @@ pub fn robust_deviation(values: &[f64]) -> Option<f64> {
 ///
 /// From third differences, which cancel a local parabola and have variance 20 σ², with a robust
 /// scale that isolated jumps do not move. A quantised signal at rest gives zero.
+///
+/// ```
+/// use impactid::signal::robust::{median, noise_deviation};
+///
+/// assert_eq!(median(&[3.0, 1.0, 2.0, 10.0]), Some(2.5));
+/// // A parabola with one jump has no noise.
+/// let value = |i: i32| f64::from(i * i) + if i > 50 { 1e3 } else { 0.0 };
+/// let samples: Vec<f64> = (0..100).map(value).collect();
+/// assert_eq!(noise_deviation(&samples), 0.0);
+/// ```
 pub fn noise_deviation(samples: &[f64]) -> f64 {
     let thirds: Vec<f64> = samples
         .windows(4)

@@ -26,8 +26,8 @@ fn amplitude_spectrum(samples: &[f64]) -> (f64, Vec<f64>) {
 }
 
 /// Frequency of the greatest spectral peak, in units of the sample rate, refined by a parabola
-/// through the logarithms of the three bins at the top; `None` where nothing stands out.
-pub fn peak_frequency(samples: &[f64]) -> Option<f64> {
+/// through the logarithms of the three bins at the top; `None` without a peak.
+pub(super) fn peak_frequency(samples: &[f64]) -> Option<f64> {
     let (step, amplitudes) = amplitude_spectrum(samples);
     let first = 2.min(amplitudes.len());
     let (top, &height) = amplitudes

@@ -10,7 +10,7 @@ use super::spectrum::peak_frequency;
 pub struct Tone {
     /// Frequency, Hz.
     pub frequency_hz: f64,
-    /// Standard error of the frequency, Hz; zero where it was given.
+    /// Standard error of the frequency, Hz; zero if it was given.
     pub frequency_error_hz: f64,
     /// Amplitude, the samples' unit.
     pub amplitude: f64,
@@ -45,7 +45,18 @@ fn fit_known_frequency(samples: &[f64], rate_hz: f64, frequency_hz: f64) -> Opti
 
 /// Fit a tone with its frequency, starting at the greatest spectral peak.
 ///
-/// `None` where the samples hold no peak or the fit does not settle.
+/// `None` if the samples hold no peak or the fit does not settle.
+///
+/// ```
+/// use impactid::signal::tone;
+///
+/// let angle = |i: i32| std::f64::consts::TAU * 12.6 * f64::from(i) / 2000.0;
+/// let samples: Vec<f64> = (0..2000).map(|i| 0.5 + 2.0 * angle(i).cos()).collect();
+/// let found = tone::fit(&samples, 2000.0).unwrap();
+/// assert!((found.frequency_hz - 12.6).abs() < 1e-8);
+/// assert!((found.amplitude - 2.0).abs() < 1e-8);
+/// assert!((found.offset - 0.5).abs() < 1e-8);
+/// ```
 pub fn fit(samples: &[f64], rate_hz: f64) -> Option<Tone> {
     let mut frequency_hz = peak_frequency(samples)? * rate_hz;
     for _ in 0..12 {

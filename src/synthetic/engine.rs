@@ -1,7 +1,7 @@
 //! The motion of a virtual rig: exact flights and Newton's impacts where the model holds,
 //! integration in small steps where an effect goes beyond it.
 
-use impact_oscillator::model::contact::ModelImpact;
+use impact_oscillator::model::Impact;
 use impact_oscillator::model::params::{Initial, ModelError, Setting};
 use impact_oscillator::model::simulate::{Simulator, Trajectory};
 
@@ -193,7 +193,7 @@ impl Engine {
         match self {
             Self::Exact(simulator) => {
                 let mut counts = [0; 2];
-                simulator.advance(duration, &mut |impact: &ModelImpact| {
+                simulator.advance(duration, &mut |impact: &Impact| {
                     counts[0] += 1;
                     counts[1] += usize::from(impact.dead_zone > 0.0);
                 });
@@ -243,10 +243,10 @@ impl Recorded {
     pub fn impacts(&self) -> Vec<Touch> {
         match self {
             Self::Exact(trajectory) => {
-                let touch = |i: &ModelImpact| Touch {
+                let touch = |i: &Impact| Touch {
                     tau: i.tau,
-                    approach: i.closing_before,
-                    separation: -i.closing_after,
+                    approach: i.approach_speed,
+                    separation: i.separation_speed,
                     duration: 0.0,
                     dead_zone: i.dead_zone,
                 };

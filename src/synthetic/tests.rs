@@ -2,8 +2,7 @@
 
 use super::run::calibrated;
 use super::{Effects, Faults, Laboratory, Plan, Truth, records};
-use crate::event::detect::{DetectSettings, detect};
-use crate::event::{Impact, RigKind};
+use crate::event::{DetectSettings, Impact, RigKind, detect};
 use crate::signal::robust;
 
 /// Impacts of a campaign of forty records with R = 0.7, as detected.

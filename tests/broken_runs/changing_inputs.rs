@@ -5,8 +5,8 @@ use std::io::Write;
 use std::path::Path;
 
 use impactid::pipeline::Observed;
-use labfiles::open::open;
-use labfiles::source::{Samples, Source};
+use labfiles::open;
+use labfiles::{Samples, Source};
 
 use crate::support::{Lab, wav_format};
 
@@ -35,7 +35,7 @@ fn valid_a_file_that_vanishes_leaves_out_its_record_alone() {
     };
     assert!(!first.excluded() && second.excluded() && !third.excluded());
     let flag = second.flags.iter().find(|f| f.excludes).expect("a flag");
-    assert_eq!(flag.code, "unreadable");
+    assert_eq!(flag.code.name(), "unreadable");
     assert!(!flag.message.is_empty() && !flag.remedy.is_empty());
 }
 

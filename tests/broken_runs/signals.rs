@@ -65,7 +65,7 @@ fn valid_ctrl_c_says_so_ends_with_130_and_loses_nothing() {
         let (said, code) = spoken(run);
         assert_eq!(code, Some(130), "{said}");
         assert!(
-            said.contains("broken off") && said.contains("--resume"),
+            said.contains("interrupted") && said.contains("--resume"),
             "{said}"
         );
         assert_eq!(lab.read("out/report.pdf"), "the report of yesterday");
@@ -100,13 +100,13 @@ fn valid_ctrl_c_leaves_no_file_of_a_folder_that_is_being_written() {
     let (said, code) = spoken(run);
     assert_eq!(code, Some(130), "{said}");
     assert!(
-        said.contains("broken off") && !said.contains("could not"),
+        said.contains("interrupted") && !said.contains("could not"),
         "{said}"
     );
     let left = outputs(&lab.path("tables"));
     assert_eq!(left.keys().collect::<Vec<_>>(), ["other.csv"]);
     assert!(hidden(&lab.path("tables")).is_empty());
-    // the same command begins anew
+    // the same command starts again
     let again = lab.run(&["-q", "convert", "records.h5", "--out", "tables/day.csv"]);
     assert_eq!(again.code, 0, "{}", again.said);
     assert_eq!(outputs(&lab.path("tables/day")).len(), 66);

@@ -1,25 +1,29 @@
-//! The verbs as a user meets them.
+//! The commands as a user meets them.
+
+mod keys;
+mod verbosity;
+mod warnings;
 
 use std::fs;
 
 use crate::support::Lab;
 
 #[test]
-fn valid_help_of_each_verb_shows_an_example_and_ends_with_0() {
+fn help_of_each_command_shows_an_example_and_ends_with_0() {
     let lab = Lab::new();
-    for verb in [
+    for command in [
         "init", "check", "run", "ingest", "classify", "identify", "report", "simulate", "sweep",
         "basins", "atlas", "merge", "study", "boundary",
     ] {
-        let ran = lab.run(&[verb, "--help"]);
-        assert_eq!(ran.code, 0, "{verb}");
-        assert!(ran.said.contains("Example:"), "{verb}: {}", ran.said);
+        let ran = lab.run(&[command, "--help"]);
+        assert_eq!(ran.code, 0, "{command}");
+        assert!(ran.said.contains("Example:"), "{command}: {}", ran.said);
     }
     assert_eq!(lab.run(&["--version"]).code, 0);
 }
 
 #[test]
-fn valid_check_changes_nothing() {
+fn check_changes_nothing() {
     let lab = Lab::new();
     let list = || {
         let mut names: Vec<_> = fs::read_dir(lab.folder())
@@ -41,15 +45,15 @@ fn valid_check_changes_nothing() {
 }
 
 #[test]
-fn valid_quiet_says_nothing_of_a_good_campaign() {
+fn quiet_prints_nothing_for_a_good_campaign() {
     let ran = Lab::new().run(&["--quiet", "check", "campaign.toml"]);
     assert_eq!((ran.code, ran.said.as_str()), (0, ""));
 }
 
 #[test]
-fn valid_output_in_a_pipe_has_no_colour_and_no_bar() {
+fn output_in_a_pipe_has_no_colour_and_no_bar() {
     let lab = Lab::new();
-    lab.mend("\"double\"", "\"triple\"");
+    lab.edit("\"double\"", "\"triple\"");
     let ran = lab.run(&["check", "campaign.toml"]);
     assert!(
         !ran.said.contains('\u{1b}') && !ran.said.contains('\r'),
@@ -59,11 +63,11 @@ fn valid_output_in_a_pipe_has_no_colour_and_no_bar() {
 }
 
 #[test]
-fn valid_all_faults_are_told_in_one_run() {
+fn all_problems_are_listed_in_one_run() {
     let lab = Lab::new();
-    lab.mend("\"double\"", "\"triple\"");
-    lab.mend("restitution = 0.9", "restitution = 9");
-    lab.mend("\"50 mm/s per V\"\nhigh", "\"50 mm/s\"\nhigh");
+    lab.edit("\"double\"", "\"triple\"");
+    lab.edit("restitution = 0.9", "restitution = 9");
+    lab.edit("\"50 mm/s per V\"\nhigh", "\"50 mm/s\"\nhigh");
     lab.replace("runs.csv", "clearance_mm", "clearance");
     let said = lab.run(&["check", "campaign.toml"]).said;
     for words in [
@@ -77,7 +81,7 @@ fn valid_all_faults_are_told_in_one_run() {
 }
 
 #[test]
-fn valid_init_writes_a_campaign_that_check_understands() {
+fn init_writes_a_campaign_that_check_understands() {
     let lab = Lab::new();
     lab.remove("campaign.toml");
     lab.remove("runs.csv");
@@ -95,16 +99,16 @@ fn valid_init_writes_a_campaign_that_check_understands() {
     ] {
         assert!(text.contains(words), "{words} is not in {text}");
     }
-    // what is left to do is told: volts are no velocity
+    // the remaining work is listed: volts are no velocity
     let ran = lab.run(&["check", "campaign.toml"]);
     assert_eq!(ran.code, 2);
     assert!(ran.said.contains("comes out as a voltage"), "{}", ran.said);
-    lab.mend("# scale", "scale");
+    lab.edit("# scale", "scale");
     assert_eq!(lab.run(&["check", "campaign.toml"]).code, 0);
 }
 
 #[test]
-fn valid_init_finds_a_run_table() {
+fn init_finds_a_run_table() {
     let lab = Lab::new();
     let ran = lab.run(&["init", ".", "--force"]);
     assert_eq!(ran.code, 0, "{}", ran.said);
@@ -115,7 +119,7 @@ fn valid_init_finds_a_run_table() {
 }
 
 #[test]
-fn valid_check_works_from_another_folder() {
+fn check_works_from_another_folder() {
     let lab = Lab::new();
     fs::create_dir(lab.path("elsewhere")).expect("a folder");
     let path = lab.path("campaign.toml");
@@ -124,7 +128,7 @@ fn valid_check_works_from_another_folder() {
 }
 
 #[test]
-fn valid_completions_and_man_pages_name_the_verbs() {
+fn completions_and_man_pages_name_the_commands() {
     let lab = Lab::new();
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
         let ran = lab.run(&["completions", shell]);
@@ -144,7 +148,8 @@ fn valid_selftest_meets_the_published_numbers() {
     let ran = Lab::new().run(&["selftest"]);
     assert_eq!(ran.code, 0, "{}", ran.said);
     assert!(
-        ran.said.contains("18 of 18 published numbers are met"),
+        ran.said
+            .contains("18 of 18 published numbers are reproduced"),
         "{}",
         ran.said
     );

@@ -17,7 +17,7 @@ fn channels(lab: &Lab, file: &str, dataset: &str) -> Vec<serde_json::Value> {
 }
 
 #[test]
-fn valid_inspect_lists_channels_for_programs() {
+fn inspect_lists_channels_for_programs() {
     let lab = Lab::new();
     let file = own("tables_int16_gzip.h5");
     let list = channels(&lab, file.to_str().expect("a path"), "run2");
@@ -49,7 +49,7 @@ fn valid_inspect_lists_channels_for_programs() {
 }
 
 #[test]
-fn valid_inspect_draws_and_goes_on_after_a_bad_file() {
+fn inspect_draws_and_goes_on_after_a_bad_file() {
     let lab = Lab::new();
     lab.write("empty.csv", "");
     let good = own("compact.h5");
@@ -68,7 +68,7 @@ fn valid_inspect_draws_and_goes_on_after_a_bad_file() {
 }
 
 #[test]
-fn valid_convert_keeps_numbers_units_and_attributes() {
+fn convert_keeps_numbers_units_and_attributes() {
     let lab = Lab::new();
     let from = own("tables_int16_gzip.h5");
     let from = from.to_str().expect("a path");
@@ -101,7 +101,7 @@ fn valid_convert_keeps_numbers_units_and_attributes() {
 }
 
 #[test]
-fn valid_convert_refuses_what_it_cannot_write() {
+fn convert_refuses_what_it_cannot_write() {
     let lab = Lab::new();
     let from = own("compact.h5");
     let from = from.to_str().expect("a path");
@@ -123,7 +123,7 @@ fn valid_convert_refuses_what_it_cannot_write() {
 }
 
 #[test]
-fn valid_a_library_that_panics_on_a_broken_file_prints_nothing() {
+fn a_library_that_panics_on_a_broken_file_prints_nothing() {
     let lab = Lab::new();
     let whole = std::fs::read(own("wide_uncompressed.parquet")).expect("a file of the tests");
     // A page that claims another length, and a footer that contradicts itself.

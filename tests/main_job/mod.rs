@@ -127,7 +127,7 @@ fn valid_a_corner_stated_wrongly_is_named_and_r_comes_out_right() {
     let named = found["suspicions"].as_array().expect("suspicions");
     assert_eq!(named.len(), 1, "{named:?}");
     assert_eq!(named[0]["kind"], "wrong_corner");
-    assert_eq!(named[0]["subject"], "displacement_y");
+    assert_eq!(named[0]["channel"], "displacement_y");
     let r = value(&found["joint"], "restitution");
     assert!((r - 0.7).abs() < 1e-3, "{r}");
 }

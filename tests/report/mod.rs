@@ -1,4 +1,4 @@
-//! The report as a user gets it: its formats, its look, its words, and the finished example.
+//! The report as a user gets it: its formats, its options, its languages, and the finished example.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -19,7 +19,7 @@ fn impactid(arguments: &[&str]) -> (i32, String) {
     (done.status.code().unwrap_or(-1), text)
 }
 
-/// What another program says; `None`, with a message, where it is not installed.
+/// Output of another program; `None`, with a message, if it is not installed.
 fn said(program: &str, arguments: &[&str]) -> Option<String> {
     match Command::new(program).args(arguments).output() {
         Ok(done) => Some(String::from_utf8_lossy(&done.stdout).into_owned()),
@@ -57,7 +57,7 @@ fn stems(folder: &Path, ending: &str) -> BTreeSet<String> {
 }
 
 #[test]
-fn valid_every_format_is_written_and_every_figure_has_its_data() {
+fn every_format_is_written_and_every_figure_has_its_data() {
     let folder = tempfile::tempdir().expect("a folder");
     let campaign = cut_campaign(folder.path(), 25, "");
     let out = folder.path().join("out");
@@ -91,7 +91,7 @@ fn valid_every_format_is_written_and_every_figure_has_its_data() {
 }
 
 #[test]
-fn valid_the_look_is_the_user_s() {
+fn paper_logo_template_and_decimal_sign_are_the_user_s() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(
         folder.path().join("logo.svg"),
@@ -160,7 +160,7 @@ fn valid_the_look_is_the_user_s() {
 
 /// The words are those of a table that campaign.toml or the command line names.
 #[test]
-fn valid_the_words_are_the_user_s() {
+fn phrases_are_those_of_the_user_s_table() {
     let folder = tempfile::tempdir().expect("a folder");
     let german = root().join("src/report/words-de.toml");
     let line = format!("\n[report]\nwords = {:?}\n", text(&german));
@@ -211,7 +211,7 @@ fn valid_the_words_are_the_user_s() {
     assert!(code == 2 && told.contains("{first}"), "{told}");
 }
 
-/// The sample campaign is what the README's command leaves: settings, run table and truth, byte by byte.
+/// The sample campaign is what the README's command writes: settings, run table and truth, byte by byte.
 #[test]
 fn regress_the_sample_is_what_the_readme_s_command_leaves() {
     let readme = fs::read_to_string(root().join("README.md")).expect("README.md");
@@ -234,7 +234,7 @@ fn regress_the_sample_is_what_the_readme_s_command_leaves() {
     }
 }
 
-/// What the README's command leaves is what lies in reports/example.
+/// What the README's command writes is what is in reports/example.
 #[test]
 fn regress_the_example_is_what_the_readme_s_command_leaves() {
     let readme = fs::read_to_string(root().join("README.md")).expect("README.md");
@@ -283,9 +283,9 @@ fn regress_the_example_is_what_the_readme_s_command_leaves() {
     assert!(readme.contains("](reports/example/figures/map.png)"));
 }
 
-/// The words of a report, line by line, without the name of the folder that it was written into and
-/// without the residuals of single trajectories and the numbers along their axes: a chaotic one makes
-/// much of another machine's last digit.
+/// The text of a report, line by line, without the name of its output folder, the residuals of single
+/// trajectories and the numbers along their axes: a chaotic one amplifies the last digit of another
+/// machine.
 fn comparable(words: &str, out: &str) -> String {
     let words = words.replace(out, "reports/example");
     let lines = words.lines().filter(|line| {

@@ -22,20 +22,20 @@ fn form() -> Vec<Case> {
             "campaign.toml is empty",
             |lab| lab.write("campaign.toml", ""),
             &[
-                "where the records are is not said",
+                "the location of the records is not given",
                 "no channel of motion",
                 "campaign.machine",
             ],
         ),
         refused(
             "a quote is not closed",
-            |lab| lab.mend("\"Test rig\"", "\"Test rig"),
+            |lab| lab.edit("\"Test rig\"", "\"Test rig"),
             &["campaign.toml:2", "not valid TOML"],
         ),
         refused(
-            "a key stands twice",
+            "a key is there twice",
             |lab| {
-                lab.mend(
+                lab.edit(
                     "machine = \"double\"",
                     "machine = \"double\"\nmachine = \"single\"",
                 )
@@ -49,7 +49,7 @@ fn form() -> Vec<Case> {
         ),
         refused(
             "an unknown key",
-            |lab| lab.mend("run_table =", "clearence = \"1 mm\"\nrun_table ="),
+            |lab| lab.edit("run_table =", "clearence = \"1 mm\"\nrun_table ="),
             &[
                 "campaign.toml:7: records.clearence",
                 "did you mean 'clearance'",
@@ -57,17 +57,17 @@ fn form() -> Vec<Case> {
         ),
         refused(
             "an unknown section",
-            |lab| lab.mend("[report]", "[reprot]"),
+            |lab| lab.edit("[report]", "[reprot]"),
             &["unknown field `reprot`", "did you mean 'report'"],
         ),
         refused(
             "an unknown role",
-            |lab| lab.mend("[channels.velocity_y]", "[channels.velocity_z]"),
+            |lab| lab.edit("[channels.velocity_y]", "[channels.velocity_z]"),
             &["velocity_z", "did you mean 'velocity_"],
         ),
         refused(
             "a number where a text is needed",
-            |lab| lab.mend("\"Test rig\"", "3"),
+            |lab| lab.edit("\"Test rig\"", "3"),
             &[
                 "campaign.toml:2: campaign.name",
                 "invalid type: integer `3`, expected a string",
@@ -75,7 +75,7 @@ fn form() -> Vec<Case> {
         ),
         refused(
             "a machine that is not known",
-            |lab| lab.mend("\"double\"", "\"triple\""),
+            |lab| lab.edit("\"double\"", "\"triple\""),
             &[
                 "campaign.toml:3: campaign.machine",
                 "unknown variant `triple`",
@@ -83,12 +83,12 @@ fn form() -> Vec<Case> {
         ),
         refused(
             "a paper size that is not known",
-            |lab| lab.mend("\"a4\"", "\"a3\""),
+            |lab| lab.edit("\"a4\"", "\"a3\""),
             &["unknown variant `a3`", "did you mean 'a4'"],
         ),
         refused(
             "a negative seed",
-            |lab| lab.mend("seed = 1", "seed = -1"),
+            |lab| lab.edit("seed = 1", "seed = -1"),
             &["analysis.seed", "-1"],
         ),
     ]
@@ -98,7 +98,7 @@ fn quantities() -> Vec<Case> {
     vec![
         refused(
             "a clearance without unit",
-            |lab| lab.mend("run_table =", "clearance = 1.0\nrun_table ="),
+            |lab| lab.edit("run_table =", "clearance = 1.0\nrun_table ="),
             &[
                 "campaign.toml:7: records.clearance",
                 "a clearance without unit: 1",
@@ -107,7 +107,7 @@ fn quantities() -> Vec<Case> {
         ),
         refused(
             "a clearance in quotes without unit",
-            |lab| lab.mend("run_table =", "clearance = \"1.0\"\nrun_table ="),
+            |lab| lab.edit("run_table =", "clearance = \"1.0\"\nrun_table ="),
             &[
                 "a clearance without unit",
                 "write number and unit in quotes",
@@ -115,7 +115,7 @@ fn quantities() -> Vec<Case> {
         ),
         refused(
             "a clearance in Hz",
-            |lab| lab.mend("run_table =", "clearance = \"1 Hz\"\nrun_table ="),
+            |lab| lab.edit("run_table =", "clearance = \"1 Hz\"\nrun_table ="),
             &[
                 "'1 Hz' is a frequency, where a length is expected",
                 "write a number and a unit of length",
@@ -123,7 +123,7 @@ fn quantities() -> Vec<Case> {
         ),
         refused(
             "a decimal comma",
-            |lab| lab.mend("\"12.6 Hz\"", "\"12,6 Hz\""),
+            |lab| lab.edit("\"12.6 Hz\"", "\"12,6 Hz\""),
             &[
                 "rig.natural_frequency",
                 "is written with a comma",
@@ -132,33 +132,33 @@ fn quantities() -> Vec<Case> {
         ),
         refused(
             "a unit that is not known",
-            |lab| lab.mend("\"12.6 Hz\"", "\"12.6 Hertzes\""),
+            |lab| lab.edit("\"12.6 Hz\"", "\"12.6 Hertzes\""),
             &["the unit 'Hertzes' is not known", "rad/s"],
         ),
         refused(
             "a natural frequency below zero",
-            |lab| lab.mend("\"12.6 Hz\"", "\"-12.6 Hz\""),
-            &["rig.natural_frequency", "it must be positive"],
+            |lab| lab.edit("\"12.6 Hz\"", "\"-12.6 Hz\""),
+            &["rig.natural_frequency", "write a positive value"],
         ),
         refused(
             "a restitution above 1",
-            |lab| lab.mend("restitution = 0.9", "restitution = 1.2"),
-            &["rig.restitution", "it lies between 0 and 1"],
+            |lab| lab.edit("restitution = 0.9", "restitution = 1.2"),
+            &["rig.restitution", "write a value from 0 to 1"],
         ),
         refused(
             "a negative damping ratio",
-            |lab| lab.mend("damping_ratio = 0.07", "damping_ratio = -0.07"),
-            &["rig.damping_ratio", "it lies between 0 and 0.999"],
+            |lab| lab.edit("damping_ratio = 0.07", "damping_ratio = -0.07"),
+            &["rig.damping_ratio", "write a value from 0 to 0.999"],
         ),
         refused(
             "a restitution that is not a number",
-            |lab| lab.mend("restitution = 0.9", "restitution = nan"),
+            |lab| lab.edit("restitution = 0.9", "restitution = nan"),
             &["rig.restitution", "not a number"],
         ),
         refused(
             "no impact motion looked for",
-            |lab| lab.mend("longest_period_n = 6", "longest_period_n = 0"),
-            &["analysis.longest_period_n", "it lies between 1 and 64"],
+            |lab| lab.edit("longest_period_n = 6", "longest_period_n = 0"),
+            &["analysis.longest_period_n", "write a number from 1 to 64"],
         ),
     ]
 }
@@ -168,7 +168,7 @@ fn channels() -> Vec<Case> {
         refused(
             "a channel's unit that is not known",
             |lab| {
-                lab.mend(
+                lab.edit(
                     "channel = \"vx\"\nunit = \"V\"",
                     "channel = \"vx\"\nunit = \"Vlt\"",
                 )
@@ -178,7 +178,7 @@ fn channels() -> Vec<Case> {
         refused(
             "a scale that does not say per what",
             |lab| {
-                lab.mend(
+                lab.edit(
                     "scale = \"50 mm/s per V\"\nhigh",
                     "scale = \"50 mm/s\"\nhigh",
                 )
@@ -188,7 +188,7 @@ fn channels() -> Vec<Case> {
         refused(
             "a scale of zero",
             |lab| {
-                lab.mend(
+                lab.edit(
                     "scale = \"50 mm/s per V\"\nhigh",
                     "scale = \"0 mm/s per V\"\nhigh",
                 )
@@ -198,7 +198,7 @@ fn channels() -> Vec<Case> {
         refused(
             "a scale from another unit than the channel's",
             |lab| {
-                lab.mend(
+                lab.edit(
                     "scale = \"50 mm/s per V\"\nhigh",
                     "scale = \"50 mm/s per N\"\nhigh",
                 )
@@ -210,15 +210,15 @@ fn channels() -> Vec<Case> {
         ),
         refused(
             "a velocity channel left in V",
-            |lab| lab.mend("scale = \"50 mm/s per V\"\nhigh", "high"),
+            |lab| lab.edit("scale = \"50 mm/s per V\"\nhigh", "high"),
             &[
                 "comes out as a voltage, not as a velocity",
-                "mend unit and scale",
+                "correct unit and scale",
             ],
         ),
         refused(
             "a sign of 2",
-            |lab| lab.mend("sign = 1", "sign = 2"),
+            |lab| lab.edit("sign = 1", "sign = 2"),
             &[
                 "channels.velocity_x.sign",
                 "a sign is 1 or -1",
@@ -227,12 +227,12 @@ fn channels() -> Vec<Case> {
         ),
         refused(
             "a negative high-pass corner",
-            |lab| lab.mend("\"0.5 Hz\"", "\"-0.5 Hz\""),
-            &["channels.velocity_x.high_pass", "it must be positive"],
+            |lab| lab.edit("\"0.5 Hz\"", "\"-0.5 Hz\""),
+            &["channels.velocity_x.high_pass", "write a positive value"],
         ),
         refused(
             "a threshold for a velocity",
-            |lab| lab.mend("sign = 1", "threshold = \"1 V\""),
+            |lab| lab.edit("sign = 1", "threshold = \"1 V\""),
             &[
                 "a threshold means nothing for velocity_x",
                 "[channels.contact]",
@@ -240,7 +240,7 @@ fn channels() -> Vec<Case> {
         ),
         refused(
             "a threshold without unit",
-            |lab| lab.mend("threshold = \"2.5 V\"", "threshold = 2.5"),
+            |lab| lab.edit("threshold = \"2.5 V\"", "threshold = 2.5"),
             &[
                 "channels.contact.threshold",
                 "a level without unit",
@@ -249,20 +249,20 @@ fn channels() -> Vec<Case> {
         ),
         refused(
             "a threshold in another unit than its channel",
-            |lab| lab.mend("threshold = \"2.5 V\"", "threshold = \"2.5 N\""),
+            |lab| lab.edit("threshold = \"2.5 V\"", "threshold = \"2.5 N\""),
             &["contact", "as its threshold does"],
         ),
         refused(
             "a role without a channel",
-            |lab| lab.mend("channel = \"drive\"\n", ""),
+            |lab| lab.edit("channel = \"drive\"\n", ""),
             &[
                 "channels.drive.channel",
-                "which channel of the file is not said",
+                "the channel of the file is not given",
             ],
         ),
         refused(
             "one channel for two roles",
-            |lab| lab.mend("channel = \"vy\"", "channel = \"vx\""),
+            |lab| lab.edit("channel = \"vy\"", "channel = \"vx\""),
             &[
                 "channels.velocity_y.channel",
                 "already serves as velocity_x",
@@ -282,7 +282,7 @@ fn channels() -> Vec<Case> {
         ),
         refused(
             "a second mass against a stop",
-            |lab| lab.mend("\"double\"", "\"single\""),
+            |lab| lab.edit("\"double\"", "\"single\""),
             &[
                 "channels.velocity_y",
                 "one mass against a stop has no mass y",
@@ -290,7 +290,7 @@ fn channels() -> Vec<Case> {
         ),
         refused(
             "a constant force on two masses",
-            |lab| lab.mend("\"harmonic\"", "\"constant_force\""),
+            |lab| lab.edit("\"harmonic\"", "\"constant_force\""),
             &["campaign.flight", "set machine = \"single\""],
         ),
     ]
@@ -300,30 +300,30 @@ fn records() -> Vec<Case> {
     vec![
         refused(
             "files and run_table both given",
-            |lab| lab.mend("run_table =", "files = \"*.csv\"\nrun_table ="),
+            |lab| lab.edit("run_table =", "files = \"*.csv\"\nrun_table ="),
             &["files and run_table are both given", "keep one of them"],
         ),
         refused(
             "neither files nor run_table given",
-            |lab| lab.mend("run_table = \"runs.csv\"", ""),
+            |lab| lab.edit("run_table = \"runs.csv\"", ""),
             &[
-                "where the records are is not said",
+                "the location of the records is not given",
                 "files = \"records/*.h5\"",
             ],
         ),
         refused(
             "a pattern that no file matches",
-            |lab| lab.mend("run_table = \"runs.csv\"", "files = \"*.tdms\""),
+            |lab| lab.edit("run_table = \"runs.csv\"", "files = \"*.tdms\""),
             &["no file matches '*.tdms'", "relative to campaign.toml"],
         ),
         refused(
             "exclude names no record",
-            |lab| lab.mend("seed = 1", "seed = 1\nexclude = [\"r9\"]"),
+            |lab| lab.edit("seed = 1", "seed = 1\nexclude = [\"r9\"]"),
             &["analysis.exclude", "no record is called 'r9'"],
         ),
         refused(
             "report.points names no record",
-            |lab| lab.mend("paper = \"a4\"", "points = [\"r11\"]"),
+            |lab| lab.edit("paper = \"a4\"", "points = [\"r11\"]"),
             &[
                 "report.points",
                 "no record is called 'r11'",
@@ -332,7 +332,7 @@ fn records() -> Vec<Case> {
         ),
         refused(
             "an attribute for a clearance without unit",
-            |lab| lab.mend("[rig]", "[records.attributes]\nclearance = \"gap\"\n[rig]"),
+            |lab| lab.edit("[rig]", "[records.attributes]\nclearance = \"gap\"\n[rig]"),
             &[
                 "an attribute 'gap' for a clearance without unit",
                 "\"gap [m]\"",
@@ -340,12 +340,12 @@ fn records() -> Vec<Case> {
         ),
         refused(
             "a time channel that no file has",
-            |lab| lab.mend("run_table =", "time = \"clock\"\nrun_table ="),
+            |lab| lab.edit("run_table =", "time = \"clock\"\nrun_table ="),
             &["in all 3 records", "no channel 'clock' for the time axis"],
         ),
         refused(
             "more is skipped than a record holds",
-            |lab| lab.mend("seed = 1", "skip = \"2 s\""),
+            |lab| lab.edit("seed = 1", "skip = \"2 s\""),
             &[
                 "the record lasts 1 s, and 2 s of it are skipped",
                 "lower skip in [analysis]",

@@ -26,9 +26,9 @@ const fn case(
 
 fn commands() -> Vec<Case> {
     vec![
-        case("no verb", |_| {}, &[], &["Usage: impactid"]),
+        case("no command", |_| {}, &[], &["Usage: impactid"]),
         case(
-            "an unknown verb",
+            "an unknown command",
             |_| {},
             &["rum"],
             &["unrecognized subcommand 'rum'", "run"],
@@ -47,7 +47,7 @@ fn commands() -> Vec<Case> {
         ),
         case(
             "run on a faulty campaign",
-            |lab| lab.mend("\"double\"", "\"triple\""),
+            |lab| lab.edit("\"double\"", "\"triple\""),
             &["run", "campaign.toml", "--out", "out"],
             &["unknown variant `triple`"],
         ),
@@ -101,25 +101,25 @@ fn folders() -> Vec<Case> {
             "a stage on a folder that is not there",
             |_| {},
             &["classify", "nowhere"],
-            &["nowhere is no folder with results", "impactid ingest"],
+            &["nowhere is not a folder with results", "impactid ingest"],
         ),
         case(
             "init in a folder without records",
             |lab| std::fs::create_dir(lab.path("empty")).expect("a folder"),
             &["init", "empty"],
-            &["no record was found in empty"],
+            &["no record found in empty"],
         ),
         case(
             "init in no folder",
             |_| {},
             &["init", "nowhere"],
-            &["nowhere is no folder"],
+            &["nowhere is not a folder"],
         ),
         case(
             "init where campaign.toml is",
             |_| {},
             &["init", "."],
-            &["campaign.toml is there already", "--force"],
+            &["campaign.toml exists already", "--force"],
         ),
         case(
             "simulate where a campaign is",

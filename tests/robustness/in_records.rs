@@ -219,9 +219,9 @@ fn files() -> Vec<Case> {
                 lab.write("r2.csv", &text[..text.len() / 2 - 7]);
             },
             &[
-                "r2.csv: r2: it holds 99",
+                "r2.csv: it holds 99",
                 "the usual record 2000",
-                "copy the file anew",
+                "copy the file again",
             ],
         ),
     ]
@@ -241,12 +241,12 @@ fn channels() -> Vec<Case> {
         ),
         refused(
             "a channel missing in all files",
-            |lab| lab.mend("channel = \"vy\"", "channel = \"laser 2\""),
+            |lab| lab.edit("channel = \"vy\"", "channel = \"laser 2\""),
             &["in all 3 records: no channel 'laser 2'", "velocity_y"],
         ),
         refused(
             "an index beyond the last channel",
-            |lab| lab.mend("channel = \"vy\"", "channel = 12"),
+            |lab| lab.edit("channel = \"vy\"", "channel = 12"),
             &["in all 3 records: no channel 'number 12'"],
         ),
         refused(
@@ -263,7 +263,7 @@ fn channels() -> Vec<Case> {
             "no unit in the file nor in campaign.toml",
             |lab| {
                 lab.replace("r2.csv", "vx [V]", "vx");
-                lab.mend("channel = \"vx\"\nunit = \"V\"", "channel = \"vx\"");
+                lab.edit("channel = \"vx\"\nunit = \"V\"", "channel = \"vx\"");
             },
             &[
                 "the file states no unit for channel 'vx'",
@@ -289,7 +289,7 @@ fn values() -> Vec<Case> {
             "NaN in a channel",
             |lab| spoil(lab, 3, "NaN"),
             &[
-                "r2.csv: r2: vx",
+                "r2.csv: vx",
                 "has 1 values that are not numbers (NaN or infinite), the first at sample 700",
                 "2 of 3 records can be used",
             ],
@@ -298,7 +298,7 @@ fn values() -> Vec<Case> {
             "an infinite value",
             |lab| spoil(lab, 4, "inf"),
             &[
-                "r2.csv: r2: vy",
+                "r2.csv: vy",
                 "not numbers (NaN or infinite)",
                 "2 of 3 records can be used",
             ],
@@ -306,11 +306,7 @@ fn values() -> Vec<Case> {
         refused(
             "a gap in a channel",
             |lab| spoil(lab, 3, ""),
-            &[
-                "r2.csv: r2: vx",
-                "not numbers",
-                "2 of 3 records can be used",
-            ],
+            &["r2.csv: vx", "not numbers", "2 of 3 records can be used"],
         ),
         noted(
             "no values at a channel's beginning",
@@ -328,7 +324,7 @@ fn values() -> Vec<Case> {
             "a constant velocity",
             |lab| lab.column("r2.csv", 3, |_, _| "0.125".into()),
             &[
-                "r2.csv: r2: vx",
+                "r2.csv: vx",
                 "is constant at",
                 "loose cable",
                 "2 of 3 records can be used",
@@ -337,17 +333,13 @@ fn values() -> Vec<Case> {
         refused(
             "a constant drive",
             |lab| lab.column("r2.csv", 1, |_, _| "0".into()),
-            &[
-                "r2.csv: r2: drive",
-                "is constant",
-                "2 of 3 records can be used",
-            ],
+            &["r2.csv: drive", "is constant", "2 of 3 records can be used"],
         ),
         refused(
             "a saturated velocity",
             |lab| lab.column("r2.csv", 3, |_, v| format!("{:.6}", v.clamp(-1.0, 1.0))),
             &[
-                "r2.csv: r2: vx",
+                "r2.csv: vx",
                 "is clipped",
                 "larger range",
                 "2 of 3 records can be used",
@@ -356,11 +348,7 @@ fn values() -> Vec<Case> {
         noted(
             "a saturated drive",
             |lab| lab.column("r2.csv", 1, |_, v| format!("{:.6}", v.clamp(-0.7, 0.7))),
-            &[
-                "r2.csv: r2: drive",
-                "is clipped",
-                "3 of 3 records can be used",
-            ],
+            &["r2.csv: drive", "is clipped", "3 of 3 records can be used"],
         ),
         refused(
             "samples held by the converter",

@@ -14,7 +14,11 @@ fn header() -> Vec<Case> {
         refused(
             "the run table is not there",
             |lab| lab.remove("runs.csv"),
-            &["runs.csv", "the run table cannot be read", "mend run_table"],
+            &[
+                "runs.csv",
+                "the run table cannot be read",
+                "check run_table",
+            ],
         ),
         refused(
             "the run table is empty",
@@ -59,9 +63,9 @@ fn header() -> Vec<Case> {
             &["the column 'swep' is not known", "did you mean 'sweep'"],
         ),
         refused(
-            "a column that stands twice",
+            "a column that is there twice",
             |lab| lab.replace("runs.csv", "sweep", "clearance_mm"),
-            &["the column 'clearance' stands twice"],
+            &["the column 'clearance' is there twice"],
         ),
     ]
 }
@@ -99,7 +103,7 @@ fn rows() -> Vec<Case> {
         refused(
             "the same file in two rows",
             |lab| lab.replace("runs.csv", "r3.csv", "r1.csv"),
-            &["runs.csv:4", "'r1.csv' already stands in line 2"],
+            &["runs.csv:4", "'r1.csv' is already in line 2"],
         ),
         refused(
             "a row names a file that is not there",
@@ -112,9 +116,9 @@ fn rows() -> Vec<Case> {
                 lab.write("runs.csv", "file,dataset\nr1.csv,run7\nr2.csv,\n");
             },
             &[
-                "r1.csv: run7",
+                "r1.csv: r1/run7",
                 "no dataset 'run7' in it",
-                "mend the column dataset",
+                "fix the column dataset",
             ],
         ),
         refused(
@@ -123,12 +127,12 @@ fn rows() -> Vec<Case> {
                 lab.replace("runs.csv", "clearance_mm", "clearance_m");
                 lab.replace("runs.csv", "1.0", "15");
             },
-            &["a clearance of 15 m", "mend its unit: mm?"],
+            &["a clearance of 15 m", "check its unit: mm?"],
         ),
         refused(
             "a drive frequency of zero",
             |lab| lab.replace("runs.csv", "r2.csv,12", "r2.csv,0"),
-            &["r2: drive_frequency", "a drive frequency of 0 Hz"],
+            &["r2.csv: drive_frequency", "a drive frequency of 0 Hz"],
         ),
     ]
 }

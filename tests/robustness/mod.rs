@@ -1,4 +1,4 @@
-//! Wrong inputs. Each case spoils a good campaign in one way; the message must name the remedy
+//! Wrong inputs. Each case changes a good campaign in one way; the message must name the remedy
 //! and the exit code must be right.
 
 mod in_campaign_toml;
@@ -13,11 +13,11 @@ use crate::support::Lab;
 pub struct Case {
     /// What is wrong, for the table.
     pub input: &'static str,
-    /// How a good campaign is spoilt.
+    /// How a good campaign is made wrong.
     pub spoil: fn(&Lab),
     /// The command.
     pub run: &'static [&'static str],
-    /// What the message must say.
+    /// What the message must contain.
     pub says: &'static [&'static str],
     /// Exit code.
     pub code: i32,
@@ -80,7 +80,7 @@ fn test_all(cases: &[Case]) {
 }
 
 #[test]
-fn valid_the_good_campaign_has_no_fault() {
+fn the_good_campaign_has_no_fault() {
     let ran = Lab::new().run(CHECK);
     assert_eq!(ran.code, 0, "{}", ran.said);
     assert!(
@@ -91,7 +91,7 @@ fn valid_the_good_campaign_has_no_fault() {
 }
 
 #[test]
-fn valid_faults_in_campaign_toml() {
+fn faults_in_campaign_toml() {
     test_all(&in_campaign_toml::cases());
 }
 
@@ -145,38 +145,38 @@ fn valid_bombs_end_soon_and_in_little_memory() {
 }
 
 #[test]
-fn valid_faults_in_the_run_table() {
+fn faults_in_the_run_table() {
     test_all(&in_run_table::cases());
 }
 
 #[test]
-fn valid_faults_in_records() {
+fn faults_in_records() {
     test_all(&in_records::cases());
 }
 
 #[test]
-fn valid_contradictions() {
+fn contradictions() {
     test_all(&physical::cases());
 }
 
 #[test]
-fn valid_faults_of_command_and_output() {
+fn faults_of_command_and_output() {
     test_all(&in_outputs::cases());
 }
 
-/// docs/robustness.md as the cases say it.
+/// docs/robustness.md from the cases.
 fn document() -> String {
     let mut text = String::from(
-        "# Wrong inputs and what the program says\n\n\
-         Every row is a test in `tests/robustness`: a good campaign is spoilt in this one way, the\n\
-         message must hold these words, and the exit code must be this one. 0: noted, and the run\n\
-         goes on; 2: a fault that stops the campaign or leaves a record out. Each message names\n\
-         the file, the line or channel, and what to do.\n",
+        "# Wrong inputs and the message for each\n\n\
+         Every row is a test in `tests/robustness`: a good campaign is changed in this one way, the\n\
+         message must contain these words, and the exit code must be this one. 0: noted, and the\n\
+         run continues; 2: an error that stops the campaign or leaves a record out. Each message\n\
+         states the file, the line or channel, and a remedy.\n",
     );
     let mut number = 0;
     for (title, cases) in groups() {
         text += &format!(
-            "\n## {title}\n\n| | input | the message holds | exit |\n| --- | --- | --- | --- |\n"
+            "\n## {title}\n\n| | input | the message contains | exit |\n| --- | --- | --- | --- |\n"
         );
         for case in cases {
             number += 1;
@@ -206,7 +206,7 @@ fn regress_docs_robustness_md_lists_the_cases() {
     let found = std::fs::read_to_string(path).unwrap_or_default();
     assert!(
         found == expected,
-        "docs/robustness.md is not what the cases say: UPDATE_DOCS=1 cargo test writes it anew"
+        "docs/robustness.md differs from the cases: UPDATE_DOCS=1 cargo test updates it"
     );
     assert!(groups().iter().map(|(_, cases)| cases.len()).sum::<usize>() >= 60);
 }

@@ -31,7 +31,7 @@ fn with_both_displacements(lab: &Lab, swapped: bool) {
         "[channels.displacement_x]\nchannel = \"{x}\"\n\n\
          [channels.displacement_y]\nchannel = \"{y}\"\n\n[analysis]"
     );
-    lab.mend("[analysis]", &channels);
+    lab.edit("[analysis]", &channels);
 }
 
 /// Add the acceleration of x to every record: smooth, in m/s² times a factor; the velocity of x
@@ -50,7 +50,7 @@ fn with_acceleration(lab: &Lab, factor: f64) {
             Some(cells.join(","))
         });
     }
-    lab.mend(
+    lab.edit(
         "[analysis]",
         "[channels.acceleration_x]\nchannel = \"ax\"\n\n[analysis]",
     );
@@ -77,7 +77,7 @@ fn with_displacement(lab: &Lab, factor: f64) {
         }
         lab.write(name, &(lines.join("\n") + "\n"));
     }
-    lab.mend(
+    lab.edit(
         "[analysis]",
         "[channels.displacement_x]\nchannel = \"dx\"\n\n[analysis]",
     );
@@ -90,7 +90,7 @@ pub fn cases() -> Vec<Case> {
             "a drive frequency that is not the stated one",
             |lab| lab.replace("runs.csv", "r2.csv,12", "r2.csv,14"),
             &[
-                "r2.csv: r2: drive",
+                "r2.csv: drive",
                 "the drive channel shows 12.00",
                 "states 14.0",
             ],
@@ -103,7 +103,7 @@ pub fn cases() -> Vec<Case> {
                 });
             },
             &[
-                "r2.csv: r2: drive",
+                "r2.csv: drive",
                 "no single harmonic tone",
                 "2 of 3 records can be used",
             ],
@@ -114,13 +114,13 @@ pub fn cases() -> Vec<Case> {
                 lab.column("r2.csv", 3, |i, _| smooth(i));
                 lab.column("r2.csv", 4, |i, _| smooth(i + 3));
             },
-            &["r2.csv: r2: contact", "without a jump of the velocity"],
+            &["r2.csv: contact", "without a jump of the velocity"],
         ),
         refused(
             "velocities counted away from the other mass",
             |lab| {
-                lab.mend("sign = 1", "sign = -1");
-                lab.mend("channel = \"vy\"", "channel = \"vy\"\nsign = -1");
+                lab.edit("sign = 1", "sign = -1");
+                lab.edit("channel = \"vy\"", "channel = \"vy\"\nsign = -1");
             },
             &["jumps of the approach velocity go up", "sign"],
         ),
@@ -140,7 +140,7 @@ pub fn cases() -> Vec<Case> {
         refused(
             "a displacement in the wrong unit",
             |lab| with_displacement(lab, 25.4),
-            &["displacement_x moves 25.", "mend unit or scale"],
+            &["displacement_x moves 25.", "correct unit or scale"],
         ),
         refused(
             "a displacement in m that was meant in mm",
@@ -167,7 +167,7 @@ pub fn cases() -> Vec<Case> {
         noted(
             "a drive frequency stated in rad/s that is taken for Hz",
             |lab| lab.replace("runs.csv", "r2.csv,12", "r2.csv,75.398"),
-            &["r2.csv: r2: drive", "the factor between Hz and rad/s"],
+            &["r2.csv: drive", "the factor between Hz and rad/s"],
         ),
         noted(
             "displacements of both masses as they belong",
@@ -184,7 +184,7 @@ pub fn cases() -> Vec<Case> {
         ),
         refused(
             "the velocity of one mass counted away from the other",
-            |lab| lab.mend("channel = \"vy\"", "channel = \"vy\"\nsign = -1"),
+            |lab| lab.edit("channel = \"vy\"", "channel = \"vy\"\nsign = -1"),
             &[
                 "velocity_x and velocity_y jump in opposite directions",
                 "turn the sign in [channels.velocity_x] or in [channels.velocity_y]",
@@ -197,17 +197,20 @@ pub fn cases() -> Vec<Case> {
                 lab.write("r3.csv", &text);
                 lab.replace("runs.csv", "r3.csv,13", "r3.csv,11");
             },
-            &["r3.csv: r3", "its samples are those of the record 'r1'"],
+            &[
+                "r3.csv: its samples",
+                "its samples are those of the record 'r1'",
+            ],
         ),
         noted(
             "a clearance of zero",
             |lab| lab.replace("runs.csv", "r2.csv,12,1.0", "r2.csv,12,0"),
-            &["r2: clearance", "a preload, or a slip"],
+            &["r2.csv: clearance", "a preload, or a typing error"],
         ),
         noted(
             "a negative clearance",
             |lab| lab.replace("runs.csv", "r2.csv,12,1.0", "r2.csv,12,-1.0"),
-            &["a clearance of -0.001 m: a preload, or a slip"],
+            &["a clearance of -0.001 m: a preload, or a typing error"],
         ),
     ]
 }

@@ -1,4 +1,4 @@
-//! A good campaign in a temporary folder, and the program run on it.
+//! A good campaign in a temporary folder, and the program run in it.
 
 use std::fmt::Write;
 use std::fs;
@@ -60,7 +60,7 @@ pub const RUNS: &str = "file,drive_frequency_hz,clearance_mm,sweep\n\
 
 /// What a program run left behind.
 pub struct Ran {
-    /// All it said, both streams.
+    /// Both output streams.
     pub said: String,
     /// Its exit code; -1 where a signal ended it.
     pub code: i32,
@@ -115,15 +115,15 @@ impl Lab {
         fs::read_to_string(self.path(name)).expect("it is there")
     }
 
-    /// Replace a text that must stand in a file.
+    /// Replace a text that must be in a file.
     pub fn replace(&self, name: &str, from: &str, to: &str) {
         let text = self.read(name);
-        assert!(text.contains(from), "'{from}' does not stand in {name}");
+        assert!(text.contains(from), "'{from}' is not in {name}");
         self.write(name, &text.replace(from, to));
     }
 
     /// Replace in campaign.toml.
-    pub fn mend(&self, from: &str, to: &str) {
+    pub fn edit(&self, from: &str, to: &str) {
         self.replace("campaign.toml", from, to);
     }
 

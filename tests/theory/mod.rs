@@ -29,7 +29,7 @@ fn run(lab: &Lab, words: &str) -> String {
 }
 
 #[test]
-fn valid_each_verb_leaves_tables_figures_and_a_study_that_replays_it() {
+fn each_verb_writes_tables_figures_and_a_study_that_replays_it() {
     let lab = Lab::new();
     let verbs = [
         (
@@ -72,7 +72,7 @@ fn valid_each_verb_leaves_tables_figures_and_a_study_that_replays_it() {
 }
 
 #[test]
-fn valid_merged_parts_are_the_whole_atlas_byte_for_byte() {
+fn merged_parts_are_the_whole_atlas_byte_for_byte() {
     let lab = Lab::new();
     let atlas = "atlas --eta 0.8..2.4 --rho 0.05..3 --columns 11 --rows 10 --largest-p 2 \
                  --largest-n 2";
@@ -116,7 +116,7 @@ fn valid_merged_parts_are_the_whole_atlas_byte_for_byte() {
 }
 
 #[test]
-fn valid_a_sweep_broken_off_goes_on_to_the_same_bytes() {
+fn a_killed_sweep_resumes_to_the_same_bytes() {
     let lab = Lab::new();
     let sweep = "sweep --eta 1.1..1.7 --rho 2 --steps 66 --settle-periods 100";
     run(&lab, &format!("{sweep} --out whole"));
@@ -176,7 +176,7 @@ fn boundary(lab: &Lab, words: &str) -> serde_json::Value {
 }
 
 #[test]
-fn valid_boundaries_at_a_clearance_are_those_at_their_frequency_ratio() {
+fn boundaries_at_a_clearance_are_those_at_their_frequency_ratio() {
     let lab = Lab::new();
     for (kind, rho) in [
         ("s1 --motion 2/1", "-0.3"),
@@ -203,7 +203,7 @@ fn valid_boundaries_at_a_clearance_are_those_at_their_frequency_ratio() {
 }
 
 #[test]
-fn valid_dead_zones_of_uneven_machines_and_of_speed_dependent_restitution() {
+fn dead_zones_of_uneven_machines_and_of_speed_dependent_restitution() {
     let lab = Lab::new();
     let point = |words: &str| -> serde_json::Value {
         let said = run(&lab, &format!("boundary --kind dead-zone --json {words}"));
@@ -253,7 +253,7 @@ fn valid_dead_zones_of_uneven_machines_and_of_speed_dependent_restitution() {
 }
 
 #[test]
-fn valid_a_motion_without_a_boundary_at_a_clearance_is_named() {
+fn a_motion_without_a_boundary_at_a_clearance_is_named() {
     let lab = Lab::new();
     let words = ["boundary", "--kind", "s2", "--motion", "7/5", "--rho", "30"];
     let ran = lab.run(&words);

@@ -1,5 +1,5 @@
-//! What a new user does: the tutorial's commands as they stand, the script that reads the
-//! results, the manual's pages and the shells' completions.
+//! What a new user does: the commands of the tutorial as written, the script that reads the
+//! results, the manual pages and the shell completions.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -48,7 +48,7 @@ fn python() -> Option<String> {
 }
 
 #[test]
-fn valid_the_tutorial_runs_as_it_stands_and_its_results_are_read() {
+fn the_tutorial_runs_as_written_and_its_results_are_read() {
     let tutorial = fs::read_to_string(root().join("docs/tutorial.md")).expect("the tutorial");
     let lab = tempfile::tempdir().expect("a temporary folder");
     let campaign = blocks(&tutorial, "toml");
@@ -102,7 +102,7 @@ fn read_with_python(folder: &Path) {
 }
 
 #[test]
-fn valid_every_verb_has_a_page_and_completions() {
+fn every_command_has_a_page_and_completions() {
     let lab = Lab::new();
     assert_eq!(lab.run(&["-q", "man", "--out", "man"]).code, 0);
     let pages: Vec<String> = fs::read_dir(lab.path("man"))
@@ -138,7 +138,7 @@ fn valid_every_verb_has_a_page_and_completions() {
 /// On a terminal errors are coloured, unless NO_COLOR is set.
 #[cfg(target_os = "linux")]
 #[test]
-fn valid_no_color_is_heeded_on_a_terminal() {
+fn no_color_is_heeded_on_a_terminal() {
     let lab = Lab::new();
     let program = env!("CARGO_BIN_EXE_impactid");
     let spoken = |no_color: Option<&str>| {

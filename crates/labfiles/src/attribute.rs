@@ -1,4 +1,4 @@
-//! What the attributes of a file, a group or a comment say: rates, start times, lists of names.
+//! What the attributes of a file, a group or a comment state: rates, start times, lists of names.
 
 use std::collections::BTreeMap;
 
@@ -43,7 +43,17 @@ const START_KEYS: [&str; 7] = [
 ];
 
 /// Samples per second that the attributes state, Hz: as a rate or as a time step, in the unit
-/// written beside the number or in `<name>_unit(s)`.
+/// after the number or in `<name>_unit(s)`.
+///
+/// ```
+/// let stated = |pairs: &[(&str, &str)]| {
+///     let all = pairs.iter().map(|(name, value)| (name.to_string(), value.to_string()));
+///     labfiles::attribute::sample_rate_hz(&all.collect())
+/// };
+/// assert_eq!(stated(&[("Sample Rate", "2 kHz")]), Some(2000.0));
+/// assert_eq!(stated(&[("dt", "0.5"), ("dt_units", "ms")]), Some(2000.0));
+/// assert_eq!(stated(&[("operator", "A")]), None);
+/// ```
 pub fn sample_rate_hz(attributes: &BTreeMap<String, String>) -> Option<f64> {
     let rate = RATE_KEYS
         .iter()
@@ -57,7 +67,7 @@ pub fn sample_rate_hz(attributes: &BTreeMap<String, String>) -> Option<f64> {
         .filter(|r| r.is_finite() && *r > 0.0)
 }
 
-/// The start of the acquisition as the attributes spell it.
+/// The start of the acquisition as the attributes spell it, under `start_time`, `t0` and the like.
 pub fn start_time(attributes: &BTreeMap<String, String>) -> Option<String> {
     START_KEYS
         .iter()
@@ -72,7 +82,7 @@ fn lookup<'a>(
     attributes.iter().find(|(k, _)| same_key(k, key))
 }
 
-/// Whether two attribute names are one but for case, blanks and hyphens.
+/// Whether two attribute names differ only in case, blanks and hyphens.
 fn same_key(a: &str, b: &str) -> bool {
     let plain = |c: char| {
         if matches!(c, ' ' | '-') {
@@ -96,7 +106,6 @@ fn quantity(attributes: &BTreeMap<String, String>, key: &str, wanted: Dimension)
         None => Some(number),
         Some(symbol) => {
             let unit = parse_unit(symbol).filter(|u| u.dimension == wanted)?;
-            // A rate is a count per second even where its unit reads rad/s.
             Some(number * unit.to_si)
         }
     }
@@ -126,8 +135,8 @@ const TIME_NAMES: [&str; 11] = [
     "date",
 ];
 
-/// Whether a channel's name says that it is a time axis.
-pub fn says_time(name: &str) -> bool {
+/// Whether a name is that of a time axis.
+pub(crate) fn is_time_name(name: &str) -> bool {
     let lower = name.trim().to_lowercase();
     let word = lower.split([' ', '_', ':']).next().unwrap_or_default();
     word == "time" || TIME_NAMES.contains(&word) || TIME_NAMES.contains(&lower.as_str())
@@ -137,10 +146,15 @@ pub fn says_time(name: &str) -> bool {
 pub fn is_time_axis(channel: &ChannelInfo) -> bool {
     let unit = channel.unit.as_deref();
     let time = unit.is_none_or(|u| parse_unit(u).is_some_and(|u| u.dimension == Dimension::Time));
-    time && says_time(&channel.name) && channel.stored != StoredType::Text
+    time && is_time_name(&channel.name) && channel.stored != StoredType::Text
 }
 
 /// The parts of `a, b, c`, `a; b` or `["a", "b"]`.
+///
+/// ```
+/// assert_eq!(labfiles::attribute::list("[\"x\", 'y']"), ["x", "y"]);
+/// assert_eq!(labfiles::attribute::list("x; y"), ["x", "y"]);
+/// ```
 pub fn list(text: &str) -> Vec<String> {
     let inner = text.trim().trim_start_matches('[').trim_end_matches(']');
     let mark = if inner.contains(';') && !inner.contains(',') {
@@ -166,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_rates_however_they_are_stated() {
+    fn rates_however_they_are_stated() {
         for (pairs, rate) in [
             (&[("sample_rate_hz", "2000")][..], Some(2000.0)),
             (&[("Sample Rate", "2 kHz")], Some(2000.0)),
@@ -181,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_lists_of_names() {
+    fn lists_of_names() {
         assert_eq!(list("a, b,c"), ["a", "b", "c"]);
         assert_eq!(list("[\"a\", 'b']"), ["a", "b"]);
         assert_eq!(list("a; b"), ["a", "b"]);

@@ -1,7 +1,7 @@
 //! The bytes of an open instrument file: mapped, bounds-checked, in either byte order.
 //!
 //! Every reader of a binary format takes its bytes from here, so that no length a file claims
-//! is believed before the file is seen to hold it.
+//! is used before the file is known to hold it.
 
 use std::borrow::Cow;
 use std::fs::File;
@@ -16,7 +16,7 @@ const DAMAGED: &str = "The file is damaged or was cut short: copy or export it a
 
 /// A file mapped into memory for reading.
 #[derive(Debug)]
-pub struct FileBytes {
+pub(crate) struct FileBytes {
     path: PathBuf,
     file: File,
     map: Option<Mmap>,
@@ -26,8 +26,8 @@ impl FileBytes {
     /// Map a file. An empty file is a valid, empty sequence of bytes.
     ///
     /// # Errors
-    /// Where the system does not open or map it.
-    pub fn open(path: &Path) -> Result<Self, ReadError> {
+    /// If the system does not open or map it.
+    pub(crate) fn open(path: &Path) -> Result<Self, ReadError> {
         let fault = |error: std::io::Error| ReadError::io(path, &error);
         let file = File::open(path).map_err(fault)?;
         let length = file.metadata().map_err(fault)?.len();
@@ -45,17 +45,12 @@ impl FileBytes {
         })
     }
 
-    /// The file's path.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
     /// Make sure that the file was not cut short since it was opened; one that grew or was
     /// renamed is read as it was.
     ///
     /// # Errors
-    /// Where it was, with the byte at which it now ends.
-    pub fn still_whole(&self) -> Result<(), ReadError> {
+    /// If it was, with the byte at which it now ends.
+    pub(crate) fn still_whole(&self) -> Result<(), ReadError> {
         let length = self
             .file
             .metadata()
@@ -68,30 +63,25 @@ impl FileBytes {
             length,
             format!("only {length}: it was cut short while it was read"),
             format!("the file's {} bytes", self.size()),
-            "Let no other program write the file meanwhile, and run again.",
+            "Let no other program write the file while it is read, and run again.",
         ))
     }
 
     /// All bytes.
-    pub fn all(&self) -> &[u8] {
+    pub(crate) fn all(&self) -> &[u8] {
         self.map.as_deref().unwrap_or(&[])
     }
 
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.all().is_empty()
-    }
-
     /// Number of bytes.
-    pub fn size(&self) -> u64 {
+    pub(crate) fn size(&self) -> u64 {
         self.all().len() as u64
     }
 
-    /// The bytes `at..at + length`, which are called `what` where the file does not hold them.
-    pub fn slice(&self, at: u64, length: u64, what: &str) -> Result<&[u8], ReadError> {
+    /// The bytes `at..at + length`, which are called `what` if the file does not hold them.
+    pub(crate) fn slice(&self, at: u64, length: u64, what: &str) -> Result<&[u8], ReadError> {
         let end = at.checked_add(length).filter(|&end| end <= self.size());
         match end {
-            Some(end) => Ok(&self.all()[at as usize..end as usize]),
+            Some(end) => Ok(&self.all()[to_usize(at)..to_usize(end)]),
             None => Err(self.refuse(
                 at,
                 format!("{length} bytes of {what}"),
@@ -101,7 +91,7 @@ impl FileBytes {
     }
 
     /// An error at a byte: what was expected and what was found.
-    pub fn refuse(
+    pub(crate) fn refuse(
         &self,
         at: u64,
         expected: impl Into<String>,
@@ -118,7 +108,7 @@ impl FileBytes {
     }
 
     /// An error for something valid that this program does not read, with the remedy.
-    pub fn unsupported(
+    pub(crate) fn unsupported(
         &self,
         at: u64,
         found: impl Into<String>,
@@ -132,7 +122,7 @@ impl FileBytes {
     }
 
     /// A cursor over the whole file.
-    pub fn cursor(&self, order: ByteOrder) -> Cursor<'_> {
+    pub(crate) fn cursor(&self, order: ByteOrder) -> Cursor<'_> {
         Cursor {
             file: self,
             at: 0,
@@ -144,7 +134,7 @@ impl FileBytes {
 
 /// A position in a file that moves forward by checked reads.
 #[derive(Debug, Clone)]
-pub struct Cursor<'a> {
+pub(crate) struct Cursor<'a> {
     file: &'a FileBytes,
     at: u64,
     end: u64,
@@ -153,27 +143,27 @@ pub struct Cursor<'a> {
 
 impl<'a> Cursor<'a> {
     /// Offset of the next byte in the file.
-    pub fn at(&self) -> u64 {
+    pub(crate) fn at(&self) -> u64 {
         self.at
     }
 
     /// Bytes left before the cursor's end.
-    pub fn left(&self) -> u64 {
+    pub(crate) fn left(&self) -> u64 {
         self.end.saturating_sub(self.at)
     }
 
     /// The byte order of the numbers that follow.
-    pub fn set_order(&mut self, order: ByteOrder) {
+    pub(crate) fn set_order(&mut self, order: ByteOrder) {
         self.order = order;
     }
 
     /// Move to an offset of the file.
-    pub fn seek(&mut self, at: u64) {
+    pub(crate) fn seek(&mut self, at: u64) {
         self.at = at;
     }
 
     /// A cursor over `at..end` of the same file.
-    pub fn part(&self, at: u64, end: u64) -> Cursor<'a> {
+    pub(crate) fn part(&self, at: u64, end: u64) -> Cursor<'a> {
         Cursor {
             file: self.file,
             at,
@@ -183,7 +173,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// The next bytes, called `what` in an error.
-    pub fn take(&mut self, length: u64, what: &str) -> Result<&'a [u8], ReadError> {
+    pub(crate) fn take(&mut self, length: u64, what: &str) -> Result<&'a [u8], ReadError> {
         if length > self.left() {
             let found = format!("only {} bytes left", self.left());
             return Err(self
@@ -205,40 +195,54 @@ impl<'a> Cursor<'a> {
     }
 
     /// The next unsigned byte.
-    pub fn u8(&mut self, what: &str) -> Result<u8, ReadError> {
+    pub(crate) fn u8(&mut self, what: &str) -> Result<u8, ReadError> {
         Ok(self.array::<1>(what)?[0])
     }
 
     /// The next 16-bit unsigned integer.
-    pub fn u16(&mut self, what: &str) -> Result<u16, ReadError> {
+    pub(crate) fn u16(&mut self, what: &str) -> Result<u16, ReadError> {
         Ok(u16::from_le_bytes(self.array(what)?))
     }
 
     /// The next 32-bit unsigned integer.
-    pub fn u32(&mut self, what: &str) -> Result<u32, ReadError> {
+    pub(crate) fn u32(&mut self, what: &str) -> Result<u32, ReadError> {
         Ok(u32::from_le_bytes(self.array(what)?))
     }
 
     /// The next 64-bit unsigned integer.
-    pub fn u64(&mut self, what: &str) -> Result<u64, ReadError> {
+    pub(crate) fn u64(&mut self, what: &str) -> Result<u64, ReadError> {
         Ok(u64::from_le_bytes(self.array(what)?))
     }
 
     /// An error at the cursor's position.
-    pub fn refuse(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
+    pub(crate) fn refuse(
+        &self,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+    ) -> ReadError {
         self.file.refuse(self.at, expected, found)
     }
 }
 
+/// A length or an offset in memory. One beyond what memory can address, on a machine of 32 bits,
+/// becomes the greatest, so that the slice it asks for does not exist.
+pub(crate) fn to_usize(length: u64) -> usize {
+    usize::try_from(length).unwrap_or(usize::MAX)
+}
+
 /// Read at an offset without moving a position that threads would share.
 #[cfg(unix)]
-pub fn read_exact_at(file: &File, into: &mut [u8], offset: u64) -> std::io::Result<()> {
+pub(crate) fn read_exact_at(file: &File, into: &mut [u8], offset: u64) -> std::io::Result<()> {
     std::os::unix::fs::FileExt::read_exact_at(file, into, offset)
 }
 
 /// Read at an offset without relying on a position that threads share.
 #[cfg(windows)]
-pub fn read_exact_at(file: &File, mut into: &mut [u8], mut offset: u64) -> std::io::Result<()> {
+pub(crate) fn read_exact_at(
+    file: &File,
+    mut into: &mut [u8],
+    mut offset: u64,
+) -> std::io::Result<()> {
     while !into.is_empty() {
         let n = std::os::windows::fs::FileExt::seek_read(file, into, offset)?;
         if n == 0 {
@@ -250,9 +254,9 @@ pub fn read_exact_at(file: &File, mut into: &mut [u8], mut offset: u64) -> std::
     Ok(())
 }
 
-/// Text of unknown encoding: UTF-8 where it is valid, else Windows-1252 (of which every byte
+/// Text of unknown encoding: UTF-8 if it is valid, else Windows-1252 (of which every byte
 /// sequence is valid), so that `m/s²` of an older instrument survives.
-pub fn decode_text(bytes: &[u8]) -> Cow<'_, str> {
+pub(crate) fn decode_text(bytes: &[u8]) -> Cow<'_, str> {
     match std::str::from_utf8(bytes) {
         Ok(text) => Cow::Borrowed(text),
         Err(_) => {
@@ -275,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_cursor_reads_both_orders_and_refuses_the_end() {
+    fn cursor_reads_both_orders_and_refuses_the_end() {
         let (_keep, bytes) = file(&[1, 0, 0, 0, 0, 0, 0, 1, 9]);
         let mut cursor = bytes.cursor(ByteOrder::Little);
         assert_eq!(cursor.u32("a number").unwrap(), 1);
@@ -288,14 +292,14 @@ mod tests {
     }
 
     #[test]
-    fn valid_empty_and_missing_files() {
+    fn empty_and_missing_files() {
         let (_keep, bytes) = file(&[]);
         assert_eq!(bytes.size(), 0);
         assert!(FileBytes::open(Path::new("/nonexistent/x.tdms")).is_err());
     }
 
     #[test]
-    fn valid_text_in_old_code_page() {
+    fn text_in_old_code_page() {
         assert_eq!(decode_text(b"m/s\xb2"), "m/s²");
         assert_eq!(decode_text("m/s²".as_bytes()), "m/s²");
     }

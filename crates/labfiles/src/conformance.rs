@@ -1,8 +1,8 @@
 //! What the tests of the file readers share: goldens of the conformance files, statistics of
 //! what was read, a mutator of bytes, and a count of the memory a reader takes.
 //!
-//! The conformance files are not part of the repository; tests that want them skip themselves
-//! with a line where `../shared/data` is absent.
+//! The conformance files are not part of the repository: tests named `shared_data_…` read them from
+//! `../shared/data` and are ignored unless asked for (`cargo test -p labfiles -- --ignored shared_data`).
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -52,8 +52,8 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Run `work` and tell the most bytes this thread held beyond what it held before.
-pub fn peak_bytes<T>(work: impl FnOnce() -> T) -> (T, usize) {
+/// Run `work` and give the most bytes this thread held beyond what it held before.
+pub(crate) fn peak_bytes<T>(work: impl FnOnce() -> T) -> (T, usize) {
     let before = HELD.with(Cell::get);
     PEAK.with(|peak| peak.set(before));
     let result = work();
@@ -61,22 +61,24 @@ pub fn peak_bytes<T>(work: impl FnOnce() -> T) -> (T, usize) {
 }
 
 /// A file of the repository's own folder of formats.
-pub fn own(name: &str) -> PathBuf {
-    own_folder().join(name)
+pub(crate) fn own(name: &str) -> PathBuf {
+    own_folder("formats").join(name)
 }
 
-fn own_folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/formats")
+pub(crate) fn own_folder(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/data")
+        .join(name)
 }
 
 /// The sine that the repository's own files hold, at a sample.
-pub fn wave(i: usize) -> f64 {
+pub(crate) fn wave(i: usize) -> f64 {
     (std::f64::consts::TAU * 12.6 * i as f64 / 2000.0).sin()
 }
 
 /// The samples of a channel by its name.
 #[track_caller]
-pub fn named(source: &dyn Source, dataset: usize, name: &str) -> Samples {
+pub(crate) fn named(source: &dyn Source, dataset: usize, name: &str) -> Samples {
     let channel = source.datasets()[dataset]
         .channel_index(name)
         .unwrap_or_else(|| panic!("no {name}"));
@@ -85,43 +87,33 @@ pub fn named(source: &dyn Source, dataset: usize, name: &str) -> Samples {
 
 /// The real numbers of a channel by its name.
 #[track_caller]
-pub fn real(source: &dyn Source, dataset: usize, name: &str) -> Vec<f64> {
+pub(crate) fn real(source: &dyn Source, dataset: usize, name: &str) -> Vec<f64> {
     named(source, dataset, name).into_real().unwrap()
 }
 
-/// The folder of the laboratories' data, or `None` with a line where it is absent.
-pub fn shared_data() -> Option<PathBuf> {
-    folder("")
-}
-
-/// The folder of conformance files, or `None` with a line where it is absent.
-pub fn folder(name: &str) -> Option<PathBuf> {
+/// A folder of the laboratories' data.
+pub(crate) fn shared_data(name: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../../shared/data")
         .join(name);
-    if !path.is_dir() {
-        println!("skipped: {} is absent", path.display());
-        return None;
-    }
-    Some(path)
+    assert!(path.is_dir(), "{} is absent", path.display());
+    path
 }
 
 /// The goldens of a conformance folder: file name and what the reference reader gives.
-pub fn goldens(name: &str) -> Option<Vec<(PathBuf, Value)>> {
-    let folder = folder(name)?;
+pub(crate) fn goldens(name: &str) -> Vec<(PathBuf, Value)> {
+    let folder = shared_data(name);
     let text = std::fs::read_to_string(folder.join("golden.json")).unwrap();
     let all: Map<String, Value> = serde_json::from_str(&text).unwrap();
     let path = |key: &str| folder.join(key.rsplit_once('/').map_or(key, |(_, file)| file));
-    Some(
-        all.into_iter()
-            .map(|(key, value)| (path(&key), value))
-            .collect(),
-    )
+    all.into_iter()
+        .map(|(key, value)| (path(&key), value))
+        .collect()
 }
 
 /// Statistics of numbers, as the goldens state them.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Statistics {
+pub(crate) struct Statistics {
     /// How many.
     pub n: usize,
     /// The first.
@@ -140,7 +132,7 @@ pub struct Statistics {
 
 impl Statistics {
     /// Statistics of numbers.
-    pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
+    pub(crate) fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut all = Self {
             min: f64::INFINITY,
             max: f64::NEG_INFINITY,
@@ -162,7 +154,7 @@ impl Statistics {
 
     /// Check against a golden whose numbers are real; `part` picks one of a complex pair.
     #[track_caller]
-    pub fn check(&self, golden: &Value, part: Option<usize>, what: &str) {
+    pub(crate) fn check(&self, golden: &Value, part: Option<usize>, what: &str) {
         let number = |key: &str| match (&golden[key], part) {
             (Value::Array(pair), Some(part)) => pair[part].as_f64().unwrap(),
             (value, _) => value.as_f64().unwrap_or_else(|| panic!("{what}: no {key}")),
@@ -193,7 +185,7 @@ impl Statistics {
 }
 
 /// All samples of a dataset, after checking that each channel has the length it states.
-pub fn read_all(source: &dyn Source, dataset: usize) -> Result<Vec<Samples>, ReadError> {
+pub(crate) fn read_all(source: &dyn Source, dataset: usize) -> Result<Vec<Samples>, ReadError> {
     let infos = &source.datasets()[dataset].channels;
     let all: Vec<usize> = (0..infos.len()).collect();
     let samples = source.read(dataset, &all)?;
@@ -217,11 +209,11 @@ pub fn read_all(source: &dyn Source, dataset: usize) -> Result<Vec<Samples>, Rea
 
 /// A small reproducible generator of numbers (splitmix64).
 #[derive(Debug, Clone)]
-pub struct Random(pub u64);
+pub(crate) struct Random(pub u64);
 
 impl Random {
     /// The next 64 bits.
-    pub fn bits(&mut self) -> u64 {
+    pub(crate) fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -230,7 +222,7 @@ impl Random {
     }
 
     /// A number below `limit` (0 where the limit is 0).
-    pub fn below(&mut self, limit: usize) -> usize {
+    pub(crate) fn below(&mut self, limit: usize) -> usize {
         (self.bits() % (limit.max(1) as u64)) as usize
     }
 }
@@ -254,7 +246,7 @@ const EXTREMES: [u64; 14] = [
 
 /// Change bytes at random: bits, extreme numbers of any width and order, blocks moved, doubled
 /// or cut. Headers are changed more often than samples.
-pub fn mutate(random: &mut Random, bytes: &mut Vec<u8>) {
+pub(crate) fn mutate(random: &mut Random, bytes: &mut Vec<u8>) {
     for _ in 0..=random.below(3) {
         let len = bytes.len();
         if len == 0 {
@@ -287,7 +279,7 @@ pub fn mutate(random: &mut Random, bytes: &mut Vec<u8>) {
 }
 
 /// Write an extreme number of any width and order at an offset.
-pub fn put_extreme(random: &mut Random, bytes: &mut [u8], at: usize) {
+pub(crate) fn put_extreme(random: &mut Random, bytes: &mut [u8], at: usize) {
     let value = match random.below(3) {
         0 => (bytes.len() as u64)
             .wrapping_add(random.below(17) as u64)
@@ -306,7 +298,7 @@ pub fn put_extreme(random: &mut Random, bytes: &mut [u8], at: usize) {
 
 /// Change a text at random: as [`mutate`] does, or lines doubled, dropped, swapped or joined,
 /// and cells replaced by what instruments print when things go wrong.
-pub fn mutate_text(random: &mut Random, bytes: &mut Vec<u8>) {
+pub(crate) fn mutate_text(random: &mut Random, bytes: &mut Vec<u8>) {
     const CELLS: [&str; 16] = [
         "",
         "NaN",
@@ -357,22 +349,27 @@ pub fn mutate_text(random: &mut Random, bytes: &mut Vec<u8>) {
     *bytes = lines.join(&b'\n');
 }
 
-/// Files of the repository's own folder of formats with these endings, as seeds of mutations.
-pub fn own_seeds(endings: &[&str]) -> Vec<Vec<u8>> {
-    let entries = std::fs::read_dir(own_folder())
-        .unwrap()
-        .map(|e| e.unwrap().path());
-    let fits = |p: &PathBuf| {
-        p.extension()
-            .is_some_and(|e| endings.iter().any(|x| e == *x))
-    };
-    let mut paths: Vec<PathBuf> = entries.filter(fits).collect();
+/// Files of the repository's own folders with this ending, as seeds of mutations.
+pub(crate) fn own_seeds(ending: &str) -> Vec<Vec<u8>> {
+    let folders = ["formats", "goldens"].map(own_folder);
+    let paths = folders.iter().flat_map(|folder| files(folder));
+    let fits = |p: &PathBuf| p.extension().is_some_and(|e| e == ending);
+    paths
+        .filter(fits)
+        .map(|p| std::fs::read(p).unwrap())
+        .collect()
+}
+
+/// The files of a folder in order of their names.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut paths: Vec<PathBuf> = entries.map(|e| e.unwrap().path()).collect();
     paths.sort();
-    paths.iter().map(|p| std::fs::read(p).unwrap()).collect()
+    paths
 }
 
 /// Number of mutations per reader: `IMPACTID_MUTATIONS`, else few so that the suite stays quick.
-pub fn mutations() -> usize {
+pub(crate) fn mutations() -> usize {
     std::env::var("IMPACTID_MUTATIONS")
         .ok()
         .and_then(|v| v.parse().ok())
@@ -380,26 +377,15 @@ pub fn mutations() -> usize {
 }
 
 /// Conformance files of at most `largest` bytes, as seeds of mutations.
-pub fn seeds(folder_name: &str, largest: u64) -> Vec<Vec<u8>> {
-    let Some(folder) = folder(folder_name) else {
-        return Vec::new();
-    };
-    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|e| e.unwrap().path())
-        .collect();
-    paths.sort();
+pub(crate) fn shared_seeds(folder_name: &str, largest: u64) -> Vec<Vec<u8>> {
     let small = |path: &PathBuf| path.metadata().is_ok_and(|m| m.len() <= largest);
-    paths
-        .iter()
-        .filter(|p| small(p))
-        .map(|p| std::fs::read(p).unwrap())
-        .collect()
+    let paths = files(&shared_data(folder_name)).into_iter().filter(small);
+    paths.map(|p| std::fs::read(p).unwrap()).collect()
 }
 
 /// Open mutated files and read all they hold: no panic, no run over ten seconds, no memory
 /// beyond `factor` times the file plus 1 MiB.
-pub fn survive(
+pub(crate) fn survive(
     seeds: &[Vec<u8>],
     open: fn(&Path) -> Result<Box<dyn Source>, ReadError>,
     change: impl Fn(&mut Random, &mut Vec<u8>),
@@ -409,7 +395,7 @@ pub fn survive(
 }
 
 /// As [`survive`], with memory of a factor times the file plus a number of bytes.
-pub fn survive_within(
+pub(crate) fn survive_within(
     seeds: &[Vec<u8>],
     open: fn(&Path) -> Result<Box<dyn Source>, ReadError>,
     change: impl Fn(&mut Random, &mut Vec<u8>),

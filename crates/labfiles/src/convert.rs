@@ -1,22 +1,36 @@
-//! Records of any format written anew: HDF5, Parquet or CSV, self-describing.
+//! Records of any format to HDF5, Parquet or CSV, self-describing.
+//!
+//! ```
+//! use labfiles::convert::{Options, Target, convert};
+//! # let folder = tempfile::tempdir()?;
+//! # let path = folder.path().join("run.csv");
+//! # std::fs::write(&path, "t [s],x [mm]\n0,1\n0.5,2\n1,3\n")?;
+//! let sources = [labfiles::open(&path)?];
+//! let out = folder.path().join("run.parquet");
+//! let target = Target::of(&out).ok_or("no format has this extension")?;
+//! let done = convert(&sources, target, &out, &Options::default())?;
+//! assert_eq!(done.records, 1);
+//! assert_eq!(labfiles::open(&out)?.read(0, &[1])?, sources[0].read(0, &[1])?);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod csv;
 mod hdf5;
+mod item;
 mod parquet;
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::collections::BTreeSet;
+use std::path::Path;
 
-use crate::attribute;
-use crate::csv::TEXTS_KEY;
-use crate::csv::header::name_and_unit;
-use crate::hdf5_write::WriteError;
-use crate::source::{ChannelInfo, ReadError, Samples, Source, StoredType};
+use crate::convert::item::{Item, once};
+use crate::source::{ReadError, Source, StoredType};
+
+pub use crate::convert::item::{ConvertError, Options};
 
 /// What to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
-    /// One HDF5 file in the layout of `docs/formats.md`.
+    /// One HDF5 file in the layout of [`crate::hdf5_write`].
     Hdf5,
     /// One Parquet file: wide for one record, long by record for several.
     Parquet,
@@ -25,7 +39,13 @@ pub enum Target {
 }
 
 impl Target {
-    /// The target that a path's extension says.
+    /// The target of a path's extension.
+    ///
+    /// ```
+    /// use labfiles::convert::Target;
+    /// assert_eq!(Target::of("all.H5".as_ref()), Some(Target::Hdf5));
+    /// assert_eq!(Target::of("all.xlsx".as_ref()), None);
+    /// ```
     pub fn of(path: &Path) -> Option<Self> {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "h5" | "hdf5" | "hdf" => Some(Self::Hdf5),
@@ -36,136 +56,19 @@ impl Target {
     }
 }
 
-/// Why records could not be converted.
-#[derive(Debug, thiserror::Error)]
-pub enum ConvertError {
-    /// A record could not be read.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// The output could not be written.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-}
-
-/// How to write.
-#[derive(Debug, Clone, Default)]
-pub struct Options {
-    /// Keep numbers in single precision (HDF5 and Parquet).
-    pub single_precision: bool,
-    /// Attributes that every record gains, over those of the file.
-    pub attributes: BTreeMap<String, String>,
-}
-
-/// One record of a source, to be read when its turn comes.
-pub struct Item<'a> {
-    /// Its name in the output.
-    pub name: String,
-    source: &'a dyn Source,
-    dataset: usize,
-    attributes: BTreeMap<String, String>,
-}
-
-impl Item<'_> {
-    fn has_numbers(&self) -> bool {
-        let mut channels = self.channels().iter();
-        channels.any(|c| c.stored != StoredType::Text)
-    }
-
-    fn channels(&self) -> &[ChannelInfo] {
-        &self.source.datasets()[self.dataset].channels
-    }
-
-    /// The channels' names, each once: the second `X_Value` becomes `X_Value 2`.
-    fn names(&self) -> Vec<String> {
-        let mut taken = BTreeSet::new();
-        let channels = self.channels().iter();
-        channels.map(|c| once(&c.name, ' ', &mut taken)).collect()
-    }
-
-    /// What stands above the channels in a table.
-    fn headings(&self) -> impl Iterator<Item = Heading<'_>> {
-        let named = self.names().into_iter().zip(self.channels());
-        named.map(|(name, channel)| Heading {
-            name,
-            unit: channel.unit.as_deref(),
-        })
-    }
-
-    fn read(&self) -> Result<Vec<Samples>, ReadError> {
-        let all: Vec<usize> = (0..self.channels().len()).collect();
-        self.source.read(self.dataset, &all)
-    }
-
-    /// The record's rate: what its channels share, else what its attributes state.
-    fn sample_rate_hz(&self) -> Option<f64> {
-        let shared = self.source.datasets()[self.dataset].sample_rate_hz();
-        shared.or_else(|| attribute::sample_rate_hz(&self.attributes))
-    }
-
-    fn start_time(&self) -> Option<&str> {
-        self.channels().iter().find_map(|c| c.start_time.as_deref())
-    }
-
-    /// The attributes to write: the record's own without those that are written in other ways.
-    fn described(&self) -> impl Iterator<Item = (&String, &String)> {
-        const ELSEWHERE: [&str; 11] = [
-            "channels",
-            "units",
-            "scale",
-            "offset",
-            "sample_rate_hz",
-            "impactid_layout",
-            "names",
-            "columns",
-            "start_time",
-            crate::parquet::RECORDS_KEY,
-            TEXTS_KEY,
-        ];
-        self.attributes
-            .iter()
-            .filter(|(k, _)| !ELSEWHERE.contains(&k.as_str()))
-    }
-}
-
-/// What a conversion has written.
+/// The result of a conversion.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Converted {
     /// Number of records.
     pub records: usize,
-    /// What the output cannot hold, for the user.
+    /// Notes on what the output cannot hold, for the user.
     pub notes: Vec<String>,
-}
-
-/// What stands above a channel in a table.
-struct Heading<'a> {
-    name: String,
-    unit: Option<&'a str>,
-}
-
-impl Heading<'_> {
-    /// The name with its unit: `velocity_x [mm/s]`.
-    fn whole(&self) -> String {
-        self.part("")
-    }
-
-    /// The name of a part with its unit: `force.re [N]`.
-    fn part(&self, part: &str) -> String {
-        let name = format!("{}{part}", self.name);
-        match self.unit {
-            Some(unit) => format!("{name} [{unit}]"),
-            // brackets in the name are no unit
-            None if name_and_unit(&name).1.is_some() || name.ends_with("[]") => {
-                format!("{name} []")
-            }
-            None => name,
-        }
-    }
 }
 
 /// Convert all records of the sources to one output.
 ///
 /// # Errors
-/// Where a record cannot be read, no record holds numbers or the output cannot be written;
+/// If a record cannot be read, no record holds numbers or the output cannot be written;
 /// nothing is left then.
 pub fn convert(
     sources: &[Box<dyn Source>],
@@ -195,7 +98,7 @@ pub fn convert(
     })
 }
 
-/// A note where a record has texts, which the layout of the HDF5 file has no place for.
+/// A note if a record has texts, which the HDF5 file cannot hold.
 fn texts_left_out(item: &Item) -> Option<String> {
     let texts = item.channels().iter();
     let texts = texts.filter(|c| c.stored == StoredType::Text);
@@ -209,7 +112,7 @@ fn texts_left_out(item: &Item) -> Option<String> {
     })
 }
 
-/// A note where a record has channels of several lengths, which the columns of a table cannot be.
+/// A note if a record has channels of several lengths, which the columns of a table cannot have.
 fn filled_up(item: &Item) -> Option<String> {
     let channels = item.channels();
     let longest = channels.iter().map(|c| c.samples).max()?;
@@ -231,12 +134,12 @@ fn without_numbers(sources: &[Box<dyn Source>]) -> ReadError {
         path,
         "a channel of numbers to convert",
         "none",
-        "Look at the file with `impactid inspect`; the measurement may lie in another one.",
+        "List its channels; the measurement may be in another file.",
     )
 }
 
-/// The records with names that are unique: the file's where it holds one, `file/dataset` where
-/// there are several files, the dataset's where there is one file.
+/// The records with unique names: the file's if it holds one, the dataset's if there is one file,
+/// else `file/dataset`.
 fn items<'a>(sources: &'a [Box<dyn Source>], options: &Options) -> Vec<Item<'a>> {
     let mut taken = BTreeSet::new();
     let mut items = Vec::new();
@@ -276,25 +179,6 @@ fn unique(plain: &str, taken: &mut BTreeSet<String>) -> String {
         parts.join("/")
     };
     once(&plain, '_', taken)
-}
-
-/// A name that is not taken yet: itself, or itself with a number behind the mark.
-fn once(plain: &str, mark: char, taken: &mut BTreeSet<String>) -> String {
-    let mut name = plain.to_owned();
-    let mut number = 2;
-    while !taken.insert(name.clone()) {
-        name = format!("{plain}{mark}{number}");
-        number += 1;
-    }
-    name
-}
-
-fn io(path: &Path) -> impl Fn(std::io::Error) -> WriteError {
-    let path: PathBuf = path.to_path_buf();
-    move |source| WriteError::Io {
-        path: path.clone(),
-        source,
-    }
 }
 
 #[cfg(test)]

@@ -4,39 +4,39 @@
 //! file block by block and keeps only the columns that are asked for.
 
 mod columns;
-pub mod dialect;
+mod dialect;
 mod front;
-pub mod header;
-pub mod time_axis;
+pub(crate) mod header;
+mod time_axis;
 
 use std::path::Path;
 
+use crate::bytes::to_usize;
 use crate::csv::front::Front;
+pub(crate) use crate::csv::front::TEXTS_KEY;
 use crate::csv::header::Header;
 use crate::csv::time_axis::TimeAxis;
-use crate::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType};
+use crate::source::{
+    ChannelInfo, DatasetInfo, Opened, ReadError, Reader, Samples, Source, StoredType,
+};
 use crate::text::TextFile;
 use crate::text::cells::{Cells, Lines};
 use crate::text::table::{self, Kind, Layout};
 
-/// The remark that numbers the columns of texts, in what this program writes.
-pub const TEXTS_KEY: &str = "impactid_texts";
-
-/// Bytes at the front of a file from which its dialect is told.
+/// Bytes at the front of a file from which its dialect is found.
 const HEAD_BYTES: usize = 1 << 16;
 
-struct CsvSource {
+struct CsvReader {
     text: TextFile,
     layout: Layout,
-    datasets: Vec<DatasetInfo>,
-    notes: Vec<String>,
+    rows: usize,
 }
 
 /// Open a text table.
 ///
 /// # Errors
-/// Where the file cannot be read, is empty, or no separator makes a table of numbers of it.
-pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
+/// If the file cannot be read, is empty, or no separator makes a table of numbers of it.
+pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let text = TextFile::open(path)?;
     let head = text.head(HEAD_BYTES)?;
     let quotes = memchr::memchr(b'"', &head).is_some();
@@ -51,11 +51,16 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     layout.names.clone_from(&front.header.names);
     notes.extend(axis.iter().flat_map(|a| a.note.clone()));
     let dataset = dataset(front.header, &layout, count, axis.as_ref());
-    Ok(Box::new(CsvSource {
-        text,
-        layout,
+    Ok(Box::new(Opened {
+        format: "csv",
+        path: path.to_path_buf(),
         datasets: vec![dataset],
         notes,
+        reader: CsvReader {
+            text,
+            layout,
+            rows: to_usize(count),
+        },
     }))
 }
 
@@ -126,36 +131,9 @@ fn dataset(header: Header, layout: &Layout, rows: u64, axis: Option<&TimeAxis>) 
     }
 }
 
-fn no_table(text: &TextFile, found: &str) -> ReadError {
-    ReadError::new(
-        text.path(),
-        "a table of numbers separated by commas, semicolons, tabs or blanks",
-        found,
-        "Export the record as CSV with one row a sample and a header of channel names.",
-    )
-}
-
-impl Source for CsvSource {
-    fn format(&self) -> &'static str {
-        "csv"
-    }
-
-    fn path(&self) -> &Path {
-        self.text.path()
-    }
-
-    fn datasets(&self) -> &[DatasetInfo] {
-        &self.datasets
-    }
-
-    fn notes(&self) -> &[String] {
-        &self.notes
-    }
-
-    fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
-        let info = crate::source::requested(self, dataset, channels)?;
-        let rows = info.channels.first().map_or(0, |c| c.samples) as usize;
-        table::read_columns(&self.text, &self.layout, channels, rows)
+impl Reader for CsvReader {
+    fn read(&self, _: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
+        table::read_columns(&self.text, &self.layout, channels, self.rows)
     }
 }
 

@@ -1,128 +1,106 @@
-//! HDF5 files: groups of one-dimensional arrays, or one table a record.
+//! HDF5 files: groups of one-dimensional arrays, or one table per record.
 //!
-//! `hdf5-pure` reads them at offsets on demand; what it refuses `rust-hdf5` reads.
+//! `hdf5-pure` reads them at offsets on demand; arrays of newer layouts `rust-hdf5` reads.
 
-pub mod chunked;
+mod chunked;
 mod datatype;
-pub mod element;
-pub mod fallback;
-pub mod guard;
-pub mod legacy;
-pub mod matlab;
-pub mod matlab_file;
-pub mod naming;
-pub mod plan;
-pub mod pure;
-pub mod store;
+mod element;
+mod guard;
+mod legacy;
+mod library;
+mod matlab;
+mod matlab_file;
+mod naming;
+mod plan;
+mod second;
+mod store;
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use crate::hdf5::element::{Element, Stride};
-use crate::hdf5::guard::Guarded;
+use crate::bytes::to_usize;
+use crate::hdf5::element::Element;
+use crate::hdf5::library::Store;
 use crate::hdf5::plan::{Locator, Part, Plan, Plans};
-use crate::hdf5::store::{Array, Store, Tree};
+use crate::hdf5::store::{Array, StoreError, Tree};
+use crate::numbers::Spacing;
 use crate::rate;
-use crate::source::{self, DatasetInfo, ReadError, Samples, Source};
+use crate::source::{ChannelInfo, DatasetInfo, Opened, ReadError, Reader, Samples, Source};
 use crate::units::parse_unit;
 
 /// The first bytes of an HDF5 file.
-pub const SIGNATURE: [u8; 8] = [0x89, b'H', b'D', b'F', b'\r', b'\n', 0x1A, b'\n'];
+pub(crate) const SIGNATURE: [u8; 8] = [0x89, b'H', b'D', b'F', b'\r', b'\n', 0x1A, b'\n'];
 
-struct Hdf5Source {
+struct Hdf5Reader {
     path: PathBuf,
-    store: Box<dyn Store>,
-    plans: Plans,
+    store: Store,
+    plans: Vec<Plan>,
 }
 
 /// Open an HDF5 file.
 ///
 /// # Errors
-/// Where neither library can read its structure, or it holds no numbers.
-pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
-    let (store, tree, notes) = open_store(path)?;
+/// If its structure cannot be read, or it holds no numbers.
+pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
+    let (store, tree) = open_store(path)?;
     if matlab::is_matlab(&tree) {
-        return matlab_file::open(path, store, &tree, notes);
+        return matlab_file::open(path, store, &tree);
     }
-    let mut plans = plan::plan(&*store, &tree);
-    plans.notes.extend(notes);
-    if plans.datasets.is_empty() {
+    let Plans {
+        mut datasets,
+        plans,
+        notes,
+    } = plan::plan(&store, &tree);
+    if datasets.is_empty() {
         return Err(ReadError::new(
             path,
             "arrays of numbers in the HDF5 file",
-            format!("none ({})", plans.notes.join("; ")),
+            format!("none ({})", notes.join("; ")),
             "Check that the measurement was saved into this file.",
         ));
     }
-    let mut source = Hdf5Source {
-        path: path.to_path_buf(),
+    let path = path.to_path_buf();
+    let reader = Hdf5Reader {
+        path: path.clone(),
         store,
         plans,
     };
-    source.measure_rates();
-    Ok(Box::new(source))
+    reader.measure_rates(&mut datasets);
+    Ok(Box::new(Opened {
+        format: "hdf5",
+        path,
+        datasets,
+        notes,
+        reader,
+    }))
 }
 
-/// A file's reader, its tree, and notes where the second library reads it.
-type Opened = (Box<dyn Store>, Tree, Vec<String>);
-
-/// Open a file with the first library that reads its structure.
-fn open_store(path: &Path) -> Result<Opened, ReadError> {
+/// Open a file and walk its tree.
+fn open_store(path: &Path) -> Result<(Store, Tree), ReadError> {
     let io = |e: std::io::Error| ReadError::io(path, &e);
     let file = File::open(path).map_err(io)?;
     let length = file.metadata().map_err(io)?.len();
-    match pure::open(file, length) {
-        Ok((store, tree)) => Ok((
-            Box::new(Guarded(fallback::WithFallback::new(store, path))),
-            tree,
-            Vec::new(),
-        )),
-        Err(first) => match second(path, &first) {
-            Ok((store, tree, lost)) => {
-                let mut notes = vec![format!(
-                    "read by the second HDF5 library, because the first says: {first}"
-                )];
-                notes.extend(lost);
-                Ok((Box::new(Guarded(store)), tree, notes))
-            }
-            Err(both) => Err(ReadError::new(
-                path,
-                "a complete HDF5 file",
-                both,
-                "Copy the file anew from the instrument, or write it with an older file layout.",
-            )
-            .at(byte_of(&first, length))),
-        },
-    }
+    library::open(path, file, length).map_err(|fault| {
+        let remedy =
+            "Copy the file again from the instrument, or write it with an older file layout.";
+        let byte = if fault.is_cut_off() { length } else { 0 };
+        ReadError::new(path, "a complete HDF5 file", fault.to_string(), remedy).at(byte)
+    })
 }
 
-/// Open a file with the second library, where the first does not know its layout; else, and where
-/// both refuse, their words.
-fn second(path: &Path, first: &str) -> Result<fallback::Opened, String> {
-    if !fallback::is_unsupported(first) {
-        return Err(first.to_owned());
+impl Hdf5Reader {
+    fn refused(&self, array: &Array, fault: &StoreError) -> ReadError {
+        self.error(array, fault.to_string())
     }
-    fallback::open(path).map_err(|e| format!("{first}; the second library says: {e}"))
-}
 
-/// Where a library's message points: behind the end for a file cut off, else its beginning.
-fn byte_of(message: &str, length: u64) -> u64 {
-    if message.to_lowercase().contains("eof") {
-        length
-    } else {
-        0
-    }
-}
-
-impl Hdf5Source {
-    fn error(&self, array: &Array, found: impl Into<String>) -> ReadError {
+    fn error(&self, array: &Array, found: String) -> ReadError {
         ReadError::new(
             &self.path,
             "a readable HDF5 dataset",
             found,
-            "Copy the file anew from the instrument, or take this record out of the campaign.",
+            "Copy the file again from the instrument, or leave this record out.",
         )
         .channel(&array.path)
     }
@@ -133,10 +111,10 @@ impl Hdf5Source {
             Some(slab) => self.store.rows(array, slab, 1),
             None => self.store.raw(array),
         }
-        .map_err(|e| self.error(array, e))
+        .map_err(|e| self.refused(array, &e))
     }
 
-    /// Read those of the wanted channels that lie in one array.
+    /// Read those of the wanted channels that are in one array.
     fn read_array(
         &self,
         plan: &Plan,
@@ -146,7 +124,10 @@ impl Hdf5Source {
     ) -> Result<(), ReadError> {
         let array = &plan.arrays[number];
         if array.element == Element::Text {
-            let texts = self.store.texts(array).map_err(|e| self.error(array, e))?;
+            let texts = self
+                .store
+                .texts(array)
+                .map_err(|e| self.refused(array, &e))?;
             for (slot, _) in slots(plan, number, wanted) {
                 out[slot] = Some(Samples::Text(texts.clone()));
             }
@@ -166,29 +147,19 @@ impl Hdf5Source {
     }
 
     /// Take the rates that no attribute states from the ends of the time axes.
-    fn measure_rates(&mut self) {
-        let open = |(d, info): (usize, &DatasetInfo)| {
-            let axis = info.time_axis.filter(|_| info.sample_rate_hz().is_none())?;
-            self.axis_rate(d, axis)
-        };
-        let rates: Vec<Option<f64>> = self
-            .plans
-            .datasets
-            .par_iter()
-            .enumerate()
-            .map(open)
-            .collect();
-        for (info, rate) in self.plans.datasets.iter_mut().zip(rates) {
+    fn measure_rates(&self, datasets: &mut [DatasetInfo]) {
+        let planned = datasets.par_iter_mut().zip(&self.plans);
+        planned.for_each(|(info, plan)| {
+            let axis = info.time_axis.filter(|_| info.sample_rate_hz().is_none());
+            let rate = axis.and_then(|axis| self.axis_rate(&info.channels[axis], plan, axis));
             for channel in &mut info.channels {
                 channel.sample_rate_hz = channel.sample_rate_hz.or(rate);
             }
-        }
+        });
     }
 
     /// The rate of a time axis by its first samples and its last.
-    fn axis_rate(&self, dataset: usize, axis: usize) -> Option<f64> {
-        let info = &self.plans.datasets[dataset].channels[axis];
-        let plan = &self.plans.plans[dataset];
+    fn axis_rate(&self, info: &ChannelInfo, plan: &Plan, axis: usize) -> Option<f64> {
         let locator = &plan.channels[axis];
         let array = &plan.arrays[locator.array];
         let long = *array.shape.first()? == info.samples;
@@ -228,7 +199,7 @@ impl Hdf5Source {
     }
 }
 
-/// Which of the wanted channels lie in an array: their place in the answer and their locator.
+/// Which of the wanted channels are in an array: their place in the answer and their locator.
 fn slots<'a>(
     plan: &'a Plan,
     number: usize,
@@ -252,55 +223,32 @@ fn extract(raw: &[u8], array: &Array, locator: &Locator, slab: bool) -> Option<S
     let dims: Vec<usize> = shape
         .iter()
         .filter(|&&d| d != 1)
-        .map(|&d| d as usize)
+        .map(|&d| to_usize(d))
         .collect();
     let (rows, columns) = match dims[..] {
         [rows, columns] => (rows, columns),
         _ => match shape[..] {
-            [rows, columns] => (rows as usize, columns as usize),
-            _ => (shape.iter().product::<u64>() as usize, 1),
+            [rows, columns] => (to_usize(rows), to_usize(columns)),
+            _ => (to_usize(shape.iter().product::<u64>()), 1),
         },
     };
     let size = array.element.bytes();
-    let (element, stride) = match (&locator.part, &array.element) {
-        (Part::Whole, e) => (
-            e,
-            Stride {
-                first: 0,
-                step: size,
-                count: rows * columns,
-            },
-        ),
-        (Part::Column(c), e) => (
-            e,
-            Stride {
-                first: *c as usize * size,
-                step: columns * size,
-                count: rows,
-            },
-        ),
-        (Part::Row(r), e) => (
-            e,
-            Stride {
-                first: *r as usize * columns * size,
-                step: size,
-                count: columns,
-            },
-        ),
+    let spacing = |offset, stride, count| Spacing {
+        offset,
+        stride,
+        count,
+    };
+    let (element, spacing) = match (&locator.part, &array.element) {
+        (Part::Whole, e) => (e, spacing(0, size, rows * columns)),
+        (Part::Column(c), e) => (e, spacing(to_usize(*c) * size, columns * size, rows)),
+        (Part::Row(r), e) => (e, spacing(to_usize(*r) * columns * size, size, columns)),
         (Part::Field(i), Element::Fields { fields, .. }) => {
             let (_, offset, element) = fields.get(*i)?;
-            (
-                element,
-                Stride {
-                    first: *offset,
-                    step: size,
-                    count: rows * columns,
-                },
-            )
+            (element, spacing(*offset, size, rows * columns))
         }
         (Part::Field(_), _) => return None,
     };
-    let mut samples = element.decode(raw, stride)?;
+    let mut samples = element.decode(raw, spacing)?;
     if let Samples::Real(values) = &mut samples
         && (locator.scale != 1.0 || locator.offset != 0.0)
     {
@@ -311,33 +259,16 @@ fn extract(raw: &[u8], array: &Array, locator: &Locator, slab: bool) -> Option<S
     Some(samples)
 }
 
-impl Source for Hdf5Source {
-    fn format(&self) -> &'static str {
-        "hdf5"
-    }
-
-    fn path(&self) -> &Path {
-        &self.path
-    }
-
-    fn datasets(&self) -> &[DatasetInfo] {
-        &self.plans.datasets
-    }
-
-    fn notes(&self) -> &[String] {
-        &self.plans.notes
-    }
-
+impl Reader for Hdf5Reader {
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
-        source::requested(self, dataset, channels)?;
-        let plan = &self.plans.plans[dataset];
+        let plan = &self.plans[dataset];
         let mut out: Vec<Option<Samples>> = vec![None; channels.len()];
         for number in 0..plan.arrays.len() {
             if channels.iter().any(|&c| plan.channels[c].array == number) {
                 self.read_array(plan, number, channels, &mut out)?;
             }
         }
-        // every channel lies in one of the plan's arrays
+        // every channel is in one of the plan's arrays
         Ok(out.into_iter().flatten().collect())
     }
 }

@@ -1,20 +1,46 @@
-//! Writing records to HDF5: one table a record, self-describing, packed.
+//! Writing records to HDF5: one table per record, self-describing, compressed.
 //!
-//! The layout is described in `docs/formats.md` and is what [`crate::hdf5`] reads back:
-//! a two-dimensional dataset samples × channels for each record, with the attributes `channels`,
-//! `units`, `sample_rate_hz` and whatever the record states besides. Tables of converter counts
-//! are kept as 16-bit integers with `scale` and `offset`: value = count · scale + offset.
+//! Each record is a two-dimensional dataset samples × channels with the attributes `channels`,
+//! `units`, `sample_rate_hz` and those of the record. Tables of converter counts are stored as
+//! 16-bit integers with `scale` and `offset`: value = count · scale + offset. [`crate::open`] reads
+//! the layout back, as h5py and MATLAB do.
+//!
+//! ```
+//! use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("campaign.h5");
+//! let mut writer = CampaignWriter::create(&path);
+//! writer.attribute("operator", "A").add(RecordTable {
+//!     name: "run1".to_owned(),
+//!     sample_rate_hz: Some(2000.0),
+//!     channels: vec![
+//!         ColumnToWrite::numbers("x", "mm", vec![0.5, 1.5]),
+//!         ColumnToWrite::numbers("y", "mm", vec![2.0, 3.0]),
+//!     ],
+//!     attributes: vec![("clearance_m".to_owned(), 0.001.into())],
+//! })?;
+//! writer.finish()?;
+//!
+//! let source = labfiles::open(&path)?;
+//! let record = &source.datasets()[0];
+//! assert_eq!((record.name.as_str(), record.sample_rate_hz()), ("run1", Some(2000.0)));
+//! assert_eq!(record.attributes["clearance_m"], "0.001");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod layout;
+mod record;
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use ::hdf5::{AttrValue, FileBuilder};
 
+use crate::hdf5_write::record::Folder;
 use crate::output::write_whole_or;
+
+pub use crate::hdf5_write::record::{ColumnToWrite, RecordTable, Stored, Value};
 
 /// Version of the layout, written as `impactid_layout` into the file.
 const LAYOUT_VERSION: i64 = 1;
@@ -27,10 +53,10 @@ pub enum WriteError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// The record cannot be laid out.
+    /// The record cannot be written.
     #[error("record '{record}': {reason}")]
     Record {
         /// The record's name.
@@ -43,7 +69,7 @@ pub enum WriteError {
     Library {
         /// The file.
         path: PathBuf,
-        /// What the library said.
+        /// The library's message.
         reason: String,
     },
 }
@@ -53,100 +79,13 @@ impl WriteError {
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::Io { source, .. } => crate::output::remedy_for(source.kind()),
-            Self::Record { .. } => "mend the record or leave it out",
+            Self::Record { .. } => "correct the record or leave it out",
             Self::Library { .. } => "this should not happen: please report it with the command",
         }
     }
 }
 
-/// An attribute's value.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Value {
-    /// A number.
-    Number(f64),
-    /// A text.
-    Text(String),
-}
-
-impl From<f64> for Value {
-    fn from(number: f64) -> Self {
-        Self::Number(number)
-    }
-}
-
-impl From<&str> for Value {
-    fn from(text: &str) -> Self {
-        Self::Text(text.to_owned())
-    }
-}
-
-impl From<String> for Value {
-    fn from(text: String) -> Self {
-        Self::Text(text)
-    }
-}
-
-/// The samples of a channel as they are to be stored.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Stored {
-    /// Numbers in the channel's unit.
-    Numbers(Vec<f64>),
-    /// Converter counts: value = count · scale + offset in the channel's unit.
-    Counts {
-        /// The counts.
-        counts: Vec<i16>,
-        /// Unit per count.
-        scale: f64,
-        /// Value of count zero.
-        offset: f64,
-    },
-}
-
-impl Stored {
-    fn len(&self) -> usize {
-        match self {
-            Self::Numbers(v) => v.len(),
-            Self::Counts { counts, .. } => counts.len(),
-        }
-    }
-}
-
-/// A channel to be written.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ColumnToWrite {
-    /// Its name.
-    pub name: String,
-    /// Its unit; empty for none.
-    pub unit: String,
-    /// Its samples.
-    pub samples: Stored,
-}
-
-impl ColumnToWrite {
-    /// A channel of numbers.
-    pub fn numbers(name: impl Into<String>, unit: impl Into<String>, values: Vec<f64>) -> Self {
-        Self {
-            name: name.into(),
-            unit: unit.into(),
-            samples: Stored::Numbers(values),
-        }
-    }
-}
-
-/// A record to be written.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RecordTable {
-    /// Name, unique in the file; slashes make groups.
-    pub name: String,
-    /// Samples per second, Hz; `None` where it is unknown or the channels differ in it.
-    pub sample_rate_hz: Option<f64>,
-    /// Its channels.
-    pub channels: Vec<ColumnToWrite>,
-    /// Further attributes with their unit in the name: `clearance_m`, `drive_frequency_hz`, …
-    pub attributes: Vec<(String, Value)>,
-}
-
-/// Collects records; nothing is at the path before [`CampaignWriter::finish`].
+/// Collects records; the file appears with [`CampaignWriter::finish`].
 pub struct CampaignWriter {
     path: PathBuf,
     attributes: Vec<(String, Value)>,
@@ -154,16 +93,8 @@ pub struct CampaignWriter {
     single_precision: bool,
 }
 
-/// A group to be: records and further groups.
-#[derive(Default)]
-struct Folder {
-    names: BTreeSet<String>,
-    records: Vec<RecordTable>,
-    folders: BTreeMap<String, Folder>,
-}
-
 impl CampaignWriter {
-    /// Begin a file. Numbers are kept in double precision; see
+    /// Begin a file. Numbers are stored in double precision; see
     /// [`CampaignWriter::single_precision`].
     pub fn create(path: &Path) -> Self {
         Self {
@@ -174,7 +105,7 @@ impl CampaignWriter {
         }
     }
 
-    /// Keep numbers in single precision.
+    /// Store numbers in single precision.
     #[must_use]
     pub fn single_precision(mut self) -> Self {
         self.single_precision = true;
@@ -193,7 +124,7 @@ impl CampaignWriter {
     /// arrays.
     ///
     /// # Errors
-    /// Where the name is empty or taken, or there is no channel.
+    /// If the name is empty or taken, or there is no channel.
     pub fn add(&mut self, mut record: RecordTable) -> Result<(), WriteError> {
         let wrong = |reason: &str, record: &RecordTable| WriteError::Record {
             record: record.name.clone(),
@@ -215,7 +146,7 @@ impl CampaignWriter {
         let taken = folder.folders.contains_key(leaf) || folder.names.contains(leaf);
         if taken {
             return Err(wrong(
-                "the file already holds one of this name; name it otherwise",
+                "the file already holds one of this name; give it another",
                 &record,
             ));
         }
@@ -228,7 +159,7 @@ impl CampaignWriter {
     /// Write the file under a temporary name beside the path, then rename it.
     ///
     /// # Errors
-    /// Where the file system or the library refuses; nothing is left then.
+    /// If the file system or the library refuses; nothing is left then.
     pub fn finish(self) -> Result<(), WriteError> {
         let io = |source| WriteError::Io {
             path: self.path.clone(),
@@ -304,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_what_is_written_comes_back() {
+    fn what_is_written_comes_back() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("campaign.h5");
         let mut writer = CampaignWriter::create(&path);
@@ -352,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_folder_that_is_absent_is_named() {
+    fn a_folder_that_is_absent_is_named() {
         let mut writer = CampaignWriter::create(Path::new("/nowhere/at/all.h5"));
         writer
             .add(record("r", vec![counts("x", vec![1, 2])]))

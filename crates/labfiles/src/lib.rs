@@ -1,29 +1,91 @@
-//! Readers and writers of the files that vibration laboratories keep: HDF5, MATLAB, TDMS, UFF 58,
-//! LVM, WAV, CSV and other text tables, Parquet.
+//! Readers and writers of the files that vibration laboratories keep: HDF5, MATLAB (v4 to v7.3),
+//! TDMS, UFF 58, LVM, WAV, Parquet, CSV and other text tables.
 //!
-//! [`open::open`] opens a file of any of them behind one trait, [`source::Source`].
+//! [`open`] recognises a file by its first bytes and gives a [`Source`]: *datasets* (records), each
+//! a table of *channels* with name, unit, sample rate and attributes. Opening reads metadata only;
+//! [`Source::read`] reads the samples of the channels that are asked for, from any number of
+//! threads.
+//!
+//! ```
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("run.csv");
+//! std::fs::write(&path, "# clearance_m = 0.001\nt [s],x [mm]\n0,1.5\n0.5,2.5\n1,-3\n")?;
+//!
+//! let source = labfiles::open(&path)?;
+//! let record = &source.datasets()[0];
+//! assert_eq!(record.attributes["clearance_m"], "0.001");
+//! assert_eq!(record.sample_rate_hz(), Some(2.0));
+//! for channel in &record.channels {
+//!     println!("{} in {:?}: {} samples", channel.name, channel.unit, channel.samples);
+//! }
+//!
+//! let x = record.channel_index("x").ok_or("no channel x")?;
+//! let samples = source.read(0, &[x])?.remove(0).into_real().ok_or("not real")?;
+//! assert_eq!(samples, [1.5, 2.5, -3.0]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Files are not trusted. Lengths and counts that a file states are compared with what it holds
+//! before memory is taken for them, so that a damaged or hostile file gives a [`ReadError`] (what
+//! was expected, what was found, at which byte, and the remedy), neither a panic nor an allocation
+//! far beyond the file's own size.
+//!
+//! Records are written by [`convert::convert`] (any format to HDF5, Parquet or CSV) and by
+//! [`hdf5_write::CampaignWriter`]; [`output`] holds what both rest on: files that appear under their
+//! names when they are complete, or not at all. [`units`] converts to SI.
+
+#![warn(
+    unreachable_pub,
+    clippy::cast_lossless,
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    clippy::cast_sign_loss,
+    clippy::missing_errors_doc
+)]
+// Samples are f64 whatever their type in the file: 64-bit integers beyond 2^53 are rounded, as the
+// documentation of `Samples` states. Counts are converted to compute rates and means.
+#![allow(clippy::cast_precision_loss)]
+// Tests make numbers of known range.
+#![cfg_attr(
+    test,
+    allow(
+        clippy::cast_lossless,
+        clippy::cast_possible_truncation,
+        clippy::cast_possible_wrap,
+        clippy::cast_sign_loss
+    )
+)]
 
 pub mod attribute;
-pub mod bytes;
+mod bytes;
 pub mod convert;
-pub mod csv;
-pub mod hdf5;
+mod csv;
+mod hdf5;
 pub mod hdf5_write;
-pub mod inflate;
-pub mod lvm;
-pub mod mat;
-pub mod numbers;
-pub mod open;
+mod inflate;
+mod lvm;
+mod mat;
+mod numbers;
+mod open;
 pub mod output;
-pub mod parquet;
-pub mod rate;
-pub mod source;
+mod parquet;
+mod rate;
+mod source;
 pub mod summary;
-pub mod tdms;
-pub mod text;
-pub mod uff;
+mod tdms;
+mod text;
+mod uff;
 pub mod units;
-pub mod wav;
+mod wav;
+
+pub use open::open;
+pub use parquet::guard::is_caught as panic_is_caught;
+pub use source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType};
 
 #[cfg(test)]
 mod conformance;
+
+/// The examples of the README, checked as the others are.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,26 +1,34 @@
 //! LabVIEW measurement files (LVM): a header, then one or more tables with headers of their own.
 
 mod header;
-pub mod scan;
+pub(crate) mod scan;
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use crate::bytes::to_usize;
 use crate::lvm::scan::{Keys, Scan, Segment};
 use crate::rate;
-use crate::source::{self, ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType};
+use crate::source::{
+    ChannelInfo, DatasetInfo, Opened, ReadError, Reader, Samples, Source, StoredType,
+};
 use crate::text::cells::{Cells, Lines, Separator};
 use crate::text::table::{self, Kind, Layout};
 use crate::text::{TextFile, number};
 
-/// Bytes of a table's head from which its rate is told.
+/// Bytes of a table's head from which its rate is found.
 const HEAD_BYTES: usize = 1 << 15;
 
-struct LvmSource {
+/// The tables of a file, as far as they are described.
+struct Builder {
     text: TextFile,
     tables: Vec<Table>,
     datasets: Vec<DatasetInfo>,
-    notes: Vec<String>,
+}
+
+struct LvmReader {
+    text: TextFile,
+    tables: Vec<Table>,
 }
 
 /// A table: how it is written and which of its columns are channels.
@@ -30,7 +38,7 @@ struct Table {
     rows: usize,
 }
 
-/// A table as it was made out: its layout, its columns, those shown, and its first rows.
+/// A table as it was recognised: its layout, its columns, those shown, and its first rows.
 struct Made<'a> {
     layout: &'a Layout,
     columns: &'a [Column],
@@ -52,8 +60,8 @@ enum Column {
 /// Open a LabVIEW measurement file.
 ///
 /// # Errors
-/// Where the file cannot be read, a header does not end, or there are no rows.
-pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
+/// If the file cannot be read, a header does not end, or there are no rows.
+pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let text = TextFile::open(path)?;
     let Scan {
         keys,
@@ -62,11 +70,10 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         notes,
     } = scan::scan(&text)?;
     let many = segments.len() > 1;
-    let mut source = LvmSource {
+    let mut source = Builder {
         text,
         tables: Vec::new(),
         datasets: Vec::new(),
-        notes,
     };
     for (i, segment) in segments.iter().enumerate() {
         let name = if many {
@@ -76,10 +83,19 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         };
         source.add(name, &keys, separator, segment)?;
     }
-    Ok(Box::new(source))
+    Ok(Box::new(Opened {
+        format: "lvm",
+        path: path.to_path_buf(),
+        datasets: source.datasets,
+        notes,
+        reader: LvmReader {
+            text: source.text,
+            tables: source.tables,
+        },
+    }))
 }
 
-impl LvmSource {
+impl Builder {
     fn add(
         &mut self,
         name: String,
@@ -89,7 +105,7 @@ impl LvmSource {
     ) -> Result<(), ReadError> {
         let head = self.text.range(
             segment.start,
-            HEAD_BYTES.min((segment.end - segment.start) as usize),
+            HEAD_BYTES.min(to_usize(segment.end - segment.start)),
         )?;
         let columns = columns(keys, segment, &head, separator);
         self.refuse_ragged(segment, columns.len())?;
@@ -127,7 +143,7 @@ impl LvmSource {
         self.tables.push(Table {
             layout,
             columns: shown,
-            rows: segment.rows as usize,
+            rows: to_usize(segment.rows),
         });
         Ok(())
     }
@@ -310,25 +326,8 @@ fn channel(
     }
 }
 
-impl Source for LvmSource {
-    fn format(&self) -> &'static str {
-        "lvm"
-    }
-
-    fn path(&self) -> &Path {
-        self.text.path()
-    }
-
-    fn datasets(&self) -> &[DatasetInfo] {
-        &self.datasets
-    }
-
-    fn notes(&self) -> &[String] {
-        &self.notes
-    }
-
+impl Reader for LvmReader {
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
-        source::requested(self, dataset, channels)?;
         let table = &self.tables[dataset];
         let wanted: Vec<usize> = channels.iter().map(|&c| table.columns[c]).collect();
         table::read_columns(&self.text, &table.layout, &wanted, table.rows)

@@ -4,7 +4,7 @@ use super::source::StoredType;
 
 /// The order of the bytes of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ByteOrder {
+pub(crate) enum ByteOrder {
     /// Least significant byte first.
     Little,
     /// Most significant byte first.
@@ -13,7 +13,7 @@ pub enum ByteOrder {
 
 /// How one real number is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Number {
+pub(crate) enum Number {
     /// Signed, 8 bits.
     I8,
     /// Signed, 16 bits.
@@ -38,18 +38,23 @@ pub enum Number {
 
 impl Number {
     /// Bytes of one number.
-    pub fn bytes(self) -> u64 {
+    pub(crate) fn bytes(self) -> u64 {
+        u64::from(self.bits() / 8)
+    }
+
+    /// Bits of one number.
+    pub(crate) fn bits(self) -> u8 {
         match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::I64 | Self::U64 | Self::F64 => 8,
+            Self::I8 | Self::U8 => 8,
+            Self::I16 | Self::U16 => 16,
+            Self::I32 | Self::U32 | Self::F32 => 32,
+            Self::I64 | Self::U64 | Self::F64 => 64,
         }
     }
 
     /// The type as a [`StoredType`].
-    pub fn stored(self) -> StoredType {
-        let bits = self.bytes() as u8 * 8;
+    pub(crate) fn stored(self) -> StoredType {
+        let bits = self.bits();
         match self {
             Self::I8 | Self::I16 | Self::I32 | Self::I64 => StoredType::Int(bits),
             Self::U8 | Self::U16 | Self::U32 | Self::U64 => StoredType::UInt(bits),
@@ -58,7 +63,7 @@ impl Number {
     }
 
     /// The type's usual name, e.g. `int16`.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::I8 => "int8",
             Self::I16 => "int16",
@@ -74,9 +79,9 @@ impl Number {
     }
 }
 
-/// Where the samples of one channel lie among bytes: every `stride` bytes from `offset` on.
+/// Places of the samples of one channel among bytes: every `stride` bytes from `offset` on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Spacing {
+pub(crate) struct Spacing {
     /// First byte of the first sample.
     pub offset: usize,
     /// Bytes from one sample to the next.
@@ -110,8 +115,28 @@ macro_rules! by_kind {
     };
 }
 
+impl ByteOrder {
+    /// The 32-bit number that four bytes hold.
+    pub(crate) fn u32(self, bytes: [u8; 4]) -> u32 {
+        match self {
+            Self::Little => u32::from_le_bytes(bytes),
+            Self::Big => u32::from_be_bytes(bytes),
+        }
+    }
+}
+
+/// A number in the single precision that was asked for.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "rounding is what the caller asks for"
+)]
+pub(crate) fn to_f32(value: f64) -> f32 {
+    value as f32
+}
+
 /// Append the numbers that fill `bytes` (an incomplete last one is left out).
-pub fn decode(number: Number, order: ByteOrder, bytes: &[u8], out: &mut Vec<f64>) {
+#[expect(clippy::cast_lossless, reason = "the macro is for 64-bit integers too")]
+pub(crate) fn decode(number: Number, order: ByteOrder, bytes: &[u8], out: &mut Vec<f64>) {
     macro_rules! go {
         ($kind:ty, $from:ident, $bytes:expr, $out:expr) => {{
             let (whole, _) = $bytes.as_chunks::<{ size_of::<$kind>() }>();
@@ -122,7 +147,8 @@ pub fn decode(number: Number, order: ByteOrder, bytes: &[u8], out: &mut Vec<f64>
 }
 
 /// Append the numbers spaced in `bytes`; stops early where the bytes end.
-pub fn decode_spaced(
+#[expect(clippy::cast_lossless, reason = "the macro is for 64-bit integers too")]
+pub(crate) fn decode_spaced(
     number: Number,
     order: ByteOrder,
     bytes: &[u8],
@@ -139,7 +165,8 @@ pub fn decode_spaced(
             );
         }};
     }
-    if spacing.offset == 0 && spacing.stride as u64 == number.bytes() {
+    if spacing.stride as u64 == number.bytes() {
+        let bytes = bytes.get(spacing.offset..).unwrap_or(&[]);
         let length = spacing.count.saturating_mul(spacing.stride);
         return decode(number, order, &bytes[..length.min(bytes.len())], out);
     }
@@ -147,7 +174,7 @@ pub fn decode_spaced(
 }
 
 /// Pair real and imaginary parts.
-pub fn pair(real: Vec<f64>, imaginary: Vec<f64>) -> Vec<(f64, f64)> {
+pub(crate) fn pair(real: Vec<f64>, imaginary: Vec<f64>) -> Vec<(f64, f64)> {
     real.into_iter().zip(imaginary).collect()
 }
 
@@ -156,7 +183,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_every_kind_in_both_orders() {
+    fn every_kind_in_both_orders() {
         let check = |number, little: &[u8], value: f64| {
             let mut big = little.to_vec();
             big.reverse();
@@ -186,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_spaced_numbers_stop_at_the_end() {
+    fn spaced_numbers_stop_at_the_end() {
         let bytes = [1, 9, 9, 2, 9, 9, 3];
         let mut out = Vec::new();
         let spacing = Spacing {

@@ -1,9 +1,9 @@
-//! The door: which reader opens a file. Its first bytes decide, then its name, then its text.
+//! Which reader opens a file: its first bytes decide, then its name, then its text.
 
 use std::fs::File;
 use std::path::Path;
 
-use crate::bytes::read_exact_at;
+use crate::bytes::{read_exact_at, to_usize};
 use crate::csv;
 use crate::hdf5;
 use crate::lvm;
@@ -14,15 +14,15 @@ use crate::tdms;
 use crate::uff;
 use crate::wav;
 
-/// Bytes at the front of a file by which formats are told apart.
+/// Bytes at the front of a file by which formats are recognised.
 const FRONT_BYTES: usize = 4096;
 
-/// A reader's way in.
+/// Opens a file of one format.
 type Reader = fn(&Path) -> Result<Box<dyn Source>, ReadError>;
-/// Whether a file's first bytes are a format's.
+/// Whether a file's first bytes are those of a format.
 type Test = fn(&[u8]) -> bool;
 
-/// Formats with a mark of their own: how it is known and who reads it, one line each.
+/// Formats with a signature: its test and the format's reader, one line each.
 #[rustfmt::skip]
 const BY_BYTES: &[(Test, Reader)] = &[
     (is_hdf5, hdf5::open),
@@ -34,16 +34,26 @@ const BY_BYTES: &[(Test, Reader)] = &[
     (mat::recognises, mat::open),
 ];
 
-/// Formats told by the file's extension where its bytes bear no mark, one line each.
+/// Formats recognised by the file's extension if there is no signature, one line each.
 #[rustfmt::skip]
 const BY_EXTENSION: &[(&[&str], Reader)] = &[
     (&["csv", "tsv", "txt", "dat", "asc", "prn"], csv::open),
 ];
 
-/// Open a record file of any supported format, reading its metadata only.
+/// Open a file of any supported format, reading its metadata only.
+///
+/// ```
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("run.txt");
+/// std::fs::write(&path, "t;x\n0;1,5\n1;2,5\n2;3,5\n")?;
+/// let source = labfiles::open(&path)?;
+/// assert_eq!(source.format(), "csv");
+/// assert_eq!(source.datasets()[0].channels[1].samples, 3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
-/// Where the file cannot be read, is empty, is of no supported format, or its reader refuses it.
+/// If the file cannot be read, is empty, is of no supported format, or its reader refuses it.
 pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let front = front(path)?;
     if front.is_empty() {
@@ -51,7 +61,7 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
             path,
             "a record file",
             "an empty file",
-            "Copy the file anew, or take it out of the campaign.",
+            "Copy the file again, or leave it out.",
         ));
     }
     if let Some((_, reader)) = BY_BYTES.iter().find(|(is, _)| is(&front)) {
@@ -72,7 +82,7 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     }
 }
 
-/// HDF5's mark stands at the front, or behind a user block of 512, 1024 or 2048 bytes.
+/// HDF5's signature is at the front, or after a user block of 512, 1024 or 2048 bytes.
 fn is_hdf5(front: &[u8]) -> bool {
     [0usize, 512, 1024, 2048].iter().any(|&at| {
         front
@@ -85,7 +95,7 @@ fn is_parquet(front: &[u8]) -> bool {
     front.starts_with(&parquet::SIGNATURE)
 }
 
-/// A LabVIEW measurement says so in its first words.
+/// A LabVIEW measurement file begins with words of its own.
 fn is_lvm(front: &[u8]) -> bool {
     let text = front.strip_prefix(&[0xEF, 0xBB, 0xBF]).unwrap_or(front);
     text.starts_with(lvm::scan::FIRST_WORDS.as_bytes())
@@ -104,7 +114,7 @@ fn front(path: &Path) -> Result<Vec<u8>, ReadError> {
             "Name a file, or a glob of files.",
         ));
     }
-    let mut bytes = vec![0; metadata.len().min(FRONT_BYTES as u64) as usize];
+    let mut bytes = vec![0; to_usize(metadata.len().min(FRONT_BYTES as u64))];
     read_exact_at(&file, &mut bytes, 0).map_err(io)?;
     Ok(bytes)
 }

@@ -1,5 +1,8 @@
-//! Files that are either whole or not there: written under a temporary name in the same folder,
-//! flushed to the disk, then renamed. One lock a folder keeps two runs apart.
+//! Atomic output: files are written under a temporary name in the same folder, flushed to the disk,
+//! then renamed, so that a file is complete or absent. One lock per folder keeps two processes apart.
+//!
+//! The lock and the temporary names carry the name of impactid, the program that this crate was
+//! made for.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
@@ -17,12 +20,12 @@ const PART_ENDING: &str = ".impactid-part";
 /// Why an output could not be written; what was there before is untouched.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
-    /// The folder could not be made or written into.
+    /// The folder could not be created or written into.
     #[error("the folder {} cannot be written into: {source}", path.display())]
     Folder {
         /// The folder.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
     /// The file could not be written whole.
@@ -30,7 +33,7 @@ pub enum OutputError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
     /// Another run writes into the folder.
@@ -51,8 +54,8 @@ impl OutputError {
     }
 }
 
-/// What the user can do where the system refuses to write.
-pub fn remedy_for(kind: io::ErrorKind) -> &'static str {
+/// What the user can do if the system refuses to write.
+pub(crate) fn remedy_for(kind: io::ErrorKind) -> &'static str {
     match kind {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded | io::ErrorKind::FileTooLarge => {
             "free space on the disk, then run again; nothing that was there before is lost"
@@ -61,10 +64,10 @@ pub fn remedy_for(kind: io::ErrorKind) -> &'static str {
             "name a folder that you may write into with --out"
         }
         io::ErrorKind::AlreadyExists | io::ErrorKind::NotADirectory => {
-            "a file stands where the folder should: name another folder with --out"
+            "a file has the folder's name: name another folder with --out"
         }
-        io::ErrorKind::NotFound => "make the folder first, or name another one",
-        _ => "look at the disk and the folder's rights, then run again",
+        io::ErrorKind::NotFound => "create the folder first, or name another one",
+        _ => "check the disk and the folder's permissions, then run again",
     }
 }
 
@@ -106,7 +109,7 @@ impl Part {
         Ok(BufWriter::with_capacity(1 << 16, file))
     }
 
-    /// Have all that was written on the disk, then give the file its name.
+    /// Flush all that was written to the disk, then give the file its name.
     fn finish(self, writer: BufWriter<File>, target: &Path) -> io::Result<()> {
         let file = writer
             .into_inner()
@@ -125,7 +128,7 @@ impl Part {
     }
 }
 
-/// Have the rename itself on the disk.
+/// Flush the rename itself to the disk.
 fn sync_folder(folder: &Path) -> io::Result<()> {
     let folder = if folder.as_os_str().is_empty() {
         Path::new(".")
@@ -138,11 +141,26 @@ fn sync_folder(folder: &Path) -> io::Result<()> {
     }
 }
 
-/// Write a file as a whole: `fill` writes it, and it appears under its name when all is on the
-/// disk. Where anything fails, nothing appears and what was there before stays.
+/// Write a file atomically: `fill` writes it, and it appears under its name when all is on the
+/// disk. If anything fails, nothing appears and a file of that name is untouched.
+///
+/// ```
+/// use std::io::{Error, Write};
+/// use labfiles::output::write_whole;
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("result.txt");
+/// write_whole(&path, |file| writeln!(file, "R = 0.9"))?;
+/// let failed = write_whole(&path, |file| {
+///     writeln!(file, "R = ")?;
+///     Err(Error::other("interrupted"))
+/// });
+/// assert!(failed.is_err());
+/// assert_eq!(std::fs::read_to_string(&path)?, "R = 0.9\n");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
-/// [`OutputError::File`] with what the system said.
+/// [`OutputError::File`] with the system's error.
 pub fn write_whole(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
@@ -153,37 +171,36 @@ pub fn write_whole(
     })
 }
 
-/// As [`write_whole`], where writing fails in other ways, too; `told` makes such a fault of what
-/// the system said.
+/// As [`write_whole`], with an error type of the caller's; `from_io` makes one of a system's error.
 ///
 /// # Errors
-/// What `fill` gives, and what `told` makes of the system's words.
-pub fn write_whole_or<E>(
+/// Those of `fill`, and those that `from_io` makes of the system's errors.
+pub(crate) fn write_whole_or<E>(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), E>,
-    told: impl Fn(io::Error) -> E,
+    from_io: impl Fn(io::Error) -> E,
 ) -> Result<(), E> {
     let part = Part::of(path);
-    let mut writer = part.create().map_err(&told)?;
+    let mut writer = part.create().map_err(&from_io)?;
     fill(&mut writer)?;
-    part.finish(writer, path).map_err(told)
+    part.finish(writer, path).map_err(from_io)
 }
 
-/// Write the files of a folder as a whole: `fill` writes them into a hidden folder beside it, and all
-/// appear when the last is on the disk. Where the folder is there already its other files stay. Where
-/// anything fails, nothing appears; `told` makes a fault of what the system said.
+/// Write the files of a folder together: `fill` writes them into a hidden folder beside it, and all
+/// appear when the last is on the disk. Other files of an existing folder stay. If anything fails,
+/// nothing appears.
 ///
 /// # Errors
-/// What `fill` gives, and what `told` makes of the system's words.
-pub fn write_folder_whole_or<E>(
+/// Those of `fill`, and those that `from_io` makes of the system's errors.
+pub(crate) fn write_folder_whole_or<E>(
     folder: &Path,
     fill: impl FnOnce(&Path) -> Result<(), E>,
-    told: impl Fn(io::Error) -> E,
+    from_io: impl Fn(io::Error) -> E,
 ) -> Result<(), E> {
     let part = PartFolder(hidden_beside(folder));
-    fs::create_dir_all(&part.0).map_err(&told)?;
+    fs::create_dir_all(&part.0).map_err(&from_io)?;
     fill(&part.0)?;
-    part.place(folder).map_err(told)
+    part.place(folder).map_err(from_io)
 }
 
 /// A folder under its temporary name; what is left of it is removed in the end.
@@ -211,6 +228,14 @@ impl Drop for PartFolder {
 
 /// Write bytes as [`write_whole`] does.
 ///
+/// ```
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("a.bin");
+/// labfiles::output::write_bytes(&path, b"abc")?;
+/// assert_eq!(std::fs::read(&path)?, b"abc");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// As [`write_whole`].
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
@@ -220,15 +245,15 @@ pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
 /// Write a value as JSON on one line, as [`write_whole`] does.
 ///
 /// # Errors
-/// As [`write_whole`]; also where the value has no place in JSON.
+/// As [`write_whole`]; also if the value cannot be written as JSON.
 pub fn write_json_line<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), OutputError> {
     write_whole(path, |writer| Ok(serde_json::to_writer(writer, value)?))
 }
 
-/// Make an output folder with all folders above it.
+/// Create an output folder with all folders above it.
 ///
 /// # Errors
-/// [`OutputError::Folder`] with what the system said.
+/// [`OutputError::Folder`] with the system's error.
 pub fn make_folder(path: &Path) -> Result<(), OutputError> {
     fs::create_dir_all(path).map_err(|source| OutputError::Folder {
         path: path.to_path_buf(),
@@ -236,7 +261,17 @@ pub fn make_folder(path: &Path) -> Result<(), OutputError> {
     })
 }
 
-/// Sole right to write into a folder, until it is dropped or the process ends.
+/// Exclusive right to write into a folder, until it is dropped or the process ends.
+///
+/// ```
+/// use labfiles::output::{Lock, OutputError};
+/// let folder = tempfile::tempdir()?;
+/// let held = Lock::take(folder.path())?;
+/// assert!(matches!(Lock::take(folder.path()), Err(OutputError::Locked { .. })));
+/// drop(held);
+/// Lock::take(folder.path())?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct Lock {
     file: File,
@@ -244,12 +279,12 @@ pub struct Lock {
 }
 
 impl Lock {
-    /// Make the folder, take the right to write into it, and clear away what a run that was
-    /// broken off left half-written.
+    /// Create the folder, take the right to write into it, and remove what an interrupted run
+    /// left half-written.
     ///
     /// # Errors
-    /// [`OutputError::Locked`] where another run has it, [`OutputError::Folder`] where the folder
-    /// cannot be written into.
+    /// [`OutputError::Locked`] if another run has it, [`OutputError::Folder`] if the folder cannot
+    /// be written into.
     pub fn take(folder: &Path) -> Result<Self, OutputError> {
         make_folder(folder)?;
         let path = folder.join(LOCK_NAME);
@@ -304,7 +339,7 @@ fn is_still(_: &File, path: &Path) -> bool {
     path.exists()
 }
 
-/// Remove what broken-off runs left in a folder under temporary names.
+/// Remove what interrupted runs left in a folder under temporary names.
 pub fn clear_parts(folder: &Path) {
     clear_ending(folder, PART_ENDING);
 }
@@ -315,7 +350,7 @@ pub fn clear_own_parts(folder: &Path) {
 }
 
 /// Ending of the temporary names of this process.
-pub fn own_ending() -> String {
+pub(crate) fn own_ending() -> String {
     format!(".{}{PART_ENDING}", std::process::id())
 }
 
@@ -349,7 +384,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_a_failed_write_leaves_what_was_there() {
+    fn a_failed_write_leaves_what_was_there() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.txt");
         write_bytes(&path, b"first").unwrap();
@@ -364,19 +399,19 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_fault_of_another_kind_is_handed_on() {
+    fn an_error_of_another_type_is_passed_on() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.txt");
-        let told = |e: io::Error| e.to_string();
-        let failed = write_whole_or(&path, |_| Err("unread".to_owned()), told);
+        let from_io = |e: io::Error| e.to_string();
+        let failed = write_whole_or(&path, |_| Err("unread".to_owned()), from_io);
         assert_eq!(failed, Err("unread".to_owned()));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
         let absent = folder.path().join("absent").join("a.txt");
-        assert!(write_whole_or(&absent, |_| Ok(()), told).is_err());
+        assert!(write_whole_or(&absent, |_| Ok(()), from_io).is_err());
     }
 
     #[test]
-    fn valid_a_second_run_into_the_folder_is_refused() {
+    fn a_second_run_into_the_folder_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("out");
         let held = Lock::take(&out).unwrap();
@@ -387,7 +422,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_leftovers_are_cleared_when_the_lock_is_taken() {
+    fn leftovers_are_cleared_when_the_lock_is_taken() {
         let folder = tempfile::tempdir().unwrap();
         let left = folder.path().join(format!(".report.pdf.77{PART_ENDING}"));
         fs::write(&left, b"half").unwrap();

@@ -1,37 +1,42 @@
-//! Parquet tables: wide (a column a channel), long by record (a column that names the record
+//! Parquet tables: wide (one column per channel), long by record (a column that names the record
 //! beside the channels) and tidy (columns record, channel, time, value).
 
-pub mod columns;
-pub mod field;
-pub mod footer;
-pub mod guard;
-pub mod shape;
+pub(crate) mod columns;
+pub(crate) mod field;
+pub(crate) mod footer;
+pub(crate) mod guard;
+pub(crate) mod shape;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::attribute;
 use crate::csv::header::name_and_unit;
-use crate::parquet::columns::Columns;
+pub(crate) use crate::parquet::columns::SIGNATURE;
+use crate::parquet::columns::{Columns, Range};
 use crate::parquet::field::Field;
-use crate::parquet::shape::{Labelled, Range, Shape, Tidy};
+use crate::parquet::shape::{Labelled, Shape, Tidy};
 use crate::rate;
-use crate::source::{self, ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType};
+use crate::source::{
+    ChannelInfo, DatasetInfo, Opened, ReadError, Reader, Samples, Source, StoredType,
+};
 use crate::units::parse_unit;
 
 /// The key under which a footer keeps each record's attributes, as JSON.
-pub const RECORDS_KEY: &str = "impactid_records";
-/// The first and the last four bytes of a Parquet file.
-pub const SIGNATURE: [u8; 4] = *b"PAR1";
-
-struct ParquetSource {
-    path: PathBuf,
+pub(crate) const RECORDS_KEY: &str = "impactid_records";
+/// The records of a file, as far as they are described.
+struct Builder {
     columns: Columns,
     datasets: Vec<DatasetInfo>,
     plans: Vec<Vec<Origin>>,
     notes: Vec<String>,
-    /// Attributes of each record, where the file's footer keeps them.
+    /// Attributes of each record, if the file's footer keeps them.
     own: BTreeMap<String, BTreeMap<String, String>>,
+}
+
+struct ParquetReader {
+    columns: Columns,
+    plans: Vec<Vec<Origin>>,
 }
 
 /// Where a channel's samples are: a column and its rows.
@@ -43,8 +48,8 @@ struct Origin {
 /// Open a Parquet file.
 ///
 /// # Errors
-/// Where its footer is damaged or it holds no numbers.
-pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
+/// If its footer is damaged or it holds no numbers.
+pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let columns = Columns::open(path)?;
     let shape = shape::find(&columns)?;
     let notes = columns.left_out();
@@ -52,8 +57,7 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let own = own
         .and_then(|json| serde_json::from_str(json).ok())
         .unwrap_or_default();
-    let mut source = ParquetSource {
-        path: path.to_path_buf(),
+    let mut source = Builder {
         columns,
         datasets: Vec::new(),
         plans: Vec::new(),
@@ -82,14 +86,23 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         ));
     }
     source.measure_rates()?;
-    Ok(Box::new(source))
+    Ok(Box::new(Opened {
+        format: "parquet",
+        path: path.to_path_buf(),
+        datasets: source.datasets,
+        notes: source.notes,
+        reader: ParquetReader {
+            columns: source.columns,
+            plans: source.plans,
+        },
+    }))
 }
 
 fn length(rows: &[Range]) -> u64 {
     rows.iter().map(|r| r.1).sum()
 }
 
-impl ParquetSource {
+impl Builder {
     /// A record whose channels are columns.
     fn add_wide(&mut self, name: String, rows: &[Range], without: &[usize]) {
         let fields: Vec<(usize, Field)> = self
@@ -220,25 +233,8 @@ impl ParquetSource {
     }
 }
 
-impl Source for ParquetSource {
-    fn format(&self) -> &'static str {
-        "parquet"
-    }
-
-    fn path(&self) -> &Path {
-        &self.path
-    }
-
-    fn datasets(&self) -> &[DatasetInfo] {
-        &self.datasets
-    }
-
-    fn notes(&self) -> &[String] {
-        &self.notes
-    }
-
+impl Reader for ParquetReader {
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
-        source::requested(self, dataset, channels)?;
         let plan = &self.plans[dataset];
         channels
             .iter()

@@ -1,14 +1,14 @@
-//! The rate at which samples follow, told from a time axis.
+//! The rate at which samples follow, from a time axis.
 
-/// How many values at the front of a time axis tell its usual step.
-pub const HEAD_SAMPLES: usize = 256;
+/// How many values at the front of a time axis give its usual step.
+pub(crate) const HEAD_SAMPLES: usize = 256;
 
 /// Samples per unit of the axis: from its ends where the samples between them are complete,
 /// else from the usual steps of its head, so that dropped samples do not bend it.
 ///
-/// `head` are the first values, `end` is the last of `count`. `None`: the axis stands still or
+/// `head` are the first values, `end` is the last of `count`. `None`: the axis does not climb or
 /// has fewer than two values.
-pub fn from_axis(head: &[f64], end: Option<f64>, count: u64) -> Option<f64> {
+pub(crate) fn from_axis(head: &[f64], end: Option<f64>, count: u64) -> Option<f64> {
     let median = median_step(head)?;
     let usual: Vec<f64> = head
         .windows(2)
@@ -26,7 +26,7 @@ pub fn from_axis(head: &[f64], end: Option<f64>, count: u64) -> Option<f64> {
 }
 
 /// The median of the steps forward.
-pub fn median_step(values: &[f64]) -> Option<f64> {
+pub(crate) fn median_step(values: &[f64]) -> Option<f64> {
     let mut steps: Vec<f64> = values
         .windows(2)
         .map(|w| w[1] - w[0])
@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_rate_survives_rounding_and_dropped_samples() {
+    fn rate_survives_rounding_and_dropped_samples() {
         let printed: Vec<f64> = (0..300)
             .map(|i| (f64::from(i) / 1652.9 * 1e6).round() / 1e6)
             .collect();

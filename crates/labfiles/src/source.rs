@@ -1,8 +1,8 @@
-//! The door of every file format: one trait, one file per format behind it.
+//! One trait for every file format, and what it describes.
 //!
 //! A [`Source`] is opened by reading metadata only; samples are read a dataset at a time. A
-//! *dataset* is a table of channels: one record of the campaign (a CSV or LVM file holds one, an
-//! HDF5 or TDMS file may hold hundreds).
+//! *dataset* is a table of channels: one record (a CSV or LVM file holds one, an HDF5 or TDMS file
+//! may hold hundreds).
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ pub enum StoredType {
     Time,
 }
 
-/// What is known of a channel before its samples are read.
+/// A channel as its file describes it, before its samples are read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChannelInfo {
     /// Name in the file, with its group where the format has groups (`group/channel`).
@@ -38,28 +38,30 @@ pub struct ChannelInfo {
     pub stored: StoredType,
     /// Number of samples.
     pub samples: u64,
-    /// Samples per second, Hz, where the file tells.
+    /// Samples per second, Hz, if the file states it.
     pub sample_rate_hz: Option<f64>,
-    /// Start of the acquisition as ISO 8601 text, where the file tells.
+    /// Start of the acquisition as ISO 8601 text, if the file states it.
     pub start_time: Option<String>,
     /// All other properties the file gives, as text.
     pub properties: BTreeMap<String, String>,
 }
 
-/// What is known of a dataset (one record) before its samples are read.
+/// A dataset (one record) as its file describes it, before its samples are read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DatasetInfo {
-    /// Name in the file; empty where the file is the dataset.
+    /// Name in the file; empty if the file is the dataset.
     pub name: String,
     /// The channels, in file order. A time axis is a channel too; see [`DatasetInfo::time_axis`].
     pub channels: Vec<ChannelInfo>,
-    /// Index of the channel that holds the time axis, where there is one.
+    /// Index of the channel that holds the time axis, if there is one.
     pub time_axis: Option<usize>,
-    /// Attributes of the dataset (in HDF5: clearance, drive frequency and so on), as text.
+    /// Attributes of the dataset, as text.
     pub attributes: BTreeMap<String, String>,
 }
 
 /// The samples of one channel, after the file's own scaling.
+///
+/// All numbers are `f64`: integers of 64 bits beyond 2^53 are rounded.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Samples {
     /// Real numbers; integers are converted.
@@ -71,6 +73,16 @@ pub enum Samples {
 }
 
 /// Why a file could not be read: what was expected, what was found, where, and the remedy.
+///
+/// ```
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("cut.wav");
+/// std::fs::write(&path, b"RIFF\x24\0\0\0WAVEfmt ")?;
+/// let error = labfiles::open(&path).err().ok_or("a file without samples was read")?;
+/// assert_eq!(error.byte, Some(16));
+/// assert!(error.to_string().contains("only 0 bytes left; expected 4 bytes of a chunk's length"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, thiserror::Error, PartialEq)]
 #[error("{}. {remedy}", self.fault())]
 pub struct ReadError {
@@ -82,13 +94,28 @@ pub struct ReadError {
     pub expected: String,
     /// What it found.
     pub found: String,
-    /// Offset in the file, where one can be named.
+    /// Offset in the file, if there is one to name.
     pub byte: Option<u64>,
     /// What the user can do.
     pub remedy: String,
 }
 
 /// An open file of any supported format. Opening reads metadata only.
+///
+/// ```
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("run.csv");
+/// # std::fs::write(&path, "t [s],x [mm],y [mm]\n0,1,4\n0.5,2,5\n1,3,6\n")?;
+/// let source = labfiles::open(&path)?;
+/// for (number, record) in source.datasets().iter().enumerate() {
+///     let all: Vec<usize> = (0..record.channels.len()).collect();
+///     for (channel, samples) in record.channels.iter().zip(source.read(number, &all)?) {
+///         assert_eq!(samples.len() as u64, channel.samples);
+///     }
+/// }
+/// assert!(source.read(0, &[7]).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Source: Send + Sync {
     /// Short name of the format (`hdf5`, `csv`, `lvm`, `tdms`, `uff`, `mat`, `wav`, `parquet`).
     fn format(&self) -> &'static str;
@@ -106,8 +133,11 @@ pub trait Source: Send + Sync {
 
     /// Read the named channels (indices into `datasets()[dataset].channels`) of one dataset.
     ///
-    /// Shared by threads: the reader keeps no position. Each inner vector has the length that
+    /// Threads may share a source: it keeps no position. Each of the samples has the length that
     /// the channel's info states.
+    ///
+    /// # Errors
+    /// If the dataset or a channel does not exist, or the file cannot be read or is damaged.
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError>;
 }
 
@@ -162,22 +192,22 @@ impl ReadError {
     pub fn io(path: &Path, error: &std::io::Error) -> Self {
         let remedy = match error.kind() {
             std::io::ErrorKind::NotFound => {
-                "Check the path; a glob that matches nothing ends here too."
+                "Check the path; a pattern that matches no file is a path too."
             }
             std::io::ErrorKind::PermissionDenied => "Allow reading the file.",
-            _ => "Check the disk and copy the file anew.",
+            _ => "Check the disk and copy the file again.",
         };
         Self::new(path, "a readable file", error.to_string(), remedy)
     }
 }
 
 impl DatasetInfo {
-    /// Index of the channel of that name; where names repeat, the first.
+    /// Index of the channel of that name, the first if names repeat.
     pub fn channel_index(&self, name: &str) -> Option<usize> {
         self.channels.iter().position(|c| c.name == name)
     }
 
-    /// The rate that the channels share, Hz; `None` where the file tells none or several.
+    /// The rate that the channels share, Hz; `None` if the file states none or several.
     pub fn sample_rate_hz(&self) -> Option<f64> {
         let mut rates = self.channels.iter().filter_map(|c| c.sample_rate_hz);
         let first = rates.next()?;
@@ -211,29 +241,57 @@ impl Samples {
     }
 }
 
-/// The dataset that a read asks for, once its channels are known to exist.
-///
-/// # Errors
-/// Where the dataset or a channel does not exist.
-pub fn requested<'a>(
-    source: &'a dyn Source,
-    dataset: usize,
-    channels: &[usize],
-) -> Result<&'a DatasetInfo, ReadError> {
-    let missing = |what: String, of: usize| {
+/// The samples of an open file.
+pub(crate) trait Reader: Send + Sync {
+    /// As [`Source::read`], for a dataset and channels that exist.
+    fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError>;
+}
+
+/// An open file: what was found when it was opened, and the reader of its samples.
+pub(crate) struct Opened<R> {
+    pub(crate) format: &'static str,
+    pub(crate) path: PathBuf,
+    pub(crate) datasets: Vec<DatasetInfo>,
+    pub(crate) notes: Vec<String>,
+    pub(crate) reader: R,
+}
+
+impl<R> Opened<R> {
+    fn missing(&self, what: String, below: usize) -> ReadError {
         ReadError::new(
-            source.path(),
-            format!("an index below {of}"),
+            &self.path,
+            format!("an index below {below}"),
             format!("{what}, which the file does not have"),
-            "Ask for what the file lists.",
+            "Use an index of `datasets()` and of its channels.",
         )
-    };
-    let datasets = source.datasets();
-    let info = datasets
-        .get(dataset)
-        .ok_or_else(|| missing(format!("dataset {dataset}"), datasets.len()))?;
-    match channels.iter().find(|&&c| c >= info.channels.len()) {
-        Some(c) => Err(missing(format!("channel {c}"), info.channels.len()).channel(&info.name)),
-        None => Ok(info),
+    }
+}
+
+impl<R: Reader> Source for Opened<R> {
+    fn format(&self) -> &'static str {
+        self.format
+    }
+
+    fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn datasets(&self) -> &[DatasetInfo] {
+        &self.datasets
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
+        let absent = || self.missing(format!("dataset {dataset}"), self.datasets.len());
+        let info = self.datasets.get(dataset).ok_or_else(absent)?;
+        match channels.iter().find(|&&c| c >= info.channels.len()) {
+            Some(c) => Err(self
+                .missing(format!("channel {c}"), info.channels.len())
+                .channel(&info.name)),
+            None => self.reader.read(dataset, channels),
+        }
     }
 }

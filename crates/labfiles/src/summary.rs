@@ -1,4 +1,4 @@
-//! What a channel holds, in numbers: length, ends, sum and range.
+//! Statistics of a channel: length, ends, sum and range.
 
 use serde::{Serialize, Serializer};
 
@@ -93,7 +93,7 @@ pub struct Summary {
     /// How many samples are not a number.
     #[serde(skip_serializing_if = "is_zero")]
     pub missing: u64,
-    /// Start of the acquisition, where the file tells.
+    /// Start of the acquisition, if the file states it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start_time: Option<String>,
 }
@@ -103,6 +103,17 @@ fn is_zero(count: &u64) -> bool {
 }
 
 /// Describe a channel and its samples.
+///
+/// ```
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("run.csv");
+/// # std::fs::write(&path, "t [s],x [mm]\n0,1\n0.5,\n1,5\n")?;
+/// use labfiles::summary::{Number, summarise};
+/// let source = labfiles::open(&path)?;
+/// let x = summarise(&source.datasets()[0].channels[1], &source.read(0, &[1])?[0]);
+/// assert_eq!((x.samples, x.missing, x.sum), (3, 1, Number::Real(6.0)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn summarise(info: &ChannelInfo, samples: &Samples) -> Summary {
     let mut summary = Summary {
         name: info.name.clone(),
@@ -224,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_statistics_leave_nan_out_and_keep_the_sum_exact() {
+    fn statistics_leave_nan_out_and_keep_the_sum_exact() {
         let samples = Samples::Real(vec![1e16, 1.0, f64::NAN, -1e16]);
         let s = summarise(&info(StoredType::Float(64)), &samples);
         assert_eq!(
@@ -238,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_complex_and_empty_channels() {
+    fn complex_and_empty_channels() {
         let s = summarise(
             &info(StoredType::Complex(32)),
             &Samples::Complex(vec![(1.0, 2.0), (3.0, -4.0)]),

@@ -1,393 +1,21 @@
-//! Every conversion factor of the program, in one place.
+//! Units of measurement and their factors to SI, and quantities written as text.
 //!
-//! Inside the program all quantities are SI; names carry the unit (`clearance_m`,
-//! `frequency_hz`). Conversions happen once, where a file is read.
+//! ```
+//! use labfiles::units::{Dimension, parse_quantity_of};
+//! assert_eq!(parse_quantity_of("1.5 mm", Dimension::Length), Ok(1.5e-3));
+//! assert!(parse_quantity_of("1.5 mm", Dimension::Time).is_err());
+//! ```
 
-/// Standard gravity, m/s² per g (exact by definition, CGPM 1901).
-pub const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
+mod quantity;
+mod scale;
+mod table;
 
-/// The physical dimension of a quantity, as far as the program has to tell one from another.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Dimension {
-    /// Length, SI unit m.
-    Length,
-    /// Velocity, SI unit m/s.
-    Velocity,
-    /// Acceleration, SI unit m/s².
-    Acceleration,
-    /// Force, SI unit N.
-    Force,
-    /// Electric potential, SI unit V.
-    Voltage,
-    /// Frequency in cycles, SI unit Hz.
-    Frequency,
-    /// Time, SI unit s.
-    Time,
-    /// Mass, SI unit kg.
-    Mass,
-    /// Angle, SI unit rad.
-    Angle,
-    /// A plain number.
-    Number,
-}
-
-impl Dimension {
-    /// The dimension's name in messages.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Length => "length",
-            Self::Velocity => "velocity",
-            Self::Acceleration => "acceleration",
-            Self::Force => "force",
-            Self::Voltage => "voltage",
-            Self::Frequency => "frequency",
-            Self::Time => "time",
-            Self::Mass => "mass",
-            Self::Angle => "angle",
-            Self::Number => "plain number",
-        }
-    }
-
-    /// The SI unit's symbol.
-    pub fn si_symbol(self) -> &'static str {
-        match self {
-            Self::Length => "m",
-            Self::Velocity => "m/s",
-            Self::Acceleration => "m/s²",
-            Self::Force => "N",
-            Self::Voltage => "V",
-            Self::Frequency => "Hz",
-            Self::Time => "s",
-            Self::Mass => "kg",
-            Self::Angle => "rad",
-            Self::Number => "1",
-        }
-    }
-}
-
-/// A unit as a file or campaign.toml spells it: its dimension and the factor to SI.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Unit {
-    /// What the unit measures.
-    pub dimension: Dimension,
-    /// Multiply a value in this unit by this to have it in SI.
-    pub to_si: f64,
-}
-
-const UNITS: &[(&str, Dimension, f64)] = &[
-    ("m", Dimension::Length, 1.0),
-    ("cm", Dimension::Length, 1e-2),
-    ("mm", Dimension::Length, 1e-3),
-    ("um", Dimension::Length, 1e-6),
-    ("µm", Dimension::Length, 1e-6),
-    ("μm", Dimension::Length, 1e-6),
-    ("nm", Dimension::Length, 1e-9),
-    ("in", Dimension::Length, 0.0254),
-    ("m/s", Dimension::Velocity, 1.0),
-    ("cm/s", Dimension::Velocity, 1e-2),
-    ("mm/s", Dimension::Velocity, 1e-3),
-    ("um/s", Dimension::Velocity, 1e-6),
-    ("µm/s", Dimension::Velocity, 1e-6),
-    ("in/s", Dimension::Velocity, 0.0254),
-    ("m/s2", Dimension::Acceleration, 1.0),
-    ("m/s^2", Dimension::Acceleration, 1.0),
-    ("m/s²", Dimension::Acceleration, 1.0),
-    ("mm/s2", Dimension::Acceleration, 1e-3),
-    ("mm/s^2", Dimension::Acceleration, 1e-3),
-    ("mm/s²", Dimension::Acceleration, 1e-3),
-    ("g", Dimension::Acceleration, STANDARD_GRAVITY_M_S2),
-    ("gn", Dimension::Acceleration, STANDARD_GRAVITY_M_S2),
-    ("N", Dimension::Force, 1.0),
-    ("mN", Dimension::Force, 1e-3),
-    ("kN", Dimension::Force, 1e3),
-    ("Newton", Dimension::Force, 1.0),
-    ("Newtons", Dimension::Force, 1.0),
-    ("lbf", Dimension::Force, 4.448_221_615_260_5),
-    ("V", Dimension::Voltage, 1.0),
-    ("Volt", Dimension::Voltage, 1.0),
-    ("Volts", Dimension::Voltage, 1.0),
-    ("mV", Dimension::Voltage, 1e-3),
-    ("µV", Dimension::Voltage, 1e-6),
-    ("uV", Dimension::Voltage, 1e-6),
-    ("Hz", Dimension::Frequency, 1.0),
-    ("mHz", Dimension::Frequency, 1e-3),
-    ("kHz", Dimension::Frequency, 1e3),
-    ("rad/s", Dimension::Frequency, 1.0 / std::f64::consts::TAU),
-    ("rpm", Dimension::Frequency, 1.0 / 60.0),
-    ("s", Dimension::Time, 1.0),
-    ("ms", Dimension::Time, 1e-3),
-    ("us", Dimension::Time, 1e-6),
-    ("µs", Dimension::Time, 1e-6),
-    ("min", Dimension::Time, 60.0),
-    ("kg", Dimension::Mass, 1.0),
-    ("gram", Dimension::Mass, 1e-3),
-    ("rad", Dimension::Angle, 1.0),
-    ("deg", Dimension::Angle, std::f64::consts::PI / 180.0),
-    ("°", Dimension::Angle, std::f64::consts::PI / 180.0),
-    ("1", Dimension::Number, 1.0),
-    ("%", Dimension::Number, 1e-2),
-];
-
-/// Look a unit up by the symbol that a file or campaign.toml gives; surrounding blanks are
-/// ignored, letters keep their case (`mN` is not `MN`). `None`: the unit is not known.
-pub fn parse_unit(symbol: &str) -> Option<Unit> {
-    let symbol = symbol.trim();
-    UNITS
-        .iter()
-        .find(|(name, _, _)| *name == symbol)
-        .map(|&(_, dimension, to_si)| Unit { dimension, to_si })
-}
-
-/// The symbol of a unit, the first where it has several; `None` for a factor that has none.
-pub fn symbol_of(unit: Unit) -> Option<&'static str> {
-    UNITS
-        .iter()
-        .find(|(_, dimension, to_si)| *dimension == unit.dimension && *to_si == unit.to_si)
-        .map(|(symbol, _, _)| *symbol)
-}
-
-/// The symbols of all units of a dimension, for messages that name the remedy.
-pub fn symbols_of(dimension: Dimension) -> Vec<&'static str> {
-    UNITS
-        .iter()
-        .filter(|(_, d, _)| *d == dimension)
-        .map(|(s, _, _)| *s)
-        .collect()
-}
-
-/// A number with its unit, in SI.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Quantity {
-    /// The value in the SI unit of its dimension.
-    pub si: f64,
-    /// What it measures.
-    pub dimension: Dimension,
-}
-
-/// Why a text is not a quantity.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum QuantityError {
-    /// No number stands at its beginning.
-    #[error("'{0}' does not begin with a number")]
-    NoNumber(String),
-    /// The number is written with a decimal comma.
-    #[error("'{0}' is written with a comma")]
-    Comma(String),
-    /// The number is infinite or not a number.
-    #[error("'{0}' is not a finite number")]
-    NotFinite(String),
-    /// The unit is not known.
-    #[error("the unit '{0}' is not known")]
-    UnknownUnit(String),
-    /// It has another dimension than it must have.
-    #[error("'{text}' is a {found}, where a {expected} is expected")]
-    Dimension {
-        /// The text.
-        text: String,
-        /// Dimension of the text's unit.
-        found: &'static str,
-        /// Dimension needed.
-        expected: &'static str,
-    },
-    /// A scale that does not say what stands for what.
-    #[error("'{0}' says neither a plain factor nor one unit per another")]
-    NoRatio(String),
-}
-
-/// Read a text such as `1.0 mm`, `12.6 Hz`, `0.5 %` or `7`; without a unit it is a plain number.
-///
-/// # Errors
-/// [`QuantityError`] where the number or the unit cannot be read.
-pub fn parse_quantity(text: &str) -> Result<Quantity, QuantityError> {
-    let (number, symbol) = split_number(text)?;
-    if symbol.is_empty() {
-        return Ok(Quantity {
-            si: number,
-            dimension: Dimension::Number,
-        });
-    }
-    let unit = parse_unit(symbol).ok_or_else(|| QuantityError::UnknownUnit(symbol.to_owned()))?;
-    Ok(Quantity {
-        si: number * unit.to_si,
-        dimension: unit.dimension,
-    })
-}
-
-/// Read a text as [`parse_quantity`] does and demand its dimension; gives SI.
-///
-/// # Errors
-/// [`QuantityError`], [`QuantityError::Dimension`] where it measures something else.
-pub fn parse_quantity_of(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
-    let quantity = parse_quantity(text)?;
-    if quantity.dimension == dimension {
-        return Ok(quantity.si);
-    }
-    Err(QuantityError::Dimension {
-        text: text.trim().to_owned(),
-        found: quantity.dimension.name(),
-        expected: dimension.name(),
-    })
-}
-
-/// The number at the beginning of a text and what follows it.
-fn split_number(text: &str) -> Result<(f64, &str), QuantityError> {
-    let text = text.trim();
-    let end = number_end(text.as_bytes());
-    let (number, rest) = text.split_at(end);
-    if rest.starts_with(',') {
-        return Err(QuantityError::Comma(text.to_owned()));
-    }
-    let value: f64 = number
-        .parse()
-        .map_err(|_| QuantityError::NoNumber(text.to_owned()))?;
-    if !value.is_finite() {
-        return Err(QuantityError::NotFinite(text.to_owned()));
-    }
-    Ok((value, rest.trim()))
-}
-
-/// Length of the decimal number, with its exponent, at the beginning of a text.
-fn number_end(text: &[u8]) -> usize {
-    let digits = |from: usize| {
-        from + text[from..]
-            .iter()
-            .take_while(|b| b.is_ascii_digit() || **b == b'.')
-            .count()
-    };
-    let signed = |at: usize| at + usize::from(matches!(text.get(at), Some(b'+' | b'-')));
-    let end = digits(signed(0));
-    if matches!(text.get(end), Some(b'e' | b'E')) {
-        let exponent = signed(end + 1);
-        if digits(exponent) > exponent {
-            return digits(exponent);
-        }
-    }
-    end
-}
-
-/// How the numbers of a channel become a quantity.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Scale {
-    /// A plain factor: the numbers keep their unit.
-    Factor(f64),
-    /// A ratio of two units.
-    Ratio {
-        /// SI value of the numerator: number times unit.
-        numerator: Quantity,
-        /// The unit below.
-        denominator: Unit,
-    },
-}
-
-/// Read a scale: a plain factor (`0.5`), or one unit per another (`50 mm/s per V`,
-/// `0.05 m/s/V`, or a sensor's sensitivity `100 mV/g`).
-///
-/// # Errors
-/// [`QuantityError`] where the number or a unit cannot be read, [`QuantityError::NoRatio`] where
-/// only one unit is given.
-pub fn parse_scale(text: &str) -> Result<Scale, QuantityError> {
-    let (number, symbols) = split_number(text)?;
-    if symbols.is_empty() {
-        return Ok(Scale::Factor(number));
-    }
-    let (above, below) = split_ratio(symbols)?;
-    let numerator = Quantity {
-        si: number * above.to_si,
-        dimension: above.dimension,
-    };
-    Ok(Scale::Ratio {
-        numerator,
-        denominator: below,
-    })
-}
-
-fn split_ratio(symbols: &str) -> Result<(Unit, Unit), QuantityError> {
-    let unknown = |s: &str| QuantityError::UnknownUnit(s.trim().to_owned());
-    let bare = |s: &str| parse_unit(s.trim().trim_start_matches('(').trim_end_matches(')'));
-    if let Some((above, below)) = symbols.split_once(" per ") {
-        let above = bare(above).ok_or_else(|| unknown(above))?;
-        return Ok((above, bare(below).ok_or_else(|| unknown(below))?));
-    }
-    if parse_unit(symbols).is_some() {
-        return Err(QuantityError::NoRatio(symbols.to_owned()));
-    }
-    let cuts = symbols.rmatch_indices('/');
-    let pairs = cuts.map(|(at, _)| (bare(&symbols[..at]), bare(&symbols[at + 1..])));
-    pairs
-        .into_iter()
-        .find_map(|(above, below)| above.zip(below))
-        .ok_or_else(|| unknown(symbols))
-}
-
-impl Scale {
-    /// Factor to SI, and the dimension, of numbers that stand in the file's `unit`; `None` where
-    /// the scale does not start from that unit.
-    pub fn apply(self, unit: Unit) -> Option<Unit> {
-        match self {
-            Self::Factor(factor) => Some(Unit {
-                to_si: unit.to_si * factor,
-                ..unit
-            }),
-            Self::Ratio {
-                numerator,
-                denominator,
-            } => {
-                let per_si = numerator.si / denominator.to_si;
-                if denominator.dimension == unit.dimension {
-                    let to_si = unit.to_si * per_si;
-                    Some(Unit {
-                        dimension: numerator.dimension,
-                        to_si,
-                    })
-                } else if numerator.dimension == unit.dimension {
-                    let to_si = unit.to_si / per_si;
-                    Some(Unit {
-                        dimension: denominator.dimension,
-                        to_si,
-                    })
-                } else {
-                    None
-                }
-            }
-        }
-    }
-}
-
-/// Split the unit off a column's or attribute's name: `clearance [mm]`, `clearance (mm)` or
-/// `clearance_mm` (after an underscore `m_s` means m/s, `m_s2` m/s²). Gives the bare name and
-/// the unit's symbol as written; no symbol where the name carries none.
-pub fn split_unit(name: &str) -> (&str, Option<&str>) {
-    let name = name.trim();
-    for (open, close) in [('[', ']'), ('(', ')')] {
-        if let Some((bare, symbol)) = name.strip_suffix(close).and_then(|n| n.rsplit_once(open)) {
-            return (bare.trim(), Some(symbol.trim()));
-        }
-    }
-    let suffix = name
-        .match_indices('_')
-        .find(|(at, _)| *at > 0 && suffix_unit(&name[at + 1..]).is_some());
-    match suffix {
-        Some((at, _)) => (&name[..at], Some(&name[at + 1..])),
-        None => (name, None),
-    }
-}
-
-/// The unit that a symbol of [`split_unit`] stands for.
-pub fn parse_split_unit(symbol: &str) -> Option<Unit> {
-    parse_unit(symbol).or_else(|| suffix_unit(symbol))
-}
-
-/// The unit that stands after an underscore: letters without case, `m_s` for m/s.
-fn suffix_unit(suffix: &str) -> Option<Unit> {
-    let slashed = suffix.to_lowercase().replace('_', "/");
-    UNITS
-        .iter()
-        .filter(|(_, dimension, _)| *dimension != Dimension::Number)
-        .find(|(symbol, _, _)| symbol.to_lowercase() == slashed)
-        .map(|&(_, dimension, to_si)| Unit { dimension, to_si })
-}
+pub use quantity::{Quantity, QuantityError, parse_quantity, parse_quantity_of};
+pub use scale::{Scale, parse_scale};
+pub use table::{
+    Dimension, STANDARD_GRAVITY_M_S2, Unit, parse_split_unit, parse_unit, split_unit, symbol_of,
+    symbols_of,
+};
 
 #[cfg(test)]
 mod tests {
@@ -403,7 +31,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_quantities_are_read_in_si() {
+    fn quantities_are_read_in_si() {
         let read = |text| parse_quantity(text).unwrap();
         assert_eq!(
             read("1.5 mm"),
@@ -442,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_scales_work_both_ways_round() {
+    fn scales_work_both_ways_round() {
         let volt = parse_unit("V").unwrap();
         for text in [
             "50 mm/s per V",
@@ -471,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_units_are_split_off_names() {
+    fn units_are_split_off_names() {
         assert_eq!(split_unit("clearance [mm]"), ("clearance", Some("mm")));
         assert_eq!(split_unit("clearance_mm"), ("clearance", Some("mm")));
         assert_eq!(

@@ -3,7 +3,7 @@
 use crate::event::RigKind;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::motion::bracket::{BoundaryKind, Bracket};
+use crate::motion::{BoundaryKind, Bracket};
 use impact_oscillator::model::boundary::{s1_of_branch, s2_of_branch};
 use impact_oscillator::model::orbit::Branch;
 use impact_oscillator::model::params::Machine;
@@ -275,14 +275,18 @@ impl Block for BoundaryBlock {
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {
-        !matches!(coordinate, Coordinate::Gain(_) | Coordinate::Corner(_))
+        Coordinate::PHYSICAL.contains(&coordinate)
+            || matches!(
+                coordinate,
+                Coordinate::DriveAsymmetry | Coordinate::StiffnessAsymmetry
+            )
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::middles;
+    use crate::identify::bracket_midpoints;
     use crate::record::Sweep;
     use impact_oscillator::model::boundary::{rho_grazing, rho_s1, rho_s2};
 
@@ -339,7 +343,7 @@ mod tests {
             ..p
         };
         let r = |off| {
-            let found = middles::restitution(&of(BoundaryKind::SaddleNode, off), &wrong);
+            let found = bracket_midpoints::restitution(&of(BoundaryKind::SaddleNode, off), &wrong);
             found.and_then(|e| e.value).expect("R")
         };
         assert!((r(0.0) - 0.7).abs() < 1e-6);

@@ -5,8 +5,8 @@ use crate::identify::fit::parameters::Coordinate;
 use impact_oscillator::model::params::{Machine, Oscillator};
 use impact_oscillator::model::sensitivity::{Change, MassChange};
 
-/// Change of machine and setting per unit of a coordinate, at η and a gap; a channel's gain
-/// and corner change neither.
+/// Change of machine and setting per unit of a record's own R, ln f0, ln β, ln x_st or of an
+/// asymmetry, at η and a gap; all other coordinates change neither.
 pub fn change(machine: &Machine, eta: f64, gap: f64, coordinate: Coordinate) -> Change {
     let none = Change::default();
     let both = |of: &dyn Fn(f64, &Oscillator) -> MassChange| Change {
@@ -27,17 +27,30 @@ pub fn change(machine: &Machine, eta: f64, gap: f64, coordinate: Coordinate) -> 
             decay_rate: o.decay_rate(),
             ..MassChange::default()
         }),
-        Coordinate::DriveAsymmetry => both(&|sign, o| MassChange {
-            drive_per_mass: sign * half / o.mass,
+        Coordinate::DriveAsymmetry => both(&|sign, _| MassChange {
+            drive_per_mass: sign * half,
             ..MassChange::default()
         }),
-        Coordinate::StiffnessAsymmetry => both(&|sign, o| MassChange {
+        Coordinate::StiffnessAsymmetry => both(&|sign, _| MassChange {
             stiffness_per_mass: sign * half,
-            decay_rate: 0.5 * sign * half * o.decay_rate() / o.stiffness_per_mass(),
             ..MassChange::default()
         }),
-        Coordinate::Gain(_) | Coordinate::Corner(_) => none,
+        Coordinate::DampingAsymmetry => both(&|sign, _| MassChange {
+            decay_rate: sign * half * mean_decay_rate(machine),
+            ..MassChange::default()
+        }),
+        Coordinate::MassAsymmetry => both(&|sign, _| MassChange {
+            mobility: -0.5 * sign * half,
+            ..MassChange::default()
+        }),
+        _ => none,
     }
+}
+
+/// Mean of both masses' coefficients of damping.
+fn mean_decay_rate(machine: &Machine) -> f64 {
+    let x = machine.x.decay_rate();
+    machine.y.map_or(x, |y| 0.5 * (x + y.decay_rate()))
 }
 
 /// Relative change of the unit of length per unit of a coordinate.

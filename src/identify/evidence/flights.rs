@@ -13,7 +13,7 @@ use nalgebra::{Matrix4, Vector4};
 use crate::event::{CornerShift, Impact, RigKind};
 use crate::identify::evidence::impacts::corners_in;
 use crate::identify::fit::Block;
-use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::parameters::{Circumstances, Coordinate, Parameters};
 use crate::motion::{Motion, Observation};
 use crate::record::Role;
 use impact_oscillator::model::flight::{Drive, State, free_flight};
@@ -58,6 +58,10 @@ pub struct FlightRecord {
     pub frequency_hz: f64,
     /// Half the gap, m.
     pub clearance_m: f64,
+    /// Place of the clearance among those that carry an error of their own.
+    pub gap: Option<usize>,
+    /// The group of records that it belongs to.
+    pub group: usize,
     /// Drive amplitude relative to the nominal one.
     pub drive_amplitude: f64,
     /// Its impacts, in their order, none missing between them.
@@ -143,6 +147,8 @@ fn flight_record(rig: RigKind, index: usize, o: &Observation) -> Option<FlightRe
         observation: index,
         frequency_hz: drive.frequency_hz,
         clearance_m: o.setting.clearance_m?,
+        gap: None,
+        group: 0,
         drive_amplitude: o.setting.drive_amplitude,
         nodes,
     })
@@ -256,11 +262,13 @@ impl Block for FlightBlock {
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let record = &self.records[item];
         let machine = parameters.machine(self.rig);
-        let setting = parameters.setting(
-            record.frequency_hz,
-            record.clearance_m,
-            record.drive_amplitude,
-        );
+        let (_, clearance_m) = parameters.own(&Circumstances {
+            frequency_hz: record.frequency_hz,
+            clearance_m: record.clearance_m,
+            gap: record.gap,
+            ..Circumstances::default()
+        });
+        let setting = parameters.setting(record.frequency_hz, clearance_m, record.drive_amplitude);
         let gap = machine.gap(setting.clearance);
         let rate = parameters.natural_rate();
         let speed = parameters.static_deflection_m * record.drive_amplitude * rate;
@@ -304,7 +312,26 @@ impl Block for FlightBlock {
     fn touches(&self, coordinate: Coordinate) -> bool {
         match coordinate {
             Coordinate::Corner(index) => self.has_corner(index),
-            _ => !matches!(coordinate, Coordinate::Gain(2 | 3)),
+            Coordinate::Gap(_) => self
+                .records
+                .iter()
+                .any(|r| r.gap.map(Coordinate::Gap) == Some(coordinate)),
+            Coordinate::Gain(2 | 3)
+            | Coordinate::Delay(_)
+            | Coordinate::Effect(_)
+            | Coordinate::MassAsymmetry => false,
+            _ => true,
+        }
+    }
+
+    fn group(&self, item: usize) -> Option<usize> {
+        Some(self.records[item].group)
+    }
+
+    fn item_touches(&self, item: usize, coordinate: Coordinate) -> bool {
+        match coordinate {
+            Coordinate::Gap(i) => self.records[item].gap == Some(i),
+            _ => self.touches(coordinate),
         }
     }
 }
@@ -347,6 +374,8 @@ mod tests {
                     observation: 0,
                     frequency_hz,
                     clearance_m,
+                    gap: None,
+                    group: 0,
                     drive_amplitude: 1.0,
                     nodes: nodes.collect(),
                 }

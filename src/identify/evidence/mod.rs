@@ -16,16 +16,22 @@ pub mod trajectory;
 pub mod waveform;
 pub mod weighing;
 
+use std::collections::BTreeMap;
+
 use crate::event::RigKind;
 use crate::identify::evidence::boundary::BoundaryBlock;
 use crate::identify::evidence::flights::FlightBlock;
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
 use crate::identify::evidence::resonance::ResonanceBlock;
 use crate::identify::evidence::trajectory::TrajectoryBlock;
-use crate::identify::fit::parameters::{Coordinate, gain_index};
+use crate::identify::fit::effect::{Effect, Effects};
+use crate::identify::fit::parameters::{Coordinate, MOST_GAPS, Parameters, gain_index};
 use crate::identify::fit::{Block, Prior};
-use crate::identify::uncertainty::Asked;
+use crate::identify::uncertainty::UncertaintyOptions;
+use crate::motion::Amplitude;
 use crate::motion::{Bracket, Observation};
+use crate::record::Role;
+use crate::signal::robust;
 
 /// What the laboratory states about its rig.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -42,6 +48,39 @@ pub struct Nominal {
     pub gain_uncertainty: f64,
     /// Standard uncertainty of the corners of the channels' high-pass, relative.
     pub corner_uncertainty: f64,
+    /// Standard uncertainty of each stated clearance, and of the zero that all share, m.
+    pub clearance_uncertainty_m: f64,
+    /// Delay of the motion channels against the drive's, s, by the index of their gains.
+    pub delays_s: [f64; 4],
+    /// Standard uncertainties of those delays, s; `None`: half a sample.
+    pub delay_uncertainties_s: [Option<f64>; 4],
+    /// (m_x − m_y)/m with its standard uncertainty; `None`: masses that were made alike.
+    pub mass_asymmetry: Option<[f64; 2]>,
+    /// Effects that the fit allows beyond the model.
+    pub effects: Effects,
+}
+
+impl Nominal {
+    /// Parameters with the stated delays and masses.
+    pub fn applied(&self, parameters: Parameters) -> Parameters {
+        Parameters {
+            delays_s: self.delays_s,
+            mass_asymmetry: self.mass_asymmetry.map_or(0.0, |[centre, _]| centre),
+            ..parameters
+        }
+    }
+
+    /// The same rig without errors of clearances, delays and effects beyond the model: for a first
+    /// fit, whose result the changes by them are taken at.
+    pub fn ideal(&self) -> Self {
+        Self {
+            clearance_uncertainty_m: 0.0,
+            delay_uncertainties_s: [Some(0.0); 4],
+            mass_asymmetry: self.mass_asymmetry.map(|[centre, _]| [centre, 0.0]),
+            effects: Effects::none(),
+            ..*self
+        }
+    }
 }
 
 /// Everything an identification starts from.
@@ -56,7 +95,7 @@ pub struct Evidence<'a> {
     /// What is stated.
     pub nominal: Nominal,
     /// What is asked for of the uncertainty.
-    pub uncertainty: Asked,
+    pub uncertainty: UncertaintyOptions,
 }
 
 /// Relative error of instruments and model that noise does not show.
@@ -64,9 +103,20 @@ const RELATIVE_ERROR: f64 = 3e-4;
 /// Scatter of single impacts' ratios beside the noise.
 const IMPACT_SCATTER: f64 = 1e-3;
 /// What the extrapolation of speeds to the impact leaves open in R.
-pub const IMPACT_BIAS: f64 = 2e-4;
+const IMPACT_BIAS: f64 = 2e-4;
+/// What it leaves open beside that where a contact has a length, per ms.
+const CONTACT_BIAS_PER_MS: f64 = 1e-2;
+
+/// What the extrapolation of speeds to the impacts leaves open in R, with the length of a contact that
+/// waveforms tell.
+pub fn impact_bias(parameters: &Parameters) -> f64 {
+    let contact_ms = parameters.effect(Effect::ContactDuration);
+    IMPACT_BIAS.hypot(CONTACT_BIAS_PER_MS * contact_ms)
+}
 /// Asymmetry that a well-made rig may have.
 const ASYMMETRY: f64 = 0.05;
+/// Asymmetry of masses that were made alike.
+const MASS_ASYMMETRY: f64 = 0.01;
 
 /// The observations sorted by what they tell.
 #[derive(Debug, Clone)]
@@ -83,6 +133,10 @@ pub struct Blocks {
     pub flight: FlightBlock,
     /// Impacts left out as outliers.
     pub impact_outliers: Vec<SpeedPair>,
+    /// Stated clearances that carry an error of their own, m, rising.
+    pub gaps_m: Vec<f64>,
+    /// Half a sample, s.
+    half_sample_s: f64,
 }
 
 impl Blocks {
@@ -105,13 +159,71 @@ impl Blocks {
         } = *evidence;
         let (impact, impact_outliers) =
             ImpactBlock::new(observations, impact_scatter).without_outliers(5.0);
-        Self {
+        let mut blocks = Self {
             resonance: ResonanceBlock::new(rig, observations, relative_error),
             trajectory: TrajectoryBlock::new(rig, observations, relative_error),
             boundary: BoundaryBlock::new(rig, brackets),
             impact,
             flight: FlightBlock::new(rig, observations),
             impact_outliers,
+            gaps_m: Vec::new(),
+            half_sample_s: half_sample_s(observations),
+        };
+        blocks.place(&places(observations), &groups(observations));
+        blocks.give_gaps_errors(evidence.nominal.clearance_uncertainty_m);
+        let reach_m = reach_m(observations);
+        (blocks.trajectory.reach_m, blocks.resonance.reach_m) = (reach_m, reach_m);
+        blocks.trajectory.effects = evidence.nominal.effects;
+        blocks
+    }
+
+    /// Set when in the campaign each record was taken, and its group.
+    fn place(&mut self, places: &[f64], groups: &[usize]) {
+        for point in &mut self.resonance.points {
+            point.place = places[point.observation];
+            point.group = groups[point.observation];
+        }
+        for record in &mut self.trajectory.records {
+            record.place = places[record.observation];
+            record.group = groups[record.observation];
+        }
+        for record in &mut self.flight.records {
+            record.group = groups[record.observation];
+        }
+    }
+
+    /// Give each stated clearance an error of its own: a coordinate where several records have it, a
+    /// shared error of its points where one has.
+    fn give_gaps_errors(&mut self, uncertainty_m: f64) {
+        let mut counts: Vec<(f64, usize)> = Vec::new();
+        let mut stated: Vec<f64> = self
+            .trajectory
+            .records
+            .iter()
+            .map(|r| r.clearance_m)
+            .collect();
+        stated.sort_by(f64::total_cmp);
+        for clearance_m in stated {
+            match counts.last_mut() {
+                Some((last, count)) if *last == clearance_m => *count += 1,
+                _ => counts.push((clearance_m, 1)),
+            }
+        }
+        let several = counts.iter().filter(|(_, count)| *count > 1);
+        let gaps_m: Vec<f64> = several.map(|(gap, _)| *gap).collect();
+        if gaps_m.len() <= MOST_GAPS {
+            self.gaps_m = gaps_m;
+        }
+        let of = |clearance_m: f64| self.gaps_m.iter().position(|gap| *gap == clearance_m);
+        for record in &mut self.trajectory.records {
+            record.gap = of(record.clearance_m);
+            record.lone_clearance_error_m = match record.gap {
+                Some(_) => 0.0,
+                None => uncertainty_m,
+            };
+        }
+        for record in &mut self.flight.records {
+            record.gap = of(record.clearance_m);
         }
     }
 
@@ -152,20 +264,130 @@ impl Blocks {
         (free, priors): (&mut Vec<Coordinate>, &mut Vec<Prior>),
     ) {
         let touched = |c: &Coordinate| fitted.iter().any(|(block, _)| block.touches(*c));
-        let gains = self.gains().map(|c| (c, nominal.gain_uncertainty));
-        let corners = self.corners().map(|c| (c, nominal.corner_uncertainty));
-        let asymmetries = [Coordinate::DriveAsymmetry, Coordinate::StiffnessAsymmetry];
-        let asymmetries = asymmetries.into_iter().filter(|_| self.sees_both());
+        let stated = |c, deviation: f64| Prior {
+            coordinate: c,
+            centre: 0.0,
+            deviation,
+        };
+        let gains = self
+            .gains()
+            .map(|c| stated(c, nominal.gain_uncertainty.max(1e-6)));
+        let corners = self.corners();
+        let corners = corners.map(|c| stated(c, nominal.corner_uncertainty.max(1e-6)));
         let all = gains
             .chain(corners)
-            .chain(asymmetries.map(|c| (c, ASYMMETRY)));
-        for (coordinate, deviation) in all.filter(|(c, _)| touched(c)) {
-            free.push(coordinate);
-            priors.push(Prior {
-                coordinate,
-                centre: 0.0,
-                deviation: deviation.max(1e-6),
-            });
+            .chain(self.delays(nominal))
+            .chain(self.asymmetries(nominal))
+            .chain(self.clearances(nominal))
+            .chain(
+                nominal
+                    .effects
+                    .iter()
+                    .map(|e| stated(Coordinate::Effect(e), e.accepted())),
+            );
+        for prior in all.filter(|p| p.deviation > 0.0 && touched(&p.coordinate)) {
+            free.push(prior.coordinate);
+            priors.push(prior);
         }
     }
+
+    /// Delays of the channels that are measured, ms.
+    fn delays(&self, nominal: &Nominal) -> impl Iterator<Item = Prior> {
+        let measured = (0..4).filter(|i| self.measures(*i, |_| true));
+        measured.map(|i| Prior {
+            coordinate: Coordinate::Delay(i),
+            centre: 1e3 * nominal.delays_s[i],
+            deviation: 1e3 * nominal.delay_uncertainties_s[i].unwrap_or(self.half_sample_s),
+        })
+    }
+
+    /// How the masses may differ, where both are measured.
+    fn asymmetries(&self, nominal: &Nominal) -> impl Iterator<Item = Prior> {
+        let [centre, deviation] = nominal.mass_asymmetry.unwrap_or([0.0, MASS_ASYMMETRY]);
+        let all = [
+            (Coordinate::DriveAsymmetry, 0.0, ASYMMETRY),
+            (Coordinate::StiffnessAsymmetry, 0.0, ASYMMETRY),
+            (Coordinate::DampingAsymmetry, 0.0, ASYMMETRY),
+            (Coordinate::MassAsymmetry, centre, deviation),
+        ];
+        let seen = self.sees_both();
+        all.into_iter()
+            .filter(move |_| seen)
+            .map(|(coordinate, centre, deviation)| Prior {
+                coordinate,
+                centre,
+                deviation,
+            })
+    }
+
+    /// Errors of the clearances, mm: one that all share and one of each stated.
+    fn clearances(&self, nominal: &Nominal) -> impl Iterator<Item = Prior> {
+        let deviation = 1e3 * nominal.clearance_uncertainty_m;
+        let gaps = (0..self.gaps_m.len()).map(Coordinate::Gap);
+        let all = std::iter::once(Coordinate::ScrewZero).chain(gaps);
+        all.map(move |coordinate| Prior {
+            coordinate,
+            centre: 0.0,
+            deviation,
+        })
+    }
+}
+
+/// Place of each record in the campaign, −½ (first) … ½ (last), by the order of acquisition.
+fn places(observations: &[Observation]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..observations.len()).collect();
+    order.sort_by_key(|i| observations[*i].setting.sequence);
+    let last = order.len().saturating_sub(1).max(1) as f64;
+    let mut places = vec![0.0; observations.len()];
+    for (rank, i) in order.into_iter().enumerate() {
+        places[i] = rank as f64 / last - 0.5;
+    }
+    places
+}
+
+/// Fewest groups that are looked for.
+const FEWEST_GROUPS: usize = 8;
+
+/// The group of each record: those of one gap and direction of the sweep; parts of them, in the order
+/// of acquisition, where that makes too few.
+fn groups(observations: &[Observation]) -> Vec<usize> {
+    let mut of: BTreeMap<(u64, &str), Vec<usize>> = BTreeMap::new();
+    let mut order: Vec<usize> = (0..observations.len()).collect();
+    order.sort_by_key(|i| observations[*i].setting.sequence);
+    for i in order {
+        let setting = &observations[i].setting;
+        let gap = setting.clearance_m.unwrap_or(f64::NAN).to_bits();
+        of.entry((gap, setting.sweep.name())).or_default().push(i);
+    }
+    let parts = FEWEST_GROUPS.div_ceil(of.len().max(1));
+    let mut groups = vec![0; observations.len()];
+    for (number, records) in of.values().enumerate() {
+        for (rank, i) in records.iter().enumerate() {
+            groups[*i] = number * parts + rank * parts / records.len();
+        }
+    }
+    groups
+}
+
+/// Half the time between two samples in the median record, s.
+fn half_sample_s(observations: &[Observation]) -> f64 {
+    let rates: Vec<f64> = observations.iter().map(|o| o.sample_rate_hz).collect();
+    robust::median(&rates)
+        .filter(|r| *r > 0.0)
+        .map_or(0.0, |r| 0.5 / r)
+}
+
+/// The greatest displacement of the campaign, m: as measured, else by velocity and frequency.
+fn reach_m(observations: &[Observation]) -> f64 {
+    let usable = observations.iter().filter(|o| !o.excluded());
+    let of = |o: &Observation, a: &Amplitude| match a.role {
+        Role::DisplacementX | Role::DisplacementY => Some(a.half_range),
+        Role::VelocityX | Role::VelocityY => {
+            Some(a.half_range / (std::f64::consts::TAU * o.frequency_hz()?))
+        }
+        _ => None,
+    };
+    let all = usable.flat_map(|o| o.amplitudes.iter().filter_map(move |a| of(o, a)));
+    let most = all.filter(|a| a.is_finite()).fold(0.0, f64::max);
+    if most > 0.0 { most } else { 1.0 }
 }

@@ -6,18 +6,22 @@ use crate::identify::evidence::direction::{change, relative_length, relative_rat
 use crate::identify::evidence::high_pass::{HighPass, HighPassSlope, Passed, Tail};
 use crate::identify::evidence::trajectory::TrajectoryRecord;
 use crate::identify::evidence::waveform::{
-    Phases, Timing, TimingSlope, Vibration, velocity, velocity_slope,
+    Phases, Timing, TimingSlope, Vibration, delayed, delayed_slope, velocity, velocity_slope,
 };
+use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
-use crate::motion::fold::FoldedChannel;
+use crate::motion::FoldedChannel;
 use crate::record::Role;
 use impact_oscillator::model::orbit::Branch;
-use impact_oscillator::model::params::{Machine, Setting};
+use impact_oscillator::model::params::{Machine, Oscillator, Setting};
 use impact_oscillator::model::path::C64;
+use impact_oscillator::model::perturbation::{Grid, PeriodicResponse};
 use impact_oscillator::model::sensitivity::{Change, MassMotion, OrbitMotion, Sensitivity};
 
 /// The z = 1/n orbit at a record's setting whose closing speed is nearest to the measured one.
 pub struct NearestOrbit {
+    /// The record's own parameters.
+    pub own: Parameters,
     /// The machine.
     pub machine: Machine,
     /// η and ρ.
@@ -31,24 +35,21 @@ pub struct NearestOrbit {
 impl NearestOrbit {
     /// At given parameters; `None` beyond the saddle-node.
     pub fn of(rig: RigKind, record: &TrajectoryRecord, parameters: &Parameters) -> Option<Self> {
-        let machine = parameters.machine(rig);
-        let setting = parameters.setting(
-            record.frequency_hz,
-            record.clearance_m,
-            record.drive_amplitude,
-        );
+        let (own, clearance_m) = parameters.own(&record.circumstances(rig));
+        let machine = own.machine(rig);
+        let setting = own.setting(record.frequency_hz, clearance_m, record.drive_amplitude);
         let n = record.folded.periods_n;
         let branch = Branch::new(&machine, setting.frequency_ratio, n);
-        let restitution = parameters.restitution.clamp(0.0, 1.0);
-        let speeds = branch.closing_speeds(restitution, machine.gap(setting.clearance))?;
-        let scale =
-            parameters.static_deflection_m * record.drive_amplitude * parameters.natural_rate();
+        let restitution = own.restitution.clamp(0.0, 1.0);
+        let speeds = branch.approach_speeds(restitution, machine.gap(setting.clearance))?;
+        let scale = own.static_deflection_m * record.drive_amplitude * own.natural_rate();
         let measured = record.closing_speed_m_s / scale;
         let closing_speed = speeds
             .into_iter()
             .filter(|w| *w > 0.0)
             .min_by(|a, b| (a - measured).abs().total_cmp(&(b - measured).abs()))?;
         Some(Self {
+            own,
             machine,
             setting,
             branch,
@@ -60,7 +61,11 @@ impl NearestOrbit {
 /// A record's orbit at its points.
 pub struct RecordMotion<'a> {
     record: &'a TrajectoryRecord,
-    parameters: Parameters,
+    rig: RigKind,
+    /// Of the whole campaign.
+    common: Parameters,
+    /// Of this record.
+    own: Parameters,
     machine: Machine,
     sensitivity: Sensitivity,
     orbit: OrbitMotion,
@@ -80,6 +85,7 @@ struct ChannelMotion {
     /// The mass's displacement or velocity.
     motion: MassMotion,
     filter: Option<Filter>,
+    delay: f64,
 }
 
 /// The high-pass that a channel has passed, and what it makes of the motion.
@@ -93,9 +99,12 @@ struct Filter {
 struct Direction {
     orbit: OrbitMotion,
     eta: f64,
-    /// The coordinate that may change the channels' units.
+    /// The record's own coordinate that may change the channels' units, corners and delays.
     coordinate: Option<Coordinate>,
 }
+
+/// Nodes of a drive period on which extra accelerations are taken.
+const NODES: usize = 128;
 
 impl<'a> RecordMotion<'a> {
     /// At given parameters; `None` where there is no such orbit.
@@ -105,6 +114,7 @@ impl<'a> RecordMotion<'a> {
         parameters: &Parameters,
     ) -> Option<Self> {
         let NearestOrbit {
+            own,
             machine,
             setting,
             branch,
@@ -121,7 +131,9 @@ impl<'a> RecordMotion<'a> {
         };
         let mut motion = Self {
             record,
-            parameters: *parameters,
+            rig,
+            common: *parameters,
+            own,
             machine,
             sensitivity,
             orbit,
@@ -148,11 +160,9 @@ impl<'a> RecordMotion<'a> {
         };
         let vibration = self.vibrations[set][usize::from(role.is_of_y())].as_ref()?;
         let filter = channel.high_pass_hz.map(|corner_hz| {
-            let corner_hz = corner_hz * self.parameters.corner(role);
-            let turns = f64::from(self.record.folded.periods_n);
-            let corner = corner_hz / self.parameters.natural_frequency_hz;
-            let period = turns * std::f64::consts::TAU / self.eta;
-            let high_pass = HighPass::new(corner, self.eta, period, motion.exponent);
+            let corner_hz = corner_hz * self.own.corner(role);
+            let corner = corner_hz / self.own.natural_frequency_hz;
+            let high_pass = HighPass::new(corner, self.eta, self.period(), motion.exponent);
             Filter {
                 high_pass,
                 passed: high_pass.pass(&motion),
@@ -165,30 +175,93 @@ impl<'a> RecordMotion<'a> {
             set,
             motion,
             filter,
+            delay: self.own.delay_s(role) * self.own.natural_rate(),
         })
     }
 
-    /// Values at all points, channel after channel, SI, gains included.
+    /// Period of the motion, dimensionless.
+    fn period(&self) -> f64 {
+        f64::from(self.record.folded.periods_n) * std::f64::consts::TAU / self.eta
+    }
+
+    /// Values at all points, channel after channel, SI, gains and effects included.
     pub fn values(&self) -> Vec<f64> {
-        self.channel_by_channel(|channel, vibration| match &channel.filter {
-            None => vibration.values(&channel.motion),
-            Some(filter) => {
-                let mut values = vibration.values(&filter.passed.motion);
-                filter.tail.add(&mut values, filter.passed.tail);
-                values
+        let mut values = self.channel_by_channel(|channel, vibration| {
+            let seen = |motion: &MassMotion| delayed(motion, self.eta, channel.delay);
+            match &channel.filter {
+                None => vibration.values(&seen(&channel.motion)),
+                Some(filter) => {
+                    let later = (filter.high_pass.corner() * channel.delay).exp();
+                    let mut values = vibration.values(&seen(&filter.passed.motion));
+                    filter.tail.add(&mut values, filter.passed.tail * later);
+                    values
+                }
             }
-        })
+        });
+        for (effect, change) in &self.record.perturbations {
+            add(&mut values, self.common.effect(*effect), change);
+        }
+        values
     }
 
-    /// Slopes of the values over a parameter of rig or drive; a gain changes no orbit.
-    pub fn slopes(&self, values: &[f64], coordinate: Coordinate) -> Vec<f64> {
-        let change = change(&self.machine, self.eta, self.gap, coordinate);
-        let direction = Direction {
-            orbit: self.sensitivity.slope(&change),
-            eta: change.eta,
-            coordinate: Some(coordinate),
+    /// Slopes of the values over coordinates of the fit, column by column; `None` for a gain.
+    pub fn slopes(&self, values: &[f64], coordinates: &[Coordinate]) -> Vec<Option<Vec<f64>>> {
+        let at = self.record.circumstances(self.rig);
+        let mut own: [Option<Vec<f64>>; 5] = Default::default();
+        let mut column = |coordinate: &Coordinate| match coordinate {
+            Coordinate::Gain(_) => None,
+            Coordinate::Effect(effect) if effect.is_acceleration() => {
+                let mut found = self.record.perturbations.iter();
+                let found = found.find(|(e, _)| e == effect);
+                Some(found.map_or_else(|| vec![0.0; values.len()], |(_, c)| c.clone()))
+            }
+            _ => match self.common.own_slope(&at, *coordinate) {
+                Some(slope) => {
+                    let mut sum = vec![0.0; values.len()];
+                    let [r, f, b, x] = slope.physical;
+                    for (i, weight) in [r, f, b, x, slope.clearance_m].into_iter().enumerate() {
+                        if weight != 0.0 {
+                            let base = own[i].get_or_insert_with(|| self.over_own(values, i));
+                            add(&mut sum, weight, base);
+                        }
+                    }
+                    Some(sum)
+                }
+                None => Some(self.over_coordinate(values, *coordinate)),
+            },
         };
-        self.along(values, &direction)
+        coordinates.iter().map(&mut column).collect()
+    }
+
+    /// Slopes over one of the record's own R, ln f0, ln β, ln x_st, clearance in m.
+    fn over_own(&self, values: &[f64], i: usize) -> Vec<f64> {
+        match Coordinate::PHYSICAL.get(i) {
+            Some(coordinate) => self.over_coordinate(values, *coordinate),
+            None => self.over_clearance(values),
+        }
+    }
+
+    fn over_coordinate(&self, values: &[f64], coordinate: Coordinate) -> Vec<f64> {
+        let change = change(&self.machine, self.eta, self.gap, coordinate);
+        self.along(values, &self.direction(&change, Some(coordinate)))
+    }
+
+    /// Slopes over the clearance, per m.
+    pub fn over_clearance(&self, values: &[f64]) -> Vec<f64> {
+        let length_m = self.own.static_deflection_m * self.record.drive_amplitude;
+        let change = Change {
+            gap: self.machine.gap(1.0) / length_m,
+            ..Change::default()
+        };
+        self.along(values, &self.direction(&change, None))
+    }
+
+    fn direction(&self, change: &Change, coordinate: Option<Coordinate>) -> Direction {
+        Direction {
+            orbit: self.sensitivity.slope(change),
+            eta: change.eta,
+            coordinate,
+        }
     }
 
     /// Slopes over the phase of the drive against the points, per rad.
@@ -201,7 +274,7 @@ impl<'a> RecordMotion<'a> {
             x: turned(&self.orbit.x),
             y: turned(&self.orbit.y),
             phase: 1.0,
-            closing_speed: 0.0,
+            approach_speed: 0.0,
         };
         let direction = Direction {
             orbit,
@@ -217,12 +290,100 @@ impl<'a> RecordMotion<'a> {
             eta: self.eta,
             ..Change::default()
         };
-        let direction = Direction {
-            orbit: self.sensitivity.slope(&change),
-            eta: self.eta,
-            coordinate: None,
+        self.along(values, &self.direction(&change, None))
+    }
+
+    /// Acceleration of the masses toward each other at the impact over the approach speed, 1/s: what
+    /// acts on a contact of finite length while it lasts. The weight of the accelerations before and
+    /// after the impact is a fit to the exact contact.
+    pub fn press_per_s(&self) -> f64 {
+        const AFTER: f64 = 1.15;
+        let turn = C64::from_polar(1.0, self.orbit.phase);
+        let masses = [&self.orbit.x, &self.orbit.y].into_iter();
+        let press: f64 = masses
+            .map(|mass| {
+                let square = mass.exponent * mass.exponent;
+                let forced = -self.eta * self.eta * (mass.force * turn).re;
+                let after = (square * mass.mode).re;
+                let before = (square * mass.mode * (mass.exponent * self.period()).exp()).re;
+                forced + before + AFTER * (after - before)
+            })
+            .sum();
+        press / self.orbit.approach_speed * self.own.natural_rate()
+    }
+
+    /// Change of the values by an effect that acts as a small extra acceleration, per unit of its
+    /// strength, to first order; `reach_m` is the displacement at which springs harden by that much.
+    pub fn perturbation(&self, values: &[f64], effect: Effect, reach_m: f64) -> Vec<f64> {
+        let intervals = NODES * self.record.folded.periods_n as usize;
+        let grid = Grid::new(self.period(), intervals);
+        let masses = [
+            Some((self.machine.x, self.orbit.x)),
+            self.machine.y.map(|y| (y, self.orbit.y)),
+        ];
+        let responses = masses.map(|mass| {
+            let (oscillator, motion) = mass?;
+            let p = self.accelerations(&oscillator, &motion, grid, (effect, reach_m));
+            Some(PeriodicResponse::new(&oscillator, grid, &p))
+        });
+        let at_impact = responses.iter().flatten().map(PeriodicResponse::at_impact);
+        let [displacement, velocity] =
+            at_impact.fold([0.0; 2], |sum, at| [sum[0] + at[0], sum[1] + at[1]]);
+        let change = Change {
+            displacement,
+            velocity,
+            ..Change::default()
         };
-        self.along(values, &direction)
+        let mut slopes = self.along(values, &self.direction(&change, None));
+        let extra = self.channel_by_channel(|channel, vibration| {
+            let Some(response) = &responses[usize::from(channel.role.is_of_y())] else {
+                return vec![0.0; channel.points];
+            };
+            let mut seen = match measured(channel.role) {
+                Measured::Displacement => response.displacement(),
+                Measured::Velocity => response.velocity(),
+            };
+            if let Some(filter) = &channel.filter {
+                seen = seen.high_passed(filter.high_pass.corner());
+            }
+            let times = vibration.time().iter();
+            let times = times.map(|t| (t - channel.delay).rem_euclid(self.period()));
+            times.map(|t| seen.at(t)).collect()
+        });
+        add(&mut slopes, 1.0, &extra);
+        slopes
+    }
+
+    /// The extra acceleration of one mass at the nodes, per unit of an effect's strength.
+    fn accelerations(
+        &self,
+        oscillator: &Oscillator,
+        motion: &MassMotion,
+        grid: Grid,
+        (effect, reach_m): (Effect, f64),
+    ) -> Vec<f64> {
+        let length_m = self.own.static_deflection_m * self.record.drive_amplitude;
+        let harmonic = |order: f64, lag: f64| -> Vec<f64> {
+            let force = oscillator.drive_per_mass();
+            let phase = |t: f64| order * (self.orbit.phase + self.eta * t) - lag;
+            grid.times().map(|t| force * phase(t).cos()).collect()
+        };
+        let states = || grid.states(motion, self.orbit.phase, self.eta);
+        match effect {
+            Effect::SecondHarmonicCos => harmonic(2.0, 0.0),
+            Effect::SecondHarmonicSin => harmonic(2.0, std::f64::consts::FRAC_PI_2),
+            Effect::ThirdHarmonicCos => harmonic(3.0, 0.0),
+            Effect::ThirdHarmonicSin => harmonic(3.0, std::f64::consts::FRAC_PI_2),
+            Effect::Hardening => {
+                let share = oscillator.stiffness_per_mass() * (length_m / reach_m).powi(2);
+                states().iter().map(|s| -share * s[0].powi(3)).collect()
+            }
+            Effect::Friction => {
+                let force = self.common.static_deflection_m / length_m;
+                friction(&states()).iter().map(|p| force * p).collect()
+            }
+            _ => vec![0.0; grid.intervals + 1],
+        }
     }
 
     fn along(&self, values: &[f64], direction: &Direction) -> Vec<f64> {
@@ -253,9 +414,10 @@ impl<'a> RecordMotion<'a> {
         vibration: &Vibration<'_>,
         direction: &Direction,
     ) -> Vec<f64> {
-        let own_corner = gain_index(channel.role).map(Coordinate::Corner);
-        let is_own = direction.coordinate == own_corner;
-        if matches!(direction.coordinate, Some(Coordinate::Corner(_))) && !is_own {
+        let own = gain_index(channel.role);
+        if let Some(Coordinate::Corner(i) | Coordinate::Delay(i)) = direction.coordinate
+            && own != Some(i)
+        {
             return vec![0.0; channel.points];
         }
         let timing = TimingSlope {
@@ -266,28 +428,42 @@ impl<'a> RecordMotion<'a> {
             of_role(&self.orbit, channel.role),
             of_role(&direction.orbit, channel.role),
         );
+        let eta = [self.eta, direction.eta];
         let change = match measured(channel.role) {
             Measured::Displacement => *d_mass,
-            Measured::Velocity => velocity_slope(mass, d_mass, [self.eta, direction.eta]),
+            Measured::Velocity => velocity_slope(mass, d_mass, eta),
+        };
+        let delay = match direction.coordinate {
+            Some(Coordinate::Frequency) => [channel.delay, channel.delay],
+            Some(Coordinate::Delay(_)) => [channel.delay, 1e-3 * self.own.natural_rate()],
+            _ => [channel.delay, 0.0],
+        };
+        let seen = |motion: &MassMotion, change: &MassMotion| {
+            let here = delayed(motion, self.eta, channel.delay);
+            let change = delayed_slope(motion, change, eta, delay);
+            vibration.slopes(&here, &change, &timing)
         };
         let Some(filter) = &channel.filter else {
-            return vibration.slopes(&channel.motion, &change, &timing);
+            return seen(&channel.motion, &change);
         };
         let relative = match direction.coordinate {
             Some(Coordinate::Frequency) => -1.0,
             Some(Coordinate::Corner(_)) => 1.0,
             _ => 0.0,
         };
+        let corner = filter.high_pass.corner();
         let moved = HighPassSlope {
-            corner: relative * filter.high_pass.corner(),
+            corner: relative * corner,
             eta: direction.eta,
         };
         let tail = filter.passed.tail;
         let passed = filter
             .high_pass
             .pass_slope(&channel.motion, tail, &change, &moved);
-        let mut slopes = vibration.slopes(&filter.passed.motion, &passed.motion, &timing);
-        let tails = [tail, passed.tail];
+        let mut slopes = seen(&filter.passed.motion, &passed.motion);
+        let later = (corner * delay[0]).exp();
+        let stretch = moved.corner * delay[0] + corner * delay[1];
+        let tails = [tail * later, (passed.tail + tail * stretch) * later];
         filter
             .tail
             .add_slopes(&mut slopes, tails, &moved, vibration, &timing);
@@ -312,13 +488,32 @@ impl<'a> RecordMotion<'a> {
 
     /// SI units of a channel, gain included, in one of the model's.
     fn unit(&self, role: Role) -> f64 {
-        let p = &self.parameters;
+        let p = &self.own;
         let length = p.static_deflection_m * self.record.drive_amplitude * p.gain(role);
         match measured(role) {
             Measured::Velocity => length * p.natural_rate(),
             Measured::Displacement => length,
         }
     }
+}
+
+/// Add a multiple of a column.
+fn add(to: &mut [f64], share: f64, column: &[f64]) {
+    if share != 0.0 {
+        to.iter_mut().zip(column).for_each(|(t, c)| *t += share * c);
+    }
+}
+
+/// Coulomb friction of unit size, −sign X', at the nodes; where X' changes its sign, the mean over
+/// the node's neighbourhood.
+fn friction(states: &[[f64; 2]]) -> Vec<f64> {
+    let change = |k: usize| {
+        let (a, b) = (k.saturating_sub(1), (k + 1).min(states.len() - 1));
+        0.5 * (states[b][1] - states[a][1]).abs()
+    };
+    let of =
+        |(k, s): (usize, &[f64; 2])| -(s[1] / change(k).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0);
+    states.iter().enumerate().map(of).collect()
 }
 
 /// Of each set of phases, the free vibrations of the masses that are measured.
@@ -360,7 +555,8 @@ fn measured(role: Role) -> Measured {
 mod tests {
     use super::*;
     use crate::identify::evidence::trajectory::distinct_phases;
-    use crate::motion::fold::{Folded, FoldedPoint};
+    use crate::identify::fit::effect::Effects;
+    use crate::motion::{Folded, FoldedPoint};
 
     const ROLES: [Role; 4] = [
         Role::VelocityX,
@@ -369,12 +565,24 @@ mod tests {
         Role::DisplacementY,
     ];
 
+    /// Everything in effect that is not a perturbation.
     fn parameters() -> Parameters {
+        let mut effects = [0.0; Effect::COUNT];
+        effects[Effect::ForceSlope.place()] = 0.02;
+        effects[Effect::ForceCurve.place()] = -0.01;
+        effects[Effect::FrequencyDrift.place()] = 2e-3;
+        effects[Effect::ContactDuration.place()] = 0.3;
         Parameters {
             drive_asymmetry: 0.02,
             stiffness_asymmetry: -0.03,
+            damping_asymmetry: 0.05,
+            mass_asymmetry: 0.01,
             gains: [1.01, 0.99, 1.0, 1.02],
             corners: [1.0, 1.03, 0.97, 1.0],
+            delays_s: [1e-4, 0.0, -2e-4, 3e-4],
+            effects,
+            screw_zero_m: 3e-6,
+            gap_errors_m: vec![0.0, 4e-6].into(),
             ..Parameters::symmetric(0.85, 12.6, 0.06, 1e-3)
         }
     }
@@ -410,7 +618,13 @@ mod tests {
             closing_speed_m_s: 1.0,
             frequency_error: 1e-5,
             phase_error_rad: 1e-3,
+            gap: Some(1),
+            lone_clearance_error_m: 0.0,
+            place: 0.3,
+            group: 0,
+            press_per_s: -40.0,
             shared: Vec::new(),
+            perturbations: Vec::new(),
         }
     }
 
@@ -437,11 +651,17 @@ mod tests {
             let here = motion.values();
             let mut coordinates = Coordinate::PHYSICAL.to_vec();
             coordinates.extend([Coordinate::DriveAsymmetry, Coordinate::StiffnessAsymmetry]);
+            coordinates.extend([Coordinate::DampingAsymmetry, Coordinate::MassAsymmetry]);
             coordinates.extend([Coordinate::Corner(1), Coordinate::Corner(2)]);
-            for coordinate in coordinates {
+            coordinates.extend([Coordinate::Delay(0), Coordinate::Delay(3)]);
+            coordinates.extend([Coordinate::ScrewZero, Coordinate::Gap(1)]);
+            let effects = Effects::all().iter().filter(|e| !e.is_acceleration());
+            coordinates.extend(effects.map(Coordinate::Effect));
+            let slopes = motion.slopes(&here, &coordinates);
+            for (coordinate, exact) in coordinates.into_iter().zip(slopes) {
                 let at =
                     |by: f64| values(&record, &p.with(coordinate, p.coordinate(coordinate) + by));
-                let exact = motion.slopes(&here, coordinate);
+                let exact = exact.expect("slopes");
                 agree(&exact, &at(step), &at(-step), 2.0 * step);
             }
             let driven = |by: f64| {

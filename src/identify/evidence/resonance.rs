@@ -6,9 +6,10 @@ use crate::event::RigKind;
 use crate::identify::evidence::direction::{change, relative_length};
 use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::fit::Block;
-use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
+use crate::identify::fit::effect::{Effect, EffectKind};
+use crate::identify::fit::parameters::{Circumstances, Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
-use crate::motion::response::Response;
+use crate::motion::Response;
 use crate::record::Role;
 use impact_oscillator::model::flight::{Drive, forced_amplitude};
 use impact_oscillator::model::params::{Machine, Oscillator};
@@ -27,8 +28,22 @@ pub struct ResonancePoint {
     pub frequency_error: f64,
     /// Standard error of the drive's phase, rad.
     pub phase_error_rad: f64,
+    /// Place in the campaign, −½ … ½.
+    pub place: f64,
+    /// The group of records that it belongs to.
+    pub group: usize,
     /// Responses of the channels.
     pub responses: Vec<Response>,
+}
+
+impl ResonancePoint {
+    fn circumstances(&self) -> Circumstances {
+        Circumstances {
+            frequency_hz: self.frequency_hz,
+            place: self.place,
+            ..Circumstances::default()
+        }
+    }
 }
 
 /// Responses of all impactless records.
@@ -40,6 +55,8 @@ pub struct ResonanceBlock {
     pub points: Vec<ResonancePoint>,
     /// Relative error added to every response: what gains and model leave open.
     pub relative_error: f64,
+    /// Displacement at which springs harden by the strength of that effect, m.
+    pub reach_m: f64,
 }
 
 impl ResonanceBlock {
@@ -57,6 +74,8 @@ impl ResonanceBlock {
                     frequency_error: drive.frequency_error_hz / drive.frequency_hz,
                     phase_error_rad: o.drive_phase_error_rad(),
                     drive_amplitude: o.setting.drive_amplitude,
+                    place: 0.0,
+                    group: 0,
                     responses: o
                         .response
                         .iter()
@@ -70,6 +89,7 @@ impl ResonanceBlock {
             rig,
             points,
             relative_error,
+            reach_m: 1.0,
         }
     }
 
@@ -84,6 +104,10 @@ impl ResonanceBlock {
 struct Predicted {
     /// Complex response, SI, gain included; the drive is cos θ.
     value: Complex<f64>,
+    /// Dimensionless amplitude of the mass's displacement without effects beyond the model.
+    forced: Complex<f64>,
+    /// What hardening and friction change of it, per unit of their strengths.
+    extra: [Complex<f64>; 2],
     oscillator: Oscillator,
     /// SI units in one of the model's displacement.
     unit: Complex<f64>,
@@ -111,15 +135,21 @@ fn respond(
         _ => 0,
     };
     let scale = parameters.gain(role) * parameters.static_deflection_m * drive_amplitude;
-    let unit = rate.powu(u32::from(order)) * scale;
+    let unit = rate.powu(u32::from(order)) * scale * (-rate * parameters.delay_s(role)).exp();
+    let forced = forced_amplitude(&oscillator, Drive { eta, phase: 0.0 });
     Predicted {
-        value: forced_amplitude(&oscillator, Drive { eta, phase: 0.0 }) * unit,
+        value: forced * unit,
+        forced,
+        extra: [Complex::default(); 2],
         oscillator,
         unit,
         order: f64::from(order),
         over_corner: Complex::new(0.0, 0.0),
     }
 }
+
+/// The effects that change an impactless response, in the order of [`Predicted::extra`].
+const EXTRA: [Effect; 2] = [Effect::Hardening, Effect::Friction];
 
 /// Predicted complex response of a channel, SI, gain included; the drive is cos θ.
 pub fn predicted(
@@ -134,6 +164,25 @@ pub fn predicted(
 }
 
 impl Predicted {
+    /// With hardening springs and friction, by their describing functions: a force εX³ acts at the
+    /// drive's frequency like ¾ε|F|²X, one of sign X' like (4/π)X'/|X'|. `hardening` is ε and
+    /// `friction` the force per unit of their strengths.
+    fn with_effects(self, parameters: &Parameters, [hardening, friction]: [f64; 2]) -> Self {
+        let size = self.forced.norm();
+        let compliance = self.forced / self.oscillator.drive_per_mass();
+        let stiffening = self.forced * (0.75 * hardening * size * size);
+        let resisting =
+            Complex::new(0.0, friction * 4.0 / std::f64::consts::PI / size) * self.forced;
+        let extra = [-compliance * stiffening, -compliance * resisting];
+        let changes = EXTRA.iter().zip(extra);
+        let change: Complex<f64> = changes.map(|(e, c)| c * parameters.effect(*e)).sum();
+        Self {
+            value: (self.forced + change) * self.unit,
+            extra,
+            ..self
+        }
+    }
+
     /// With a high-pass of a corner other than the stated one, which was divided out.
     fn behind(self, stated_hz: f64, corner: f64, frequency_hz: f64) -> Self {
         let divided = Complex::new(stated_hz, frequency_hz);
@@ -150,8 +199,7 @@ impl Predicted {
     /// Slope where mass and η change; the drive's frequency, and with it the unit, does not.
     fn along(&self, of_y: bool, change: &Change, eta: f64) -> Complex<f64> {
         let mass = if of_y { &change.y } else { &change.x };
-        let forced = self.value / self.unit;
-        forced_slope(&self.oscillator, mass, forced, [eta, change.eta]) * self.unit
+        forced_slope(&self.oscillator, mass, self.forced, [eta, change.eta]) * self.unit
     }
 
     /// Slope over the logarithm of the drive's frequency.
@@ -166,19 +214,68 @@ impl Predicted {
 
 impl ResonanceBlock {
     fn responses(&self, point: &ResonancePoint, parameters: &Parameters) -> Vec<Predicted> {
-        let machine = parameters.machine(self.rig);
+        let (own, _) = parameters.own(&point.circumstances());
+        let machine = own.machine(self.rig);
         let setting = [point.frequency_hz, point.drive_amplitude];
+        let length_m = own.static_deflection_m * point.drive_amplitude;
+        let hardening = (length_m / self.reach_m).powi(2);
+        let friction = parameters.static_deflection_m / length_m;
         let responses = point.responses.iter();
         responses
             .map(|r| {
-                let found = respond(parameters, &machine, r.role, setting);
+                let found = respond(&own, &machine, r.role, setting);
+                let stiffness = found.oscillator.stiffness_per_mass();
+                let found = found.with_effects(parameters, [stiffness * hardening, friction]);
                 match r.high_pass_hz {
                     Some(stated_hz) => {
-                        let corner = parameters.corner(r.role);
+                        let corner = own.corner(r.role);
                         found.behind(stated_hz, corner, point.frequency_hz)
                     }
                     None => found,
                 }
+            })
+            .collect()
+    }
+
+    /// Slopes of the responses over one coordinate.
+    fn over(
+        &self,
+        point: &ResonancePoint,
+        found: &[Predicted],
+        parameters: &Parameters,
+        coordinate: Coordinate,
+    ) -> Vec<Complex<f64>> {
+        let at = point.circumstances();
+        let (own, _) = parameters.own(&at);
+        let machine = own.machine(self.rig);
+        let eta = point.frequency_hz / own.natural_frequency_hz;
+        let along = |coordinate: Coordinate, r: &Response, p: &Predicted| {
+            let change = change(&machine, eta, 0.0, coordinate);
+            p.along(r.role.is_of_y(), &change, eta) + p.value * relative_length(coordinate)
+        };
+        let slope = parameters.own_slope(&at, coordinate);
+        let rate = Complex::new(0.0, std::f64::consts::TAU * point.frequency_hz);
+        let pairs = point.responses.iter().zip(found);
+        pairs
+            .map(|(r, p)| match coordinate {
+                Coordinate::Gain(i) | Coordinate::Corner(i) | Coordinate::Delay(i)
+                    if gain_index(r.role) != Some(i) =>
+                {
+                    Complex::default()
+                }
+                Coordinate::Gain(_) => p.value,
+                Coordinate::Corner(_) => p.value * p.over_corner,
+                Coordinate::Delay(_) => -p.value * rate * 1e-3,
+                Coordinate::Effect(Effect::Hardening) => p.extra[0] * p.unit,
+                Coordinate::Effect(Effect::Friction) => p.extra[1] * p.unit,
+                _ => match &slope {
+                    Some(slope) => {
+                        let own = Coordinate::PHYSICAL.into_iter().zip(slope.physical).skip(1);
+                        let own = own.filter(|(_, weight)| *weight != 0.0);
+                        own.map(|(c, weight)| along(c, r, p) * weight).sum()
+                    }
+                    None => along(coordinate, r, p),
+                },
             })
             .collect()
     }
@@ -212,7 +309,7 @@ impl ResonanceBlock {
             .iter()
             .map(|p| p.over_frequency(eta) * point.frequency_error);
         let columns = [self.weighted(point, turned), self.weighted(point, shifted)];
-        Whitening::new(columns.into())
+        Whitening::new(&columns)
     }
 
     fn apart(&self, point: &ResonancePoint, found: &[Predicted]) -> Vec<f64> {
@@ -244,7 +341,6 @@ impl Block for ResonanceBlock {
     ) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
         let point = &self.points[item];
         let eta = point.frequency_hz / parameters.natural_frequency_hz;
-        let machine = parameters.machine(self.rig);
         let found = self.responses(point, parameters);
         let whitening = self.whitening(point, &found, eta);
         let white = |mut column: Vec<f64>| {
@@ -252,25 +348,29 @@ impl Block for ResonanceBlock {
             column
         };
         let column = |coordinate: &Coordinate| {
-            let change = change(&machine, eta, 0.0, *coordinate);
-            let pairs = point.responses.iter().zip(&found);
-            let falling = pairs.map(|(r, p)| {
-                let own = gain_index(r.role);
-                let relative = match coordinate {
-                    Coordinate::Gain(gain) if own == Some(*gain) => Complex::new(1.0, 0.0),
-                    Coordinate::Corner(corner) if own == Some(*corner) => p.over_corner,
-                    _ => relative_length(*coordinate).into(),
-                };
-                -p.along(r.role.is_of_y(), &change, eta) - p.value * relative
-            });
-            white(self.weighted(point, falling))
+            let slopes = self.over(point, &found, parameters, *coordinate);
+            white(self.weighted(point, slopes.into_iter().map(|s| -s)))
         };
         let columns = coordinates.iter().map(column).collect();
         Some((white(self.apart(point, &found)), columns))
     }
 
+    fn group(&self, item: usize) -> Option<usize> {
+        Some(self.points[item].group)
+    }
+
     fn touches(&self, coordinate: Coordinate) -> bool {
-        coordinate != Coordinate::Restitution
+        match coordinate {
+            Coordinate::Restitution
+            | Coordinate::MassAsymmetry
+            | Coordinate::ScrewZero
+            | Coordinate::Gap(_) => false,
+            Coordinate::Effect(effect) => match effect.kind() {
+                EffectKind::Harmonics | EffectKind::ContactDuration => false,
+                _ => true,
+            },
+            _ => true,
+        }
     }
 }
 
@@ -295,6 +395,8 @@ mod tests {
                 drive_amplitude: 1.2,
                 frequency_error: 0.0,
                 phase_error_rad: 0.0,
+                place: 0.2,
+                group: 0,
                 responses: roles
                     .map(|role| Response {
                         role,
@@ -307,10 +409,17 @@ mod tests {
                     .to_vec(),
             }],
             relative_error: 1e-3,
+            reach_m: 3e-3,
         };
+        let mut effects = [0.0; Effect::COUNT];
+        effects[Effect::ForceSlope.place()] = 0.02;
+        effects[Effect::DeflectionDrift.place()] = 0.01;
         let p = Parameters {
             drive_asymmetry: 0.03,
             stiffness_asymmetry: -0.02,
+            damping_asymmetry: 0.04,
+            delays_s: [1e-4, 0.0, 3e-4, 0.0],
+            effects,
             corners: [1.0, 1.1, 1.0, 0.9],
             ..Parameters::symmetric(0.8, 12.6, 0.07, 1e-3)
         };
@@ -320,7 +429,11 @@ mod tests {
             Coordinate::Gain(0),
             Coordinate::Gain(2),
             Coordinate::Corner(1),
+            Coordinate::Delay(0),
+            Coordinate::DampingAsymmetry,
         ]);
+        let effects = Effect::ALL.map(Coordinate::Effect);
+        coordinates.extend(effects.into_iter().filter(|c| block.touches(*c)));
         let (here, columns) = block.slopes(0, &p, &coordinates).expect("slopes");
         for (coordinate, exact) in coordinates.iter().zip(columns) {
             let found = difference(&p, *coordinate, &here, |p| block.residuals(0, p));

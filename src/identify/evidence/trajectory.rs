@@ -7,9 +7,10 @@ use crate::identify::evidence::record_motion::{NearestOrbit, RecordMotion};
 use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::evidence::waveform::Phases;
 use crate::identify::fit::Block;
-use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
+use crate::identify::fit::effect::{Effect, Effects};
+use crate::identify::fit::parameters::{Circumstances, Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
-use crate::motion::fold::{Folded, FoldedChannel};
+use crate::motion::{Folded, FoldedChannel};
 use crate::record::Role;
 use impact_oscillator::model::flight::State;
 use impact_oscillator::model::orbit::orbit_with_speed;
@@ -35,9 +36,43 @@ pub struct TrajectoryRecord {
     pub frequency_error: f64,
     /// Standard error of the drive's phase, rad.
     pub phase_error_rad: f64,
-    /// Changes of all points' values, SI, by one standard error of phase and of frequency; empty
-    /// until they are found at good parameters.
+    /// Place of the clearance among those that carry an error of their own.
+    pub gap: Option<usize>,
+    /// Standard error of the clearance, m, where no other record has the same.
+    pub lone_clearance_error_m: f64,
+    /// Place in the campaign, −½ … ½.
+    pub place: f64,
+    /// The group of records that it belongs to.
+    pub group: usize,
+    /// Acceleration of the masses toward each other at the impacts over the approach speed, 1/s; zero
+    /// until it is found at good parameters.
+    pub press_per_s: f64,
+    /// Changes of all points' values, SI, by one standard error of phase, of frequency and of a lone
+    /// clearance; empty until they are found at good parameters.
     pub shared: Vec<Vec<f64>>,
+    /// Changes of all points' values, SI, by effects that act as extra accelerations, per unit of
+    /// their strengths; empty until they are found at good parameters.
+    pub perturbations: Vec<(Effect, Vec<f64>)>,
+}
+
+impl TrajectoryRecord {
+    /// Where and when it was taken.
+    pub fn circumstances(&self, rig: RigKind) -> Circumstances {
+        Circumstances {
+            frequency_hz: self.frequency_hz,
+            clearance_m: self.clearance_m,
+            gap: self.gap,
+            place: self.place,
+            approach_m_s: self.closing_speed_m_s,
+            press_per_s: self.press_per_s,
+            masses: if rig == RigKind::Double { 2.0 } else { 1.0 },
+        }
+    }
+
+    fn has(&self, index: usize) -> bool {
+        let mut channels = self.folded.channels.iter();
+        channels.any(|c| gain_index(c.role) == Some(index))
+    }
 }
 
 /// All periodic records with one impact in n drive periods.
@@ -49,6 +84,10 @@ pub struct TrajectoryBlock {
     pub records: Vec<TrajectoryRecord>,
     /// Relative error added to every point: what instruments and model leave open.
     pub relative_error: f64,
+    /// Effects that the fit allows beyond the model.
+    pub effects: Effects,
+    /// Displacement at which springs harden by the strength of that effect, m.
+    pub reach_m: f64,
 }
 
 impl TrajectoryBlock {
@@ -64,6 +103,8 @@ impl TrajectoryBlock {
             rig,
             records,
             relative_error,
+            effects: Effects::none(),
+            reach_m: 1.0,
         }
     }
 
@@ -82,31 +123,51 @@ impl TrajectoryBlock {
         orbit.multipliers.first().map(|m| m.norm())
     }
 
-    /// Find at good parameters what phase and frequency of the drive change in every record.
-    pub fn find_shared_errors(&mut self, parameters: &Parameters) {
-        let changes: Vec<Option<Vec<Vec<f64>>>> = self
+    /// Find at good parameters what phase and frequency of the drive, a lone clearance and the
+    /// effects beyond the model change in every record.
+    pub fn find_changes(&mut self, parameters: &Parameters) {
+        let changes: Vec<Option<Changes>> = self
             .records
             .par_iter()
-            .map(|record| self.shared_changes(record, parameters))
+            .map(|record| self.changes(record, parameters))
             .collect();
         for (record, change) in self.records.iter_mut().zip(changes) {
-            record.shared = change.unwrap_or_default();
+            let change = change.unwrap_or_default();
+            (record.shared, record.perturbations) = (change.shared, change.perturbations);
+            record.press_per_s = change.press_per_s;
         }
     }
 
-    fn shared_changes(
-        &self,
-        record: &TrajectoryRecord,
-        parameters: &Parameters,
-    ) -> Option<Vec<Vec<f64>>> {
+    fn changes(&self, record: &TrajectoryRecord, parameters: &Parameters) -> Option<Changes> {
         let motion = RecordMotion::new(self.rig, record, parameters)?;
         let values = motion.values();
         let times = |slopes: Vec<f64>, error: f64| slopes.iter().map(|s| error * s).collect();
-        Some(vec![
+        let mut shared: Vec<Vec<f64>> = vec![
             times(motion.over_phase(&values), record.phase_error_rad),
             times(motion.over_frequency(&values), record.frequency_error),
-        ])
+        ];
+        if record.lone_clearance_error_m > 0.0 {
+            let slopes = motion.over_clearance(&values);
+            shared.push(times(slopes, record.lone_clearance_error_m));
+        }
+        let accelerations = self.effects.iter().filter(|e| e.is_acceleration());
+        let perturbations = accelerations
+            .map(|e| (e, motion.perturbation(&values, e, self.reach_m)))
+            .collect();
+        Some(Changes {
+            shared,
+            perturbations,
+            press_per_s: motion.press_per_s(),
+        })
     }
+}
+
+/// What is found of a record at good parameters.
+#[derive(Default)]
+struct Changes {
+    shared: Vec<Vec<f64>>,
+    perturbations: Vec<(Effect, Vec<f64>)>,
+    press_per_s: f64,
 }
 
 fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> {
@@ -122,7 +183,13 @@ fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> 
         frequency_hz: drive.frequency_hz,
         frequency_error: drive.frequency_error_hz / drive.frequency_hz,
         phase_error_rad: o.drive_phase_error_rad(),
+        gap: None,
+        lone_clearance_error_m: 0.0,
+        place: 0.0,
+        group: 0,
+        press_per_s: 0.0,
         shared: Vec::new(),
+        perturbations: Vec::new(),
         clearance_m: o.setting.clearance_m?,
         drive_amplitude: o.setting.drive_amplitude,
         phases: distinct_phases(&folded),
@@ -183,23 +250,39 @@ impl Block for TrajectoryBlock {
         let motion = RecordMotion::new(self.rig, record, parameters)?;
         let values = motion.values();
         let weighing = Weighing::new(record, &values, self.relative_error);
-        let columns = coordinates
-            .iter()
-            .map(|coordinate| {
-                let mut change = match coordinate {
-                    // Values are proportional to their gain.
-                    Coordinate::Gain(gain) => weighing.only(&values, *gain),
-                    _ => motion.slopes(&values, *coordinate),
-                };
-                change.iter_mut().for_each(|c| *c = -*c);
-                weighing.weighted(&change)
-            })
-            .collect();
+        let slopes = motion.slopes(&values, coordinates);
+        let columns = coordinates.iter().zip(slopes);
+        let columns = columns.map(|(coordinate, slopes)| {
+            let mut change = match (coordinate, slopes) {
+                // Values are proportional to their gain.
+                (Coordinate::Gain(gain), None) => weighing.only(&values, *gain),
+                (_, slopes) => slopes.unwrap_or_else(|| vec![0.0; values.len()]),
+            };
+            change.iter_mut().for_each(|c| *c = -*c);
+            weighing.weighted(&change)
+        });
+        let columns = columns.collect();
         Some((weighing.weighted(&weighing.apart(&values)), columns))
     }
 
-    fn touches(&self, _coordinate: Coordinate) -> bool {
-        true
+    fn touches(&self, coordinate: Coordinate) -> bool {
+        (0..self.records.len()).any(|item| self.item_touches(item, coordinate))
+    }
+
+    fn group(&self, item: usize) -> Option<usize> {
+        Some(self.records[item].group)
+    }
+
+    fn item_touches(&self, item: usize, coordinate: Coordinate) -> bool {
+        let record = &self.records[item];
+        match coordinate {
+            Coordinate::Gap(i) => record.gap == Some(i),
+            Coordinate::Gain(i) | Coordinate::Corner(i) | Coordinate::Delay(i) => record.has(i),
+            Coordinate::Effect(effect) if effect.is_acceleration() => {
+                record.perturbations.iter().any(|(e, _)| *e == effect)
+            }
+            _ => true,
+        }
     }
 }
 
@@ -226,7 +309,7 @@ impl<'a> Weighing<'a> {
             shared: Whitening::none(),
         };
         let columns: Vec<Vec<f64>> = record.shared.iter().map(|c| weighing.centred(c)).collect();
-        weighing.shared = Whitening::new(columns);
+        weighing.shared = Whitening::new(&columns);
         weighing
     }
 

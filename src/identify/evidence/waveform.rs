@@ -4,7 +4,7 @@
 //! A mass is a sum of exponentials of time; the mean of e^{λt} over t ± δ is e^{λt}(1 + λ²δ²/2)
 //! up to the fourth power of δ. What depends on the drive's phases alone is kept.
 
-use crate::motion::fold::FoldedPoint;
+use crate::motion::FoldedPoint;
 use impact_oscillator::model::path::C64;
 use impact_oscillator::model::sensitivity::MassMotion;
 
@@ -164,6 +164,33 @@ pub fn velocity_slope(
     MassMotion {
         force: C64::new(0.0, eta) * change.force + C64::new(0.0, d_eta) * motion.force,
         mode: motion.exponent * change.mode + change.exponent * motion.mode,
+        exponent: change.exponent,
+    }
+}
+
+/// A motion seen later by a delay; of its jump, what lies within the delay is not shifted.
+pub fn delayed(motion: &MassMotion, eta: f64, delay: f64) -> MassMotion {
+    MassMotion {
+        force: motion.force * C64::from_polar(1.0, -eta * delay),
+        mode: motion.mode * (-motion.exponent * delay).exp(),
+        exponent: motion.exponent,
+    }
+}
+
+/// Differential of [`delayed`].
+pub fn delayed_slope(
+    motion: &MassMotion,
+    change: &MassMotion,
+    [eta, d_eta]: [f64; 2],
+    [delay, d_delay]: [f64; 2],
+) -> MassMotion {
+    let turn = C64::from_polar(1.0, -eta * delay);
+    let decay = (-motion.exponent * delay).exp();
+    let d_turn = C64::new(0.0, -(d_eta * delay + eta * d_delay));
+    let d_decay = -(change.exponent * delay + motion.exponent * d_delay);
+    MassMotion {
+        force: (change.force + motion.force * d_turn) * turn,
+        mode: (change.mode + motion.mode * d_decay) * decay,
         exponent: change.exponent,
     }
 }

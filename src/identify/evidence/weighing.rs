@@ -20,11 +20,11 @@ impl Blocks {
             least_allowance(block.clone(), parameters, |b, e| b.relative_error = e);
     }
 
-    /// Find the errors that the points of each periodic record share, and allow all the least
-    /// relative error that explains the rest.
+    /// Find what the points of each periodic record share and what effects beyond the model change
+    /// in them, and allow all the least relative error that explains the rest.
     pub fn weigh_trajectories(&mut self, parameters: &Parameters) {
         let block = &mut self.trajectory;
-        block.find_shared_errors(parameters);
+        block.find_changes(parameters);
         block.relative_error =
             least_allowance(block.clone(), parameters, |b, e| b.relative_error = e);
     }

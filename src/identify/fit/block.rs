@@ -13,7 +13,7 @@ pub trait Block: Sync {
     fn items(&self) -> usize;
 
     /// Weighted residuals of one item at given parameters, always the same number for an item;
-    /// `None` where the model has no such motion there.
+    /// `None` if the model has no such motion there.
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>>;
 
     /// Residuals of one item and their slopes over some coordinates, column by column. Without a
@@ -36,10 +36,20 @@ pub trait Block: Sync {
 
     /// Which coordinates the block depends on.
     fn touches(&self, coordinate: Coordinate) -> bool;
+
+    /// The group of records that an item belongs to, whose misfits may be alike; `None`: no group.
+    fn group(&self, _item: usize) -> Option<usize> {
+        None
+    }
+
+    /// Which coordinates one of its items depends on; as the whole block does, unless it knows better.
+    fn item_touches(&self, _item: usize, coordinate: Coordinate) -> bool {
+        self.touches(coordinate)
+    }
 }
 
 /// Mean square of each item's weighted residuals at given parameters, in the items' order; `None`
-/// where the model has no such motion.
+/// if the model has no such motion.
 pub fn mean_squares(block: &impl Block, parameters: &Parameters) -> Vec<Option<f64>> {
     (0..block.items())
         .into_par_iter()
@@ -54,7 +64,7 @@ pub fn mean_squares(block: &impl Block, parameters: &Parameters) -> Vec<Option<f
 /// Relative step of the central differences.
 const DIFFERENCE: f64 = 2e-6;
 /// Slope of a function of the parameters over one coordinate, by central differences; one-sided
-/// where the model ends. `here` is its value at the parameters.
+/// at the edge of the model's domain. `here` is its value at the parameters.
 pub fn difference(
     at: &Parameters,
     coordinate: Coordinate,

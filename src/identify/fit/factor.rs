@@ -105,7 +105,7 @@ impl Factor {
             .collect()
     }
 
-    /// Step s that makes |Js + r|² + damping·|Ds|² least, D being diagonal; `None` where it is not
+    /// Step s that makes |Js + r|² + damping·|Ds|² least, D being diagonal; `None` if it is not
     /// determined.
     pub fn step(&self, damping: f64, diagonal: &[f64]) -> Option<Vec<f64>> {
         let n = self.unknowns;
@@ -133,8 +133,8 @@ impl Factor {
             .sqrt()
     }
 
-    /// (JᵀJ)⁻¹; `None` where a column of slopes, as a share of its norm, stands off those before
-    /// it by less than `least`.
+    /// (JᵀJ)⁻¹; `None` if the part of a column of slopes that is orthogonal to those before it is
+    /// less than `least` of its norm.
     pub fn covariance(&self, least: f64) -> Option<DMatrix<f64>> {
         let n = self.unknowns;
         let norms = self.norms();

@@ -24,10 +24,10 @@ pub trait LeastSquares {
     /// Factor of the residuals and of their slopes over the unknowns.
     ///
     /// # Errors
-    /// The problem's own, where there is no factor at the point.
+    /// The problem's own, if there is no factor at the point.
     fn factor(&self, at: &Self::Point) -> Result<Factor, Error>;
 
-    /// Sum of squared residuals; `None` where there is none at the point.
+    /// Sum of squared residuals; `None` if there is none at the point.
     fn cost(&self, at: &Self::Point) -> Option<f64>;
 
     /// The point that a step in the unknowns leads to.
@@ -83,22 +83,25 @@ pub fn minimise<P: LeastSquares>(
 where
     P::Point: 'static,
 {
-    let iterations = Rc::default();
+    let trace = Rc::default();
     let result = Executor::new(problem, DampedSteps::new(limits))
         .configure(|state: FitState<P::Point>| state.param(start).max_iters(limits.iterations))
-        .add_observer(Recorder(Rc::clone(&iterations)), ObserverMode::Always)
+        .add_observer(Recorder(Rc::clone(&trace)), ObserverMode::Always)
         .run()?;
     let mut state = result.state;
-    let termination = state.get_termination_reason().cloned();
+    let (iterations, termination) = (state.get_iter(), state.get_termination_reason().cloned());
     let (point, factor) = taken(&mut state)?;
     Ok(Minimum {
+        report: FitReport {
+            iterations,
+            cost_evaluations: result.problem.counts.get(COST).copied().unwrap_or(0),
+            cost: factor.cost,
+            damping: result.solver.damping,
+            termination: termination.unwrap_or_default(),
+            trace: trace.take(),
+        },
         point,
         factor,
-        report: FitReport {
-            iterations: iterations.take(),
-            cost_evaluations: result.problem.counts.get(COST).copied().unwrap_or(0),
-            termination: termination.unwrap_or_default(),
-        },
     })
 }
 
@@ -177,7 +180,7 @@ impl<'a> DampedSteps<'a> {
         }
     }
 
-    /// Fall in cost that a step of some length leads to where the problem is linear.
+    /// Fall in cost that a step of some length leads to if the problem is linear.
     fn predicted_reduction(&self, step: &[f64], length: f64) -> f64 {
         let scaled = step.iter().zip(&self.scales);
         let damped: f64 = scaled.map(|(s, d)| (s * d).powi(2)).sum();
@@ -290,5 +293,105 @@ fn deviation(factor: &Factor, variance: Variance) -> f64 {
             // counts of residuals are far below 2⁵³
             (factor.cost / freedom as f64).sqrt()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Residuals over two unknowns with their slopes; the cost may be withheld.
+    struct Curve {
+        residuals: fn([f64; 2]) -> [f64; 3],
+        slopes: fn([f64; 2]) -> [[f64; 3]; 2],
+        has_cost: bool,
+    }
+
+    impl LeastSquares for Curve {
+        type Point = [f64; 2];
+
+        fn factor(&self, at: &[f64; 2]) -> Result<Factor, Error> {
+            if at[0] > 1e3 {
+                return Err(Error::msg("out of reach"));
+            }
+            let slopes = (self.slopes)(*at).map(|column| column.to_vec());
+            Ok(Factor::of(&(self.residuals)(*at), &slopes, 1.0))
+        }
+
+        fn cost(&self, at: &[f64; 2]) -> Option<f64> {
+            let cost = (self.residuals)(*at).iter().map(|r| r * r).sum();
+            self.has_cost.then_some(cost)
+        }
+
+        fn moved(&self, from: &[f64; 2], step: &[f64]) -> [f64; 2] {
+            [from[0] + step[0], from[1] + step[1]]
+        }
+    }
+
+    /// The line a + bt through 1, 3, 5 at t = 0, 1, 2: a = 1, b = 2.
+    const LINE: Curve = Curve {
+        residuals: |[a, b]| [a - 1.0, a + b - 3.0, a + 2.0 * b - 5.0],
+        slopes: |_| [[1.0; 3], [0.0, 1.0, 2.0]],
+        has_cost: true,
+    };
+
+    /// Rosenbrock's valley, least at (1, 1).
+    const VALLEY: Curve = Curve {
+        residuals: |[x, y]| [10.0 * (y - x * x), 1.0 - x, 0.0],
+        slopes: |[x, _]| [[-20.0 * x, -1.0, 0.0], [10.0, 0.0, 0.0]],
+        has_cost: true,
+    };
+
+    const LIMITS: Limits = Limits {
+        negligible: 1e-9,
+        variance: Variance::Unit,
+        damping: 1e-6,
+        iterations: 200,
+    };
+
+    #[test]
+    fn valid_a_line_and_a_curved_valley_are_solved() {
+        let line = minimise(&LINE, [0.0, 0.0], &LIMITS).unwrap();
+        assert!((line.point[0] - 1.0).abs() < 1e-9 && (line.point[1] - 2.0).abs() < 1e-9);
+        assert!(line.report.converged() && line.report.iterations < 6);
+        let valley = minimise(&VALLEY, [-1.2, 1.0], &LIMITS).unwrap();
+        assert!((valley.point[0] - 1.0).abs() < 1e-9 && (valley.point[1] - 1.0).abs() < 1e-9);
+        assert!(valley.report.converged());
+    }
+
+    #[test]
+    fn valid_the_observer_records_every_iteration_with_falling_cost() {
+        let report = minimise(&VALLEY, [-1.2, 1.0], &LIMITS).unwrap().report;
+        assert_eq!(report.trace.len() as u64, report.iterations);
+        assert!(report.cost_evaluations >= report.iterations);
+        assert!(report.trace.windows(2).all(|w| w[1].cost <= w[0].cost));
+        let last = report.trace.last().unwrap();
+        assert_eq!((last.cost, last.damping), (report.cost, report.damping));
+    }
+
+    #[test]
+    fn valid_the_reason_of_the_end_is_reported() {
+        let few = Limits {
+            iterations: 2,
+            ..LIMITS
+        };
+        let short = minimise(&VALLEY, [-1.2, 1.0], &few).unwrap().report;
+        assert_eq!(short.termination, TerminationReason::MaxItersReached);
+        assert_eq!(short.iterations, 2);
+        let blind = Curve {
+            has_cost: false,
+            ..VALLEY
+        };
+        let never_negligible = Limits {
+            negligible: 0.0,
+            ..LIMITS
+        };
+        let stalled = minimise(&blind, [-1.2, 1.0], &never_negligible).unwrap();
+        assert_eq!(stalled.point, [-1.2, 1.0]);
+        let reason = TerminationReason::SolverExit(STALLED.into());
+        assert_eq!(stalled.report.termination, reason);
+        assert!(!stalled.report.converged());
+        let error = minimise(&VALLEY, [2e3, 0.0], &LIMITS).unwrap_err();
+        assert_eq!(error.to_string(), "out of reach");
     }
 }

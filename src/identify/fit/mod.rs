@@ -1,13 +1,14 @@
-//! Least squares: parameters as the coordinates of a fit, blocks of residuals, and the fit that makes
-//! them least.
+//! Least squares: parameters as the coordinates of a fit, blocks of residuals, and the fit that
+//! minimises them.
 
 pub mod block;
+pub mod effect;
 pub mod factor;
 pub mod least_squares;
 pub mod normal;
 pub mod parameters;
 pub mod problem;
-pub mod report;
+mod report;
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
@@ -16,7 +17,7 @@ pub use block::{Block, mean_squares};
 use normal::inverse;
 use parameters::{Coordinate, Parameters};
 pub use problem::{Prior, Problem};
-use report::FitReport;
+pub use report::FitReport;
 
 /// A finished fit.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -32,18 +33,19 @@ pub struct Fit {
     pub cost: f64,
     /// Number of residuals, priors not counted.
     pub residuals: usize,
-    /// Iterations and termination.
+    /// Iterations and termination; stored with the method's result.
+    #[serde(skip)]
     pub report: FitReport,
 }
 
 impl Fit {
-    /// Standard error of a coordinate; `None` where it was not free.
+    /// Standard error of a coordinate; `None` if it was not free.
     pub fn error(&self, coordinate: Coordinate) -> Option<f64> {
         let i = self.free.iter().position(|c| *c == coordinate)?;
         Some(self.covariance[(i, i)].max(0.0).sqrt())
     }
 
-    /// Variance of a coordinate where all others are known; `None` where it was not free.
+    /// Variance of a coordinate if all others are known; `None` if it was not free.
     pub fn conditional_variance(&self, coordinate: Coordinate) -> Option<f64> {
         let i = self.free.iter().position(|c| *c == coordinate)?;
         Some(inverse(&self.covariance)?[(i, i)].recip())
@@ -63,7 +65,10 @@ mod rows {
     use nalgebra::DMatrix;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    pub fn serialize<S: Serializer>(matrix: &DMatrix<f64>, to: S) -> Result<S::Ok, S::Error> {
+    pub(super) fn serialize<S: Serializer>(
+        matrix: &DMatrix<f64>,
+        to: S,
+    ) -> Result<S::Ok, S::Error> {
         let rows: Vec<Vec<f64>> = matrix
             .row_iter()
             .map(|row| row.iter().copied().collect())
@@ -71,7 +76,9 @@ mod rows {
         rows.serialize(to)
     }
 
-    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<DMatrix<f64>, D::Error> {
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        from: D,
+    ) -> Result<DMatrix<f64>, D::Error> {
         let rows: Vec<Vec<f64>> = Deserialize::deserialize(from)?;
         let width = rows.first().map_or(0, Vec::len);
         if rows.iter().any(|row| row.len() != width) {
@@ -95,7 +102,7 @@ pub enum FitError {
     /// The solver itself failed.
     #[error("the solver failed: {0}")]
     Solver(String),
-    /// The slopes are dependent: the data do not tell the coordinates.
-    #[error("the data do not tell the parameters apart")]
+    /// The slopes are dependent: the data do not determine the coordinates.
+    #[error("the data do not separate the parameters")]
     Singular,
 }

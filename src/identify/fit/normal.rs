@@ -35,7 +35,7 @@ impl Normal {
     }
 }
 
-/// Inverse through a scaled Cholesky factor; `None` where numerically singular.
+/// Inverse through a scaled Cholesky factor; `None` if numerically singular.
 pub fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let scale = matrix
         .diagonal()

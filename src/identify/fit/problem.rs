@@ -3,6 +3,8 @@
 //! Of each item only the triangular factor is kept, and the factors are combined in the items' order,
 //! so that the same bytes come out on any number of threads.
 
+use std::collections::BTreeMap;
+
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
@@ -34,7 +36,7 @@ pub struct Problem<'a> {
     pub free: Vec<Coordinate>,
 }
 
-/// Least share of a column of slopes that must stand off the others: differences do not tell less.
+/// Least orthogonal share of a column of slopes: differences do not resolve less.
 const LEAST_SHARE: f64 = 1e-8;
 const LIMITS: Limits = Limits {
     negligible: 1e-4,
@@ -47,8 +49,8 @@ impl Problem<'_> {
     /// Fit from a start.
     ///
     /// # Errors
-    /// [`FitError`] where there is nothing to fit, where observations have no counterpart in the
-    /// model at the start, or where the data do not determine the coordinates.
+    /// [`FitError`] if there is nothing to fit, if observations have no counterpart in the model at the
+    /// start, or if the data do not determine the coordinates.
     pub fn fit(&self, start: Parameters) -> Result<Fit, FitError> {
         let minimum = minimise(self, start, &LIMITS).map_err(|error| {
             let own = error.downcast::<FitError>();
@@ -65,7 +67,7 @@ impl Problem<'_> {
         })
     }
 
-    /// Sum of squared weighted residuals at given parameters; `None` where an item has no model.
+    /// Sum of squared weighted residuals at given parameters; `None` if an item has no model.
     pub fn cost(&self, parameters: &Parameters) -> Option<f64> {
         if !parameters.in_range() {
             return None;
@@ -92,7 +94,7 @@ impl Problem<'_> {
     }
 
     /// Inverse of the information at given parameters, over the items that have a model there;
-    /// `None` where it is singular.
+    /// `None` if it is singular.
     pub fn covariance_at(&self, parameters: &Parameters) -> Option<DMatrix<f64>> {
         self.known_factor(parameters).0.covariance(LEAST_SHARE)
     }
@@ -108,6 +110,30 @@ impl Problem<'_> {
                     .collect()
             })
             .collect()
+    }
+
+    /// Normal equations of the items of each group, by the group's number, over the items that have a
+    /// model; those of the blocks and priors that belong to no group last.
+    pub fn groups(&self, parameters: &Parameters) -> (BTreeMap<usize, Normal>, Normal) {
+        let zeros = || Normal::zeros(self.free.len());
+        let (mut groups, mut rest) = (BTreeMap::new(), zeros());
+        for (block, weight) in &self.blocks {
+            let parts: Vec<Option<Normal>> = (0..block.items())
+                .into_par_iter()
+                .map(|i| self.item_normal(*block, i, *weight, parameters))
+                .collect();
+            for (i, part) in parts.iter().enumerate() {
+                let Some(part) = part else { continue };
+                match block.group(i) {
+                    Some(group) => groups.entry(group).or_insert_with(zeros).add(part),
+                    None => rest.add(part),
+                }
+            }
+        }
+        for prior in &self.priors {
+            rest.add(&self.prior_normal(prior, parameters));
+        }
+        (groups, rest)
     }
 
     /// Normal equations of each block, then those of all priors.
@@ -127,8 +153,8 @@ impl Problem<'_> {
         parts
     }
 
-    /// Least cost with one coordinate held at a value, all others fitted anew from where the
-    /// covariance of a fit expects them; `None` where no fit is found.
+    /// Least cost with one coordinate held at a value, all others fitted again from where the
+    /// covariance of a fit expects them; `None` if no fit is found.
     pub fn cost_with(&self, fit: &Fit, coordinate: Coordinate, value: f64) -> Option<f64> {
         let at = fit.free.iter().position(|c| *c == coordinate)?;
         let step = value - fit.parameters.coordinate(coordinate);
@@ -137,8 +163,8 @@ impl Problem<'_> {
             let share = fit.covariance[(i, at)] / fit.covariance[(at, at)];
             start = start.with(*free, fit.parameters.coordinate(*free) + share * step);
         }
-        // Where the problem is as good as linear, the others already lie where a fit would put
-        // them, up to second order, and the cost is right up to fourth.
+        // If the problem is nearly linear, the others are already at their fitted values up to
+        // second order, and the cost is right up to fourth.
         let linear = step * step / fit.covariance[(at, at)];
         if let Some(cost) = self.cost(&start)
             && (cost - fit.cost - linear).abs() < 0.02 * linear
@@ -163,17 +189,17 @@ impl Problem<'_> {
         let mut total = Factor::empty(self.free.len());
         let mut missing = Vec::new();
         for (b, (block, weight)) in self.blocks.iter().enumerate() {
-            let (places, coordinates) = self.touched(*block);
-            let parts: Vec<Option<Factor>> = (0..block.items())
+            let parts: Vec<Option<(Factor, Vec<usize>)>> = (0..block.items())
                 .into_par_iter()
                 .map(|i| {
+                    let (places, coordinates) = self.touched(*block, i);
                     let (residuals, columns) = block.slopes(i, parameters, &coordinates)?;
-                    Some(Factor::of(&residuals, &columns, *weight))
+                    Some((Factor::of(&residuals, &columns, *weight), places))
                 })
                 .collect();
             for (i, part) in parts.iter().enumerate() {
                 match part {
-                    Some(part) => total.add(part, &places),
+                    Some((part, places)) => total.add(part, places),
                     None => missing.push((b, i)),
                 }
             }
@@ -188,13 +214,13 @@ impl Problem<'_> {
         (total, missing)
     }
 
-    /// Places among the free coordinates, and the coordinates, that a block depends on.
-    fn touched(&self, block: &dyn Block) -> (Vec<usize>, Vec<Coordinate>) {
+    /// Places among the free coordinates, and the coordinates, that an item of a block depends on.
+    fn touched(&self, block: &dyn Block, item: usize) -> (Vec<usize>, Vec<Coordinate>) {
         self.free
             .iter()
             .copied()
             .enumerate()
-            .filter(|(_, c)| block.touches(*c))
+            .filter(|(_, c)| block.item_touches(item, *c))
             .unzip()
     }
 
@@ -205,7 +231,7 @@ impl Problem<'_> {
         weight: f64,
         at: &Parameters,
     ) -> Option<Normal> {
-        let (places, coordinates) = self.touched(block);
+        let (places, coordinates) = self.touched(block, item);
         let (residuals, columns) = block.slopes(item, at, &coordinates)?;
         let mut normal = Normal::zeros(self.free.len());
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };

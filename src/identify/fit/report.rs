@@ -8,17 +8,24 @@ use serde::{Deserialize, Serialize};
 /// Iterations and termination of a fit.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct FitReport {
-    /// Cost and damping after each iteration.
-    pub iterations: Vec<Iteration>,
-    /// How often the cost was evaluated, trials that were refused included.
+    /// Number of iterations.
+    pub iterations: u64,
+    /// How often the cost was evaluated, refused steps included.
     pub cost_evaluations: u64,
+    /// Sum of squared weighted residuals at the end.
+    pub cost: f64,
+    /// Damping at the end, as a share of the information.
+    pub damping: f64,
     /// Why the solver ended.
     #[serde(with = "Termination")]
     pub termination: TerminationReason,
+    /// The iterations one by one; not stored.
+    #[serde(skip)]
+    pub trace: Vec<Iteration>,
 }
 
 /// One iteration.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Iteration {
     /// Sum of squared weighted residuals after it.
     pub cost: f64,
@@ -39,11 +46,17 @@ impl FitReport {
 /// One line: iterations, cost, damping and the reason of the termination.
 impl fmt::Display for FitReport {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{} iterations", self.iterations.len())?;
-        if let Some(Iteration { cost, damping }) = self.iterations.last() {
-            write!(f, ", cost {cost:.6}, damping {damping:.1e}")?;
-        }
-        write!(f, ": {}", self.termination.text())
+        let Self {
+            iterations,
+            cost,
+            damping,
+            ..
+        } = self;
+        let reason = self.termination.text();
+        write!(
+            f,
+            "{iterations} iterations, cost {cost:.6}, damping {damping:.1e}: {reason}"
+        )
     }
 }
 
@@ -57,4 +70,27 @@ enum Termination {
     SolverConverged,
     Timeout,
     SolverExit(String),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_a_report_is_stored_with_its_reason() {
+        let report = FitReport {
+            iterations: 3,
+            cost_evaluations: 5,
+            cost: 2.5,
+            damping: 1e-4,
+            termination: TerminationReason::SolverConverged,
+            trace: Vec::new(),
+        };
+        let stored = serde_json::to_value(&report).unwrap();
+        assert_eq!(stored["termination"], "solver_converged");
+        assert_eq!(serde_json::from_value::<FitReport>(stored).unwrap(), report);
+        assert!(report.converged());
+        let line = "3 iterations, cost 2.500000, damping 1.0e-4: Solver converged";
+        assert_eq!(report.to_string(), line);
+    }
 }

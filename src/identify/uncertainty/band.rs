@@ -59,8 +59,8 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
+    use crate::identify::fit::FitReport;
     use crate::identify::fit::parameters::Parameters;
-    use crate::identify::fit::report::FitReport;
 
     #[test]
     fn valid_the_band_of_r_and_beta_themselves_is_their_interval() {

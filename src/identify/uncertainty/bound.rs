@@ -12,7 +12,8 @@ use nalgebra::DMatrix;
 use crate::identify::evidence::{Blocks, Evidence, Nominal};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Prior, Problem};
-use crate::identify::joint::Method;
+use crate::identify::joint;
+use crate::identify::method::Method;
 use crate::identify::methods::wide_priors;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 
@@ -43,7 +44,7 @@ impl Bound {
 /// Bounds of every method on the evidence, `joint` among them, at given parameters.
 pub fn bounds(evidence: &Evidence, at: &Parameters) -> BTreeMap<String, Bound> {
     let mut blocks = Blocks::with_noise_alone(evidence);
-    blocks.trajectory.find_shared_errors(at);
+    blocks.trajectory.find_changes(at);
     let blocks = blocks;
     use Method::{Boundaries, Flights, Impacts, Resonance, Trajectories};
     let methods: [(&str, &[Method]); 6] = [
@@ -73,7 +74,7 @@ pub fn bounds(evidence: &Evidence, at: &Parameters) -> BTreeMap<String, Bound> {
 fn bound(blocks: &Blocks, methods: &[Method], nominal: &Nominal, at: &Parameters) -> Option<Bound> {
     let list: Vec<(&dyn Block, f64)> = methods
         .iter()
-        .map(|method| method.block(blocks))
+        .filter_map(|method| joint::block(*method, blocks))
         .filter(|block| block.items() > 0)
         .map(|block| (block, 1.0))
         .collect();

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::uncertainty::bound::Bound;
-use crate::identify::{MethodResult, ParameterSet, Status};
+use crate::identify::{Method, MethodResult, ParameterSet, Status};
 
 /// How one parameter came out of one method over all campaigns. Errors of R are absolute, those
 /// of the others relative.
@@ -53,12 +53,12 @@ impl Trial {
     pub fn new(
         truth: Parameters,
         joint: &MethodResult,
-        methods: &BTreeMap<String, MethodResult>,
+        methods: &BTreeMap<Method, MethodResult>,
         bounds: BTreeMap<String, Bound>,
     ) -> Self {
         let mut estimates: BTreeMap<String, ParameterSet> = methods
             .iter()
-            .map(|(name, m)| (name.clone(), m.parameters.clone()))
+            .map(|(method, m)| (method.name().to_owned(), m.parameters.clone()))
             .collect();
         estimates.insert("joint".into(), joint.parameters.clone());
         Self {

@@ -5,8 +5,13 @@
 
 pub mod band;
 pub mod bound;
+pub mod budget;
 pub mod coverage;
+mod options;
 pub mod posterior;
+pub mod scatter;
+
+pub use options::{IntervalMethod, UncertaintyOptions};
 
 use std::collections::BTreeMap;
 
@@ -19,46 +24,15 @@ use serde::{Deserialize, Serialize};
 use crate::identify::fit::normal::{Normal, inverse};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::fit::{Fit, Problem};
-
-/// How intervals are found beside the covariance.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Way {
-    /// The covariance at the optimum alone.
-    Covariance,
-    /// Profile likelihood of each parameter.
-    #[default]
-    Profile,
-    /// Bootstrap over records.
-    Bootstrap,
-}
-
-/// What is asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Asked {
-    /// The way.
-    pub way: Way,
-    /// Replicas of a bootstrap.
-    pub replicas: usize,
-    /// Seed of everything random.
-    pub seed: u64,
-}
-
-impl Default for Asked {
-    fn default() -> Self {
-        Self {
-            way: Way::default(),
-            replicas: 1000,
-            seed: 1,
-        }
-    }
-}
+use crate::identify::method::Method;
+use crate::identify::uncertainty::budget::Budget;
+use crate::identify::uncertainty::scatter::Scatter;
 
 /// Likelihood of one parameter with all others fitted anew at each of its values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ProfileCurve {
-    /// The parameter's name, with its unit.
-    pub parameter: String,
+    /// The parameter.
+    pub parameter: Coordinate,
     /// Its values, SI, ascending.
     pub values: Vec<f64>,
     /// Rise of χ² over its least value.
@@ -70,8 +44,8 @@ pub struct ProfileCurve {
 /// What a bootstrap over records gives for one parameter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Bootstrapped {
-    /// The parameter's name, with its unit.
-    pub parameter: String,
+    /// The parameter.
+    pub parameter: Coordinate,
     /// Standard deviation over the replicas, SI.
     pub standard_error: f64,
     /// 2.5 and 97.5 percentiles over the replicas, SI.
@@ -83,13 +57,30 @@ pub struct Bootstrapped {
 pub struct Uncertainty {
     /// Share of each method (and of `stated`, the laboratory's own knowledge of its instruments) in
     /// what is known of each parameter; the shares of a parameter add up to 1.
-    pub information_share: BTreeMap<String, BTreeMap<String, f64>>,
+    pub information_share: BTreeMap<Coordinate, BTreeMap<InformationSource, f64>>,
+    /// The sources of the joint estimate's uncertainty, and what they amount to.
+    #[serde(default)]
+    pub budget: Budget,
+    /// Scatter between groups of records beyond noise and what is stated.
+    #[serde(default)]
+    pub scatter: Scatter,
     /// Profile likelihoods, where asked for.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub profiles: Vec<ProfileCurve>,
     /// Bootstrap, where asked for.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub bootstrap: Vec<Bootstrapped>,
+}
+
+/// What tells something of the parameters: a method, or the laboratory's own statements.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum InformationSource {
+    /// What the laboratory states of its instruments.
+    Stated,
+    /// A method's observations.
+    #[serde(untagged)]
+    Method(Method),
 }
 
 /// 95 % point of χ² with one degree of freedom.
@@ -99,54 +90,54 @@ const OFFSETS: [f64; 12] = [
     -3.0, -2.5, -2.0, -1.5, -1.0, -0.5, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0,
 ];
 
-/// All that is asked for, about a joint fit; `names` are those of the problem's blocks.
+/// All that is asked for, about a joint fit; `methods` are those of the problem's blocks.
 pub fn uncertainty(
     problem: &Problem<'_>,
-    names: &[&str],
+    methods: &[Method],
     fit: &Fit,
     factor: f64,
-    asked: &Asked,
+    options: &UncertaintyOptions,
 ) -> Uncertainty {
     let told: Vec<Coordinate> = Coordinate::PHYSICAL
         .into_iter()
         .filter(|c| fit.free.contains(c))
         .collect();
     Uncertainty {
-        information_share: shares(problem, names, fit, &told),
-        profiles: match asked.way {
-            Way::Profile => told
+        information_share: shares(problem, methods, fit, &told),
+        profiles: match options.intervals {
+            IntervalMethod::Profile => told
                 .iter()
                 .filter_map(|c| profile(problem, fit, factor, *c))
                 .collect(),
             _ => Vec::new(),
         },
-        bootstrap: match asked.way {
-            Way::Bootstrap => bootstrap(problem, fit, asked, &told),
+        bootstrap: match options.intervals {
+            IntervalMethod::Bootstrap => bootstrap(problem, fit, options, &told),
             _ => Vec::new(),
         },
+        ..Uncertainty::default()
     }
 }
 
 /// Share of each block in the information on each coordinate: (C F C)ᵢᵢ/Cᵢᵢ with the block's F.
 fn shares(
     problem: &Problem<'_>,
-    names: &[&str],
+    methods: &[Method],
     fit: &Fit,
     told: &[Coordinate],
-) -> BTreeMap<String, BTreeMap<String, f64>> {
-    let mut all: BTreeMap<String, BTreeMap<String, f64>> = BTreeMap::new();
+) -> BTreeMap<Coordinate, BTreeMap<InformationSource, f64>> {
+    let mut all: BTreeMap<Coordinate, BTreeMap<InformationSource, f64>> = BTreeMap::new();
     let parts = problem.parts(&fit.parameters);
-    let stated = std::iter::once("stated");
-    for (name, part) in names.iter().copied().chain(stated).zip(&parts) {
+    let methods = methods.iter().copied().map(InformationSource::Method);
+    let sources = methods.chain([InformationSource::Stated]);
+    for (source, part) in sources.zip(&parts) {
         let spread = &fit.covariance * &part.matrix * &fit.covariance;
         for coordinate in told {
             let Some(i) = fit.free.iter().position(|c| c == coordinate) else {
                 continue;
             };
             let share = spread[(i, i)] / fit.covariance[(i, i)];
-            all.entry(coordinate.name().into())
-                .or_default()
-                .insert(name.into(), share);
+            all.entry(*coordinate).or_default().insert(source, share);
         }
     }
     all
@@ -181,7 +172,7 @@ fn profile(
     let above: Vec<(f64, f64)> = points.iter().filter(|p| p.0 >= best).copied().collect();
     let ends = reaches(&below).zip(reaches(&above));
     Some(ProfileCurve {
-        parameter: coordinate.name().into(),
+        parameter: coordinate,
         values: points.iter().map(|p| physical(p.0)).collect(),
         delta_chi2: points.iter().map(|p| p.1.max(0.0)).collect(),
         interval95: ends.map(|(a, b)| [physical(a), physical(b)]),
@@ -203,13 +194,13 @@ fn reaches(points: &[(f64, f64)]) -> Option<f64> {
 fn bootstrap(
     problem: &Problem<'_>,
     fit: &Fit,
-    asked: &Asked,
+    options: &UncertaintyOptions,
     told: &[Coordinate],
 ) -> Vec<Bootstrapped> {
     let blocks = problem.item_parts(&fit.parameters);
-    let replicas: Vec<Vec<f64>> = (0..asked.replicas as u64)
+    let replicas: Vec<Vec<f64>> = (0..options.replicas as u64)
         .into_par_iter()
-        .filter_map(|i| replica(problem, fit, &blocks, (asked.seed, i)))
+        .filter_map(|i| replica(problem, fit, &blocks, (options.seed, i)))
         .collect();
     told.iter()
         .filter_map(|coordinate| {
@@ -260,7 +251,7 @@ fn summary(coordinate: Coordinate, sorted: &[f64]) -> Option<Bootstrapped> {
         .map(|v| physical(*v) - physical(mean))
         .collect();
     Some(Bootstrapped {
-        parameter: coordinate.name().into(),
+        parameter: coordinate,
         standard_error: crate::signal::robust::rms(&apart),
         interval95: [physical(at(0.025)?), physical(at(0.975)?)],
     })

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::identify::evidence::boundary::{BoundaryBlock, bracket_probability, predicted_hz};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::motion::bracket::Bracket;
+use crate::motion::Bracket;
 
 /// What brackets say of R and x_st.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -171,4 +171,62 @@ fn summed_over_scales(places: &[(&Bracket, f64)]) -> f64 {
     let logs: Vec<f64> = EARLY_SCALES.iter().map(of_scale).collect();
     let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     most + logs.iter().map(|l| (l - most).exp()).sum::<f64>().ln()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_moments_of_three_weights() {
+        // weights 1, 2, 1 at 0, 1, 2: mean 1, variance (1·1 + 2·0 + 1·1)/4 = 1/2
+        let (mean, deviation) = moments(&[0.0, 1.0, 2.0], &[1.0, 2.0, 1.0]);
+        assert!((mean - 1.0).abs() < 1e-15 && (deviation - 0.5f64.sqrt()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn valid_quantiles_of_an_even_density_are_those_of_a_line() {
+        // ten cells of width 0.1 about 0.05, 0.15 … 0.95: the density is even over 0 to 1
+        let grid: Vec<f64> = (0..10).map(|i| 0.05 + 0.1 * f64::from(i)).collect();
+        for share in [0.025, 0.31, 0.5, 0.975] {
+            let found = quantile(&grid, &[1.0; 10], share);
+            assert!((found - share).abs() < 1e-12, "{share} {found}");
+        }
+    }
+
+    #[test]
+    fn valid_a_normal_likelihood_gives_back_its_mean_and_deviation() {
+        // R 0.8 ± 0.02 and ln x_st without information: its own prior, a normal one, comes back
+        let grid: Vec<f64> = (0..FINE).map(|i| 0.7 + 0.2 * i as f64 / 60.0).collect();
+        let cells: Vec<Vec<f64>> = grid
+            .iter()
+            .map(|r| {
+                let of_r = -0.5 * ((r - 0.8) / 0.02).powi(2);
+                let nodes = DEFLECTION_NODES.iter();
+                nodes.map(|node| of_r - 0.5 * node * node).collect()
+            })
+            .collect();
+        let found = summed(&grid, &cells, (-7.0, 0.1));
+        let (mean, deviation) = found.restitution;
+        assert!(
+            (mean - 0.8).abs() < 1e-9 && (deviation - 0.02).abs() < 1e-4,
+            "{found:?}"
+        );
+        let [low, high] = found.interval95;
+        assert!((low - 0.8 + 0.0392).abs() < 5e-4 && (high - 0.8 - 0.0392).abs() < 5e-4);
+        assert!((found.ln_deflection.0 + 7.0).abs() < 1e-9);
+        assert!((found.ln_deflection.1 - 0.1).abs() < 0.004, "{found:?}");
+    }
+
+    #[test]
+    fn the_support_of_a_narrow_likelihood_is_found_and_kept() {
+        let at = |r: f64| -0.5 * ((r - 0.613) / 1e-3).powi(2);
+        let (low, high) = support(&at);
+        // 4.24 deviations are negligible (9 below the greatest)
+        assert!(
+            low < 0.613 - 4.2e-3 && high > 0.613 + 4.2e-3,
+            "{low} {high}"
+        );
+        assert!(high - low < 0.05, "{low} {high}");
+    }
 }

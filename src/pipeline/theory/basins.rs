@@ -2,18 +2,19 @@
 
 use super::plan::BasinPlan;
 use super::table::Table;
-use super::{Desk, StudyError};
+use super::{StudyContext, StudyError};
+use crate::compare::RegionMap;
 use crate::motion::Motion;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 use crate::report::theory::basins::draw;
 use impact_oscillator::atlas::basins::{Basins, basin_rows};
-use impact_oscillator::atlas::map::{CellMotion, MapSettings, even};
-use impact_oscillator::model::{Machine, Restitution};
+use impact_oscillator::atlas::map::even;
+use impact_oscillator::{Machine, MapSettings, Restitution, SettledMotion};
 
 /// Rows of a block.
 const BLOCK: usize = 8;
 
-/// Settle every start and leave everything.
+/// Settle every start and write table and figure.
 ///
 /// # Errors
 /// [`StudyError`] where a parameter is out of range or an output cannot be written.
@@ -21,7 +22,7 @@ pub fn run(
     machine: &Machine,
     name: &str,
     plan: &BasinPlan,
-    desk: &Desk<'_>,
+    context: &StudyContext<'_>,
 ) -> Result<(), StudyError> {
     let machine = match plan.restitution {
         Some(r) => machine.clone().with_restitution(Restitution::Constant(r)),
@@ -30,15 +31,27 @@ pub fn run(
     let basins = Basins {
         x: even(plan.grid.x),
         vx: even(plan.grid.vx),
-        cells: cells(&machine, name, plan, desk)?,
+        cells: cells(&machine, name, plan, context)?,
     };
-    desk.table(name, &table(&basins))?;
-    (desk.say)(&shares(name, &basins));
+    context.table(name, &table(&basins))?;
+    (context.inform)(&shares(name, &basins));
     let title = format!("Basins of attraction at {}", setting(plan));
-    match draw(&basins, name, &title, Speech::default()) {
-        Some(figure) => desk.figure(&figure),
+    match draw(&motions(&basins), name, &title, Locale::default()) {
+        Some(figure) => context.figure(&figure),
         None => Ok(()),
     }
+}
+
+/// The motion to which each start leads.
+fn motions(basins: &Basins) -> RegionMap {
+    let motion = |cell: &Option<SettledMotion>| match cell {
+        Some(motion) => Motion::from(*motion),
+        None => Motion::Undetermined {
+            reason: "starts beyond the contact".into(),
+        },
+    };
+    let cells: Vec<Motion> = basins.cells.iter().map(motion).collect();
+    RegionMap::new(basins.x.clone(), basins.vx.clone(), &cells, &[])
 }
 
 fn setting(plan: &BasinPlan) -> String {
@@ -53,8 +66,8 @@ fn cells(
     machine: &Machine,
     name: &str,
     plan: &BasinPlan,
-    desk: &Desk<'_>,
-) -> Result<Vec<Option<CellMotion>>, StudyError> {
+    context: &StudyContext<'_>,
+) -> Result<Vec<Option<SettledMotion>>, StudyError> {
     let settings = MapSettings {
         watch: plan.watch,
         ..MapSettings::default()
@@ -63,24 +76,19 @@ fn cells(
     let mut cells = Vec::with_capacity(rows * plan.grid.x.2);
     for first in (0..rows).step_by(BLOCK) {
         let last = (first + BLOCK).min(rows);
-        let block = format!("{name} rows {first}");
-        let found: Vec<Option<CellMotion>> = match desk.kept.load(&block) {
-            Some(found) => found,
-            None => {
-                let found = basin_rows(machine, plan.setting, &plan.grid, &settings, first..last)
-                    .map_err(StudyError::of(name))?;
-                desk.kept.save(&block, &found)?;
-                found
-            }
-        };
+        let found: Vec<Option<SettledMotion>> =
+            context.blocks.block(&format!("{name} rows {first}"), || {
+                basin_rows(machine, plan.setting, &plan.grid, &settings, first..last)
+                    .map_err(StudyError::of(name))
+            })?;
         cells.extend(found);
-        (desk.progress)(last as u64, rows as u64);
+        (context.progress)(last as u64, rows as u64);
     }
     Ok(cells)
 }
 
-fn label(cell: &Option<CellMotion>) -> String {
-    cell.map_or("beyond contact".into(), |m| Motion::from(m).label())
+fn label(cell: &Option<SettledMotion>) -> String {
+    cell.map_or("beyond contact".into(), SettledMotion::label)
 }
 
 fn table(b: &Basins) -> Table {

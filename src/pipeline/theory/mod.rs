@@ -1,24 +1,23 @@
-//! Studies of the theory: small TOML files that say what to simulate, and what each leaves:
-//! tables as CSV and Parquet, a figure as SVG, PNG and PDF.
+//! Studies of the theory: small TOML files that list what to simulate. Each writes tables as CSV
+//! and Parquet, and a figure as SVG, PNG and PDF.
 
 pub mod basins;
-pub mod kept;
+pub mod block_cache;
 pub mod plan;
 pub mod regions;
 pub mod sweep;
-pub mod table;
 pub mod time_series;
 
 use std::path::Path;
 
+use crate::pipeline::table::{self, Table};
 use crate::report::ReportError;
 use crate::report::figures::Figure;
 use crate::report::picture::pictures;
+use block_cache::BlockCache;
 use impact_oscillator::model::ModelError;
-use kept::Kept;
 use labfiles::output::{OutputError, write_bytes};
 pub use plan::Study;
-use table::Table;
 
 /// Why a study stopped.
 #[derive(Debug, thiserror::Error)]
@@ -39,7 +38,7 @@ pub enum StudyError {
     Table {
         /// Which table.
         table: String,
-        /// What the library said.
+        /// The library's message.
         reason: String,
     },
     /// A figure could not be drawn.
@@ -67,30 +66,30 @@ impl StudyError {
     }
 }
 
-/// Where a piece of work leaves its results, and what it tells on the way.
-pub struct Desk<'a> {
+/// Where a piece of work writes its results, and to whom it reports.
+pub struct StudyContext<'a> {
     /// The folder.
     pub folder: &'a Path,
-    /// Blocks of an earlier run that was broken off.
-    pub kept: &'a Kept,
-    /// Told the steps done and the steps in all.
+    /// Blocks of an earlier, interrupted run.
+    pub blocks: &'a BlockCache,
+    /// Receives the steps done and the number of steps.
     pub progress: &'a (dyn Fn(u64, u64) + Sync),
-    /// Told what is worth saying.
-    pub say: &'a (dyn Fn(&str) + Sync),
+    /// Receives messages for the user.
+    pub inform: &'a (dyn Fn(&str) + Sync),
 }
 
-impl Desk<'_> {
-    /// Leave a table as `NAME.csv` and `NAME.parquet`.
+impl StudyContext<'_> {
+    /// Write a table as `NAME.csv` and `NAME.parquet`.
     fn table(&self, name: &str, table: &Table) -> Result<(), StudyError> {
         self.bytes(&format!("{name}.csv"), table.csv().as_bytes())?;
-        let parquet = table.parquet().map_err(|reason| StudyError::Table {
+        let parquet = table.parquet().map_err(|e| StudyError::Table {
             table: name.to_owned(),
-            reason,
+            reason: e.to_string(),
         })?;
         self.bytes(&format!("{name}.parquet"), &parquet)
     }
 
-    /// Leave a figure as SVG, PNG and PDF.
+    /// Write a figure as SVG, PNG and PDF.
     fn figure(&self, figure: &Figure) -> Result<(), StudyError> {
         for (name, bytes) in pictures(figure)? {
             self.bytes(&name, &bytes)?;
@@ -104,24 +103,24 @@ impl Desk<'_> {
     }
 }
 
-/// Do everything that a study asks for.
+/// Do all the work of a study.
 ///
 /// # Errors
 /// [`StudyError`] with the first piece of work that could not be done.
-pub fn run(study: &Study, desk: &Desk<'_>) -> Result<(), StudyError> {
+pub fn run(study: &Study, context: &StudyContext<'_>) -> Result<(), StudyError> {
     let machine = study.machine();
     machine.check().map_err(StudyError::of("machine"))?;
     for (name, plan) in &study.time_series {
-        time_series::run(&machine, name, plan, desk)?;
+        time_series::run(&machine, name, plan, context)?;
     }
     for (name, plan) in &study.sweep {
-        sweep::run(&machine, name, plan, desk)?;
+        sweep::run(&machine, name, plan, context)?;
     }
     for (name, plan) in &study.basins {
-        basins::run(&machine, name, plan, desk)?;
+        basins::run(&machine, name, plan, context)?;
     }
     for (name, plan) in &study.regions {
-        regions::run(&machine, name, plan, desk)?;
+        regions::run(&machine, name, plan, context)?;
     }
     Ok(())
 }

@@ -4,14 +4,12 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use impact_oscillator::atlas::basins::BasinGrid;
-use impact_oscillator::atlas::map::{MapGrid, MapSettings};
 use impact_oscillator::atlas::portrait::PortraitPlan;
-use impact_oscillator::atlas::regions::AtlasSettings;
+use impact_oscillator::atlas::{AtlasSettings, BasinGrid, MapGrid, MapSettings};
 use impact_oscillator::model::params::Asymmetry;
 use impact_oscillator::model::{Initial, Machine, Restitution, Setting, Watch};
 
-/// A study: a machine and what is to be computed of it, each piece by its name.
+/// A study: a machine and the pieces of work to compute of it, each by its name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Study {
@@ -47,7 +45,7 @@ pub struct Study {
 pub enum Law {
     /// The same at every speed.
     Constant(f64),
-    /// By the closing speed.
+    /// By the approach speed.
     Law(Restitution),
 }
 
@@ -103,9 +101,9 @@ pub struct RegionsPlan {
     pub eta: (f64, f64, usize),
     /// First and last ρ, number of rows.
     pub rho: (f64, f64, usize),
-    /// Most impacts in a period of the motion.
+    /// Greatest number of impacts in a period of the motion.
     pub largest_p: u32,
-    /// Most drive periods in a period of the motion.
+    /// Greatest number of drive periods in a period of the motion.
     pub largest_n: u32,
     /// How the brute-force maps are marched.
     #[serde(default)]
@@ -158,7 +156,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn prop_a_study_survives_being_written_and_read() {
+    fn a_study_is_the_same_after_writing_and_reading() {
         let mut study = Study::empty("R(v)", 0.07, Law::Law(Restitution::Table(vec![(0.0, 0.9)])));
         study.asymmetry.mass = 1.1;
         let plan = SweepPlan {

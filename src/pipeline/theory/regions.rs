@@ -5,24 +5,23 @@ use serde_json::json;
 
 use super::plan::RegionsPlan;
 use super::table::Table;
-use super::{Desk, StudyError};
+use super::{StudyContext, StudyError};
+use crate::compare::RegionMap;
 use crate::motion::Motion;
-use crate::report::speech::Speech;
-use crate::report::theory::regions::{Plane, draw};
-use impact_oscillator::atlas::agreement::Cause;
-use impact_oscillator::atlas::brute::{Maps, brute_maps};
+use crate::report::locale::Locale;
+use crate::report::theory::regions as figure;
 use impact_oscillator::atlas::curves::{Curve, CurvePoint};
-use impact_oscillator::atlas::map::{CellMotion, MapGrid};
-use impact_oscillator::atlas::regions::{Atlas, Slice, assemble, columns};
+use impact_oscillator::atlas::regions::{assemble, columns};
 use impact_oscillator::atlas::shard::AtlasRequest;
-use impact_oscillator::model::Machine;
+use impact_oscillator::atlas::{Atlas, Cause, MapGrid, Maps, Slice, brute_maps};
+use impact_oscillator::{Machine, SettledMotion, periodic_label};
 
 /// Columns of a block.
 const BLOCK: usize = 16;
-/// Differing cells told one by one.
-const TOLD: usize = 20;
+/// Differing cells printed one by one.
+const PRINTED: usize = 20;
 
-/// Compute the regions and leave everything.
+/// Compute the regions and write tables and figure.
 ///
 /// # Errors
 /// [`StudyError`] where a parameter is out of range or an output cannot be written.
@@ -30,56 +29,64 @@ pub fn run(
     machine: &Machine,
     name: &str,
     plan: &RegionsPlan,
-    desk: &Desk<'_>,
+    context: &StudyContext<'_>,
 ) -> Result<(), StudyError> {
     let request = AtlasRequest::new(machine.clone(), plan.settings());
-    let block = format!("{name} maps");
-    let maps: Maps = match desk.kept.load(&block) {
-        Some(maps) => maps,
-        None => {
-            let maps = brute_maps(machine, &request.settings.grid, &request.settings.map)
-                .map_err(StudyError::of(name))?;
-            desk.kept.save(&block, &maps)?;
-            maps
-        }
-    };
-    leave(&request, &maps, name, desk)
+    let maps: Maps = context.blocks.block(&format!("{name} maps"), || {
+        brute_maps(machine, &request.settings.grid, &request.settings.map)
+            .map_err(StudyError::of(name))
+    })?;
+    write_atlas(&request, &maps, name, context)
 }
 
-/// From the maps on: follow every motion, compare, and leave everything.
+/// From the maps on: follow every motion, compare, and write tables and figure.
 ///
 /// # Errors
 /// [`StudyError`] where an output cannot be written.
-pub fn leave(
+pub fn write_atlas(
     request: &AtlasRequest,
     maps: &Maps,
     name: &str,
-    desk: &Desk<'_>,
+    context: &StudyContext<'_>,
 ) -> Result<(), StudyError> {
-    let slices = all_columns(request, maps, name, desk)?;
+    let slices = all_columns(request, maps, name, context)?;
     let (machine, settings) = (&request.machine, &request.settings);
     let atlas = assemble(machine, settings, maps, slices);
-    tell(&atlas, desk);
-    desk.table(&format!("{name}-curves"), &curves(&atlas.curves))?;
-    desk.table(&format!("{name}-map"), &map(&settings.grid, &atlas.maps))?;
+    report_agreement(&atlas, context);
+    context.table(&format!("{name}-curves"), &curves(&atlas.curves))?;
+    context.table(&format!("{name}-map"), &map(&settings.grid, &atlas.maps))?;
     let summary = json!({
         "version": env!("CARGO_PKG_VERSION"),
         "machine": machine,
         "settings": settings,
         "agreement": atlas.agreement,
     });
-    desk.bytes(&format!("{name}.json"), format!("{summary:#}\n").as_bytes())?;
+    context.bytes(&format!("{name}.json"), format!("{summary:#}\n").as_bytes())?;
     let second = atlas.other_motions(&settings.grid);
-    let plane = Plane {
-        grid: &settings.grid,
-        first: &atlas.maps[0],
-        second: &second,
-        curves: &atlas.curves,
+    let motions = |cells: &[SettledMotion]| -> Vec<Motion> {
+        cells.iter().map(|cell| Motion::from(*cell)).collect()
     };
+    let grid = settings.grid.clone();
+    let map = RegionMap::new(
+        grid.eta,
+        grid.rho,
+        &motions(&atlas.maps[0]),
+        &motions(&second),
+    );
+    let drawn: Vec<figure::Curve> = atlas.curves.iter().map(drawn).collect();
     let title = "Regions of existence and stability of all motions";
-    match draw(&plane, name, title, Speech::default()) {
-        Some(figure) => desk.figure(&figure),
+    match figure::draw((&map, &drawn), name, title, Locale::default()) {
+        Some(figure) => context.figure(&figure),
         None => Ok(()),
+    }
+}
+
+/// What the figure shows of a boundary.
+fn drawn(curve: &Curve) -> figure::Curve {
+    figure::Curve {
+        kind: curve.kind.name().to_owned(),
+        minor: curve.p > 1 || curve.n > 5,
+        points: curve.points.iter().map(|p| (p.eta, p.rho)).collect(),
     }
 }
 
@@ -87,31 +94,29 @@ fn all_columns(
     request: &AtlasRequest,
     maps: &Maps,
     name: &str,
-    desk: &Desk<'_>,
+    context: &StudyContext<'_>,
 ) -> Result<Vec<Vec<Slice>>, StudyError> {
     let count = request.settings.grid.eta.len();
     let mut slices = Vec::with_capacity(count);
     for first in (0..count).step_by(BLOCK) {
         let last = (first + BLOCK).min(count);
-        let block = format!("{name} columns {first}");
-        let found: Vec<Vec<Slice>> = match desk.kept.load(&block) {
-            Some(found) => found,
-            None => {
-                let found = columns(&request.machine, &request.settings, maps, first..last);
-                desk.kept.save(&block, &found)?;
-                found
-            }
-        };
+        let found: Vec<Vec<Slice>> =
+            context
+                .blocks
+                .block(&format!("{name} columns {first}"), || {
+                    let chosen = first..last;
+                    Ok::<_, StudyError>(columns(&request.machine, &request.settings, maps, chosen))
+                })?;
         slices.extend(found);
-        (desk.progress)(last as u64, count as u64);
+        (context.progress)(last as u64, count as u64);
     }
     Ok(slices)
 }
 
 /// How curves and maps agree, as every run prints it.
-fn tell(atlas: &Atlas, desk: &Desk<'_>) {
+fn report_agreement(atlas: &Atlas, context: &StudyContext<'_>) {
     let a = &atlas.agreement;
-    (desk.say)(&format!(
+    (context.inform)(&format!(
         "{} curves; brute force: {} cells compared, {} differ from the curves, {} aperiodic, {} \
          beyond the largest p or n",
         atlas.curves.len(),
@@ -121,19 +126,19 @@ fn tell(atlas: &Atlas, desk: &Desk<'_>) {
         a.beyond
     ));
     if atlas.resting.is_empty() {
-        (desk.say)("no motion rests in a dead zone here");
+        (context.inform)("no motion rests in a dead zone here");
     }
-    for d in a.differing.iter().take(TOLD) {
-        let (z, way) = (Motion::from(d.motion).label(), d.way.name());
-        (desk.say)(&format!(
+    for d in a.differing.iter().take(PRINTED) {
+        let (z, way) = (d.motion, d.seeding.name());
+        (context.inform)(&format!(
             "  η = {:.4}  ρ = {:.4}  {way}  z = {z}: {}",
             d.eta,
             d.rho,
             why(d.cause)
         ));
     }
-    if a.differing.len() > TOLD {
-        (desk.say)("  … all of them in the JSON file");
+    if a.differing.len() > PRINTED {
+        (context.inform)("  … all of them in the JSON file");
     }
 }
 
@@ -142,14 +147,7 @@ fn why(cause: Cause) -> String {
     match cause {
         Cause::NoRegion => "stable there, the curves miss it".into(),
         Cause::Converges { p, n } => {
-            let (impacts_p, periods_n) = (p, n);
-            let dead_zone = false;
-            let motion = Motion::Periodic {
-                impacts_p,
-                periods_n,
-                dead_zone,
-            };
-            format!("still converging to z = {}", motion.label())
+            format!("still converging to z = {}", periodic_label(p, n, false))
         }
         Cause::Unstable { multiplier } => {
             format!("a transient near an unstable orbit, multiplier {multiplier:.4}")
@@ -164,28 +162,23 @@ fn curves(curves: &[Curve]) -> Table {
         .enumerate()
         .flat_map(|(i, c)| c.points.iter().map(move |p| (i, c, p)))
         .collect();
-    let motion = |c: &Curve| {
-        Motion::Periodic {
-            impacts_p: c.p,
-            periods_n: c.n,
-            dead_zone: c.dead_zone,
-        }
-        .label()
+    let motion = |c: &Curve| match c.p {
+        0 => "0".into(),
+        p => periodic_label(p, c.n, c.dead_zone),
     };
-    let motion = |c: &Curve| if c.p == 0 { "0".into() } else { motion(c) };
     let side = |c: &Curve| if c.upper { "upper" } else { "lower" };
     Table::new()
         .counts("curve", rows.iter().map(|r| r.0))
-        .texts("kind", rows.iter().map(|r| r.1.kind.as_str()))
+        .texts("kind", rows.iter().map(|r| r.1.kind.name()))
         .texts("motion", rows.iter().map(|r| motion(r.1)))
         .texts("side", rows.iter().map(|r| side(r.1)))
         .numbers("eta", rows.iter().map(|r| r.2.eta))
         .numbers("rho", rows.iter().map(|r| r.2.rho))
-        .numbers("closing_speed", rows.iter().map(|r| r.2.closing_speed))
+        .numbers("closing_speed", rows.iter().map(|r| r.2.approach_speed))
 }
 
-fn map(grid: &MapGrid, maps: &[Vec<CellMotion>; 3]) -> Table {
-    let labels = |k: usize| maps[k].iter().map(|m| Motion::from(*m).label());
+fn map(grid: &MapGrid, maps: &[Vec<SettledMotion>; 3]) -> Table {
+    let labels = |k: usize| maps[k].iter().map(|m| m.label());
     Table::new()
         .numbers("eta", (0..grid.len()).map(|i| grid.at(i).0))
         .numbers("rho", (0..grid.len()).map(|i| grid.at(i).1))

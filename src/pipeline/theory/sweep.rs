@@ -6,16 +6,15 @@ use serde::{Deserialize, Serialize};
 
 use super::plan::SweepPlan;
 use super::table::Table;
-use super::{Desk, StudyError};
-use crate::motion::Motion;
-use crate::report::speech::Speech;
-use crate::report::theory::sweep::{Characteristics, draw};
+use super::{StudyContext, StudyError};
+use crate::report::locale::Locale;
+use crate::report::theory::sweep::{Characteristics, Step, draw};
 use impact_oscillator::atlas::map::even;
 use impact_oscillator::atlas::sweep::{Carried, Impactless, LONGEST_LAG, SweepPoint, impactless};
 use impact_oscillator::model::Machine;
 use impact_oscillator::model::simulate::Snapshot;
 
-/// Steps after which a sweep keeps what it has.
+/// Steps after which a sweep saves its points.
 const KEEP_EVERY: usize = 16;
 
 /// A sweep as far as it has come.
@@ -25,7 +24,7 @@ struct Walked {
     at: Option<Snapshot>,
 }
 
-/// Sweep there and back and leave everything.
+/// Sweep there and back and write tables and figure.
 ///
 /// # Errors
 /// [`StudyError`] where a parameter is out of range or an output cannot be written.
@@ -33,7 +32,7 @@ pub fn run(
     machine: &Machine,
     name: &str,
     plan: &SweepPlan,
-    desk: &Desk<'_>,
+    context: &StudyContext<'_>,
 ) -> Result<(), StudyError> {
     let (eta, rho) = (
         even((plan.eta.0, plan.eta.1, plan.steps)),
@@ -43,41 +42,53 @@ pub fn run(
     let back: Vec<(f64, f64)> = steps.iter().rev().copied().collect();
     let (done, all) = (AtomicU64::new(0), 2 * steps.len() as u64);
     let tick = |count: u64| {
-        (desk.progress)(done.fetch_add(count, Ordering::Relaxed) + count, all);
+        (context.progress)(done.fetch_add(count, Ordering::Relaxed) + count, all);
     };
     let walk = |way: &str, steps: &[(f64, f64)]| {
         let walk = Walk {
             machine,
             name,
             plan,
-            desk,
+            context,
         };
         walk.go(way, steps, &tick)
     };
     let (forward, backward) = rayon::join(|| walk("forward", &steps), || walk("backward", &back));
     let (forward, backward) = (forward?, backward?);
     let impactless: Vec<Impactless> = steps.iter().map(|s| impactless(machine, s.0)).collect();
-    desk.table(name, &characteristics(machine, &forward, &backward))?;
-    desk.table(&format!("{name}-impacts"), &impacts(&forward, &backward))?;
+    context.table(name, &characteristics(machine, &forward, &backward))?;
+    context.table(&format!("{name}-impacts"), &impacts(&forward, &backward))?;
     let data = Characteristics {
-        forward: &forward,
-        backward: &backward,
-        impactless: &impactless,
-        two_masses: machine.y.is_some(),
+        forward: forward.iter().map(drawn).collect(),
+        backward: backward.iter().map(drawn).collect(),
+        impactless_x: impactless.iter().map(|i| i.x).collect(),
+        impactless_y: impactless.iter().filter_map(|i| i.y).collect(),
     };
     let title = "Quasi-stationary characteristics";
-    desk.figure(&draw(&data, name, title, Speech::default()))
+    context.figure(&draw(&data, name, title, Locale::default()))
+}
+
+/// What the figure shows of a step.
+fn drawn(p: &SweepPoint) -> Step {
+    Step {
+        eta: p.eta,
+        rho: p.rho,
+        x_max: p.x_max,
+        approach_speeds: p.approach_speeds.clone(),
+        lyapunov: p.lyapunov,
+        autocorrelation: p.autocorrelation.first().copied(),
+    }
 }
 
 struct Walk<'a> {
     machine: &'a Machine,
     name: &'a str,
     plan: &'a SweepPlan,
-    desk: &'a Desk<'a>,
+    context: &'a StudyContext<'a>,
 }
 
 impl Walk<'_> {
-    /// One direction, from where a run that was broken off had come.
+    /// One direction, from where an interrupted run stopped.
     fn go(
         &self,
         way: &str,
@@ -86,7 +97,7 @@ impl Walk<'_> {
     ) -> Result<Vec<SweepPoint>, StudyError> {
         let block = format!("{} {way}", self.name);
         let refused = StudyError::of(self.name);
-        let mut walked: Walked = self.desk.kept.load(&block).unwrap_or_default();
+        let mut walked: Walked = self.context.blocks.load(&block).unwrap_or_default();
         tick(walked.points.len() as u64);
         let Some(&first) = steps.first() else {
             return Ok(Vec::new());
@@ -102,7 +113,7 @@ impl Walk<'_> {
             tick(1);
             if walked.points.len().is_multiple_of(KEEP_EVERY) {
                 walked.at = Some(carried.snapshot());
-                self.desk.kept.save(&block, &walked)?;
+                self.context.blocks.save(&block, &walked)?;
             }
         }
         Ok(walked.points)
@@ -130,15 +141,12 @@ fn characteristics(machine: &Machine, forward: &[SweepPoint], backward: &[SweepP
         .collect();
     let greatest = |v: &[f64]| v.iter().copied().reduce(f64::max);
     let least = |v: &[f64]| v.iter().copied().reduce(f64::min);
-    let speeds = all.clone().map(|(_, p)| &p.closing_speeds);
+    let speeds = all.clone().map(|(_, p)| &p.approach_speeds);
     let mut table = Table::new()
         .texts("direction", all.clone().map(|(way, _)| way))
         .numbers("eta", of(|p| p.eta))
         .numbers("rho", of(|p| p.rho))
-        .texts(
-            "motion",
-            all.clone().map(|(_, p)| Motion::from(p.motion).label()),
-        )
+        .texts("motion", all.clone().map(|(_, p)| p.motion.label()))
         .numbers("x_max", of(|p| p.x_max));
     if machine.y.is_some() {
         table = table.numbers("y_max", of(|p| p.y_max));
@@ -167,7 +175,7 @@ fn characteristics(machine: &Machine, forward: &[SweepPoint], backward: &[SweepP
 /// One row for every impact: one period's of a periodic motion, else the last ones.
 fn impacts(forward: &[SweepPoint], backward: &[SweepPoint]) -> Table {
     let rows: Vec<(Directed<'_>, usize)> = directed(forward, backward)
-        .flat_map(|d| (0..d.1.closing_speeds.len()).map(move |i| (d, i)))
+        .flat_map(|d| (0..d.1.approach_speeds.len()).map(move |i| (d, i)))
         .collect();
     let of = |f: fn(&SweepPoint, usize) -> f64| rows.iter().map(move |((_, p), i)| f(p, *i));
     Table::new()
@@ -175,6 +183,6 @@ fn impacts(forward: &[SweepPoint], backward: &[SweepPoint]) -> Table {
         .numbers("eta", of(|p, _| p.eta))
         .numbers("rho", of(|p, _| p.rho))
         .numbers("phase_rad", of(|p, i| p.phases[i]))
-        .numbers("closing_speed", of(|p, i| p.closing_speeds[i]))
+        .numbers("closing_speed", of(|p, i| p.approach_speeds[i]))
         .numbers("x_velocity_before", of(|p, i| p.x_speeds[i]))
 }

@@ -1,13 +1,13 @@
 //! A motion in full: time series, impacts, Poincaré map, autocorrelation, and their figure.
 
 use super::table::Table;
-use super::{Desk, StudyError};
-use crate::report::speech::Speech;
-use crate::report::theory::motion::draw;
+use super::{StudyContext, StudyError};
+use crate::report::locale::Locale;
+use crate::report::theory::motion as figure;
 use impact_oscillator::atlas::portrait::{Portrait, PortraitPlan, Strike, portrait};
 use impact_oscillator::model::Machine;
 
-/// Simulate and leave everything.
+/// Simulate and write tables and figure.
 ///
 /// # Errors
 /// [`StudyError`] where a parameter is out of range or an output cannot be written.
@@ -15,23 +15,50 @@ pub fn run(
     machine: &Machine,
     name: &str,
     plan: &PortraitPlan,
-    desk: &Desk<'_>,
+    context: &StudyContext<'_>,
 ) -> Result<(), StudyError> {
-    (desk.progress)(0, 2);
+    (context.progress)(0, 2);
     let portrait = portrait(machine, plan).map_err(StudyError::of(name))?;
-    (desk.progress)(1, 2);
-    desk.table(name, &series(&portrait))?;
-    desk.table(&format!("{name}-impacts"), &impacts(&portrait))?;
-    desk.table(&format!("{name}-poincare"), &poincare(&portrait))?;
-    desk.table(
+    (context.progress)(1, 2);
+    context.table(name, &series(&portrait))?;
+    context.table(&format!("{name}-impacts"), &impacts(&portrait))?;
+    context.table(&format!("{name}-poincare"), &poincare(&portrait))?;
+    context.table(
         &format!("{name}-autocorrelation"),
         &autocorrelation(&portrait),
     )?;
     let s = &plan.setting;
     let title = format!("Motion at η = {}, ρ = {}", s.frequency_ratio, s.clearance);
-    desk.figure(&draw(&portrait, name, &title, Speech::default()))?;
-    (desk.progress)(2, 2);
+    let drawn = figure::draw(&drawn(&portrait), name, &title, Locale::default());
+    context.figure(&drawn)?;
+    (context.progress)(2, 2);
     Ok(())
+}
+
+/// What the figure shows of a portrait.
+fn drawn(p: &Portrait) -> figure::Portrait {
+    let samples = p.samples.iter().map(|s| figure::Sample {
+        periods: s.periods,
+        x: s.x,
+        vx: s.vx,
+        y: s.y,
+        vy: s.vy,
+        together: s.sticking,
+    });
+    let impacts = p.impacts.iter().map(|i| figure::Strike {
+        periods: i.periods,
+        x: i.x,
+        speeds: [i.vx_before.zip(i.vy_before), i.vx_after.zip(i.vy_after)],
+    });
+    figure::Portrait {
+        two_masses: p.two_masses,
+        gap: p.gap,
+        samples: samples.collect(),
+        impacts: impacts.collect(),
+        poincare_phase: p.poincare_phase,
+        poincare: p.poincare.iter().map(|s| [s[0], s[1]]).collect(),
+        autocorrelation: p.autocorrelation.clone(),
+    }
 }
 
 fn series(p: &Portrait) -> Table {
@@ -47,7 +74,7 @@ fn series(p: &Portrait) -> Table {
     } else {
         table
     };
-    table.flags("joined", p.samples.iter().map(|s| s.joined))
+    table.flags("joined", p.samples.iter().map(|s| s.sticking))
 }
 
 fn impacts(p: &Portrait) -> Table {
@@ -56,8 +83,8 @@ fn impacts(p: &Portrait) -> Table {
     Table::new()
         .numbers("tau_over_period", of(|i| i.periods))
         .numbers("phase_rad", of(|i| i.phase))
-        .numbers("closing_speed_before", of(|i| i.closing_before))
-        .numbers("closing_speed_after", of(|i| i.closing_after))
+        .numbers("closing_speed_before", of(|i| i.approach_speed))
+        .numbers("closing_speed_after", of(|i| -i.separation_speed))
         .missing("x_velocity_before", maybe(|i| i.vx_before))
         .missing("x_velocity_after", maybe(|i| i.vx_after))
         .missing("y_velocity_before", maybe(|i| i.vy_before))

@@ -1,53 +1,68 @@
-//! What stands under the figures; and which figures the methods' section shows, in order.
+//! Captions, and the figures of the methods' section in their order.
 
-use super::prose::sentence;
-use crate::report::content::{Comparison, ReportContent};
+use crate::compare::Comparison;
+use crate::identify::{Method, MethodResult};
+use crate::motion::Motion;
+use crate::report::content::ReportContent;
 use crate::report::figures::{decays, numbered};
-use crate::report::parameters::{method_name, parameter};
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
+use crate::report::parameters::parameter;
 
 /// A figure's name and its caption.
 type Captioned = (String, String);
 
-/// Groups of figures; those of one group stand side by side where they are narrow.
-pub fn method_figures(content: &ReportContent, speech: Speech) -> Vec<Vec<Captioned>> {
-    let mut groups = vec![narrow(content, speech)];
+/// Groups of figures; narrow ones of one group are side by side.
+pub fn method_figures(content: &ReportContent, locale: Locale) -> Vec<Vec<Captioned>> {
+    let mut groups = vec![narrow(content, locale)];
     let alone = |captioned: Vec<Captioned>| captioned.into_iter().map(|c| vec![c]);
-    groups.extend(alone(impacts(content, speech)));
-    groups.extend(alone(resonance(content, speech)));
-    groups.extend(alone(free_decays(content, speech)));
-    groups.push(vec![profiles(speech)]);
-    groups.extend(alone(residuals(content, speech)));
+    groups.extend(alone(impacts(content, locale)));
+    groups.extend(alone(resonance(content, locale)));
+    groups.extend(alone(free_decays(content, locale)));
+    groups.push(vec![profiles(locale)]);
+    groups.extend(alone(residuals(content, locale)));
     groups
 }
 
-/// What stands under a comparison, with markup.
-pub fn comparison(comparison: &Comparison, speech: Speech) -> String {
-    let mut text = speech.say_with("Point ({letter})", &[("letter", &comparison.letter)]);
-    if comparison.drive_period_s.is_some() {
-        let label = speech.say(&comparison.motion.label());
-        text.push_str(&format!(", $z$ = {label}"));
-    }
+/// The caption of a comparison, with markup.
+pub fn comparison(comparison: &Comparison, locale: Locale) -> String {
+    let letter = comparison.letter.to_string();
+    let mut text = locale.translate_with("Point ({letter})", &[("letter", &letter)]);
+    let label = locale.translate(&comparison.motion.label());
+    text.push_str(&format!(", $z$ = {label}"));
     if let (Some(eta), Some(rho)) = (comparison.eta, comparison.rho) {
-        let (eta, rho) = (speech.fixed(eta, 3), speech.fixed(rho, 3));
+        let (eta, rho) = (locale.fixed(eta, 3), locale.fixed(rho, 3));
         let values = [("eta", eta.as_str()), ("rho", rho.as_str())];
-        text.push_str(&speech.say_with(", at $η$ = {eta}, $ρ$ = {rho}", &values));
+        text.push_str(&locale.translate_with(", at $η$ = {eta}, $ρ$ = {rho}", &values));
     }
     let record = [("record", comparison.record.as_str())];
-    text.push_str(&speech.say_with("; record {record}.", &record));
+    text.push_str(&locale.translate_with("; record {record}.", &record));
     let simulated = comparison.simulated_motion.as_ref();
     if let Some(other) = simulated.filter(|m| **m != comparison.motion) {
-        let label = speech.say(&other.label());
-        let said = speech.say_with("The simulated motion is {motion}.", &[("motion", &label)]);
+        let label = locale.translate(&other.label());
+        let said =
+            locale.translate_with("The simulated motion is {motion}.", &[("motion", &label)]);
         text.push_str(&format!(" {said}"));
     }
-    if !comparison.note.is_empty() {
-        text.push_str(&format!(" {}", speech.say(&comparison.note)));
+    if let Some(note) = note(&comparison.motion, simulated) {
+        text.push_str(&format!(" {}", locale.translate(note)));
     }
     text
 }
 
-fn narrow(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
+/// Why a simulated motion may differ from the measured one.
+fn note(measured: &Motion, simulated: Option<&Motion>) -> Option<&'static str> {
+    let simulated = simulated?;
+    if measured.is_periodic() {
+        let note =
+            "From none of the starts tried does the fitted model settle on the measured motion.";
+        return (simulated != measured).then_some(note);
+    }
+    matches!(measured, Motion::Chaotic | Motion::Beat).then_some(
+        "Two runs of such a motion part from each other: they are alike in kind, not in course.",
+    )
+}
+
+fn narrow(content: &ReportContent, locale: Locale) -> Vec<Captioned> {
     let boundary = "Boundary fit: each bracket, measured less simulated. A bracket that crosses \
                     zero agrees with the fit. Brackets of an upward sweep stand a little above \
                     their clearance, those of a downward sweep below.";
@@ -55,84 +70,103 @@ fn narrow(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
                        tell a combination of the two better than either.";
     let others = "How the quantities that are fitted beside them hang together among themselves is \
                   in correlation.csv.";
-    let shown = content.correlation.as_ref();
-    let beside = shown.is_some_and(|c| c.parameters.iter().any(|p| parameter(p).is_none()));
+    let shown = content.compared.correlation.as_ref();
+    let beside = shown.is_some_and(|c| c.parameters.iter().any(|p| parameter(p.name()).is_none()));
     let correlation = match beside {
-        true => format!("{} {}", speech.say(correlation), speech.say(others)),
-        false => speech.say(correlation),
+        true => format!(
+            "{} {}",
+            locale.translate(correlation),
+            locale.translate(others)
+        ),
+        false => locale.translate(correlation),
     };
     vec![
-        ("boundary_fit".into(), speech.say(boundary)),
+        ("boundary_fit".into(), locale.translate(boundary)),
         ("correlation".into(), correlation),
     ]
 }
 
-/// A caption with what was found, in the reader's words.
-fn with_note(text: &str, note: &str, speech: Speech) -> String {
-    if note.is_empty() {
-        text.to_owned()
-    } else {
-        format!("{text} {}", sentence(&speech.tell(note)))
+/// A caption with the remarks on its method.
+fn with_remarks(text: &str, method: Option<&MethodResult>, locale: Locale) -> String {
+    let remarks = locale.sentences(method.into_iter().flat_map(|m| &m.remarks));
+    match remarks.as_str() {
+        "" => text.to_owned(),
+        remarks => format!("{text} {remarks}"),
     }
 }
 
-fn impacts(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
+fn impacts(content: &ReportContent, locale: Locale) -> Vec<Captioned> {
     let text = "Speeds at impact: speed of parting over speed of closing (left) and their ratio, \
                 the restitution, over the closing speed (right).";
-    let text = speech.say(text);
-    let each = content.impacts.iter().enumerate();
+    let text = locale.translate(text);
+    let id = &content.identification;
+    let each = content.compared.impacts.iter().enumerate();
     each.map(|(i, s)| {
-        let text = match s.name.as_str() {
-            "" => text.clone(),
-            name => format!("{name}. {text}"),
+        let (text, methods) = match &s.specimen {
+            None => (text.clone(), Some(&id.methods)),
+            Some(name) => {
+                let methods = id.specimens.get(name).map(|s| &s.methods);
+                (format!("{name}. {text}"), methods)
+            }
         };
-        (numbered("impacts", i), with_note(&text, &s.note, speech))
+        let method = methods.and_then(|m| m.get(&Method::Impacts));
+        (numbered("impacts", i), with_remarks(&text, method, locale))
     })
     .collect()
 }
 
-fn resonance(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
+fn resonance(content: &ReportContent, locale: Locale) -> Vec<Captioned> {
     let text = "Resonance curve of the motion without impacts, measured and fitted.";
-    let text = speech.say(text);
-    let each = content.resonance.iter().enumerate();
-    each.map(|(i, c)| (numbered("resonance", i), with_note(&text, &c.note, speech)))
+    let text = locale.translate(text);
+    let method = content.identification.methods.get(&Method::Resonance);
+    let text = with_remarks(&text, method, locale);
+    let curves = 0..content.compared.resonance.len();
+    curves
+        .map(|i| (numbered("resonance", i), text.clone()))
         .collect()
 }
 
-fn free_decays(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
-    let each = content.free_decays.chunks(decays::PER_FIGURE).enumerate();
+fn free_decays(content: &ReportContent, locale: Locale) -> Vec<Captioned> {
+    let each = content
+        .compared
+        .free_decays
+        .chunks(decays::PER_FIGURE)
+        .enumerate();
     each.map(|(i, few)| {
-        let notes = few.iter().filter(|d| !d.note.is_empty());
-        let notes: Vec<String> = notes.map(|d| format!("{}: {}", d.record, d.note)).collect();
+        let reasons = few.iter().filter_map(|d| {
+            let why = d.left_out.as_ref()?;
+            Some(format!("{}: {}", decays::title(d), locale.sentence(why)))
+        });
+        let reasons = reasons.collect::<Vec<_>>().join(" ");
         let text = "Free decays (black) and their fits (vermilion), with natural frequency and \
                     damping ratio ± standard error.";
-        (
-            numbered("free_decays", i),
-            with_note(&speech.say(text), &notes.join(" "), speech),
-        )
+        let text = match reasons.as_str() {
+            "" => locale.translate(text),
+            reasons => format!("{} {reasons}", locale.translate(text)),
+        };
+        (numbered("free_decays", i), text)
     })
     .collect()
 }
 
-fn profiles(speech: Speech) -> Captioned {
+fn profiles(locale: Locale) -> Captioned {
     let text = "Profile likelihoods: the rise of $χ$² when one parameter is held and the others \
-                are fitted again. Tinted: 95 % intervals; dashed: the rise of 3.84 that bounds them.";
-    ("profiles".into(), speech.say(text))
+                are fitted again. Tinted: 95 % intervals; dashed: the rise of {rise} that bounds them.";
+    let rise = locale.fixed(3.84, 2);
+    let text = locale.translate_with(text, &[("rise", &rise)]);
+    ("profiles".into(), text)
 }
 
-fn residuals(content: &ReportContent, speech: Speech) -> Vec<Captioned> {
-    let each = content.residuals.iter().enumerate();
+fn residuals(content: &ReportContent, locale: Locale) -> Vec<Captioned> {
+    let each = content.compared.residuals.iter().enumerate();
     each.map(|(i, set)| {
         let text = "{method}, residual diagnostics ({count} residuals over their standard errors): \
                     histogram with the normal curve, autocorrelation with the 95 % band of white \
                     noise, over frequency and over gap.";
-        let method = speech.say(&method_name(&set.method));
-        let count = set.count().to_string();
-        let text = speech.say_with(text, &[("method", &method), ("count", &count)]);
-        (
-            numbered("residuals", i),
-            with_note(&text, &set.note, speech),
-        )
+        let method = locale.message(&set.method);
+        let count = set.total.to_string();
+        let text = locale.translate_with(text, &[("method", &method), ("count", &count)]);
+        (numbered("residuals", i), text)
     })
     .collect()
 }

@@ -1,7 +1,7 @@
-//! The quantities that the report names, as the paper defines them.
+//! The quantities of the report, as the paper defines them.
 
 use super::model::{Definition, Rich};
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// A quantity's definition.
 struct Convention {
@@ -68,12 +68,12 @@ const CONVENTIONS: [Convention; 8] = [
 ];
 
 /// The conventions in the reader's words; without a drive only those that need none.
-pub(super) fn entries(driven: bool, speech: Speech) -> Vec<Definition> {
+pub(super) fn entries(driven: bool, locale: Locale) -> Vec<Definition> {
     let said = CONVENTIONS.iter().filter(|c| driven || !c.driven);
     said.map(|c| Definition {
         formula: c.formula,
         plain: c.plain,
-        meaning: Rich::from(speech.say(c.meaning)),
+        meaning: Rich::from(locale.translate(c.meaning)),
     })
     .collect()
 }

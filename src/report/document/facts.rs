@@ -1,86 +1,99 @@
-//! What the first page says of the measurement: labels and values.
+//! The measurement on the first page: labels and values.
 
 use super::model::Rich;
-use crate::report::content::CampaignSummary;
-use crate::report::speech::Speech;
+use crate::compare::Overview;
+use crate::record::calibrate::ChannelSetup;
+use crate::report::content::{CampaignFacts, NominalValue, ReportContent, Subject};
+use crate::report::locale::Locale;
 
 /// What was measured, when, with what: labels and values, those that are known.
-pub(super) fn facts(summary: &CampaignSummary, speech: Speech) -> Vec<(Rich, Rich)> {
+pub(super) fn facts(content: &ReportContent, locale: Locale) -> Vec<(Rich, Rich)> {
+    let (campaign, overview) = (&content.campaign, &content.compared.overview);
     let mut facts: Vec<(String, String)> = Vec::new();
     let mut add = |label: &str, value: String| {
         if !value.is_empty() {
-            facts.push((speech.say(label), value));
+            facts.push((locale.translate(label), value));
         }
     };
-    add("campaign", summary.name.clone());
-    add("rig", speech.tell(&speech.say(&summary.rig)));
-    add("laboratory", summary.laboratory.clone().unwrap_or_default());
-    add("measured", dates(summary, speech));
-    add("records", records(summary, speech));
-    add("sampling", sampling(summary, speech));
-    add("drive", drive(summary, speech));
-    add("clearances", clearances(summary, speech));
-    add("nominal values", nominal(summary, speech));
-    add("channels", channels(summary, speech));
-    for note in &summary.notes {
-        add("note", speech.tell(note));
-    }
+    add("campaign", campaign.name.clone());
+    add("rig", subject(campaign.subject, locale));
+    add(
+        "laboratory",
+        campaign.laboratory.clone().unwrap_or_default(),
+    );
+    add("measured", dates(campaign, locale));
+    add("records", records(overview, campaign.files, locale));
+    add("sampling", sampling(overview, locale));
+    add("drive", drive(overview, locale));
+    add("clearances", clearances(overview, locale));
+    add("nominal values", nominal(&campaign.nominal, locale));
+    add("channels", channels(&campaign.channels, locale));
     facts
         .into_iter()
-        .map(|(l, v)| (Rich::from(l), Rich::from(v).localised(speech)))
+        .map(|(l, v)| (Rich::from(l), Rich::from(v)))
         .collect()
 }
 
+fn subject(subject: Subject, locale: Locale) -> String {
+    match subject {
+        Subject::TwoMasses => locale.translate("two masses against each other"),
+        Subject::OneMass => locale.translate("one mass against a stop"),
+        Subject::PublishedSpeeds => {
+            locale.translate("approach speeds as published; nothing was measured here")
+        }
+    }
+}
+
 /// When it was measured.
-pub(super) fn dates(summary: &CampaignSummary, speech: Speech) -> String {
-    match &summary.dates {
+pub(super) fn dates(campaign: &CampaignFacts, locale: Locale) -> String {
+    match &campaign.dates {
         Some([first, last]) if first == last => first.clone(),
-        Some([first, last]) => speech.range(first, last),
+        Some([first, last]) => locale.range(first, last),
         None => String::new(),
     }
 }
 
-fn records(summary: &CampaignSummary, speech: Speech) -> String {
-    if summary.records_total == 0 {
+fn records(overview: &Overview, files: usize, locale: Locale) -> String {
+    if overview.records == 0 {
         return String::new();
     }
-    let read = summary.records_total.to_string();
-    let used = summary.records_used.to_string();
-    let mut text = speech.say_with(
+    let read = overview.records.to_string();
+    let used = overview.records_used.to_string();
+    let mut text = locale.translate_with(
         "{read} read, {used} used",
         &[("read", &read), ("used", &used)],
     );
     let mut add = |phrase: &str, count: usize| {
         if count > 0 {
-            text.push_str(&speech.say_with(phrase, &[("count", &count.to_string())]));
+            text.push_str(&locale.translate_with(phrase, &[("count", &count.to_string())]));
         }
     };
-    match summary.files_total {
+    match files {
         1 => add(", from {count} file", 1),
         files => add(", from {count} files", files),
     }
-    add("; {count} impacts detected", summary.impacts_total);
+    add("; {count} impacts detected", overview.impacts);
     text
 }
 
-fn sampling(summary: &CampaignSummary, speech: Speech) -> String {
-    let rate = summary.sample_rate_hz.map(|r| {
+fn sampling(overview: &Overview, locale: Locale) -> String {
+    let rate = overview.sample_rate_hz.map(|r| {
         if r >= 1e3 {
             format!(
                 "{}\u{2009}kHz",
-                speech
+                locale
                     .significant(r / 1e3, 4)
                     .trim_end_matches('0')
                     .trim_end_matches(['.', ','])
             )
         } else {
-            format!("{}\u{2009}Hz", speech.significant(r, 4))
+            format!("{}\u{2009}Hz", locale.significant(r, 4))
         }
     });
-    let length = summary.record_length_s.map(|l| {
-        speech.say_with(
+    let length = overview.record_length_s.map(|l| {
+        locale.translate_with(
             "{length}\u{2009}s a record",
-            &[("length", &speech.significant(l, 3))],
+            &[("length", &locale.significant(l, 3))],
         )
     });
     [rate, length]
@@ -90,21 +103,21 @@ fn sampling(summary: &CampaignSummary, speech: Speech) -> String {
         .join(", ")
 }
 
-fn drive(summary: &CampaignSummary, speech: Speech) -> String {
-    summary
+fn drive(overview: &Overview, locale: Locale) -> String {
+    overview
         .frequency_range_hz
         .map_or(String::new(), |[low, high]| {
-            let (low, high) = (speech.fixed(low, 2), speech.fixed(high, 2));
+            let (low, high) = (locale.fixed(low, 2), locale.fixed(high, 2));
             let values = [("low", low.as_str()), ("high", high.as_str())];
-            speech.say_with("{low} to {high}\u{2009}Hz, as measured", &values)
+            locale.translate_with("{low} to {high}\u{2009}Hz, as measured", &values)
         })
 }
 
-fn clearances(summary: &CampaignSummary, speech: Speech) -> String {
-    let all: Vec<String> = summary
+fn clearances(overview: &Overview, locale: Locale) -> String {
+    let all: Vec<String> = overview
         .clearances_m
         .iter()
-        .map(|r| speech.significant(1e3 * r, 3))
+        .map(|r| locale.significant(1e3 * r, 3))
         .collect();
     match all.as_slice() {
         [] => String::new(),
@@ -113,7 +126,7 @@ fn clearances(summary: &CampaignSummary, speech: Speech) -> String {
         many => {
             let (first, last) = (&many[0], &many[many.len() - 1]);
             let count = many.len().to_string();
-            speech.say_with(
+            locale.translate_with(
                 "{count} values of $r$ from {first} to {last}\u{2009}mm",
                 &[("count", &count), ("first", first), ("last", last)],
             )
@@ -121,22 +134,22 @@ fn clearances(summary: &CampaignSummary, speech: Speech) -> String {
     }
 }
 
-fn nominal(summary: &CampaignSummary, speech: Speech) -> String {
-    let each = summary.nominal.iter().map(|n| {
-        let (value, unit) = match n.unit.as_str() {
+fn nominal(values: &[NominalValue], locale: Locale) -> String {
+    let each = values.iter().map(|n| {
+        let (value, unit) = match n.unit {
             "m" if n.value.abs() < 1.0 => (n.value * 1e3, "mm"),
             unit => (n.value, unit),
         };
         let space = if unit.is_empty() { "" } else { "\u{2009}" };
-        let value = trimmed(&speech.significant(value, 4));
+        let value = trimmed(&locale.significant(value, 4));
         let equals = if n.name.ends_with('$') { " =" } else { "" };
-        let name = speech.say(&n.name);
+        let name = locale.translate(n.name);
         format!("{name}{equals} {value}{space}{unit}")
     });
     each.collect::<Vec<_>>().join(", ")
 }
 
-/// Without zeros at the end that a nominal value does not mean.
+/// Without trailing zeros.
 fn trimmed(number: &str) -> String {
     if number.contains(['.', ',']) && !number.contains('·') {
         number
@@ -148,20 +161,20 @@ fn trimmed(number: &str) -> String {
     }
 }
 
-fn channels(summary: &CampaignSummary, speech: Speech) -> String {
-    let each = summary.channels.iter().map(|c| {
-        let role = speech.say(&c.role.name().replace('_', " "));
-        let unit = if c.unit.is_empty() {
-            String::new()
-        } else {
-            format!(" ({})", c.unit)
+fn channels(channels: &[ChannelSetup], locale: Locale) -> String {
+    let each = channels.iter().map(|c| {
+        let role = locale.translate(&c.role.name().replace('_', " "));
+        let unit = match c.role.dimension().map_or("", |d| d.si_symbol()) {
+            "" => String::new(),
+            unit => format!(" ({unit})"),
         };
         let corner = c.high_pass_hz.map(|f| {
-            let value = [("frequency", &*f.to_string())];
-            speech.say_with("high-pass at {frequency} Hz", &value)
+            let frequency = locale.digits(&f.to_string());
+            let value = [("frequency", frequency.as_str())];
+            locale.translate_with("high-pass at {frequency} Hz", &value)
         });
-        let note = Some(c.note.clone()).filter(|n| !n.is_empty());
-        let parts = [Some(format!("{role}{unit}")), note, corner];
+        let instrument = c.instrument.clone().filter(|i| !i.is_empty());
+        let parts = [Some(format!("{role}{unit}")), instrument, corner];
         parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
     });
     each.collect::<Vec<_>>().join("; ")

@@ -1,46 +1,43 @@
 //! The first page's data: the verdict, the answer, the agreement, what was measured.
 
+use super::drawn::Drawn;
 use super::facts::facts;
 use super::model::{Answer, Front, Rich};
-use super::prose::{prose, sentence, spoken};
-use super::{Drawn, tables};
-use crate::identify::{Estimate, VerdictKind};
+use super::tables;
+use super::verdict::{headline, verdict_name};
+use crate::identify::{Estimate, Finding, VerdictKind};
 use crate::report::content::ReportContent;
+use crate::report::locale::Locale;
 use crate::report::parameters::{self, PARAMETERS, ParameterLook};
-use crate::report::speech::Speech;
 
 /// Builds the first page.
 pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
     let id = &content.identification;
     Front {
-        synthetic: content.summary.synthetic,
+        synthetic: content.campaign.synthetic,
         verdict: verdict_name(id.verdict.kind),
-        headline: campaign_headline(content, drawn.speech),
-        summary: prose(&drawn.speech.tell(&id.verdict.summary)).localised(drawn.speech),
-        findings: localised(findings(content, drawn.speech), drawn.speech),
-        answers: answers(content, drawn.speech),
-        specimens: tables::specimens(content, drawn.speech),
+        headline: campaign_headline(content, drawn.locale),
+        summary: Rich::from(drawn.locale.sentences(&id.verdict.sentences)),
+        findings: findings(content, drawn.locale),
+        answers: answers(content, drawn.locale),
+        specimens: tables::specimens(content, drawn.locale),
         agree: match id.agreement.agree {
             Some(true) => "yes",
             Some(false) => "no",
             None => "unknown",
         },
         agreement: match id.specimens.is_empty() {
-            true => prose(&agreement(&id.agreement.summary, drawn.speech)).localised(drawn.speech),
+            true => Rich::from(drawn.locale.sentence(&id.agreement)),
             false => Rich::default(),
         },
-        facts: facts(&content.summary, drawn.speech),
+        facts: facts(content, drawn.locale),
         map: drawn.figure("map_small", ""),
         estimates: drawn.figure("estimates", ""),
     }
 }
 
-fn localised(texts: Vec<Rich>, speech: Speech) -> Vec<Rich> {
-    texts.into_iter().map(|t| t.localised(speech)).collect()
-}
-
 /// The headline of the whole campaign.
-fn campaign_headline(content: &ReportContent, speech: Speech) -> String {
+fn campaign_headline(content: &ReportContent, locale: Locale) -> String {
     let id = &content.identification;
     let specimens = id.specimens.len();
     let identified = id.specimens.values();
@@ -48,12 +45,15 @@ fn campaign_headline(content: &ReportContent, speech: Speech) -> String {
         .filter(|s| s.verdict.kind == VerdictKind::Identified)
         .count();
     match specimens - identified {
-        _ if specimens == 0 => speech.say(headline(id.verdict.kind, !content.records.is_empty())),
-        0 => speech.say_with(
+        _ if specimens == 0 => locale.translate(headline(
+            id.verdict.kind,
+            !content.compared.records.is_empty(),
+        )),
+        0 => locale.translate_with(
             "Identified: the model fits each of the {count} specimens",
             &[("count", &specimens.to_string())],
         ),
-        _ => speech.say_with(
+        _ => locale.translate_with(
             "The model fits {some} of the {count} specimens",
             &[
                 ("some", &identified.to_string()),
@@ -64,26 +64,22 @@ fn campaign_headline(content: &ReportContent, speech: Speech) -> String {
 }
 
 /// Reasons and findings; where there are specimens, what was found of each in full.
-fn findings(content: &ReportContent, speech: Speech) -> Vec<Rich> {
+fn findings(content: &ReportContent, locale: Locale) -> Vec<Rich> {
     let id = &content.identification;
-    let of = |finding: &String| {
-        let specimen = id.specimens.iter().find(|(name, _)| {
-            let rest = finding.strip_prefix(name.as_str());
-            rest.is_some_and(|r| r.starts_with(':'))
-        });
-        let mut words = spoken(finding, speech);
-        if let Some((_, result)) = specimen {
-            for more in &result.verdict.findings {
-                words.push_str(&format!(" {}", spoken(more, speech)));
-            }
+    let of = |finding: &Finding| {
+        let mut text = locale.sentence(finding);
+        if let Finding::Specimen { specimen, .. } = finding
+            && let Some(result) = id.specimens.get(specimen)
+        {
+            text = format!("{text} {}", locale.sentences(&result.verdict.findings));
         }
-        prose(&words)
+        Rich::from(text)
     };
     id.verdict.findings.iter().map(of).collect()
 }
 
 /// The parameters' cards; none where only each specimen alone has an answer.
-fn answers(content: &ReportContent, speech: Speech) -> Vec<Answer> {
+fn answers(content: &ReportContent, locale: Locale) -> Vec<Answer> {
     let id = &content.identification;
     let estimates = PARAMETERS
         .iter()
@@ -94,65 +90,33 @@ fn answers(content: &ReportContent, speech: Speech) -> Vec<Answer> {
     if !told && !id.specimens.is_empty() {
         return Vec::new();
     }
-    estimates.map(|(look, e)| answer(look, e, speech)).collect()
-}
-
-/// The words on agreement without the headline that stands before them.
-fn agreement(summary: &str, speech: Speech) -> String {
-    if let Some(rest) = summary.strip_prefix("The methods do not agree on ") {
-        return sentence(&speech.tell(&format!("This concerns {rest}")));
-    }
-    let rest = summary.strip_prefix("The methods agree");
-    let rest = rest.map_or(summary, |r| r.trim_start_matches([':', '.', ';', ',', ' ']));
-    sentence(&speech.tell(rest))
+    estimates.map(|(look, e)| answer(look, e, locale)).collect()
 }
 
 /// A parameter ready to print.
-fn answer(look: &ParameterLook, estimate: Option<&Estimate>, speech: Speech) -> Answer {
+fn answer(look: &ParameterLook, estimate: Option<&Estimate>, locale: Locale) -> Answer {
     let half = estimate
         .and_then(parameters::half_width)
         .map(|h| h * look.factor);
     let decimals = parameters::decimals_for(half.unwrap_or(0.0));
-    let print = |v: f64| speech.fixed(v * look.factor, decimals);
+    let print = |v: f64| locale.fixed(v * look.factor, decimals);
     let value = estimate.and_then(|e| e.value);
     let interval = estimate
         .and_then(|e| e.interval95)
         .filter(|_| value.is_some());
     Answer {
         symbol: Rich::from(look.symbol),
-        name: Rich::from(speech.say(look.name)),
+        name: Rich::from(locale.translate(look.name)),
         value: value.map(print),
         plus_minus: half
             .filter(|_| value.is_some())
-            .map(|h| speech.fixed(h, decimals)),
+            .map(|h| locale.fixed(h, decimals)),
         unit: look.unit.into(),
-        interval: interval.map(|[low, high]| speech.range(&print(low), &print(high))),
+        interval: interval.map(|[low, high]| locale.range(&print(low), &print(high))),
         status: estimate.map_or("not_asked", |e| parameters::status_name(e.status)),
         note: estimate
             .and_then(|e| e.note.as_ref())
-            .map(|n| prose(&speech.tell(n)).localised(speech)),
-    }
-}
-
-/// Name of a verdict in the document.
-fn verdict_name(kind: VerdictKind) -> &'static str {
-    match kind {
-        VerdictKind::Identified => "identified",
-        VerdictKind::Weak => "weak",
-        VerdictKind::NotIdentifiable => "not_identifiable",
-        VerdictKind::DoesNotFit => "does_not_fit",
-    }
-}
-
-/// A verdict as a headline, a phrase; of a rig where records of one were measured.
-pub(super) fn headline(kind: VerdictKind, of_a_rig: bool) -> &'static str {
-    match (kind, of_a_rig) {
-        (VerdictKind::Identified, true) => "Identified: the model fits the rig",
-        (VerdictKind::Identified, false) => "Identified: the model fits",
-        (VerdictKind::Weak, _) => "Identified in part",
-        (VerdictKind::NotIdentifiable, _) => "Not identifiable from these data",
-        (VerdictKind::DoesNotFit, true) => "The model does not fit the rig",
-        (VerdictKind::DoesNotFit, false) => "The model does not fit",
+            .map(|n| Rich::from(locale.message(n))),
     }
 }
 
@@ -162,15 +126,15 @@ mod tests {
     use crate::identify::Status;
 
     #[test]
-    fn valid_what_is_not_identifiable_has_no_number() {
+    fn what_is_not_identifiable_has_no_number() {
         let none = Estimate {
             value: None,
             standard_error: None,
             interval95: None,
             status: Status::NotIdentifiable,
-            note: Some("no bracket".into()),
+            note: Some(crate::identify::Note::NotSeparable),
         };
-        let answer = super::answer(&PARAMETERS[0], Some(&none), Speech::default());
+        let answer = super::answer(&PARAMETERS[0], Some(&none), Locale::default());
         assert_eq!((answer.value, answer.interval), (None, None));
         assert_eq!(answer.status, "not_identifiable");
     }

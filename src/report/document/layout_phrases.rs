@@ -1,8 +1,8 @@
-//! Phrases that the template and the page say themselves, in the reader's words.
+//! Phrases of the template and of the page, translated.
 
 use std::collections::BTreeMap;
 
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// Those of template.typ, of the page and of its script.
 const PHRASES: [&str; 13] = [
@@ -22,7 +22,8 @@ const PHRASES: [&str; 13] = [
 ];
 
 /// From each phrase to what is printed for it.
-pub fn words(speech: Speech) -> BTreeMap<&'static str, String> {
+pub fn words(locale: Locale) -> BTreeMap<&'static str, String> {
     let each = PHRASES.into_iter();
-    each.map(|phrase| (phrase, speech.say(phrase))).collect()
+    each.map(|phrase| (phrase, locale.translate(phrase)))
+        .collect()
 }

@@ -2,74 +2,46 @@
 
 mod captions;
 mod conventions;
+mod drawn;
 mod facts;
 mod front;
 mod layout_phrases;
 pub mod model;
 mod pdf;
-mod prose;
 mod sections;
 mod settings;
 mod tables;
+mod verdict;
 pub(super) mod world;
 
 pub use pdf::pdf;
 
-use model::{Block, Document, FigureRef, Rich};
+use drawn::Drawn;
+use model::{Document, Rich};
 
 use crate::report::content::ReportContent;
-use crate::report::figures::{Figure, richtext};
-use crate::report::speech::Speech;
-
-/// The figures as drawn, to be referred to by name.
-pub struct Drawn<'a> {
-    figures: &'a [Figure],
-    /// How numbers are printed.
-    pub speech: Speech<'a>,
-}
-
-impl Drawn<'_> {
-    /// Refers to a figure by its name; `None` where it was not drawn.
-    pub fn figure(&self, name: &str, caption: &str) -> Option<FigureRef> {
-        let figure = self.figures.iter().find(|f| f.name == name)?;
-        Some(FigureRef {
-            name: figure.name.clone(),
-            width: figure.width,
-            height: figure.height,
-            caption: Rich::from(caption),
-            alt: richtext::plain(&figure.title),
-        })
-    }
-
-    /// A block of those of the named figures that were drawn.
-    fn figures_block(&self, named: &[(&str, &str)]) -> Option<Block> {
-        let figures: Vec<FigureRef> = named
-            .iter()
-            .filter_map(|(name, caption)| self.figure(name, caption))
-            .collect();
-        (!figures.is_empty()).then_some(Block::Figures { figures })
-    }
-}
+use crate::report::figures::Figure;
+use crate::report::locale::Locale;
 
 /// Builds the document's data.
-pub fn document(content: &ReportContent, figures: &[Figure], speech: Speech<'_>) -> Document {
-    let drawn = Drawn { figures, speech };
+pub fn document(content: &ReportContent, figures: &[Figure], locale: Locale<'_>) -> Document {
+    let drawn = Drawn { figures, locale };
     Document {
         title: content.title.clone(),
-        subtitle: Rich::from(subtitle(content, speech)),
+        subtitle: Rich::from(subtitle(content, locale)),
         footer: Rich::from(footer(content)),
         front: front::front(content, &drawn),
         sections: sections::sections(content, &drawn),
-        words: layout_phrases::words(speech),
+        words: layout_phrases::words(locale),
     }
 }
 
-fn subtitle(content: &ReportContent, speech: Speech) -> String {
-    let summary = &content.summary;
-    let dates = facts::dates(summary, speech);
+fn subtitle(content: &ReportContent, locale: Locale) -> String {
+    let campaign = &content.campaign;
+    let dates = facts::dates(campaign, locale);
     let parts = [
-        Some(summary.name.clone()),
-        summary.laboratory.clone(),
+        Some(campaign.name.clone()),
+        campaign.laboratory.clone(),
         Some(dates),
     ];
     let parts: Vec<String> = parts
@@ -81,6 +53,6 @@ fn subtitle(content: &ReportContent, speech: Speech) -> String {
 }
 
 fn footer(content: &ReportContent) -> String {
-    let version = content.identification.versions.get("impactid");
+    let version = content.provenance.versions.get("impactid");
     version.map_or("impactid".into(), |v| format!("impactid {v}"))
 }

@@ -5,21 +5,12 @@ use std::collections::BTreeMap;
 use serde::{Serialize, Serializer};
 
 use crate::report::figures::richtext::{self, Run};
-use crate::report::speech::Speech;
 
 /// A text with markup, split into runs; serialised as a string where it has none.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Rich(pub Vec<Run>);
 
 impl Rich {
-    /// The same with the decimal sign of the reader's choice.
-    pub fn localised(mut self, speech: Speech) -> Self {
-        for run in &mut self.0 {
-            run.text = speech.localised(&run.text);
-        }
-        self
-    }
-
     /// The text without markup.
     pub fn plain(&self) -> String {
         self.0.iter().map(|r| r.text.as_str()).collect()
@@ -51,19 +42,19 @@ pub struct Document {
     pub title: String,
     /// A line under the title.
     pub subtitle: Rich,
-    /// What stands at the foot of each page.
+    /// The footer of each page.
     pub footer: Rich,
     /// The first page.
     pub front: Front,
     /// All that follows.
     pub sections: Vec<Section>,
-    /// Phrases that the layout says itself, and what is printed for them.
+    /// Phrases of the layout itself, and what is printed for them.
     pub words: BTreeMap<&'static str, String>,
 }
 
 impl Document {
     /// What is printed for a phrase of the layout.
-    pub fn say<'a>(&'a self, phrase: &'a str) -> &'a str {
+    pub fn translate<'a>(&'a self, phrase: &'a str) -> &'a str {
         self.words.get(phrase).map_or(phrase, String::as_str)
     }
 }
@@ -104,7 +95,7 @@ pub struct Answer {
     pub symbol: Rich,
     /// Its name.
     pub name: Rich,
-    /// Its value without unit; `None` where not identifiable.
+    /// Its value without unit; `None` if not identifiable.
     pub value: Option<String>,
     /// Half the 95 % interval, same decimals.
     pub plus_minus: Option<String>,
@@ -118,7 +109,7 @@ pub struct Answer {
     pub note: Option<Rich>,
 }
 
-/// A figure where it stands.
+/// A figure in its place.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FigureRef {
     /// Its name, the stem of its file.
@@ -144,7 +135,7 @@ pub struct Section {
     pub new_page: bool,
     /// Whether it is an appendix.
     pub appendix: bool,
-    /// What stands in it.
+    /// Its content.
     pub blocks: Vec<Block>,
 }
 
@@ -157,7 +148,7 @@ pub enum Block {
         /// The text.
         text: Rich,
     },
-    /// Figures; narrow ones stand side by side.
+    /// Figures; narrow ones are side by side.
     Figures {
         /// The figures.
         figures: Vec<FigureRef>,
@@ -189,7 +180,7 @@ pub struct Definition {
     pub meaning: Rich,
 }
 
-/// Where the cells of a column stand.
+/// Alignment of the cells of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Align {
@@ -202,7 +193,7 @@ pub enum Align {
 }
 
 impl Align {
-    /// The name that the template and the page know.
+    /// Its name in the template and in the page.
     pub fn name(self) -> &'static str {
         match self {
             Self::Left => "left",
@@ -219,7 +210,7 @@ pub struct Table {
     pub caption: Rich,
     /// Heads of the columns.
     pub heads: Vec<Rich>,
-    /// Where the cells of each column stand.
+    /// Alignment of the cells of each column.
     pub align: Vec<Align>,
     /// Relative width of each column; 0: as wide as its content.
     pub widths: Vec<u16>,
@@ -227,7 +218,7 @@ pub struct Table {
     pub rows: Vec<Vec<Rich>>,
     /// Size of the type, points.
     pub size: f64,
-    /// How many copies of the columns stand side by side.
+    /// How many copies of the columns are side by side.
     pub side_by_side: u8,
     /// Where the rows are many and short: whole columns as text, one line a row, and no `rows`.
     pub dense: bool,
@@ -235,7 +226,7 @@ pub struct Table {
     pub columns_text: Vec<String>,
 }
 
-/// Size of the type of a table where nothing else is said, points.
+/// Default size of the type of a table, points.
 const TABLE_SIZE: f64 = 8.5;
 
 impl Table {

@@ -2,8 +2,9 @@
 
 use super::model::Document;
 use super::world::{MemoryWorld, Unset};
+use crate::report::error::ReportError;
 use crate::report::figures::Figure;
-use crate::report::{RenderOptions, ReportError};
+use crate::report::options::ReportOptions;
 
 /// The built-in layout.
 const TEMPLATE: &str = include_str!("../template.typ");
@@ -16,7 +17,7 @@ const TEMPLATE: &str = include_str!("../template.typ");
 pub fn pdf(
     document: &Document,
     figures: &[Figure],
-    options: &RenderOptions,
+    options: &ReportOptions,
 ) -> Result<Vec<u8>, ReportError> {
     let template = options.template.as_deref().unwrap_or(TEMPLATE);
     let files = files(document, figures, options)?;
@@ -30,7 +31,7 @@ pub fn pdf(
 fn files(
     document: &Document,
     figures: &[Figure],
-    options: &RenderOptions,
+    options: &ReportOptions,
 ) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
     let mut data = serde_json::to_value(document).map_err(ReportError::Data)?;
     data["paper"] = options.paper.name().into();

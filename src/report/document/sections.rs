@@ -1,15 +1,15 @@
 //! The sections after the first page, each only where there is something to show.
 
+use super::drawn::Drawn;
 use super::model::{Block, Rich, Section};
-use super::prose::{prose, sentence};
 use super::settings::settings;
 use super::tables;
-use super::{Drawn, captions, conventions};
+use super::{captions, conventions};
 use crate::report::content::ReportContent;
 use crate::report::figures::comparison;
 use crate::report::figures::plane::Plane;
-use crate::report::parameters::method_name;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
+use crate::report::parameters::method_inline;
 
 /// All sections in their order.
 pub fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
@@ -26,35 +26,17 @@ pub fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
     .into_iter()
     .flatten()
     .collect();
-    letter_appendices(&mut sections, drawn.speech);
-    for section in &mut sections {
-        localise(&mut section.blocks, drawn.speech);
-    }
+    letter_appendices(&mut sections, drawn.locale);
     sections
 }
 
-/// Paragraphs and captions with the decimal sign of the reader's choice.
-fn localise(blocks: &mut [Block], speech: Speech) {
-    for block in blocks {
-        match block {
-            Block::Paragraph { text } => *text = std::mem::take(text).localised(speech),
-            Block::Figures { figures } => {
-                for figure in figures {
-                    figure.caption = std::mem::take(&mut figure.caption).localised(speech);
-                }
-            }
-            _ => {}
-        }
-    }
-}
-
 /// Letters before the titles of the appendices, in the order in which they come.
-fn letter_appendices(sections: &mut [Section], speech: Speech) {
+fn letter_appendices(sections: &mut [Section], locale: Locale) {
     let appendices = sections.iter_mut().filter(|s| s.appendix);
     for (section, letter) in appendices.zip('A'..='Z') {
         let (letter, title) = (letter.to_string(), section.title.plain());
         let values = [("letter", letter.as_str()), ("title", title.as_str())];
-        section.title = Rich::from(speech.say_with("Appendix {letter}. {title}", &values));
+        section.title = Rich::from(locale.translate_with("Appendix {letter}. {title}", &values));
     }
 }
 
@@ -81,20 +63,15 @@ fn paragraph(text: impl AsRef<str>) -> Block {
     }
 }
 
-/// A paragraph of words that carry no markup.
-fn remark(text: &str) -> Block {
-    Block::Paragraph { text: prose(text) }
-}
-
 fn regions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
-    blocks.extend(drawn.figures_block(&[("map", &map_caption(content, drawn.speech))]));
-    blocks.extend(tables::brackets(content, drawn.speech).map(Block::Table));
-    section(drawn.speech.say("Regions of motion"), true, blocks)
+    blocks.extend(drawn.figures_block(&[("map", &map_caption(content, drawn.locale))]));
+    blocks.extend(tables::brackets(content, drawn.locale).map(Block::Table));
+    section(drawn.locale.translate("Regions of motion"), true, blocks)
 }
 
-fn map_caption(content: &ReportContent, speech: Speech) -> String {
-    let mut text = speech.say(
+fn map_caption(content: &ReportContent, locale: Locale) -> String {
+    let mut text = locale.translate(
         "Measured motions in the plane of frequency and clearance. Each mark is a record; marks of \
          an upward sweep stand a little above their clearance, those of a downward sweep a little \
          below.",
@@ -102,36 +79,32 @@ fn map_caption(content: &ReportContent, speech: Speech) -> String {
     let mut add = |sentence: &str| text.push_str(&format!(" {sentence}"));
     let strips = Plane::of(content).map(|p| p.view(content).strips);
     if strips.is_some_and(|s| !s.is_empty()) {
-        add(&speech.say("Clearances far above all impacts stand in a strip of their own."));
+        add(&locale.translate("Clearances far above all impacts stand in a strip of their own."));
     }
-    if let Some(map) = &content.region_map {
-        add(&speech.say(match map.second.is_empty() {
-            true => {
-                "Tinted regions: simulated with the fitted parameters, labelled by $z$ = $p$/$n$."
-            }
-            false => {
-                "Tinted regions: simulated with the fitted parameters, labelled by $z$ = $p$/$n$; \
-                 hatched, with two labels, where two motions are possible (hysteresis)."
-            }
-        }));
-        if !map.note.is_empty() {
-            add(&speech.say(&sentence(&map.note)));
-        }
+    if content.compared.region_map.is_some() {
+        add(&locale.translate(
+            "Tinted regions: simulated with the fitted parameters, labelled by $z$ = $p$/$n$; \
+             hatched, with two labels, where two motions are possible (hysteresis).",
+        ));
+        add(&locale.translate(
+            "Every cell simulated from rest and from a lively start, and the stable orbits z = 1/n \
+             in closed form; where they differ, both motions exist.",
+        ));
     }
-    if content.curves.iter().any(|c| !c.band95.is_empty()) {
-        add(&speech.say("Grey bands: 95 % bands of the simulated boundaries."));
+    if content.compared.curves.iter().any(|c| !c.band95.is_empty()) {
+        add(&locale.translate("Grey bands: 95 % bands of the simulated boundaries."));
     }
-    if !content.comparisons.is_empty() {
-        add(&speech.say("Letters: the points compared in the next figures."));
+    if !content.compared.comparisons.is_empty() {
+        add(&locale.translate("Letters: the points compared in the next figures."));
     }
     text
 }
 
 fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
-    for comparison in &content.comparisons {
+    for comparison in &content.compared.comparisons {
         let name = comparison::name(comparison);
-        let caption = captions::comparison(comparison, drawn.speech);
+        let caption = captions::comparison(comparison, drawn.locale);
         blocks.extend(drawn.figures_block(&[(&name, &caption)]));
     }
     if !blocks.is_empty() {
@@ -139,10 +112,10 @@ fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
                     (middle), on the same scales, with the residual (measured less simulated) and \
                     the phase portraits (simulated: broad and pale; measured: thin and dark). Mass \
                     $x$ is blue, mass $y$ vermilion; dotted lines are impacts.";
-        blocks.insert(0, paragraph(drawn.speech.say(keys)));
+        blocks.insert(0, paragraph(drawn.locale.translate(keys)));
     }
     section(
-        drawn.speech.say("Simulated and measured motions"),
+        drawn.locale.translate("Simulated and measured motions"),
         false,
         blocks,
     )
@@ -150,93 +123,87 @@ fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
 
 /// What was found of each specimen, by method.
 fn specimens(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
-    let told = |remark: &String| sentence(&drawn.speech.tell(remark));
-    let table = tables::specimen_methods(content, drawn.speech).map(Block::Table);
+    let table = tables::specimen_methods(content, drawn.locale).map(Block::Table);
     let mut blocks: Vec<Block> = table.into_iter().collect();
     for (specimen, result) in &content.identification.specimens {
         for (method, result) in &result.methods {
-            let name = drawn.speech.say(&method_name(method).to_lowercase());
-            blocks.extend(
-                result
-                    .remarks
-                    .iter()
-                    .map(|r| remark(&format!("{specimen}, {name}: {}", told(r)))),
-            );
+            let name = method_inline(*method, drawn.locale);
+            blocks.extend(result.remarks.iter().map(|r| {
+                let text = drawn.locale.sentence(r);
+                paragraph(format!("{specimen}, {name}: {text}"))
+            }));
         }
     }
-    section(drawn.speech.say("Specimen by specimen"), false, blocks)
+    section(
+        drawn.locale.translate("Specimen by specimen"),
+        false,
+        blocks,
+    )
 }
 
 fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
-    let told = |remark: &String| sentence(&drawn.speech.tell(remark));
     let mut blocks = Vec::new();
     if content.identification.specimens.is_empty() {
-        blocks.extend(tables::methods(content, drawn.speech).map(Block::Table));
+        blocks.extend(tables::methods(content, drawn.locale).map(Block::Table));
     }
-    blocks.extend(tables::agreement(content, drawn.speech).map(Block::Table));
+    blocks.extend(tables::agreement(content, drawn.locale).map(Block::Table));
     let remarks = content
         .identification
         .methods
         .iter()
         .flat_map(|(name, method)| {
-            let name = drawn.speech.say(&method_name(name));
+            let name = drawn.locale.message(name);
             method
                 .remarks
                 .iter()
-                .map(move |r| remark(&format!("{name}: {}", told(r))))
+                .map(move |r| paragraph(format!("{name}: {}", drawn.locale.sentence(r))))
         });
     blocks.extend(remarks);
-    blocks.extend(tables::further(content, drawn.speech).map(Block::Table));
-    for group in captions::method_figures(content, drawn.speech) {
+    blocks.extend(tables::further(content, drawn.locale).map(Block::Table));
+    for group in captions::method_figures(content, drawn.locale) {
         let named: Vec<(&str, &str)> = group
             .iter()
             .map(|(n, c)| (n.as_str(), c.as_str()))
             .collect();
         blocks.extend(drawn.figures_block(&named));
     }
-    section(drawn.speech.say("Method by method"), false, blocks)
+    section(drawn.locale.translate("Method by method"), false, blocks)
 }
 
 fn left_out(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
-    let mut blocks: Vec<Block> = tables::left_out(content, drawn.speech)
-        .map(Block::Table)
-        .into_iter()
-        .collect();
-    let remarks = content.remarks.iter();
-    let remarks = remarks.map(|r| remark(&drawn.speech.tell(r)));
-    let title = match blocks.is_empty() {
-        true => "Remarks",
-        false => "What was left out, and why",
-    };
-    blocks.extend(remarks);
-    section(drawn.speech.say(title), false, blocks)
+    let table = tables::left_out(content, drawn.locale).map(Block::Table);
+    let title = drawn.locale.translate("What was left out, and why");
+    section(title, false, table.into_iter().collect())
 }
 
 fn records(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
-    let table = tables::records(content, drawn.speech).map(Block::Table);
-    appendix(drawn.speech.say("All records"), table.into_iter().collect())
+    let table = tables::records(content, drawn.locale).map(Block::Table);
+    appendix(
+        drawn.locale.translate("All records"),
+        table.into_iter().collect(),
+    )
 }
 
 fn conventions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
-    let records = &content.records;
+    let records = &content.compared.records;
     let driven = records.is_empty() || records.iter().any(|r| r.frequency_hz.is_some());
     let intervals = "Intervals are at 95 % confidence; a number after ± is half of that interval. \
                      All quantities are in SI units.";
     let blocks = vec![
         Block::Definitions {
-            entries: conventions::entries(driven, drawn.speech),
+            entries: conventions::entries(driven, drawn.locale),
         },
-        paragraph(drawn.speech.say(intervals)),
+        paragraph(drawn.locale.translate(intervals)),
     ];
-    appendix(drawn.speech.say("Conventions"), blocks)
+    appendix(drawn.locale.translate("Conventions"), blocks)
 }
 
 /// Versions of program and formats.
-fn versions(content: &ReportContent, speech: Speech) -> Option<Block> {
-    let versions = &content.identification.versions;
+fn versions(content: &ReportContent, locale: Locale) -> Option<Block> {
+    let versions = &content.provenance.versions;
     let each: Vec<String> = versions.iter().map(|(k, v)| format!("{k} {v}")).collect();
     let list = each.join(", ");
-    let text = speech.say_with("Versions of program and files: {list}.", &[("list", &list)]);
+    let text = locale.translate_with("Versions of program and files: {list}.", &[("list", &list)]);
     (!each.is_empty()).then(|| Block::Paragraph {
         text: tables::verbatim(text),
     })
@@ -247,19 +214,19 @@ fn provenance(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     if !content.command_line.is_empty() {
         blocks.push(paragraph(
             drawn
-                .speech
-                .say("The command that makes this report again:"),
+                .locale
+                .translate("The command that makes this report again:"),
         ));
         blocks.push(Block::Verbatim {
             text: content.command_line.clone(),
             columns: 1,
         });
     }
-    blocks.extend(versions(content, drawn.speech));
-    blocks.extend(tables::hashes(content, drawn.speech).map(Block::Table));
-    if !content.settings_text.is_empty() {
-        blocks.push(paragraph(drawn.speech.say("Settings, as resolved:")));
-        blocks.push(settings(&content.settings_text));
+    blocks.extend(versions(content, drawn.locale));
+    blocks.extend(tables::hashes(content, drawn.locale).map(Block::Table));
+    if !content.provenance.settings.is_null() {
+        blocks.push(paragraph(drawn.locale.translate("Settings, as resolved:")));
+        blocks.push(settings(&content.provenance.settings));
     }
-    appendix(drawn.speech.say("Settings, versions, inputs"), blocks)
+    appendix(drawn.locale.translate("Settings, versions, inputs"), blocks)
 }

@@ -5,10 +5,10 @@ use serde_json::Value;
 use super::model::Block;
 use labfiles::units::Dimension;
 
-/// From how many lines on the settings stand in columns.
+/// More lines of settings than these are set in columns.
 const MANY_LINES: usize = 12;
 
-/// What a channel has where nothing was said: not worth a line.
+/// Defaults of a channel: not worth a line.
 const DEFAULTS: [&str; 4] = [
     "offset = 0.0",
     "sign = 1.0",
@@ -16,17 +16,12 @@ const DEFAULTS: [&str; 4] = [
     "ignore_file_unit = false",
 ];
 
-/// The block of settings. JSON becomes one line a value, `channels.drive.range = 5.0`, without what
-/// is not set or plain; other text stays as it is.
-pub fn settings(text: &str) -> Block {
-    let text = match serde_json::from_str::<Value>(text) {
-        Ok(value) => {
-            let mut lines = Vec::new();
-            flatten("", &value, &mut lines);
-            lines.join("\n")
-        }
-        Err(_) => text.to_owned(),
-    };
+/// The block of settings: one line per value, `channels.drive.range = 5.0`, without what is not set or
+/// a default.
+pub fn settings(settings: &Value) -> Block {
+    let mut lines = Vec::new();
+    flatten("", settings, &mut lines);
+    let text = lines.join("\n");
     let many = text.lines().count() > MANY_LINES;
     let longest = text.lines().map(|l| l.chars().count()).max().unwrap_or(0);
     let columns = match longest {
@@ -113,11 +108,13 @@ fn name(value: &Value) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
 
     #[test]
-    fn valid_json_settings_become_lines() {
-        let block = settings(r#"{"rig": {"f": 12.6, "r": null}, "channels": [{"unit": "V"}]}"#);
+    fn json_settings_become_lines() {
+        let block = settings(&json!({"rig": {"f": 12.6, "r": null}, "channels": [{"unit": "V"}]}));
         let expected = "rig.f = 12.6\nchannels[0].unit = \"V\"";
         assert_eq!(
             block,
@@ -127,9 +124,9 @@ mod tests {
             }
         );
         let block = settings(
-            r#"{"channels": [{"role": "velocity_x", "source": {"name": "laser"}, "sign": 1.0,
+            &json!({"channels": [{"role": "velocity_x", "source": {"name": "laser"}, "sign": 1.0,
             "scale": {"ratio": {"numerator": {"si": 0.2, "dimension": "velocity"},
-            "denominator": {"dimension": "voltage", "to_si": 1.0}}}}]}"#,
+            "denominator": {"dimension": "voltage", "to_si": 1.0}}}}]}),
         );
         let Block::Verbatim { text, .. } = block else {
             panic!("not verbatim");
@@ -141,14 +138,6 @@ mod tests {
                 "channels.velocity_x.source = \"laser\"",
                 "channels.velocity_x.scale = 0.2 m/s per V"
             ]
-        );
-        let plain = settings("[rig]\nf = 12.6");
-        assert_eq!(
-            plain,
-            Block::Verbatim {
-                text: "[rig]\nf = 12.6".into(),
-                columns: 1
-            }
         );
     }
 }

@@ -1,6 +1,6 @@
 //! An axis: its range in data, its title, its ticks.
 
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// One axis: its range in data and its title with unit, in the report's markup.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,7 +79,7 @@ impl Axis {
         let wanted = self.ticks.max(1);
         let tries = (wanted..=wanted + 4).map(|ticks| nice_step(span / ticks as f64));
         let ticks = tries.map(|step| (multiples(self.low, self.high, step), decimals_of(step)));
-        // One number alone does not tell a scale.
+        // One number alone is no scale.
         let mut best = (Vec::new(), 0);
         for found in ticks {
             best = found;
@@ -108,11 +108,11 @@ impl Axis {
     }
 
     /// Label of a tick.
-    pub fn label(&self, value: f64, decimals: usize, speech: Speech) -> String {
+    pub fn label(&self, value: f64, decimals: usize, locale: Locale) -> String {
         if self.log {
-            speech.significant(value, 1)
+            locale.significant(value, 1)
         } else {
-            speech.fixed(value, decimals)
+            locale.fixed(value, decimals)
         }
     }
 }
@@ -156,7 +156,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn valid_ticks_are_round_numbers() {
+    fn ticks_are_round_numbers() {
         let (ticks, decimals) = Axis::new(0.93, 2.07, "").major();
         assert_eq!(decimals, 1);
         let labels: Vec<_> = ticks.iter().map(|t| format!("{t:.1}")).collect();

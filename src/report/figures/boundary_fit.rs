@@ -1,17 +1,19 @@
 //! The boundary fit: measured brackets less the simulated boundary, over the clearance.
 
-use super::Figure;
 use super::axis::Axis;
+use super::boundaries;
 use super::canvas::{Canvas, Colour};
 use super::csv::Csv;
+use super::figure::Figure;
 use super::legend::{self, Key, Sign};
 use super::look;
 use super::marks;
 use super::panel::{Panel, Sides};
 use super::path::Rect;
 use super::plane::same;
-use crate::report::content::{BoundaryKind, BracketRow, ReportContent};
-use crate::report::speech::Speech;
+use crate::compare::BracketRow;
+use crate::motion::BoundaryKind;
+use crate::report::locale::Locale;
 
 /// Height of the panel, points.
 const HEIGHT: f64 = 132.0;
@@ -20,10 +22,9 @@ const LEFT: f64 = 34.0;
 /// Distance of brackets at one clearance, points.
 const STACK_STEP: f64 = 4.4;
 
-/// Draws the brackets against the fit; `None` where none has a simulated value.
-pub fn draw(content: &ReportContent, speech: Speech) -> Option<Figure> {
-    let rows: Vec<(&BracketRow, f64, f64)> = content
-        .brackets
+/// Draws the brackets against the fit; `None` if none has a simulated value.
+pub fn draw(brackets: &[BracketRow], locale: Locale) -> Option<Figure> {
+    let rows: Vec<(&BracketRow, f64, f64)> = brackets
         .iter()
         .filter_map(|b| {
             let f = b.simulated_hz?;
@@ -34,7 +35,7 @@ pub fn draw(content: &ReportContent, speech: Speech) -> Option<Figure> {
         return None;
     }
     let keys = keys(&rows);
-    let top = legend::height(&keys, look::HALF_WIDTH - LEFT, speech) + 4.0;
+    let top = legend::height(&keys, look::HALF_WIDTH - LEFT, locale) + 4.0;
     let rect = Rect::new(LEFT, top, look::HALF_WIDTH - LEFT - 4.0, HEIGHT);
     let x = Axis::around(
         rows.iter().flat_map(|r| [r.1, r.2, 0.0]),
@@ -50,7 +51,8 @@ pub fn draw(content: &ReportContent, speech: Speech) -> Option<Figure> {
     let mut canvas = Canvas::new(look::HALF_WIDTH, top + HEIGHT + look::BELOW_PANEL);
     panel.upright(&mut canvas, 0.0, look::ZERO_STROKE);
     let mut order: Vec<usize> = (0..rows.len()).collect();
-    order.sort_by_key(|&i| (rows[i].0.kind, rows[i].0.direction));
+    let rank = |kind| boundaries::ALL.iter().position(|k| *k == kind);
+    order.sort_by_key(|&i| (rank(rows[i].0.kind), rows[i].0.sweep));
     for &i in &order {
         let (row, low, high) = &rows[i];
         let (from, y) = panel.at(*low, 1e3 * row.clearance_m);
@@ -72,11 +74,11 @@ pub fn draw(content: &ReportContent, speech: Speech) -> Option<Figure> {
         };
         legend::bracket(&mut canvas, (from, to), y - lift, shade);
     }
-    panel.frame(&mut canvas, Sides::BOTH, speech);
-    legend::draw(&mut canvas, (rect.left, 0.0), rect.width(), &keys, speech);
+    panel.frame(&mut canvas, Sides::BOTH, locale);
+    legend::draw(&mut canvas, (rect.left, 0.0), rect.width(), &keys, locale);
     Some(Figure::new(
         "boundary_fit",
-        &speech.say("Measured brackets against the fitted boundary"),
+        &locale.translate("Measured brackets against the fitted boundary"),
         canvas,
         csv(&rows),
     ))
@@ -84,25 +86,25 @@ pub fn draw(content: &ReportContent, speech: Speech) -> Option<Figure> {
 
 fn colour(kind: BoundaryKind) -> Colour {
     match kind {
-        BoundaryKind::S2 => look::INK,
+        BoundaryKind::SaddleNode => look::INK,
         BoundaryKind::Grazing => look::BLUE,
-        BoundaryKind::S1 => look::VERMILION,
-        BoundaryKind::Edge => look::GREEN,
+        BoundaryKind::PeriodDoubling => look::VERMILION,
+        BoundaryKind::Other => look::GREEN,
     }
 }
 
 fn keys(rows: &[(&BracketRow, f64, f64)]) -> Vec<Key> {
     let kinds = [
-        BoundaryKind::S2,
-        BoundaryKind::S1,
+        BoundaryKind::SaddleNode,
+        BoundaryKind::PeriodDoubling,
         BoundaryKind::Grazing,
-        BoundaryKind::Edge,
+        BoundaryKind::Other,
     ];
     let met = kinds
         .into_iter()
         .filter(|k| rows.iter().any(|r| r.0.kind == *k));
     let mut keys: Vec<Key> = met
-        .map(|k| Key::new(Sign::Bracket(colour(k)), k.symbol()))
+        .map(|k| Key::new(Sign::Bracket(colour(k)), boundaries::symbol(k)))
         .collect();
     if rows.iter().any(|r| r.0.left_out.is_some()) {
         keys.push(Key::new(
@@ -127,9 +129,9 @@ fn csv(rows: &[(&BracketRow, f64, f64)]) -> String {
         let used = if row.left_out.is_none() { "yes" } else { "no" };
         csv.row()
             .texts(&[
-                row.kind.name(),
+                boundaries::name(row.kind),
                 &row.motion.label(),
-                row.direction.name(),
+                row.sweep.name(),
                 used,
             ])
             .numbers(&[Some(row.clearance_m), Some(*low), Some(*high)]);

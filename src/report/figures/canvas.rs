@@ -6,6 +6,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::compact;
 use super::fonts::{FAMILY, Face};
+pub use super::path::Point;
 use super::richtext;
 
 /// Drawing units in a point: plotters counts in whole units, these are fine enough for a curve.
@@ -13,9 +14,6 @@ const UNITS_PER_POINT: f64 = 20.0;
 
 /// A colour.
 pub type Colour = RGBColor;
-
-/// A position in points from the upper left corner.
-pub type Point = (f64, f64);
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -133,7 +131,7 @@ impl Canvas {
         }
     }
 
-    /// What follows lies in this layer; higher layers cover lower ones.
+    /// What follows is drawn in this layer; higher layers cover lower ones.
     pub fn layer(&mut self, layer: i32) -> &mut Self {
         self.layer = layer;
         self

@@ -52,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_neighbours_of_one_colour_become_one_path() {
+    fn neighbours_of_one_colour_become_one_path() {
         let svg = "<svg>\n\
             <polygon fill=\"#aa0000\" points=\"0,0 4,0 4,2 0,2 \"/>\n\
             <polygon fill=\"#aa0000\" points=\"4,0 6,0 6,2 4,2 \"/>\n\

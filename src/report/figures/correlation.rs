@@ -3,23 +3,23 @@
 //! The columns are the parameters that are asked for; how the others hang together among
 //! themselves is in the figure's data.
 
-use super::Figure;
 use super::canvas::{Anchor, Canvas, Colour, TextLook};
 use super::csv::Csv;
+use super::figure::Figure;
 use super::fonts::Face;
 use super::look;
 use super::marks::mix;
 use super::path::Rect;
 use super::richtext;
-use crate::report::content::Correlation;
+use crate::compare::Correlation;
+use crate::report::locale::Locale;
 use crate::report::parameters::parameter;
-use crate::report::speech::Speech;
 
 /// Room above the cells for the columns' symbols, points.
 const TOP: f64 = 14.0;
 
-/// Draws the matrix; `None` where it is empty or not square.
-pub fn draw(correlation: &Correlation, speech: Speech) -> Option<Figure> {
+/// Draws the matrix; `None` if it is empty or not square.
+pub fn draw(correlation: &Correlation, locale: Locale) -> Option<Figure> {
     let n = correlation.parameters.len();
     let square = correlation.matrix.len() == n && correlation.matrix.iter().all(|r| r.len() == n);
     if n < 2 || !square {
@@ -28,7 +28,7 @@ pub fn draw(correlation: &Correlation, speech: Speech) -> Option<Figure> {
     let names: Vec<String> = correlation
         .parameters
         .iter()
-        .map(|p| name(p, speech))
+        .map(|p| name(p.name(), locale))
         .collect();
     let columns = columns(correlation);
     let widths = names
@@ -53,12 +53,12 @@ pub fn draw(correlation: &Correlation, speech: Speech) -> Option<Figure> {
             let x = left + i as f64 * wide;
             let rect = Rect::new(x, y, wide, high);
             let value = (column != j).then_some(row[column]);
-            cell(&mut canvas, &rect, value, speech);
+            cell(&mut canvas, &rect, value, locale);
         }
     }
     Some(Figure::new(
         "correlation",
-        &speech.say("Correlation of the parameters"),
+        &locale.translate("Correlation of the parameters"),
         canvas,
         csv(correlation),
     ))
@@ -67,13 +67,13 @@ pub fn draw(correlation: &Correlation, speech: Speech) -> Option<Figure> {
 /// The columns of the matrix: the parameters that are asked for.
 fn columns(correlation: &Correlation) -> Vec<usize> {
     let all = 0..correlation.parameters.len();
-    let asked = |i: &usize| parameter(&correlation.parameters[*i]).is_some();
+    let asked = |i: &usize| parameter(correlation.parameters[*i].name()).is_some();
     let main: Vec<usize> = all.clone().filter(asked).collect();
     if main.is_empty() { all.collect() } else { main }
 }
 
 /// A tinted cell with its number; `None` for a parameter with itself.
-fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, speech: Speech) {
+fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, locale: Locale) {
     let (from, to) = (
         (rect.left + 0.5, rect.top + 0.5),
         (rect.right - 0.5, rect.bottom - 0.5),
@@ -83,7 +83,7 @@ fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, speech: Speech) {
     let size = (0.34 * rect.width()).min(look::TICK_SIZE);
     let text_look =
         TextLook::new(size, Anchor::Middle).colour(if dark { look::PAPER } else { look::INK });
-    let text = value.map_or("1".into(), |v| speech.fixed(v, 2));
+    let text = value.map_or("1".into(), |v| locale.fixed(v, 2));
     let middle = (
         0.5 * (rect.left + rect.right),
         0.5 * (rect.top + rect.bottom) + 2.4,
@@ -91,18 +91,18 @@ fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, speech: Speech) {
     canvas.text(middle, &text, text_look);
 }
 
-fn name(key: &str, speech: Speech) -> String {
+fn name(key: &str, locale: Locale) -> String {
     if let Some(shown) = parameter(key) {
         return shown.symbol.to_owned();
     }
     let of = |phrase: &str, role: &str| {
-        let channel = speech.say(&role.replace('_', " "));
-        speech.say_with(phrase, &[("channel", &channel)])
+        let channel = locale.translate(&role.replace('_', " "));
+        locale.translate_with(phrase, &[("channel", &channel)])
     };
     match key.split_once('_') {
         Some(("gain", role)) => of("gain of {channel}", role),
         Some(("corner", role)) => of("corner of {channel}", role),
-        _ => speech.say(&key.replace('_', " ")),
+        _ => locale.translate(&key.replace('_', " ")),
     }
 }
 
@@ -123,7 +123,9 @@ fn csv(correlation: &Correlation) -> String {
     let mut csv = Csv::new(&["parameter", "with", "correlation"]);
     for (a, row) in correlation.parameters.iter().zip(&correlation.matrix) {
         for (b, value) in correlation.parameters.iter().zip(row) {
-            csv.row().texts(&[a, b]).numbers(&[Some(*value)]);
+            csv.row()
+                .texts(&[a.name(), b.name()])
+                .numbers(&[Some(*value)]);
         }
     }
     csv.finish()

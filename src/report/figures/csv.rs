@@ -88,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_numbers_have_nine_digits_at_most() {
+    fn numbers_have_nine_digits_at_most() {
         let cases = [
             (0.008_929_000_000_000_001, "0.008929"),
             (-1.0 / 3.0, "-0.333333333"),
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_fields_are_quoted_and_rows_filled() {
+    fn fields_are_quoted_and_rows_filled() {
         let mut csv = Csv::new(&["a", "b", "c"]);
         csv.row().texts(&["x,y"]).numbers(&[Some(0.5)]);
         assert_eq!(csv.finish(), "a,b,c\n\"x,y\",0.5,\n");

@@ -1,16 +1,18 @@
 //! Free decays with their fits, three to a row.
 
-use super::Figure;
 use super::axis::{Axis, range};
 use super::canvas::{Anchor, Canvas, Stroke, TextLook};
 use super::csv::Csv;
+use super::figure::Figure;
 use super::fonts::Face;
 use super::look;
 use super::panel::{Panel, Sides};
 use super::path::Rect;
 use super::units::print_unit;
-use crate::report::content::{FreeDecay, Signal};
-use crate::report::speech::Speech;
+use crate::compare::{FreeDecay, Signal};
+use crate::report::locale::Locale;
+use crate::report::parameters::decimals_for;
+use labfiles::units::Dimension;
 
 /// How many decays one figure holds.
 pub const PER_FIGURE: usize = 12;
@@ -23,7 +25,7 @@ const PANEL_HEIGHT: f64 = 74.0;
 const ROW_HEIGHT: f64 = PANEL_HEIGHT + 48.0;
 
 /// Draws up to [`PER_FIGURE`] decays; `None` for none.
-pub fn draw(decays: &[FreeDecay], name: &str, speech: Speech) -> Option<Figure> {
+pub fn draw(decays: &[FreeDecay], name: &str, locale: Locale) -> Option<Figure> {
     if decays.is_empty() {
         return None;
     }
@@ -36,18 +38,18 @@ pub fn draw(decays: &[FreeDecay], name: &str, speech: Speech) -> Option<Figure> 
             &mut canvas,
             decay,
             Rect::new(left, top, 122.0, PANEL_HEIGHT),
-            speech,
+            locale,
         );
     }
     Some(Figure::new(
         name,
-        &speech.say("Free decays and their fits"),
+        &locale.translate("Free decays and their fits"),
         canvas,
         csv(decays),
     ))
 }
 
-fn one(canvas: &mut Canvas, decay: &FreeDecay, rect: Rect, speech: Speech) {
+fn one(canvas: &mut Canvas, decay: &FreeDecay, rect: Rect, locale: Locale) {
     let peak = decay
         .measured
         .values
@@ -55,9 +57,9 @@ fn one(canvas: &mut Canvas, decay: &FreeDecay, rect: Rect, speech: Speech) {
         .fold(0.0_f64, |m, v| m.max(v.abs()));
     let unit = print_unit(decay.dimension, peak);
     let symbol = match decay.dimension {
-        labfiles::units::Dimension::Acceleration => "$a$",
-        labfiles::units::Dimension::Velocity => "$v$",
-        labfiles::units::Dimension::Length => "$x$",
+        Dimension::Acceleration => "$a$",
+        Dimension::Velocity => "$v$",
+        Dimension::Length => "$x$",
         _ => "signal",
     };
     let times = decay.measured.time_s.iter().copied();
@@ -76,18 +78,16 @@ fn one(canvas: &mut Canvas, decay: &FreeDecay, rect: Rect, speech: Speech) {
         unit.factor,
         Stroke::solid(look::INK, 0.5),
     );
-    if let Some(fitted) = &decay.fitted {
-        signal(
-            canvas,
-            &panel,
-            fitted,
-            unit.factor,
-            Stroke::solid(look::VERMILION, 0.6),
-        );
-    }
+    signal(
+        canvas,
+        &panel,
+        &decay.fitted,
+        unit.factor,
+        Stroke::solid(look::VERMILION, 0.6),
+    );
     canvas.layer(2);
-    panel.frame(canvas, Sides::BOTH, speech);
-    heading(canvas, decay, &rect, speech);
+    panel.frame(canvas, Sides::BOTH, locale);
+    heading(canvas, decay, &rect, locale);
 }
 
 fn signal(canvas: &mut Canvas, panel: &Panel, signal: &Signal, factor: f64, stroke: Stroke) {
@@ -95,53 +95,48 @@ fn signal(canvas: &mut Canvas, panel: &Panel, signal: &Signal, factor: f64, stro
     panel.curve(canvas, data.map(|(t, v)| (*t, v * factor)), stroke);
 }
 
-fn heading(canvas: &mut Canvas, decay: &FreeDecay, rect: &Rect, speech: Speech) {
+fn heading(canvas: &mut Canvas, decay: &FreeDecay, rect: &Rect, locale: Locale) {
     let bold = TextLook::new(look::NOTE_SIZE, Anchor::Left)
         .face(Face::Bold)
         .colour(look::INK);
-    canvas.text((rect.left, rect.top - 13.5), &decay.record, bold);
+    canvas.text((rect.left, rect.top - 13.5), &title(decay), bold);
     let plain = TextLook::new(look::TICK_SIZE, Anchor::Right).colour(look::QUIET);
-    let frequency = decay.natural_frequency_hz.map(|f| {
-        let value = with_error(f, decay.natural_frequency_error_hz, speech);
-        format!("$f_0$ = {value}\u{2009}Hz")
-    });
-    let damping = decay
-        .damping_ratio
-        .map(|b| format!("$β$ = {}", with_error(b, decay.damping_ratio_error, speech)));
-    let lines = match (frequency, damping) {
-        (None, None) => vec![speech.say("no fit")],
-        (frequency, damping) => frequency.into_iter().chain(damping).collect(),
-    };
+    let frequency = with_error(decay.natural_frequency_hz, locale);
+    let lines = [
+        format!("$f_0$ = {frequency}\u{2009}Hz"),
+        format!("$β$ = {}", with_error(decay.damping_ratio, locale)),
+    ];
     for (i, line) in lines.iter().enumerate() {
         canvas.text((rect.right, rect.top - 13.5 + 9.5 * i as f64), line, plain);
     }
 }
 
-fn with_error(value: f64, error: Option<f64>, speech: Speech) -> String {
-    match error.filter(|e| *e > 0.0) {
-        Some(e) => {
-            let decimals = crate::report::parameters::decimals_for(e);
-            format!(
-                "{} ± {}",
-                speech.fixed(value, decimals),
-                speech.fixed(e, decimals)
-            )
-        }
-        None => speech.significant(value, 4),
+/// Name of a decay: its record's, after its specimen's if there are several.
+pub fn title(decay: &FreeDecay) -> String {
+    match &decay.specimen {
+        Some(specimen) => format!("{specimen}: {}", decay.record),
+        None => decay.record.clone(),
+    }
+}
+
+fn with_error([value, error]: [f64; 2], locale: Locale) -> String {
+    if error > 0.0 {
+        let decimals = decimals_for(error);
+        let [value, error] = [value, error].map(|v| locale.fixed(v, decimals));
+        format!("{value} ± {error}")
+    } else {
+        locale.significant(value, 4)
     }
 }
 
 fn csv(decays: &[FreeDecay]) -> String {
     let mut csv = Csv::new(&["record", "source", "time_s", "value_si"]);
     for decay in decays {
-        for (source, signal) in [
-            ("measured", Some(&decay.measured)),
-            ("fitted", decay.fitted.as_ref()),
-        ] {
-            let Some(signal) = signal else { continue };
+        let record = title(decay);
+        for (source, signal) in [("measured", &decay.measured), ("fitted", &decay.fitted)] {
             for (t, v) in signal.time_s.iter().zip(&signal.values) {
                 csv.row()
-                    .texts(&[&decay.record, source])
+                    .texts(&[&record, source])
                     .numbers(&[Some(*t), Some(*v)]);
             }
         }

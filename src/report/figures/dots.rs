@@ -9,14 +9,14 @@ use super::panel::Panel;
 /// Side in points of the squares that hold at most one dot.
 const CELL: f64 = 0.55;
 
-/// Where dots already lie.
+/// The squares that hold a dot.
 #[derive(Default)]
 pub struct Dots {
     taken: HashSet<(i64, i64)>,
 }
 
 impl Dots {
-    /// Draws a dot at data unless one lies there or the panel does not show it; gives its place.
+    /// Draws a dot at data unless its square is taken; returns its position, `None` outside the panel.
     pub fn put(
         &mut self,
         canvas: &mut Canvas,

@@ -1,18 +1,18 @@
 //! The estimates of all methods beside the joint one, a panel for each parameter.
 
-use super::Figure;
 use super::axis::{Axis, range};
 use super::canvas::{Anchor, Canvas, Stroke, TextLook};
 use super::csv::Csv;
 use super::dots::{DotLook, Dots};
+use super::figure::Figure;
 use super::fonts::{self, Face};
 use super::look;
 use super::panel::{Panel, Sides};
 use super::path::Rect;
 use crate::identify::{Estimate, Status};
 use crate::report::content::ReportContent;
-use crate::report::parameters::{PARAMETERS, ParameterLook, interval95, method_name};
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
+use crate::report::parameters::{PARAMETERS, ParameterLook, interval95};
 
 /// Height of a method's line, points.
 const ROW: f64 = 14.5;
@@ -36,9 +36,9 @@ impl Line<'_> {
     }
 }
 
-/// Draws the estimates; `None` where no parameter has a value.
-pub fn draw(content: &ReportContent, speech: Speech) -> Option<Figure> {
-    let lines = lines(content, speech);
+/// Draws the estimates; `None` if no parameter has a value.
+pub fn draw(content: &ReportContent, locale: Locale) -> Option<Figure> {
+    let lines = lines(content, locale);
     let shown: Vec<usize> = (0..PARAMETERS.len())
         .filter(|&k| lines.iter().any(|l| value(l.estimates[k]).is_some()))
         .collect();
@@ -59,30 +59,30 @@ pub fn draw(content: &ReportContent, speech: Speech) -> Option<Figure> {
         let (column, row) = (i % columns, i / columns);
         let x = left + column as f64 * (width + gap);
         let rect = Rect::new(x, 2.0 + row as f64 * (height + 27.0), width, height);
-        parameter(&mut canvas, rect, (&PARAMETERS[k], k), &lines, speech);
+        parameter(&mut canvas, rect, (&PARAMETERS[k], k), &lines, locale);
         if column == 0 {
             labels(&mut canvas, &rect, &lines);
         }
     }
     Some(Figure::new(
         "estimates",
-        &speech.say("Estimates of all methods"),
+        &locale.translate("Estimates of all methods"),
         canvas,
         csv(&lines),
     ))
 }
 
-fn lines<'a>(content: &'a ReportContent, speech: Speech) -> Vec<Line<'a>> {
+fn lines<'a>(content: &'a ReportContent, locale: Locale) -> Vec<Line<'a>> {
     let id = &content.identification;
     let methods = id
         .methods
         .iter()
-        .map(|(key, m)| (method_name(key), false, &m.parameters));
-    let all = methods.chain([(method_name("joint"), true, &id.joint.parameters)]);
-    all.map(|(key, joint, parameters)| Line {
-        name: speech.say(&key),
-        key,
-        joint,
+        .map(|(method, m)| (Some(*method), &m.parameters));
+    let all = methods.chain([(None, &id.joint.parameters)]);
+    all.map(|(method, parameters)| Line {
+        name: method.map_or_else(|| locale.translate("Joint"), |m| locale.message(&m)),
+        key: method.map_or_else(|| "Joint".to_owned(), |m| m.to_string()),
+        joint: method.is_none(),
         estimates: std::array::from_fn(|k| (PARAMETERS[k].pick)(parameters)),
     })
     .filter(|l| l.joint || l.estimates.iter().any(Option::is_some))
@@ -98,7 +98,7 @@ fn parameter(
     rect: Rect,
     (shown, k): (&ParameterLook, usize),
     lines: &[Line<'_>],
-    speech: Speech,
+    locale: Locale,
 ) {
     let ends = lines.iter().filter_map(|l| interval95(l.estimates[k]?));
     let ends: Vec<f64> = ends
@@ -132,7 +132,7 @@ fn parameter(
         let y = (lines.len() - i) as f64 - 0.5;
         if let Some(estimate) = line.estimates[k] {
             let place = (y, line.joint);
-            mark(canvas, &panel, (estimate, shown.factor), place, speech);
+            mark(canvas, &panel, (estimate, shown.factor), place, locale);
         }
     }
     panel.frame(
@@ -141,7 +141,7 @@ fn parameter(
             below: true,
             left: false,
         },
-        speech,
+        locale,
     );
 }
 
@@ -165,13 +165,13 @@ fn mark(
     panel: &Panel,
     (e, factor): (&Estimate, f64),
     (y, joint): (f64, bool),
-    speech: Speech,
+    locale: Locale,
 ) {
     let colour = if joint { look::BLUE } else { look::INK };
     let Some((low, high)) = interval95(e) else {
         let (x, y) = panel.at(0.5 * (panel.x.low + panel.x.high), y);
         let quiet = TextLook::new(6.5, Anchor::Middle).colour(look::QUIET);
-        canvas.text((x, y + 2.2), &speech.say("not identifiable"), quiet);
+        canvas.text((x, y + 2.2), &locale.translate("not identifiable"), quiet);
         return;
     };
     let ends = [(low * factor, y), (high * factor, y)];

@@ -4,13 +4,13 @@ use super::axis::{Axis, range};
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
+use super::figure::{Figure, Spot};
 use super::legend::{self, Key, Sign};
 use super::look;
 use super::panel::{PAIR_LEFT, Panel, Sides, pair};
 use super::units::{PrintUnit, print_unit};
-use super::{Figure, Spot};
-use crate::report::content::ImpactScatter;
-use crate::report::speech::Speech;
+use crate::compare::{ImpactPoint, ImpactScatter};
+use crate::report::locale::Locale;
 use labfiles::units::Dimension;
 
 /// Height of the panels, points.
@@ -18,8 +18,8 @@ const HEIGHT: f64 = 150.0;
 /// Room above the panels for the keys, points.
 const TOP: f64 = 15.0;
 
-/// Draws one group of impacts; `None` where it is empty.
-pub fn draw(scatter: &ImpactScatter, name: &str, speech: Speech) -> Option<Figure> {
+/// Draws one group of impacts; `None` if it is empty.
+pub fn draw(scatter: &ImpactScatter, name: &str, locale: Locale) -> Option<Figure> {
     let peak = scatter
         .points
         .iter()
@@ -32,24 +32,24 @@ pub fn draw(scatter: &ImpactScatter, name: &str, speech: Speech) -> Option<Figur
     let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + look::BELOW_PANEL);
     let panels = panels(scatter, unit);
     lines(&mut canvas, &panels, scatter, unit);
-    let spots = points(&mut canvas, &panels, scatter, (unit, speech));
+    let spots = points(&mut canvas, &panels, scatter, (unit, locale));
     for panel in &panels {
-        panel.frame(&mut canvas, Sides::BOTH, speech);
+        panel.frame(&mut canvas, Sides::BOTH, locale);
     }
     legend::draw(
         &mut canvas,
         (PAIR_LEFT, 0.0),
         look::FULL_WIDTH - PAIR_LEFT,
-        &keys(scatter, speech),
-        speech,
+        &keys(scatter, locale),
+        locale,
     );
-    let title = speech.say("Speeds after over before impact");
+    let title = locale.translate("Speeds after over before impact");
     Some(Figure::new(name, &title, canvas, csv(scatter)).with_spots(spots))
 }
 
 /// The two panels: speed after, and restitution, over speed before.
 fn panels(scatter: &ImpactScatter, unit: PrintUnit) -> [Panel; 2] {
-    let peak = |f: fn(&crate::report::content::ImpactPoint) -> f64| {
+    let peak = |f: fn(&ImpactPoint) -> f64| {
         scatter.points.iter().map(f).fold(0.0, f64::max) * unit.factor * 1.04
     };
     let before = || {
@@ -112,24 +112,23 @@ fn lines(canvas: &mut Canvas, panels: &[Panel; 2], scatter: &ImpactScatter, unit
     speeds.curve(canvas, of_speed().map(|(v, r)| (v, v * r)), dashed);
 }
 
-/// Draws the impacts; gives what hovering over them tells.
+/// Draws the impacts; returns their texts for hovering.
 fn points(
     canvas: &mut Canvas,
     panels: &[Panel; 2],
     scatter: &ImpactScatter,
-    (unit, speech): (PrintUnit, Speech),
+    (unit, locale): (PrintUnit, Locale),
 ) -> Vec<Spot> {
     let mut spots = Vec::new();
     canvas.layer(1);
     let radius = dots::radius(scatter.points.len());
     let mut taken = [Dots::default(), Dots::default()];
+    let dot = DotLook {
+        radius,
+        colour: look::BLUE,
+        open: false,
+    };
     for p in &scatter.points {
-        let colour = if p.used { look::BLUE } else { look::QUIET };
-        let dot = DotLook {
-            radius,
-            colour,
-            open: !p.used,
-        };
         let before = p.before_m_s * unit.factor;
         let values = [p.after_m_s * unit.factor, p.after_m_s / p.before_m_s];
         for ((panel, dots), value) in panels.iter().zip(&mut taken).zip(values) {
@@ -138,7 +137,7 @@ fn points(
                 spots.push(Spot {
                     x,
                     y,
-                    text: format!("{}\nR = {}", p.record, speech.fixed(ratio, 3)),
+                    text: format!("{}\nR = {}", p.record, locale.fixed(ratio, 3)),
                 });
             }
         }
@@ -147,27 +146,20 @@ fn points(
     spots
 }
 
-fn keys(scatter: &ImpactScatter, speech: Speech) -> Vec<Key> {
+fn keys(scatter: &ImpactScatter, locale: Locale) -> Vec<Key> {
     let mut keys = Vec::new();
-    if !scatter.name.is_empty() {
-        keys.push(Key::new(Sign::Nothing, scatter.name.clone()));
+    if let Some(specimen) = &scatter.specimen {
+        keys.push(Key::new(Sign::Nothing, specimen));
     }
-    let unused = scatter.points.iter().filter(|p| !p.used).count();
     keys.push(Key::new(
         Sign::dot(look::BLUE),
-        format!("impacts used ({})", scatter.used()),
+        format!("impacts used ({})", scatter.total),
     ));
-    if unused > 0 {
-        keys.push(Key::new(
-            Sign::ring(look::QUIET),
-            format!("not used ({unused})"),
-        ));
-    }
     if let Some(r) = scatter.restitution {
         let stroke = Stroke::solid(look::VERMILION, 1.0);
         keys.push(Key::new(
             Sign::Line(stroke),
-            format!("$R$ = {}", speech.fixed(r, 4)),
+            format!("$R$ = {}", locale.fixed(r, 4)),
         ));
     }
     if scatter.interval95.is_some() {
@@ -183,9 +175,11 @@ fn keys(scatter: &ImpactScatter, speech: Speech) -> Vec<Key> {
 fn csv(scatter: &ImpactScatter) -> String {
     let mut csv = Csv::new(&["record", "used", "before_m_s", "after_m_s", "error_m_s"]);
     for p in &scatter.points {
-        csv.row()
-            .texts(&[&p.record, if p.used { "yes" } else { "no" }])
-            .numbers(&[Some(p.before_m_s), Some(p.after_m_s), p.error_m_s]);
+        csv.row().texts(&[&p.record, "yes"]).numbers(&[
+            Some(p.before_m_s),
+            Some(p.after_m_s),
+            Some(p.error_m_s),
+        ]);
     }
     csv.finish()
 }

@@ -5,9 +5,9 @@ use super::fonts::Face;
 use super::look;
 use super::marks::{self, MotionLook, Shape};
 use super::richtext;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
-/// What stands before a key's text.
+/// The sign before a key's text.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sign {
     /// A mark of a motion.
@@ -41,7 +41,7 @@ impl Sign {
         })
     }
 
-    /// Its width, points; a heading takes back the room that signs are given.
+    /// Its width, points; that of a heading takes back the gap after a sign.
     fn width(self) -> f64 {
         match self {
             Sign::Mark(_) => 7.0,
@@ -71,8 +71,8 @@ impl Key {
         }
     }
 
-    fn width(&self, speech: Speech) -> f64 {
-        let text = speech.say_title(&self.text);
+    fn width(&self, locale: Locale) -> f64 {
+        let text = locale.translate_title(&self.text);
         self.sign.width() + SIGN_GAP + richtext::width(&text, Face::Regular, look::NOTE_SIZE)
     }
 }
@@ -85,11 +85,11 @@ const GAP: f64 = 11.0;
 const SIGN_GAP: f64 = 3.0;
 
 /// Lays keys in lines of a width: (key, left, line).
-fn flow<'a>(keys: &'a [Key], width: f64, speech: Speech) -> Vec<(&'a Key, f64, usize)> {
+fn flow<'a>(keys: &'a [Key], width: f64, locale: Locale) -> Vec<(&'a Key, f64, usize)> {
     let (mut x, mut line) = (0.0, 0);
     keys.iter()
         .map(|key| {
-            let wide = key.width(speech);
+            let wide = key.width(locale);
             if x > 0.0 && x + wide > width {
                 x = 0.0;
                 line += 1;
@@ -102,8 +102,8 @@ fn flow<'a>(keys: &'a [Key], width: f64, speech: Speech) -> Vec<(&'a Key, f64, u
 }
 
 /// Height that the keys need at a width.
-pub fn height(keys: &[Key], width: f64, speech: Speech) -> f64 {
-    flow(keys, width, speech)
+pub fn height(keys: &[Key], width: f64, locale: Locale) -> f64 {
+    flow(keys, width, locale)
         .last()
         .map_or(0.0, |(_, _, line)| (*line + 1) as f64 * LINE_HEIGHT)
 }
@@ -114,9 +114,9 @@ pub fn draw(
     (left, top): (f64, f64),
     width: f64,
     keys: &[Key],
-    speech: Speech,
+    locale: Locale,
 ) {
-    for (key, x, line) in flow(keys, width, speech) {
+    for (key, x, line) in flow(keys, width, locale) {
         let y = top + (line as f64 + 0.5) * LINE_HEIGHT;
         sign(canvas, (left + x, y), key.sign);
         let at = (
@@ -124,7 +124,7 @@ pub fn draw(
             y + 0.33 * look::NOTE_SIZE,
         );
         let text_look = TextLook::new(look::NOTE_SIZE, Anchor::Left).colour(look::INK);
-        canvas.text(at, &speech.say_title(&key.text), text_look);
+        canvas.text(at, &locale.translate_title(&key.text), text_look);
     }
 }
 

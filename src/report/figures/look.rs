@@ -12,7 +12,7 @@ pub const HALF_WIDTH: f64 = 234.0;
 pub const FRONT_WIDTH: f64 = 236.0;
 /// Room below a panel for its numbers and title, points.
 pub const BELOW_PANEL: f64 = 24.0;
-/// Figures narrower than this stand two in a row, points.
+/// Figures narrower than this are set two in a row, points.
 pub const NARROW: f64 = 300.0;
 /// Dashes of a fitted or simulated line, points.
 pub const DASH: &[f64] = &[4.0, 2.0];
@@ -55,7 +55,7 @@ pub const BROWN: Colour = RGBColor(0x7a, 0x50, 0x30);
 pub const DARK_RED: Colour = RGBColor(0x8c, 0x1d, 0x1d);
 /// Slate: motions without impacts.
 pub const SLATE: Colour = RGBColor(0x44, 0x4a, 0x50);
-/// Grey, for what no motion could be told of.
+/// Grey, for undetermined motions.
 pub const GREY: Colour = RGBColor(0x77, 0x77, 0x77);
 /// Pale grey, for times at which masses are together.
 pub const PALE: Colour = RGBColor(0xd9, 0xdd, 0xe2);

@@ -64,7 +64,7 @@ pub fn of(motion: &Motion) -> MotionLook {
         } => periodic(*impacts_p, *periods_n, *dead_zone),
         Motion::Beat => looks(Shape::Plus, look::BROWN, 0.16),
         Motion::Chaotic => looks(Shape::Cross, look::DARK_RED, 0.16),
-        Motion::Joined => looks(Shape::Bar, look::GREY, 0.22),
+        Motion::Sticking => looks(Shape::Bar, look::GREY, 0.22),
         Motion::Undetermined { .. } => looks(Shape::Dot, look::GREY, 0.10),
     }
 }
@@ -127,7 +127,7 @@ pub fn order(motion: &Motion) -> (u32, u32, u32, bool) {
         } => (1, *periods_n, *impacts_p, *dead_zone),
         Motion::Beat => (2, 0, 0, false),
         Motion::Chaotic => (3, 0, 0, false),
-        Motion::Joined => (4, 0, 0, false),
+        Motion::Sticking => (4, 0, 0, false),
         Motion::Undetermined { .. } => (5, 0, 0, false),
     }
 }
@@ -217,7 +217,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_common_motions_differ_in_shape_and_in_colour() {
+    fn common_motions_differ_in_shape_and_in_colour() {
         let common: Vec<Motion> = vec![
             Motion::Impactless,
             Motion::periodic(1, 1),
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_legends_name_each_motion_once_in_order() {
+    fn legends_name_each_motion_once_in_order() {
         let motions = [
             Motion::Chaotic,
             Motion::periodic(1, 2),

@@ -1,6 +1,7 @@
 //! The figures, one file each: from content to SVG, its data as CSV, its points for hovering.
 
 pub(super) mod axis;
+pub(super) mod boundaries;
 pub(super) mod boundary_fit;
 pub(super) mod canvas;
 mod compact;
@@ -10,6 +11,7 @@ pub(super) mod csv;
 pub(super) mod decays;
 pub(super) mod dots;
 pub(super) mod estimates;
+pub(super) mod figure;
 pub(super) mod fonts;
 pub(super) mod impacts;
 pub(super) mod legend;
@@ -27,137 +29,74 @@ pub(super) mod resonance;
 pub(super) mod richtext;
 pub(super) mod units;
 
-use crate::report::speech::Speech;
-use canvas::Canvas;
+pub use figure::{Figure, numbered};
+
 use rayon::prelude::*;
 
+use crate::identify::Method;
 use crate::report::content::ReportContent;
-
-/// A finished figure.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Figure {
-    /// Stem of its file name.
-    pub name: String,
-    /// What it shows, with markup.
-    pub title: String,
-    /// The drawing.
-    pub svg: String,
-    /// Width, points.
-    pub width: f64,
-    /// Height, points.
-    pub height: f64,
-    /// Its data.
-    pub csv: String,
-    /// Points that tell something when hovered over.
-    pub spots: Vec<Spot>,
-    /// Texts that reach beyond the drawing's edges.
-    pub overfull: Vec<String>,
-}
-
-/// A point of a figure that tells something.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct Spot {
-    /// From the left, points.
-    pub x: f64,
-    /// From the top, points.
-    pub y: f64,
-    /// What it tells; lines are parted by line feeds.
-    pub text: String,
-}
-
-/// Most points of one figure that tell something: more would only swell the page.
-const MOST_SPOTS: usize = 2500;
-
-impl Figure {
-    /// A figure from its drawing.
-    pub fn new(name: impl Into<String>, title: &str, canvas: Canvas, csv: String) -> Self {
-        let (width, height) = (canvas.width, canvas.height);
-        let overfull = canvas.overfull();
-        let svg = canvas.into_svg(title);
-        let (name, title) = (name.into(), title.to_owned());
-        Self {
-            name,
-            title,
-            svg,
-            width,
-            height,
-            csv,
-            spots: Vec::new(),
-            overfull,
-        }
-    }
-
-    /// With points that tell something.
-    pub fn with_spots(self, mut spots: Vec<Spot>) -> Self {
-        let stride = spots.len().div_ceil(MOST_SPOTS).max(1);
-        let mut index = 0;
-        spots.retain(|_| {
-            index += 1;
-            (index - 1) % stride == 0
-        });
-        // a hundredth of a point is finer than any screen shows
-        let coarse = |v: f64| (v * 100.0).round() / 100.0;
-        for spot in &mut spots {
-            (spot.x, spot.y) = (coarse(spot.x), coarse(spot.y));
-        }
-        Self { spots, ..self }
-    }
-}
+use crate::report::locale::Locale;
 
 /// A figure waiting to be drawn.
 type Job<'a> = Box<dyn Fn() -> Option<Figure> + Send + Sync + 'a>;
 
 /// Draws all figures that the content allows, side by side on all cores, in a fixed order.
-pub fn draw_all(content: &ReportContent, speech: Speech) -> Vec<Figure> {
-    jobs(content, speech)
+pub fn draw_all(content: &ReportContent, locale: Locale) -> Vec<Figure> {
+    jobs(content, locale)
         .par_iter()
         .filter_map(|job| job())
         .collect()
 }
 
-fn jobs<'a>(content: &'a ReportContent, speech: Speech<'a>) -> Vec<Job<'a>> {
+fn jobs<'a>(content: &'a ReportContent, locale: Locale<'a>) -> Vec<Job<'a>> {
     let mut jobs: Vec<Job<'a>> = vec![
-        Box::new(move || map::draw(content, map::MapSize::Full, speech)),
-        Box::new(move || map::draw(content, map::MapSize::Small, speech)),
+        Box::new(move || map::draw(content, map::MapSize::Full, locale)),
+        Box::new(move || map::draw(content, map::MapSize::Small, locale)),
     ];
-    for comparison in &content.comparisons {
-        jobs.push(Box::new(move || comparison::draw(comparison, speech)));
+    for comparison in &content.compared.comparisons {
+        jobs.push(Box::new(move || comparison::draw(comparison, locale)));
     }
-    jobs.push(Box::new(move || estimates::draw(content, speech)));
-    jobs.push(Box::new(move || boundary_fit::draw(content, speech)));
-    jobs.push(Box::new(move || profiles::draw(&content.profiles, speech)));
-    if let Some(correlation) = &content.correlation {
-        jobs.push(Box::new(move || correlation::draw(correlation, speech)));
+    jobs.push(Box::new(move || estimates::draw(content, locale)));
+    jobs.push(Box::new(move || {
+        boundary_fit::draw(&content.compared.brackets, locale)
+    }));
+    jobs.push(Box::new(move || {
+        profiles::draw(&content.identification, locale)
+    }));
+    if let Some(correlation) = &content.compared.correlation {
+        jobs.push(Box::new(move || correlation::draw(correlation, locale)));
     }
-    method_jobs(content, speech, &mut jobs);
+    method_jobs(content, locale, &mut jobs);
     jobs
 }
 
 /// Figures of which there may be several.
-fn method_jobs<'a>(content: &'a ReportContent, speech: Speech<'a>, jobs: &mut Vec<Job<'a>>) {
-    for (i, scatter) in content.impacts.iter().enumerate() {
+fn method_jobs<'a>(content: &'a ReportContent, locale: Locale<'a>, jobs: &mut Vec<Job<'a>>) {
+    for (i, scatter) in content.compared.impacts.iter().enumerate() {
         jobs.push(Box::new(move || {
-            impacts::draw(scatter, &numbered("impacts", i), speech)
+            impacts::draw(scatter, &numbered("impacts", i), locale)
         }));
     }
-    for (i, curve) in content.resonance.iter().enumerate() {
+    let method = content.identification.methods.get(&Method::Resonance);
+    let fits = method.and_then(|m| m.fits);
+    for (i, curve) in content.compared.resonance.iter().enumerate() {
         jobs.push(Box::new(move || {
-            resonance::draw(curve, &numbered("resonance", i), speech)
+            resonance::draw((curve, fits), &numbered("resonance", i), locale)
         }));
     }
-    for (i, few) in content.free_decays.chunks(decays::PER_FIGURE).enumerate() {
+    for (i, few) in content
+        .compared
+        .free_decays
+        .chunks(decays::PER_FIGURE)
+        .enumerate()
+    {
         jobs.push(Box::new(move || {
-            decays::draw(few, &numbered("free_decays", i), speech)
+            decays::draw(few, &numbered("free_decays", i), locale)
         }));
     }
-    for (i, set) in content.residuals.iter().enumerate() {
+    for (i, set) in content.compared.residuals.iter().enumerate() {
         jobs.push(Box::new(move || {
-            residuals::draw(set, &numbered("residuals", i), speech)
+            residuals::draw(set, &numbered("residuals", i), locale)
         }));
     }
-}
-
-/// Name of the i-th figure of a kind.
-pub fn numbered(kind: &str, index: usize) -> String {
-    format!("{kind}_{}", index + 1)
 }

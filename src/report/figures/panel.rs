@@ -6,7 +6,7 @@ use super::fonts::{self, Face};
 use super::look;
 use super::path::{self, Rect};
 use super::richtext;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// How far in points a number below may reach beyond the panel's sides.
 const MOST_OVERHANG: f64 = 5.5;
@@ -48,7 +48,7 @@ pub struct Panel {
     pub x: Axis,
     /// Upward.
     pub y: Axis,
-    /// How far left of the frame the title of the upward axis stands; `None`: beside its numbers.
+    /// Distance of the title of the upward axis from the frame; `None`: beside its numbers.
     title_reach: Option<f64>,
 }
 
@@ -71,7 +71,7 @@ impl Panel {
         }
     }
 
-    /// Where a pair of values lies on paper.
+    /// Position of a pair of values on paper.
     pub fn at(&self, x: f64, y: f64) -> Point {
         (
             self.rect.left + self.x.share(x) * self.rect.width(),
@@ -79,7 +79,7 @@ impl Panel {
         )
     }
 
-    /// Whether a pair of values lies within the axes.
+    /// Whether a pair of values is within the axes.
     pub fn shows(&self, x: f64, y: f64) -> bool {
         x >= self.x.low && x <= self.x.high && y >= self.y.low && y <= self.y.high
     }
@@ -118,7 +118,7 @@ impl Panel {
     }
 
     /// Frame, ticks, numbers and titles.
-    pub fn frame(&self, canvas: &mut Canvas, sides: Sides, speech: Speech) {
+    pub fn frame(&self, canvas: &mut Canvas, sides: Sides, locale: Locale) {
         let r = &self.rect;
         let corners = [
             (r.left, r.top),
@@ -129,18 +129,18 @@ impl Panel {
             (r.right, r.top),
         ];
         canvas.line(&corners, look::FRAME_STROKE);
-        self.ticks_below(canvas, sides.below, speech);
-        self.ticks_left(canvas, sides.left, speech);
+        self.ticks_below(canvas, sides.below, locale);
+        self.ticks_left(canvas, sides.left, locale);
     }
 
-    fn ticks_below(&self, canvas: &mut Canvas, labels: bool, speech: Speech) {
+    fn ticks_below(&self, canvas: &mut Canvas, labels: bool, locale: Locale) {
         let (ticks, decimals) = self.x.major();
         let bottom = self.rect.bottom;
         let mut taken = f64::NEG_INFINITY;
         for v in ticks {
             let (x, _) = self.at(v, self.y.low);
             canvas.segment((x, bottom), (x, bottom - 2.5), look::FRAME_STROKE);
-            let text = self.x.label(v, decimals, speech);
+            let text = self.x.label(v, decimals, locale);
             let half = 0.5 * fonts::width(&text, Face::Regular, look::TICK_SIZE);
             let (least, most) = (
                 self.rect.left - MOST_OVERHANG + half,
@@ -156,12 +156,12 @@ impl Panel {
         if labels {
             let middle = 0.5 * (self.rect.left + self.rect.right);
             let text_look = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::INK);
-            let title = speech.say_title(&self.x.title);
+            let title = locale.translate_title(&self.x.title);
             canvas.text((middle, bottom + 19.5), &title, text_look);
         }
     }
 
-    fn ticks_left(&self, canvas: &mut Canvas, labels: bool, speech: Speech) {
+    fn ticks_left(&self, canvas: &mut Canvas, labels: bool, locale: Locale) {
         if self.y.ticks == 0 {
             return;
         }
@@ -172,17 +172,17 @@ impl Panel {
             let (_, y) = self.at(self.x.low, v);
             canvas.segment((left, y), (left + 2.5, y), look::FRAME_STROKE);
             if labels && stride.is_none_or(|s| (v / s - (v / s).round()).abs() < 1e-6) {
-                let text = self.y.label(v, decimals, speech);
+                let text = self.y.label(v, decimals, locale);
                 let text_look = TextLook::new(look::TICK_SIZE, Anchor::Right).colour(look::INK);
                 canvas.text((left - 3.0, y + 0.33 * look::TICK_SIZE), &text, text_look);
             }
         }
         if labels {
-            self.title_left(canvas, speech);
+            self.title_left(canvas, locale);
         }
     }
 
-    /// Where numbers on the left would stand on each other: those that are multiples of this are
+    /// If numbers on the left would overlap: those that are multiples of this are
     /// printed.
     fn label_stride(&self, ticks: &[f64]) -> Option<f64> {
         let [first, second, ..] = ticks else {
@@ -195,10 +195,10 @@ impl Panel {
     }
 
     /// The title of the upward axis; line feeds part it into lines.
-    fn title_left(&self, canvas: &mut Canvas, speech: Speech) {
-        let reach = self.title_reach.unwrap_or(7.0 + self.widest_label(speech));
+    fn title_left(&self, canvas: &mut Canvas, locale: Locale) {
+        let reach = self.title_reach.unwrap_or(7.0 + self.widest_label(locale));
         let middle = 0.5 * (self.rect.top + self.rect.bottom);
-        let title = speech.say_title(&self.y.title);
+        let title = locale.translate_title(&self.y.title);
         let lines: Vec<&str> = title.lines().collect();
         let title_look = TextLook {
             upward: true,
@@ -226,13 +226,13 @@ impl Panel {
     }
 
     /// Width of the widest number on the left.
-    fn widest_label(&self, speech: Speech) -> f64 {
+    fn widest_label(&self, locale: Locale) -> f64 {
         let (ticks, decimals) = self.y.major();
         ticks
             .iter()
             .map(|&v| {
                 fonts::width(
-                    &self.y.label(v, decimals, speech),
+                    &self.y.label(v, decimals, locale),
                     Face::Regular,
                     look::TICK_SIZE,
                 )

@@ -1,6 +1,7 @@
 //! Lines before they are drawn: clipped, thinned, dashed.
 
-use super::canvas::Point;
+/// A position in points from the upper left corner.
+pub type Point = (f64, f64);
 
 /// Largest distance in points by which thinning may move a line.
 const THINNING_TOLERANCE: f64 = 0.04;
@@ -39,13 +40,13 @@ impl Rect {
         self.bottom - self.top
     }
 
-    /// Whether a point lies inside or on the edge.
+    /// Whether a point is inside or on the edge.
     pub fn contains(&self, (x, y): Point) -> bool {
         x >= self.left && x <= self.right && y >= self.top && y <= self.bottom
     }
 }
 
-/// The parts of a line that lie inside a rectangle (Liang–Barsky, segment by segment).
+/// The parts of a line inside a rectangle (Liang–Barsky, segment by segment).
 /// Points that are not finite break the line.
 pub fn clip(points: &[Point], rect: &Rect) -> Vec<Vec<Point>> {
     let mut pieces: Vec<Vec<Point>> = Vec::new();
@@ -244,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_straight_line_keeps_its_two_ends() {
+    fn a_straight_line_keeps_its_two_ends() {
         let line: Vec<Point> = (0..100)
             .map(|i| (f64::from(i), 2.0 * f64::from(i)))
             .collect();

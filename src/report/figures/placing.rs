@@ -1,4 +1,4 @@
-//! Placing labels where nothing else stands.
+//! Placing labels where nothing else is drawn.
 
 use super::canvas::Point;
 use super::path::Rect;
@@ -66,7 +66,7 @@ impl Occupancy {
     }
 
     /// The best place for a box of a size near a point: its cost (covered area and distance) and
-    /// its middle, or `None` where all places within reach lie outside the bounds.
+    /// its middle, or `None` if all places within reach are outside the bounds.
     pub fn near(
         &self,
         point: Point,
@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_a_label_avoids_what_is_taken() {
+    fn a_label_avoids_what_is_taken() {
         let mut occupancy = Occupancy::new(200.0, 200.0);
         occupancy.take_rect(&Rect::new(100.0, 0.0, 100.0, 200.0));
         let bounds = Rect::new(0.0, 0.0, 200.0, 200.0);

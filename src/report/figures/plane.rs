@@ -1,9 +1,10 @@
 //! The plane of the map: (η, ρ) where f0 and x_st are known, else frequency and clearance.
 
 use super::axis::{Axis, range};
+use crate::compare::{BracketRow, RecordRow};
 use crate::identify::Estimate;
 use crate::motion::Motion;
-use crate::report::content::{BracketRow, ProposedPoint, RecordRow, ReportContent};
+use crate::report::content::{ProposedPoint, ReportContent};
 
 /// Least and greatest value, where there is any.
 type Range = Option<(f64, f64)>;
@@ -31,7 +32,7 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// The plane in which the records can be shown; `None` where they have no place in any.
+    /// The plane in which the records can be shown; `None` if they have no place in any.
     pub fn of(content: &ReportContent) -> Option<Self> {
         let joint = &content.identification.joint.parameters;
         let value = |e: &Option<Estimate>| e.as_ref().and_then(|e| e.value).filter(|v| *v > 0.0);
@@ -41,16 +42,24 @@ impl Plane {
             static_deflection_m: value(&joint.static_deflection_m),
         };
         let placed = |p: Self| {
-            content.records.iter().any(|r| p.record(r).is_some())
-                || content.brackets.iter().any(|b| p.bracket(b).is_some())
+            content
+                .compared
+                .records
+                .iter()
+                .any(|r| p.record(r).is_some())
+                || content
+                    .compared
+                    .brackets
+                    .iter()
+                    .any(|b| p.bracket(b).is_some())
         };
-        let modelled = !content.curves.is_empty() || content.region_map.is_some();
+        let modelled = !content.compared.curves.is_empty() || content.compared.region_map.is_some();
         [plane(true), plane(false)]
             .into_iter()
             .find(|p| placed(*p) || (p.dimensionless && modelled))
     }
 
-    /// Where a record lies.
+    /// Position of a record.
     pub fn record(&self, record: &RecordRow) -> Option<(f64, f64)> {
         if self.dimensionless {
             Some((record.eta?, record.rho?))
@@ -62,7 +71,7 @@ impl Plane {
     /// Ends and height of a bracket.
     pub fn bracket(&self, bracket: &BracketRow) -> Option<((f64, f64), f64)> {
         if self.dimensionless {
-            Some(((bracket.eta_low?, bracket.eta_high?), bracket.rho?))
+            Some((bracket.eta?.into(), bracket.rho?))
         } else {
             let ends = (bracket.frequency_low_hz, bracket.frequency_high_hz);
             Some((ends, bracket.clearance_m * 1e3))
@@ -74,11 +83,18 @@ impl Plane {
     pub fn view(&self, content: &ReportContent) -> View {
         let records = || {
             content
+                .compared
                 .records
                 .iter()
                 .filter_map(|r| Some((r, self.record(r)?)))
         };
-        let brackets = || content.brackets.iter().filter_map(|b| self.bracket(b));
+        let brackets = || {
+            content
+                .compared
+                .brackets
+                .iter()
+                .filter_map(|b| self.bracket(b))
+        };
         let xs = records().map(|(_, p)| p.0);
         let x = pad(
             range(xs.chain(brackets().flat_map(|b| [b.0.0, b.0.1]))),
@@ -126,14 +142,14 @@ impl Plane {
     }
 
     fn with_map(&self, content: &ReportContent, x: Range, y: Range) -> (Range, Range) {
-        match &content.region_map {
-            Some(map) => (union(x, edges(&map.eta)), union(y, edges(&map.rho))),
+        match &content.compared.region_map {
+            Some(map) => (union(x, edges(&map.x)), union(y, edges(&map.y))),
             None => (x, y),
         }
     }
 }
 
-/// Whether a motion has impacts or none can be said of it: what a map is drawn for.
+/// Whether a motion is one that the map is drawn for: one with impacts.
 fn busy(motion: &Motion) -> bool {
     !matches!(motion, Motion::Impactless | Motion::Undetermined { .. })
 }
@@ -143,7 +159,7 @@ pub fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 5e-3 * a.abs().max(b.abs())
 }
 
-/// The clearances, ascending, that lie far above all that happens; none where they are many.
+/// The clearances, ascending, far above all impacts; none if they are many.
 fn strips(all: &[f64], busy: Range) -> Vec<f64> {
     /// More strips than this make a plane of their own.
     const MOST: usize = 3;
@@ -194,7 +210,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_clearances_far_above_all_impacts_stand_in_strips() {
+    fn clearances_far_above_all_impacts_stand_in_strips() {
         let all = [0.6, 1.4, 4.4, 8.9, 8.93];
         assert_eq!(strips(&all, Some((0.6, 4.4))), [8.9]);
         assert!(strips(&all, None).is_empty());

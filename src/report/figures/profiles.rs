@@ -1,15 +1,16 @@
 //! Profile likelihoods of the parameters, four to a row.
 
-use super::Figure;
 use super::axis::Axis;
 use super::canvas::{Anchor, Canvas, Stroke, TextLook};
 use super::csv::Csv;
+use super::figure::Figure;
 use super::look;
 use super::panel::{Panel, Sides};
 use super::path::Rect;
-use crate::report::content::Profile;
-use crate::report::parameters::{method_name, parameter};
-use crate::report::speech::Speech;
+use crate::identify::Identification;
+use crate::identify::uncertainty::ProfileCurve;
+use crate::report::locale::Locale;
+use crate::report::parameters::parameter;
 
 /// Rise of χ² at the ends of a 95 % interval of one parameter.
 const RISE_95: f64 = 3.841_458_820_694_124;
@@ -21,11 +22,9 @@ const HEIGHT: f64 = 80.0;
 const ROW: f64 = HEIGHT + 36.0;
 
 /// Draws all profiles; `None` for none.
-pub fn draw(profiles: &[Profile], speech: Speech) -> Option<Figure> {
-    let drawn: Vec<&Profile> = profiles
-        .iter()
-        .filter(|p| p.values.len() > 2 && p.values.len() == p.delta_chi2.len())
-        .collect();
+pub fn draw(id: &Identification, locale: Locale) -> Option<Figure> {
+    let profiles = id.uncertainty.profiles.iter();
+    let drawn: Vec<&ProfileCurve> = profiles.filter(|p| p.values.len() > 2).collect();
     if drawn.is_empty() {
         return None;
     }
@@ -36,22 +35,26 @@ pub fn draw(profiles: &[Profile], speech: Speech) -> Option<Figure> {
     for (i, profile) in drawn.iter().enumerate() {
         let left = 28.0 + (i % COLUMNS) as f64 * step;
         let top = 11.0 + (i / COLUMNS) as f64 * ROW;
-        one(
-            &mut canvas,
-            profile,
-            Rect::new(left, top, step - 36.0, HEIGHT),
-            speech,
-        );
+        let rect = Rect::new(left, top, step - 36.0, HEIGHT);
+        let best = id.joint.parameters.get(profile.parameter);
+        let best = best.and_then(|e| e.value);
+        one(&mut canvas, (profile, best), rect, locale);
     }
-    let title = speech.say("Profile likelihoods");
+    let title = locale.translate("Profile likelihoods");
     Some(Figure::new("profiles", &title, canvas, csv(&drawn)))
 }
 
-fn one(canvas: &mut Canvas, profile: &Profile, rect: Rect, speech: Speech) {
-    let shown = parameter(&profile.parameter);
+fn one(
+    canvas: &mut Canvas,
+    (profile, best): (&ProfileCurve, Option<f64>),
+    rect: Rect,
+    locale: Locale,
+) {
+    let key = profile.parameter.name();
+    let shown = parameter(key);
     let factor = shown.map_or(1.0, |p| p.factor);
     let title = shown.map_or_else(
-        || speech.say(&profile.parameter.replace('_', " ")),
+        || locale.translate(&key.replace('_', " ")),
         |p| {
             format!(
                 "{} ({})",
@@ -82,29 +85,24 @@ fn one(canvas: &mut Canvas, profile: &Profile, rect: Rect, speech: Speech) {
         .zip(&profile.delta_chi2)
         .map(|(v, d)| (v * factor, *d));
     panel.curve(canvas, data, Stroke::solid(look::BLUE, 1.1));
-    if let Some(best) = profile.best {
+    if let Some(best) = best {
         panel.upright(canvas, best * factor, Stroke::solid(look::INK, 0.5));
     }
-    panel.frame(canvas, Sides::BOTH, speech);
-    let heading = if profile.method.is_empty() {
-        "joint".into()
-    } else {
-        method_name(&profile.method).to_lowercase()
-    };
+    panel.frame(canvas, Sides::BOTH, locale);
     let quiet = TextLook::new(look::NOTE_SIZE, Anchor::Middle).colour(look::QUIET);
     canvas.text(
         (0.5 * (rect.left + rect.right), rect.top - 3.5),
-        &speech.say(&heading),
+        &locale.translate("joint"),
         quiet,
     );
 }
 
-fn csv(profiles: &[&Profile]) -> String {
+fn csv(profiles: &[&ProfileCurve]) -> String {
     let mut csv = Csv::new(&["parameter", "method", "value_si", "delta_chi2"]);
     for p in profiles {
         for (v, d) in p.values.iter().zip(&p.delta_chi2) {
             csv.row()
-                .texts(&[&p.parameter, &p.method])
+                .texts(&[p.parameter.name(), ""])
                 .numbers(&[Some(*v), Some(*d)]);
         }
     }

@@ -4,28 +4,28 @@ use super::axis::{Axis, range};
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
+use super::figure::{Figure, Spot};
 use super::look;
 use super::marks;
 use super::panel::{Panel, Sides};
 use super::path::Rect;
-use super::{Figure, Spot};
-use crate::report::content::{ResidualPoint, ResidualSet};
+use crate::compare::{ResidualPoint, ResidualSet};
+use crate::report::locale::Locale;
 use crate::report::parameters::NORMAL_95;
-use crate::report::speech::Speech;
 
 /// Height of the panels, points.
 const HEIGHT: f64 = 84.0;
 /// Room above the panels, points.
 const TOP: f64 = 3.0;
 
-/// Draws the diagnostics of one method; `None` where it has no residuals.
-pub fn draw<'a>(set: &'a ResidualSet, name: &str, speech: Speech<'a>) -> Option<Figure> {
+/// Draws the diagnostics of one method; `None` if it has no residuals.
+pub fn draw<'a>(set: &'a ResidualSet, name: &str, locale: Locale<'a>) -> Option<Figure> {
     if set.points.is_empty() {
         return None;
     }
     let mut sheet = Sheet {
         set,
-        speech,
+        locale,
         canvas: Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + look::BELOW_PANEL),
         spots: Vec::new(),
     };
@@ -47,13 +47,13 @@ pub fn draw<'a>(set: &'a ResidualSet, name: &str, speech: Speech<'a>) -> Option<
             Rect::new(31.0 + i as f64 * step, TOP, step - 36.0, HEIGHT),
         );
     }
-    let title = speech.say("Residual diagnostics");
+    let title = locale.translate("Residual diagnostics");
     Some(Figure::new(name, &title, sheet.canvas, csv(set)).with_spots(sheet.spots))
 }
 
 struct Sheet<'a> {
     set: &'a ResidualSet,
-    speech: Speech<'a>,
+    locale: Locale<'a>,
     canvas: Canvas,
     spots: Vec<Spot>,
 }
@@ -103,13 +103,13 @@ impl Sheet<'_> {
             normal,
             Stroke::solid(look::VERMILION, 0.9),
         );
-        panel.frame(&mut self.canvas, Sides::BOTH, self.speech);
+        panel.frame(&mut self.canvas, Sides::BOTH, self.locale);
     }
 
     /// Stems from lag 1, with the band in which white residuals stay.
     fn autocorrelation(&mut self, rect: Rect) {
         let rho = &self.set.autocorrelation;
-        let limit = NORMAL_95 / (self.set.count() as f64).sqrt();
+        let limit = NORMAL_95 / (self.set.total as f64).sqrt();
         let (low, high) = range(rho[1..].iter().copied()).unwrap_or((0.0, 0.0));
         let x = Axis::new(0.0, rho.len() as f64, "lag (observations)").with_ticks(4);
         let reach = (1.2 * low.abs().max(high.abs())).max(2.0 * limit).min(1.0);
@@ -129,7 +129,7 @@ impl Sheet<'_> {
                 Stroke::solid(look::INK, 0.9),
             );
         }
-        panel.frame(&mut self.canvas, Sides::BOTH, self.speech);
+        panel.frame(&mut self.canvas, Sides::BOTH, self.locale);
     }
 
     /// Residuals over a quantity, with lines at ±1.96.
@@ -156,19 +156,20 @@ impl Sheet<'_> {
             let Some(value) = of(p) else { continue };
             let shown = p.residual.clamp(-reach, reach);
             if let Some((x, y)) = taken.put(&mut self.canvas, &panel, (value, shown), dot) {
-                let r = self.speech.fixed(p.residual, 2);
+                let r = self.locale.fixed(p.residual, 2);
                 self.spots.push(Spot {
                     x,
                     y,
                     text: format!(
                         "{}\n{}",
                         p.record,
-                        self.speech.say_with("residual {value}", &[("value", &r)])
+                        self.locale
+                            .translate_with("residual {value}", &[("value", &r)])
                     ),
                 });
             }
         }
-        panel.frame(&mut self.canvas, Sides::BOTH, self.speech);
+        panel.frame(&mut self.canvas, Sides::BOTH, self.locale);
     }
 }
 

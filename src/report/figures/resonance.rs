@@ -4,77 +4,53 @@ use super::axis::Axis;
 use super::canvas::{Canvas, Stroke};
 use super::csv::Csv;
 use super::dots::{self, DotLook, Dots};
+use super::figure::{Figure, Spot};
 use super::legend::{self, Key, Sign};
 use super::look;
 use super::panel::{PAIR_LEFT, Panel, Sides, pair};
 use super::path::Rect;
 use super::units::{PrintUnit, print_unit};
-use super::{Figure, Spot};
-use crate::report::content::{ResonanceCurve, ResonancePoint};
-use crate::report::speech::Speech;
+use crate::compare::{ResonanceCurve, ResonancePoint};
+use crate::report::locale::Locale;
 
 /// Height of the panels, points.
 const HEIGHT: f64 = 128.0;
 /// Room above the panels for the keys, points.
 const TOP: f64 = 15.0;
 
-/// Draws one curve; `None` where it has no points.
-pub fn draw(curve: &ResonanceCurve, name: &str, speech: Speech) -> Option<Figure> {
+/// Draws one curve, and whether one degree of freedom fits it; `None` without points.
+pub fn draw(
+    (curve, fits): (&ResonanceCurve, Option<bool>),
+    name: &str,
+    locale: Locale,
+) -> Option<Figure> {
     if curve.points.is_empty() {
         return None;
     }
     let mut canvas = Canvas::new(look::FULL_WIDTH, TOP + HEIGHT + look::BELOW_PANEL);
-    let has_phase = curve.points.iter().any(|p| p.phase_rad.is_some());
     let [left, right] = pair(TOP, HEIGHT);
-    let whole = Rect::new(PAIR_LEFT, TOP, look::FULL_WIDTH - PAIR_LEFT - 4.9, HEIGHT);
-    let unit = amplitude_unit(curve);
-    let amplitude = amplitude_panel(curve, &unit, if has_phase { left } else { whole });
+    let peak = curve.points.iter().map(|p| p.amplitude).fold(0.0, f64::max);
+    let unit = print_unit(curve.dimension, peak);
     let mut spots = Vec::new();
-    let value =
-        |p: &ResonancePoint| Some((p.amplitude * unit.0, p.amplitude_error.map(|e| e * unit.0)));
-    let fit = curve.fitted.iter().map(|f| (f[0], f[1] * unit.0)).collect();
-    Series {
-        curve,
-        panel: amplitude,
-        fit,
-    }
-    .draw(&mut canvas, value, speech, &mut spots);
-    if has_phase {
-        let panel = phase_panel(curve, right);
-        let value = |p: &ResonancePoint| {
-            Some((
-                p.phase_rad?.to_degrees(),
-                p.phase_error_rad.map(f64::to_degrees),
-            ))
-        };
-        let fit = curve
-            .fitted
-            .iter()
-            .map(|f| (f[0], f[2].to_degrees()))
-            .collect();
-        Series { curve, panel, fit }.draw(&mut canvas, value, speech, &mut spots);
-    }
+    let panel = amplitude_panel(curve, unit, left);
+    let value = |p: &ResonancePoint| [p.amplitude, p.amplitude_error].map(|v| v * unit.factor);
+    let fitted = curve.fitted.iter();
+    let fit = fitted.map(|f| (f[0], f[1] * unit.factor)).collect();
+    Series { curve, panel, fit }.draw(&mut canvas, value, locale, &mut spots);
+    let panel = phase_panel(curve, right);
+    let value = |p: &ResonancePoint| [p.phase_rad, p.phase_error_rad].map(f64::to_degrees);
+    let fitted = curve.fitted.iter();
+    let fit = fitted.map(|f| (f[0], f[2].to_degrees())).collect();
+    Series { curve, panel, fit }.draw(&mut canvas, value, locale, &mut spots);
     legend::draw(
         &mut canvas,
         (PAIR_LEFT, 0.0),
         look::FULL_WIDTH - PAIR_LEFT,
-        &keys(curve),
-        speech,
+        &keys(curve, fits),
+        locale,
     );
-    let title = speech.say("Resonance curve without impacts");
+    let title = locale.translate("Resonance curve without impacts");
     Some(Figure::new(name, &title, canvas, csv(curve)).with_spots(spots))
-}
-
-/// Factor and symbol of the amplitude's unit as printed.
-fn amplitude_unit(curve: &ResonanceCurve) -> (f64, String) {
-    match &curve.unit {
-        Some(unit) => (1.0, unit.clone()),
-        None => {
-            let peak = curve.points.iter().map(|p| p.amplitude).fold(0.0, f64::max);
-            let PrintUnit { factor, symbol } = print_unit(curve.dimension, peak);
-            (factor, symbol.to_owned())
-        }
-    }
 }
 
 fn frequency_axis(curve: &ResonanceCurve) -> Axis {
@@ -85,7 +61,7 @@ fn frequency_axis(curve: &ResonanceCurve) -> Axis {
     )
 }
 
-fn amplitude_panel(curve: &ResonanceCurve, unit: &(f64, String), rect: Rect) -> Panel {
+fn amplitude_panel(curve: &ResonanceCurve, unit: PrintUnit, rect: Rect) -> Panel {
     let x = frequency_axis(curve);
     let within = curve
         .fitted
@@ -98,18 +74,18 @@ fn amplitude_panel(curve: &ResonanceCurve, unit: &(f64, String), rect: Rect) -> 
         .map(|p| p.amplitude)
         .chain(within)
         .collect();
-    let title = format!("amplitude ({})", unit.1);
+    let title = format!("amplitude ({})", unit.symbol);
     let (low, high) = super::axis::range(values.iter().copied()).unwrap_or((0.0, 1.0));
     let y = if low > 0.0 && high / low > 12.0 {
-        Axis::new(0.8 * low * unit.0, 1.25 * high * unit.0, title).logarithmic()
+        Axis::new(0.8 * low * unit.factor, 1.25 * high * unit.factor, title).logarithmic()
     } else {
-        Axis::new(0.0, 1.08 * high * unit.0, title)
+        Axis::new(0.0, 1.08 * high * unit.factor, title)
     };
     Panel::new(rect, x, y)
 }
 
 fn phase_panel(curve: &ResonanceCurve, rect: Rect) -> Panel {
-    let phases = curve.points.iter().filter_map(|p| p.phase_rad);
+    let phases = curve.points.iter().map(|p| p.phase_rad);
     let values = phases
         .chain(curve.fitted.iter().map(|f| f[2]))
         .map(f64::to_degrees);
@@ -127,35 +103,31 @@ impl Series<'_> {
     fn draw(
         &self,
         canvas: &mut Canvas,
-        value: impl Fn(&ResonancePoint) -> Option<(f64, Option<f64>)>,
-        speech: Speech,
+        value: impl Fn(&ResonancePoint) -> [f64; 2],
+        locale: Locale,
         spots: &mut Vec<Spot>,
     ) {
         let radius = dots::radius(self.curve.points.len()) + 0.2;
         let mut taken = Dots::default();
         canvas.layer(1);
         for point in &self.curve.points {
-            let Some((y, error)) = value(point) else {
-                continue;
-            };
+            let [y, error] = value(point);
             let colour = if point.used { look::BLUE } else { look::QUIET };
-            if let Some(e) = error {
-                let bar = Stroke::solid(colour, 0.4);
-                let low = if self.panel.y.log {
-                    (y - e).max(self.panel.y.low)
-                } else {
-                    y - e
-                };
-                self.panel
-                    .error_bar(canvas, point.frequency_hz, (low, y + e), bar);
-            }
+            let low = if self.panel.y.log {
+                (y - error).max(self.panel.y.low)
+            } else {
+                y - error
+            };
+            let bar = Stroke::solid(colour, 0.4);
+            self.panel
+                .error_bar(canvas, point.frequency_hz, (low, y + error), bar);
             let dot = DotLook {
                 radius,
                 colour,
                 open: !point.used,
             };
             if let Some((x, y)) = taken.put(canvas, &self.panel, (point.frequency_hz, y), dot) {
-                let f = speech.fixed(point.frequency_hz, 3);
+                let f = locale.fixed(point.frequency_hz, 3);
                 spots.push(Spot {
                     x,
                     y,
@@ -170,24 +142,20 @@ impl Series<'_> {
             Stroke::solid(look::VERMILION, 1.0),
         );
         canvas.layer(3);
-        self.panel.frame(canvas, Sides::BOTH, speech);
+        self.panel.frame(canvas, Sides::BOTH, locale);
     }
 }
 
-fn keys(curve: &ResonanceCurve) -> Vec<Key> {
-    let mut keys = Vec::new();
-    if !curve.name.is_empty() {
-        keys.push(Key::new(Sign::Nothing, curve.name.clone()));
-    }
-    keys.push(Key::new(
-        Sign::dot(look::BLUE),
-        "measured, with standard error",
-    ));
+fn keys(curve: &ResonanceCurve, fits: Option<bool>) -> Vec<Key> {
+    let mut keys = vec![
+        Key::new(Sign::Nothing, curve.role.name().replace('_', " ")),
+        Key::new(Sign::dot(look::BLUE), "measured, with standard error"),
+    ];
     if curve.points.iter().any(|p| !p.used) {
         keys.push(Key::new(Sign::ring(look::QUIET), "not used"));
     }
     if !curve.fitted.is_empty() {
-        let text = match curve.fits {
+        let text = match fits {
             Some(false) => "fit of one degree of freedom (does not fit)",
             _ => "fit of one degree of freedom",
         };
@@ -216,9 +184,9 @@ fn csv(curve: &ResonanceCurve) -> String {
         csv.row().texts(&["measured", &p.record, used]).numbers(&[
             Some(p.frequency_hz),
             Some(p.amplitude),
-            p.amplitude_error,
-            p.phase_rad,
-            p.phase_error_rad,
+            Some(p.amplitude_error),
+            Some(p.phase_rad),
+            Some(p.phase_error_rad),
         ]);
     }
     for f in &curve.fitted {

@@ -3,7 +3,7 @@
 
 use super::fonts::{self, Face};
 
-/// Where a run stands against the baseline.
+/// Level of a run relative to the baseline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Level {
@@ -95,7 +95,7 @@ impl Run {
         }
     }
 
-    /// How far its baseline lies below the text's.
+    /// How far its baseline is below the text's.
     pub fn shift(&self, around: f64) -> f64 {
         match self.level {
             Level::Base => 0.0,
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_symbols_are_slanted_and_indices_lowered() {
+    fn symbols_are_slanted_and_indices_lowered() {
         let runs = parse("$f_0$ (Hz), $x_{st}$");
         let seen: Vec<_> = runs
             .iter()
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_greek_has_the_font_s_own_width() {
+    fn greek_has_the_font_s_own_width() {
         let eta = width("$η$", Face::Regular, 10.0);
         assert!(eta > 3.0 && eta < 7.0, "{eta}");
         let twice = width("$ηη$", Face::Regular, 10.0);

@@ -5,10 +5,11 @@ mod base64;
 mod parts;
 
 use super::document::model::Document;
+use super::error::ReportError;
 use super::figures::Figure;
 use super::figures::canvas::escape;
 use super::figures::fonts::{self, FAMILY, Face};
-use super::{RenderOptions, ReportError};
+use super::options::ReportOptions;
 
 /// The page's look.
 const STYLE: &str = include_str!("style.css");
@@ -19,7 +20,7 @@ const SCRIPT: &str = include_str!("script.js");
 pub fn html(
     document: &Document,
     figures: &[Figure],
-    options: &RenderOptions,
+    options: &ReportOptions,
 ) -> Result<String, ReportError> {
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n",
@@ -67,7 +68,7 @@ fn font_face(face: Face, style: &str, weight: &str) -> String {
     )
 }
 
-fn logo(options: &RenderOptions) -> String {
+fn logo(options: &ReportOptions) -> String {
     let Some(logo) = &options.logo else {
         return String::new();
     };

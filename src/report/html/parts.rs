@@ -1,7 +1,7 @@
 //! The parts of the page, from the document's data.
 
-use crate::report::ReportError;
 use crate::report::document::model::*;
+use crate::report::error::ReportError;
 use crate::report::figures::Figure;
 use crate::report::figures::canvas::escape;
 use crate::report::figures::look;
@@ -51,7 +51,7 @@ impl<'a> Parts<'a> {
         let mut text = String::new();
         if front.synthetic {
             let synthetic = "Synthetic data: simulated records, not a measurement.";
-            let synthetic = escape(self.document.say(synthetic));
+            let synthetic = escape(self.document.translate(synthetic));
             text.push_str(&format!("<p class=\"synthetic\">{synthetic}</p>\n"));
         }
         text.push_str(&format!(
@@ -87,7 +87,7 @@ impl<'a> Parts<'a> {
             text.push_str(&format!("<ul>\n{findings}</ul>\n"));
         }
         if !front.facts.is_empty() {
-            let title = escape(self.document.say("What was measured"));
+            let title = escape(self.document.translate("What was measured"));
             text.push_str(&format!("<h2>{title}</h2>\n"));
             text.push_str(&pairs(
                 "facts",
@@ -148,7 +148,7 @@ impl<'a> Parts<'a> {
         if !caption.is_empty() {
             self.numbered += 1;
             let number = self.numbered;
-            let word = escape(self.document.say("Figure"));
+            let word = escape(self.document.translate("Figure"));
             text.push_str(&format!(
                 "<figcaption><b>{word} {number}.</b> {caption}</figcaption>\n"
             ));
@@ -177,7 +177,7 @@ fn rich(text: &Rich) -> String {
 }
 
 fn answer(a: &Answer, document: &Document) -> String {
-    let say = |phrase| escape(document.say(phrase));
+    let say = |phrase| escape(document.translate(phrase));
     let mut text = format!(
         "<div class=\"answer\"><div class=\"label\">{}</div>",
         rich(&a.name)
@@ -231,7 +231,7 @@ fn agreement(front: &Front, document: &Document) -> String {
         "no" => "The methods disagree.",
         _ => "Agreement cannot be judged.",
     };
-    let word = escape(document.say(word));
+    let word = escape(document.translate(word));
     format!("<p><b class=\"{}\">{word}</b> {text}</p>\n", front.agree)
 }
 
@@ -273,7 +273,7 @@ fn table(table: &Table) -> String {
     }
 }
 
-/// The rows as HTML; those of a dense table are found again in its columns.
+/// The rows as HTML; those of a dense table are taken from its columns.
 fn html_rows(table: &Table) -> Vec<Vec<String>> {
     if !table.dense {
         return table

@@ -2,100 +2,119 @@
 
 use std::path::Path;
 
-use super::{kind, kinds};
-use crate::report::content::{self, ReportContent};
-use crate::report::{RenderOptions, Report, document, words};
+use super::contents::{kind, kinds};
+use crate::compare::{BracketRow, Correlation};
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::messages::examples;
+use crate::identify::{Identification, Method, Reason};
+use crate::motion::Motion;
+use crate::record::calibrate::{ChannelKey, ChannelSetup};
+use crate::record::{Role, Sweep};
+use crate::report::{
+    NominalValue, Report, ReportContent, ReportOptions, Subject, catalog, document,
+};
 
-/// A table that prints each phrase as its number in brackets, with the values that it carries.
-fn marks_for_phrases() -> words::Words {
+/// A catalog that prints each phrase and each message as its number in brackets, with its values.
+fn marks_for_phrases() -> catalog::Catalog {
     let mut text = String::from("[words]\n");
-    for (i, phrase) in words::Words::phrases().enumerate() {
-        let values: String = words::places(phrase)
+    for (i, phrase) in catalog::Catalog::phrases().enumerate() {
+        let values: String = catalog::places(phrase)
             .iter()
             .map(|n| format!("{{{n}}}"))
             .collect();
         let key = toml::Value::from(phrase);
         text.push_str(&format!("{key} = \"⟦{i}⟧{values}\"\n"));
     }
-    words::Words::read(&text).expect("a table of words")
+    text.push_str("\n[findings]\n");
+    for (i, message) in examples().iter().enumerate() {
+        let names: String = message
+            .values()
+            .iter()
+            .map(|(name, _)| format!("{{{name}}}"))
+            .collect();
+        text.push_str(&format!("{} = \"⟦{}⟧{names}\"\n", message.key(), 1000 + i));
+    }
+    catalog::Catalog::read(&text).expect("a catalog")
 }
 
 /// A campaign to which all happened that the others were spared.
 fn unlucky() -> ReportContent {
-    use crate::motion::Motion;
-    use crate::record::{Role, Sweep};
     let mut content = kind("small").clone();
-    let summary = &mut content.summary;
-    summary.files_total = 1;
-    summary.rig = "one mass against a stop".into();
-    summary.notes.push("a remark".into());
-    let channel = summary.channels[0].clone();
-    let roles = [
-        Role::VelocityY,
-        Role::DisplacementY,
-        Role::AccelerationX,
-        Role::AccelerationY,
-        Role::FrameX,
-        Role::FrameY,
+    let campaign = &mut content.campaign;
+    campaign.files = 1;
+    campaign.subject = Subject::OneMass;
+    let channels = Role::ALL.map(|role| ChannelSetup {
+        high_pass_hz: Some(0.5),
+        ..ChannelSetup::plain(role, ChannelKey::Name("channel".into()))
+    });
+    campaign.channels = channels.into();
+    let names = [
+        "static deflection $x_st$",
+        "uncertainty of the gains",
+        "restitution $R$",
     ];
-    summary
-        .channels
-        .extend(roles.map(|role| content::ChannelRow {
-            role,
-            high_pass_hz: Some(0.5),
-            ..channel.clone()
-        }));
-    for name in ["static deflection $x_st$", "uncertainty of the gains"] {
-        let mut value = summary.nominal[0].clone();
-        value.name = name.into();
-        summary.nominal.push(value);
-    }
-    let fitted = ["restitution", "gain_velocity_x", "corner_velocity_y"];
-    let others = ["drive_asymmetry", "stiffness_asymmetry"];
-    content.correlation = Some(content::Correlation {
-        parameters: fitted.iter().chain(&others).map(|p| (*p).into()).collect(),
+    campaign.nominal = names
+        .map(|name| NominalValue {
+            name,
+            value: 0.1,
+            unit: "",
+        })
+        .into();
+    let compared = &mut content.compared;
+    let fitted = [
+        Coordinate::Restitution,
+        Coordinate::Gain(0),
+        Coordinate::Corner(1),
+        Coordinate::DriveAsymmetry,
+        Coordinate::StiffnessAsymmetry,
+    ];
+    compared.correlation = Some(Correlation {
+        parameters: fitted.into(),
         matrix: vec![vec![0.5; 5]; 5],
     });
-    for (record, motion) in content
+    for (record, motion) in compared
         .records
         .iter_mut()
-        .zip([Motion::Beat, Motion::Joined])
+        .zip([Motion::Beat, Motion::Sticking])
     {
         record.motion = motion;
         record.sweep = Sweep::Unknown;
-        record.used_by = ["boundaries", "resonance", "impacts", "flights"]
-            .map(String::from)
-            .into();
+        record.used_by = vec![
+            Method::Boundaries,
+            Method::Resonance,
+            Method::Impacts,
+            Method::Flights,
+        ];
     }
-    content.records[2].used_by.clear();
-    content.records[2].left_out = Some("it is short".into());
-    for (bracket, off) in content.brackets.iter_mut().zip([-1.0, 1.0]) {
+    compared.records[2].used_by.clear();
+    compared.records[2].excluded = Some("it is short".into());
+    for (bracket, off) in compared.brackets.iter_mut().zip([-1.0, 1.0]) {
         bracket.left_out = None;
         let middle = 0.5 * (bracket.frequency_low_hz + bracket.frequency_high_hz);
         bracket.simulated_hz = Some(middle + off * bracket.frequency_low_hz);
     }
-    content.brackets.push(content::BracketRow {
-        left_out: Some("it jumped".into()),
-        ..content.brackets[0].clone()
+    compared.brackets.push(BracketRow {
+        left_out: Some(Reason::FarFromBoundary),
+        ..compared.brackets[0].clone()
     });
-    content.comparisons[0].simulated_motion = Some(Motion::Beat);
-    content.resonance[0].fits = Some(false);
-    content.free_decays = kind("decays").free_decays.clone();
-    content.free_decays[0].natural_frequency_hz = None;
-    content.free_decays[0].damping_ratio = None;
-    if let Some(map) = &mut content.region_map {
-        map.second.clear();
+    compared.comparisons[0].motion = Motion::periodic(1, 1);
+    compared.comparisons[0].simulated_motion = Some(Motion::Beat);
+    compared.comparisons[1].motion = Motion::Chaotic;
+    compared.resonance[0].points[0].used = false;
+    if let Some(method) = content.identification.methods.get_mut(&Method::Resonance) {
+        method.fits = Some(false);
     }
-    content.remarks.push("a remark".into());
-    content.left_out.clear();
+    compared.free_decays = kind("decays").compared.free_decays.clone();
+    compared.unusable.clear();
+    content.identification.left_out.clear();
     content
 }
 
 /// All kinds of report with a mark for each phrase.
 fn marked() -> Vec<Report> {
-    let options = RenderOptions {
-        words: Some(marks_for_phrases()),
-        ..RenderOptions::default()
+    let options = ReportOptions {
+        catalog: Some(marks_for_phrases()),
+        ..ReportOptions::default()
     };
     let each = kinds().iter().map(|(_, content)| content);
     each.chain([&unlucky()])
@@ -154,9 +173,7 @@ fn valid_no_phrase_of_the_words_is_idle() {
         "/src"
     ))));
     let (mut unsaid, mut idle) = (Vec::new(), Vec::new());
-    let unknown = |sentence: &&str| !source.contains(plainly(sentence).trim_matches(['{', '}']));
-    idle.extend(words::Words::sentences().filter(unknown));
-    for (i, phrase) in words::Words::phrases().enumerate() {
+    for (i, phrase) in catalog::Catalog::phrases().enumerate() {
         if !said.contains(&format!("⟦{i}⟧")) {
             unsaid.push(phrase);
             if !source.contains(&plainly(phrase)) {
@@ -213,11 +230,11 @@ fn valid_all_words_of_figures_and_headings_are_the_reader_s() {
 
 #[test]
 fn valid_a_german_report_speaks_german() {
-    let options = RenderOptions {
-        words: Some(words::Words::german().clone()),
-        ..RenderOptions::default()
+    let options = ReportOptions {
+        catalog: Some(catalog::Catalog::german().clone()),
+        ..ReportOptions::default()
     };
-    for (name, content) in kinds().iter().filter(|k| k.0 != "large") {
+    for (name, content) in kinds().iter().filter(|k| k.0 != "whole") {
         let report = Report::new(content, &options);
         for figure in &report.figures {
             assert!(figure.overfull.is_empty(), "{name}: {:?}", figure.overfull);
@@ -238,97 +255,87 @@ fn valid_a_german_report_speaks_german() {
     }
 }
 
-/// A template with a number in each of its places.
-fn filled(template: &str) -> String {
-    let places = words::places(template);
-    let numbers = places.into_iter().enumerate();
-    numbers.fold(template.to_owned(), |text, (i, name)| {
-        text.replace(&format!("{{{name}}}"), &format!("{i}.5"))
-    })
-}
-
-/// The example with every sentence that other rooms say, as verdict, finding, remark and reason.
-fn full_of_sentences() -> ReportContent {
-    let said: Vec<String> = words::Words::sentences().map(filled).collect();
-    let mut content = kind("small").clone();
-    let id = &mut content.identification;
-    id.verdict.summary = format!("{}.", said.join(". "));
-    id.verdict.findings = said.iter().map(|s| format!("impacts: {s}")).collect();
-    id.agreement.summary = "The methods do not agree on R: impacts finds 0.9, flights finds 0.8, 4.0 \
-                            standard errors apart. Trust the interval of neither until the cause is \
-                            found."
-        .into();
-    for method in id.methods.values_mut() {
-        method.remarks.clone_from(&said);
+/// An identification as it would be read if each of its sentences were another.
+fn with_other_sentences(identification: &Identification) -> Identification {
+    fn replace(value: &mut serde_json::Value) {
+        match value {
+            serde_json::Value::Object(fields) => {
+                for (key, field) in fields {
+                    match field {
+                        serde_json::Value::String(text) if key == "text" || key == "summary" => {
+                            *text = "?".to_owned();
+                        }
+                        _ => replace(field),
+                    }
+                }
+            }
+            serde_json::Value::Array(items) => items.iter_mut().for_each(replace),
+            _ => {}
+        }
     }
-    let estimate = id.joint.parameters.restitution.as_mut().expect("an R");
-    estimate.note = Some(said.join("; "));
-    content.resonance[0].note = said.join("; ");
-    content.impacts[0].note = said.join("; ");
-    let left_out = said.iter().map(|s| content::LeftOut {
-        what: s.clone(),
-        why: match s.contains("the others alike") {
-            true => s.clone(),
-            false => format!("clipped (x): {s} (so r1; the others alike)"),
-        },
-        count: None,
-    });
-    content.left_out = left_out.collect();
-    content.records[0].used_by.clear();
-    content.records[0].left_out = Some(said.join("; "));
-    content.records[0].flags = vec!["dropped samples".into()];
-    content.brackets.truncate(1);
-    content.brackets[0].left_out = Some(said.join("; "));
-    content.remarks = said;
-    // what these say of their own is no sentence of another room's
-    content.residuals.clear();
-    content.summary.notes.clear();
-    content
+    let mut json = serde_json::to_value(identification).expect("JSON");
+    let before = json.clone();
+    replace(&mut json);
+    assert_ne!(json, before, "there are sentences");
+    serde_json::from_value(json).expect("an identification")
 }
 
-/// The words of a template that stand together in its text, the longest.
-fn longest_words(template: &str) -> String {
-    let pieces = template.split(['{', '}']).step_by(2);
-    pieces
-        .max_by_key(|p| p.len())
-        .unwrap_or_default()
-        .to_lowercase()
+/// Nothing in a report is taken from a sentence of identification.json, in any language.
+#[test]
+fn a_report_is_made_from_kinds_and_numbers_alone() {
+    let german = ReportOptions {
+        catalog: Some(catalog::Catalog::german().clone()),
+        decimal_comma: true,
+        ..ReportOptions::default()
+    };
+    for (name, content) in kinds().iter().filter(|k| k.0 != "whole") {
+        let other = ReportContent {
+            identification: with_other_sentences(&content.identification),
+            ..content.clone()
+        };
+        for options in [&ReportOptions::default(), &german] {
+            let (one, two) = (Report::new(content, options), Report::new(&other, options));
+            let json = |r: &Report| serde_json::to_string(&r.document).expect("JSON");
+            assert_eq!(json(&one), json(&two), "{name}");
+            for (a, b) in one.figures.iter().zip(&two.figures) {
+                assert!(a.svg == b.svg && a.csv == b.csv, "{name}: {}", a.name);
+            }
+        }
+    }
 }
 
 #[test]
-fn valid_a_german_report_says_no_english_sentence() {
-    let options = RenderOptions {
-        words: Some(words::Words::german().clone()),
-        ..RenderOptions::default()
+fn a_german_report_has_german_findings_and_no_english_ones() {
+    let mut content = kind("small").clone();
+    let id = &mut content.identification;
+    let findings = crate::identify::messages::example_findings();
+    id.verdict.findings.clone_from(&findings);
+    let german = ReportOptions {
+        catalog: Some(catalog::Catalog::german().clone()),
+        ..ReportOptions::default()
     };
-    let content = full_of_sentences();
-    let text = |options: &RenderOptions| {
-        let mut document = Report::new(&content, options).document;
-        // from the English to the reader's
-        document.words.clear();
-        serde_json::to_string(&document)
-            .expect("JSON")
-            .to_lowercase()
+    let text = |options: &ReportOptions| {
+        let document = Report::new(&content, options).document;
+        serde_json::to_string(&document.front).expect("JSON")
     };
-    let (english, german) = (text(&RenderOptions::default()), text(&options));
-    // short ones are parts of German words
-    let long = words::Words::sentences().filter(|s| longest_words(s).len() > 12);
-    let mut met = 0;
-    for template in long {
-        let words = longest_words(template).replace('"', "\\\"");
-        met += usize::from(english.contains(&words));
-        if let Some(at) = german.find(&words) {
-            let from = german[..at]
-                .char_indices()
-                .rev()
-                .nth(200)
-                .map_or(0, |c| c.0);
-            let said: String = german[from..].chars().take(500).collect();
-            panic!("{template} is said: …{said}…");
+    let (english, german) = (text(&ReportOptions::default()), text(&german));
+    for finding in &findings {
+        let words = |language| {
+            let template = crate::message::Message::template(finding, language);
+            let pieces = template.split(['{', '}', '$']).step_by(2);
+            let longest = pieces.max_by_key(|p| p.len()).unwrap_or_default();
+            // a sentence begins with a capital
+            let rest: String = longest.chars().skip(1).collect();
+            rest.replace('"', "\\\"")
+        };
+        let (en, de) = (
+            words(crate::message::Language::English),
+            words(crate::message::Language::German),
+        );
+        // only templates with words of their own
+        if en.len() > 12 {
+            assert!(english.contains(&en) && german.contains(&de), "{en} {de}");
+            assert!(!german.contains(&en), "{en}");
         }
     }
-    assert!(met > 60, "{met} sentences are met");
-    assert!(
-        german.contains("einzelne stöße ergibt 0.9, stoß zu stoß ergibt 0.8, 4.0 standardfehler")
-    );
 }

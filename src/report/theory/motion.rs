@@ -1,17 +1,16 @@
 //! One motion: time series, phase trajectories, Poincaré map, autocorrelation.
 
-use super::{keys_height, keys_on_top};
-use crate::report::figures::Figure;
+use super::keys::{keys_height, keys_on_top};
 use crate::report::figures::axis::{Axis, range};
 use crate::report::figures::canvas::{Canvas, Stroke};
 use crate::report::figures::dots::{self, DotLook, Dots};
+use crate::report::figures::figure::Figure;
 use crate::report::figures::legend::{Key, Sign};
 use crate::report::figures::look;
 use crate::report::figures::marks::mix;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
-use crate::report::speech::Speech;
-use impact_oscillator::atlas::portrait::{Portrait, Sample};
+use crate::report::locale::Locale;
 
 /// Room left of the panels, points.
 const LEFT: f64 = 36.0;
@@ -24,17 +23,64 @@ const SQUARE: f64 = 126.0;
 /// Times drawn at most; longer series are drawn from their end.
 const MOST_SAMPLES: usize = 200_000;
 
+/// One motion, dimensionless; times are counted in drive periods.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Portrait {
+    /// Whether there are two masses.
+    pub two_masses: bool,
+    /// Where the second mass's face or the stop is: X + Y at contact.
+    pub gap: f64,
+    /// The time series.
+    pub samples: Vec<Sample>,
+    /// The impacts.
+    pub impacts: Vec<Strike>,
+    /// Phase of the Poincaré map, rad.
+    pub poincare_phase: f64,
+    /// The Poincaré map: (X, X′).
+    pub poincare: Vec<[f64; 2]>,
+    /// Autocorrelation of X: (lag, value).
+    pub autocorrelation: Vec<(f64, f64)>,
+}
+
+/// The state at one time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// Time.
+    pub periods: f64,
+    /// X
+    pub x: f64,
+    /// X′
+    pub vx: f64,
+    /// Y
+    pub y: f64,
+    /// Y′
+    pub vy: f64,
+    /// Whether the masses are together.
+    pub together: bool,
+}
+
+/// An impact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strike {
+    /// Time.
+    pub periods: f64,
+    /// X
+    pub x: f64,
+    /// (X′, Y′) just before and just after, if each is known.
+    pub speeds: [Option<(f64, f64)>; 2],
+}
+
 /// Draws a portrait.
-pub fn draw(portrait: &Portrait, name: &str, title: &str, speech: Speech<'_>) -> Figure {
+pub fn draw(portrait: &Portrait, name: &str, title: &str, locale: Locale<'_>) -> Figure {
     let keys = keys(portrait);
-    let top = keys_height(LEFT, &keys, speech);
+    let top = keys_height(LEFT, &keys, locale);
     let squares = top + SERIES_HEIGHT + 8.0 + SPEED_HEIGHT + 40.0;
     let mut canvas = Canvas::new(look::FULL_WIDTH, squares + SQUARE + 26.0);
-    keys_on_top(&mut canvas, LEFT, &keys, speech);
+    keys_on_top(&mut canvas, LEFT, &keys, locale);
     let drawing = Drawing {
         portrait,
         samples: with_impacts(portrait),
-        speech,
+        locale,
     };
     drawing.series(&mut canvas, top);
     drawing.speeds(&mut canvas, top + SERIES_HEIGHT + 8.0);
@@ -64,19 +110,14 @@ fn with_impacts(portrait: &Portrait) -> Vec<Sample> {
             } else {
                 0.0
             };
-            let speeds = [(i.vx_before, i.vy_before), (i.vx_after, i.vy_after)];
-            for (vx, vy) in speeds {
-                if let (Some(vx), Some(vy)) = (vx, vy) {
-                    merged.push(Sample {
-                        periods: i.periods,
-                        x: i.x,
-                        vx,
-                        y,
-                        vy,
-                        joined: false,
-                    });
-                }
-            }
+            merged.extend(i.speeds.into_iter().flatten().map(|(vx, vy)| Sample {
+                periods: i.periods,
+                x: i.x,
+                vx,
+                y,
+                vy,
+                together: false,
+            }));
         }
         merged.push(*sample);
     }
@@ -101,7 +142,7 @@ fn keys(portrait: &Portrait) -> Vec<Key> {
     if !portrait.impacts.is_empty() {
         keys.push(Key::new(Sign::dot(look::INK), "impact"));
     }
-    if portrait.samples.iter().any(|s| s.joined) {
+    if portrait.samples.iter().any(|s| s.together) {
         keys.push(Key::new(Sign::Patch(look::PALE), "masses together"));
     }
     keys
@@ -110,7 +151,7 @@ fn keys(portrait: &Portrait) -> Vec<Key> {
 struct Drawing<'a> {
     portrait: &'a Portrait,
     samples: Vec<Sample>,
-    speech: Speech<'a>,
+    locale: Locale<'a>,
 }
 
 impl Drawing<'_> {
@@ -167,7 +208,7 @@ impl Drawing<'_> {
             below: false,
             left: true,
         };
-        panel.frame(canvas, sides, self.speech);
+        panel.frame(canvas, sides, self.locale);
     }
 
     /// Shades the times at which the masses are together.
@@ -179,7 +220,7 @@ impl Drawing<'_> {
             canvas.rectangle((a.0, b.1), (b.0, a.1), look::PALE);
         };
         for s in &self.samples {
-            match (s.joined, first) {
+            match (s.together, first) {
                 (true, None) => first = Some(s.periods),
                 (false, Some(from)) => {
                     band(from, s.periods);
@@ -211,7 +252,7 @@ impl Drawing<'_> {
         let data: Vec<_> = self.samples.iter().map(|s| (s.periods, s.vx)).collect();
         panel.curve(canvas, data, Stroke::solid(look::BLUE, 0.8));
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.speech);
+        panel.frame(canvas, Sides::BOTH, self.locale);
     }
 
     fn phase_plane(&self, canvas: &mut Canvas, rect: Rect) {
@@ -238,12 +279,12 @@ impl Drawing<'_> {
         let data: Vec<_> = self.samples.iter().map(|s| (s.x, s.vx)).collect();
         panel.curve(canvas, data, Stroke::solid(look::BLUE, 0.6));
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.speech);
+        panel.frame(canvas, Sides::BOTH, self.locale);
     }
 
     fn poincare(&self, canvas: &mut Canvas, rect: Rect) {
         let points = &self.portrait.poincare;
-        let phase = self.speech.fixed(self.portrait.poincare_phase, 2);
+        let phase = self.locale.fixed(self.portrait.poincare_phase, 2);
         let title = format!("$X$ at drive phase {phase} (1)");
         let wide = |values: Vec<f64>| {
             let (low, high) = range(values).unwrap_or((0.0, 1.0));
@@ -268,7 +309,7 @@ impl Drawing<'_> {
             taken.put(canvas, &panel, (p[0], p[1]), dot);
         }
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.speech);
+        panel.frame(canvas, Sides::BOTH, self.locale);
     }
 
     fn autocorrelation(&self, canvas: &mut Canvas, rect: Rect) {
@@ -281,6 +322,6 @@ impl Drawing<'_> {
         let stroke = Stroke::solid(mix(look::BLUE, 0.9), 0.6);
         panel.curve(canvas, values.iter().copied(), stroke);
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.speech);
+        panel.frame(canvas, Sides::BOTH, self.locale);
     }
 }

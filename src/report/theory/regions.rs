@@ -1,12 +1,11 @@
 //! Regions of existence and stability of all motions in the (η, ρ) plane: the brute-force maps as
 //! tints (hatched where they differ), the boundaries as curves.
 
-use super::{keys_height, keys_on_top};
-use crate::motion::Motion;
-use crate::report::content::RegionMap;
-use crate::report::figures::Figure;
+use super::keys::{keys_height, keys_on_top};
+use crate::compare::RegionMap;
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
+use crate::report::figures::figure::Figure;
 use crate::report::figures::fonts::Face;
 use crate::report::figures::legend::{Key, Sign};
 use crate::report::figures::look;
@@ -14,84 +13,81 @@ use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::{self, Rect};
 use crate::report::figures::placing::Occupancy;
 use crate::report::figures::regions::Regions;
-use crate::report::speech::Speech;
-use impact_oscillator::atlas::curves::Curve;
-use impact_oscillator::atlas::map::{CellMotion, MapGrid};
+use crate::report::locale::Locale;
 
 /// Room left of the panel, points.
 const LEFT: f64 = 34.0;
 /// Height of the panel, points.
 const HEIGHT: f64 = 380.0;
-/// Shorter pieces of boundaries are told in the table alone.
+/// Shorter pieces of boundaries are in the table alone.
 const FEWEST_POINTS: usize = 3;
 
-/// What is drawn.
-#[derive(Debug, Clone, Copy)]
-pub struct Plane<'a> {
-    /// The cells.
-    pub grid: &'a MapGrid,
-    /// From one start, row by row.
-    pub first: &'a [CellMotion],
-    /// From another; where it differs lies hysteresis.
-    pub second: &'a [CellMotion],
-    /// The boundaries.
-    pub curves: &'a [Curve],
+/// A piece of a boundary of existence or stability.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// Which boundary, by its name in the table.
+    pub kind: String,
+    /// Whether it bounds a motion of more than one impact or of a long period, and is drawn thin.
+    pub minor: bool,
+    /// Points (η, ρ).
+    pub points: Vec<(f64, f64)>,
 }
 
-/// Draws the plane; `None` where the grid has no area.
-pub fn draw(plane: &Plane<'_>, name: &str, title: &str, speech: Speech) -> Option<Figure> {
-    let motions =
-        |cells: &[CellMotion]| -> Vec<Motion> { cells.iter().map(|c| Motion::from(*c)).collect() };
-    let (first, second) = (motions(plane.first), motions(plane.second));
-    let map = RegionMap::of_motions(
-        plane.grid.eta.clone(),
-        plane.grid.rho.clone(),
-        &first,
-        &second,
-        "",
-    );
-    let keys = keys(plane.curves, first != second);
-    let top = keys_height(LEFT, &keys, speech);
+/// Draws the plane; `None` if the grid has no area.
+pub fn draw(
+    (map, curves): (&RegionMap, &[Curve]),
+    name: &str,
+    title: &str,
+    locale: Locale,
+) -> Option<Figure> {
+    let keys = keys(curves, map.cells != map.second);
+    let top = keys_height(LEFT, &keys, locale);
     let size = (look::FULL_WIDTH, top + HEIGHT + 26.0);
     let mut canvas = Canvas::new(size.0, size.1);
-    keys_on_top(&mut canvas, LEFT, &keys, speech);
+    keys_on_top(&mut canvas, LEFT, &keys, locale);
     let axis = |v: &[f64], title: &str, ticks| {
         Some(Axis::new(*v.first()?, *v.last()?, title).with_ticks(ticks))
     };
     let panel = Panel::new(
         Rect::new(LEFT, top, look::FULL_WIDTH - LEFT - 7.0, HEIGHT),
-        axis(&plane.grid.eta, "frequency ratio $η$ (1)", 8)?,
-        axis(&plane.grid.rho, "clearance ratio $ρ$ (1)", 7)?,
+        axis(&map.x, "frequency ratio $η$ (1)", 8)?,
+        axis(&map.y, "clearance ratio $ρ$ (1)", 7)?,
     );
-    let regions = Regions::new(&map, &panel)?;
+    let regions = Regions::new(map, &panel)?;
     canvas.layer(0);
     regions.draw(&mut canvas);
     let mut occupancy = Occupancy::new(size.0, size.1);
-    curves(&mut canvas, &panel, plane.curves, &mut occupancy);
+    draw_curves(&mut canvas, &panel, curves, &mut occupancy);
     canvas.layer(5);
-    for label in regions.labels(&mut occupancy, 9.5, speech) {
+    for label in regions.labels(&mut occupancy, 9.5, locale) {
         let text_look = TextLook::new(label.size, Anchor::Middle).face(Face::Bold);
         let at = (label.at.0, label.at.1 + 0.33 * label.size);
         canvas.text(at, &label.text, text_look.colour(look::INK));
     }
     canvas.layer(6);
-    panel.frame(&mut canvas, Sides::BOTH, speech);
+    panel.frame(&mut canvas, Sides::BOTH, locale);
     Some(Figure::new(name, title, canvas, String::new()))
 }
 
-fn curves(canvas: &mut Canvas, panel: &Panel, curves: &[Curve], occupancy: &mut Occupancy) {
+fn draw_curves(canvas: &mut Canvas, panel: &Panel, curves: &[Curve], occupancy: &mut Occupancy) {
     canvas.layer(3);
     for curve in curves {
-        let data = || curve.points.iter().map(|p| (p.eta, p.rho));
-        let points: Vec<_> = data().map(|(x, y)| panel.at(x, y)).collect();
+        let points: Vec<_> = curve.points.iter().map(|(x, y)| panel.at(*x, *y)).collect();
         for piece in path::clip(&points, &panel.rect) {
             occupancy.take_line(&piece);
         }
         if curve.points.len() >= FEWEST_POINTS {
             let full = stroke(&curve.kind);
-            let minor = curve.p > 1 || curve.n > 5;
-            let width = if minor { 0.6 * full.width } else { full.width };
-            panel.curve(canvas, data(), Stroke { width, ..full });
+            let width = if curve.minor {
+                0.6 * full.width
+            } else {
+                full.width
+            };
+            panel.curve(
+                canvas,
+                curve.points.iter().copied(),
+                Stroke { width, ..full },
+            );
         }
     }
 }

@@ -1,41 +1,57 @@
 //! Quasi-stationary characteristics: amplitude, closing speed, Lyapunov exponent,
 //! autocorrelation, and amplitude and phase of the impactless motion.
 
-use super::{keys_height, keys_on_top};
-use crate::report::figures::Figure;
+use super::keys::{keys_height, keys_on_top};
 use crate::report::figures::axis::{Axis, range};
 use crate::report::figures::canvas::{Canvas, Colour, Stroke};
 use crate::report::figures::dots::{self, DotLook, Dots};
+use crate::report::figures::figure::Figure;
 use crate::report::figures::legend::{Key, Sign};
 use crate::report::figures::look;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
-use crate::report::speech::Speech;
-use impact_oscillator::atlas::sweep::{Impactless, SweepPoint};
+use crate::report::locale::Locale;
 
 /// Room left of the panels, points.
 const LEFT: f64 = 42.0;
 /// Room between the panels, points.
 const GAP: f64 = 7.0;
 
-/// A sweep in both directions.
-#[derive(Debug, Clone, Copy)]
-pub struct Characteristics<'a> {
+/// A sweep in both directions, dimensionless.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Characteristics {
     /// Steps of the sweep there, in its own order.
-    pub forward: &'a [SweepPoint],
+    pub forward: Vec<Step>,
     /// Steps of the sweep back.
-    pub backward: &'a [SweepPoint],
-    /// The impactless motion at every step of the sweep there.
-    pub impactless: &'a [Impactless],
-    /// Whether there are two masses.
-    pub two_masses: bool,
+    pub backward: Vec<Step>,
+    /// Amplitude and phase (rad) of the motion without impacts at every step of the sweep there.
+    pub impactless_x: Vec<(f64, f64)>,
+    /// The same of Y; empty if there is one mass.
+    pub impactless_y: Vec<(f64, f64)>,
+}
+
+/// One step of a sweep.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// η
+    pub eta: f64,
+    /// ρ
+    pub rho: f64,
+    /// Greatest X.
+    pub x_max: f64,
+    /// Approach speeds of the impacts.
+    pub approach_speeds: Vec<f64>,
+    /// Largest Lyapunov exponent.
+    pub lyapunov: Option<f64>,
+    /// Autocorrelation after one drive period.
+    pub autocorrelation: Option<f64>,
 }
 
 /// A characteristic: title, height, values of a point.
 struct Row {
     title: &'static str,
     height: f64,
-    values: fn(&SweepPoint) -> Vec<f64>,
+    values: fn(&Step) -> Vec<f64>,
     zero: bool,
     ticks: usize,
 }
@@ -52,7 +68,7 @@ const ROWS: [Row; 4] = [
     Row {
         title: "closing speed\n$X$′₋ + $Y$′₋ (1)",
         height: 110.0,
-        values: |p| p.closing_speeds.clone(),
+        values: |p| p.approach_speeds.clone(),
         zero: true,
         ticks: 6,
     },
@@ -66,7 +82,7 @@ const ROWS: [Row; 4] = [
     Row {
         title: "autocorrelation\nafter one period",
         height: 62.0,
-        values: |p| p.autocorrelation.first().copied().into_iter().collect(),
+        values: |p| p.autocorrelation.into_iter().collect(),
         zero: true,
         ticks: 3,
     },
@@ -75,13 +91,13 @@ const ROWS: [Row; 4] = [
 const PHASE_HEIGHT: f64 = 62.0;
 
 /// Draws the characteristics over the quantity that moves.
-pub fn draw(data: &Characteristics<'_>, name: &str, title: &str, speech: Speech) -> Figure {
-    let keys = keys(data.two_masses);
-    let top = keys_height(LEFT, &keys, speech);
+pub fn draw(data: &Characteristics, name: &str, title: &str, locale: Locale) -> Figure {
+    let keys = keys(!data.impactless_y.is_empty());
+    let top = keys_height(LEFT, &keys, locale);
     let rows: f64 = ROWS.iter().map(|r| r.height + GAP).sum();
     let mut canvas = Canvas::new(look::FULL_WIDTH, top + rows + PHASE_HEIGHT + 26.0);
-    keys_on_top(&mut canvas, LEFT, &keys, speech);
-    let drawing = Drawing { data, speech };
+    keys_on_top(&mut canvas, LEFT, &keys, locale);
+    let drawing = Drawing { data, locale };
     let mut y = top;
     for (i, row) in ROWS.iter().enumerate() {
         drawing.row(&mut canvas, y, row, i == 0);
@@ -114,19 +130,19 @@ fn keys(two: bool) -> Vec<Key> {
 const IMPACTLESS: Colour = look::QUIET;
 
 struct Drawing<'a> {
-    data: &'a Characteristics<'a>,
-    speech: Speech<'a>,
+    data: &'a Characteristics,
+    locale: Locale<'a>,
 }
 
 impl Drawing<'_> {
     fn moves_eta(&self) -> bool {
-        let span = |f: fn(&SweepPoint) -> f64| {
+        let span = |f: fn(&Step) -> f64| {
             range(self.data.forward.iter().map(f)).map_or(0.0, |(a, b)| b - a)
         };
         span(|p| p.eta) >= span(|p| p.rho)
     }
 
-    fn at(&self, p: &SweepPoint) -> f64 {
+    fn at(&self, p: &Step) -> f64 {
         if self.moves_eta() { p.eta } else { p.rho }
     }
 
@@ -146,7 +162,7 @@ impl Drawing<'_> {
     }
 
     fn row(&self, canvas: &mut Canvas, top: f64, row: &Row, amplitude: bool) {
-        let all = || self.data.forward.iter().chain(self.data.backward);
+        let all = || self.data.forward.iter().chain(&self.data.backward);
         let values = all().flat_map(row.values);
         let zero = row.zero.then_some(0.0);
         let y = Axis::around(values.chain(zero), 0.05, row.title).with_ticks(row.ticks);
@@ -161,8 +177,8 @@ impl Drawing<'_> {
         canvas.layer(2);
         let count = all().map(|p| (row.values)(p).len()).sum();
         for (points, colour) in [
-            (self.data.backward, look::VERMILION),
-            (self.data.forward, look::BLUE),
+            (&self.data.backward, look::VERMILION),
+            (&self.data.forward, look::BLUE),
         ] {
             let mut taken = Dots::default();
             let dot = DotLook {
@@ -181,19 +197,19 @@ impl Drawing<'_> {
             below: false,
             left: true,
         };
-        panel.frame(canvas, sides, self.speech);
+        panel.frame(canvas, sides, self.locale);
     }
 
     /// The impactless motion's curve of X, and of Y where there is one.
     fn impactless(&self, canvas: &mut Canvas, panel: &Panel, of: fn((f64, f64)) -> f64) {
-        let pairs = || self.data.forward.iter().zip(self.data.impactless);
-        let y: Vec<(f64, f64)> = pairs()
-            .filter_map(|(p, i)| Some((self.at(p), of(i.y?))))
-            .collect();
+        let points = |values: &[(f64, f64)]| -> Vec<(f64, f64)> {
+            let pairs = self.data.forward.iter().zip(values);
+            pairs.map(|(p, value)| (self.at(p), of(*value))).collect()
+        };
         let dashed = Stroke::dashed(IMPACTLESS, 0.8, look::DASH);
-        panel.curve(canvas, y, dashed);
-        let x: Vec<(f64, f64)> = pairs().map(|(p, i)| (self.at(p), of(i.x))).collect();
-        panel.curve(canvas, x, Stroke::solid(IMPACTLESS, 0.8));
+        panel.curve(canvas, points(&self.data.impactless_y), dashed);
+        let solid = Stroke::solid(IMPACTLESS, 0.8);
+        panel.curve(canvas, points(&self.data.impactless_x), solid);
     }
 
     fn phase(&self, canvas: &mut Canvas, top: f64) {
@@ -201,6 +217,6 @@ impl Drawing<'_> {
         let panel = self.panel(top, PHASE_HEIGHT, y, true);
         self.impactless(canvas, &panel, |p| p.1.to_degrees());
         canvas.layer(4);
-        panel.frame(canvas, Sides::BOTH, self.speech);
+        panel.frame(canvas, Sides::BOTH, self.locale);
     }
 }

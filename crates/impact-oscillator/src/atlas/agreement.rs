@@ -1,23 +1,23 @@
 //! Curves against brute force: every cell of the maps is looked up in the regions of the curves,
-//! and each that lies in none is told why.
+//! with the cause for each that is in none.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::brute::{WAYS, Way};
-use super::line::orbit_of_cell;
-use super::map::{CellMotion, End};
-use super::regions::{AtlasSettings, Slice};
+use super::brute::{SEEDINGS, Seeding};
+use super::line::{Slice, orbit_of_cell};
+use super::map::End;
 use super::resting::RestingSlice;
-use crate::model::{Existence, Machine, rho_grazing};
+use super::settings::AtlasSettings;
+use crate::model::{Existence, Machine, SettledMotion, rho_grazing};
 
 /// How well the curves and the brute-force maps agree.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Agreement {
     /// Cells whose motion the curves can judge.
     pub compared: usize,
-    /// Cells whose motion lies in no region of the curves.
+    /// Cells whose motion is in no region of the curves.
     pub differing: Vec<Differing>,
     /// Periodic cells beyond the largest p or n.
     pub beyond: usize,
@@ -25,7 +25,7 @@ pub struct Agreement {
     pub aperiodic: usize,
 }
 
-/// A cell whose motion lies in no region of the curves.
+/// A cell whose motion is in no region of the curves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Differing {
     /// η
@@ -33,20 +33,21 @@ pub struct Differing {
     /// ρ
     pub rho: f64,
     /// The map that it belongs to.
-    pub way: Way,
+    #[serde(rename = "way")]
+    pub seeding: Seeding,
     /// What brute force took it for.
-    pub motion: CellMotion,
+    pub motion: SettledMotion,
     /// Why.
     pub cause: Cause,
 }
 
-/// Why a cell's motion lies in no region of the curves.
+/// Why a cell's motion is in no region of the curves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Cause {
-    /// The motion is there and stable: the curves miss a region.
+    /// The motion exists and is stable: the curves miss a region.
     NoRegion,
-    /// The motion converges to one of fewer impacts, too slowly for its watch: it lies just
+    /// The motion converges to one of fewer impacts, too slowly for its watch: it is just
     /// before that one's period doubling.
     Converges {
         /// Impacts in a period of the motion that it converges to.
@@ -60,7 +61,7 @@ pub enum Cause {
         /// Largest modulus of its multipliers.
         multiplier: f64,
     },
-    /// No orbit lies where the cell closes: a transient.
+    /// No orbit exists where the cell closes: a transient.
     NoOrbit,
 }
 
@@ -83,26 +84,25 @@ struct Regions<'a> {
 }
 
 impl Regions<'_> {
-    /// Whether a motion lies in one of its regions; `None`: the curves do not judge it.
-    fn hold(&self, (eta, rho): (f64, f64), motion: CellMotion) -> Option<bool> {
+    /// Whether a motion is in one of its regions; `None`: the curves do not judge it.
+    fn hold(&self, (eta, rho): (f64, f64), motion: SettledMotion) -> Option<bool> {
         let (column, grazing) = (eta.to_bits(), rho_grazing(self.machine, eta));
         match motion {
-            CellMotion::Impactless => Some(rho >= grazing * (1.0 - 1e-9)),
-            CellMotion::Joined => Some(rho < 0.0),
-            CellMotion::Beat | CellMotion::Chaotic => None,
-            CellMotion::Periodic {
+            SettledMotion::Impactless => Some(rho >= grazing * (1.0 - 1e-9)),
+            SettledMotion::Sticking => Some(rho < 0.0),
+            SettledMotion::Beat | SettledMotion::Chaotic => None,
+            SettledMotion::Periodic {
                 p,
                 n,
                 dead_zone: true,
                 ..
             } => {
                 let there = self.resting.get(&column).into_iter().flatten();
-                let (p, n) = (p.into(), n.into());
                 Some(there.into_iter().any(|s| s.is(p, n) && s.holds(rho)))
             }
-            CellMotion::Periodic { p, n, .. } => {
+            SettledMotion::Periodic { p, n, .. } => {
                 let there = self.moving.get(&column).into_iter().flatten();
-                let is = |s: &Slice| (s.p, s.n) == (p.into(), n.into());
+                let is = |s: &Slice| (s.p, s.n) == (p, n);
                 Some(there.into_iter().any(|s| is(s) && s.holds(rho)))
             }
         }
@@ -110,7 +110,7 @@ impl Regions<'_> {
 }
 
 /// Look every cell of the maps up in the regions of the curves.
-pub fn compare(
+pub(super) fn compare(
     machine: &Machine,
     settings: &AtlasSettings,
     maps: &[Vec<End>],
@@ -123,7 +123,7 @@ pub fn compare(
         resting: by_eta(resting, |s| s.eta),
     };
     let mut agreement = Agreement::default();
-    for (map, way) in maps.iter().zip(WAYS) {
+    for (map, seeding) in maps.iter().zip(SEEDINGS) {
         for (i, end) in map.iter().enumerate() {
             if is_beyond(settings, end.motion) {
                 agreement.beyond += 1;
@@ -139,7 +139,7 @@ pub fn compare(
                 agreement.differing.push(Differing {
                     eta,
                     rho,
-                    way,
+                    seeding,
                     motion: end.motion,
                     cause: cause(machine, (eta, rho), end),
                 });
@@ -149,18 +149,16 @@ pub fn compare(
     agreement
 }
 
-fn is_beyond(settings: &AtlasSettings, motion: CellMotion) -> bool {
+fn is_beyond(settings: &AtlasSettings, motion: SettledMotion) -> bool {
     match motion {
-        CellMotion::Periodic { p, n, .. } => {
-            u32::from(p) > settings.largest_p || u32::from(n) > settings.largest_n
-        }
+        SettledMotion::Periodic { p, n, .. } => p > settings.largest_p || n > settings.largest_n,
         _ => false,
     }
 }
 
-/// Why a cell lies in no region, by the orbit on which its last impacts close.
+/// Why a cell is in no region, by the orbit on which its last impacts close.
 fn cause(machine: &Machine, at: (f64, f64), end: &End) -> Cause {
-    let CellMotion::Periodic {
+    let SettledMotion::Periodic {
         p,
         n,
         dead_zone: false,
@@ -169,7 +167,7 @@ fn cause(machine: &Machine, at: (f64, f64), end: &End) -> Cause {
     else {
         return Cause::NoRegion;
     };
-    let motion = (u32::from(p), u32::from(n));
+    let motion = (p, n);
     let orbit = orbit_of_cell(machine, at, end, motion);
     let Some(orbit) = orbit.filter(|o| o.existence(machine) == Existence::Exists) else {
         return Cause::NoOrbit;
@@ -178,7 +176,7 @@ fn cause(machine: &Machine, at: (f64, f64), end: &End) -> Cause {
         .multipliers(machine)
         .first()
         .map_or(f64::NAN, |m| m.norm());
-    let found = (orbit.p() as u32, orbit.n);
+    let found = (orbit.p(), orbit.n);
     if !(multiplier < 1.0) {
         Cause::Unstable { multiplier }
     } else if found != motion {

@@ -3,8 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::map::{CellMotion, MapSettings, Start, even, march_from};
-use crate::model::{Initial, Machine, ModelError, Setting};
+use super::map::{MapSettings, Start, even, march_from};
+use crate::model::{Initial, Machine, ModelError, Setting, SettledMotion};
 
 /// Which masses take the start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -37,8 +37,8 @@ pub struct Basins {
     pub x: Vec<f64>,
     /// X'(0) of the rows.
     pub vx: Vec<f64>,
-    /// Motions row by row; `None`: the start lies beyond the contact.
-    pub cells: Vec<Option<CellMotion>>,
+    /// Motions row by row; `None`: the start is beyond the contact.
+    pub cells: Vec<Option<SettledMotion>>,
 }
 
 impl BasinGrid {
@@ -63,6 +63,23 @@ impl BasinGrid {
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range.
+///
+/// ```
+/// use impact_oscillator::atlas::{BasinGrid, Starts, basins};
+/// use impact_oscillator::{Machine, MapSettings, Setting};
+///
+/// // Fig. 5 of the paper: z = 0 and z = 1 coexist at η = 1.19, ρ = 3 with R = 0
+/// let machine = Machine::symmetric(0.005, 0.0);
+/// let grid = BasinGrid {
+///     x: (-12.0, 3.0, 11),
+///     vx: (-12.0, 12.0, 11),
+///     starts: Starts::BothMasses,
+/// };
+/// let basins = basins(&machine, Setting::new(1.19, 3.0), &grid, &MapSettings::default())?;
+/// let count = |label: &str| basins.cells.iter().flatten().filter(|m| m.label() == label).count();
+/// assert!(count("1") > 5 * count("0") && count("0") > 0);
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn basins(
     machine: &Machine,
     setting: Setting,
@@ -86,7 +103,7 @@ pub fn basin_rows(
     grid: &BasinGrid,
     settings: &MapSettings,
     rows: std::ops::Range<usize>,
-) -> Result<Vec<Option<CellMotion>>, ModelError> {
+) -> Result<Vec<Option<SettledMotion>>, ModelError> {
     machine.check()?;
     setting.check()?;
     let (x, vx) = (even(grid.x), even(grid.vx));

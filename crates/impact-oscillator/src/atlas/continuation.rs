@@ -2,14 +2,13 @@
 //! lose stability or cease to exist, and the orbits that branch off at a period doubling.
 
 use nalgebra::{DMatrix, DVector};
-use serde::{Deserialize, Serialize};
 
+use super::edge::{Edge, EdgeKind};
 use crate::model::{Existence, Machine, PeriodicOrbit};
 
 /// The parameter along which an orbit is continued; the other one stays.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Along {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Along {
     /// ρ
     Clearance,
     /// η
@@ -18,7 +17,7 @@ pub enum Along {
 
 impl Along {
     /// The parameter's value at an orbit.
-    pub fn of(self, orbit: &PeriodicOrbit) -> f64 {
+    pub(super) fn of(self, orbit: &PeriodicOrbit) -> f64 {
         match self {
             Self::Clearance => orbit.rho,
             Self::FrequencyRatio => orbit.eta,
@@ -33,67 +32,19 @@ impl Along {
     }
 }
 
-/// What ends a motion z = p/n.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum EdgeKind {
-    /// Multiplier +1: s2, the orbit meets its unstable twin.
-    SaddleNode,
-    /// Multiplier −1: s1, the period doubles.
-    PeriodDoubling,
-    /// A pair of complex multipliers on the unit circle.
-    Torus,
-    /// The flight touches the contact: a further impact begins.
-    Grazing,
-    /// An impact's closing speed falls to zero.
-    ImpactVanishes,
-    /// The masses begin to stay together after an impact (1 | 1j).
-    DeadZone,
-    /// The search's bound: the motion goes on.
-    Bound,
-    /// The continuation broke off.
-    Lost,
-}
-
-impl EdgeKind {
-    /// The name in tables; s1 and s2 as in the paper.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::SaddleNode => "s2",
-            Self::PeriodDoubling => "s1",
-            Self::Torus => "torus",
-            Self::Grazing => "grazing",
-            Self::ImpactVanishes => "impact_vanishes",
-            Self::DeadZone => "dead_zone",
-            Self::Bound => "bound",
-            Self::Lost => "lost",
-        }
-    }
-}
-
-/// Where a motion ends, and the orbit there.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Edge {
-    /// What ends it.
-    pub kind: EdgeKind,
-    /// The last orbit.
-    pub orbit: PeriodicOrbit,
-}
-
 /// How far and how finely an orbit is continued.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Walk {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Walk {
     /// Least value of the parameter.
-    pub least: f64,
+    pub(super) least: f64,
     /// Greatest value of the parameter.
-    pub greatest: f64,
+    pub(super) greatest: f64,
     /// Longest step in arclength.
-    pub longest: f64,
+    pub(super) longest: f64,
     /// Length to which an edge is located.
-    pub resolution: f64,
+    pub(super) resolution: f64,
     /// Most steps.
-    pub steps: usize,
+    pub(super) steps: usize,
 }
 
 impl Default for Walk {
@@ -245,9 +196,9 @@ impl Follower<'_> {
         named(kind, orbit)
     }
 
-    /// The branch's edge; parameter and greatest closing speed of every orbit on the way.
+    /// The branch's edge; parameter and greatest approach speed of every orbit on the way.
     fn walk(&self, seed: &PeriodicOrbit, walk: &Walk, passed: &mut Vec<(f64, f64)>) -> Edge {
-        let n = 2 * seed.p() + 1;
+        let n = 2 * seed.times.len() + 1;
         let mut towards = DVector::zeros(n);
         towards[n - 1] = self.direction;
         let lost = |orbit: &PeriodicOrbit| named(EdgeKind::Lost, orbit.clone());
@@ -282,7 +233,7 @@ impl Follower<'_> {
             let Some(tangent) = self.tangent(&next, &point.tangent) else {
                 return lost(&next);
             };
-            // a sharp turn asks for shorter steps
+            // a sharp turn needs shorter steps
             let turn = tangent.dot(&point.tangent);
             ds = if turn < 0.9 {
                 0.5 * ds
@@ -309,15 +260,15 @@ fn named(kind: EdgeKind, orbit: PeriodicOrbit) -> Edge {
 
 /// An edge and the branch up to it.
 #[derive(Debug, Clone)]
-pub struct Followed {
+pub(super) struct Followed {
     /// What ends the motion, and where.
-    pub edge: Edge,
-    /// The parameter and the greatest closing speed of the orbits on the way, the edge's last.
-    pub passed: Vec<(f64, f64)>,
+    pub(super) edge: Edge,
+    /// The parameter and the greatest approach speed of the orbits on the way, the edge's last.
+    pub(super) passed: Vec<(f64, f64)>,
 }
 
 /// Continue a stable orbit in one direction (+1: rising parameter) to its edge.
-pub fn follow(
+pub(super) fn follow(
     machine: &Machine,
     seed: &PeriodicOrbit,
     along: Along,
@@ -337,7 +288,7 @@ pub fn follow(
 
 /// The stable orbit of doubled period that branches from an orbit at its period doubling (in
 /// the direction of `along` in which it is found first), by a start displaced alternately.
-pub fn branch_at_doubling(
+pub(super) fn branch_at_doubling(
     machine: &Machine,
     edge: &PeriodicOrbit,
     along: Along,

@@ -3,14 +3,14 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::continuation::EdgeKind;
-use super::regions::Slice;
+use super::edge::{EdgeKind, RestingEdge};
+use super::line::Slice;
 use super::resting::RestingSlice;
 use crate::model::orbit::stable_orbit;
 use crate::model::{BoundaryPoint, Machine, Orbit, Setting, rho_grazing, rho_s1, rho_s2};
+use crate::parallel;
 
 /// A point of a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -19,15 +19,39 @@ pub struct CurvePoint {
     pub eta: f64,
     /// ρ
     pub rho: f64,
-    /// Greatest closing speed of the marginal orbit.
-    pub closing_speed: f64,
+    /// Greatest approach speed of the marginal orbit.
+    pub approach_speed: f64,
+}
+
+/// What the points of a curve have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CurveKind {
+    /// ρ': grazing of the impactless motion.
+    ImpactlessGrazing,
+    /// An edge of a motion without a dead zone.
+    Moving(EdgeKind),
+    /// An edge of a motion that rests in a dead zone.
+    Resting(RestingEdge),
+}
+
+impl CurveKind {
+    /// The name in tables: s1, s2, grazing, dead_zone, …; rho_grazing is ρ', joined is ρp.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ImpactlessGrazing => "rho_grazing",
+            Self::Moving(kind) => kind.name(),
+            Self::Resting(kind) => kind.name(),
+        }
+    }
 }
 
 /// A boundary as a curve in the (η, ρ) plane, η rising.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
-    /// Name of the boundary: s1, s2, grazing, rho_grazing (ρ' of z = 0), joined (ρp), …
-    pub kind: String,
+    /// Which boundary.
+    pub kind: CurveKind,
     /// Impacts of the motion that it bounds.
     pub p: u32,
     /// Drive periods of the motion.
@@ -41,7 +65,7 @@ pub struct Curve {
 }
 
 /// All boundaries as curves.
-pub fn curves(
+pub(super) fn curves(
     machine: &Machine,
     (etas, range): (&[f64], (f64, f64)),
     largest_n: u32,
@@ -53,7 +77,7 @@ pub fn curves(
     curves.extend(closed_forms(machine, &fine, largest_n, range));
     let marks = columns.iter().map(|slices| {
         let followed = slices.iter().flat_map(slice_marks);
-        let more = |m: &Mark| !is_closed_form(machine, &m.key);
+        let more = |m: &Mark| !is_closed_form(machine, m);
         followed.filter(more).collect()
     });
     curves.extend(chains(marks.collect()));
@@ -80,9 +104,14 @@ fn refined(etas: &[f64]) -> Vec<f64> {
 }
 
 /// Whether a boundary is one that closed forms give: s2 of z = 1/n, with constant R s1 too.
-fn is_closed_form(machine: &Machine, (p, _, dead_zone, _, kind): &Key) -> bool {
+fn is_closed_form(machine: &Machine, mark: &Mark) -> bool {
     let constant = machine.restitution().constant().is_some();
-    *p == 1 && !dead_zone && (kind == "s2" || kind == "s1" && constant)
+    let closed = match mark.kind {
+        CurveKind::Moving(EdgeKind::SaddleNode) => true,
+        CurveKind::Moving(EdgeKind::PeriodDoubling) => constant,
+        _ => false,
+    };
+    mark.key.0 == 1 && closed
 }
 
 /// s2 and s1 of z = 1/n: pieces along which the marginal orbit exists.
@@ -93,37 +122,38 @@ fn closed_forms(
     (low, high): (f64, f64),
 ) -> Vec<Curve> {
     type Form = fn(&Machine, f64, u32) -> Option<BoundaryPoint>;
-    let forms: [(&str, Form); 2] = [("s2", rho_s2), ("s1", rho_s1)];
-    let all: Vec<(&str, Form, u32)> = (1..=largest_n)
+    let forms: [(EdgeKind, Form); 2] = [
+        (EdgeKind::SaddleNode, rho_s2),
+        (EdgeKind::PeriodDoubling, rho_s1),
+    ];
+    let all: Vec<(EdgeKind, Form, u32)> = (1..=largest_n)
         .flat_map(|n| forms.map(|(kind, form)| (kind, form, n)))
         .collect();
-    all.par_iter()
-        .flat_map(|(kind, form, n)| {
-            let shown = |p: &BoundaryPoint| p.is_valid() && p.rho >= low && p.rho <= high;
-            let points: Vec<Option<BoundaryPoint>> = etas
-                .iter()
-                .map(|&eta| form(machine, eta, *n).filter(shown))
-                .collect();
-            let pieces = points.split(Option::is_none).filter(|p| !p.is_empty());
-            pieces
-                .map(|piece| Curve {
-                    kind: (*kind).to_owned(),
-                    p: 1,
-                    n: *n,
-                    dead_zone: false,
-                    upper: *kind == "s2" || stable_below(machine, piece, *n),
-                    points: piece.iter().flatten().map(curve_point).collect(),
-                })
-                .collect::<Vec<_>>()
-        })
-        .collect()
+    let pieces = |&(kind, form, n): &(EdgeKind, Form, u32)| -> Vec<Curve> {
+        let shown = |p: &BoundaryPoint| p.is_valid() && p.rho >= low && p.rho <= high;
+        let points: Vec<Option<BoundaryPoint>> = etas
+            .iter()
+            .map(|&eta| form(machine, eta, n).filter(shown))
+            .collect();
+        let pieces = points.split(Option::is_none).filter(|p| !p.is_empty());
+        let curve = |piece: &[Option<BoundaryPoint>]| Curve {
+            kind: CurveKind::Moving(kind),
+            p: 1,
+            n,
+            dead_zone: false,
+            upper: kind == EdgeKind::SaddleNode || stable_below(machine, piece, n),
+            points: piece.iter().flatten().map(curve_point).collect(),
+        };
+        pieces.map(curve).collect()
+    };
+    parallel::map(&all, pieces).into_iter().flatten().collect()
 }
 
 fn curve_point(p: &BoundaryPoint) -> CurvePoint {
     CurvePoint {
         eta: p.eta,
         rho: p.rho,
-        closing_speed: p.closing_speed,
+        approach_speed: p.approach_speed,
     }
 }
 
@@ -133,7 +163,7 @@ fn stable_below(machine: &Machine, piece: &[Option<BoundaryPoint>], n: u32) -> b
         return true;
     };
     let below = Setting::new(p.eta, p.rho - 1e-4 * (0.1 + p.rho.abs()));
-    let near = |o: &Orbit| (o.closing_speed - p.closing_speed).abs() < 0.1 * p.closing_speed;
+    let near = |o: &Orbit| (o.approach_speed - p.approach_speed).abs() < 0.1 * p.approach_speed;
     stable_orbit(machine, below, n).is_ok_and(|o| o.is_some_and(|o| near(&o)))
 }
 
@@ -141,10 +171,10 @@ fn grazing_curve(machine: &Machine, etas: &[f64]) -> Curve {
     let at = |eta: &f64| CurvePoint {
         eta: *eta,
         rho: rho_grazing(machine, *eta),
-        closing_speed: 0.0,
+        approach_speed: 0.0,
     };
     Curve {
-        kind: "rho_grazing".into(),
+        kind: CurveKind::ImpactlessGrazing,
         p: 0,
         n: 1,
         dead_zone: false,
@@ -153,12 +183,15 @@ fn grazing_curve(machine: &Machine, etas: &[f64]) -> Curve {
     }
 }
 
-/// What a curve is, and the interval of its motion by which neighbours are told to belong.
-type Key = (u32, u32, bool, bool, String);
+/// p, n, whether there is a dead zone, whether it is an upper edge, the boundary's name.
+type Key = (u32, u32, bool, bool, &'static str);
 
+/// A point of a curve, with the interval of its motion by which points of neighbouring columns
+/// are found to belong to the same curve.
 #[derive(Debug, Clone)]
 struct Mark {
     key: Key,
+    kind: CurveKind,
     point: CurvePoint,
     interval: (f64, f64),
 }
@@ -169,14 +202,14 @@ fn slice_marks(s: &Slice) -> Vec<Mark> {
         .into_iter()
         .filter(|(edge, _)| edge.kind != EdgeKind::Bound)
         .map(|(edge, upper)| {
-            let speed = edge.orbit.speeds.iter().fold(0.0, |m: f64, w| m.max(*w));
             let point = CurvePoint {
                 eta: s.eta,
                 rho: edge.orbit.rho,
-                closing_speed: speed,
+                approach_speed: edge.orbit.greatest_speed(),
             };
             Mark {
-                key: (s.p, s.n, false, upper, edge.kind.name().into()),
+                key: (s.p, s.n, false, upper, edge.kind.name()),
+                kind: CurveKind::Moving(edge.kind),
                 point,
                 interval,
             }
@@ -192,11 +225,11 @@ fn resting_marks(s: &RestingSlice) -> Vec<Mark> {
             let point = CurvePoint {
                 eta: s.eta,
                 rho,
-                closing_speed: 0.0,
+                approach_speed: 0.0,
             };
-            let key = (s.p, s.n, true, upper, kind.name().into());
             Some(Mark {
-                key,
+                key: (s.p, s.n, true, upper, kind.name()),
+                kind: CurveKind::Resting(kind),
                 point,
                 interval: s.interval,
             })
@@ -211,16 +244,16 @@ fn chains(columns: Vec<Vec<Mark>>) -> Vec<Curve> {
     for marks in columns {
         let mut next: BTreeMap<Key, Vec<(Mark, Curve)>> = BTreeMap::new();
         for mark in marks {
-            let list = open.entry(mark.key.clone()).or_default();
+            let list = open.entry(mark.key).or_default();
             let fits = |(last, _): &(Mark, Curve)| {
                 last.interval.0 <= mark.interval.1 && mark.interval.0 <= last.interval.1
             };
             let mut curve = match list.iter().position(fits) {
                 Some(at) => list.swap_remove(at).1,
                 None => {
-                    let (p, n, dead_zone, upper, kind) = mark.key.clone();
+                    let (p, n, dead_zone, upper, _) = mark.key;
                     Curve {
-                        kind,
+                        kind: mark.kind,
                         p,
                         n,
                         dead_zone,
@@ -230,9 +263,7 @@ fn chains(columns: Vec<Vec<Mark>>) -> Vec<Curve> {
                 }
             };
             curve.points.push(mark.point);
-            next.entry(mark.key.clone())
-                .or_default()
-                .push((mark, curve));
+            next.entry(mark.key).or_default().push((mark, curve));
         }
         done.extend(open.into_values().flatten().map(|(_, curve)| curve));
         open = next;

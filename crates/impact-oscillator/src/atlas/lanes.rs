@@ -2,16 +2,16 @@
 //! once: AVX-512, AVX2 with FMA, and one lane of plain arithmetic for every other machine.
 //!
 //! The methods are inlined into functions that enable the instruction set; they must only be
-//! called where the processor has it, which [`Kernel`](super::map::Kernel) asks at run time.
+//! called where the processor has it, which [`Kernel`](super::map::Kernel) checks at run time.
 
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
 #[cfg(target_arch = "x86_64")]
-pub use x86::{Avx2, Avx512};
+pub(super) use x86::{Avx2, Avx512};
 
 /// A vector of lanes.
-pub trait Lanes: Copy {
+pub(super) trait Lanes: Copy {
     /// Number of lanes.
     const WIDTH: usize;
     /// One truth value per lane.
@@ -155,85 +155,50 @@ impl Lanes for f64 {
     }
 }
 
+/// Methods of two vectors side by side: of one, two and three operands, and comparisons.
+macro_rules! both {
+    ($($one:ident),*; $($two:ident),*; $($three:ident),*; $($compare:ident),*; $($logic:ident),*) => {
+        $(#[inline(always)]
+        fn $one(self) -> Self {
+            Self(self.0.$one(), self.1.$one())
+        })*
+        $(#[inline(always)]
+        fn $two(self, b: Self) -> Self {
+            Self(self.0.$two(b.0), self.1.$two(b.1))
+        })*
+        $(#[inline(always)]
+        fn $three(self, b: Self, c: Self) -> Self {
+            Self(self.0.$three(b.0, c.0), self.1.$three(b.1, c.1))
+        })*
+        $(#[inline(always)]
+        fn $compare(self, b: Self) -> Self::Mask {
+            (self.0.$compare(b.0), self.1.$compare(b.1))
+        })*
+        $(#[inline(always)]
+        fn $logic(a: Self::Mask, b: Self::Mask) -> Self::Mask {
+            (V::$logic(a.0, b.0), V::$logic(a.1, b.1))
+        })*
+    };
+}
+
 /// Two vectors side by side: their instructions interleave, which hides the latency of each.
 #[derive(Clone, Copy)]
 #[repr(C)]
-pub struct Two<V>(V, V);
+pub(super) struct Two<V>(V, V);
 
 impl<V: Lanes> Lanes for Two<V> {
     const WIDTH: usize = 2 * V::WIDTH;
     type Mask = (V::Mask, V::Mask);
+    both!(
+        abs, sqrt, reciprocal_rough;
+        add, sub, mul, div, min, max;
+        mul_add, neg_mul_add, mul_sub;
+        lt, le;
+        and, and_not, or
+    );
     #[inline(always)]
     fn splat(a: f64) -> Self {
         Self(V::splat(a), V::splat(a))
-    }
-    #[inline(always)]
-    fn add(self, b: Self) -> Self {
-        Self(self.0.add(b.0), self.1.add(b.1))
-    }
-    #[inline(always)]
-    fn sub(self, b: Self) -> Self {
-        Self(self.0.sub(b.0), self.1.sub(b.1))
-    }
-    #[inline(always)]
-    fn mul(self, b: Self) -> Self {
-        Self(self.0.mul(b.0), self.1.mul(b.1))
-    }
-    #[inline(always)]
-    fn div(self, b: Self) -> Self {
-        Self(self.0.div(b.0), self.1.div(b.1))
-    }
-    #[inline(always)]
-    fn min(self, b: Self) -> Self {
-        Self(self.0.min(b.0), self.1.min(b.1))
-    }
-    #[inline(always)]
-    fn max(self, b: Self) -> Self {
-        Self(self.0.max(b.0), self.1.max(b.1))
-    }
-    #[inline(always)]
-    fn mul_add(self, b: Self, c: Self) -> Self {
-        Self(self.0.mul_add(b.0, c.0), self.1.mul_add(b.1, c.1))
-    }
-    #[inline(always)]
-    fn neg_mul_add(self, b: Self, c: Self) -> Self {
-        Self(self.0.neg_mul_add(b.0, c.0), self.1.neg_mul_add(b.1, c.1))
-    }
-    #[inline(always)]
-    fn mul_sub(self, b: Self, c: Self) -> Self {
-        Self(self.0.mul_sub(b.0, c.0), self.1.mul_sub(b.1, c.1))
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self(self.0.abs(), self.1.abs())
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(self.0.sqrt(), self.1.sqrt())
-    }
-    #[inline(always)]
-    fn reciprocal_rough(self) -> Self {
-        Self(self.0.reciprocal_rough(), self.1.reciprocal_rough())
-    }
-    #[inline(always)]
-    fn lt(self, b: Self) -> Self::Mask {
-        (self.0.lt(b.0), self.1.lt(b.1))
-    }
-    #[inline(always)]
-    fn le(self, b: Self) -> Self::Mask {
-        (self.0.le(b.0), self.1.le(b.1))
-    }
-    #[inline(always)]
-    fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask {
-        (V::and(a.0, b.0), V::and(a.1, b.1))
-    }
-    #[inline(always)]
-    fn and_not(a: Self::Mask, b: Self::Mask) -> Self::Mask {
-        (V::and_not(a.0, b.0), V::and_not(a.1, b.1))
-    }
-    #[inline(always)]
-    fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask {
-        (V::or(a.0, b.0), V::or(a.1, b.1))
     }
     #[inline(always)]
     fn or_else(self, mask: Self::Mask, other: Self) -> Self {

@@ -3,32 +3,35 @@
 
 use std::collections::VecDeque;
 
-use super::continuation::{Along, Edge, EdgeKind, Walk, branch_at_doubling, follow};
-use super::map::{CellMotion, End, clear_of};
-use super::regions::AtlasSettings;
+use serde::{Deserialize, Serialize};
+
+use super::continuation::{Along, Walk, branch_at_doubling, follow};
+use super::edge::{Edge, EdgeKind};
+use super::map::{End, clear_of};
+use super::settings::AtlasSettings;
 use crate::model::boundary::etas_s2;
 use crate::model::orbit::stable_orbit;
 use crate::model::{
-    Existence, Initial, Machine, ModelImpact, PeriodicOrbit, Setting, Simulator, rho_s2,
+    Existence, Impact, Initial, Machine, PeriodicOrbit, Setting, SettledMotion, Simulator, rho_s2,
 };
 
 /// One motion's interval of existence and stability along a line.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Span {
+pub(super) struct Span {
     /// Impacts in a period of the motion.
-    pub p: u32,
+    pub(super) p: u32,
     /// Drive periods in a period of the motion.
-    pub n: u32,
+    pub(super) n: u32,
     /// Its lower edge.
-    pub low: Edge,
+    pub(super) low: Edge,
     /// Its upper edge.
-    pub high: Edge,
-    /// The line's parameter and the greatest closing speed of its orbits, the parameter rising.
-    pub branch: Vec<(f64, f64)>,
+    pub(super) high: Edge,
+    /// The line's parameter and the greatest approach speed of its orbits, the parameter rising.
+    pub(super) branch: Vec<(f64, f64)>,
 }
 
 impl Span {
-    /// Greatest closing speed at a value of the parameter, between the orbits that were followed.
+    /// Greatest approach speed at a value of the parameter, between the orbits that were followed.
     fn speed_at(&self, value: f64) -> f64 {
         let k = self.branch.partition_point(|b| b.0 < value);
         match (self.branch.get(k.wrapping_sub(1)), self.branch.get(k)) {
@@ -38,24 +41,56 @@ impl Span {
         }
     }
 
-    /// Whether an orbit of a greatest closing speed at a value lies on this branch. Branches of
+    /// Whether an orbit of a greatest approach speed at a value lies on this branch. Branches of
     /// the same p/n that coexist differ in speed but where they meet.
     fn is_at(&self, value: f64, speed: f64) -> bool {
         (speed - self.speed_at(value)).abs() <= 0.05 * (1.0 + speed)
     }
 }
 
+/// One motion's interval of existence and stability along ρ at one η.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Slice {
+    /// η
+    pub eta: f64,
+    /// Impacts in a period of the motion.
+    pub p: u32,
+    /// Drive periods in a period of the motion.
+    pub n: u32,
+    /// Its lower edge.
+    pub low: Edge,
+    /// Its upper edge.
+    pub high: Edge,
+}
+
+impl Slice {
+    /// The motion.
+    pub fn motion(&self) -> SettledMotion {
+        SettledMotion::Periodic {
+            p: self.p,
+            n: self.n,
+            dead_zone: false,
+            chatter: false,
+        }
+    }
+
+    /// Whether it contains a clearance.
+    pub fn holds(&self, rho: f64) -> bool {
+        self.low.orbit.rho <= rho && rho <= self.high.orbit.rho
+    }
+}
+
 /// A line of the settings' grid.
 #[derive(Debug, Clone, Copy)]
-pub struct Line<'a> {
+pub(super) struct Line<'a> {
     /// The machine.
-    pub machine: &'a Machine,
+    pub(super) machine: &'a Machine,
     /// The grid, the motions that are sought, and how cells are marched.
-    pub settings: &'a AtlasSettings,
+    pub(super) settings: &'a AtlasSettings,
     /// ρ for a column of the grid, η for a row.
-    pub along: Along,
+    pub(super) along: Along,
     /// Number of the column or of the row.
-    pub number: usize,
+    pub(super) number: usize,
 }
 
 /// A periodic cell of a line.
@@ -70,7 +105,7 @@ struct CellSeed {
 
 impl Line<'_> {
     /// All motions: from closed forms, from the maps' cells, from period doublings.
-    pub fn spans(&self, maps: &[Vec<End>]) -> Vec<Span> {
+    pub(super) fn spans(&self, maps: &[Vec<End>]) -> Vec<Span> {
         let mut seeds = self.closed_form_seeds();
         let mut cells = self.cell_seeds(maps).into_iter();
         let mut spans: Vec<Span> = Vec::new();
@@ -106,7 +141,7 @@ impl Line<'_> {
 
     /// The span of a seed that lies on no known branch.
     fn new_span(&self, seed: &PeriodicOrbit, spans: &[Span]) -> Option<Span> {
-        let (motion, value) = ((seed.p() as u32, seed.n), self.along.of(seed));
+        let (motion, value) = ((seed.p(), seed.n), self.along.of(seed));
         let speed = seed.greatest_speed();
         if self
             .spans_at(spans, motion, value)
@@ -200,7 +235,7 @@ impl Line<'_> {
 
     /// The periodic cells of each map: the middle one of every run of equal ones first, which
     /// mostly lies in the region of all, then the others: a run may hold several branches of p/n
-    /// orbits, so all are told apart from the known ones by their speed.
+    /// orbits, so all are compared with the known ones by their speed.
     fn cell_seeds(&self, maps: &[Vec<End>]) -> Vec<CellSeed> {
         let count = self.values().len();
         let (mut middles, mut others) = (Vec::new(), Vec::new());
@@ -229,8 +264,8 @@ impl Line<'_> {
     }
 
     /// p and n of a motion without dead zone within the greatest that are sought.
-    fn sought(&self, motion: CellMotion) -> Option<(u32, u32)> {
-        let CellMotion::Periodic {
+    fn sought(&self, motion: SettledMotion) -> Option<(u32, u32)> {
+        let SettledMotion::Periodic {
             p,
             n,
             dead_zone: false,
@@ -239,7 +274,6 @@ impl Line<'_> {
         else {
             return None;
         };
-        let (p, n) = (u32::from(p), u32::from(n));
         (p <= self.settings.largest_p && n <= self.settings.largest_n).then_some((p, n))
     }
 
@@ -267,7 +301,7 @@ impl Line<'_> {
         branch.sort_by(|a, b| a.0.total_cmp(&b.0));
         branch.dedup_by(|a, b| a.0 == b.0);
         Some(Span {
-            p: seed.p() as u32,
+            p: seed.p(),
             n: seed.n,
             low: low.edge,
             high: high.edge,
@@ -285,17 +319,17 @@ fn single_impact(machine: &Machine, setting: Setting, n: u32) -> Option<Periodic
         eta,
         rho: setting.clearance,
         times: vec![orbit.phase_at_impact / eta],
-        speeds: vec![orbit.closing_speed],
+        speeds: vec![orbit.approach_speed],
     }
     .solve(machine)
 }
 
-/// Greatest closing speed in the n drive periods after a cell's end.
+/// Greatest approach speed in the n drive periods after a cell's end.
 fn greatest_speed(machine: &Machine, at: (f64, f64), end: &End, n: u32) -> Option<f64> {
     let (mut simulator, setting) = from_end(machine, at, end)?;
     let mut greatest: Option<f64> = None;
-    simulator.advance(f64::from(n) * setting.period(), &mut |i: &ModelImpact| {
-        let speed = i.closing_before;
+    simulator.advance(f64::from(n) * setting.period(), &mut |i: &Impact| {
+        let speed = i.approach_speed;
         greatest = Some(greatest.map_or(speed, |g| g.max(speed)));
     });
     greatest
@@ -317,11 +351,11 @@ fn last_impacts(
     at: (f64, f64),
     end: &End,
     (p, n): (u32, u32),
-) -> Option<Vec<ModelImpact>> {
+) -> Option<Vec<Impact>> {
     let (mut simulator, setting) = from_end(machine, at, end)?;
-    let mut impacts: Vec<ModelImpact> = Vec::new();
+    let mut impacts: Vec<Impact> = Vec::new();
     let periods = f64::from(2 * n + 1);
-    simulator.advance(periods * setting.period(), &mut |i: &ModelImpact| {
+    simulator.advance(periods * setting.period(), &mut |i: &Impact| {
         impacts.push(*i);
     });
     let last = impacts.len().checked_sub(p as usize)?;
@@ -330,7 +364,7 @@ fn last_impacts(
 
 /// The orbit on which a cell's last impacts close, stable or not, with the fewest p and n that it
 /// is. `None`: Newton's method finds none near them.
-pub fn orbit_of_cell(
+pub(super) fn orbit_of_cell(
     machine: &Machine,
     (eta, rho): (f64, f64),
     end: &End,

@@ -1,4 +1,4 @@
-//! Largest Lyapunov exponent of a simulated motion: a variation carried exactly through flights
+//! Largest Lyapunov exponent of a simulated motion: a variation mapped exactly through flights
 //! and, by saltation matrices, through impacts and into dead zones.
 
 use nalgebra::{Matrix4, Vector4};
@@ -7,9 +7,29 @@ use crate::model::contact::free_accelerations;
 use crate::model::flight::{Drive, State};
 use crate::model::simulate::{Arc, Sink};
 use crate::model::variation::{free_flow, saltation};
-use crate::model::{ImpactKind, Machine, ModelImpact, Restitution};
+use crate::model::{Impact, ImpactKind, Machine, Restitution};
 
-/// Carries a variation along a simulation; give it to `Simulator::advance`.
+/// Follows a variation along a simulation; pass it to [`Simulator::advance`].
+///
+/// [`Simulator::advance`]: crate::Simulator::advance
+///
+/// ```
+/// use impact_oscillator::atlas::Lyapunov;
+/// use impact_oscillator::model::orbit::stable_orbit;
+/// use impact_oscillator::{Impact, Initial, Machine, Setting, Simulator};
+///
+/// let machine = Machine::single(0.07, 0.9);
+/// let setting = Setting::new(1.2, 2.0);
+/// let mut simulator = Simulator::new(&machine, setting, Initial::rest())?;
+/// simulator.advance(300.0 * setting.period(), &mut |_: &Impact| ());
+/// let mut lyapunov = Lyapunov::new(&machine, setting.frequency_ratio);
+/// simulator.advance(2000.0 * setting.period(), &mut lyapunov);
+/// // a stable orbit has the logarithm of its largest multiplier per period
+/// let orbit = stable_orbit(&machine, setting, 1)?.expect("z = 1");
+/// let expected = orbit.multipliers[0].norm().ln() / setting.period();
+/// assert!(expected < 0.0 && (lyapunov.exponent() - expected).abs() < 1e-3);
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Lyapunov<'a> {
     machine: &'a Machine,
@@ -56,7 +76,7 @@ impl<'a> Lyapunov<'a> {
     }
 
     /// Into a dead zone: the impact's map with R = 0, relative motion gone.
-    fn rest_map(&self, impact: &ModelImpact, after: &State) -> Matrix4<f64> {
+    fn rest_map(&self, impact: &Impact, after: &State) -> Matrix4<f64> {
         let plastic = self
             .machine
             .clone()
@@ -85,7 +105,7 @@ impl Sink for Lyapunov<'_> {
     fn arc(&mut self, arc: &Arc) {
         self.time += arc.duration;
         self.before = arc.paths.at(arc.duration);
-        if !arc.joined {
+        if !arc.sticking {
             self.apply(&free_flow(self.machine, arc.duration));
         } else if self.machine.is_symmetric() {
             // the common motion of joined equal masses is each mass's free vibration
@@ -98,7 +118,7 @@ impl Sink for Lyapunov<'_> {
         }
     }
 
-    fn impact(&mut self, impact: &ModelImpact) {
+    fn impact(&mut self, impact: &Impact) {
         let drive = Drive {
             eta: self.eta,
             phase: impact.phase,

@@ -5,19 +5,16 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 pub use super::kernel::Kernel;
 use super::kernel::{Cell, Course, Feed, Outcome, run};
 use crate::model::recurrence::observe;
 use crate::model::{
-    Flight, Initial, Machine, ModelError, ModelImpact, Oscillator, Setting, SettledMotion,
-    Simulator, Watch,
+    Flight, Impact, Initial, Machine, ModelError, Oscillator, Setting, SettledMotion, Simulator,
+    Watch,
 };
-
-/// What a cell shows.
-pub type CellMotion = SettledMotion;
+use crate::parallel;
 
 /// The grid: cell (i, k) lies at (`eta[i]`, `rho[k]`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -98,12 +95,12 @@ pub struct RegionMap {
     /// ρ of the rows.
     pub rho: Vec<f64>,
     /// The motions, row by row: cell (i, k) is `cells[k * eta.len() + i]`.
-    pub cells: Vec<CellMotion>,
+    pub cells: Vec<SettledMotion>,
 }
 
 impl RegionMap {
     /// The motion at column i (η) and row k (ρ).
-    pub fn at(&self, i: usize, k: usize) -> CellMotion {
+    pub fn at(&self, i: usize, k: usize) -> SettledMotion {
         self.cells[k * self.eta.len() + i]
     }
 }
@@ -113,43 +110,44 @@ impl RegionMap {
 ///
 /// # Errors
 /// [`ModelError`] where a parameter or a grid value is out of range.
+///
+/// ```
+/// use impact_oscillator::{Machine, MapGrid, MapSettings, region_map};
+///
+/// let grid = MapGrid::even((1.1, 1.5, 3), (1.0, 7.0, 4));
+/// let map = region_map(&Machine::symmetric(0.07, 0.9), &grid, &MapSettings::default())?;
+/// // at η = 1.3 z = 1 exists for ρ below s2 = 4.152, and from rest it is reached below ρ' = 1.401
+/// assert_eq!(map.at(1, 0).label(), "1");
+/// assert_eq!(map.at(1, 2).label(), "0");
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn region_map(
     machine: &Machine,
     grid: &MapGrid,
     settings: &MapSettings,
 ) -> Result<RegionMap, ModelError> {
-    let all: Vec<usize> = (0..grid.len()).collect();
-    let cells = map_cells(machine, grid, settings, &all)?;
+    check(machine, grid, settings)?;
+    let ends = march_grid(machine, grid, settings)?;
     Ok(RegionMap {
         eta: grid.eta.clone(),
         rho: grid.rho.clone(),
-        cells,
+        cells: ends.iter().map(|end| end.motion).collect(),
     })
 }
 
-/// The motions of chosen cells of a grid, by their numbers.
-///
-/// # Errors
-/// As [`region_map`].
-fn map_cells(
+/// March every cell of a grid from the settings' start, row by row.
+pub(super) fn march_grid(
     machine: &Machine,
     grid: &MapGrid,
     settings: &MapSettings,
-    chosen: &[usize],
-) -> Result<Vec<CellMotion>, ModelError> {
-    check(machine, grid, settings)?;
-    let starts: Vec<Start> = chosen
-        .iter()
-        .map(|&i| Start {
-            at: grid.at(i),
-            initial: settings.start,
-            phase: 0.0,
-        })
-        .collect();
-    Ok(march_from(machine, &starts, settings)?
-        .into_iter()
-        .map(|end| end.motion)
-        .collect())
+) -> Result<Vec<End>, ModelError> {
+    let start = |i: usize| Start {
+        at: grid.at(i),
+        initial: settings.start,
+        phase: 0.0,
+    };
+    let starts: Vec<Start> = (0..grid.len()).map(start).collect();
+    march_from(machine, &starts, settings)
 }
 
 /// A cell with its own start.
@@ -167,7 +165,7 @@ pub struct Start {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct End {
     /// The motion.
-    pub motion: CellMotion,
+    pub motion: SettledMotion,
     /// A state of that motion.
     pub initial: Initial,
     /// Phase of the drive there, rad.
@@ -192,11 +190,10 @@ pub fn march_from(
                 motion: unit.judge(o, &settings.watch),
                 ..unit.end(o)
             };
-            Ok(outcomes.par_iter().map(end).collect())
+            Ok(parallel::map(&outcomes, end))
         }
-        _ => starts
-            .par_iter()
-            .map(|s| exact_cell(machine, s, settings))
+        _ => parallel::map(starts, |s| exact_cell(machine, s, settings))
+            .into_iter()
             .collect(),
     }
 }
@@ -205,7 +202,11 @@ pub fn march_from(
 ///
 /// # Errors
 /// [`ModelError`] with the first parameter out of range.
-pub fn check(machine: &Machine, grid: &MapGrid, settings: &MapSettings) -> Result<(), ModelError> {
+pub(super) fn check(
+    machine: &Machine,
+    grid: &MapGrid,
+    settings: &MapSettings,
+) -> Result<(), ModelError> {
     machine.check()?;
     settings.start.check()?;
     if machine.flight != Flight::Harmonic {
@@ -230,7 +231,7 @@ fn exact_cell(machine: &Machine, s: &Start, settings: &MapSettings) -> Result<En
     };
     let mut simulator = Simulator::new(machine, setting, clear_of(machine, rho, s.initial))?;
     let settle = settings.watch.settle_periods * setting.period();
-    simulator.advance(settle, &mut |_: &ModelImpact| {});
+    simulator.advance(settle, &mut |_: &Impact| {});
     let motion = observe(&mut simulator, setting, &settings.watch).0;
     let now = simulator.state();
     let initial = Initial {
@@ -246,8 +247,8 @@ fn exact_cell(machine: &Machine, s: &Start, settings: &MapSettings) -> Result<En
     })
 }
 
-/// A start moved back to the contact where it lies beyond, each mass by its mobility.
-pub fn clear_of(machine: &Machine, rho: f64, mut start: Initial) -> Initial {
+/// A start moved back to the contact where it is beyond, each mass by its mobility.
+pub(super) fn clear_of(machine: &Machine, rho: f64, mut start: Initial) -> Initial {
     if machine.y.is_none() {
         (start.y, start.vy) = (0.0, 0.0);
     }
@@ -287,7 +288,7 @@ impl UnitMass {
     }
 
     /// The machine in the scaled quantities: one nominal mass against a stop.
-    pub fn machine(&self) -> Machine {
+    pub(super) fn machine(&self) -> Machine {
         Machine::single(self.oscillator.damping_ratio, self.restitution)
     }
 
@@ -304,7 +305,7 @@ impl UnitMass {
     }
 
     /// Where an outcome ended, in the machine's own quantities.
-    pub fn end(&self, o: &Outcome) -> End {
+    pub(super) fn end(&self, o: &Outcome) -> End {
         let (length, rate) = self.scales();
         let initial = Initial::both(o.end.x * length, o.end.v * length * rate);
         End {
@@ -316,7 +317,7 @@ impl UnitMass {
 
     /// The motion of an outcome. One without recurrence in the kernel is watched once more by
     /// the exact simulator: it may converge slowly, or beat.
-    pub fn judge(&self, outcome: &Outcome, watch: &Watch) -> CellMotion {
+    pub(super) fn judge(&self, outcome: &Outcome, watch: &Watch) -> SettledMotion {
         if outcome.motion != SettledMotion::Chaotic {
             return outcome.motion;
         }
@@ -378,20 +379,18 @@ pub fn march_all(course: &Course, cells: &[Cell], kernel: Option<Kernel>) -> Vec
         .filter(|k| k.is_available())
         .unwrap_or_else(Kernel::of_this_machine);
     let next = AtomicUsize::new(0);
-    let parts: Vec<Vec<(usize, Outcome)>> = (0..rayon::current_num_threads())
-        .into_par_iter()
-        .map(|_| {
-            let mut shared = Shared {
-                cells,
-                next: &next,
-                block: 0..0,
-                done: Vec::new(),
-            };
-            run(kernel, course, &mut shared);
-            shared.done
-        })
-        .collect();
-    let mut all: Vec<(usize, Outcome)> = parts.into_iter().flatten().collect();
+    let workers: Vec<usize> = (0..parallel::threads()).collect();
+    let march = |_: &usize| {
+        let mut shared = Shared {
+            cells,
+            next: &next,
+            block: 0..0,
+            done: Vec::new(),
+        };
+        run(kernel, course, &mut shared);
+        shared.done
+    };
+    let mut all: Vec<(usize, Outcome)> = parallel::map(&workers, march).concat();
     all.sort_unstable_by_key(|p| p.0);
     all.into_iter().map(|p| p.1).collect()
 }

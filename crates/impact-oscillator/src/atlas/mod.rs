@@ -1,25 +1,38 @@
-//! Many simulations: region maps over (η, ρ), diagrams, basins. This room knows no files.
+//! Many simulations: region maps over (η, ρ), sweeps, basins, and the atlas of all motions.
 
-pub mod agreement;
+mod agreement;
 pub mod basins;
-pub mod brute;
-pub mod continuation;
+mod brute;
+mod continuation;
 pub mod curves;
+mod edge;
 pub mod kernel;
-pub mod lanes;
-pub mod line;
-pub mod lyapunov;
+mod lanes;
+mod line;
+mod lyapunov;
 pub mod map;
+mod points;
 pub mod portrait;
 pub mod regions;
-pub mod release;
-pub mod resting;
+mod release;
+mod resting;
+mod settings;
 pub mod shard;
 pub mod sweep;
 
+pub use agreement::{Agreement, Cause, Differing};
+pub use basins::{BasinGrid, Basins, Starts, basins};
+pub use brute::{Maps, Seeding, brute_maps};
 pub use curves::Curve;
-pub use map::{CellMotion, MapGrid, MapSettings, RegionMap, region_map};
-pub use regions::{Atlas, AtlasSettings, atlas};
+pub use edge::{Edge, EdgeKind, RestingEdge};
+pub use line::Slice;
+pub use lyapunov::Lyapunov;
+pub use map::{MapGrid, MapSettings, RegionMap, region_map};
+pub use points::{At, Boundary, BoundaryQuery, Point, boundary_points};
+pub use regions::{Atlas, atlas};
+pub use resting::RestingSlice;
+pub use settings::AtlasSettings;
+pub use sweep::{Sweep, SweepPoint, sweep};
 
 #[cfg(test)]
 mod tests;

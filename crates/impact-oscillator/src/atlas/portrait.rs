@@ -7,9 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use super::sweep::autocorrelation;
 use crate::model::flight::State;
+use crate::model::motion::count;
 use crate::model::simulate::{Arc, Sink};
 use crate::model::soft::{SoftContact, simulate_soft};
-use crate::model::{Initial, Machine, ModelError, ModelImpact, Setting, Simulator, Trajectory};
+use crate::model::{Impact, Initial, Machine, ModelError, Setting, Simulator, Trajectory};
 
 /// What is looked at, and for how long.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -68,8 +69,8 @@ pub struct Sample {
     pub y: f64,
     /// Y'
     pub vy: f64,
-    /// Whether the masses are together.
-    pub joined: bool,
+    /// Whether the masses stick together.
+    pub sticking: bool,
 }
 
 /// An impact of a time series; a soft contact's begins and ends at different times.
@@ -82,10 +83,10 @@ pub struct Strike {
     /// Phase of the drive, rad in [0, 2π).
     pub phase: f64,
     /// X' + Y' before.
-    pub closing_before: f64,
-    /// X' + Y' after.
-    pub closing_after: f64,
-    /// X' before; not told of a soft contact.
+    pub approach_speed: f64,
+    /// −(X' + Y') after the impact.
+    pub separation_speed: f64,
+    /// X' before; `None` for a soft contact.
     pub vx_before: Option<f64>,
     /// X' after.
     pub vx_after: Option<f64>,
@@ -135,15 +136,37 @@ impl Sink for Strobe {
     }
 }
 
-/// Samples of X a drive period that its autocorrelation is taken from.
+/// Samples of X per drive period in its autocorrelation.
 const CORRELATED: usize = 24;
 /// Longest lag of the autocorrelation, drive periods.
 const LONGEST_LAG: usize = 20;
 
-/// Simulate a motion and look at it.
+/// Simulate a motion and sample it.
 ///
 /// # Errors
-/// [`ModelError`] where a parameter is out of range or the start lies beyond the contact.
+/// [`ModelError`] where a parameter is out of range or the start is beyond the contact.
+///
+/// ```
+/// use impact_oscillator::atlas::portrait::{PortraitPlan, portrait};
+/// use impact_oscillator::{Initial, Machine, Setting};
+///
+/// let plan = PortraitPlan {
+///     setting: Setting::new(1.3, 1.0),
+///     start: Initial::rest(),
+///     skip_periods: 300.0,
+///     periods: 2.0,
+///     samples_per_period: 50,
+///     poincare_periods: 40,
+///     poincare_phase: 0.0,
+///     soft: None,
+/// };
+/// let motion = portrait(&Machine::symmetric(0.07, 0.9), &plan)?;
+/// assert_eq!((motion.samples.len(), motion.impacts.len()), (101, 2));
+/// // z = 1: the Poincaré map is one point
+/// let [first, .., last] = motion.poincare.as_slice() else { unreachable!() };
+/// assert!((first[0] - last[0]).abs() < 1e-6);
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn portrait(machine: &Machine, plan: &PortraitPlan) -> Result<Portrait, ModelError> {
     let setting = plan.setting;
     let period = setting.period();
@@ -152,8 +175,8 @@ pub fn portrait(machine: &Machine, plan: &PortraitPlan) -> Result<Portrait, Mode
         None => rigid(machine, plan, skip)?,
         Some(soft) => pressed(machine, plan, soft, skip)?,
     };
-    let count = (plan.periods * plan.samples_per_period as f64).round() as usize;
-    let taus = super::map::even((skip, skip + plan.periods * period, count + 1));
+    let steps = count((plan.periods * plan.samples_per_period as f64).round());
+    let taus = super::map::even((skip, skip + plan.periods * period, steps as usize + 1));
     let states = trajectory.sample(taus.iter().copied());
     let sample = |(tau, s): (&f64, &State)| Sample {
         periods: tau / period,
@@ -161,7 +184,7 @@ pub fn portrait(machine: &Machine, plan: &PortraitPlan) -> Result<Portrait, Mode
         vx: s.vx,
         y: s.y,
         vy: s.vy,
-        joined: trajectory.arc_at(*tau).is_some_and(|arc| arc.joined),
+        sticking: trajectory.arc_at(*tau).is_some_and(|arc| arc.sticking),
     };
     Ok(Portrait {
         two_masses: machine.y.is_some(),
@@ -185,16 +208,16 @@ type Run = (Trajectory, Vec<Strike>, Later);
 fn rigid(machine: &Machine, plan: &PortraitPlan, skip: f64) -> Result<Run, ModelError> {
     let period = plan.setting.period();
     let mut simulator = Simulator::new(machine, plan.setting, plan.start)?;
-    simulator.advance(skip, &mut |_: &ModelImpact| {});
+    simulator.advance(skip, &mut |_: &Impact| {});
     let mut trajectory = Trajectory::default();
     let follower = simulator.clone();
     simulator.advance(plan.periods * period, &mut trajectory);
-    let strike = |i: &ModelImpact| Strike {
+    let strike = |i: &Impact| Strike {
         periods: i.tau / period,
         x: trajectory.at(i.tau).x,
         phase: i.phase,
-        closing_before: i.closing_before,
-        closing_after: i.closing_after,
+        approach_speed: i.approach_speed,
+        separation_speed: i.separation_speed,
         vx_before: Some(i.vx_before),
         vx_after: Some(i.vx_after),
         vy_before: Some(i.vy_before),
@@ -276,8 +299,8 @@ fn pressed(
         periods: c.tau / period,
         x: motion.trajectory.at(c.tau).x,
         phase: (plan.setting.phase + plan.setting.frequency_ratio * c.tau).rem_euclid(TAU),
-        closing_before: c.closing_before,
-        closing_after: c.closing_after,
+        approach_speed: c.approach_speed,
+        separation_speed: c.separation_speed,
         vx_before: None,
         vx_after: None,
         vy_before: None,

@@ -4,64 +4,16 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
-
 use super::agreement::{Agreement, compare};
-use super::brute::{Maps, Way, brute_map, brute_maps};
-use super::continuation::{Along, Edge};
+use super::brute::{Maps, Seeding, brute_map, brute_maps};
+use super::continuation::Along;
 use super::curves::{Curve, curves};
-use super::line::{Line, Span};
-use super::map::{CellMotion, End, MapGrid, MapSettings};
+use super::line::{Line, Slice, Span};
+use super::map::{End, MapGrid};
 use super::resting::{RestingSlice, resting_slices};
-use crate::model::{Machine, ModelError};
-
-/// What an atlas covers.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct AtlasSettings {
-    /// Columns (η) along which regions are followed, and rows of the brute-force map.
-    pub grid: MapGrid,
-    /// Most impacts in a period of the motion.
-    pub largest_p: u32,
-    /// Most drive periods in a period of the motion.
-    pub largest_n: u32,
-    /// How the brute-force maps are marched.
-    #[serde(default)]
-    pub map: MapSettings,
-}
-
-/// One motion's interval of existence and stability along ρ at one η.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Slice {
-    /// η
-    pub eta: f64,
-    /// Impacts in a period of the motion.
-    pub p: u32,
-    /// Drive periods in a period of the motion.
-    pub n: u32,
-    /// Its lower edge.
-    pub low: Edge,
-    /// Its upper edge.
-    pub high: Edge,
-}
-
-impl Slice {
-    /// The motion.
-    pub fn motion(&self) -> CellMotion {
-        CellMotion::Periodic {
-            p: self.p as u16,
-            n: self.n as u16,
-            dead_zone: false,
-            chatter: false,
-        }
-    }
-
-    /// Whether a clearance lies in it.
-    pub fn holds(&self, rho: f64) -> bool {
-        self.low.orbit.rho <= rho && rho <= self.high.orbit.rho
-    }
-}
+use super::settings::AtlasSettings;
+use crate::model::{Machine, ModelError, SettledMotion};
+use crate::parallel;
 
 /// The atlas of a machine.
 #[derive(Debug, Clone)]
@@ -73,15 +25,15 @@ pub struct Atlas {
     /// The boundaries.
     pub curves: Vec<Curve>,
     /// The brute-force maps: from the start, rising, falling.
-    pub maps: [Vec<CellMotion>; 3],
+    pub maps: [Vec<SettledMotion>; 3],
     /// How curves and maps agree.
     pub agreement: Agreement,
 }
 
 impl Atlas {
-    /// A motion of each cell beside the one from the start, where there is another: carried along
-    /// rising or falling, else by the regions of the curves.
-    pub fn other_motions(&self, grid: &MapGrid) -> Vec<CellMotion> {
+    /// A motion of each cell beside the one from the start, where there is another: continued
+    /// in rising or falling η, else by the regions of the curves.
+    pub fn other_motions(&self, grid: &MapGrid) -> Vec<SettledMotion> {
         let mut by_eta: BTreeMap<u64, Vec<&Slice>> = BTreeMap::new();
         for s in &self.slices {
             by_eta.entry(s.eta.to_bits()).or_default().push(s);
@@ -106,6 +58,24 @@ impl Atlas {
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range.
+///
+/// ```
+/// use impact_oscillator::atlas::{AtlasSettings, EdgeKind, MapGrid, MapSettings, atlas};
+/// use impact_oscillator::Machine;
+///
+/// let settings = AtlasSettings {
+///     grid: MapGrid::even((1.2, 1.3, 2), (0.5, 5.0, 19)),
+///     largest_p: 1,
+///     largest_n: 1,
+///     map: MapSettings::default(),
+/// };
+/// let atlas = atlas(&Machine::symmetric(0.07, 0.9), &settings)?;
+/// let slice = atlas.slices.iter().find(|s| s.eta == 1.3).expect("z = 1 at η = 1.3");
+/// assert_eq!(slice.high.kind, EdgeKind::SaddleNode);
+/// assert!((slice.high.orbit.rho - 4.151_754).abs() < 1e-6);
+/// assert!(atlas.agreement.differing.is_empty());
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn atlas(machine: &Machine, settings: &AtlasSettings) -> Result<Atlas, ModelError> {
     let maps = brute_maps(machine, &settings.grid, &settings.map)?;
     let columns = columns(machine, settings, &maps, 0..settings.grid.eta.len());
@@ -119,10 +89,8 @@ pub fn columns(
     maps: &Maps,
     chosen: std::ops::Range<usize>,
 ) -> Vec<Vec<Slice>> {
-    chosen
-        .into_par_iter()
-        .map(|i| column(machine, settings, maps, i))
-        .collect()
+    let chosen: Vec<usize> = chosen.collect();
+    parallel::map(&chosen, |&i| column(machine, settings, maps, i))
 }
 
 /// The atlas from its maps and the slices of all its columns.
@@ -159,14 +127,14 @@ pub fn assemble(
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range.
-pub fn slices_at(
+pub(super) fn slices_at(
     machine: &Machine,
     eta: f64,
     settings: &AtlasSettings,
 ) -> Result<Vec<Slice>, ModelError> {
     let mut settings = settings.clone();
     settings.grid.eta = vec![eta];
-    let map = brute_map(machine, &settings.grid, &settings.map, Way::FromStart)?;
+    let map = brute_map(machine, &settings.grid, &settings.map, Seeding::FromStart)?;
     Ok(column(machine, &settings, &[map], 0))
 }
 
@@ -193,7 +161,7 @@ fn column(machine: &Machine, settings: &AtlasSettings, maps: &[Vec<End>], i: usi
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range.
-pub fn spans_at_clearance(
+pub(super) fn spans_at_clearance(
     machine: &Machine,
     rho: f64,
     settings: &AtlasSettings,

@@ -1,7 +1,7 @@
 //! Motions that rest in a dead zone, for machines of any kind: periodic orbits through a release.
 //!
 //! While the masses stay together X = ρ + J, Y = ρ − J, and they part where the relative
-//! acceleration that they would have apart, X'' + Y'', falls to zero. So J and J' tell a release;
+//! acceleration that they would have apart, X'' + Y'', falls to zero. So J and J' determine a release;
 //! the drive's phase follows from them. A resting motion is a fixed point of the map from one
 //! release to the one n drive periods later, found by Newton's method. With one mass, or two
 //! equal ones, J has no part in it, and the release is a single state.
@@ -10,13 +10,16 @@ use std::collections::BTreeSet;
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::resting::{Label, RestingEdge};
-use crate::model::boundary::rho_joined;
+use super::edge::RestingEdge;
+use crate::model::boundary::rho_sticking;
 use crate::model::recurrence::observe;
 use crate::model::simulate::{Arc, Sink};
 use crate::model::{
     Flight, Initial, Machine, Oscillator, Setting, SettledMotion, Simulator, Watch,
 };
+
+/// p and n.
+pub(super) type Label = (u32, u32);
 
 /// J and J'.
 type Difference = Vector2<f64>;
@@ -25,13 +28,13 @@ type Difference = Vector2<f64>;
 type Place = (f64, f64);
 
 /// A state of a motion that rests: its p and n, the state, the drive's phase.
-pub type RestingStart = (Label, Initial, f64);
+pub(super) type RestingStart = (Label, Initial, f64);
 
 /// A resting motion at a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rest {
+pub(super) struct Rest {
     /// p and n.
-    pub label: Label,
+    pub(super) label: Label,
     /// J and J' at the release.
     difference: Difference,
     /// Largest modulus of the release map's multipliers.
@@ -46,24 +49,24 @@ impl Rest {
 
 /// Where a run of equal labels ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RunEnd {
+pub(super) struct RunEnd {
     /// The last place that shows it, to 1e-7.
-    pub at: Place,
+    pub(super) at: Place,
     /// What ends it.
-    pub kind: RestingEdge,
+    pub(super) kind: RestingEdge,
 }
 
 /// Neighbouring points of a line that show one resting motion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Run {
+pub(super) struct Run {
     /// p and n.
-    pub label: Label,
+    pub(super) label: Label,
     /// First and last point.
-    pub points: (usize, usize),
+    pub(super) points: (usize, usize),
     /// Its end before the first point; `None` where the line begins.
-    pub low: Option<RunEnd>,
+    pub(super) low: Option<RunEnd>,
     /// Its end behind the last point.
-    pub high: Option<RunEnd>,
+    pub(super) high: Option<RunEnd>,
 }
 
 /// Ends of runs are located to this.
@@ -74,7 +77,7 @@ const MOST_STEPS: usize = 12;
 
 /// The resting motions of a machine up to a longest period.
 #[derive(Debug, Clone, Copy)]
-pub struct Releases<'a> {
+pub(super) struct Releases<'a> {
     machine: &'a Machine,
     longest: u32,
 }
@@ -88,7 +91,7 @@ struct Seen {
 
 impl Sink for Seen {
     fn arc(&mut self, arc: &Arc) {
-        if arc.joined {
+        if arc.sticking {
             let s = arc.paths.at(arc.duration);
             let difference = 0.5 * Difference::new(s.x - s.y, s.vx - s.vy);
             self.resting = Some((arc.tau + arc.duration, difference));
@@ -101,13 +104,17 @@ impl Sink for Seen {
 impl<'a> Releases<'a> {
     /// Of a machine, motions of at most `longest` drive periods. `None` where the flight is not
     /// harmonic.
-    pub fn new(machine: &'a Machine, longest: u32) -> Option<Self> {
+    pub(super) fn new(machine: &'a Machine, longest: u32) -> Option<Self> {
         (machine.flight == Flight::Harmonic).then_some(Self { machine, longest })
     }
 
     /// All runs of resting motions along a line of points; motions that coexist have runs of
     /// their own. `starts` gives states that rest at a point: p and n, state and drive phase.
-    pub fn runs(&self, points: &[Place], starts: impl Fn(usize) -> Vec<RestingStart>) -> Vec<Run> {
+    pub(super) fn runs(
+        &self,
+        points: &[Place],
+        starts: impl Fn(usize) -> Vec<RestingStart>,
+    ) -> Vec<Run> {
         let mut rests: Vec<Vec<Rest>> = Vec::with_capacity(points.len());
         for (k, &at) in points.iter().enumerate() {
             let mut there = Vec::new();
@@ -141,7 +148,7 @@ impl<'a> Releases<'a> {
         runs
     }
 
-    /// Add the motions that those of a neighbour go over into.
+    /// Add the motions into which those of a neighbour continue.
     fn carry(&self, at: Place, from: &[Rest], there: &mut Vec<Rest>) {
         for rest in from {
             let known = |l: Label| move |r: &Rest| r.label == l;
@@ -218,10 +225,10 @@ impl<'a> Releases<'a> {
     }
 
     fn kind(&self, inside: Place, outside: Place, rest: &Rest) -> RestingEdge {
-        let joined = rho_joined(self.machine, inside.0);
+        let sticking = rho_sticking(self.machine, inside.0);
         let goes_on = self.continued(outside, rest);
-        if inside.1 - joined < 1e-5 * (1.0 + joined.abs()) {
-            RestingEdge::Joined
+        if inside.1 - sticking < 1e-5 * (1.0 + sticking.abs()) {
+            RestingEdge::Sticking
         } else if goes_on.is_some_and(|r| r.label == rest.label && !r.is_stable()) {
             RestingEdge::Unstable
         } else {
@@ -229,7 +236,7 @@ impl<'a> Releases<'a> {
         }
     }
 
-    /// The stable resting motion that a neighbour's goes over into.
+    /// The stable resting motion that a neighbour's continues into.
     fn carried(&self, at: Place, from: &Rest) -> Option<Rest> {
         self.continued(at, from).filter(Rest::is_stable)
     }
@@ -368,14 +375,14 @@ impl<'a> Releases<'a> {
 }
 
 /// p and n of a motion with a dead zone; `None`: it has none.
-pub fn label(motion: SettledMotion) -> Option<Label> {
+pub(super) fn label(motion: SettledMotion) -> Option<Label> {
     match motion {
         SettledMotion::Periodic {
             p,
             n,
             dead_zone: true,
             ..
-        } => Some((p.into(), n.into())),
+        } => Some((p, n)),
         _ => None,
     }
 }

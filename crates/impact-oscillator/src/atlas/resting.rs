@@ -6,38 +6,16 @@
 //! all of them are marched in the vector kernel; other machines are followed exactly
 //! (`atlas::release`).
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::edge::RestingEdge;
 use super::kernel::Cell;
 use super::map::{
     End as MapEnd, Kernel, MapGrid, MapSettings, Start, UnitMass, clear_of, march_all,
 };
-use super::release::{Releases as ExactReleases, RestingStart, Run, RunEnd, label};
+use super::release::{Label, Releases as ExactReleases, RestingStart, Run, RunEnd, label};
 use crate::model::{Initial, Machine, Watch};
-
-/// What bounds a motion with a dead zone.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum RestingEdge {
-    /// ρp: the masses stay together for ever below.
-    Joined,
-    /// The dead zone closes, or the number of impacts between two of them changes.
-    DeadZone,
-    /// The motion loses its stability (asymmetric machines).
-    Unstable,
-}
-
-impl RestingEdge {
-    /// The name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Joined => "joined",
-            Self::DeadZone => "dead_zone",
-            Self::Unstable => "stability_lost",
-        }
-    }
-}
+use crate::parallel;
 
 /// A resting motion's interval along ρ at one η.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -62,16 +40,13 @@ impl RestingSlice {
         (self.p, self.n) == (p, n)
     }
 
-    /// Whether a clearance lies in it.
-    pub fn holds(&self, rho: f64) -> bool {
+    /// Whether it contains a clearance.
+    pub(super) fn holds(&self, rho: f64) -> bool {
         let low = self.low.map_or(self.interval.0, |e| e.0);
         let high = self.high.map_or(self.interval.1, |e| e.0);
         (low..=high).contains(&rho)
     }
 }
-
-/// p and n.
-pub type Label = (u32, u32);
 
 /// What the motions that start at the release show, at many (η, ρ) at once.
 struct Releases<'a> {
@@ -137,9 +112,9 @@ struct End {
 }
 
 /// All resting motions of at most `most` impacts in at most `longest` drive periods along ρ, for
-/// each column of a grid, told apart at its rows; edges to 1e-7. Cells of the grid's brute-force
+/// each column of a grid, distinguished at its rows; edges to 1e-7. Cells of the grid's brute-force
 /// maps that rest are starts for machines that the kernel cannot march; there may be none.
-pub fn resting_slices(
+pub(super) fn resting_slices(
     machine: &Machine,
     grid: &MapGrid,
     (most, longest): (u32, u32),
@@ -178,8 +153,8 @@ pub fn resting_slices(
 }
 
 /// The η between the first and the last of a rising list at which the resting motion of p impacts
-/// in n drive periods begins or ends at a clearance, to 1e-7, and whether it lies below that η.
-pub fn resting_etas(
+/// in n drive periods begins or ends at a clearance, to 1e-7, and whether it is below that η.
+pub(super) fn resting_etas(
     machine: &Machine,
     rho: f64,
     (p, n): (u32, u32),
@@ -227,7 +202,8 @@ fn exact_slices(
     let Some(releases) = ExactReleases::new(machine, longest) else {
         return vec![Vec::new(); grid.eta.len()];
     };
-    let column = |(i, &eta): (usize, &f64)| {
+    let column = |&i: &usize| {
+        let eta = grid.eta[i];
         let points: Vec<(f64, f64)> = grid.rho.iter().map(|&rho| (eta, rho)).collect();
         let starts = |k: usize| resting_starts(machine, grid.rho[k], maps, k * grid.eta.len() + i);
         let slice = |run: Run| RestingSlice {
@@ -242,7 +218,8 @@ fn exact_slices(
         let runs = releases.runs(&points, starts);
         runs.into_iter().map(slice).filter(sought).collect()
     };
-    grid.eta.par_iter().enumerate().map(column).collect()
+    let columns: Vec<usize> = (0..grid.eta.len()).collect();
+    parallel::map(&columns, column)
 }
 
 /// The ends of a cell's motions that rest, as starts.
@@ -295,7 +272,7 @@ fn release_settings(longest: u32, kernel: Option<Kernel>) -> MapSettings {
     }
 }
 
-/// Tell every run of rows of one column with the same label.
+/// Report every run of rows of one column with the same label.
 fn runs(
     grid: &MapGrid,
     labels: &[Option<Label>],
@@ -352,9 +329,9 @@ fn add_ends(
 fn finished((slice, low, high): Open, ends: &[End], length: f64) -> RestingSlice {
     let edge = |i: usize| {
         let rho = ends[i].inside;
-        let joined = rho / length < -1.0 + 1e-6;
-        let kind = if joined {
-            RestingEdge::Joined
+        let sticking = rho / length < -1.0 + 1e-6;
+        let kind = if sticking {
+            RestingEdge::Sticking
         } else {
             RestingEdge::DeadZone
         };

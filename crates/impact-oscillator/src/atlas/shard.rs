@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::brute::{Maps, brute_maps};
 use super::map::{End, Kernel, MapGrid};
-use super::regions::AtlasSettings;
+use super::settings::AtlasSettings;
 use crate::model::{Machine, ModelError};
 
 /// Everything that determines an atlas.
@@ -127,6 +127,25 @@ pub fn part(request: &AtlasRequest, number: usize, of: usize) -> Result<AtlasPar
 ///
 /// # Errors
 /// [`MergeError`] where a part is missing, doubled, damaged or of another atlas.
+///
+/// ```
+/// use impact_oscillator::atlas::shard::{AtlasRequest, merge, part};
+/// use impact_oscillator::atlas::{AtlasSettings, MapGrid, MapSettings, brute_maps};
+/// use impact_oscillator::Machine;
+///
+/// let machine = Machine::symmetric(0.07, 0.9);
+/// let settings = AtlasSettings {
+///     grid: MapGrid::even((0.9, 1.5, 5), (0.5, 3.0, 4)),
+///     largest_p: 2,
+///     largest_n: 2,
+///     map: MapSettings::default(),
+/// };
+/// let request = AtlasRequest::new(machine.clone(), settings.clone());
+/// let parts = [part(&request, 0, 2)?, part(&request, 1, 2)?];
+/// let whole = brute_maps(&machine, &settings.grid, &settings.map)?;
+/// assert_eq!(merge(&parts), Ok(whole));
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn merge(parts: &[AtlasPart]) -> Result<Maps, MergeError> {
     let first = parts.first().ok_or(MergeError::Nothing)?;
     let (grid, of) = (&first.request.settings.grid, first.of);

@@ -1,22 +1,22 @@
-//! Quasi-stationary sweeps: the frequency or the clearance moves in small steps, the motion is
-//! carried along, and at every step its amplitude, closing speeds and Lyapunov exponent are
-//! taken (Figs. 4 and 6 of the paper).
+//! Quasi-stationary sweeps: the frequency or the clearance moves in small steps, the motion
+//! continues, and every step yields its amplitude, approach speeds and Lyapunov exponent (Figs. 4 and 6 of the paper).
 
 use serde::{Deserialize, Serialize};
 
 use super::lyapunov::Lyapunov;
 use crate::model::flight::{Drive, forced_amplitude};
+use crate::model::motion::count;
 use crate::model::recurrence::observe;
 use crate::model::simulate::{Arc, Sink, Snapshot};
 use crate::model::{
-    Initial, Machine, ModelError, ModelImpact, Oscillator, Setting, SettledMotion, Simulator, Watch,
+    Impact, Initial, Machine, ModelError, Oscillator, Setting, SettledMotion, Simulator, Watch,
 };
 
 /// What a sweep goes through.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sweep {
-    /// (η, ρ) step by step, in the order in which the motion is carried along.
+    /// (η, ρ) step by step, in the order of the sweep.
     pub steps: Vec<(f64, f64)>,
     /// Start of the first step.
     #[serde(default)]
@@ -39,15 +39,15 @@ pub struct SweepPoint {
     pub x_max: f64,
     /// Greatest displacement Y in the watch.
     pub y_max: f64,
-    /// Closing speeds of the last impacts: one period's of a periodic motion, else up to 64.
-    pub closing_speeds: Vec<f64>,
+    /// Approach speeds of the last impacts: one period's of a periodic motion, else up to 64.
+    pub approach_speeds: Vec<f64>,
     /// X'₋ of the same impacts.
     pub x_speeds: Vec<f64>,
     /// Phases of the drive at the same impacts, rad.
     pub phases: Vec<f64>,
     /// Largest Lyapunov exponent per unit of τ; `None` where a dead zone wipes it out.
     pub lyapunov: Option<f64>,
-    /// Autocorrelation of X at lags of 1, 2, … drive periods; empty where X stands still.
+    /// Autocorrelation of X at lags of 1, 2, … drive periods; empty where X is at rest.
     pub autocorrelation: Vec<f64>,
 }
 
@@ -79,8 +79,8 @@ fn maximum(path: &crate::model::path::Path, duration: f64) -> f64 {
     let steps = (duration * path.rate() * 8.0).ceil().clamp(2.0, 1e5);
     let at = |k: f64| path.at(duration * k / steps);
     let mut best = at(0.0)[0].max(at(steps)[0]);
-    for k in 0..(steps as usize) {
-        let (mut lo, mut hi) = (k as f64, k as f64 + 1.0);
+    for k in 0..count(steps) {
+        let (mut lo, mut hi) = (f64::from(k), f64::from(k) + 1.0);
         if at(lo)[1] > 0.0 && at(hi)[1] <= 0.0 {
             for _ in 0..50 {
                 let mid = 0.5 * (lo + hi);
@@ -92,10 +92,10 @@ fn maximum(path: &crate::model::path::Path, duration: f64) -> f64 {
     best
 }
 
-/// Most impacts told of a motion without a period.
+/// Greatest number of impacts reported of a motion without a period.
 const MOST_IMPACTS: usize = 64;
 
-/// Samples of X a drive period that its autocorrelation is taken from.
+/// Samples of X per drive period in its autocorrelation.
 const SAMPLES: usize = 32;
 /// Longest lag of a point's autocorrelation, drive periods.
 pub const LONGEST_LAG: usize = 6;
@@ -117,7 +117,7 @@ impl Sink for Sampler {
     }
 }
 
-/// A motion that is carried along step by step.
+/// A motion that continues step by step.
 #[derive(Debug, Clone)]
 pub struct Carried<'a> {
     machine: &'a Machine,
@@ -165,7 +165,7 @@ impl<'a> Carried<'a> {
         self.simulator.snapshot()
     }
 
-    /// Carry the motion on to (η, ρ) and tell what it is there.
+    /// Continue the motion at (η, ρ) and classify it there.
     ///
     /// # Errors
     /// [`ModelError`] where η or ρ is out of range.
@@ -182,15 +182,29 @@ impl<'a> Carried<'a> {
     }
 }
 
-/// Carry a motion through a sweep; `told` hears every point as it is done and may end the sweep
-/// by giving false.
+/// Take a motion through a sweep. `observer` receives every point as it is done and ends the sweep
+/// by returning false.
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range.
+///
+/// ```
+/// use impact_oscillator::atlas::{Sweep, sweep};
+/// use impact_oscillator::{Initial, Machine, SettledMotion, Watch};
+///
+/// // η rising at ρ = 2 through the hysteresis region: z = 1 ends at η_s2 = 1.5688
+/// let steps = (0..=50).map(|i| (1.1 + 0.01 * f64::from(i), 2.0)).collect();
+/// let plan = Sweep { steps, start: Initial::rest(), watch: Watch::default() };
+/// let points = sweep(&Machine::symmetric(0.07, 0.9), &plan, |_| true)?;
+/// let impacts = points.iter().rfind(|p| p.motion != SettledMotion::Impactless);
+/// let last = impacts.expect("impacts").eta;
+/// assert!(last < 1.5688 && last > 1.53, "{last}");
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn sweep(
     machine: &Machine,
     plan: &Sweep,
-    mut told: impl FnMut(&SweepPoint) -> bool,
+    mut observer: impl FnMut(&SweepPoint) -> bool,
 ) -> Result<Vec<SweepPoint>, ModelError> {
     let mut points = Vec::with_capacity(plan.steps.len());
     let Some(&first) = plan.steps.first() else {
@@ -199,7 +213,7 @@ pub fn sweep(
     let mut carried = Carried::start(machine, first, plan.start, plan.watch)?;
     for &at in &plan.steps {
         let point = carried.step(at)?;
-        let go_on = told(&point);
+        let go_on = observer(&point);
         points.push(point);
         if !go_on {
             break;
@@ -215,7 +229,7 @@ fn one_step(
     watch: &Watch,
 ) -> SweepPoint {
     let period = setting.period();
-    simulator.advance(watch.settle_periods * period, &mut |_: &ModelImpact| {});
+    simulator.advance(watch.settle_periods * period, &mut |_: &Impact| {});
     let mut follower = simulator.clone();
     let (motion, impacts) = observe(simulator, setting, watch);
     let mut extremes = Extremes::new();
@@ -232,21 +246,21 @@ fn one_step(
         .advance(watch.watch_periods * period, &mut sampler);
     let mut lyapunov = Lyapunov::new(machine, setting.frequency_ratio);
     follower.advance(watch.watch_periods * period, &mut lyapunov);
-    let count = match motion {
+    let shown = match motion {
         SettledMotion::Periodic {
             p, chatter: false, ..
-        } => usize::from(p),
+        } => p as usize,
         _ => MOST_IMPACTS,
     };
-    let last = &impacts[impacts.len().saturating_sub(count)..];
-    let of = |f: fn(&ModelImpact) -> f64| last.iter().map(f).collect();
+    let last = &impacts[impacts.len().saturating_sub(shown)..];
+    let of = |f: fn(&Impact) -> f64| last.iter().map(f).collect();
     SweepPoint {
         eta: setting.frequency_ratio,
         rho: setting.clearance,
         motion,
         x_max: extremes.x,
         y_max: extremes.y,
-        closing_speeds: of(|i| i.closing_before),
+        approach_speeds: of(|i| i.approach_speed),
         x_speeds: of(|i| i.vx_before),
         phases: of(|i| i.phase),
         lyapunov: Some(lyapunov.exponent()).filter(|l| l.is_finite()),

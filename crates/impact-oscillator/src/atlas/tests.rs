@@ -1,12 +1,11 @@
 //! Maps: the vector kernel against the exact simulator, and invariants of maps.
 
 use super::agreement::Cause;
-use super::basins::{BasinGrid, Starts, basins};
 use super::brute::brute_maps;
-use super::continuation::EdgeKind;
-use super::lyapunov::Lyapunov;
+use super::edge::EdgeKind;
+use super::line::Slice;
 use super::map::{Kernel, even};
-use super::regions::{Slice, slices_at};
+use super::regions::slices_at;
 use super::shard::{AtlasPart, AtlasRequest, MergeError, merge, part};
 use super::sweep::{Sweep, SweepPoint, sweep};
 use super::*;
@@ -46,7 +45,7 @@ fn differing_periodic(machine: &Machine, grid: &MapGrid, settings: &MapSettings)
 }
 
 #[test]
-fn valid_kernel_agrees_with_the_exact_simulator() {
+fn kernel_agrees_with_the_exact_simulator() {
     let grid = MapGrid::even((0.6, 3.0, 20), (0.05, 3.0, 20));
     for (beta, r) in [(0.07, 0.9), (0.2, 0.5), (0.05, 0.0)] {
         let differ =
@@ -60,7 +59,7 @@ fn valid_kernel_agrees_with_the_exact_simulator() {
 }
 
 #[test]
-fn prop_parts_make_up_the_whole_atlas_and_nothing_else_does() {
+fn parts_make_up_the_whole_atlas_and_nothing_else_does() {
     let settings = AtlasSettings {
         grid: MapGrid::even((0.7, 2.0, 13), (0.1, 3.0, 11)),
         largest_p: 2,
@@ -96,8 +95,9 @@ fn prop_parts_make_up_the_whole_atlas_and_nothing_else_does() {
     ));
 }
 
+#[cfg(feature = "rayon")]
 #[test]
-fn prop_maps_do_not_depend_on_the_number_of_threads() {
+fn maps_do_not_depend_on_the_number_of_threads() {
     let grid = MapGrid::even((0.7, 3.0, 17), (0.05, 3.0, 13));
     let machine = Machine::symmetric(0.07, 0.9);
     let with = |threads| {
@@ -111,7 +111,7 @@ fn prop_maps_do_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
-fn valid_edges_by_continuation_are_the_closed_forms() {
+fn edges_by_continuation_are_the_closed_forms() {
     let machine = Machine::symmetric(0.07, 0.9);
     let settings = AtlasSettings {
         grid: MapGrid::even((0.9, 0.9, 1), (0.1, 6.0, 60)),
@@ -139,7 +139,7 @@ fn valid_edges_by_continuation_are_the_closed_forms() {
 }
 
 #[test]
-fn prop_curves_and_brute_force_agree() {
+fn curves_and_brute_force_agree() {
     let settings = AtlasSettings {
         grid: MapGrid::even((0.6, 2.4, 19), (0.05, 4.0, 24)),
         largest_p: 4,
@@ -158,14 +158,14 @@ fn prop_curves_and_brute_force_agree() {
 }
 
 #[test]
-fn valid_preloaded_cells_are_joined_or_rest_once_a_period() {
+fn valid_preloaded_cells_stick_or_rest_once_a_period() {
     let grid = MapGrid::even((0.5, 2.0, 7), (-1.3, -0.7, 7));
     let machine = Machine::symmetric(0.1, 0.0);
     let map = region_map(&machine, &grid, &MapSettings::default()).unwrap();
     let exact = region_map(&slow_path(&machine), &grid, &MapSettings::default()).unwrap();
     assert_eq!(map.cells, exact.cells);
     for (i, cell) in map.cells.iter().enumerate() {
-        let joined = *cell == SettledMotion::Joined;
+        let joined = *cell == SettledMotion::Sticking;
         assert_eq!(
             joined,
             grid.at(i).1 < -1.0 + 1e-9,
@@ -193,7 +193,7 @@ fn walk_eta(first: f64, last: f64, count: usize, rho: f64) -> Sweep {
 }
 
 #[test]
-fn valid_sweeps_show_hysteresis_between_grazing_and_s2() {
+fn sweeps_show_hysteresis_between_grazing_and_s2() {
     let machine = Machine::symmetric(0.07, 0.9);
     let s2 = eta_s2(&machine, 2.0, 1).unwrap().eta;
     let is_one = |p: &SweepPoint| matches!(p.motion, SettledMotion::Periodic { p: 1, n: 1, .. });
@@ -207,7 +207,7 @@ fn valid_sweeps_show_hysteresis_between_grazing_and_s2() {
             .all(|p| p.x_max >= 2.0 - 1e-9 && p.x_max < 2.0 + 1e-9)
     );
     let down = sweep(&machine, &walk_eta(1.7, 1.1, 121, 2.0), |_| true).unwrap();
-    let first = down.iter().find(|p| !p.closing_speeds.is_empty()).unwrap();
+    let first = down.iter().find(|p| !p.approach_speeds.is_empty()).unwrap();
     assert!(
         (rho_grazing(&machine, first.eta) - 2.0).abs() < 0.1,
         "{}",
@@ -216,7 +216,7 @@ fn valid_sweeps_show_hysteresis_between_grazing_and_s2() {
 }
 
 #[test]
-fn valid_lyapunov_exponent_is_that_of_the_multipliers() {
+fn lyapunov_exponent_is_that_of_the_multipliers() {
     let machine = Machine::single(0.07, 0.9);
     let setting = Setting::new(1.2, 2.0);
     let orbit = stable_orbit(&machine, setting, 1).unwrap().unwrap();
@@ -247,7 +247,7 @@ fn valid_lyapunov_exponent_is_that_of_the_multipliers() {
 
 #[test]
 fn valid_basins_of_fig5_shrink_with_restitution() {
-    // in the hysteresis region, at the greatest closing speeds: z = 1 is easily reached at
+    // in the hysteresis region, at the greatest approach speeds: z = 1 is easily reached at
     // R = 0 and hardly at R = 0.9
     let share = |r: f64, eta: f64| {
         let grid = BasinGrid {
@@ -285,7 +285,7 @@ fn regress_a_release_near_full_preload_at_resonance_ends() {
 }
 
 #[test]
-fn valid_two_branches_of_one_motion_in_a_column_are_both_followed() {
+fn two_branches_of_one_motion_in_a_column_are_both_followed() {
     // z = 2/1 with preload: the branches overlap between their saddle-nodes
     let settings = AtlasSettings {
         grid: MapGrid::even((1.2211, 1.2211, 1), (-0.6, 0.2, 41)),
@@ -343,7 +343,7 @@ fn resting_at(machine: &Machine, eta: f64, rows: usize) -> Vec<super::resting::R
 }
 
 #[test]
-fn valid_dead_zones_of_the_exact_search_are_those_of_the_kernel() {
+fn dead_zones_of_the_exact_search_are_those_of_the_kernel() {
     for (beta, r) in [(0.07, 0.0), (0.02, 0.5), (0.07, 0.8)] {
         let machine = Machine::symmetric(beta, r);
         for eta in [0.55, 0.8, 1.05] {
@@ -365,7 +365,7 @@ fn valid_dead_zones_of_the_exact_search_are_those_of_the_kernel() {
 }
 
 #[test]
-fn valid_dead_zones_of_nearly_equal_masses_are_those_of_equal_ones() {
+fn dead_zones_of_nearly_equal_masses_are_those_of_equal_ones() {
     let asymmetry = crate::model::params::Asymmetry {
         drive_amplitude: 1.0 + 1e-9,
         ..Default::default()
@@ -385,7 +385,7 @@ fn valid_dead_zones_of_nearly_equal_masses_are_those_of_equal_ones() {
 }
 
 #[test]
-fn valid_one_and_one_with_a_dead_zone_share_their_edge() {
+fn one_and_one_with_a_dead_zone_share_their_edge() {
     // 1 | 1j from both sides: Newton on the impact's time, and the map from release to release
     for machine in uneven(0.07, 0.0) {
         let mut shared = 0;
@@ -403,7 +403,7 @@ fn valid_one_and_one_with_a_dead_zone_share_their_edge() {
             let resting = resting_at(&machine, eta, 41);
             let resting = resting.iter().find(|s| s.is(1, 1)).unwrap();
             let (rho, kind) = resting.high.unwrap();
-            assert_eq!(kind, super::resting::RestingEdge::DeadZone);
+            assert_eq!(kind, super::edge::RestingEdge::DeadZone);
             let other = moving.low.orbit.rho;
             assert!((rho - other).abs() < 1e-6, "{eta}: {rho} {other}");
             shared += 1;
@@ -413,7 +413,7 @@ fn valid_one_and_one_with_a_dead_zone_share_their_edge() {
 }
 
 #[test]
-fn valid_dead_zones_of_uneven_machines_hold_what_brute_force_finds() {
+fn dead_zones_of_uneven_machines_contain_what_brute_force_finds() {
     let settings = AtlasSettings {
         grid: MapGrid::even((0.5, 1.3, 5), (-1.3, 1.5, 15)),
         largest_p: 3,
@@ -435,8 +435,8 @@ fn valid_dead_zones_of_uneven_machines_hold_what_brute_force_finds() {
         let differing = &atlas.agreement.differing;
         assert!(differing.is_empty(), "{differing:#?}");
         let edges = atlas.curves.iter().filter(|c| c.dead_zone);
-        assert!(edges.clone().any(|c| c.kind == "dead_zone"));
-        assert!(edges.clone().any(|c| c.kind == "joined"));
+        assert!(edges.clone().any(|c| c.kind.name() == "dead_zone"));
+        assert!(edges.clone().any(|c| c.kind.name() == "joined"));
     }
 }
 

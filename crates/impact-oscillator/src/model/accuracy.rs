@@ -111,7 +111,7 @@ fn evaluate(c: &[Z], h: Dd) -> Z {
     z
 }
 
-/// Times and closing speeds of the first impacts, constant R.
+/// Times and approach speeds of the first impacts, constant R.
 fn reference(
     machine: &Machine,
     eta: f64,
@@ -254,7 +254,7 @@ fn valid_first_twenty_impacts_to_twelve_digits() {
                     got.tau
                 );
                 assert!(
-                    (got.closing_before - w).abs() <= 1e-11 * w,
+                    (got.approach_speed - w).abs() <= 1e-11 * w,
                     "{eta} {rho} {k}"
                 );
             }
@@ -281,7 +281,7 @@ fn valid_periodic_orbit_and_multipliers() {
         for (k, (tau, w)) in times.iter().enumerate() {
             let want = orbit.period() * (k + 1) as f64 - lead;
             assert!((tau - want).abs() < 1e-10, "{tau} {want}");
-            assert!((w - orbit.closing_speed).abs() < 1e-10);
+            assert!((w - orbit.approach_speed).abs() < 1e-10);
         }
         let want = variation::eigenvalues(&m, &reference_map(&m, 1.25, 1.0, start));
         for (a, b) in want.iter().zip(&orbit.multipliers) {

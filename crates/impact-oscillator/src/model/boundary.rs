@@ -1,5 +1,5 @@
 //! Boundaries of z = 1/n in the (η, ρ) plane: saddle-node s2 and period doubling s1 in closed
-//! form, grazing ρ', and the inverse η_s2(ρ). Each point says whether its orbit exists.
+//! form, grazing ρ', and the inverse η_s2(ρ). Each point reports whether its orbit exists.
 
 use serde::Serialize;
 
@@ -16,13 +16,13 @@ pub struct BoundaryPoint {
     pub eta: f64,
     /// ρ
     pub rho: f64,
-    /// Closing speed of the marginal orbit; 0 at grazing.
-    pub closing_speed: f64,
+    /// Approach speed of the marginal orbit; 0 at grazing.
+    pub approach_speed: f64,
     /// Phase of the drive at its impact, rad in [0, 2π).
     pub phase: f64,
     /// Whether the marginal orbit is a motion of the machine.
     pub existence: Existence,
-    /// Whether no other multiplier of the orbit lies outside the unit circle, so that it is a
+    /// Whether no other multiplier of the orbit is outside the unit circle, so that it is a
     /// stable motion that ends here.
     pub ends_stability: bool,
 }
@@ -40,7 +40,15 @@ fn clearance(machine: &Machine, gap: f64) -> f64 {
     gap / machine.gap(1.0)
 }
 
-/// ρ'(η): clearance at which the impactless motion X + Y grazes the contact (or the stop).
+/// ρ'(η): clearance at which the impactless motion X + Y grazes the contact (or the stop),
+/// ρ' = |F|/2 of eq. (10). Infinite at an undamped resonance.
+///
+/// ```
+/// use impact_oscillator::{Machine, rho_grazing};
+///
+/// let machine = Machine::symmetric(0.07, 0.9);
+/// assert!((rho_grazing(&machine, 1.3) - 1.401_347).abs() < 1e-6);
+/// ```
 pub fn rho_grazing(machine: &Machine, eta: f64) -> f64 {
     let drive = Drive { eta, phase: 0.0 };
     let mut forced = forced_amplitude(&machine.x, drive);
@@ -50,10 +58,16 @@ pub fn rho_grazing(machine: &Machine, eta: f64) -> f64 {
     clearance(machine, forced.norm())
 }
 
-/// ρp(η): clearance below which masses that are together stay together for ever. Joined masses
-/// press with −2k₁k₂ρ/(k₁+k₂) + Re((F₁D₂ + F₂D₁)/(D₁ + D₂) e^{i(ητ+φ)}), Dᵢ = kᵢ − η²mᵢ + iηbᵢ;
+/// ρp(η): clearance below which masses that stick together never separate, eq. (12). Sticking
+/// masses press with −2k₁k₂ρ/(k₁+k₂) + Re((F₁D₂ + F₂D₁)/(D₁ + D₂) e^{i(ητ+φ)}), Dᵢ = kᵢ − η²mᵢ + iηbᵢ;
 /// ρp is where that just never vanishes. Equal masses, or one of them: −F/k for every η.
-pub fn rho_joined(machine: &Machine, eta: f64) -> f64 {
+///
+/// ```
+/// use impact_oscillator::{Machine, model::boundary::rho_sticking};
+///
+/// assert!((rho_sticking(&Machine::symmetric(0.07, 0.9), 1.3) + 1.0).abs() < 1e-12);
+/// ```
+pub fn rho_sticking(machine: &Machine, eta: f64) -> f64 {
     let parts = |o: &Oscillator| {
         let k = o.stiffness_per_mass() * o.mass;
         let dynamic = C64::new(k - eta * eta * o.mass, 2.0 * eta * o.decay_rate() * o.mass);
@@ -68,7 +82,7 @@ pub fn rho_joined(machine: &Machine, eta: f64) -> f64 {
     -swing.norm() * (k1 + k2) / (2.0 * k1 * k2)
 }
 
-/// Clearance and closing speed at s2 for constant R, without a check of existence:
+/// Clearance and approach speed at s2 for constant R, without a check of existence:
 /// G = |F|√(1 + (αη/Q)²), w = Gα/(α² + Q²/η²).
 pub fn s2_of_branch(branch: &Branch, restitution: f64) -> (f64, f64) {
     let (alpha, q) = (
@@ -79,7 +93,19 @@ pub fn s2_of_branch(branch: &Branch, restitution: f64) -> (f64, f64) {
     (gap, gap * alpha / (alpha * alpha + q * q))
 }
 
-/// The saddle-node boundary of z = 1/n at η. `None`: no saddle-node at a finite clearance.
+/// s2: the saddle-node boundary of z = 1/n at η, eq. (10), with the marginal orbit and whether it
+/// exists. `None`: no saddle-node at a finite clearance.
+///
+/// ```
+/// use impact_oscillator::{Machine, rho_s2};
+///
+/// let machine = Machine::symmetric(0.07, 0.9);
+/// for (eta, rho) in [(1.1, 6.351_142), (1.3, 4.151_754), (1.6, 1.812_702)] {
+///     let point = rho_s2(&machine, eta, 1).expect("a saddle-node");
+///     assert!((point.rho - rho).abs() < 1e-6);
+///     assert!(point.is_valid());
+/// }
+/// ```
 pub fn rho_s2(machine: &Machine, eta: f64, n: u32) -> Option<BoundaryPoint> {
     let branch = harmonic_branch(machine, eta, n)?;
     let (gap, w) = match machine.restitution().constant() {
@@ -95,20 +121,20 @@ fn harmonic_branch(machine: &Machine, eta: f64, n: u32) -> Option<Branch> {
 }
 
 fn point(machine: &Machine, eta: f64, n: u32, at: (f64, f64)) -> Option<BoundaryPoint> {
-    let (rho, closing_speed) = at;
-    if !rho.is_finite() || !closing_speed.is_finite() {
+    let (rho, approach_speed) = at;
+    if !rho.is_finite() || !approach_speed.is_finite() {
         return None;
     }
     let mut p = BoundaryPoint {
         eta,
         rho,
-        closing_speed,
+        approach_speed,
         phase: 0.0,
         existence: Existence::NotClosing,
         ends_stability: false,
     };
-    if closing_speed > 0.0 {
-        let orbit = orbit_with_speed(machine, Setting::new(eta, rho), n, closing_speed);
+    if approach_speed > 0.0 {
+        let orbit = orbit_with_speed(machine, Setting::new(eta, rho), n, approach_speed);
         (p.phase, p.existence) = (orbit.phase_at_impact, orbit.existence);
         let within = |m: &C64| m.norm() < 1.0 + 1e-6;
         p.ends_stability = orbit.multipliers.iter().all(within);
@@ -148,9 +174,16 @@ fn golden_maximum(f: impl Fn(f64) -> f64, mut lo: f64, mut hi: f64) -> f64 {
     0.5 * (lo + hi)
 }
 
-/// The period-doubling boundary of z = 1/n at η (multiplier −1). With equal masses and constant
+/// s1: the period-doubling boundary of z = 1/n at η (multiplier −1). With equal masses and constant
 /// R it is a closed form; otherwise the root is found along the branch of orbits. `None`: the
 /// branch has no doubling.
+///
+/// ```
+/// use impact_oscillator::{Machine, rho_s1};
+///
+/// let point = rho_s1(&Machine::symmetric(0.07, 0.9), 0.9, 1).expect("a doubling");
+/// assert!((point.rho - 1.760_461).abs() < 1e-6);
+/// ```
 pub fn rho_s1(machine: &Machine, eta: f64, n: u32) -> Option<BoundaryPoint> {
     let branch = harmonic_branch(machine, eta, n)?;
     let equal = machine.y.is_none() || machine.is_symmetric();
@@ -164,13 +197,13 @@ pub fn rho_s1(machine: &Machine, eta: f64, n: u32) -> Option<BoundaryPoint> {
     }
 }
 
-/// Clearance and closing speed at s1 of one mass (or of equal ones) for constant R, without a
+/// Clearance and approach speed at s1 of one mass (or of equal ones) for constant R, without a
 /// check of existence.
 pub fn s1_of_branch(machine: &Machine, branch: &Branch, restitution: f64) -> Option<(f64, f64)> {
     marginal(machine, branch, restitution, -1.0)
 }
 
-/// Clearance and closing speed of one mass (or of equal ones) where a multiplier is `sign`
+/// Clearance and approach speed of one mass (or of equal ones) where a multiplier is `sign`
 /// (±1): trace = sign·(1 + determinant). For +1 it is s2 again.
 fn marginal(machine: &Machine, branch: &Branch, r: f64, sign: f64) -> Option<(f64, f64)> {
     let masses = machine.gap(1.0);
@@ -189,7 +222,7 @@ fn marginal(machine: &Machine, branch: &Branch, r: f64, sign: f64) -> Option<(f6
 }
 
 /// Doubling along the branch w = (η|F|/|Q|) sin θ, G = αw + |F| cos θ of an asymmetric machine:
-/// the root of det(M + 1) of largest closing speed whose orbit exists, else of largest speed.
+/// the root of det(M + 1) of largest approach speed whose orbit exists, else of largest speed.
 fn s1_along_branch(machine: &Machine, branch: &Branch, r: f64, n: u32) -> Option<BoundaryPoint> {
     let (f, eta) = (branch.forced.norm(), branch.eta);
     let at = |theta: f64| {
@@ -217,8 +250,8 @@ fn s1_along_branch(machine: &Machine, branch: &Branch, r: f64, n: u32) -> Option
         })
         .collect();
     found.sort_by(|a, b| {
-        (b.is_valid(), b.closing_speed)
-            .partial_cmp(&(a.is_valid(), a.closing_speed))
+        (b.is_valid(), b.approach_speed)
+            .partial_cmp(&(a.is_valid(), a.approach_speed))
             .unwrap_or(std::cmp::Ordering::Equal)
     });
     found.first().copied()
@@ -252,13 +285,13 @@ pub fn etas_grazing(machine: &Machine, rho: f64) -> Vec<f64> {
     roots(2.5, |eta| rho_grazing(machine, eta) - rho)
 }
 
-/// All η at which masses that are together begin to stay so for ever at a clearance, rising; none
-/// where ρp does not depend on η, as with equal masses.
-pub fn etas_joined(machine: &Machine, rho: f64) -> Vec<f64> {
+/// All η at which ρp passes a clearance, rising; none where ρp does not depend on η, as with equal
+/// masses.
+pub fn etas_sticking(machine: &Machine, rho: f64) -> Vec<f64> {
     if machine.y.is_none() || machine.is_symmetric() {
         return Vec::new();
     }
-    roots(2.5, |eta| rho_joined(machine, eta) - rho)
+    roots(2.5, |eta| rho_sticking(machine, eta) - rho)
 }
 
 fn points_at(
@@ -274,7 +307,7 @@ fn points_at(
         .collect()
 }
 
-/// Roots of a function over (0, top] that a fixed grid tells apart.
+/// Roots of a function over (0, top] that a fixed grid separates.
 fn roots(top: f64, f: impl Fn(f64) -> f64) -> Vec<f64> {
     let grid: Vec<f64> = (1..=1000).map(|i| top * f64::from(i) / 1000.0).collect();
     let values: Vec<f64> = grid.iter().map(|eta| f(*eta)).collect();
@@ -286,6 +319,13 @@ fn roots(top: f64, f: impl Fn(f64) -> f64) -> Vec<f64> {
 
 /// The greatest η at which z = 1/n ends in a saddle-node at a clearance: where a rising sweep
 /// of the frequency jumps. `None`: the boundary does not pass this clearance with an orbit.
+///
+/// ```
+/// use impact_oscillator::{Machine, eta_s2};
+///
+/// let point = eta_s2(&Machine::symmetric(0.07, 0.9), 2.0, 1).expect("a saddle-node");
+/// assert!((point.eta - 1.568_813).abs() < 1e-6);
+/// ```
 pub fn eta_s2(machine: &Machine, rho: f64, n: u32) -> Option<BoundaryPoint> {
     etas_s2(machine, rho, n).pop()
 }

@@ -1,23 +1,25 @@
-//! What happens at an impact: Newton's law with momentum kept, plastic impacts with a dead zone
+//! What happens at an impact: Newton's law with momentum conserved, plastic impacts with a dead zone
 //! (eqs. 4–6 of the paper), and the end of a complete chatter.
 
 use serde::{Deserialize, Serialize};
 
-use super::flight::{Drive, FlightPaths, State, joined_flight, press};
-use super::params::{Flight, Machine};
+use super::crossing::first_zero;
+use super::flight::{Drive, FlightPaths, State, press, sticking_flight, with_friction};
+use super::params::{Flight, Machine, Oscillator};
 
 /// What kind of impact it was.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ImpactKind {
-    /// The masses part again.
+    /// The masses separate again.
     Bounce,
-    /// Plastic, but nothing presses the masses together: they part without a dead zone (eq. 6).
+    /// Plastic, but nothing presses the masses together: they separate without a dead zone (the
+    /// paper's eq. 6).
     Plastic,
     /// Plastic, followed by a dead zone.
     Stick,
     /// The accumulation point of a complete chatter: infinitely many impacts in finite time,
-    /// then a dead zone. It stands for all impacts of the sequence's unresolved rest.
+    /// then a dead zone. It represents the infinitely many impacts that remain.
     ChatterEnd,
 }
 
@@ -33,9 +35,10 @@ impl ImpactKind {
     }
 }
 
-/// One impact of a simulated motion, dimensionless.
+/// One impact of a simulated motion, dimensionless; speeds in units of x_st Ω. All of it is exact,
+/// unlike an impact that is detected in a measured signal.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct ModelImpact {
+pub struct Impact {
     /// τ of the impact.
     pub tau: f64,
     /// Phase of the drive there, rad in [0, 2π).
@@ -49,33 +52,33 @@ pub struct ModelImpact {
     /// Y'₊
     pub vy_after: f64,
     /// X'₋ + Y'₋, positive.
-    pub closing_before: f64,
-    /// X'₊ + Y'₊ = −R(X'₋ + Y'₋), not positive.
-    pub closing_after: f64,
+    pub approach_speed: f64,
+    /// −(X'₊ + Y'₊) = R(X'₋ + Y'₋), not negative.
+    pub separation_speed: f64,
     /// What kind of impact.
     pub kind: ImpactKind,
     /// Length of the dead zone that follows; 0 without one, infinite where it never ends.
     pub dead_zone: f64,
 }
 
-/// Displacement resolution, relative to the motion's size, below which a bounce is not told
+/// Displacement resolution, relative to the motion's size, below which a bounce is not distinguished
 /// from rest.
 const RESOLUTION: f64 = 1e-13;
 
 /// What an impact leads to.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Outcome {
+pub(crate) struct Outcome {
     /// The state just after.
-    pub after: State,
+    pub(crate) after: State,
     /// Kind of impact.
-    pub kind: ImpactKind,
+    pub(crate) kind: ImpactKind,
     /// Time from this impact until the chatter has come to rest (0 for the other kinds).
-    pub until_rest: f64,
+    pub(crate) until_rest: f64,
 }
 
-/// Velocities after an impact: X'₊ = X'₋ − μ₁(1+R)w, Y'₊ = Y'₋ − μ₂(1+R)w with the closing
-/// speed w and the mobilities μ of [`Machine::mobility`]; for equal masses eq. (4).
-pub fn newton(machine: &Machine, before: &State) -> State {
+/// Velocities after an impact: X'₊ = X'₋ − μ₁(1+R)w, Y'₊ = Y'₋ − μ₂(1+R)w with the approach
+/// speed w and the mobilities μ of [`Machine::mobility`]: eq. (4).
+pub(crate) fn newton(machine: &Machine, before: &State) -> State {
     let w = before.vx + before.vy;
     let change = (1.0 + machine.restitution().at(w)) * w;
     let (mx, my) = machine.mobility();
@@ -87,19 +90,16 @@ pub fn newton(machine: &Machine, before: &State) -> State {
 }
 
 /// Free accelerations of both masses in a state.
-pub fn free_accelerations(machine: &Machine, drive: Drive, s: &State) -> (f64, f64) {
+pub(crate) fn free_accelerations(machine: &Machine, drive: Drive, s: &State) -> (f64, f64) {
     if let Flight::ConstantForce {
         acceleration,
         friction,
     } = machine.flight
     {
-        return (
-            super::flight::with_friction(acceleration, friction, s.vx).0,
-            0.0,
-        );
+        return (with_friction(acceleration, friction, s.vx).0, 0.0);
     }
     let cos = drive.phase.cos();
-    let of = |o: &super::Oscillator, x: f64, v: f64| {
+    let of = |o: &Oscillator, x: f64, v: f64| {
         o.drive_per_mass() * cos - 2.0 * o.decay_rate() * v - o.stiffness_per_mass() * x
     };
     (
@@ -108,9 +108,9 @@ pub fn free_accelerations(machine: &Machine, drive: Drive, s: &State) -> (f64, f
     )
 }
 
-/// Whether an impact at a closing speed is plastic: R = 0 but for rounding.
-pub fn is_plastic(machine: &Machine, closing_speed: f64) -> bool {
-    machine.restitution().at(closing_speed) <= 1e-15
+/// Whether an impact at a approach speed is plastic: R = 0 but for rounding.
+pub(crate) fn is_plastic(machine: &Machine, approach_speed: f64) -> bool {
+    machine.restitution().at(approach_speed) <= 1e-15
 }
 
 /// What the impact of a state at contact leads to. `size` is the motion's displacement scale.
@@ -118,13 +118,13 @@ pub fn is_plastic(machine: &Machine, closing_speed: f64) -> bool {
 /// A rebound that would not rise above the resolution while the masses are pressed together is
 /// the end of a chatter: flights last 2v/a, speeds fall by R, so rest comes after
 /// 2v/(a(1−R)), the sum of the geometric sequence.
-pub fn impact(machine: &Machine, drive: Drive, before: &State, size: f64) -> Outcome {
+pub(crate) fn impact(machine: &Machine, drive: Drive, before: &State, size: f64) -> Outcome {
     let mut after = newton(machine, before);
     let (ax, ay) = free_accelerations(machine, drive, &after);
     (after.ax, after.ay) = (ax, ay);
     let press = ax + ay;
-    let parting = -(after.vx + after.vy);
-    let plastic = is_plastic(machine, before.vx + before.vy) || parting <= 0.0;
+    let separation = -(after.vx + after.vy);
+    let plastic = is_plastic(machine, before.vx + before.vy) || separation <= 0.0;
     let (kind, until_rest) = if plastic {
         (
             if press > 0.0 {
@@ -134,8 +134,11 @@ pub fn impact(machine: &Machine, drive: Drive, before: &State, size: f64) -> Out
             },
             0.0,
         )
-    } else if press > 0.0 && parting * parting <= 2.0 * press * RESOLUTION * size {
-        (ImpactKind::ChatterEnd, rest_after(machine, parting, press))
+    } else if press > 0.0 && separation * separation <= 2.0 * press * RESOLUTION * size {
+        (
+            ImpactKind::ChatterEnd,
+            rest_after(machine, separation, press),
+        )
     } else {
         (ImpactKind::Bounce, 0.0)
     };
@@ -146,7 +149,7 @@ pub fn impact(machine: &Machine, drive: Drive, before: &State, size: f64) -> Out
     }
 }
 
-/// Sum of the flights of a chatter that starts with parting speed v under relative
+/// Sum of the flights of a chatter, eq. (6), that starts with separation speed v under relative
 /// acceleration a: Σ 2vₖ/a with vₖ₊₁ = R vₖ; on an incline each flight also loses to friction.
 fn rest_after(machine: &Machine, v: f64, a: f64) -> f64 {
     let law = machine.restitution();
@@ -166,7 +169,7 @@ fn rest_after(machine: &Machine, v: f64, a: f64) -> f64 {
 }
 
 /// The state with the masses exactly in contact; what rounding left over is shared by mobility.
-pub fn in_contact(machine: &Machine, clearance: f64, s: &State) -> State {
+pub(crate) fn in_contact(machine: &Machine, clearance: f64, s: &State) -> State {
     let (mx, my) = machine.mobility();
     let depth = s.x + s.y - machine.gap(clearance);
     State {
@@ -177,7 +180,7 @@ pub fn in_contact(machine: &Machine, clearance: f64, s: &State) -> State {
 }
 
 /// The state with the masses in contact and without relative velocity; momentum is kept.
-pub fn joined_state(machine: &Machine, clearance: f64, s: &State) -> State {
+pub(crate) fn sticking_state(machine: &Machine, clearance: f64, s: &State) -> State {
     let (mx, my) = machine.mobility();
     let w = s.vx + s.vy;
     State {
@@ -189,8 +192,8 @@ pub fn joined_state(machine: &Machine, clearance: f64, s: &State) -> State {
 
 /// Time until the press force vanishes, from the start of a dead zone; infinite if it never
 /// does. Free vibrations of the joined masses have decayed within the search.
-pub fn release_time(machine: &Machine, drive: Drive, clearance: f64, s: &State) -> f64 {
-    let paths: FlightPaths = joined_flight(machine, drive, clearance, s);
+pub(crate) fn release_time(machine: &Machine, drive: Drive, clearance: f64, s: &State) -> f64 {
+    let paths: FlightPaths = sticking_flight(machine, drive, clearance, s);
     let path = press(machine, drive, &paths);
     let slowest = path
         .modes()
@@ -204,5 +207,5 @@ pub fn release_time(machine: &Machine, drive: Drive, clearance: f64, s: &State) 
         (40.0 / slowest).min(1e4 * period)
     };
     let horizon = transient + 2.0 * period;
-    super::crossing::first_zero(&path, horizon).map_or(f64::INFINITY, |c| c.time)
+    first_zero(&path, horizon).map_or(f64::INFINITY, |c| c.time)
 }

@@ -2,23 +2,23 @@
 //!
 //! With g = f(t) the distance left, v = −f', a = −f'', j = −f''' and K ≥ |f''''| for all later
 //! time, every h ≤ hm satisfies −f(t+h) ≤ −g + vh + M h²/2, M = a + max(0, j·hm/3 + K·hm²/12).
-//! The first root of the right side is a safe step; the steps converge to the zero from below.
+//! The first root of the right side is a safe step, eq. (3); the steps converge to the zero from below.
 
 use super::path::{Jet, Path};
 
 /// A zero reached from above.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Crossing {
+pub(super) struct Crossing {
     /// Time since the path's start.
-    pub time: f64,
+    pub(super) time: f64,
     /// Speed −f' at which the path falls through zero, positive.
-    pub speed: f64,
+    pub(super) speed: f64,
 }
 
 /// First time in [0, `t_max`] at which the path falls to zero, starting from f(0) ≥ 0 (or below
 /// by rounding). A start at f = 0 that moves away is not a zero; one that moves on below zero
 /// is a zero at once; touching zero within rounding without passing it is not counted.
-pub fn first_zero(path: &Path, t_max: f64) -> Option<Crossing> {
+pub(super) fn first_zero(path: &Path, t_max: f64) -> Option<Crossing> {
     let tolerance = 4e-15 * path.size();
     let longest = 1.6 / path.rate();
     let mut hm = longest;
@@ -55,7 +55,7 @@ fn never_again(path: &Path, jet: &Jet) -> bool {
 /// Speeds and curvatures below this many tolerances are rounding.
 const STILL: f64 = 25.0;
 
-/// Whether a path at zero stands still or only grazes, within rounding, and does not fall.
+/// Whether a path at zero is at rest or only grazes, within rounding, and does not fall.
 fn leaves(jet: &Jet, tolerance: f64) -> bool {
     let still = STILL * tolerance;
     let slow = jet.d1.abs() <= still || jet.d1 * jet.d1 <= 2.0 * tolerance * jet.d2.abs();

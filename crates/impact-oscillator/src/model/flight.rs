@@ -1,4 +1,5 @@
-//! The exact flight of each mass between impacts: homogeneous and forced response, eqs. (1), (2).
+//! The exact flight of each mass between impacts: homogeneous and forced response, eqs. (1), (2);
+//! and of masses that stick together, eq. (5).
 
 use super::params::{Flight, Machine, Oscillator};
 use super::path::{C64, Mode, Path};
@@ -78,13 +79,13 @@ pub fn forced_amplitude(o: &Oscillator, drive: Drive) -> C64 {
 }
 
 /// λ = −δ + i√(Ω² − δ²): the free vibration's exponent.
-pub fn exponent(o: &Oscillator) -> C64 {
+pub(crate) fn exponent(o: &Oscillator) -> C64 {
     let d = o.decay_rate();
     C64::new(-d, (o.stiffness_per_mass() - d * d).sqrt())
 }
 
 /// The free mode with displacement x0 and velocity v0 at t = 0.
-pub fn free_mode(lambda: C64, x0: f64, v0: f64) -> Mode {
+pub(crate) fn free_mode(lambda: C64, x0: f64, v0: f64) -> Mode {
     // Re z = x0, Re(λz) = v0
     Mode {
         amplitude: C64::new(x0, (lambda.re * x0 - v0) / lambda.im),
@@ -93,7 +94,7 @@ pub fn free_mode(lambda: C64, x0: f64, v0: f64) -> Mode {
 }
 
 /// Flight of one mass under spring, dashpot and drive.
-pub fn harmonic_path(o: &Oscillator, drive: Drive, x0: f64, v0: f64) -> Path {
+pub(crate) fn harmonic_path(o: &Oscillator, drive: Drive, x0: f64, v0: f64) -> Path {
     let mut path = Path::constant(0.0, drive.eta);
     path.force = forced_amplitude(o, drive);
     let forced_v = -drive.eta * path.force.im;
@@ -101,7 +102,7 @@ pub fn harmonic_path(o: &Oscillator, drive: Drive, x0: f64, v0: f64) -> Path {
     path
 }
 
-/// Flight of both masses from a state.
+/// Flight of both masses from a state, eq. (2).
 pub fn free_flight(machine: &Machine, drive: Drive, start: &State) -> FlightPaths {
     match machine.flight {
         Flight::Harmonic => {
@@ -134,7 +135,7 @@ pub fn free_flight(machine: &Machine, drive: Drive, start: &State) -> FlightPath
 
 /// Acceleration of a mass under a constant force with dry friction, and how long until its
 /// velocity turns and friction with it.
-pub fn with_friction(force: f64, friction: f64, v: f64) -> (f64, f64) {
+pub(crate) fn with_friction(force: f64, friction: f64, v: f64) -> (f64, f64) {
     let direction = if v != 0.0 { v.signum() } else { force.signum() };
     if v == 0.0 && force.abs() <= friction {
         return (0.0, f64::INFINITY);
@@ -145,9 +146,8 @@ pub fn with_friction(force: f64, friction: f64, v: f64) -> (f64, f64) {
 }
 
 /// Paths while the masses stay together, X = ρ + J, Y = ρ − J:
-/// (m₁+m₂)J'' + (b₁+b₂)J' + (k₁+k₂)J = (k₂−k₁)ρ + (F₁−F₂)cos(ητ+φ), for equal masses eq. (7)
-/// of the paper. Against a stop X rests at ρ.
-pub fn joined_flight(
+/// (m₁+m₂)J'' + (b₁+b₂)J' + (k₁+k₂)J = (k₂−k₁)ρ + (F₁−F₂)cos(ητ+φ), eq. (5). Against a stop X rests at ρ.
+pub(crate) fn sticking_flight(
     machine: &Machine,
     drive: Drive,
     clearance: f64,
@@ -208,9 +208,9 @@ fn fictive_acceleration(o: &Oscillator, drive: Drive, path: &Path) -> Path {
         .plus(-o.stiffness_per_mass(), path)
 }
 
-/// The press force's measure along joined paths: the fictive relative acceleration X'' + Y''
+/// The press force's measure along the paths of sticking masses: the fictive relative acceleration X'' + Y''
 /// that the masses would have without the contact (eq. 6); pressed while it is positive.
-pub fn press(machine: &Machine, drive: Drive, joined: &FlightPaths) -> Path {
+pub(crate) fn press(machine: &Machine, drive: Drive, sticking: &FlightPaths) -> Path {
     if let Flight::ConstantForce {
         acceleration,
         friction,
@@ -218,9 +218,9 @@ pub fn press(machine: &Machine, drive: Drive, joined: &FlightPaths) -> Path {
     {
         return Path::constant(acceleration - friction, drive.eta);
     }
-    let ax = fictive_acceleration(&machine.x, drive, &joined.x);
+    let ax = fictive_acceleration(&machine.x, drive, &sticking.x);
     match &machine.y {
         None => ax,
-        Some(o) => ax.plus(1.0, &fictive_acceleration(o, drive, &joined.y)),
+        Some(o) => ax.plus(1.0, &fictive_acceleration(o, drive, &sticking.y)),
     }
 }

@@ -31,7 +31,7 @@ proptest! {
             prop_assert!(after <= before * (1.0 + 1e-12));
             let momentum = mx * i.vx_before - my * i.vy_before;
             prop_assert!((mx * i.vx_after - my * i.vy_after - momentum).abs() < 1e-11);
-            prop_assert!(i.closing_before > 0.0 && i.closing_after <= 0.0);
+            prop_assert!(i.approach_speed > 0.0 && i.separation_speed >= 0.0);
         }
         let end = t.end();
         for s in t.sample((0..4000).map(|k| end * f64::from(k) / 4000.0)) {
@@ -53,7 +53,7 @@ proptest! {
         for k in 0..count {
             let (a, b) = (&double.impacts[k], &single.impacts[k]);
             prop_assert!((a.tau - b.tau).abs() < 1e-8, "{} {}", a.tau, b.tau);
-            prop_assert!((a.closing_before - 2.0 * b.closing_before).abs() < 1e-7);
+            prop_assert!((a.approach_speed - 2.0 * b.approach_speed).abs() < 1e-7);
             let jump = (a.vx_after - a.vy_after) - (a.vx_before - a.vy_before);
             prop_assert!(jump.abs() < 1e-12);
         }
@@ -147,6 +147,6 @@ fn valid_a_tangential_start_leaves() {
     let mut path = Path::constant(0.0, 1.0);
     path.force = C64::new(0.0, 1.0);
     path.polynomial = [0.0, 1.0, 0.0];
-    // t − sin t grows for ever
+    // t − sin t grows without bound
     assert!(first_zero(&path, 100.0).is_none());
 }

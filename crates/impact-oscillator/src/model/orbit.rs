@@ -3,11 +3,11 @@
 //!
 //! With one impact in n drive periods, each mass is its forced response plus the velocity jump
 //! −μᵢφ, φ = (1+R)w, times its periodic Green's function. At the impact the gap closes with the
-//! closing speed w, so with F = F₁+F₂ the complex forced amplitudes, ψ the drive's phase there:
+//! approach speed w, so with F = F₁+F₂ the complex forced amplitudes, ψ the drive's phase there:
 //!
 //! Re(F e^{iψ}) = G − αw,  −Im(F e^{iψ}) = Qw/η,  hence (G − αw)² + (Qw/η)² = |F|²,
 //!
-//! a quadratic for w. With Pᵢ, Dᵢ the Green's functions' position and velocity just before the
+//! a quadratic for w, eq. (9). With Pᵢ, Dᵢ the Green's functions' position and velocity just before the
 //! impact, α = −(1+R)Σ μᵢPᵢ and Q = 1 + (1+R)Σ μᵢDᵢ.
 
 use super::contact::{free_accelerations, is_plastic, newton};
@@ -23,7 +23,7 @@ use super::variation::{eigenvalues, free_flow, saltation};
 pub enum Existence {
     /// It is a motion of the machine.
     Exists,
-    /// The closing speed is not positive.
+    /// The approach speed is not positive.
     NotClosing,
     /// The flight meets the contact before the period is over.
     FurtherImpact,
@@ -40,8 +40,8 @@ pub struct Orbit {
     pub setting: Setting,
     /// Phase of the drive at the impact, rad in [0, 2π).
     pub phase_at_impact: f64,
-    /// Closing speed before the impact: X'₋ + Y'₋, against a stop X'₋.
-    pub closing_speed: f64,
+    /// Approach speed before the impact: X'₋ + Y'₋, against a stop X'₋.
+    pub approach_speed: f64,
     /// State just before the impact.
     pub before: State,
     /// State just after the impact.
@@ -69,7 +69,7 @@ impl Orbit {
         f64::from(self.n) * self.setting.period()
     }
 
-    /// Whether every multiplier lies inside the unit circle.
+    /// Whether every multiplier is inside the unit circle.
     pub fn is_stable(&self) -> bool {
         self.multipliers.iter().all(|m| m.norm() < 1.0)
     }
@@ -83,17 +83,17 @@ impl Orbit {
 /// Periodic response of one mass to a unit velocity jump once per period T: the free mode just
 /// after the jump, and displacement and velocity just before it.
 #[derive(Debug, Clone, Copy)]
-pub struct Green {
+pub(crate) struct Green {
     /// Displacement at the jump.
-    pub position: f64,
+    pub(crate) position: f64,
     /// Velocity just before the jump (just after: + 1).
-    pub velocity_before: f64,
+    pub(crate) velocity_before: f64,
 }
 
 /// Green's function of a mass for a jump every `period`.
 ///
 /// The response to one jump is Im(e^{λt})/ω; all past ones sum up geometrically.
-pub fn green(o: &Oscillator, period: f64) -> Green {
+pub(crate) fn green(o: &Oscillator, period: f64) -> Green {
     green_of(o, returned(o, period))
 }
 
@@ -185,7 +185,7 @@ impl Branch {
         a * a + q * q - self.forced.norm_sqr()
     }
 
-    /// Phase of the drive at the impact of an orbit with closing speed w.
+    /// Phase of the drive at the impact of an orbit with approach speed w.
     pub fn phase(&self, restitution: f64, gap: f64, w: f64) -> f64 {
         let u = C64::new(
             gap - self.alpha(restitution) * w,
@@ -194,8 +194,8 @@ impl Branch {
         (u.arg() - self.forced.arg()).rem_euclid(std::f64::consts::TAU)
     }
 
-    /// Both closing speeds for constant R, smaller first; `None` beyond the saddle-node.
-    pub fn closing_speeds(&self, restitution: f64, gap: f64) -> Option<[f64; 2]> {
+    /// Both approach speeds for constant R, smaller first; `None` beyond the saddle-node.
+    pub fn approach_speeds(&self, restitution: f64, gap: f64) -> Option<[f64; 2]> {
         let (alpha, q) = (self.alpha(restitution), self.q(restitution) / self.eta);
         let a = alpha * alpha + q * q;
         let c = gap * gap - self.forced.norm_sqr();
@@ -220,7 +220,7 @@ impl Branch {
 }
 
 /// All z = 1/n orbits of a machine in a setting (its phase is ignored): those that exist and
-/// those that only solve the equations with positive closing speed, smaller speed first.
+/// those that only solve the equations with positive approach speed, smaller speed first.
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range or the flight is not harmonic.
@@ -233,7 +233,7 @@ pub fn orbits(machine: &Machine, setting: Setting, n: u32) -> Result<Vec<Orbit>,
         ));
     }
     let branch = Branch::new(machine, setting.frequency_ratio, n);
-    let speeds = closing_speeds(machine, &branch, machine.gap(setting.clearance));
+    let speeds = approach_speeds(machine, &branch, machine.gap(setting.clearance));
     Ok(speeds
         .into_iter()
         .map(|w| orbit_with_speed(machine, setting, n, w))
@@ -244,6 +244,18 @@ pub fn orbits(machine: &Machine, setting: Setting, n: u32) -> Result<Vec<Orbit>,
 ///
 /// # Errors
 /// As [`orbits`].
+///
+/// ```
+/// use impact_oscillator::{Machine, Setting, model::orbit::stable_orbit};
+///
+/// let machine = Machine::single(0.07, 0.9);
+/// let orbit = stable_orbit(&machine, Setting::new(1.2, 2.0), 1)?.expect("z = 1");
+/// assert!((orbit.approach_speed - 2.413_516).abs() < 1e-6);
+/// assert!(orbit.multipliers.iter().all(|m| m.norm() < 1.0));
+/// // the motion is periodic
+/// assert!((orbit.at(0.3).x - orbit.at(0.3 + orbit.period()).x).abs() < 1e-12);
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn stable_orbit(
     machine: &Machine,
     setting: Setting,
@@ -254,10 +266,10 @@ pub fn stable_orbit(
         .find(|o| o.exists() && o.is_stable()))
 }
 
-fn closing_speeds(machine: &Machine, branch: &Branch, gap: f64) -> Vec<f64> {
+fn approach_speeds(machine: &Machine, branch: &Branch, gap: f64) -> Vec<f64> {
     match machine.restitution().constant() {
         Some(r) => {
-            let roots = branch.closing_speeds(r, gap).unwrap_or([-1.0, -1.0]);
+            let roots = branch.approach_speeds(r, gap).unwrap_or([-1.0, -1.0]);
             roots.into_iter().filter(|w| *w > 0.0).collect()
         }
         None => speed_dependent(machine, branch, gap),
@@ -270,7 +282,7 @@ fn speed_dependent(machine: &Machine, branch: &Branch, gap: f64) -> Vec<f64> {
     let law = machine.restitution();
     let f = |w: f64| branch.mismatch(law.at(w), gap, w);
     let top = (0..=20)
-        .filter_map(|i| branch.closing_speeds(f64::from(i) / 20.0, gap))
+        .filter_map(|i| branch.approach_speeds(f64::from(i) / 20.0, gap))
         .fold(branch.forced.norm() * branch.eta, |m, r| m.max(r[1]));
     let grid: Vec<f64> = (0..=2000)
         .map(|i| 1.5 * top * f64::from(i) / 2000.0)
@@ -307,9 +319,8 @@ pub fn orbit_with_speed(machine: &Machine, setting: Setting, n: u32, w: f64) -> 
     orbit
 }
 
-/// As [`orbit_with_speed`], but neither its multipliers nor its existence are found: it is taken
-/// for a motion of the machine.
-pub fn unjudged_orbit(machine: &Machine, setting: Setting, n: u32, w: f64) -> Orbit {
+/// As [`orbit_with_speed`], without its multipliers and with its existence assumed.
+fn unjudged_orbit(machine: &Machine, setting: Setting, n: u32, w: f64) -> Orbit {
     let eta = setting.frequency_ratio;
     let branch = Branch::new(machine, eta, n);
     let r = machine.restitution().at(w);
@@ -324,7 +335,7 @@ pub fn unjudged_orbit(machine: &Machine, setting: Setting, n: u32, w: f64) -> Or
         n,
         setting,
         phase_at_impact: phase,
-        closing_speed: w,
+        approach_speed: w,
         before,
         after,
         multipliers: Vec::new(),
@@ -359,11 +370,11 @@ fn state_before(machine: &Machine, drive: Drive, n: u32, change: f64) -> State {
 }
 
 fn existence(machine: &Machine, orbit: &Orbit) -> Existence {
-    if orbit.closing_speed <= 0.0 {
+    if orbit.approach_speed <= 0.0 {
         return Existence::NotClosing;
     }
     let pressed = orbit.after.ax + orbit.after.ay > 0.0;
-    if is_plastic(machine, orbit.closing_speed) && pressed {
+    if is_plastic(machine, orbit.approach_speed) && pressed {
         return Existence::DeadZone;
     }
     let gap = orbit.flight.gap(machine.gap(orbit.setting.clearance));

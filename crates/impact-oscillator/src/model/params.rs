@@ -1,35 +1,10 @@
 //! Dimensionless parameters of the oscillator and their admissible ranges.
 
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
+pub use super::error::ModelError;
+use super::error::range;
 pub use super::restitution::Restitution;
-
-/// Why a model cannot be evaluated as asked.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum ModelError {
-    /// A parameter lies outside its admissible range.
-    #[error("{name} = {value} is out of range: {expected}")]
-    OutOfRange {
-        /// The parameter's name.
-        name: &'static str,
-        /// The value given.
-        value: f64,
-        /// What is admissible.
-        expected: &'static str,
-    },
-    /// The masses start overlapping.
-    #[error(
-        "the start lies {depth} beyond the contact X + Y = 2ρ: start at or below it, or lower the displacements"
-    )]
-    StartsInContact {
-        /// How far beyond the contact.
-        depth: f64,
-    },
-    /// The request has no meaning for this machine.
-    #[error("{0}")]
-    Unsupported(&'static str),
-}
 
 /// One mass on its spring, relative to the nominal mass m, spring k and force amplitude F0 by
 /// which the dimensionless quantities are formed.
@@ -84,23 +59,6 @@ impl Oscillator {
             "0 ≤ β < 1 (below critical damping)",
         )?;
         range("drive_amplitude", self.drive_amplitude, true, "finite")
-    }
-}
-
-pub(super) fn range(
-    name: &'static str,
-    value: f64,
-    ok: bool,
-    expected: &'static str,
-) -> Result<(), ModelError> {
-    if ok && value.is_finite() {
-        Ok(())
-    } else {
-        Err(ModelError::OutOfRange {
-            name,
-            value,
-            expected,
-        })
     }
 }
 
@@ -239,7 +197,7 @@ impl Machine {
         self.y == Some(self.x)
     }
 
-    /// Shares of the closing speed's change that each mass takes: (1/m₁, 1/m₂)/(1/m₁ + 1/m₂),
+    /// Shares of the approach speed's change that each mass takes: (1/m₁, 1/m₂)/(1/m₁ + 1/m₂),
     /// from the conservation of momentum m₁X' − m₂Y'; (1, 0) against a fixed stop.
     pub fn mobility(&self) -> (f64, f64) {
         match self.y {

@@ -7,7 +7,7 @@ use nalgebra::Complex;
 pub type C64 = Complex<f64>;
 
 /// Most damped modes a path holds.
-pub const MAX_MODES: usize = 4;
+pub(crate) const MAX_MODES: usize = 4;
 
 /// One damped mode Re(amplitude · e^(exponent·t)).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -21,19 +21,19 @@ pub struct Mode {
 /// Value and first three derivatives of a path at a time, and the bound that the root search
 /// rests on.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Jet {
+pub(crate) struct Jet {
     /// f(t)
-    pub value: f64,
+    pub(crate) value: f64,
     /// f'(t)
-    pub d1: f64,
+    pub(crate) d1: f64,
     /// f''(t)
-    pub d2: f64,
+    pub(crate) d2: f64,
     /// f'''(t)
-    pub d3: f64,
+    pub(crate) d3: f64,
     /// Upper bound of |f''''| for this and all later times.
-    pub d4_bound: f64,
+    pub(crate) d4_bound: f64,
     /// Sum of the amplitudes of modes (now) and of the harmonic.
-    pub amplitude: f64,
+    pub(crate) amplitude: f64,
 }
 
 /// f(t) = c₀ + c₁t + c₂t² + Re(force·e^(iηt)) + Σ Re(amplitude·e^(λt)).
@@ -148,7 +148,7 @@ impl Path {
     }
 
     /// Value, derivatives and bounds at a time.
-    pub fn jet(&self, t: f64) -> Jet {
+    pub(crate) fn jet(&self, t: f64) -> Jet {
         let [c0, c1, c2] = self.polynomial;
         let mut jet = Jet {
             value: c0 + t * (c1 + t * c2),

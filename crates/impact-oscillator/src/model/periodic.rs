@@ -1,15 +1,15 @@
-//! Periodic orbits z = p/n: Newton on the impact times and closing speeds.
+//! Periodic orbits z = p/n: Newton on the impact times and approach speeds.
 //!
 //! Between impacts everything is linear, so the motion of X + Y with p impacts in n drive
 //! periods is u(t) = Re(F e^{iηt}) − Σ φₖ Γ(t − tₖ), φₖ = (1+R)wₖ, Γ = Σ μᵢGᵢ the mobility-weighted
-//! periodic Green's functions. The orbit is where u(tₖ) = G and u'(tₖ−) = wₖ for every k. Time t
+//! periodic Green's functions, eq. (7). The orbit is where u(tₖ) = G and u'(tₖ−) = wₖ for every k. Time t
 //! is counted so that the drive's phase is ηt.
 
 use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector, Matrix4};
 
-use super::contact::{ModelImpact, free_accelerations, is_plastic, newton};
+use super::contact::{Impact, free_accelerations, is_plastic, newton};
 use super::crossing::first_zero;
 use super::flight::{Drive, State, exponent, forced_amplitude, free_flight};
 use super::orbit::Existence;
@@ -17,7 +17,22 @@ use super::params::{Machine, Setting};
 use super::path::C64;
 use super::variation::{eigenvalues, free_flow, saltation};
 
-/// A periodic orbit with p impacts in n drive periods.
+/// A periodic orbit with p impacts in n drive periods: the solution of eq. (8).
+///
+/// ```
+/// use impact_oscillator::{Existence, Initial, Machine, PeriodicOrbit, Setting, SettledMotion};
+/// use impact_oscillator::{Watch, settle};
+///
+/// let machine = Machine::symmetric(0.07, 0.9);
+/// let setting = Setting::new(1.3, 1.0);
+/// let (motion, impacts) = settle(&machine, setting, Initial::rest(), &Watch::default())?;
+/// let SettledMotion::Periodic { p: 1, n, .. } = motion else { panic!("{motion}") };
+/// let guess = PeriodicOrbit::from_impacts(&impacts[impacts.len() - 1..], setting, n);
+/// let orbit = guess.and_then(|o| o.solve(&machine)).expect("an orbit");
+/// assert_eq!(orbit.existence(&machine), Existence::Exists);
+/// assert!(orbit.is_stable(&machine) && orbit.residual(&machine).amax() < 1e-12);
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PeriodicOrbit {
     /// Drive periods in one period of the motion.
@@ -28,7 +43,7 @@ pub struct PeriodicOrbit {
     pub rho: f64,
     /// Impact times in [0, 2πn/η), rising, the drive's phase being ηt.
     pub times: Vec<f64>,
-    /// Closing speeds before the impacts.
+    /// Approach speeds before the impacts.
     pub speeds: Vec<f64>,
 }
 
@@ -151,32 +166,31 @@ fn linearise(machine: &Machine, response: &Response, orbit: &PeriodicOrbit) -> L
 
 impl PeriodicOrbit {
     /// From the impacts of one period of a simulated motion (p impacts, the last ones).
-    pub fn from_impacts(impacts: &[ModelImpact], setting: Setting, n: u32) -> Option<Self> {
+    pub fn from_impacts(impacts: &[Impact], setting: Setting, n: u32) -> Option<Self> {
         let first = impacts.first()?;
         let period = f64::from(n) * setting.period();
         let start = first.phase / setting.frequency_ratio - first.tau;
         let mut pairs: Vec<(f64, f64)> = impacts
             .iter()
-            .map(|i| ((i.tau + start).rem_euclid(period), i.closing_before))
+            .map(|i| ((i.tau + start).rem_euclid(period), i.approach_speed))
             .collect();
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (times, speeds) = pairs.into_iter().unzip();
-        let (eta, rho) = (setting.frequency_ratio, setting.clearance);
         Some(Self {
             n,
-            eta,
-            rho,
+            eta: setting.frequency_ratio,
+            rho: setting.clearance,
             times,
             speeds,
         })
     }
 
     /// Impacts in one period.
-    pub fn p(&self) -> usize {
-        self.times.len()
+    pub fn p(&self) -> u32 {
+        u32::try_from(self.times.len()).unwrap_or(u32::MAX)
     }
 
-    /// Greatest closing speed.
+    /// Greatest approach speed.
     pub fn greatest_speed(&self) -> f64 {
         self.speeds.iter().fold(0.0, |m: f64, w| m.max(*w))
     }
@@ -188,12 +202,15 @@ impl PeriodicOrbit {
 
     /// Unknowns of Newton's method: times, then speeds.
     pub fn unknowns(&self) -> DVector<f64> {
-        DVector::from_iterator(2 * self.p(), self.times.iter().chain(&self.speeds).copied())
+        DVector::from_iterator(
+            2 * self.times.len(),
+            self.times.iter().chain(&self.speeds).copied(),
+        )
     }
 
     /// The orbit with other unknowns.
     pub fn with_unknowns(&self, z: &DVector<f64>) -> Self {
-        let p = self.p();
+        let p = self.times.len();
         Self {
             times: z.iter().take(p).copied().collect(),
             speeds: z.iter().skip(p).take(p).copied().collect(),
@@ -203,7 +220,7 @@ impl PeriodicOrbit {
 
     /// Residual of the orbit's equations, times' closures first.
     pub fn residual(&self, machine: &Machine) -> DVector<f64> {
-        linearise(machine, &Response::new(machine, self.eta, self.n), self).residual
+        self.linearised(machine).0
     }
 
     /// Residual and Jacobian by the unknowns.
@@ -243,7 +260,7 @@ impl PeriodicOrbit {
     /// State just before and just after each impact.
     pub fn impact_states(&self, machine: &Machine) -> Vec<(State, State)> {
         let response = Response::new(machine, self.eta, self.n);
-        (0..self.p())
+        (0..self.times.len())
             .map(|k| self.states_at(machine, &response, k))
             .collect()
     }
@@ -289,9 +306,8 @@ impl PeriodicOrbit {
     /// Map of a variation over one period, starting just before the first impact: the product
     /// of saltation matrices and free flows.
     pub fn monodromy(&self, machine: &Machine) -> Matrix4<f64> {
-        let states = self.impact_states(machine);
         let mut map = Matrix4::identity();
-        for (k, (before, after)) in states.iter().enumerate() {
+        for (k, (before, after)) in self.impact_states(machine).iter().enumerate() {
             map = free_flow(machine, self.flight_time(k)) * saltation(machine, before, after) * map;
         }
         map
@@ -310,7 +326,7 @@ impl PeriodicOrbit {
         eigenvalues(machine, &self.monodromy(machine))
     }
 
-    /// Whether every multiplier lies inside the unit circle.
+    /// Whether every multiplier is inside the unit circle.
     pub fn is_stable(&self, machine: &Machine) -> bool {
         self.multipliers(machine)
             .first()
@@ -346,19 +362,17 @@ impl PeriodicOrbit {
 
     /// The same, where times and speeds may differ by a tolerance between the repetitions.
     pub fn reduced_within(&self, tolerance: f64) -> Self {
-        let p = self.p();
-        let parts = (2..=p)
-            .rev()
-            .filter(|d| p.is_multiple_of(*d) && (self.n as usize).is_multiple_of(*d));
-        for d in parts {
-            let (q, shift) = (p / d, self.period() / d as f64);
-            let repeats = (0..p - q).all(|k| {
+        let (p, count) = (self.p(), self.times.len());
+        let divides = |d: &u32| p.is_multiple_of(*d) && self.n.is_multiple_of(*d);
+        for d in (2..=p).rev().filter(divides) {
+            let (q, shift) = ((p / d) as usize, self.period() / f64::from(d));
+            let repeats = (0..count - q).all(|k| {
                 (self.times[k + q] - self.times[k] - shift).abs() < tolerance
                     && (self.speeds[k + q] - self.speeds[k]).abs() < tolerance
             });
             if repeats {
                 return Self {
-                    n: self.n / d as u32,
+                    n: self.n / d,
                     times: self.times[..q].to_vec(),
                     speeds: self.speeds[..q].to_vec(),
                     ..*self

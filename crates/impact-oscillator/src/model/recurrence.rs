@@ -4,61 +4,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::boundary::rho_grazing;
-use super::contact::{ImpactKind, ModelImpact};
+use super::contact::{Impact, ImpactKind};
+use super::motion::{SettledMotion, count};
 use super::params::{Flight, Initial, Machine, ModelError, Setting};
-use super::simulate::{Simulator, Sink};
-use crate::Motion;
-
-/// The motion that a simulation settles on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
-pub enum SettledMotion {
-    /// No impact: z = 0.
-    Impactless,
-    /// Periodic, z = p/n.
-    Periodic {
-        /// Impacts in a period of the motion; where chatters are complete each of them counts
-        /// as one, for it has infinitely many.
-        p: u16,
-        /// Drive periods in a period of the motion.
-        n: u16,
-        /// Whether a dead zone follows impacts.
-        dead_zone: bool,
-        /// Whether impacts accumulate in complete chatters.
-        chatter: bool,
-    },
-    /// Impacts that swell and die away, with many impactless drive periods between.
-    Beat,
-    /// Impacts that do not recur within what was watched.
-    Chaotic,
-    /// The masses stay together.
-    Joined,
-}
-
-impl SettledMotion {
-    /// Whether it repeats itself.
-    pub fn is_periodic(self) -> bool {
-        !matches!(self, Self::Beat | Self::Chaotic)
-    }
-}
-
-impl From<SettledMotion> for Motion {
-    fn from(m: SettledMotion) -> Self {
-        match m {
-            SettledMotion::Impactless => Motion::Impactless,
-            SettledMotion::Periodic {
-                p, n, dead_zone, ..
-            } => Motion::Periodic {
-                impacts_p: p.into(),
-                periods_n: n.into(),
-                dead_zone,
-            },
-            SettledMotion::Beat => Motion::Beat,
-            SettledMotion::Chaotic => Motion::Chaotic,
-            SettledMotion::Joined => Motion::Joined,
-        }
-    }
-}
+use super::simulate::{Arc, Simulator, Sink};
 
 /// How long a simulation settles and is watched.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -82,20 +31,31 @@ impl Default for Watch {
     }
 }
 
-/// Settle a motion from a start and tell what it is. Its impacts while watched come with it.
+/// Settle a motion from a start and classify it; with it come its impacts while watched.
 ///
 /// # Errors
-/// [`ModelError`] where a parameter is out of range or the start lies beyond the contact.
+/// [`ModelError`] where a parameter is out of range or the start is beyond the contact.
+///
+/// ```
+/// use impact_oscillator::{Initial, Machine, Setting, Watch, settle};
+///
+/// let machine = Machine::symmetric(0.07, 0.9);
+/// let watch = Watch::default();
+/// let (motion, impacts) = settle(&machine, Setting::new(1.3, 1.0), Initial::rest(), &watch)?;
+/// assert_eq!(motion.label(), "1");
+/// assert_eq!(impacts.len(), 60); // one in each drive period of the watch
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn settle(
     machine: &Machine,
     setting: Setting,
     initial: Initial,
     watch: &Watch,
-) -> Result<(SettledMotion, Vec<ModelImpact>), ModelError> {
+) -> Result<(SettledMotion, Vec<Impact>), ModelError> {
     let mut simulator = Simulator::new(machine, setting, initial)?;
     simulator.advance(
         watch.settle_periods * setting.period(),
-        &mut |_: &ModelImpact| {},
+        &mut |_: &Impact| {},
     );
     Ok(observe(&mut simulator, setting, watch))
 }
@@ -103,7 +63,7 @@ pub fn settle(
 /// An impact with the displacement at which it came, which closes the state of two masses.
 #[derive(Debug, Clone, Copy)]
 struct Return {
-    impact: ModelImpact,
+    impact: Impact,
     x: f64,
 }
 
@@ -114,10 +74,10 @@ struct Returns {
 }
 
 impl Sink for Returns {
-    fn arc(&mut self, arc: &super::simulate::Arc) {
+    fn arc(&mut self, arc: &Arc) {
         self.x = arc.paths.x.at(arc.duration)[0];
     }
-    fn impact(&mut self, impact: &ModelImpact) {
+    fn impact(&mut self, impact: &Impact) {
         self.list.push(Return {
             impact: *impact,
             x: self.x,
@@ -125,27 +85,27 @@ impl Sink for Returns {
     }
 }
 
-/// Watch a motion that has settled and tell what it is.
-pub fn observe(
+/// Watch a motion that has settled and classify it.
+pub(crate) fn observe(
     simulator: &mut Simulator,
     setting: Setting,
     watch: &Watch,
-) -> (SettledMotion, Vec<ModelImpact>) {
-    let (start, joined_before) = (simulator.tau(), simulator.is_joined());
+) -> (SettledMotion, Vec<Impact>) {
+    let (start, stuck_before) = (simulator.tau(), simulator.is_sticking());
     let mut returns = Returns::default();
     simulator.advance(watch.watch_periods * setting.period(), &mut returns);
-    let impacts: Vec<ModelImpact> = returns.list.iter().map(|r| r.impact).collect();
+    let impacts: Vec<Impact> = returns.list.iter().map(|r| r.impact).collect();
     let motion = if impacts.is_empty() {
-        let still = joined_before && simulator.is_joined();
+        let still = stuck_before && simulator.is_sticking();
         if still {
-            SettledMotion::Joined
+            SettledMotion::Sticking
         } else if stays_clear(simulator.machine(), setting) {
             SettledMotion::Impactless
         } else {
             SettledMotion::Beat
         }
-    } else if simulator.is_joined() && impacts.last().is_some_and(|i| i.dead_zone.is_infinite()) {
-        SettledMotion::Joined
+    } else if simulator.is_sticking() && impacts.last().is_some_and(|i| i.dead_zone.is_infinite()) {
+        SettledMotion::Sticking
     } else {
         recurring(&returns.list, setting.period(), watch)
             .unwrap_or_else(|| irregular(&impacts, start, simulator.tau(), setting.period()))
@@ -175,7 +135,7 @@ fn recurring(list: &[Return], period: f64, watch: &Watch) -> Option<SettledMotio
     let (list, chatter) = essential(list);
     let size = list
         .iter()
-        .map(|r| r.impact.closing_before + r.x.abs())
+        .map(|r| r.impact.approach_speed + r.x.abs())
         .fold(0.0, f64::max);
     let last = list.len() - 1;
     let lag = |tolerance: f64, least: usize| {
@@ -190,8 +150,8 @@ fn recurring(list: &[Return], period: f64, watch: &Watch) -> Option<SettledMotio
     let p = lag(100.0 * watch.tolerance * size, closed)?;
     let n = ((list[last].impact.tau - list[last - p].impact.tau) / period).round();
     Some(SettledMotion::Periodic {
-        p: p as u16,
-        n: n as u16,
+        p: u32::try_from(p).unwrap_or(u32::MAX),
+        n: count(n),
         dead_zone: list[last + 1 - p..]
             .iter()
             .any(|r| r.impact.dead_zone > 0.0),
@@ -210,11 +170,11 @@ fn closure(a: &Return, b: &Return, period: f64) -> f64 {
         (a.impact.vx_before - b.impact.vx_before).abs()
             + (a.impact.vy_before - b.impact.vy_before).abs()
     };
-    speeds + (a.x - b.x).abs() + phase * a.impact.closing_before.max(b.impact.closing_before)
+    speeds + (a.x - b.x).abs() + phase * a.impact.approach_speed.max(b.impact.approach_speed)
 }
 
-/// Chaotic, or a beat where long impactless stretches lie between runs of impacts.
-fn irregular(impacts: &[ModelImpact], start: f64, end: f64, period: f64) -> SettledMotion {
+/// Chaotic, or a beat where runs of impacts are separated by long impactless stretches.
+fn irregular(impacts: &[Impact], start: f64, end: f64, period: f64) -> SettledMotion {
     let mut times = vec![start];
     times.extend(impacts.iter().map(|i| i.tau));
     times.push(end);

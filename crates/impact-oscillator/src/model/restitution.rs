@@ -1,16 +1,24 @@
-//! The coefficient of restitution R as a number, a table or a formula of the closing speed.
+//! The coefficient of restitution R as a number, a table or a formula of the approach speed.
 
 use serde::{Deserialize, Serialize};
 
-use super::params::{ModelError, range};
+use super::error::{ModelError, range};
 
-/// The coefficient of restitution R, constant or depending on the closing speed v.
+/// The coefficient of restitution R, constant or depending on the approach speed v.
+///
+/// ```
+/// use impact_oscillator::Restitution;
+///
+/// let law = Restitution::Table(vec![(0.0, 0.95), (6.0, 0.85)]);
+/// assert!((law.at(3.0) - 0.90).abs() < 1e-12);
+/// assert_eq!(law.at(9.0), 0.85);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Restitution {
     /// The same R at every speed.
     Constant(f64),
-    /// Pairs (closing speed, R) with rising speeds: linear between them, constant beyond.
+    /// Pairs (approach speed, R) with rising speeds: linear between them, constant beyond.
     Table(Vec<(f64, f64)>),
     /// R = max(floor, 1 − coefficient · v^exponent).
     PowerLaw {
@@ -33,7 +41,7 @@ pub enum Restitution {
 }
 
 impl Restitution {
-    /// R at a closing speed v ≥ 0.
+    /// R at a approach speed v ≥ 0.
     pub fn at(&self, v: f64) -> f64 {
         match self {
             Self::Constant(r) => *r,
@@ -47,7 +55,7 @@ impl Restitution {
         }
     }
 
-    /// dR/dv at a closing speed v > 0 (one-sided at the kinks of a table).
+    /// dR/dv at a approach speed v > 0 (one-sided at the kinks of a table).
     pub fn slope_at(&self, v: f64) -> f64 {
         match self {
             Self::Constant(_) => 0.0,

@@ -2,7 +2,7 @@
 //!
 //! Each mass moves as Re(F e^{iθ}) + Re(A e^{λt}) with θ the drive's phase and t = (θ − ψ)/η since
 //! the impact; F, A, λ, ψ and η are smooth functions of the machine and of the setting, and their
-//! differentials are those of the closed forms of [`orbit`](super::orbit), the closing speed's by
+//! differentials are those of the closed forms of [`orbit`](super::orbit), the approach speed's by
 //! the implicit function of its quadratic. They grow without bound at the saddle-node.
 
 use super::flight::{Drive, exponent, forced_amplitude};
@@ -19,9 +19,11 @@ pub struct MassChange {
     pub decay_rate: f64,
     /// Of the driving amplitude over the mass.
     pub drive_per_mass: f64,
+    /// Of the share of an impact's change of speed that the mass takes.
+    pub mobility: f64,
 }
 
-/// A direction in which machine and setting change; masses keep theirs.
+/// A direction in which machine, setting and what acts beyond them change.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Change {
     /// The first mass.
@@ -34,6 +36,11 @@ pub struct Change {
     pub eta: f64,
     /// Of the gap at X = Y = 0.
     pub gap: f64,
+    /// Of X + Y at the impact, by a small extra acceleration of the masses
+    /// ([`PeriodicResponse`](super::perturbation::PeriodicResponse)).
+    pub displacement: f64,
+    /// Of X' + Y' just before the impact, likewise.
+    pub velocity: f64,
 }
 
 /// One mass on an orbit: Re(force · e^{iθ}) + Re(mode · e^{exponent · t}), θ the drive's phase and
@@ -57,8 +64,8 @@ pub struct OrbitMotion {
     pub y: MassMotion,
     /// ψ, the drive's phase at the impact, rad.
     pub phase: f64,
-    /// w, the closing speed.
-    pub closing_speed: f64,
+    /// w, the approach speed.
+    pub approach_speed: f64,
 }
 
 /// Differential of a mass's forced amplitude F for drive phase 0, where η changes by d_eta.
@@ -92,6 +99,7 @@ struct MassSlope {
     position: f64,
     velocity: f64,
     forced: C64,
+    mobility: f64,
 }
 
 impl Mass {
@@ -125,6 +133,7 @@ impl Mass {
             position: (sum.im - self.sum.im * d_omega / omega) / omega,
             velocity: (before.im - self.before.im * d_omega / omega) / omega,
             forced: forced_slope(&self.oscillator, d, self.forced, eta),
+            mobility: d.mobility,
         }
     }
 
@@ -135,9 +144,19 @@ impl Mass {
 
     fn mode_slope(&self, slope: &MassSlope, change: [f64; 2]) -> C64 {
         let [change, d_change] = change;
-        let unit = C64::new(0.0, self.mobility / self.lambda.im);
+        let unit = C64::new(0.0, self.lambda.im.recip());
         let relative = slope.lambda.im / self.lambda.im;
-        unit * (slope.sum * change + self.sum * (d_change - change * relative))
+        let own = slope.sum * change + self.sum * (d_change - change * relative);
+        unit * (own * self.mobility + self.sum * change * slope.mobility)
+    }
+
+    /// Displacement and velocity before of the Green's function, each times the mobility.
+    fn share_slope(&self, slope: &MassSlope) -> [f64; 2] {
+        let omega = self.lambda.im;
+        [
+            self.mobility * slope.position + slope.mobility * self.sum.im / omega,
+            self.mobility * slope.velocity + slope.mobility * self.before.im / omega,
+        ]
     }
 
     fn motion(&self, change: f64) -> MassMotion {
@@ -157,7 +176,7 @@ impl Mass {
     }
 }
 
-/// The z = 1/n orbit of closing speed w at constant R and a gap, in coefficients, and its
+/// The z = 1/n orbit of approach speed w at constant R and a gap, in coefficients, and its
 /// differentials in some directions.
 pub struct Sensitivity {
     masses: [Option<Mass>; 2],
@@ -165,13 +184,13 @@ pub struct Sensitivity {
     period: f64,
     restitution: f64,
     gap: f64,
-    closing_speed: f64,
+    approach_speed: f64,
 }
 
 impl Sensitivity {
-    /// Of an orbit on a machine's branch whose closing speed solves the quadratic; R is taken as
+    /// Of an orbit on a machine's branch whose approach speed solves the quadratic; R is taken as
     /// constant there.
-    pub fn new(machine: &Machine, branch: Branch, n: u32, gap: f64, closing_speed: f64) -> Self {
+    pub fn new(machine: &Machine, branch: Branch, n: u32, gap: f64, approach_speed: f64) -> Self {
         let eta = branch.eta;
         let period = f64::from(n) * std::f64::consts::TAU / eta;
         let (mx, my) = machine.mobility();
@@ -180,15 +199,15 @@ impl Sensitivity {
             masses: [Some(of(machine.x, mx)), machine.y.map(|o| of(o, my))],
             branch,
             period,
-            restitution: machine.restitution().at(closing_speed),
+            restitution: machine.restitution().at(approach_speed),
             gap,
-            closing_speed,
+            approach_speed,
         }
     }
 
-    /// Re(F e^{iψ}) and Im, by the gap and the closing speed.
+    /// Re(F e^{iψ}) and Im, by the gap and the approach speed.
     fn at_impact(&self) -> C64 {
-        let w = self.closing_speed;
+        let w = self.approach_speed;
         C64::new(
             self.gap - self.branch.alpha(self.restitution) * w,
             -self.branch.q(self.restitution) * w / self.branch.eta,
@@ -197,20 +216,20 @@ impl Sensitivity {
 
     /// The orbit itself.
     pub fn motion(&self) -> OrbitMotion {
-        let change = (1.0 + self.restitution) * self.closing_speed;
+        let change = (1.0 + self.restitution) * self.approach_speed;
         let of = |mass: &Option<Mass>| mass.as_ref().map(|m| m.motion(change)).unwrap_or_default();
         let phase = self.at_impact().arg() - self.branch.forced.arg();
         OrbitMotion {
             x: of(&self.masses[0]),
             y: of(&self.masses[1]),
             phase: phase.rem_euclid(std::f64::consts::TAU),
-            closing_speed: self.closing_speed,
+            approach_speed: self.approach_speed,
         }
     }
 
     /// Its differential in a direction.
     pub fn slope(&self, change: &Change) -> OrbitMotion {
-        let (b, r, w) = (&self.branch, self.restitution, self.closing_speed);
+        let (b, r, w) = (&self.branch, self.restitution, self.approach_speed);
         let eta = [b.eta, change.eta];
         let period = [self.period, -self.period * change.eta / b.eta];
         let [x, y] = [(0, &change.x), (1, &change.y)].map(|(i, d)| {
@@ -218,21 +237,21 @@ impl Sensitivity {
                 .as_ref()
                 .map(|m| (m, m.slope(d, eta, period)))
         });
-        let sum = |part: fn(&MassSlope) -> f64| -> f64 {
-            let of = |m: &Option<(&Mass, MassSlope)>| {
-                m.as_ref().map_or(0.0, |(m, s)| m.mobility * part(s))
-            };
-            of(&x) + of(&y)
-        };
+        let shares = [&x, &y].into_iter().flatten();
+        let [d_position, d_velocity] = shares
+            .map(|(m, s)| m.share_slope(s))
+            .fold([0.0; 2], |sum, share| {
+                [sum[0] + share[0], sum[1] + share[1]]
+            });
         let forced: C64 = [&x, &y].into_iter().flatten().map(|(_, s)| s.forced).sum();
-        let d_alpha = -change.restitution * b.position - (1.0 + r) * sum(|s| s.position);
-        let d_q = change.restitution * b.velocity + (1.0 + r) * sum(|s| s.velocity);
+        let d_alpha = -change.restitution * b.position - (1.0 + r) * d_position;
+        let d_q = change.restitution * b.velocity + (1.0 + r) * d_velocity;
         // |u|² = |F|² holds along the change; u is linear in w.
         let u = self.at_impact();
         let per_w = C64::new(-b.alpha(r), -b.q(r) / b.eta);
         let held = C64::new(
-            change.gap - d_alpha * w,
-            (b.q(r) * change.eta / b.eta - d_q) * w / b.eta,
+            change.gap - change.displacement - d_alpha * w,
+            ((b.q(r) * change.eta / b.eta - d_q) * w + change.velocity) / b.eta,
         );
         let product = |a: C64, b: C64| (a.conj() * b).re;
         let d_w = (product(b.forced, forced) - product(u, held)) / product(u, per_w);
@@ -247,7 +266,7 @@ impl Sensitivity {
             x: of(&x),
             y: of(&y),
             phase: turned(u, held + per_w * d_w) - turned(b.forced, forced),
-            closing_speed: d_w,
+            approach_speed: d_w,
         }
     }
 }
@@ -272,13 +291,13 @@ mod tests {
     }
 
     #[test]
-    fn valid_coefficients_are_those_of_the_orbit() {
+    fn coefficients_are_those_of_the_orbit() {
         for machine in machines() {
             for orbit in orbits(&machine, Setting::new(1.2, 0.8), 1).unwrap() {
                 let gap = machine.gap(0.8);
                 let branch = Branch::new(&machine, 1.2, 1);
                 let motion =
-                    Sensitivity::new(&machine, branch, 1, gap, orbit.closing_speed).motion();
+                    Sensitivity::new(&machine, branch, 1, gap, orbit.approach_speed).motion();
                 assert!((motion.phase - orbit.phase_at_impact).abs() < 1e-12);
                 let turned = motion.x.force * C64::from_polar(1.0, orbit.phase_at_impact);
                 assert!((turned - orbit.paths().x.force).norm() < 1e-12);
@@ -383,14 +402,14 @@ mod tests {
     }
 
     #[test]
-    fn valid_slopes_are_those_of_finite_differences() {
+    fn slopes_are_those_of_finite_differences() {
         let step = 1e-6;
         for machine in machines() {
             for n in [1, 2] {
                 let (eta, rho) = (1.15 * f64::from(n), 0.4);
                 let gap = machine.gap(rho);
                 let orbits = orbits(&machine, Setting::new(eta, rho), n).unwrap();
-                let speed = orbits.last().expect("an orbit").closing_speed;
+                let speed = orbits.last().expect("an orbit").approach_speed;
                 let branch = Branch::new(&machine, eta, n);
                 let here = Sensitivity::new(&machine, branch, n, gap, speed);
                 let above = moved(&machine, eta, gap, step);
@@ -398,7 +417,9 @@ mod tests {
                 for ((change, ma, ea, ga), (_, mb, eb, gb)) in above.into_iter().zip(below) {
                     let near = |m: &Machine, eta: f64, gap: f64| {
                         let branch = Branch::new(m, eta, n);
-                        let roots = branch.closing_speeds(m.restitution().at(1.0), gap).unwrap();
+                        let roots = branch
+                            .approach_speeds(m.restitution().at(1.0), gap)
+                            .unwrap();
                         let nearer = |w: &f64| (w - speed).abs();
                         let w = roots
                             .into_iter()
@@ -414,7 +435,7 @@ mod tests {
                     let complex = |exact: C64, a: C64, b: C64| {
                         apart(exact.re, a.re, b.re).max(apart(exact.im, a.im, b.im))
                     };
-                    assert!(apart(slope.closing_speed, a.closing_speed, b.closing_speed) < 1e-7);
+                    assert!(apart(slope.approach_speed, a.approach_speed, b.approach_speed) < 1e-7);
                     assert!(apart(slope.phase, a.phase, b.phase) < 1e-7);
                     for (s, a, b) in [(slope.x, a.x, b.x), (slope.y, a.y, b.y)] {
                         assert!(complex(s.force, a.force, b.force) < 1e-7);

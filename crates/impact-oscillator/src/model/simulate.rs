@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use super::contact::{self, ImpactKind, ModelImpact, Outcome};
+use super::contact::{self, Impact, ImpactKind, Outcome};
 use super::crossing::first_zero;
-use super::flight::{Drive, FlightPaths, State, free_flight, joined_flight, press};
+use super::flight::{Drive, FlightPaths, State, free_flight, press, sticking_flight};
 use super::params::{Initial, Machine, ModelError, Setting};
 
 /// A piece of the motion between two events.
@@ -14,8 +14,8 @@ pub struct Arc {
     pub tau: f64,
     /// How long it lasts.
     pub duration: f64,
-    /// Whether the masses are joined in it (a dead zone).
-    pub joined: bool,
+    /// Whether the masses stick together in it (a dead zone).
+    pub sticking: bool,
     /// Phase of the drive at its start, rad.
     pub phase: f64,
     /// Displacements in time since its start.
@@ -27,30 +27,41 @@ pub trait Sink {
     /// A finished piece of motion.
     fn arc(&mut self, _arc: &Arc) {}
     /// An impact.
-    fn impact(&mut self, _impact: &ModelImpact) {}
+    fn impact(&mut self, _impact: &Impact) {}
 }
 
-impl<F: FnMut(&ModelImpact)> Sink for F {
-    fn impact(&mut self, impact: &ModelImpact) {
+impl<F: FnMut(&Impact)> Sink for F {
+    fn impact(&mut self, impact: &Impact) {
         self(impact);
     }
 }
 
-/// A motion that can be continued, with η and ρ changed on the way (quasi-stationary sweeps):
-/// the drive's phase stays continuous.
+/// A motion that can be continued, with η and ρ changed between (quasi-stationary sweeps): the
+/// drive's phase stays continuous.
+///
+/// ```
+/// use impact_oscillator::{Impact, Initial, Machine, Setting, Simulator};
+///
+/// let machine = Machine::symmetric(0.07, 0.9);
+/// let setting = Setting::new(1.2, 6.0);
+/// let mut simulator = Simulator::new(&machine, setting, Initial::rest())?;
+/// // far above grazing, ρ'(1.2) = 2.123
+/// simulator.advance(200.0 * setting.period(), &mut |_: &Impact| unreachable!());
+/// // with a smaller clearance it hits once per drive period
+/// simulator.set(1.2, 2.0);
+/// simulator.advance(300.0 * setting.period(), &mut |_: &Impact| ());
+/// simulator.advance(1.0 * setting.period(), &mut |i: &Impact| {
+///     assert!((i.approach_speed - 2.0 * 2.413_516).abs() < 1e-5);
+/// });
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Simulator {
     machine: Machine,
-    eta: f64,
-    clearance: f64,
-    tau: f64,
-    phase: f64,
-    state: State,
-    joined: bool,
-    size: f64,
+    now: Snapshot,
 }
 
-/// A motion at an instant, to go on from later.
+/// A motion at an instant: everything that the rest of it depends on, beside the machine.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Snapshot {
     eta: f64,
@@ -58,16 +69,16 @@ pub struct Snapshot {
     tau: f64,
     phase: f64,
     state: State,
-    joined: bool,
+    sticking: bool,
     size: f64,
 }
 
 impl Simulator {
     /// Start a motion at τ = 0. Masses that start in contact, at rest and pressed together
-    /// start joined.
+    /// start sticking.
     ///
     /// # Errors
-    /// [`ModelError`] where a parameter is out of range or the start lies beyond the contact.
+    /// [`ModelError`] where a parameter is out of range or the start is beyond the contact.
     pub fn new(machine: &Machine, setting: Setting, initial: Initial) -> Result<Self, ModelError> {
         machine.check()?;
         setting.check()?;
@@ -77,23 +88,25 @@ impl Simulator {
         } else {
             (0.0, 0.0)
         };
+        let Initial { x, vx, .. } = initial;
         let state = State {
-            x: initial.x,
-            vx: initial.vx,
+            x,
+            vx,
             y,
             vy,
             ..State::default()
         };
-        let mut new = Self {
-            machine: machine.clone(),
+        let now = Snapshot {
             eta: setting.frequency_ratio,
             clearance: setting.clearance,
             tau: 0.0,
             phase: setting.phase.rem_euclid(TAU),
             state,
-            joined: false,
+            sticking: false,
             size: 0.0,
         };
+        let machine = machine.clone();
+        let mut new = Self { machine, now };
         let depth = -new.gap_left();
         if depth > 1e-12 * (1.0 + state.x.abs() + state.y.abs()) {
             return Err(ModelError::StartsInContact { depth });
@@ -102,20 +115,12 @@ impl Simulator {
         Ok(new)
     }
 
-    /// Everything that the rest of the motion depends on, beside the machine.
+    /// The motion now.
     pub fn snapshot(&self) -> Snapshot {
-        Snapshot {
-            eta: self.eta,
-            clearance: self.clearance,
-            tau: self.tau,
-            phase: self.phase,
-            state: self.state,
-            joined: self.joined,
-            size: self.size,
-        }
+        self.now
     }
 
-    /// Go on from a snapshot, bit for bit as if there had been no break.
+    /// Continue from a snapshot, bit for bit as without a break.
     ///
     /// # Errors
     /// [`ModelError`] where the machine's parameters are out of range.
@@ -123,13 +128,7 @@ impl Simulator {
         machine.check()?;
         Ok(Self {
             machine: machine.clone(),
-            eta: snapshot.eta,
-            clearance: snapshot.clearance,
-            tau: snapshot.tau,
-            phase: snapshot.phase,
-            state: snapshot.state,
-            joined: snapshot.joined,
-            size: snapshot.size,
+            now: *snapshot,
         })
     }
 
@@ -140,12 +139,12 @@ impl Simulator {
 
     /// τ reached.
     pub fn tau(&self) -> f64 {
-        self.tau
+        self.now.tau
     }
 
     /// Phase of the drive now, rad in [0, 2π).
     pub fn phase(&self) -> f64 {
-        self.phase
+        self.now.phase
     }
 
     /// Displacements, velocities and accelerations now.
@@ -153,29 +152,29 @@ impl Simulator {
         self.paths().at(0.0)
     }
 
-    /// Whether the masses are joined now.
-    pub fn is_joined(&self) -> bool {
-        self.joined
+    /// Whether the masses stick together now.
+    pub fn is_sticking(&self) -> bool {
+        self.now.sticking
     }
 
     /// Go on with another frequency ratio and clearance; the drive's phase and the motion stay
     /// continuous. Where the smaller clearance cuts into the motion, the masses are set back to
     /// the contact, each by its mobility.
     pub fn set(&mut self, frequency_ratio: f64, clearance: f64) {
-        (self.eta, self.clearance) = (frequency_ratio, clearance);
-        if self.joined {
-            self.state = contact::joined_state(&self.machine, clearance, &self.state);
+        (self.now.eta, self.now.clearance) = (frequency_ratio, clearance);
+        if self.now.sticking {
+            self.now.state = contact::sticking_state(&self.machine, clearance, &self.now.state);
         } else if self.gap_left() < 0.0 {
-            self.state = contact::in_contact(&self.machine, clearance, &self.state);
+            self.now.state = contact::in_contact(&self.machine, clearance, &self.now.state);
         }
         self.settle();
     }
 
-    /// Go on for a time, telling arcs and impacts.
+    /// Continue for a time in units of τ; the sink receives arcs and impacts in the order of time.
     pub fn advance(&mut self, duration: f64, sink: &mut impl Sink) {
-        let end = self.tau + duration;
-        while self.tau < end {
-            if self.joined {
+        let end = self.now.tau + duration;
+        while self.now.tau < end {
+            if self.now.sticking {
                 self.stay(end, sink);
             } else {
                 self.fly(end, sink);
@@ -185,50 +184,55 @@ impl Simulator {
 
     fn drive(&self) -> Drive {
         Drive {
-            eta: self.eta,
-            phase: self.phase,
+            eta: self.now.eta,
+            phase: self.now.phase,
         }
     }
 
     fn gap_left(&self) -> f64 {
-        self.machine.gap(self.clearance) - self.state.x - self.state.y
+        self.machine.gap(self.now.clearance) - self.now.state.x - self.now.state.y
     }
 
     fn paths(&self) -> FlightPaths {
-        if self.joined {
-            joined_flight(&self.machine, self.drive(), self.clearance, &self.state)
+        if self.now.sticking {
+            sticking_flight(
+                &self.machine,
+                self.drive(),
+                self.now.clearance,
+                &self.now.state,
+            )
         } else {
-            free_flight(&self.machine, self.drive(), &self.state)
+            free_flight(&self.machine, self.drive(), &self.now.state)
         }
     }
 
-    /// Join masses that lie in contact without relative velocity and are pressed together.
+    /// Let masses stick that are in contact without relative velocity and are pressed together.
     fn settle(&mut self) {
-        let s = &self.state;
+        let s = &self.now.state;
         let still = 1e-12 * (1.0 + s.x.abs() + s.y.abs() + s.vx.abs() + s.vy.abs());
-        if self.joined || self.gap_left() > still || (s.vx + s.vy).abs() > still {
+        if self.now.sticking || self.gap_left() > still || (s.vx + s.vy).abs() > still {
             return;
         }
         let (ax, ay) = contact::free_accelerations(&self.machine, self.drive(), s);
         if ax + ay > 0.0 {
-            self.joined = true;
-            self.state = contact::joined_state(&self.machine, self.clearance, s);
+            self.now.sticking = true;
+            self.now.state = contact::sticking_state(&self.machine, self.now.clearance, s);
         }
     }
 
-    /// Move along an arc of a given length and tell it; the last arc ends exactly at `end`.
+    /// Move along an arc of a given length and report it; the last arc ends exactly at `end`.
     fn move_on(&mut self, paths: &FlightPaths, length: f64, end: f64, sink: &mut impl Sink) {
-        let (tau, joined, phase) = (self.tau, self.joined, self.phase);
+        let (tau, sticking, phase) = (self.now.tau, self.now.sticking, self.now.phase);
         sink.arc(&Arc {
             tau,
             duration: length,
-            joined,
+            sticking,
             phase,
             paths: *paths,
         });
-        self.state = paths.at(length);
-        self.phase = (self.phase + self.eta * length).rem_euclid(TAU);
-        self.tau = if length >= end - tau {
+        self.now.state = paths.at(length);
+        self.now.phase = (self.now.phase + self.now.eta * length).rem_euclid(TAU);
+        self.now.tau = if length >= end - tau {
             end
         } else {
             tau + length
@@ -237,11 +241,11 @@ impl Simulator {
 
     fn fly(&mut self, end: f64, sink: &mut impl Sink) {
         let paths = self.paths();
-        let gap = paths.gap(self.machine.gap(self.clearance));
+        let gap = paths.gap(self.machine.gap(self.now.clearance));
         // on an incline a chatter's flights shrink without a scale of their own
-        let known = if gap.is_bounded() { 0.0 } else { self.size };
-        self.size = gap.size().max(known);
-        let limit = (end - self.tau).min(paths.valid_for);
+        let known = if gap.is_bounded() { 0.0 } else { self.now.size };
+        self.now.size = gap.size().max(known);
+        let limit = (end - self.now.tau).min(paths.valid_for);
         match first_zero(&gap, limit) {
             Some(hit) => {
                 self.move_on(&paths, hit.time, end, sink);
@@ -250,38 +254,42 @@ impl Simulator {
             None => {
                 self.move_on(&paths, limit, end, sink);
                 if limit == paths.valid_for {
-                    self.state.vx = 0.0;
+                    self.now.state.vx = 0.0;
                 }
             }
         }
     }
 
     fn impact(&mut self, sink: &mut impl Sink) {
-        let before = contact::in_contact(&self.machine, self.clearance, &self.state);
+        let before = contact::in_contact(&self.machine, self.now.clearance, &self.now.state);
         let Outcome {
             after,
             kind,
             until_rest,
-        } = contact::impact(&self.machine, self.drive(), &before, self.size);
-        self.state = after;
+        } = contact::impact(&self.machine, self.drive(), &before, self.now.size);
+        self.now.state = after;
         let sticks = matches!(kind, ImpactKind::Stick | ImpactKind::ChatterEnd);
         let mut dead_zone = 0.0;
         if sticks {
-            self.joined = true;
-            self.state = contact::joined_state(&self.machine, self.clearance, &after);
-            let release =
-                contact::release_time(&self.machine, self.drive(), self.clearance, &self.state);
+            self.now.sticking = true;
+            self.now.state = contact::sticking_state(&self.machine, self.now.clearance, &after);
+            let release = contact::release_time(
+                &self.machine,
+                self.drive(),
+                self.now.clearance,
+                &self.now.state,
+            );
             dead_zone = (release - until_rest).max(0.0);
         }
-        sink.impact(&ModelImpact {
-            tau: self.tau + until_rest,
-            phase: (self.phase + self.eta * until_rest).rem_euclid(TAU),
+        sink.impact(&Impact {
+            tau: self.now.tau + until_rest,
+            phase: (self.now.phase + self.now.eta * until_rest).rem_euclid(TAU),
             vx_before: before.vx,
-            vx_after: self.state.vx,
+            vx_after: self.now.state.vx,
             vy_before: before.vy,
-            vy_after: self.state.vy,
-            closing_before: (before.vx + before.vy).max(0.0),
-            closing_after: self.state.vx + self.state.vy,
+            vy_after: self.now.state.vy,
+            approach_speed: (before.vx + before.vy).max(0.0),
+            separation_speed: -(self.now.state.vx + self.now.state.vy),
             kind,
             dead_zone,
         });
@@ -291,14 +299,14 @@ impl Simulator {
         let paths = self.paths();
         let press = press(&self.machine, self.drive(), &paths);
         if press.at(0.0)[0] <= 0.0 {
-            self.joined = false;
+            self.now.sticking = false;
             return;
         }
-        let limit = end - self.tau;
+        let limit = end - self.now.tau;
         match first_zero(&press, limit) {
             Some(release) => {
                 self.move_on(&paths, release.time, end, sink);
-                self.joined = false;
+                self.now.sticking = false;
             }
             None => self.move_on(&paths, limit, end, sink),
         }
@@ -311,14 +319,14 @@ pub struct Trajectory {
     /// Pieces of motion in the order of time, without a gap between them.
     pub arcs: Vec<Arc>,
     /// All impacts in the order of time.
-    pub impacts: Vec<ModelImpact>,
+    pub impacts: Vec<Impact>,
 }
 
 impl Sink for Trajectory {
     fn arc(&mut self, arc: &Arc) {
         self.arcs.push(*arc);
     }
-    fn impact(&mut self, impact: &ModelImpact) {
+    fn impact(&mut self, impact: &Impact) {
         self.impacts.push(*impact);
     }
 }
@@ -357,10 +365,30 @@ impl Trajectory {
     }
 }
 
-/// Simulate a motion from a start for a time.
+/// Simulate a motion from a start over a duration in units of τ. The result is exact at every
+/// instant: flights by eq. (2), the next impact by eq. (3), impacts by eq. (4).
 ///
 /// # Errors
-/// [`ModelError`] where a parameter is out of range or the start lies beyond the contact.
+/// [`ModelError`] where a parameter is out of range or the start is beyond the contact.
+///
+/// ```
+/// use impact_oscillator::{ImpactKind, Initial, Machine, Setting, simulate};
+/// use std::f64::consts::PI;
+///
+/// // Fig. 2 of the paper: plastic impacts, three of which open a dead zone
+/// let machine = Machine::symmetric(0.1, 0.0);
+/// let setting = Setting { phase: PI / 4.0, ..Setting::new(0.95, 0.7) };
+/// let start = Initial { x: -1.0, vx: 1.5, y: -3.0, vy: 2.5 };
+/// let motion = simulate(&machine, setting, start, 3.0 * setting.period())?;
+/// let expected = [(0.1589, 4.9422), (0.8846, 4.6027), (1.8677, 4.4129), (2.8677, 4.4129)];
+/// assert_eq!(motion.impacts.len(), expected.len());
+/// for (impact, (periods, speed)) in motion.impacts.iter().zip(expected) {
+///     assert!((impact.tau / setting.period() - periods).abs() < 6e-5);
+///     assert!((impact.approach_speed - speed).abs() < 6e-5);
+/// }
+/// assert_eq!(motion.impacts[3].kind, ImpactKind::Stick);
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn simulate(
     machine: &Machine,
     setting: Setting,

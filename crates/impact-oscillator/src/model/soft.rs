@@ -32,13 +32,13 @@ pub struct SoftImpact {
     pub tau: f64,
     /// How long the contact presses.
     pub duration: f64,
-    /// Closing speed at first touch.
-    pub closing_before: f64,
-    /// Closing speed when the press ends; not positive.
-    pub closing_after: f64,
+    /// Approach speed at first touch.
+    pub approach_speed: f64,
+    /// Separation speed when the contact ends, not negative.
+    pub separation_speed: f64,
 }
 
-/// A simulated motion with soft contacts; arcs with a contact are marked joined.
+/// A simulated motion with soft contacts; arcs with a contact are marked as sticking.
 #[derive(Debug, Clone, Default)]
 pub struct SoftMotion {
     /// The motion, exact at every instant; its list of rigid impacts is empty.
@@ -128,7 +128,7 @@ enum Phase {
     Free,
     /// Pressed together.
     Pressed,
-    /// Overlapping still, but parting faster than the contact recovers.
+    /// Overlapping still, but separation faster than the contact recovers.
     Recovering,
 }
 
@@ -144,11 +144,25 @@ struct Runner<'a> {
     touch: Option<(f64, f64)>,
 }
 
-/// Simulate a motion with soft contact from a start for a time.
+/// Simulate a motion with soft contact from a start over a duration in units of τ.
 ///
 /// # Errors
 /// [`ModelError`] where a parameter is out of range, the masses differ in more than their
-/// drives, or the start lies beyond the contact.
+/// drives, or the start is beyond the contact.
+///
+/// ```
+/// use impact_oscillator::model::soft::{SoftContact, simulate_soft};
+/// use impact_oscillator::{Initial, Machine, Setting};
+///
+/// let machine = Machine::symmetric(0.07, 0.8);
+/// let contact = SoftContact::with_restitution(&machine, 1e8, 0.8)?;
+/// let motion = simulate_soft(&machine, contact, Setting::new(1.25, 1.0), Initial::rest(), 25.0)?;
+/// let first = motion.contacts[0];
+/// assert!((first.separation_speed / first.approach_speed - 0.8).abs() < 1e-3);
+/// // half a period of the contact's vibration, π/√(2κ), shortened by its damper
+/// assert!(first.duration < 2.3e-4);
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn simulate_soft(
     machine: &Machine,
     contact: SoftContact,
@@ -292,7 +306,7 @@ impl Runner<'_> {
         motion.trajectory.arcs.push(Arc {
             tau: self.tau,
             duration: length,
-            joined: self.phase == Phase::Pressed,
+            sticking: self.phase == Phase::Pressed,
             phase: self.drive_phase,
             paths,
         });
@@ -309,19 +323,19 @@ impl Runner<'_> {
     }
 
     fn enter(&mut self, next: Phase, motion: &mut SoftMotion) {
-        let closing = self.state.vx + self.state.vy;
+        let approach = self.state.vx + self.state.vy;
         if next == Phase::Pressed {
-            self.touch = Some((self.tau, closing));
+            self.touch = Some((self.tau, approach));
         }
         if self.phase == Phase::Pressed
-            && let Some((tau, closing_before)) = self.touch.take()
+            && let Some((tau, approach_speed)) = self.touch.take()
         {
             let duration = self.tau - tau;
             let contact = SoftImpact {
                 tau,
                 duration,
-                closing_before,
-                closing_after: closing,
+                approach_speed,
+                separation_speed: -approach,
             };
             motion.contacts.push(contact);
         }
@@ -413,7 +427,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_short_contacts_have_the_restitution_asked_for() {
+    fn valid_short_contacts_have_the_requested_restitution() {
         let machine = Machine::single(0.0, 0.5);
         for r in [0.2, 0.5, 0.9, 1.0] {
             let soft = SoftContact::with_restitution(&machine, 1e10, r).unwrap();
@@ -421,14 +435,14 @@ mod tests {
                 .unwrap();
             let c = m.contacts[0];
             assert!(
-                (c.closing_after / c.closing_before + r).abs() < 1e-4,
+                (c.separation_speed / c.approach_speed - r).abs() < 1e-4,
                 "{r} {c:?}"
             );
         }
     }
 
     #[test]
-    fn prop_the_motion_is_continuous_and_pays_for_every_contact() {
+    fn the_motion_is_continuous_through_every_contact() {
         let machine = Machine::symmetric(0.05, 0.5);
         let soft = SoftContact {
             stiffness: 30.0,
@@ -451,18 +465,18 @@ mod tests {
         assert!(
             m.contacts
                 .iter()
-                .all(|c| c.closing_before > 0.0 && c.duration > 0.0)
+                .all(|c| c.approach_speed > 0.0 && c.duration > 0.0)
         );
     }
 
     #[test]
-    fn valid_a_stiff_orbit_settles_on_the_rigid_one() {
+    fn a_stiff_orbit_settles_on_the_rigid_one() {
         let machine = Machine::symmetric(0.07, 0.8);
         let setting = Setting::new(1.25, 1.0);
         let orbit = stable_orbit(&machine, setting, 1).unwrap().unwrap();
         let soft = SoftContact::with_restitution(&machine, 1e9, 0.8).unwrap();
         let m = simulate_soft(&machine, soft, setting, Initial::rest(), 400.0).unwrap();
         let last = m.contacts.last().unwrap();
-        assert!((last.closing_before / orbit.closing_speed - 1.0).abs() < 1e-3);
+        assert!((last.approach_speed / orbit.approach_speed - 1.0).abs() < 1e-3);
     }
 }

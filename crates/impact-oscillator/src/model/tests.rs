@@ -37,7 +37,7 @@ fn valid_paper_fig2_plastic_impacts_and_dead_zones() {
     assert_eq!(t.impacts.len(), want.len());
     for (impact, (tau, w)) in t.impacts.iter().zip(want) {
         close(impact.tau / period, tau, 6e-5);
-        close(impact.closing_before, w, 6e-5);
+        close(impact.approach_speed, w, 6e-5);
     }
     let kinds: Vec<_> = t.impacts.iter().map(|i| i.kind).collect();
     assert_eq!(kinds[0], ImpactKind::Plastic);
@@ -46,13 +46,13 @@ fn valid_paper_fig2_plastic_impacts_and_dead_zones() {
 }
 
 #[test]
-fn valid_paper_fig5_greatest_closing_speeds() {
+fn valid_paper_fig5_greatest_approach_speeds() {
     let greatest = |r: f64| {
         (0..6000)
             .filter_map(|i| {
                 let eta = 1.0 + f64::from(i) * 1e-3 / 6.0;
                 let o = stable_orbit(&Machine::symmetric(0.005, r), Setting::new(eta, 3.0), 1);
-                o.unwrap().map(|o| (eta, o.closing_speed))
+                o.unwrap().map(|o| (eta, o.approach_speed))
             })
             .fold((0.0, 0.0), |m, p| if p.1 > m.1 { p } else { m })
     };
@@ -67,7 +67,7 @@ fn valid_paper_fig5_greatest_closing_speeds() {
         close(at, eta, 1.5e-3);
     }
     let o = stable_orbit(&Machine::symmetric(0.005, 0.9), Setting::new(1.5, 3.0), 1).unwrap();
-    close(o.unwrap().closing_speed, 13.646, 5e-4);
+    close(o.unwrap().approach_speed, 13.646, 5e-4);
 }
 
 #[test]
@@ -94,12 +94,12 @@ fn valid_orbits_of_known_speed() {
     let o = stable_orbit(&m, Setting::new(1.2, 2.0), 1)
         .unwrap()
         .unwrap();
-    close(o.closing_speed, 2.413516, 6e-7);
+    close(o.approach_speed, 2.413516, 6e-7);
     let m = Machine::symmetric(0.02, 0.3);
     let o = stable_orbit(&m, Setting::new(1.1, 3.0), 1)
         .unwrap()
         .unwrap();
-    close(o.closing_speed, 6.534558, 6e-7);
+    close(o.approach_speed, 6.534558, 6e-7);
 }
 
 #[test]
@@ -122,7 +122,7 @@ fn valid_paper_fig4_boundaries_along_line_q() {
 }
 
 #[test]
-fn prop_orbit_is_periodic_in_the_simulator() {
+fn orbit_is_periodic_in_the_simulator() {
     let asymmetry = Asymmetry {
         drive_amplitude: 0.95,
         stiffness: 0.97,
@@ -144,7 +144,7 @@ fn prop_orbit_is_periodic_in_the_simulator() {
             let t = simulate(&m, o.setting, start, 1.01 * o.period()).unwrap();
             assert!(o.exists());
             close(t.impacts[0].tau, o.period(), 1e-10);
-            close(t.impacts[0].closing_before, o.closing_speed, 1e-10);
+            close(t.impacts[0].approach_speed, o.approach_speed, 1e-10);
             close(t.impacts[0].vx_after, s.vx, 1e-10);
             let (a, b) = (o.at(1.0), t.at(1.0));
             close(a.x, b.x, 1e-12);
@@ -154,7 +154,7 @@ fn prop_orbit_is_periodic_in_the_simulator() {
 }
 
 #[test]
-fn prop_multipliers_match_finite_differences() {
+fn multipliers_match_finite_differences() {
     let asymmetry = Asymmetry {
         drive_amplitude: 0.9,
         stiffness: 1.1,
@@ -181,7 +181,7 @@ fn prop_multipliers_match_finite_differences() {
             };
             let setting = Setting { phase, ..o.setting };
             let mut sim = Simulator::new(&m, setting, start).unwrap();
-            sim.advance(o.period(), &mut |_: &ModelImpact| {});
+            sim.advance(o.period(), &mut |_: &Impact| {});
             let e = sim.state();
             [e.x, e.vx, e.y, e.vy]
         };
@@ -214,9 +214,9 @@ fn valid_cart_on_incline_bounces_geometrically() {
     let t = simulate(&m, Setting::new(1.0, 0.0), start, 100.0).unwrap();
     let v0 = (2.0f64 * 1.9).sqrt();
     let kept = (1.9f64 / 2.1).sqrt();
-    close(t.impacts[0].closing_before, v0, 1e-12);
+    close(t.impacts[0].approach_speed, v0, 1e-12);
     close(
-        t.impacts[5].closing_before,
+        t.impacts[5].approach_speed,
         v0 * (0.9 * kept).powi(5),
         1e-12,
     );
@@ -232,7 +232,7 @@ fn valid_cart_on_incline_bounces_geometrically() {
 }
 
 #[test]
-fn prop_complete_chatter_ends_and_releases() {
+fn complete_chatter_ends_and_releases() {
     // ρ slightly below 1 with slow drive: long press, chatter, release
     let m = Machine::symmetric(0.05, 0.5);
     let t = simulate(
@@ -259,7 +259,7 @@ fn prop_complete_chatter_ends_and_releases() {
 }
 
 #[test]
-fn valid_preload_keeps_the_masses_joined() {
+fn valid_preload_keeps_the_masses_sticking() {
     let m = Machine::symmetric(0.05, 0.5);
     let start = Initial {
         x: -1.5,
@@ -269,7 +269,7 @@ fn valid_preload_keeps_the_masses_joined() {
     let t = simulate(&m, Setting::new(0.9, -1.5), start, 50.0).unwrap();
     assert!(t.impacts.is_empty());
     assert_eq!(t.arcs.len(), 1);
-    assert!(t.arcs[0].joined);
+    assert!(t.arcs[0].sticking);
     // just above ρp = −1 the force vanishes once a period
     let start = Initial {
         x: -0.9,
@@ -281,7 +281,7 @@ fn valid_preload_keeps_the_masses_joined() {
 }
 
 #[test]
-fn prop_newton_orbits_match_simulated_motions() {
+fn newton_orbits_match_simulated_motions() {
     let asymmetry = Asymmetry {
         drive_amplitude: 0.95,
         stiffness: 1.0,
@@ -302,8 +302,8 @@ fn prop_newton_orbits_match_simulated_motions() {
         let SettledMotion::Periodic { p, n, .. } = motion else {
             panic!("{eta} {rho} {motion:?}")
         };
-        let last = &impacts[impacts.len() - usize::from(p)..];
-        let guess = PeriodicOrbit::from_impacts(last, setting, n.into()).unwrap();
+        let last = &impacts[impacts.len() - p as usize..];
+        let guess = PeriodicOrbit::from_impacts(last, setting, n).unwrap();
         let orbit = guess.clone().solve(&m).unwrap();
         println!(
             "{eta} {rho}: {p}/{n} {:?}",
@@ -318,8 +318,8 @@ fn prop_newton_orbits_match_simulated_motions() {
         assert_eq!(orbit.existence(&m), Existence::Exists);
         assert!(orbit.is_stable(&m));
         if p == 1 {
-            let closed = stable_orbit(&m, setting, n.into()).unwrap().unwrap();
-            close(closed.closing_speed, orbit.speeds[0], 1e-11);
+            let closed = stable_orbit(&m, setting, n).unwrap().unwrap();
+            close(closed.approach_speed, orbit.speeds[0], 1e-11);
             for (a, b) in closed.multipliers.iter().zip(orbit.multipliers(&m)) {
                 close(a.norm(), b.norm(), 1e-9);
             }
@@ -328,7 +328,7 @@ fn prop_newton_orbits_match_simulated_motions() {
 }
 
 #[test]
-fn valid_masses_stay_together_for_ever_below_rho_p() {
+fn masses_stick_for_all_time_below_rho_p() {
     let asymmetry = params::Asymmetry {
         drive_amplitude: 0.8,
         stiffness: 1.3,
@@ -340,27 +340,27 @@ fn valid_masses_stay_together_for_ever_below_rho_p() {
         Machine::asymmetric(0.1, 0.0, asymmetry),
     ];
     for (machine, eta) in machines.iter().zip([0.8, 1.3, 0.9]) {
-        let edge = boundary::rho_joined(machine, eta);
+        let edge = boundary::rho_sticking(machine, eta);
         let stays = |rho: f64| {
-            // in contact and at rest; the joined masses' own vibration has died away
+            // in contact and at rest; the sticking masses' own vibration has died away
             let start = Initial::both(rho, 0.0);
             let mut s = Simulator::new(machine, Setting::new(eta, rho), start).unwrap();
-            s.advance(400.0, &mut |_: &ModelImpact| {});
+            s.advance(400.0, &mut |_: &Impact| {});
             let mut apart = false;
             for _ in 0..2000 {
-                s.advance(0.01, &mut |_: &ModelImpact| {});
-                apart |= !s.is_joined();
+                s.advance(0.01, &mut |_: &Impact| {});
+                apart |= !s.is_sticking();
             }
             !apart
         };
         assert!(stays(edge - 1e-3), "{edge}");
         assert!(!stays(edge + 1e-3), "{edge}");
     }
-    assert!((boundary::rho_joined(&machines[1], 2.0) + 1.0).abs() < 1e-12);
+    assert!((boundary::rho_sticking(&machines[1], 2.0) + 1.0).abs() < 1e-12);
 }
 
 #[test]
-fn valid_boundaries_at_a_clearance_are_those_at_their_frequency() {
+fn boundaries_at_a_clearance_are_those_at_their_frequency() {
     let machine = Machine::symmetric(0.07, 0.9);
     for p in boundary::etas_s1(&machine, 1.9, 1) {
         assert!((rho_s1(&machine, p.eta, 1).unwrap().rho - 1.9).abs() < 1e-8);
@@ -373,7 +373,7 @@ fn valid_boundaries_at_a_clearance_are_those_at_their_frequency() {
 }
 
 #[test]
-fn valid_every_impact_follows_the_law_of_its_speed() {
+fn every_impact_follows_the_law_of_its_speed() {
     let laws = [
         Restitution::Table(vec![(0.0, 0.95), (2.0, 0.8), (6.0, 0.6)]),
         Restitution::PowerLaw {
@@ -398,11 +398,11 @@ fn valid_every_impact_follows_the_law_of_its_speed() {
         let bounces = t.impacts.iter().filter(|i| i.kind == ImpactKind::Bounce);
         let mut seen = (f64::MAX, 0.0_f64);
         for i in bounces {
-            let r = law.at(i.closing_before);
+            let r = law.at(i.approach_speed);
             close(
-                -i.closing_after,
-                r * i.closing_before,
-                1e-13 * (1.0 + i.closing_before),
+                i.separation_speed,
+                r * i.approach_speed,
+                1e-13 * (1.0 + i.approach_speed),
             );
             seen = (seen.0.min(r), seen.1.max(r));
         }

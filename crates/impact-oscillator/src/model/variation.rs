@@ -27,8 +27,20 @@ fn fill_flow(m: &mut Matrix4<f64>, at: usize, o: &Oscillator, time: f64) {
     m[(at + 1, at + 1)] = e * (c - d * s / w);
 }
 
-/// Saltation matrix at an impact: how a variation (X, X', Y, Y') just before goes over into one
-/// just after, S = DR + (f₊ − DR f₋)nᵀ/w with n the gap's normal.
+/// Saltation matrix at an impact: which maps a variation (X, X', Y, Y') just before to one
+/// just after, S = D + (f₊ − D f₋)nᵀ/w with n the gap's normal, eq. (11).
+///
+/// ```
+/// use impact_oscillator::model::{orbit::stable_orbit, variation::saltation};
+/// use impact_oscillator::{Machine, Setting};
+///
+/// let machine = Machine::single(0.07, 0.9);
+/// let orbit = stable_orbit(&machine, Setting::new(1.2, 2.0), 1)?.expect("z = 1");
+/// let map = saltation(&machine, &orbit.before, &orbit.after);
+/// // an impact contracts areas of the phase plane by R²
+/// assert!((map.determinant() - 0.81).abs() < 1e-9);
+/// # Ok::<(), impact_oscillator::ModelError>(())
+/// ```
 pub fn saltation(machine: &Machine, before: &State, after: &State) -> Matrix4<f64> {
     let w = before.vx + before.vy;
     let law = machine.restitution();
@@ -61,8 +73,8 @@ pub fn eigenvalues(machine: &Machine, map: &Matrix4<f64>) -> Vec<C64> {
 /// Steps after which the QR iteration of a matrix of four rows is given up; it needs about ten.
 const MOST_STEPS: usize = 1000;
 
-/// Eigenvalues by the QR iteration, which is told when to stop: where a map's last digits toss to
-/// and fro it would go on for ever.
+/// Eigenvalues by the QR iteration with a limit on its steps: where a map's last digits oscillate
+/// it would not end.
 fn of_four(map: &Matrix4<f64>) -> Vec<C64> {
     [f64::EPSILON, 1e3 * f64::EPSILON, 1e6 * f64::EPSILON]
         .into_iter()

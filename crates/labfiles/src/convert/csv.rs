@@ -1,15 +1,15 @@
-//! Records to CSV: remarks, a header with units, a row a sample.
+//! Records to CSV: remarks, a header with units, one row per sample.
 
 use std::io::Write;
 use std::path::Path;
 
-use crate::convert::{ConvertError, Item, io};
+use crate::convert::item::{ConvertError, Item, io};
 use crate::csv::TEXTS_KEY;
 use crate::output::{write_folder_whole_or, write_whole_or};
 use crate::source::Samples;
 
 /// Write one record to a file, or several to the files of a folder.
-pub fn write(items: &[Item], out: &Path) -> Result<(), ConvertError> {
+pub(super) fn write(items: &[Item], out: &Path) -> Result<(), ConvertError> {
     if let [item] = items {
         return one(item, out, out);
     }
@@ -28,7 +28,7 @@ fn file_name(item: &Item) -> String {
     format!("{}.csv", item.name.replace('/', "_"))
 }
 
-/// Write a record to a file that a fault knows by another name.
+/// Write a record to a file that has another name in an error.
 fn one(item: &Item, path: &Path, named: &Path) -> Result<(), ConvertError> {
     let samples = item.read()?;
     write_whole_or(path, |out| rows(item, &samples, out), |e| e).map_err(io(named))?;
@@ -102,7 +102,7 @@ fn columns(item: &Item, samples: &[Samples]) -> Vec<Column> {
     all
 }
 
-/// A text as a cell: quoted where it holds a separator, a quote or a line end, begins or ends with
+/// A text as a cell: quoted if it holds a separator, a quote or a line end, begins or ends with
 /// a blank, or could be taken for a comment.
 fn quoted(text: &str) -> String {
     let special = text.contains([',', ';', '\t', '|', '"', '\n', '\r']);

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use crate::convert::{ConvertError, Item, Options};
+use crate::convert::item::{ConvertError, Item, Options};
 use crate::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Value};
 use crate::source::Samples;
 
 /// Write all records; texts are left out, complex numbers become two channels.
-pub fn write(items: &[Item], out: &Path, options: &Options) -> Result<(), ConvertError> {
+pub(super) fn write(items: &[Item], out: &Path, options: &Options) -> Result<(), ConvertError> {
     let mut writer = CampaignWriter::create(out);
     if options.single_precision {
         writer = writer.single_precision();

@@ -1,4 +1,4 @@
-//! Records to one Parquet file: a row group a record.
+//! Records to one Parquet file: one row group per record.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -8,15 +8,16 @@ use std::path::Path;
 use polars::prelude::{Column, DataFrame, DataType, Schema};
 use polars_io::parquet::write::{KeyValueMetadata, ParquetCompression, ParquetWriter};
 
-use crate::convert::{ConvertError, Item, Options, io};
+use crate::convert::item::{ConvertError, Item, Options, io};
 use crate::hdf5_write::WriteError;
+use crate::numbers::to_f32;
 use crate::output::write_whole_or;
 use crate::parquet::RECORDS_KEY;
 use crate::source::{Samples, StoredType};
 
 /// Write all records; with several there is a column `record`, and channels that a record lacks
 /// are empty.
-pub fn write(items: &[Item], out: &Path, options: &Options) -> Result<(), ConvertError> {
+pub(super) fn write(items: &[Item], out: &Path, options: &Options) -> Result<(), ConvertError> {
     let library = |e: polars::error::PolarsError| WriteError::Library {
         path: out.to_path_buf(),
         reason: e.to_string(),
@@ -159,7 +160,7 @@ fn column(name: &str, samples: Option<Samples>, text: bool, rows: usize, single:
             match single {
                 true => Column::new(
                     name.into(),
-                    padded.map(|v| v.map(|v| v as f32)).collect::<Vec<_>>(),
+                    padded.map(|v| v.map(to_f32)).collect::<Vec<_>>(),
                 ),
                 false => Column::new(name.into(), padded.collect::<Vec<_>>()),
             }

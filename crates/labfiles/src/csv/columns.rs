@@ -1,15 +1,15 @@
-//! What the columns of a text table hold, told from its first rows.
+//! What the columns of a text table hold, found from its first rows.
 
 use crate::csv::dialect::{self, Dialect};
 use crate::text::cells::{Cells, Separator};
 use crate::text::table::Kind;
 use crate::text::{decode, number};
 
-/// Rows at the front of a file from which kinds and time axis are told.
+/// Rows at the front of a file from which kinds and time axis are found.
 pub(crate) struct HeadRows<'a> {
     /// The rows, comments and blank lines left out.
     pub(crate) lines: Vec<&'a [u8]>,
-    /// What stands between two cells.
+    /// The separator between two cells.
     pub(crate) separator: Separator,
 }
 

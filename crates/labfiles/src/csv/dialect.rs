@@ -1,10 +1,10 @@
-//! How a text table is written, told from its first lines.
+//! How a text table is written, found from its first lines.
 
 use crate::text::cells::{Cells, Separator};
 use crate::text::{clock, decode, number};
 
 /// First characters that make a line a comment.
-pub const COMMENTS: &[u8] = b"#%!";
+pub(crate) const COMMENTS: &[u8] = b"#%!";
 /// Lines at the end of the head by which the dialect is judged.
 const JUDGED_LINES: usize = 60;
 
@@ -13,8 +13,8 @@ const LONGEST_TIME: usize = 80;
 
 /// How a table is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Dialect {
-    /// What stands between two cells.
+pub(crate) struct Dialect {
+    /// The separator between two cells.
     pub separator: Separator,
     /// The decimal mark.
     pub decimal: u8,
@@ -24,7 +24,7 @@ pub struct Dialect {
 
 impl Dialect {
     /// The dialect that this program writes, with the columns of its header.
-    pub fn own(header: &[u8]) -> Self {
+    pub(crate) fn own(header: &[u8]) -> Self {
         let separator = Separator::Byte(b',');
         Self {
             separator,
@@ -50,8 +50,8 @@ const CANDIDATES: [(Separator, u8); 9] = [
 /// The dialect that explains the lines best; `None` where none makes a table of them.
 ///
 /// `lines` are the first lines of the file without blank lines and comments. The last of them
-/// count: a preamble stands before the table.
-pub fn detect(lines: &[&[u8]]) -> Option<Dialect> {
+/// count: there may be a preamble before the table.
+pub(crate) fn detect(lines: &[&[u8]]) -> Option<Dialect> {
     let judged = judged(lines);
     let mut best: Option<(f64, Dialect)> = None;
     for (separator, decimal) in CANDIDATES {
@@ -115,8 +115,8 @@ fn usual(widths: &[usize]) -> Option<usize> {
     widths.iter().copied().max_by_key(|&w| (count(w), w))
 }
 
-/// Whether a cell holds a number (or says that there is none) or a point in time.
-pub fn is_value(cell: &[u8], decimal: u8) -> bool {
+/// Whether a cell holds a number (or states that there is none) or a point in time.
+pub(crate) fn is_value(cell: &[u8], decimal: u8) -> bool {
     if cell.is_empty() {
         return false;
     }
@@ -124,13 +124,13 @@ pub fn is_value(cell: &[u8], decimal: u8) -> bool {
 }
 
 /// Whether a cell holds a point in time.
-pub fn is_time(cell: &[u8]) -> bool {
+pub(crate) fn is_time(cell: &[u8]) -> bool {
     cell.len() <= LONGEST_TIME && clock::parse(&decode(cell), false).is_some()
 }
 
 /// The number of the first line that is a row of the table: a row of values, or one that has
 /// values wherever the last lines have values alone, as rows of few numbers among texts do.
-pub fn first_row(lines: &[&[u8]], dialect: &Dialect) -> Option<usize> {
+pub(crate) fn first_row(lines: &[&[u8]], dialect: &Dialect) -> Option<usize> {
     let values = columns_of_values(judged(lines), dialect);
     lines.iter().position(|line| {
         let cells: Vec<&[u8]> = Cells::new(line, dialect.separator).collect();
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_dialects_are_told_apart() {
+    fn dialects_are_told_apart() {
         let tab = Separator::Byte(b'\t');
         let is = |text, separator, decimal, columns| {
             assert_eq!(

@@ -1,26 +1,28 @@
-//! What stands before a text table, and where the table begins.
+//! The lines before a text table, and the beginning of the table.
 
 use crate::csv::columns::{self, HeadRows};
 use crate::csv::dialect::{self, Dialect};
 use crate::csv::header::{self, Header};
-use crate::csv::{TEXTS_KEY, no_table};
 use crate::source::ReadError;
 use crate::text::TextFile;
 use crate::text::cells::{Lines, is_row};
 use crate::text::table::{Kind, Layout};
 
-/// What stands before the table and where the table begins.
-pub struct Front {
+/// The remark that numbers the columns of texts, in what this program writes.
+pub(crate) const TEXTS_KEY: &str = "impactid_texts";
+
+/// The lines before the table, and the beginning of the table.
+pub(super) struct Front {
     pub header: Header,
     dialect: Dialect,
     /// Offset of the table in the head.
     offset: usize,
-    /// The columns of texts, counted from 1, where the file states them.
+    /// The columns of texts, counted from 1, if the file states them.
     texts: Option<Vec<usize>>,
 }
 
 impl Front {
-    pub fn read(text: &TextFile, head: &[u8], quotes: bool) -> Result<Self, ReadError> {
+    pub(super) fn read(text: &TextFile, head: &[u8], quotes: bool) -> Result<Self, ReadError> {
         if memchr::memchr(0, head).is_some() {
             return Err(no_table(text, "bytes that are no text"));
         }
@@ -61,7 +63,7 @@ impl Front {
     }
 
     /// The rows of the head.
-    pub fn rows<'a>(&self, head: &'a [u8], quotes: bool) -> HeadRows<'a> {
+    pub(super) fn rows<'a>(&self, head: &'a [u8], quotes: bool) -> HeadRows<'a> {
         let lines = Lines::new(&head[self.offset..], quotes);
         let rows = lines.filter(|(_, l)| is_row(l, dialect::COMMENTS));
         HeadRows {
@@ -71,7 +73,7 @@ impl Front {
     }
 
     /// How the table is written; its columns have no names yet.
-    pub fn layout(&self, text: &TextFile, rows: &HeadRows<'_>, quotes: bool) -> Layout {
+    pub(super) fn layout(&self, text: &TextFile, rows: &HeadRows<'_>, quotes: bool) -> Layout {
         let kinds = match &self.texts {
             Some(texts) => stated_kinds(texts, self.dialect.columns),
             None => columns::kinds(rows, &self.dialect),
@@ -108,4 +110,13 @@ fn stated_kinds(texts: &[usize], columns: usize) -> Vec<Kind> {
         false => Kind::Number,
     };
     (1..=columns).map(kind).collect()
+}
+
+fn no_table(text: &TextFile, found: &str) -> ReadError {
+    ReadError::new(
+        text.path(),
+        "a table of numbers separated by commas, semicolons, tabs or blanks",
+        found,
+        "Export the record as CSV with one row per sample and a header of channel names.",
+    )
 }

@@ -1,4 +1,4 @@
-//! Names, units and remarks that stand before a table's first row.
+//! Names, units and remarks before a table's first row.
 
 use std::collections::BTreeMap;
 
@@ -7,9 +7,9 @@ use crate::text::cells::{Cells, decode_cell};
 use crate::text::decode;
 use crate::units::parse_unit;
 
-/// What the lines before the first row say.
+/// What the lines before the first row state.
 #[derive(Debug, Default, PartialEq)]
-pub struct Header {
+pub(crate) struct Header {
     /// Names of the columns, as many as there are columns.
     pub names: Vec<String>,
     /// Units of the columns.
@@ -25,7 +25,7 @@ const FURTHER_UNITS: [&str; 22] = [
 ];
 
 /// Read the lines before the first row. `lines` are all of them, comments too, blank ones not.
-pub fn read(lines: &[&[u8]], dialect: &Dialect) -> Header {
+pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect) -> Header {
     let mut header = Header::default();
     let (comments, plain): (Vec<&[u8]>, Vec<&[u8]>) = lines.iter().partition(|l| is_comment(l));
     let mut rows: Vec<Vec<String>> = plain.iter().map(|l| cells(l, dialect)).collect();
@@ -73,7 +73,7 @@ fn fits(row: &[String], columns: usize) -> bool {
     filled > 0 && (row.len() == columns || filled == columns || row.len() == columns + 1)
 }
 
-/// The last row, where it holds units under a row of names.
+/// The last row, if it holds units under a row of names.
 fn units_row(rows: &[Vec<String>], columns: usize) -> Option<Vec<Option<String>>> {
     let [.., names, units] = rows else {
         return None;
@@ -91,7 +91,7 @@ fn units_row(rows: &[Vec<String>], columns: usize) -> Option<Vec<Option<String>>
     })
 }
 
-/// Names in the last comment before the table, where it has as many words as columns.
+/// Names in the last comment before the table, if it has as many words as columns.
 fn commented_names(comments: &[&[u8]], dialect: &Dialect) -> Option<Vec<String>> {
     let last = comments.last()?.trim_ascii_start();
     let body = last
@@ -136,8 +136,8 @@ fn unwrapped(text: &str) -> &str {
 
 /// A heading such as `velocity_x [mm/s]`, `Position (m) Run 1` or `x / mm` as name and unit.
 ///
-/// Empty brackets at its end say that there is no unit: `mass (kg) []`.
-pub fn name_and_unit(heading: &str) -> (String, Option<String>) {
+/// Empty brackets at its end state that there is no unit: `mass (kg) []`.
+pub(crate) fn name_and_unit(heading: &str) -> (String, Option<String>) {
     let heading = heading.trim();
     if let Some(name) = heading.strip_suffix("[]") {
         return (name.trim_end().to_owned(), None);
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_headings_give_names_and_units() {
+    fn headings_give_names_and_units() {
         for (heading, name, unit) in [
             ("velocity_x [mm/s]", "velocity_x", Some("mm/s")),
             ("velocity_x (mm/s)", "velocity_x", Some("mm/s")),
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_units_in_a_second_line_and_remarks() {
+    fn units_in_a_second_line_and_remarks() {
         let h = header(&[
             "# clearance_m: 0.001",
             "Operator;Novák",
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_names_in_a_comment_or_none_at_all() {
+    fn names_in_a_comment_or_none_at_all() {
         assert_eq!(
             header(&["# made by hand", "# t;x;y"]).names,
             ["t", "x", "y"]

@@ -1,6 +1,6 @@
 //! Which column of a table is its time axis, and at which rate its rows follow.
 
-use crate::attribute::says_time;
+use crate::attribute::is_time_name;
 use crate::csv::columns::HeadRows;
 use crate::csv::header::Header;
 use crate::rate;
@@ -10,12 +10,12 @@ use crate::units::{Dimension, parse_unit};
 
 /// The time axis of a table.
 #[derive(Debug, Clone, PartialEq)]
-pub struct TimeAxis {
+pub(crate) struct TimeAxis {
     /// The column.
     pub column: usize,
-    /// Its unit, where it is a number.
+    /// Its unit, if it is a number.
     pub unit: Option<String>,
-    /// Rows per second, Hz, where the axis tells.
+    /// Rows per second, Hz, if the axis gives them.
     pub rate_hz: Option<f64>,
     /// The first point in time, where the axis holds points in time.
     pub start: Option<String>,
@@ -23,7 +23,7 @@ pub struct TimeAxis {
     pub note: Option<String>,
 }
 
-/// Find the time axis: a column of points in time, one whose name or unit says time, or an
+/// Find the time axis: a column of points in time, one whose name or unit is of time, or an
 /// unnamed first column that climbs evenly. It must never go back in the rows seen.
 pub(crate) fn find(
     header: &Header,
@@ -59,13 +59,13 @@ pub(crate) fn find(
 /// A column that may be the time axis.
 struct Candidate {
     column: usize,
-    /// Its unit, where it is a number.
+    /// Its unit, if it is a number.
     unit: Option<String>,
     /// What was assumed.
     note: Option<String>,
 }
 
-/// A column whose kind, name or unit says time.
+/// A column whose kind, name or unit is of time.
 fn candidate(header: &Header, layout: &Layout, column: usize) -> Option<Candidate> {
     let sure = |unit| Candidate {
         column,
@@ -82,7 +82,7 @@ fn candidate(header: &Header, layout: &Layout, column: usize) -> Option<Candidat
             if known.is_some_and(|u| u.dimension == Dimension::Time) {
                 return Some(sure(unit));
             }
-            (unit.is_none() && says_time(name)).then(|| Candidate {
+            (unit.is_none() && is_time_name(name)).then(|| Candidate {
                 column,
                 unit: Some("s".to_owned()),
                 note: Some(format!("time axis '{name}' has no unit: taken as seconds")),
@@ -95,7 +95,7 @@ fn candidate(header: &Header, layout: &Layout, column: usize) -> Option<Candidat
 fn unit_in_name(name: &str) -> Option<String> {
     let (word, unit) = name.rsplit_once('_')?;
     let time = parse_unit(unit).is_some_and(|u| u.dimension == Dimension::Time);
-    (time && says_time(word)).then(|| unit.to_owned())
+    (time && is_time_name(word)).then(|| unit.to_owned())
 }
 
 /// A first column without a name that climbs evenly and is no mere count of rows.
@@ -155,12 +155,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_names_of_time() {
+    fn names_of_time() {
         for name in ["time_s", "Time", "t", "X_Value", "Time (Run 1)", "Zeit"] {
-            assert!(says_time(name), "{name}");
+            assert!(is_time_name(name), "{name}");
         }
         for name in ["times", "velocity", "tone"] {
-            assert!(!says_time(name), "{name}");
+            assert!(!is_time_name(name), "{name}");
         }
         assert_eq!(unit_in_name("time_ms").as_deref(), Some("ms"));
     }

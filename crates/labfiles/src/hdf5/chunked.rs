@@ -2,14 +2,14 @@
 //!
 //! This is the fast way for the packing that nearly all files have. Whatever else a dataset has
 //! (other filters, chunks that are not stored, an index that cannot be listed), and every fault,
-//! is left to the library, which has the words for it.
+//! is left to the library, which reports it.
 
 use std::fs::File;
 use std::ops::Range;
 
 use ::hdf5::{Chunk, Dataset};
 
-use crate::bytes::read_exact_at;
+use crate::bytes::{read_exact_at, to_usize};
 use crate::inflate::zlib_into;
 
 const DEFLATE: u16 = 1;
@@ -25,7 +25,7 @@ struct Grid {
 
 /// The unpacked bytes of `rows` entries along the first dimension; `None`: the library must read
 /// them. `element` is the length of an element, bytes.
-pub fn rows(
+pub(crate) fn rows(
     file: &File,
     dataset: &Dataset,
     element: usize,
@@ -48,7 +48,9 @@ pub fn rows(
     for chunk in chunks {
         packed.resize(usize::try_from(chunk.storage_size).ok()?, 0);
         read_exact_at(file, &mut packed, chunk.address).ok()?;
-        zlib_into(&packed, &mut unpacked).ok()?;
+        if !zlib_into(&packed, &mut unpacked) {
+            return None;
+        }
         let bytes = match grid.shuffled {
             true => {
                 plain.resize(unpacked.len(), 0);
@@ -125,7 +127,7 @@ impl Grid {
         places.windows(2).all(|pair| pair[0] != pair[1])
     }
 
-    /// Copy the part of an unpacked chunk that lies in the rows to its place.
+    /// Copy the part of an unpacked chunk that is in the rows to its place.
     fn lay(&self, chunk: &Chunk, bytes: &[u8], rows: &Range<u64>, out: &mut [u8]) {
         let mut window = self.shape.clone();
         window[0] = rows.end - rows.start;
@@ -136,14 +138,14 @@ impl Grid {
             let begin = chunk.offset[axis].max(first);
             let end = (chunk.offset[axis] + self.chunk[axis]).min(first + window[axis]);
             axes.push(Axis {
-                count: (end - begin) as usize,
-                from: (begin - chunk.offset[axis]) as usize * from_step,
-                to: (begin - first) as usize * to_step,
+                count: to_usize(end - begin),
+                from: to_usize(begin - chunk.offset[axis]) * from_step,
+                to: to_usize(begin - first) * to_step,
                 from_step,
                 to_step,
             });
-            from_step *= self.chunk[axis] as usize;
-            to_step *= window[axis] as usize;
+            from_step *= to_usize(self.chunk[axis]);
+            to_step *= to_usize(window[axis]);
         }
         let from = axes.iter().map(|a| a.from).sum();
         let to = axes.iter().map(|a| a.to).sum();
@@ -255,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_chunks_land_where_the_library_puts_them() {
+    fn chunks_land_where_the_library_puts_them() {
         for (shape, chunk) in [
             (vec![37], vec![8]),
             (vec![5], vec![50]),
@@ -276,8 +278,8 @@ mod tests {
                     let expected = dataset.read_raw_rows(start, count).unwrap();
                     assert_eq!(some, Some(expected), "{shape:?} from {start}");
                 }
-                let behind = Some(shape[0]..shape[0] + 1);
-                assert_eq!(rows(temporary.as_file(), &dataset, 8, behind), None);
+                let after = Some(shape[0]..shape[0] + 1);
+                assert_eq!(rows(temporary.as_file(), &dataset, 8, after), None);
             }
         }
     }

@@ -2,10 +2,12 @@
 
 use ::hdf5::{Datatype, DatatypeByteOrder, FloatingPointLayout, ReferenceType};
 
+use crate::bytes::to_usize;
 use crate::hdf5::element::{Element, boolean, compound};
+use crate::numbers::{ByteOrder, Number};
 
 /// A type as ours; [`Element::Other`] where no samples are of it.
-pub fn element(datatype: &Datatype) -> Element {
+pub(super) fn element(datatype: &Datatype) -> Element {
     let other = || Element::Other(kind(datatype).to_owned());
     match datatype {
         Datatype::FixedPoint {
@@ -15,19 +17,22 @@ pub fn element(datatype: &Datatype) -> Element {
         } => {
             let whole = layout.bit_offset == 0
                 && size.checked_mul(8) == Some(u32::from(layout.bit_precision));
-            match (*size, byte_order, whole) {
-                (
-                    1 | 2 | 4 | 8,
-                    DatatypeByteOrder::LittleEndian | DatatypeByteOrder::BigEndian,
-                    true,
-                ) => {
-                    let big = matches!(byte_order, DatatypeByteOrder::BigEndian);
-                    Element::Int {
-                        bytes: *size as usize,
-                        signed: layout.signed,
-                        big,
-                    }
+            let number = match (*size, layout.signed) {
+                (1, true) => Number::I8,
+                (2, true) => Number::I16,
+                (4, true) => Number::I32,
+                (8, true) => Number::I64,
+                (1, false) => Number::U8,
+                (2, false) => Number::U16,
+                (4, false) => Number::U32,
+                (8, false) => Number::U64,
+                _ => return other(),
+            };
+            match (byte_order, whole) {
+                (DatatypeByteOrder::LittleEndian, true) => {
+                    Element::Number(number, ByteOrder::Little)
                 }
+                (DatatypeByteOrder::BigEndian, true) => Element::Number(number, ByteOrder::Big),
                 _ => other(),
             }
         }
@@ -41,24 +46,30 @@ pub fn element(datatype: &Datatype) -> Element {
                 layout.mantissa_size,
                 layout.exponent_bias,
             ) == (5, 10, 15);
-            let ieee = match size {
-                2 => half,
-                4 => *layout == FloatingPointLayout::IEEE754_BINARY32,
-                8 => *layout == FloatingPointLayout::IEEE754_BINARY64,
-                _ => false,
+            let order = match byte_order {
+                DatatypeByteOrder::Vax => return other(),
+                DatatypeByteOrder::BigEndian => ByteOrder::Big,
+                _ => ByteOrder::Little,
             };
-            match (byte_order, ieee) {
-                (DatatypeByteOrder::Vax, _) | (_, false) => other(),
-                (order, true) => Element::Float {
-                    bytes: *size as usize,
-                    big: matches!(order, DatatypeByteOrder::BigEndian),
-                },
+            match size {
+                2 if half => Element::Half(order),
+                4 if *layout == FloatingPointLayout::IEEE754_BINARY32 => {
+                    Element::Number(Number::F32, order)
+                }
+                8 if *layout == FloatingPointLayout::IEEE754_BINARY64 => {
+                    Element::Number(Number::F64, order)
+                }
+                _ => other(),
             }
         }
         Datatype::Compound { size, members } => {
-            let fields = members
-                .iter()
-                .map(|m| (m.name.clone(), m.byte_offset as usize, element(&m.datatype)));
+            let fields = members.iter().map(|m| {
+                (
+                    m.name.clone(),
+                    to_usize(m.byte_offset),
+                    element(&m.datatype),
+                )
+            });
             compound(fields.collect(), *size as usize)
         }
         Datatype::Enumeration {
@@ -76,7 +87,7 @@ pub fn element(datatype: &Datatype) -> Element {
     }
 }
 
-/// A type in words, for messages.
+/// Name of a type, for messages.
 fn kind(datatype: &Datatype) -> &'static str {
     match datatype {
         Datatype::FixedPoint { .. } => "integer of unusual width",

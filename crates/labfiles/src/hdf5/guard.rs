@@ -1,6 +1,6 @@
 //! Refusing arrays that claim far more than their file can hold, before memory is taken for them.
 
-use crate::hdf5::store::{Array, Store, Target};
+use crate::hdf5::store::{Array, StoreError};
 
 /// How many times larger than its whole file an unpacked array may be: signals pack a few times,
 /// constant channels beside them far more.
@@ -8,69 +8,39 @@ const GREATEST_RATIO: u64 = 128;
 /// Arrays and chunks up to this size are read whatever their packing.
 const HARMLESS_BYTES: u64 = 1 << 16;
 
-/// A store whose arrays are believed only as far as their file bears them out.
-pub struct Guarded<S>(pub S);
-
-impl<S: Store> Guarded<S> {
-    fn within(&self, bytes: u64) -> bool {
-        bytes <= HARMLESS_BYTES || bytes / GREATEST_RATIO <= self.0.file_bytes()
-    }
-
-    /// Refuse a chunk or a shape far larger than the file, or a large array that is not stored.
-    fn check(&self, array: &Array) -> Result<(), String> {
-        let chunk = self.0.chunk_bytes(array);
-        if !self.within(chunk) {
-            return Err(format!("chunks of {chunk} bytes, far more than the file"));
-        }
-        let element = array.element.bytes().max(1) as u64;
-        let claimed = array
-            .count()
-            .and_then(|n| n.checked_mul(element))
-            .unwrap_or(u64::MAX);
-        let stored = self.0.stored_bytes(array).unwrap_or(0);
-        if stored > self.0.file_bytes() {
-            return Err(format!("{stored} stored bytes, more than the file has"));
-        }
-        if claimed <= HARMLESS_BYTES || (self.within(claimed) && stored > 0) {
-            return Ok(());
-        }
-        let shape = &array.shape;
-        Err(format!(
-            "a shape of {shape:?} for which the file stores {stored} bytes"
-        ))
-    }
+/// Lengths that bear on what an array may claim, bytes.
+pub(super) struct Lengths {
+    /// The file.
+    pub(super) file: u64,
+    /// One unpacked chunk of the array; zero if it has no chunks.
+    pub(super) chunk: u64,
+    /// What the file stores of the array.
+    pub(super) stored: u64,
 }
 
-impl<S: Store> Store for Guarded<S> {
-    fn raw(&self, array: &Array) -> Result<Vec<u8>, String> {
-        self.check(array)?;
-        self.0.raw(array)
+/// Refuse a chunk or a shape far larger than the file, or a large array that is not stored.
+///
+/// # Errors
+/// [`StoreError`] with the claim.
+pub(super) fn check(array: &Array, lengths: &Lengths) -> Result<(), StoreError> {
+    let &Lengths {
+        file,
+        chunk,
+        stored,
+    } = lengths;
+    let within = |bytes: u64| bytes <= HARMLESS_BYTES || bytes / GREATEST_RATIO <= file;
+    if !within(chunk) {
+        return Err(StoreError::Chunks(chunk));
     }
-
-    fn rows(&self, array: &Array, start: u64, count: u64) -> Result<Vec<u8>, String> {
-        self.check(array)?;
-        self.0.rows(array, start, count)
+    let claimed = array.claimed();
+    if stored > file {
+        return Err(StoreError::Stored(stored));
     }
-
-    fn texts(&self, array: &Array) -> Result<Vec<String>, String> {
-        self.check(array)?;
-        self.0.texts(array)
+    if claimed <= HARMLESS_BYTES || (within(claimed) && stored > 0) {
+        return Ok(());
     }
-
-    fn targets(&self, array: &Array) -> Result<Vec<Option<Target>>, String> {
-        self.check(array)?;
-        self.0.targets(array)
-    }
-
-    fn stored_bytes(&self, array: &Array) -> Option<u64> {
-        self.0.stored_bytes(array)
-    }
-
-    fn chunk_bytes(&self, array: &Array) -> u64 {
-        self.0.chunk_bytes(array)
-    }
-
-    fn file_bytes(&self) -> u64 {
-        self.0.file_bytes()
-    }
+    Err(StoreError::Shape {
+        shape: array.shape.clone(),
+        stored,
+    })
 }

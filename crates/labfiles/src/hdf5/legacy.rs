@@ -1,15 +1,15 @@
 //! Files of HDF5 before 1.6.3, whose data layout messages (version 1 and 2) neither library
 //! reads: the messages are shown to the library rewritten as version 3.
 //!
-//! Both versions say the same (HDF5 file format specification, "Data Layout Message"); the newer
+//! Both versions mean the same (HDF5 file format specification, "Data Layout Message"); the newer
 //! is shorter, so that it fits in the older one's place. The file itself is not touched.
 
 use std::fs::File;
 
-use crate::bytes::read_exact_at;
+use crate::bytes::{read_exact_at, to_usize};
 
-/// Bytes that stand in for those of the file at an offset.
-pub type Patch = (u64, Vec<u8>);
+/// Bytes that replace those of the file at an offset.
+pub(crate) type Patch = (u64, Vec<u8>);
 
 /// Bytes of a header message before its body: type, size, flags, three zeros.
 const PREFIX: usize = 8;
@@ -23,12 +23,12 @@ const DATA_LAYOUT: [u8; 2] = [8, 0];
 /// Rewrite all data layout messages of version 1 and 2 in a file.
 ///
 /// # Errors
-/// Where the file cannot be read.
-pub fn patches(file: &File, length: u64) -> std::io::Result<Vec<Patch>> {
+/// If the file cannot be read.
+pub(crate) fn patches(file: &File, length: u64) -> std::io::Result<Vec<Patch>> {
     let mut found = Vec::new();
     let mut start = 0;
     while start < length {
-        let count = (length - start).min((BLOCK + OVERLAP) as u64) as usize;
+        let count = to_usize((length - start).min((BLOCK + OVERLAP) as u64));
         let mut block = vec![0; count];
         read_exact_at(file, &mut block, start)?;
         for at in (0..count.min(BLOCK)).step_by(8) {
@@ -49,15 +49,16 @@ fn rewritten(bytes: &[u8]) -> Option<Vec<u8>> {
     if prefix[..2] != DATA_LAYOUT || prefix[5..8] != [0; 3] || size < 20 {
         return None;
     }
-    let (version, rank, class) = (body[0], usize::from(body[1]), body[2]);
+    let (version, rank, class) = (body[0], body[1], body[2]);
     if !matches!(version, 1 | 2) || !(1..=33).contains(&rank) || body[3..8] != [0; 5] {
         return None;
     }
-    let sizes = |at: usize| body.get(at..at + 4 * rank);
+    let sizes_bytes = 4 * usize::from(rank);
+    let sizes = |at: usize| body.get(at..at + sizes_bytes);
     let mut new = vec![3, class];
     match class {
         0 => {
-            let sizes_end = 8 + 4 * rank;
+            let sizes_end = 8 + sizes_bytes;
             let count = u32::from_le_bytes(body.get(sizes_end..sizes_end + 4)?.try_into().ok()?);
             new.extend(u16::try_from(count).ok()?.to_le_bytes());
             new.extend(body.get(sizes_end + 4..sizes_end + 4 + count as usize)?);
@@ -71,7 +72,7 @@ fn rewritten(bytes: &[u8]) -> Option<Vec<u8>> {
             new.extend(count.to_le_bytes());
         }
         2 => {
-            new.push(rank as u8);
+            new.push(rank);
             new.extend(&body[8..16]);
             new.extend(sizes(16)?);
         }
@@ -81,13 +82,13 @@ fn rewritten(bytes: &[u8]) -> Option<Vec<u8>> {
 }
 
 /// Lay patches over bytes that were read at an offset.
-pub fn apply(patches: &[Patch], offset: u64, bytes: &mut [u8]) {
+pub(crate) fn apply(patches: &[Patch], offset: u64, bytes: &mut [u8]) {
     let end = offset + bytes.len() as u64;
     for (at, new) in patches {
         let (from, to) = ((*at).max(offset), (at + new.len() as u64).min(end));
         if from < to {
-            let own = &new[(from - at) as usize..(to - at) as usize];
-            bytes[(from - offset) as usize..(to - offset) as usize].copy_from_slice(own);
+            let own = &new[to_usize(from - at)..to_usize(to - at)];
+            bytes[to_usize(from - offset)..to_usize(to - offset)].copy_from_slice(own);
         }
     }
 }
@@ -97,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_contiguous_message_becomes_version_3() {
+    fn contiguous_message_becomes_version_3() {
         let mut message = vec![8, 0, 32, 0, 1, 0, 0, 0, 2, 3, 1, 0, 0, 0, 0, 0];
         message.extend(0x0e00u64.to_le_bytes());
         for size in [9u32, 1, 8] {
@@ -114,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_patches_overlap_reads_in_part() {
+    fn patches_overlap_reads_in_part() {
         let mut bytes = [0u8; 4];
         apply(&[(8, vec![1, 2, 3, 4])], 10, &mut bytes);
         assert_eq!(bytes, [3, 4, 0, 0]);

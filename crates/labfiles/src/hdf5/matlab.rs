@@ -1,23 +1,25 @@
 //! MATLAB files of level 7.3: HDF5 with MATLAB's conventions. Their variables are arranged to
 //! datasets and channels as those of the older levels are.
 //!
-//! An array lies in the file with its dimensions reversed, so that its bytes are MATLAB's own
+//! An array is in the file with its dimensions reversed, so that its bytes are MATLAB's own
 //! order, column by column. Structs are groups, cells and struct arrays are arrays of references.
 
-pub mod values;
+pub(crate) mod values;
 
 use crate::hdf5::element::Element;
+use crate::hdf5::library::Store;
 use crate::hdf5::matlab::values::{content, little, static_class};
-use crate::hdf5::store::{Array, Attr, Attrs, DEEPEST, MOST_OBJECTS, Store, Target, Tree};
+use crate::hdf5::store::{Array, Attr, Attrs, DEEPEST, MOST_OBJECTS, StoreError, Target, Tree};
+use crate::mat::names::Path;
+use crate::mat::text;
 use crate::mat::tree::{Leaf, Place, Tree as Variables, Variable};
-use crate::mat::{subscript, text};
 use crate::numbers::ByteOrder;
 
 /// Groups at the root that are MATLAB's own.
 const OWN_GROUPS: [&str; 2] = ["#refs#", "#subsystem#"];
 
 /// Whether a tree follows MATLAB's conventions.
-pub fn is_matlab(tree: &Tree) -> bool {
+pub(crate) fn is_matlab(tree: &Tree) -> bool {
     let classed = |attributes: &Attrs| attributes.contains_key("MATLAB_class");
     tree.arrays.iter().any(|a| classed(&a.attributes))
         || tree
@@ -27,7 +29,7 @@ pub fn is_matlab(tree: &Tree) -> bool {
 }
 
 /// The variables of a file, and the arrays to which the places of their leaves refer.
-pub struct Found {
+pub(crate) struct Found {
     /// As the older levels' readers find them.
     pub variables: Variables,
     /// The array of each leaf: [`Part::at`] counts them.
@@ -37,8 +39,8 @@ pub struct Found {
 /// Find all variables.
 ///
 /// # Errors
-/// Where references lead nowhere or too deep.
-pub fn find(store: &dyn Store, tree: &Tree) -> Result<Found, String> {
+/// If references lead nowhere or too deep.
+pub(crate) fn find(store: &Store, tree: &Tree) -> Result<Found, StoreError> {
     let found = Found {
         variables: Variables::default(),
         arrays: Vec::new(),
@@ -50,7 +52,7 @@ pub fn find(store: &dyn Store, tree: &Tree) -> Result<Found, String> {
     };
     for array in &tree.arrays {
         walk.variable(&array.name);
-        walk.array(array, &Way::to(&array.name))?;
+        walk.array(array, &Path::to(&array.name))?;
     }
     for group in tree
         .groups
@@ -58,70 +60,13 @@ pub fn find(store: &dyn Store, tree: &Tree) -> Result<Found, String> {
         .filter(|g| !OWN_GROUPS.contains(&g.path.as_str()))
     {
         walk.variable(&group.path);
-        walk.group(group, &Way::to(&group.path))?;
+        walk.group(group, &Path::to(&group.path))?;
     }
     Ok(walk.found)
 }
 
-/// The way that leads to an array.
-#[derive(Debug, Clone)]
-struct Way {
-    name: String,
-    tail: String,
-    element: Option<u64>,
-    depth: usize,
-}
-
-impl Way {
-    fn to(name: &str) -> Self {
-        Self {
-            name: name.to_owned(),
-            tail: String::new(),
-            element: None,
-            depth: 0,
-        }
-    }
-
-    fn child(&self, suffix: &str) -> Self {
-        Self {
-            name: format!("{}{suffix}", self.name),
-            tail: format!("{}{suffix}", self.tail),
-            element: self.element,
-            depth: self.depth + 1,
-        }
-    }
-
-    /// The way to an element of a container of `count`; a single one is the container itself.
-    fn element(&self, index: usize, count: usize, dims: &[u64], brackets: [char; 2]) -> Self {
-        if count == 1 {
-            return Self {
-                depth: self.depth + 1,
-                ..self.clone()
-            };
-        }
-        let child = self.child(&subscript(dims, index as u64, brackets));
-        match self.depth {
-            0 => Self {
-                element: Some(index as u64),
-                tail: String::new(),
-                ..child
-            },
-            _ => child,
-        }
-    }
-
-    fn leaf_tail(&self) -> String {
-        let tail = self.tail.trim_start_matches('.');
-        if tail.is_empty() {
-            self.name.clone()
-        } else {
-            tail.to_owned()
-        }
-    }
-}
-
 struct Walk<'a> {
-    store: &'a dyn Store,
+    store: &'a Store,
     found: Found,
     visited: usize,
 }
@@ -140,25 +85,22 @@ impl Walk<'_> {
         self.found.variables.variables.len().saturating_sub(1)
     }
 
-    fn visit(&mut self, way: &Way) -> Result<(), String> {
+    fn visit(&mut self, path: &Path) -> Result<(), StoreError> {
         self.visited += 1;
-        if way.depth > DEEPEST || self.visited > MOST_OBJECTS {
-            return Err(format!(
-                "'{}': more or deeper nested values than are believed",
-                way.name
-            ));
+        if path.depth > DEEPEST || self.visited > MOST_OBJECTS {
+            return Err(StoreError::TooManyValues(path.name.clone()));
         }
         Ok(())
     }
 
     /// A struct, a struct array, or a sparse matrix.
-    fn group(&mut self, group: &Tree, way: &Way) -> Result<(), String> {
-        self.visit(way)?;
+    fn group(&mut self, group: &Tree, path: &Path) -> Result<(), StoreError> {
+        self.visit(path)?;
         if group.attributes.contains_key("MATLAB_sparse") {
             self.found
                 .variables
                 .refused
-                .push((way.name.clone(), "sparse"));
+                .push((path.name.clone(), "sparse"));
             return Ok(());
         }
         let references =
@@ -167,27 +109,32 @@ impl Walk<'_> {
         if let Some(first) = several.first()
             && several.len() == group.arrays.len()
         {
-            return self.struct_array(&several, first, way);
+            return self.struct_array(&several, first, path);
         }
         for name in field_order(group) {
             if let Some(array) = group.arrays.iter().find(|a| a.name == name) {
-                self.array(array, &way.child(&format!(".{name}")))?;
+                self.array(array, &path.child(&format!(".{name}")))?;
             } else if let Some(inner) = group.groups.iter().find(|g| last(&g.path) == name) {
-                self.group(inner, &way.child(&format!(".{name}")))?;
+                self.group(inner, &path.child(&format!(".{name}")))?;
             }
         }
         Ok(())
     }
 
     /// Fields that are arrays of references, one for each element.
-    fn struct_array(&mut self, fields: &[&Array], first: &Array, way: &Way) -> Result<(), String> {
+    fn struct_array(
+        &mut self,
+        fields: &[&Array],
+        first: &Array,
+        path: &Path,
+    ) -> Result<(), StoreError> {
         let dims = reversed(&first.shape);
         let mut columns = Vec::new();
         for field in fields {
             columns.push((field.name.clone(), self.store.targets(field)?));
         }
         let count = columns.iter().map(|(_, t)| t.len()).max().unwrap_or(0);
-        if way.depth == 0 {
+        if path.depth == 0 {
             let current = self.current();
             self.found.variables.variables[current].elements = count as u64;
         }
@@ -196,7 +143,7 @@ impl Walk<'_> {
             .map(|(n, t)| (n, t.into_iter()))
             .collect();
         for index in 0..count {
-            let element = way.element(index, count, &dims, ['(', ')']);
+            let element = path.element(index as u64, count as u64, &dims, ['(', ')']);
             for (name, targets) in &mut columns {
                 if let Some(Some(target)) = targets.next() {
                     self.target(target, &element.child(&format!(".{name}")))?;
@@ -206,58 +153,61 @@ impl Walk<'_> {
         Ok(())
     }
 
-    fn target(&mut self, target: Target, way: &Way) -> Result<(), String> {
+    fn target(&mut self, target: Target, path: &Path) -> Result<(), StoreError> {
         match target {
-            Target::Array(array) => self.array(&array, way),
-            Target::Group(group) => self.group(&group, way),
+            Target::Array(array) => self.array(&array, path),
+            Target::Group(group) => self.group(&group, path),
         }
     }
 
-    fn array(&mut self, array: &Array, way: &Way) -> Result<(), String> {
-        self.visit(way)?;
+    fn array(&mut self, array: &Array, path: &Path) -> Result<(), StoreError> {
+        self.visit(path)?;
         if array.attributes.contains_key("MATLAB_object_decode") {
             self.found
                 .variables
                 .refused
-                .push((way.name.clone(), "opaque object"));
+                .push((path.name.clone(), "opaque object"));
             return Ok(());
         }
         if array.element == Element::Reference && !array.attributes.contains_key("MATLAB_empty") {
-            return self.cell(array, way);
+            return self.cell(array, path);
         }
-        self.leaf(array, way)
+        self.leaf(array, path)
     }
 
-    fn cell(&mut self, array: &Array, way: &Way) -> Result<(), String> {
+    fn cell(&mut self, array: &Array, path: &Path) -> Result<(), StoreError> {
         let dims = reversed(&array.shape);
         let targets = self.store.targets(array)?;
         let count = targets.len();
-        if way.depth == 0 {
+        if path.depth == 0 {
             let current = self.current();
             self.found.variables.variables[current].elements = count as u64;
         }
         for (index, target) in targets.into_iter().enumerate() {
             if let Some(target) = target {
-                self.target(target, &way.element(index, count, &dims, ['{', '}']))?;
+                self.target(
+                    target,
+                    &path.element(index as u64, count as u64, &dims, ['{', '}']),
+                )?;
             }
         }
         Ok(())
     }
 
-    fn leaf(&mut self, array: &Array, way: &Way) -> Result<(), String> {
+    fn leaf(&mut self, array: &Array, path: &Path) -> Result<(), StoreError> {
         let name = class(&array.attributes);
         let at = self.found.arrays.len() as u64;
         let dims = dimensions(array);
         let Some(content) = content(array, &name, at) else {
-            let note = format!("'{}' left out: class '{name}' is not read", way.name);
+            let note = format!("'{}' left out: class '{name}' is not read", path.name);
             self.found.variables.notes.push(note);
             return Ok(());
         };
         let mut leaf = Leaf {
             variable: self.current(),
-            element: way.element,
-            name: way.name.clone(),
-            tail: way.leaf_tail(),
+            element: path.element,
+            name: path.name.clone(),
+            tail: path.leaf_tail(),
             dims,
             content,
             class: static_class(&name),
@@ -316,7 +266,7 @@ fn last(path: &str) -> &str {
     path.rsplit('/').next().unwrap_or(path)
 }
 
-/// The fields of a struct in MATLAB's order where the file states it.
+/// The fields of a struct in MATLAB's order if the file states it.
 fn field_order(group: &Tree) -> Vec<String> {
     let arrays = group.arrays.iter().map(|a| a.name.clone());
     let mut names: Vec<String> = arrays

@@ -2,36 +2,31 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::bytes::to_usize;
+use crate::hdf5::library::Store;
 use crate::hdf5::matlab::{self, Found};
-use crate::hdf5::store::{Array, Store, Tree};
+use crate::hdf5::store::{Array, Tree};
 use crate::mat::arrange::{self, Arranged, Origin};
 use crate::mat::tree::{Content, Leaf};
-use crate::source::{self, DatasetInfo, ReadError, Samples, Source};
+use crate::source::{Opened, ReadError, Reader, Samples, Source};
 
-struct MatlabSource {
+struct MatlabReader {
     path: PathBuf,
-    store: Box<dyn Store>,
+    store: Store,
     found: Found,
-    datasets: Vec<DatasetInfo>,
     origins: Vec<Vec<Origin>>,
-    notes: Vec<String>,
 }
 
 /// Open a file whose tree follows MATLAB's conventions.
 ///
 /// # Errors
-/// Where references lead nowhere, or nothing is left that is read.
-pub fn open(
-    path: &Path,
-    store: Box<dyn Store>,
-    tree: &Tree,
-    store_notes: Vec<String>,
-) -> Result<Box<dyn Source>, ReadError> {
-    let found = matlab::find(&*store, tree).map_err(|e| {
+/// If references lead nowhere, or nothing is left that is read.
+pub(crate) fn open(path: &Path, store: Store, tree: &Tree) -> Result<Box<dyn Source>, ReadError> {
+    let found = matlab::find(&store, tree).map_err(|e| {
         ReadError::new(
             path,
             "a complete MATLAB 7.3 file",
-            e,
+            e.to_string(),
             "Save the variables again.",
         )
     })?;
@@ -56,27 +51,27 @@ pub fn open(
         origins,
         notes,
     } = arrange::arrange(&found.variables);
-    let all = store_notes
-        .into_iter()
-        .chain(found.variables.notes.clone())
-        .chain(left_out)
-        .chain(notes);
-    let notes = all.collect();
-    Ok(Box::new(MatlabSource {
+    let all = found.variables.notes.iter().cloned();
+    let notes = all.chain(left_out).chain(notes).collect();
+    Ok(Box::new(Opened {
+        format: "mat",
         path: path.to_path_buf(),
-        store,
         datasets,
-        origins,
         notes,
-        found,
+        reader: MatlabReader {
+            path: path.to_path_buf(),
+            store,
+            found,
+            origins,
+        },
     }))
 }
 
-impl MatlabSource {
+impl MatlabReader {
     fn array(&self, leaf: &Leaf) -> &Array {
         let (Content::Real(part) | Content::Complex(part, ..) | Content::Text(part, _)) =
             leaf.content;
-        &self.found.arrays[part.at as usize]
+        &self.found.arrays[to_usize(part.at)]
     }
 
     fn error(&self, leaf: &Leaf, found: impl Into<String>) -> ReadError {
@@ -87,29 +82,12 @@ impl MatlabSource {
     fn raw(&self, leaf: &Leaf) -> Result<Vec<u8>, ReadError> {
         self.store
             .raw(self.array(leaf))
-            .map_err(|e| self.error(leaf, e))
+            .map_err(|e| self.error(leaf, e.to_string()))
     }
 }
 
-impl Source for MatlabSource {
-    fn format(&self) -> &'static str {
-        "mat"
-    }
-
-    fn path(&self) -> &Path {
-        &self.path
-    }
-
-    fn datasets(&self) -> &[DatasetInfo] {
-        &self.datasets
-    }
-
-    fn notes(&self) -> &[String] {
-        &self.notes
-    }
-
+impl Reader for MatlabReader {
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
-        source::requested(self, dataset, channels)?;
         let mut last: Option<(usize, Vec<u8>)> = None;
         let mut all = Vec::with_capacity(channels.len());
         for &channel in channels {

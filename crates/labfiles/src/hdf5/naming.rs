@@ -1,9 +1,9 @@
-//! How a table's channels are named, scaled and turned: what its attributes say.
+//! Names, scales and orientation of a table's channels, from its attributes.
 
 use crate::hdf5::store::{Array, Attr, Attrs};
 
 /// Attributes that name the channels, in order of precedence.
-pub const NAME_KEYS: [&str; 7] = [
+pub(crate) const NAME_KEYS: [&str; 7] = [
     "channels",
     "channel_names",
     "names",
@@ -13,13 +13,13 @@ pub const NAME_KEYS: [&str; 7] = [
     "fields",
 ];
 /// Attributes that give the channels' units.
-pub const UNIT_KEYS: [&str; 5] = ["units", "unit", "channel_units", "unit_string", "Unit"];
+pub(crate) const UNIT_KEYS: [&str; 5] = ["units", "unit", "channel_units", "unit_string", "Unit"];
 /// More rows than this are no channels.
 const MOST_ROW_CHANNELS: u64 = 64;
 
 /// Which dimension of a table counts the channels.
 #[derive(Clone, Copy, PartialEq)]
-pub enum Orientation {
+pub(crate) enum Orientation {
     /// samples × channels.
     Columns,
     /// channels × samples.
@@ -28,7 +28,7 @@ pub enum Orientation {
 
 impl Orientation {
     /// The names decide; without names a few long rows are channels.
-    pub fn of(table: &Array, inherited: &Attrs) -> Self {
+    pub(crate) fn of(table: &Array, inherited: &Attrs) -> Self {
         let [rows, columns] = dimensions(&table.shape);
         let attributes = merged(inherited, &table.attributes);
         if names(&attributes, columns).is_some() {
@@ -44,20 +44,20 @@ impl Orientation {
 
     /// Number of channels; of a table wider than [`MOST_CHANNELS`], an image or a matrix, the
     /// first alone.
-    pub fn channels(self, table: &Array) -> u64 {
+    pub(crate) fn channels(self, table: &Array) -> u64 {
         let [rows, columns] = dimensions(&table.shape);
         if self == Self::Columns { columns } else { rows }.min(MOST_CHANNELS)
     }
 
     /// Number of samples of each channel.
-    pub fn samples(self, table: &Array) -> u64 {
+    pub(crate) fn samples(self, table: &Array) -> u64 {
         let [rows, columns] = dimensions(&table.shape);
         if self == Self::Columns { rows } else { columns }
     }
 }
 
 /// The most channels of a table.
-pub const MOST_CHANNELS: u64 = 4096;
+pub(crate) const MOST_CHANNELS: u64 = 4096;
 
 /// The two dimensions of a table that may have further ones of one entry.
 fn dimensions(shape: &[u64]) -> [u64; 2] {
@@ -71,19 +71,19 @@ fn dimensions(shape: &[u64]) -> [u64; 2] {
 }
 
 /// A shape without its dimensions of one entry.
-pub fn squeezed(shape: &[u64]) -> Vec<u64> {
+pub(crate) fn squeezed(shape: &[u64]) -> Vec<u64> {
     shape.iter().copied().filter(|&d| d != 1).collect()
 }
 
 /// Attributes with those inherited; own ones win.
-pub fn merged(inherited: &Attrs, own: &Attrs) -> Attrs {
+pub(crate) fn merged(inherited: &Attrs, own: &Attrs) -> Attrs {
     let mut all = inherited.clone();
     all.extend(own.clone());
     all
 }
 
 /// The channels' names, where an attribute lists as many as there are.
-pub fn names(attributes: &Attrs, channels: u64) -> Option<Vec<String>> {
+pub(crate) fn names(attributes: &Attrs, channels: u64) -> Option<Vec<String>> {
     NAME_KEYS
         .iter()
         .filter_map(|k| attributes.get(*k))
@@ -92,7 +92,7 @@ pub fn names(attributes: &Attrs, channels: u64) -> Option<Vec<String>> {
 }
 
 /// The channels' units: a list of as many, or one for all.
-pub fn units(attributes: &Attrs, channels: usize) -> Vec<Option<String>> {
+pub(crate) fn units(attributes: &Attrs, channels: usize) -> Vec<Option<String>> {
     let lists = || {
         UNIT_KEYS
             .iter()
@@ -112,7 +112,7 @@ pub fn units(attributes: &Attrs, channels: usize) -> Vec<Option<String>> {
 
 /// Scale and offset of each channel: `scale_factor` and `add_offset` of any array, `scale` and
 /// `offset` of an array of integers.
-pub fn scaling(array: &Array, channels: usize) -> Vec<(f64, f64)> {
+pub(crate) fn scaling(array: &Array, channels: usize) -> Vec<(f64, f64)> {
     let of = |keys: &[&str], neutral: f64| -> Vec<f64> {
         let found = keys
             .iter()
@@ -145,7 +145,7 @@ pub fn scaling(array: &Array, channels: usize) -> Vec<(f64, f64)> {
 }
 
 /// Order of names in which `run10` follows `run9`.
-pub fn natural(a: &str, b: &str) -> std::cmp::Ordering {
+pub(crate) fn natural(a: &str, b: &str) -> std::cmp::Ordering {
     let (mut x, mut y) = (a.as_bytes(), b.as_bytes());
     loop {
         match (x.first(), y.first()) {
@@ -177,7 +177,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_natural_order() {
+    fn natural_order() {
         let mut names = ["run10", "run9", "a", "run010", "run", "run9b"];
         names.sort_by(|a, b| natural(a, b));
         assert_eq!(names[..4], ["a", "run", "run9", "run9b"]);

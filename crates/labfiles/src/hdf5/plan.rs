@@ -1,31 +1,34 @@
 //! From a tree of groups and arrays to datasets (records) of channels.
 //!
-//! A two-dimensional array is a record: its columns are the channels (its rows, where the names
-//! say so). The one-dimensional arrays of a group are a record together. A three-dimensional
+//! A two-dimensional array is a record: its columns are the channels (its rows, if those are as
+//! many as the names). The one-dimensional arrays of a group are a record together. A three-dimensional
 //! array is a record for each entry of its first dimension. Arrays of one element beside longer
 //! ones are attributes of their group. Attributes are inherited downward.
 
 use std::collections::BTreeMap;
 
 use crate::attribute;
-use crate::hdf5::element::{Element, Stride};
+use crate::bytes::to_usize;
+use crate::hdf5::element::Element;
+use crate::hdf5::library::Store;
 use crate::hdf5::naming::{
     MOST_CHANNELS, NAME_KEYS, Orientation, UNIT_KEYS, merged, names, natural, scaling, squeezed,
     units,
 };
-use crate::hdf5::store::{Array, Attr, Attrs, Store, Tree};
+use crate::hdf5::store::{Array, Attr, Attrs, StoreError, Tree};
+use crate::numbers::Spacing;
 use crate::source::{ChannelInfo, DatasetInfo, StoredType};
 
-/// The stride of a single element.
-const ONE: Stride = Stride {
-    first: 0,
-    step: 8,
+/// The spacing of a single element.
+const ONE: Spacing = Spacing {
+    offset: 0,
+    stride: 8,
     count: 1,
 };
 
 /// Where the samples of a channel are.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Locator {
+pub(crate) struct Locator {
     /// Index into the plan's arrays.
     pub array: usize,
     /// Which part of the array.
@@ -38,7 +41,7 @@ pub struct Locator {
 
 /// A part of an array.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Part {
+pub(crate) enum Part {
     /// All of it.
     Whole,
     /// One column of a table.
@@ -51,7 +54,7 @@ pub enum Part {
 
 /// How to read one dataset.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
+pub(crate) struct Plan {
     /// The arrays that it takes, each read once.
     pub arrays: Vec<Array>,
     /// Its channels.
@@ -62,7 +65,7 @@ pub struct Plan {
 
 /// The records of a file: how they are described and how they are read.
 #[derive(Default)]
-pub struct Plans {
+pub(crate) struct Plans {
     /// Descriptions.
     pub datasets: Vec<DatasetInfo>,
     /// Ways of reading, one for each description.
@@ -72,14 +75,14 @@ pub struct Plans {
 }
 
 /// Make records of a tree.
-pub fn plan(store: &dyn Store, tree: &Tree) -> Plans {
+pub(crate) fn plan(store: &Store, tree: &Tree) -> Plans {
     let mut plans = Plans::default();
     plans.group(store, tree, &Attrs::new());
     plans
 }
 
 impl Plans {
-    fn group(&mut self, store: &dyn Store, tree: &Tree, inherited: &Attrs) {
+    fn group(&mut self, store: &Store, tree: &Tree, inherited: &Attrs) {
         let mut attributes = inherited.clone();
         attributes.extend(tree.attributes.clone());
         let sorted = self.sort(store, tree, &mut attributes);
@@ -98,12 +101,7 @@ impl Plans {
     }
 
     /// Sort a group's arrays by what they are good for; small ones become attributes.
-    fn sort<'a>(
-        &mut self,
-        store: &dyn Store,
-        tree: &'a Tree,
-        attributes: &mut Attrs,
-    ) -> Sorted<'a> {
+    fn sort<'a>(&mut self, store: &Store, tree: &'a Tree, attributes: &mut Attrs) -> Sorted<'a> {
         let mut sorted = Sorted::default();
         let long = tree
             .arrays
@@ -145,13 +143,13 @@ impl Plans {
     }
 
     /// Note that an array which would be an attribute cannot be read.
-    fn unread(&mut self, array: &Array, fault: &str) {
+    fn unread(&mut self, array: &Array, fault: &StoreError) {
         let note = format!("dataset '{}' left out: {fault}", array.path);
         self.notes.push(note);
     }
 
-    /// Records of a group's tables and columns; a column as long as a table's rows that says
-    /// time goes with the table.
+    /// Records of a group's tables and columns; a column as long as a table's rows that is
+    /// a time axis goes with the table.
     fn tables(&mut self, sorted: &Sorted, tree: &Tree, attributes: &Attrs) {
         let Sorted {
             tables, columns, ..
@@ -175,7 +173,7 @@ impl Plans {
             let rows = Orientation::of(table, attributes).samples(table);
             let time = columns
                 .iter()
-                .find(|c| attribute::says_time(&c.name) && c.count() == Some(rows));
+                .find(|c| attribute::is_time_name(&c.name) && c.count() == Some(rows));
             time.into_iter().for_each(|c| record.column(c));
             record.table(table, attributes);
             self.push(record);
@@ -351,22 +349,22 @@ impl Record {
         let channels = orientation.channels(table);
         let attributes = merged(inherited, &table.attributes);
         let names = names(&attributes, channels);
-        let units = units(&attributes, channels as usize);
-        let scaling = scaling(table, channels as usize);
+        let units = units(&attributes, to_usize(channels));
+        let scaling = scaling(table, to_usize(channels));
         let number = self.plan.arrays.len();
         self.plan.arrays.push(table.clone());
         for i in 0..channels {
             let name = names
                 .as_ref()
-                .map_or_else(|| format!("column_{}", i + 1), |n| n[i as usize].clone());
-            let unit = units.get(i as usize).cloned().flatten();
+                .map_or_else(|| format!("column_{}", i + 1), |n| n[to_usize(i)].clone());
+            let unit = units.get(to_usize(i)).cloned().flatten();
             self.channel(
                 name,
                 unit,
                 table.element.stored(),
                 orientation.samples(table),
             );
-            let (scale, offset) = scaling[i as usize];
+            let (scale, offset) = scaling[to_usize(i)];
             let part = match orientation {
                 Orientation::Columns => Part::Column(i),
                 Orientation::Rows => Part::Row(i),

@@ -1,4 +1,4 @@
-//! An HDF5 file as a tree of groups and arrays, whichever library reads it.
+//! An HDF5 file as a tree of groups and arrays.
 
 use std::collections::BTreeMap;
 
@@ -6,13 +6,13 @@ use crate::attribute;
 use crate::hdf5::element::Element;
 
 /// The most objects a file may hold.
-pub const MOST_OBJECTS: usize = 200_000;
+pub(crate) const MOST_OBJECTS: usize = 200_000;
 /// The deepest nesting of groups.
-pub const DEEPEST: usize = 32;
+pub(crate) const DEEPEST: usize = 32;
 
 /// An attribute's value.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Attr {
+pub(crate) enum Attr {
     /// One text or several.
     Text(Vec<String>),
     /// One number or several.
@@ -21,7 +21,7 @@ pub enum Attr {
 
 impl Attr {
     /// As one text; parts are joined by commas.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         match self {
             Self::Text(parts) => parts.join(", "),
             Self::Numbers(parts) => parts
@@ -33,7 +33,7 @@ impl Attr {
     }
 
     /// As a list of texts; one text is split at its commas.
-    pub fn list(&self) -> Vec<String> {
+    pub(crate) fn list(&self) -> Vec<String> {
         match self {
             Self::Text(parts) if parts.len() == 1 => attribute::list(&parts[0]),
             Self::Text(parts) => parts.clone(),
@@ -41,8 +41,8 @@ impl Attr {
         }
     }
 
-    /// As numbers, where it holds numbers.
-    pub fn numbers(&self) -> Option<&[f64]> {
+    /// As numbers, if it holds numbers.
+    pub(crate) fn numbers(&self) -> Option<&[f64]> {
         match self {
             Self::Numbers(parts) => Some(parts),
             Self::Text(_) => None,
@@ -51,11 +51,11 @@ impl Attr {
 }
 
 /// Attributes by name.
-pub type Attrs = BTreeMap<String, Attr>;
+pub(crate) type Attrs = BTreeMap<String, Attr>;
 
 /// An array of the file.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Array {
+pub(crate) struct Array {
     /// Path from the root, without the first slash.
     pub path: String,
     /// Last part of the path.
@@ -71,15 +71,22 @@ pub struct Array {
 }
 
 impl Array {
-    /// Number of elements; `None` where it exceeds 64 bits.
-    pub fn count(&self) -> Option<u64> {
+    /// Number of elements; `None` if it exceeds 64 bits.
+    pub(crate) fn count(&self) -> Option<u64> {
         self.shape.iter().try_fold(1u64, |n, &d| n.checked_mul(d))
+    }
+
+    /// Unpacked bytes that it claims to have, of texts their number.
+    pub(super) fn claimed(&self) -> u64 {
+        let element = self.element.bytes().max(1) as u64;
+        let bytes = self.count().and_then(|n| n.checked_mul(element));
+        bytes.unwrap_or(u64::MAX)
     }
 }
 
 /// A group of the file.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Tree {
+pub(crate) struct Tree {
     /// Path from the root, without the first slash; empty for the root.
     pub path: String,
     /// Its attributes.
@@ -90,32 +97,49 @@ pub struct Tree {
     pub groups: Vec<Tree>,
 }
 
-/// A library that reads HDF5 files. Errors are its own words.
-pub trait Store: Send + Sync {
-    /// The unpacked bytes of an array, row by row.
-    fn raw(&self, array: &Array) -> Result<Vec<u8>, String>;
+/// Why an array or the tree of a file is not read.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum StoreError {
+    #[error(transparent)]
+    Library(#[from] ::hdf5::Error),
+    #[error("{first}; the second library states: {second}")]
+    Both {
+        first: ::hdf5::Error,
+        second: rust_hdf5::Hdf5Error,
+    },
+    #[error("dataset '{path}': {error}")]
+    Dataset { path: String, error: ::hdf5::Error },
+    #[error("groups nested deeper than {DEEPEST} at '{0}'")]
+    TooDeep(String),
+    #[error("more than {MOST_OBJECTS} groups and datasets")]
+    TooMany,
+    #[error("'{0}': more values, or deeper nested ones, than are accepted")]
+    TooManyValues(String),
+    #[error("no dataset '{0}'")]
+    Absent(String),
+    #[error("chunks of {0} bytes, far more than the file")]
+    Chunks(u64),
+    #[error("{0} stored bytes, more than the file has")]
+    Stored(u64),
+    #[error("a shape of {shape:?} for which the file stores {stored} bytes")]
+    Shape { shape: Vec<u64>, stored: u64 },
+}
 
-    /// The unpacked bytes of `count` entries along the first dimension from `start`.
-    fn rows(&self, array: &Array, start: u64, count: u64) -> Result<Vec<u8>, String>;
-
-    /// The texts of an array of texts.
-    fn texts(&self, array: &Array) -> Result<Vec<String>, String>;
-
-    /// The paths that an array of references points at; empty for a null reference.
-    fn targets(&self, array: &Array) -> Result<Vec<Option<Target>>, String>;
-
-    /// Bytes that an array takes in the file, where the library tells.
-    fn stored_bytes(&self, array: &Array) -> Option<u64>;
-
-    /// Bytes that one unpacked chunk of an array takes; zero where it has no chunks.
-    fn chunk_bytes(&self, array: &Array) -> u64;
-
-    /// Length of the file.
-    fn file_bytes(&self) -> u64;
+impl StoreError {
+    /// Whether the file ends too early.
+    pub(super) fn is_cut_off(&self) -> bool {
+        let (Self::Library(error) | Self::Dataset { error, .. }) = self else {
+            return false;
+        };
+        matches!(
+            error,
+            ::hdf5::Error::Format(::hdf5::FormatError::UnexpectedEof { .. })
+        )
+    }
 }
 
 /// What a reference points at.
-pub enum Target {
+pub(crate) enum Target {
     /// An array.
     Array(Array),
     /// A group.
@@ -123,7 +147,7 @@ pub enum Target {
 }
 
 /// Join a path and a name.
-pub fn join(path: &str, name: &str) -> String {
+pub(crate) fn join(path: &str, name: &str) -> String {
     if path.is_empty() {
         name.to_owned()
     } else {

@@ -1,5 +1,7 @@
 use super::*;
-use crate::conformance::{own, real, wave};
+use crate::conformance::{
+    mutate, own, own_folder, own_seeds, real, shared_seeds, survive_within, wave,
+};
 
 #[test]
 fn valid_tables_of_counts_with_scale_and_offset() {
@@ -81,10 +83,17 @@ fn valid_compact_and_newest_layouts() {
         assert!((real(&*s, 0, "x")[9] - wave(9)).abs() < 1e-15, "{name}");
     }
     let s = open(&own("latest.h5")).unwrap();
-    println!("{:?}", s.notes());
+    assert_eq!(s.notes(), [""; 0]);
     assert_eq!(s.datasets()[0].sample_rate_hz(), Some(2000.0));
     let x = s.datasets()[0].channel_index("x").unwrap();
     assert_eq!(s.datasets()[0].channels[x].unit.as_deref(), Some("mm/s"));
+    let s = open(&own("latest_attributes.h5")).unwrap();
+    let info = &s.datasets()[0];
+    assert_eq!(info.sample_rate_hz(), Some(2000.0));
+    assert_eq!(info.attributes["rig"], "A");
+    let units: Vec<_> = info.channels.iter().map(|c| c.unit.as_deref()).collect();
+    assert_eq!(units, [Some("mm/s"), Some("V")]);
+    assert!((real(&*s, 0, "x")[9] - wave(9)).abs() < 1e-15);
     let s = open(&own("latest_two_unlimited.h5")).unwrap();
     assert!((real(&*s, 0, "column_1")[9] - wave(9)).abs() < 1e-15);
 }
@@ -107,14 +116,12 @@ fn valid_claims_and_cuts_are_refused() {
 }
 
 #[test]
-fn valid_goldens_of_matlab_7_3() {
+#[ignore = "needs shared/data: conformance files of MATLAB 7.3"]
+fn shared_data_goldens_of_matlab_7_3() {
     use crate::conformance::{Statistics, goldens};
-    let Some(files) = goldens("mat73_conformance") else {
-        return;
-    };
     let mut arrays = 0;
-    for (path, golden) in files {
-        // One of the goldens lies with the files of the older levels.
+    for (path, golden) in goldens("mat73_conformance") {
+        // One of the goldens is among the files of the older levels.
         let path = match path.exists() {
             true => path,
             false => path
@@ -125,7 +132,7 @@ fn valid_goldens_of_matlab_7_3() {
                 .join("mat5_conformance")
                 .join(path.file_name().unwrap()),
         };
-        let (store, tree, _) = open_store(&path).unwrap();
+        let (store, tree) = open_store(&path).unwrap();
         for (name, golden) in golden.as_object().unwrap() {
             let array = find_array(&tree, name).unwrap_or_else(|| panic!("{path:?}: no {name}"));
             let shape: Vec<u64> = serde_json::from_value(golden["shape"].clone()).unwrap();
@@ -135,12 +142,12 @@ fn valid_goldens_of_matlab_7_3() {
             }
             let raw = store.raw(array).unwrap();
             let count = array.count().unwrap() as usize;
-            let stride = Stride {
-                first: 0,
-                step: array.element.bytes(),
+            let spacing = Spacing {
+                offset: 0,
+                stride: array.element.bytes(),
                 count,
             };
-            if let Some(Samples::Real(values)) = array.element.decode(&raw, stride) {
+            if let Some(Samples::Real(values)) = array.element.decode(&raw, spacing) {
                 let nan = values.iter().filter(|v| v.is_nan()).count();
                 assert_eq!(
                     nan as u64,
@@ -169,10 +176,9 @@ fn find_array<'a>(tree: &'a Tree, path: &str) -> Option<&'a Array> {
 }
 
 #[test]
-fn valid_matlab_7_3_variables_are_named_as_in_older_levels() {
-    let Some(dir) = crate::conformance::folder("mat73_conformance") else {
-        return;
-    };
+#[ignore = "needs shared/data: conformance files of MATLAB 7.3"]
+fn shared_data_matlab_7_3_variables_are_named_as_in_older_levels() {
+    let dir = crate::conformance::shared_data("mat73_conformance");
     let s = open(&dir.join("testfile1.mat")).unwrap();
     let of = |name: &str| {
         let d = s
@@ -194,26 +200,20 @@ fn valid_matlab_7_3_variables_are_named_as_in_older_levels() {
         "{:?}",
         s.notes()
     );
-    println!(
-        "{:?}",
-        s.datasets()[0]
-            .channels
-            .iter()
-            .map(|c| c.name.clone())
-            .collect::<Vec<_>>()
-    );
-    println!("{:?}", s.notes());
 }
 
 #[test]
 fn prop_mutated_files_are_read_or_refused() {
-    use crate::conformance::{mutate, own_seeds, seeds, survive_within};
-    let mut all = own_seeds(&["h5"]);
-    all.extend(
-        seeds("mat73_conformance", 4000)
-            .into_iter()
-            .filter(|b| b.starts_with(b"MATLAB")),
-    );
-    // The libraries take a few MiB whatever the file.
+    let mut all = own_seeds("h5");
+    all.push(std::fs::read(own_folder("goldens").join("small_v73.mat")).unwrap());
+    // The library takes a few MiB whatever the file.
+    survive_within(&all, open, mutate, [1200, 8 << 20]);
+}
+
+#[test]
+#[ignore = "needs shared/data: conformance files of MATLAB 7.3"]
+fn shared_data_mutated_files_are_read_or_refused() {
+    let mut all = shared_seeds("mat73_conformance", 4000);
+    all.retain(|b| b.starts_with(b"MATLAB"));
     survive_within(&all, open, mutate, [1200, 8 << 20]);
 }

@@ -1,8 +1,9 @@
-//! How records lie in the file: tables of samples × channels, or groups of arrays.
+//! Records in the file: tables of samples × channels, or groups of arrays.
 
 use ::hdf5::{AttrValue, DatasetBuilder, FinishedGroup, GroupBuilder};
 
-use crate::hdf5_write::{ColumnToWrite, Folder, RecordTable, Stored, Value};
+use crate::hdf5_write::record::{ColumnToWrite, Folder, RecordTable, Stored, Value};
+use crate::numbers::to_f32;
 
 /// Rows of a chunk.
 const CHUNK_ROWS: u64 = 4096;
@@ -57,7 +58,7 @@ pub(super) fn table(dataset: &mut DatasetBuilder, record: &RecordTable, single: 
             scales(dataset, record);
         }
         Stored::Numbers(_) if single => {
-            dataset.with_f32_data(&interleaved(record, rows, |s, i| number(s, i) as f32));
+            dataset.with_f32_data(&interleaved(record, rows, |s, i| to_f32(number(s, i))));
         }
         Stored::Numbers(_) => {
             dataset.with_f64_data(&interleaved(record, rows, number));
@@ -145,7 +146,7 @@ pub(super) fn arrays(mut group: GroupBuilder, record: &RecordTable, single: bool
                 dataset.set_attr("offset", AttrValue::F64(*offset));
             }
             Stored::Numbers(values) if single => {
-                let values: Vec<f32> = values.iter().map(|v| *v as f32).collect();
+                let values: Vec<f32> = values.iter().copied().map(to_f32).collect();
                 dataset.with_f32_data(&values);
             }
             Stored::Numbers(values) => {

@@ -1,4 +1,4 @@
-//! What the headers of a LabVIEW measurement file say of a table and of its channels.
+//! What the headers of a LabVIEW measurement file state on a table and its channels.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use crate::text::cells::Separator;
 use crate::text::number;
 
 /// The value of a header key for a channel; a single value holds for all.
-pub fn value_for(keys: &Keys, key: &str, n: usize) -> Option<String> {
+pub(super) fn value_for(keys: &Keys, key: &str, n: usize) -> Option<String> {
     let values: Vec<&String> = keys.get(key)?.iter().collect();
     let packed: Vec<&String> = values.iter().copied().filter(|v| !v.is_empty()).collect();
     // With an X column for each channel the header has an empty cell for each of them.
@@ -20,17 +20,17 @@ pub fn value_for(keys: &Keys, key: &str, n: usize) -> Option<String> {
 }
 
 /// A number with either decimal mark.
-pub fn decimal_any(text: &str) -> Option<f64> {
+pub(super) fn decimal_any(text: &str) -> Option<f64> {
     number::parse_cell(text.as_bytes(), b'.').or_else(|| number::parse_cell(text.as_bytes(), b','))
 }
 
-/// Whether the X values of a channel are points in time, as they are where nothing is said.
-pub fn x_is_time(segment: &Segment, n: usize) -> bool {
+/// Whether the X values of a channel are points in time, as they are if nothing is stated.
+pub(super) fn x_is_time(segment: &Segment, n: usize) -> bool {
     value_for(&segment.keys, "X_Dimension", n).is_none_or(|d| d.trim() == "Time")
 }
 
 /// The number of channels that a table's header states.
-pub fn stated_channels(segment: &Segment) -> Option<usize> {
+pub(super) fn stated_channels(segment: &Segment) -> Option<usize> {
     let stated: usize = segment.keys.get("Channels")?.first()?.trim().parse().ok()?;
     // More channels than the header has cells for are no channels.
     let cells = segment.keys.values().map(Vec::len).max().unwrap_or(0);
@@ -38,7 +38,7 @@ pub fn stated_channels(segment: &Segment) -> Option<usize> {
 }
 
 /// The decimal mark that the header states; a header without it leaves it to the rows.
-pub fn decimal(keys: &Keys, separator: Separator, head: &[u8]) -> u8 {
+pub(super) fn decimal(keys: &Keys, separator: Separator, head: &[u8]) -> u8 {
     let stated = keys
         .get("Decimal_Separator")
         .and_then(|v| v.iter().find(|v| !v.is_empty()));
@@ -55,7 +55,7 @@ pub fn decimal(keys: &Keys, separator: Separator, head: &[u8]) -> u8 {
 }
 
 /// The unit of the X values of a channel.
-pub fn x_unit(segment: &Segment, n: usize) -> Option<String> {
+pub(super) fn x_unit(segment: &Segment, n: usize) -> Option<String> {
     match value_for(&segment.keys, "X_Dimension", n)?.trim() {
         "Time" => Some("s".to_owned()),
         "Frequency" => Some("Hz".to_owned()),
@@ -64,14 +64,14 @@ pub fn x_unit(segment: &Segment, n: usize) -> Option<String> {
 }
 
 /// Date and time of a header as ISO 8601.
-pub fn start_time(keys: &Keys, n: usize) -> Option<String> {
+pub(super) fn start_time(keys: &Keys, n: usize) -> Option<String> {
     let date = value_for(keys, "Date", n)?.replace('/', "-");
     let time = value_for(keys, "Time", n)?.replace(',', ".");
     Some(format!("{date}T{time}"))
 }
 
-/// What the headers say of the whole table.
-pub fn attributes(keys: &Keys, segment: &Segment) -> BTreeMap<String, String> {
+/// What the headers state on the whole table.
+pub(super) fn attributes(keys: &Keys, segment: &Segment) -> BTreeMap<String, String> {
     let own = [
         "Notes",
         "Test_Name",

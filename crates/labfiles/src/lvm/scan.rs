@@ -1,4 +1,4 @@
-//! One pass through a LabVIEW measurement file: its headers and where its tables lie.
+//! One pass through a LabVIEW measurement file: its headers and the places of its tables.
 
 use std::collections::BTreeMap;
 
@@ -7,24 +7,24 @@ use crate::text::cells::{Cells, Lines, Separator};
 use crate::text::{TextFile, decode, number};
 
 /// The first words of a LabVIEW measurement file.
-pub const FIRST_WORDS: &str = "LabVIEW Measurement";
+pub(crate) const FIRST_WORDS: &str = "LabVIEW Measurement";
 const END_OF_HEADER: &[u8] = b"***End_of_Header***";
 const START_SPECIAL: &[u8] = b"***Start_Special***";
 const END_SPECIAL: &[u8] = b"***End_Special***";
 
 /// Keys of a header with their values, one for each channel or one for all.
-pub type Keys = BTreeMap<String, Vec<String>>;
+pub(crate) type Keys = BTreeMap<String, Vec<String>>;
 
 /// One table of the file with the header above it.
 #[derive(Debug, Default, Clone)]
-pub struct Segment {
+pub(crate) struct Segment {
     /// The segment's own header.
     pub keys: Keys,
     /// Headings of the columns.
     pub headings: Vec<String>,
     /// Offset of the first row.
     pub start: u64,
-    /// Offset behind the last row.
+    /// Offset after the last row.
     pub end: u64,
     /// Number of rows.
     pub rows: u64,
@@ -33,10 +33,10 @@ pub struct Segment {
 }
 
 /// What a pass through the file found.
-pub struct Scan {
+pub(crate) struct Scan {
     /// The file's header.
     pub keys: Keys,
-    /// What stands between two cells.
+    /// The separator between two cells.
     pub separator: Separator,
     /// The tables.
     pub segments: Vec<Segment>,
@@ -47,8 +47,8 @@ pub struct Scan {
 /// Go through the file.
 ///
 /// # Errors
-/// Where a header does not end, or there is no table.
-pub fn scan(text: &TextFile) -> Result<Scan, ReadError> {
+/// If a header does not end, or there is no table.
+pub(crate) fn scan(text: &TextFile) -> Result<Scan, ReadError> {
     let mut pass = Pass {
         scan: Scan {
             keys: Keys::new(),
@@ -175,7 +175,7 @@ impl Pass {
                     .notes
                     .push("the last special segment does not end".to_owned());
             }
-            // A header behind the last table that holds nothing is the end of the file.
+            // An empty header after the last table is the end of the file.
             State::SegmentHeader
                 if !self.scan.segments.is_empty() && self.segment.keys.is_empty() => {}
             _ => return Err(self.unfinished(text)),
@@ -192,7 +192,7 @@ impl Pass {
             text.path(),
             "***End_of_Header*** and rows of numbers after the header",
             "the end of the file",
-            "Copy the file anew from the instrument: it is cut off.",
+            "Copy the file again from the instrument: it is cut off.",
         )
         .at(self.header_at)
     }

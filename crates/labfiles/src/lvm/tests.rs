@@ -1,5 +1,5 @@
 use super::*;
-use crate::conformance::shared_data;
+use crate::conformance::{mutate_text, own_seeds, shared_data, shared_seeds, survive};
 
 fn sum_of_numbers(samples: &Samples) -> f64 {
     match samples {
@@ -9,8 +9,9 @@ fn sum_of_numbers(samples: &Samples) -> f64 {
 }
 
 #[test]
-fn valid_goldens_of_the_python_reader() {
-    let Some(dir) = shared_data() else { return };
+#[ignore = "needs shared/data: conformance files of LVM"]
+fn shared_data_goldens_of_the_python_reader() {
+    let dir = shared_data("");
     let golden = std::fs::read_to_string(dir.join("lvm_conformance/golden.json")).unwrap();
     let golden: serde_json::Value = serde_json::from_str(&golden).unwrap();
     let mut files = 0;
@@ -47,7 +48,7 @@ fn meets(source: &dyn Source, d: usize, golden: &serde_json::Value, file: &str) 
             "{file}: {sum} {expected}"
         );
     }
-    // The names of the Python reader begin with X_Value only where it keeps that column, and its
+    // The names of the Python reader begin with X_Value only if it keeps that column, and its
     // decoder drops the letters that are not UTF-8: 'Presso ABS. (MPa)'.
     for (channel, name) in info
         .channels
@@ -73,8 +74,9 @@ fn meets(source: &dyn Source, d: usize, golden: &serde_json::Value, file: &str) 
 }
 
 #[test]
-fn valid_units_rate_and_start_of_a_forced_run() {
-    let Some(dir) = shared_data() else { return };
+#[ignore = "needs shared/data: records of a blade spring"]
+fn shared_data_units_rate_and_start_of_a_forced_run() {
+    let dir = shared_data("");
     let source =
         open(&dir.join("unb_cantilever_sdof/second_experiment/massa1/1Hz_tmp_001.txt")).unwrap();
     let info = &source.datasets()[0];
@@ -103,7 +105,7 @@ fn of_text(text: &str) -> Result<Box<dyn Source>, ReadError> {
 }
 
 #[test]
-fn valid_commas_two_segments_and_a_special_one() {
+fn commas_two_segments_and_a_special_one() {
     let source = of_text(TWO).unwrap();
     assert_eq!(source.datasets().len(), 2);
     assert_eq!(source.datasets()[1].name, "segment_2");
@@ -119,7 +121,7 @@ fn valid_commas_two_segments_and_a_special_one() {
 }
 
 #[test]
-fn valid_files_cut_off_are_refused() {
+fn files_cut_off_are_refused() {
     for keep in [30, 100, 200] {
         let error = of_text(&TWO[..keep]).err().unwrap();
         assert!(error.byte.is_some(), "{error}");
@@ -130,9 +132,15 @@ fn valid_files_cut_off_are_refused() {
 
 #[test]
 fn prop_mutated_files_are_read_or_refused() {
-    use crate::conformance::{mutate_text, seeds, survive};
-    let mut all = seeds("lvm_conformance", 2000);
-    all.retain(|bytes| bytes.starts_with(b"LabVIEW"));
+    let mut all = own_seeds("lvm");
     all.push(TWO.as_bytes().to_vec());
+    survive(&all, open, mutate_text, 64);
+}
+
+#[test]
+#[ignore = "needs shared/data: conformance files of LVM"]
+fn shared_data_mutated_files_are_read_or_refused() {
+    let mut all = shared_seeds("lvm_conformance", 2000);
+    all.retain(|bytes| bytes.starts_with(b"LabVIEW"));
     survive(&all, open, mutate_text, 64);
 }

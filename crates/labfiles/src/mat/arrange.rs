@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::text;
 use super::tree::{Content, Leaf, Tree};
+use crate::bytes::to_usize;
+use crate::numbers::Spacing;
 use crate::source::{ChannelInfo, DatasetInfo};
 
 /// Matrices with more columns than this are one channel, not one per column.
@@ -13,7 +15,7 @@ const WIDE: u64 = 16;
 
 /// Which part of an array a channel is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Slice {
+pub(crate) enum Slice {
     /// All of it, column by column.
     Whole,
     /// One column (higher dimensions counted through).
@@ -22,9 +24,26 @@ pub enum Slice {
     Row(u64),
 }
 
+impl Slice {
+    /// The places of its numbers of `width` bytes among those of its array.
+    pub(crate) fn spacing(self, leaf: &Leaf, width: usize) -> Spacing {
+        let (rows, all) = (to_usize(leaf.dims[0]), to_usize(leaf.count()));
+        let (offset, stride, count) = match self {
+            Self::Whole => (0, width, all),
+            Self::Column(column) => (to_usize(column) * rows * width, width, rows),
+            Self::Row(row) => (to_usize(row) * width, rows * width, all / rows.max(1)),
+        };
+        Spacing {
+            offset,
+            stride,
+            count,
+        }
+    }
+}
+
 /// Where a channel's samples come from.
 #[derive(Debug, Clone, Copy)]
-pub struct Origin {
+pub(crate) struct Origin {
     /// Index into [`Tree::leaves`].
     pub leaf: usize,
     /// The part of that array.
@@ -33,7 +52,7 @@ pub struct Origin {
 
 /// The datasets of a file and, for each, the origins of its channels.
 #[derive(Debug, Default)]
-pub struct Arranged {
+pub(crate) struct Arranged {
     /// As the user sees them.
     pub datasets: Vec<DatasetInfo>,
     /// One list per dataset, one origin per channel.
@@ -47,7 +66,7 @@ pub struct Arranged {
 ///
 /// Single values of the file are repeated as attributes of every record as far as that takes no
 /// more memory than the arrays themselves.
-pub fn arrange(tree: &Tree) -> Arranged {
+pub(crate) fn arrange(tree: &Tree) -> Arranged {
     let mut by_variable: Vec<Vec<usize>> = vec![Vec::new(); tree.variables.len()];
     for (index, leaf) in tree.leaves.iter().enumerate() {
         by_variable[leaf.variable].push(index);
@@ -357,11 +376,11 @@ impl<'t> Builder<'t> {
 }
 
 /// Whether a matrix holds a channel in each row: where the length of its rows is that of a
-/// vector beside it, or where it is far wider than tall.
+/// vector beside it, or if it is far wider than tall.
 fn is_by_rows(rows: u64, columns: u64, lengths: &BTreeSet<u64>) -> bool {
-    let told = lengths.contains(&columns) && !lengths.contains(&rows);
+    let stated = lengths.contains(&columns) && !lengths.contains(&rows);
     let wide = columns >= rows.saturating_mul(WIDE) && !lengths.contains(&rows);
-    columns > rows && rows <= MOST_COLUMNS && (told || wide)
+    columns > rows && rows <= MOST_COLUMNS && (stated || wide)
 }
 
 /// `(:,2)` for a matrix, `(:,2,1)` for an array of three dimensions.

@@ -10,7 +10,12 @@ use crate::source::ReadError;
 
 impl Walker<'_, '_> {
     /// An array of characters.
-    pub fn characters(&mut self, head: &Head, end: u64, path: &Path) -> Result<(), ReadError> {
+    pub(super) fn characters(
+        &mut self,
+        head: &Head,
+        end: u64,
+        path: &Path,
+    ) -> Result<(), ReadError> {
         let tag = match self.elements.tag(head.next, end, "characters") {
             Err(_) if head.count == 0 => Tag {
                 kind: 2,
@@ -25,15 +30,13 @@ impl Walker<'_, '_> {
             3 | 4 | 17 => (Number::U16, Encoding::Utf16),
             16 => (Number::U8, Encoding::Utf8),
             5 | 6 | 18 => (Number::U32, Encoding::Utf32),
-            other => return Err(self.elements.refuse(tag.at, "characters", kind_name(other))),
+            other => return Err(self.refuse(tag.at, "characters", kind_name(other))),
         };
         // Some writers leave out the bytes of a blank text.
         let blank = tag.bytes == 0 && head.dims[0] == 1;
         if head.count > tag.bytes && !blank {
             let found = format!("{} bytes", tag.bytes);
-            return Err(self
-                .elements
-                .refuse(tag.at, format!("{} characters", head.count), found));
+            return Err(self.refuse(tag.at, format!("{} characters", head.count), found));
         }
         let part = Part {
             at: tag.at,
@@ -55,13 +58,11 @@ impl Walker<'_, '_> {
             other => other?,
         };
         let Some(number) = number_of(tag.kind) else {
-            return Err(self.elements.refuse(tag.at, "numbers", kind_name(tag.kind)));
+            return Err(self.refuse(tag.at, "numbers", kind_name(tag.kind)));
         };
         if head.count.checked_mul(number.bytes()) != Some(tag.bytes) {
             let expected = format!("{} numbers of type {}", head.count, number.name());
-            return Err(self
-                .elements
-                .refuse(tag.at, expected, format!("{} bytes", tag.bytes)));
+            return Err(self.refuse(tag.at, expected, format!("{} bytes", tag.bytes)));
         }
         Ok((
             Part {
@@ -74,7 +75,7 @@ impl Walker<'_, '_> {
     }
 
     /// An array of numbers.
-    pub fn numeric(&mut self, head: &Head, end: u64, path: &Path) -> Result<(), ReadError> {
+    pub(super) fn numeric(&mut self, head: &Head, end: u64, path: &Path) -> Result<(), ReadError> {
         let (real, next) = self.part(head, head.next, end)?;
         if !head.complex {
             return self.leaf(head, path, Content::Real(real));

@@ -1,16 +1,16 @@
-//! Elements of a level 5 file: tags, and the short lists that stand before an array's data.
+//! Elements of a level 5 file: tags, and the short lists before an array's data.
 
 use super::inflate::Stream;
 use super::tree::Place;
-use crate::bytes::FileBytes;
-use crate::numbers::{self, ByteOrder, Number};
+use crate::bytes::{FileBytes, to_usize};
+use crate::numbers::{ByteOrder, Number};
 use crate::source::ReadError;
 
-/// Longest list of dimensions or of names that is believed, bytes.
+/// Longest list of dimensions or of names that is accepted, bytes.
 const LONGEST_LIST: u64 = 1 << 20;
 
 /// The bytes of one variable: the file's own or inflated ones, read forward.
-pub enum Input<'a> {
+pub(super) enum Input<'a> {
     /// In the file.
     Plain(&'a FileBytes),
     /// In a zlib stream.
@@ -18,18 +18,18 @@ pub enum Input<'a> {
 }
 
 /// Reads the elements of one variable, forward.
-pub struct Elements<'a> {
+pub(super) struct Elements<'a> {
     file: &'a FileBytes,
     input: Input<'a>,
     place: Place,
     order: ByteOrder,
-    /// The last tag read and its offset: a small element's data stand in it.
+    /// The last tag read and its offset: a small element's data are in it.
     last: (u64, [u8; 8]),
 }
 
-/// An element's kind and where its data lie.
+/// An element's kind and the place of its data.
 #[derive(Debug, Clone, Copy)]
-pub struct Tag {
+pub(super) struct Tag {
     /// Kind of the data.
     pub kind: u32,
     /// Their length.
@@ -42,7 +42,12 @@ pub struct Tag {
 
 impl<'a> Elements<'a> {
     /// The elements of a variable.
-    pub fn new(file: &'a FileBytes, input: Input<'a>, place: Place, order: ByteOrder) -> Self {
+    pub(super) fn new(
+        file: &'a FileBytes,
+        input: Input<'a>,
+        place: Place,
+        order: ByteOrder,
+    ) -> Self {
         Self {
             file,
             input,
@@ -52,18 +57,18 @@ impl<'a> Elements<'a> {
         }
     }
 
-    /// Where the variable's bytes lie.
-    pub fn place(&self) -> Place {
+    /// Place of the variable's bytes.
+    pub(super) fn place(&self) -> Place {
         self.place
     }
 
     /// The byte order of the numbers.
-    pub fn order(&self) -> ByteOrder {
+    pub(super) fn order(&self) -> ByteOrder {
         self.order
     }
 
     /// An error at an offset of the variable.
-    pub fn refuse(
+    pub(super) fn refuse(
         &self,
         at: u64,
         expected: impl Into<String>,
@@ -82,7 +87,7 @@ impl<'a> Elements<'a> {
         match &mut self.input {
             Input::Plain(file) => Ok(file.slice(at, length, what)?.to_vec()),
             Input::Packed(stream) => {
-                let mut buffer = vec![0; length as usize];
+                let mut buffer = vec![0; to_usize(length)];
                 stream.read_at(at, &mut buffer, what)?;
                 Ok(buffer)
             }
@@ -90,16 +95,12 @@ impl<'a> Elements<'a> {
     }
 
     /// The 32-bit number in four bytes.
-    pub fn word(&self, bytes: &[u8]) -> u32 {
-        let array = [bytes[0], bytes[1], bytes[2], bytes[3]];
-        match self.order {
-            ByteOrder::Little => u32::from_le_bytes(array),
-            ByteOrder::Big => u32::from_be_bytes(array),
-        }
+    pub(super) fn word(&self, bytes: &[u8]) -> u32 {
+        self.order.u32([bytes[0], bytes[1], bytes[2], bytes[3]])
     }
 
     /// The tag at an offset; its data end before `end`.
-    pub fn tag(&mut self, at: u64, end: u64, what: &str) -> Result<Tag, ReadError> {
+    pub(super) fn tag(&mut self, at: u64, end: u64, what: &str) -> Result<Tag, ReadError> {
         if at.saturating_add(8) > end {
             let found = format!("only {} bytes left", end.saturating_sub(at));
             return Err(self.refuse(at, format!("the tag of {what}"), found));
@@ -139,7 +140,7 @@ impl<'a> Elements<'a> {
     }
 
     /// The data of a short element (a list of dimensions or names).
-    pub fn list(&mut self, tag: Tag, what: &str) -> Result<Vec<u8>, ReadError> {
+    pub(super) fn list(&mut self, tag: Tag, what: &str) -> Result<Vec<u8>, ReadError> {
         if tag.bytes > LONGEST_LIST {
             return Err(self.refuse(tag.at, what, format!("{} bytes", tag.bytes)));
         }
@@ -147,40 +148,35 @@ impl<'a> Elements<'a> {
     }
 
     /// The data at an offset; those of a small element were part of the tag just read, and in a
-    /// stream lie behind.
-    pub fn data(&mut self, at: u64, bytes: u64, what: &str) -> Result<Vec<u8>, ReadError> {
+    /// stream are behind the position.
+    pub(super) fn data(&mut self, at: u64, bytes: u64, what: &str) -> Result<Vec<u8>, ReadError> {
         let (tag_at, tag) = self.last;
         match at == tag_at + 4 && bytes <= 4 {
-            true => Ok(tag[4..4 + bytes as usize].to_vec()),
+            true => Ok(tag[4..4 + to_usize(bytes)].to_vec()),
             false => self.fetch(at, bytes, what),
         }
     }
 
     /// Whole numbers from 0 to 2^31 - 1.
-    pub fn integers(&mut self, tag: Tag, what: &str) -> Result<Vec<i64>, ReadError> {
+    pub(super) fn integers(&mut self, tag: Tag, what: &str) -> Result<Vec<u64>, ReadError> {
         let bytes = self.list(tag, what)?;
-        let number = match tag.kind {
-            5 => Number::I32,
-            6 => Number::U32,
-            other => return Err(self.refuse(tag.at, format!("{what} as int32"), kind_name(other))),
-        };
-        let mut values = Vec::new();
-        numbers::decode(number, self.order, &bytes, &mut values);
-        if let Some(wild) = values
-            .iter()
-            .find(|v| !(0.0..=2_147_483_647.0).contains(*v))
-        {
-            return Err(self.refuse(
-                tag.at,
-                format!("{what} between 0 and 2147483647"),
-                wild.to_string(),
-            ));
+        if !matches!(tag.kind, 5 | 6) {
+            return Err(self.refuse(tag.at, format!("{what} as int32"), kind_name(tag.kind)));
         }
-        Ok(values.into_iter().map(|v| v as i64).collect())
+        let (words, _) = bytes.as_chunks();
+        let values = words.iter().map(|&word| self.order.u32(word));
+        if let Some(wild) = values.clone().find(|v| v.cast_signed() < 0) {
+            let found = match tag.kind {
+                5 => wild.cast_signed().to_string(),
+                _ => wild.to_string(),
+            };
+            return Err(self.refuse(tag.at, format!("{what} between 0 and 2147483647"), found));
+        }
+        Ok(values.map(u64::from).collect())
     }
 
     /// A name in ASCII.
-    pub fn ascii(&mut self, tag: Tag, what: &str) -> Result<String, ReadError> {
+    pub(super) fn ascii(&mut self, tag: Tag, what: &str) -> Result<String, ReadError> {
         let bytes = self.list(tag, what)?;
         if !matches!(tag.kind, 1 | 2 | 16) {
             return Err(self.refuse(tag.at, format!("{what} as int8"), kind_name(tag.kind)));
@@ -199,7 +195,7 @@ impl<'a> Elements<'a> {
 }
 
 /// The kind of numbers that an element of that kind holds.
-pub fn number_of(kind: u32) -> Option<Number> {
+pub(super) fn number_of(kind: u32) -> Option<Number> {
     Some(match kind {
         1 => Number::I8,
         2 => Number::U8,
@@ -216,7 +212,7 @@ pub fn number_of(kind: u32) -> Option<Number> {
 }
 
 /// The kind of an element, for a message.
-pub fn kind_name(kind: u32) -> String {
+pub(super) fn kind_name(kind: u32) -> String {
     match (kind, number_of(kind)) {
         (_, Some(number)) => format!("an element of {}", number.name()),
         (14, _) => "a matrix element".into(),

@@ -1,11 +1,11 @@
-//! Compressed variables: a zlib stream read forward, never believed beyond what it can hold.
+//! Compressed variables: a zlib stream read forward, never trusted beyond what it can hold.
 
 use std::io::{BufReader, Read};
 
 use flate2::bufread::ZlibDecoder;
 
 use super::tree::Place;
-use crate::bytes::FileBytes;
+use crate::bytes::{FileBytes, to_usize};
 use crate::inflate::zlib_into;
 use crate::source::ReadError;
 
@@ -17,7 +17,7 @@ const SUSPICIOUS_EXPANSION: u64 = 100;
 const LARGE: u64 = 64 << 20;
 
 /// A zlib stream of the file, read forward.
-pub struct Stream<'a> {
+pub(super) struct Stream<'a> {
     file: &'a FileBytes,
     at: u64,
     packed: u64,
@@ -27,7 +27,7 @@ pub struct Stream<'a> {
 
 impl<'a> Stream<'a> {
     /// Start at the stream's first byte.
-    pub fn open(file: &'a FileBytes, at: u64, packed: u64) -> Result<Self, ReadError> {
+    pub(super) fn open(file: &'a FileBytes, at: u64, packed: u64) -> Result<Self, ReadError> {
         let bytes = file.slice(at, packed, "a compressed variable")?;
         let decoder = BufReader::with_capacity(4096, ZlibDecoder::new(bytes));
         Ok(Self {
@@ -40,7 +40,7 @@ impl<'a> Stream<'a> {
     }
 
     /// Check the size that the stream's first element claims against what it can hold.
-    pub fn check_claim(&self, inflated: u64) -> Result<(), ReadError> {
+    pub(super) fn check_claim(&self, inflated: u64) -> Result<(), ReadError> {
         if inflated
             > self
                 .packed
@@ -66,8 +66,8 @@ impl<'a> Stream<'a> {
         Ok(())
     }
 
-    /// Fill `buffer` with the bytes at `position`, which must not lie behind.
-    pub fn read_at(
+    /// Fill `buffer` with the bytes at `position`, which must not be before the present one.
+    pub(super) fn read_at(
         &mut self,
         position: u64,
         buffer: &mut [u8],
@@ -103,7 +103,7 @@ impl<'a> Stream<'a> {
     fn finish(mut self) -> Result<(), ReadError> {
         match self.decoder.read(&mut [0]) {
             Ok(0) => {}
-            Ok(_) => return Err(self.fault("the end", "more data than its header says")),
+            Ok(_) => return Err(self.fault("the end", "more data than its header states")),
             Err(error) => return Err(self.fault("the end", error)),
         }
         let used = self.decoder.get_ref().total_in();
@@ -115,7 +115,7 @@ impl<'a> Stream<'a> {
 }
 
 /// Inflate a whole variable and check its length and checksum.
-pub fn inflate(file: &FileBytes, place: Place) -> Result<Vec<u8>, ReadError> {
+pub(super) fn inflate(file: &FileBytes, place: Place) -> Result<Vec<u8>, ReadError> {
     let Place::Packed {
         at,
         packed,
@@ -126,11 +126,11 @@ pub fn inflate(file: &FileBytes, place: Place) -> Result<Vec<u8>, ReadError> {
     };
     let mut stream = Stream::open(file, at, packed)?;
     stream.check_claim(inflated)?;
-    let mut bytes = vec![0; inflated as usize];
-    if zlib_into(file.slice(at, packed, "a compressed variable")?, &mut bytes).is_ok() {
+    let mut bytes = vec![0; to_usize(inflated)];
+    if zlib_into(file.slice(at, packed, "a compressed variable")?, &mut bytes) {
         return Ok(bytes);
     }
-    // Read forward, the stream tells where it fails.
+    // Reading forward gives the place of the fault.
     stream.read_at(0, &mut bytes, "the variable")?;
     stream.finish()?;
     Ok(bytes)

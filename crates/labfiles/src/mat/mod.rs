@@ -5,7 +5,7 @@
 //!
 //! - Every numeric vector is a channel, every column of a matrix is one (`data(:,2)`), counted
 //!   from 1 as in MATLAB. A matrix is taken by rows instead (`data(1,:)`, with a note) where the
-//!   length of its rows is that of a vector beside it, or where it is at least 16 times wider
+//!   length of its rows is that of a vector beside it, or if it is at least 16 times wider
 //!   than tall. Character arrays are channels of text, one string per row.
 //! - Channels in structs and cells are named by their path: `rig.velocity`, `c{2}`, `s(3).x`;
 //!   an index of a struct or cell of one element is left out.
@@ -14,7 +14,7 @@
 //!   element then is a dataset (`runs(2)`), whose channels carry the path inside the element. A
 //!   time vector beside the array is added to each record that has its length.
 //! - Single numbers and short texts are channels and also attributes of the dataset, so that
-//!   clearance or frequency stand beside the record; one called `fs`, `sample_rate` or `dt`
+//!   clearance or frequency are attributes of the record; one called `fs`, `sample_rate` or `dt`
 //!   gives the sample rate. A unit is read from a text `x_unit` or `Units.x` beside `x`.
 //! - Sparse matrices and opaque objects are left out by name; a file that holds nothing else is
 //!   refused.
@@ -23,8 +23,7 @@ pub(crate) mod arrange;
 mod contents;
 mod element;
 mod inflate;
-mod names;
-pub(super) use names::subscript;
+pub(crate) mod names;
 mod samples;
 #[cfg(test)]
 mod tests;
@@ -34,21 +33,20 @@ mod v4;
 mod v5;
 
 use std::path::Path;
-use std::sync::Arc;
 
 use arrange::Arranged;
 use tree::Tree;
 
 use super::bytes::FileBytes;
-use super::source::{DatasetInfo, ReadError, Samples, Source, requested};
+use super::source::{Opened, ReadError, Reader, Samples, Source};
 
 /// Whether a file's first bytes (128 or more) are those of a MATLAB file of level 4 or 5.
-pub fn recognises(head: &[u8]) -> bool {
+pub(crate) fn recognises(head: &[u8]) -> bool {
     v5::byte_order(head).is_some() || (!v5::is_hdf5(head) && v4::byte_order(head).is_some())
 }
 
 /// Open a MATLAB file of level 4 or 5: its variables are found, no samples are read.
-pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
+pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let file = FileBytes::open(path)?;
     let tree = scan(&file)?;
     refuse_if_nothing_left(&file, &tree)?;
@@ -68,11 +66,15 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         .chain(left_out)
         .chain(notes)
         .collect();
-    Ok(Box::new(MatFile {
-        store: samples::Store::new(file, tree),
+    Ok(Box::new(Opened {
+        format: "mat",
+        path: path.to_path_buf(),
         datasets,
-        origins: Arc::from(origins),
         notes,
+        reader: MatFile {
+            store: samples::Store::new(file, tree),
+            origins,
+        },
     }))
 }
 
@@ -109,30 +111,11 @@ fn refuse_if_nothing_left(file: &FileBytes, tree: &Tree) -> Result<(), ReadError
 
 struct MatFile {
     store: samples::Store,
-    datasets: Vec<DatasetInfo>,
-    origins: Arc<[Vec<arrange::Origin>]>,
-    notes: Vec<String>,
+    origins: Vec<Vec<arrange::Origin>>,
 }
 
-impl Source for MatFile {
-    fn format(&self) -> &'static str {
-        "mat"
-    }
-
-    fn path(&self) -> &Path {
-        self.store.path()
-    }
-
-    fn datasets(&self) -> &[DatasetInfo] {
-        &self.datasets
-    }
-
-    fn notes(&self) -> &[String] {
-        &self.notes
-    }
-
+impl Reader for MatFile {
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
-        requested(self, dataset, channels)?;
         let wanted: Vec<_> = channels.iter().map(|&c| self.origins[dataset][c]).collect();
         self.store.read(&wanted)
     }

@@ -1,14 +1,13 @@
 //! Samples of arrays: decoded from the mapped file, or from a variable inflated once.
 
-use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::arrange::{Origin, Slice};
 use super::inflate;
 use super::text;
 use super::tree::{Content, Leaf, Part, Place, Tree};
-use crate::bytes::FileBytes;
-use crate::numbers::{self, ByteOrder, Spacing};
+use crate::bytes::{FileBytes, to_usize};
+use crate::numbers::{self, ByteOrder};
 use crate::source::{ReadError, Samples};
 
 /// An inflated variable is kept for the next request up to this multiple of the file's size.
@@ -20,7 +19,7 @@ const KEPT_SIZE: u64 = 64 << 20;
 type Kept = Option<(usize, Arc<Vec<u8>>)>;
 
 /// The open file, its arrays and the variable inflated last.
-pub struct Store {
+pub(super) struct Store {
     file: FileBytes,
     tree: Tree,
     leaves_of: Vec<usize>,
@@ -29,7 +28,7 @@ pub struct Store {
 
 impl Store {
     /// Take over an open file and what was found in it.
-    pub fn new(file: FileBytes, tree: Tree) -> Self {
+    pub(super) fn new(file: FileBytes, tree: Tree) -> Self {
         let mut leaves_of = vec![0; tree.variables.len()];
         for leaf in &tree.leaves {
             leaves_of[leaf.variable] += 1;
@@ -42,13 +41,8 @@ impl Store {
         }
     }
 
-    /// The file's path.
-    pub fn path(&self) -> &Path {
-        self.file.path()
-    }
-
     /// The samples of some channels, in the order asked for; each variable is inflated once.
-    pub fn read(&self, wanted: &[Origin]) -> Result<Vec<Samples>, ReadError> {
+    pub(super) fn read(&self, wanted: &[Origin]) -> Result<Vec<Samples>, ReadError> {
         self.file.still_whole()?;
         let variable_of = |slot: usize| self.tree.leaves[wanted[slot].leaf].variable;
         let mut all: Vec<Option<Samples>> = vec![None; wanted.len()];
@@ -125,7 +119,7 @@ impl Store {
     fn part<'b>(&self, part: Part, bytes: &'b Bytes<'_>) -> Result<&'b [u8], ReadError> {
         let all = bytes.all();
         let end = part.at.saturating_add(part.bytes).min(all.len() as u64);
-        match all.get(part.at as usize..end as usize) {
+        match all.get(to_usize(part.at)..to_usize(end)) {
             Some(found) if found.len() as u64 == part.bytes => Ok(found),
             _ => Err(self
                 .file
@@ -150,30 +144,8 @@ impl Bytes<'_> {
 
 /// Decode a slice of a column-major array.
 fn take(leaf: &Leaf, slice: Slice, bytes: &[u8], part: Part, order: ByteOrder) -> Vec<f64> {
-    let rows = leaf.dims[0] as usize;
-    let width = part.number.bytes() as usize;
-    let mut out = Vec::new();
-    match slice {
-        Slice::Whole => {
-            out.reserve_exact(bytes.len() / width);
-            numbers::decode(part.number, order, bytes, &mut out);
-        }
-        Slice::Column(column) => {
-            let start = column as usize * rows * width;
-            let column = bytes.get(start..start + rows * width).unwrap_or(&[]);
-            out.reserve_exact(rows);
-            numbers::decode(part.number, order, column, &mut out);
-        }
-        Slice::Row(row) => {
-            let columns = leaf.count() as usize / rows.max(1);
-            let spacing = Spacing {
-                offset: row as usize * width,
-                stride: rows * width,
-                count: columns,
-            };
-            out.reserve_exact(columns);
-            numbers::decode_spaced(part.number, order, bytes, spacing, &mut out);
-        }
-    }
+    let spacing = slice.spacing(leaf, to_usize(part.number.bytes()));
+    let mut out = Vec::with_capacity(spacing.count);
+    numbers::decode_spaced(part.number, order, bytes, spacing, &mut out);
     out
 }

@@ -206,10 +206,9 @@ fn check_variable(found: &Variable, golden: &Value, what: &str) {
 }
 
 #[test]
-fn valid_every_golden_is_met() {
-    let Some(goldens) = conformance::goldens("mat5_conformance") else {
-        return;
-    };
+#[ignore = "needs shared/data: conformance files of MATLAB"]
+fn shared_data_every_golden_is_met() {
+    let goldens = conformance::goldens("mat5_conformance");
     assert!(goldens.len() > 100);
     for (path, golden) in goldens {
         let file = path.file_name().unwrap().to_str().unwrap().to_owned();
@@ -250,10 +249,9 @@ fn valid_every_golden_is_met() {
 }
 
 #[test]
-fn valid_containers_hold_what_the_laboratory_put_in() {
-    let Some(folder) = conformance::folder("mat5_conformance") else {
-        return;
-    };
+#[ignore = "needs shared/data: conformance files of MATLAB"]
+fn shared_data_containers_hold_what_the_laboratory_put_in() {
+    let folder = conformance::shared_data("mat5_conformance");
     let nest = open(&folder.join("testcellnest_7.4_GLNX86.mat")).unwrap();
     let found = variables(nest.as_ref()).unwrap();
     let value = |name: &str| found[name].real.clone();
@@ -276,7 +274,7 @@ fn valid_containers_hold_what_the_laboratory_put_in() {
 // ---- own files ----
 
 #[test]
-fn valid_plain_big_endian_and_compressed_hold_the_same() {
+fn plain_big_endian_and_compressed_hold_the_same() {
     let values: Vec<f64> = (0..12).map(|k| f64::from(k) * 0.5 - 1.0).collect();
     let plain = matrix("data", 6, 2, &values);
     let big = array(6, &[6, 2], "data", &doubles(&values, true), true);
@@ -294,7 +292,7 @@ fn valid_plain_big_endian_and_compressed_hold_the_same() {
 }
 
 #[test]
-fn valid_v4_in_both_orders() {
+fn v4_in_both_orders() {
     for big in [false, true] {
         let word = |v: i16| {
             if big {
@@ -315,7 +313,7 @@ fn valid_v4_in_both_orders() {
 }
 
 #[test]
-fn valid_array_of_records_gives_datasets() {
+fn array_of_records_gives_datasets() {
     let run = |k: f64| {
         vec![
             matrix("", 4, 1, &[k, k + 1.0, k + 2.0, k + 3.0]),
@@ -352,7 +350,7 @@ fn valid_array_of_records_gives_datasets() {
 }
 
 #[test]
-fn valid_a_blank_unit_is_none() {
+fn a_blank_unit_is_none() {
     let units = [
         string("x_unit", ""),
         string("y_unit", " "),
@@ -366,7 +364,7 @@ fn valid_a_blank_unit_is_none() {
 }
 
 #[test]
-fn valid_cell_of_matrices_gives_datasets() {
+fn cell_of_matrices_gives_datasets() {
     let record = |k: f64| matrix("", 3, 2, &[k, k, k, 2.0 * k, 2.0 * k, 2.0 * k]);
     let bytes = file(
         &[cell("shots", &[2, 1], &[record(1.0), record(5.0)])],
@@ -380,7 +378,7 @@ fn valid_cell_of_matrices_gives_datasets() {
 }
 
 #[test]
-fn valid_wide_matrix_is_read_by_rows_where_its_time_says_so() {
+fn wide_matrix_is_read_by_rows_where_its_time_says_so() {
     let data: Vec<f64> = (0..6).map(f64::from).collect();
     let bytes = file(
         &[
@@ -396,7 +394,7 @@ fn valid_wide_matrix_is_read_by_rows_where_its_time_says_so() {
 }
 
 #[test]
-fn valid_broken_files_are_refused_at_a_byte() {
+fn broken_files_are_refused_at_a_byte() {
     let good = file(&[matrix("data", 6, 2, &[0.5; 12])], false);
     let cut = opened(&good[..good.len() - 9]).err().unwrap();
     assert_eq!(cut.byte, Some(128));
@@ -429,7 +427,7 @@ fn valid_broken_files_are_refused_at_a_byte() {
 }
 
 #[test]
-fn valid_deep_nesting_is_refused_without_a_crash() {
+fn deep_nesting_is_refused_without_a_crash() {
     let mut inner = matrix("", 1, 1, &[1.0]);
     for _ in 0..2000 {
         inner = cell("", &[1, 1], &[inner]);
@@ -441,7 +439,7 @@ fn valid_deep_nesting_is_refused_without_a_crash() {
 }
 
 #[test]
-fn valid_expanding_stream_is_refused_within_memory() {
+fn expanding_stream_is_refused_within_memory() {
     let zeros = vec![0.0; 9 << 20];
     let bytes = file(&[packed(&matrix("z", 9 << 20, 1, &zeros))], false);
     drop(zeros);
@@ -476,7 +474,7 @@ fn mutate_inside(random: &mut Random, bytes: &mut Vec<u8>) {
 
 #[test]
 fn prop_mutated_files_are_read_or_refused() {
-    let mut seeds = conformance::seeds("mat5_conformance", 16 << 10);
+    let mut seeds = conformance::own_seeds("mat");
     seeds.retain(|seed| recognises(seed));
     let fields = [
         matrix("", 8, 2, &[1.5; 16]),
@@ -488,5 +486,13 @@ fn prop_mutated_files_are_read_or_refused() {
     seeds.push(file(&[record.clone(), cells.clone()], false));
     seeds.push(file(&[packed(&record), packed(&cells)], false));
     seeds.push(v4_matrix(0, [2, 1], "x", &[1; 16], false));
+    conformance::survive(&seeds, open, mutate_inside, 40);
+}
+
+#[test]
+#[ignore = "needs shared/data: conformance files of MATLAB"]
+fn shared_data_mutated_files_are_read_or_refused() {
+    let mut seeds = conformance::shared_seeds("mat5_conformance", 16 << 10);
+    seeds.retain(|seed| recognises(seed));
     conformance::survive(&seeds, open, mutate_inside, 40);
 }

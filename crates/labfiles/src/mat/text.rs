@@ -1,6 +1,7 @@
 //! Characters of MATLAB arrays, and the short values that serve as attributes.
 
 use super::tree::{Content, Encoding, Leaf, Part};
+use crate::bytes::to_usize;
 use crate::numbers::{self, ByteOrder};
 use crate::source::ReadError;
 
@@ -8,6 +9,11 @@ use crate::source::ReadError;
 const SHORT: u64 = 512;
 
 /// The characters that the bytes encode; what is no character becomes U+FFFD.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "codes of characters, which files hold as numbers of any type"
+)]
 fn characters(bytes: &[u8], part: Part, encoding: Encoding, order: ByteOrder) -> Vec<char> {
     let codes = || {
         let mut codes = Vec::new();
@@ -26,12 +32,12 @@ fn characters(bytes: &[u8], part: Part, encoding: Encoding, order: ByteOrder) ->
 }
 
 /// The rows of a text array as strings.
-pub fn rows(leaf: &Leaf, bytes: &[u8], order: ByteOrder) -> Vec<String> {
+pub(crate) fn rows(leaf: &Leaf, bytes: &[u8], order: ByteOrder) -> Vec<String> {
     let Content::Text(part, encoding) = leaf.content else {
         return Vec::new();
     };
     let all = characters(bytes, part, encoding, order);
-    let rows = row_count(leaf) as usize;
+    let rows = to_usize(row_count(leaf));
     match rows {
         0 => Vec::new(),
         1 => vec![all.into_iter().collect()],
@@ -41,13 +47,13 @@ pub fn rows(leaf: &Leaf, bytes: &[u8], order: ByteOrder) -> Vec<String> {
     }
 }
 
-/// Number of strings in a text array: its rows, none where it is empty.
-pub fn row_count(leaf: &Leaf) -> u64 {
+/// Number of strings in a text array: its rows, none if it is empty.
+pub(crate) fn row_count(leaf: &Leaf) -> u64 {
     if leaf.count() == 0 { 0 } else { leaf.dims[0] }
 }
 
 /// The value of an array of one number or of one short string, as text.
-pub fn short_value(
+pub(crate) fn short_value(
     leaf: &Leaf,
     order: ByteOrder,
     mut fetch: impl FnMut(Part) -> Result<Vec<u8>, ReadError>,

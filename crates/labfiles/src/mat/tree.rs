@@ -3,9 +3,9 @@
 use crate::numbers::{ByteOrder, Number};
 use crate::source::StoredType;
 
-/// Where the bytes of a variable lie.
+/// Place of the bytes of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub(crate) enum Place {
     /// As they are in the file; offsets count from the file's start.
     Plain,
     /// In a zlib stream; offsets count from the start of the inflated bytes.
@@ -21,20 +21,20 @@ pub enum Place {
 
 /// A variable at the top of the file.
 #[derive(Debug, Clone)]
-pub struct Variable {
+pub(crate) struct Variable {
     /// Its name.
     pub name: String,
-    /// Where its bytes lie.
+    /// Place of its bytes.
     pub place: Place,
     /// Byte order of its numbers.
     pub order: ByteOrder,
-    /// Number of elements where it is a struct array or a cell array, else 1.
+    /// Number of elements if it is a struct array or a cell array, else 1.
     pub elements: u64,
 }
 
 /// A run of numbers of one kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Part {
+pub(crate) struct Part {
     /// Offset of the first byte (see [`Place`]).
     pub at: u64,
     /// Length, bytes.
@@ -45,7 +45,7 @@ pub struct Part {
 
 /// How the codes of a text are to be understood.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Encoding {
+pub(crate) enum Encoding {
     /// One number per character.
     Codes,
     /// UTF-8.
@@ -58,7 +58,7 @@ pub enum Encoding {
 
 /// What an array holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Content {
+pub(crate) enum Content {
     /// Real numbers.
     Real(Part),
     /// Complex numbers; each part of that many bits by the array's class.
@@ -69,7 +69,7 @@ pub enum Content {
 
 /// An array of numbers or of characters, with the path that leads to it.
 #[derive(Debug, Clone)]
-pub struct Leaf {
+pub(crate) struct Leaf {
     /// Index of its variable.
     pub variable: usize,
     /// Which element of its variable it belongs to, where the variable has several.
@@ -86,25 +86,25 @@ pub struct Leaf {
     pub class: &'static str,
     /// Whether it holds true and false.
     pub logical: bool,
-    /// Its value as text where it is one number or one short string.
+    /// Its value as text if it is one number or one short string.
     pub value: Option<String>,
 }
 
 impl Leaf {
     /// Number of elements.
-    pub fn count(&self) -> u64 {
+    pub(crate) fn count(&self) -> u64 {
         self.dims.iter().product()
     }
 
     /// Its numbers or characters (of complex numbers: the real parts).
-    pub fn part(&self) -> Part {
+    pub(crate) fn part(&self) -> Part {
         match self.content {
             Content::Real(part) | Content::Complex(part, ..) | Content::Text(part, _) => part,
         }
     }
 
     /// How the numbers are stored.
-    pub fn stored(&self) -> StoredType {
+    pub(crate) fn stored(&self) -> StoredType {
         match self.content {
             Content::Real(part) => part.number.stored(),
             Content::Complex(_, _, bits) => StoredType::Complex(bits),
@@ -113,14 +113,14 @@ impl Leaf {
     }
 
     /// Whether it holds numbers.
-    pub fn is_numeric(&self) -> bool {
+    pub(crate) fn is_numeric(&self) -> bool {
         !matches!(self.content, Content::Text(..))
     }
 }
 
 /// All that opening a file finds.
 #[derive(Debug, Clone, Default)]
-pub struct Tree {
+pub(crate) struct Tree {
     /// The variables in file order.
     pub variables: Vec<Variable>,
     /// Their arrays in file order.

@@ -1,6 +1,6 @@
 //! Level 4 files: matrices one after the other, each with a header of 20 bytes.
 //!
-//! The header's first number, MOPT in decimal digits, tells byte order (M), number format (P)
+//! The header's first number, MOPT in decimal digits, states byte order (M), number format (P)
 //! and kind (T: 0 full, 1 text, 2 sparse).
 
 use super::text;
@@ -9,17 +9,16 @@ use crate::bytes::{Cursor, FileBytes};
 use crate::numbers::{ByteOrder, Number};
 use crate::source::ReadError;
 
-/// Longest name that is believed, bytes.
+/// Longest name that is accepted, bytes.
 const LONGEST_NAME: u32 = 256;
 
 /// Byte order of a level 4 file, from its first header; `None`: it is none.
-pub fn byte_order(head: &[u8]) -> Option<ByteOrder> {
+pub(super) fn byte_order(head: &[u8]) -> Option<ByteOrder> {
     let word = |at: usize, order| {
-        let bytes: [u8; 4] = head.get(at..at + 4)?.try_into().ok()?;
-        Some(match order {
-            ByteOrder::Little => u32::from_le_bytes(bytes),
-            ByteOrder::Big => u32::from_be_bytes(bytes),
-        })
+        Some(ByteOrder::u32(
+            order,
+            head.get(at..at + 4)?.try_into().ok()?,
+        ))
     };
     let plausible = |order| {
         let mopt = word(0, order)?;
@@ -36,7 +35,7 @@ pub fn byte_order(head: &[u8]) -> Option<ByteOrder> {
 }
 
 /// Find all variables of a level 4 file.
-pub fn scan(file: &FileBytes, order: ByteOrder) -> Result<Tree, ReadError> {
+pub(super) fn scan(file: &FileBytes, order: ByteOrder) -> Result<Tree, ReadError> {
     let mut tree = Tree::default();
     let mut cursor = file.cursor(order);
     while cursor.left() > 0 {

@@ -5,9 +5,9 @@
 
 use super::element::{Elements, Input, Tag, kind_name};
 use super::inflate::Stream;
-use super::names::{Path, field_names, subscript};
+use super::names::{Path, field_names};
 use super::tree::{Place, Tree, Variable};
-use crate::bytes::FileBytes;
+use crate::bytes::{FileBytes, to_usize};
 use crate::numbers::ByteOrder;
 use crate::source::ReadError;
 
@@ -19,7 +19,7 @@ const HEADER: u64 = 128;
 const DEEPEST: usize = 48;
 
 /// Byte order of a level 5 file, from its header; `None`: it is none (or is v7.3, an HDF5 file).
-pub fn byte_order(head: &[u8]) -> Option<ByteOrder> {
+pub(super) fn byte_order(head: &[u8]) -> Option<ByteOrder> {
     match head.get(124..128)? {
         [_, 1, b'I', b'M'] => Some(ByteOrder::Little),
         [1, _, b'M', b'I'] => Some(ByteOrder::Big),
@@ -28,7 +28,7 @@ pub fn byte_order(head: &[u8]) -> Option<ByteOrder> {
 }
 
 /// Whether the header is that of v7.3, which is an HDF5 file.
-pub fn is_hdf5(head: &[u8]) -> bool {
+pub(super) fn is_hdf5(head: &[u8]) -> bool {
     matches!(
         head.get(124..128),
         Some([_, 2, b'I', b'M'] | [2, _, b'M', b'I'])
@@ -36,7 +36,7 @@ pub fn is_hdf5(head: &[u8]) -> bool {
 }
 
 /// Walks through the arrays of one variable.
-pub struct Walker<'a, 't> {
+pub(super) struct Walker<'a, 't> {
     /// Its elements.
     pub elements: Elements<'a>,
     /// Its index.
@@ -45,8 +45,8 @@ pub struct Walker<'a, 't> {
     pub tree: &'t mut Tree,
 }
 
-/// What stands before the data of an array.
-pub struct Head {
+/// What precedes the data of an array.
+pub(super) struct Head {
     /// Its class.
     pub class: u8,
     /// Whether it holds true and false.
@@ -66,7 +66,7 @@ pub struct Head {
 }
 
 /// Find all variables of a level 5 file.
-pub fn scan(file: &FileBytes, order: ByteOrder) -> Result<Tree, ReadError> {
+pub(super) fn scan(file: &FileBytes, order: ByteOrder) -> Result<Tree, ReadError> {
     let mut tree = Tree::default();
     let mut at = HEADER;
     while at < file.size() {
@@ -129,14 +129,9 @@ fn packed(
     let mut stream = Box::new(Stream::open(file, at, bytes)?);
     let mut head = [0; 8];
     stream.read_at(0, &mut head, "a variable's tag")?;
-    let word = |bytes: &[u8]| {
-        let array = [bytes[0], bytes[1], bytes[2], bytes[3]];
-        match order {
-            ByteOrder::Little => u32::from_le_bytes(array),
-            ByteOrder::Big => u32::from_be_bytes(array),
-        }
-    };
-    let (kind, length) = (word(&head[..4]), u64::from(word(&head[4..])));
+    let [kind, length] =
+        [0, 4].map(|i| order.u32([head[i], head[i + 1], head[i + 2], head[i + 3]]));
+    let length = u64::from(length);
     if kind != MATRIX {
         return Err(file.refuse(at, "a compressed matrix (14)", format!("element {kind}")));
     }
@@ -174,24 +169,25 @@ fn walk(elements: Elements<'_>, tag: Tag, tree: &mut Tree) -> Result<(), ReadErr
         variable,
         tree,
     };
-    let path = Path {
-        name: String::new(),
-        tail: String::new(),
-        element: None,
-        depth: 0,
-    };
-    walker.array(tag, &path)
+    walker.array(tag, &Path::to(""))
 }
 
 impl Walker<'_, '_> {
+    pub(crate) fn refuse(
+        &self,
+        at: u64,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+    ) -> ReadError {
+        self.elements.refuse(at, expected, found)
+    }
+
     fn head(&mut self, tag: Tag) -> Result<Head, ReadError> {
         let end = tag.at + tag.bytes;
         let flags_tag = self.elements.tag(tag.at, end, "array flags")?;
         if flags_tag.kind != 6 || flags_tag.bytes != 8 {
             let found = format!("{} of {} bytes", kind_name(flags_tag.kind), flags_tag.bytes);
-            return Err(self
-                .elements
-                .refuse(tag.at, "array flags (uint32, 8 bytes)", found));
+            return Err(self.refuse(tag.at, "array flags (uint32, 8 bytes)", found));
         }
         let flags = self.elements.list(flags_tag, "array flags")?;
         let flags = self.elements.word(&flags[..4]);
@@ -213,14 +209,9 @@ impl Walker<'_, '_> {
         }
         let dims_tag = self.elements.tag(flags_tag.next, end, "dimensions")?;
         let dims = self.elements.integers(dims_tag, "dimensions")?;
-        let dims: Vec<u64> = dims.into_iter().map(|d| d as u64).collect();
         let count = dims.iter().try_fold(1u64, |all, &d| all.checked_mul(d));
         let Some(count) = count.filter(|_| dims.len() >= 2) else {
-            return Err(self.elements.refuse(
-                dims_tag.at,
-                "two or more dimensions",
-                format!("{dims:?}"),
-            ));
+            return Err(self.refuse(dims_tag.at, "two or more dimensions", format!("{dims:?}")));
         };
         let name_tag = self.elements.tag(dims_tag.next, end, "a name")?;
         let name = self.elements.ascii(name_tag, "a name")?;
@@ -244,16 +235,10 @@ impl Walker<'_, '_> {
     /// One array: a leaf, or a container whose arrays follow.
     fn array(&mut self, tag: Tag, path: &Path) -> Result<(), ReadError> {
         if tag.kind != MATRIX {
-            return Err(self
-                .elements
-                .refuse(tag.at, "a matrix element (14)", kind_name(tag.kind)));
+            return Err(self.refuse(tag.at, "a matrix element (14)", kind_name(tag.kind)));
         }
         if path.depth > DEEPEST {
-            return Err(self.elements.refuse(
-                tag.at,
-                format!("at most {DEEPEST} nested arrays"),
-                "more",
-            ));
+            return Err(self.refuse(tag.at, format!("at most {DEEPEST} nested arrays"), "more"));
         }
         if tag.bytes == 0 {
             return Ok(());
@@ -280,11 +265,7 @@ impl Walker<'_, '_> {
             6..=15 => self.numeric(&head, end, &path),
             16 => self.function(&head, end, &path),
             17 => self.leave_out(path.name, "opaque object"),
-            other => {
-                Err(self
-                    .elements
-                    .refuse(head.at, "an array class from 1 to 17", other.to_string()))
-            }
+            other => Err(self.refuse(head.at, "an array class from 1 to 17", other.to_string())),
         }
     }
 
@@ -299,39 +280,23 @@ impl Walker<'_, '_> {
         let room = end.saturating_sub(at);
         match children.saturating_mul(8) <= room {
             true => Ok(children),
-            false => {
-                Err(self
-                    .elements
-                    .refuse(at, format!("{children} arrays"), format!("{room} bytes")))
-            }
+            false => Err(self.refuse(at, format!("{children} arrays"), format!("{room} bytes"))),
         }
     }
 
-    /// The path of an element of a container, with its index where it has several.
+    /// The path of an element of a container, with its index if it has several.
     fn element(&mut self, head: &Head, path: &Path, index: u64, brackets: [char; 2]) -> Path {
-        if head.count == 1 {
-            return path.clone();
-        }
-        if path.depth == 0 {
+        if path.depth == 0 && head.count != 1 {
             self.tree.variables[self.variable].elements = head.count;
         }
-        let child = path.child(&subscript(&head.dims, index, brackets));
-        match path.depth {
-            0 => Path {
-                element: Some(index),
-                tail: String::new(),
-                ..child
-            },
-            _ => child,
-        }
+        path.element(index, head.count, &head.dims, brackets)
     }
 
     fn cell(&mut self, head: &Head, end: u64, path: &Path) -> Result<(), ReadError> {
         let mut at = head.next;
         for index in 0..self.check_children(head, 1, at, end)? {
             let tag = self.elements.tag(at, end, "a cell")?;
-            let mut element = self.element(head, path, index, ['{', '}']);
-            element.depth = path.depth + 1;
+            let element = self.element(head, path, index, ['{', '}']);
             self.array(tag, &element)?;
             at = tag.next;
         }
@@ -343,7 +308,7 @@ impl Walker<'_, '_> {
         let width = self
             .elements
             .integers(width_tag, "the length of field names")?;
-        let width = width.first().copied().unwrap_or(0) as usize;
+        let width = to_usize(width.first().copied().unwrap_or(0));
         let names_tag = self.elements.tag(width_tag.next, end, "field names")?;
         let names = self.elements.list(names_tag, "field names")?;
         let names = field_names(&names, width);

@@ -12,13 +12,16 @@ use polars_io::parquet::read::{_internal::to_deserializer, FileMetadata, Parquet
 use polars_parquet::parquet::page::CompressedPage;
 use polars_parquet::read::PageReader;
 
-use crate::bytes::read_exact_at;
+use crate::bytes::{read_exact_at, to_usize};
 use crate::parquet::field::{Field, samples};
-use crate::parquet::shape::Range;
-use crate::parquet::{SIGNATURE, footer, guard};
+use crate::parquet::{footer, guard};
 use crate::source::{ReadError, Samples, StoredType};
 use crate::text::clock::Stamp;
 
+/// The first and the last four bytes of a Parquet file.
+pub(crate) const SIGNATURE: [u8; 4] = *b"PAR1";
+/// First row and number of rows.
+pub(crate) type Range = (u64, u64);
 /// A column that is asked for in parts is kept whole up to this size.
 const KEPT_BYTES: u64 = 1 << 28;
 /// More rows than this for each byte of the file are no data.
@@ -28,7 +31,7 @@ const MOST_ROWS_PER_BYTE: u64 = 64;
 const MOST_BYTES_PER_BYTE: u64 = 512;
 
 /// A file's columns.
-pub struct Columns {
+pub(crate) struct Columns {
     path: PathBuf,
     file: File,
     length: u64,
@@ -43,8 +46,8 @@ impl Columns {
     /// Read a file's footer.
     ///
     /// # Errors
-    /// Where it is damaged or states more rows than the file can hold.
-    pub fn open(path: &Path) -> Result<Self, ReadError> {
+    /// If it is damaged or states more rows than the file can hold.
+    pub(crate) fn open(path: &Path) -> Result<Self, ReadError> {
         let file = File::open(path).map_err(|e| ReadError::io(path, &e))?;
         let length = file.metadata().map_err(|e| ReadError::io(path, &e))?.len();
         let handle = file.try_clone().map_err(|e| ReadError::io(path, &e))?;
@@ -79,7 +82,7 @@ impl Columns {
                 path,
                 expected,
                 format!("{rows} rows"),
-                "Copy the file anew.",
+                "Copy the file again.",
             ));
         }
         let kept = fields.iter().map(|_| OnceLock::new()).collect();
@@ -96,17 +99,21 @@ impl Columns {
     }
 
     /// The columns, in file order.
-    pub fn fields(&self) -> &[Field] {
+    pub(crate) fn fields(&self) -> &[Field] {
         &self.fields
     }
 
     /// Number of rows.
-    pub fn rows(&self) -> u64 {
+    pub(crate) fn rows(&self) -> u64 {
         self.rows
     }
 
-    /// The first point in time of a column as ISO 8601, where it holds dates.
-    pub fn first_time(&self, column: usize, rows: &[Range]) -> Option<String> {
+    /// The first point in time of a column as ISO 8601, if it holds dates.
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "whole days; beyond 64 bits they saturate"
+    )]
+    pub(crate) fn first_time(&self, column: usize, rows: &[Range]) -> Option<String> {
         let field = &self.fields[column];
         let row = rows.first()?.0;
         if field.stored != Some(StoredType::Time) {
@@ -119,7 +126,7 @@ impl Columns {
             here
         })?;
         let values = self.group(field, number).ok()?.into_real()?;
-        let seconds = values.get((row - first) as usize)? / field.ticks_per_second;
+        let seconds = values.get(to_usize(row - first))? / field.ticks_per_second;
         let days = (seconds / 86_400.0).floor();
         Some(
             Stamp {
@@ -131,12 +138,12 @@ impl Columns {
     }
 
     /// What the footer states besides.
-    pub fn attributes(&self) -> &BTreeMap<String, String> {
+    pub(crate) fn attributes(&self) -> &BTreeMap<String, String> {
         &self.attributes
     }
 
     /// A note for each column that is not read.
-    pub fn left_out(&self) -> Vec<String> {
+    pub(crate) fn left_out(&self) -> Vec<String> {
         let unread = self.fields.iter().filter(|f| f.stored.is_none());
         unread
             .map(|f| format!("column '{}' left out: its type is not read", f.name))
@@ -146,8 +153,8 @@ impl Columns {
     /// The samples of a column in some ranges of rows.
     ///
     /// # Errors
-    /// Where the file's pages are damaged.
-    pub fn read(&self, column: usize, ranges: &[Range]) -> Result<Samples, ReadError> {
+    /// If the file's pages are damaged.
+    pub(crate) fn read(&self, column: usize, ranges: &[Range]) -> Result<Samples, ReadError> {
         if ranges == [(0, self.rows)] {
             return self.load(column, (0, self.rows));
         }
@@ -167,7 +174,7 @@ impl Columns {
     }
 
     /// The texts of a column; numbers are written out.
-    pub fn texts(&self, column: usize) -> Result<Vec<String>, ReadError> {
+    pub(crate) fn texts(&self, column: usize) -> Result<Vec<String>, ReadError> {
         Ok(match self.load(column, (0, self.rows))? {
             Samples::Text(texts) => texts,
             Samples::Real(values) => values.iter().map(f64::to_string).collect(),
@@ -223,7 +230,7 @@ impl Columns {
             if values > group.num_rows() as u64 || unpacked > MOST_BYTES_PER_BYTE * self.length {
                 return Err(damaged(format!("{values} values in {unpacked} bytes")).at(first));
             }
-            let mut bytes = vec![0; size as usize];
+            let mut bytes = vec![0; to_usize(size)];
             read_exact_at(&self.file, &mut bytes, first)
                 .map_err(|e| ReadError::io(&self.path, &e))?;
             if footer::first_claim(&bytes).is_some_and(|n| n > MOST_BYTES_PER_BYTE * self.length) {
@@ -235,7 +242,7 @@ impl Columns {
             let name = PlSmallStr::from_str(&field.name);
             let arrow = ArrowField::new(name.clone(), field.physical.clone(), true);
             for (chunk, bytes) in &pages {
-                let limit = self.length as usize;
+                let limit = to_usize(self.length);
                 let bytes = Cursor::new(Clone::clone(bytes));
                 self.check_pages(
                     PageReader::new(bytes, chunk, Vec::new(), limit),
@@ -248,7 +255,7 @@ impl Columns {
         match samples.len() == group.num_rows() {
             true => Ok(samples),
             false => Err(damaged(format!(
-                "{} rows where the footer says {}",
+                "{} rows where the footer states {}",
                 samples.len(),
                 group.num_rows()
             ))),
@@ -309,14 +316,14 @@ fn check_footer(path: &Path, file: &File, length: u64) -> Result<(), ReadError> 
     let size = u64::from(u32::from_le_bytes([tail[0], tail[1], tail[2], tail[3]]));
     let start = end.checked_sub(size).filter(|s| *s >= 4);
     let start = start.ok_or_else(|| damaged(format!("a footer of {size} bytes"), end))?;
-    let mut bytes = vec![0; size as usize];
+    let mut bytes = vec![0; to_usize(size)];
     read_exact_at(file, &mut bytes, start).map_err(|e| ReadError::io(path, &e))?;
-    footer::check(&bytes).map_err(|(words, at)| damaged(words, start + at as u64))
+    footer::check(&bytes).map_err(|fault| damaged(fault.found, start + fault.at as u64))
 }
 
-const REMEDY: &str = "Copy the file anew, or write it again with the program that made it.";
+const REMEDY: &str = "Copy the file again, or write it again with the program that made it.";
 
-/// Run the library; its errors, and its panics on damaged files, become errors of ours.
+/// Run the library; its errors, and its panics on damaged files, become a [`ReadError`].
 fn guarded<T>(path: &Path, run: impl FnOnce() -> PolarsResult<T>) -> Result<T, ReadError> {
     let damaged = |found: String| ReadError::new(path, "a complete Parquet file", found, REMEDY);
     match guard::caught(run) {
@@ -329,7 +336,7 @@ fn pick(whole: &Samples, ranges: &[Range]) -> Samples {
     fn parts<T: Clone>(all: &[T], ranges: &[Range]) -> Vec<T> {
         ranges
             .iter()
-            .flat_map(|&(from, count)| &all[from as usize..(from + count) as usize])
+            .flat_map(|&(from, count)| &all[to_usize(from)..to_usize(from + count)])
             .cloned()
             .collect()
     }

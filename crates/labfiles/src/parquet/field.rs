@@ -6,7 +6,7 @@ use crate::source::{Samples, StoredType};
 
 /// A column's name and type.
 #[derive(Debug, Clone)]
-pub struct Field {
+pub(crate) struct Field {
     /// Its name as written.
     pub name: String,
     /// How its samples are stored; `None`: a type that is not read.
@@ -19,7 +19,7 @@ pub struct Field {
 
 impl Field {
     /// A column of a type of the footer's schema.
-    pub fn new(name: String, datatype: &ArrowDataType) -> Self {
+    pub(crate) fn new(name: String, datatype: &ArrowDataType) -> Self {
         use ArrowDataType as A;
         let ticks = |unit: &ArrowTimeUnit| match unit {
             ArrowTimeUnit::Second => 1.0,
@@ -59,7 +59,8 @@ impl Field {
 }
 
 /// A column's samples; missing numbers are NaN, missing texts empty.
-pub fn samples(series: &Series) -> PolarsResult<Samples> {
+#[expect(clippy::cast_lossless, reason = "the macro is for 64-bit integers too")]
+pub(crate) fn samples(series: &Series) -> PolarsResult<Samples> {
     macro_rules! numbers {
         ($chunked:expr) => {{
             let mut values = Vec::with_capacity($chunked.len());

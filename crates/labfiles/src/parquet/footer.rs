@@ -3,18 +3,26 @@
 //!
 //! The footer is a structure of thrift's compact protocol; only its lengths matter here.
 
+use crate::bytes::to_usize;
+
 /// The deepest nesting of a footer.
 const DEEPEST: usize = 32;
 
-/// What is wrong with a footer: the words, and the offset in the footer.
-pub type Fault = (String, usize);
+/// What is wrong with a footer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Fault {
+    /// What was found.
+    pub(super) found: String,
+    /// Its offset in the footer.
+    pub(super) at: usize,
+}
 
 /// Go through a footer.
 ///
 /// # Errors
-/// Where a length or a count exceeds the bytes that follow, a type is unknown, or the structure
+/// If a length or a count exceeds the bytes that follow, a type is unknown, or the structure
 /// does not end.
-pub fn check(footer: &[u8]) -> Result<(), Fault> {
+pub(super) fn check(footer: &[u8]) -> Result<(), Fault> {
     Walk {
         bytes: footer,
         at: 0,
@@ -28,8 +36,11 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    fn fault<T>(&self, words: impl Into<String>) -> Result<T, Fault> {
-        Err((words.into(), self.at))
+    fn fault<T>(&self, found: impl Into<String>) -> Result<T, Fault> {
+        Err(Fault {
+            found: found.into(),
+            at: self.at,
+        })
     }
 
     fn byte(&mut self) -> Result<u8, Fault> {
@@ -47,7 +58,7 @@ impl Walk<'_> {
         if count > left {
             return self.fault(format!("a value of {count} bytes where {left} are left"));
         }
-        self.at += count as usize;
+        self.at += to_usize(count);
         Ok(())
     }
 
@@ -72,7 +83,7 @@ impl Walk<'_> {
             let header = self.byte()?;
             match (header & 0x0F, header >> 4) {
                 (0, _) => return Ok(()),
-                // Truth values stand in the header.
+                // Truth values are in the header.
                 (1 | 2, 0) => drop(self.number()?),
                 (1 | 2, _) => {}
                 (kind, 0) => {
@@ -125,7 +136,7 @@ impl Walk<'_> {
 /// claims. Its header is a structure of thrift's compact protocol: the first three fields are
 /// 32-bit integers (kind, unpacked and packed bytes), the seventh is a dictionary's own header,
 /// which begins with its number of values.
-pub fn first_claim(bytes: &[u8]) -> Option<u64> {
+pub(super) fn first_claim(bytes: &[u8]) -> Option<u64> {
     const NEXT_FIELD_I32: u8 = 0x15;
     const FOURTH_NEXT_STRUCTURE: u8 = 0x4C;
     let mut rest = bytes.iter().copied();
@@ -163,11 +174,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_counts_beyond_the_footer_are_refused() {
+    fn counts_beyond_the_footer_are_refused() {
         // Field 1, i32 2; field 2, list of one structure that is empty; end.
         assert_eq!(check(&[0x15, 4, 0x19, 0x1C, 0, 0]), Ok(()));
         let endless = check(&[0x19, 0xFC, 0xFF, 0xFF, 0xFF, 0xFF, 0x07]).unwrap_err();
-        assert!(endless.0.contains("2147483647 entries"), "{endless:?}");
+        assert!(endless.found.contains("2147483647 entries"), "{endless:?}");
         assert!(check(&[0x18, 100, b'a']).is_err());
         assert!(check(&[0x15]).is_err());
         assert!(check(&[0x1C; 100]).is_err());

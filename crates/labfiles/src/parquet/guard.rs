@@ -7,8 +7,8 @@ thread_local! {
     static CAUGHT: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Run the library on this thread: what it gives, or `None` where it panicked.
-pub fn caught<T>(run: impl FnOnce() -> T) -> Option<T> {
+/// Run the library on this thread: what it gives, or `None` if it panicked.
+pub(crate) fn caught<T>(run: impl FnOnce() -> T) -> Option<T> {
     let before = CAUGHT.replace(true);
     let result = catch_unwind(AssertUnwindSafe(run));
     CAUGHT.set(before);
@@ -25,7 +25,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_panics_are_caught_on_their_own_thread_only() {
+    fn panics_are_caught_on_their_own_thread_only() {
         let other = || std::thread::spawn(is_caught).join().unwrap();
         assert_eq!(caught(|| (is_caught(), other())), Some((true, false)));
         assert_eq!(caught(|| -> u8 { panic!("of the library") }), None);

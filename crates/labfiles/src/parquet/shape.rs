@@ -3,16 +3,13 @@
 use std::collections::BTreeMap;
 
 use crate::attribute;
-use crate::parquet::columns::Columns;
+use crate::parquet::columns::{Columns, Range};
 use crate::source::{ReadError, StoredType};
 
-/// First row and number of rows.
-pub type Range = (u64, u64);
+/// Labels with the rows that have them.
+pub(crate) type Labelled = Vec<(String, Vec<Range>)>;
 
-/// Labels with the rows that bear them.
-pub type Labelled = Vec<(String, Vec<Range>)>;
-
-/// Names of columns that tell the record, lower case.
+/// Names of columns that name the record, lower case.
 const RECORD_NAMES: [&str; 9] = [
     "record",
     "record_id",
@@ -24,23 +21,23 @@ const RECORD_NAMES: [&str; 9] = [
     "test",
     "measurement",
 ];
-/// Names of columns that tell the channel, lower case.
+/// Names of columns that name the channel, lower case.
 const CHANNEL_NAMES: [&str; 4] = ["channel", "variable", "signal", "quantity"];
 /// Names of columns that hold the values of a tidy table, lower case.
 const VALUE_NAMES: [&str; 4] = ["value", "values", "sample", "y"];
 
 /// How a table is laid out.
-pub enum Shape {
+pub(crate) enum Shape {
     /// Every column is a channel, the table is one record.
     Wide,
-    /// A column tells the record, the others are channels.
+    /// A column names the record, the others are channels.
     ByRecord {
         /// That column.
         key: usize,
         /// The records with their rows.
         records: Labelled,
     },
-    /// One column holds all values, others tell record, channel and time.
+    /// One column holds all values, others name record, channel and time.
     Tidy {
         /// Which columns they are.
         tidy: Tidy,
@@ -50,7 +47,7 @@ pub enum Shape {
 }
 
 /// The columns of a tidy table.
-pub struct Tidy {
+pub(crate) struct Tidy {
     /// The column of values.
     pub value: usize,
     /// The time axis.
@@ -59,11 +56,11 @@ pub struct Tidy {
     pub unit: Option<BTreeMap<String, String>>,
 }
 
-/// Find out.
+/// Find the layout of a table.
 ///
 /// # Errors
-/// Where the columns that tell record and channel cannot be read.
-pub fn find(columns: &Columns) -> Result<Shape, ReadError> {
+/// If the columns that name record and channel cannot be read.
+pub(crate) fn find(columns: &Columns) -> Result<Shape, ReadError> {
     let named = |names: &[&str]| {
         columns
             .fields()
@@ -121,7 +118,7 @@ fn tidy(
     let time = columns
         .fields()
         .iter()
-        .position(|f| attribute::says_time(&f.name));
+        .position(|f| attribute::is_time_name(&f.name));
     let unit = columns.fields().iter().position(|f| {
         matches!(f.name.to_lowercase().as_str(), "unit" | "units")
             && f.stored == Some(StoredType::Text)

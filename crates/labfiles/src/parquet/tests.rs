@@ -64,7 +64,7 @@ fn valid_files_cut_off_are_refused() {
 #[test]
 fn prop_mutated_files_are_read_or_refused() {
     use crate::conformance::{Random, mutate, own_seeds, survive_within};
-    // The footer lies at the end of the file: half of the mutations go there.
+    // The footer is at the end of the file: half of the mutations go there.
     let change = |random: &mut Random, bytes: &mut Vec<u8>| {
         if random.below(2) == 0 {
             bytes.reverse();
@@ -76,5 +76,5 @@ fn prop_mutated_files_are_read_or_refused() {
     };
     // A panic of the library that is caught may print a trace, for which the debugging
     // information of the program is loaded.
-    survive_within(&own_seeds(&["parquet"]), open, change, [1200, 256 << 20]);
+    survive_within(&own_seeds("parquet"), open, change, [1200, 256 << 20]);
 }

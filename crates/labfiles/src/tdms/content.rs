@@ -1,4 +1,4 @@
-//! What opening a TDMS file finds: its objects and where their raw data lie.
+//! What opening a TDMS file finds: its objects and the places of their raw data.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use crate::numbers::ByteOrder;
 
 /// A file, group or channel.
 #[derive(Debug, Default)]
-pub struct Object {
+pub(super) struct Object {
     /// Empty for the file, one part for a group, two for a channel.
     pub path: Vec<String>,
     /// Its properties, of which later segments may change some.
@@ -18,7 +18,7 @@ pub struct Object {
     /// Number of its samples.
     pub samples: u64,
     /// Layouts in which it has samples, and its entry in each.
-    pub places: Vec<(u32, u32)>,
+    pub places: Vec<(usize, usize)>,
     /// The latest raw data index.
     pub share: Option<Share>,
     /// Whether it belongs to the present segment.
@@ -29,13 +29,13 @@ pub struct Object {
 
 /// Chunks of one layout that follow each other in the file.
 #[derive(Debug, Clone, Copy)]
-pub struct Piece {
+pub(super) struct Piece {
     /// Offset of the first chunk.
     pub at: u64,
     /// Number of chunks.
     pub chunks: u64,
     /// Their layout.
-    pub layout: u32,
+    pub layout: usize,
     /// Byte order of the numbers.
     pub order: ByteOrder,
     /// Whether the channels are interleaved row by row.
@@ -44,7 +44,7 @@ pub struct Piece {
 
 /// All that opening a file finds.
 #[derive(Debug, Default)]
-pub struct Content {
+pub(super) struct Content {
     /// File, groups and channels in order of appearance.
     pub objects: Vec<Object>,
     /// The layouts of the chunks.
@@ -52,7 +52,7 @@ pub struct Content {
     /// The raw data in file order.
     pub pieces: Vec<Piece>,
     /// For each layout its pieces.
-    pub pieces_of: Vec<Vec<u32>>,
+    pub pieces_of: Vec<Vec<usize>>,
     /// What was skipped or assumed.
     pub notes: Vec<String>,
 }

@@ -12,7 +12,11 @@ const DEVICE: u32 = 0x1269;
 const DIGITAL: [u32; 2] = [0x126a, 0x1369];
 
 /// Read a raw data index, of which `header` has just been read.
-pub fn share(file: &FileBytes, cursor: &mut Cursor<'_>, header: u32) -> Result<Share, ReadError> {
+pub(super) fn share(
+    file: &FileBytes,
+    cursor: &mut Cursor<'_>,
+    header: u32,
+) -> Result<Share, ReadError> {
     let at = cursor.at() - 4;
     let digital = DIGITAL.contains(&header);
     let device = digital || header == DEVICE;
@@ -21,8 +25,9 @@ pub fn share(file: &FileBytes, cursor: &mut Cursor<'_>, header: u32) -> Result<S
         return Err(file.refuse(at, expected, format!("{header:#x}")));
     }
     let code = cursor.u32("a data type")?;
-    let kind = Kind::of(code).map_err(|found| {
+    let kind = Kind::of(code).map_err(|unread| {
         let remedy = "Save the channel again, as double precision numbers (DBL).";
+        let found = unread.to_string();
         file.unsupported(at + 4, found, "a data type that is read", remedy)
     })?;
     let dimension = cursor.u32("a dimension")?;

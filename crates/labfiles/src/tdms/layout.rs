@@ -1,4 +1,4 @@
-//! How the raw data of a chunk are laid out: which channel's samples lie where.
+//! How the raw data of a chunk are laid out: the places of each channel's samples.
 
 use std::sync::Arc;
 
@@ -6,10 +6,10 @@ use crate::numbers::Number;
 
 use super::value::Kind;
 
-/// One scaler of a DAQmx channel: where its raw samples lie in the device's buffer.
+/// One scaler of a DAQmx channel: the places of its raw samples in the device's buffer.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Scaler {
-    /// Number of the scale that stands for it.
+pub(super) struct Scaler {
+    /// Number of the scale that represents it.
     pub scale: u32,
     /// How a sample is stored.
     pub number: Number,
@@ -23,7 +23,7 @@ pub struct Scaler {
 
 /// Raw data of a DAQmx channel.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Device {
+pub(super) struct Device {
     /// Its scalers, at least one.
     pub scalers: Vec<Scaler>,
     /// Bytes of a row of each buffer of the chunk.
@@ -32,7 +32,7 @@ pub struct Device {
 
 /// A channel's share of every chunk.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Share {
+pub(super) struct Share {
     /// What the samples are.
     pub kind: Kind,
     /// Samples per chunk.
@@ -45,7 +45,7 @@ pub struct Share {
 
 /// A channel in a layout.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Entry {
+pub(super) struct Entry {
     /// The channel.
     pub object: usize,
     /// Its share.
@@ -58,16 +58,33 @@ pub struct Entry {
 
 /// Samples of one scaler in a chunk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Run {
+pub(super) struct Run {
     /// Byte of the first sample in the chunk.
     pub offset: u64,
     /// Bytes from one sample to the next.
     pub stride: u64,
 }
 
+/// Why the data of channels do not fit together in a chunk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub(super) enum LayoutFault {
+    #[error("a chunk beyond 2^64 bytes")]
+    TooLong,
+    #[error("DAQmx channels beside channels of another kind")]
+    OtherKinds,
+    #[error("DAQmx channels with different raw data widths")]
+    Widths,
+    #[error("a DAQmx scaler in buffer {buffer} of {buffers}")]
+    NoBuffer { buffer: usize, buffers: usize },
+    #[error("a DAQmx scaler at byte {byte} of {width}")]
+    Outside { byte: u64, width: u64 },
+    #[error("DAQmx scalers that overlap in buffer {0}")]
+    Overlap(usize),
+}
+
 /// The layout of the chunks of a segment.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Layout {
+pub(super) struct Layout {
     /// The channels that have data, in the order of their data.
     pub entries: Vec<Entry>,
     /// Bytes of a chunk.
@@ -79,8 +96,8 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Lay out the shares of channels one after the other. The error tells what does not fit.
-    pub fn new(shares: Vec<(usize, Share)>) -> Result<Self, String> {
+    /// Lay out the shares of channels one after the other.
+    pub(super) fn new(shares: Vec<(usize, Share)>) -> Result<Self, LayoutFault> {
         let mut layout = Self::default();
         let devices = shares
             .iter()
@@ -94,7 +111,7 @@ impl Layout {
             layout.chunk = layout
                 .chunk
                 .checked_add(share.bytes)
-                .ok_or("a chunk beyond 2^64 bytes")?;
+                .ok_or(LayoutFault::TooLong)?;
             layout.row += share.kind.bytes().unwrap_or(0);
             layout.entries.push(Entry {
                 object,
@@ -106,9 +123,9 @@ impl Layout {
         Ok(layout)
     }
 
-    fn devices(mut self, shares: Vec<(usize, Share)>, devices: usize) -> Result<Self, String> {
+    fn devices(mut self, shares: Vec<(usize, Share)>, devices: usize) -> Result<Self, LayoutFault> {
         if devices != shares.len() {
-            return Err("DAQmx channels beside channels of another kind".into());
+            return Err(LayoutFault::OtherKinds);
         }
         let mut used = Vec::new();
         for (object, share) in shares {
@@ -120,7 +137,7 @@ impl Layout {
                 used = vec![0u64; device.widths.len()];
             }
             if !self.buffers.iter().map(|b| &b.1).eq(&device.widths) {
-                return Err("DAQmx channels with different raw data widths".into());
+                return Err(LayoutFault::Widths);
             }
             for scaler in &device.scalers {
                 self.place(scaler, share.count, &mut used)?;
@@ -139,25 +156,23 @@ impl Layout {
         let total = bytes
             .into_iter()
             .try_fold(0u64, |all, bytes| all.checked_add(bytes?));
-        self.chunk = total.ok_or("a chunk beyond 2^64 bytes")?;
+        self.chunk = total.ok_or(LayoutFault::TooLong)?;
         Ok(self)
     }
 
-    /// Check that a scaler lies in its buffer and that channels do not claim the same bits again
+    /// Check that a scaler is inside its buffer and that channels do not claim the same bits again
     /// and again.
-    fn place(&mut self, scaler: &Scaler, rows: u64, used: &mut [u64]) -> Result<(), String> {
+    fn place(&mut self, scaler: &Scaler, rows: u64, used: &mut [u64]) -> Result<(), LayoutFault> {
         let index = scaler.buffer as usize;
-        let Some((buffer, used)) = self.buffers.get_mut(index).zip(used.get_mut(index)) else {
-            return Err(format!(
-                "a DAQmx scaler in buffer {index} of {}",
-                used.len()
-            ));
+        let absent = LayoutFault::NoBuffer {
+            buffer: index,
+            buffers: used.len(),
         };
-        if scaler.byte.saturating_add(scaler.number.bytes()) > buffer.1 {
-            return Err(format!(
-                "a DAQmx scaler at byte {} of {}",
-                scaler.byte, buffer.1
-            ));
+        let buffer = self.buffers.get_mut(index).zip(used.get_mut(index));
+        let (buffer, used) = buffer.ok_or(absent)?;
+        let (byte, width) = (scaler.byte, buffer.1);
+        if byte.saturating_add(scaler.number.bytes()) > width {
+            return Err(LayoutFault::Outside { byte, width });
         }
         *used += if scaler.bit.is_some() {
             1
@@ -165,14 +180,14 @@ impl Layout {
             8 * scaler.number.bytes()
         };
         if *used > 16 * buffer.1 {
-            return Err(format!("DAQmx scalers that overlap in buffer {index}"));
+            return Err(LayoutFault::Overlap(index));
         }
         buffer.0 = buffer.0.max(rows);
         Ok(())
     }
 
-    /// Where the samples of a scaler lie in a chunk.
-    pub fn run(&self, scaler: &Scaler) -> Run {
+    /// Places of the samples of a scaler in a chunk.
+    pub(super) fn run(&self, scaler: &Scaler) -> Run {
         let before = &self.buffers[..scaler.buffer as usize];
         let start: u64 = before.iter().map(|(rows, width)| rows * width).sum();
         let stride = self.buffers[scaler.buffer as usize].1;
@@ -183,7 +198,7 @@ impl Layout {
     }
 
     /// Whether all channels can be interleaved row by row.
-    pub fn can_interleave(&self) -> bool {
+    pub(super) fn can_interleave(&self) -> bool {
         let sized = self
             .entries
             .iter()
@@ -197,7 +212,7 @@ impl Layout {
     ///
     /// A segment that was cut short holds the first channels whole and later ones in part; a
     /// complete segment divides a short last chunk among the channels in proportion.
-    pub fn cut(&self, rest: u64, cut_short: bool, interleaved: bool) -> Self {
+    pub(super) fn cut(&self, rest: u64, cut_short: bool, interleaved: bool) -> Self {
         let mut cut = self.clone();
         if !self.buffers.is_empty() {
             cut.cut_buffers(rest);
@@ -212,7 +227,11 @@ impl Layout {
             let count = entry.share.count;
             let count = match cut_short && !interleaved {
                 true => count.min(rest.saturating_sub(entry.offset) / size),
-                false => (u128::from(count) * u128::from(rest) / u128::from(self.chunk)) as u64,
+                // not more than `count`, as `rest` is below a chunk
+                false => {
+                    let share = u128::from(count) * u128::from(rest) / u128::from(self.chunk);
+                    u64::try_from(share).unwrap_or(count)
+                }
             };
             if !cut_short || interleaved {
                 entry.offset = offset;

@@ -10,7 +10,7 @@
 //!   properties are kept as text.
 //! - `NI_Scale` chains of linear, polynomial and table scales are applied, also to DAQmx raw
 //!   data; a channel with another scaling is listed, and reading it is refused by the scaling's
-//!   name. A scaled channel is told as 64-bit floating point, with the raw type as a property.
+//!   name. A scaled channel is described as 64-bit floating point, with the raw type as a property.
 //! - A channel of time stamps gives seconds since its first stamp (no precision is lost that
 //!   way); the first stamp is its start time, and it is the dataset's time axis.
 //! - A last segment that was cut short is read as far as it goes, with a note.
@@ -30,24 +30,26 @@ use std::path::Path;
 use std::sync::Arc;
 
 use content::{Content, Object};
-use samples::Reader;
-use scale::Scaling;
+use samples::Chunks;
+use scale::{Scaling, ScalingFault};
 use value::{Kind, Value};
 
 use super::bytes::FileBytes;
-use super::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType, requested};
+use super::source::{
+    ChannelInfo, DatasetInfo, Opened, ReadError, Reader, Samples, Source, StoredType,
+};
 
 /// The scaling of a channel, or what of it is not done; shared by channels that inherit it.
-type Scale = Arc<Result<Scaling, String>>;
+type Scale = Arc<Result<Scaling, ScalingFault>>;
 
 /// Whether a file's first bytes are those of a TDMS file, or of its index, which [`open`] refuses
 /// with the remedy.
-pub fn recognises(head: &[u8]) -> bool {
+pub(crate) fn recognises(head: &[u8]) -> bool {
     head.starts_with(b"TDSm") || head.starts_with(b"TDSh")
 }
 
 /// Open a TDMS file: the metadata of all segments is read, no samples are.
-pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
+pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let file = FileBytes::open(path)?;
     if file.all().starts_with(b"TDSh") {
         let remedy = "Open the .tdms file itself.";
@@ -59,18 +61,22 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let Builder {
         datasets, channels, ..
     } = builder;
-    Ok(Box::new(TdmsFile {
-        file,
-        content,
+    Ok(Box::new(Opened {
+        format: "tdms",
+        path: path.to_path_buf(),
         datasets,
-        channels,
+        notes: content.notes.clone(),
+        reader: TdmsFile {
+            file,
+            content,
+            channels,
+        },
     }))
 }
 
 struct TdmsFile {
     file: FileBytes,
     content: Content,
-    datasets: Vec<DatasetInfo>,
     /// For each dataset its channels: the object and its scaling.
     channels: Vec<Vec<(usize, Scale)>>,
 }
@@ -81,17 +87,17 @@ impl TdmsFile {
         let (object, scale) = &self.channels[dataset][channel];
         let object = &self.content.objects[*object];
         let name = || Some(object.path.join("/"));
-        let scaling = scale.as_ref().as_ref().map_err(|found| ReadError {
+        let scaling = scale.as_ref().as_ref().map_err(|fault| ReadError {
             channel: name(),
             byte: None,
             ..self.file.unsupported(
                 0,
-                found.clone(),
+                fault.to_string(),
                 "linear, polynomial or table scaling",
                 "Save the channel scaled, or scale it in campaign.toml from its raw values.",
             )
         })?;
-        let reader = Reader {
+        let reader = Chunks {
             file: &self.file,
             content: &self.content,
         };
@@ -102,26 +108,9 @@ impl TdmsFile {
     }
 }
 
-impl Source for TdmsFile {
-    fn format(&self) -> &'static str {
-        "tdms"
-    }
-
-    fn path(&self) -> &Path {
-        self.file.path()
-    }
-
-    fn datasets(&self) -> &[DatasetInfo] {
-        &self.datasets
-    }
-
-    fn notes(&self) -> &[String] {
-        &self.content.notes
-    }
-
+impl Reader for TdmsFile {
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
         self.file.still_whole()?;
-        requested(self, dataset, channels)?;
         channels
             .iter()
             .map(|&channel| self.channel(dataset, channel))
@@ -243,7 +232,7 @@ impl<'a> Builder<'a> {
     }
 
     fn info(&self, object: &Object, name: &str, scale: &Scale) -> Result<ChannelInfo, ReadError> {
-        let reader = Reader {
+        let reader = Chunks {
             file: self.file,
             content: self.content,
         };

@@ -4,7 +4,7 @@ use super::content::{Content, Object, Piece};
 use super::layout::Entry;
 use super::scale::Scaling;
 use super::value::{Kind, Stamp};
-use crate::bytes::FileBytes;
+use crate::bytes::{FileBytes, to_usize};
 use crate::numbers::{self, ByteOrder, Number, Spacing};
 use crate::source::{ReadError, Samples};
 
@@ -17,29 +17,29 @@ struct Run {
 }
 
 /// Reads samples of an open file.
-pub struct Reader<'a> {
+pub(super) struct Chunks<'a> {
     /// The file.
     pub file: &'a FileBytes,
     /// What opening it found.
     pub content: &'a Content,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> Chunks<'a> {
     /// The pieces in which a channel has samples, in file order.
     fn pieces(&self, object: &Object) -> Vec<(&'a Piece, &'a Entry)> {
         let content = self.content;
-        let mut all: Vec<(u32, &Entry)> = Vec::new();
+        let mut all: Vec<(usize, &Entry)> = Vec::new();
         for &(layout, entry) in &object.places {
-            let entry = &content.layouts[layout as usize].entries[entry as usize];
+            let entry = &content.layouts[layout].entries[entry];
             all.extend(
-                content.pieces_of[layout as usize]
+                content.pieces_of[layout]
                     .iter()
                     .map(|&piece| (piece, entry)),
             );
         }
         all.sort_unstable_by_key(|(piece, _)| *piece);
         all.into_iter()
-            .map(|(piece, entry)| (&content.pieces[piece as usize], entry))
+            .map(|(piece, entry)| (&content.pieces[piece], entry))
             .collect()
     }
 
@@ -51,7 +51,7 @@ impl<'a> Reader<'a> {
         mut visit: impl FnMut(Run, ByteOrder) -> Result<(), ReadError>,
     ) -> Result<(), ReadError> {
         for (piece, entry) in self.pieces(object) {
-            let layout = &self.content.layouts[piece.layout as usize];
+            let layout = &self.content.layouts[piece.layout];
             let count = entry.share.count;
             let size = entry.share.kind.bytes().unwrap_or(0);
             let mut step = layout.chunk;
@@ -120,7 +120,7 @@ impl<'a> Reader<'a> {
         shift: u64,
     ) -> Result<Vec<f64>, ReadError> {
         let mut out = Vec::new();
-        out.reserve_exact(object.samples as usize);
+        out.reserve_exact(to_usize(object.samples));
         self.runs(object, scaler, |run, order| {
             let run = Run {
                 at: run.at + shift,
@@ -129,8 +129,8 @@ impl<'a> Reader<'a> {
             let bytes = self.bytes(run, number.bytes())?;
             let spacing = Spacing {
                 offset: 0,
-                stride: run.stride as usize,
-                count: run.count as usize,
+                stride: to_usize(run.stride),
+                count: to_usize(run.count),
             };
             numbers::decode_spaced(number, order, bytes, spacing, &mut out);
             Ok(())
@@ -139,7 +139,7 @@ impl<'a> Reader<'a> {
     }
 
     /// All samples of a channel, after its scaling.
-    pub fn samples(&self, object: &Object, scaling: &Scaling) -> Result<Samples, ReadError> {
+    pub(super) fn samples(&self, object: &Object, scaling: &Scaling) -> Result<Samples, ReadError> {
         let device = self.device(object, scaling)?;
         let Some(kind) = object.kind else {
             return Ok(Samples::Real(Vec::new()));
@@ -147,10 +147,9 @@ impl<'a> Reader<'a> {
         if let Some((index, number, bit)) = device {
             let mut values = self.numbers(object, number, index, 0)?;
             if let Some(bit) = bit {
-                let mask = 1u64 << bit;
                 values
                     .iter_mut()
-                    .for_each(|v| *v = f64::from(u8::from(*v as i64 as u64 & mask != 0)));
+                    .for_each(|v| *v = f64::from(u8::from(has_bit(*v, bit))));
             }
             scaling.apply(&mut values);
             return Ok(Samples::Real(values));
@@ -211,10 +210,10 @@ impl<'a> Reader<'a> {
         Ok(Some((index, scaler.number, scaler.bit)))
     }
 
-    /// The DAQmx description of a channel, where it is one.
-    pub fn first_device(&self, object: &Object) -> Option<&'a super::layout::Device> {
+    /// The DAQmx description of a channel, if it is one.
+    pub(super) fn first_device(&self, object: &Object) -> Option<&'a super::layout::Device> {
         let &(layout, entry) = object.places.first()?;
-        self.content.layouts[layout as usize].entries[entry as usize]
+        self.content.layouts[layout].entries[entry]
             .share
             .device
             .as_deref()
@@ -235,7 +234,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The first stamp of a time channel.
-    pub fn first_stamp(&self, object: &Object) -> Result<Option<Stamp>, ReadError> {
+    pub(super) fn first_stamp(&self, object: &Object) -> Result<Option<Stamp>, ReadError> {
         Ok(self.stamps(object, 1)?.pop())
     }
 
@@ -253,7 +252,7 @@ impl<'a> Reader<'a> {
     fn texts(&self, object: &Object) -> Result<Vec<String>, ReadError> {
         let mut all = Vec::new();
         for (piece, entry) in self.pieces(object) {
-            let layout = &self.content.layouts[piece.layout as usize];
+            let layout = &self.content.layouts[piece.layout];
             for chunk in 0..piece.chunks {
                 let at = piece.at + chunk * layout.chunk + entry.offset;
                 self.text_chunk(at, entry, piece.order, &mut all)?;
@@ -270,11 +269,10 @@ impl<'a> Reader<'a> {
         all: &mut Vec<String>,
     ) -> Result<(), ReadError> {
         let bytes = self.file.slice(at, entry.share.bytes, "texts")?;
-        let (ends, texts) = bytes.split_at(4 * entry.share.count as usize);
-        let mut offsets = Vec::new();
-        numbers::decode(Number::U32, order, ends, &mut offsets);
+        let (ends, texts) = bytes.split_at(4 * to_usize(entry.share.count));
         let mut start = 0;
-        for end in offsets.into_iter().map(|end| end as usize) {
+        for &end in ends.as_chunks().0 {
+            let end = order.u32(end) as usize;
             let Some(text) = texts.get(start..end) else {
                 let expected = format!("the end of a text between {start} and {}", texts.len());
                 return Err(self.file.refuse(at, expected, end.to_string()));
@@ -284,6 +282,12 @@ impl<'a> Reader<'a> {
         }
         Ok(())
     }
+}
+
+/// Whether a bit is set in a sample of digital lines.
+#[expect(clippy::cast_possible_truncation, reason = "the samples are integers")]
+fn has_bit(sample: f64, bit: u32) -> bool {
+    (sample as i64).cast_unsigned() & (1 << bit) != 0
 }
 
 fn stamp(bytes: &[u8], order: ByteOrder) -> Stamp {

@@ -8,7 +8,7 @@ use super::value::Value;
 
 /// Input of a scale that is the channel's raw data itself.
 const RAW: u32 = u32::MAX;
-/// Longest chain, table or polynomial that is believed.
+/// Longest chain, table or polynomial that is accepted.
 const LONGEST: u32 = 1 << 16;
 
 /// One step of a chain.
@@ -61,9 +61,24 @@ fn interpolate(x: f64, inputs: &[f64], outputs: &[f64]) -> f64 {
     }
 }
 
+/// Why the scaling that properties describe is not done.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub(super) enum ScalingFault {
+    #[error("{0} scaling")]
+    Unread(String),
+    #[error("a scale without {0}")]
+    Missing(String),
+    #[error("scale {scale} that takes its input from scale {source_scale}")]
+    Input { scale: u32, source_scale: u32 },
+    #[error("a table of {0} and {1} values")]
+    TableLengths(usize, usize),
+    #[error("a table whose inputs neither rise nor fall throughout")]
+    TableOrder,
+}
+
 /// The scaling of a channel.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Scaling {
+pub(super) struct Scaling {
     /// Which scaler of a DAQmx channel gives the raw samples; `None`: the only data there are.
     pub scaler: Option<u32>,
     steps: Vec<Step>,
@@ -71,18 +86,17 @@ pub struct Scaling {
 
 impl Scaling {
     /// Whether the samples are changed.
-    pub fn changes(&self) -> bool {
+    pub(super) fn changes(&self) -> bool {
         !self.steps.is_empty()
     }
 
     /// Turn raw samples into physical values.
-    pub fn apply(&self, values: &mut [f64]) {
+    pub(super) fn apply(&self, values: &mut [f64]) {
         self.steps.iter().for_each(|step| step.apply(values));
     }
 
-    /// The scaling that the properties of one object describe, where they describe one. The
-    /// error names what is not done or is missing.
-    pub fn of(properties: &BTreeMap<String, Value>) -> Option<Result<Self, String>> {
+    /// The scaling that the properties of one object describe, where they describe one.
+    pub(super) fn of(properties: &BTreeMap<String, Value>) -> Option<Result<Self, ScalingFault>> {
         let count = number_of_scales(properties);
         let done = properties
             .get("NI_Scaling_Status")
@@ -91,12 +105,22 @@ impl Scaling {
     }
 }
 
+/// A number that counts something, at most `most`; 0 for one below and for NaN.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "clamped"
+)]
+fn whole(number: f64, most: u32) -> u32 {
+    number.clamp(0.0, f64::from(most)) as u32
+}
+
 fn number_of_scales(properties: &BTreeMap<String, Value>) -> u32 {
     if let Some(count) = properties
         .get("NI_Number_Of_Scales")
         .and_then(Value::number)
     {
-        return count.clamp(0.0, f64::from(LONGEST)) as u32;
+        return whole(count, LONGEST);
     }
     let index = |key: &str| -> Option<u32> {
         key.strip_prefix("NI_Scale[")?
@@ -112,12 +136,12 @@ fn number_of_scales(properties: &BTreeMap<String, Value>) -> u32 {
 }
 
 /// Follow the chain from the last scale back to the raw samples.
-fn chain(properties: &BTreeMap<String, Value>, count: u32) -> Result<Scaling, String> {
+fn chain(properties: &BTreeMap<String, Value>, count: u32) -> Result<Scaling, ScalingFault> {
     let mut steps = Vec::new();
     let (mut scale, mut scaler) = (count - 1, None);
     loop {
         let Some(kind) = properties.get(&format!("NI_Scale[{scale}]_Scale_Type")) else {
-            // A scale without a type stands for the DAQmx scaler of that number.
+            // A scale without a type is the DAQmx scaler of that number.
             scaler = Some(scale);
             break;
         };
@@ -131,14 +155,15 @@ fn chain(properties: &BTreeMap<String, Value>, count: u32) -> Result<Scaling, St
         }
         match reader
             .optional("Input_Source")
-            .map_or(RAW, |source| source as u32)
+            .map_or(RAW, |source| whole(source, RAW))
         {
             RAW => break,
             next if next < scale => scale = next,
-            other => {
-                return Err(format!(
-                    "scale {scale} that takes its input from scale {other}"
-                ));
+            source_scale => {
+                return Err(ScalingFault::Input {
+                    scale,
+                    source_scale,
+                });
             }
         }
     }
@@ -161,23 +186,23 @@ impl Reader<'_> {
         self.properties.get(&self.key(name)).and_then(Value::number)
     }
 
-    fn number(&self, name: &str) -> Result<f64, String> {
+    fn number(&self, name: &str) -> Result<f64, ScalingFault> {
         self.optional(name)
-            .ok_or_else(|| format!("a scale without {}", self.key(name)))
+            .ok_or_else(|| ScalingFault::Missing(self.key(name)))
     }
 
-    fn list(&self, name: &str, default: Option<f64>) -> Result<Vec<f64>, String> {
+    fn list(&self, name: &str, default: Option<f64>) -> Result<Vec<f64>, ScalingFault> {
         let size = format!("{name}_Size");
         let size = match default {
             Some(default) => self.optional(&size).unwrap_or(default),
             None => self.number(&size)?,
         };
-        (0..size.clamp(0.0, f64::from(LONGEST)) as u32)
+        (0..whole(size, LONGEST))
             .map(|index| self.number(&format!("{name}[{index}]")))
             .collect()
     }
 
-    fn step(&self) -> Result<Option<Step>, String> {
+    fn step(&self) -> Result<Option<Step>, ScalingFault> {
         Ok(Some(match self.kind.as_str() {
             "Linear" => Step::Linear {
                 slope: self.number("Slope")?,
@@ -186,19 +211,15 @@ impl Reader<'_> {
             "Polynomial" => Step::Polynomial(self.list("Coefficients", Some(4.0))?),
             "Table" => self.table()?,
             "AdvancedAPI" => return Ok(None),
-            other => return Err(format!("{other} scaling")),
+            other => return Err(ScalingFault::Unread(other.to_owned())),
         }))
     }
 
-    fn table(&self) -> Result<Step, String> {
+    fn table(&self) -> Result<Step, ScalingFault> {
         let mut inputs = self.list("Pre_Scaled_Values", None)?;
         let mut outputs = self.list("Scaled_Values", None)?;
         if inputs.len() != outputs.len() || inputs.is_empty() {
-            return Err(format!(
-                "a table of {} and {} values",
-                inputs.len(),
-                outputs.len()
-            ));
+            return Err(ScalingFault::TableLengths(inputs.len(), outputs.len()));
         }
         if inputs.windows(2).all(|pair| pair[0] > pair[1]) {
             inputs.reverse();
@@ -206,7 +227,7 @@ impl Reader<'_> {
         }
         match inputs.windows(2).all(|pair| pair[0] < pair[1]) {
             true => Ok(Step::Table { inputs, outputs }),
-            false => Err("a table whose inputs neither rise nor fall throughout".into()),
+            false => Err(ScalingFault::TableOrder),
         }
     }
 }
@@ -244,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_chain_of_polynomial_and_linear() {
+    fn chain_of_polynomial_and_linear() {
         let all = properties(
             &[
                 ("0]_Polynomial_Coefficients_Size", 3.0),
@@ -261,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_table_rises_or_falls_and_ends_constant() {
+    fn table_rises_or_falls_and_ends_constant() {
         let table = |inputs: [f64; 3]| {
             let mut pairs = vec![
                 ("0]_Table_Pre_Scaled_Values_Size", 3.0),
@@ -289,15 +310,18 @@ mod tests {
     }
 
     #[test]
-    fn valid_other_scales_are_refused_by_name() {
+    fn other_scales_are_refused_by_name() {
         let error = Scaling::of(&properties(&[], &["Thermocouple"]))
             .unwrap()
             .unwrap_err();
-        assert_eq!(error, "Thermocouple scaling");
+        assert_eq!(error.to_string(), "Thermocouple scaling");
         let error = Scaling::of(&properties(&[], &["Linear"]))
             .unwrap()
             .unwrap_err();
-        assert!(error.contains("NI_Scale[0]_Linear_Slope"), "{error}");
+        assert!(
+            error.to_string().contains("NI_Scale[0]_Linear_Slope"),
+            "{error}"
+        );
         let endless = [
             ("0]_Linear_Slope", 1.0),
             ("0]_Linear_Y_Intercept", 1.0),

@@ -1,10 +1,10 @@
-//! The segments of a TDMS file: lead-in, metadata, and where their raw data lie.
+//! The segments of a TDMS file: lead-in, metadata, and the places of their raw data.
 
 use std::collections::HashMap;
 
 use super::content::{Content, Object, Piece};
 use super::index;
-use super::layout::Layout;
+use super::layout::{Layout, LayoutFault};
 use super::value::{self, Value};
 use crate::bytes::{Cursor, FileBytes};
 use crate::numbers::ByteOrder;
@@ -40,7 +40,7 @@ impl LeadIn {
 }
 
 /// Find all segments of a file.
-pub fn scan(file: &FileBytes) -> Result<Content, ReadError> {
+pub(super) fn scan(file: &FileBytes) -> Result<Content, ReadError> {
     let mut scanner = Scanner {
         file,
         content: Content::default(),
@@ -68,12 +68,16 @@ struct Scanner<'a> {
     /// The objects of the present segment, in the order of their data.
     list: Vec<usize>,
     /// The present layout.
-    current: Option<u32>,
+    current: Option<usize>,
     /// Entries of all layouts built so far.
     built: u64,
 }
 
 impl Scanner<'_> {
+    fn refuse(&self, at: u64, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
+        self.file.refuse(at, expected, found)
+    }
+
     fn lead_in(&mut self, at: u64) -> Result<Option<LeadIn>, ReadError> {
         let left = self.file.size() - at;
         if left < LEAD_IN && at > 0 {
@@ -87,9 +91,7 @@ impl Scanner<'_> {
         let tag = cursor.take(4, "a segment's tag")?;
         if tag != b"TDSm" {
             let found = String::from_utf8_lossy(tag).into_owned();
-            return Err(self
-                .file
-                .refuse(at, "the tag TDSm of a segment", format!("{found:?}")));
+            return Err(self.refuse(at, "the tag TDSm of a segment", format!("{found:?}")));
         }
         let flags = cursor.u32("a segment's flags")?;
         let order = if flags & BIG_ENDIAN != 0 {
@@ -100,9 +102,7 @@ impl Scanner<'_> {
         cursor.set_order(order);
         let version = cursor.u32("a version")?;
         if !matches!(version, 4712 | 4713) {
-            return Err(self
-                .file
-                .refuse(at + 8, "version 4712 or 4713", version.to_string()));
+            return Err(self.refuse(at + 8, "version 4712 or 4713", version.to_string()));
         }
         let next = cursor.u64("the length of a segment")?;
         let raw = cursor.u64("the length of the metadata")?;
@@ -127,7 +127,7 @@ impl Scanner<'_> {
                 cut_short,
             })),
             None if cut_short && at > 0 => Ok(None),
-            None => Err(self.file.refuse(
+            None => Err(self.refuse(
                 at + 20,
                 format!("metadata within {} bytes", end - start),
                 raw.to_string(),
@@ -139,11 +139,7 @@ impl Scanner<'_> {
         if lead.flags & META_DATA != 0 {
             self.metadata(lead)?;
         } else if self.current.is_none() && lead.flags & RAW_DATA != 0 && lead.data < lead.end {
-            return Err(self.file.refuse(
-                lead.at,
-                "metadata in the first segment with data",
-                "none",
-            ));
+            return Err(self.refuse(lead.at, "metadata in the first segment with data", "none"));
         }
         if lead.flags & RAW_DATA != 0 {
             self.raw_data(lead)?;
@@ -174,7 +170,7 @@ impl Scanner<'_> {
         Ok(())
     }
 
-    /// Read one object's metadata; tells whether the layout of the data changes with it.
+    /// Read one object's metadata; gives whether the layout of the data changes with it.
     fn object(&mut self, cursor: &mut Cursor<'_>, lead: &LeadIn) -> Result<bool, ReadError> {
         let at = cursor.at();
         let path = value::text(cursor, "an object's path")?;
@@ -182,8 +178,7 @@ impl Scanner<'_> {
             Some(&index) => index,
             None => {
                 let parts = split_path(&path).ok_or_else(|| {
-                    self.file
-                        .refuse(at, "a path such as /'group'/'channel'", format!("{path:?}"))
+                    self.refuse(at, "a path such as /'group'/'channel'", format!("{path:?}"))
                 })?;
                 let index = self.content.objects.len();
                 self.content.objects.push(Object {
@@ -220,22 +215,18 @@ impl Scanner<'_> {
             NO_DATA => return Ok(was_active),
             AS_BEFORE if object.share.is_some() => return Ok(!was_active),
             AS_BEFORE => {
-                return Err(self
-                    .file
-                    .refuse(at, "a raw data index", "a reference to none before"));
+                return Err(self.refuse(at, "a raw data index", "a reference to none before"));
             }
             _ => {}
         }
         if object.path.len() != 2 {
-            return Err(self
-                .file
-                .refuse(at, "raw data of a channel", "raw data of a group"));
+            return Err(self.refuse(at, "raw data of a channel", "raw data of a group"));
         }
         let share = index::share(self.file, cursor, header)?;
         let object = &mut self.content.objects[index];
         if share.count > 0 && *object.kind.get_or_insert(share.kind) != share.kind {
             let found = format!("channel {:?} that changes its type", object.path);
-            return Err(self.file.refuse(at, "one type per channel", found));
+            return Err(self.refuse(at, "one type per channel", found));
         }
         object.share = Some(share);
         Ok(true)
@@ -254,7 +245,7 @@ impl Scanner<'_> {
         let layout = Layout::new(shares).map_err(|found| self.layout_fault(lead, found))?;
         let same = self
             .current
-            .is_some_and(|c| self.content.layouts[c as usize] == layout);
+            .is_some_and(|c| self.content.layouts[c] == layout);
         if !same {
             self.add(layout);
         }
@@ -262,14 +253,14 @@ impl Scanner<'_> {
     }
 
     fn add(&mut self, layout: Layout) {
-        self.current = Some(self.content.layouts.len() as u32);
+        self.current = Some(self.content.layouts.len());
         self.content.layouts.push(layout);
         self.content.pieces_of.push(Vec::new());
     }
 
-    fn layout_fault(&self, lead: &LeadIn, found: String) -> ReadError {
-        self.file
-            .refuse(lead.at, "channels whose data fit together", found)
+    fn layout_fault(&self, lead: &LeadIn, fault: LayoutFault) -> ReadError {
+        let expected = "channels whose data fit together";
+        self.refuse(lead.at, expected, fault.to_string())
     }
 
     /// Count entries of layouts that a few bytes of metadata can call forth.
@@ -277,9 +268,7 @@ impl Scanner<'_> {
         self.built += entries as u64;
         match self.built <= self.file.size() / 4 + 4096 {
             true => Ok(()),
-            false => Err(self
-                .file
-                .refuse(at, "layouts in proportion to the file", "far too many")),
+            false => Err(self.refuse(at, "layouts in proportion to the file", "far too many")),
         }
     }
 
@@ -288,12 +277,10 @@ impl Scanner<'_> {
         let Some(current) = self.current.filter(|_| total > 0) else {
             return Ok(());
         };
-        let layout = &self.content.layouts[current as usize];
+        let layout = &self.content.layouts[current];
         if layout.chunk == 0 {
             let found = format!("{total} bytes of data");
-            return Err(self
-                .file
-                .refuse(lead.data, "no data, as no channel has any", found));
+            return Err(self.refuse(lead.data, "no data, as no channel has any", found));
         }
         let device = layout
             .entries
@@ -302,7 +289,7 @@ impl Scanner<'_> {
         let interleaved = lead.flags & INTERLEAVED != 0 && !device;
         if interleaved && !layout.can_interleave() {
             let expected = "interleaved channels of equal lengths and fixed types";
-            return Err(self.file.refuse(lead.at, expected, "others"));
+            return Err(self.refuse(lead.at, expected, "others"));
         }
         let (chunks, rest) = (total / layout.chunk, total % layout.chunk);
         let cut = layout.cut(rest, lead.cut_short, interleaved);
@@ -324,7 +311,7 @@ impl Scanner<'_> {
                 "the chunk at byte {rest_at} is incomplete: read as far as it goes"
             ));
             self.add(cut);
-            let layout = self.content.layouts.len() as u32 - 1;
+            let layout = self.content.layouts.len() - 1;
             self.piece(Piece {
                 at: rest_at,
                 chunks: 1,
@@ -337,7 +324,7 @@ impl Scanner<'_> {
     }
 
     fn piece(&mut self, piece: Piece) {
-        self.content.pieces_of[piece.layout as usize].push(self.content.pieces.len() as u32);
+        self.content.pieces_of[piece.layout].push(self.content.pieces.len());
         self.content.pieces.push(piece);
     }
 
@@ -346,9 +333,7 @@ impl Scanner<'_> {
         let content = &mut self.content;
         for (index, layout) in content.layouts.iter().enumerate() {
             let pieces = content.pieces_of[index].iter();
-            let chunks: u64 = pieces
-                .map(|&piece| content.pieces[piece as usize].chunks)
-                .sum();
+            let chunks: u64 = pieces.map(|&piece| content.pieces[piece].chunks).sum();
             if chunks == 0 {
                 continue;
             }
@@ -360,13 +345,13 @@ impl Scanner<'_> {
             for (position, entry) in with_data {
                 let object = &mut content.objects[entry.object];
                 object.samples += chunks * entry.share.count;
-                object.places.push((index as u32, position as u32));
+                object.places.push((index, position));
             }
         }
     }
 }
 
-/// The parts of `/'group'/'channel'`; a quote in a name stands doubled.
+/// The parts of `/'group'/'channel'`; a quote in a name is doubled.
 fn split_path(path: &str) -> Option<Vec<String>> {
     if path == "/" {
         return Some(Vec::new());
@@ -394,7 +379,7 @@ mod tests {
     use super::split_path;
 
     #[test]
-    fn valid_paths_with_quotes_and_slashes() {
+    fn paths_with_quotes_and_slashes() {
         let parts = |path| split_path(path);
         assert_eq!(parts("/"), Some(vec![]));
         assert_eq!(parts("/'a'"), Some(vec!["a".into()]));

@@ -161,11 +161,9 @@ fn check_golden(source: &dyn Source, golden: &Json) {
 }
 
 #[test]
-fn valid_every_golden_is_met() {
-    let Some(goldens) = conformance::goldens("tdms_conformance") else {
-        return;
-    };
-    for (path, golden) in goldens {
+#[ignore = "needs shared/data: conformance files of TDMS"]
+fn shared_data_every_golden_is_met() {
+    for (path, golden) in conformance::goldens("tdms_conformance") {
         assert!(recognises(&std::fs::read(&path).unwrap()));
         let source = open(&path).unwrap();
         let channels: usize = source.datasets().iter().map(|d| d.channels.len()).sum();
@@ -179,10 +177,9 @@ fn valid_every_golden_is_met() {
 }
 
 #[test]
-fn valid_start_times_of_conformance_files() {
-    let Some(folder) = conformance::folder("tdms_conformance") else {
-        return;
-    };
+#[ignore = "needs shared/data: conformance files of TDMS"]
+fn shared_data_start_times_of_conformance_files() {
+    let folder = conformance::shared_data("tdms_conformance");
     let source = open(&folder.join("raw_timestamps.tdms")).unwrap();
     let start = source.datasets()[0].channels[0].start_time.clone().unwrap();
     // 0xe1d61cfb seconds after 1904-01-01 and 0x1190b80000000000 / 2^64 of a second.
@@ -192,7 +189,7 @@ fn valid_start_times_of_conformance_files() {
 // ---- own files ----
 
 #[test]
-fn valid_both_orders_contiguous_and_interleaved() {
+fn both_orders_contiguous_and_interleaved() {
     for big in [false, true] {
         let w = Writer { big };
         let objects = [
@@ -251,7 +248,7 @@ fn valid_both_orders_contiguous_and_interleaved() {
 }
 
 #[test]
-fn valid_channels_appear_later_change_length_and_rest() {
+fn channels_appear_later_change_length_and_rest() {
     let w = LITTLE;
     let a = "/'g'/'a'";
     let b = "/'g'/'b'";
@@ -287,7 +284,7 @@ fn valid_channels_appear_later_change_length_and_rest() {
 }
 
 #[test]
-fn valid_last_segment_cut_short() {
+fn last_segment_cut_short() {
     let w = LITTLE;
     let objects = [
         w.object("/'g'/'a'", w.index(10, 3), &[]),
@@ -319,7 +316,7 @@ fn valid_last_segment_cut_short() {
 }
 
 #[test]
-fn valid_every_kind_of_sample() {
+fn every_kind_of_sample() {
     for big in [false, true] {
         let w = Writer { big };
         let b = |bytes: &[u8]| w.order(bytes.to_vec());
@@ -376,7 +373,7 @@ fn valid_every_kind_of_sample() {
 }
 
 #[test]
-fn valid_texts_and_time_stamps() {
+fn texts_and_time_stamps() {
     for big in [false, true] {
         let w = Writer { big };
         let texts = [w.u32(3), w.u32(3), w.u32(6), b"abcdef".to_vec()].concat();
@@ -440,7 +437,7 @@ fn device_index(
 }
 
 #[test]
-fn valid_device_data_in_two_buffers_with_a_scale() {
+fn device_data_in_two_buffers_with_a_scale() {
     let w = LITTLE;
     let scale = [
         w.property("NI_Number_Of_Scales", &Property::Count(2)),
@@ -480,7 +477,7 @@ fn valid_device_data_in_two_buffers_with_a_scale() {
 }
 
 #[test]
-fn valid_digital_lines() {
+fn digital_lines() {
     let w = LITTLE;
     let line = |bit: u32| device_index(w, true, 3, &[[0, 0, bit, 0]], &[1]);
     let objects = [
@@ -493,7 +490,7 @@ fn valid_digital_lines() {
 }
 
 #[test]
-fn valid_scaling_that_is_not_done_is_refused_by_name() {
+fn scaling_that_is_not_done_is_refused_by_name() {
     let w = LITTLE;
     let strain = w.property("NI_Scale[0]_Scale_Type", &Property::Text("Strain"));
     let objects = [
@@ -508,7 +505,7 @@ fn valid_scaling_that_is_not_done_is_refused_by_name() {
 }
 
 #[test]
-fn valid_broken_files_are_refused_at_a_byte() {
+fn broken_files_are_refused_at_a_byte() {
     let w = LITTLE;
     let good = w.segment(
         NEW,
@@ -549,7 +546,7 @@ fn valid_broken_files_are_refused_at_a_byte() {
 }
 
 #[test]
-fn valid_many_layouts_of_many_channels_are_refused_within_memory() {
+fn many_layouts_of_many_channels_are_refused_within_memory() {
     let w = LITTLE;
     let path = |k: usize| format!("/'g'/'{k}'");
     let all: Vec<_> = (0..2000)
@@ -566,7 +563,7 @@ fn valid_many_layouts_of_many_channels_are_refused_within_memory() {
 
 // ---- mutations ----
 
-/// Change a lead-in or the metadata behind it, or anything.
+/// Change a lead-in or the metadata after it, or anything.
 fn mutate_segment(random: &mut Random, bytes: &mut Vec<u8>) {
     let tags: Vec<usize> = (0..bytes.len().saturating_sub(4))
         .filter(|&at| bytes[at..].starts_with(b"TDSm"))
@@ -588,8 +585,7 @@ fn mutate_segment(random: &mut Random, bytes: &mut Vec<u8>) {
 
 #[test]
 fn prop_mutated_files_are_read_or_refused() {
-    let mut seeds = conformance::seeds("tdms_conformance", 40 << 10);
-    seeds.retain(|seed| recognises(seed));
+    let mut seeds = conformance::own_seeds("tdms");
     for w in [LITTLE, Writer { big: true }] {
         let texts = [w.u32(3), w.u32(6), b"abcdef".to_vec()].concat();
         let objects = [
@@ -631,5 +627,13 @@ fn prop_mutated_files_are_read_or_refused() {
             .concat(),
         );
     }
+    conformance::survive(&seeds, open, mutate_segment, 40);
+}
+
+#[test]
+#[ignore = "needs shared/data: conformance files of TDMS"]
+fn shared_data_mutated_files_are_read_or_refused() {
+    let mut seeds = conformance::shared_seeds("tdms_conformance", 40 << 10);
+    seeds.retain(|seed| recognises(seed));
     conformance::survive(&seeds, open, mutate_segment, 40);
 }

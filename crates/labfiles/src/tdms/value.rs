@@ -7,12 +7,12 @@ use crate::text::clock::civil_of_days;
 
 /// What a channel's samples or a property are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub(super) enum Kind {
     /// A real number.
     Number(Number),
     /// A complex number of two such parts.
     Complex(Number),
-    /// One byte, true where it is not 0.
+    /// One byte, true if it is not 0.
     Bool,
     /// Text.
     Text,
@@ -22,9 +22,22 @@ pub enum Kind {
     Device,
 }
 
+/// A type of samples or properties that is not read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub(super) enum UnreadType {
+    #[error("void")]
+    Void,
+    #[error("extended float")]
+    ExtendedFloat,
+    #[error("fixed point")]
+    FixedPoint,
+    #[error("unknown type {0:#x}")]
+    Unknown(u32),
+}
+
 impl Kind {
-    /// The kind of a type code; the error names a type that is not read.
-    pub fn of(code: u32) -> Result<Self, String> {
+    /// The kind of a type code.
+    pub(super) fn of(code: u32) -> Result<Self, UnreadType> {
         Ok(match code {
             1 => Self::Number(Number::I8),
             2 => Self::Number(Number::I16),
@@ -42,15 +55,15 @@ impl Kind {
             0x08_000c => Self::Complex(Number::F32),
             0x10_000d => Self::Complex(Number::F64),
             0xffff_ffff => Self::Device,
-            0 => return Err("void".into()),
-            11 | 0x1b => return Err("extended float".into()),
-            0x4f => return Err("fixed point".into()),
-            other => return Err(format!("unknown type {other:#x}")),
+            0 => return Err(UnreadType::Void),
+            11 | 0x1b => return Err(UnreadType::ExtendedFloat),
+            0x4f => return Err(UnreadType::FixedPoint),
+            other => return Err(UnreadType::Unknown(other)),
         })
     }
 
     /// Bytes of one sample; `None` where they are not fixed.
-    pub fn bytes(self) -> Option<u64> {
+    pub(super) fn bytes(self) -> Option<u64> {
         match self {
             Self::Number(number) => Some(number.bytes()),
             Self::Complex(number) => Some(2 * number.bytes()),
@@ -61,10 +74,10 @@ impl Kind {
     }
 
     /// The kind as a [`StoredType`].
-    pub fn stored(self) -> StoredType {
+    pub(super) fn stored(self) -> StoredType {
         match self {
             Self::Number(number) => number.stored(),
-            Self::Complex(number) => StoredType::Complex(number.bytes() as u8 * 8),
+            Self::Complex(number) => StoredType::Complex(number.bits()),
             Self::Bool => StoredType::Bool,
             Self::Text => StoredType::Text,
             Self::Time => StoredType::Time,
@@ -75,7 +88,7 @@ impl Kind {
 
 /// A point in time: seconds since 1904-01-01 00:00 UTC and 2^-64 fractions of a second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Stamp {
+pub(super) struct Stamp {
     /// Whole seconds.
     pub seconds: i64,
     /// Fraction of a second, in units of 2^-64 s.
@@ -83,18 +96,18 @@ pub struct Stamp {
 }
 
 impl Stamp {
-    /// From the two words as they stand in the file.
-    pub fn read(cursor: &mut Cursor<'_>, big: bool) -> Result<Self, ReadError> {
+    /// From the two words in the order of the file.
+    pub(super) fn read(cursor: &mut Cursor<'_>, big: bool) -> Result<Self, ReadError> {
         let words = [cursor.u64("a time stamp")?, cursor.u64("a time stamp")?];
         let [fraction, seconds] = if big { [words[1], words[0]] } else { words };
         Ok(Self {
-            seconds: seconds as i64,
+            seconds: seconds.cast_signed(),
             fraction,
         })
     }
 
     /// Seconds since another stamp.
-    pub fn seconds_since(self, start: Self) -> f64 {
+    pub(super) fn seconds_since(self, start: Self) -> f64 {
         let whole = i128::from(self.seconds) - i128::from(start.seconds);
         let unit = 2f64.powi(-64);
         let fraction = i128::from(self.fraction) - i128::from(start.fraction);
@@ -103,7 +116,7 @@ impl Stamp {
 
     /// ISO 8601 text in UTC to the nanosecond; `None` where the stamp was never set (0) or its
     /// year has more than four digits.
-    pub fn iso8601(self) -> Option<String> {
+    pub(super) fn iso8601(self) -> Option<String> {
         if self.seconds == 0 && self.fraction == 0 {
             return None;
         }
@@ -131,7 +144,7 @@ const YEARS_OF_FOUR_DIGITS: std::ops::Range<i64> = -719_468..2_932_897;
 
 /// The value of a property.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Value {
+pub(super) enum Value {
     /// A number; integers beyond 2^53 keep their text only.
     Number(f64, String),
     /// Text.
@@ -144,11 +157,11 @@ pub enum Value {
 
 impl Value {
     /// Read a property's value of a type.
-    pub fn read(cursor: &mut Cursor<'_>, code: u32, big: bool) -> Result<Self, ReadError> {
+    pub(super) fn read(cursor: &mut Cursor<'_>, code: u32, big: bool) -> Result<Self, ReadError> {
         let kind = match Kind::of(code) {
             Ok(kind) => kind,
-            Err(_) if code == 0 => return Ok(Self::Text(String::new())),
-            Err(found) => return Err(cursor.refuse("a property's type", found)),
+            Err(UnreadType::Void) => return Ok(Self::Text(String::new())),
+            Err(other) => return Err(cursor.refuse("a property's type", other.to_string())),
         };
         Ok(match kind {
             Kind::Text => Self::Text(text(cursor, "a property")?),
@@ -164,7 +177,7 @@ impl Value {
     }
 
     /// The value as text.
-    pub fn text(&self) -> String {
+    pub(super) fn text(&self) -> String {
         match self {
             Self::Number(_, text) | Self::Text(text) => text.clone(),
             Self::Bool(value) => value.to_string(),
@@ -172,8 +185,8 @@ impl Value {
         }
     }
 
-    /// The value as a number, where it is one.
-    pub fn number(&self) -> Option<f64> {
+    /// The value as a number, if it is one.
+    pub(super) fn number(&self) -> Option<f64> {
         match self {
             Self::Number(value, _) => Some(*value),
             _ => None,
@@ -181,6 +194,7 @@ impl Value {
     }
 }
 
+#[expect(clippy::cast_lossless, reason = "the macro is for 64-bit integers too")]
 fn number(cursor: &mut Cursor<'_>, number: Number) -> Result<Value, ReadError> {
     macro_rules! as_is {
         ($value:expr) => {{
@@ -189,21 +203,21 @@ fn number(cursor: &mut Cursor<'_>, number: Number) -> Result<Value, ReadError> {
         }};
     }
     Ok(match number {
-        Number::I8 => as_is!(cursor.u8("a property")? as i8),
+        Number::I8 => as_is!(cursor.u8("a property")?.cast_signed()),
         Number::U8 => as_is!(cursor.u8("a property")?),
-        Number::I16 => as_is!(cursor.u16("a property")? as i16),
+        Number::I16 => as_is!(cursor.u16("a property")?.cast_signed()),
         Number::U16 => as_is!(cursor.u16("a property")?),
-        Number::I32 => as_is!(cursor.u32("a property")? as i32),
+        Number::I32 => as_is!(cursor.u32("a property")?.cast_signed()),
         Number::U32 => as_is!(cursor.u32("a property")?),
-        Number::I64 => as_is!(cursor.u64("a property")? as i64),
+        Number::I64 => as_is!(cursor.u64("a property")?.cast_signed()),
         Number::U64 => as_is!(cursor.u64("a property")?),
         Number::F32 => as_is!(f32::from_bits(cursor.u32("a property")?)),
         Number::F64 => as_is!(f64::from_bits(cursor.u64("a property")?)),
     })
 }
 
-/// A text behind its length.
-pub fn text(cursor: &mut Cursor<'_>, what: &str) -> Result<String, ReadError> {
+/// A text after its length.
+pub(super) fn text(cursor: &mut Cursor<'_>, what: &str) -> Result<String, ReadError> {
     let length = cursor.u32(what)?;
     Ok(decode_text(cursor.take(u64::from(length), what)?).into_owned())
 }
@@ -242,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_differences_of_stamps_keep_the_fraction() {
+    fn differences_of_stamps_keep_the_fraction() {
         let start = Stamp {
             seconds: 3_540_000_000,
             fraction: 1 << 63,

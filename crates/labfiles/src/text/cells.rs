@@ -2,9 +2,9 @@
 
 use crate::bytes::decode_text;
 
-/// What stands between two cells.
+/// The separator between two cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Separator {
+pub(crate) enum Separator {
     /// One byte.
     Byte(u8),
     /// Any run of spaces and tabs.
@@ -12,14 +12,14 @@ pub enum Separator {
 }
 
 /// The cells of one line, without the blanks around them and without their quotes.
-pub struct Cells<'a> {
+pub(crate) struct Cells<'a> {
     rest: Option<&'a [u8]>,
     separator: Separator,
 }
 
 impl<'a> Cells<'a> {
     /// The cells of a line that has no line end.
-    pub fn new(line: &'a [u8], separator: Separator) -> Self {
+    pub(crate) fn new(line: &'a [u8], separator: Separator) -> Self {
         let rest = match separator {
             Separator::Blanks => line.trim_ascii(),
             Separator::Byte(_) => line,
@@ -67,7 +67,7 @@ impl<'a> Iterator for Cells<'a> {
 }
 
 /// Text of a cell; two quotes in a row are one.
-pub fn decode_cell(cell: &[u8]) -> String {
+pub(crate) fn decode_cell(cell: &[u8]) -> String {
     decode_text(cell).replace("\"\"", "\"")
 }
 
@@ -84,7 +84,7 @@ fn closing_quote(bytes: &[u8]) -> Option<usize> {
 }
 
 /// Lines of a block without their line ends, each with its offset in the block.
-pub struct Lines<'a> {
+pub(crate) struct Lines<'a> {
     block: &'a [u8],
     at: usize,
     quotes: bool,
@@ -92,7 +92,7 @@ pub struct Lines<'a> {
 
 impl<'a> Lines<'a> {
     /// The lines of a block; with `quotes`, line feeds between quotes do not end a line.
-    pub fn new(block: &'a [u8], quotes: bool) -> Self {
+    pub(crate) fn new(block: &'a [u8], quotes: bool) -> Self {
         Self {
             block,
             at: 0,
@@ -116,7 +116,7 @@ impl<'a> Iterator for Lines<'a> {
 }
 
 /// The line that begins at `at` of a block, without its line end, and where the next begins.
-pub fn line_at(block: &[u8], at: usize, quotes: bool) -> (&[u8], usize) {
+pub(crate) fn line_at(block: &[u8], at: usize, quotes: bool) -> (&[u8], usize) {
     let rest = &block[at..];
     let end = match quotes {
         false => memchr::memchr(b'\n', rest),
@@ -137,7 +137,7 @@ fn line_feed_outside_quotes(bytes: &[u8]) -> Option<usize> {
 
 /// Whether a line is a row: not blank, not a comment.
 #[inline]
-pub fn is_row(line: &[u8], comments: &[u8]) -> bool {
+pub(crate) fn is_row(line: &[u8], comments: &[u8]) -> bool {
     line.iter()
         .find(|b| !matches!(b, b' ' | b'\t' | b'\r'))
         .is_some_and(|first| !comments.contains(first))

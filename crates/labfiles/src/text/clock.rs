@@ -2,7 +2,7 @@
 
 /// A point in time: days since 1970-01-01 where a date is given, and seconds of the day.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stamp {
+pub(crate) struct Stamp {
     /// Days since 1970-01-01; `None` for a time of day alone.
     pub days: Option<i64>,
     /// Seconds since midnight (or since the clock's zero).
@@ -11,7 +11,7 @@ pub struct Stamp {
 
 impl Stamp {
     /// Seconds from `origin` to this stamp; a clock that passed midnight gains a day.
-    pub fn since(self, origin: Stamp) -> f64 {
+    pub(crate) fn since(self, origin: Stamp) -> f64 {
         let days = match (self.days, origin.days) {
             (Some(a), Some(b)) => (a - b) as f64,
             _ => 0.0,
@@ -20,7 +20,12 @@ impl Stamp {
     }
 
     /// ISO 8601 text: `2024-05-01T12:30:00.25`, or the time alone.
-    pub fn iso(self) -> String {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "seconds of a day, and fewer than 10^9 nanoseconds"
+    )]
+    pub(crate) fn iso(self) -> String {
         let whole = self.seconds.floor();
         let nanos = ((self.seconds - whole) * 1e9).round().min(999_999_999.0) as u32;
         let s = whole as i64;
@@ -39,7 +44,7 @@ impl Stamp {
 /// `05/01/2024 1:00 PM`, `12:00:00`, `00:01.5`. `None`: the cell is no point in time.
 ///
 /// `month_first` reads `05/01/2024` as the first of May; a number above 12 overrules it.
-pub fn parse(cell: &str, month_first: bool) -> Option<Stamp> {
+pub(crate) fn parse(cell: &str, month_first: bool) -> Option<Stamp> {
     let cell = cell.trim();
     if cell.is_empty() || cell.len() > 48 || !cell.is_ascii() {
         return None;
@@ -134,12 +139,12 @@ fn days_of_civil(year: i64, month: i64, day: i64) -> i64 {
     let shifted = if month > 2 { year } else { year - 1 };
     let month_from_march = (month + 9) % 12;
     let leap_days = shifted.div_euclid(4) - shifted.div_euclid(100) + shifted.div_euclid(400);
-    // 719468 days lie between 0000-03-01 and 1970-01-01.
+    // There are 719468 days from 0000-03-01 to 1970-01-01.
     shifted * 365 + leap_days + (153 * month_from_march + 2) / 5 + day - 1 - 719_468
 }
 
 /// Year, month and day of a count of days since 1970-01-01.
-pub fn civil_of_days(days: i64) -> (i64, i64, i64) {
+pub(crate) fn civil_of_days(days: i64) -> (i64, i64, i64) {
     // Never later than the year itself: as if years were short before 1970, and long after.
     let mut year = 1970 + days.div_euclid(if days < 0 { 365 } else { 366 });
     while days_of_civil(year + 1, 1, 1) <= days {
@@ -158,7 +163,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn valid_stamps_in_the_usual_orders() {
+    fn stamps_in_the_usual_orders() {
         let may = Some(days_of_civil(2024, 5, 1));
         for (text, seconds) in [
             ("2024-05-01T12:00:00.5Z", 43_200.5),

@@ -5,6 +5,13 @@
 //! 19 digits, are multiplied by a power of five in 128 bits (D. Lemire, "Number parsing at a
 //! gigabyte per second", Software: Practice and Experience 51, 2021, algorithm 1).
 
+#![expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    clippy::cast_sign_loss,
+    reason = "words are cut into halves; exponents are between -27 and 27"
+)]
+
 /// Greatest power of five whose square fits 128 bits, and for which the algorithm is exact.
 const GREATEST_POWER: i64 = 27;
 /// Mantissas below it binary64 holds, and so it does a few above it; by this bound numbers of the
@@ -53,7 +60,7 @@ const fn reciprocal(power: u128) -> u128 {
 /// The binary64 number nearest to mantissa · 10^exponent; `None` where another way must be
 /// taken: the exponent is great.
 #[inline]
-pub fn nearest(mantissa: u64, exponent: i64) -> Option<f64> {
+pub(crate) fn nearest(mantissa: u64, exponent: i64) -> Option<f64> {
     if mantissa < SHORT && (-22..=22).contains(&exponent) {
         let power = EXACT_POWERS[exponent.unsigned_abs() as usize];
         return Some(match exponent < 0 {

@@ -12,7 +12,7 @@ const BEHIND: usize = 32;
 /// Bytes of a word.
 const WORD: usize = 8;
 /// Most digits whose integer 64 bits hold.
-pub const MOST_DIGITS: usize = 19;
+pub(crate) const MOST_DIGITS: usize = 19;
 
 /// Least integer that may not fit 64 bits with sixteen further digits.
 const LEAST_TOO_GREAT: u64 = 1000;
@@ -45,21 +45,21 @@ const fn last() -> [u8; 2 * BEFORE] {
 
 /// A decimal number without sign and exponent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Unsigned {
+pub(crate) struct Unsigned {
     /// The integer that all digits make, below 10^19.
     pub mantissa: u64,
-    /// Digits behind the decimal mark.
+    /// Digits after the decimal mark.
     pub places: usize,
-    /// The place behind the number in the text.
+    /// The place after the number in the text.
     pub end: usize,
 }
 
-/// The number whose first digit stands at `at`, without a step for each digit.
+/// The number whose first digit is at `at`, without a step for each digit.
 ///
-/// `None` where another way must be taken: the text ends too near, no digit stands there, more
-/// than seven stand before the mark, or all are more than 64 bits hold.
+/// `None` if another way must be taken: the text ends too near, there is no digit, more
+/// than seven precede the mark, or all are more than 64 bits hold.
 #[inline]
-pub fn at_once(text: &[u8], at: usize, mark: u8) -> Option<Unsigned> {
+pub(crate) fn at_once(text: &[u8], at: usize, mark: u8) -> Option<Unsigned> {
     let around: &[u8; BEFORE + BEHIND] = text.get(at.wrapping_sub(BEFORE)..)?.first_chunk()?;
     let others = no_digits(around);
     let whole = others.trailing_zeros() as usize;
@@ -98,7 +98,7 @@ pub fn at_once(text: &[u8], at: usize, mark: u8) -> Option<Unsigned> {
 fn no_digits(around: &[u8; BEFORE + BEHIND]) -> u32 {
     let bits = |from: usize| {
         // moved so that the digits are the ten least of the signed numbers
-        let moved = |i: usize| around[from + i].wrapping_add(128 - b'0') as i8;
+        let moved = |i: usize| around[from + i].wrapping_add(128 - b'0').cast_signed();
         let bytes = i8x16::new(std::array::from_fn(moved));
         bytes.simd_gt(i8x16::splat(-128 + 9)).to_bitmask()
     };
@@ -113,8 +113,9 @@ fn word(around: &[u8; BEFORE + BEHIND], at: usize) -> u64 {
     u64::from_le_bytes(bytes)
 }
 
-/// The first `count` bytes of a word moved to its end; nothing stands before them.
+/// The first `count` bytes of a word moved to its end, zeros before them.
 #[inline]
+#[expect(clippy::cast_possible_truncation, reason = "at most a word's bytes")]
 fn front(word: u64, count: usize) -> u64 {
     let half = 4 * (WORD - count) as u32;
     (word << half) << half
@@ -136,7 +137,7 @@ fn sixteen_digits(bytes: &[u8; 16], mask: &[u8; 16]) -> u64 {
     let eights = narrow
         .dot(i16x8::new([10_000, 1, 10_000, 1, 0, 0, 0, 0]))
         .to_array();
-    u64::from(eights[0] as u32) * 100_000_000 + u64::from(eights[1] as u32)
+    u64::from(eights[0].cast_unsigned()) * 100_000_000 + u64::from(eights[1].cast_unsigned())
 }
 
 /// Whether eight characters are digits: each becomes 0 to 9 by the exclusive or, and 6 more stay
@@ -155,10 +156,10 @@ fn eight_digits(word: u64) -> u64 {
     (fours & 0x0000_ffff_0000_ffff).wrapping_mul((10_000 << 32) + 1) >> 32
 }
 
-/// Add the digits from `i` on to a mantissa, eight at a time while there are so many; the place
-/// behind them.
+/// Add the digits from `i` on to a mantissa, eight at a time while there are that many; the place
+/// after them.
 #[inline]
-pub fn many_digits(bytes: &[u8], mut i: usize, mantissa: &mut u64) -> usize {
+pub(crate) fn many_digits(bytes: &[u8], mut i: usize, mantissa: &mut u64) -> usize {
     while let Some(eight) = bytes.get(i..).and_then(|rest| rest.first_chunk::<8>()) {
         let word = u64::from_le_bytes(*eight);
         if !are_digits(word) {
@@ -171,9 +172,9 @@ pub fn many_digits(bytes: &[u8], mut i: usize, mantissa: &mut u64) -> usize {
     few_digits(bytes, i, mantissa)
 }
 
-/// Add the digits from `i` on to a mantissa; the place behind them.
+/// Add the digits from `i` on to a mantissa; the place after them.
 #[inline]
-pub fn few_digits(bytes: &[u8], mut i: usize, mantissa: &mut u64) -> usize {
+pub(crate) fn few_digits(bytes: &[u8], mut i: usize, mantissa: &mut u64) -> usize {
     while let Some(digit) = bytes
         .get(i)
         .map(|b| b.wrapping_sub(b'0'))
@@ -190,7 +191,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_digits_end_at_any_other_character() {
+    fn digits_end_at_any_other_character() {
         for byte in (0..=255u8).filter(|b| !b.is_ascii_digit()) {
             for place in 0..19 {
                 let mut text = *b"1234567890987654321x";
@@ -204,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_numbers_at_once_end_at_any_other_character() {
+    fn numbers_at_once_end_at_any_other_character() {
         for byte in (0..=255u8).filter(|b| !b.is_ascii_digit()) {
             for (whole, places) in (1..=7).flat_map(|w| (0..=19).map(move |p| (w, p))) {
                 let number = [

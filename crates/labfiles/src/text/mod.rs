@@ -2,26 +2,26 @@
 //!
 //! A file is never held whole, except one in UTF-16, which is transcoded once.
 
-pub mod cells;
-pub mod clock;
-pub mod decimal;
-pub mod digits;
-pub mod number;
-pub mod table;
+pub(crate) mod cells;
+pub(crate) mod clock;
+pub(crate) mod decimal;
+pub(crate) mod digits;
+pub(crate) mod number;
+pub(crate) mod table;
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use crate::bytes::{decode_text, read_exact_at};
+use crate::bytes::{decode_text, read_exact_at, to_usize};
 use crate::source::ReadError;
 
 /// Bytes read at a time.
 const BLOCK_BYTES: usize = 1 << 17;
-/// The longest line that is still believed to be text.
+/// The longest line that is taken for text.
 const LONGEST_LINE_BYTES: usize = 1 << 24;
 
 /// A text file that is read at any offset, by any number of threads.
-pub struct TextFile {
+pub(crate) struct TextFile {
     path: PathBuf,
     backing: Backing,
     length: u64,
@@ -35,7 +35,7 @@ enum Backing {
 
 impl TextFile {
     /// Open a file: look at its byte-order mark, transcode UTF-16.
-    pub fn open(path: &Path) -> Result<Self, ReadError> {
+    pub(crate) fn open(path: &Path) -> Result<Self, ReadError> {
         let file = File::open(path).map_err(|e| ReadError::io(path, &e))?;
         let length = file.metadata().map_err(|e| ReadError::io(path, &e))?.len();
         let mut text = Self {
@@ -46,7 +46,7 @@ impl TextFile {
         };
         let head = text.range(0, 4)?;
         if let Some(encoding) = utf16_of(&head) {
-            let bytes = text.range(0, length as usize)?;
+            let bytes = text.range(0, to_usize(length))?;
             let (decoded, _) = encoding.decode_with_bom_removal(&bytes);
             text.length = decoded.len() as u64;
             text.backing = Backing::Memory(decoded.into_owned().into_bytes());
@@ -57,30 +57,30 @@ impl TextFile {
     }
 
     /// The file's path.
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
     /// Offset of the first character after a byte-order mark.
-    pub fn start(&self) -> u64 {
+    pub(crate) fn start(&self) -> u64 {
         self.start
     }
 
     /// Number of bytes, after transcoding.
-    pub fn length(&self) -> u64 {
+    pub(crate) fn length(&self) -> u64 {
         self.length
     }
 
     /// The bytes `[offset, offset + count)`, fewer at the end of the file.
-    pub fn range(&self, offset: u64, count: usize) -> Result<Vec<u8>, ReadError> {
-        let count = self.length.saturating_sub(offset).min(count as u64) as usize;
+    pub(crate) fn range(&self, offset: u64, count: usize) -> Result<Vec<u8>, ReadError> {
+        let count = to_usize(self.length.saturating_sub(offset).min(count as u64));
         let mut bytes = vec![0; count];
         self.fill(offset, &mut bytes)?;
         Ok(bytes)
     }
 
     /// The file's first whole lines, about `count` bytes of them.
-    pub fn head(&self, count: usize) -> Result<Vec<u8>, ReadError> {
+    pub(crate) fn head(&self, count: usize) -> Result<Vec<u8>, ReadError> {
         let mut bytes = self.range(self.start, count)?;
         if self.start + (bytes.len() as u64) < self.length {
             let end = memchr::memrchr(b'\n', &bytes).map_or(bytes.len(), |i| i + 1);
@@ -95,7 +95,7 @@ impl TextFile {
                 read_exact_at(file, into, offset).map_err(|e| ReadError::io(&self.path, &e))
             }
             Backing::Memory(bytes) => {
-                let from = offset as usize;
+                let from = to_usize(offset);
                 into.copy_from_slice(&bytes[from..from + into.len()]);
                 Ok(())
             }
@@ -106,20 +106,20 @@ impl TextFile {
     ///
     /// Only the last block may end without a line feed. With `quotes`, a line feed between
     /// double quotes does not end a line.
-    pub fn blocks(
+    pub(crate) fn blocks(
         &self,
         offset: u64,
         quotes: bool,
         mut visit: impl FnMut(u64, &[u8]) -> Result<(), ReadError>,
     ) -> Result<(), ReadError> {
         let left = self.length.saturating_sub(offset);
-        let mut buffer = vec![0; left.min(BLOCK_BYTES as u64) as usize];
+        let mut buffer = vec![0; to_usize(left.min(BLOCK_BYTES as u64))];
         let (mut filled, mut at, mut next) = (0, offset, offset);
         while next < self.length {
             if filled == buffer.len() {
                 buffer.resize(2 * filled, 0);
             }
-            let more = (self.length - next).min((buffer.len() - filled) as u64) as usize;
+            let more = to_usize(self.length - next).min(buffer.len() - filled);
             self.fill(next, &mut buffer[filled..filled + more])?;
             next += more as u64;
             filled += more;
@@ -181,6 +181,6 @@ fn utf16_of(head: &[u8]) -> Option<&'static encoding_rs::Encoding> {
 }
 
 /// Text of a cell; see [`decode_text`].
-pub fn decode(bytes: &[u8]) -> String {
+pub(crate) fn decode(bytes: &[u8]) -> String {
     decode_text(bytes).into_owned()
 }

@@ -7,7 +7,7 @@ use crate::text::{TextFile, decode, number};
 
 /// How the cells of a column are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub(crate) enum Kind {
     /// Decimal numbers.
     Number,
     /// Points in time, given as seconds since the first.
@@ -16,10 +16,10 @@ pub enum Kind {
     Text,
 }
 
-/// Where the rows of a table lie and how they are written.
+/// Place and form of the rows of a table.
 #[derive(Debug, Clone)]
-pub struct Layout {
-    /// What stands between two cells.
+pub(crate) struct Layout {
+    /// The separator between two cells.
     pub separator: Separator,
     /// The decimal mark.
     pub decimal: u8,
@@ -31,7 +31,7 @@ pub struct Layout {
     pub start: u64,
     /// Offset of the end of the last row.
     pub end: u64,
-    /// Whether line feeds may stand between quotes.
+    /// Whether there may be line feeds between quotes.
     pub quotes: bool,
     /// Whether `05/01/2024` is the first of May.
     pub month_first: bool,
@@ -66,7 +66,7 @@ impl Column {
 }
 
 /// Read the columns `wanted` (indices, any order) of a table of `rows` rows.
-pub fn read_columns(
+pub(crate) fn read_columns(
     text: &TextFile,
     layout: &Layout,
     wanted: &[usize],
@@ -133,7 +133,7 @@ fn empty_column(kind: Kind, rows: usize) -> Column {
     }
 }
 
-/// What is wrong with a row: the column, the offset in the line, the words.
+/// What is wrong with a row: the column, the offset in the line, what was found.
 struct Fault {
     column: usize,
     at: usize,
@@ -223,7 +223,7 @@ fn number_cell(block: &[u8], mut at: usize, decimal: u8) -> Option<(f64, usize)>
     number::parse_at(block, at, decimal)
 }
 
-/// The end of a cell that nobody wants, where it is known by its separator: it is not empty, not
+/// The end of an unwanted cell, if it is known by its separator: it is not empty, not
 /// quoted, no comment, and not the last of its row.
 #[inline]
 fn unwanted_cell(block: &[u8], at: usize, separator: u8) -> Option<usize> {
@@ -256,10 +256,10 @@ fn read_row(
     let mut cells = Cells::new(line, layout.separator).skip(done);
     for (column, i) in columns[done..].iter_mut().zip(done..) {
         let cell = cells.next().unwrap_or(b"");
-        push(column, cell, layout).map_err(|found| Fault {
+        push(column, cell, layout).ok_or_else(|| Fault {
             column: i,
             at: offset_of(line, cell),
-            found,
+            found: format!("'{}'", shortened(cell)),
         })?;
     }
     extra_cells(line, layout)
@@ -301,28 +301,27 @@ fn shortened(cell: &[u8]) -> String {
     }
 }
 
-fn push(column: &mut Column, cell: &[u8], layout: &Layout) -> Result<(), String> {
+/// Append a cell to a column; `None` where the column is of another kind.
+fn push(column: &mut Column, cell: &[u8], layout: &Layout) -> Option<()> {
     match column {
         Column::Skip => {}
         Column::Number(values) => {
-            let value = number::parse_cell(cell, layout.decimal);
-            values.push(value.ok_or_else(|| format!("'{}'", shortened(cell)))?);
+            values.push(number::parse_cell(cell, layout.decimal)?);
         }
         Column::Time(times) => times.push(cell, layout.month_first)?,
         Column::Text(values) => values.push(decode_cell(cell)),
     }
-    Ok(())
+    Some(())
 }
 
 impl Times {
     /// Append the seconds of a cell since the column's first; a clock that passes midnight goes on.
-    fn push(&mut self, cell: &[u8], month_first: bool) -> Result<(), String> {
+    fn push(&mut self, cell: &[u8], month_first: bool) -> Option<()> {
         if cell.is_empty() {
             self.values.push(f64::NAN);
-            return Ok(());
+            return Some(());
         }
-        let stamp = clock::parse(&decode(cell), month_first)
-            .ok_or_else(|| format!("'{}'", shortened(cell)))?;
+        let stamp = clock::parse(&decode(cell), month_first)?;
         let origin = *self.origin.get_or_insert(stamp);
         let mut value = stamp.since(origin) + self.days * 86_400.0;
         let before = self.values.last();
@@ -331,12 +330,15 @@ impl Times {
             value += 86_400.0;
         }
         self.values.push(value);
-        Ok(())
+        Some(())
     }
 }
 
 /// Count the rows of a table and find where the last begins.
-pub fn count_rows(text: &TextFile, layout: &Layout) -> Result<(u64, Option<u64>), ReadError> {
+pub(crate) fn count_rows(
+    text: &TextFile,
+    layout: &Layout,
+) -> Result<(u64, Option<u64>), ReadError> {
     let mut rows = 0;
     let mut last = None;
     text.blocks(layout.start, layout.quotes, |offset, block| {

@@ -3,33 +3,16 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::header::Header;
+use super::origin::{Origin, Side};
 use super::samples;
 use super::sets::{Function, Sets};
 use crate::bytes::FileBytes;
 use crate::source::{ChannelInfo, DatasetInfo, StoredType};
 
-/// What a channel is of its function.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// The abscissa.
-    Abscissa,
-    /// The ordinate.
-    Ordinate,
-}
-
-/// Where a channel's samples come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Origin {
-    /// Index into [`Sets::functions`].
-    pub function: usize,
-    /// Abscissa or ordinate.
-    pub side: Side,
-}
-
 /// The datasets of a file and the origins of their channels.
-pub type Arranged = (Vec<DatasetInfo>, Vec<Vec<Origin>>);
+pub(super) type Arranged = (Vec<DatasetInfo>, Vec<Vec<Origin>>);
 
-/// What tells one channel of a record from another, and one record from the next.
+/// What distinguishes one channel of a record from another, and one record from the next.
 type Identity<'a> = (
     i64,
     Option<&'a str>,
@@ -118,7 +101,7 @@ fn group(file: &FileBytes, functions: &[Function]) -> Vec<Vec<usize>> {
     groups
 }
 
-/// Names of the functions of a dataset: the first kind of name that tells them apart.
+/// Names of the functions of a dataset: the first kind of name that distinguishes them.
 fn names(headers: &[&Header]) -> Vec<String> {
     let kinds: [fn(&Header) -> Option<String>; 4] = [
         |h| h.response.name.clone(),
@@ -143,7 +126,7 @@ fn names(headers: &[&Header]) -> Vec<String> {
 }
 
 /// Arrange the functions of a file as datasets.
-pub fn arrange(file: &FileBytes, sets: &Sets) -> Arranged {
+pub(super) fn arrange(file: &FileBytes, sets: &Sets) -> Arranged {
     let groups = group(file, &sets.functions);
     let single = groups.len() == 1;
     let mut arranged: Arranged = (Vec::new(), Vec::new());

@@ -1,14 +1,13 @@
-//! Numbers written as text, read fast and exactly.
+//! Numbers written as text by Fortran programs.
 
-use crate::text::decimal;
-use crate::text::digits::{MOST_DIGITS, few_digits, many_digits};
+use crate::text::number;
 
-/// Longest number that is believed, bytes.
+/// Longest word that is accepted, bytes.
 const LONGEST: usize = 64;
 
 /// Why a number could not be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct NoNumber {
+pub(super) struct NoNumber {
     /// Offset of the offending byte.
     pub at: usize,
 }
@@ -19,14 +18,14 @@ pub struct NoNumber {
 /// is full (`-1.5E+00-2.5E+00`). Exponents are spelt E, e, D or d, or only by their sign
 /// (`1.5-100`).
 #[derive(Debug, Clone)]
-pub struct Numbers<'a> {
+pub(super) struct Numbers<'a> {
     text: &'a [u8],
     at: usize,
 }
 
 impl<'a> Numbers<'a> {
     /// Start at the front of a text.
-    pub fn new(text: &'a [u8]) -> Self {
+    pub(super) fn new(text: &'a [u8]) -> Self {
         Self { text, at: 0 }
     }
 
@@ -46,84 +45,36 @@ impl<'a> Numbers<'a> {
         }
     }
 
-    /// The exponent at `at`, of up to four digits, and the place behind it.
-    #[inline]
-    fn exponent(&self, mut at: usize) -> Option<(i32, usize)> {
-        let letter = matches!(self.peek(at), b'E' | b'e' | b'D' | b'd');
-        let signed = |at| matches!(self.peek(at), b'+' | b'-');
-        if !letter {
-            // A sign is an exponent's only before three digits (`1.5-100`); else a number begins.
-            if !signed(at) {
-                return Some((0, at));
-            }
-            let mut digits = 0;
-            let end = few_digits(self.text, at + 1, &mut digits);
-            let bare = end == at + 4 && !matches!(self.peek(end), b'.');
-            return Some(match bare {
-                true if self.peek(at) == b'-' => (-(digits as i32), end),
-                true => (digits as i32, end),
-                false => (0, at),
-            });
-        }
-        at += 1;
-        let negative = self.peek(at) == b'-';
-        at += usize::from(signed(at));
-        let mut value = 0;
-        let end = few_digits(self.text, at, &mut value);
-        if end == at || end > at + 4 {
-            return None;
-        }
-        Some((
-            if negative {
-                -(value as i32)
-            } else {
-                value as i32
-            },
-            end,
-        ))
-    }
-
     /// The number at the present place, which is no blank.
     #[inline]
     fn number(&mut self) -> Result<f64, NoNumber> {
-        let start = self.at;
-        let first = self.peek(start);
-        let begin = start + usize::from(matches!(first, b'-' | b'+'));
-        let mut mantissa = 0;
-        let whole = few_digits(self.text, begin, &mut mantissa);
-        let (mut end, mut places) = (whole, 0);
-        if self.peek(whole) == b'.' {
-            end = many_digits(self.text, whole + 1, &mut mantissa);
-            places = end - whole - 1;
-        }
-        let digits = whole - begin + places;
-        if digits == 0 {
+        let Some((value, end)) = number::parse_at(self.text, self.at, b'.') else {
             return self.word();
-        }
-        let Some((exponent, after)) = self.exponent(end) else {
-            return Err(NoNumber { at: end });
         };
-        if !matches!(self.peek(after), b' ' | b'\n' | b'\r' | b'\t' | b'-' | b'+') {
-            return Err(NoNumber { at: after });
+        match self.peek(end) {
+            b' ' | b'\n' | b'\r' | b'\t' => {}
+            b'-' | b'+' => return Ok(self.before_sign(value, end)),
+            _ => return Err(NoNumber { at: end }),
         }
-        self.at = after;
-        let power = i64::from(exponent) - places as i64;
-        let fits = digits <= MOST_DIGITS;
-        if let Some(value) = fits.then(|| decimal::nearest(mantissa, power)).flatten() {
-            return Ok(if first == b'-' { -value } else { value });
-        }
-        self.slowly(start, end, exponent)
+        self.at = end;
+        Ok(value)
     }
 
-    /// Any number, by the standard library.
+    /// A number that a sign follows: it is an exponent's before three digits (`1.5-100`), else the
+    /// next number begins.
     #[cold]
-    fn slowly(&self, start: usize, end: usize, exponent: i32) -> Result<f64, NoNumber> {
-        let mantissa = &self.text[start..end];
-        if mantissa.len() > LONGEST {
-            return Err(NoNumber { at: start });
+    fn before_sign(&mut self, value: f64, end: usize) -> f64 {
+        let field = &self.text[self.at..end];
+        let digits = self.text[end + 1..].iter();
+        let digits = digits.take_while(|b| b.is_ascii_digit()).count();
+        let lettered = field.iter().any(u8::is_ascii_alphabetic);
+        if digits != 3 || lettered || self.peek(end + 4) == b'.' {
+            self.at = end;
+            return value;
         }
-        let text = format!("{}e{exponent}", String::from_utf8_lossy(mantissa));
-        text.parse().map_err(|_| NoNumber { at: start })
+        let text = [field, b"e", &self.text[end..end + 4]].concat();
+        self.at = end + 4;
+        number::parse_prefix(&text, b'.').map_or(value, |(value, _)| value)
     }
 
     /// Not a number, or infinity, as programs write them.
@@ -146,7 +97,7 @@ impl<'a> Numbers<'a> {
     }
 
     /// Append up to `most` numbers; fewer where the text ends.
-    pub fn take(&mut self, most: usize, out: &mut Vec<f64>) -> Result<(), NoNumber> {
+    pub(super) fn take(&mut self, most: usize, out: &mut Vec<f64>) -> Result<(), NoNumber> {
         for _ in 0..most {
             self.skip_blanks();
             if self.at >= self.text.len() {
@@ -158,7 +109,7 @@ impl<'a> Numbers<'a> {
     }
 
     /// How many numbers are left; stops at what is none.
-    pub fn count(mut self) -> Result<u64, NoNumber> {
+    pub(super) fn count(mut self) -> Result<u64, NoNumber> {
         let mut count = 0;
         loop {
             self.skip_blanks();
@@ -172,7 +123,7 @@ impl<'a> Numbers<'a> {
 }
 
 /// Place of the first line feed, eight bytes at a time.
-pub fn line_feed(text: &[u8]) -> Option<usize> {
+pub(super) fn line_feed(text: &[u8]) -> Option<usize> {
     const ONES: u64 = 0x0101_0101_0101_0101;
     const FEEDS: u64 = ONES * b'\n' as u64;
     let (words, _) = text.as_chunks::<8>();
@@ -205,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_fields_as_instruments_write_them() {
+    fn fields_as_instruments_write_them() {
         assert_eq!(
             all(" -1.47553E-02 -1.72957e-02\r\n 5.").unwrap(),
             [-0.0147553, -0.0172957, 5.0]
@@ -228,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_what_is_no_number_is_refused_at_its_byte() {
+    fn what_is_no_number_is_refused_at_its_byte() {
         assert_eq!(all("1.0 x"), Err(NoNumber { at: 4 }));
         assert_eq!(all("1.0E"), Err(NoNumber { at: 3 }));
         assert_eq!(all("1.00000E+001.5"), Err(NoNumber { at: 12 }));
@@ -237,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_line_feeds() {
+    fn line_feeds() {
         for length in 0..40 {
             let mut text = vec![b'x'; length];
             assert_eq!(line_feed(&text), None);

@@ -2,24 +2,24 @@
 
 use std::collections::BTreeMap;
 
-use crate::bytes::decode_text;
+use crate::bytes::{decode_text, to_usize};
 use crate::units::{Dimension, parse_unit};
 
 /// One axis of a function: records 8 to 11.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Axis {
+pub(super) struct Axis {
     /// Specific data type: 17 time, 18 frequency, 12 acceleration and so on.
     pub kind: i64,
-    /// Its label, where it is not blank or NONE.
+    /// Its label, if it is not blank or NONE.
     pub label: Option<String>,
-    /// Its unit, where it is not blank or NONE.
+    /// Its unit, if it is not blank or NONE.
     pub unit: Option<String>,
 }
 
 /// A degree of freedom: where and in which direction something was measured or excited.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Freedom {
-    /// Name, where it is not blank or NONE.
+pub(super) struct Freedom {
+    /// Name, if it is not blank or NONE.
     pub name: Option<String>,
     /// Number of the node.
     pub node: i64,
@@ -29,9 +29,9 @@ pub struct Freedom {
 
 impl Freedom {
     /// `12:+Z`, where a node is given.
-    pub fn place(&self) -> Option<String> {
+    pub(super) fn place(&self) -> Option<String> {
         const AXES: [&str; 7] = ["S", "X", "Y", "Z", "RX", "RY", "RZ"];
-        let axis = AXES.get(self.direction.unsigned_abs() as usize)?;
+        let axis = AXES.get(to_usize(self.direction.unsigned_abs()))?;
         let sign = if self.direction < 0 { "-" } else { "+" };
         (self.node != 0).then(|| format!("{}:{sign}{axis}", self.node))
     }
@@ -39,7 +39,7 @@ impl Freedom {
 
 /// The header of a function.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Header {
+pub(super) struct Header {
     /// The five lines of identification.
     pub lines: [String; 5],
     /// Function type: 1 time response, 4 frequency response, 9 spectral density and so on.
@@ -66,16 +66,16 @@ pub struct Header {
 
 /// A header's line that could not be understood.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fault {
+pub(super) struct Fault {
     /// Which line of the set, from 0.
     pub line: usize,
     /// What was needed there.
     pub expected: &'static str,
-    /// What stands there.
+    /// What was found there.
     pub found: String,
 }
 
-/// Text of a field without its blanks; `None` where it is blank or NONE.
+/// Text of a field without its blanks; `None` if it is blank or NONE.
 fn field(line: &[u8], from: usize, to: usize) -> Option<String> {
     let bytes = line.get(from.min(line.len())..to.min(line.len()))?;
     let text = decode_text(bytes).trim().to_owned();
@@ -95,7 +95,7 @@ fn number(text: &str) -> Option<f64> {
 
 impl Header {
     /// From the eleven lines of a function's header.
-    pub fn read(lines: &[&[u8]; 11]) -> Result<Self, Fault> {
+    pub(super) fn read(lines: &[&[u8]; 11]) -> Result<Self, Fault> {
         let mut header = Self {
             lines: identification(lines),
             ..Self::default()
@@ -167,40 +167,40 @@ impl Header {
     }
 
     /// Whether the ordinate is complex.
-    pub fn complex(&self) -> bool {
+    pub(super) fn complex(&self) -> bool {
         self.ordinate_type >= 5
     }
 
     /// Whether the ordinate is in double precision.
-    pub fn double(&self) -> bool {
+    pub(super) fn double(&self) -> bool {
         matches!(self.ordinate_type, 4 | 6)
     }
 
     /// Numbers per point, the abscissa of an uneven one included.
-    pub fn per_point(&self) -> u64 {
+    pub(super) fn per_point(&self) -> u64 {
         1 + u64::from(self.complex()) + u64::from(!self.even)
     }
 
     /// Whether the abscissa is time.
-    pub fn over_time(&self) -> bool {
+    pub(super) fn over_time(&self) -> bool {
         let axis = &self.axes[0];
         axis.kind == 17 || (axis.kind == 0 && axis.unit.as_deref() == Some("s"))
     }
 
-    /// Samples per second, Hz, of an even abscissa of time; in s where it states no other unit.
-    pub fn sample_rate_hz(&self) -> f64 {
+    /// Samples per second, Hz, of an even abscissa of time; in s if it states no other unit.
+    pub(super) fn sample_rate_hz(&self) -> f64 {
         let unit = self.axes[0].unit.as_deref().and_then(parse_unit);
         let unit = unit.filter(|u| u.dimension == Dimension::Time);
         (self.increment * unit.map_or(1.0, |u| u.to_si)).recip()
     }
 
-    /// The third line as ISO 8601, where it is a date such as `18-Apr-16 13:49:58`.
-    pub fn start_time(&self) -> Option<String> {
+    /// The third line as ISO 8601, if it is a date such as `18-Apr-16 13:49:58`.
+    pub(super) fn start_time(&self) -> Option<String> {
         iso8601(&self.lines[2])
     }
 
-    /// What stands in the header, as text, under the names of the format's description.
-    pub fn properties(&self) -> BTreeMap<String, String> {
+    /// The header's fields as text, under the names of the format's description.
+    pub(super) fn properties(&self) -> BTreeMap<String, String> {
         let mut all = BTreeMap::new();
         for (index, line) in self.lines.iter().enumerate().filter(|(_, l)| !l.is_empty()) {
             all.insert(format!("id{}", index + 1), line.clone());
@@ -289,7 +289,7 @@ fn iso8601(text: &str) -> Option<String> {
 
 /// The unit system of a file (set 164).
 #[derive(Debug, Clone, PartialEq)]
-pub struct System {
+pub(super) struct System {
     /// 1 SI, 5 mm and mN, 9 user defined and so on.
     pub code: i64,
     /// Its description.
@@ -300,7 +300,7 @@ pub struct System {
 
 impl System {
     /// From the lines of a set 164.
-    pub fn read(lines: &[&[u8]]) -> Option<Self> {
+    pub(super) fn read(lines: &[&[u8]]) -> Option<Self> {
         let (first, rest) = lines.split_first()?;
         let text: Vec<u8> = rest.join(&b' ');
         let words = decode_text(&text);
@@ -313,7 +313,7 @@ impl System {
     }
 
     /// The unit that an ordinate's specific data type has in this system.
-    pub fn unit(&self, kind: i64) -> Option<String> {
+    pub(super) fn unit(&self, kind: i64) -> Option<String> {
         let (length, force) = match self.code {
             1 => ("m", "N"),
             2 => ("ft", "lbf"),
@@ -334,7 +334,7 @@ impl System {
     }
 
     /// As attributes of a dataset.
-    pub fn attributes(&self) -> Vec<(String, String)> {
+    pub(super) fn attributes(&self) -> Vec<(String, String)> {
         let mut all = vec![("units_code".to_owned(), self.code.to_string())];
         all.extend(
             self.description
@@ -349,7 +349,7 @@ impl System {
 }
 
 /// Names from a set 151: model, description, program, dates.
-pub fn model(lines: &[&[u8]]) -> Vec<(String, String)> {
+pub(super) fn model(lines: &[&[u8]]) -> Vec<(String, String)> {
     let names = [
         "model_name",
         "description",
@@ -369,7 +369,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_dates() {
+    fn dates() {
         assert_eq!(
             iso8601("18-Apr-16 13:49:58").as_deref(),
             Some("2016-04-18T13:49:58")
@@ -383,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_unit_systems() {
+    fn unit_systems() {
         let lines: [&[u8]; 3] = [
             b"         5mm (milli-newton)            2",
             b"  1.00000000000000000D+03  1.00000000000000000D+03  1.00000000000000000D+00",

@@ -7,12 +7,12 @@
 //!   same names, or at another time (third line) or load case, begins the next. A file of one
 //!   record has a dataset without a name, else datasets are numbered from 1.
 //! - A channel is named by the response's entity name, else node and direction (`3:+Z`), else the
-//!   first line, else the ordinate's label: the first of these that tells the channels of the
+//!   first line, else the ordinate's label: the first of these that distinguishes the channels of the
 //!   dataset apart. All header fields are properties.
-//! - An even abscissa of time gives the sample rate, in its unit where it states one. Any other
+//! - An even abscissa of time gives the sample rate, in its unit if it states one. Any other
 //!   abscissa (frequency, or uneven time) is the dataset's first channel.
 //! - The unit is that of the ordinate (`(numerator)/(denominator)` of a frequency response);
-//!   where it is missing and a set 164 names the unit system, it follows from the data type.
+//!   if it is missing and a set 164 names the unit system, it follows from the data type.
 //! - Sets 151 and 164 give attributes. All other sets are skipped with a note.
 //! - A function that holds fewer points than its header states is read as far as it goes, with a
 //!   note: long throughputs are often cut.
@@ -20,6 +20,7 @@
 mod arrange;
 mod ascii;
 mod header;
+mod origin;
 mod samples;
 mod sets;
 #[cfg(test)]
@@ -27,21 +28,21 @@ mod tests;
 
 use std::path::Path;
 
-use arrange::Origin;
+use origin::Origin;
 use sets::Sets;
 
 use super::bytes::FileBytes;
-use super::source::{DatasetInfo, ReadError, Samples, Source, requested};
+use super::source::{Opened, ReadError, Reader, Samples, Source};
 
 /// Whether a file's first line is the mark that begins a set: `    -1`.
-pub fn recognises(head: &[u8]) -> bool {
+pub(crate) fn recognises(head: &[u8]) -> bool {
     let line = head.split(|&b| b == b'\n').next().unwrap_or(&[]);
     sets::is_mark(line)
 }
 
 /// Open a universal file: headers are read and the ends of sets found; of the samples only uneven
-/// abscissae are read, which tell what belongs to one record.
-pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
+/// abscissae are read, which state what belongs to one record.
+pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let file = FileBytes::open(path)?;
     if !recognises(file.all()) {
         let found = format!("{:?}", sets::snippet(file.all(), 0));
@@ -60,43 +61,28 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
             each.collect::<Vec<_>>().join(", ")
         ));
     }
-    Ok(Box::new(UniversalFile {
-        file,
-        sets,
+    Ok(Box::new(Opened {
+        format: "uff",
+        path: path.to_path_buf(),
         datasets,
-        origins,
         notes,
+        reader: UniversalFile {
+            file,
+            sets,
+            origins,
+        },
     }))
 }
 
 struct UniversalFile {
     file: FileBytes,
     sets: Sets,
-    datasets: Vec<DatasetInfo>,
     origins: Vec<Vec<Origin>>,
-    notes: Vec<String>,
 }
 
-impl Source for UniversalFile {
-    fn format(&self) -> &'static str {
-        "uff"
-    }
-
-    fn path(&self) -> &Path {
-        self.file.path()
-    }
-
-    fn datasets(&self) -> &[DatasetInfo] {
-        &self.datasets
-    }
-
-    fn notes(&self) -> &[String] {
-        &self.notes
-    }
-
+impl Reader for UniversalFile {
     fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
         self.file.still_whole()?;
-        requested(self, dataset, channels)?;
         let wanted: Vec<_> = channels.iter().map(|&c| self.origins[dataset][c]).collect();
         samples::read(&self.file, &self.sets.functions, &wanted)
     }

@@ -1,9 +1,9 @@
 //! Samples of functions, from text or binary.
 
-use super::arrange::{Origin, Side};
 use super::ascii::Numbers;
+use super::origin::{Origin, Side};
 use super::sets::{Form, Function, snippet};
-use crate::bytes::FileBytes;
+use crate::bytes::{FileBytes, to_usize};
 use crate::numbers::{self, ByteOrder, Number, Spacing};
 use crate::source::{ReadError, Samples};
 
@@ -17,7 +17,7 @@ struct Columns {
 
 /// Read channels of a dataset; a function of which abscissa and ordinate are asked for is read
 /// once.
-pub fn read(
+pub(super) fn read(
     file: &FileBytes,
     functions: &[Function],
     wanted: &[Origin],
@@ -49,7 +49,7 @@ pub fn read(
 }
 
 /// The abscissa of an uneven function.
-pub fn abscissa(file: &FileBytes, function: &Function) -> Result<Vec<f64>, ReadError> {
+pub(super) fn abscissa(file: &FileBytes, function: &Function) -> Result<Vec<f64>, ReadError> {
     Ok(columns(file, function)?.abscissa)
 }
 
@@ -82,8 +82,8 @@ fn columns(file: &FileBytes, function: &Function) -> Result<Columns, ReadError> 
 
 fn ascii(file: &FileBytes, function: &Function, body: &[u8]) -> Result<Columns, ReadError> {
     let header = &function.header;
-    let width = header.per_point() as usize;
-    let needed = function.samples as usize * width;
+    let width = to_usize(header.per_point());
+    let needed = to_usize(function.samples) * width;
     let mut all = Vec::with_capacity(needed.min(body.len() / 2 + 1));
     let mut text = Numbers::new(body);
     let fault = |at: usize| {
@@ -133,14 +133,14 @@ fn binary(
     [abscissa, ordinate]: [Number; 2],
 ) -> Columns {
     let header = &function.header;
-    let width = ordinate.bytes() as usize;
+    let width = to_usize(ordinate.bytes());
     let first = if header.even {
         0
     } else {
-        abscissa.bytes() as usize
+        to_usize(abscissa.bytes())
     };
     let stride = first + width * (1 + usize::from(header.complex()));
-    let count = function.samples as usize;
+    let count = to_usize(function.samples);
     let take = |number, offset| {
         let mut out = Vec::with_capacity(count);
         let spacing = Spacing {

@@ -2,7 +2,7 @@
 
 use super::ascii::{Numbers, line_feed};
 use super::header::{Fault, Header, System};
-use crate::bytes::{FileBytes, decode_text};
+use crate::bytes::{FileBytes, decode_text, to_usize};
 use crate::numbers::{ByteOrder, Number};
 use crate::source::ReadError;
 
@@ -13,7 +13,7 @@ const SHORT_SET: usize = 16;
 
 /// How the numbers of a function are written.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Form {
+pub(super) enum Form {
     /// As text.
     Ascii,
     /// Binary; abscissa and ordinate may be of different width.
@@ -29,8 +29,8 @@ pub enum Form {
 
 /// A function: set 58 or 58b.
 #[derive(Debug, Clone)]
-pub struct Function {
-    /// What its header tells.
+pub(super) struct Function {
+    /// Its header.
     pub header: Header,
     /// How its numbers are written.
     pub form: Form,
@@ -40,13 +40,13 @@ pub struct Function {
     pub bytes: u64,
     /// Points that are there.
     pub samples: u64,
-    /// The unit system that stood before it: an index into [`Sets::systems`].
+    /// The unit system before it: an index into [`Sets::systems`].
     pub system: Option<usize>,
 }
 
 /// All that opening a file finds.
 #[derive(Debug, Default)]
-pub struct Sets {
+pub(super) struct Sets {
     /// Functions in file order.
     pub functions: Vec<Function>,
     /// Names of the model, from sets 151.
@@ -60,7 +60,7 @@ pub struct Sets {
 }
 
 /// Whether a line begins or ends a set: `-1` in the first six columns and nothing else.
-pub fn is_mark(line: &[u8]) -> bool {
+pub(super) fn is_mark(line: &[u8]) -> bool {
     line.starts_with(b"    -1") && line[6..].iter().all(u8::is_ascii_whitespace)
 }
 
@@ -72,7 +72,7 @@ struct Scanner<'a> {
 }
 
 /// Find all sets of a file.
-pub fn scan(file: &FileBytes) -> Result<Sets, ReadError> {
+pub(super) fn scan(file: &FileBytes) -> Result<Sets, ReadError> {
     let mut scanner = Scanner {
         file,
         at: 0,
@@ -94,6 +94,10 @@ pub fn scan(file: &FileBytes) -> Result<Sets, ReadError> {
 }
 
 impl<'a> Scanner<'a> {
+    fn refuse(&self, at: u64, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
+        self.file.refuse(at, expected, found)
+    }
+
     /// The next line without its end, and its offset.
     fn line(&mut self) -> Option<(usize, &'a [u8])> {
         let (at, rest) = (self.at, &self.file.all()[self.at..]);
@@ -105,7 +109,7 @@ impl<'a> Scanner<'a> {
         Some((at, &rest[..end.unwrap_or(rest.len())]))
     }
 
-    /// A set, behind the mark that begins it.
+    /// A set, after the mark that begins it.
     fn set(&mut self) -> Result<(), ReadError> {
         let (at, line) = loop {
             match self.line() {
@@ -121,8 +125,7 @@ impl<'a> Scanner<'a> {
             "58" => self.ascii(at),
             "58b" => self.binary(at, &text),
             "151" => {
-                let lines = self.short_set();
-                self.sets.model = super::header::model(&lines);
+                self.sets.model = super::header::model(&self.short_set());
                 Ok(())
             }
             "164" => {
@@ -148,7 +151,7 @@ impl<'a> Scanner<'a> {
         self.seek_mark();
     }
 
-    /// Go behind the next mark; gives the offset where it stands, how many lines came before it,
+    /// Go past the next mark; gives its offset, how many lines came before it,
     /// and whether there is one at all.
     fn seek_mark(&mut self) -> (usize, u64, bool) {
         let mut lines = 0;
@@ -180,7 +183,7 @@ impl<'a> Scanner<'a> {
         for (line, start) in lines.iter_mut().zip(&mut starts) {
             let Some((at, found)) = self.line() else {
                 let expected = format!("{HEADER_LINES} lines of header");
-                return Err(self.file.refuse(at as u64, expected, "the end of the file"));
+                return Err(self.refuse(at as u64, expected, "the end of the file"));
             };
             (*line, *start) = (found.strip_suffix(b"\r").unwrap_or(found), at);
         }
@@ -230,7 +233,7 @@ impl<'a> Scanner<'a> {
         Ok(())
     }
 
-    /// Points that a body of text holds: as stated where it has lines enough, else counted.
+    /// Points that a body of text holds: as stated if it has lines enough, else counted.
     fn count_ascii(
         &self,
         header: &Header,
@@ -249,8 +252,7 @@ impl<'a> Scanner<'a> {
         }
         let counted = Numbers::new(body).count().map_err(|fault| {
             let found = format!("{:?}", snippet(body, fault.at));
-            self.file
-                .refuse((start + fault.at) as u64, "a number", found)
+            self.refuse((start + fault.at) as u64, "a number", found)
         })?;
         Ok(header.points.min(counted / header.per_point()))
     }
@@ -265,9 +267,7 @@ impl<'a> Scanner<'a> {
             Some(1) => ByteOrder::Little,
             Some(2) => ByteOrder::Big,
             _ => {
-                return Err(self
-                    .file
-                    .refuse(at as u64, "byte order 1 or 2", format!("{text:?}")));
+                return Err(self.refuse(at as u64, "byte order 1 or 2", format!("{text:?}")));
             }
         };
         if words.get(1) != Some(&2) {
@@ -286,13 +286,13 @@ impl<'a> Scanner<'a> {
         let start = self.at as u64;
         let stated = words.get(3).copied().unwrap_or(0);
         let function = self.binary_body(header, order, start, stated)?;
-        self.at = (function.at + function.bytes) as usize;
+        self.at = to_usize(function.at + function.bytes);
         self.end_of_binary();
         self.sets.functions.push(function);
         Ok(())
     }
 
-    /// Find the layout of a binary body: the one behind which the mark stands.
+    /// Find the layout of a binary body: the one that the mark follows.
     fn binary_body(
         &mut self,
         header: Header,
@@ -333,8 +333,8 @@ impl<'a> Scanner<'a> {
                     .copied()
                     .unwrap_or((ordinate, parts));
                 if length(form.1).is_some_and(|bytes| bytes <= left) {
-                    let expected = format!("the end of a set behind {} points", header.points);
-                    return Err(self.file.refuse(at, expected, "other bytes"));
+                    let expected = format!("the end of a set after {} points", header.points);
+                    return Err(self.refuse(at, expected, "other bytes"));
                 }
                 form
             }
@@ -367,9 +367,9 @@ impl<'a> Scanner<'a> {
         })
     }
 
-    /// Whether a mark stands at an offset, perhaps behind a line end.
+    /// Whether there is a mark at an offset, perhaps after a line end.
     fn mark_at(&self, at: u64) -> bool {
-        let Some(rest) = self.file.all().get(at as usize..) else {
+        let Some(rest) = self.file.all().get(to_usize(at)..) else {
             return false;
         };
         let rest = &rest[..rest.len().min(96)];
@@ -378,7 +378,7 @@ impl<'a> Scanner<'a> {
         is_mark(&rest[..line_feed(rest).unwrap_or(rest.len())])
     }
 
-    /// Go behind the mark that ends a binary set.
+    /// Go past the mark that ends a binary set.
     fn end_of_binary(&mut self) {
         let before = self.at;
         while let Some((_, line)) = self.line() {
@@ -394,7 +394,7 @@ impl<'a> Scanner<'a> {
 }
 
 /// A few characters of a text, for a message.
-pub fn snippet(text: &[u8], at: usize) -> String {
+pub(super) fn snippet(text: &[u8], at: usize) -> String {
     let end = text.len().min(at + 16);
     decode_text(text.get(at..end).unwrap_or(&[])).into_owned()
 }

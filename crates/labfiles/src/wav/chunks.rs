@@ -16,7 +16,7 @@ const LONGEST_TEXT: u64 = 4096;
 
 /// How samples are stored.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Format {
+pub(super) struct Format {
     /// Whether they are floating point.
     pub float: bool,
     /// Number of channels.
@@ -31,7 +31,7 @@ pub struct Format {
 
 /// What opening a file finds.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Wave {
+pub(super) struct Wave {
     /// Byte order of all numbers.
     pub order: ByteOrder,
     /// The format of the samples.
@@ -49,7 +49,7 @@ pub struct Wave {
 }
 
 /// Byte order of a wave file, from its first 12 bytes; `None`: it is none.
-pub fn byte_order(head: &[u8]) -> Option<ByteOrder> {
+pub(super) fn byte_order(head: &[u8]) -> Option<ByteOrder> {
     if head.get(8..12)? != b"WAVE" {
         return None;
     }
@@ -73,7 +73,7 @@ struct Scanner<'a> {
 }
 
 /// Find the chunks of a file.
-pub fn scan(file: &FileBytes) -> Result<Wave, ReadError> {
+pub(super) fn scan(file: &FileBytes) -> Result<Wave, ReadError> {
     let Some(order) = byte_order(file.all()) else {
         let found = format!("{:?}", decode_text(&file.all()[..file.all().len().min(12)]));
         return Err(file.refuse(0, "RIFF, RIFX or RF64 and WAVE", found));
@@ -93,7 +93,7 @@ pub fn scan(file: &FileBytes) -> Result<Wave, ReadError> {
     while cursor.left() > 0 {
         if cursor.left() < 8 && scanner.data.is_some() {
             scanner.notes.push(format!(
-                "{} bytes behind the last chunk: not read",
+                "{} bytes after the last chunk: not read",
                 cursor.left()
             ));
             break;
@@ -104,6 +104,10 @@ pub fn scan(file: &FileBytes) -> Result<Wave, ReadError> {
 }
 
 impl Scanner<'_> {
+    fn refuse(&self, at: u64, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
+        self.file.refuse(at, expected, found)
+    }
+
     fn chunk(&mut self, cursor: &mut Cursor<'_>) -> Result<(), ReadError> {
         let at = cursor.at();
         let name: [u8; 4] = cursor
@@ -124,11 +128,7 @@ impl Scanner<'_> {
             _ if length > left && self.data.is_none() => {
                 let found = format!("only {left} bytes left");
                 let name = decode_text(&name).into_owned();
-                return Err(self.file.refuse(
-                    at,
-                    format!("{length} bytes of chunk {name:?}"),
-                    found,
-                ));
+                return Err(self.refuse(at, format!("{length} bytes of chunk {name:?}"), found));
             }
             _ if length > left => self
                 .notes
@@ -175,7 +175,7 @@ impl Scanner<'_> {
         if tag == EXTENSIBLE {
             tag = self.extension(cursor)?;
         }
-        let fault = |expected: &str, found: String| Err(self.file.refuse(at, expected, found));
+        let fault = |expected: &str, found: String| Err(self.refuse(at, expected, found));
         if !matches!(tag, PCM | FLOAT) {
             let remedy = "Save the file as PCM or floating point.";
             let found = format!("{} samples", codec(tag));
@@ -223,9 +223,7 @@ impl Scanner<'_> {
             Ok(tag) if middle == [0, 0x10] && rest == WAVE_GUID => Ok(tag),
             _ => {
                 let found = format!("{tag:#x} {middle:?} {rest:02x?}");
-                Err(self
-                    .file
-                    .refuse(at, "the identifier of a wave format", found))
+                Err(self.refuse(at, "the identifier of a wave format", found))
             }
         }
     }
@@ -269,12 +267,10 @@ impl Scanner<'_> {
     fn finish(mut self) -> Result<Wave, ReadError> {
         let end = self.file.size();
         let Some(format) = self.format else {
-            return Err(self
-                .file
-                .refuse(end, "a format chunk (fmt)", "the end of the file"));
+            return Err(self.refuse(end, "a format chunk (fmt)", "the end of the file"));
         };
         let Some((at, length)) = self.data else {
-            return Err(self.file.refuse(end, "a data chunk", "the end of the file"));
+            return Err(self.refuse(end, "a data chunk", "the end of the file"));
         };
         let block = u64::from(format.bytes) * u64::from(format.channels);
         if length % block != 0 {

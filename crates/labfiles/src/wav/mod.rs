@@ -3,7 +3,7 @@
 //! How a file maps to datasets and channels: the file is one dataset without a name, its channels
 //! are `channel 1`, `channel 2`, …
 //!
-//! WAV has no units: PCM numbers are told as the file holds them, left-justified in the next
+//! WAV has no units: PCM numbers are given as the file holds them, left-justified in the next
 //! native integer, as the format has them within a sample's own bytes: 9 to 16 bits as 16-bit,
 //! up to 32 as 32-bit, up to 64 as 64-bit numbers, so that full scale is the same for every width
 //! of a class (property `full_scale`); up to 8 bits as unsigned 8-bit numbers around 128
@@ -21,15 +21,18 @@ use chunks::{Format, Wave};
 
 use super::bytes::FileBytes;
 use super::numbers::{self, ByteOrder, Number, Spacing};
-use super::source::{ChannelInfo, DatasetInfo, ReadError, Samples, Source, StoredType, requested};
+use super::source::{
+    ChannelInfo, DatasetInfo, Opened, ReadError, Reader, Samples, Source, StoredType,
+};
+use crate::bytes::to_usize;
 
 /// Whether a file's first bytes are those of a WAV file.
-pub fn recognises(head: &[u8]) -> bool {
+pub(crate) fn recognises(head: &[u8]) -> bool {
     chunks::byte_order(head).is_some()
 }
 
 /// Open a WAV file: its chunks are found, no samples are read.
-pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
+pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let file = FileBytes::open(path)?;
     let wave = chunks::scan(&file)?;
     let channels = (1..=wave.format.channels)
@@ -42,17 +45,20 @@ pub fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
         time_axis: None,
         attributes,
     };
-    Ok(Box::new(WaveFile {
-        file,
-        wave,
-        datasets: [dataset],
+    Ok(Box::new(Opened {
+        format: "wav",
+        path: path.to_path_buf(),
+        datasets: vec![dataset],
+        notes: wave.notes.clone(),
+        reader: WaveFile { file, wave },
     }))
 }
 
 fn channel(wave: &Wave, number: u16) -> ChannelInfo {
     let format = &wave.format;
     let stored = match (format.float, format.bytes) {
-        (true, bytes) => StoredType::Float(bytes as u8 * 8),
+        (true, 4) => StoredType::Float(32),
+        (true, _) => StoredType::Float(64),
         (false, 1) => StoredType::UInt(8),
         (false, _) => StoredType::Int(native_bits(format)),
     };
@@ -91,7 +97,6 @@ fn native_bits(format: &Format) -> u8 {
 struct WaveFile {
     file: FileBytes,
     wave: Wave,
-    datasets: [DatasetInfo; 1],
 }
 
 impl WaveFile {
@@ -106,7 +111,7 @@ impl WaveFile {
         let bytes = usize::from(format.bytes);
         let stride = bytes * usize::from(format.channels);
         let data = self.file.slice(*at, samples * stride as u64, "samples")?;
-        let count = *samples as usize;
+        let count = to_usize(*samples);
         let spacing = Spacing {
             offset: channel * bytes,
             stride,
@@ -137,33 +142,16 @@ fn odd(data: &[u8], spacing: Spacing, bytes: usize, order: ByteOrder) -> Vec<f64
         if order == ByteOrder::Big {
             word[low..].reverse();
         }
-        // The sample's sign is the word's; what lies beyond the native integer is shifted out.
+        // The sample's sign is the word's; what is beyond the native integer is shifted out.
         let shift = 8 * (8 - bytes - unused);
         (i64::from_le_bytes(word) >> shift) as f64
     };
     data.chunks_exact(spacing.stride).map(sample).collect()
 }
 
-impl Source for WaveFile {
-    fn format(&self) -> &'static str {
-        "wav"
-    }
-
-    fn path(&self) -> &Path {
-        self.file.path()
-    }
-
-    fn datasets(&self) -> &[DatasetInfo] {
-        &self.datasets
-    }
-
-    fn notes(&self) -> &[String] {
-        &self.wave.notes
-    }
-
-    fn read(&self, dataset: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
+impl Reader for WaveFile {
+    fn read(&self, _: usize, channels: &[usize]) -> Result<Vec<Samples>, ReadError> {
         self.file.still_whole()?;
-        requested(self, dataset, channels)?;
         channels
             .iter()
             .map(|&channel| self.channel(channel))

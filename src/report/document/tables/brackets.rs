@@ -1,20 +1,23 @@
 //! The table of measured brackets.
 
 use super::{Column, arrow, table};
-use crate::report::content::{BracketRow, ReportContent};
+use crate::compare::BracketRow;
+use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
-use crate::report::speech::Speech;
+use crate::report::figures::boundaries::symbol;
+use crate::report::locale::Locale;
 
 /// From how many brackets on their table is set small and in two columns.
 const MANY_BRACKETS: usize = 14;
 
 /// The measured brackets beside the simulated boundary; many of them small and in two columns.
-pub fn brackets(content: &ReportContent, speech: Speech) -> Option<Table> {
-    let many = content.brackets.len() > MANY_BRACKETS;
+pub fn brackets(content: &ReportContent, locale: Locale) -> Option<Table> {
+    let many = content.compared.brackets.len() > MANY_BRACKETS;
     let rows = content
+        .compared
         .brackets
         .iter()
-        .map(|b| bracket_row(b, many, speech))
+        .map(|b| bracket_row(b, many, locale))
         .collect();
     let columns: [Column; 8] = [
         Column::left(if many { "" } else { "boundary" }),
@@ -32,7 +35,7 @@ pub fn brackets(content: &ReportContent, speech: Speech) -> Option<Table> {
     } else {
         "Measured brackets of the boundaries, and the boundary of the fitted model."
     };
-    let table = table(caption, &columns, rows, speech)?;
+    let table = table(caption, &columns, rows, locale)?;
     Some(if many {
         Table {
             size: 6.8,
@@ -44,24 +47,24 @@ pub fn brackets(content: &ReportContent, speech: Speech) -> Option<Table> {
     })
 }
 
-fn bracket_row(b: &BracketRow, many: bool, speech: Speech) -> Vec<Rich> {
+fn bracket_row(b: &BracketRow, many: bool, locale: Locale) -> Vec<Rich> {
     let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
     vec![
-        Rich::from(speech.say(b.kind.symbol())),
-        Rich::from(speech.say(&b.motion.label())),
-        Rich::from(speech.significant(1e3 * b.clearance_m, 3)),
-        Rich::from(b.rho.map_or("–".into(), |r| speech.fixed(r, 3))),
-        Rich::from(arrow(b.direction)),
+        Rich::from(locale.translate(symbol(b.kind))),
+        Rich::from(locale.translate(&b.motion.label())),
+        Rich::from(locale.significant(1e3 * b.clearance_m, 3)),
+        Rich::from(b.rho.map_or("–".into(), |r| locale.fixed(r, 3))),
+        Rich::from(arrow(b.sweep)),
         Rich::from(format!(
             "{} … {}",
-            speech.fixed(low, 3),
-            speech.fixed(high, 3)
+            locale.fixed(low, 3),
+            locale.fixed(high, 3)
         )),
-        Rich::from(b.simulated_hz.map_or("–".into(), |f| speech.fixed(f, 3))),
+        Rich::from(b.simulated_hz.map_or("–".into(), |f| locale.fixed(f, 3))),
         Rich::from(if many {
             bracket_sign(b).into()
         } else {
-            bracket_remark(b, speech)
+            bracket_remark(b, locale)
         }),
     ]
 }
@@ -76,19 +79,19 @@ fn bracket_sign(b: &BracketRow) -> &'static str {
     }
 }
 
-fn bracket_remark(b: &BracketRow, speech: Speech) -> String {
+fn bracket_remark(b: &BracketRow, locale: Locale) -> String {
     let by = |phrase: &str, distance: f64| {
-        speech.say_with(phrase, &[("distance", &speech.fixed(distance, 3))])
+        locale.translate_with(phrase, &[("distance", &locale.fixed(distance, 3))])
     };
     let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
     match (&b.left_out, b.simulated_hz) {
         (Some(why), _) => {
-            let why = speech.tell(why);
-            speech.say_with("not used: {why}", &[("why", &why)])
+            let why = locale.message(why);
+            locale.translate_with("not used: {why}", &[("why", &why)])
         }
         (None, Some(f)) if f < low => by("below by {distance} Hz", low - f),
         (None, Some(f)) if f > high => by("above by {distance} Hz", f - high),
-        (None, Some(_)) => speech.say("within"),
+        (None, Some(_)) => locale.translate("within"),
         (None, None) => String::new(),
     }
 }

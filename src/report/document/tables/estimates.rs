@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use super::{Column, table, verbatim};
-use crate::identify::{MethodResult, ParameterSet};
+use crate::identify::{Method, MethodResult, ParameterSet};
 use crate::report::content::ReportContent;
-use crate::report::document::front::headline;
 use crate::report::document::model::{Rich, Table};
-use crate::report::parameters::{self, PARAMETERS, method_name};
-use crate::report::speech::Speech;
+use crate::report::document::verdict::headline;
+use crate::report::locale::Locale;
+use crate::report::parameters::{self, PARAMETERS};
 
 /// Size of the type of the methods' tables, points.
 const SIZE: f64 = 7.5;
@@ -41,17 +41,17 @@ const METHODS_CAPTION: &str = "Estimates with half their 95 % interval, number o
      fits.";
 
 /// What each method found, and the joint estimate.
-pub fn methods(content: &ReportContent, speech: Speech) -> Option<Table> {
+pub fn methods(content: &ReportContent, locale: Locale) -> Option<Table> {
     let id = &content.identification;
-    let rows = method_rows(&id.methods, &id.joint, speech);
-    table(METHODS_CAPTION, &METHOD, rows, speech).map(|t| Table { size: SIZE, ..t })
+    let rows = method_rows(&id.methods, &id.joint, locale);
+    table(METHODS_CAPTION, &METHOD, rows, locale).map(|t| Table { size: SIZE, ..t })
 }
 
 /// The same for each specimen of a campaign that holds several.
-pub fn specimen_methods(content: &ReportContent, speech: Speech) -> Option<Table> {
+pub fn specimen_methods(content: &ReportContent, locale: Locale) -> Option<Table> {
     let specimens = content.identification.specimens.iter();
     let rows = specimens.flat_map(|(specimen, result)| {
-        let rows = method_rows(&result.methods, &result.joint, speech);
+        let rows = method_rows(&result.methods, &result.joint, locale);
         rows.into_iter().enumerate().map(move |(i, row)| {
             let name = if i == 0 {
                 verbatim(specimen.clone())
@@ -63,50 +63,50 @@ pub fn specimen_methods(content: &ReportContent, speech: Speech) -> Option<Table
     });
     let mut columns: Vec<Column> = vec![Column::left("specimen")];
     columns.extend(METHOD);
-    table(METHODS_CAPTION, &columns, rows.collect(), speech).map(|t| Table { size: SIZE, ..t })
+    table(METHODS_CAPTION, &columns, rows.collect(), locale).map(|t| Table { size: SIZE, ..t })
 }
 
 /// The answer for each specimen of a campaign that holds several.
-pub fn specimens(content: &ReportContent, speech: Speech) -> Option<Table> {
+pub fn specimens(content: &ReportContent, locale: Locale) -> Option<Table> {
     let rows = content
         .identification
         .specimens
         .iter()
         .map(|(specimen, result)| {
             let mut row = vec![verbatim(specimen.clone())];
-            row.extend(estimate_cells(&result.joint.parameters, speech));
+            row.extend(estimate_cells(&result.joint.parameters, locale));
             let headline = headline(result.verdict.kind, true);
-            row.push(Rich::from(speech.say(headline)));
+            row.push(Rich::from(locale.translate(headline)));
             row
         });
     let mut columns = vec![Column::left("specimen")];
     columns.extend(ESTIMATES);
     columns.push(Column::wide("verdict", 2));
-    table("", &columns, rows.collect(), speech)
+    table("", &columns, rows.collect(), locale)
 }
 
-fn estimate_cells(set: &ParameterSet, speech: Speech) -> Vec<Rich> {
-    let cell = |look| Rich::from(parameters::short(look, (look.pick)(set), speech));
+fn estimate_cells(set: &ParameterSet, locale: Locale) -> Vec<Rich> {
+    let cell = |look| Rich::from(parameters::short(look, (look.pick)(set), locale));
     PARAMETERS.iter().map(cell).collect()
 }
 
-/// Rows of the methods that say anything, the joint estimate last.
+/// Rows of the methods that have an estimate, the joint one last.
 fn method_rows(
-    methods: &BTreeMap<String, MethodResult>,
+    methods: &BTreeMap<Method, MethodResult>,
     joint: &MethodResult,
-    speech: Speech,
+    locale: Locale,
 ) -> Vec<Vec<Rich>> {
-    let all = methods.iter().map(|(k, m)| (method_name(k), m));
-    let all = all.chain([(method_name("joint"), joint)]);
+    let all = methods.iter().map(|(k, m)| (locale.message(k), m));
+    let all = all.chain([(locale.translate("Joint"), joint)]);
     let says = |m: &MethodResult| PARAMETERS.iter().any(|p| (p.pick)(&m.parameters).is_some());
     all.filter(|(_, m)| says(m))
-        .map(|(name, m)| method_row(speech.say(&name), m, speech))
+        .map(|(name, m)| method_row(name, m, locale))
         .collect()
 }
 
-fn method_row(name: String, method: &MethodResult, speech: Speech) -> Vec<Rich> {
+fn method_row(name: String, method: &MethodResult, locale: Locale) -> Vec<Rich> {
     let mut row = vec![Rich::from(name)];
-    row.extend(estimate_cells(&method.parameters, speech));
+    row.extend(estimate_cells(&method.parameters, locale));
     let observations = method.observations;
     let observations = if observations == 0 {
         "–".into()
@@ -114,7 +114,7 @@ fn method_row(name: String, method: &MethodResult, speech: Speech) -> Vec<Rich> 
         observations.to_string()
     };
     let residual = method.reduced_residual;
-    let residual = residual.map_or("–".into(), |r| speech.significant(r, 2));
+    let residual = residual.map_or("–".into(), |r| locale.significant(r, 2));
     let fits = match method.fits {
         Some(true) => "yes",
         Some(false) => "no",
@@ -123,26 +123,26 @@ fn method_row(name: String, method: &MethodResult, speech: Speech) -> Vec<Rich> 
     row.extend([
         Rich::from(observations),
         Rich::from(residual),
-        Rich::from(speech.say(fits)),
+        Rich::from(locale.translate(fits)),
     ]);
     row
 }
 
 /// Whether the methods agree, pair by pair.
-pub fn agreement(content: &ReportContent, speech: Speech) -> Option<Table> {
+pub fn agreement(content: &ReportContent, locale: Locale) -> Option<Table> {
     let rows = content.identification.agreement.pairs.iter().map(|pair| {
-        let symbol =
-            parameters::parameter(&pair.parameter).map_or(pair.parameter.as_str(), |p| p.symbol);
+        let key = pair.parameter.name();
+        let symbol = parameters::parameter(key).map_or(key, |p| p.symbol);
         let p = if pair.p_value < LEAST_P {
-            format!("< {}", speech.fixed(LEAST_P, 3))
+            format!("< {}", locale.fixed(LEAST_P, 3))
         } else {
-            speech.fixed(pair.p_value, 3)
+            locale.fixed(pair.p_value, 3)
         };
         vec![
             Rich::from(symbol),
-            Rich::from(speech.say(&method_name(&pair.methods[0]))),
-            Rich::from(speech.say(&method_name(&pair.methods[1]))),
-            Rich::from(speech.fixed(pair.z_score, 2)),
+            Rich::from(locale.message(&pair.methods[0])),
+            Rich::from(locale.message(&pair.methods[1])),
+            Rich::from(locale.fixed(pair.z_score, 2)),
             Rich::from(p),
         ]
     });
@@ -157,6 +157,6 @@ pub fn agreement(content: &ReportContent, speech: Speech) -> Option<Table> {
         "Agreement of the methods, pair by pair.",
         &columns,
         rows.collect(),
-        speech,
+        locale,
     )
 }

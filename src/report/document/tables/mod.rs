@@ -8,12 +8,13 @@ pub use brackets::brackets;
 pub use estimates::{agreement, methods, specimen_methods, specimens};
 pub use records::records;
 
+use crate::compare::Unusable;
+use crate::identify::Item;
 use crate::record::Sweep;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Align, Rich, Table};
-use crate::report::document::prose::prose;
 use crate::report::figures::richtext::{Level, Run};
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// A column of a table.
 #[derive(Debug, Clone, Copy)]
@@ -26,35 +27,37 @@ struct Column {
 }
 
 impl Column {
-    /// As wide as its content, from the left.
+    /// As wide as its content, left-aligned.
     const fn left(head: &'static str) -> Self {
         Self::wide(head, 0)
     }
 
-    /// With a share of the room that the others leave, from the left.
+    /// With a share of the width that the others leave, left-aligned.
     const fn wide(head: &'static str, width: u16) -> Self {
         let align = Align::Left;
         Self { head, align, width }
     }
 
-    /// As wide as its content, to the right: numbers.
+    /// As wide as its content, right-aligned: numbers.
     const fn right(head: &'static str) -> Self {
         let (align, width) = (Align::Right, 0);
         Self { head, align, width }
     }
 
-    /// As wide as its content, in the middle: signs.
+    /// As wide as its content, centred: signs.
     const fn center(head: &'static str) -> Self {
         let (align, width) = (Align::Center, 0);
         Self { head, align, width }
     }
 }
 
-/// A table of columns whose heads are phrases; `None` where it has no rows.
-fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>, speech: Speech) -> Option<Table> {
-    let heads = columns.iter().map(|c| Rich::from(speech.say_title(c.head)));
+/// A table of columns whose heads are phrases; `None` if it has no rows.
+fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>, locale: Locale) -> Option<Table> {
+    let heads = columns
+        .iter()
+        .map(|c| Rich::from(locale.translate_title(c.head)));
     let table = Table {
-        caption: Rich::from(speech.say(caption)),
+        caption: Rich::from(locale.translate(caption)),
         heads: heads.collect(),
         align: columns.iter().map(|c| c.align).collect(),
         widths: columns.iter().map(|c| c.width).collect(),
@@ -63,7 +66,7 @@ fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>, speech: Speech
     (!table.rows.is_empty()).then(|| without_empty_columns(table))
 }
 
-/// Without the columns in which no row says anything; the first column stays.
+/// Without the columns that are empty in all rows; the first column is kept.
 fn without_empty_columns(table: Table) -> Table {
     let says = |i: usize| {
         table
@@ -87,10 +90,10 @@ fn without_empty_columns(table: Table) -> Table {
     }
 }
 
-/// Further tables of the content, as they stand.
+/// Further tables of the content.
 pub fn further<'a>(
     content: &'a ReportContent,
-    speech: Speech<'a>,
+    locale: Locale<'a>,
 ) -> impl Iterator<Item = Table> + 'a {
     let with_rows = content.tables.iter().filter(|t| !t.rows.is_empty());
     with_rows.map(move |t| {
@@ -98,9 +101,12 @@ pub fn further<'a>(
             .rows
             .iter()
             .map(|row| row.iter().map(Rich::from).collect());
-        let heads = t.heads.iter().map(|h| Rich::from(speech.say_title(h)));
+        let heads = t
+            .heads
+            .iter()
+            .map(|h| Rich::from(locale.translate_title(h)));
         Table {
-            caption: Rich::from(speech.say(&t.caption)),
+            caption: Rich::from(locale.translate(&t.caption)),
             heads: heads.collect(),
             align: vec![Align::Right; t.heads.len()],
             widths: vec![0; t.heads.len()],
@@ -117,19 +123,55 @@ fn arrow(sweep: Sweep) -> &'static str {
     }
 }
 
-/// What was left out and why.
-pub fn left_out(content: &ReportContent, speech: Speech) -> Option<Table> {
-    let rows = content.left_out.iter().map(|l| {
-        let count = l.count.map_or(String::new(), |c| c.to_string());
-        let (what, why) = (speech.tell(&l.what), speech.tell(&l.why));
-        vec![verbatim(what), Rich::from(count), prose(&why)]
+/// Records that no method could use, by reason, and what the fits left out.
+pub fn left_out(content: &ReportContent, locale: Locale) -> Option<Table> {
+    let records = content.compared.unusable.iter().map(|u| {
+        let count = Some(u.records.len()).filter(|n| *n > 1);
+        (first_few(&u.records), count, verbatim(unusable(u, locale)))
+    });
+    // impacts are in a remark of their method
+    let fits = content.identification.left_out.iter();
+    let fits = fits.filter(|l| !matches!(l.item, Item::Impact { .. }));
+    let fits = fits.map(|l| {
+        let why = Rich::from(locale.message(&l.reason));
+        (locale.message(&l.item), None, why)
+    });
+    let rows = records.chain(fits).map(|(what, count, why)| {
+        let count = count.map_or(String::new(), |c| c.to_string());
+        vec![verbatim(what), Rich::from(count), why]
     });
     let columns: [Column; 3] = [
         Column::wide("left out", 2),
         Column::right("count"),
         Column::wide("why", 5),
     ];
-    table("", &columns, rows.collect(), speech)
+    table("", &columns, rows.collect(), locale)
+}
+
+/// The first few names.
+fn first_few(records: &[String]) -> String {
+    match records {
+        [a, b, c, _, ..] => format!("{a}, {b}, {c} …"),
+        few => few.join(", "),
+    }
+}
+
+/// Why records are unusable: the flag, then its details in English.
+fn unusable(unusable: &Unusable, locale: Locale) -> String {
+    let flag = unusable.flag.as_ref();
+    let flag = flag.map_or_else(
+        || locale.translate("motion undetermined"),
+        |flag| locale.message(flag),
+    );
+    let of = unusable.channel.as_ref().map(|c| format!(" ({c})"));
+    let text = format!("{flag}{}: {}", of.unwrap_or_default(), unusable.message);
+    match unusable.records.first().filter(|_| unusable.differ) {
+        Some(record) => {
+            let values = [("details", text.as_str()), ("record", record.as_str())];
+            locale.translate_with("{details} (in {record}; similar in the others)", &values)
+        }
+        None => text,
+    }
 }
 
 /// A cell whose text has no markup, whatever signs it holds.
@@ -146,8 +188,8 @@ pub fn verbatim(text: String) -> Rich {
 }
 
 /// SHA-256 of the inputs.
-pub fn hashes(content: &ReportContent, speech: Speech) -> Option<Table> {
-    let inputs = &content.identification.inputs_sha256;
+pub fn hashes(content: &ReportContent, locale: Locale) -> Option<Table> {
+    let inputs = &content.provenance.inputs_sha256;
     let rows = inputs
         .iter()
         .map(|(k, v)| vec![verbatim(k.clone()), verbatim(v.clone())])
@@ -157,7 +199,7 @@ pub fn hashes(content: &ReportContent, speech: Speech) -> Option<Table> {
         caption,
         &[Column::wide("input", 2), Column::left("SHA-256")],
         rows,
-        speech,
+        locale,
     )
     .map(|t| Table { size: 6.2, ..t })
 }

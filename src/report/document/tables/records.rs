@@ -1,21 +1,23 @@
 //! The table of all records.
 
 use super::{Column, arrow, table, verbatim};
+use crate::compare::RecordRow;
 use crate::motion::Motion;
-use crate::report::content::{RecordRow, ReportContent};
+use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
 use crate::report::figures::fonts::{self, Face};
 use crate::report::figures::look;
-use crate::report::parameters::method_name;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
+use crate::report::parameters::method_inline;
 
 /// From how many records on the table is set small and in two columns.
 const MANY_RECORDS: usize = 45;
 
 /// All records; many of them small and in two columns.
-pub fn records(content: &ReportContent, speech: Speech) -> Option<Table> {
-    let many = content.records.len() > MANY_RECORDS;
+pub fn records(content: &ReportContent, locale: Locale) -> Option<Table> {
+    let many = content.compared.records.len() > MANY_RECORDS;
     let planar = content
+        .compared
         .records
         .iter()
         .any(|r| r.eta.is_some() && r.rho.is_some());
@@ -38,15 +40,20 @@ pub fn records(content: &ReportContent, speech: Speech) -> Option<Table> {
     } else {
         Column::wide("used by; flags", 1)
     });
-    let row = |r: &RecordRow| record_row(r, planar, many, speech);
-    let rows = content.records.iter().map(row).collect();
+    let row = |r: &RecordRow| record_row(r, planar, many, locale);
+    let rows = content.compared.records.iter().map(row).collect();
     let caption = if many {
         let signs = "{records}: sweep, measured drive frequency, clearance, motion, confidence. \
                      ? undetermined; • used in the identification; ! flagged. Reasons and flags \
                      in full are in records.parquet.";
-        speech.say_with(signs, &[("records", &which(content, speech))])
+        locale.translate_with(signs, &[("records", &which(content, locale))])
     } else {
-        match content.records.iter().any(|r| r.frequency_hz.is_some()) {
+        match content
+            .compared
+            .records
+            .iter()
+            .any(|r| r.frequency_hz.is_some())
+        {
             true => {
                 "All records: sweep, measured drive frequency, clearance, motion and confidence."
             }
@@ -54,7 +61,7 @@ pub fn records(content: &ReportContent, speech: Speech) -> Option<Table> {
         }
         .to_owned()
     };
-    let table = table(&caption, &columns, rows, speech)?;
+    let table = table(&caption, &columns, rows, locale)?;
     Some(if many {
         crowded(table)
     } else {
@@ -63,15 +70,18 @@ pub fn records(content: &ReportContent, speech: Speech) -> Option<Table> {
 }
 
 /// Which records the table lists: all, or an even choice of very many.
-fn which(content: &ReportContent, speech: Speech) -> String {
-    let (listed, all) = (content.records.len(), content.summary.records_total);
+fn which(content: &ReportContent, locale: Locale) -> String {
+    let (listed, all) = (
+        content.compared.records.len(),
+        content.compared.overview.records,
+    );
     if listed < all {
-        speech.say_with(
+        locale.translate_with(
             "{some} of the {count} records, evenly chosen (records.parquet holds all)",
             &[("some", &listed.to_string()), ("count", &all.to_string())],
         )
     } else {
-        speech.say("All records")
+        locale.translate("All records")
     }
 }
 
@@ -113,7 +123,7 @@ fn crowded(table: Table) -> Table {
     .densely()
 }
 
-/// A name cut at its front where it is wider than the room: a wrapped line would shift the rows.
+/// A name cut at its front if it is wider than its column: a wrapped line would shift the rows.
 fn shortened(name: &Rich, room: f64, size: f64) -> Rich {
     let plain = name.plain();
     let wide = |text: &str| fonts::width(text, Face::Bold, size) > room;
@@ -127,23 +137,23 @@ fn shortened(name: &Rich, room: f64, size: f64) -> Rich {
     verbatim(fitting.unwrap_or_else(|| "…".into()))
 }
 
-fn record_row(r: &RecordRow, planar: bool, many: bool, speech: Speech) -> Vec<Rich> {
-    let number = |v: Option<f64>, decimals| v.map_or("–".into(), |v| speech.fixed(v, decimals));
+fn record_row(r: &RecordRow, planar: bool, many: bool, locale: Locale) -> Vec<Rich> {
+    let number = |v: Option<f64>, decimals| v.map_or("–".into(), |v| locale.fixed(v, decimals));
     let mut row: Vec<String> = vec![
         r.id.clone(),
         r.specimen.clone().unwrap_or_default(),
         arrow(r.sweep).into(),
         number(r.frequency_hz, 3),
         r.clearance_m
-            .map_or("–".into(), |c| speech.fixed(1e3 * c, 3)),
+            .map_or("–".into(), |c| locale.fixed(1e3 * c, 3)),
     ];
     if planar {
         row.extend([number(r.eta, 4), number(r.rho, 3)]);
     }
     let driven = r.frequency_hz.is_some();
     row.extend([
-        motion_label(r, many, speech),
-        number(r.confidence.filter(|_| driven), 2),
+        motion_label(r, many, locale),
+        number(driven.then_some(r.confidence), 2),
     ]);
     if !driven && r.impacts > 0 {
         row.push(r.impacts.to_string());
@@ -153,16 +163,16 @@ fn record_row(r: &RecordRow, planar: bool, many: bool, speech: Speech) -> Vec<Ri
     row.push(if many {
         short_remark(r)
     } else {
-        long_remark(r, speech)
+        long_remark(r, locale)
     });
     row.into_iter().map(verbatim).collect()
 }
 
-fn motion_label(r: &RecordRow, many: bool, speech: Speech) -> String {
+fn motion_label(r: &RecordRow, many: bool, locale: Locale) -> String {
     match &r.motion {
         Motion::Undetermined { .. } if r.frequency_hz.is_none() => "–".into(),
         Motion::Undetermined { .. } if many => "?".into(),
-        motion => speech.say(&motion.label()),
+        motion => locale.translate(&motion.label()),
     }
 }
 
@@ -172,23 +182,23 @@ fn short_remark(r: &RecordRow) -> String {
     format!("{used}{flagged}")
 }
 
-fn long_remark(r: &RecordRow, speech: Speech) -> String {
+fn long_remark(r: &RecordRow, locale: Locale) -> String {
     let used = if r.used_by.is_empty() {
-        let not_used =
-            |why: &str| speech.say_with("not used: {why}", &[("why", &speech.tell(why))]);
-        r.left_out.as_deref().map(not_used)
+        let reason = r.left_out.as_ref().map(|reason| locale.message(reason));
+        let why = r.excluded.clone().or(reason);
+        why.map(|why| locale.translate_with("not used: {why}", &[("why", &why)]))
     } else {
         Some(
             r.used_by
                 .iter()
-                .map(|m| speech.say(&method_name(m).to_lowercase()))
+                .map(|m| method_inline(*m, locale))
                 .collect::<Vec<_>>()
                 .join(", "),
         )
     };
     let flags = (!r.flags.is_empty()).then(|| {
-        let told = r.flags.iter().map(|f| speech.tell(f));
-        told.collect::<Vec<_>>().join(", ")
+        let flags = r.flags.iter().map(|f| locale.message(f));
+        flags.collect::<Vec<_>>().join(", ")
     });
     [used, flags]
         .into_iter()

@@ -1,15 +1,11 @@
 //! A comparison's name and its data as CSV.
 
-use crate::report::content::{Comparison, Signal, Trace};
+use crate::compare::{Comparison, Signal, Trace};
 use crate::report::figures::csv::Csv;
 
 /// Name of a comparison's figure.
 pub fn name(comparison: &Comparison) -> String {
-    let letter = comparison.letter.chars();
-    let letter: String = letter
-        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })
-        .collect();
-    format!("comparison_{letter}")
+    format!("comparison_{}", comparison.letter)
 }
 
 /// All traces as CSV: a row a time, a column a trace with its SI unit. Traces on other times than
@@ -47,12 +43,12 @@ fn columns(trace: &Trace) -> Vec<(String, &Signal)> {
     };
     let role = trace.role.name();
     let sources = [
-        ("measured", &trace.measured),
-        ("simulated", &trace.simulated),
-        ("residual", &trace.residual),
+        ("measured", Some(&trace.measured)),
+        ("simulated", trace.simulated.as_ref()),
+        ("residual", trace.residual.as_ref()),
     ];
     sources
         .into_iter()
-        .filter_map(|(source, signal)| Some((format!("{role} {source}{unit}"), signal.as_ref()?)))
+        .filter_map(|(source, signal)| Some((format!("{role} {source}{unit}"), signal?)))
         .collect()
 }

@@ -6,17 +6,18 @@ mod rows;
 
 pub use data::name;
 
+use crate::compare::{Comparison, Signal};
 use crate::record::Role;
-use crate::report::content::{Comparison, Signal};
 use crate::report::figures::axis::{Axis, range};
 use crate::report::figures::canvas::{Anchor, Canvas, Stroke, TextLook};
+use crate::report::figures::figure::Figure;
 use crate::report::figures::fonts::Face;
 use crate::report::figures::look;
 use crate::report::figures::marks;
 use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
-use crate::report::figures::{Figure, richtext};
-use crate::report::speech::Speech;
+use crate::report::figures::richtext;
+use crate::report::locale::Locale;
 use rows::{Row, root_mean_square, rows, shown, symbol};
 
 /// Room left of the first column, for numbers and titles, points.
@@ -40,31 +41,29 @@ const BOTTOM: f64 = 22.0;
 /// Width of the simulated curve behind the measured one, points.
 const BACK_WIDTH: f64 = 1.7;
 
-/// Draws one comparison; `None` where it has no trace at all.
-pub fn draw<'a>(comparison: &'a Comparison, speech: Speech<'a>) -> Option<Figure> {
+/// Draws one comparison; `None` if it has no trace at all.
+pub fn draw<'a>(comparison: &'a Comparison, locale: Locale<'a>) -> Option<Figure> {
     let rows = rows(comparison);
-    if rows.is_empty() && comparison.portraits.is_empty() {
+    let portraits = portraits::portraits(comparison);
+    if rows.is_empty() {
         return None;
     }
     let stack: f64 = rows.iter().map(|r| r.height + ROW_GAP).sum::<f64>() - ROW_GAP;
-    let stack = stack.max(if comparison.portraits.is_empty() {
-        0.0
-    } else {
-        100.0
-    });
+    let stack = stack.max(if portraits.is_empty() { 0.0 } else { 100.0 });
     let mut sheet = Sheet {
         comparison,
-        speech,
+        locale,
         canvas: Canvas::new(look::FULL_WIDTH, TOP + stack + BOTTOM),
         time: time_axis(comparison, &rows),
-        column: COLUMNS[usize::from(comparison.portraits.is_empty())],
+        column: COLUMNS[usize::from(portraits.is_empty())],
     };
     sheet.heading();
     sheet.columns(&rows);
-    sheet.portraits(stack);
+    sheet.portraits(&portraits, stack);
     let name = name(comparison);
-    let letter = [("letter", comparison.letter.as_str())];
-    let title = speech.say_with("Point ({letter}): simulated and measured", &letter);
+    let letter = comparison.letter.to_string();
+    let values = [("letter", letter.as_str())];
+    let title = locale.translate_with("Point ({letter}): simulated and measured", &values);
     Some(Figure::new(
         name,
         &title,
@@ -73,13 +72,11 @@ pub fn draw<'a>(comparison: &'a Comparison, speech: Speech<'a>) -> Option<Figure
     ))
 }
 
-/// Time axis in drive periods from the first whole period, in seconds without a drive.
+/// Time axis in drive periods from the first whole period.
 fn time_axis(comparison: &Comparison, rows: &[Row<'_>]) -> TimeAxis {
     let signals = rows.iter().flat_map(|r| &r.traces).flat_map(|(t, _)| {
-        [&t.measured, &t.simulated]
-            .into_iter()
-            .flatten()
-            .chain(t.residual.as_ref())
+        let others = t.simulated.iter().chain(&t.residual);
+        std::iter::once(&t.measured).chain(others)
     });
     let span = range(
         signals
@@ -87,40 +84,28 @@ fn time_axis(comparison: &Comparison, rows: &[Row<'_>]) -> TimeAxis {
             .copied(),
     );
     let (first, last) = span.unwrap_or((0.0, 1.0));
-    match comparison.drive_period_s.filter(|t| *t > 0.0) {
-        Some(period) => {
-            let start = (first / period + 1e-6).floor() * period;
-            let shown = ((first - start) / period, (last - start) / period);
-            TimeAxis {
-                start,
-                unit: period,
-                shown,
-                title: "$t$/$T$ (drive periods)",
-            }
-        }
-        None => TimeAxis {
-            start: 0.0,
-            unit: 1.0,
-            shown: (first, last),
-            title: "$t$ (s)",
-        },
+    let period = comparison.drive_period_s;
+    let start = (first / period + 1e-6).floor() * period;
+    TimeAxis {
+        start,
+        period,
+        shown: ((first - start) / period, (last - start) / period),
     }
 }
 
 struct TimeAxis {
     start: f64,
-    unit: f64,
+    period: f64,
     shown: (f64, f64),
-    title: &'static str,
 }
 
 impl TimeAxis {
     fn axis(&self) -> Axis {
-        Axis::new(self.shown.0, self.shown.1, self.title).with_ticks(5)
+        Axis::new(self.shown.0, self.shown.1, "$t$/$T$ (drive periods)").with_ticks(5)
     }
 
     fn of(&self, time_s: f64) -> f64 {
-        (time_s - self.start) / self.unit
+        (time_s - self.start) / self.period
     }
 }
 
@@ -132,7 +117,7 @@ enum Side {
 
 struct Sheet<'a> {
     comparison: &'a Comparison,
-    speech: Speech<'a>,
+    locale: Locale<'a>,
     canvas: Canvas,
     time: TimeAxis,
     column: f64,
@@ -170,7 +155,7 @@ impl Sheet<'_> {
         if !rows.is_empty() {
             for (side, word) in [(Side::Simulated, "simulated"), (Side::Measured, "measured")] {
                 let at = (middle(self, side), TOP - 4.0);
-                self.canvas.text(at, &self.speech.say(word), title);
+                self.canvas.text(at, &self.locale.translate(word), title);
             }
         }
         let last_plain = rows.iter().rposition(|r| !r.residual);
@@ -210,9 +195,9 @@ impl Sheet<'_> {
         // The first mass last and thinner, so that both are seen where they move alike.
         for (i, (trace, colour)) in row.traces.iter().enumerate().rev() {
             let signal = match (row.residual, side) {
-                (true, _) => &trace.residual,
-                (false, Side::Simulated) => &trace.simulated,
-                (false, Side::Measured) => &trace.measured,
+                (true, _) => trace.residual.as_ref(),
+                (false, Side::Simulated) => trace.simulated.as_ref(),
+                (false, Side::Measured) => Some(&trace.measured),
             };
             if let Some(signal) = signal {
                 let stroke = match (row.residual, i) {
@@ -225,7 +210,7 @@ impl Sheet<'_> {
         }
         self.canvas.layer(2);
         let left = side == Side::Simulated || row.residual;
-        panel.frame(&mut self.canvas, Sides { below, left }, self.speech);
+        panel.frame(&mut self.canvas, Sides { below, left }, self.locale);
         self.empty_note(row, side, &panel);
     }
 
@@ -251,31 +236,24 @@ impl Sheet<'_> {
     }
 
     fn is_empty(&self, row: &Row<'_>, side: Side) -> bool {
-        !row.residual
-            && row.traces.iter().all(|(t, _)| match side {
-                Side::Simulated => t.simulated.is_none(),
-                Side::Measured => t.measured.is_none(),
-            })
+        let simulated = row.traces.iter().any(|(t, _)| t.simulated.is_some());
+        !row.residual && side == Side::Simulated && !simulated
     }
 
-    /// Where a side has nothing to show: the simulated contact as its impacts, else a word.
+    /// In place of what is not simulated: of the contact its impacts, else a note.
     fn empty_note(&mut self, row: &Row<'_>, side: Side, panel: &Panel) {
         if !self.is_empty(row, side) {
             return;
         }
         let contact = row.traces.iter().any(|(t, _)| t.role == Role::Contact);
-        if contact && side == Side::Simulated {
+        if contact {
             return self.contact_stems(panel);
         }
-        let text = if side == Side::Simulated {
-            "not modelled"
-        } else {
-            "not measured"
-        };
         let r = panel.rect;
         let at = (0.5 * (r.left + r.right), 0.5 * (r.top + r.bottom) + 2.5);
         let quiet = TextLook::new(look::NOTE_SIZE, Anchor::Middle).colour(look::QUIET);
-        self.canvas.text(at, &self.speech.say(text), quiet);
+        self.canvas
+            .text(at, &self.locale.translate("not modelled"), quiet);
     }
 
     /// The impacts of the simulation as stems on a level line.
@@ -293,14 +271,14 @@ impl Sheet<'_> {
         let quiet = TextLook::new(look::NOTE_SIZE, Anchor::Left).colour(look::QUIET);
         let lines = row.traces.iter().filter_map(|(trace, _)| {
             let rms = root_mean_square(trace.residual.as_ref()?)?;
-            let whole = root_mean_square(trace.measured.as_ref()?)?;
-            let value = self.speech.significant(rms * row.unit.factor, 2);
-            let share = self.speech.significant(100.0 * rms / whole, 2);
+            let whole = root_mean_square(&trace.measured)?;
+            let value = self.locale.significant(rms * row.unit.factor, 2);
+            let share = self.locale.significant(100.0 * rms / whole, 2);
             let name = symbol(trace.role);
             let text = "{name}: rms residual {value} = {share} % of rms";
             let value = format!("{value} {}", row.unit.symbol);
             let values = [("name", name), ("value", &value), ("share", &share)];
-            Some(self.speech.say_with(text, &values))
+            Some(self.locale.translate_with(text, &values))
         });
         // up to the two lines of the residual's title
         let room = self.column + COLUMN_GAP - TITLE_REACH - 2.0 * look::TITLE_SIZE;

@@ -1,7 +1,8 @@
 //! The phase portraits of a comparison.
 
 use super::{BACK_WIDTH, PORTRAIT_LEFT, PORTRAIT_WIDTH, Sheet, TOP};
-use crate::report::content::Portrait;
+use crate::compare::{Comparison, Signal, Trace};
+use crate::record::Role;
 use crate::report::figures::axis::Axis;
 use crate::report::figures::canvas::{Anchor, Stroke, TextLook};
 use crate::report::figures::panel::{Panel, Sides};
@@ -10,8 +11,41 @@ use crate::report::figures::units::{PrintUnit, print_unit};
 use crate::report::figures::{look, marks};
 use labfiles::units::Dimension;
 
+/// Velocity over displacement of one mass: points (m, m/s) in order of time.
+pub(super) struct Portrait {
+    /// Name of the mass, `x` or `y`.
+    mass: char,
+    measured: Vec<[f64; 2]>,
+    simulated: Vec<[f64; 2]>,
+}
+
+/// The portraits of the masses whose displacement and velocity are both known.
+pub(super) fn portraits(comparison: &Comparison) -> Vec<Portrait> {
+    let trace = |role: Role| comparison.traces.iter().find(|t| t.role == role);
+    let points = |d: &Signal, v: &Signal| -> Vec<[f64; 2]> {
+        let pairs = d.values.iter().zip(&v.values);
+        pairs.map(|(d, v)| [*d, *v]).collect()
+    };
+    let portrait = |mass, d: &Trace, v: &Trace| Portrait {
+        mass,
+        measured: points(&d.measured, &v.measured),
+        simulated: match (&d.simulated, &v.simulated) {
+            (Some(d), Some(v)) => points(d, v),
+            _ => Vec::new(),
+        },
+    };
+    let masses = [
+        ('x', Role::DisplacementX, Role::VelocityX),
+        ('y', Role::DisplacementY, Role::VelocityY),
+    ];
+    masses
+        .into_iter()
+        .filter_map(|(mass, d, v)| Some(portrait(mass, trace(d)?, trace(v)?)))
+        .collect()
+}
+
 /// Units of length and velocity that suit all portraits, so that they compare.
-fn units(shown: &[&Portrait]) -> [PrintUnit; 2] {
+fn units(shown: &[Portrait]) -> [PrintUnit; 2] {
     let all = || {
         shown
             .iter()
@@ -26,8 +60,7 @@ fn units(shown: &[&Portrait]) -> [PrintUnit; 2] {
 
 impl Sheet<'_> {
     /// Velocity over displacement of each mass, one above the other.
-    pub(super) fn portraits(&mut self, stack: f64) {
-        let shown: Vec<&Portrait> = self.comparison.portraits.iter().take(2).collect();
+    pub(super) fn portraits(&mut self, shown: &[Portrait], stack: f64) {
         if shown.is_empty() {
             return;
         }
@@ -35,13 +68,13 @@ impl Sheet<'_> {
         let middle = PORTRAIT_LEFT + 0.5 * PORTRAIT_WIDTH;
         self.canvas.text(
             (middle, TOP - 4.0),
-            &self.speech.say("phase portraits"),
+            &self.locale.translate("phase portraits"),
             title,
         );
-        let units = units(&shown);
+        let units = units(shown);
         let count = shown.len() as f64;
         let height = ((stack - (count - 1.0) * 24.0) / count).min(PORTRAIT_WIDTH);
-        for (i, portrait) in shown.into_iter().enumerate() {
+        for (i, portrait) in shown.iter().enumerate() {
             let top = TOP + i as f64 * (height + 24.0);
             self.portrait(
                 portrait,
@@ -53,7 +86,7 @@ impl Sheet<'_> {
 
     fn portrait(&mut self, portrait: &Portrait, rect: Rect, [length, speed]: [PrintUnit; 2]) {
         let all = || portrait.measured.iter().chain(&portrait.simulated);
-        let mass = &portrait.mass;
+        let mass = portrait.mass;
         let x = Axis::around(
             all().map(|p| p[0] * length.factor),
             0.06,
@@ -65,7 +98,7 @@ impl Sheet<'_> {
             format!("$v_{mass}$ ({})", speed.symbol),
         );
         let panel = Panel::new(rect, x.with_ticks(4), y.with_ticks(4));
-        let colour = if mass == "y" {
+        let colour = if mass == 'y' {
             look::VERMILION
         } else {
             look::BLUE
@@ -86,6 +119,6 @@ impl Sheet<'_> {
             panel.curve(&mut self.canvas, data, stroke);
         }
         self.canvas.layer(2);
-        panel.frame(&mut self.canvas, Sides::BOTH, self.speech);
+        panel.frame(&mut self.canvas, Sides::BOTH, self.locale);
     }
 }

@@ -1,7 +1,7 @@
 //! Which channels of a comparison share a row of panels, and in which unit.
 
+use crate::compare::{Comparison, Signal, Trace};
 use crate::record::Role;
-use crate::report::content::{Comparison, Signal, Trace};
 use crate::report::figures::canvas::Colour;
 use crate::report::figures::look;
 use crate::report::figures::units::{PrintUnit, print_unit};
@@ -45,16 +45,13 @@ fn row<'a>(
     name: &str,
     height: f64,
 ) -> Option<Row<'a>> {
-    let traces = pick(comparison, roles, |t| {
-        t.measured.is_some() || t.simulated.is_some()
-    });
+    let traces = pick(comparison, roles, |_| true);
     let dimension = traces.first()?.0.dimension;
     // An open contact's noise is not to be blown up.
     let least = if roles[0] == Role::Contact { 1.0 } else { 0.0 };
     let peak = traces
         .iter()
-        .flat_map(|(t, _)| [&t.measured, &t.simulated])
-        .flatten()
+        .flat_map(|(t, _)| shown(t, false))
         .map(peak)
         .fold(least, f64::max);
     let unit = print_unit(dimension, peak);
@@ -148,12 +145,12 @@ pub fn shown(trace: &Trace, residual: bool) -> Vec<&Signal> {
     let picked = if residual {
         [trace.residual.as_ref(), None]
     } else {
-        [trace.measured.as_ref(), trace.simulated.as_ref()]
+        [Some(&trace.measured), trace.simulated.as_ref()]
     };
     picked.into_iter().flatten().collect()
 }
 
-/// Root mean square of a signal; `None` where it is empty.
+/// Root mean square of a signal; `None` if it is empty.
 pub fn root_mean_square(signal: &Signal) -> Option<f64> {
     (!signal.values.is_empty()).then(|| rms(&signal.values))
 }

@@ -1,28 +1,29 @@
-//! The map's data: what hovering over a record tells, and all layers as CSV.
+//! The map's data: the records' texts for hovering, and all layers as CSV.
 
+use crate::compare::{Compared, RecordRow, RegionMap};
 use crate::motion::Motion;
 use crate::record::Sweep;
-use crate::report::content::{RecordRow, RegionMap, ReportContent};
+use crate::report::figures::boundaries;
 use crate::report::figures::csv::Csv;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
-/// What hovering over a record tells.
-pub fn describe(record: &RecordRow, speech: Speech) -> String {
+/// The text that is shown on hovering over a record.
+pub fn describe(record: &RecordRow, locale: Locale) -> String {
     let mut parts = vec![
         record.id.clone(),
-        format!("z = {}", speech.say(&record.motion.label())),
+        format!("z = {}", locale.translate(&record.motion.label())),
     ];
     if let Some(f) = record.frequency_hz {
-        parts.push(format!("f = {} Hz", speech.fixed(f, 3)));
+        parts.push(format!("f = {} Hz", locale.fixed(f, 3)));
     }
     if let Some(r) = record.clearance_m {
-        parts.push(format!("r = {} mm", speech.significant(1e3 * r, 4)));
+        parts.push(format!("r = {} mm", locale.significant(1e3 * r, 4)));
     }
     if let (Some(eta), Some(rho)) = (record.eta, record.rho) {
         parts.push(format!(
             "η = {}, ρ = {}",
-            speech.fixed(eta, 4),
-            speech.fixed(rho, 3)
+            locale.fixed(eta, 4),
+            locale.fixed(rho, 3)
         ));
     }
     let sweep = match record.sweep {
@@ -30,15 +31,14 @@ pub fn describe(record: &RecordRow, speech: Speech) -> String {
         Sweep::Down => "sweep down",
         Sweep::Unknown => "sweep unknown",
     };
-    parts.push(speech.say(sweep));
-    if let Some(c) = record.confidence {
-        parts.push(speech.say_with("confidence {share}", &[("share", &speech.fixed(c, 2))]));
-    }
+    parts.push(locale.translate(sweep));
+    let share = locale.fixed(record.confidence, 2);
+    parts.push(locale.translate_with("confidence {share}", &[("share", &share)]));
     parts.join("\n")
 }
 
 /// All layers of the map as CSV.
-pub fn csv(content: &ReportContent) -> String {
+pub fn csv(compared: &Compared) -> String {
     let mut csv = Csv::new(&[
         "layer",
         "name",
@@ -52,29 +52,29 @@ pub fn csv(content: &ReportContent) -> String {
         "rho_high",
         "frequency_high_hz",
     ]);
-    for r in &content.records {
+    for r in &compared.records {
         csv.row()
             .texts(&["record", &r.id, &r.motion.label(), r.sweep.name()])
             .numbers(&[r.eta, r.rho, r.frequency_hz, r.clearance_m]);
     }
-    for b in &content.brackets {
+    for b in &compared.brackets {
         csv.row()
             .texts(&[
                 "bracket",
-                b.kind.name(),
+                boundaries::name(b.kind),
                 &b.motion.label(),
-                b.direction.name(),
+                b.sweep.name(),
             ])
             .numbers(&[
-                b.eta_low,
+                b.eta.map(|e| e[0]),
                 b.rho,
                 Some(b.frequency_low_hz),
                 Some(b.clearance_m),
             ])
-            .numbers(&[b.eta_high, b.rho, Some(b.frequency_high_hz)]);
+            .numbers(&[b.eta.map(|e| e[1]), b.rho, Some(b.frequency_high_hz)]);
     }
-    for c in &content.curves {
-        let name = c.kind.name();
+    for c in &compared.curves {
+        let name = boundaries::name(c.kind);
         let motion = Motion::periodic(1, c.periods_n).label();
         for p in &c.points {
             csv.row()
@@ -86,7 +86,7 @@ pub fn csv(content: &ReportContent) -> String {
             row.numbers(&[Some(b[0]), Some(b[1]), None, None, Some(b[0]), Some(b[2])]);
         }
     }
-    if let Some(map) = &content.region_map {
+    if let Some(map) = &compared.region_map {
         regions(&mut csv, "region", &map.cells, map);
         let differs = map.second.iter().zip(&map.cells);
         let differs: Vec<u16> = differs
@@ -99,17 +99,17 @@ pub fn csv(content: &ReportContent) -> String {
 
 /// The cells of a region map, row by row; neighbours of one motion are one row of the table.
 fn regions(csv: &mut Csv, layer: &str, cells: &[u16], map: &RegionMap) {
-    let columns = map.eta.len();
+    let columns = map.x.len();
     if columns == 0 {
         return;
     }
-    for (row, rho) in cells.chunks(columns).zip(&map.rho) {
+    for (row, rho) in cells.chunks(columns).zip(&map.y) {
         let mut first = 0;
         for run in row.chunk_by(|a, b| a == b) {
             let last = first + run.len() - 1;
             let motion = map.motions.get(usize::from(run[0]));
             if let Some(motion) = motion {
-                let (from, to) = (Some(map.eta[first]), Some(map.eta[last]));
+                let (from, to) = (Some(map.x[first]), Some(map.x[last]));
                 csv.row()
                     .texts(&[layer, "", &motion.label(), ""])
                     .numbers(&[from, Some(*rho), None, None, to, Some(*rho)]);

@@ -1,15 +1,16 @@
-//! What the map says in words and numbers: names of curves, letters of points, axes in laboratory
+//! The map's labels: names of curves, letters of points, axes in laboratory
 //! units.
 
 use super::{Map, STRIP_HALF, STRIP_STEP};
-use crate::report::content::BoundaryCurve;
+use crate::compare::BoundaryCurve;
 use crate::report::figures::axis::Axis;
+use crate::report::figures::boundaries::symbol;
 use crate::report::figures::canvas::{Anchor, Point, Stroke, TextLook};
 use crate::report::figures::fonts::{self, Face};
 use crate::report::figures::look;
 use crate::report::figures::path::Rect;
 use crate::report::figures::richtext;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 impl Map<'_> {
     /// Names a curve beside the middle of its longest visible piece.
@@ -43,9 +44,10 @@ impl Map<'_> {
 
     pub(super) fn letters(&mut self) {
         let bounds = self.panel.rect;
-        for comparison in &self.content.comparisons {
+        for comparison in &self.content.compared.comparisons {
             let Some(record) = self
                 .content
+                .compared
                 .records
                 .iter()
                 .find(|r| r.id == comparison.record)
@@ -66,7 +68,7 @@ impl Map<'_> {
         }
     }
 
-    /// A ring about a point and its letter beside it, where there is room.
+    /// A ring about a point and its letter beside it, if there is a free place.
     fn letter(&mut self, at: Point, text: &str, bounds: &Rect) {
         let size = (fonts::width(text, Face::Bold, 8.5) + 2.0, 9.0);
         let Some((_, place)) = self.occupancy.near(at, size, bounds) else {
@@ -85,7 +87,7 @@ impl Map<'_> {
         self.occupancy.take_rect(&rect);
     }
 
-    /// A thin line from a mark to its letter, where they stand apart.
+    /// A thin line from a mark to its letter, if they are apart.
     fn leader(&mut self, at: Point, place: Point, size: (f64, f64)) {
         let (dx, dy) = (place.0 - at.0, place.1 - at.1);
         let distance = dx.hypot(dy);
@@ -99,7 +101,7 @@ impl Map<'_> {
     }
 
     /// Frames and values of the strips above the panel.
-    pub(super) fn strip_frames(&mut self, speech: Speech) {
+    pub(super) fn strip_frames(&mut self, locale: Locale) {
         let r = self.panel.rect;
         for (i, value) in self.strips.clone().into_iter().enumerate() {
             let middle = self.strip_middle(i);
@@ -116,12 +118,12 @@ impl Map<'_> {
             let text_look = TextLook::new(look::TICK_SIZE, Anchor::Right).colour(look::INK);
             self.canvas.text(
                 (r.left - 3.0, middle + 2.3),
-                &speech.fixed(value, 1),
+                &locale.fixed(value, 1),
                 text_look,
             );
             let x_st = self.plane.static_deflection_m.filter(|_| self.full());
             if let Some(x_st) = x_st.filter(|_| self.plane.dimensionless) {
-                let millimetres = speech.fixed(1e3 * x_st * value, 1);
+                let millimetres = locale.fixed(1e3 * x_st * value, 1);
                 let text_look = TextLook::new(look::TICK_SIZE, Anchor::Left).colour(look::QUIET);
                 self.canvas
                     .text((r.right + 3.0, middle + 2.3), &millimetres, text_look);
@@ -130,7 +132,7 @@ impl Map<'_> {
     }
 
     /// Frequency in Hz above and clearance in mm on the right.
-    pub(super) fn laboratory_axes(&mut self, speech: Speech) {
+    pub(super) fn laboratory_axes(&mut self, locale: Locale) {
         let r = self.panel.rect;
         let top = r.top - STRIP_STEP * self.strips.len() as f64;
         let small = TextLook::new(look::TICK_SIZE, Anchor::Middle).colour(look::QUIET);
@@ -143,10 +145,10 @@ impl Map<'_> {
                 self.canvas
                     .segment((x, top), (x, top + 2.5), look::FRAME_STROKE);
                 self.canvas
-                    .text((x, top - 3.0), &speech.fixed(v, decimals), small);
+                    .text((x, top - 3.0), &locale.fixed(v, decimals), small);
             }
             let at = (0.5 * (r.left + r.right), top - 14.0);
-            let name = speech.say_title("drive frequency $f$ (Hz)");
+            let name = locale.translate_title("drive frequency $f$ (Hz)");
             self.canvas.text(at, &name, title);
         }
         if let Some(x_st) = self.plane.static_deflection_m.map(|x| 1e3 * x) {
@@ -162,12 +164,12 @@ impl Map<'_> {
                 self.canvas
                     .segment((r.right, y), (r.right - 2.5, y), look::FRAME_STROKE);
                 self.canvas
-                    .text((r.right + 3.0, y + 2.3), &speech.fixed(v, decimals), left);
+                    .text((r.right + 3.0, y + 2.3), &locale.fixed(v, decimals), left);
             }
             let at = (r.right + 24.0, 0.5 * (r.top + r.bottom));
             self.canvas.text(
                 at,
-                &speech.say_title("clearance $r$ (mm)"),
+                &locale.translate_title("clearance $r$ (mm)"),
                 TextLook {
                     upward: true,
                     ..title
@@ -179,8 +181,8 @@ impl Map<'_> {
 
 fn curve_name(curve: &BoundaryCurve) -> String {
     match (curve.kind, curve.periods_n) {
-        (kind, 1) => kind.symbol().to_owned(),
-        (kind, n) => format!("{} (1/{n})", kind.symbol()),
+        (kind, 1) => symbol(kind).to_owned(),
+        (kind, n) => format!("{} (1/{n})", symbol(kind)),
     }
 }
 

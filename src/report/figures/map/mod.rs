@@ -4,9 +4,12 @@ mod data;
 mod keys;
 mod labels;
 
+use crate::compare::{BoundaryCurve, BracketRow, RecordRow, RegionMap};
 use crate::record::Sweep;
-use crate::report::content::{BoundaryCurve, BracketRow, RecordRow, RegionMap, ReportContent};
+use crate::report::content::ReportContent;
+use crate::report::figures::boundaries;
 use crate::report::figures::canvas::{Anchor, Canvas, Point, TextLook};
+use crate::report::figures::figure::{Figure, Spot};
 use crate::report::figures::fonts::Face;
 use crate::report::figures::legend::{self, Key};
 use crate::report::figures::look;
@@ -16,8 +19,7 @@ use crate::report::figures::path::{self, Rect};
 use crate::report::figures::placing::Occupancy;
 use crate::report::figures::plane::{Plane, View, same};
 use crate::report::figures::regions::Regions;
-use crate::report::figures::{Figure, Spot};
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
 /// Which of the two maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,27 +35,27 @@ const STRIP_STEP: f64 = 15.0;
 /// Half the height of a strip's frame, points.
 const STRIP_HALF: f64 = 5.5;
 
-/// Draws the map; `None` where the records have no place in a plane.
-pub fn draw(content: &ReportContent, size: MapSize, speech: Speech) -> Option<Figure> {
+/// Draws the map; `None` if the records have no place in a plane.
+pub fn draw(content: &ReportContent, size: MapSize, locale: Locale) -> Option<Figure> {
     let plane = Plane::of(content)?;
     let keys = if size == MapSize::Full {
-        keys::full(content, plane)
+        keys::full(&content.compared, plane)
     } else {
-        keys::motions(content)
+        keys::motions(&content.compared)
     };
-    let mut map = Map::new(content, plane, size, (&keys, speech));
+    let mut map = Map::new(content, plane, size, (&keys, locale));
     // Labels go where records and curves leave room.
     map.take_records_and_curves();
     map.take_brackets();
-    map.regions(speech);
+    map.regions(locale);
     map.curves();
     map.draw_brackets();
-    map.records(speech);
+    map.records(locale);
     if size == MapSize::Full {
         map.letters();
     }
-    map.frame(speech, &keys);
-    Some(map.finish(speech))
+    map.frame(locale, &keys);
+    Some(map.finish(locale))
 }
 
 struct Map<'a> {
@@ -72,19 +74,18 @@ struct Map<'a> {
 
 /// Every other column and row of a region map: enough for a small figure.
 fn every_other(map: &RegionMap) -> RegionMap {
-    let columns = map.eta.len().max(1);
+    let columns = map.x.len().max(1);
     let kept = |i: usize| (i / columns).is_multiple_of(2) && (i % columns).is_multiple_of(2);
     let of = |cells: &[u16]| -> Vec<u16> {
         let cells = cells.iter().enumerate();
         cells.filter(|(i, _)| kept(*i)).map(|(_, c)| *c).collect()
     };
     RegionMap {
-        eta: map.eta.iter().copied().step_by(2).collect(),
-        rho: map.rho.iter().copied().step_by(2).collect(),
+        x: map.x.iter().copied().step_by(2).collect(),
+        y: map.y.iter().copied().step_by(2).collect(),
         motions: map.motions.clone(),
         cells: of(&map.cells),
         second: of(&map.second),
-        note: String::new(),
     }
 }
 
@@ -93,10 +94,10 @@ impl<'a> Map<'a> {
         content: &'a ReportContent,
         plane: Plane,
         size: MapSize,
-        (keys, speech): (&[Key], Speech),
+        (keys, locale): (&[Key], Locale),
     ) -> Self {
         let full = size == MapSize::Full;
-        let flat = content.region_map.is_none() && heights(content, plane) <= 3;
+        let flat = content.compared.region_map.is_none() && heights(content, plane) <= 3;
         let (width, height) = match (full, flat) {
             (true, false) => (look::FULL_WIDTH, 370.0),
             (true, true) => (look::FULL_WIDTH, 200.0),
@@ -104,7 +105,7 @@ impl<'a> Map<'a> {
             (false, true) => (look::FRONT_WIDTH, 130.0),
         };
         let keys_height =
-            legend::height(keys, width, speech) + if keys.is_empty() { 0.0 } else { 3.0 };
+            legend::height(keys, width, locale) + if keys.is_empty() { 0.0 } else { 3.0 };
         let both_units = full && plane.dimensionless;
         let (left, right) = (33.0, if both_units { 30.0 } else { 4.0 });
         let View { x, y, strips } = plane.view(content);
@@ -136,9 +137,10 @@ impl<'a> Map<'a> {
         self.size == MapSize::Full
     }
 
-    fn regions(&mut self, speech: Speech) {
+    fn regions(&mut self, locale: Locale) {
         let Some(map) = self
             .content
+            .compared
             .region_map
             .as_ref()
             .filter(|_| self.plane.dimensionless)
@@ -160,7 +162,7 @@ impl<'a> Map<'a> {
         regions.draw(&mut self.canvas);
         let size = if self.full() { 10.0 } else { 8.0 };
         self.canvas.layer(6);
-        for label in regions.labels(&mut self.occupancy, size, speech) {
+        for label in regions.labels(&mut self.occupancy, size, locale) {
             let text_look = TextLook::new(label.size, Anchor::Middle).face(Face::Bold);
             let (x, y) = label.at;
             let baseline = (x, y + 0.33 * label.size);
@@ -171,12 +173,12 @@ impl<'a> Map<'a> {
 
     fn take_records_and_curves(&mut self) {
         let radius = self.radius;
-        for record in &self.content.records {
+        for record in &self.content.compared.records {
             if let Some(at) = self.place(record) {
                 self.occupancy.take_spot(at, radius + 0.5);
             }
         }
-        for curve in &self.content.curves {
+        for curve in &self.content.compared.curves {
             let points: Vec<Point> = curve
                 .points
                 .iter()
@@ -192,13 +194,13 @@ impl<'a> Map<'a> {
         if !self.plane.dimensionless {
             return;
         }
-        for curve in &self.content.curves {
+        for curve in &self.content.compared.curves {
             self.canvas.layer(1);
             self.band(curve);
         }
-        for curve in &self.content.curves {
+        for curve in &self.content.compared.curves {
             self.canvas.layer(2);
-            let stroke = keys::boundary_stroke(curve.kind, if self.full() { 1.1 } else { 0.8 });
+            let stroke = boundaries::stroke(curve.kind, if self.full() { 1.1 } else { 0.8 });
             let data = curve.points.iter().map(|p| (p[0], p[1]));
             let pieces = self.panel.curve(&mut self.canvas, data, stroke);
             if self.full() {
@@ -220,13 +222,13 @@ impl<'a> Map<'a> {
     /// The brackets that the panel shows, with their ends and their height on paper.
     fn brackets(&self) -> Vec<(&'a BracketRow, (f64, f64), f64)> {
         let lift = self.lift();
-        let shown = self.content.brackets.iter().filter_map(|bracket| {
+        let shown = self.content.compared.brackets.iter().filter_map(|bracket| {
             let ((low, high), height) = self.plane.bracket(bracket)?;
             if !self.panel.shows(low, height) || !self.panel.shows(high, height) {
                 return None;
             }
             let (from, to) = (self.panel.at(low, height), self.panel.at(high, height));
-            let y = from.1 - lift * direction(bracket.direction);
+            let y = from.1 - lift * direction(bracket.sweep);
             Some((bracket, (from.0, to.0), y))
         });
         shown.collect()
@@ -254,7 +256,7 @@ impl<'a> Map<'a> {
     /// Radius of the marks: smaller where there are many, or where they follow closely.
     fn fitting_radius(&self) -> f64 {
         let area = self.panel.rect.width() * self.panel.rect.height();
-        let records = &self.content.records;
+        let records = &self.content.compared.records;
         let (least, most) = if self.full() { (1.2, 2.9) } else { (0.6, 1.8) };
         let mut steps: Vec<f64> = records
             .windows(2)
@@ -268,7 +270,7 @@ impl<'a> Map<'a> {
         by_area.min(0.44 * usual).clamp(least, most)
     }
 
-    /// Up-sweep records stand a little above their clearance, down-sweep ones below.
+    /// Offset of upward sweeps above their clearance, of downward sweeps below.
     fn lift(&self) -> f64 {
         0.95 * self.radius
     }
@@ -289,15 +291,15 @@ impl<'a> Map<'a> {
         self.panel.rect.top - STRIP_STEP * (index as f64 + 0.5) - 1.0
     }
 
-    fn records(&mut self, speech: Speech) {
+    fn records(&mut self, locale: Locale) {
         let radius = self.radius;
         let mut drawn: Vec<(Point, String)> = Vec::new();
         self.canvas.layer(4);
-        for record in &self.content.records {
+        for record in &self.content.compared.records {
             let Some(at) = self.place(record) else {
                 continue;
             };
-            let text = data::describe(record, speech);
+            let text = data::describe(record, locale);
             self.spots.push(Spot {
                 x: at.0,
                 y: at.1,
@@ -316,31 +318,36 @@ impl<'a> Map<'a> {
         }
     }
 
-    fn frame(&mut self, speech: Speech, keys: &[Key]) {
+    fn frame(&mut self, locale: Locale, keys: &[Key]) {
         self.canvas.layer(7);
-        self.panel.frame(&mut self.canvas, Sides::BOTH, speech);
+        self.panel.frame(&mut self.canvas, Sides::BOTH, locale);
         if self.full() && self.plane.dimensionless {
-            self.laboratory_axes(speech);
+            self.laboratory_axes(locale);
         }
-        self.strip_frames(speech);
+        self.strip_frames(locale);
         let width = self.canvas.width;
-        legend::draw(&mut self.canvas, (0.0, 0.0), width, keys, speech);
+        legend::draw(&mut self.canvas, (0.0, 0.0), width, keys, locale);
     }
 
-    fn finish(self, speech: Speech) -> Figure {
-        let csv = data::csv(self.content);
+    fn finish(self, locale: Locale) -> Figure {
+        let csv = data::csv(&self.content.compared);
         let (name, title) = match self.size {
             MapSize::Full => ("map", "Regions of motion, simulated and measured"),
             MapSize::Small => ("map_small", "Measured motions and boundaries"),
         };
-        Figure::new(name, &speech.say(title), self.canvas, csv).with_spots(self.spots)
+        Figure::new(name, &locale.translate(title), self.canvas, csv).with_spots(self.spots)
     }
 }
 
 /// How many clearances the records have.
 fn heights(content: &ReportContent, plane: Plane) -> usize {
     let mut seen: Vec<f64> = Vec::new();
-    for (_, y) in content.records.iter().filter_map(|r| plane.record(r)) {
+    for (_, y) in content
+        .compared
+        .records
+        .iter()
+        .filter_map(|r| plane.record(r))
+    {
         if !seen.iter().any(|s| (s - y).abs() <= 1e-6 * y.abs()) {
             seen.push(y);
         }

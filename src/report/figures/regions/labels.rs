@@ -1,13 +1,13 @@
-//! Where the regions' labels stand.
+//! The labels of the regions.
 
 use super::{LEAST_SHARE, Regions};
 use crate::report::figures::canvas::Point;
 use crate::report::figures::fonts::{self, Face};
 use crate::report::figures::path::Rect;
 use crate::report::figures::placing::Occupancy;
-use crate::report::speech::Speech;
+use crate::report::locale::Locale;
 
-/// Where a region's label may stand.
+/// A region's label in its place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RegionLabel {
     /// Its text.
@@ -19,8 +19,8 @@ pub struct RegionLabel {
 }
 
 impl Regions<'_> {
-    /// A label for each region that is large enough, where its text stands free.
-    pub fn labels(&self, occupancy: &mut Occupancy, size: f64, speech: Speech) -> Vec<RegionLabel> {
+    /// A label for each region that is large enough, placed where nothing else is drawn.
+    pub fn labels(&self, occupancy: &mut Occupancy, size: f64, locale: Locale) -> Vec<RegionLabel> {
         let mut order: Vec<usize> = (0..self.areas.len()).collect();
         order.sort_by_key(|&r| std::cmp::Reverse(self.areas[r]));
         let least = LEAST_SHARE * self.region.len() as f64;
@@ -30,24 +30,24 @@ impl Regions<'_> {
         let place = |r| {
             [size, 0.8 * size]
                 .into_iter()
-                .find_map(|s| self.label((r, speech), occupancy, s))
+                .find_map(|s| self.label((r, locale), occupancy, s))
         };
         large.filter_map(place).collect()
     }
 
     fn label(
         &self,
-        (region, speech): (usize, Speech),
+        (region, locale): (usize, Locale),
         occupancy: &mut Occupancy,
         size: f64,
     ) -> Option<RegionLabel> {
         let first_cell = self.region.iter().position(|&r| r == region)?;
-        let text = self.name(first_cell, speech);
+        let text = self.name(first_cell, locale);
         let half = (
             0.5 * fonts::width(&text, Face::Bold, size) + 3.0,
             0.5 * size + 1.5,
         );
-        let columns = self.map.eta.len();
+        let columns = self.map.x.len();
         let best = self
             .region
             .iter()
@@ -72,9 +72,9 @@ impl Regions<'_> {
         })
     }
 
-    fn name(&self, cell: usize, speech: Speech) -> String {
+    fn name(&self, cell: usize, locale: Locale) -> String {
         let (first, second) = self.kind(cell);
-        let label = |k: u16| speech.say(&self.map.motions[usize::from(k)].label());
+        let label = |k: u16| locale.translate(&self.map.motions[usize::from(k)].label());
         if first == second {
             label(first)
         } else {
@@ -82,7 +82,7 @@ impl Regions<'_> {
         }
     }
 
-    /// How well a text of a half size stands at a place: `None` where it leaves the region.
+    /// How much free area surrounds a text of a half size at a place: `None` if it leaves the region.
     fn room(&self, region: usize, at: Point, half: Point, taken: &Occupancy) -> Option<f64> {
         let inside = |grow: f64| {
             let (w, h) = (half.0 + grow, half.1 + grow);

@@ -3,7 +3,7 @@
 
 mod labels;
 
-use crate::report::content::RegionMap;
+use crate::compare::RegionMap;
 use crate::report::figures::canvas::{Canvas, Colour, Point, Stroke};
 use crate::report::figures::look;
 use crate::report::figures::marks;
@@ -26,14 +26,14 @@ pub struct Regions<'a> {
 type Run = (Colour, Point, Point);
 
 impl<'a> Regions<'a> {
-    /// Lays a map on a panel. `None` where its axes and cells contradict each other.
+    /// Lays a map on a panel. `None` if its axes and cells contradict each other.
     pub fn new(map: &'a RegionMap, panel: &'a Panel) -> Option<Self> {
-        let cells = map.eta.len() * map.rho.len();
+        let cells = map.x.len() * map.y.len();
         let in_range = map
             .cells
             .iter()
             .all(|&c| usize::from(c) < map.motions.len());
-        if map.eta.len() < 2 || map.rho.len() < 2 || map.cells.len() != cells || !in_range {
+        if map.x.len() < 2 || map.y.len() < 2 || map.cells.len() != cells || !in_range {
             return None;
         }
         let mut regions = Self {
@@ -60,7 +60,7 @@ impl<'a> Regions<'a> {
     }
 
     fn flood(&mut self, start: usize) -> usize {
-        let (columns, rows) = (self.map.eta.len(), self.map.rho.len());
+        let (columns, rows) = (self.map.x.len(), self.map.y.len());
         let (number, kind) = (self.areas.len(), self.kind(start));
         let mut open = vec![start];
         let mut area = 0;
@@ -89,7 +89,7 @@ impl<'a> Regions<'a> {
 
     /// Draws tints, outlines and the hatching of hysteresis.
     pub fn draw(&self, canvas: &mut Canvas) {
-        let (columns, rows) = (self.map.eta.len() as isize, self.map.rho.len() as isize);
+        let (columns, rows) = (self.map.x.len() as isize, self.map.y.len() as isize);
         let mut runs: Vec<Run> = Vec::new();
         for j in -1..rows {
             self.even_runs(&mut runs, j, columns);
@@ -113,15 +113,14 @@ impl<'a> Regions<'a> {
 
     /// Index of a grid cell, held to the grid.
     fn cell(&self, i: isize, j: isize) -> usize {
-        let (columns, rows) = (self.map.eta.len(), self.map.rho.len());
+        let (columns, rows) = (self.map.x.len(), self.map.y.len());
         let clamp = |v: isize, n: usize| v.clamp(0, n as isize - 1) as usize;
         clamp(j, rows) * columns + clamp(i, columns)
     }
 
     /// Centre of a cell on paper; beyond the grid its outer edge.
     fn centre(&self, i: isize, j: isize) -> Point {
-        self.panel
-            .at(along(&self.map.eta, i), along(&self.map.rho, j))
+        self.panel.at(along(&self.map.x, i), along(&self.map.y, j))
     }
 
     fn corners(&self, i: isize, j: isize) -> [(usize, Point); 4] {
@@ -261,8 +260,8 @@ impl<'a> Regions<'a> {
             self.panel.x.low + (x - r.left) / r.width() * (self.panel.x.high - self.panel.x.low);
         let up =
             self.panel.y.low + (r.bottom - y) / r.height() * (self.panel.y.high - self.panel.y.low);
-        let i = nearest(&self.map.eta, across)?;
-        let j = nearest(&self.map.rho, up)?;
+        let i = nearest(&self.map.x, across)?;
+        let j = nearest(&self.map.y, up)?;
         Some(self.cell(i, j))
     }
 }

@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::lanes::Two;
-use super::{Course, Feed, march};
+use super::cell::{Course, Feed};
+use super::march::march;
+use crate::atlas::lanes::Two;
 
 /// Instruction sets that the kernel is compiled for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -48,12 +49,12 @@ impl Kernel {
 const LIGHT_DAMPING: f64 = 0.08;
 
 /// March a feed with a kernel that this processor runs.
-pub fn run(kernel: Kernel, course: &Course, feed: &mut impl Feed) {
+pub(in crate::atlas) fn run(kernel: Kernel, course: &Course, feed: &mut impl Feed) {
     let light = course.damping_ratio <= LIGHT_DAMPING;
     match kernel {
         Kernel::Scalar if light => march::<Two<f64>, 8>(course, feed),
         Kernel::Scalar => march::<Two<f64>, 17>(course, feed),
-        // SAFETY: `march_all` and the caller asked the processor for the instruction set.
+        // SAFETY: `march_all` and the caller checked that the processor has the instruction set.
         #[cfg(target_arch = "x86_64")]
         Kernel::Avx2 => unsafe { x86::march_avx2(light, course, feed) },
         // SAFETY: as above.
@@ -66,11 +67,11 @@ pub fn run(kernel: Kernel, course: &Course, feed: &mut impl Feed) {
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
-    use super::super::super::lanes::{Avx2, Avx512, Two};
     use super::{Course, Feed, march};
+    use crate::atlas::lanes::{Avx2, Avx512, Two};
 
     #[target_feature(enable = "avx2,fma")]
-    pub fn march_avx2(light: bool, course: &Course, feed: &mut impl Feed) {
+    pub(super) fn march_avx2(light: bool, course: &Course, feed: &mut impl Feed) {
         if light {
             march::<Two<Avx2>, 8>(course, feed);
         } else {
@@ -79,7 +80,7 @@ mod x86 {
     }
 
     #[target_feature(enable = "avx512f,avx2,fma")]
-    pub fn march_avx512(light: bool, course: &Course, feed: &mut impl Feed) {
+    pub(super) fn march_avx512(light: bool, course: &Course, feed: &mut impl Feed) {
         if light {
             march::<Two<Avx512>, 8>(course, feed);
         } else {

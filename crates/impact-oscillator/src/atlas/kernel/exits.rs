@@ -1,15 +1,16 @@
-//! What a lane asks for beside the steps: an orbit that recurs, a mass that rests at the stop, the
-//! end of settling and watch, the hand-over of a cell that is done.
+//! Events of a lane between its steps: an orbit that recurs, a mass that rests at the stop, the
+//! end of settling and watch, a cell that is done.
 
-use super::super::lanes::Lanes;
+use super::cell::{Cell, Course, Feed, Outcome};
 use super::lane::{Anchor, Lane, forget, place, where_is};
 use super::step::{Events, Group};
-use super::{Cell, Course, Feed, Outcome};
+use crate::atlas::lanes::Lanes;
 use crate::model::SettledMotion;
+use crate::model::motion::count;
 
 /// The mass has no relative speed left at the stop, at (t, phase): it rests there until the
-/// drive lets go (cos φ = ρ, falling), then leaves; or it leaves at once. Gives whether it
-/// stays for ever.
+/// drive lets go (cos φ = ρ, falling), then leaves; or it leaves at once. Returns whether it
+/// stays for all time.
 pub(super) fn come_to_rest<V: Lanes>(
     course: &Course,
     s: &mut Group<V>,
@@ -21,7 +22,7 @@ pub(super) fn come_to_rest<V: Lanes>(
     let rho = info.cell.rho;
     if phase.cos() - rho > 0.0 {
         if rho <= -1.0 {
-            info.found = Some(SettledMotion::Joined);
+            info.found = Some(SettledMotion::Sticking);
             return true;
         }
         let release = rho.acos();
@@ -43,8 +44,8 @@ pub(super) fn come_to_rest<V: Lanes>(
 fn resting_orbit(course: &Course, periods: f64, hits: f64) -> SettledMotion {
     let chatter = course.restitution > 0.0;
     SettledMotion::Periodic {
-        p: if chatter { 1 } else { hits as u16 },
-        n: periods.round() as u16,
+        p: if chatter { 1 } else { count(hits) },
+        n: count(periods.round()),
         dead_zone: true,
         chatter,
     }
@@ -81,7 +82,7 @@ fn leave<V: Lanes>(course: &Course, s: &mut Group<V>, info: &Lane, lane: usize, 
     s.hm.set(lane, hm);
 }
 
-/// Serve a lane that raised an event. Gives whether its cell is done (and was handed over).
+/// Serve a lane that raised an event. Returns whether its cell is done (and was handed over).
 #[inline(never)]
 pub(super) fn serve<V: Lanes>(
     course: &Course,
@@ -139,7 +140,7 @@ pub(super) fn serve<V: Lanes>(
     finished
 }
 
-/// Least difference of phases, rad, that the times of impacts tell.
+/// Least difference of phases, rad, that the times of impacts resolve.
 const TIMING: f64 = 1e-9;
 
 /// Whether an impact that looks like the anchor's is: whole drive periods lie between them.
@@ -163,7 +164,7 @@ fn set_anchor<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize, here: An
 fn recognise<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize, here: &Anchor) {
     let anchor = info.anchor;
     if info.found.is_some() || info.released.is_some_and(|(t, _)| t >= anchor.t) {
-        return; // an orbit that rests at the stop is told by its releases
+        return; // an orbit that rests at the stop is identified by its releases
     }
     let p = here.hits - anchor.hits;
     let n = ((here.t - anchor.t) / info.period).round();
@@ -172,8 +173,8 @@ fn recognise<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize, here: &An
     }
     if p == 1.0 || info.confirming {
         info.found = Some(SettledMotion::Periodic {
-            p: p as u16,
-            n: n as u16,
+            p: count(p),
+            n: count(n),
             dead_zone: false,
             chatter: false,
         });
@@ -207,7 +208,7 @@ fn start_watch<V: Lanes>(course: &Course, s: &mut Group<V>, info: &mut Lane, lan
 
 /// Motion of a cell whose orbit did not recur; chaos is a guess that `map` follows up. Without an
 /// impact in the watch it is impactless where that motion stays clear of the stop, else between
-/// two impacts that lie farther apart than the watch is long.
+/// two impacts that are farther apart than the watch is long.
 fn unrecognised<V: Lanes>(s: &Group<V>, info: &Lane, lane: usize) -> SettledMotion {
     let clear = s.forced.get(lane) * (1.0 - 1e-9) <= info.cell.rho;
     if clear && s.hits.get(lane) == info.hits_at_watch {

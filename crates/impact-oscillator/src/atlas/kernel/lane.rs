@@ -1,8 +1,8 @@
 //! A lane and its cell: loaded, parked, placed at a state and read off again.
 
-use super::super::lanes::Lanes;
+use super::cell::{Cell, Course};
 use super::step::Group;
-use super::{Cell, Course};
+use crate::atlas::lanes::Lanes;
 use crate::model::SettledMotion;
 
 /// Longest step in units of the faster of both rates: a quarter of it is where the polynomials
@@ -10,7 +10,7 @@ use crate::model::SettledMotion;
 pub(super) const LONGEST: f64 = 3.2;
 /// Longest first step after an impact, likewise: a shorter one has a tighter bound.
 pub(super) const FIRST: f64 = 1.6;
-/// Displacement resolution below which a bounce is not told from rest (as in `model::contact`).
+/// Displacement resolution below which a bounce is not distinguished from rest (as in `model::contact`).
 pub(super) const RESOLUTION: f64 = 1e-13;
 
 /// The impact with which later ones are compared.
@@ -171,7 +171,7 @@ pub(super) fn park<V: Lanes>(s: &mut Group<V>, lane: usize) {
     }
 }
 
-/// Start the search for a recurrence anew.
+/// Restart the search for a recurrence.
 pub(super) fn forget<V: Lanes>(s: &mut Group<V>, info: &mut Lane, lane: usize, t: f64) {
     let hits = s.hits.get(lane);
     info.anchor = Anchor { t, hits };

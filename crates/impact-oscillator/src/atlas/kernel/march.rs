@@ -1,10 +1,10 @@
 //! The loop over the steps, with all lanes at work as long as there are cells.
 
-use super::super::lanes::Lanes;
+use super::cell::{Cell, Course, Feed, Outcome};
 use super::exits::{come_to_rest, serve};
 use super::lane::{IDLE, Lane, empty_group, load, park};
 use super::step::{Constants, Group, step};
-use super::{Cell, Course, Feed, Outcome};
+use crate::atlas::lanes::Lanes;
 use crate::model::SettledMotion;
 
 /// Lanes of the widest kernel.
@@ -12,7 +12,7 @@ const MAX_WIDTH: usize = 32;
 
 /// March all cells of a feed.
 #[inline(always)]
-pub fn march<V: Lanes, const DEGREE: usize>(course: &Course, feed: &mut impl Feed) {
+pub(super) fn march<V: Lanes, const DEGREE: usize>(course: &Course, feed: &mut impl Feed) {
     let omega = (1.0 - course.damping_ratio * course.damping_ratio).sqrt();
     let c = Constants {
         beta: V::splat(course.damping_ratio),
@@ -45,7 +45,7 @@ pub fn march<V: Lanes, const DEGREE: usize>(course: &Course, feed: &mut impl Fee
     }
 }
 
-/// Load the next cell into a lane; gives the lane's bit, or 0 where no cell is left. A mass
+/// Load the next cell into a lane; returns the lane's bit, or 0 where no cell is left. A mass
 /// that starts at rest at the stop and is never let go is done at once.
 #[inline(never)]
 fn refill<V: Lanes>(
@@ -69,7 +69,7 @@ fn refill<V: Lanes>(
         feed.done(
             index,
             Outcome {
-                motion: SettledMotion::Joined,
+                motion: SettledMotion::Sticking,
                 end,
             },
         );

@@ -1,6 +1,6 @@
 //! One step of all lanes of a group: impacts by masks, the safe step, the exact motion over it.
 
-use super::super::lanes::Lanes;
+use crate::atlas::lanes::Lanes;
 
 const SIN: [f64; 6] = [
     -0.16666666666666663,
@@ -60,12 +60,12 @@ pub(super) struct Group<V> {
     pub(super) hits: V,
     /// z's imaginary part after the anchor's impact.
     pub(super) anchor: V,
-    /// Impacts at which the anchor is set anew.
+    /// Impacts at which the anchor is set again.
     pub(super) reach: V,
     pub(super) tolerance: V,
 }
 
-/// What the loop asks the slow path for, and the step just made.
+/// What the loop leaves to the slow path, and the step just made.
 pub(super) struct Events<V: Lanes> {
     pub(super) due: V::Mask,
     pub(super) rest: V::Mask,
@@ -190,10 +190,10 @@ pub(super) fn step<V: Lanes, const DEGREE: usize>(c: &Constants<V>, s: &mut Grou
     let two_g = g.add(g);
     let d = m.mul_add(two_g, v2);
     let root = d.max(zero).sqrt();
-    let closing = zero.lt(v);
-    let no_root = V::or(d.lt(zero), V::and_not(m.le(zero), closing));
-    let up = two_g.or_else(closing, root.sub(v));
-    let down = v.add(root).or_else(closing, m);
+    let approaching = zero.lt(v);
+    let no_root = V::or(d.lt(zero), V::and_not(m.le(zero), approaching));
+    let up = two_g.or_else(approaching, root.sub(v));
+    let down = v.add(root).or_else(approaching, m);
     let h = hm.or_else(no_root, up.div(down).min(hm));
     // the exact motion over it
     let e = decay::<V, DEGREE>(c.quarter_beta.mul(h));
@@ -219,9 +219,9 @@ pub(super) fn step<V: Lanes, const DEGREE: usize>(c: &Constants<V>, s: &mut Grou
     }
 }
 
-/// Brent's search for a returning impact: each is compared with an anchor that is set anew after
+/// Brent's search for a returning impact: each is compared with an anchor that is set again after
 /// 1, 2, 4 … impacts. Here by one number alone, the rest of the comparison and the setting are
-/// the slow path's. Gives which impacts look like the anchor's, and which are to be the anchor.
+/// the slow path's. Returns which impacts look like the anchor's, and which are to be the anchor.
 #[inline(always)]
 fn recurrence<V: Lanes>(s: &mut Group<V>, hit: V::Mask, zi: V, zm: V) -> (V::Mask, V::Mask) {
     s.hits = s.hits.add(V::splat(1.0)).or_else(hit, s.hits);

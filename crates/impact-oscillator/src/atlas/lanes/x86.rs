@@ -7,65 +7,51 @@ use super::Lanes;
 /// Four lanes, AVX2 and FMA.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
-pub struct Avx2(__m256d);
+pub(in crate::atlas) struct Avx2(__m256d);
 
 /// Eight lanes, AVX-512 F.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
-pub struct Avx512(__m512d);
+pub(in crate::atlas) struct Avx512(__m512d);
 
-// SAFETY of all blocks below: the caller of a kernel over these types has asked the
-// processor for the instruction set (see `Kernel::is_available`).
+/// The methods of [`Lanes`] that are one instruction: of one number, of one vector, of two and of
+/// three vectors.
+macro_rules! instructions {
+    ($splat:ident; $($one:ident $f1:ident),*; $($two:ident $f2:ident),*; $($three:ident $f3:ident),*) => {
+        #[inline(always)]
+        fn splat(a: f64) -> Self {
+            Self(unsafe { $splat(a) })
+        }
+        $(#[inline(always)]
+        fn $one(self) -> Self {
+            Self(unsafe { $f1(self.0) })
+        })*
+        $(#[inline(always)]
+        fn $two(self, b: Self) -> Self {
+            Self(unsafe { $f2(self.0, b.0) })
+        })*
+        $(#[inline(always)]
+        fn $three(self, b: Self, c: Self) -> Self {
+            Self(unsafe { $f3(self.0, b.0, c.0) })
+        })*
+    };
+}
+
+// SAFETY of all blocks below: the caller of a kernel over these types has checked that the
+// processor has the instruction set (see `Kernel::is_available`).
 impl Lanes for Avx2 {
     const WIDTH: usize = 4;
     type Mask = __m256d;
-    #[inline(always)]
-    fn splat(a: f64) -> Self {
-        Self(unsafe { _mm256_set1_pd(a) })
-    }
-    #[inline(always)]
-    fn add(self, b: Self) -> Self {
-        Self(unsafe { _mm256_add_pd(self.0, b.0) })
-    }
-    #[inline(always)]
-    fn sub(self, b: Self) -> Self {
-        Self(unsafe { _mm256_sub_pd(self.0, b.0) })
-    }
-    #[inline(always)]
-    fn mul(self, b: Self) -> Self {
-        Self(unsafe { _mm256_mul_pd(self.0, b.0) })
-    }
-    #[inline(always)]
-    fn div(self, b: Self) -> Self {
-        Self(unsafe { _mm256_div_pd(self.0, b.0) })
-    }
-    #[inline(always)]
-    fn mul_add(self, b: Self, c: Self) -> Self {
-        Self(unsafe { _mm256_fmadd_pd(self.0, b.0, c.0) })
-    }
-    #[inline(always)]
-    fn neg_mul_add(self, b: Self, c: Self) -> Self {
-        Self(unsafe { _mm256_fnmadd_pd(self.0, b.0, c.0) })
-    }
-    #[inline(always)]
-    fn mul_sub(self, b: Self, c: Self) -> Self {
-        Self(unsafe { _mm256_fmsub_pd(self.0, b.0, c.0) })
-    }
-    #[inline(always)]
-    fn min(self, b: Self) -> Self {
-        Self(unsafe { _mm256_min_pd(self.0, b.0) })
-    }
-    #[inline(always)]
-    fn max(self, b: Self) -> Self {
-        Self(unsafe { _mm256_max_pd(self.0, b.0) })
-    }
+    instructions!(
+        _mm256_set1_pd;
+        sqrt _mm256_sqrt_pd;
+        add _mm256_add_pd, sub _mm256_sub_pd, mul _mm256_mul_pd, div _mm256_div_pd,
+        min _mm256_min_pd, max _mm256_max_pd;
+        mul_add _mm256_fmadd_pd, neg_mul_add _mm256_fnmadd_pd, mul_sub _mm256_fmsub_pd
+    );
     #[inline(always)]
     fn abs(self) -> Self {
         Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(unsafe { _mm256_sqrt_pd(self.0) })
     }
     #[inline(always)]
     fn reciprocal_rough(self) -> Self {
@@ -97,65 +83,20 @@ impl Lanes for Avx2 {
     }
     #[inline(always)]
     fn bits(mask: __m256d) -> u32 {
-        unsafe { _mm256_movemask_pd(mask) as u32 }
+        unsafe { _mm256_movemask_pd(mask) }.cast_unsigned()
     }
 }
 
 impl Lanes for Avx512 {
     const WIDTH: usize = 8;
     type Mask = __mmask8;
-    #[inline(always)]
-    fn splat(a: f64) -> Self {
-        Self(unsafe { _mm512_set1_pd(a) })
-    }
-    #[inline(always)]
-    fn add(self, b: Self) -> Self {
-        Self(unsafe { _mm512_add_pd(self.0, b.0) })
-    }
-    #[inline(always)]
-    fn sub(self, b: Self) -> Self {
-        Self(unsafe { _mm512_sub_pd(self.0, b.0) })
-    }
-    #[inline(always)]
-    fn mul(self, b: Self) -> Self {
-        Self(unsafe { _mm512_mul_pd(self.0, b.0) })
-    }
-    #[inline(always)]
-    fn div(self, b: Self) -> Self {
-        Self(unsafe { _mm512_div_pd(self.0, b.0) })
-    }
-    #[inline(always)]
-    fn mul_add(self, b: Self, c: Self) -> Self {
-        Self(unsafe { _mm512_fmadd_pd(self.0, b.0, c.0) })
-    }
-    #[inline(always)]
-    fn neg_mul_add(self, b: Self, c: Self) -> Self {
-        Self(unsafe { _mm512_fnmadd_pd(self.0, b.0, c.0) })
-    }
-    #[inline(always)]
-    fn mul_sub(self, b: Self, c: Self) -> Self {
-        Self(unsafe { _mm512_fmsub_pd(self.0, b.0, c.0) })
-    }
-    #[inline(always)]
-    fn min(self, b: Self) -> Self {
-        Self(unsafe { _mm512_min_pd(self.0, b.0) })
-    }
-    #[inline(always)]
-    fn max(self, b: Self) -> Self {
-        Self(unsafe { _mm512_max_pd(self.0, b.0) })
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self(unsafe { _mm512_abs_pd(self.0) })
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(unsafe { _mm512_sqrt_pd(self.0) })
-    }
-    #[inline(always)]
-    fn reciprocal_rough(self) -> Self {
-        Self(unsafe { _mm512_rcp14_pd(self.0) })
-    }
+    instructions!(
+        _mm512_set1_pd;
+        sqrt _mm512_sqrt_pd, abs _mm512_abs_pd, reciprocal_rough _mm512_rcp14_pd;
+        add _mm512_add_pd, sub _mm512_sub_pd, mul _mm512_mul_pd, div _mm512_div_pd,
+        min _mm512_min_pd, max _mm512_max_pd;
+        mul_add _mm512_fmadd_pd, neg_mul_add _mm512_fnmadd_pd, mul_sub _mm512_fmsub_pd
+    );
     #[inline(always)]
     fn lt(self, b: Self) -> __mmask8 {
         unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, b.0) }

@@ -1,0 +1,47 @@
+//! Why a model cannot be evaluated.
+
+use thiserror::Error;
+
+/// Why a model cannot be evaluated as requested.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum ModelError {
+    /// A parameter is outside its admissible range.
+    #[error("{name} = {value} is out of range: {expected}")]
+    OutOfRange {
+        /// The parameter's name.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// What is admissible.
+        expected: &'static str,
+    },
+    /// The masses start overlapping.
+    #[error(
+        "the start lies {depth} beyond the contact X + Y = 2ρ: start at or below it, or lower the displacements"
+    )]
+    StartsInContact {
+        /// How far beyond the contact.
+        depth: f64,
+    },
+    /// The request has no meaning for this machine.
+    #[error("{0}")]
+    Unsupported(&'static str),
+}
+
+/// A finite value that meets a condition.
+pub(super) fn range(
+    name: &'static str,
+    value: f64,
+    ok: bool,
+    expected: &'static str,
+) -> Result<(), ModelError> {
+    if ok && value.is_finite() {
+        Ok(())
+    } else {
+        Err(ModelError::OutOfRange {
+            name,
+            value,
+            expected,
+        })
+    }
+}

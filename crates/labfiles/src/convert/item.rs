@@ -1,0 +1,146 @@
+//! A record to be converted, and what all targets share.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use crate::attribute;
+use crate::csv::TEXTS_KEY;
+use crate::csv::header::name_and_unit;
+use crate::hdf5_write::WriteError;
+use crate::source::{ChannelInfo, ReadError, Samples, Source, StoredType};
+
+/// Why records could not be converted.
+#[derive(Debug, thiserror::Error)]
+pub enum ConvertError {
+    /// A record could not be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The output could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+/// How to write.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Store numbers in single precision (HDF5 and Parquet).
+    pub single_precision: bool,
+    /// Attributes added to every record; they replace those of the file.
+    pub attributes: BTreeMap<String, String>,
+}
+
+/// One record of a source, read when it is written.
+pub(super) struct Item<'a> {
+    /// Its name in the output.
+    pub(super) name: String,
+    pub(super) source: &'a dyn Source,
+    pub(super) dataset: usize,
+    pub(super) attributes: BTreeMap<String, String>,
+}
+
+impl Item<'_> {
+    pub(super) fn has_numbers(&self) -> bool {
+        let mut channels = self.channels().iter();
+        channels.any(|c| c.stored != StoredType::Text)
+    }
+
+    pub(super) fn channels(&self) -> &[ChannelInfo] {
+        &self.source.datasets()[self.dataset].channels
+    }
+
+    /// The channels' names, each once: the second `X_Value` becomes `X_Value 2`.
+    pub(super) fn names(&self) -> Vec<String> {
+        let mut taken = BTreeSet::new();
+        let channels = self.channels().iter();
+        channels.map(|c| once(&c.name, ' ', &mut taken)).collect()
+    }
+
+    /// Headings of the channels in a table.
+    pub(super) fn headings(&self) -> impl Iterator<Item = Heading<'_>> {
+        let named = self.names().into_iter().zip(self.channels());
+        named.map(|(name, channel)| Heading {
+            name,
+            unit: channel.unit.as_deref(),
+        })
+    }
+
+    pub(super) fn read(&self) -> Result<Vec<Samples>, ReadError> {
+        let all: Vec<usize> = (0..self.channels().len()).collect();
+        self.source.read(self.dataset, &all)
+    }
+
+    /// The record's rate: what its channels share, else what its attributes state.
+    pub(super) fn sample_rate_hz(&self) -> Option<f64> {
+        let shared = self.source.datasets()[self.dataset].sample_rate_hz();
+        shared.or_else(|| attribute::sample_rate_hz(&self.attributes))
+    }
+
+    pub(super) fn start_time(&self) -> Option<&str> {
+        self.channels().iter().find_map(|c| c.start_time.as_deref())
+    }
+
+    /// The attributes to write: the record's own without those that the target writes otherwise.
+    pub(super) fn described(&self) -> impl Iterator<Item = (&String, &String)> {
+        const ELSEWHERE: [&str; 11] = [
+            "channels",
+            "units",
+            "scale",
+            "offset",
+            "sample_rate_hz",
+            "impactid_layout",
+            "names",
+            "columns",
+            "start_time",
+            crate::parquet::RECORDS_KEY,
+            TEXTS_KEY,
+        ];
+        self.attributes
+            .iter()
+            .filter(|(k, _)| !ELSEWHERE.contains(&k.as_str()))
+    }
+}
+
+/// Heading of a channel in a table.
+pub(super) struct Heading<'a> {
+    name: String,
+    unit: Option<&'a str>,
+}
+
+impl Heading<'_> {
+    /// The name with its unit: `velocity_x [mm/s]`.
+    pub(super) fn whole(&self) -> String {
+        self.part("")
+    }
+
+    /// The name of a part with its unit: `force.re [N]`.
+    pub(super) fn part(&self, part: &str) -> String {
+        let name = format!("{}{part}", self.name);
+        match self.unit {
+            Some(unit) => format!("{name} [{unit}]"),
+            // brackets in the name are no unit
+            None if name_and_unit(&name).1.is_some() || name.ends_with("[]") => {
+                format!("{name} []")
+            }
+            None => name,
+        }
+    }
+}
+
+/// A name that is not taken yet: itself, or itself with a number after the mark.
+pub(super) fn once(plain: &str, mark: char, taken: &mut BTreeSet<String>) -> String {
+    let mut name = plain.to_owned();
+    let mut number = 2;
+    while !taken.insert(name.clone()) {
+        name = format!("{plain}{mark}{number}");
+        number += 1;
+    }
+    name
+}
+
+pub(super) fn io(path: &Path) -> impl Fn(std::io::Error) -> WriteError {
+    let path: PathBuf = path.to_path_buf();
+    move |source| WriteError::Io {
+        path: path.clone(),
+        source,
+    }
+}

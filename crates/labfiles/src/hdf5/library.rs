@@ -1,0 +1,374 @@
+//! HDF5 files through `hdf5-pure`, read at offsets on demand.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use ::hdf5::{
+    AttrValue, ChunkCacheConfig, Dataset, FileAccessProperties, FormatError, Group, Layout,
+    MetadataCacheConfig, Object,
+};
+
+use crate::bytes::{read_exact_at, to_usize};
+use crate::hdf5::chunked;
+use crate::hdf5::datatype::element;
+use crate::hdf5::guard::{self, Lengths};
+use crate::hdf5::legacy::{self, Patch};
+use crate::hdf5::second;
+use crate::hdf5::store::{
+    Array, Attr, Attrs, DEEPEST, MOST_OBJECTS, StoreError, Target, Tree, join,
+};
+
+/// Bytes of metadata that the library may keep.
+const METADATA_CACHE_BYTES: usize = 4 << 20;
+
+/// The registered number of h5py's LZF filter.
+const FILTER_LZF: u16 = 32000;
+
+/// A file read at offsets, shared by threads.
+struct Positional {
+    file: Arc<File>,
+    length: u64,
+    patches: Vec<Patch>,
+}
+
+impl ::hdf5::Source for Positional {
+    fn len(&self) -> u64 {
+        self.length
+    }
+
+    fn read_at(&self, offset: u64, into: &mut [u8]) -> Result<(), FormatError> {
+        if offset
+            .checked_add(into.len() as u64)
+            .is_none_or(|end| end > self.length)
+        {
+            return Err(FormatError::UnexpectedEof {
+                expected: usize::try_from(offset)
+                    .unwrap_or(usize::MAX)
+                    .saturating_add(into.len()),
+                available: usize::try_from(self.length).unwrap_or(usize::MAX),
+            });
+        }
+        read_exact_at(&self.file, into, offset).map_err(|e| FormatError::Source(e.to_string()))?;
+        legacy::apply(&self.patches, offset, into);
+        Ok(())
+    }
+}
+
+/// An open file, of which arrays are read as far as the file can hold them.
+pub(crate) struct Store {
+    path: PathBuf,
+    file: Arc<File>,
+    datasets: Mutex<Vec<Dataset>>,
+    length: u64,
+}
+
+/// Open a file and walk its tree.
+///
+/// # Errors
+/// The library's error if it cannot read the structure.
+pub(crate) fn open(path: &Path, file: File, length: u64) -> Result<(Store, Tree), StoreError> {
+    let file = Arc::new(file);
+    let (store, tree, old) = walk(
+        path,
+        Positional {
+            file: Arc::clone(&file),
+            length,
+            patches: Vec::new(),
+        },
+    )?;
+    if !old {
+        return Ok((store, tree));
+    }
+    let patches = legacy::patches(&file, length).map_err(::hdf5::Error::Io)?;
+    let (store, tree, _) = walk(
+        path,
+        Positional {
+            file,
+            length,
+            patches,
+        },
+    )?;
+    Ok((store, tree))
+}
+
+/// Walk a file; gives also whether it has data layouts older than the library reads.
+fn walk(path: &Path, source: Positional) -> Result<(Store, Tree, bool), StoreError> {
+    let access = FileAccessProperties::new()
+        .with_metadata_cache(MetadataCacheConfig::new(METADATA_CACHE_BYTES))
+        .with_chunk_cache(ChunkCacheConfig::disabled());
+    let (length, shared) = (source.length, Arc::clone(&source.file));
+    let file = ::hdf5::File::from_source_with_options(source, access)?;
+    let mut walk = Walk {
+        datasets: Vec::new(),
+        objects: 0,
+    };
+    let tree = walk.group(&file.root(), String::new(), 0)?;
+    let old = walk.datasets.iter().any(has_old_layout);
+    Ok((
+        Store {
+            path: path.to_path_buf(),
+            file: shared,
+            datasets: Mutex::new(walk.datasets),
+            length,
+        },
+        tree,
+        old,
+    ))
+}
+
+fn has_old_layout(dataset: &Dataset) -> bool {
+    matches!(
+        dataset.layout(),
+        Err(::hdf5::Error::Format(FormatError::InvalidLayoutVersion(
+            1 | 2
+        )))
+    )
+}
+
+struct Walk {
+    datasets: Vec<Dataset>,
+    objects: usize,
+}
+
+impl Walk {
+    fn group(&mut self, group: &Group, path: String, depth: usize) -> Result<Tree, StoreError> {
+        if depth > DEEPEST {
+            return Err(StoreError::TooDeep(path));
+        }
+        let mut tree = Tree {
+            attributes: attributes(group.attrs()),
+            path,
+            ..Tree::default()
+        };
+        for (name, dataset) in group.iter_datasets()? {
+            self.count()?;
+            let array = self.array(dataset, join(&tree.path, &name), name)?;
+            tree.arrays.push(array);
+        }
+        for (name, child) in group.iter_groups()? {
+            self.count()?;
+            let path = join(&tree.path, &name);
+            tree.groups.push(self.group(&child, path, depth + 1)?);
+        }
+        Ok(tree)
+    }
+
+    fn count(&mut self) -> Result<(), StoreError> {
+        self.objects += 1;
+        if self.objects > MOST_OBJECTS {
+            return Err(StoreError::TooMany);
+        }
+        Ok(())
+    }
+
+    fn array(&mut self, dataset: Dataset, path: String, name: String) -> Result<Array, StoreError> {
+        let handle = self.datasets.len();
+        let array = describe(&dataset, path, name, handle)?;
+        self.datasets.push(dataset);
+        Ok(array)
+    }
+}
+
+fn describe(
+    dataset: &Dataset,
+    path: String,
+    name: String,
+    handle: usize,
+) -> Result<Array, StoreError> {
+    let described = dataset.shape().and_then(|s| Ok((s, dataset.datatype()?)));
+    let (shape, datatype) = match described {
+        Ok(described) => described,
+        Err(error) => return Err(StoreError::Dataset { path, error }),
+    };
+    let element = element(&datatype);
+    Ok(Array {
+        shape,
+        element,
+        attributes: attributes(dataset.attrs()),
+        name,
+        handle,
+        path,
+    })
+}
+
+/// Attributes as text and numbers; unreadable ones are left out.
+fn attributes(read: Result<std::collections::HashMap<String, AttrValue>, ::hdf5::Error>) -> Attrs {
+    let pairs = read.unwrap_or_default();
+    pairs
+        .into_iter()
+        .filter_map(|(name, value)| Some((name, attr(&value)?)))
+        .collect()
+}
+
+fn attr(value: &AttrValue) -> Option<Attr> {
+    if let Some(texts) = value.as_strings() {
+        return Some(Attr::Text(texts.to_vec()));
+    }
+    let floats = value.to_f64s();
+    let integers = || Some(value.to_i64s()?.into_iter().map(|v| v as f64).collect());
+    let naturals = || Some(value.to_u64s()?.into_iter().map(|v| v as f64).collect());
+    floats
+        .or_else(integers)
+        .or_else(naturals)
+        .map(Attr::Numbers)
+}
+
+impl Store {
+    fn datasets(&self) -> MutexGuard<'_, Vec<Dataset>> {
+        self.datasets.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn dataset(&self, array: &Array) -> Result<Dataset, StoreError> {
+        let dataset = self.datasets().get(array.handle).cloned();
+        dataset.ok_or_else(|| StoreError::Absent(array.path.clone()))
+    }
+
+    /// An array's dataset, if the file can hold what it claims.
+    fn checked(&self, array: &Array) -> Result<Dataset, StoreError> {
+        let dataset = self.dataset(array)?;
+        let lengths = Lengths {
+            file: self.length,
+            chunk: chunk_bytes(&dataset, array),
+            stored: stored_bytes(&dataset).unwrap_or_else(|| array.claimed().min(self.length)),
+        };
+        guard::check(array, &lengths)?;
+        Ok(dataset)
+    }
+
+    fn keep(&self, dataset: Dataset) -> usize {
+        let mut datasets = self.datasets();
+        datasets.push(dataset);
+        datasets.len() - 1
+    }
+
+    /// Take over the arrays of a walk of its own.
+    fn adopt(&self, mut tree: Tree, datasets: Vec<Dataset>) -> Tree {
+        fn shift(tree: &mut Tree, by: usize) {
+            tree.arrays.iter_mut().for_each(|a| a.handle += by);
+            tree.groups.iter_mut().for_each(|g| shift(g, by));
+        }
+        let mut all = self.datasets();
+        shift(&mut tree, all.len());
+        all.extend(datasets);
+        tree
+    }
+
+    /// The unpacked bytes of an array, row by row.
+    pub(super) fn raw(&self, array: &Array) -> Result<Vec<u8>, StoreError> {
+        let dataset = self.checked(array)?;
+        match chunked::rows(&self.file, &dataset, array.element.bytes(), None) {
+            Some(bytes) => Ok(bytes),
+            None => self.either(dataset.read_raw(), |path| second::raw(path, array)),
+        }
+    }
+
+    /// The unpacked bytes of `count` entries along the first dimension from `start`.
+    pub(super) fn rows(
+        &self,
+        array: &Array,
+        start: u64,
+        count: u64,
+    ) -> Result<Vec<u8>, StoreError> {
+        let dataset = self.checked(array)?;
+        let range = start..start.saturating_add(count);
+        if let Some(bytes) = chunked::rows(
+            &self.file,
+            &dataset,
+            array.element.bytes(),
+            Some(range.clone()),
+        ) {
+            return Ok(bytes);
+        }
+        self.either(dataset.read_raw_rows(start, count), |path| {
+            let row: u64 = array.shape.iter().skip(1).product();
+            let bytes = row.saturating_mul(array.element.bytes() as u64);
+            let at = |row: u64| to_usize(row.saturating_mul(bytes));
+            let all = second::raw(path, array)?;
+            Ok(all
+                .get(at(range.start)..at(range.end))
+                .unwrap_or(&[])
+                .to_vec())
+        })
+    }
+
+    /// The texts of an array of texts.
+    pub(super) fn texts(&self, array: &Array) -> Result<Vec<String>, StoreError> {
+        let dataset = self.checked(array)?;
+        self.either(dataset.read_string(), |path| second::texts(path, array))
+    }
+
+    /// What the library reads, or else the second one if the first lacks a feature.
+    fn either<T>(
+        &self,
+        first: Result<T, ::hdf5::Error>,
+        second: impl FnOnce(&Path) -> rust_hdf5::Result<T>,
+    ) -> Result<T, StoreError> {
+        match first {
+            Err(first) if second::may_read(&first) => {
+                second(&self.path).map_err(|second| StoreError::Both { first, second })
+            }
+            first => Ok(first?),
+        }
+    }
+
+    /// The objects that an array of references points at; `None` for a null reference.
+    pub(super) fn targets(&self, array: &Array) -> Result<Vec<Option<Target>>, StoreError> {
+        let objects = self.checked(array)?.dereference()?;
+        let mut targets = Vec::with_capacity(objects.len());
+        for (i, object) in objects.into_iter().enumerate() {
+            let name = format!("{}{{{}}}", array.path, i + 1);
+            targets.push(match object {
+                Object::Dataset(dataset) => {
+                    let mut array = describe(&dataset, name.clone(), name, 0)?;
+                    array.handle = self.keep(*dataset);
+                    Some(Target::Array(array))
+                }
+                Object::Group(group) => {
+                    let mut walk = Walk {
+                        datasets: Vec::new(),
+                        objects: 0,
+                    };
+                    let tree = walk.group(&group, name, 0)?;
+                    Some(Target::Group(self.adopt(tree, walk.datasets)))
+                }
+                _ => None,
+            });
+        }
+        Ok(targets)
+    }
+}
+
+/// Bytes that one unpacked chunk of an array takes; zero if it has no chunks.
+fn chunk_bytes(dataset: &Dataset, array: &Array) -> u64 {
+    let shape = dataset.chunk_shape().ok().flatten().unwrap_or_default();
+    if shape.is_empty() {
+        return 0;
+    }
+    let bytes = array.element.bytes().max(1) as u64;
+    let by_shape = shape
+        .iter()
+        .try_fold(bytes, |n, &d| n.checked_mul(d))
+        .unwrap_or(u64::MAX);
+    // LZF states the size of an unpacked chunk in its own parameters.
+    let pipeline = dataset.filter_pipeline();
+    let lzf = pipeline
+        .iter()
+        .filter(|f| f.id == FILTER_LZF)
+        .flat_map(|f| f.client_data.get(2));
+    by_shape.max(lzf.map(|&n| u64::from(n)).max().unwrap_or(0))
+}
+
+/// Bytes that an array takes in the file, if the library states it.
+fn stored_bytes(dataset: &Dataset) -> Option<u64> {
+    match dataset.layout().ok()? {
+        Layout::Compact { size } => Some(size),
+        Layout::Contiguous {
+            address: Some(_),
+            size,
+        } => Some(size),
+        Layout::Contiguous { address: None, .. } => Some(0),
+        Layout::Chunked { .. } => Some(dataset.chunks().ok()?.iter().map(|c| c.storage_size).sum()),
+        _ => None,
+    }
+}

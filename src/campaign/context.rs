@@ -1,0 +1,157 @@
+//! What every part of the resolution shares, and quantities as written to SI.
+
+use toml::Spanned;
+
+use super::diagnostic::{Code, FaultCollector};
+use super::read::Text;
+use super::written::{Placed, Quantity};
+use labfiles::units::{self, Dimension, QuantityError};
+
+/// The lines of campaign.toml and the problems found so far.
+#[derive(Debug)]
+pub(super) struct ResolveContext<'a> {
+    pub(super) text: Text<'a>,
+    pub(super) faults: FaultCollector,
+}
+
+impl ResolveContext<'_> {
+    /// Note a problem at a placed value that stops the campaign.
+    pub(super) fn fault<T>(
+        &mut self,
+        code: Code,
+        at: &Spanned<T>,
+        key: &str,
+        message: impl Into<String>,
+        remedy: &str,
+    ) {
+        let line = self.text.line_of(at);
+        self.faults.fault(code, line, key, message, remedy);
+    }
+
+    /// A quantity of a dimension in SI; `None` if it is not written or faulty.
+    pub(super) fn quantity(
+        &mut self,
+        placed: &Placed<Quantity>,
+        key: &str,
+        dimension: Dimension,
+    ) -> Option<f64> {
+        let placed = placed.as_ref()?;
+        match in_si(placed.get_ref(), key, dimension) {
+            Ok(value) => Some(value),
+            Err(wrong) => {
+                self.fault(
+                    Code::InvalidValue,
+                    placed,
+                    key,
+                    wrong.message,
+                    &wrong.remedy,
+                );
+                None
+            }
+        }
+    }
+
+    /// A quantity within a range, both ends allowed.
+    pub(super) fn within(
+        &mut self,
+        placed: &Placed<Quantity>,
+        key: &str,
+        dimension: Dimension,
+        range: [f64; 2],
+    ) -> Option<f64> {
+        let value = self.quantity(placed, key, dimension)?;
+        if (range[0]..=range[1]).contains(&value) {
+            return Some(value);
+        }
+        let symbol = dimension.si_symbol();
+        let message = format!("{value} {symbol} is out of range");
+        let remedy = match range[1].is_finite() {
+            true => format!("write a value from {} to {} {symbol}", range[0], range[1]),
+            false => format!("write a positive value, in {symbol} or a multiple of it"),
+        };
+        if let Some(placed) = placed {
+            self.fault(Code::OutOfRange, placed, key, message, &remedy);
+        }
+        None
+    }
+
+    /// A positive quantity.
+    pub(super) fn positive(
+        &mut self,
+        placed: &Placed<Quantity>,
+        key: &str,
+        dimension: Dimension,
+    ) -> Option<f64> {
+        self.within(placed, key, dimension, [f64::MIN_POSITIVE, f64::INFINITY])
+    }
+}
+
+/// Why a text or a number is not the quantity needed.
+pub(super) struct Wrong {
+    pub(super) message: String,
+    pub(super) remedy: String,
+}
+
+fn in_si(quantity: &Quantity, key: &str, dimension: Dimension) -> Result<f64, Wrong> {
+    let text = match quantity {
+        Quantity::Bare(value) if dimension == Dimension::Number && value.is_finite() => {
+            return Ok(*value);
+        }
+        Quantity::Bare(value) if dimension == Dimension::Number => {
+            return Err(Wrong {
+                message: format!("{value} is not a number"),
+                remedy: "write a finite number".to_owned(),
+            });
+        }
+        Quantity::Bare(value) => return Err(without_unit(key, &value.to_string(), dimension)),
+        Quantity::Text(text) => text,
+    };
+    units::parse_quantity_of(text, dimension).map_err(|error| match &error {
+        QuantityError::Dimension {
+            found: "plain number",
+            ..
+        } => without_unit(key, text, dimension),
+        _ => Wrong {
+            message: error.to_string(),
+            remedy: remedy(&error, dimension),
+        },
+    })
+}
+
+fn without_unit(key: &str, number: &str, dimension: Dimension) -> Wrong {
+    let name = key.rsplit('.').next().unwrap_or(key).replace('_', " ");
+    let symbol = common_symbol(dimension);
+    Wrong {
+        message: format!("a {name} without unit: {number}"),
+        remedy: format!("write number and unit in quotes, such as \"{number} {symbol}\""),
+    }
+}
+
+/// The symbol of a dimension that is usual in a laboratory.
+fn common_symbol(dimension: Dimension) -> &'static str {
+    match dimension {
+        Dimension::Length => "mm",
+        _ => units::symbols_of(dimension)
+            .first()
+            .copied()
+            .unwrap_or(dimension.si_symbol()),
+    }
+}
+
+/// What to do about a text that is not the quantity needed.
+pub(super) fn remedy(error: &QuantityError, dimension: Dimension) -> String {
+    match error {
+        QuantityError::Comma(_) => "write a decimal point".to_owned(),
+        QuantityError::NotFinite(_) => "write a finite number".to_owned(),
+        QuantityError::NoRatio(_) => {
+            "write the ratio, such as \"50 mm/s per V\", or a plain factor".to_owned()
+        }
+        _ => {
+            let symbols = units::symbols_of(dimension).join(", ");
+            format!(
+                "write a number and a unit of {}: {symbols}",
+                dimension.name()
+            )
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! Which records there are: files that match, rows of the run table, datasets in each, and what
+//! their metadata alone says to be wrong.
+
+use std::collections::{BTreeMap, HashMap};
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use super::context::ResolveContext;
+use super::diagnostic::{Code, Diagnostic, FaultCollector, Severity};
+use super::names::natural_key;
+use super::run_table::{self, Row};
+use super::written::OneOrMany;
+use crate::record::calibrate::{self, ChannelKey, ChannelSetup};
+use crate::record::{Flag, FlagCode};
+use labfiles::{DatasetInfo, ReadError, Source};
+
+/// How a file is opened; [`labfiles::open`] but for tests.
+pub type Opener<'a> = &'a (dyn Fn(&Path) -> Result<Box<dyn Source>, ReadError> + Sync);
+
+/// A record as its file's metadata and the run table describe it, before it is read.
+#[derive(Debug, Clone)]
+pub(super) struct Discovered {
+    /// Name in the campaign, once all records are known.
+    pub(super) id: String,
+    pub(super) file: PathBuf,
+    /// Line of the run table; `None` for a glob.
+    pub(super) row: Option<Row>,
+    pub(super) dataset: Option<usize>,
+    pub(super) dataset_name: String,
+    pub(super) attributes: BTreeMap<String, String>,
+    pub(super) flags: Vec<Flag>,
+}
+
+/// What the records of a campaign share.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shared<'a> {
+    /// The folder of campaign.toml.
+    pub(super) folder: &'a Path,
+    /// The channels by role.
+    pub(super) channels: &'a [ChannelSetup],
+    /// The channel with the time.
+    pub(super) time: Option<&'a ChannelKey>,
+}
+
+pub(super) fn list_files(
+    files: &toml::Spanned<OneOrMany>,
+    shared: Shared<'_>,
+    open: Opener<'_>,
+    context: &mut ResolveContext<'_>,
+) -> Vec<Discovered> {
+    let mut paths = Vec::new();
+    for pattern in &files.get_ref().0 {
+        let found = expand(shared.folder, pattern);
+        if found.is_empty() {
+            let what = format!("no file matches '{pattern}' in {}", shared.folder.display());
+            context.fault(
+                Code::UnreadableFile,
+                files,
+                "records.files",
+                what,
+                "check the pattern; it is relative to campaign.toml",
+            );
+        }
+        paths.extend(found);
+    }
+    paths.sort_by_cached_key(|p| natural_key(&p.to_string_lossy()));
+    paths.dedup();
+    let listed: Vec<Vec<Discovered>> = paths
+        .par_iter()
+        .map(|path| list_file(path, shared, open))
+        .collect();
+    listed.into_iter().flatten().collect()
+}
+
+/// The files that a glob matches, folders left out.
+fn expand(folder: &Path, pattern: &str) -> Vec<PathBuf> {
+    let whole = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
+    let Ok(paths) = glob::glob(&whole.to_string_lossy()) else {
+        return Vec::new();
+    };
+    paths
+        .filter_map(Result::ok)
+        .filter(|p| p.is_file())
+        .collect()
+}
+
+fn list_file(path: &Path, shared: Shared<'_>, open: Opener<'_>) -> Vec<Discovered> {
+    match open(path) {
+        Ok(source) => {
+            let sets = source.datasets();
+            if sets.is_empty() {
+                return vec![failed(path, None, empty_file(path))];
+            }
+            sets.iter()
+                .enumerate()
+                .map(|(i, set)| listed(path, i, set, None, shared))
+                .collect()
+        }
+        Err(error) => vec![failed(path, None, calibrate::read_flag(&error))],
+    }
+}
+
+fn empty_file(path: &Path) -> Flag {
+    Flag::new(
+        FlagCode::Empty,
+        None,
+        format!("{} holds no dataset", path.display()),
+        "remove the file, or record again",
+    )
+}
+
+fn failed(path: &Path, row: Option<Row>, flag: Flag) -> Discovered {
+    Discovered {
+        id: String::new(),
+        file: path.to_path_buf(),
+        dataset_name: row
+            .as_ref()
+            .and_then(|r| r.dataset.clone())
+            .unwrap_or_default(),
+        row,
+        dataset: None,
+        attributes: BTreeMap::new(),
+        flags: vec![flag],
+    }
+}
+
+fn listed(
+    path: &Path,
+    index: usize,
+    set: &DatasetInfo,
+    row: Option<Row>,
+    shared: Shared<'_>,
+) -> Discovered {
+    let mut flags: Vec<Flag> = shared
+        .channels
+        .iter()
+        .filter_map(|c| calibrate::bind(c, set).err())
+        .collect();
+    flags.extend(crate::record::time_axis::find(shared.time, set).err());
+    Discovered {
+        id: String::new(),
+        file: path.to_path_buf(),
+        row,
+        dataset: Some(index),
+        dataset_name: set.name.clone(),
+        attributes: set.attributes.clone(),
+        flags,
+    }
+}
+
+pub(super) fn list_rows(
+    table: &str,
+    shared: Shared<'_>,
+    open: Opener<'_>,
+    context: &mut ResolveContext<'_>,
+) -> Vec<Discovered> {
+    let path = shared.folder.join(table);
+    let mut faults = FaultCollector::new(&path);
+    let rows = run_table::read(&path, &mut faults);
+    refuse_twice(&rows, &mut faults);
+    context.faults.extend(faults.into_diagnostics().0);
+    let mut by_file: HashMap<&str, Vec<&Row>> = HashMap::new();
+    for row in &rows {
+        by_file.entry(&row.file).or_default().push(row);
+    }
+    let by_file: Vec<(&str, Vec<&Row>)> = by_file.into_iter().collect();
+    let mut all: Vec<Discovered> = by_file
+        .par_iter()
+        .flat_map_iter(|(file, rows)| list_rows_of(&shared.folder.join(file), rows, shared, open))
+        .collect();
+    all.sort_by_key(|l| (l.row.as_ref().map(|r| r.line), l.dataset));
+    all
+}
+
+/// The same file and dataset in two rows is a record counted twice.
+fn refuse_twice(rows: &[Row], faults: &mut FaultCollector) {
+    let mut seen: HashMap<(&str, Option<&str>), usize> = HashMap::new();
+    for row in rows {
+        let key = (row.file.as_str(), row.dataset.as_deref());
+        if let Some(first) = seen.insert(key, row.line) {
+            let what = format!("'{}' is already in line {first}", row.file);
+            faults.fault(
+                Code::Conflict,
+                Some(row.line),
+                "file",
+                what,
+                "remove one of the two rows",
+            );
+        }
+    }
+}
+
+fn list_rows_of(
+    path: &Path,
+    rows: &[&Row],
+    shared: Shared<'_>,
+    open: Opener<'_>,
+) -> Vec<Discovered> {
+    let source = match open(path) {
+        Ok(source) => source,
+        Err(error) => {
+            let flag = calibrate::read_flag(&error);
+            return rows
+                .iter()
+                .map(|r| failed(path, Some((*r).clone()), flag.clone()))
+                .collect();
+        }
+    };
+    let sets = source.datasets();
+    let mut all = Vec::new();
+    for row in rows {
+        let wanted = |set: &DatasetInfo| row.dataset.as_ref().is_none_or(|d| names(set, d));
+        let before = all.len();
+        for (index, set) in sets.iter().enumerate().filter(|(_, set)| wanted(set)) {
+            all.push(listed(path, index, set, Some((*row).clone()), shared));
+        }
+        if all.len() == before {
+            all.push(failed(path, Some((*row).clone()), no_dataset(row, sets)));
+        }
+    }
+    all
+}
+
+fn names(set: &DatasetInfo, name: &str) -> bool {
+    set.name == name || set.name.trim_start_matches('/') == name.trim_start_matches('/')
+}
+
+fn no_dataset(row: &Row, sets: &[DatasetInfo]) -> Flag {
+    let some: Vec<&str> = sets.iter().take(8).map(|s| s.name.as_str()).collect();
+    Flag::new(
+        FlagCode::MissingDataset,
+        None,
+        format!(
+            "no dataset '{}' in it; it holds {}",
+            row.dataset.as_deref().unwrap_or(""),
+            some.join(", ")
+        ),
+        "fix the column dataset of the run table",
+    )
+}
+
+/// Report the flags of the metadata: what every record has is one problem of the campaign.
+pub(super) fn note_flags(listed: &[Discovered], context: &mut ResolveContext<'_>) {
+    let mut groups: Vec<(&Flag, Vec<&Discovered>)> = Vec::new();
+    let mut index: HashMap<(FlagCode, &str), usize> = HashMap::new();
+    for one in listed {
+        for flag in &one.flags {
+            let key = (flag.code, flag.message.as_str());
+            let at = *index.entry(key).or_insert_with(|| {
+                groups.push((flag, Vec::new()));
+                groups.len() - 1
+            });
+            groups[at].1.push(one);
+        }
+    }
+    for (flag, records) in groups {
+        let all = records.len() == listed.len() && flag.excludes;
+        if all && listed.len() > 1 {
+            let what = format!("in all {} records: {}", listed.len(), flag.message);
+            let key = flag.channel.as_deref().unwrap_or("records").to_owned();
+            context
+                .faults
+                .fault(Code::Flag(flag.code), None, &key, what, &flag.remedy);
+            continue;
+        }
+        // a campaign of one record stops with it
+        context.faults.extend(records.iter().map(|one| {
+            let mut problem = Diagnostic::of_record(&one.file, &one.id, flag);
+            if all {
+                problem.severity = Severity::Campaign;
+            }
+            problem
+        }));
+    }
+}

@@ -1,0 +1,402 @@
+//! The records in a folder of files, and the role that each channel probably has.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use super::discovery::Opener;
+use crate::record::Role;
+use labfiles::units::{self, Dimension};
+use labfiles::{ChannelInfo, DatasetInfo, Samples, Source};
+
+/// Depth of the search below the folder.
+const DEPTH: usize = 4;
+
+/// What was found in a folder.
+#[derive(Debug, Default)]
+pub struct FolderContents {
+    /// Globs of the record files, relative to the folder.
+    pub globs: Vec<String>,
+    /// A CSV table that names files, relative to the folder.
+    pub run_table: Option<String>,
+    /// Number of record files.
+    pub files: usize,
+    /// Number of datasets in the first record file.
+    pub datasets: usize,
+    /// Format of the first record file.
+    pub format: &'static str,
+    /// The first record file, relative to the folder.
+    pub example: String,
+    /// Its channels.
+    pub channels: Vec<InferredChannel>,
+    /// Attributes of its first dataset.
+    pub attributes: BTreeMap<String, String>,
+    /// Files that no reader accepts, with the reason.
+    pub refused: Vec<(String, String)>,
+    /// Whether the file has a time axis or a sample rate.
+    pub timed: bool,
+}
+
+/// A channel and the role inferred for it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InferredChannel {
+    /// Name in the file.
+    pub name: String,
+    /// Unit in the file.
+    pub unit: Option<String>,
+    /// Number of samples.
+    pub samples: u64,
+    /// Least and greatest value.
+    pub range: Option<[f64; 2]>,
+    /// Whether it holds the time.
+    pub is_time: bool,
+    /// The role inferred.
+    pub role: Option<Role>,
+    /// Levels of a signal that has only two.
+    pub levels: Option<[f64; 2]>,
+}
+
+/// Read the headers of all files below a folder, and infer the channels' roles.
+pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
+    let mut paths = Vec::new();
+    collect(folder, DEPTH, &mut paths);
+    paths.sort();
+    let mut found = FolderContents::default();
+    let mut records = Vec::new();
+    for path in paths {
+        let relative = path.strip_prefix(folder).unwrap_or(&path).to_path_buf();
+        if found.run_table.is_none() && is_run_table(&path) {
+            found.run_table = Some(slashed(&relative));
+            continue;
+        }
+        match open(&path) {
+            Ok(source) if holds_record(source.as_ref()) => records.push((relative, source)),
+            Ok(_) => {}
+            Err(error) => found.refused.push((slashed(&relative), error.found)),
+        }
+    }
+    found.files = records.len();
+    found.globs = globs(&records.iter().map(|(p, _)| p.clone()).collect::<Vec<_>>());
+    if let Some((path, source)) = records.first() {
+        found.example = slashed(path);
+        describe(source.as_ref(), &mut found);
+    }
+    found
+}
+
+fn slashed(path: &Path) -> String {
+    path.iter()
+        .map(|p| p.to_string_lossy())
+        .collect::<Vec<_>>()
+        .join("/")
+}
+
+fn collect(folder: &Path, depth: usize, paths: &mut Vec<PathBuf>) {
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return;
+    };
+    for entry in entries.filter_map(Result::ok) {
+        let hidden = entry.file_name().to_string_lossy().starts_with('.');
+        let path = entry.path();
+        match entry.file_type() {
+            Ok(kind) if kind.is_dir() && !hidden && depth > 0 => collect(&path, depth - 1, paths),
+            Ok(kind) if kind.is_file() && !hidden && !is_other(&path) => paths.push(path),
+            _ => {}
+        }
+    }
+}
+
+/// Files that hold no records by their ending.
+fn is_other(path: &Path) -> bool {
+    const OTHER: [&str; 10] = [
+        "toml", "json", "md", "pdf", "svg", "png", "py", "m", "tex", "zip",
+    ];
+    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    ending.is_none_or(|e| OTHER.contains(&e.as_str()))
+}
+
+/// Whether a file is a CSV table with a column `file`.
+fn is_run_table(path: &Path) -> bool {
+    if path
+        .extension()
+        .is_none_or(|e| !e.eq_ignore_ascii_case("csv"))
+    {
+        return false;
+    }
+    let Ok(mut reader) = csv::ReaderBuilder::new()
+        .flexible(true)
+        .comment(Some(b'#'))
+        .from_path(path)
+    else {
+        return false;
+    };
+    reader
+        .headers()
+        .is_ok_and(|h| h.iter().any(|name| name.trim() == "file"))
+}
+
+fn holds_record(source: &dyn Source) -> bool {
+    source
+        .datasets()
+        .iter()
+        .any(|d| d.channels.iter().any(|c| c.samples >= 16))
+}
+
+/// One glob per folder and extension; `**` for files in many folders.
+fn globs(paths: &[PathBuf]) -> Vec<String> {
+    let ending = |p: &PathBuf| {
+        p.extension()
+            .map(|e| format!("*.{}", e.to_string_lossy()))
+            .unwrap_or_default()
+    };
+    let mut all: Vec<String> = paths
+        .iter()
+        .map(
+            |p| match p.parent().map(slashed).filter(|f| !f.is_empty()) {
+                Some(folder) => format!("{folder}/{}", ending(p)),
+                None => ending(p),
+            },
+        )
+        .collect();
+    all.sort();
+    all.dedup();
+    if all.len() > 4 {
+        all = paths.iter().map(|p| format!("**/{}", ending(p))).collect();
+        all.sort();
+        all.dedup();
+    }
+    all
+}
+
+fn describe(source: &dyn Source, found: &mut FolderContents) {
+    found.format = source.format();
+    found.datasets = source.datasets().len();
+    let Some((index, set)) = source
+        .datasets()
+        .iter()
+        .enumerate()
+        .find(|(_, d)| d.channels.iter().any(|c| c.samples >= 16))
+    else {
+        return;
+    };
+    found.attributes = set.attributes.clone();
+    found.timed =
+        set.time_axis.is_some() || set.channels.iter().any(|c| c.sample_rate_hz.is_some());
+    found.channels = channels(source, index, set);
+    assign(&mut found.channels);
+}
+
+fn channels(source: &dyn Source, dataset: usize, set: &DatasetInfo) -> Vec<InferredChannel> {
+    let seen = |(i, info): (usize, &ChannelInfo)| {
+        let samples = source.read(dataset, &[i]).ok().and_then(|mut s| s.pop());
+        let values = match samples {
+            Some(Samples::Real(values)) => values,
+            _ => Vec::new(),
+        };
+        InferredChannel {
+            name: info.name.clone(),
+            unit: info.unit.clone(),
+            samples: info.samples,
+            range: range(&values),
+            is_time: set.time_axis == Some(i),
+            role: None,
+            levels: two_levels(&values),
+        }
+    };
+    set.channels.iter().enumerate().map(seen).collect()
+}
+
+fn range(values: &[f64]) -> Option<[f64; 2]> {
+    let finite = values.iter().filter(|v| v.is_finite());
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+        (l.min(*v), h.max(*v))
+    });
+    (low <= high).then_some([low, high])
+}
+
+/// The two levels of a signal that is nearly always at one of them, as a contact.
+fn two_levels(values: &[f64]) -> Option<[f64; 2]> {
+    let [low, high] = range(values)?;
+    let near = |level: f64| {
+        let width = 0.15 * (high - low);
+        values
+            .iter()
+            .filter(|v| (**v - level).abs() < width)
+            .count()
+    };
+    let (below, above) = (near(low), near(high));
+    let kept = (below + above) as f64 >= 0.9 * values.len() as f64;
+    let crossings = values
+        .windows(2)
+        .filter(|w| (w[0] < 0.5 * (low + high)) != (w[1] < 0.5 * (low + high)))
+        .count();
+    // a sine is long near its crests too, but takes more than two samples between them
+    let steep = values
+        .windows(2)
+        .filter(|w| (w[1] - w[0]).abs() > 0.4 * (high - low))
+        .count();
+    (high > low && kept && below > 0 && above > 0 && crossings > 0 && 2 * steep >= crossings)
+        .then_some([low, high])
+}
+
+/// Give each role to the channel that fits best.
+fn assign(channels: &mut [InferredChannel]) {
+    let y_first = sides(channels);
+    for role in Role::ALL {
+        let best = channels
+            .iter()
+            .enumerate()
+            .filter(|(_, c)| c.role.is_none() && !c.is_time)
+            .map(|(i, c)| (score(c, role, y_first), i))
+            .filter(|(s, _)| *s > 0)
+            .max_by_key(|(s, i)| (*s, std::cmp::Reverse(*i)));
+        if let Some((_, index)) = best {
+            channels[index].role = Some(role);
+        }
+    }
+}
+
+/// Whether any name refers to the second mass.
+fn sides(channels: &[InferredChannel]) -> bool {
+    channels.iter().any(|c| side(&c.name) == Some('y'))
+}
+
+fn words(name: &str) -> Vec<String> {
+    name.to_lowercase()
+        .split(|c: char| !c.is_alphanumeric())
+        .filter(|w| !w.is_empty())
+        .map(str::to_owned)
+        .collect()
+}
+
+/// The mass that a name refers to.
+fn side(name: &str) -> Option<char> {
+    let of = |word: &str| match word {
+        "x" | "1" | "left" | "a" | "vx" | "ax" | "dx" | "x1" | "v1" | "mass1" => Some('x'),
+        "y" | "2" | "right" | "b" | "vy" | "ay" | "dy" | "x2" | "v2" | "mass2" => Some('y'),
+        _ => None,
+    };
+    words(name).iter().rev().find_map(|w| of(w))
+}
+
+/// How well a channel fits a role; 0: not at all.
+fn score(channel: &InferredChannel, role: Role, two_sided: bool) -> u32 {
+    let kind = kind(channel);
+    let fits = match role {
+        Role::Drive => kind == Kind::Drive,
+        Role::Contact => kind == Kind::Contact,
+        Role::VelocityX | Role::VelocityY => kind == Kind::Velocity,
+        Role::DisplacementX | Role::DisplacementY => kind == Kind::Displacement,
+        Role::AccelerationX | Role::AccelerationY => kind == Kind::Acceleration,
+        Role::FrameX | Role::FrameY => kind == Kind::Frame,
+    };
+    let of_y = role.is_on_y_side();
+    let alive = channel.range.is_some_and(|[low, high]| high > low);
+    let base = 1 + 4 * u32::from(alive) + u32::from(channel.unit.is_some());
+    match (
+        fits,
+        role.is_motion() || kind == Kind::Frame,
+        side(&channel.name),
+    ) {
+        (false, _, _) => 0,
+        (true, false, _) => base,
+        (true, true, Some('y')) if of_y => base + 2,
+        (true, true, _) if of_y => 0,
+        (true, true, Some('x')) if two_sided => base + 2,
+        (true, true, Some('y')) => 0,
+        _ => base,
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Drive,
+    Contact,
+    Velocity,
+    Displacement,
+    Acceleration,
+    Frame,
+    Unknown,
+}
+
+/// Quantity of a channel, from its name, unit and shape.
+fn kind(channel: &InferredChannel) -> Kind {
+    let words = words(&channel.name);
+    let has = |stems: &[&str]| words.iter().any(|w| stems.iter().any(|s| w.starts_with(s)));
+    if has(&["frame", "base", "found", "housing"]) {
+        return Kind::Frame;
+    }
+    if has(&["contact", "touch", "switch", "kontakt"]) {
+        return Kind::Contact;
+    }
+    let unit = channel.unit.as_deref().and_then(units::parse_unit);
+    let of_name = units::split_unit(&channel.name)
+        .1
+        .and_then(units::parse_split_unit);
+    match unit.or(of_name).map(|u| u.dimension) {
+        Some(Dimension::Velocity) => return Kind::Velocity,
+        Some(Dimension::Length) => return Kind::Displacement,
+        Some(Dimension::Acceleration) => return Kind::Acceleration,
+        Some(Dimension::Force) => return Kind::Drive,
+        _ => {}
+    }
+    match () {
+        () if has(&["drive", "gen", "exc", "hammer", "force", "input", "shaker"]) => Kind::Drive,
+        () if has(&["vel", "speed", "laser", "ldv", "vib", "vx", "vy"]) => Kind::Velocity,
+        () if has(&["disp", "pos", "dx", "dy"]) => Kind::Displacement,
+        () if has(&["acc"]) => Kind::Acceleration,
+        () if channel.levels.is_some() => Kind::Contact,
+        () => Kind::Unknown,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seen(name: &str, unit: Option<&str>) -> InferredChannel {
+        InferredChannel {
+            name: name.into(),
+            unit: unit.map(str::to_owned),
+            samples: 100,
+            range: Some([-1.0, 1.0]),
+            is_time: false,
+            role: None,
+            levels: None,
+        }
+    }
+
+    #[test]
+    fn roles_are_inferred_from_names_and_units() {
+        let mut channels = vec![
+            seen("ch1/generator", Some("V")),
+            seen("ch2/vibrometer left", Some("V")),
+            seen("ch3/vibrometer right", Some("V")),
+            seen("ch4/contact", Some("V")),
+            seen("acc y", Some("g")),
+            seen("temperature", None),
+        ];
+        assign(&mut channels);
+        let roles: Vec<_> = channels.iter().map(|c| c.role).collect();
+        assert_eq!(
+            roles,
+            [
+                Some(Role::Drive),
+                Some(Role::VelocityX),
+                Some(Role::VelocityY),
+                Some(Role::Contact),
+                Some(Role::AccelerationY),
+                None
+            ]
+        );
+    }
+
+    #[test]
+    fn a_contact_has_two_levels_and_a_sine_has_not() {
+        let contact: Vec<f64> = (0..500)
+            .map(|i| if i % 50 < 3 { 5.0 } else { 0.01 })
+            .collect();
+        let sine: Vec<f64> = (0..500).map(|i| (f64::from(i) * 0.1).sin()).collect();
+        assert!(two_levels(&contact).is_some());
+        assert!(two_levels(&sine).is_none());
+    }
+}

@@ -1,0 +1,191 @@
+//! Errors as the user sees them: where, what, and what to do.
+
+use std::path::Path;
+
+use miette::{GraphicalReportHandler, GraphicalTheme};
+
+use super::Verbosity;
+use crate::campaign::diagnostic::{Diagnostic, Diagnostics, Severity};
+use crate::pipeline::PipelineError;
+use labfiles::ReadError;
+use labfiles::output::OutputError;
+use labfiles::panic_is_caught;
+
+/// Print no text for a panic of a library that a reader turns into an error: the error is printed.
+pub(super) fn hush_caught_panics() {
+    let print = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !panic_is_caught() {
+            print(panic);
+        }
+    }));
+}
+
+/// Why a command could not do its work.
+#[derive(Debug)]
+pub enum Failure {
+    /// What is wrong with the campaign.
+    Campaign(Diagnostics),
+    /// Anything else.
+    Other {
+        /// What happened.
+        message: String,
+        /// What the user can do.
+        remedy: String,
+    },
+}
+
+impl Failure {
+    /// One error with its remedy.
+    pub fn new(message: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self::Other {
+            message: message.into(),
+            remedy: remedy.into(),
+        }
+    }
+
+    /// All messages in one line.
+    #[cfg(feature = "mpi")]
+    pub(super) fn text(&self) -> String {
+        match self {
+            Self::Campaign(all) => {
+                let messages: Vec<&str> = all.0.iter().map(|d| d.message.as_str()).collect();
+                messages.join("; ")
+            }
+            Self::Other { message, .. } => message.clone(),
+        }
+    }
+
+    /// A file that could not be read or written.
+    pub fn io(path: &Path, error: &std::io::Error) -> Self {
+        Self::new(
+            format!("{}: {error}", path.display()),
+            "check path and permissions",
+        )
+    }
+
+    /// Print it on the standard error stream.
+    pub(super) fn print(&self, verbosity: Verbosity) {
+        match self {
+            Self::Campaign(all) => print_diagnostics(all, verbosity),
+            Self::Other { message, remedy } => {
+                eprint!("{}", rendered(message, remedy, Severity::Campaign));
+            }
+        }
+    }
+}
+
+impl From<Diagnostics> for Failure {
+    fn from(diagnostics: Diagnostics) -> Self {
+        Self::Campaign(diagnostics)
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        Self::new(error.to_string(), error.remedy())
+    }
+}
+
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
+        Self::new(error.fault(), error.remedy)
+    }
+}
+
+impl From<PipelineError> for Failure {
+    fn from(error: PipelineError) -> Self {
+        match error {
+            PipelineError::Read(error) => Self::from(error),
+            error => Self::new(error.to_string(), error.remedy()),
+        }
+    }
+}
+
+/// Problems that are alike are printed as one from this many on.
+const MANY: usize = 3;
+
+/// Print problems on the standard error stream, those alike as one unless details are asked for;
+/// with `--quiet` no notes.
+pub(super) fn print_diagnostics(all: &Diagnostics, verbosity: Verbosity) {
+    let mut shortened = false;
+    for group in all.groups() {
+        let members = group.0.as_slice();
+        let note = members.iter().all(|d| d.severity == Severity::Note);
+        if note && verbosity.is_quiet() {
+            continue;
+        }
+        match group.summary() {
+            Some(summary) if members.len() >= MANY && !verbosity.is_detailed() => {
+                shortened = true;
+                print_one(&summary);
+            }
+            _ => members.iter().for_each(|one| print_one(one)),
+        }
+    }
+    if shortened {
+        verbosity.info("Add -v to see each of them.");
+    }
+}
+
+fn print_one(one: &Diagnostic) {
+    let message = format!("{}: {}", one.place, one.message);
+    eprint!("{}", rendered(&message, &one.remedy, one.severity));
+}
+
+/// A problem in the form that miette prints.
+#[derive(Debug, thiserror::Error)]
+#[error("{message}")]
+struct Printed<'a> {
+    message: &'a str,
+    remedy: &'a str,
+    severity: Severity,
+}
+
+impl miette::Diagnostic for Printed<'_> {
+    fn severity(&self) -> Option<miette::Severity> {
+        Some(match self.severity {
+            Severity::Campaign => miette::Severity::Error,
+            Severity::Record => miette::Severity::Warning,
+            Severity::Note => miette::Severity::Advice,
+        })
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn std::fmt::Display + 'a>> {
+        Some(Box::new(self.remedy))
+    }
+}
+
+fn rendered(message: &str, remedy: &str, severity: Severity) -> String {
+    let printed = Printed {
+        message,
+        remedy,
+        severity,
+    };
+    let mut text = String::new();
+    let handler = GraphicalReportHandler::new_themed(theme()).with_width(width());
+    match handler.render_report(&mut text, &printed) {
+        Ok(()) => text,
+        Err(_) => format!("{message}. {remedy}\n"),
+    }
+}
+
+/// Colours on a terminal that wants them, none elsewhere or with NO_COLOR.
+fn theme() -> GraphicalTheme {
+    use std::io::IsTerminal;
+    let plain = std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty());
+    match std::io::stderr().is_terminal() && !plain {
+        true => GraphicalTheme::unicode(),
+        false => GraphicalTheme::unicode_nocolor(),
+    }
+}
+
+/// Width of lines: broken on a terminal, whole elsewhere, so that programs find their words.
+fn width() -> usize {
+    use std::io::IsTerminal;
+    if std::io::stderr().is_terminal() {
+        96
+    } else {
+        4096
+    }
+}

@@ -1,0 +1,35 @@
+//! campaign.toml as the commands load it.
+
+use std::path::Path;
+
+use super::failure::print_diagnostics;
+use super::read_log::ReadLog;
+use super::{Failure, Verbosity};
+use crate::campaign::diagnostic::{Diagnostics, Severity};
+use crate::campaign::load;
+use crate::campaign::resolved::ResolvedCampaign;
+
+/// The resolved campaign; problems that stop it are an error, the others are printed (notes only
+/// with `-v`).
+///
+/// # Errors
+/// [`Failure::Campaign`] with every problem found.
+pub(super) fn load_campaign(
+    path: &Path,
+    verbosity: Verbosity,
+) -> Result<ResolvedCampaign, Failure> {
+    let log = ReadLog::new(verbosity);
+    let outcome = load(path, &|path| log.open(path));
+    log.print();
+    let Some(campaign) = outcome.campaign else {
+        return Err(outcome.diagnostics.into());
+    };
+    let mut worth_printing = outcome.diagnostics.0;
+    if !verbosity.is_detailed() {
+        worth_printing.retain(|d| d.severity > Severity::Note);
+    }
+    if !verbosity.is_quiet() {
+        print_diagnostics(&Diagnostics(worth_printing), verbosity);
+    }
+    Ok(campaign)
+}

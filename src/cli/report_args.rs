@@ -1,0 +1,162 @@
+//! Options of the report, shared by the commands that write one. They override those of
+//! campaign.toml.
+
+use std::path::{Path, PathBuf};
+
+use clap::builder::PossibleValue;
+use clap::{Args, ValueEnum};
+
+use super::{Failure, Verbosity};
+use crate::campaign::resolved::{Report, ResolvedCampaign};
+use crate::campaign::written::Paper;
+use crate::pipeline;
+use crate::report::Format;
+
+/// Options of the report.
+#[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "Report")]
+pub(super) struct ReportArgs {
+    /// Formats of the report: pdf, html, svg, png (several: pdf,html)
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    format: Vec<Format>,
+    /// Typst template instead of the built-in one
+    #[arg(long, value_name = "FILE")]
+    template: Option<PathBuf>,
+    /// Table of the report's phrases in another language (report --list-words prints them)
+    #[arg(long, value_name = "FILE")]
+    words: Option<PathBuf>,
+    /// Image for the first page: svg, png or jpg
+    #[arg(long, value_name = "FILE")]
+    logo: Option<PathBuf>,
+    /// Paper size
+    #[arg(long, value_name = "PAPER", value_enum)]
+    paper: Option<Paper>,
+    /// Print numbers with a decimal comma
+    #[arg(long)]
+    decimal_comma: bool,
+}
+
+impl ValueEnum for Paper {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::A4, Self::UsLetter]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(match self {
+            Self::A4 => PossibleValue::new("a4"),
+            Self::UsLetter => PossibleValue::new("letter").alias("us-letter"),
+        })
+    }
+}
+
+impl ReportArgs {
+    /// Override the options of campaign.toml.
+    pub(super) fn apply(&self, report: &mut Report, verbosity: Verbosity) -> Result<(), Failure> {
+        let files = [&self.template, &self.words, &self.logo];
+        for file in files.into_iter().flatten() {
+            if !file.is_file() {
+                return Err(Failure::new(
+                    format!("{} is not a file", file.display()),
+                    "check the path, or leave the option out",
+                ));
+            }
+        }
+        if !self.format.is_empty() {
+            report.formats.clone_from(&self.format);
+        }
+        if self.template.is_some() {
+            report.template.clone_from(&self.template);
+        }
+        if self.words.is_some() {
+            report.words.clone_from(&self.words);
+        }
+        if self.logo.is_some() {
+            report.logo.clone_from(&self.logo);
+        }
+        if let Some(paper) = self.paper {
+            report.paper = paper;
+        }
+        report.decimal_comma |= self.decimal_comma;
+        if let Some(catalog) = pipeline::report::catalog(report)? {
+            for remark in catalog.remarks() {
+                verbosity.info(&format!("note: {remark}"));
+            }
+        }
+        Ok(())
+    }
+
+    /// These options as on the command line, with a space before each.
+    pub(super) fn typed(&self) -> String {
+        let mut text = String::new();
+        let mut add = |name: &str, value: &str| text.push_str(&format!(" --{name} {value}"));
+        if !self.format.is_empty() {
+            let names: Vec<&str> = self.format.iter().map(|f| f.name()).collect();
+            add("format", &names.join(","));
+        }
+        if let Some(file) = &self.template {
+            add("template", &quoted(file));
+        }
+        if let Some(file) = &self.words {
+            add("words", &quoted(file));
+        }
+        if let Some(file) = &self.logo {
+            add("logo", &quoted(file));
+        }
+        if let Some(paper) = self.paper {
+            add("paper", paper.name().trim_start_matches("us-"));
+        }
+        if self.decimal_comma {
+            text.push_str(" --decimal-comma");
+        }
+        text
+    }
+}
+
+/// Print the paths of the report.
+pub(super) fn print_report_paths(campaign: &ResolvedCampaign, out: &Path, verbosity: Verbosity) {
+    for format in &campaign.report.formats {
+        let name = match format {
+            Format::Pdf => "report.pdf",
+            Format::Html => "report.html",
+            Format::Svg | Format::Png | Format::Csv => "figures/",
+        };
+        verbosity.info(&format!(
+            "Report ({}): {}",
+            format.name(),
+            out.join(name).display()
+        ));
+    }
+}
+
+/// A path quoted for a shell.
+pub(super) fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = |c: char| c.is_alphanumeric() || "/._-+:,=@%".contains(c);
+    if !text.is_empty() && text.chars().all(plain) {
+        text
+    } else {
+        format!("'{}'", text.replace('\'', r"'\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_options_are_typed_as_they_were_given() {
+        let options = ReportArgs {
+            format: vec![Format::Pdf, Format::Html],
+            template: Some("my template.typ".into()),
+            words: Some("de.toml".into()),
+            logo: None,
+            paper: Some(Paper::UsLetter),
+            decimal_comma: true,
+        };
+        assert_eq!(
+            options.typed(),
+            " --format pdf,html --template 'my template.typ' --words de.toml --paper letter --decimal-comma"
+        );
+        assert_eq!(ReportArgs::default().typed(), "");
+    }
+}

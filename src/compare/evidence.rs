@@ -1,0 +1,287 @@
+//! What each method used: resonance curves, speeds at impacts, residuals, correlation.
+
+use super::input::{Input, thinned};
+use crate::identify::diagnostics::contact_law::Law;
+use crate::identify::evidence::impacts::SpeedPair;
+use crate::identify::evidence::resonance::predicted;
+use crate::identify::evidence::{Blocks, Evidence, Nominal};
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::residuals::{MethodResiduals, residuals as residuals_of_methods};
+use crate::identify::{Method, MethodResult, SpecimenResult};
+use crate::motion::Observation;
+use crate::motion::Response;
+use crate::record::Role;
+use impact_oscillator::atlas::map::even;
+use labfiles::units::Dimension;
+
+/// One point of a resonance curve; errors are standard errors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResonancePoint {
+    /// The record's name.
+    pub record: String,
+    /// Drive frequency, Hz.
+    pub frequency_hz: f64,
+    /// Amplitude over the drive's relative amplitude, SI unit of the curve's dimension.
+    pub amplitude: f64,
+    /// Its error.
+    pub amplitude_error: f64,
+    /// Phase behind the drive, rad.
+    pub phase_rad: f64,
+    /// Its error, rad.
+    pub phase_error_rad: f64,
+    /// Whether the fit used it.
+    pub used: bool,
+}
+
+/// A resonance curve without impacts, with its fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResonanceCurve {
+    /// Which channel.
+    pub role: Role,
+    /// Dimension of the amplitude.
+    pub dimension: Dimension,
+    /// The measured points, by frequency.
+    pub points: Vec<ResonancePoint>,
+    /// The fitted curve: (frequency Hz, amplitude, phase rad).
+    pub fitted: Vec<[f64; 3]>,
+}
+
+/// One impact's speeds, m/s.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImpactPoint {
+    /// The record's name.
+    pub record: String,
+    /// Approach speed before.
+    pub before_m_s: f64,
+    /// Separation speed after (R times the speed before).
+    pub after_m_s: f64,
+    /// Standard error of either.
+    pub error_m_s: f64,
+}
+
+/// Speeds after over before impact, with the fitted restitution.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ImpactScatter {
+    /// The specimen, if the campaign has several.
+    pub specimen: Option<String>,
+    /// The impacts; of very many every second, third …
+    pub points: Vec<ImpactPoint>,
+    /// Number of impacts used.
+    pub total: usize,
+    /// The fitted constant R.
+    pub restitution: Option<f64>,
+    /// Its 95 % interval.
+    pub interval95: Option<[f64; 2]>,
+    /// Fitted R over approach speed, (m/s, R), if R depends on the speed.
+    pub restitution_of_speed: Vec<[f64; 2]>,
+}
+
+/// One weighted residual: (measured − fitted) over its standard error.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResidualPoint {
+    /// The record's name.
+    pub record: String,
+    /// The weighted residual.
+    pub residual: f64,
+    /// Drive frequency, Hz.
+    pub frequency_hz: Option<f64>,
+    /// Clearance r, m.
+    pub clearance_m: Option<f64>,
+}
+
+/// The residuals of one method.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResidualSet {
+    /// The method.
+    pub method: Method,
+    /// The residuals, in the order of the observations; of very many every second, third …
+    pub points: Vec<ResidualPoint>,
+    /// Number of residuals.
+    pub total: usize,
+    /// Autocorrelation at lags 0, 1, 2 …
+    pub autocorrelation: Vec<f64>,
+}
+
+/// Correlation of the fitted parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Correlation {
+    /// The parameters.
+    pub parameters: Vec<Coordinate>,
+    /// The matrix, row by row.
+    pub matrix: Vec<Vec<f64>>,
+}
+
+/// Points of a fitted resonance curve.
+const CURVE_POINTS: usize = 240;
+/// Fewer points make no resonance curve.
+const FEWEST_POINTS: usize = 3;
+/// Most resonance curves: one for each mass.
+const MOST_CURVES: usize = 2;
+/// Most residuals of one method.
+const MOST_RESIDUALS: usize = 4000;
+/// Most impacts, and most points of a resonance curve.
+const MOST_POINTS: usize = 20_000;
+
+/// Resonance curves of the channels that have one, velocities first.
+pub(super) fn resonance(input: &Input) -> Vec<ResonanceCurve> {
+    let roles = Role::ALL.into_iter().filter(|r| r.is_motion());
+    let curves = roles.filter_map(|role| curve(input, role));
+    curves.take(MOST_CURVES).collect()
+}
+
+fn curve(input: &Input, role: Role) -> Option<ResonanceCurve> {
+    let left_out = input.record_reasons();
+    let observations = input.observations.iter().enumerate();
+    let points = observations.filter_map(|(i, o)| {
+        let response = o.response.iter().find(|r| r.role == role)?;
+        let used = !o.excluded() && !left_out.contains_key(&i);
+        Some(point(o, response, used))
+    });
+    let points: Vec<ResonancePoint> = points.collect();
+    let mut points: Vec<ResonancePoint> = thinned(&points, MOST_POINTS).cloned().collect();
+    if points.len() < FEWEST_POINTS {
+        return None;
+    }
+    points.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
+    Some(ResonanceCurve {
+        role,
+        dimension: role.dimension().unwrap_or(Dimension::Number),
+        fitted: fitted(input, role, &points),
+        points,
+    })
+}
+
+fn point(o: &Observation, response: &Response, used: bool) -> ResonancePoint {
+    let amplitude = response.amplitude();
+    ResonancePoint {
+        record: o.record.clone(),
+        frequency_hz: o.frequency_hz().unwrap_or(f64::NAN),
+        amplitude: amplitude / o.setting.drive_amplitude,
+        amplitude_error: response.error / o.setting.drive_amplitude,
+        phase_rad: -response.imaginary.atan2(response.real),
+        phase_error_rad: response.error / amplitude,
+        used,
+    }
+}
+
+fn fitted(input: &Input, role: Role, points: &[ResonancePoint]) -> Vec<[f64; 3]> {
+    let (Some(parameters), Some(first), Some(last)) =
+        (input.parameters(), points.first(), points.last())
+    else {
+        return Vec::new();
+    };
+    let at = |f: f64| {
+        let z = predicted(parameters, input.rig, role, f, 1.0);
+        [f, z.norm(), -z.im.atan2(z.re)]
+    };
+    let frequencies = even((first.frequency_hz, last.frequency_hz, CURVE_POINTS));
+    frequencies.into_iter().map(at).collect()
+}
+
+/// What the methods' blocks are made of; nominal values have no weight here.
+fn evidence<'a>(input: &Input<'a>) -> Evidence<'a> {
+    Evidence {
+        rig: input.rig,
+        observations: input.observations,
+        brackets: input.brackets,
+        nominal: Nominal::default(),
+        uncertainty: Default::default(),
+    }
+}
+
+/// Speeds before and after impact; each specimen by itself if there are several.
+pub(super) fn impacts(input: &Input) -> Vec<ImpactScatter> {
+    let block = Blocks::new(&evidence(input)).impact;
+    let specimens = &input.identification.specimens;
+    if specimens.is_empty() {
+        let method = input.identification.methods.get(&Method::Impacts);
+        let pairs: Vec<&SpeedPair> = block.pairs.iter().collect();
+        return scatter(input, None, &pairs, method).into_iter().collect();
+    }
+    let of_specimen = |(name, result): (&String, &SpecimenResult)| {
+        let specimen = |p: &&SpeedPair| {
+            let setting = &input.observations[p.observation].setting;
+            setting.specimen.as_ref() == Some(name)
+        };
+        let pairs: Vec<&SpeedPair> = block.pairs.iter().filter(specimen).collect();
+        scatter(
+            input,
+            Some(name),
+            &pairs,
+            result.methods.get(&Method::Impacts),
+        )
+    };
+    specimens.iter().filter_map(of_specimen).collect()
+}
+
+fn scatter(
+    input: &Input,
+    specimen: Option<&String>,
+    pairs: &[&SpeedPair],
+    method: Option<&MethodResult>,
+) -> Option<ImpactScatter> {
+    let estimate = method.and_then(|m| m.parameters.restitution.as_ref());
+    let point = |p: &&SpeedPair| ImpactPoint {
+        record: input.observations[p.observation].record.clone(),
+        before_m_s: p.before_m_s,
+        after_m_s: p.after_m_s,
+        error_m_s: p.error_m_s,
+    };
+    (!pairs.is_empty()).then(|| ImpactScatter {
+        specimen: specimen.cloned(),
+        total: pairs.len(),
+        points: thinned(pairs, MOST_POINTS).map(point).collect(),
+        restitution: estimate.and_then(|e| e.value),
+        interval95: estimate.and_then(|e| e.interval95),
+        restitution_of_speed: method.map(law_curve).unwrap_or_default(),
+    })
+}
+
+/// R over the approach speed, if it is not one number.
+fn law_curve(method: &MethodResult) -> Vec<[f64; 2]> {
+    let law = method.contact_law.as_ref();
+    let law = law.filter(|l| l.law != Law::Constant && method.fits == Some(false));
+    let curve = law.into_iter().flat_map(|l| &l.curve);
+    curve.map(|p| [p.speed_m_s, p.restitution]).collect()
+}
+
+/// The residuals of each method at the fitted parameters.
+pub(super) fn residuals(input: &Input) -> Vec<ResidualSet> {
+    let Some(parameters) = input.parameters() else {
+        return Vec::new();
+    };
+    let reasons = input.record_reasons();
+    let left_out = |i: usize| reasons.contains_key(&i);
+    let found = residuals_of_methods(&evidence(input), parameters, left_out);
+    found.into_iter().map(|m| residual_set(input, m)).collect()
+}
+
+fn residual_set(input: &Input, found: MethodResiduals) -> ResidualSet {
+    let point = |(owner, residual): &(usize, f64)| {
+        let o = &input.observations[*owner];
+        ResidualPoint {
+            record: o.record.clone(),
+            residual: *residual,
+            frequency_hz: o.frequency_hz(),
+            clearance_m: o.setting.clearance_m,
+        }
+    };
+    let points = thinned(&found.residuals, MOST_RESIDUALS).map(point);
+    ResidualSet {
+        method: found.method,
+        total: found.residuals.len(),
+        points: points.collect(),
+        autocorrelation: found.autocorrelation,
+    }
+}
+
+/// Correlation of the parameters that were fitted together.
+pub(super) fn correlation(input: &Input) -> Option<Correlation> {
+    let fit = &input.identification.joint_fit.as_ref()?.fit;
+    let between = |a, b| fit.correlation(a, b).unwrap_or(0.0);
+    let row = |a| fit.free.iter().map(|b| between(a, *b)).collect();
+    Some(Correlation {
+        parameters: fit.free.clone(),
+        matrix: fit.free.iter().map(|a| row(*a)).collect(),
+    })
+}

@@ -1,0 +1,77 @@
+//! Simulated against measured: the fitted model beside a campaign's records, as plain typed data.
+//!
+//! [`compare`] simulates the regions of motion and the boundaries with their 95 % bands in the (η, ρ)
+//! plane, replays chosen records, and collects what each method of the identification used: resonance
+//! curves, speeds at impacts, free decays and residuals. Nothing is identified here, and nothing drawn.
+
+mod decays;
+mod evidence;
+mod input;
+mod left_out;
+mod plane;
+mod records;
+mod replays;
+
+pub use decays::FreeDecay;
+pub use evidence::{
+    Correlation, ImpactPoint, ImpactScatter, ResidualPoint, ResidualSet, ResonanceCurve,
+    ResonancePoint,
+};
+pub use input::Input;
+pub use left_out::Unusable;
+pub use plane::{BoundaryCurve, RegionMap};
+pub use records::{BracketRow, Overview, RecordRow};
+pub use replays::{Comparison, Signal, Trace};
+
+/// The fitted model and the measurement, side by side. All quantities are SI; every list may be empty.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Compared {
+    /// Counts and ranges of what was measured.
+    pub overview: Overview,
+    /// One row per record; of very many every second, third …
+    pub records: Vec<RecordRow>,
+    /// Measured brackets of the boundaries.
+    pub brackets: Vec<BracketRow>,
+    /// Simulated boundaries in the (η, ρ) plane.
+    pub curves: Vec<BoundaryCurve>,
+    /// Simulated regions of motion in the (η, ρ) plane.
+    pub region_map: Option<RegionMap>,
+    /// Records beside their simulation.
+    pub comparisons: Vec<Comparison>,
+    /// Resonance curves without impacts.
+    pub resonance: Vec<ResonanceCurve>,
+    /// Speeds after over before impact, one entry per specimen.
+    pub impacts: Vec<ImpactScatter>,
+    /// Free decays with their fits.
+    pub free_decays: Vec<FreeDecay>,
+    /// Residuals of each method.
+    pub residuals: Vec<ResidualSet>,
+    /// Correlation of the parameters that were fitted together.
+    pub correlation: Option<Correlation>,
+    /// Records that no method could use, by reason.
+    pub unusable: Vec<Unusable>,
+}
+
+/// Compare a campaign with its fitted model.
+pub fn compare(input: &Input) -> Compared {
+    let chosen = replays::chosen_records(input);
+    Compared {
+        overview: records::overview(input),
+        records: records::records(input, &chosen),
+        brackets: records::brackets(input),
+        curves: plane::curves(input),
+        region_map: plane::region_map(input),
+        comparisons: replays::comparisons(input, &chosen),
+        resonance: evidence::resonance(input),
+        impacts: evidence::impacts(input),
+        free_decays: decays::free_decays(input),
+        residuals: evidence::residuals(input),
+        correlation: evidence::correlation(input),
+        unusable: left_out::unusable(input.observations),
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod fixture;
+#[cfg(test)]
+mod tests;

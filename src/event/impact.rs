@@ -1,0 +1,109 @@
+//! One impact, with everything that was measured of it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::record::Role;
+
+/// Channels that show an impact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DetectionSource {
+    /// Only the contact channel.
+    Contact,
+    /// Only a jump of velocity.
+    Velocity,
+    /// Both.
+    Both,
+}
+
+impl DetectionSource {
+    /// The name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            DetectionSource::Contact => "contact",
+            DetectionSource::Velocity => "velocity",
+            DetectionSource::Both => "both",
+        }
+    }
+}
+
+/// Velocity of one mass just before and just after an impact, m/s, toward the other mass.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct MassSpeeds {
+    /// Extrapolated from the arc before to the impact's time.
+    pub before_m_s: f64,
+    /// Extrapolated from the arc after to the impact's time.
+    pub after_m_s: f64,
+}
+
+/// One impact: its time, its phase of the drive, the speeds before and after, how it was detected.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Impact {
+    /// Time since the record's first sample, s, refined below the sample step.
+    pub time_s: f64,
+    /// Standard error of the time, s.
+    pub time_error_s: f64,
+    /// Phase of the drive at the impact, rad in [0, 2π); the drive is cos(phase).
+    pub drive_phase_rad: Option<f64>,
+    /// Approach speed before the impact (x' + y'; for one mass x'), m/s, positive.
+    #[serde(rename = "closing_speed_before_m_s")]
+    pub approach_speed_before_m_s: Option<f64>,
+    /// Approach speed after the impact, m/s: minus the separation speed, so negative while the
+    /// bodies separate.
+    #[serde(rename = "closing_speed_after_m_s")]
+    pub approach_speed_after_m_s: Option<f64>,
+    /// Standard error of either approach speed, m/s.
+    pub speed_error_m_s: Option<f64>,
+    /// Mass x alone.
+    pub x: Option<MassSpeeds>,
+    /// Mass y alone.
+    pub y: Option<MassSpeeds>,
+    /// Change of both approach speeds if a channel's corner is not the stated one.
+    #[serde(default)]
+    pub corner_shifts: [Option<CornerShift>; 2],
+    /// How long the bodies stayed together after it, s; zero without a dead zone.
+    pub dead_zone_s: f64,
+    /// Duration of the contact, s; `None` if it cannot be distinguished from an instant. The approach
+    /// speeds are those at its start and at its end; `time_s` is the centre of its impulse, to which the
+    /// speeds of each mass refer, as if the impact were instantaneous there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact_duration_s: Option<f64>,
+    /// What springs and drive, not the contact, added to the separation speed during the contact,
+    /// m/s (for a linear contact); `None` as above.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub external_push_m_s: Option<f64>,
+    /// Channels that show it.
+    #[serde(rename = "seen")]
+    pub source: DetectionSource,
+}
+
+/// Change of both approach speeds at an impact per unit of the logarithm of a corner frequency.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct CornerShift {
+    /// The channel whose corner it is.
+    pub role: Role,
+    /// m/s, toward each other.
+    pub speed_m_s: f64,
+}
+
+#[cfg(test)]
+impl Impact {
+    /// An impact of a time and an approach speed; nothing else is known.
+    pub(crate) fn at(time_s: f64, approach_speed_m_s: f64) -> Self {
+        Self {
+            time_s,
+            time_error_s: 1e-5,
+            drive_phase_rad: None,
+            approach_speed_before_m_s: Some(approach_speed_m_s),
+            approach_speed_after_m_s: None,
+            speed_error_m_s: None,
+            x: None,
+            y: None,
+            corner_shifts: [None, None],
+            dead_zone_s: 0.0,
+            contact_duration_s: None,
+            external_push_m_s: None,
+            source: DetectionSource::Both,
+        }
+    }
+}

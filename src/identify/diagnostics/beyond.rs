@@ -1,0 +1,55 @@
+//! What a rig has beyond the model: the effects whose estimates are significant.
+
+use crate::identify::fit::effect::Effect;
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::messages::Finding;
+use crate::identify::methods::MethodFit;
+
+/// Standard errors from which an effect is named: by chance one in two thousand reaches them.
+const NAMED: f64 = 3.5;
+/// χ² of two degrees of freedom that is as rare.
+const NAMED_PAIR: f64 = 15.3;
+
+/// The significant effects of a joint fit. The two parts of a harmonic are named as its amplitude.
+pub fn beyond(found: &MethodFit) -> Vec<Finding> {
+    Effect::ALL
+        .into_iter()
+        .filter_map(|effect| match effect {
+            Effect::SecondHarmonicCos => harmonic(found, effect, Effect::SecondHarmonicSin),
+            Effect::ThirdHarmonicCos => harmonic(found, effect, Effect::ThirdHarmonicSin),
+            Effect::SecondHarmonicSin | Effect::ThirdHarmonicSin => None,
+            single => {
+                let (strength, standard_error) = estimated(found, single)?;
+                let z_score = strength / standard_error;
+                (z_score.abs() > NAMED).then_some(Finding::BeyondModel {
+                    effect,
+                    strength,
+                    standard_error,
+                    z_score,
+                })
+            }
+        })
+        .collect()
+}
+
+fn estimated(found: &MethodFit, effect: Effect) -> Option<(f64, f64)> {
+    let coordinate = Coordinate::Effect(effect);
+    let error = found.spread(coordinate)?.error;
+    (error > 0.0).then(|| (found.fit.parameters.coordinate(coordinate), error))
+}
+
+fn harmonic(found: &MethodFit, cos: Effect, sin: Effect) -> Option<Finding> {
+    let ((a, ea), (b, eb)) = (estimated(found, cos)?, estimated(found, sin)?);
+    let correlation = found
+        .fit
+        .correlation(Coordinate::Effect(cos), Coordinate::Effect(sin))?;
+    let (u, v) = (a / ea, b / eb);
+    let chi2 = (u * u - 2.0 * correlation * u * v + v * v) / (1.0 - correlation * correlation);
+    let strength = a.hypot(b);
+    (chi2 > NAMED_PAIR).then(|| Finding::BeyondModel {
+        effect: cos,
+        strength,
+        standard_error: (a * ea).hypot(b * eb) / strength,
+        z_score: chi2.sqrt(),
+    })
+}

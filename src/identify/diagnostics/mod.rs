@@ -1,0 +1,10 @@
+//! Diagnostics of a fit: whether the model describes the data, whether the methods agree, which records
+//! are influential, and which mistakes of the laboratory the data give away.
+
+pub mod agreement;
+pub mod beyond;
+pub mod contact_law;
+pub mod influence;
+pub mod suspicion;
+pub mod swapped_channels;
+pub mod verdict;

@@ -1,0 +1,274 @@
+//! Mistakes of the laboratory that the data give away: a gap stated wrongly, a gain or a corner
+//! far off, the channels of the two masses interchanged.
+//!
+//! A gap or an interchange is tested as an alternative: what would change if it were so, and how
+//! much better would all data then fit.
+
+use nalgebra::DVector;
+
+use crate::identify::evidence::trajectory::{TrajectoryBlock, TrajectoryRecord};
+use crate::identify::evidence::{Blocks, Nominal};
+use crate::identify::fit::factor::dot;
+use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::{Block, Fit, mean_squares};
+use crate::identify::messages::Finding;
+use crate::identify::methods::MethodFit;
+use crate::record::Role;
+
+/// Standard errors from which a deviation is named.
+pub(super) const SURE: f64 = 6.0;
+/// Standard uncertainties of gains and corners from which one is named.
+const CHANNEL_LIMIT: f64 = 4.0;
+/// Least relative deviation of a gap that is named.
+const GAP_LIMIT: f64 = 2e-3;
+/// Standard uncertainties, those of the clearances and of the fit combined, from which a gap is named
+/// whose uncertainty is stated.
+const GAP_SURE: f64 = 3.4;
+
+/// Whether a gap is so far off that it is named, where clearances have a standard uncertainty.
+fn is_named(odd: &OddGap, uncertainty_m: f64) -> bool {
+    match uncertainty_m > 0.0 {
+        true => odd.z_score.abs() > GAP_SURE,
+        false => {
+            let relative = (odd.fitting_m / odd.stated_m - 1.0).abs();
+            odd.z_score.abs() > SURE && relative > GAP_LIMIT
+        }
+    }
+}
+
+/// The channels in the order of [`Parameters::gains`].
+const CHANNELS: [Role; 4] = [
+    Role::VelocityX,
+    Role::VelocityY,
+    Role::DisplacementX,
+    Role::DisplacementY,
+];
+
+/// Gains and corners of channels that are far outside what the laboratory states of them.
+pub fn channels(fit: &Fit, factor: f64, nominal: &Nominal) -> Vec<Finding> {
+    let of = |coordinate: &Coordinate| {
+        let (allowed, index) = match coordinate {
+            Coordinate::Gain(index) => (nominal.gain_uncertainty, index),
+            Coordinate::Corner(index) => (nominal.corner_uncertainty, index),
+            _ => return None,
+        };
+        let off = fit.parameters.coordinate(*coordinate);
+        let error = fit.error(*coordinate)? * factor.sqrt();
+        let z_score = off / allowed.hypot(error).max(f64::MIN_POSITIVE);
+        let odd = z_score.abs() > CHANNEL_LIMIT && off.abs() > SURE * error;
+        let channel = *CHANNELS.get(*index).filter(|_| odd)?;
+        let deviation = off.exp_m1();
+        Some(match coordinate {
+            Coordinate::Corner(_) => Finding::WrongCorner {
+                channel,
+                deviation,
+                z_score,
+            },
+            _ => Finding::WrongGain {
+                channel,
+                deviation,
+                z_score,
+            },
+        })
+    };
+    fit.free.iter().filter_map(of).collect()
+}
+
+/// A gap that fits the other records only with another clearance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OddGap {
+    /// The clearance as stated, m.
+    pub stated_m: f64,
+    /// The clearance that fits, m.
+    pub fitting_m: f64,
+    /// Its difference over its standard error.
+    pub z_score: f64,
+}
+
+impl From<OddGap> for Finding {
+    fn from(odd: OddGap) -> Self {
+        Self::WrongClearance {
+            stated_m: odd.stated_m,
+            fitting_m: odd.fitting_m,
+            z_score: odd.z_score,
+        }
+    }
+}
+
+/// The clearances that records have, each once, in rising order.
+fn stated_gaps(records: &[TrajectoryRecord]) -> Vec<f64> {
+    let mut gaps: Vec<f64> = records.iter().map(|r| r.clearance_m).collect();
+    gaps.sort_by(f64::total_cmp);
+    gaps.dedup();
+    gaps
+}
+
+/// The gap that deviates most from the others: the largest mean shift in units of its error, to
+/// first order about a fit. `weight` is that of the trajectories in the fit.
+///
+/// With the residuals' slopes J over the free coordinates and c over the gap, the shift is
+/// −cᵀr / (cᵀc − cᵀJ(JᵀJ)⁻¹Jᵀc), (15). Where clearances have a stated uncertainty, the fit carries the
+/// gap's error itself.
+pub fn odd_gap(
+    blocks: &Blocks,
+    weight: f64,
+    found: &MethodFit,
+    uncertainty_m: f64,
+) -> Option<OddGap> {
+    let block = &blocks.trajectory;
+    let odd: Vec<OddGap> = match uncertainty_m > 0.0 {
+        true => {
+            let gaps = blocks.gaps_m.iter().enumerate();
+            gaps.filter_map(|(i, gap)| beyond_stated(found, i, *gap, uncertainty_m))
+                .collect()
+        }
+        false => {
+            let gaps = stated_gaps(&block.records);
+            let shifts = gaps.iter();
+            shifts
+                .filter_map(|gap| shift(block, weight, &found.fit, found.factor, *gap))
+                .collect()
+        }
+    };
+    odd.into_iter()
+        .max_by(|a, b| a.z_score.abs().total_cmp(&b.z_score.abs()))
+        .filter(|odd| is_named(odd, uncertainty_m))
+}
+
+/// The error of a gap that a fit carries with its prior of standard uncertainty u: an estimate e of
+/// variance C comes from one without the prior of e u²/(u² − C), which is e/√(u² − C) times the
+/// uncertainties of prior and fit combined.
+fn beyond_stated(found: &MethodFit, i: usize, gap: f64, uncertainty_m: f64) -> Option<OddGap> {
+    let coordinate = Coordinate::Gap(i);
+    let error_m = 1e-3 * found.spread(coordinate)?.error;
+    let informed = uncertainty_m.powi(2) - error_m.powi(2);
+    // A gap that the data hardly inform is not judged.
+    (informed > 0.1 * uncertainty_m.powi(2)).then(|| {
+        let off_m = 1e-3 * found.fit.parameters.coordinate(coordinate);
+        OddGap {
+            stated_m: gap,
+            fitting_m: gap + off_m * uncertainty_m.powi(2) / informed,
+            z_score: off_m / informed.sqrt(),
+        }
+    })
+}
+
+fn shift(block: &TrajectoryBlock, weight: f64, fit: &Fit, factor: f64, gap: f64) -> Option<OddGap> {
+    let (mut own, mut score) = (0.0, 0.0);
+    let mut cross = DVector::zeros(fit.free.len());
+    let mut seen = 0;
+    for (item, record) in block.records.iter().enumerate() {
+        if record.clearance_m != gap {
+            continue;
+        }
+        let over_gap = slope_over_gap(block, item, &fit.parameters);
+        let over_all = block.slopes(item, &fit.parameters, &fit.free);
+        let Some((slope, (residuals, columns))) = over_gap.zip(over_all) else {
+            continue;
+        };
+        own += weight * dot(&slope, &slope);
+        score += weight * dot(&slope, &residuals);
+        for (sum, column) in cross.iter_mut().zip(&columns) {
+            *sum += weight * dot(column, &slope);
+        }
+        seen += 1;
+    }
+    if seen < 2 {
+        return None;
+    }
+    let left = own - cross.dot(&(&fit.covariance * &cross));
+    (left > 1e-9 * own).then(|| {
+        let relative = -score / left;
+        OddGap {
+            stated_m: gap,
+            fitting_m: gap * (1.0 + relative),
+            z_score: relative * (left / factor).sqrt(),
+        }
+    })
+}
+
+/// Slope of one record's residuals over the relative clearance, by central differences.
+fn slope_over_gap(
+    block: &TrajectoryBlock,
+    item: usize,
+    parameters: &Parameters,
+) -> Option<Vec<f64>> {
+    const STEP: f64 = 2e-6;
+    let mut one = TrajectoryBlock {
+        records: vec![block.records[item].clone()],
+        ..*block
+    };
+    let stated_m = one.records[0].clearance_m;
+    let mut moved = |by: f64| {
+        one.records[0].clearance_m = stated_m * (1.0 + by);
+        one.residuals(0, parameters)
+    };
+    let (above, below) = (moved(STEP)?, moved(-STEP)?);
+    let difference = above.iter().zip(&below).map(|(a, b)| a - b);
+    Some(difference.map(|d| d / (2.0 * STEP)).collect())
+}
+
+/// Records of a gap that the model reaches only with another clearance: of the gaps whose records
+/// a fit mostly lost, the first that another clearance within a third brings back.
+pub fn lost_gap(
+    block: &TrajectoryBlock,
+    lost: &[TrajectoryRecord],
+    parameters: &Parameters,
+    typical: f64,
+) -> Option<OddGap> {
+    stated_gaps(lost).into_iter().find_map(|gap| {
+        let records: Vec<TrajectoryRecord> = lost
+            .iter()
+            .filter(|r| r.clearance_m == gap)
+            .cloned()
+            .collect();
+        let kept = block
+            .records
+            .iter()
+            .filter(|r| r.clearance_m == gap)
+            .count();
+        if records.len() < 2 || kept > records.len() / 2 {
+            return None;
+        }
+        recover(block, records, parameters, typical)
+    })
+}
+
+/// Mean squares beyond this times the typical one count the same.
+const CAP: f64 = 400.0;
+
+fn recover(
+    block: &TrajectoryBlock,
+    records: Vec<TrajectoryRecord>,
+    parameters: &Parameters,
+    typical: f64,
+) -> Option<OddGap> {
+    let stated = records[0].clearance_m;
+    let mut moved = TrajectoryBlock { records, ..*block };
+    let mut cost = |factor: f64| -> f64 {
+        for record in &mut moved.records {
+            record.clearance_m = stated * factor;
+        }
+        let scores = mean_squares(&moved, parameters);
+        let capped = scores
+            .iter()
+            .map(|score| score.map_or(CAP, |s| (s / typical).min(CAP)));
+        capped.sum::<f64>() / scores.len() as f64
+    };
+    let (mut centre, mut width) = (1.0, 0.34);
+    for _ in 0..4 {
+        let (best, _) = (-60..=60)
+            .map(|i| centre + width * f64::from(i) / 60.0)
+            .map(|factor| (factor, cost(factor)))
+            .min_by(|a, b| a.1.total_cmp(&b.1))?;
+        (centre, width) = (best, width / 20.0);
+    }
+    let (before, after) = (cost(1.0), cost(centre));
+    let z_score = (before - after).max(0.0).sqrt() * (centre - 1.0).signum();
+    let better = after < 0.25 * before && after < 0.25 * CAP;
+    (better && (centre - 1.0).abs() > GAP_LIMIT).then_some(OddGap {
+        stated_m: stated,
+        fitting_m: stated * centre,
+        z_score,
+    })
+}

@@ -1,0 +1,228 @@
+//! What springs, drive and contact of a real rig add to the model: small effects, each a coordinate of
+//! the fit whose prior is centred on zero and as wide as a good laboratory would accept.
+
+use serde::{Deserialize, Serialize};
+
+/// One effect beyond the model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Effect {
+    /// cos 2θ in the driving force, relative to F0
+    SecondHarmonicCos,
+    /// sin 2θ
+    SecondHarmonicSin,
+    /// cos 3θ
+    ThirdHarmonicCos,
+    /// sin 3θ
+    ThirdHarmonicSin,
+    /// Relative change of the force per unit of η, about η = 1
+    ForceSlope,
+    /// Relative change of the force per unit of (η − 1)²
+    ForceCurve,
+    /// Relative rise of the springs' secant stiffness at the greatest displacement measured
+    Hardening,
+    /// Coulomb friction relative to F0
+    Friction,
+    /// Relative change of f0 from the first record to the last
+    FrequencyDrift,
+    /// Relative change of f0 in the middle of the campaign against both ends
+    FrequencyBend,
+    /// Relative change of β from the first record to the last
+    DampingDrift,
+    /// Relative change of x_st (the force) from the first record to the last
+    DeflectionDrift,
+    /// Length of a contact, ms
+    ContactDuration,
+}
+
+/// Effects that a campaign may restrict the fit to, by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EffectKind {
+    /// Second and third harmonic of the drive
+    Harmonics,
+    /// The force against frequency
+    ForceFrequency,
+    /// Springs that harden or soften
+    Hardening,
+    /// Coulomb friction
+    Friction,
+    /// f0, β and x_st over the campaign
+    Drift,
+    /// Contacts of finite duration
+    ContactDuration,
+}
+
+impl EffectKind {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Harmonics,
+        Self::ForceFrequency,
+        Self::Hardening,
+        Self::Friction,
+        Self::Drift,
+        Self::ContactDuration,
+    ];
+
+    /// Name in `campaign.toml`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Harmonics => "harmonics",
+            Self::ForceFrequency => "force_frequency",
+            Self::Hardening => "hardening",
+            Self::Friction => "friction",
+            Self::Drift => "drift",
+            Self::ContactDuration => "contact_duration",
+        }
+    }
+
+    /// The kind of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+}
+
+impl Effect {
+    /// Number of effects.
+    pub const COUNT: usize = 13;
+
+    /// All of them, in the order of their places.
+    pub const ALL: [Self; Self::COUNT] = [
+        Self::SecondHarmonicCos,
+        Self::SecondHarmonicSin,
+        Self::ThirdHarmonicCos,
+        Self::ThirdHarmonicSin,
+        Self::ForceSlope,
+        Self::ForceCurve,
+        Self::Hardening,
+        Self::Friction,
+        Self::FrequencyDrift,
+        Self::FrequencyBend,
+        Self::DampingDrift,
+        Self::DeflectionDrift,
+        Self::ContactDuration,
+    ];
+
+    /// Place among all.
+    pub fn place(self) -> usize {
+        self as usize
+    }
+
+    /// The kind it belongs to.
+    pub fn kind(self) -> EffectKind {
+        match self {
+            Self::SecondHarmonicCos
+            | Self::SecondHarmonicSin
+            | Self::ThirdHarmonicCos
+            | Self::ThirdHarmonicSin => EffectKind::Harmonics,
+            Self::ForceSlope | Self::ForceCurve => EffectKind::ForceFrequency,
+            Self::Hardening => EffectKind::Hardening,
+            Self::Friction => EffectKind::Friction,
+            Self::FrequencyDrift
+            | Self::FrequencyBend
+            | Self::DampingDrift
+            | Self::DeflectionDrift => EffectKind::Drift,
+            Self::ContactDuration => EffectKind::ContactDuration,
+        }
+    }
+
+    /// Standard deviation of its prior: what a good laboratory would accept.
+    pub fn accepted(self) -> f64 {
+        match self {
+            Self::SecondHarmonicCos
+            | Self::SecondHarmonicSin
+            | Self::ThirdHarmonicCos
+            | Self::ThirdHarmonicSin => 5e-3,
+            Self::ForceSlope => 2e-2,
+            Self::ForceCurve => 1e-2,
+            Self::Hardening | Self::Friction => 5e-3,
+            Self::FrequencyDrift => 3e-3,
+            Self::FrequencyBend => 1e-3,
+            Self::DampingDrift => 2e-2,
+            Self::DeflectionDrift => 5e-3,
+            Self::ContactDuration => 0.6,
+        }
+    }
+
+    /// Whether it acts as a small extra acceleration along the orbit, so that its slopes are those
+    /// of a perturbation; the others change the parameters of a record.
+    pub fn is_acceleration(self) -> bool {
+        self.place() <= Self::ThirdHarmonicSin.place()
+            || matches!(self, Self::Hardening | Self::Friction)
+    }
+
+    /// Name in `identification.json`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SecondHarmonicCos => "drive_harmonic_2_cos",
+            Self::SecondHarmonicSin => "drive_harmonic_2_sin",
+            Self::ThirdHarmonicCos => "drive_harmonic_3_cos",
+            Self::ThirdHarmonicSin => "drive_harmonic_3_sin",
+            Self::ForceSlope => "force_slope",
+            Self::ForceCurve => "force_curve",
+            Self::Hardening => "hardening",
+            Self::Friction => "friction",
+            Self::FrequencyDrift => "frequency_drift",
+            Self::FrequencyBend => "frequency_drift_bend",
+            Self::DampingDrift => "damping_drift",
+            Self::DeflectionDrift => "deflection_drift",
+            Self::ContactDuration => "contact_duration_ms",
+        }
+    }
+}
+
+/// The kinds of effects that a fit allows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Effects {
+    allowed: [bool; EffectKind::ALL.len()],
+}
+
+impl Default for Effects {
+    fn default() -> Self {
+        Self::all()
+    }
+}
+
+impl Effects {
+    /// Every kind.
+    pub fn all() -> Self {
+        Self::of(&EffectKind::ALL)
+    }
+
+    /// No kind.
+    pub fn none() -> Self {
+        Self::of(&[])
+    }
+
+    /// Given kinds.
+    pub fn of(kinds: &[EffectKind]) -> Self {
+        Self {
+            allowed: EffectKind::ALL.map(|kind| kinds.contains(&kind)),
+        }
+    }
+
+    /// The effects allowed, in their order.
+    pub fn iter(self) -> impl Iterator<Item = Effect> {
+        let allowed = move |e: &Effect| self.allowed[e.kind() as usize];
+        Effect::ALL.into_iter().filter(allowed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prop_places_and_names_are_those_of_the_lists() {
+        for (i, effect) in Effect::ALL.into_iter().enumerate() {
+            assert_eq!(effect.place(), i);
+        }
+        for kind in EffectKind::ALL {
+            assert_eq!(EffectKind::named(kind.name()), Some(kind));
+        }
+        assert_eq!(EffectKind::named("gravity"), None);
+        assert_eq!(Effects::all().iter().count(), Effect::COUNT);
+        let one = Effects::of(&[EffectKind::Friction]);
+        assert_eq!(one.iter().collect::<Vec<_>>(), vec![Effect::Friction]);
+    }
+}

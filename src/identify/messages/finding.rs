@@ -1,0 +1,517 @@
+//! What the verdict rests on: mistakes of the laboratory, methods that do not fit, notes, disagreement.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Note, PairAgreement, Reason, Remark, Sentence};
+use crate::identify::fit::effect::Effect;
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::method::Method;
+use crate::message::{Language, Message, Value, kind_of};
+use crate::messages;
+use crate::record::Role;
+
+/// Something that the data give away. Deviations are relative (0.01 is 1 %); a z-score is a deviation
+/// over its standard error.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
+pub enum Finding {
+    /// A gap is not as stated.
+    WrongClearance {
+        /// The clearance as stated, m.
+        stated_m: f64,
+        /// The clearance that fits, m.
+        fitting_m: f64,
+        /// How sure.
+        z_score: f64,
+    },
+    /// The gain of a channel is far off the stated one.
+    WrongGain {
+        /// The channel.
+        channel: Role,
+        /// Relative deviation, positive where the channel reads too high.
+        deviation: f64,
+        /// How sure.
+        z_score: f64,
+    },
+    /// The corner of a channel's high-pass is far off the stated one.
+    WrongCorner {
+        /// The channel.
+        channel: Role,
+        /// Relative deviation, positive where the corner is above the stated one.
+        deviation: f64,
+        /// How sure.
+        z_score: f64,
+    },
+    /// The velocities of both masses are swapped.
+    SwappedChannels {
+        /// How sure.
+        z_score: f64,
+    },
+    /// The rig has an effect beyond the model, which the estimates allow for.
+    BeyondModel {
+        /// The effect; a harmonic's cosine names its amplitude.
+        effect: Effect,
+        /// Its strength.
+        strength: f64,
+        /// Standard error of the strength.
+        standard_error: f64,
+        /// How sure.
+        z_score: f64,
+    },
+    /// The model does not fit a method's data.
+    Misfit {
+        /// The method.
+        method: Method,
+        /// What it noticed.
+        remark: Remark,
+    },
+    /// Why a parameter is weak or not identifiable.
+    Parameter {
+        /// The parameter.
+        parameter: Coordinate,
+        /// Why.
+        note: Note,
+    },
+    /// Two methods do not agree.
+    Disagreement {
+        /// The two of those that do not agree which are furthest apart.
+        pair: PairAgreement,
+    },
+    /// The verdict on a specimen.
+    Specimen {
+        /// Its name.
+        specimen: String,
+        /// The verdict.
+        verdict: Vec<Sentence>,
+    },
+    /// A record is filed under the wrong specimen.
+    MisfiledRecord {
+        /// The record's name.
+        record: String,
+        /// Why it looks so.
+        reason: Reason,
+    },
+    /// A printed damping ratio fits the published speeds.
+    PrintedDampingFits {
+        /// The printed damping ratio.
+        printed: f64,
+    },
+    /// A printed damping ratio does not fit the published speeds.
+    PrintedDampingDoesNotFit {
+        /// The printed damping ratio.
+        printed: f64,
+        /// Greatest relative deviation of a speed.
+        deviation: f64,
+    },
+    /// Some of the published speeds have no motion with a printed damping ratio.
+    PrintedDampingWithoutMotion {
+        /// The printed damping ratio.
+        printed: f64,
+        /// Greatest relative deviation of a speed; `None` if one has no motion at any setting.
+        deviation: Option<f64>,
+        /// The settings without a motion.
+        settings: Vec<PublishedSetting>,
+    },
+}
+
+messages!(Finding);
+
+impl Message for Finding {
+    fn kind(&self) -> String {
+        kind_of(self)
+    }
+
+    fn key(&self) -> String {
+        match self {
+            Self::BeyondModel {
+                effect, strength, ..
+            } => {
+                let way = if *strength > 0.0 { "above" } else { "below" };
+                format!("{}_{}_zero", effect.name(), way)
+            }
+            _ => self.kind(),
+        }
+    }
+
+    fn template(&self, language: Language) -> &'static str {
+        match language {
+            Language::English => self.english(),
+            Language::German => self.german(),
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        let millimetres = |m: &f64| Value::Number(1e3 * m, 4);
+        match self {
+            Self::WrongClearance {
+                stated_m,
+                fitting_m,
+                ..
+            } => vec![
+                ("stated_mm", millimetres(stated_m)),
+                ("fitting_mm", millimetres(fitting_m)),
+            ],
+            Self::WrongGain {
+                channel, deviation, ..
+            } => vec![
+                ("channel", Value::Name(channel.name())),
+                ("share", Value::Percent(deviation.abs(), 1)),
+                ("direction", direction(*deviation)),
+            ],
+            Self::WrongCorner {
+                channel, deviation, ..
+            } => vec![
+                ("channel", Value::Name(channel.name())),
+                ("share", Value::Percent(deviation.abs(), 0)),
+                ("direction", direction(*deviation)),
+            ],
+            Self::BeyondModel {
+                effect,
+                strength,
+                standard_error,
+                ..
+            } => {
+                let scale = if *effect == Effect::ContactDuration {
+                    1.0
+                } else {
+                    100.0
+                };
+                vec![
+                    ("strength", Value::Number(scale * strength.abs(), 3)),
+                    ("error", Value::Number(1.96 * scale * standard_error, 3)),
+                ]
+            }
+            Self::SwappedChannels { .. } => Vec::new(),
+            Self::Misfit { method, remark } => vec![
+                ("method", Value::Message(method)),
+                ("remark", Value::Message(remark)),
+            ],
+            Self::Parameter { parameter, note } => vec![
+                ("parameter", Value::Message(parameter)),
+                ("note", Value::Message(note)),
+            ],
+            Self::Disagreement { pair } => vec![("pair", Value::Message(pair))],
+            Self::Specimen { specimen, verdict } => vec![
+                ("specimen", Value::Name(specimen)),
+                ("verdict", sentences(verdict)),
+            ],
+            Self::MisfiledRecord { record, reason } => vec![
+                ("record", Value::Name(record)),
+                ("reason", Value::Message(reason)),
+            ],
+            Self::PrintedDampingFits { printed } => vec![("value", Value::Shortest(*printed))],
+            Self::PrintedDampingDoesNotFit { printed, deviation } => vec![
+                ("value", Value::Shortest(*printed)),
+                ("share", Value::Percent(*deviation, 1)),
+            ],
+            Self::PrintedDampingWithoutMotion {
+                printed, settings, ..
+            } => vec![
+                ("value", Value::Shortest(*printed)),
+                (
+                    "settings",
+                    Value::List(settings.iter().map(|s| Value::Message(s)).collect()),
+                ),
+            ],
+        }
+    }
+}
+
+fn sentences(verdict: &[Sentence]) -> Value<'_> {
+    Value::Sentences(verdict.iter().map(|s| Value::Message(s)).collect())
+}
+
+/// Whether something is too high or too low.
+#[derive(Debug, Clone, Copy)]
+enum Direction {
+    High,
+    Low,
+}
+
+fn direction(deviation: f64) -> Value<'static> {
+    match deviation > 0.0 {
+        true => Value::Message(&Direction::High),
+        false => Value::Message(&Direction::Low),
+    }
+}
+
+impl Message for Direction {
+    fn kind(&self) -> String {
+        match self {
+            Self::High => "high",
+            Self::Low => "low",
+        }
+        .to_owned()
+    }
+
+    fn template(&self, language: Language) -> &'static str {
+        use Language::{English, German};
+        match (self, language) {
+            (Self::High, English) => "high",
+            (Self::High, German) => "hoch",
+            (Self::Low, English) => "low",
+            (Self::Low, German) => "tief",
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        Vec::new()
+    }
+}
+
+impl Finding {
+    fn english(&self) -> &'static str {
+        match self {
+            Self::WrongClearance { .. } => {
+                "the gap stated with a clearance of {stated_mm} mm moves like one of {fitting_mm} \
+                 mm: measure it again and correct the run table; its records stay out of the fit"
+            }
+            Self::WrongGain { .. } => {
+                "{channel} reads {share} too {direction}: correct scale in [channels.{channel}], or \
+                 state a larger gain_uncertainty in [rig]"
+            }
+            Self::WrongCorner { .. } => {
+                "the corner of the high-pass of {channel} is {share} too {direction} for the stated \
+                 one: correct high_pass in [channels.{channel}], or state a larger \
+                 corner_uncertainty in [rig]"
+            }
+            Self::SwappedChannels { .. } => {
+                "all data fit far better with the velocities of both masses swapped: swap \
+                 [channels.velocity_x] and [channels.velocity_y], or the displacements"
+            }
+            Self::BeyondModel {
+                effect, strength, ..
+            } => beyond_english(*effect, *strength > 0.0),
+            Self::Misfit { .. } => "{method}: {remark}",
+            Self::Parameter { .. } => "{parameter}: {note}",
+            Self::Disagreement { .. } => "the methods do not agree on {pair}",
+            Self::Specimen { .. } => "{specimen}: {verdict}",
+            Self::MisfiledRecord { .. } => "{record}: {reason}",
+            Self::PrintedDampingFits { .. } => "The printed $β$ = {value} fits the speeds.",
+            Self::PrintedDampingDoesNotFit { .. } => {
+                "The printed $β$ = {value} does not fit: a speed is off by {share}."
+            }
+            Self::PrintedDampingWithoutMotion { .. } => {
+                "The printed $β$ = {value} does not fit: the motion for {settings} does not exist \
+                 with it."
+            }
+        }
+    }
+
+    fn german(&self) -> &'static str {
+        match self {
+            Self::WrongClearance { .. } => {
+                "der mit einem Spiel von {stated_mm} mm angegebene Abstand bewegt sich wie einer \
+                 von {fitting_mm} mm: nachmessen und die Versuchstabelle richtigstellen; seine \
+                 Aufzeichnungen bleiben außerhalb der Anpassung"
+            }
+            Self::WrongGain { .. } => {
+                "{channel} zeigt {share} zu {direction}: scale in [channels.{channel}] \
+                 richtigstellen, oder eine größere gain_uncertainty in [rig] angeben"
+            }
+            Self::WrongCorner { .. } => {
+                "die Grenzfrequenz des Hochpasses von {channel} liegt {share} zu {direction} gegen \
+                 die angegebene: high_pass in [channels.{channel}] richtigstellen, oder eine \
+                 größere corner_uncertainty in [rig] angeben"
+            }
+            Self::SwappedChannels { .. } => {
+                "alle Daten passen weit besser, wenn die Geschwindigkeiten beider Massen vertauscht \
+                 sind: [channels.velocity_x] und [channels.velocity_y] tauschen, oder die Wege"
+            }
+            Self::BeyondModel {
+                effect, strength, ..
+            } => beyond_german(*effect, *strength > 0.0),
+            Self::Misfit { .. } => "{method}: {remark}",
+            Self::Parameter { .. } => "{parameter}: {note}",
+            Self::Disagreement { .. } => "die Verfahren stimmen nicht überein bei {pair}",
+            Self::Specimen { .. } => "{specimen}: {verdict}",
+            Self::MisfiledRecord { .. } => "{record}: {reason}",
+            Self::PrintedDampingFits { .. } => {
+                "Das gedruckte $β$ = {value} passt zu den Geschwindigkeiten."
+            }
+            Self::PrintedDampingDoesNotFit { .. } => {
+                "Das gedruckte $β$ = {value} passt nicht: Eine Geschwindigkeit liegt um {share} \
+                 daneben."
+            }
+            Self::PrintedDampingWithoutMotion { .. } => {
+                "Das gedruckte $β$ = {value} passt nicht: Die Bewegung bei {settings} gibt es damit \
+                 nicht."
+            }
+        }
+    }
+}
+
+/// An effect beyond the model, and what can be done about it; `rises`: whether its strength is positive.
+fn beyond_english(effect: Effect, rises: bool) -> &'static str {
+    match (effect, rises) {
+        (Effect::SecondHarmonicCos | Effect::SecondHarmonicSin, _) => {
+            "the driving force has a second harmonic of {strength} ± {error} % of its amplitude: check \
+             the amplifier, and that the drive current is not rectified"
+        }
+        (Effect::ThirdHarmonicCos | Effect::ThirdHarmonicSin, _) => {
+            "the driving force has a third harmonic of {strength} ± {error} % of its amplitude: drive \
+             the amplifier less hard"
+        }
+        (Effect::ForceSlope, true) => {
+            "the driving force rises by {strength} ± {error} % per natural frequency: record the force \
+             or the current"
+        }
+        (Effect::ForceSlope, false) => {
+            "the driving force falls by {strength} ± {error} % per natural frequency: record the force \
+             or the current"
+        }
+        (Effect::ForceCurve, _) => {
+            "the driving force against frequency is curved, by {strength} ± {error} % one natural \
+             frequency off resonance: record the force or the current"
+        }
+        (Effect::Hardening, true) => {
+            "the springs harden by {strength} ± {error} % at the greatest displacement: use smaller \
+             motions or longer springs"
+        }
+        (Effect::Hardening, false) => {
+            "the springs soften by {strength} ± {error} % at the greatest displacement: check their \
+             clamps, or use smaller motions"
+        }
+        (Effect::Friction, true) => {
+            "there is dry friction of {strength} ± {error} % of the driving force: look for cables, \
+             guides and loose clamps"
+        }
+        (Effect::Friction, false) => {
+            "the damping grows faster than the velocity, as with air drag (dry friction of −{strength} \
+             ± {error} % of the driving force)"
+        }
+        (Effect::FrequencyDrift, true) => {
+            "the natural frequency rises by {strength} ± {error} % over the campaign: check clamps and \
+             temperature"
+        }
+        (Effect::FrequencyDrift, false) => {
+            "the natural frequency falls by {strength} ± {error} % over the campaign: check clamps and \
+             temperature"
+        }
+        (Effect::FrequencyBend, _) => {
+            "the natural frequency in the middle of the campaign is off that of both ends by twice \
+             {strength} ± {error} %: check clamps and temperature"
+        }
+        (Effect::DampingDrift, true) => {
+            "the damping ratio rises by {strength} ± {error} % over the campaign: check clamps and \
+             temperature"
+        }
+        (Effect::DampingDrift, false) => {
+            "the damping ratio falls by {strength} ± {error} % over the campaign: check clamps and \
+             temperature"
+        }
+        (Effect::DeflectionDrift, true) => {
+            "the static deflection rises by {strength} ± {error} % over the campaign: check the \
+             amplifier and the springs"
+        }
+        (Effect::DeflectionDrift, false) => {
+            "the static deflection falls by {strength} ± {error} % over the campaign: check the \
+             amplifier and the springs"
+        }
+        (Effect::ContactDuration, _) => {
+            "a contact acts like one of {strength} ± {error} ms: use harder bumpers"
+        }
+    }
+}
+
+/// The same in German.
+fn beyond_german(effect: Effect, rises: bool) -> &'static str {
+    match (effect, rises) {
+        (Effect::SecondHarmonicCos | Effect::SecondHarmonicSin, _) => {
+            "die Antriebskraft hat eine zweite Oberwelle von {strength} ± {error} % ihrer Amplitude: \
+             den Verstärker prüfen, und ob der Antriebsstrom gleichgerichtet wird"
+        }
+        (Effect::ThirdHarmonicCos | Effect::ThirdHarmonicSin, _) => {
+            "die Antriebskraft hat eine dritte Oberwelle von {strength} ± {error} % ihrer Amplitude: \
+             den Verstärker weniger aussteuern"
+        }
+        (Effect::ForceSlope, true) => {
+            "die Antriebskraft steigt um {strength} ± {error} % je Eigenfrequenz: die Kraft oder den \
+             Strom aufzeichnen"
+        }
+        (Effect::ForceSlope, false) => {
+            "die Antriebskraft sinkt um {strength} ± {error} % je Eigenfrequenz: die Kraft oder den \
+             Strom aufzeichnen"
+        }
+        (Effect::ForceCurve, _) => {
+            "die Antriebskraft ist über der Frequenz gekrümmt, um {strength} ± {error} % eine \
+             Eigenfrequenz neben der Resonanz: die Kraft oder den Strom aufzeichnen"
+        }
+        (Effect::Hardening, true) => {
+            "die Federn versteifen sich um {strength} ± {error} % beim größten Weg: kleinere \
+             Bewegungen oder längere Federn"
+        }
+        (Effect::Hardening, false) => {
+            "die Federn werden um {strength} ± {error} % weicher beim größten Weg: ihre Einspannungen \
+             prüfen, oder kleinere Bewegungen"
+        }
+        (Effect::Friction, true) => {
+            "es gibt trockene Reibung von {strength} ± {error} % der Antriebskraft: Kabel, Führungen \
+             und lose Einspannungen suchen"
+        }
+        (Effect::Friction, false) => {
+            "die Dämpfung wächst schneller als die Geschwindigkeit, wie bei Luftwiderstand (trockene \
+             Reibung von −{strength} ± {error} % der Antriebskraft)"
+        }
+        (Effect::FrequencyDrift, true) => {
+            "die Eigenfrequenz steigt um {strength} ± {error} % während der Messreihe: Einspannungen \
+             und Temperatur prüfen"
+        }
+        (Effect::FrequencyDrift, false) => {
+            "die Eigenfrequenz sinkt um {strength} ± {error} % während der Messreihe: Einspannungen \
+             und Temperatur prüfen"
+        }
+        (Effect::FrequencyBend, _) => {
+            "die Eigenfrequenz in der Mitte der Messreihe weicht von der an beiden Enden um zweimal \
+             {strength} ± {error} % ab: Einspannungen und Temperatur prüfen"
+        }
+        (Effect::DampingDrift, true) => {
+            "der Dämpfungsgrad steigt um {strength} ± {error} % während der Messreihe: Einspannungen \
+             und Temperatur prüfen"
+        }
+        (Effect::DampingDrift, false) => {
+            "der Dämpfungsgrad sinkt um {strength} ± {error} % während der Messreihe: Einspannungen \
+             und Temperatur prüfen"
+        }
+        (Effect::DeflectionDrift, true) => {
+            "die statische Auslenkung steigt um {strength} ± {error} % während der Messreihe: \
+             Verstärker und Federn prüfen"
+        }
+        (Effect::DeflectionDrift, false) => {
+            "die statische Auslenkung sinkt um {strength} ± {error} % während der Messreihe: \
+             Verstärker und Federn prüfen"
+        }
+        (Effect::ContactDuration, _) => {
+            "ein Kontakt wirkt wie einer von {strength} ± {error} ms: härtere Puffer verwenden"
+        }
+    }
+}
+
+/// A published speed's setting.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PublishedSetting {
+    /// R.
+    pub restitution: f64,
+    /// η.
+    pub frequency_ratio: f64,
+}
+
+impl Message for PublishedSetting {
+    fn kind(&self) -> String {
+        "published_setting".to_owned()
+    }
+
+    fn template(&self, language: Language) -> &'static str {
+        match language {
+            Language::English => "$R$ = {restitution} at $η$ = {frequency_ratio}",
+            Language::German => "$R$ = {restitution} und $η$ = {frequency_ratio}",
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        vec![
+            ("restitution", Value::Shortest(self.restitution)),
+            ("frequency_ratio", Value::Shortest(self.frequency_ratio)),
+        ]
+    }
+}

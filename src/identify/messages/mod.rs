@@ -1,0 +1,46 @@
+//! What an identification states: notes on parameters, remarks of methods, reasons why something was
+//! left out, findings, and the sentences of the verdict; each a variant with its numbers in SI.
+
+mod examples;
+mod finding;
+mod note;
+mod pair;
+mod reason;
+mod remark;
+mod sentence;
+
+pub use examples::{example_findings, examples};
+pub use finding::{Finding, PublishedSetting};
+pub use note::Note;
+pub use pair::PairAgreement;
+pub use reason::{Item, LeftOut, Reason};
+pub use remark::{Remark, SpeedPoint};
+pub use sentence::{Sentence, StatedValue};
+
+use crate::identify::fit::parameters::Coordinate;
+use crate::message::{Language, Message, Value, kind_of};
+
+impl Message for Coordinate {
+    fn kind(&self) -> String {
+        kind_of(self)
+    }
+
+    fn template(&self, _: Language) -> &'static str {
+        match self {
+            Self::Restitution => "$R$",
+            Self::Frequency => "$f_0$",
+            Self::Damping => "$β$",
+            Self::Deflection => "$x_st$",
+            other => other.name(),
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        Vec::new()
+    }
+}
+
+/// Symbols of parameters as a list.
+fn symbols(parameters: &[Coordinate]) -> Value<'_> {
+    Value::List(parameters.iter().map(|p| Value::Message(p)).collect())
+}

@@ -1,0 +1,156 @@
+//! Why a parameter is weak or not identifiable.
+
+use serde::{Deserialize, Serialize};
+
+use crate::identify::fit::FitError;
+use crate::identify::fit::parameters::Coordinate;
+use crate::message::{Language, Message, Value, kind_of};
+use crate::messages;
+
+/// Why a parameter is weak or not identifiable, or why a method has no result.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
+pub enum Note {
+    /// The data leave the parameter open.
+    Open {
+        /// The parameter.
+        parameter: Coordinate,
+        /// Standard error, of R absolute, of the others relative.
+        standard_error: f64,
+    },
+    /// Nothing bounds the parameter.
+    NotDetermined {
+        /// The parameter.
+        parameter: Coordinate,
+    },
+    /// The estimate depends strongly on another parameter.
+    LeansOn {
+        /// The other parameter.
+        parameter: Coordinate,
+        /// Correlation of both estimates.
+        correlation: f64,
+    },
+    /// Methods do not agree on it; the interval covers them.
+    MethodsDisagree,
+    /// R depends on the speed.
+    NotOneNumber,
+    /// Each specimen has parameters of its own.
+    SeveralSpecimens,
+    /// No damping ratio gives the published motions.
+    NoPublishedMotion,
+    /// The model has no such motion at the starting values.
+    NoStart {
+        /// Number of observations without a motion in the model.
+        observations: usize,
+    },
+    /// There is nothing to fit.
+    NothingToFit,
+    /// The solver failed.
+    SolverFailed {
+        /// What it reported, in English.
+        report: String,
+    },
+    /// The data do not separate the parameters.
+    NotSeparable,
+}
+
+impl From<&FitError> for Note {
+    fn from(error: &FitError) -> Self {
+        match error {
+            FitError::NoModel(items) => Self::NoStart {
+                observations: items.len(),
+            },
+            FitError::Empty => Self::NothingToFit,
+            FitError::Solver(report) => Self::SolverFailed {
+                report: report.clone(),
+            },
+            FitError::Singular => Self::NotSeparable,
+        }
+    }
+}
+
+messages!(Note);
+
+impl Message for Note {
+    fn kind(&self) -> String {
+        kind_of(self)
+    }
+
+    fn template(&self, language: Language) -> &'static str {
+        use Language::{English, German};
+        match (self, language) {
+            (Self::Open { .. }, English) => "the data leave {parameter} open by ± {width}",
+            (Self::Open { .. }, German) => "die Daten lassen {parameter} um ± {width} offen",
+            (Self::NotDetermined { .. }, English) => "the data do not determine {parameter}",
+            (Self::NotDetermined { .. }, German) => "die Daten bestimmen {parameter} nicht",
+            (Self::LeansOn { .. }, English) => "depends on {parameter} (correlation {correlation})",
+            (Self::LeansOn { .. }, German) => {
+                "hängt von {parameter} ab (Korrelation {correlation})"
+            }
+            (Self::MethodsDisagree, English) => {
+                "the methods do not agree on it: the interval is widened by their disagreement"
+            }
+            (Self::MethodsDisagree, German) => {
+                "die Verfahren stimmen darin nicht überein: das Intervall ist um ihren Unterschied \
+                 verbreitert"
+            }
+            (Self::NotOneNumber, English) => {
+                "$R$ is not one number here: see the remark on its change"
+            }
+            (Self::NotOneNumber, German) => {
+                "$R$ ist hier nicht eine Zahl: siehe die Anmerkung zu seiner Änderung"
+            }
+            (Self::SeveralSpecimens, English) => {
+                "the campaign has several specimens; each has its own parameters"
+            }
+            (Self::SeveralSpecimens, German) => {
+                "die Messreihe hat mehrere Prüflinge; jeder hat seine eigenen Parameter"
+            }
+            (Self::NoPublishedMotion, English) => "no damping ratio gives all of these motions",
+            (Self::NoPublishedMotion, German) => "kein Dämpfungsgrad ergibt alle diese Bewegungen",
+            (Self::NoStart { .. }, English) => {
+                "the model has no such motion at the starting values for {count} observations"
+            }
+            (Self::NoStart { .. }, German) => {
+                "das Modell hat bei den Startwerten für {count} Beobachtungen keine solche Bewegung"
+            }
+            (Self::NothingToFit, English) => "there are no observations to fit",
+            (Self::NothingToFit, German) => "es gibt keine Beobachtungen für eine Anpassung",
+            (Self::SolverFailed { .. }, English) => "the solver failed: {report}",
+            (Self::SolverFailed { .. }, German) => "der Löser versagte: {report}",
+            (Self::NotSeparable, English) => "the data do not separate the parameters",
+            (Self::NotSeparable, German) => "die Daten trennen die Parameter nicht",
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        match self {
+            Self::Open {
+                parameter,
+                standard_error,
+            } => {
+                let width = match parameter.is_logarithm() {
+                    true => Value::Percent(*standard_error, 2),
+                    false => Value::Number(*standard_error, 2),
+                };
+                vec![("parameter", Value::Message(parameter)), ("width", width)]
+            }
+            Self::NotDetermined { parameter } => vec![("parameter", Value::Message(parameter))],
+            Self::LeansOn {
+                parameter,
+                correlation,
+            } => vec![
+                ("parameter", Value::Message(parameter)),
+                ("correlation", Value::Number(*correlation, 2)),
+            ],
+            Self::NoStart { observations } => vec![("count", Value::Count(*observations))],
+            Self::SolverFailed { report } => vec![("report", Value::Name(report))],
+            Self::NotOneNumber
+            | Self::MethodsDisagree
+            | Self::SeveralSpecimens
+            | Self::NoPublishedMotion
+            | Self::NothingToFit
+            | Self::NotSeparable => Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! How two methods agree on a parameter.
+
+use serde::{Deserialize, Serialize};
+
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::method::Method;
+use crate::message::{Language, Message, Value};
+
+/// The estimates of a parameter by two methods, compared; as a message, how far they are apart.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PairAgreement {
+    /// The parameter.
+    pub parameter: Coordinate,
+    /// The two methods.
+    pub methods: [Method; 2],
+    /// Their estimates, SI.
+    pub values: [f64; 2],
+    /// Difference of the estimates over its standard error.
+    pub z_score: f64,
+    /// Two-sided p-value.
+    pub p_value: f64,
+}
+
+impl Message for PairAgreement {
+    fn kind(&self) -> String {
+        "pair".to_owned()
+    }
+
+    fn template(&self, language: Language) -> &'static str {
+        match language {
+            Language::English => {
+                "{parameter}: {value} ({first}) and {other} ({second}) are {distance} standard \
+                 errors apart; trust neither interval until the cause is found"
+            }
+            Language::German => {
+                "{parameter}: {value} ({first}) und {other} ({second}) liegen {distance} \
+                 Standardfehler auseinander; keinem der beiden Intervalle ist zu trauen, bis die \
+                 Ursache gefunden ist"
+            }
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        let [first, second] = &self.methods;
+        vec![
+            ("parameter", Value::Message(&self.parameter)),
+            ("first", Value::Message(first)),
+            ("value", Value::Number(self.values[0], 5)),
+            ("second", Value::Message(second)),
+            ("other", Value::Number(self.values[1], 5)),
+            ("distance", Value::Number(self.z_score.abs(), 1)),
+        ]
+    }
+}

@@ -1,0 +1,305 @@
+//! What was left out of the fits, and why.
+
+use serde::{Deserialize, Serialize};
+
+use crate::identify::method::Method;
+use crate::message::{Language, Message, Value, kind_of};
+use crate::messages;
+use crate::motion::BoundaryKind;
+
+/// Something that a fit may leave out. Indices count from 0: records in the order of acquisition, the
+/// rows of records.parquet; brackets in the order of boundaries.csv.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
+pub enum Item {
+    /// A record.
+    Record {
+        /// Index of the record.
+        index: usize,
+        /// Its name.
+        record: String,
+    },
+    /// A bracket of a boundary.
+    Bracket {
+        /// Index of the bracket.
+        index: usize,
+        /// Which boundary.
+        boundary: BoundaryKind,
+        /// Lower drive frequency, Hz.
+        frequency_low_hz: f64,
+        /// Upper drive frequency, Hz.
+        frequency_high_hz: f64,
+        /// Half the gap, m.
+        clearance_m: f64,
+    },
+    /// An impact of a record.
+    Impact {
+        /// Index of the record.
+        index: usize,
+        /// The record's name.
+        record: String,
+        /// Time since the record's first sample, s.
+        time_s: f64,
+    },
+}
+
+/// Why something was left out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
+pub enum Reason {
+    /// The response of a record without impacts fits far worse than those of the others.
+    ResponseUnlikeOthers {
+        /// How many times worse.
+        times_worse: f64,
+    },
+    /// A periodic record's waveform fits far worse than those of the others.
+    WaveformUnlikeOthers {
+        /// How many times worse.
+        times_worse: f64,
+    },
+    /// The model has no such periodic motion at the fitted parameters.
+    NoSuchMotion,
+    /// The motion changed far from the simulated boundary.
+    FarFromBoundary,
+    /// The gap is not as stated.
+    GapNotAsStated,
+    /// The impacts of a record do not follow from each other.
+    ImpactsDoNotFollow,
+    /// The record draws the fit away from what all others state.
+    Influential {
+        /// The method that it was left out of.
+        method: Method,
+    },
+    /// The speeds of an impact are far from those of the others.
+    OutlyingImpact {
+        /// Approach speed before, m/s.
+        before_m_s: f64,
+        /// Separation speed after, m/s.
+        after_m_s: f64,
+    },
+    /// The natural frequency is not that of the stated specimen.
+    Misfiled {
+        /// The specimen as stated.
+        specimen: String,
+        /// Natural frequency of that specimen, Hz.
+        specimen_hz: f64,
+        /// Natural frequency of the record, Hz.
+        frequency_hz: f64,
+    },
+    /// The natural frequency is that of another specimen.
+    MisfiledLike {
+        /// The specimen as stated.
+        specimen: String,
+        /// Natural frequency of that specimen, Hz.
+        specimen_hz: f64,
+        /// Natural frequency of the record, Hz.
+        frequency_hz: f64,
+        /// The other specimen.
+        like: String,
+        /// Natural frequency of the other specimen, Hz.
+        like_hz: f64,
+    },
+}
+
+/// Something that was left out, and why.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LeftOut {
+    /// What.
+    pub item: Item,
+    /// Why.
+    pub reason: Reason,
+}
+
+messages!(Item, Reason);
+
+impl Message for Item {
+    fn kind(&self) -> String {
+        kind_of(self)
+    }
+
+    fn template(&self, language: Language) -> &'static str {
+        use Language::{English, German};
+        match (self, language) {
+            (Self::Record { .. }, English | German) => "{record}",
+            (Self::Bracket { .. }, English) => {
+                "bracket {boundary} {low}–{high} Hz at {clearance} mm"
+            }
+            (Self::Bracket { .. }, German) => {
+                "Schranke {boundary} {low}–{high} Hz bei {clearance} mm"
+            }
+            (Self::Impact { .. }, English) => "{record} at {time} s",
+            (Self::Impact { .. }, German) => "{record} bei {time} s",
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        match self {
+            Self::Record { record, .. } => vec![("record", Value::Name(record))],
+            Self::Bracket {
+                boundary,
+                frequency_low_hz,
+                frequency_high_hz,
+                clearance_m,
+                ..
+            } => vec![
+                ("boundary", Value::Name(boundary.name())),
+                ("low", Value::Number(*frequency_low_hz, 2)),
+                ("high", Value::Number(*frequency_high_hz, 2)),
+                ("clearance", Value::Number(1e3 * clearance_m, 3)),
+            ],
+            Self::Impact { record, time_s, .. } => vec![
+                ("record", Value::Name(record)),
+                ("time", Value::Number(*time_s, 3)),
+            ],
+        }
+    }
+}
+
+impl Message for Reason {
+    fn kind(&self) -> String {
+        kind_of(self)
+    }
+
+    fn template(&self, language: Language) -> &'static str {
+        match language {
+            Language::English => self.english(),
+            Language::German => self.german(),
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        match self {
+            Self::ResponseUnlikeOthers { times_worse } => {
+                vec![("ratio", Value::Number(*times_worse, 0))]
+            }
+            Self::WaveformUnlikeOthers { times_worse } => {
+                vec![("ratio", Value::Number(*times_worse, 1))]
+            }
+            Self::NoSuchMotion
+            | Self::FarFromBoundary
+            | Self::GapNotAsStated
+            | Self::ImpactsDoNotFollow => Vec::new(),
+            Self::Influential { method } => vec![("method", Value::Message(method))],
+            Self::OutlyingImpact {
+                before_m_s,
+                after_m_s,
+            } => vec![
+                ("before", Value::Number(*before_m_s, 3)),
+                ("after", Value::Number(*after_m_s, 3)),
+            ],
+            Self::Misfiled {
+                specimen,
+                specimen_hz,
+                frequency_hz,
+            } => misfiled(specimen, *specimen_hz, *frequency_hz),
+            Self::MisfiledLike {
+                specimen,
+                specimen_hz,
+                frequency_hz,
+                like,
+                like_hz,
+            } => {
+                let mut values = misfiled(specimen, *specimen_hz, *frequency_hz);
+                values.push(("like", Value::Name(like)));
+                values.push(("other", Value::Number(*like_hz, 2)));
+                values
+            }
+        }
+    }
+}
+
+fn misfiled(specimen: &str, own_hz: f64, frequency_hz: f64) -> Vec<(&'static str, Value<'_>)> {
+    vec![
+        ("specimen", Value::Name(specimen)),
+        ("own", Value::Number(own_hz, 2)),
+        ("frequency", Value::Number(frequency_hz, 2)),
+    ]
+}
+
+impl Reason {
+    fn english(&self) -> &'static str {
+        match self {
+            Self::ResponseUnlikeOthers { .. } => {
+                "its response fits {ratio} times worse than the others (still settling?): left out \
+                 of the resonance curve"
+            }
+            Self::WaveformUnlikeOthers { .. } => {
+                "its waveform fits {ratio} times worse than the others: left out of the \
+                 trajectories"
+            }
+            Self::NoSuchMotion => {
+                "the model has no such periodic motion at the fitted parameters: left out of the \
+                 trajectories"
+            }
+            Self::FarFromBoundary => {
+                "the motion changed far from the simulated boundary: a disturbance, or another \
+                 boundary"
+            }
+            Self::GapNotAsStated => {
+                "its gap is not as stated: left out of trajectories and boundaries"
+            }
+            Self::ImpactsDoNotFollow => {
+                "its impacts do not follow from each other (one missed?): left out of multiple shooting"
+            }
+            Self::Influential { .. } => {
+                "it draws the fit away from what all other records state: left out of {method}"
+            }
+            Self::OutlyingImpact { .. } => {
+                "its speeds, {before} m/s before and {after} m/s after, are far from those of the \
+                 others"
+            }
+            Self::MisfiledLike { .. } => {
+                "filed under {specimen} ({own} Hz) but its natural frequency is {frequency} Hz: it \
+                 behaves as {like} ({other} Hz); it looks misfiled"
+            }
+            Self::Misfiled { .. } => {
+                "filed under {specimen} ({own} Hz) but its natural frequency is {frequency} Hz; it \
+                 looks misfiled"
+            }
+        }
+    }
+
+    fn german(&self) -> &'static str {
+        match self {
+            Self::ResponseUnlikeOthers { .. } => {
+                "ihre Antwort passt {ratio}-mal schlechter als die anderen (noch nicht \
+                 eingeschwungen?): aus der Resonanzkurve ausgelassen"
+            }
+            Self::WaveformUnlikeOthers { .. } => {
+                "ihr Verlauf passt {ratio}-mal schlechter als die anderen: aus den Verläufen \
+                 ausgelassen"
+            }
+            Self::NoSuchMotion => {
+                "das Modell hat mit den angepassten Parametern keine solche periodische Bewegung: \
+                 aus den Verläufen ausgelassen"
+            }
+            Self::FarFromBoundary => {
+                "die Bewegung wechselte weit von der simulierten Grenze: eine Störung, oder eine \
+                 andere Grenze"
+            }
+            Self::GapNotAsStated => {
+                "ihr Abstand ist nicht der angegebene: aus Verläufen und Grenzen ausgelassen"
+            }
+            Self::ImpactsDoNotFollow => {
+                "ihre Stöße folgen nicht auseinander (einer nicht erkannt?): aus dem \
+                 Mehrfachschießen ausgelassen"
+            }
+            Self::Influential { .. } => {
+                "sie zieht die Anpassung von dem fort, was alle anderen Aufzeichnungen sagen: \
+                 ausgelassen aus {method}"
+            }
+            Self::OutlyingImpact { .. } => {
+                "seine Geschwindigkeiten, {before} m/s davor und {after} m/s danach, liegen weit \
+                 von denen der übrigen"
+            }
+            Self::MisfiledLike { .. } => {
+                "unter {specimen} ({own} Hz) abgelegt, aber die Eigenfrequenz ist {frequency} Hz: \
+                 Sie verhält sich wie {like} ({other} Hz); sie sieht falsch abgelegt aus"
+            }
+            Self::Misfiled { .. } => {
+                "unter {specimen} ({own} Hz) abgelegt, aber die Eigenfrequenz ist {frequency} Hz; \
+                 sie sieht falsch abgelegt aus"
+            }
+        }
+    }
+}

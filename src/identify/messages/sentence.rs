@@ -1,0 +1,216 @@
+//! The sentences of a verdict.
+
+use serde::{Deserialize, Serialize};
+
+use super::symbols;
+use crate::identify::fit::parameters::Coordinate;
+use crate::message::{Language, Message, Value, kind_of};
+use crate::messages;
+
+/// A parameter with its value as a sentence states it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct StatedValue {
+    /// The parameter.
+    pub parameter: Coordinate,
+    /// Its value, SI.
+    pub value: f64,
+    /// Half its 95 % interval, SI.
+    pub half_width: f64,
+}
+
+impl Message for StatedValue {
+    fn kind(&self) -> String {
+        "stated_value".to_owned()
+    }
+
+    fn template(&self, _: Language) -> &'static str {
+        "{parameter} = {value} ± {half}{unit}"
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        let (scale, unit) = match self.parameter {
+            Coordinate::Frequency => (1.0, " Hz"),
+            Coordinate::Deflection => (1e3, " mm"),
+            _ => (1.0, ""),
+        };
+        let (value, half) = (scale * self.value, scale * self.half_width);
+        // two significant digits of the half width; the cast is of 0 to 8
+        let decimals = (1.0 - half.max(1e-9).log10().floor()).clamp(0.0, 8.0) as usize;
+        vec![
+            ("parameter", Value::Message(&self.parameter)),
+            ("value", Value::Number(value, decimals)),
+            ("half", Value::Number(half, decimals)),
+            ("unit", Value::Name(unit)),
+        ]
+    }
+}
+
+/// A sentence of a verdict.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
+pub enum Sentence {
+    /// All parameters are identified.
+    Identified {
+        /// Their values.
+        values: Vec<StatedValue>,
+    },
+    /// Some parameters are identified only weakly.
+    Weak {
+        /// All values.
+        values: Vec<StatedValue>,
+        /// The weak parameters.
+        parameters: Vec<Coordinate>,
+    },
+    /// Some parameters are not identifiable.
+    PartlyIdentifiable {
+        /// The values of the others.
+        values: Vec<StatedValue>,
+        /// The parameters without a value.
+        parameters: Vec<Coordinate>,
+    },
+    /// No parameter is identifiable.
+    NotIdentifiable {
+        /// The parameters that were asked for.
+        parameters: Vec<Coordinate>,
+    },
+    /// No record is usable for any method.
+    NothingUsable,
+    /// The model does not describe the data.
+    DoesNotFit,
+    /// The methods agree.
+    MethodsAgree,
+    /// They do not.
+    MethodsDoNotAgree,
+    /// Each parameter is determined by one method only.
+    OneMethod,
+    /// The campaign holds several specimens.
+    Specimens {
+        /// How many.
+        count: usize,
+    },
+    /// Records look misfiled.
+    MisfiledRecords {
+        /// How many.
+        count: usize,
+    },
+    /// Published speeds belong to a damping ratio.
+    PublishedDamping {
+        /// The damping ratio.
+        damping_ratio: f64,
+    },
+    /// No damping ratio gives the published speeds.
+    NoPublishedDamping,
+}
+
+messages!(Sentence);
+
+impl Message for Sentence {
+    fn kind(&self) -> String {
+        kind_of(self)
+    }
+
+    fn template(&self, language: Language) -> &'static str {
+        match language {
+            Language::English => self.english(),
+            Language::German => self.german(),
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        match self {
+            Self::Identified { values } => vec![("values", stated(values))],
+            Self::Weak { values, parameters } | Self::PartlyIdentifiable { values, parameters } => {
+                vec![
+                    ("values", stated(values)),
+                    ("parameters", symbols(parameters)),
+                ]
+            }
+            Self::NotIdentifiable { parameters } => vec![("parameters", symbols(parameters))],
+            Self::NothingUsable
+            | Self::DoesNotFit
+            | Self::MethodsAgree
+            | Self::MethodsDoNotAgree
+            | Self::OneMethod
+            | Self::NoPublishedDamping => Vec::new(),
+            Self::Specimens { count } | Self::MisfiledRecords { count } => {
+                vec![("count", Value::Count(*count))]
+            }
+            Self::PublishedDamping { damping_ratio } => {
+                vec![("value", Value::Number(*damping_ratio, 4))]
+            }
+        }
+    }
+}
+
+fn stated(values: &[StatedValue]) -> Value<'_> {
+    Value::List(values.iter().map(|v| Value::Message(v)).collect())
+}
+
+impl Sentence {
+    /// Whether the methods agree; `None` if there is nothing to compare.
+    pub fn on_agreement(agree: Option<bool>) -> Self {
+        match agree {
+            Some(true) => Self::MethodsAgree,
+            Some(false) => Self::MethodsDoNotAgree,
+            None => Self::OneMethod,
+        }
+    }
+
+    fn english(&self) -> &'static str {
+        match self {
+            Self::Identified { .. } => "The rig has {values}.",
+            Self::Weak { .. } => "The rig has {values}; {parameters} only weakly.",
+            Self::PartlyIdentifiable { .. } => {
+                "The rig has {values}, but these data do not determine {parameters}."
+            }
+            Self::NotIdentifiable { .. } => "These data do not determine {parameters}.",
+            Self::NothingUsable => {
+                "Nothing could be identified: no record is usable for any method."
+            }
+            Self::DoesNotFit => "The model does not describe these data: see the findings.",
+            Self::MethodsAgree => "The methods agree.",
+            Self::MethodsDoNotAgree => "The methods do not agree.",
+            Self::OneMethod => "Each parameter is determined by one method only.",
+            Self::Specimens { .. } => {
+                "The campaign has {count} specimens; each is identified by itself."
+            }
+            Self::MisfiledRecords { .. } => "Records that look misfiled: {count}.",
+            Self::PublishedDamping { .. } => {
+                "The published speeds belong to a damping ratio $β$ of {value}."
+            }
+            Self::NoPublishedDamping => "No damping ratio gives the published speeds.",
+        }
+    }
+
+    fn german(&self) -> &'static str {
+        match self {
+            Self::Identified { .. } => "Der Prüfstand hat {values}.",
+            Self::Weak { .. } => "Der Prüfstand hat {values}; {parameters} nur schwach bestimmt.",
+            Self::PartlyIdentifiable { .. } => {
+                "Der Prüfstand hat {values}, aber {parameters} ist aus diesen Daten nicht zu \
+                 bestimmen."
+            }
+            Self::NotIdentifiable { .. } => "Aus diesen Daten ist {parameters} nicht zu bestimmen.",
+            Self::NothingUsable => {
+                "Nichts war zu identifizieren: Keine Aufzeichnung ist für ein Verfahren brauchbar."
+            }
+            Self::DoesNotFit => "Das Modell beschreibt diese Daten nicht: siehe die Befunde.",
+            Self::MethodsAgree => "Die Verfahren stimmen überein.",
+            Self::MethodsDoNotAgree => "Die Verfahren stimmen nicht überein.",
+            Self::OneMethod => "Jeden Parameter bestimmt nur ein Verfahren.",
+            Self::Specimens { .. } => {
+                "Die Messreihe hat {count} Prüflinge; jeder ist für sich identifiziert."
+            }
+            Self::MisfiledRecords { .. } => {
+                "Aufzeichnungen, die falsch abgelegt aussehen: {count}."
+            }
+            Self::PublishedDamping { .. } => {
+                "Die veröffentlichten Geschwindigkeiten gehören zu einem Dämpfungsgrad $β$ von \
+                 {value}."
+            }
+            Self::NoPublishedDamping => {
+                "Kein Dämpfungsgrad ergibt die veröffentlichten Geschwindigkeiten."
+            }
+        }
+    }
+}

@@ -1,0 +1,273 @@
+//! The budget of a joint estimate's uncertainty in the manner of the GUM (JCGM 100): a row for each
+//! source, with what it contributes to each parameter.
+//!
+//! With the joint covariance C = A⁻¹ and the information F_s of a source (a block of residuals, or the
+//! prior of a stated uncertainty), its contribution to the variance of parameter i is (C F_s C)_ii;
+//! as A is the sum of all F_s, the contributions add up to C_ii. Of a prior of standard uncertainty u
+//! on coordinate k that is c²u² with the sensitivity c = C_ik/u².
+
+use serde::{Deserialize, Serialize};
+
+use crate::identify::evidence::Blocks;
+use crate::identify::fit::Problem;
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::method::Method;
+use crate::identify::methods::MethodFit;
+use crate::identify::uncertainty::scatter::student_975;
+
+/// Where an uncertainty comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", tag = "kind")]
+pub enum Source {
+    /// Noise of what a method measures.
+    Noise {
+        /// The method.
+        method: Method,
+    },
+    /// Scatter between groups of records beyond noise and what is stated.
+    BetweenGroups {
+        /// Number of groups.
+        groups: usize,
+    },
+    /// What is stated of an instrument, of the rig, or accepted of an effect beyond the model.
+    Stated {
+        /// The coordinate of the fit.
+        coordinate: Coordinate,
+        /// The clearance as stated, m, of an error of a single clearance.
+        clearance_m: Option<f64>,
+    },
+    /// Disagreement between methods beyond their uncertainties.
+    BetweenMethods,
+}
+
+/// How an uncertainty was evaluated: from the scatter of observations, or otherwise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Evaluation {
+    /// By statistics.
+    A,
+    /// By other means.
+    B,
+}
+
+/// What a source contributes to one parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Contribution {
+    /// The parameter.
+    pub parameter: Coordinate,
+    /// Change of the parameter per unit of the source (of R absolute, of the others relative); `None`
+    /// where the source is not one quantity.
+    pub sensitivity: Option<f64>,
+    /// Standard uncertainty that it contributes: of R absolute, of the others relative.
+    pub uncertainty: f64,
+}
+
+/// One source.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// The source.
+    #[serde(flatten)]
+    pub source: Source,
+    /// How it was evaluated.
+    pub evaluation: Evaluation,
+    /// Standard uncertainty of the source as stated, in the unit of its coordinate; `None` of noise.
+    pub standard_uncertainty: Option<f64>,
+    /// Degrees of freedom; `None`: infinitely many.
+    pub degrees_of_freedom: Option<f64>,
+    /// Contributions to R, f0, β, x_st.
+    pub contributions: Vec<Contribution>,
+}
+
+/// The combined uncertainty of one parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Combined {
+    /// The parameter.
+    pub parameter: Coordinate,
+    /// Combined standard uncertainty: of R absolute, of the others relative.
+    pub standard_uncertainty: f64,
+    /// Effective degrees of freedom (Welch and Satterthwaite); `None`: infinitely many.
+    pub degrees_of_freedom: Option<f64>,
+    /// Coverage factor k for 95 %.
+    pub coverage_factor: f64,
+    /// Expanded uncertainty U = k u.
+    pub expanded_uncertainty: f64,
+}
+
+/// The budget of the joint estimate.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Budget {
+    /// The sources.
+    pub rows: Vec<Row>,
+    /// What they amount to.
+    pub combined: Vec<Combined>,
+}
+
+/// Number that JSON can hold; `None` where infinite.
+fn finite(freedom: f64) -> Option<f64> {
+    freedom.is_finite().then_some(freedom)
+}
+
+/// The budget of a joint fit of a problem whose blocks belong to the methods; `between_methods` are
+/// the standard uncertainties by their disagreement.
+pub fn budget(
+    problem: &Problem<'_>,
+    methods: &[Method],
+    found: &MethodFit,
+    blocks: &Blocks,
+    between_methods: &[(Coordinate, f64)],
+) -> Budget {
+    let fit = &found.fit;
+    let covariance = &fit.covariance * found.factor;
+    let told: Vec<(usize, Coordinate)> = fit
+        .free
+        .iter()
+        .copied()
+        .enumerate()
+        .filter(|(_, c)| Coordinate::PHYSICAL.contains(c))
+        .collect();
+    let mut rows = Vec::new();
+    for (method, part) in methods.iter().zip(problem.parts(&fit.parameters)) {
+        let spread = &fit.covariance * &part.matrix * &covariance;
+        rows.push(Row {
+            source: Source::Noise { method: *method },
+            evaluation: Evaluation::A,
+            standard_uncertainty: None,
+            degrees_of_freedom: finite(part.count.saturating_sub(fit.free.len()).max(1) as f64),
+            contributions: contributions(&told, |i, _| (None, spread[(i, i)].max(0.0).sqrt())),
+        });
+    }
+    for prior in &problem.priors {
+        let Some(k) = fit.free.iter().position(|c| *c == prior.coordinate) else {
+            continue;
+        };
+        // The wide priors of the parameters themselves state nothing.
+        if Coordinate::PHYSICAL.contains(&prior.coordinate) {
+            continue;
+        }
+        let sensitivity = |i: usize| covariance[(i, k)] / prior.deviation.powi(2) / found.factor;
+        let size = prior.deviation * found.factor.sqrt();
+        rows.push(Row {
+            source: Source::Stated {
+                coordinate: prior.coordinate,
+                clearance_m: match prior.coordinate {
+                    Coordinate::Gap(i) => blocks.gaps_m.get(i).copied(),
+                    _ => None,
+                },
+            },
+            evaluation: Evaluation::B,
+            standard_uncertainty: Some(prior.deviation),
+            degrees_of_freedom: None,
+            contributions: contributions(&told, |i, _| {
+                (Some(sensitivity(i)), (sensitivity(i) * size).abs())
+            }),
+        });
+    }
+    let spreads: Vec<_> = told.iter().filter_map(|(_, c)| found.spread(*c)).collect();
+    let freedom = spreads
+        .iter()
+        .map(|s| s.freedom)
+        .fold(f64::INFINITY, f64::min);
+    rows.push(Row {
+        source: Source::BetweenGroups {
+            groups: found.scatter.groups,
+        },
+        evaluation: Evaluation::A,
+        standard_uncertainty: None,
+        degrees_of_freedom: finite(freedom),
+        contributions: contributions(&told, |_, c| {
+            (None, found.spread(c).map_or(0.0, |s| s.between_groups))
+        }),
+    });
+    let apart = |c: Coordinate| {
+        let mut all = between_methods.iter();
+        all.find(|(of, _)| *of == c).map_or(0.0, |(_, u)| *u)
+    };
+    if !between_methods.is_empty() {
+        rows.push(Row {
+            source: Source::BetweenMethods,
+            evaluation: Evaluation::A,
+            standard_uncertainty: None,
+            degrees_of_freedom: finite(methods.len().saturating_sub(1).max(1) as f64),
+            contributions: contributions(&told, |_, c| (None, apart(c))),
+        });
+    }
+    let combined = told.iter().filter_map(|(_, parameter)| {
+        let spread = found.spread(*parameter)?;
+        let standard_uncertainty = spread.error.hypot(apart(*parameter));
+        let coverage_factor = student_975(spread.freedom);
+        Some(Combined {
+            parameter: *parameter,
+            standard_uncertainty,
+            degrees_of_freedom: finite(spread.freedom),
+            coverage_factor,
+            expanded_uncertainty: coverage_factor * standard_uncertainty,
+        })
+    });
+    Budget {
+        combined: combined.collect(),
+        rows,
+    }
+}
+
+fn contributions(
+    told: &[(usize, Coordinate)],
+    of: impl Fn(usize, Coordinate) -> (Option<f64>, f64),
+) -> Vec<Contribution> {
+    let each = told.iter().map(|(i, parameter)| {
+        let (sensitivity, uncertainty) = of(*i, *parameter);
+        Contribution {
+            parameter: *parameter,
+            sensitivity,
+            uncertainty,
+        }
+    });
+    each.collect()
+}
+
+impl Budget {
+    /// As CSV: a line for each source and parameter, then one for each parameter's sum.
+    pub fn table(&self) -> String {
+        let mut text = String::from(
+            "source,item,type,standard_uncertainty,degrees_of_freedom,parameter,sensitivity,\
+             contribution,coverage_factor,expanded_uncertainty\n",
+        );
+        let number = |v: Option<f64>| v.map(|v| format!("{v:.6e}")).unwrap_or_default();
+        for row in &self.rows {
+            let (source, item) = match row.source {
+                Source::Noise { method } => ("noise", method.name().to_owned()),
+                Source::BetweenGroups { groups } => ("between_groups", groups.to_string()),
+                Source::BetweenMethods => ("between_methods", String::new()),
+                Source::Stated {
+                    coordinate,
+                    clearance_m: Some(m),
+                } => (
+                    "stated",
+                    format!("{} at {:.6} mm", coordinate.name(), 1e3 * m),
+                ),
+                Source::Stated { coordinate, .. } => ("stated", coordinate.name().to_owned()),
+            };
+            for c in &row.contributions {
+                text += &format!(
+                    "{source},{item},{:?},{},{},{},{},{:.6e},,\n",
+                    row.evaluation,
+                    number(row.standard_uncertainty),
+                    number(row.degrees_of_freedom),
+                    c.parameter.name(),
+                    number(c.sensitivity),
+                    c.uncertainty,
+                );
+            }
+        }
+        for c in &self.combined {
+            text += &format!(
+                "combined,,,{:.6e},{},{},,{:.6e},{:.6},{:.6e}\n",
+                c.standard_uncertainty,
+                number(c.degrees_of_freedom),
+                c.parameter.name(),
+                c.standard_uncertainty,
+                c.coverage_factor,
+                c.expanded_uncertainty,
+            );
+        }
+        text
+    }
+}

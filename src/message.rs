@@ -1,0 +1,243 @@
+//! Messages: what a module states, as a kind with values instead of a sentence.
+//!
+//! A type whose variants are messages implements [`Message`]: a template for each variant in each
+//! [`Language`], with names in braces for its values and symbols between dollars. The match over
+//! variant and language has no wildcard, so a message without a translation does not compile. The
+//! macro [`messages!`](crate::messages) adds `Display` (English) and the JSON form: the variant as
+//! `kind`, its numbers in SI, and the English sentence as `text`.
+
+use std::fmt::Display;
+
+use serde::Serialize;
+
+/// A language in which every message is available.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Language {
+    /// English.
+    #[default]
+    English,
+    /// German.
+    German,
+}
+
+/// Something that a module states, to be printed in the language of the reader.
+pub trait Message {
+    /// Name of the kind, `kind` in JSON.
+    fn kind(&self) -> String;
+
+    /// Key in a table of translations: the kind, extended if the kind has several templates.
+    fn key(&self) -> String {
+        self.kind()
+    }
+
+    /// The template: names in braces are replaced by the values, symbols are between dollars.
+    fn template(&self, language: Language) -> &'static str;
+
+    /// The values by the names that the templates use; all of a message's templates use the same.
+    fn values(&self) -> Vec<(&'static str, Value<'_>)>;
+}
+
+/// A value in a message.
+pub enum Value<'a> {
+    /// A number and the count of its decimals.
+    Number(f64, usize),
+    /// A number with as many decimals as it needs.
+    Shortest(f64),
+    /// A share as a percentage with a count of decimals (0.01 is 1 %).
+    Percent(f64, usize),
+    /// A count.
+    Count(usize),
+    /// A name that is the same in every language and carries no markup.
+    Name(&'a str),
+    /// Another message.
+    Message(&'a dyn Message),
+    /// Several values, separated by commas.
+    List(Vec<Value<'a>>),
+    /// Several sentences.
+    Sentences(Vec<Value<'a>>),
+}
+
+/// How the values of a message are printed.
+pub trait Print {
+    /// The template of a message.
+    fn template(&self, message: &dyn Message) -> String;
+
+    /// A number as formatted in English, with the reader's signs.
+    fn number(&self, digits: String) -> String;
+
+    /// A name.
+    fn name(&self, name: &str) -> String;
+
+    /// A message with its values in their places.
+    fn print(&self, message: &dyn Message) -> String {
+        let values = message.values();
+        filled(&self.template(message), |name| {
+            let value = values.iter().find(|v| v.0 == name)?;
+            Some(self.value(&value.1))
+        })
+    }
+
+    /// A value of a message.
+    fn value(&self, value: &Value<'_>) -> String {
+        match value {
+            Value::Number(value, decimals) => self.number(format!("{value:.decimals$}")),
+            Value::Percent(share, decimals) => {
+                let percent = 100.0 * share;
+                format!("{} %", self.number(format!("{percent:.decimals$}")))
+            }
+            Value::Shortest(value) => self.number(value.to_string()),
+            Value::Count(count) => count.to_string(),
+            Value::Name(name) => self.name(name),
+            Value::Message(message) => self.print(*message),
+            Value::List(values) => self.joined(values, ", "),
+            Value::Sentences(values) => self.joined(values, " "),
+        }
+    }
+
+    /// Values with a separator between them.
+    fn joined(&self, values: &[Value<'_>], separator: &str) -> String {
+        let each: Vec<String> = values.iter().map(|v| self.value(v)).collect();
+        each.join(separator)
+    }
+}
+
+/// A template with a value for each name in braces; a name without a value stays in its braces.
+pub fn filled(template: &str, value: impl Fn(&str) -> Option<String>) -> String {
+    let mut text = String::with_capacity(template.len() + 16);
+    let mut rest = template;
+    while let Some((before, after)) = rest.split_once('{') {
+        let Some((name, after)) = after.split_once('}') else {
+            break;
+        };
+        text.push_str(before);
+        text.push_str(&value(name).unwrap_or_else(|| format!("{{{name}}}")));
+        rest = after;
+    }
+    text.push_str(rest);
+    text
+}
+
+/// English without markup.
+struct Plain;
+
+impl Print for Plain {
+    fn template(&self, message: &dyn Message) -> String {
+        let template = message.template(Language::English);
+        template.replace("$f_0$", "f0").replace('$', "")
+    }
+
+    fn number(&self, digits: String) -> String {
+        digits
+    }
+
+    fn name(&self, name: &str) -> String {
+        name.to_owned()
+    }
+}
+
+/// A message in English without markup.
+pub fn plain(message: &dyn Message) -> String {
+    Plain.print(message)
+}
+
+/// A text as a sentence: a capital at its start, a full stop at its end.
+pub fn sentence(text: &str) -> String {
+    let text = text.trim();
+    let mut chars = text.chars();
+    // a symbol or a record's name keeps its small letter
+    let word = text.split_whitespace().next().unwrap_or("");
+    let plain = word.chars().count() > 1 && word.chars().all(char::is_lowercase);
+    let start = match chars.next() {
+        Some(first) if plain => first.to_uppercase().chain(chars).collect(),
+        _ => text.to_owned(),
+    };
+    if start.ends_with(['.', '!', '?']) || start.is_empty() {
+        start
+    } else {
+        format!("{start}.")
+    }
+}
+
+/// Several messages in English without markup, separated by blanks.
+pub fn plain_all(messages: &[impl Display]) -> String {
+    let each: Vec<String> = messages.iter().map(ToString::to_string).collect();
+    each.join(" ")
+}
+
+/// Name of the kind of a message: its serialised form, or the `kind` in that.
+pub fn kind_of(message: &impl Serialize) -> String {
+    let value = serde_json::to_value(message).unwrap_or_default();
+    let kind = value.get("kind").unwrap_or(&value);
+    kind.as_str().unwrap_or_default().to_owned()
+}
+
+/// `Display` and the JSON form of types that implement [`Message`] and derive `Serialize` and
+/// `Deserialize` with `#[serde(remote = "Self")]`.
+#[macro_export]
+macro_rules! messages {
+    ($($message:ty),+) => {$(
+        impl std::fmt::Display for $message {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str(&$crate::message::plain(self))
+            }
+        }
+
+        $crate::serialised_with_text!($message, "text");
+    )+};
+}
+
+/// The JSON form of a type that implements `Display` and derives `Serialize` and `Deserialize` with
+/// `#[serde(remote = "Self")]`: its fields, then its English text under a key.
+#[macro_export]
+macro_rules! serialised_with_text {
+    ($stated:ty, $key:literal) => {
+        impl serde::Serialize for $stated {
+            fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+                struct Fields<'a>(&'a $stated);
+                impl serde::Serialize for Fields<'_> {
+                    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+                        // the inherent function that `remote` derives
+                        <$stated>::serialize(self.0, to)
+                    }
+                }
+                #[derive(serde::Serialize)]
+                struct WithText<'a> {
+                    #[serde(flatten)]
+                    fields: Fields<'a>,
+                    #[serde(rename = $key)]
+                    text: String,
+                }
+                let text = self.to_string();
+                let fields = Fields(self);
+                serde::Serialize::serialize(&WithText { fields, text }, to)
+            }
+        }
+
+        impl<'de> serde::Deserialize<'de> for $stated {
+            fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+                <$stated>::deserialize(from)
+            }
+        }
+    };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_become_sentences() {
+        assert_eq!(sentence("the responses follow"), "The responses follow.");
+        assert_eq!(sentence("x is clipped."), "x is clipped.");
+        assert_eq!(sentence("r0012 was left out"), "r0012 was left out.");
+        assert_eq!(sentence("$R$ is constant"), "$R$ is constant.");
+        assert_eq!(sentence(""), "");
+    }
+
+    #[test]
+    fn values_take_the_places_of_their_names() {
+        let value = |name: &str| (name == "a").then(|| "1".to_owned());
+        assert_eq!(filled("{a} of {b}, {a}", value), "1 of {b}, 1");
+        assert_eq!(filled("no { end", value), "no { end");
+    }
+}

@@ -1,0 +1,82 @@
+//! Why the pipeline stops, and how it reports its progress.
+
+use labfiles::ReadError;
+use labfiles::output::OutputError;
+
+/// Called with the stage, the steps done and the total steps.
+pub type Progress<'a> = &'a (dyn Fn(&'static str, u64, u64) + Sync);
+
+/// Why the pipeline stopped.
+#[derive(Debug, thiserror::Error)]
+pub enum PipelineError {
+    /// An output could not be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// An input could not be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// A table could not be made or read.
+    #[error("{table}: {reason}")]
+    Table {
+        /// Which table.
+        table: String,
+        /// Message of the library.
+        reason: String,
+    },
+    /// An output of a previous stage is missing or unreadable.
+    #[error("{path}: {reason}")]
+    Store {
+        /// The file.
+        path: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// No record of the campaign could be used.
+    #[error("none of the {0} records can be used")]
+    NothingUsable(usize),
+    /// A template, a table of words or a logo could not be read.
+    #[error("{path}: {reason}")]
+    ReportFile {
+        /// The file.
+        path: String,
+        /// Message of the system.
+        reason: String,
+    },
+    /// The report could not be made.
+    #[error(transparent)]
+    Report(#[from] crate::report::ReportError),
+    /// The simulation refused its parameters.
+    #[error(transparent)]
+    Model(#[from] impact_oscillator::model::params::ModelError),
+    /// The HDF5 writer failed.
+    #[error(transparent)]
+    Hdf5(#[from] labfiles::hdf5_write::WriteError),
+}
+
+impl PipelineError {
+    /// What the user can do.
+    pub fn remedy(&self) -> String {
+        match self {
+            Self::Output(error) => error.remedy().to_owned(),
+            Self::Read(error) => error.remedy.clone(),
+            Self::Store { .. } => {
+                "run the previous stage again; the stages are ingest, classify, identify, report"
+                    .to_owned()
+            }
+            Self::NothingUsable(_) => {
+                "run `impactid check` on the campaign; it lists what is wrong with each record"
+                    .to_owned()
+            }
+            Self::ReportFile { .. } => {
+                "check path and content of the template, the words and the logo, or leave them out"
+                    .to_owned()
+            }
+            Self::Hdf5(error) => error.remedy().to_owned(),
+            Self::Report(_) => "fix the template or the logo, or leave them out".to_owned(),
+            Self::Model(_) => "choose parameters within the range that the message names".into(),
+            _ => {
+                "this is an error of the program: please report it with the command line".to_owned()
+            }
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! All records of a campaign as observed, and the boundaries that they bracket.
+
+use std::path::Path;
+
+use super::checkpoint::{self, Checkpoint};
+use super::error::{PipelineError, Progress};
+use super::observe;
+use crate::campaign::resolved::ResolvedCampaign;
+use crate::motion::{Bracket, Observation, brackets, scale_drives};
+
+/// All records as observed.
+#[derive(Debug, Clone)]
+pub struct Observed {
+    /// One entry per record, in the order of acquisition.
+    pub observations: Vec<Observation>,
+    /// The brackets of boundaries.
+    pub brackets: Vec<Bracket>,
+}
+
+impl Observed {
+    /// Observe all records of a campaign.
+    ///
+    /// # Errors
+    /// [`PipelineError::NothingUsable`] where no record can be used.
+    pub fn of(campaign: &ResolvedCampaign, progress: Progress) -> Result<Self, PipelineError> {
+        Self::from_observations(observe::observe_all(campaign, progress))
+    }
+
+    /// Observe all records of a campaign with checkpoints in `out`; with `resume` those of an
+    /// interrupted run are used.
+    ///
+    /// # Errors
+    /// As [`Observed::of`], and if a checkpoint cannot be written.
+    pub(super) fn resumable(
+        campaign: &ResolvedCampaign,
+        (out, resume): (&Path, bool),
+        progress: Progress,
+    ) -> Result<Self, PipelineError> {
+        let kept = Checkpoint::open(campaign, out, resume)?;
+        let chunk = checkpoint::chunk_of(campaign.records.len());
+        let observations = observe::observe_in_chunks(campaign, &kept, chunk, progress)?;
+        Self::from_observations(observations)
+    }
+
+    fn from_observations(mut observations: Vec<Observation>) -> Result<Self, PipelineError> {
+        scale_drives(&mut observations);
+        if observations.iter().all(Observation::excluded) {
+            return Err(PipelineError::NothingUsable(observations.len()));
+        }
+        let brackets = brackets(&observations);
+        Ok(Self {
+            observations,
+            brackets,
+        })
+    }
+}

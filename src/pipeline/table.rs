@@ -1,0 +1,186 @@
+//! Tables of columns, written as CSV and as Parquet.
+
+use polars::error::PolarsError;
+use polars::prelude::{Column, DataFrame};
+use polars_io::parquet::write::ParquetWriter;
+
+/// The values of a column; `None` is a missing value.
+#[derive(Debug, Clone, PartialEq)]
+enum Values {
+    Numbers(Vec<Option<f64>>),
+    Counts(Vec<Option<u32>>),
+    Flags(Vec<Option<bool>>),
+    Texts(Vec<Option<String>>),
+}
+
+/// How the value of a column follows from a row of type `T`.
+pub(super) enum Get<T> {
+    /// A text.
+    Text(fn(&T) -> Option<String>),
+    /// A number.
+    Number(fn(&T) -> Option<f64>),
+    /// A count; one above `u32::MAX` is written as that.
+    Count(fn(&T) -> Option<usize>),
+    /// Yes or no.
+    Flag(fn(&T) -> Option<bool>),
+}
+
+/// A table: columns of one length, each with its name (unit included).
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Table {
+    columns: Vec<(String, Values)>,
+}
+
+impl Table {
+    /// A table without columns.
+    pub(super) fn new() -> Self {
+        Self::default()
+    }
+
+    /// One row per element of `rows`, one column per name.
+    pub(super) fn of<T>(rows: &[T], columns: &[(&str, Get<T>)]) -> Self {
+        let add = |table: Self, (name, get): &(&str, Get<T>)| match get {
+            Get::Text(f) => table.with(name, Values::Texts(rows.iter().map(f).collect())),
+            Get::Number(f) => table.missing(name, rows.iter().map(f)),
+            Get::Count(f) => table.with(name, counts(rows.iter().map(f))),
+            Get::Flag(f) => table.with(name, Values::Flags(rows.iter().map(f).collect())),
+        };
+        columns.iter().fold(Self::new(), add)
+    }
+
+    /// With a column of numbers.
+    pub(super) fn numbers(self, name: &str, values: impl IntoIterator<Item = f64>) -> Self {
+        self.missing(name, values.into_iter().map(Some))
+    }
+
+    /// With a column of numbers some of which are missing.
+    pub(super) fn missing(self, name: &str, values: impl IntoIterator<Item = Option<f64>>) -> Self {
+        self.with(name, Values::Numbers(values.into_iter().collect()))
+    }
+
+    /// With a column of counts; one above `u32::MAX` is written as that.
+    pub(super) fn counts(self, name: &str, values: impl IntoIterator<Item = usize>) -> Self {
+        self.with(name, counts(values.into_iter().map(Some)))
+    }
+
+    /// With a column of yes and no.
+    pub(super) fn flags(self, name: &str, values: impl IntoIterator<Item = bool>) -> Self {
+        let values = values.into_iter().map(Some).collect();
+        self.with(name, Values::Flags(values))
+    }
+
+    /// With a column of texts.
+    pub(super) fn texts(
+        self,
+        name: &str,
+        values: impl IntoIterator<Item = impl Into<String>>,
+    ) -> Self {
+        let values = values.into_iter().map(|text| Some(text.into())).collect();
+        self.with(name, Values::Texts(values))
+    }
+
+    fn with(mut self, name: &str, values: Values) -> Self {
+        self.columns.push((name.to_owned(), values));
+        self
+    }
+
+    fn rows(&self) -> usize {
+        self.columns.first().map_or(0, |(_, v)| v.len())
+    }
+
+    /// The table as CSV; numbers in the shortest form that reads back exactly, missing ones empty.
+    pub(super) fn csv(&self) -> String {
+        let names: Vec<&str> = self.columns.iter().map(|c| c.0.as_str()).collect();
+        let mut text = names.join(",") + "\n";
+        for row in 0..self.rows() {
+            let cells = self.columns.iter().map(|(_, values)| values.cell(row));
+            text += &cells.collect::<Vec<_>>().join(",");
+            text.push('\n');
+        }
+        text
+    }
+
+    /// The table as Parquet.
+    ///
+    /// # Errors
+    /// Those of the library.
+    pub(super) fn parquet(&self) -> Result<Vec<u8>, PolarsError> {
+        let columns = self.columns.iter().map(|(n, v)| v.column(n)).collect();
+        let mut frame = DataFrame::new(self.rows(), columns)?;
+        let mut bytes = Vec::new();
+        ParquetWriter::new(&mut bytes).finish(&mut frame)?;
+        Ok(bytes)
+    }
+}
+
+fn counts(values: impl Iterator<Item = Option<usize>>) -> Values {
+    let narrow = |count: usize| u32::try_from(count).unwrap_or(u32::MAX);
+    Values::Counts(values.map(|count| count.map(narrow)).collect())
+}
+
+impl Values {
+    fn len(&self) -> usize {
+        match self {
+            Self::Numbers(v) => v.len(),
+            Self::Counts(v) => v.len(),
+            Self::Flags(v) => v.len(),
+            Self::Texts(v) => v.len(),
+        }
+    }
+
+    fn cell(&self, row: usize) -> String {
+        let text = match self {
+            Self::Numbers(v) => v[row].filter(|x| x.is_finite()).map(|x| x.to_string()),
+            Self::Counts(v) => v[row].map(|x| x.to_string()),
+            Self::Flags(v) => v[row].map(|x| x.to_string()),
+            Self::Texts(v) => v[row].as_deref().map(quoted),
+        };
+        text.unwrap_or_default()
+    }
+
+    fn column(&self, name: &str) -> Column {
+        match self {
+            Self::Numbers(v) => Column::new(name.into(), v),
+            Self::Counts(v) => Column::new(name.into(), v),
+            Self::Flags(v) => Column::new(name.into(), v),
+            Self::Texts(v) => Column::new(name.into(), v),
+        }
+    }
+}
+
+/// A text as a cell of a CSV file.
+fn quoted(text: &str) -> String {
+    match text.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", text.replace('"', "\"\"")),
+        false => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_is_written_as_csv_and_parquet() {
+        let table = Table::new()
+            .numbers("eta", [0.1, 2.0])
+            .missing("lyapunov", [None, Some(-0.25)])
+            .texts("motion", ["1", "1,5"])
+            .flags("joined", [true, false])
+            .counts("p", [1, 2]);
+        let want = "eta,lyapunov,motion,joined,p\n0.1,,1,true,1\n2,-0.25,\"1,5\",false,2\n";
+        assert_eq!(table.csv(), want);
+        assert_eq!(&table.parquet().unwrap()[..4], b"PAR1");
+    }
+
+    #[test]
+    fn columns_follow_from_rows() {
+        let columns: [(&str, Get<f64>); 3] = [
+            ("square", Get::Number(|x| Some(x * x))),
+            ("whole", Get::Count(|x| (x.fract() == 0.0).then_some(7))),
+            ("text", Get::Text(|x| (*x > 1.0).then(|| format!("{x}")))),
+        ];
+        let table = Table::of(&[1.0, 1.5], &columns);
+        assert_eq!(table.csv(), "square,whole,text\n1,7,\n2.25,,1.5\n");
+    }
+}

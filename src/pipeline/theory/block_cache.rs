@@ -1,0 +1,122 @@
+//! Blocks of work saved while a long study runs, so that an interrupted one can be resumed: a
+//! resumed study gives the same bytes as an uninterrupted one.
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use sha2::{Digest, Sha256};
+
+use crate::pipeline::inputs::hexadecimal;
+use labfiles::output::{self, OutputError};
+
+/// Folder of the blocks in the output folder; it is removed when the work is done.
+const FOLDER: &str = ".impactid-blocks";
+
+/// The blocks of one study.
+#[derive(Debug)]
+pub struct BlockCache {
+    folder: PathBuf,
+    key: String,
+}
+
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Block<T> {
+    key: String,
+    content: T,
+}
+
+impl BlockCache {
+    /// The blocks in an output folder, of work that a text describes in full. Without `resume`
+    /// the blocks of an earlier run are removed.
+    ///
+    /// # Errors
+    /// Where the folder cannot be written into.
+    pub fn open(out: &Path, work: &str, resume: bool) -> Result<Self, OutputError> {
+        let mut hash = Sha256::new();
+        hash.update(env!("CARGO_PKG_VERSION"));
+        hash.update(format!(
+            "{:?}",
+            impact_oscillator::atlas::map::Kernel::of_this_machine()
+        ));
+        hash.update(work);
+        let cache = Self {
+            folder: out.join(FOLDER),
+            key: hexadecimal(hash),
+        };
+        if !resume {
+            cache.remove();
+        }
+        output::make_folder(&cache.folder)?;
+        output::clear_parts(&cache.folder);
+        Ok(cache)
+    }
+
+    /// A block; `None` where it is not there, of other work or unreadable.
+    pub fn load<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
+        let bytes = std::fs::read(self.path(name)).ok()?;
+        let block: Block<T> = serde_json::from_slice(&bytes).ok()?;
+        (block.key == self.key).then_some(block.content)
+    }
+
+    /// Keep a block.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn save<T: Serialize>(&self, name: &str, content: &T) -> Result<(), OutputError> {
+        let block = Block {
+            key: self.key.clone(),
+            content,
+        };
+        output::write_json_line(&self.path(name), &block)
+    }
+
+    /// A block of an earlier run, or one that is computed and saved now.
+    ///
+    /// # Errors
+    /// Those of the computation, or where the block cannot be written.
+    pub fn block<T: Serialize + DeserializeOwned, E: From<OutputError>>(
+        &self,
+        name: &str,
+        compute: impl FnOnce() -> Result<T, E>,
+    ) -> Result<T, E> {
+        if let Some(found) = self.load(name) {
+            return Ok(found);
+        }
+        let content = compute()?;
+        self.save(name, &content)?;
+        Ok(content)
+    }
+
+    /// Remove all blocks: the work is done.
+    pub fn remove(&self) {
+        // a block that cannot be removed does no harm: blocks are reused by their key alone
+        let _ = std::fs::remove_dir_all(&self.folder);
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        let safe: String = name
+            .chars()
+            .map(|c| if c.is_alphanumeric() { c } else { '_' })
+            .collect();
+        self.folder.join(format!("{safe}.json"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_are_reused_by_the_same_work_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let cache = BlockCache::open(folder.path(), "work", false).unwrap();
+        cache.save("rows 0", &vec![0.1, 0.2]).unwrap();
+        let again = BlockCache::open(folder.path(), "work", true).unwrap();
+        assert_eq!(again.load("rows 0"), Some(vec![0.1, 0.2]));
+        let other = BlockCache::open(folder.path(), "other work", true).unwrap();
+        assert_eq!(other.load::<Vec<f64>>("rows 0"), None);
+        let anew = BlockCache::open(folder.path(), "work", false).unwrap();
+        assert_eq!(anew.load::<Vec<f64>>("rows 0"), None);
+    }
+}

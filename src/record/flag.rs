@@ -1,0 +1,169 @@
+//! Problems of a record, each with its kind, its place and a remedy.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::message::{Language, Message, Value};
+
+/// Defines [`FlagCode`] with the name of each code in files and tables, and its text in English and
+/// German.
+macro_rules! flag_codes {
+    ($($(#[$doc:meta])* $code:ident = $name:literal, $english:literal, $german:literal,)*) => {
+        /// Kind of a problem.
+        #[derive(
+            Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+        )]
+        pub enum FlagCode {
+            $($(#[$doc])* #[serde(rename = $name)] $code,)*
+        }
+
+        impl FlagCode {
+            /// All codes.
+            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$code),*];
+
+            /// The stable name in files and tables.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$code => $name,)*
+                }
+            }
+        }
+
+        impl Message for FlagCode {
+            fn kind(&self) -> String {
+                self.name().to_owned()
+            }
+
+            fn template(&self, language: Language) -> &'static str {
+                match (self, language) {
+                    $((Self::$code, Language::English) => $english,)*
+                    $((Self::$code, Language::German) => $german,)*
+                }
+            }
+
+            fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+                Vec::new()
+            }
+        }
+    };
+}
+
+flag_codes! {
+    /// The file or the dataset cannot be read.
+    Unreadable = "unreadable", "unreadable", "nicht lesbar",
+    /// There are no samples.
+    Empty = "empty", "empty", "leer",
+    /// The dataset has no channel of the stated name.
+    MissingChannel = "missing_channel", "missing channel", "fehlender Kanal",
+    /// The file has no such dataset.
+    MissingDataset = "missing_dataset", "missing dataset", "fehlender Datensatz",
+    /// Unit, scale or threshold do not suit the channel's role.
+    WrongUnit = "wrong_unit", "wrong unit", "falsche Einheit",
+    /// Neither the file nor the campaign states a unit.
+    UnitMissing = "unit_missing", "unit missing", "fehlende Einheit",
+    /// The channel holds no real numbers.
+    NotNumbers = "not_numbers", "not numbers", "keine Zahlen",
+    /// Some values are NaN or infinite.
+    NotANumber = "not_a_number", "not a number", "keine Zahl",
+    /// The channels differ in length.
+    UnequalLengths = "unequal_lengths", "unequal lengths", "ungleiche Längen",
+    /// Samples without a value were cut off at the ends.
+    Trimmed = "trimmed", "trimmed", "beschnitten",
+    /// A channel is constant.
+    DeadChannel = "dead_channel", "dead channel", "toter Kanal",
+    /// A channel reaches the limits of its converter.
+    Clipped = "clipped", "clipped", "übersteuert",
+    /// Samples are missing.
+    DroppedSamples = "dropped_samples", "dropped samples", "fehlende Abtastwerte",
+    /// Time stamps are repeated.
+    RepeatedSamples = "repeated_samples", "repeated samples", "wiederholte Abtastwerte",
+    /// The time axis holds no numbers.
+    TimeUnreadable = "time_unreadable", "time unreadable", "Zeit nicht lesbar",
+    /// The time runs backward.
+    TimeBackward = "time_backward", "time backward", "Zeit läuft zurück",
+    /// The time axis is not uniform.
+    TimeNotUniform = "time_not_uniform", "time not uniform", "Zeit nicht gleichmäßig",
+    /// No sample rate is known.
+    NoSampleRate = "no_sample_rate", "no sample rate", "keine Abtastrate",
+    /// The channels differ in sample rate.
+    UnequalSampleRates = "unequal_sample_rates", "unequal sample rates", "ungleiche Abtastraten",
+    /// Channels of the two masses are swapped.
+    SwappedMasses = "swapped_masses", "swapped masses", "vertauschte Massen",
+    /// Two channels have opposite signs.
+    OppositeSign = "opposite_sign", "opposite sign", "entgegengesetzte Vorzeichen",
+    /// The scales of two channels contradict each other.
+    ScalesContradict = "scales_contradict", "scales contradict", "Maßstäbe widersprechen sich",
+    /// The drive channel holds no harmonic tone.
+    DriveNotHarmonic = "drive_not_harmonic", "drive not harmonic", "Erregung nicht harmonisch",
+    /// Measured and stated drive frequency differ.
+    DriveFrequencyContradicts = "drive_frequency_contradicts", "drive frequency contradicts", "Erregerfrequenz widerspricht",
+    /// Jumps of the approach velocity go up.
+    JumpsPointTheWrongWay = "jumps_point_the_wrong_way", "jumps point the wrong way", "Sprünge in falscher Richtung",
+    /// No free decay was found.
+    NoFreeDecay = "no_free_decay", "no free decay", "kein Ausschwingen",
+    /// Contact pulses without a jump of velocity, of a record that is identified.
+    ContactWithoutVelocityJump = "contact_without_velocity_jump", "contact without velocity jump", "Kontakt ohne Sprung der Geschwindigkeit",
+    /// Contact pulses without a jump of velocity, of a record that is checked.
+    ContactWithoutJump = "contact_without_jump", "contact without jump", "Kontakt ohne Sprung",
+    /// The campaign excludes the record.
+    Excluded = "excluded", "excluded", "ausgeschlossen",
+}
+
+impl fmt::Display for FlagCode {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A problem of a record: its kind, its channel, and a remedy.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Flag {
+    /// Its kind.
+    pub code: FlagCode,
+    /// The channel concerned (name in the file), if there is one.
+    pub channel: Option<String>,
+    /// One sentence: what was found and what was expected.
+    pub message: String,
+    /// One sentence: what the user can do.
+    pub remedy: String,
+    /// Whether it excludes the record from the identification.
+    pub excludes: bool,
+}
+
+impl Flag {
+    /// A problem that excludes the record.
+    pub fn new(
+        code: FlagCode,
+        channel: Option<&str>,
+        message: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self {
+            code,
+            channel: channel.map(str::to_owned),
+            message: message.into(),
+            remedy: remedy.into(),
+            excludes: true,
+        }
+    }
+
+    /// The same problem; it excludes the record if `excludes`.
+    #[must_use]
+    pub fn excluding(self, excludes: bool) -> Self {
+        Self { excludes, ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn valid_a_code_is_stored_under_its_name() {
+        let code = FlagCode::JumpsPointTheWrongWay;
+        let stored = serde_json::to_string(&code).unwrap();
+        assert_eq!(stored, format!("\"{code}\""));
+        assert_eq!(serde_json::from_str::<FlagCode>(&stored).unwrap(), code);
+    }
+}

@@ -1,0 +1,250 @@
+//! The report's texts in another language: a table from each English phrase of the report to the
+//! reader's, and from each kind of message of the identification to its template.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::OnceLock;
+
+use crate::identify::messages::examples;
+use crate::message::{Language, Message};
+
+/// The German phrases, whose keys are at the same time all phrases that a report has.
+const GERMAN: &str = include_str!("words-de.toml");
+
+/// Phrases and messages, and what is printed instead of their English.
+#[derive(Debug, Clone, Default, PartialEq, Eq, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Catalog {
+    /// The language, as ISO 639-1 writes it.
+    pub language: Option<String>,
+    /// From the English phrase to the one printed.
+    words: BTreeMap<String, String>,
+    /// From the key of a message to its template.
+    #[serde(default)]
+    findings: BTreeMap<String, String>,
+}
+
+/// Why a catalog cannot be used.
+#[derive(Debug, thiserror::Error, PartialEq, Eq)]
+pub enum CatalogError {
+    /// It is no TOML, or has other tables.
+    #[error(
+        "it is no table of words: {0}; it has language = \"de\", below [words] \"phrase\" = \"its translation\", and below [findings] kind = \"template\""
+    )]
+    Form(String),
+    /// A value that the phrase has would be lost, or one is wanted that it does not have.
+    #[error(
+        "\"{phrase}\" has {wanted}, its translation has {found}; write the same names in braces"
+    )]
+    Values {
+        /// The English phrase, or the key of the message.
+        phrase: String,
+        /// The names in braces in it.
+        wanted: String,
+        /// The names in braces in its translation.
+        found: String,
+    },
+    /// A dollar without a second.
+    #[error("the translation of \"{0}\" has a $ without the second that ends the symbol")]
+    Symbol(String),
+}
+
+impl Catalog {
+    /// Reads a catalog.
+    ///
+    /// # Errors
+    /// If it is none, or a translation does not have the values of its phrase.
+    pub fn read(text: &str) -> Result<Self, CatalogError> {
+        let form = |e: toml::de::Error| CatalogError::Form(e.to_string().trim().replace('\n', " "));
+        let catalog: Self = toml::from_str(text).map_err(form)?;
+        for (phrase, translation) in &catalog.words {
+            check(phrase, phrase, translation)?;
+        }
+        let messages = messages();
+        for (key, translation) in &catalog.findings {
+            let english = messages.get(key.as_str());
+            check(key, english.copied().unwrap_or(translation), translation)?;
+        }
+        Ok(catalog)
+    }
+
+    /// The German catalog of the program.
+    pub fn german() -> &'static Self {
+        static CATALOG: OnceLock<Catalog> = OnceLock::new();
+        CATALOG.get_or_init(|| Self::read(GERMAN).unwrap_or_default())
+    }
+
+    /// Every English phrase of a report, in order.
+    pub fn phrases() -> impl Iterator<Item = &'static str> {
+        Self::german().words.keys().map(String::as_str)
+    }
+
+    /// A catalog to be filled in: every phrase and every message with its English.
+    pub fn blank() -> String {
+        let quoted = |text: &str| toml::Value::from(text).to_string();
+        let line = |phrase: &str| format!("{0} = {0}\n", quoted(phrase));
+        let words: String = Self::phrases().map(line).collect();
+        let messages = messages();
+        let message = |(key, english): (&String, &&str)| format!("{key} = {}\n", quoted(english));
+        let findings: String = messages.iter().map(message).collect();
+        format!("language = \"en\"\n\n[words]\n{words}\n[findings]\n{findings}")
+    }
+
+    /// What is printed for a phrase; the phrase itself if the catalog does not have it.
+    pub fn get<'a>(&'a self, phrase: &'a str) -> &'a str {
+        self.words.get(phrase).map_or(phrase, String::as_str)
+    }
+
+    /// The template of a message: that of its key in the catalog, else the translation of its English
+    /// template, else the program's in the catalog's language, else the English one.
+    pub fn template<'a>(&'a self, message: &dyn Message) -> &'a str {
+        let language = match self.language.as_deref() {
+            Some("de") => Language::German,
+            _ => Language::English,
+        };
+        let keyed = match self.findings.is_empty() {
+            true => None,
+            false => self.findings.get(&message.key()),
+        };
+        let own = keyed.or_else(|| self.words.get(message.template(Language::English)));
+        own.map_or_else(|| message.template(language), String::as_str)
+    }
+
+    /// What is to be known of a catalog: phrases that it lacks, and entries that no report uses.
+    pub fn remarks(&self) -> Vec<String> {
+        let phrases: BTreeSet<&str> = Self::phrases().collect();
+        let here: BTreeSet<&str> = self.words.keys().map(String::as_str).collect();
+        let messages = messages();
+        let lacking: Vec<&str> = phrases.difference(&here).copied().collect();
+        let unknown = self.findings.keys().map(String::as_str);
+        let unknown = unknown.filter(|key| !messages.contains_key(*key));
+        let templates: BTreeSet<&str> = messages.values().copied().collect();
+        let idle = here.difference(&phrases).copied();
+        let idle = idle.filter(|phrase| !templates.contains(phrase));
+        let idle: Vec<&str> = idle.chain(unknown).collect();
+        let mut remarks = Vec::new();
+        if !lacking.is_empty() {
+            remarks.push(format!(
+                "the table of words lacks {} of a report's phrases, which stay English: {}",
+                lacking.len(),
+                some(&lacking)
+            ));
+        }
+        if !idle.is_empty() {
+            remarks.push(format!(
+                "no report uses {} of the entries of the table of words (impactid report \
+                 --list-words prints those it uses): {}",
+                idle.len(),
+                some(&idle)
+            ));
+        }
+        remarks
+    }
+}
+
+/// The English template of every message, by its key.
+fn messages() -> BTreeMap<String, &'static str> {
+    let each = examples().into_iter();
+    each.map(|m| (m.key(), m.template(Language::English)))
+        .collect()
+}
+
+/// Checks that a translation has the values of its phrase, and whole symbols.
+fn check(name: &str, phrase: &str, translation: &str) -> Result<(), CatalogError> {
+    let (wanted, found) = (places(phrase), places(translation));
+    if wanted != found {
+        return Err(CatalogError::Values {
+            phrase: name.to_owned(),
+            wanted: listed(&wanted),
+            found: listed(&found),
+        });
+    }
+    match translation.matches('$').count() % 2 {
+        0 => Ok(()),
+        _ => Err(CatalogError::Symbol(name.to_owned())),
+    }
+}
+
+/// The names in braces; between dollars braces belong to the symbol.
+pub(super) fn places(phrase: &str) -> BTreeSet<&str> {
+    let texts = phrase.split('$').step_by(2);
+    let pieces = texts.flat_map(|text| text.split('{').skip(1));
+    pieces.filter_map(|p| Some(p.split_once('}')?.0)).collect()
+}
+
+/// The first few phrases.
+fn some(phrases: &[&str]) -> String {
+    /// Phrases that are named at most.
+    const FEW: usize = 3;
+    let first: Vec<String> = phrases
+        .iter()
+        .take(FEW)
+        .map(|p| format!("\"{p}\""))
+        .collect();
+    let more = if phrases.len() > FEW { " …" } else { "" };
+    format!("{}{more}", first.join(", "))
+}
+
+fn listed(names: &BTreeSet<&str>) -> String {
+    let each: Vec<String> = names.iter().map(|n| format!("{{{n}}}")).collect();
+    if each.is_empty() {
+        "nothing in braces".into()
+    } else {
+        each.join(", ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn german_is_a_catalog_and_blank_lists_its_phrases_and_all_messages() {
+        Catalog::read(GERMAN).expect("a catalog");
+        let blank = Catalog::read(&Catalog::blank()).expect("a catalog");
+        assert!(blank.words.iter().all(|(a, b)| a == b));
+        assert!(blank.words.keys().eq(Catalog::german().words.keys()));
+        assert!(blank.findings.contains_key("wrong_clearance"));
+        assert!(blank.remarks().is_empty(), "{:?}", blank.remarks());
+    }
+
+    #[test]
+    fn a_translation_has_the_values_of_its_phrase() {
+        let read = |line: &str| Catalog::read(&format!("[words]\n{line}\n"));
+        assert!(read("\"{a} of {b}\" = \"{b}: {a}\"").is_ok());
+        let lost = read("\"{a} of {b}\" = \"{a}\"").expect_err("b is lost");
+        assert!(
+            lost.to_string()
+                .contains("has {a}, {b}, its translation has {a}"),
+            "{lost}"
+        );
+        assert!(read("\"$x_{st}$ (mm)\" = \"$x_{st}$ in mm\"").is_ok());
+        let odd = read("\"a\" = \"$b\"");
+        assert!(matches!(odd, Err(CatalogError::Symbol(_))));
+        let form = Catalog::read("words = 3");
+        assert!(matches!(form, Err(CatalogError::Form(_))));
+    }
+
+    #[test]
+    fn a_message_is_translated_by_its_kind() {
+        let text = "[words]\n[findings]\nwrong_clearance = \"{fitting_mm} statt {stated_mm}\"\n";
+        let catalog = Catalog::read(text).expect("a catalog");
+        let message = crate::identify::Finding::WrongClearance {
+            stated_m: 1e-3,
+            fitting_m: 1.1e-3,
+            z_score: 9.0,
+        };
+        assert_eq!(catalog.template(&message), "{fitting_mm} statt {stated_mm}");
+        let short = Catalog::read("[words]\n[findings]\nwrong_clearance = \"{stated_mm}\"\n");
+        assert!(matches!(short, Err(CatalogError::Values { .. })));
+    }
+
+    #[test]
+    fn lacking_and_idle_phrases_are_reported_once() {
+        let text = "[words]\n\"no such phrase\" = \"x\"\n";
+        let catalog = Catalog::read(text).expect("a catalog");
+        let remarks = catalog.remarks();
+        assert_eq!(remarks.len(), 2);
+        assert!(remarks[0].contains("stay English") && remarks[1].contains("no such phrase"));
+        assert_eq!(catalog.get("some text"), "some text");
+    }
+}

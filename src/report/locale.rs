@@ -1,0 +1,204 @@
+//! How a report is printed: numbers with the reader's decimal sign, phrases and messages in the
+//! reader's language.
+
+use super::catalog::Catalog;
+use crate::message::{Language, Message, Print, filled, sentence};
+
+/// What the reader chose about numbers and language.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Locale<'a> {
+    /// Whether numbers have a decimal comma.
+    pub decimal_comma: bool,
+    /// Phrases and messages in the reader's language; `None`: English.
+    pub catalog: Option<&'a Catalog>,
+}
+
+impl Locale<'_> {
+    /// A phrase of the report in the reader's language.
+    pub fn translate(self, phrase: &str) -> String {
+        self.catalog.map_or(phrase, |c| c.get(phrase)).to_owned()
+    }
+
+    /// A phrase in the reader's language, with values for the names in braces.
+    pub fn translate_with(self, phrase: &str, values: &[(&str, &str)]) -> String {
+        filled(&self.translate(phrase), |name| {
+            let value = values.iter().find(|v| v.0 == name)?;
+            Some(value.1.to_owned())
+        })
+    }
+
+    /// A message in the reader's language, its symbols between dollars.
+    pub fn message(self, message: &dyn Message) -> String {
+        self.print(message)
+    }
+
+    /// A message as a sentence: a capital at its start, a full stop at its end.
+    pub fn sentence(self, message: &dyn Message) -> String {
+        sentence(&self.print(message))
+    }
+
+    /// Messages as sentences.
+    pub fn sentences<'m, M: Message + 'm>(
+        self,
+        messages: impl IntoIterator<Item = &'m M>,
+    ) -> String {
+        let each = messages.into_iter().map(|m| self.sentence(m));
+        each.collect::<Vec<_>>().join(" ")
+    }
+
+    /// Whether the texts are English.
+    pub fn is_english(self) -> bool {
+        let language = self.catalog.and_then(|c| c.language.as_deref());
+        language.is_none_or(|l| l == "en")
+    }
+
+    /// A range in words.
+    pub fn range(self, first: &str, last: &str) -> String {
+        self.translate_with("{first} to {last}", &[("first", first), ("last", last)])
+    }
+
+    /// A title whose end in brackets, a unit or a count, is no part of the phrase.
+    pub fn translate_title(self, title: &str) -> String {
+        let whole = self.translate(title);
+        match title.rfind('(') {
+            Some(at) if title.ends_with(')') && whole == title => {
+                let phrase = title[..at].trim_end();
+                format!("{}{}", self.translate(phrase), &title[phrase.len()..])
+            }
+            _ => whole,
+        }
+    }
+
+    /// A number with a fixed count of decimals, a true minus and the chosen decimal sign.
+    pub fn fixed(self, value: f64, decimals: usize) -> String {
+        self.digits(&format!("{value:.decimals$}"))
+    }
+
+    /// Digits as Rust writes them, with a true minus and the chosen decimal sign.
+    pub fn digits(self, text: &str) -> String {
+        let is_zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
+        let minus = if is_zero { "" } else { "\u{2212}" };
+        let text = text.replace('-', minus);
+        match self.decimal_comma {
+            true => text.replace('.', ","),
+            false => text,
+        }
+    }
+
+    /// A number with a count of significant digits; powers of ten where it is very large or small.
+    pub fn significant(self, value: f64, digits: usize) -> String {
+        if value == 0.0 || !value.is_finite() {
+            return if value == 0.0 {
+                "0".into()
+            } else {
+                "–".into()
+            };
+        }
+        let exponent = decimal_exponent(value, digits);
+        if (-4..6).contains(&exponent) {
+            let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+            self.fixed(value, decimals)
+        } else {
+            let mantissa = self.fixed(value / 10f64.powi(exponent), digits.saturating_sub(1));
+            format!("{mantissa}\u{2009}·\u{2009}10{}", superscript(exponent))
+        }
+    }
+}
+
+impl Print for Locale<'_> {
+    fn template(&self, message: &dyn Message) -> String {
+        let template = match self.catalog {
+            Some(catalog) => catalog.template(message),
+            None => message.template(Language::English),
+        };
+        template.to_owned()
+    }
+
+    fn number(&self, digits: String) -> String {
+        self.digits(&digits)
+    }
+
+    fn name(&self, name: &str) -> String {
+        // a dollar would begin a symbol
+        name.replace('$', "\u{ff04}")
+    }
+}
+
+/// Exponent of ten of a number once rounded to some digits (0.99996 to four digits is 1.000).
+pub fn decimal_exponent(value: f64, digits: usize) -> i32 {
+    let exponent = value.abs().log10().floor() as i32;
+    let rounded = (value.abs() / 10f64.powi(exponent - digits as i32 + 1)).round();
+    exponent + i32::from(rounded >= 10f64.powi(digits as i32))
+}
+
+/// An exponent in raised digits.
+fn superscript(exponent: i32) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    exponent
+        .to_string()
+        .chars()
+        .map(|c| c.to_digit(10).map_or('⁻', |d| DIGITS[d as usize]))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::{Note, Remark};
+
+    #[test]
+    fn numbers_are_printed_as_books_do() {
+        let point = Locale::default();
+        assert_eq!(point.fixed(-0.0004, 2), "0.00");
+        assert_eq!(point.fixed(-1.25, 2), "\u{2212}1.25");
+        assert_eq!(point.significant(0.999_96, 4), "1.000");
+        assert_eq!(point.significant(12.3456, 3), "12.3");
+        assert_eq!(point.significant(1.5e-7, 2), "1.5\u{2009}·\u{2009}10⁻⁷");
+        let comma = Locale {
+            decimal_comma: true,
+            catalog: None,
+        };
+        assert_eq!(comma.fixed(1.5, 1), "1,5");
+    }
+
+    #[test]
+    fn phrases_are_translated_and_units_stay() {
+        let text = "[words]\n\"clearance $r$\" = \"Spiel $r$\"\n\"{a} of {b}\" = \"von {b} {a}\"";
+        let catalog = Catalog::read(text).expect("a catalog");
+        let locale = Locale {
+            catalog: Some(&catalog),
+            ..Locale::default()
+        };
+        assert_eq!(
+            locale.translate_title("clearance $r$ (mm)"),
+            "Spiel $r$ (mm)"
+        );
+        assert_eq!(locale.translate_title("residual\n(mm)"), "residual\n(mm)");
+        let values = [("a", "two {b}"), ("b", "three")];
+        assert_eq!(
+            locale.translate_with("{a} of {b}", &values),
+            "von three two {b}"
+        );
+    }
+
+    #[test]
+    fn messages_are_printed_in_the_reader_s_language_and_decimal_sign() {
+        let german = Locale {
+            decimal_comma: true,
+            catalog: Some(Catalog::german()),
+        };
+        let remark = Remark::DecaysUnexplained { share: 0.0123 };
+        assert_eq!(
+            german.sentence(&remark),
+            "Die Ausschwingversuche lassen 1,2 % des Signals unerklärt."
+        );
+        assert_eq!(
+            Locale::default().sentence(&remark),
+            "The decays leave 1.2 % of the signal unexplained."
+        );
+        let note = Note::SolverFailed {
+            report: "a$b".into(),
+        };
+        assert!(!Locale::default().message(&note).contains('$'));
+    }
+}

@@ -1,0 +1,48 @@
+//! The keys of the theory's figures.
+
+use crate::compare::RegionMap;
+use crate::motion::Motion;
+use crate::report::figures::canvas::Canvas;
+use crate::report::figures::legend::{self, Key, Sign};
+use crate::report::figures::look;
+use crate::report::figures::marks;
+use crate::report::locale::Locale;
+
+/// Draws keys over the whole width of the figure's top; gives the height they take.
+pub fn keys_on_top(canvas: &mut Canvas, left: f64, keys: &[Key], locale: Locale) {
+    let width = look::FULL_WIDTH - left;
+    legend::draw(canvas, (left, 1.0), width, keys, locale);
+}
+
+/// Height of keys on the figure's top.
+pub fn keys_height(left: f64, keys: &[Key], locale: Locale) -> f64 {
+    legend::height(keys, look::FULL_WIDTH - left, locale) + 4.0
+}
+
+/// Keys of the motions that a map shows, each with its tint; the rare ones last and left out
+/// beyond a number.
+pub fn tint_keys(map: &RegionMap, most: usize) -> Vec<Key> {
+    let mut counts = vec![0_usize; map.motions.len()];
+    for &cell in map.cells.iter().chain(&map.second) {
+        counts[usize::from(cell)] += 1;
+    }
+    let mut order: Vec<usize> = (0..counts.len()).collect();
+    order.sort_by_key(|&i| std::cmp::Reverse(counts[i]));
+    order.truncate(most);
+    order.sort_by_key(|&i| marks::order(&map.motions[i]));
+    let key = |i: &usize| {
+        let motion = &map.motions[*i];
+        let text = match motion {
+            Motion::Undetermined { reason } => reason.clone(),
+            Motion::Beat | Motion::Chaotic | Motion::Sticking => motion.label(),
+            _ => format!("$z$ = {}", motion.label()),
+        };
+        let tint = marks::of(motion).tint;
+        if tint == look::PAPER {
+            Key::new(Sign::Nothing, format!("white: {text}"))
+        } else {
+            Key::new(Sign::Patch(tint), text)
+        }
+    };
+    order.iter().map(key).collect()
+}
