@@ -294,19 +294,16 @@ impl<'a> RecordMotion<'a> {
     }
 
     /// Acceleration of the masses toward each other at the impact over the approach speed, 1/s: what
-    /// acts on a contact of finite length while it lasts. The weight of the accelerations before and
-    /// after the impact is a fit to the exact contact.
+    /// acts on a contact of finite length while it lasts.
     pub fn press_per_s(&self) -> f64 {
-        const AFTER: f64 = 1.15;
         let turn = C64::from_polar(1.0, self.orbit.phase);
         let masses = [&self.orbit.x, &self.orbit.y].into_iter();
         let press: f64 = masses
             .map(|mass| {
                 let square = mass.exponent * mass.exponent;
                 let forced = -self.eta * self.eta * (mass.force * turn).re;
-                let after = (square * mass.mode).re;
-                let before = (square * mass.mode * (mass.exponent * self.period()).exp()).re;
-                forced + before + AFTER * (after - before)
+                let free = square * mass.mode * (mass.exponent * self.period()).exp();
+                forced + free.re
             })
             .sum();
         press / self.orbit.approach_speed * self.own.natural_rate()
