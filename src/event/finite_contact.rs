@@ -59,7 +59,7 @@ impl FiniteContact {
     }
 
     /// Times of impacts from the kink of the displacement and the samples within the contact.
-    pub fn placed(
+    pub(super) fn placed(
         &self,
         kinematics: &Kinematics,
         candidates: &[Candidate],

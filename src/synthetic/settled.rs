@@ -13,7 +13,7 @@ const CLOSED: f64 = 1e-3;
 
 /// The motion after a record according to the noiseless simulation itself: states strobed once a
 /// drive period must repeat after n periods within a thousandth of the motion's size.
-pub fn true_motion(mut engine: Engine, setting: Setting) -> Motion {
+pub(super) fn true_motion(mut engine: Engine, setting: Setting) -> Motion {
     let mut states = Vec::with_capacity(WATCHED);
     let mut counts = Vec::with_capacity(WATCHED);
     let mut dead_zones = 0;

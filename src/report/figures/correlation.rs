@@ -20,7 +20,7 @@ use crate::report::parameters::parameter;
 const TOP: f64 = 14.0;
 
 /// Draws the matrix; `None` if it is empty or not square.
-pub fn draw(correlation: &Correlation, locale: Locale) -> Option<Figure> {
+pub(crate) fn draw(correlation: &Correlation, locale: Locale) -> Option<Figure> {
     let n = correlation.parameters.len();
     let square = correlation.matrix.len() == n && correlation.matrix.iter().all(|r| r.len() == n);
     if n < 2 || !square {

@@ -10,7 +10,7 @@ mod recording;
 use super::equations::{ContactLaw, Equations, Phase4};
 use events::Event;
 use recording::Segment;
-pub use recording::{Hit, Recording};
+pub(super) use recording::{Hit, Recording};
 
 /// Steps in a period of the drive or of the natural vibration, whichever is shorter.
 const STEPS_PER_PERIOD: f64 = 200.0;
