@@ -100,14 +100,18 @@ pub fn identify(evidence: &Evidence) -> Identification {
     suspicions.extend(run.other_suspicions(&fits));
     let methods = run.results(&fits);
     let mut joint = results::joint(evidence, fits.joint.as_ref(), &methods);
-    let agreement = agreement(&methods);
+    let beyond = succeeded(&fits.joint).map_or_else(Vec::new, beyond::beyond);
+    let agreement = match beyond.is_empty() {
+        true => agreement(&methods),
+        // Flights take the rig for ideal.
+        false => agreement(&without(&methods, Method::Flights)),
+    };
     let apart = between_methods(&methods, &agreement, &joint);
     for (parameter, by) in &apart {
         if let Some(Some(estimate)) = joint.parameters.slot(*parameter) {
             *estimate = estimate::widened(*parameter, estimate, *by);
         }
     }
-    let beyond = succeeded(&fits.joint).map_or_else(Vec::new, beyond::beyond);
     let verdict = verdict::verdict(&Basis {
         beyond: &beyond,
         joint: &joint,
@@ -130,6 +134,17 @@ pub fn identify(evidence: &Evidence) -> Identification {
         }),
         specimens: BTreeMap::new(),
     }
+}
+
+/// The results of all methods but one.
+fn without(
+    methods: &BTreeMap<Method, MethodResult>,
+    left_out: Method,
+) -> BTreeMap<Method, MethodResult> {
+    let others = methods.iter().filter(|(method, _)| **method != left_out);
+    others
+        .map(|(method, result)| (*method, result.clone()))
+        .collect()
 }
 
 /// Every method's fit, and all together.

@@ -131,9 +131,11 @@ impl<'a> Selection<'a> {
             failed => return Some(failed),
         };
         self.blocks.trajectory.records = all;
+        self.blocks.trajectory.find_changes(&found.fit.parameters);
         for _ in 0..ROUNDS {
             let parameters = found.fit.parameters;
             self.keep_fitting(&parameters);
+            self.keep_those_with_orbits(&parameters);
             found = match methods::trajectories(&self.blocks, &self.evidence.nominal, parameters)? {
                 Ok(found) => found,
                 failed => return Some(failed),

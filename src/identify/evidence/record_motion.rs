@@ -569,6 +569,7 @@ mod tests {
         effects[Effect::ForceCurve.place()] = -0.01;
         effects[Effect::FrequencyDrift.place()] = 2e-3;
         effects[Effect::ContactDuration.place()] = 0.3;
+        effects[Effect::ContactLaw.place()] = 0.1;
         Parameters {
             drive_asymmetry: 0.02,
             stiffness_asymmetry: -0.03,

@@ -33,6 +33,8 @@ pub enum Effect {
     DeflectionDrift,
     /// Length of a contact, ms
     ContactDuration,
+    /// Relative departure of what a contact's length makes of R from that of a spring and a damper
+    ContactLaw,
 }
 
 /// Effects that a campaign may restrict the fit to, by name.
@@ -84,7 +86,7 @@ impl EffectKind {
 
 impl Effect {
     /// Number of effects.
-    pub const COUNT: usize = 13;
+    pub const COUNT: usize = 14;
 
     /// All of them, in the order of their places.
     pub const ALL: [Self; Self::COUNT] = [
@@ -101,6 +103,7 @@ impl Effect {
         Self::DampingDrift,
         Self::DeflectionDrift,
         Self::ContactDuration,
+        Self::ContactLaw,
     ];
 
     /// Place among all.
@@ -122,7 +125,7 @@ impl Effect {
             | Self::FrequencyBend
             | Self::DampingDrift
             | Self::DeflectionDrift => EffectKind::Drift,
-            Self::ContactDuration => EffectKind::ContactDuration,
+            Self::ContactDuration | Self::ContactLaw => EffectKind::ContactDuration,
         }
     }
 
@@ -141,6 +144,7 @@ impl Effect {
             Self::DampingDrift => 2e-2,
             Self::DeflectionDrift => 5e-3,
             Self::ContactDuration => 0.6,
+            Self::ContactLaw => 0.1,
         }
     }
 
@@ -167,6 +171,7 @@ impl Effect {
             Self::DampingDrift => "damping_drift",
             Self::DeflectionDrift => "deflection_drift",
             Self::ContactDuration => "contact_duration_ms",
+            Self::ContactLaw => "contact_law",
         }
     }
 }

@@ -2,10 +2,13 @@
 //! minimises them.
 
 pub mod block;
+pub mod coordinate;
 pub mod effect;
 pub mod factor;
+pub mod gap_errors;
 pub mod least_squares;
 pub mod normal;
+pub mod own;
 pub mod parameters;
 pub mod problem;
 mod report;

@@ -408,6 +408,10 @@ fn beyond_english(effect: Effect, rises: bool) -> &'static str {
             "the static deflection falls by {strength} ± {error} % over the campaign: check the \
              amplifier and the springs"
         }
+        (Effect::ContactLaw, _) => {
+            "a contact's length changes the speeds by {strength} ± {error} % otherwise than a spring \
+             and a damper would"
+        }
         (Effect::ContactDuration, _) => {
             "a contact acts like one of {strength} ± {error} ms: use harder bumpers"
         }
@@ -480,6 +484,10 @@ fn beyond_german(effect: Effect, rises: bool) -> &'static str {
         (Effect::DeflectionDrift, false) => {
             "die statische Auslenkung sinkt um {strength} ± {error} % während der Messreihe: \
              Verstärker und Federn prüfen"
+        }
+        (Effect::ContactLaw, _) => {
+            "die Dauer eines Kontakts ändert die Geschwindigkeiten um {strength} ± {error} % anders als \
+             eine Feder und ein Dämpfer"
         }
         (Effect::ContactDuration, _) => {
             "ein Kontakt wirkt wie einer von {strength} ± {error} ms: härtere Puffer verwenden"
