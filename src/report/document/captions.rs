@@ -2,6 +2,7 @@
 
 use crate::compare::Comparison;
 use crate::identify::{Method, MethodResult};
+use crate::message::sentence;
 use crate::motion::Motion;
 use crate::report::content::ReportContent;
 use crate::report::figures::{decays, numbered};
@@ -135,7 +136,8 @@ fn free_decays(content: &ReportContent, locale: Locale) -> Vec<Captioned> {
     each.map(|(i, few)| {
         let reasons = few.iter().filter_map(|d| {
             let why = d.left_out.as_ref()?;
-            Some(format!("{}: {}", decays::title(d), locale.sentence(why)))
+            let text = format!("{}: {}", decays::title(d), locale.message(why));
+            Some(sentence(&text))
         });
         let reasons = reasons.collect::<Vec<_>>().join(" ");
         let text = "Free decays (black) and their fits (vermilion), with natural frequency and \
