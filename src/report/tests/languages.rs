@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::contents::{kind, kinds};
-use crate::compare::{BracketRow, Correlation};
+use crate::compare::{BracketRow, Correlation, Unusable};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::messages::examples;
 use crate::identify::{Identification, Method, Reason};
@@ -108,7 +108,13 @@ fn unlucky() -> ReportContent {
         method.fits = Some(false);
     }
     compared.free_decays = kind("decays").compared.free_decays.clone();
-    compared.unusable.clear();
+    compared.unusable = vec![Unusable {
+        flag: None,
+        channel: None,
+        records: vec!["r1".into(), "r2".into()],
+        message: "0.5".into(),
+        differ: true,
+    }];
     content.identification.left_out.clear();
     content
 }
