@@ -40,6 +40,10 @@ pub struct MethodFit {
     pub scatter: Scatter,
 }
 
+/// Share of an effect that its first order does not hold: what campaigns on rigs with all effects
+/// showed.
+const FIRST_ORDER: f64 = 0.03;
+
 impl MethodFit {
     /// Of a fit of a problem, judged with degrees of freedom.
     pub fn of(problem: &Problem<'_>, fit: Fit, freedom: usize) -> Self {
@@ -54,7 +58,25 @@ impl MethodFit {
 
     /// Standard error of a coordinate by all that is allowed for; `None` where it was not free.
     pub fn spread(&self, coordinate: Coordinate) -> Option<Spread> {
-        self.scatter.spread(&self.fit, self.factor, coordinate)
+        let spread = self.scatter.spread(&self.fit, self.factor, coordinate)?;
+        let beyond = self.first_order(coordinate).unwrap_or(0.0);
+        Some(spread.with(beyond))
+    }
+
+    /// What the effects beyond the model leave open in a parameter as they are treated to first order:
+    /// a share of what each would change of it if it were left out, C_ik/C_kk times its strength.
+    pub fn first_order(&self, coordinate: Coordinate) -> Option<f64> {
+        let fit = &self.fit;
+        let i = Coordinate::PHYSICAL
+            .contains(&coordinate)
+            .then(|| fit.free.iter().position(|c| *c == coordinate))??;
+        let effects = fit.free.iter().enumerate();
+        let effects = effects.filter(|(_, c)| matches!(c, Coordinate::Effect(_)));
+        let change = |(k, c): (usize, &Coordinate)| {
+            let share = fit.covariance[(i, k)] / fit.covariance[(k, k)];
+            FIRST_ORDER * share * fit.parameters.coordinate(*c)
+        };
+        Some(effects.map(change).map(|c| c * c).sum::<f64>().sqrt())
     }
 }
 
