@@ -15,7 +15,7 @@ use labfiles::output::{Lock, write_json_line};
 /// Arguments of `impactid atlas`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE)]
-pub struct Atlas {
+pub(super) struct Atlas {
     #[command(flatten)]
     machine: MachineArgs,
     /// Frequency ratios η
@@ -54,7 +54,7 @@ pub struct Atlas {
 }
 
 /// The atlas' name in its study and its files.
-pub const NAME: &str = "atlas";
+pub(super) const NAME: &str = "atlas";
 
 /// Instruction sets of the marching kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -92,7 +92,7 @@ impl Atlas {
     ///
     /// # Errors
     /// [`Failure`] where a parameter is out of range or a file cannot be written.
-    pub fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let title = "Regions of existence and stability of all motions";
         let mut study = self.machine.study(title)?;
         let plan = self.plan()?;
@@ -160,7 +160,7 @@ impl Atlas {
 ///
 /// # Errors
 /// [`Failure`] where a parameter is out of range.
-pub fn computed(
+pub(super) fn computed(
     study: &Study,
     plan: &RegionsPlan,
     (number, of): (usize, usize),

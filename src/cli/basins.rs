@@ -12,7 +12,7 @@ use impact_oscillator::model::Setting;
 /// Arguments of `impactid basins`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE)]
-pub struct Basins {
+pub(super) struct Basins {
     #[command(flatten)]
     machine: MachineArgs,
     /// Frequency ratio η
@@ -62,7 +62,7 @@ impl Basins {
     ///
     /// # Errors
     /// [`Failure`] where a parameter is out of range or a file cannot be written.
-    pub fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let mut study = self.machine.study("Basins of attraction")?;
         let starts = if self.one_mass {
             Starts::OneMass

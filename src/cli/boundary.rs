@@ -12,7 +12,7 @@ use impact_oscillator::{Existence, Machine};
 /// Arguments of `impactid boundary`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE)]
-pub struct Boundary {
+pub(super) struct Boundary {
     /// Which boundary
     #[arg(long, value_enum)]
     kind: Kind,
@@ -90,7 +90,7 @@ impl Boundary {
     ///
     /// # Errors
     /// [`Failure`] where a parameter is out of range.
-    pub fn run(self, _verbosity: Verbosity) -> Result<Exit, Failure> {
+    pub(super) fn run(self, _verbosity: Verbosity) -> Result<Exit, Failure> {
         let machine = self.machine.machine()?;
         let (p, n, dead_zone) = self.motion;
         let query = BoundaryQuery {

@@ -14,7 +14,7 @@ use labfiles::output::write_bytes;
 /// Arguments of `impactid study coverage`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE)]
-pub struct Coverage {
+pub(super) struct Coverage {
     /// Number of campaigns; a fifth as many more for each mistake of the laboratory
     #[arg(long, value_name = "N", default_value_t = 100)]
     campaigns: usize,
@@ -46,7 +46,7 @@ impl Coverage {
     ///
     /// # Errors
     /// [`Failure`] where a simulation refuses its parameters.
-    pub fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let bar = Progress::new(verbosity, "campaigns", self.campaigns as u64);
         let found = coverage::study(self.campaigns, self.seed, &self.rig, &|_, done, total| {
             bar.set(done, total);

@@ -10,7 +10,7 @@ use impact_oscillator::model::{Initial, Machine, Restitution, Watch};
 
 /// The dimensionless machine.
 #[derive(Debug, Clone, Args)]
-pub struct MachineArgs {
+pub(super) struct MachineArgs {
     /// Coefficient of restitution R, 0 to 1, or a law of the approach speed: `table = [[0, 0.95],
     /// [6, 0.85]]`, `power_law = {…}`, `exponential = {…}`
     #[arg(long, value_name = "R|LAW", default_value = "0.9", value_parser = law)]
@@ -37,7 +37,7 @@ impl MachineArgs {
     ///
     /// # Errors
     /// [`Failure`] naming the parameter that is out of range.
-    pub fn study(&self, title: &str) -> Result<Study, Failure> {
+    pub(super) fn study(&self, title: &str) -> Result<Study, Failure> {
         let study = Study {
             single: self.single,
             asymmetry: Asymmetry {
@@ -55,7 +55,7 @@ impl MachineArgs {
     ///
     /// # Errors
     /// [`Failure`] naming the parameter that is out of range.
-    pub fn machine(&self) -> Result<Machine, Failure> {
+    pub(super) fn machine(&self) -> Result<Machine, Failure> {
         Ok(self.study("")?.machine())
     }
 }
@@ -81,7 +81,7 @@ fn law(text: &str) -> Result<Law, String> {
 
 /// The start of a motion.
 #[derive(Debug, Clone, Args)]
-pub struct StartArgs {
+pub(super) struct StartArgs {
     /// Start X, X' or X, X', Y, Y'; two numbers start both masses alike
     #[arg(
         long,
@@ -97,7 +97,7 @@ impl StartArgs {
     ///
     /// # Errors
     /// [`Failure`] where the text is not two or four numbers.
-    pub fn initial(&self) -> Result<Initial, Failure> {
+    pub(super) fn initial(&self) -> Result<Initial, Failure> {
         let numbers: Result<Vec<f64>, _> =
             self.start.split(',').map(|n| n.trim().parse()).collect();
         match numbers.as_deref() {
@@ -113,7 +113,7 @@ impl StartArgs {
 
 /// How long a motion settles and is watched.
 #[derive(Debug, Clone, Args)]
-pub struct WatchArgs {
+pub(super) struct WatchArgs {
     /// Drive periods that a motion settles before it is observed
     #[arg(long, value_name = "N", default_value_t = 200.0)]
     pub settle_periods: f64,
@@ -124,7 +124,7 @@ pub struct WatchArgs {
 
 impl WatchArgs {
     /// Settling and watch.
-    pub fn watch(&self) -> Watch {
+    pub(super) fn watch(&self) -> Watch {
         Watch {
             settle_periods: self.settle_periods.max(0.0),
             watch_periods: self.watch_periods.max(1.0),
@@ -134,7 +134,7 @@ impl WatchArgs {
 }
 
 /// A model's error as the user sees it.
-pub fn refused(error: &impact_oscillator::model::ModelError) -> Failure {
+pub(super) fn refused(error: &impact_oscillator::model::ModelError) -> Failure {
     Failure::new(
         error.to_string(),
         "give a value within the range that the message names",
@@ -142,7 +142,7 @@ pub fn refused(error: &impact_oscillator::model::ModelError) -> Failure {
 }
 
 /// A motion z = p/n as text: `1`, `1/2`, `2/1`.
-pub fn motion(text: &str) -> Result<(u32, u32), String> {
+pub(super) fn motion(text: &str) -> Result<(u32, u32), String> {
     let number = |part: &str| match part.trim().parse::<u32>() {
         Ok(n) if (1..=64).contains(&n) => Ok(n),
         _ => Err(format!(
@@ -156,7 +156,7 @@ pub fn motion(text: &str) -> Result<(u32, u32), String> {
 }
 
 /// A range as text: `low..high`.
-pub fn range(text: &str) -> Result<(f64, f64), String> {
+pub(super) fn range(text: &str) -> Result<(f64, f64), String> {
     let wrong = || format!("“{text}” is no range: write low..high, such as 0.6..3");
     let (low, high) = text.split_once("..").ok_or_else(wrong)?;
     let number = |part: &str| part.trim().parse::<f64>().ok().filter(|v| v.is_finite());

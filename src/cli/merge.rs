@@ -14,7 +14,7 @@ use impact_oscillator::atlas::shard::{AtlasPart, merge};
 /// Arguments of `impactid merge`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE)]
-pub struct Merge {
+pub(super) struct Merge {
     /// The parts that `impactid atlas --shard I/N` wrote, all N of them
     #[arg(value_name = "PART.JSON", required = true)]
     parts: Vec<PathBuf>,
@@ -36,7 +36,7 @@ impl Merge {
     ///
     /// # Errors
     /// [`Failure`] where the parts do not make up one atlas, or a file cannot be written.
-    pub fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let parts: Vec<AtlasPart> = self
             .parts
             .iter()
@@ -50,7 +50,11 @@ impl Merge {
 ///
 /// # Errors
 /// As [`Merge::go`].
-pub fn whole(parts: &[AtlasPart], out: &OutArgs, verbosity: Verbosity) -> Result<Exit, Failure> {
+pub(super) fn whole(
+    parts: &[AtlasPart],
+    out: &OutArgs,
+    verbosity: Verbosity,
+) -> Result<Exit, Failure> {
     let maps = merge(parts).map_err(|e| {
         let remedy = "give every part of one atlas once, all of one --shard …/N";
         Failure::new(e.to_string(), remedy)

@@ -21,7 +21,7 @@ use labfiles::output::Lock;
     args_conflicts_with_subcommands = true,
     subcommand_negates_reqs = true
 )]
-pub struct Simulate {
+pub(super) struct Simulate {
     #[command(subcommand)]
     what: Option<What>,
     #[command(flatten)]
@@ -47,7 +47,7 @@ enum What {
 
 /// A motion of the theory.
 #[derive(Debug, Clone, Args)]
-pub struct MotionArgs {
+pub(super) struct MotionArgs {
     #[command(flatten)]
     machine: MachineArgs,
     /// Frequency ratio η
@@ -147,7 +147,7 @@ truth.json states what was drawn.";
 /// Arguments of `impactid simulate campaign`.
 #[derive(Debug, Clone, Args)]
 #[command(after_help = CAMPAIGN_HELP)]
-pub struct Campaign {
+pub(super) struct Campaign {
     /// Seed of everything random
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,

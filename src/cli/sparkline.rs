@@ -8,7 +8,7 @@ const BLANK: u32 = 0x2800;
 /// Draw values over their index: `width` × `height` characters, each of 2 × 4 dots. Every dot
 /// column shows the whole range of the samples that fall into it; gaps are samples that are no
 /// numbers. Without a finite value there are no lines.
-pub fn sparkline(values: &[f64], width: usize, height: usize) -> Vec<String> {
+pub(super) fn sparkline(values: &[f64], width: usize, height: usize) -> Vec<String> {
     let finite = || values.iter().copied().filter(|v| v.is_finite());
     let (low, high) = (
         finite().fold(f64::INFINITY, f64::min),

@@ -14,7 +14,7 @@ use labfiles::output::{Lock, write_bytes};
 /// Arguments of `impactid study`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
-pub struct Study {
+pub(super) struct Study {
     #[command(subcommand)]
     kind: Option<Kind>,
     /// The studies; a folder means all *.toml in it
@@ -49,7 +49,7 @@ impl Study {
     /// # Errors
     /// [`Failure`] where a study cannot be read, a parameter is out of range or a file cannot
     /// be written.
-    pub fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         if let Some(Kind::Coverage(verb)) = self.kind {
             return verb.run(verbosity);
         }

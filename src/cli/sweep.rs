@@ -10,7 +10,7 @@ use crate::pipeline::theory::plan::SweepPlan;
 /// Arguments of `impactid sweep`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE)]
-pub struct Sweep {
+pub(super) struct Sweep {
     #[command(flatten)]
     machine: MachineArgs,
     /// Frequency ratios η: the sweep's ends, or one value where ρ moves
@@ -52,7 +52,7 @@ impl Sweep {
     ///
     /// # Errors
     /// [`Failure`] where a parameter is out of range or a file cannot be written.
-    pub fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let mut study = self.machine.study("Quasi-stationary characteristics")?;
         let plan = SweepPlan {
             eta: self.eta,

@@ -12,7 +12,7 @@ use labfiles::output::{Lock, write_bytes};
 
 /// Where results go.
 #[derive(Debug, Clone, Args)]
-pub struct OutArgs {
+pub(super) struct OutArgs {
     /// Folder for the results; created if missing
     #[arg(long, short, value_name = "DIR", required = true)]
     pub out: Option<PathBuf>,
@@ -22,7 +22,7 @@ pub struct OutArgs {
 }
 
 /// Name of the study beside its results; it is written last, so its presence marks complete results.
-pub const COPY: &str = "study.toml";
+pub(super) const COPY: &str = "study.toml";
 
 impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Self {
@@ -32,7 +32,7 @@ impl From<StudyError> for Failure {
 
 impl OutArgs {
     /// The folder.
-    pub fn folder(&self) -> &Path {
+    pub(super) fn folder(&self) -> &Path {
         self.out.as_deref().unwrap_or(Path::new("."))
     }
 
@@ -40,7 +40,7 @@ impl OutArgs {
     ///
     /// # Errors
     /// [`Failure`] where a parameter is out of range or an output cannot be written.
-    pub fn study(
+    pub(super) fn study(
         &self,
         study: &Study,
         what: &'static str,
@@ -57,7 +57,7 @@ impl OutArgs {
     ///
     /// # Errors
     /// [`Failure`] of the work, or where an output cannot be written.
-    pub fn complete(
+    pub(super) fn complete(
         &self,
         (key, study): (&str, &str),
         what: &'static str,
@@ -83,7 +83,7 @@ impl OutArgs {
 ///
 /// # Errors
 /// [`Failure`] where a number has no place in TOML.
-pub fn study_text(study: &Study) -> Result<String, Failure> {
+pub(super) fn study_text(study: &Study) -> Result<String, Failure> {
     toml::to_string(study)
         .map_err(|e| Failure::new(e.to_string(), "give numbers that can be written as TOML"))
 }
@@ -93,7 +93,7 @@ pub fn study_text(study: &Study) -> Result<String, Failure> {
 ///
 /// # Errors
 /// [`Failure`] of the work, or where the folder cannot be written into.
-pub fn in_folder(
+pub(super) fn in_folder(
     (folder, key, resume): (&Path, &str, bool),
     what: &'static str,
     verbosity: Verbosity,

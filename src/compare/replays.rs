@@ -275,9 +275,10 @@ mod tests {
         let quarter = stretch(drive(0.25 * std::f64::consts::TAU), 2);
         assert!((quarter.start_s - 0.075).abs() < 1e-12);
         assert!((quarter.length_s - 0.2).abs() < 1e-12);
-        let cut = cut(&ramp(400), 1000.0, &quarter);
-        assert_eq!((cut.values[0], cut.values.len()), (75.0, 201));
-        assert!(cut.time_s[0].abs() < 1e-12 && (cut.time_s[200] - 0.2).abs() < 1e-12);
+        // 75.075 and 275.275 samples
+        let cut = cut(&ramp(400), 1001.0, &quarter);
+        assert_eq!((cut.values[0], cut.values.len()), (76.0, 200));
+        assert!((cut.time_s[0] - 0.925 / 1001.0).abs() < 1e-12);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::event::impact::{DetectionSource, Impact};
 use crate::event::jumps::{Jump, JumpSearch, SUPPORTED};
 use crate::event::kinematics::{Kinematics, RigKind, Series};
 use crate::event::refine::{self, ArcFit, Candidate, Instant};
-use crate::event::{bounce, drift};
+use crate::event::{bounce, drift, impact_speeds};
 use crate::record::{Flag, FlagCode, Record, Role};
 use crate::signal::robust;
 
@@ -191,7 +191,7 @@ fn refined(
     if arc.same_way {
         // Straight arcs have few samples: no drift can be estimated from them.
         let instants = refine::instants(kinematics, candidates, arc);
-        return refine::impacts(kinematics, candidates, &instants, drive, (arc, None));
+        return impact_speeds::impacts(kinematics, candidates, &instants, drive, (arc, None));
     }
     let Some(contact) = finite_contact::measure(kinematics, candidates, arc) else {
         return undrifted(kinematics, candidates, drive, (rig, arc, None));
@@ -240,7 +240,7 @@ fn undrifted(
     }
     let instants = instants(kinematics);
     let contact = contact.map(|(contact, _)| contact);
-    refine::impacts(kinematics, candidates, &instants, drive, (arc, contact))
+    impact_speeds::impacts(kinematics, candidates, &instants, drive, (arc, contact))
 }
 
 /// Candidates for impacts, and counts of what supports and contradicts them.

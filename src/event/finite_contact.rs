@@ -10,23 +10,18 @@
 //! displacements cross there. So the kink of the displacement places the contact, and T gives its
 //! start and end. Each body's velocity channel may lag by a delay of its own.
 
+use crate::event::contact_profile::ContactProfile;
+use crate::event::contact_samples::{Passage, Samples, beside, measured_velocity, samples};
 use crate::event::jumps::Jump;
-use crate::event::kinematics::{Body, Kinematics, Series};
+use crate::event::kinematics::Kinematics;
 use crate::event::refine::{ArcFit, Candidate, Instant, arcs, instants};
-use crate::record::Role;
 use crate::signal::robust;
 
 /// Fewest impacts that show how long they last.
 const FEWEST: usize = 5;
-/// Least height of a jump, in noise deviations, from which its samples are used.
-const CLEAR_JUMP: f64 = 25.0;
-/// Error of a sample's share beside the noise: what the flights' extrapolation leaves open.
-const SHARE_ERROR: f64 = 0.01;
 /// Fall of the sum of squares, over an instantaneous impact, from which a contact lasts or a
 /// velocity is delayed.
 const SIGNIFICANT: f64 = 25.0;
-/// Greatest error of an impact's time, in samples, with which its samples are used.
-const LEAST_PLACED: f64 = 0.6;
 /// Error of a sample's share where it places the impact: the contact's true profile.
 const PLACE_ERROR: f64 = 0.04;
 /// Squared deviation beyond which a sample counts no more.
@@ -42,67 +37,10 @@ const LONGEST: f64 = 6.0;
 /// Greatest delay looked for, in samples.
 const LATEST: f64 = 1.0;
 
-/// A linear contact of a given restitution, in shares of its duration.
-///
-/// With u'' + 2ζω u' + ω² u = 0 from u = 0 until the press ends, ω√(1−ζ²)T = φ = π − 2α and
-/// ζ = sin α, where R = e^{−κ}, κ = φ tan α.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct ContactProfile {
-    restitution: f64,
-    decay: f64,
-    angle: f64,
-}
-
-impl ContactProfile {
-    /// The profile for R; it is that of R = 0.15 below (a linear contact has R > 0.135).
-    pub(super) fn new(restitution: f64) -> Self {
-        let restitution = restitution.clamp(0.15, 1.0);
-        let decay = -restitution.ln();
-        let (mut low, mut high) = (0.0, std::f64::consts::FRAC_PI_2);
-        for _ in 0..50 {
-            let middle = 0.5 * (low + high);
-            if (std::f64::consts::PI - 2.0 * middle) * middle.tan() < decay {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        Self {
-            restitution,
-            decay,
-            angle: std::f64::consts::PI - 2.0 * low,
-        }
-    }
-
-    /// Share of the change of velocity that is done at a share of the duration.
-    pub(super) fn done(&self, share: f64) -> f64 {
-        if share <= 0.0 {
-            return 0.0;
-        }
-        if share >= 1.0 {
-            return 1.0;
-        }
-        let (sin, cos) = (self.angle * share).sin_cos();
-        let speed = (-self.decay * share).exp() * (cos - self.decay / self.angle * sin);
-        (1.0 - speed) / (1.0 + self.restitution)
-    }
-
-    /// Share of the duration by which the mean instant of the impulse follows first touch.
-    pub(super) fn centre(&self) -> f64 {
-        (self.restitution + self.drift()) / (1.0 + self.restitution)
-    }
-
-    /// Change of the speed at the end of contact by a constant acceleration that acts beside the
-    /// contact, over what it would be without the contact's spring: R sin φ/φ.
-    pub(super) fn drift(&self) -> f64 {
-        self.restitution * self.angle.sin() / self.angle
-    }
-}
-
 /// How long the impacts of a record last, and how late each velocity shows them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct FiniteContact {
-    /// Duration, samples; zero if it is not told from an instant.
+    /// Duration, samples; zero if it is indistinguishable from an instant.
     pub duration: f64,
     /// Delay of each body's velocity against the kink of the displacement, samples.
     pub delays: [f64; 2],
@@ -121,7 +59,7 @@ impl FiniteContact {
     }
 
     /// Times of impacts from the kink of the displacement and the samples within the contact.
-    pub fn placed(
+    pub(super) fn placed(
         &self,
         kinematics: &Kinematics,
         candidates: &[Candidate],
@@ -210,21 +148,6 @@ impl FiniteContact {
     }
 }
 
-/// A sample beside an impact: when, from the contact's centre, and how far the velocity has gone.
-#[derive(Debug, Clone, Copy)]
-struct Passage {
-    offset: f64,
-    share: f64,
-    share_error: f64,
-}
-
-/// The samples of both bodies (x: 0, y: 1) beside one impact.
-#[derive(Debug, Clone)]
-struct Samples {
-    time_error: f64,
-    passages: Vec<(Passage, usize)>,
-}
-
 /// How long the impacts of a record last; `None` if they are instants, or if nothing shows it
 /// (it takes measured velocity and displacement).
 pub(super) fn measure(
@@ -254,12 +177,6 @@ fn widened(candidate: &Candidate) -> Candidate {
     wide
 }
 
-/// A body's velocity if it was measured as such: differentiated displacements smear every jump.
-fn measured_velocity(body: &Body) -> Option<&Series> {
-    let velocity = body.velocity.as_ref()?;
-    matches!(velocity.role, Role::VelocityX | Role::VelocityY).then_some(velocity)
-}
-
 /// Speed after over before the impacts, median.
 fn typical_ratio(
     kinematics: &Kinematics,
@@ -278,64 +195,6 @@ fn typical_ratio(
         })
         .collect();
     robust::median(&ratios)
-}
-
-/// The samples of one impact, with the error of its time; `None` if it is too weak or its time
-/// too uncertain.
-fn samples(
-    bodies: [Option<&Series>; 2],
-    candidates: &[Candidate],
-    index: usize,
-    instant: Instant,
-    arc: ArcFit,
-) -> Option<Samples> {
-    if candidates[index].dead_samples > 0.0 || instant.error > LEAST_PLACED {
-        return None;
-    }
-    let mut out = Samples {
-        time_error: instant.error,
-        passages: Vec::new(),
-    };
-    for (body, velocity) in bodies.into_iter().enumerate() {
-        let Some(velocity) = velocity else { continue };
-        let [before, after] = arcs(velocity, candidates, index, arc)?;
-        let height = before.value(instant.time) - after.value(instant.time);
-        let full = before.samples.min(after.samples) > arc.degree + 1;
-        if !full || height < CLEAR_JUMP * velocity.noise {
-            return None;
-        }
-        let found = beside(velocity, candidates, index, instant, arc);
-        out.passages.extend(found.into_iter().map(|p| (p, body)));
-    }
-    (!out.passages.is_empty()).then_some(out)
-}
-
-/// Samples within the jump of one impact.
-fn beside(
-    velocity: &Series,
-    candidates: &[Candidate],
-    index: usize,
-    instant: Instant,
-    arc: ArcFit,
-) -> Vec<Passage> {
-    let jump = candidates[index].jump;
-    let Some([before, after]) = arcs(velocity, candidates, index, arc) else {
-        return Vec::new();
-    };
-    let height = before.value(instant.time) - after.value(instant.time);
-    let last = (jump.left + jump.gap).min(velocity.values.len());
-    (jump.left + 1..last)
-        .map(|k| {
-            let at = k as f64;
-            let (b, a) = (before.value(at), after.value(at));
-            let spread = 1f64.hypot(before.error_factor(at).max(after.error_factor(at)));
-            Passage {
-                offset: at - instant.time,
-                share: (b - velocity.values[k]) / (b - a),
-                share_error: (velocity.noise * spread / height).hypot(SHARE_ERROR),
-            }
-        })
-        .collect()
 }
 
 /// Least squares over duration and delays; each impact's time is free within its error.
@@ -459,41 +318,6 @@ pub(super) fn bridge(
                 velocity.values[k] = flight.value(at);
             }
             velocity.correct_area(jump.left + jump.gap, area, rate_hz);
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn valid_the_profile_of_an_elastic_contact_is_a_half_sine_force() {
-        let profile = ContactProfile::new(1.0);
-        for share in [0.1, 0.5, 0.7] {
-            let expected = 0.5 * (1.0 - (std::f64::consts::PI * share).cos());
-            assert!((profile.done(share) - expected).abs() < 1e-9);
-        }
-        assert!((profile.centre() - 0.5).abs() < 1e-9 && profile.drift() < 1e-9);
-    }
-
-    #[test]
-    fn prop_the_profile_rises_from_nothing_to_all_about_its_centre() {
-        for restitution in [0.2, 0.5, 0.8, 0.95] {
-            let profile = ContactProfile::new(restitution);
-            let shares: Vec<f64> = (0..=2000).map(|i| f64::from(i) / 2000.0).collect();
-            let done: Vec<f64> = shares.iter().map(|s| profile.done(*s)).collect();
-            assert!(done.windows(2).all(|w| w[1] >= w[0]));
-            assert!(
-                (profile.done(1.0 - 1e-9) - 1.0).abs() < 1e-6,
-                "{restitution}"
-            );
-            // mean instant of the impulse: the integral of what is not yet done
-            let left: f64 = done.iter().map(|d| (1.0 - d) / 2000.0).sum();
-            assert!(
-                (left - 0.5 / 2000.0 - profile.centre()).abs() < 1e-6,
-                "{restitution}"
-            );
         }
     }
 }

@@ -6,12 +6,15 @@
 
 mod bounce;
 mod contact;
+mod contact_profile;
+mod contact_samples;
 mod corner;
 mod detect;
 mod drift;
 mod drive;
 mod finite_contact;
 mod impact;
+mod impact_speeds;
 mod jumps;
 mod kinematics;
 mod refine;

@@ -16,7 +16,7 @@ use labfiles::output::{OutputError, write_whole};
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn write<T: Serialize>(path: &Path, value: &T) -> Result<(), OutputError> {
+pub(super) fn write<T: Serialize>(path: &Path, value: &T) -> Result<(), OutputError> {
     write_whole(path, |writer| {
         let mut gzip = GzEncoder::new(writer, Compression::fast());
         serde_json::to_writer(&mut gzip, value)?;
@@ -29,7 +29,7 @@ pub fn write<T: Serialize>(path: &Path, value: &T) -> Result<(), OutputError> {
 ///
 /// # Errors
 /// If the file is missing, damaged or of another type.
-pub fn read<T: DeserializeOwned>(path: &Path) -> io::Result<T> {
+pub(super) fn read<T: DeserializeOwned>(path: &Path) -> io::Result<T> {
     let mut text = String::new();
     GzDecoder::new(File::open(path)?).read_to_string(&mut text)?;
     Ok(serde_json::from_str(&text)?)

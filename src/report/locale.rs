@@ -6,7 +6,7 @@ use crate::message::{Language, Message, Print, filled, sentence};
 
 /// What the reader chose about numbers and language.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Locale<'a> {
+pub(crate) struct Locale<'a> {
     /// Whether numbers have a decimal comma.
     pub decimal_comma: bool,
     /// Phrases and messages in the reader's language; `None`: English.
@@ -15,12 +15,12 @@ pub struct Locale<'a> {
 
 impl Locale<'_> {
     /// A phrase of the report in the reader's language.
-    pub fn translate(self, phrase: &str) -> String {
+    pub(crate) fn translate(self, phrase: &str) -> String {
         self.catalog.map_or(phrase, |c| c.get(phrase)).to_owned()
     }
 
     /// A phrase in the reader's language, with values for the names in braces.
-    pub fn translate_with(self, phrase: &str, values: &[(&str, &str)]) -> String {
+    pub(crate) fn translate_with(self, phrase: &str, values: &[(&str, &str)]) -> String {
         filled(&self.translate(phrase), |name| {
             let value = values.iter().find(|v| v.0 == name)?;
             Some(value.1.to_owned())
@@ -28,17 +28,17 @@ impl Locale<'_> {
     }
 
     /// A message in the reader's language, its symbols between dollars.
-    pub fn message(self, message: &dyn Message) -> String {
+    pub(crate) fn message(self, message: &dyn Message) -> String {
         self.print(message)
     }
 
     /// A message as a sentence: a capital at its start, a full stop at its end.
-    pub fn sentence(self, message: &dyn Message) -> String {
+    pub(crate) fn sentence(self, message: &dyn Message) -> String {
         sentence(&self.print(message))
     }
 
     /// Messages as sentences.
-    pub fn sentences<'m, M: Message + 'm>(
+    pub(crate) fn sentences<'m, M: Message + 'm>(
         self,
         messages: impl IntoIterator<Item = &'m M>,
     ) -> String {
@@ -47,18 +47,18 @@ impl Locale<'_> {
     }
 
     /// Whether the texts are English.
-    pub fn is_english(self) -> bool {
+    pub(crate) fn is_english(self) -> bool {
         let language = self.catalog.and_then(|c| c.language.as_deref());
         language.is_none_or(|l| l == "en")
     }
 
     /// A range in words.
-    pub fn range(self, first: &str, last: &str) -> String {
+    pub(crate) fn range(self, first: &str, last: &str) -> String {
         self.translate_with("{first} to {last}", &[("first", first), ("last", last)])
     }
 
     /// A title whose end in brackets, a unit or a count, is no part of the phrase.
-    pub fn translate_title(self, title: &str) -> String {
+    pub(crate) fn translate_title(self, title: &str) -> String {
         let whole = self.translate(title);
         match title.rfind('(') {
             Some(at) if title.ends_with(')') && whole == title => {
@@ -70,12 +70,12 @@ impl Locale<'_> {
     }
 
     /// A number with a fixed count of decimals, a true minus and the chosen decimal sign.
-    pub fn fixed(self, value: f64, decimals: usize) -> String {
+    pub(crate) fn fixed(self, value: f64, decimals: usize) -> String {
         self.digits(&format!("{value:.decimals$}"))
     }
 
     /// Digits as Rust writes them, with a true minus and the chosen decimal sign.
-    pub fn digits(self, text: &str) -> String {
+    pub(crate) fn digits(self, text: &str) -> String {
         let is_zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
         let minus = if is_zero { "" } else { "\u{2212}" };
         let text = text.replace('-', minus);
@@ -86,7 +86,7 @@ impl Locale<'_> {
     }
 
     /// A number with a count of significant digits; powers of ten where it is very large or small.
-    pub fn significant(self, value: f64, digits: usize) -> String {
+    pub(crate) fn significant(self, value: f64, digits: usize) -> String {
         if value == 0.0 || !value.is_finite() {
             return if value == 0.0 {
                 "0".into()
@@ -125,7 +125,7 @@ impl Print for Locale<'_> {
 }
 
 /// Exponent of ten of a number once rounded to some digits (0.99996 to four digits is 1.000).
-pub fn decimal_exponent(value: f64, digits: usize) -> i32 {
+pub(crate) fn decimal_exponent(value: f64, digits: usize) -> i32 {
     let exponent = value.abs().log10().floor() as i32;
     let rounded = (value.abs() / 10f64.powi(exponent - digits as i32 + 1)).round();
     exponent + i32::from(rounded >= 10f64.powi(digits as i32))

@@ -5,7 +5,7 @@ use crate::identify::{Estimate, Method, ParameterSet, Status};
 
 /// How a parameter is named and printed.
 #[derive(Debug, Clone, Copy)]
-pub struct ParameterLook {
+pub(super) struct ParameterLook {
     /// Its name in `identification.json`.
     pub key: &'static str,
     /// Its symbol, with markup.
@@ -21,7 +21,7 @@ pub struct ParameterLook {
 }
 
 /// The four parameters of the oscillator.
-pub const PARAMETERS: [ParameterLook; 4] = [
+pub(super) const PARAMETERS: [ParameterLook; 4] = [
     ParameterLook {
         key: "restitution",
         symbol: "$R$",
@@ -57,12 +57,12 @@ pub const PARAMETERS: [ParameterLook; 4] = [
 ];
 
 /// The look of a parameter by its name.
-pub fn parameter(key: &str) -> Option<&'static ParameterLook> {
+pub(super) fn parameter(key: &str) -> Option<&'static ParameterLook> {
     PARAMETERS.iter().find(|p| p.key == key)
 }
 
 /// Name of a method inside a sentence or a list.
-pub fn method_inline(method: Method, locale: Locale) -> String {
+pub(super) fn method_inline(method: Method, locale: Locale) -> String {
     let name = locale.message(&method);
     match locale.is_english() {
         true => name.to_lowercase(),
@@ -71,7 +71,7 @@ pub fn method_inline(method: Method, locale: Locale) -> String {
 }
 
 /// Name of a status in the document.
-pub fn status_name(status: Status) -> &'static str {
+pub(super) fn status_name(status: Status) -> &'static str {
     match status {
         Status::Identified => "identified",
         Status::Weak => "weak",
@@ -80,7 +80,7 @@ pub fn status_name(status: Status) -> &'static str {
 }
 
 /// Decimals at which an uncertainty shows two significant digits.
-pub fn decimals_for(uncertainty: f64) -> usize {
+pub(super) fn decimals_for(uncertainty: f64) -> usize {
     if !(uncertainty.is_finite() && uncertainty > 0.0) {
         return 4;
     }
@@ -88,10 +88,10 @@ pub fn decimals_for(uncertainty: f64) -> usize {
 }
 
 /// Standard errors from the middle of a normal distribution to either end of its 95 % interval.
-pub const NORMAL_95: f64 = 1.96;
+pub(super) const NORMAL_95: f64 = 1.96;
 
 /// Half the 95 % interval, SI: from the interval, else from the standard error.
-pub fn half_width(estimate: &Estimate) -> Option<f64> {
+pub(super) fn half_width(estimate: &Estimate) -> Option<f64> {
     match (estimate.interval95, estimate.standard_error) {
         (Some([low, high]), _) => Some(0.5 * (high - low)),
         (None, Some(error)) => Some(NORMAL_95 * error),
@@ -101,7 +101,7 @@ pub fn half_width(estimate: &Estimate) -> Option<f64> {
 
 /// The 95 % interval of an estimate that has a value, SI: as stated, else about the value from the
 /// standard error, else the value alone.
-pub fn interval95(estimate: &Estimate) -> Option<(f64, f64)> {
+pub(super) fn interval95(estimate: &Estimate) -> Option<(f64, f64)> {
     let value = estimate.value?;
     Some(match estimate.interval95 {
         Some([low, high]) => (low, high),
@@ -114,7 +114,7 @@ pub fn interval95(estimate: &Estimate) -> Option<(f64, f64)> {
 
 /// `value ± half width` with unit, `not identifiable` where there is no value, `–` where the
 /// parameter was not asked for.
-pub fn short(look: &ParameterLook, estimate: Option<&Estimate>, locale: Locale) -> String {
+pub(super) fn short(look: &ParameterLook, estimate: Option<&Estimate>, locale: Locale) -> String {
     let Some(estimate) = estimate else {
         return "–".into();
     };

@@ -13,7 +13,7 @@ const PAGE: &str = r#"#set page(width: auto, height: auto, margin: 3pt)
 ///
 /// # Errors
 /// [`ReportError::Picture`] where a renderer refuses the figure.
-pub fn pictures(figure: &Figure) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
+pub(crate) fn pictures(figure: &Figure) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
     let name = |ending: &str| format!("{}.{ending}", figure.name);
     Ok(vec![
         (name("svg"), figure.svg.clone().into_bytes()),

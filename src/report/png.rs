@@ -14,7 +14,7 @@ const RESOLUTION_DPI: f32 = 200.0;
 const UNITS_PER_INCH: f32 = 96.0;
 
 /// A figure as PNG on white.
-pub fn png(figure: &Figure) -> Result<Vec<u8>, ReportError> {
+pub(super) fn png(figure: &Figure) -> Result<Vec<u8>, ReportError> {
     let failed = |why: String| ReportError::Picture {
         name: figure.name.clone(),
         why,

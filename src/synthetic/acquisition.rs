@@ -5,9 +5,10 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::synthetic::effects::Effects;
-use crate::synthetic::run::{RATE_HZ, TrueImpact};
-use crate::synthetic::truth::Faults;
+use crate::synthetic::truth::{Faults, TrueImpact};
 
+/// Samples per second, Hz.
+pub const RATE_HZ: f64 = 2000.0;
 /// Full scale of the converter, V (±).
 pub const FULL_SCALE_V: f64 = 5.0;
 

@@ -3,8 +3,9 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::effects::{Effects, RigSpec};
+use super::effects::Effects;
 use super::plan::Plan;
+use super::rig_spec::RigSpec;
 use super::run::Laboratory;
 use super::truth::{Faults, Truth, draw_asymmetry};
 

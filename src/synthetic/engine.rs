@@ -115,7 +115,52 @@ impl Physics<'_> {
     }
 }
 
+/// Longest period, in drive periods, of a motion whose settling is ended early.
+const SHORT_PERIOD: usize = 4;
+/// Relative closure of a motion that has settled.
+const SETTLED: f64 = 1e-8;
+
+/// Whether states strobed once in a drive period repeat to rounding: after one to four periods,
+/// and that three times in a row.
+pub fn repeats(states: &[Phase4]) -> bool {
+    let size = states.iter().flatten().fold(1e-9f64, |m, v| m.max(v.abs()));
+    let close = |a: &Phase4, b: &Phase4| {
+        let mut pairs = a.iter().zip(b);
+        pairs.all(|(a, b)| (a - b).abs() < SETTLED * size)
+    };
+    (1..=SHORT_PERIOD).any(|n| {
+        let Some(first) = states.len().checked_sub(4 * n) else {
+            return false;
+        };
+        (first + n..states.len()).all(|i| close(&states[i], &states[i - n]))
+    })
+}
+
 impl Engine {
+    /// Whether it is the motion of the model.
+    pub fn is_exact(&self) -> bool {
+        matches!(self, Self::Exact(_))
+    }
+
+    /// Go on for a time; an integration ends sooner, by whole drive periods, if the motion repeats
+    /// to rounding before.
+    pub fn settle(&mut self, duration: f64, period: f64) {
+        if self.is_exact() {
+            self.advance(duration);
+            return;
+        }
+        let periods = (duration / period).floor();
+        let mut states = Vec::new();
+        for _ in 0..periods as usize {
+            self.advance(period);
+            states.push(self.state());
+            if repeats(&states) {
+                break;
+            }
+        }
+        self.advance(duration - periods * period);
+    }
+
     /// Time reached.
     pub fn tau(&self) -> f64 {
         match self {

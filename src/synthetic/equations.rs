@@ -11,7 +11,7 @@ use super::plan::Step;
 use super::truth::Truth;
 
 /// [X, X', Y, Y'].
-pub type Phase4 = [f64; 4];
+pub(super) type Phase4 = [f64; 4];
 
 /// A contact of finite duration: P = max(0, κu + cu') with the overlap u = X + Y − 2ρ.
 #[derive(Debug, Clone, Copy, PartialEq)]

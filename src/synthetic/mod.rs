@@ -10,11 +10,17 @@ mod equations;
 mod integrate;
 pub mod plan;
 pub mod rig;
+pub mod rig_spec;
 pub mod run;
+mod settled;
 pub mod truth;
 
+#[cfg(test)]
+mod tests;
+
 pub use draw::{Draw, Reach, draw};
-pub use effects::{Effect, Effects, RigError, RigSpec};
+pub use effects::Effects;
 pub use plan::{Plan, Step};
-pub use run::{Laboratory, RawChannel, RawRecord, TrueImpact, blocks, records};
-pub use truth::{Faults, Truth};
+pub use rig_spec::{Effect, RigError, RigSpec};
+pub use run::{Laboratory, RawChannel, RawRecord, blocks, records};
+pub use truth::{Faults, TrueImpact, Truth};

@@ -12,11 +12,12 @@ use crate::synthetic::engine::{Engine, Physics, Recorded};
 use crate::synthetic::equations::Phase4;
 use crate::synthetic::plan::{Plan, Step};
 use crate::synthetic::rig::{ROLES, sensitivities};
-use crate::synthetic::truth::{Faults, Truth, draw_corners, draw_gains};
-use impact_oscillator::model::params::{ModelError, Setting};
+use crate::synthetic::settled::true_motion;
+use crate::synthetic::truth::{Faults, TrueImpact, Truth, draw_corners, draw_gains};
+use impact_oscillator::model::params::ModelError;
 
-/// Samples per second, Hz.
-pub const RATE_HZ: f64 = 2000.0;
+pub use crate::synthetic::acquisition::RATE_HZ;
+
 /// Samples of a record.
 pub const SAMPLES: usize = 2000;
 /// The motion is sampled this much finer where a high-pass has to be run.
@@ -52,21 +53,6 @@ pub struct RawRecord {
     pub motion: Motion,
     /// True impacts that begin within the record.
     pub impacts: Vec<TrueImpact>,
-}
-
-/// One impact in truth.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrueImpact {
-    /// First touch, since the record's first sample, s.
-    pub time_s: f64,
-    /// Approach speed at first touch, m/s.
-    pub approach_m_s: f64,
-    /// Separation speed at the end of contact, m/s.
-    pub separation_m_s: f64,
-    /// How long the contact lasts, s; zero for an instantaneous one.
-    pub duration_s: f64,
-    /// How long the masses stay together in a dead zone, s; zero without one.
-    pub dead_zone_s: f64,
 }
 
 /// What a record is made from: the motion and where it was taken.
@@ -187,7 +173,7 @@ impl VirtualRig<'_> {
         self.physics.set(engine, index, step);
         // A random fraction of a period, so that records start at any phase of the drive.
         let settle = (SETTLE_PERIODS + rng.random_range(0.0..1.0)) * setting.period();
-        engine.advance(settle);
+        engine.settle(settle, setting.period());
         let start_tau = engine.tau();
         let duration = PRE_ROLL_S + SAMPLES as f64 / RATE_HZ;
         let recorded = engine.record(duration * omega);
@@ -325,53 +311,6 @@ fn filtered(states: &[Phase4], component: usize, corner_hz: Option<f64>) -> Vec<
         }
     }
     out
-}
-
-/// Largest period looked for in the noiseless motion, drive periods.
-const LONGEST: usize = 16;
-/// Drive periods over which the noiseless motion must repeat itself.
-const WATCHED: usize = 96;
-/// Relative closure of a periodic noiseless motion.
-const CLOSED: f64 = 1e-3;
-
-/// The motion after a record according to the noiseless simulation itself: states strobed once a
-/// drive period must repeat after n periods within a thousandth of the motion's size.
-fn true_motion(mut engine: Engine, setting: Setting) -> Motion {
-    let mut states = Vec::with_capacity(WATCHED);
-    let mut counts = Vec::with_capacity(WATCHED);
-    let mut dead_zones = 0;
-    for _ in 0..WATCHED {
-        let [count, dead] = engine.advance(setting.period());
-        dead_zones += dead;
-        states.push(engine.state());
-        counts.push(count);
-    }
-    let size = states
-        .iter()
-        .flatten()
-        .fold(0.0f64, |m, v| m.max(v.abs()))
-        .max(1e-9);
-    let closes = |n: usize| {
-        (n..WATCHED).all(|i| {
-            states[i]
-                .iter()
-                .zip(states[i - n])
-                .all(|(a, b)| (a - b).abs() < CLOSED * size)
-                && counts[i] == counts[i - n]
-        })
-    };
-    let impacts: usize = counts.iter().sum();
-    match (1..=LONGEST).find(|n| closes(*n)) {
-        Some(1) if impacts == 0 => Motion::Impactless,
-        Some(n) => Motion::Periodic {
-            impacts_p: counts[..n].iter().sum::<usize>() as u32,
-            periods_n: n as u32,
-            dead_zone: 2 * dead_zones >= impacts.max(1),
-        },
-        None => Motion::Undetermined {
-            reason: "the noiseless simulation is not periodic".into(),
-        },
-    }
 }
 
 /// A raw record calibrated with the nominal sensitivities, as ingest would do it.

@@ -72,6 +72,21 @@ impl Truth {
     }
 }
 
+/// One impact in truth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrueImpact {
+    /// First touch, since the record's first sample, s.
+    pub time_s: f64,
+    /// Approach speed at first touch, m/s.
+    pub approach_m_s: f64,
+    /// Separation speed at the end of contact, m/s.
+    pub separation_m_s: f64,
+    /// How long the contact lasts, s; zero for an instantaneous one.
+    pub duration_s: f64,
+    /// How long the masses stay together in a dead zone, s; zero without one.
+    pub dead_zone_s: f64,
+}
+
 /// Faults of the rig; [`Faults::none`] is an ideal one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Faults {

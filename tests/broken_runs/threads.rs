@@ -112,6 +112,8 @@ fn valid_simulated_campaigns_and_theory() {
     let lab = crate::support::Lab::new();
     let simulate = ["simulate", "campaign", "--records", "30", "--out", "out"];
     same_on_any_number_of_threads(&lab, &simulate);
+    let realistic = [&simulate[..], &["--rig", "realistic"]].concat();
+    same_on_any_number_of_threads(&lab, &realistic);
     let said = |threads| lab.run(&["--threads", threads, "selftest"]).said;
     let expected = said("1");
     assert!(expected.contains("published"), "{expected}");

@@ -5,10 +5,10 @@ use std::f64::consts::PI;
 use super::dual::Dual;
 
 /// A model.
-pub type Model = fn(&[Dual], &[f64]) -> Dual;
+pub(super) type Model = fn(&[Dual], &[f64]) -> Dual;
 
 /// Every set with its model.
-pub const ALL: [(&str, Model); 27] = [
+pub(super) const ALL: [(&str, Model); 27] = [
     ("Bennett5", |b, x| b[0] * (b[1] + x[0]).to(-(1.0 / b[2]))),
     ("BoxBOD", saturating),
     ("Chwirut1", decaying_quotient),

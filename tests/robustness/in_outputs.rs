@@ -3,7 +3,7 @@
 use super::Case;
 
 /// The cases.
-pub fn cases() -> Vec<Case> {
+pub(super) fn cases() -> Vec<Case> {
     let mut all = commands();
     all.extend(folders());
     all

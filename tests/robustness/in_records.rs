@@ -4,7 +4,7 @@ use super::{Case, noted, refused};
 use crate::support::{Lab, SAMPLES, wav_format};
 
 /// The cases.
-pub fn cases() -> Vec<Case> {
+pub(super) fn cases() -> Vec<Case> {
     let mut all = files();
     all.extend(channels());
     all.extend(values());
@@ -67,7 +67,7 @@ fn nested_groups(path: &std::path::Path, depth: usize) {
 }
 
 /// Files that claim or unfold to more than a machine holds.
-pub fn bombs() -> Vec<Case> {
+pub(super) fn bombs() -> Vec<Case> {
     vec![
         refused(
             "HDF5 that claims more samples than its bytes can hold",

@@ -3,7 +3,7 @@
 use super::{Case, refused};
 
 /// The cases.
-pub fn cases() -> Vec<Case> {
+pub(super) fn cases() -> Vec<Case> {
     let mut all = header();
     all.extend(rows());
     all

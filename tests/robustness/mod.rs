@@ -10,7 +10,7 @@ mod physical;
 use crate::support::Lab;
 
 /// One wrong input.
-pub struct Case {
+pub(crate) struct Case {
     /// What is wrong, for the table.
     pub input: &'static str,
     /// How a good campaign is made wrong.
@@ -24,10 +24,14 @@ pub struct Case {
 }
 
 /// The command of most cases.
-pub const CHECK: &[&str] = &["check", "campaign.toml"];
+pub(crate) const CHECK: &[&str] = &["check", "campaign.toml"];
 
 /// A case of `impactid check` that ends with 2.
-pub const fn refused(input: &'static str, spoil: fn(&Lab), says: &'static [&'static str]) -> Case {
+pub(crate) const fn refused(
+    input: &'static str,
+    spoil: fn(&Lab),
+    says: &'static [&'static str],
+) -> Case {
     Case {
         input,
         spoil,
@@ -38,7 +42,11 @@ pub const fn refused(input: &'static str, spoil: fn(&Lab), says: &'static [&'sta
 }
 
 /// A case of `impactid check` that is noted and goes on.
-pub const fn noted(input: &'static str, spoil: fn(&Lab), says: &'static [&'static str]) -> Case {
+pub(crate) const fn noted(
+    input: &'static str,
+    spoil: fn(&Lab),
+    says: &'static [&'static str],
+) -> Case {
     Case {
         input,
         spoil,

@@ -84,7 +84,7 @@ fn with_displacement(lab: &Lab, factor: f64) {
 }
 
 /// The cases.
-pub fn cases() -> Vec<Case> {
+pub(super) fn cases() -> Vec<Case> {
     vec![
         noted(
             "a drive frequency that is not the stated one",

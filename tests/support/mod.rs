@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Samples a second of the records.
-pub const RATE_HZ: f64 = 2000.0;
+pub(crate) const RATE_HZ: f64 = 2000.0;
 
 /// Samples in a record.
-pub const SAMPLES: usize = 2000;
+pub(crate) const SAMPLES: usize = 2000;
 
 /// The good campaign.toml.
-pub const CAMPAIGN: &str = r#"[campaign]
+pub(crate) const CAMPAIGN: &str = r#"[campaign]
 name = "Test rig"
 machine = "double"
 flight = "harmonic"
@@ -55,11 +55,11 @@ paper = "a4"
 "#;
 
 /// The good run table.
-pub const RUNS: &str = "file,drive_frequency_hz,clearance_mm,sweep\n\
+pub(crate) const RUNS: &str = "file,drive_frequency_hz,clearance_mm,sweep\n\
     r1.csv,11,1.0,up\nr2.csv,12,1.0,up\nr3.csv,13,1.0,down\n";
 
 /// What a program run left behind.
-pub struct Ran {
+pub(crate) struct Ran {
     /// Both output streams.
     pub said: String,
     /// Its exit code; -1 where a signal ended it.
@@ -67,13 +67,13 @@ pub struct Ran {
 }
 
 /// A folder with a campaign.
-pub struct Lab {
+pub(crate) struct Lab {
     folder: tempfile::TempDir,
 }
 
 impl Lab {
     /// A good campaign: three records with one impact a drive period.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let lab = Self {
             folder: tempfile::tempdir().expect("a temporary folder"),
         };
@@ -86,49 +86,49 @@ impl Lab {
     }
 
     /// Path of a file in the folder.
-    pub fn path(&self, name: &str) -> PathBuf {
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }
 
     /// The folder.
-    pub fn folder(&self) -> &Path {
+    pub(crate) fn folder(&self) -> &Path {
         self.folder.path()
     }
 
     /// Write a file.
-    pub fn write(&self, name: &str, text: &str) {
+    pub(crate) fn write(&self, name: &str, text: &str) {
         self.write_bytes(name, text.as_bytes());
     }
 
     /// Write a file of bytes.
-    pub fn write_bytes(&self, name: &str, bytes: &[u8]) {
+    pub(crate) fn write_bytes(&self, name: &str, bytes: &[u8]) {
         fs::write(self.path(name), bytes).expect("the test folder can be written");
     }
 
     /// Remove a file.
-    pub fn remove(&self, name: &str) {
+    pub(crate) fn remove(&self, name: &str) {
         fs::remove_file(self.path(name)).expect("it is there");
     }
 
     /// Read a file.
-    pub fn read(&self, name: &str) -> String {
+    pub(crate) fn read(&self, name: &str) -> String {
         fs::read_to_string(self.path(name)).expect("it is there")
     }
 
     /// Replace a text that must be in a file.
-    pub fn replace(&self, name: &str, from: &str, to: &str) {
+    pub(crate) fn replace(&self, name: &str, from: &str, to: &str) {
         let text = self.read(name);
         assert!(text.contains(from), "'{from}' is not in {name}");
         self.write(name, &text.replace(from, to));
     }
 
     /// Replace in campaign.toml.
-    pub fn edit(&self, from: &str, to: &str) {
+    pub(crate) fn edit(&self, from: &str, to: &str) {
         self.replace("campaign.toml", from, to);
     }
 
     /// Change the lines of a record: header is line 0; `None` drops the line.
-    pub fn lines(&self, name: &str, change: impl Fn(usize, &str) -> Option<String>) {
+    pub(crate) fn lines(&self, name: &str, change: impl Fn(usize, &str) -> Option<String>) {
         let text = self.read(name);
         let lines: Vec<String> = text
             .lines()
@@ -139,7 +139,7 @@ impl Lab {
     }
 
     /// Change one column of a record by sample number and value.
-    pub fn column(&self, name: &str, column: usize, change: impl Fn(usize, f64) -> String) {
+    pub(crate) fn column(&self, name: &str, column: usize, change: impl Fn(usize, f64) -> String) {
         self.lines(name, |i, line| {
             let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
             if i > 0 {
@@ -151,7 +151,7 @@ impl Lab {
     }
 
     /// Run the program in the folder.
-    pub fn run(&self, args: &[&str]) -> Ran {
+    pub(crate) fn run(&self, args: &[&str]) -> Ran {
         let output = Command::new(env!("CARGO_BIN_EXE_impactid"))
             .args(args)
             .current_dir(self.folder())
@@ -167,7 +167,7 @@ impl Lab {
 }
 
 /// The format chunk of a WAV file: one channel of 16 bits, 2,000 samples a second.
-pub fn wav_format() -> Vec<u8> {
+pub(crate) fn wav_format() -> Vec<u8> {
     let mut chunk = b"fmt ".to_vec();
     chunk.extend(16_u32.to_le_bytes());
     chunk.extend([1, 0, 1, 0]);
@@ -184,7 +184,7 @@ fn velocity(phase: f64) -> f64 {
 }
 
 /// A record as CSV: time, drive, contact, both velocities in V.
-pub fn table(frequency_hz: f64) -> String {
+pub(crate) fn table(frequency_hz: f64) -> String {
     let mut text = String::from("time [s],drive [V],contact [V],vx [V],vy [V]\n");
     for i in 0..SAMPLES {
         let t = i as f64 / RATE_HZ;

@@ -366,10 +366,10 @@ impl Block for ResonanceBlock {
             | Coordinate::MassAsymmetry
             | Coordinate::ScrewZero
             | Coordinate::Gap(_) => false,
-            Coordinate::Effect(effect) => match effect.kind() {
-                EffectKind::Harmonics | EffectKind::ContactDuration => false,
-                _ => true,
-            },
+            Coordinate::Effect(effect) => !matches!(
+                effect.kind(),
+                EffectKind::Harmonics | EffectKind::ContactDuration
+            ),
             _ => true,
         }
     }

@@ -118,7 +118,6 @@ pub fn budget(
     between_methods: &[(Coordinate, f64)],
 ) -> Budget {
     let fit = &found.fit;
-    let covariance = &fit.covariance * found.factor;
     let told: Vec<(usize, Coordinate)> = fit
         .free
         .iter()
@@ -126,43 +125,8 @@ pub fn budget(
         .enumerate()
         .filter(|(_, c)| Coordinate::PHYSICAL.contains(c))
         .collect();
-    let mut rows = Vec::new();
-    for (method, part) in methods.iter().zip(problem.parts(&fit.parameters)) {
-        let spread = &fit.covariance * &part.matrix * &covariance;
-        rows.push(Row {
-            source: Source::Noise { method: *method },
-            evaluation: Evaluation::A,
-            standard_uncertainty: None,
-            degrees_of_freedom: finite(part.count.saturating_sub(fit.free.len()).max(1) as f64),
-            contributions: contributions(&told, |i, _| (None, spread[(i, i)].max(0.0).sqrt())),
-        });
-    }
-    for prior in &problem.priors {
-        let Some(k) = fit.free.iter().position(|c| *c == prior.coordinate) else {
-            continue;
-        };
-        // The wide priors of the parameters themselves state nothing.
-        if Coordinate::PHYSICAL.contains(&prior.coordinate) {
-            continue;
-        }
-        let sensitivity = |i: usize| covariance[(i, k)] / prior.deviation.powi(2) / found.factor;
-        let size = prior.deviation * found.factor.sqrt();
-        rows.push(Row {
-            source: Source::Stated {
-                coordinate: prior.coordinate,
-                clearance_m: match prior.coordinate {
-                    Coordinate::Gap(i) => blocks.gaps_m.get(i).copied(),
-                    _ => None,
-                },
-            },
-            evaluation: Evaluation::B,
-            standard_uncertainty: Some(prior.deviation),
-            degrees_of_freedom: None,
-            contributions: contributions(&told, |i, _| {
-                (Some(sensitivity(i)), (sensitivity(i) * size).abs())
-            }),
-        });
-    }
+    let mut rows = noise_rows(problem, methods, found, &told);
+    rows.extend(stated_rows(problem, found, blocks, &told));
     let spreads: Vec<_> = told.iter().filter_map(|(_, c)| found.spread(*c)).collect();
     let freedom = spreads
         .iter()
@@ -215,6 +179,68 @@ pub fn budget(
         combined: combined.collect(),
         rows,
     }
+}
+
+/// The noise of each method's residuals.
+fn noise_rows(
+    problem: &Problem<'_>,
+    methods: &[Method],
+    found: &MethodFit,
+    told: &[(usize, Coordinate)],
+) -> Vec<Row> {
+    let fit = &found.fit;
+    let covariance = &fit.covariance * found.factor;
+    let mut rows = Vec::new();
+    for (method, part) in methods.iter().zip(problem.parts(&fit.parameters)) {
+        let spread = &fit.covariance * &part.matrix * &covariance;
+        rows.push(Row {
+            source: Source::Noise { method: *method },
+            evaluation: Evaluation::A,
+            standard_uncertainty: None,
+            degrees_of_freedom: finite(part.count.saturating_sub(fit.free.len()).max(1) as f64),
+            contributions: contributions(told, |i, _| (None, spread[(i, i)].max(0.0).sqrt())),
+        });
+    }
+    rows
+}
+
+/// What the laboratory states with an uncertainty.
+fn stated_rows(
+    problem: &Problem<'_>,
+    found: &MethodFit,
+    blocks: &Blocks,
+    told: &[(usize, Coordinate)],
+) -> Vec<Row> {
+    let fit = &found.fit;
+    let covariance = &fit.covariance * found.factor;
+    let mut rows = Vec::new();
+    for prior in &problem.priors {
+        let Some(k) = fit.free.iter().position(|c| *c == prior.coordinate) else {
+            continue;
+        };
+        // The wide priors of the parameters themselves state nothing.
+        if Coordinate::PHYSICAL.contains(&prior.coordinate) {
+            continue;
+        }
+        let sensitivity = |i: usize| covariance[(i, k)] / prior.deviation.powi(2) / found.factor;
+        let size = prior.deviation * found.factor.sqrt();
+        rows.push(Row {
+            source: Source::Stated {
+                coordinate: prior.coordinate,
+                clearance_m: match prior.coordinate {
+                    Coordinate::Gap(i) => blocks.gaps_m.get(i).copied(),
+                    _ => None,
+                },
+            },
+            evaluation: Evaluation::B,
+            standard_uncertainty: Some(prior.deviation),
+            degrees_of_freedom: None,
+            contributions: contributions(told, |i, _| {
+                (Some(sensitivity(i)), (sensitivity(i) * size).abs())
+            }),
+        });
+    }
+    rows
 }
 
 fn contributions(

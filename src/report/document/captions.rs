@@ -12,7 +12,7 @@ use crate::report::parameters::parameter;
 type Captioned = (String, String);
 
 /// Groups of figures; narrow ones of one group are side by side.
-pub fn method_figures(content: &ReportContent, locale: Locale) -> Vec<Vec<Captioned>> {
+pub(super) fn method_figures(content: &ReportContent, locale: Locale) -> Vec<Vec<Captioned>> {
     let mut groups = vec![narrow(content, locale)];
     let alone = |captioned: Vec<Captioned>| captioned.into_iter().map(|c| vec![c]);
     groups.extend(alone(impacts(content, locale)));
@@ -24,7 +24,7 @@ pub fn method_figures(content: &ReportContent, locale: Locale) -> Vec<Vec<Captio
 }
 
 /// The caption of a comparison, with markup.
-pub fn comparison(comparison: &Comparison, locale: Locale) -> String {
+pub(super) fn comparison(comparison: &Comparison, locale: Locale) -> String {
     let letter = comparison.letter.to_string();
     let mut text = locale.translate_with("Point ({letter})", &[("letter", &letter)]);
     let label = locale.translate(&comparison.motion.label());

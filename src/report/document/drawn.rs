@@ -5,7 +5,7 @@ use crate::report::figures::{Figure, richtext};
 use crate::report::locale::Locale;
 
 /// The figures as drawn, to be referred to by name.
-pub struct Drawn<'a> {
+pub(super) struct Drawn<'a> {
     /// The figures.
     pub figures: &'a [Figure],
     /// How numbers are printed.
@@ -14,7 +14,7 @@ pub struct Drawn<'a> {
 
 impl Drawn<'_> {
     /// Refers to a figure by its name; `None` if it was not drawn.
-    pub fn figure(&self, name: &str, caption: &str) -> Option<FigureRef> {
+    pub(super) fn figure(&self, name: &str, caption: &str) -> Option<FigureRef> {
         let figure = self.figures.iter().find(|f| f.name == name)?;
         Some(FigureRef {
             name: figure.name.clone(),
@@ -26,7 +26,7 @@ impl Drawn<'_> {
     }
 
     /// A block of those of the named figures that were drawn.
-    pub fn figures_block(&self, named: &[(&str, &str)]) -> Option<Block> {
+    pub(super) fn figures_block(&self, named: &[(&str, &str)]) -> Option<Block> {
         let figures: Vec<FigureRef> = named
             .iter()
             .filter_map(|(name, caption)| self.figure(name, caption))

@@ -11,7 +11,7 @@ use crate::report::locale::Locale;
 use crate::report::parameters::{self, PARAMETERS, ParameterLook};
 
 /// Builds the first page.
-pub fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
+pub(super) fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
     let id = &content.identification;
     Front {
         synthetic: content.campaign.synthetic,

@@ -6,7 +6,7 @@ mod drawn;
 mod facts;
 mod front;
 mod layout_phrases;
-pub mod model;
+pub(super) mod model;
 mod pdf;
 mod sections;
 mod settings;
@@ -14,7 +14,7 @@ mod tables;
 mod verdict;
 pub(super) mod world;
 
-pub use pdf::pdf;
+pub(super) use pdf::pdf;
 
 use drawn::Drawn;
 use model::{Document, Rich};
@@ -24,7 +24,11 @@ use crate::report::figures::Figure;
 use crate::report::locale::Locale;
 
 /// Builds the document's data.
-pub fn document(content: &ReportContent, figures: &[Figure], locale: Locale<'_>) -> Document {
+pub(super) fn document(
+    content: &ReportContent,
+    figures: &[Figure],
+    locale: Locale<'_>,
+) -> Document {
     let drawn = Drawn { figures, locale };
     Document {
         title: content.title.clone(),

@@ -8,11 +8,11 @@ use crate::report::figures::richtext::{self, Run};
 
 /// A text with markup, split into runs; serialised as a string where it has none.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Rich(pub Vec<Run>);
+pub(crate) struct Rich(pub Vec<Run>);
 
 impl Rich {
     /// The text without markup.
-    pub fn plain(&self) -> String {
+    pub(crate) fn plain(&self) -> String {
         self.0.iter().map(|r| r.text.as_str()).collect()
     }
 }
@@ -37,7 +37,7 @@ impl Serialize for Rich {
 
 /// The whole document.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Document {
+pub(crate) struct Document {
     /// Title.
     pub title: String,
     /// A line under the title.
@@ -54,14 +54,14 @@ pub struct Document {
 
 impl Document {
     /// What is printed for a phrase of the layout.
-    pub fn translate<'a>(&'a self, phrase: &'a str) -> &'a str {
+    pub(crate) fn translate<'a>(&'a self, phrase: &'a str) -> &'a str {
         self.words.get(phrase).map_or(phrase, String::as_str)
     }
 }
 
 /// The first page: the answer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Front {
+pub(crate) struct Front {
     /// Whether the data are simulated.
     pub synthetic: bool,
     /// One word for the verdict: `identified`, `weak`, `not_identifiable`, `does_not_fit`.
@@ -90,7 +90,7 @@ pub struct Front {
 
 /// One parameter with its value and interval, ready to print.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Answer {
+pub(crate) struct Answer {
     /// Its symbol.
     pub symbol: Rich,
     /// Its name.
@@ -111,7 +111,7 @@ pub struct Answer {
 
 /// A figure in its place.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FigureRef {
+pub(crate) struct FigureRef {
     /// Its name, the stem of its file.
     pub name: String,
     /// Width, points.
@@ -126,7 +126,7 @@ pub struct FigureRef {
 
 /// A section with its heading.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Section {
+pub(crate) struct Section {
     /// Heading.
     pub title: Rich,
     /// Depth: 1 or 2.
@@ -142,7 +142,7 @@ pub struct Section {
 /// A part of a section.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
-pub enum Block {
+pub(crate) enum Block {
     /// A paragraph.
     Paragraph {
         /// The text.
@@ -171,7 +171,7 @@ pub enum Block {
 
 /// A convention: a formula and its meaning.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Definition {
+pub(crate) struct Definition {
     /// The formula as typst maths.
     pub formula: &'static str,
     /// The formula as plain text.
@@ -183,7 +183,7 @@ pub struct Definition {
 /// Alignment of the cells of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Align {
+pub(crate) enum Align {
     /// At the left.
     Left,
     /// At the right.
@@ -194,7 +194,7 @@ pub enum Align {
 
 impl Align {
     /// Its name in the template and in the page.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Left => "left",
             Self::Right => "right",
@@ -205,7 +205,7 @@ impl Align {
 
 /// A table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Table {
+pub(crate) struct Table {
     /// Caption; empty for none.
     pub caption: Rich,
     /// Heads of the columns.
@@ -231,7 +231,7 @@ const TABLE_SIZE: f64 = 8.5;
 
 impl Table {
     /// A table of some rows, without caption and heads, set once and in the usual size.
-    pub fn of(rows: Vec<Vec<Rich>>) -> Self {
+    pub(crate) fn of(rows: Vec<Vec<Rich>>) -> Self {
         Self {
             caption: Rich::default(),
             heads: Vec::new(),
@@ -246,7 +246,7 @@ impl Table {
     }
 
     /// The same table with its columns as text, which is set far faster and drops all markup.
-    pub fn densely(self) -> Self {
+    pub(crate) fn densely(self) -> Self {
         let column = |i: usize| {
             let cells: Vec<String> = self.rows.iter().map(|row| row[i].plain()).collect();
             cells.join("\n")

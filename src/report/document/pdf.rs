@@ -14,7 +14,7 @@ const TEMPLATE: &str = include_str!("../template.typ");
 /// # Errors
 /// [`ReportError::FileName`] for a logo whose extension is none, [`ReportError::Template`] and
 /// [`ReportError::Pdf`] where the document cannot be set or exported.
-pub fn pdf(
+pub(crate) fn pdf(
     document: &Document,
     figures: &[Figure],
     options: &ReportOptions,

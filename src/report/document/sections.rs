@@ -12,7 +12,7 @@ use crate::report::locale::Locale;
 use crate::report::parameters::method_inline;
 
 /// All sections in their order.
-pub fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
+pub(super) fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
     let mut sections: Vec<Section> = [
         regions(content, drawn),
         comparisons(content, drawn),

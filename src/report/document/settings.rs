@@ -18,7 +18,7 @@ const DEFAULTS: [&str; 4] = [
 
 /// The block of settings: one line per value, `channels.drive.range = 5.0`, without what is not set or
 /// a default.
-pub fn settings(settings: &Value) -> Block {
+pub(super) fn settings(settings: &Value) -> Block {
     let mut lines = Vec::new();
     flatten("", settings, &mut lines);
     let text = lines.join("\n");

@@ -3,7 +3,7 @@
 use crate::identify::VerdictKind;
 
 /// Name of a verdict in the document.
-pub fn verdict_name(kind: VerdictKind) -> &'static str {
+pub(super) fn verdict_name(kind: VerdictKind) -> &'static str {
     match kind {
         VerdictKind::Identified => "identified",
         VerdictKind::Weak => "weak",
@@ -13,7 +13,7 @@ pub fn verdict_name(kind: VerdictKind) -> &'static str {
 }
 
 /// A verdict as a headline, a phrase; of a rig where records of one were measured.
-pub fn headline(kind: VerdictKind, of_a_rig: bool) -> &'static str {
+pub(super) fn headline(kind: VerdictKind, of_a_rig: bool) -> &'static str {
     match (kind, of_a_rig) {
         (VerdictKind::Identified, true) => "Identified: the model fits the rig",
         (VerdictKind::Identified, false) => "Identified: the model fits",

@@ -16,14 +16,17 @@ use typst_pdf::PdfOptions;
 use crate::report::figures::fonts;
 
 /// Files in memory; there is no clock and no access to the disk.
-pub struct MemoryWorld {
+pub(crate) struct MemoryWorld {
     main: Source,
     files: HashMap<FileId, Bytes>,
 }
 
 impl MemoryWorld {
     /// A world of a template and further files by their paths.
-    pub fn new(template: &str, files: impl IntoIterator<Item = (String, Vec<u8>)>) -> Option<Self> {
+    pub(crate) fn new(
+        template: &str,
+        files: impl IntoIterator<Item = (String, Vec<u8>)>,
+    ) -> Option<Self> {
         let main = Source::new(id("main.typ")?, template.to_owned());
         let files = files
             .into_iter()
@@ -34,7 +37,7 @@ impl MemoryWorld {
 }
 
 /// Why a world gives no pages.
-pub enum Unset {
+pub(crate) enum Unset {
     /// The template is wrong, or a file that it names is.
     Template(String),
     /// The pages cannot be exported.
@@ -43,7 +46,7 @@ pub enum Unset {
 
 impl MemoryWorld {
     /// The template set and exported as PDF. The same world gives the same bytes.
-    pub fn pdf(&self, title: &str) -> Result<Vec<u8>, Unset> {
+    pub(crate) fn pdf(&self, title: &str) -> Result<Vec<u8>, Unset> {
         let pages: PagedDocument = typst::compile(self)
             .output
             .map_err(|e| Unset::Template(self.first(&e)))?;

@@ -4,7 +4,7 @@ use crate::report::locale::Locale;
 
 /// One axis: its range in data and its title with unit, in the report's markup.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
+pub(crate) struct Axis {
     /// Least value shown.
     pub low: f64,
     /// Greatest value shown.
@@ -19,7 +19,7 @@ pub struct Axis {
 
 impl Axis {
     /// A linear axis.
-    pub fn new(low: f64, high: f64, title: impl Into<String>) -> Self {
+    pub(crate) fn new(low: f64, high: f64, title: impl Into<String>) -> Self {
         let (low, high) = if high > low {
             (low, high)
         } else {
@@ -35,7 +35,7 @@ impl Axis {
     }
 
     /// An axis that shows all values with a margin (a share of their range) at either end.
-    pub fn around(
+    pub(crate) fn around(
         values: impl IntoIterator<Item = f64>,
         margin: f64,
         title: impl Into<String>,
@@ -51,18 +51,18 @@ impl Axis {
     }
 
     /// With another wanted number of ticks.
-    pub fn with_ticks(self, ticks: usize) -> Self {
+    pub(crate) fn with_ticks(self, ticks: usize) -> Self {
         Self { ticks, ..self }
     }
 
     /// Counting in powers of ten; both ends must be positive.
-    pub fn logarithmic(self) -> Self {
+    pub(crate) fn logarithmic(self) -> Self {
         let log = self.low > 0.0;
         Self { log, ..self }
     }
 
     /// Share of the way from low to high.
-    pub fn share(&self, value: f64) -> f64 {
+    pub(crate) fn share(&self, value: f64) -> f64 {
         if self.log {
             (value / self.low).ln() / (self.high / self.low).ln()
         } else {
@@ -71,7 +71,7 @@ impl Axis {
     }
 
     /// Values of the labelled ticks, and the decimals their labels need.
-    pub fn major(&self) -> (Vec<f64>, usize) {
+    pub(crate) fn major(&self) -> (Vec<f64>, usize) {
         if self.log {
             return (self.decades(), 0);
         }
@@ -108,7 +108,7 @@ impl Axis {
     }
 
     /// Label of a tick.
-    pub fn label(&self, value: f64, decimals: usize, locale: Locale) -> String {
+    pub(crate) fn label(&self, value: f64, decimals: usize, locale: Locale) -> String {
         if self.log {
             locale.significant(value, 1)
         } else {
@@ -118,7 +118,7 @@ impl Axis {
 }
 
 /// Least and greatest of the finite values.
-pub fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
+pub(crate) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
     values
         .into_iter()
         .filter(|v| v.is_finite())

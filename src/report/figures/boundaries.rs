@@ -5,7 +5,7 @@ use super::look;
 use crate::motion::BoundaryKind;
 
 /// The boundaries in the order in which brackets are stacked.
-pub const ALL: [BoundaryKind; 4] = [
+pub(crate) const ALL: [BoundaryKind; 4] = [
     BoundaryKind::PeriodDoubling,
     BoundaryKind::SaddleNode,
     BoundaryKind::Grazing,
@@ -13,7 +13,7 @@ pub const ALL: [BoundaryKind; 4] = [
 ];
 
 /// The name in the figures' data.
-pub fn name(kind: BoundaryKind) -> &'static str {
+pub(crate) fn name(kind: BoundaryKind) -> &'static str {
     match kind {
         BoundaryKind::Other => "edge",
         kind => kind.name(),
@@ -21,7 +21,7 @@ pub fn name(kind: BoundaryKind) -> &'static str {
 }
 
 /// The paper's symbol, with markup.
-pub fn symbol(kind: BoundaryKind) -> &'static str {
+pub(crate) fn symbol(kind: BoundaryKind) -> &'static str {
     match kind {
         BoundaryKind::PeriodDoubling => "$s_1$",
         BoundaryKind::SaddleNode => "$s_2$",
@@ -31,7 +31,7 @@ pub fn symbol(kind: BoundaryKind) -> &'static str {
 }
 
 /// How a simulated boundary is drawn.
-pub fn stroke(kind: BoundaryKind, width: f64) -> Stroke {
+pub(crate) fn stroke(kind: BoundaryKind, width: f64) -> Stroke {
     match kind {
         BoundaryKind::SaddleNode => Stroke::solid(look::INK, width),
         BoundaryKind::PeriodDoubling => Stroke::dashed(look::INK, width, &[5.0, 2.2]),

@@ -6,18 +6,18 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::compact;
 use super::fonts::{FAMILY, Face};
-pub use super::path::Point;
+pub(crate) use super::path::Point;
 use super::richtext;
 
 /// Drawing units in a point: plotters counts in whole units, these are fine enough for a curve.
 const UNITS_PER_POINT: f64 = 20.0;
 
 /// A colour.
-pub type Colour = RGBColor;
+pub(crate) type Colour = RGBColor;
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stroke {
+pub(crate) struct Stroke {
     /// Colour.
     pub colour: Colour,
     /// Width in points.
@@ -28,7 +28,7 @@ pub struct Stroke {
 
 impl Stroke {
     /// A solid line.
-    pub const fn solid(colour: Colour, width: f64) -> Self {
+    pub(crate) const fn solid(colour: Colour, width: f64) -> Self {
         Self {
             colour,
             width,
@@ -37,7 +37,7 @@ impl Stroke {
     }
 
     /// A dashed line.
-    pub const fn dashed(colour: Colour, width: f64, dash: &'static [f64]) -> Self {
+    pub(crate) const fn dashed(colour: Colour, width: f64, dash: &'static [f64]) -> Self {
         Self {
             colour,
             width,
@@ -48,7 +48,7 @@ impl Stroke {
 
 /// Which point of a text its position names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Anchor {
+pub(crate) enum Anchor {
     /// The left end.
     Left,
     /// The middle.
@@ -59,7 +59,7 @@ pub enum Anchor {
 
 /// How a text is set.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TextLook {
+pub(crate) struct TextLook {
     /// Size in points.
     pub size: f64,
     /// Face.
@@ -74,7 +74,7 @@ pub struct TextLook {
 
 impl TextLook {
     /// Upright text of a size.
-    pub const fn new(size: f64, anchor: Anchor) -> Self {
+    pub(crate) const fn new(size: f64, anchor: Anchor) -> Self {
         Self {
             size,
             face: Face::Regular,
@@ -85,12 +85,12 @@ impl TextLook {
     }
 
     /// In another colour.
-    pub const fn colour(self, colour: Colour) -> Self {
+    pub(crate) const fn colour(self, colour: Colour) -> Self {
         Self { colour, ..self }
     }
 
     /// In another face.
-    pub const fn face(self, face: Face) -> Self {
+    pub(crate) const fn face(self, face: Face) -> Self {
         Self { face, ..self }
     }
 }
@@ -111,7 +111,7 @@ enum Shape {
 }
 
 /// A drawing of a given size in points.
-pub struct Canvas {
+pub(crate) struct Canvas {
     /// Width, points.
     pub width: f64,
     /// Height, points.
@@ -122,7 +122,7 @@ pub struct Canvas {
 
 impl Canvas {
     /// An empty drawing.
-    pub fn new(width: f64, height: f64) -> Self {
+    pub(crate) fn new(width: f64, height: f64) -> Self {
         Self {
             width,
             height,
@@ -132,13 +132,13 @@ impl Canvas {
     }
 
     /// What follows is drawn in this layer; higher layers cover lower ones.
-    pub fn layer(&mut self, layer: i32) -> &mut Self {
+    pub(crate) fn layer(&mut self, layer: i32) -> &mut Self {
         self.layer = layer;
         self
     }
 
     /// An open line through points.
-    pub fn line(&mut self, points: &[Point], stroke: Stroke) {
+    pub(crate) fn line(&mut self, points: &[Point], stroke: Stroke) {
         if points.len() < 2 {
             return;
         }
@@ -152,19 +152,19 @@ impl Canvas {
     }
 
     /// A line between two points.
-    pub fn segment(&mut self, from: Point, to: Point, stroke: Stroke) {
+    pub(crate) fn segment(&mut self, from: Point, to: Point, stroke: Stroke) {
         self.line(&[from, to], stroke);
     }
 
     /// A filled polygon.
-    pub fn fill(&mut self, points: &[Point], colour: Colour) {
+    pub(crate) fn fill(&mut self, points: &[Point], colour: Colour) {
         if points.len() >= 3 {
             self.push(Shape::Fill(points.to_vec(), colour));
         }
     }
 
     /// A filled polygon with an outline.
-    pub fn outlined(&mut self, points: &[Point], colour: Colour, stroke: Stroke) {
+    pub(crate) fn outlined(&mut self, points: &[Point], colour: Colour, stroke: Stroke) {
         self.fill(points, colour);
         let mut closed = points.to_vec();
         closed.extend(points.iter().take(2));
@@ -172,22 +172,22 @@ impl Canvas {
     }
 
     /// A filled rectangle from corner to corner.
-    pub fn rectangle(&mut self, (x0, y0): Point, (x1, y1): Point, colour: Colour) {
+    pub(crate) fn rectangle(&mut self, (x0, y0): Point, (x1, y1): Point, colour: Colour) {
         self.fill(&[(x0, y0), (x1, y0), (x1, y1), (x0, y1)], colour);
     }
 
     /// A filled disc.
-    pub fn disc(&mut self, centre: Point, radius: f64, colour: Colour) {
+    pub(crate) fn disc(&mut self, centre: Point, radius: f64, colour: Colour) {
         self.push(Shape::Disc(centre, radius, colour));
     }
 
     /// A circle.
-    pub fn ring(&mut self, centre: Point, radius: f64, stroke: Stroke) {
+    pub(crate) fn ring(&mut self, centre: Point, radius: f64, stroke: Stroke) {
         self.push(Shape::Ring(centre, radius, stroke));
     }
 
     /// A marked-up text with its baseline at a position.
-    pub fn text(&mut self, (x, y): Point, markup: &str, look: TextLook) {
+    pub(crate) fn text(&mut self, (x, y): Point, markup: &str, look: TextLook) {
         let total = richtext::width(markup, look.face, look.size);
         let start = match look.anchor {
             Anchor::Left => 0.0,
@@ -223,7 +223,7 @@ impl Canvas {
     }
 
     /// Texts that reach beyond the drawing's edges: there should be none.
-    pub fn overfull(&self) -> Vec<String> {
+    pub(crate) fn overfull(&self) -> Vec<String> {
         let inside = |x: f64, y: f64| {
             (-0.5..=self.width + 0.5).contains(&x) && (-0.5..=self.height + 0.5).contains(&y)
         };
@@ -252,7 +252,7 @@ impl Canvas {
     }
 
     /// The drawing as SVG text: its width and height in points, its fonts by name.
-    pub fn into_svg(mut self, title: &str) -> String {
+    pub(crate) fn into_svg(mut self, title: &str) -> String {
         self.shapes.sort_by_key(|(layer, _)| *layer);
         let size = (units(self.width) as u32, units(self.height) as u32);
         let mut svg = String::new();
@@ -284,7 +284,7 @@ impl Canvas {
 }
 
 /// Text made safe for XML.
-pub fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")

@@ -1,7 +1,7 @@
 //! Rectangles of an SVG written briefly: thousands of them make a region map.
 
 /// The same drawing with every filled rectangle as a path, neighbours of one colour as one path.
-pub fn rectangles(svg: &str) -> String {
+pub(super) fn rectangles(svg: &str) -> String {
     let mut out = String::with_capacity(svg.len());
     let mut open: Option<&str> = None;
     for line in svg.split_inclusive('\n') {

@@ -12,6 +12,7 @@ use super::marks::mix;
 use super::path::Rect;
 use super::richtext;
 use crate::compare::Correlation;
+use crate::identify::fit::parameters::Coordinate;
 use crate::report::locale::Locale;
 use crate::report::parameters::parameter;
 
@@ -19,7 +20,7 @@ use crate::report::parameters::parameter;
 const TOP: f64 = 14.0;
 
 /// Draws the matrix; `None` if it is empty or not square.
-pub fn draw(correlation: &Correlation, locale: Locale) -> Option<Figure> {
+pub(crate) fn draw(correlation: &Correlation, locale: Locale) -> Option<Figure> {
     let n = correlation.parameters.len();
     let square = correlation.matrix.len() == n && correlation.matrix.iter().all(|r| r.len() == n);
     if n < 2 || !square {
@@ -28,7 +29,7 @@ pub fn draw(correlation: &Correlation, locale: Locale) -> Option<Figure> {
     let names: Vec<String> = correlation
         .parameters
         .iter()
-        .map(|p| name(p.name(), locale))
+        .map(|p| name(*p, locale))
         .collect();
     let columns = columns(correlation);
     let widths = names
@@ -91,18 +92,27 @@ fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, locale: Locale) {
     canvas.text(middle, &text, text_look);
 }
 
-fn name(key: &str, locale: Locale) -> String {
+/// Symbol of a parameter, or the name of what is fitted beside it.
+fn name(coordinate: Coordinate, locale: Locale) -> String {
+    let key = coordinate.name();
     if let Some(shown) = parameter(key) {
         return shown.symbol.to_owned();
     }
-    let of = |phrase: &str, role: &str| {
-        let channel = locale.translate(&role.replace('_', " "));
-        locale.translate_with(phrase, &[("channel", &channel)])
+    let words = key.trim_end_matches("_ms").trim_end_matches("_mm");
+    let words = words.replace('_', " ");
+    let of_channel = |phrase: &str| {
+        let role = words.split_once(' ').map_or("", |(_, role)| role);
+        locale.translate_with(phrase, &[("channel", &locale.translate(role))])
     };
-    match key.split_once('_') {
-        Some(("gain", role)) => of("gain of {channel}", role),
-        Some(("corner", role)) => of("corner of {channel}", role),
-        _ => locale.translate(&key.replace('_', " ")),
+    match coordinate {
+        Coordinate::Gain(_) => of_channel("gain of {channel}"),
+        Coordinate::Corner(_) => of_channel("corner of {channel}"),
+        Coordinate::Delay(_) => of_channel("delay of {channel}"),
+        Coordinate::Gap(i) => {
+            let number = (i + 1).to_string();
+            locale.translate_with("error of clearance {number}", &[("number", &number)])
+        }
+        _ => locale.translate(&words),
     }
 }
 

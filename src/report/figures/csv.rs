@@ -1,7 +1,7 @@
 //! A figure's data as CSV, so that a reader can draw it again.
 
 /// Rows of text and numbers under a header; short rows are filled with empty fields.
-pub struct Csv {
+pub(crate) struct Csv {
     text: String,
     columns: usize,
     filled: usize,
@@ -9,7 +9,7 @@ pub struct Csv {
 
 impl Csv {
     /// A table with these columns.
-    pub fn new(header: &[&str]) -> Self {
+    pub(crate) fn new(header: &[&str]) -> Self {
         let mut csv = Self {
             text: String::new(),
             columns: header.len(),
@@ -20,13 +20,13 @@ impl Csv {
     }
 
     /// Begins a row.
-    pub fn row(&mut self) -> &mut Self {
+    pub(crate) fn row(&mut self) -> &mut Self {
         self.end_row();
         self
     }
 
     /// Text fields.
-    pub fn texts(&mut self, fields: &[&str]) -> &mut Self {
+    pub(crate) fn texts(&mut self, fields: &[&str]) -> &mut Self {
         for field in fields {
             let needs_quotes = field.contains([',', '"', '\n']);
             let text = if needs_quotes {
@@ -40,7 +40,7 @@ impl Csv {
     }
 
     /// Number fields; missing ones stay empty.
-    pub fn numbers(&mut self, fields: &[Option<f64>]) -> &mut Self {
+    pub(crate) fn numbers(&mut self, fields: &[Option<f64>]) -> &mut Self {
         for field in fields {
             let text = field
                 .filter(|v| v.is_finite())
@@ -67,7 +67,7 @@ impl Csv {
     }
 
     /// The whole table.
-    pub fn finish(mut self) -> String {
+    pub(crate) fn finish(mut self) -> String {
         self.end_row();
         self.text
     }

@@ -15,7 +15,7 @@ use crate::report::parameters::decimals_for;
 use labfiles::units::Dimension;
 
 /// How many decays one figure holds.
-pub const PER_FIGURE: usize = 12;
+pub(crate) const PER_FIGURE: usize = 12;
 
 /// Panels in a row.
 const COLUMNS: usize = 3;
@@ -25,7 +25,7 @@ const PANEL_HEIGHT: f64 = 74.0;
 const ROW_HEIGHT: f64 = PANEL_HEIGHT + 48.0;
 
 /// Draws up to [`PER_FIGURE`] decays; `None` for none.
-pub fn draw(decays: &[FreeDecay], name: &str, locale: Locale) -> Option<Figure> {
+pub(crate) fn draw(decays: &[FreeDecay], name: &str, locale: Locale) -> Option<Figure> {
     if decays.is_empty() {
         return None;
     }
@@ -112,7 +112,7 @@ fn heading(canvas: &mut Canvas, decay: &FreeDecay, rect: &Rect, locale: Locale) 
 }
 
 /// Name of a decay: its record's, after its specimen's if there are several.
-pub fn title(decay: &FreeDecay) -> String {
+pub(crate) fn title(decay: &FreeDecay) -> String {
     match &decay.specimen {
         Some(specimen) => format!("{specimen}: {}", decay.record),
         None => decay.record.clone(),

@@ -11,13 +11,13 @@ const CELL: f64 = 0.55;
 
 /// The squares that hold a dot.
 #[derive(Default)]
-pub struct Dots {
+pub(crate) struct Dots {
     taken: HashSet<(i64, i64)>,
 }
 
 impl Dots {
     /// Draws a dot at data unless its square is taken; returns its position, `None` outside the panel.
-    pub fn put(
+    pub(crate) fn put(
         &mut self,
         canvas: &mut Canvas,
         panel: &Panel,
@@ -43,7 +43,7 @@ impl Dots {
 
 /// How a dot looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DotLook {
+pub(crate) struct DotLook {
     /// Radius, points.
     pub radius: f64,
     /// Colour.
@@ -53,7 +53,7 @@ pub struct DotLook {
 }
 
 /// Radius for a number of dots.
-pub fn radius(count: usize) -> f64 {
+pub(crate) fn radius(count: usize) -> f64 {
     match count {
         0..=60 => 1.6,
         61..=400 => 1.15,

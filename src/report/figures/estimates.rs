@@ -37,7 +37,7 @@ impl Line<'_> {
 }
 
 /// Draws the estimates; `None` if no parameter has a value.
-pub fn draw(content: &ReportContent, locale: Locale) -> Option<Figure> {
+pub(crate) fn draw(content: &ReportContent, locale: Locale) -> Option<Figure> {
     let lines = lines(content, locale);
     let shown: Vec<usize> = (0..PARAMETERS.len())
         .filter(|&k| lines.iter().any(|l| value(l.estimates[k]).is_some()))

@@ -4,7 +4,7 @@ use super::canvas::Canvas;
 
 /// A finished figure.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Figure {
+pub(crate) struct Figure {
     /// Stem of its file name.
     pub name: String,
     /// What it shows, with markup.
@@ -25,7 +25,7 @@ pub struct Figure {
 
 /// A point of a figure with a text.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct Spot {
+pub(crate) struct Spot {
     /// From the left, points.
     pub x: f64,
     /// From the top, points.
@@ -39,7 +39,7 @@ const MOST_SPOTS: usize = 2500;
 
 impl Figure {
     /// A figure from its drawing.
-    pub fn new(name: impl Into<String>, title: &str, canvas: Canvas, csv: String) -> Self {
+    pub(crate) fn new(name: impl Into<String>, title: &str, canvas: Canvas, csv: String) -> Self {
         let (width, height) = (canvas.width, canvas.height);
         let overfull = canvas.overfull();
         let svg = canvas.into_svg(title);
@@ -57,7 +57,7 @@ impl Figure {
     }
 
     /// With points that have a text.
-    pub fn with_spots(self, mut spots: Vec<Spot>) -> Self {
+    pub(crate) fn with_spots(self, mut spots: Vec<Spot>) -> Self {
         let stride = spots.len().div_ceil(MOST_SPOTS).max(1);
         let mut index = 0;
         spots.retain(|_| {
@@ -74,6 +74,6 @@ impl Figure {
 }
 
 /// Name of the i-th figure of a kind.
-pub fn numbered(kind: &str, index: usize) -> String {
+pub(crate) fn numbered(kind: &str, index: usize) -> String {
     format!("{kind}_{}", index + 1)
 }

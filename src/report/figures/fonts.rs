@@ -6,11 +6,11 @@ use typst::layout::Abs;
 use typst::text::{Font, FontInfo, FontInstance, FontStyle, FontVariations, FontWeight};
 
 /// Family of all text in figures and document.
-pub const FAMILY: &str = "Libertinus Serif";
+pub(crate) const FAMILY: &str = "Libertinus Serif";
 
 /// A face of the family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Face {
+pub(crate) enum Face {
     /// Upright.
     Regular,
     /// Slanted: symbols of quantities.
@@ -20,18 +20,18 @@ pub enum Face {
 }
 
 /// All embedded fonts with what is known of them, read once.
-pub fn embedded() -> &'static [(Font, FontInfo)] {
+pub(crate) fn embedded() -> &'static [(Font, FontInfo)] {
     static FONTS: OnceLock<Vec<(Font, FontInfo)>> = OnceLock::new();
     FONTS.get_or_init(|| typst_kit::fonts::embedded().collect())
 }
 
 /// The font file of a face, for pages that carry their own fonts.
-pub fn face_bytes(face: Face) -> Option<&'static [u8]> {
+pub(crate) fn face_bytes(face: Face) -> Option<&'static [u8]> {
     find(face).map(|(font, _)| font.data().as_slice())
 }
 
 /// Advance width of a text, in the unit of the size.
-pub fn width(text: &str, face: Face, size: f64) -> f64 {
+pub(crate) fn width(text: &str, face: Face, size: f64) -> f64 {
     text.chars().map(|c| advance_em(c, face)).sum::<f64>() * size
 }
 

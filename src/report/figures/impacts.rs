@@ -19,7 +19,7 @@ const HEIGHT: f64 = 150.0;
 const TOP: f64 = 15.0;
 
 /// Draws one group of impacts; `None` if it is empty.
-pub fn draw(scatter: &ImpactScatter, name: &str, locale: Locale) -> Option<Figure> {
+pub(crate) fn draw(scatter: &ImpactScatter, name: &str, locale: Locale) -> Option<Figure> {
     let peak = scatter
         .points
         .iter()

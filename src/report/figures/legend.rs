@@ -9,7 +9,7 @@ use crate::report::locale::Locale;
 
 /// The sign before a key's text.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Sign {
+pub(crate) enum Sign {
     /// A mark of a motion.
     Mark(MotionLook),
     /// A line.
@@ -24,12 +24,12 @@ pub enum Sign {
 
 impl Sign {
     /// A filled dot.
-    pub fn dot(colour: Colour) -> Self {
+    pub(crate) fn dot(colour: Colour) -> Self {
         Self::shape(Shape::Dot, colour)
     }
 
     /// An open circle.
-    pub fn ring(colour: Colour) -> Self {
+    pub(crate) fn ring(colour: Colour) -> Self {
         Self::shape(Shape::Circle, colour)
     }
 
@@ -55,7 +55,7 @@ impl Sign {
 
 /// A key: sign and text.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Key {
+pub(crate) struct Key {
     /// The sign.
     pub sign: Sign,
     /// The text, with markup.
@@ -64,7 +64,7 @@ pub struct Key {
 
 impl Key {
     /// A key.
-    pub fn new(sign: Sign, text: impl Into<String>) -> Self {
+    pub(crate) fn new(sign: Sign, text: impl Into<String>) -> Self {
         Self {
             sign,
             text: text.into(),
@@ -102,14 +102,14 @@ fn flow<'a>(keys: &'a [Key], width: f64, locale: Locale) -> Vec<(&'a Key, f64, u
 }
 
 /// Height that the keys need at a width.
-pub fn height(keys: &[Key], width: f64, locale: Locale) -> f64 {
+pub(crate) fn height(keys: &[Key], width: f64, locale: Locale) -> f64 {
     flow(keys, width, locale)
         .last()
         .map_or(0.0, |(_, _, line)| (*line + 1) as f64 * LINE_HEIGHT)
 }
 
 /// Draws the keys from an upper left corner.
-pub fn draw(
+pub(crate) fn draw(
     canvas: &mut Canvas,
     (left, top): (f64, f64),
     width: f64,
@@ -140,7 +140,7 @@ fn sign(canvas: &mut Canvas, (x, y): (f64, f64), sign: Sign) {
 }
 
 /// A measured bracket: a bar with ends.
-pub fn bracket(canvas: &mut Canvas, (from, to): (f64, f64), y: f64, colour: Colour) {
+pub(crate) fn bracket(canvas: &mut Canvas, (from, to): (f64, f64), y: f64, colour: Colour) {
     let casing = Stroke::solid(look::PAPER, 2.4);
     canvas.segment((from - 0.6, y), (to + 0.6, y), casing);
     canvas.segment((from, y), (to, y), Stroke::solid(colour, 1.3));

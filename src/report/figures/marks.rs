@@ -9,7 +9,7 @@ use crate::motion::Motion;
 
 /// Shape of a mark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Shape {
+pub(crate) enum Shape {
     /// An open circle.
     Circle,
     /// A filled circle.
@@ -44,7 +44,7 @@ pub enum Shape {
 
 /// How a motion is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct MotionLook {
+pub(crate) struct MotionLook {
     /// Shape of its marks.
     pub shape: Shape,
     /// Colour of its marks.
@@ -54,7 +54,7 @@ pub struct MotionLook {
 }
 
 /// The look of a motion: the common ones by name, all others by their p and n.
-pub fn of(motion: &Motion) -> MotionLook {
+pub(crate) fn of(motion: &Motion) -> MotionLook {
     match motion {
         Motion::Impactless => looks(Shape::Circle, look::SLATE, 0.0),
         Motion::Periodic {
@@ -111,13 +111,13 @@ fn looks(shape: Shape, colour: Colour, depth: f64) -> MotionLook {
 }
 
 /// A colour thinned with white.
-pub fn mix(colour: Colour, depth: f64) -> Colour {
+pub(crate) fn mix(colour: Colour, depth: f64) -> Colour {
     let thin = |c: u8| (255.0 - depth * (255.0 - f64::from(c))).round() as u8;
     RGBColor(thin(colour.0), thin(colour.1), thin(colour.2))
 }
 
 /// Order of motions in legends: impactless, then periodic by n and p, then the rest.
-pub fn order(motion: &Motion) -> (u32, u32, u32, bool) {
+pub(crate) fn order(motion: &Motion) -> (u32, u32, u32, bool) {
     match motion {
         Motion::Impactless => (0, 0, 0, false),
         Motion::Periodic {
@@ -133,7 +133,7 @@ pub fn order(motion: &Motion) -> (u32, u32, u32, bool) {
 }
 
 /// The motions met, each label once, in the order of legends.
-pub fn met<'a>(motions: impl IntoIterator<Item = &'a Motion>) -> Vec<&'a Motion> {
+pub(crate) fn met<'a>(motions: impl IntoIterator<Item = &'a Motion>) -> Vec<&'a Motion> {
     let mut seen: Vec<&Motion> = Vec::new();
     for motion in motions {
         if !seen.iter().any(|m| m.label() == motion.label()) {
@@ -145,7 +145,7 @@ pub fn met<'a>(motions: impl IntoIterator<Item = &'a Motion>) -> Vec<&'a Motion>
 }
 
 /// Draws a mark of a radius in points, with a thin light rim that parts it from its neighbours.
-pub fn draw(canvas: &mut Canvas, (x, y): Point, radius: f64, mark: MotionLook) {
+pub(crate) fn draw(canvas: &mut Canvas, (x, y): Point, radius: f64, mark: MotionLook) {
     let r = radius;
     let c = mark.colour;
     let outline = Stroke::solid(c, 0.32 * r);

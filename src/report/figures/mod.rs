@@ -29,7 +29,7 @@ pub(super) mod resonance;
 pub(super) mod richtext;
 pub(super) mod units;
 
-pub use figure::{Figure, numbered};
+pub(crate) use figure::{Figure, numbered};
 
 use rayon::prelude::*;
 
@@ -41,7 +41,7 @@ use crate::report::locale::Locale;
 type Job<'a> = Box<dyn Fn() -> Option<Figure> + Send + Sync + 'a>;
 
 /// Draws all figures that the content allows, side by side on all cores, in a fixed order.
-pub fn draw_all(content: &ReportContent, locale: Locale) -> Vec<Figure> {
+pub(crate) fn draw_all(content: &ReportContent, locale: Locale) -> Vec<Figure> {
     jobs(content, locale)
         .par_iter()
         .filter_map(|job| job())

@@ -12,10 +12,10 @@ use crate::report::locale::Locale;
 const MOST_OVERHANG: f64 = 5.5;
 
 /// Room left of the first panel of two beside each other, points.
-pub const PAIR_LEFT: f64 = 36.0;
+pub(crate) const PAIR_LEFT: f64 = 36.0;
 
 /// Two panels beside each other over the whole width.
-pub fn pair(top: f64, height: f64) -> [Rect; 2] {
+pub(crate) fn pair(top: f64, height: f64) -> [Rect; 2] {
     [
         Rect::new(PAIR_LEFT, top, 196.0, height),
         Rect::new(280.0, top, 198.0, height),
@@ -24,7 +24,7 @@ pub fn pair(top: f64, height: f64) -> [Rect; 2] {
 
 /// Which sides of a panel carry ticks and labels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Sides {
+pub(crate) struct Sides {
     /// Numbers and title below.
     pub below: bool,
     /// Numbers and title on the left.
@@ -33,7 +33,7 @@ pub struct Sides {
 
 impl Sides {
     /// Both.
-    pub const BOTH: Self = Self {
+    pub(crate) const BOTH: Self = Self {
         below: true,
         left: true,
     };
@@ -41,7 +41,7 @@ impl Sides {
 
 /// A rectangle on paper with two axes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Panel {
+pub(crate) struct Panel {
     /// The plotted area.
     pub rect: Rect,
     /// Across.
@@ -54,7 +54,7 @@ pub struct Panel {
 
 impl Panel {
     /// A panel.
-    pub fn new(rect: Rect, x: Axis, y: Axis) -> Self {
+    pub(crate) fn new(rect: Rect, x: Axis, y: Axis) -> Self {
         Self {
             rect,
             x,
@@ -64,7 +64,7 @@ impl Panel {
     }
 
     /// With the title of the upward axis at a distance, in line with other panels' titles.
-    pub fn with_title_reach(self, reach: f64) -> Self {
+    pub(crate) fn with_title_reach(self, reach: f64) -> Self {
         Self {
             title_reach: Some(reach),
             ..self
@@ -72,7 +72,7 @@ impl Panel {
     }
 
     /// Position of a pair of values on paper.
-    pub fn at(&self, x: f64, y: f64) -> Point {
+    pub(crate) fn at(&self, x: f64, y: f64) -> Point {
         (
             self.rect.left + self.x.share(x) * self.rect.width(),
             self.rect.bottom - self.y.share(y) * self.rect.height(),
@@ -80,12 +80,12 @@ impl Panel {
     }
 
     /// Whether a pair of values is within the axes.
-    pub fn shows(&self, x: f64, y: f64) -> bool {
+    pub(crate) fn shows(&self, x: f64, y: f64) -> bool {
         x >= self.x.low && x <= self.x.high && y >= self.y.low && y <= self.y.high
     }
 
     /// A curve through data, clipped and thinned; gives what was drawn, in points.
-    pub fn curve(
+    pub(crate) fn curve(
         &self,
         canvas: &mut Canvas,
         data: impl IntoIterator<Item = (f64, f64)>,
@@ -103,22 +103,28 @@ impl Panel {
     }
 
     /// A horizontal line at a value.
-    pub fn level(&self, canvas: &mut Canvas, y: f64, stroke: Stroke) {
+    pub(crate) fn level(&self, canvas: &mut Canvas, y: f64, stroke: Stroke) {
         self.curve(canvas, [(self.x.low, y), (self.x.high, y)], stroke);
     }
 
     /// A vertical line at a value.
-    pub fn upright(&self, canvas: &mut Canvas, x: f64, stroke: Stroke) {
+    pub(crate) fn upright(&self, canvas: &mut Canvas, x: f64, stroke: Stroke) {
         self.curve(canvas, [(x, self.y.low), (x, self.y.high)], stroke);
     }
 
     /// An error bar: upright from low to high at x.
-    pub fn error_bar(&self, canvas: &mut Canvas, x: f64, (low, high): (f64, f64), stroke: Stroke) {
+    pub(crate) fn error_bar(
+        &self,
+        canvas: &mut Canvas,
+        x: f64,
+        (low, high): (f64, f64),
+        stroke: Stroke,
+    ) {
         self.curve(canvas, [(x, low), (x, high)], stroke);
     }
 
     /// Frame, ticks, numbers and titles.
-    pub fn frame(&self, canvas: &mut Canvas, sides: Sides, locale: Locale) {
+    pub(crate) fn frame(&self, canvas: &mut Canvas, sides: Sides, locale: Locale) {
         let r = &self.rect;
         let corners = [
             (r.left, r.top),

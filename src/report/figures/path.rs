@@ -1,14 +1,14 @@
 //! Lines before they are drawn: clipped, thinned, dashed.
 
 /// A position in points from the upper left corner.
-pub type Point = (f64, f64);
+pub(crate) type Point = (f64, f64);
 
 /// Largest distance in points by which thinning may move a line.
 const THINNING_TOLERANCE: f64 = 0.04;
 
 /// A rectangle in points.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rect {
+pub(crate) struct Rect {
     /// Left edge.
     pub left: f64,
     /// Upper edge.
@@ -21,7 +21,7 @@ pub struct Rect {
 
 impl Rect {
     /// A rectangle from its upper left corner and its size.
-    pub fn new(left: f64, top: f64, width: f64, height: f64) -> Self {
+    pub(crate) fn new(left: f64, top: f64, width: f64, height: f64) -> Self {
         Self {
             left,
             top,
@@ -31,24 +31,24 @@ impl Rect {
     }
 
     /// Width.
-    pub fn width(&self) -> f64 {
+    pub(crate) fn width(&self) -> f64 {
         self.right - self.left
     }
 
     /// Height.
-    pub fn height(&self) -> f64 {
+    pub(crate) fn height(&self) -> f64 {
         self.bottom - self.top
     }
 
     /// Whether a point is inside or on the edge.
-    pub fn contains(&self, (x, y): Point) -> bool {
+    pub(crate) fn contains(&self, (x, y): Point) -> bool {
         x >= self.left && x <= self.right && y >= self.top && y <= self.bottom
     }
 }
 
 /// The parts of a line inside a rectangle (Liang–Barsky, segment by segment).
 /// Points that are not finite break the line.
-pub fn clip(points: &[Point], rect: &Rect) -> Vec<Vec<Point>> {
+pub(crate) fn clip(points: &[Point], rect: &Rect) -> Vec<Vec<Point>> {
     let mut pieces: Vec<Vec<Point>> = Vec::new();
     let mut joined = false;
     for pair in points.windows(2) {
@@ -97,7 +97,7 @@ fn clip_segment(a: Point, b: Point, rect: &Rect) -> Option<(Point, Point)> {
 }
 
 /// A polygon clipped to a rectangle (Sutherland–Hodgman).
-pub fn clip_polygon(points: &[Point], rect: &Rect) -> Vec<Point> {
+pub(crate) fn clip_polygon(points: &[Point], rect: &Rect) -> Vec<Point> {
     let inside: [&dyn Fn(Point) -> f64; 4] = [
         &|p: Point| p.0 - rect.left,
         &|p: Point| rect.right - p.0,
@@ -126,7 +126,7 @@ fn clip_half_plane(points: &[Point], distance: &dyn Fn(Point) -> f64) -> Vec<Poi
 }
 
 /// Leaves out points of a line that no reader could see missing (Douglas–Peucker).
-pub fn thin(points: &[Point]) -> Vec<Point> {
+pub(crate) fn thin(points: &[Point]) -> Vec<Point> {
     if points.len() < 3 {
         return points.to_vec();
     }
@@ -172,7 +172,7 @@ fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
 }
 
 /// A line cut into dashes.
-pub fn dashes(points: &[Point], pattern: &[f64]) -> Vec<Vec<Point>> {
+pub(crate) fn dashes(points: &[Point], pattern: &[f64]) -> Vec<Vec<Point>> {
     let mut pieces = Vec::new();
     let mut current = vec![points[0]];
     let (mut index, mut left) = (0, pattern[0]);

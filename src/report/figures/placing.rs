@@ -4,7 +4,7 @@ use super::canvas::Point;
 use super::path::Rect;
 
 /// Which square points of a drawing are taken.
-pub struct Occupancy {
+pub(crate) struct Occupancy {
     columns: usize,
     rows: usize,
     taken: Vec<u8>,
@@ -12,7 +12,7 @@ pub struct Occupancy {
 
 impl Occupancy {
     /// An empty drawing of a size in points.
-    pub fn new(width: f64, height: f64) -> Self {
+    pub(crate) fn new(width: f64, height: f64) -> Self {
         let (columns, rows) = (width.ceil() as usize + 1, height.ceil() as usize + 1);
         Self {
             columns,
@@ -22,14 +22,14 @@ impl Occupancy {
     }
 
     /// Takes a rectangle.
-    pub fn take_rect(&mut self, rect: &Rect) {
+    pub(crate) fn take_rect(&mut self, rect: &Rect) {
         for index in self.cells(rect) {
             self.taken[index] = self.taken[index].saturating_add(1);
         }
     }
 
     /// Takes a disc's square.
-    pub fn take_spot(&mut self, (x, y): Point, radius: f64) {
+    pub(crate) fn take_spot(&mut self, (x, y): Point, radius: f64) {
         self.take_rect(&Rect::new(
             x - radius,
             y - radius,
@@ -39,7 +39,7 @@ impl Occupancy {
     }
 
     /// Takes what a line covers.
-    pub fn take_line(&mut self, points: &[Point]) {
+    pub(crate) fn take_line(&mut self, points: &[Point]) {
         for pair in points.windows(2) {
             let length = (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1);
             let steps = length.ceil().max(1.0) as usize;
@@ -53,7 +53,7 @@ impl Occupancy {
     }
 
     /// How many square points of a rectangle are taken.
-    pub fn taken(&self, rect: &Rect) -> usize {
+    pub(crate) fn taken(&self, rect: &Rect) -> usize {
         self.cells(rect).filter(|&i| self.taken[i] > 0).count()
     }
 
@@ -67,7 +67,7 @@ impl Occupancy {
 
     /// The best place for a box of a size near a point: its cost (covered area and distance) and
     /// its middle, or `None` if all places within reach are outside the bounds.
-    pub fn near(
+    pub(crate) fn near(
         &self,
         point: Point,
         (width, height): (f64, f64),

@@ -11,7 +11,7 @@ type Range = Option<(f64, f64)>;
 
 /// What part of a plane the map shows.
 #[derive(Debug, Clone, PartialEq)]
-pub struct View {
+pub(crate) struct View {
     /// Across.
     pub x: Axis,
     /// Upward.
@@ -22,7 +22,7 @@ pub struct View {
 
 /// Which coordinates the map has, and how they turn into laboratory units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Plane {
+pub(crate) struct Plane {
     /// Whether in (η, ρ).
     pub dimensionless: bool,
     /// f0, Hz, where known.
@@ -33,7 +33,7 @@ pub struct Plane {
 
 impl Plane {
     /// The plane in which the records can be shown; `None` if they have no place in any.
-    pub fn of(content: &ReportContent) -> Option<Self> {
+    pub(crate) fn of(content: &ReportContent) -> Option<Self> {
         let joint = &content.identification.joint.parameters;
         let value = |e: &Option<Estimate>| e.as_ref().and_then(|e| e.value).filter(|v| *v > 0.0);
         let plane = |dimensionless| Self {
@@ -60,7 +60,7 @@ impl Plane {
     }
 
     /// Position of a record.
-    pub fn record(&self, record: &RecordRow) -> Option<(f64, f64)> {
+    pub(crate) fn record(&self, record: &RecordRow) -> Option<(f64, f64)> {
         if self.dimensionless {
             Some((record.eta?, record.rho?))
         } else {
@@ -69,7 +69,7 @@ impl Plane {
     }
 
     /// Ends and height of a bracket.
-    pub fn bracket(&self, bracket: &BracketRow) -> Option<((f64, f64), f64)> {
+    pub(crate) fn bracket(&self, bracket: &BracketRow) -> Option<((f64, f64), f64)> {
         if self.dimensionless {
             Some((bracket.eta?.into(), bracket.rho?))
         } else {
@@ -80,7 +80,7 @@ impl Plane {
 
     /// The axes that show all records, brackets and the simulated map. Clearances far above all
     /// that happens are shown in strips above the axes, so that they do not squeeze the rest.
-    pub fn view(&self, content: &ReportContent) -> View {
+    pub(crate) fn view(&self, content: &ReportContent) -> View {
         let records = || {
             content
                 .compared
@@ -133,7 +133,7 @@ impl Plane {
     }
 
     /// Place of a setting that is proposed.
-    pub fn proposed(&self, point: &ProposedPoint) -> (f64, f64) {
+    pub(crate) fn proposed(&self, point: &ProposedPoint) -> (f64, f64) {
         if self.dimensionless {
             (point.eta, point.rho)
         } else {
@@ -155,7 +155,7 @@ fn busy(motion: &Motion) -> bool {
 }
 
 /// Whether two clearances are one, as set on a rig.
-pub fn same(a: f64, b: f64) -> bool {
+pub(crate) fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 5e-3 * a.abs().max(b.abs())
 }
 

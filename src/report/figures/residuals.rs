@@ -19,7 +19,7 @@ const HEIGHT: f64 = 84.0;
 const TOP: f64 = 3.0;
 
 /// Draws the diagnostics of one method; `None` if it has no residuals.
-pub fn draw<'a>(set: &'a ResidualSet, name: &str, locale: Locale<'a>) -> Option<Figure> {
+pub(crate) fn draw<'a>(set: &'a ResidualSet, name: &str, locale: Locale<'a>) -> Option<Figure> {
     if set.points.is_empty() {
         return None;
     }

@@ -19,7 +19,7 @@ const HEIGHT: f64 = 128.0;
 const TOP: f64 = 15.0;
 
 /// Draws one curve, and whether one degree of freedom fits it; `None` without points.
-pub fn draw(
+pub(crate) fn draw(
     (curve, fits): (&ResonanceCurve, Option<bool>),
     name: &str,
     locale: Locale,

@@ -6,7 +6,7 @@ use super::fonts::{self, Face};
 /// Level of a run relative to the baseline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Level {
+pub(crate) enum Level {
     /// On the baseline.
     Base,
     /// Lowered.
@@ -17,7 +17,7 @@ pub enum Level {
 
 /// A run of text in one face at one level.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-pub struct Run {
+pub(crate) struct Run {
     /// The characters.
     pub text: String,
     /// Whether it is slanted.
@@ -30,7 +30,7 @@ pub struct Run {
 const SCRIPT_SIZE: f64 = 0.72;
 
 /// Splits a marked-up text into runs.
-pub fn parse(markup: &str) -> Vec<Run> {
+pub(crate) fn parse(markup: &str) -> Vec<Run> {
     let mut runs = Vec::new();
     for (i, part) in markup.split('$').enumerate() {
         if i % 2 == 0 {
@@ -78,7 +78,7 @@ fn push(runs: &mut Vec<Run>, text: String, italic: bool, level: Level) {
 
 impl Run {
     /// Face of the run inside a text of the given face.
-    pub fn face(&self, around: Face) -> Face {
+    pub(crate) fn face(&self, around: Face) -> Face {
         if self.italic && around != Face::Bold {
             Face::Italic
         } else {
@@ -87,7 +87,7 @@ impl Run {
     }
 
     /// Size of the run inside a text of the given size.
-    pub fn size(&self, around: f64) -> f64 {
+    pub(crate) fn size(&self, around: f64) -> f64 {
         if self.level == Level::Base {
             around
         } else {
@@ -96,7 +96,7 @@ impl Run {
     }
 
     /// How far its baseline is below the text's.
-    pub fn shift(&self, around: f64) -> f64 {
+    pub(crate) fn shift(&self, around: f64) -> f64 {
         match self.level {
             Level::Base => 0.0,
             Level::Sub => 0.18 * around,
@@ -106,7 +106,7 @@ impl Run {
 }
 
 /// Width of a marked-up text.
-pub fn width(markup: &str, face: Face, size: f64) -> f64 {
+pub(crate) fn width(markup: &str, face: Face, size: f64) -> f64 {
     parse(markup)
         .iter()
         .map(|r| fonts::width(&r.text, r.face(face), r.size(size)))
@@ -114,7 +114,7 @@ pub fn width(markup: &str, face: Face, size: f64) -> f64 {
 }
 
 /// The text without its markup.
-pub fn plain(markup: &str) -> String {
+pub(crate) fn plain(markup: &str) -> String {
     parse(markup).into_iter().map(|r| r.text).collect()
 }
 

@@ -4,7 +4,7 @@ use labfiles::units::Dimension;
 
 /// A unit for printing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PrintUnit {
+pub(crate) struct PrintUnit {
     /// Multiply an SI value by this.
     pub factor: f64,
     /// The symbol.
@@ -16,7 +16,7 @@ const fn unit(factor: f64, symbol: &'static str) -> PrintUnit {
 }
 
 /// The unit for a quantity whose greatest magnitude is known (SI).
-pub fn print_unit(dimension: Dimension, peak: f64) -> PrintUnit {
+pub(crate) fn print_unit(dimension: Dimension, peak: f64) -> PrintUnit {
     match dimension {
         _ if peak == 0.0 => unit(1.0, dimension.si_symbol()),
         Dimension::Length if peak < 2e-4 => unit(1e6, "µm"),

@@ -17,7 +17,7 @@ const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
 
 /// The page. The same input gives the same bytes; nothing is loaded from elsewhere.
-pub fn html(
+pub(super) fn html(
     document: &Document,
     figures: &[Figure],
     options: &ReportOptions,

@@ -11,7 +11,7 @@ use crate::report::figures::richtext::Level;
 const MOST_ROWS: usize = 40;
 
 /// Writes the parts, numbering the captions of figures.
-pub struct Parts<'a> {
+pub(super) struct Parts<'a> {
     document: &'a Document,
     figures: &'a [Figure],
     numbered: usize,
@@ -19,7 +19,7 @@ pub struct Parts<'a> {
 
 impl<'a> Parts<'a> {
     /// With the figures that may be referred to.
-    pub fn new(document: &'a Document, figures: &'a [Figure]) -> Self {
+    pub(super) fn new(document: &'a Document, figures: &'a [Figure]) -> Self {
         Self {
             document,
             figures,
@@ -28,7 +28,7 @@ impl<'a> Parts<'a> {
     }
 
     /// The whole body.
-    pub fn body(&mut self) -> Result<String, ReportError> {
+    pub(super) fn body(&mut self) -> Result<String, ReportError> {
         let document = self.document;
         let mut body = format!(
             "<header>\n<h1>{}</h1>\n<div class=\"subtitle\">{}</div>\n</header>\n",

@@ -12,7 +12,7 @@ use crate::record::{Role, Sweep};
 use crate::report::{CampaignFacts, NominalValue, ReportContent, Subject};
 
 /// Every kind by its name.
-pub fn kinds() -> &'static [(&'static str, ReportContent)] {
+pub(super) fn kinds() -> &'static [(&'static str, ReportContent)] {
     static KINDS: OnceLock<Vec<(&'static str, ReportContent)>> = OnceLock::new();
     KINDS.get_or_init(|| {
         vec![
@@ -26,7 +26,7 @@ pub fn kinds() -> &'static [(&'static str, ReportContent)] {
 }
 
 /// The kind of a name.
-pub fn kind(name: &str) -> &'static ReportContent {
+pub(super) fn kind(name: &str) -> &'static ReportContent {
     let found = kinds().iter().find(|(n, _)| *n == name);
     &found.expect("one of the kinds").1
 }

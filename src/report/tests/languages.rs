@@ -67,10 +67,13 @@ fn unlucky() -> ReportContent {
         Coordinate::Corner(1),
         Coordinate::DriveAsymmetry,
         Coordinate::StiffnessAsymmetry,
+        Coordinate::Delay(0),
+        Coordinate::ScrewZero,
+        Coordinate::Gap(0),
     ];
     compared.correlation = Some(Correlation {
         parameters: fitted.into(),
-        matrix: vec![vec![0.5; 5]; 5],
+        matrix: vec![vec![0.5; 8]; 8],
     });
     for (record, motion) in compared
         .records
@@ -197,7 +200,7 @@ fn texts_of(svg: &str) -> impl Iterator<Item = &str> {
 
 /// Whether a text says something in letters: more than symbols, units and names of records.
 fn speaks(text: &str) -> bool {
-    const DATA: [&str; 4] = ["kHz", "spring", "bumper", "xst"];
+    const DATA: [&str; 5] = ["kHz", "spring", "bumper", "xst", "mass"];
     let mut words = text.split(|c: char| c.is_whitespace() || "(),:;=±⟦⟧".contains(c));
     words.any(|w| {
         let letters = w.chars().all(|c| c.is_ascii_alphabetic());

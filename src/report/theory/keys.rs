@@ -9,19 +9,19 @@ use crate::report::figures::marks;
 use crate::report::locale::Locale;
 
 /// Draws keys over the whole width of the figure's top; gives the height they take.
-pub fn keys_on_top(canvas: &mut Canvas, left: f64, keys: &[Key], locale: Locale) {
+pub(super) fn keys_on_top(canvas: &mut Canvas, left: f64, keys: &[Key], locale: Locale) {
     let width = look::FULL_WIDTH - left;
     legend::draw(canvas, (left, 1.0), width, keys, locale);
 }
 
 /// Height of keys on the figure's top.
-pub fn keys_height(left: f64, keys: &[Key], locale: Locale) -> f64 {
+pub(super) fn keys_height(left: f64, keys: &[Key], locale: Locale) -> f64 {
     legend::height(keys, look::FULL_WIDTH - left, locale) + 4.0
 }
 
 /// Keys of the motions that a map shows, each with its tint; the rare ones last and left out
 /// beyond a number.
-pub fn tint_keys(map: &RegionMap, most: usize) -> Vec<Key> {
+pub(super) fn tint_keys(map: &RegionMap, most: usize) -> Vec<Key> {
     let mut counts = vec![0_usize; map.motions.len()];
     for &cell in map.cells.iter().chain(&map.second) {
         counts[usize::from(cell)] += 1;

@@ -1,7 +1,7 @@
 //! Figures of the theory alone: motions, characteristics, basins, regions.
 
-pub mod basins;
+pub(crate) mod basins;
 mod keys;
-pub mod motion;
-pub mod regions;
-pub mod sweep;
+pub(crate) mod motion;
+pub(crate) mod regions;
+pub(crate) mod sweep;

@@ -25,7 +25,7 @@ const MOST_SAMPLES: usize = 200_000;
 
 /// One motion, dimensionless; times are counted in drive periods.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Portrait {
+pub(crate) struct Portrait {
     /// Whether there are two masses.
     pub two_masses: bool,
     /// Where the second mass's face or the stop is: X + Y at contact.
@@ -44,7 +44,7 @@ pub struct Portrait {
 
 /// The state at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sample {
+pub(crate) struct Sample {
     /// Time.
     pub periods: f64,
     /// X
@@ -61,7 +61,7 @@ pub struct Sample {
 
 /// An impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Strike {
+pub(crate) struct Strike {
     /// Time.
     pub periods: f64,
     /// X
@@ -71,7 +71,7 @@ pub struct Strike {
 }
 
 /// Draws a portrait.
-pub fn draw(portrait: &Portrait, name: &str, title: &str, locale: Locale<'_>) -> Figure {
+pub(crate) fn draw(portrait: &Portrait, name: &str, title: &str, locale: Locale<'_>) -> Figure {
     let keys = keys(portrait);
     let top = keys_height(LEFT, &keys, locale);
     let squares = top + SERIES_HEIGHT + 8.0 + SPEED_HEIGHT + 40.0;

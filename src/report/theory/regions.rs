@@ -24,7 +24,7 @@ const FEWEST_POINTS: usize = 3;
 
 /// A piece of a boundary of existence or stability.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Curve {
+pub(crate) struct Curve {
     /// Which boundary, by its name in the table.
     pub kind: String,
     /// Whether it bounds a motion of more than one impact or of a long period, and is drawn thin.
@@ -34,7 +34,7 @@ pub struct Curve {
 }
 
 /// Draws the plane; `None` if the grid has no area.
-pub fn draw(
+pub(crate) fn draw(
     (map, curves): (&RegionMap, &[Curve]),
     name: &str,
     title: &str,

@@ -19,7 +19,7 @@ const GAP: f64 = 7.0;
 
 /// A sweep in both directions, dimensionless.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Characteristics {
+pub(crate) struct Characteristics {
     /// Steps of the sweep there, in its own order.
     pub forward: Vec<Step>,
     /// Steps of the sweep back.
@@ -32,7 +32,7 @@ pub struct Characteristics {
 
 /// One step of a sweep.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Step {
+pub(crate) struct Step {
     /// η
     pub eta: f64,
     /// ρ
@@ -91,7 +91,7 @@ const ROWS: [Row; 4] = [
 const PHASE_HEIGHT: f64 = 62.0;
 
 /// Draws the characteristics over the quantity that moves.
-pub fn draw(data: &Characteristics, name: &str, title: &str, locale: Locale) -> Figure {
+pub(crate) fn draw(data: &Characteristics, name: &str, title: &str, locale: Locale) -> Figure {
     let keys = keys(!data.impactless_y.is_empty());
     let top = keys_height(LEFT, &keys, locale);
     let rows: f64 = ROWS.iter().map(|r| r.height + GAP).sum();

@@ -11,7 +11,7 @@ use crate::report::locale::Locale;
 const MANY_BRACKETS: usize = 14;
 
 /// The measured brackets beside the simulated boundary; many of them small and in two columns.
-pub fn brackets(content: &ReportContent, locale: Locale) -> Option<Table> {
+pub(crate) fn brackets(content: &ReportContent, locale: Locale) -> Option<Table> {
     let many = content.compared.brackets.len() > MANY_BRACKETS;
     let rows = content
         .compared

@@ -41,14 +41,14 @@ const METHODS_CAPTION: &str = "Estimates with half their 95 % interval, number o
      fits.";
 
 /// What each method found, and the joint estimate.
-pub fn methods(content: &ReportContent, locale: Locale) -> Option<Table> {
+pub(crate) fn methods(content: &ReportContent, locale: Locale) -> Option<Table> {
     let id = &content.identification;
     let rows = method_rows(&id.methods, &id.joint, locale);
     table(METHODS_CAPTION, &METHOD, rows, locale).map(|t| Table { size: SIZE, ..t })
 }
 
 /// The same for each specimen of a campaign that holds several.
-pub fn specimen_methods(content: &ReportContent, locale: Locale) -> Option<Table> {
+pub(crate) fn specimen_methods(content: &ReportContent, locale: Locale) -> Option<Table> {
     let specimens = content.identification.specimens.iter();
     let rows = specimens.flat_map(|(specimen, result)| {
         let rows = method_rows(&result.methods, &result.joint, locale);
@@ -67,7 +67,7 @@ pub fn specimen_methods(content: &ReportContent, locale: Locale) -> Option<Table
 }
 
 /// The answer for each specimen of a campaign that holds several.
-pub fn specimens(content: &ReportContent, locale: Locale) -> Option<Table> {
+pub(crate) fn specimens(content: &ReportContent, locale: Locale) -> Option<Table> {
     let rows = content
         .identification
         .specimens
@@ -129,7 +129,7 @@ fn method_row(name: String, method: &MethodResult, locale: Locale) -> Vec<Rich> 
 }
 
 /// Whether the methods agree, pair by pair.
-pub fn agreement(content: &ReportContent, locale: Locale) -> Option<Table> {
+pub(crate) fn agreement(content: &ReportContent, locale: Locale) -> Option<Table> {
     let rows = content.identification.agreement.pairs.iter().map(|pair| {
         let key = pair.parameter.name();
         let symbol = parameters::parameter(key).map_or(key, |p| p.symbol);

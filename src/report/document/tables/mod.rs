@@ -4,9 +4,9 @@ mod brackets;
 mod estimates;
 mod records;
 
-pub use brackets::brackets;
-pub use estimates::{agreement, methods, specimen_methods, specimens};
-pub use records::records;
+pub(super) use brackets::brackets;
+pub(super) use estimates::{agreement, methods, specimen_methods, specimens};
+pub(super) use records::records;
 
 use crate::compare::Unusable;
 use crate::identify::Item;
@@ -91,7 +91,7 @@ fn without_empty_columns(table: Table) -> Table {
 }
 
 /// Further tables of the content.
-pub fn further<'a>(
+pub(super) fn further<'a>(
     content: &'a ReportContent,
     locale: Locale<'a>,
 ) -> impl Iterator<Item = Table> + 'a {
@@ -124,7 +124,7 @@ fn arrow(sweep: Sweep) -> &'static str {
 }
 
 /// Records that no method could use, by reason, and what the fits left out.
-pub fn left_out(content: &ReportContent, locale: Locale) -> Option<Table> {
+pub(super) fn left_out(content: &ReportContent, locale: Locale) -> Option<Table> {
     let records = content.compared.unusable.iter().map(|u| {
         let count = Some(u.records.len()).filter(|n| *n > 1);
         (first_few(&u.records), count, verbatim(unusable(u, locale)))
@@ -175,7 +175,7 @@ fn unusable(unusable: &Unusable, locale: Locale) -> String {
 }
 
 /// A cell whose text has no markup, whatever signs it holds.
-pub fn verbatim(text: String) -> Rich {
+pub(super) fn verbatim(text: String) -> Rich {
     if text.is_empty() {
         Rich::default()
     } else {
@@ -188,7 +188,7 @@ pub fn verbatim(text: String) -> Rich {
 }
 
 /// SHA-256 of the inputs.
-pub fn hashes(content: &ReportContent, locale: Locale) -> Option<Table> {
+pub(super) fn hashes(content: &ReportContent, locale: Locale) -> Option<Table> {
     let inputs = &content.provenance.inputs_sha256;
     let rows = inputs
         .iter()

@@ -14,7 +14,7 @@ use crate::report::parameters::method_inline;
 const MANY_RECORDS: usize = 45;
 
 /// All records; many of them small and in two columns.
-pub fn records(content: &ReportContent, locale: Locale) -> Option<Table> {
+pub(crate) fn records(content: &ReportContent, locale: Locale) -> Option<Table> {
     let many = content.compared.records.len() > MANY_RECORDS;
     let planar = content
         .compared

@@ -4,7 +4,7 @@ mod data;
 mod portraits;
 mod rows;
 
-pub use data::name;
+pub(crate) use data::name;
 
 use crate::compare::{Comparison, Signal};
 use crate::record::Role;
@@ -42,7 +42,7 @@ const BOTTOM: f64 = 22.0;
 const BACK_WIDTH: f64 = 1.7;
 
 /// Draws one comparison; `None` if it has no trace at all.
-pub fn draw<'a>(comparison: &'a Comparison, locale: Locale<'a>) -> Option<Figure> {
+pub(crate) fn draw<'a>(comparison: &'a Comparison, locale: Locale<'a>) -> Option<Figure> {
     let rows = rows(comparison);
     let portraits = portraits::portraits(comparison);
     if rows.is_empty() {

@@ -8,7 +8,7 @@ use crate::report::figures::units::{PrintUnit, print_unit};
 use crate::signal::robust::rms;
 
 /// A row of panels: which channels, how tall, how titled.
-pub struct Row<'a> {
+pub(super) struct Row<'a> {
     /// The channels with their colours.
     pub traces: Vec<(&'a Trace, Colour)>,
     /// Height of its panels, points.
@@ -22,7 +22,7 @@ pub struct Row<'a> {
 }
 
 /// The rows of a comparison, those with anything to show; residuals last.
-pub fn rows(comparison: &Comparison) -> Vec<Row<'_>> {
+pub(super) fn rows(comparison: &Comparison) -> Vec<Row<'_>> {
     let pairs = [
         ([Role::DisplacementX, Role::DisplacementY], "", 38.0),
         ([Role::VelocityX, Role::VelocityY], "", 38.0),
@@ -128,7 +128,7 @@ fn peak(signal: &Signal) -> f64 {
 }
 
 /// Symbol of a channel, with markup; its name where it has none.
-pub fn symbol(role: Role) -> &'static str {
+pub(super) fn symbol(role: Role) -> &'static str {
     match role {
         Role::VelocityX => "$v_x$",
         Role::VelocityY => "$v_y$",
@@ -141,7 +141,7 @@ pub fn symbol(role: Role) -> &'static str {
 }
 
 /// The signals that a row draws of a trace.
-pub fn shown(trace: &Trace, residual: bool) -> Vec<&Signal> {
+pub(super) fn shown(trace: &Trace, residual: bool) -> Vec<&Signal> {
     let picked = if residual {
         [trace.residual.as_ref(), None]
     } else {
@@ -151,6 +151,6 @@ pub fn shown(trace: &Trace, residual: bool) -> Vec<&Signal> {
 }
 
 /// Root mean square of a signal; `None` if it is empty.
-pub fn root_mean_square(signal: &Signal) -> Option<f64> {
+pub(super) fn root_mean_square(signal: &Signal) -> Option<f64> {
     (!signal.values.is_empty()).then(|| rms(&signal.values))
 }

@@ -8,7 +8,7 @@ use crate::report::figures::csv::Csv;
 use crate::report::locale::Locale;
 
 /// The text that is shown on hovering over a record.
-pub fn describe(record: &RecordRow, locale: Locale) -> String {
+pub(super) fn describe(record: &RecordRow, locale: Locale) -> String {
     let mut parts = vec![
         record.id.clone(),
         format!("z = {}", locale.translate(&record.motion.label())),
@@ -38,7 +38,7 @@ pub fn describe(record: &RecordRow, locale: Locale) -> String {
 }
 
 /// All layers of the map as CSV.
-pub fn csv(compared: &Compared) -> String {
+pub(super) fn csv(compared: &Compared) -> String {
     let mut csv = Csv::new(&[
         "layer",
         "name",

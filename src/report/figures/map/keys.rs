@@ -7,7 +7,7 @@ use crate::report::figures::plane::Plane;
 use crate::report::figures::{boundaries, look, marks};
 
 /// Keys of the motions that were measured.
-pub fn motions(compared: &Compared) -> Vec<Key> {
+pub(super) fn motions(compared: &Compared) -> Vec<Key> {
     let met = marks::met(compared.records.iter().map(|r| &r.motion));
     met.into_iter()
         .map(|m| Key::new(Sign::Mark(marks::of(m)), m.label()))
@@ -15,7 +15,7 @@ pub fn motions(compared: &Compared) -> Vec<Key> {
 }
 
 /// All keys of the large map.
-pub fn full(compared: &Compared, plane: Plane) -> Vec<Key> {
+pub(super) fn full(compared: &Compared, plane: Plane) -> Vec<Key> {
     let mut keys = vec![Key::new(Sign::Nothing, "measured $z$ = $p$/$n$:")];
     keys.extend(motions(compared));
     if !compared.brackets.is_empty() {

@@ -23,7 +23,7 @@ use crate::report::locale::Locale;
 
 /// Which of the two maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MapSize {
+pub(crate) enum MapSize {
     /// The large one over the whole width, with keys, points and both unit systems.
     Full,
     /// The small one of the first page.
@@ -36,7 +36,7 @@ const STRIP_STEP: f64 = 15.0;
 const STRIP_HALF: f64 = 5.5;
 
 /// Draws the map; `None` if the records have no place in a plane.
-pub fn draw(content: &ReportContent, size: MapSize, locale: Locale) -> Option<Figure> {
+pub(crate) fn draw(content: &ReportContent, size: MapSize, locale: Locale) -> Option<Figure> {
     let plane = Plane::of(content)?;
     let keys = if size == MapSize::Full {
         keys::full(&content.compared, plane)

@@ -9,7 +9,7 @@ use crate::report::locale::Locale;
 
 /// A region's label in its place.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RegionLabel {
+pub(crate) struct RegionLabel {
     /// Its text.
     pub text: String,
     /// Middle of the text, points.
@@ -20,7 +20,12 @@ pub struct RegionLabel {
 
 impl Regions<'_> {
     /// A label for each region that is large enough, placed where nothing else is drawn.
-    pub fn labels(&self, occupancy: &mut Occupancy, size: f64, locale: Locale) -> Vec<RegionLabel> {
+    pub(crate) fn labels(
+        &self,
+        occupancy: &mut Occupancy,
+        size: f64,
+        locale: Locale,
+    ) -> Vec<RegionLabel> {
         let mut order: Vec<usize> = (0..self.areas.len()).collect();
         order.sort_by_key(|&r| std::cmp::Reverse(self.areas[r]));
         let least = LEAST_SHARE * self.region.len() as f64;

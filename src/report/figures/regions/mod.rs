@@ -14,7 +14,7 @@ use crate::report::figures::path;
 const LEAST_SHARE: f64 = 0.0025;
 
 /// A map laid on a panel, with its connected regions.
-pub struct Regions<'a> {
+pub(crate) struct Regions<'a> {
     map: &'a RegionMap,
     panel: &'a Panel,
     /// Region of each cell, and each region's number of cells.
@@ -27,7 +27,7 @@ type Run = (Colour, Point, Point);
 
 impl<'a> Regions<'a> {
     /// Lays a map on a panel. `None` if its axes and cells contradict each other.
-    pub fn new(map: &'a RegionMap, panel: &'a Panel) -> Option<Self> {
+    pub(crate) fn new(map: &'a RegionMap, panel: &'a Panel) -> Option<Self> {
         let cells = map.x.len() * map.y.len();
         let in_range = map
             .cells
@@ -88,7 +88,7 @@ impl<'a> Regions<'a> {
     }
 
     /// Draws tints, outlines and the hatching of hysteresis.
-    pub fn draw(&self, canvas: &mut Canvas) {
+    pub(crate) fn draw(&self, canvas: &mut Canvas) {
         let (columns, rows) = (self.map.x.len() as isize, self.map.y.len() as isize);
         let mut runs: Vec<Run> = Vec::new();
         for j in -1..rows {

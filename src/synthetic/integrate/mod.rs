@@ -4,7 +4,13 @@
 
 use std::f64::consts::TAU;
 
+mod events;
+mod recording;
+
 use super::equations::{ContactLaw, Equations, Phase4};
+use events::Event;
+use recording::Segment;
+pub(super) use recording::{Hit, Recording};
 
 /// Steps in a period of the drive or of the natural vibration, whichever is shorter.
 const STEPS_PER_PERIOD: f64 = 200.0;
@@ -30,65 +36,6 @@ enum Touch {
 
 /// Sliding direction of a mass under dry friction: 1, −1, or 0 while it sticks.
 type Direction = f64;
-
-/// One impact: dimensionless time since the recording began and speeds.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hit {
-    /// Time of first touch.
-    pub tau: f64,
-    /// Approach speed at first touch.
-    pub approach: f64,
-    /// Separation speed at the end of contact.
-    pub separation: f64,
-    /// How long the contact lasts, a dead zone included; infinite if it has not ended.
-    pub duration: f64,
-}
-
-/// A step with the motion's derivatives at both ends.
-#[derive(Debug, Clone, Copy)]
-struct Segment {
-    tau: f64,
-    length: f64,
-    from: Phase4,
-    from_rate: Phase4,
-    to: Phase4,
-    to_rate: Phase4,
-}
-
-impl Segment {
-    /// Cubic Hermite interpolation.
-    fn at(&self, tau: f64) -> Phase4 {
-        let t = ((tau - self.tau) / self.length.max(1e-300)).clamp(0.0, 1.0);
-        let (a, b) = (t * t * (3.0 - 2.0 * t), t * (1.0 - t));
-        std::array::from_fn(|i| {
-            (1.0 - a) * self.from[i]
-                + a * self.to[i]
-                + self.length * b * ((1.0 - t) * self.from_rate[i] - t * self.to_rate[i])
-        })
-    }
-}
-
-/// A recorded motion.
-#[derive(Debug, Clone, Default)]
-pub struct Recording {
-    segments: Vec<Segment>,
-    /// Impacts that began while recording.
-    pub hits: Vec<Hit>,
-}
-
-impl Recording {
-    /// The motion at many times in rising order.
-    pub fn sample(&self, taus: impl IntoIterator<Item = f64>) -> Vec<Phase4> {
-        let mut k = 0;
-        let at = |tau: f64| {
-            while k + 1 < self.segments.len() && self.segments[k + 1].tau <= tau {
-                k += 1;
-            }
-            self.segments.get(k).map_or([0.0; 4], |s| s.at(tau))
-        };
-        taus.into_iter().map(at).collect()
-    }
-}
 
 /// A motion that can be continued with other coefficients; phase and motion stay continuous.
 #[derive(Debug, Clone)]
@@ -231,7 +178,7 @@ impl Integrator {
         [s[1], a[0], s[3], a[1]]
     }
 
-    /// The state after a time, by one Runge–Kutta step.
+    /// The state after a time, by one Runge–Kutta step: rates at its start, middle and end.
     fn moved(&self, t: f64) -> Phase4 {
         let eta = self.equations.eta;
         let drive = |share: f64| self.equations.drive(self.phase + share * eta * t);
@@ -276,107 +223,6 @@ impl Integrator {
         let apex = closing / (closing - opening) * length;
         let near = e.overlap(from) + 0.75 * closing * apex > 0.0;
         (near && e.overlap(&self.moved(apex)) > 0.0).then_some(apex)
-    }
-}
-
-/// What ends a smooth piece of motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Event {
-    /// First touch, end of press, end of overlap or end of a dead zone, by the state of touch.
-    Contact,
-    /// Separating masses that overlap still are pressed together again.
-    PressedAgain,
-    /// Mass x turns, or starts to slide.
-    TurnX,
-    /// Mass y turns, or starts to slide.
-    TurnY,
-}
-
-impl Event {
-    const ALL: [Self; 4] = [Self::Contact, Self::PressedAgain, Self::TurnX, Self::TurnY];
-}
-
-/// Where a step must end for an event.
-struct Crossing {
-    length: f64,
-    /// Whether the event happens there; otherwise the step only comes closer.
-    fires: bool,
-}
-
-impl Integrator {
-    /// Positive until an event happens.
-    fn margin(&self, event: Event, t: f64, s: &Phase4) -> f64 {
-        let e = &self.equations;
-        let drive = || e.drive(self.phase + e.eta * t);
-        match event {
-            Event::Contact => match (self.touch, &e.law) {
-                (Touch::Apart, _) => -e.overlap(s),
-                (Touch::Pressed, ContactLaw::Compliant(c)) => c.press(e.overlap(s), s[1] + s[3]),
-                (Touch::Joined, _) => {
-                    let forces = e.free(drive(), s);
-                    let slides = self.slides[0] + self.slides[1];
-                    forces[0] + forces[1] - e.friction * slides
-                }
-                _ => e.overlap(s),
-            },
-            Event::PressedAgain => match (self.touch, &e.law) {
-                (Touch::Recovering, ContactLaw::Compliant(c)) => {
-                    -c.press(e.overlap(s), s[1] + s[3])
-                }
-                _ => f64::INFINITY,
-            },
-            Event::TurnX | Event::TurnY if e.friction == 0.0 => f64::INFINITY,
-            Event::TurnY if self.touch == Touch::Joined => f64::INFINITY,
-            Event::TurnX | Event::TurnY => {
-                let mass = usize::from(event == Event::TurnY);
-                if self.slides[mass] == 0.0 {
-                    e.friction - self.pull(mass, drive(), s).abs()
-                } else {
-                    self.slides[mass] * s[2 * mass + 1]
-                }
-            }
-        }
-    }
-
-    /// Force that friction has to hold, per sliding mass.
-    fn pull(&self, mass: usize, drive: f64, s: &Phase4) -> f64 {
-        let forces = self.forces(drive, s);
-        if self.touch == Touch::Joined {
-            0.5 * (forces[mass] - forces[1 - mass])
-        } else {
-            forces[mass]
-        }
-    }
-
-    /// Where an event's margin crosses zero within a step that ends at `to`.
-    fn crossing(&self, event: Event, length: f64, to: &Phase4) -> Option<Crossing> {
-        let margin = |t: f64| self.margin(event, t, &self.moved(t));
-        if self.margin(event, length, to) >= 0.0 {
-            return None;
-        }
-        let start = self.margin(event, 0.0, &self.state);
-        if start > 0.0 {
-            let end = self.margin(event, length, to);
-            return Some(Crossing {
-                length: root(&margin, (length, start, end)),
-                fires: true,
-            });
-        }
-        // The last event left the margin at zero: it must become positive before it can cross.
-        let mut shorter = 0.25 * length;
-        while shorter > SHORTEST {
-            if margin(shorter) > 0.0 {
-                return Some(Crossing {
-                    length: shorter,
-                    fires: false,
-                });
-            }
-            shorter *= 0.25;
-        }
-        Some(Crossing {
-            length: 0.0,
-            fires: true,
-        })
     }
 
     fn happen(&mut self, event: Event) {
@@ -466,33 +312,6 @@ impl Integrator {
             hit.duration = duration;
         }
     }
-}
-
-/// Root of `f`, positive at 0 and negative at the bracket's end, by the Illinois method
-/// (Dowell and Jarratt 1971). `bracket`: its length, f at 0, f at the end.
-fn root(f: &impl Fn(f64) -> f64, (length, start, end): (f64, f64, f64)) -> f64 {
-    let (mut a, mut fa, mut b, mut fb) = (0.0, start, length, end);
-    let mut last_side = 0;
-    for _ in 0..80 {
-        if b - a <= 1e-15 * length.max(1e-3) {
-            break;
-        }
-        let c = (a * fb - b * fa) / (fb - fa);
-        let fc = f(c);
-        if fc == 0.0 {
-            return c;
-        }
-        let side = if fc < 0.0 { -1 } else { 1 };
-        if side < 0 {
-            (b, fb) = (c, fc);
-            fa *= if side == last_side { 0.5 } else { 1.0 };
-        } else {
-            (a, fa) = (c, fc);
-            fb *= if side == last_side { 0.5 } else { 1.0 };
-        }
-        last_side = side;
-    }
-    b
 }
 
 #[cfg(test)]

@@ -1,0 +1,100 @@
+//! The impacts at their refined times, with the speeds extrapolated to them.
+
+use crate::event::corner::Shifts;
+use crate::event::drive::DriveTone;
+use crate::event::finite_contact::FiniteContact;
+use crate::event::impact::{Impact, MassSpeeds};
+use crate::event::kinematics::{Body, Kinematics};
+use crate::event::refine::{ArcFit, Candidate, Instant, arcs, speeds};
+use crate::signal::local_fit::LocalFit;
+
+/// The impacts at the refined times. If impacts are not instantaneous the approach speeds are those
+/// at the start and at the end of contact.
+pub(super) fn impacts(
+    kinematics: &Kinematics,
+    candidates: &[Candidate],
+    instants: &[Instant],
+    drive: Option<&DriveTone>,
+    (arc, contact): (ArcFit, Option<&FiniteContact>),
+) -> Vec<Impact> {
+    let of = |body: &Body, i: usize| {
+        let velocity = body.velocity.as_ref()?;
+        speeds(velocity, candidates, i, instants[i], arc)
+    };
+    let rate_hz = kinematics.rate_hz;
+    let shifts = Shifts::of(kinematics);
+    (0..candidates.len())
+        .map(|i| {
+            let time_s = instants[i].time / rate_hz;
+            let lasting = contact
+                .filter(|_| candidates[i].dead_samples == 0.0)
+                .and_then(|c| contact_speeds(kinematics, candidates, i, (instants[i], c), arc));
+            let approach = match &lasting {
+                Some(c) => Some((c.speeds, c.error)),
+                None => of(&kinematics.relative, i),
+            };
+            let duration = contact.map(|c| c.duration / rate_hz);
+            Impact {
+                time_s,
+                time_error_s: instants[i].error / rate_hz,
+                drive_phase_rad: drive.map(|d| d.phase_at(time_s)),
+                approach_speed_before_m_s: approach.map(|c| c.0.before_m_s),
+                approach_speed_after_m_s: approach.map(|c| c.0.after_m_s),
+                speed_error_m_s: approach.map(|c| c.1),
+                x: of(&kinematics.x, i).map(|s| s.0),
+                y: of(&kinematics.y, i).map(|s| s.0),
+                corner_shifts: shifts.at(instants[i].time),
+                dead_zone_s: candidates[i].dead_samples / rate_hz,
+                contact_duration_s: duration.filter(|d| lasting.is_some() && *d > 0.0),
+                external_push_m_s: lasting.map(|c| c.external_push_m_s).filter(|p| *p != 0.0),
+                source: candidates[i].source,
+            }
+        })
+        .collect()
+}
+
+/// Approach speeds at the start and at the end of a contact of finite duration.
+struct ContactSpeeds {
+    speeds: MassSpeeds,
+    error: f64,
+    external_push_m_s: f64,
+}
+
+/// Approach speed at first touch from the flight before, at the end of contact from the flight
+/// after. Each body's velocity is taken as late as its channel shows it.
+fn contact_speeds(
+    kinematics: &Kinematics,
+    candidates: &[Candidate],
+    index: usize,
+    (instant, contact): (Instant, &FiniteContact),
+    arc: ArcFit,
+) -> Option<ContactSpeeds> {
+    let relative = kinematics.relative.velocity.as_ref()?;
+    let [before, after] = arcs(relative, candidates, index, arc)?;
+    let bodies: Vec<([LocalFit; 2], f64)> = [&kinematics.x, &kinematics.y]
+        .into_iter()
+        .zip(contact.delays)
+        .filter_map(|(body, delay)| {
+            let velocity = body.velocity.as_ref()?;
+            Some((arcs(velocity, candidates, index, arc)?, delay))
+        })
+        .collect();
+    let delay = bodies.iter().map(|b| b.1).sum::<f64>() / bodies.len().max(1) as f64;
+    let (start, end) = contact.span(instant.time + delay);
+    // The bodies' own delays differ from the mean one: to first order their slopes correct that.
+    let own = |side: usize, time: f64| -> f64 {
+        let shift = |(fits, own): &([LocalFit; 2], f64)| fits[side].slope(time) * (own - delay);
+        bodies.iter().map(shift).sum()
+    };
+    let acceleration = 0.5 * (before.slope(start) + after.slope(end));
+    let push = -contact.profile.drift() * contact.duration * acceleration;
+    let error = before.error_factor(start).max(after.error_factor(end));
+    Some(ContactSpeeds {
+        speeds: MassSpeeds {
+            before_m_s: before.value(start) + own(0, start),
+            after_m_s: after.value(end) + own(1, end),
+        },
+        error: relative.noise * error,
+        external_push_m_s: push,
+    })
+}

@@ -1,0 +1,79 @@
+//! The detector on simulated rigs whose impacts last.
+
+use super::run::calibrated;
+use super::{Effects, Faults, Laboratory, Plan, Truth, records};
+use crate::event::{DetectSettings, Impact, RigKind, detect};
+use crate::signal::robust;
+
+/// Impacts of a campaign of forty records with R = 0.7, as detected.
+fn impacts(effects: &Effects) -> Vec<Impact> {
+    let truth = Truth::symmetric(0.7, 12.0, 0.06, 1e-3);
+    let faults = Faults::default();
+    let plan = Plan::for_rig(12.0, 0.06, 1e-3, 40);
+    let raw = records(&Laboratory {
+        truth: &truth,
+        faults: &faults,
+        effects,
+        plan: &plan,
+        seed: 3,
+    })
+    .unwrap();
+    let found = raw.iter().flat_map(|raw| {
+        let record = calibrated(raw, &truth, &faults);
+        detect(&record, RigKind::Double, &DetectSettings::default()).impacts
+    });
+    found.filter(|i| i.dead_zone_s == 0.0).collect()
+}
+
+/// Median of the separation speed, less what springs and drive add, over the approach speed.
+fn restitution(impacts: &[Impact]) -> f64 {
+    let ratio = |i: &Impact| {
+        let push = i.external_push_m_s.unwrap_or(0.0);
+        Some((-i.approach_speed_after_m_s? - push) / i.approach_speed_before_m_s?)
+    };
+    let ratios: Vec<f64> = impacts.iter().filter_map(ratio).collect();
+    robust::median(&ratios).unwrap()
+}
+
+#[test]
+fn valid_contacts_of_finite_duration_keep_their_restitution() {
+    for duration_s in [0.3e-3, 0.6e-3, 1e-3] {
+        let impacts = impacts(&Effects {
+            contact_duration_s: duration_s,
+            ..Effects::default()
+        });
+        let durations: Vec<f64> = impacts
+            .iter()
+            .filter_map(|i| i.contact_duration_s)
+            .collect();
+        let r = restitution(&impacts);
+        assert!(
+            3 * durations.len() > 2 * impacts.len(),
+            "{duration_s}: {} of {}",
+            durations.len(),
+            impacts.len()
+        );
+        let found = robust::median(&durations).unwrap();
+        assert!(
+            (found / duration_s - 1.0).abs() < 0.15,
+            "{duration_s}: {found}"
+        );
+        assert!((r / 0.7 - 1.0).abs() < 0.01, "{duration_s}: R = {r}");
+    }
+}
+
+#[test]
+fn valid_instantaneous_contacts_are_instants() {
+    let impacts = impacts(&Effects::default());
+    assert!(impacts.iter().all(|i| i.contact_duration_s.is_none()));
+    assert!((restitution(&impacts) / 0.7 - 1.0).abs() < 3e-3);
+}
+
+#[test]
+fn valid_delayed_velocities_keep_their_restitution() {
+    let mut effects = Effects::default();
+    // x a quarter of a sample late, y a quarter early
+    (effects.delays_s[2], effects.delays_s[3]) = (0.125e-3, -0.125e-3);
+    let r = restitution(&impacts(&effects));
+    assert!((r / 0.7 - 1.0).abs() < 0.01, "R = {r}");
+}
