@@ -1,7 +1,10 @@
 //! The methods, each alone: boundaries, trajectories, impacts, resonance.
 
+use nalgebra::DMatrix;
+
 use crate::identify::estimate;
 use crate::identify::evidence::{Blocks, Nominal};
+use crate::identify::fit::normal::inverse;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Fit, FitError, Prior, Problem, mean_squares};
 use crate::identify::identification::MethodResult;
@@ -40,6 +43,10 @@ pub struct MethodFit {
     pub scatter: Scatter,
 }
 
+/// Share of an effect that its first order does not hold: what campaigns on rigs with all effects
+/// showed.
+const FIRST_ORDER: f64 = 0.03;
+
 impl MethodFit {
     /// Of a fit of a problem, judged with degrees of freedom.
     pub fn of(problem: &Problem<'_>, fit: Fit, freedom: usize) -> Self {
@@ -54,7 +61,31 @@ impl MethodFit {
 
     /// Standard error of a coordinate by all that is allowed for; `None` where it was not free.
     pub fn spread(&self, coordinate: Coordinate) -> Option<Spread> {
-        self.scatter.spread(&self.fit, self.factor, coordinate)
+        let spread = self.scatter.spread(&self.fit, self.factor, coordinate)?;
+        let beyond = self.first_order(coordinate).unwrap_or(0.0);
+        Some(spread.with(beyond))
+    }
+
+    /// What the effects beyond the model leave open in a parameter as they are treated to first order:
+    /// a share of what each would change of it if it were left out and R, f0, β and x_st alone were
+    /// fitted again, −(A_pp⁻¹A_pk) times its strength.
+    pub fn first_order(&self, coordinate: Coordinate) -> Option<f64> {
+        let fit = &self.fit;
+        let place = |c: &Coordinate| fit.free.iter().position(|f| f == c);
+        let told: Vec<usize> = Coordinate::PHYSICAL.iter().filter_map(place).collect();
+        let row = told.iter().position(|i| fit.free[*i] == coordinate)?;
+        let information = inverse(&fit.covariance)?;
+        let count = told.len();
+        let own = DMatrix::from_fn(count, count, |i, k| information[(told[i], told[k])]);
+        let back = inverse(&own)?;
+        let effects = fit.free.iter().enumerate();
+        let effects = effects.filter(|(_, c)| matches!(c, Coordinate::Effect(_)));
+        let change = |(k, c): (usize, &Coordinate)| {
+            let pulled = told.iter().enumerate();
+            let pulled = pulled.map(|(i, at)| back[(row, i)] * information[(*at, k)]);
+            FIRST_ORDER * pulled.sum::<f64>() * fit.parameters.coordinate(*c)
+        };
+        Some(effects.map(change).map(|c| c * c).sum::<f64>().sqrt())
     }
 }
 

@@ -36,6 +36,8 @@ pub enum Source {
         /// The clearance as stated, m, of an error of a single clearance.
         clearance_m: Option<f64>,
     },
+    /// What the first order of the effects beyond the model does not hold.
+    FirstOrder,
     /// Disagreement between methods beyond their uncertainties.
     BetweenMethods,
 }
@@ -140,6 +142,13 @@ pub fn budget(
         contributions: contributions(&told, |_, c| {
             (None, found.spread(c).map_or(0.0, |s| s.between_groups))
         }),
+    });
+    rows.push(Row {
+        source: Source::FirstOrder,
+        evaluation: Evaluation::B,
+        standard_uncertainty: None,
+        degrees_of_freedom: None,
+        contributions: contributions(&told, |_, c| (None, found.first_order(c).unwrap_or(0.0))),
     });
     let apart = |c: Coordinate| {
         let mut all = between_methods.iter();
@@ -261,6 +270,7 @@ impl Budget {
             let (source, item) = match row.source {
                 Source::Noise { method } => ("noise", method.name().to_owned()),
                 Source::BetweenGroups { groups } => ("between_groups", groups.to_string()),
+                Source::FirstOrder => ("first_order", String::new()),
                 Source::BetweenMethods => ("between_methods", String::new()),
                 Source::Stated {
                     coordinate,

@@ -64,6 +64,21 @@ impl Spread {
         }
     }
 
+    /// With a further error that is known itself.
+    pub fn with(self, error: f64) -> Self {
+        let whole = self.error.hypot(error);
+        let grown = if self.error > 0.0 {
+            whole / self.error
+        } else {
+            1.0
+        };
+        Self {
+            error: whole,
+            freedom: self.freedom * grown.powi(4),
+            ..self
+        }
+    }
+
     /// Half the 95 % interval.
     pub fn half95(self) -> f64 {
         student_975(self.freedom) * self.error
