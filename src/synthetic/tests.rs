@@ -1,5 +1,6 @@
 //! The detector on simulated rigs whose impacts last.
 
+use super::acquisition::RATE_HZ;
 use super::run::calibrated;
 use super::{Effects, Faults, Laboratory, Plan, Truth, records};
 use crate::event::{DetectSettings, Impact, RigKind, detect};
@@ -53,9 +54,16 @@ fn valid_contacts_of_finite_duration_keep_their_restitution() {
             durations.len(),
             impacts.len()
         );
+        // Below a sample the samples within the contact are too few: there the duration comes out
+        // too long, by up to a third of a sample.
         let found = robust::median(&durations).unwrap();
+        let allowed_s = if duration_s < 1.0 / RATE_HZ {
+            0.4 / RATE_HZ
+        } else {
+            0.15 * duration_s
+        };
         assert!(
-            (found / duration_s - 1.0).abs() < 0.15,
+            (found - duration_s).abs() < allowed_s,
             "{duration_s}: {found}"
         );
         assert!((r / 0.7 - 1.0).abs() < 0.01, "{duration_s}: R = {r}");
