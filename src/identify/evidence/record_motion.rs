@@ -290,7 +290,13 @@ impl<'a> RecordMotion<'a> {
             eta: self.eta,
             ..Change::default()
         };
-        self.along(values, &self.direction(&change, None))
+        let mut slopes = self.along(values, &self.direction(&change, None));
+        let over_frequency = self.common.deflection_over_drive(self.record.frequency_hz);
+        if over_frequency != 0.0 {
+            let over_deflection = self.over_coordinate(values, Coordinate::Deflection);
+            add(&mut slopes, over_frequency, &over_deflection);
+        }
+        slopes
     }
 
     /// Acceleration of the masses toward each other at the impact over the approach speed, 1/s: what

@@ -138,6 +138,14 @@ impl Parameters {
         }
     }
 
+    /// Relative change of a record's static deflection per unit of the logarithm of its drive's
+    /// frequency: the force against frequency.
+    pub fn deflection_over_drive(&self, frequency_hz: f64) -> f64 {
+        let eta = frequency_hz / self.natural_frequency_hz;
+        let [lean, over_eta] = self.lean(eta);
+        eta * over_eta / lean
+    }
+
     /// βΩ, 1/s.
     fn decay_per_s(&self) -> f64 {
         self.damping_ratio * self.natural_rate()
