@@ -77,7 +77,7 @@ fn empty(id: &str, setting: &Setting) -> Record {
 ///     .map(|i| format!("{},{}\n", f64::from(i) / 2000.0, (0.1 * f64::from(i)).sin()))
 ///     .collect();
 /// std::fs::write(&path, format!("time [s],v [mm/s]\n{rows}"))?;
-/// let source = labfiles::open::open(&path)?;
+/// let source = labfiles::open(&path)?;
 /// let setting = Setting {
 ///     stated_frequency_hz: None,
 ///     clearance_m: None,
