@@ -99,7 +99,7 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// A flag of a record of the campaign.
-    pub(super) fn of_record(file: &Path, record: &str, flag: &Flag) -> Self {
+    pub fn of_record(file: &Path, record: &str, flag: &Flag) -> Self {
         Self {
             code: Code::Flag(flag.code),
             severity: match flag.excludes {

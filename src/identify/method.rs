@@ -12,6 +12,8 @@ pub enum Method {
     Boundaries,
     /// Multiple shooting: records followed from impact to impact.
     Flights,
+    /// Times between impacts under a constant force.
+    FlightTimes,
     /// Free decays.
     FreeDecay,
     /// Speeds at impacts.
@@ -39,6 +41,7 @@ impl Method {
         match self {
             Self::Boundaries => "boundaries",
             Self::Flights => "flights",
+            Self::FlightTimes => "flight_times",
             Self::FreeDecay => "free_decay",
             Self::Impacts => "impacts",
             Self::PublishedSpeeds => "published_speeds",
@@ -60,6 +63,8 @@ impl Message for Method {
             (Self::Boundaries, German) => "Grenzen",
             (Self::Flights, English) => "Multiple shooting",
             (Self::Flights, German) => "Mehrfachschießen",
+            (Self::FlightTimes, English) => "Flight times",
+            (Self::FlightTimes, German) => "Flugzeiten",
             (Self::FreeDecay, English) => "Free decay",
             (Self::FreeDecay, German) => "Ausschwingen",
             (Self::Impacts, English) => "Speeds at impact",

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::diagnostics::{contact_law, verdict};
+use crate::identify::diagnostics::{contact_law, structure, verdict};
 use crate::identify::evidence::impacts::SpeedPair;
 use crate::identify::evidence::{Blocks, Evidence, impact_bias};
 use crate::identify::fit::Fit;
@@ -56,7 +56,11 @@ pub fn impacts(
     }
     result.remarks.extend(outlying(blocks, evidence));
     result.contact_law = contact_law::contact_law(block);
-    verdict::judge_impacts(&mut result, block, evidence);
+    let ratios = structure::ratios(block, &blocks.impact_outliers, evidence.observations);
+    if !ratios.is_empty() {
+        result.impact_groups = Some(structure::groups(&ratios, evidence.observations));
+    }
+    verdict::judge_impacts(&mut result, block, evidence, structure::structure(&ratios));
     result
 }
 
@@ -169,15 +173,16 @@ fn by_midpoints(estimate: &Estimate) -> Option<Remark> {
     })
 }
 
-/// The joint result; without a joint fit, what the free decays determine.
+/// The joint result; without a joint fit, what the free decays or the flight times determine.
 pub fn joint(
     evidence: &Evidence,
     attempt: Option<&FitResult>,
     methods: &BTreeMap<Method, MethodResult>,
 ) -> MethodResult {
     let Some(attempt) = attempt else {
-        let only = methods.get(&Method::FreeDecay);
-        return only.cloned().unwrap_or_default();
+        let of = |method| methods.get(&method).cloned();
+        let only = of(Method::FreeDecay).or_else(|| of(Method::FlightTimes));
+        return only.unwrap_or_default();
     };
     let tells: Vec<Coordinate> = match attempt {
         Ok(found) => found.fit.free.clone(),

@@ -19,7 +19,7 @@ use crate::identify::selection::Selection;
 use crate::identify::uncertainty::budget;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
-use crate::identify::{decay, estimate, results};
+use crate::identify::{decay, estimate, flight_times, results};
 
 /// Identify from observations and brackets, as records of one specimen.
 ///
@@ -100,6 +100,9 @@ pub fn identify(evidence: &Evidence) -> Identification {
     suspicions.extend(run.other_suspicions(&fits));
     let methods = run.results(&fits);
     let mut joint = results::joint(evidence, fits.joint.as_ref(), &methods);
+    if observations_are_undriven(evidence) {
+        verdict::carry_over(&mut joint, &methods);
+    }
     let beyond = succeeded(&fits.joint).map_or_else(Vec::new, beyond::beyond);
     let agreement = match beyond.is_empty() {
         true => agreement(&methods),
@@ -134,6 +137,11 @@ pub fn identify(evidence: &Evidence) -> Identification {
         }),
         specimens: BTreeMap::new(),
     }
+}
+
+/// Whether no record has a drive, so that R rests on the impacts alone.
+fn observations_are_undriven(evidence: &Evidence) -> bool {
+    evidence.observations.iter().all(|o| o.drive.is_none())
 }
 
 /// The results of all methods but one.
@@ -416,6 +424,8 @@ impl IdentificationRun<'_> {
                 .as_ref()
                 .map(|a| (Method::Flights, results::flights(blocks, a))),
             decay::pooled(self.evidence.observations).map(|result| (Method::FreeDecay, result)),
+            flight_times::pooled(self.evidence.observations)
+                .map(|result| (Method::FlightTimes, result)),
         ];
         found.into_iter().flatten().collect()
     }

@@ -4,8 +4,8 @@
 use super::bind::flag;
 pub use super::bind::{Bound, ChannelKey, ChannelSetup, bind};
 use super::time_axis::{self, TimeAxis};
-use super::{Channel, Flag, FlagCode, Record, Setting};
-use super::{condition, consistency};
+use super::{Channel, ContactContent, Flag, FlagCode, Record, Role, Setting};
+use super::{condition, consistency, events};
 use labfiles::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
 
 /// Everything that turns one dataset into one record.
@@ -132,7 +132,15 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
     };
     let times = axis.and_then(|index| seconds(samples.pop(), dataset, index));
     let ranges = scale_all(&mut record, dataset, &bound, samples);
+    if is_list(setup) {
+        events::settle(&mut record, content(setup));
+        return record;
+    }
     settle(&mut record, setup, dataset, &bound, times);
+    if content(setup) != ContactContent::Signal {
+        events::settle(&mut record, content(setup));
+        return record;
+    }
     condition::inspect(&mut record, &ranges, setup.driven);
     if !record.excluded() {
         let flags = consistency::inspect(&record);
@@ -140,6 +148,17 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
     }
     skip(&mut record, setup.skip_s);
     record
+}
+
+/// What the channel of the contact contains.
+fn content(setup: &RecordSetup<'_>) -> ContactContent {
+    let contact = setup.channels.iter().find(|c| c.role == Role::Contact);
+    contact.map_or(ContactContent::Signal, |c| c.content)
+}
+
+/// Whether the rows of the dataset are impacts, not samples.
+fn is_list(setup: &RecordSetup<'_>) -> bool {
+    content(setup).is_list()
 }
 
 fn no_dataset(source: &dyn Source, index: usize) -> Flag {
@@ -316,7 +335,6 @@ fn all_skipped(duration_s: f64, skip_s: f64) -> Flag {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::Role;
 
     /// A table of two columns, as a Record whose time axis is the first.
     fn record(times_s: impl Iterator<Item = f64>) -> Record {

@@ -34,6 +34,8 @@ pub enum Note {
     MethodsDisagree,
     /// R depends on the speed.
     NotOneNumber,
+    /// The frequency changes over the decay.
+    Drifts,
     /// Each specimen has parameters of its own.
     SeveralSpecimens,
     /// No damping ratio gives the published motions.
@@ -100,6 +102,13 @@ impl Message for Note {
             (Self::NotOneNumber, German) => {
                 "$R$ ist hier nicht eine Zahl: siehe die Anmerkung zu seiner Änderung"
             }
+            (Self::Drifts, English) => {
+                "the frequency changes over the decay, so that it is no single $f_0$: see the remark"
+            }
+            (Self::Drifts, German) => {
+                "die Frequenz ändert sich beim Ausschwingen und ist nicht ein $f_0$: siehe die \
+                 Anmerkung"
+            }
             (Self::SeveralSpecimens, English) => {
                 "the campaign has several specimens; each has its own parameters"
             }
@@ -146,6 +155,7 @@ impl Message for Note {
             Self::NoStart { observations } => vec![("count", Value::Count(*observations))],
             Self::SolverFailed { report } => vec![("report", Value::Name(report))],
             Self::NotOneNumber
+            | Self::Drifts
             | Self::MethodsDisagree
             | Self::SeveralSpecimens
             | Self::NoPublishedMotion
