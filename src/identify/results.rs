@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::diagnostics::{contact_law, structure, verdict};
+use crate::identify::diagnostics::{contact_law, momentum, structure, verdict};
 use crate::identify::evidence::impacts::SpeedPair;
 use crate::identify::evidence::{Blocks, Evidence, impact_bias};
 use crate::identify::fit::Fit;
@@ -55,6 +55,9 @@ pub fn impacts(
         );
     }
     result.remarks.extend(outlying(blocks, evidence));
+    result
+        .remarks
+        .extend(momentum::momentum(block, evidence).map(|m| m.0));
     result.contact_law = contact_law::contact_law(block);
     let ratios = structure::ratios(block, &blocks.impact_outliers, evidence.observations);
     if !ratios.is_empty() {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::identify::diagnostics::agreement::{agreement, between_methods};
 use crate::identify::diagnostics::beyond;
+use crate::identify::diagnostics::momentum;
 use crate::identify::diagnostics::suspicion::{self, OddGap};
 use crate::identify::diagnostics::swapped_channels;
 use crate::identify::diagnostics::verdict::{self, Basis};
@@ -98,6 +99,8 @@ pub fn identify(evidence: &Evidence) -> Identification {
     }
     fits = run.without_influential(fits);
     suspicions.extend(run.other_suspicions(&fits));
+    let of_masses = momentum::momentum(&run.selection.blocks.impact, evidence);
+    suspicions.extend(of_masses.and_then(|m| m.1));
     let methods = run.results(&fits);
     let mut joint = results::joint(evidence, fits.joint.as_ref(), &methods);
     if observations_are_undriven(evidence) {

@@ -119,7 +119,8 @@ pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool)
             .or_else(|| clipped(channel, *range));
         flags.extend(found.map(|f| lenient(channel.role, f)));
     }
-    if flags.is_empty() {
+    if flags.is_empty() && driven {
+        // Without a drive a body comes to rest.
         flags.extend(held(record));
     }
     record.flags.extend(flags);

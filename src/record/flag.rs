@@ -91,6 +91,8 @@ flag_codes! {
     TimeNotUniform = "time_not_uniform", "time not uniform", "Zeit nicht gleichmäßig",
     /// No sample rate is known.
     NoSampleRate = "no_sample_rate", "no sample rate", "keine Abtastrate",
+    /// The rate that the file states is not that of its time axis.
+    RateContradicts = "rate_contradicts", "rate contradicts", "Abtastrate widerspricht",
     /// The channels differ in sample rate.
     UnequalSampleRates = "unequal_sample_rates", "unequal sample rates", "ungleiche Abtastraten",
     /// Channels of the two masses are swapped.

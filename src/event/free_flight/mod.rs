@@ -26,6 +26,12 @@ const ADDED: f64 = 0.35;
 const GREATEST_RATIO: f64 = 1.3;
 /// Standard errors by which each mass's speed must change.
 const CHANGED: f64 = 3.0;
+/// Standard error of the time of a crossing of two parabolas, samples: what the contact takes.
+const BLUR: f64 = 0.25;
+/// Standard deviation of the place of a jump between two samples, samples.
+const STEP_SPREAD: f64 = 0.29;
+/// Least standard error of the time of an impact between two lines of velocity, samples.
+const LEAST_SPREAD: f64 = 0.1;
 /// Share of a flight that may be left out without a note.
 const USED: f64 = 0.6;
 
@@ -210,26 +216,51 @@ impl<'a> Search<'a> {
     }
 
     /// Time of an impact in samples with its standard error: where the displacements of both flights
-    /// cross, else where the velocity is half way between them.
+    /// cross.
     fn instant(&self, fall: Fall, before: &[Stretch], after: &[Stretch]) -> (f64, f64) {
         let (low, high) = (fall.first as f64 - 1.0, fall.last as f64 + 1.0);
         if let ([before], [after]) = (before, after)
             && let (Some(b), Some(a)) = (before.displacement(), after.displacement())
             && let Some(time) = crossing(b, a, low, high)
         {
-            return (time, 0.25);
+            return (time, BLUR);
         }
-        let half = |i: usize| {
-            let t = i as f64;
-            let both = before.iter().chain(after).map(|s| s.speed(t)).sum::<f64>();
-            self.relative[i] - 0.5 * both
+        self.crossing_of_areas(fall, before, after)
+    }
+
+    /// Time at which the displacements of both flights meet: they enclose the area under the velocity.
+    /// It does not depend on how many samples the contact takes, nor on a smoothing of the velocity.
+    fn crossing_of_areas(&self, fall: Fall, before: &[Stretch], after: &[Stretch]) -> (f64, f64) {
+        let middle = 0.5 * (fall.first + fall.last) as f64;
+        let from = before.iter().map(|s| s.samples.1.saturating_sub(1)).min();
+        let to = after.iter().map(|s| s.samples.0).max();
+        let (Some(from), Some(to)) = (from, to) else {
+            return (middle, 0.5);
         };
-        let crossed = (fall.first..fall.last).find(|i| half(*i) >= 0.0 && half(i + 1) < 0.0);
-        let time = match crossed {
-            Some(i) => i as f64 + half(i) / (half(i) - half(i + 1)),
-            None => 0.5 * (fall.first + fall.last) as f64,
+        let area: f64 = self.relative[from..=to]
+            .windows(2)
+            .map(|w| 0.5 * (w[0] + w[1]))
+            .sum();
+        let speed = |flights: &[Stretch], t: f64| flights.iter().map(|s| s.speed(t)).sum::<f64>();
+        let under = |flights: &[Stretch], a: f64, b: f64| {
+            0.5 * (speed(flights, a) + speed(flights, b)) * (b - a)
         };
-        (time, 0.5)
+        let (low, high) = (from as f64, to as f64);
+        let mut time = middle;
+        for _ in 0..20 {
+            let off = under(before, low, time) + under(after, time, high) - area;
+            let step = off / (speed(before, time) - speed(after, time));
+            time -= step;
+            if !time.is_finite() || time < low || time > high {
+                return (middle, 0.5);
+            }
+            if step.abs() < 1e-9 {
+                break;
+            }
+        }
+        // A jump between two samples is somewhere between them; one over several is resolved.
+        let steps = (fall.last - fall.first).max(1) as f64;
+        (time, (STEP_SPREAD / steps).max(LEAST_SPREAD))
     }
 
     /// Whether the approach speed is beyond what was measured on its flight.

@@ -48,13 +48,18 @@ pub struct ImpactBlock {
     pub relative_error: f64,
     /// On which corners the speeds depend, by their index.
     corners: [bool; 4],
+    /// Whether the impacts are between free flights, of records without a drive.
+    pub free: bool,
 }
+
+/// Impacts between free flights from which outliers are looked for: fewer are all reported.
+const ENOUGH_FOR_OUTLIERS: usize = 8;
 
 impl ImpactBlock {
     /// Collect impacts without dead zone, faster than six standard errors (twelve where a contact
     /// lasts several samples, as slow ones are then swayed by where its middle is put).
     pub fn new(observations: &[Observation], relative_error: f64) -> Self {
-        let pairs = observations
+        let pairs: Vec<SpeedPair> = observations
             .iter()
             .enumerate()
             .filter(|(_, o)| !o.excluded())
@@ -83,7 +88,18 @@ impl ImpactBlock {
             })
             .filter(|p| p.after_m_s > -4.0 * p.error_m_s)
             .collect();
-        Self::of_pairs(pairs, relative_error)
+        let free = pairs
+            .iter()
+            .all(|p: &SpeedPair| observations[p.observation].drive.is_none());
+        Self {
+            free,
+            ..Self::of_pairs(pairs, relative_error)
+        }
+    }
+
+    /// Fewest impacts that a fit needs: one between free flights has a ratio of its own.
+    pub fn fewest(&self) -> usize {
+        if self.free { 1 } else { 3 }
     }
 
     /// Of given pairs.
@@ -93,6 +109,7 @@ impl ImpactBlock {
             pairs,
             relative_error,
             corners,
+            free: false,
         }
     }
 
@@ -112,6 +129,9 @@ impl ImpactBlock {
         let Some(centre) = crate::signal::robust::median(&ratios) else {
             return (self, Vec::new());
         };
+        if self.free && self.pairs.len() < ENOUGH_FOR_OUTLIERS {
+            return (self, Vec::new());
+        }
         let scores: Vec<f64> = self
             .pairs
             .iter()

@@ -150,6 +150,10 @@ fn remarks() -> Vec<Remark> {
         Remark::RecordsDiffer {
             points: group_points(),
         },
+        Remark::MassRatio {
+            ratio: 2.0,
+            half_width: 0.02,
+        },
         Remark::TimesScatter { error_s: 2e-3 },
         Remark::FlightsLeftOut { count: 2 },
         Remark::OutlyingImpacts {
@@ -231,6 +235,11 @@ pub fn example_findings() -> Vec<Finding> {
             z_score,
         },
         Finding::SwappedChannels { z_score: 9.0 },
+        Finding::MomentumNotConserved {
+            measured: 2.2,
+            stated: 2.0,
+            z_score: 8.0,
+        },
         Finding::Misfit {
             method: Method::Impacts,
             remark: Remark::DecaysDiffer { spread: 0.1 },
@@ -288,6 +297,14 @@ fn sentences() -> Vec<Sentence> {
             parameters: parameters.clone(),
         },
         Sentence::NotIdentifiable { parameters },
+        Sentence::SpecimensFit {
+            fitting: 27,
+            count: 28,
+        },
+        Sentence::SpecimensPoorlyKnown {
+            parameter: Coordinate::Damping,
+            count: 10,
+        },
         Sentence::NothingUsable,
         Sentence::DoesNotFit,
         Sentence::MethodsAgree,

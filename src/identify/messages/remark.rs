@@ -145,6 +145,13 @@ pub enum Remark {
         /// R of each record.
         points: Vec<GroupPoint>,
     },
+    /// The ratio of the masses by conservation of momentum.
+    MassRatio {
+        /// m_y/m_x.
+        ratio: f64,
+        /// Half its 95 % interval.
+        half_width: f64,
+    },
     /// How far the times of impacts are off the fitted rows.
     TimesScatter {
         /// Standard error of a time, s.
@@ -255,6 +262,9 @@ impl Message for Remark {
                 "$R$ differs between the records by more than its errors: {points}; they are not of \
                  one contact"
             }
+            Self::MassRatio { .. } => {
+                "by conservation of momentum the masses are $m_y$/$m_x$ = {value} ± {half}"
+            }
             Self::TimesScatter { .. } => "the times of the impacts scatter by {error} ms",
             Self::FlightsLeftOut { .. } => {
                 "flights that do not follow from the one before, as where an impact was missed, left \
@@ -328,6 +338,9 @@ impl Message for Remark {
             Self::RecordsDiffer { .. } => {
                 "$R$ unterscheidet sich zwischen den Aufzeichnungen um mehr als seine Fehler: \
                  {points}; sie sind nicht die eines Kontakts"
+            }
+            Self::MassRatio { .. } => {
+                "nach der Impulserhaltung verhalten sich die Massen wie $m_y$/$m_x$ = {value} ± {half}"
             }
             Self::TimesScatter { .. } => "die Zeiten der Stöße streuen um {error} ms",
             Self::FlightsLeftOut { .. } => {
@@ -404,6 +417,10 @@ impl Message for Remark {
             Self::RestitutionByBounce { points: all } | Self::RecordsDiffer { points: all } => {
                 vec![("points", points(all))]
             }
+            Self::MassRatio { ratio, half_width } => vec![
+                ("value", Value::Number(*ratio, 3)),
+                ("half", Value::Number(*half_width, 3)),
+            ],
             Self::TimesScatter { error_s } => vec![("error", Value::Number(1e3 * error_s, 2))],
             Self::FlightsLeftOut { count } => vec![("count", Value::Count(*count))],
             Self::OutlyingImpacts { count, first } => {
