@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::input::Input;
+use super::input::{Input, place};
 use crate::event::DetectSettings;
 use crate::event::{Detection, DriveTone, detect};
+use crate::identify::fit::parameters::Parameters;
 use crate::identify::replay::{Replay, Stretch};
 use crate::motion::{Motion, Observation};
 use crate::record::{Record, Role};
@@ -113,12 +114,19 @@ pub(super) fn comparisons(input: &Input, chosen: &[usize]) -> Vec<Comparison> {
     let lettered = chosen.par_iter().zip(letters);
     lettered
         .filter_map(|(i, letter)| {
-            comparison(input, &input.observations[*i], &(input.read)(*i)?, letter)
+            let o = &input.observations[*i];
+            comparison(input, o, &(input.read)(*i)?, (letter, input.parameters()))
         })
         .collect()
 }
 
-fn comparison(input: &Input, o: &Observation, record: &Record, letter: char) -> Option<Comparison> {
+/// A record beside its simulation with parameters; `None` without a drive.
+pub(super) fn comparison(
+    input: &Input,
+    o: &Observation,
+    record: &Record,
+    (letter, parameters): (char, Option<&Parameters>),
+) -> Option<Comparison> {
     let drive = o.drive?;
     let detection = detect(record, input.rig, &DetectSettings::default());
     let periods = match o.classification.motion {
@@ -127,10 +135,8 @@ fn comparison(input: &Input, o: &Observation, record: &Record, letter: char) -> 
         _ => IRREGULAR_PERIODS,
     };
     let stretch = stretch(drive, periods);
-    let simulation = input
-        .parameters()
-        .and_then(|fitted| Replay::of(input.rig, *fitted, o, &stretch));
-    let (eta, rho) = input.place(o);
+    let simulation = parameters.and_then(|p| Replay::of(input.rig, *p, o, &stretch));
+    let (eta, rho) = parameters.map_or((None, None), |p| place(p, o));
     let traces = traces(record, &detection, &stretch, simulation.as_ref());
     let motion = &o.classification.motion;
     let simulated_motion = simulation.as_ref().map(|s| {
