@@ -1,14 +1,12 @@
 //! Messages: what a module states, as a kind with values instead of a sentence.
 //!
 //! A type whose variants are messages implements [`Message`]: a template for each variant in each
-//! [`Language`], with names in braces for its values and symbols between dollars. The match over
-//! variant and language has no wildcard, so a message without a translation does not compile. The
+//! [`Language`], with names in braces for its values and symbols between dollars. The matches over
+//! the variants have no wildcard, so a message without a translation does not compile. The
 //! macro [`messages!`](crate::messages) adds `Display` (English) and the JSON form: the variant as
 //! `kind`, its numbers in SI, and the English sentence as `text`.
 
 use std::fmt::Display;
-
-use serde::Serialize;
 
 /// A language in which every message is available.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -23,15 +21,26 @@ pub enum Language {
 /// Something that a module states, to be printed in the language of the reader.
 pub trait Message {
     /// Name of the kind, `kind` in JSON.
-    fn kind(&self) -> String;
+    fn kind(&self) -> &'static str;
 
     /// Key in a table of translations: the kind, extended if the kind has several templates.
     fn key(&self) -> String {
-        self.kind()
+        self.kind().to_owned()
     }
 
-    /// The template: names in braces are replaced by the values, symbols are between dollars.
-    fn template(&self, language: Language) -> &'static str;
+    /// The English template: names in braces are replaced by the values, symbols are between dollars.
+    fn english(&self) -> &'static str;
+
+    /// The German template.
+    fn german(&self) -> &'static str;
+
+    /// The template in a language.
+    fn template(&self, language: Language) -> &'static str {
+        match language {
+            Language::English => self.english(),
+            Language::German => self.german(),
+        }
+    }
 
     /// The values by the names that the templates use; all of a message's templates use the same.
     fn values(&self) -> Vec<(&'static str, Value<'_>)>;
@@ -162,13 +171,6 @@ pub fn sentence(text: &str) -> String {
 pub fn plain_all(messages: &[impl Display]) -> String {
     let each: Vec<String> = messages.iter().map(ToString::to_string).collect();
     each.join(" ")
-}
-
-/// Name of the kind of a message: its serialised form, or the `kind` in that.
-pub fn kind_of(message: &impl Serialize) -> String {
-    let value = serde_json::to_value(message).unwrap_or_default();
-    let kind = value.get("kind").unwrap_or(&value);
-    kind.as_str().unwrap_or_default().to_owned()
 }
 
 /// `Display` and the JSON form of types that implement [`Message`] and derive `Serialize` and

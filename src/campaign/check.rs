@@ -98,7 +98,7 @@ fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Sourc
         .flags
         .iter()
         .filter(|f| !LISTED.contains(&f.code))
-        .map(|f| Diagnostic::of_record(&entry.file, &record.id, f))
+        .map(|f| Diagnostic::of_flag(&entry.file, &record.id, f))
         .collect();
     let usable = usize::from(!record.excluded());
     let print = Fingerprint {
@@ -163,9 +163,9 @@ fn duplicates(fingerprints: &[Fingerprint]) -> Vec<Diagnostic> {
         let Some(hash) = print.hash else { continue };
         match first.get(&hash) {
             None => drop(first.insert(hash, &print.id)),
-            Some(other) => found.push(print.diagnostic(
-                Code::DuplicateRecord,
-                Severity::Record,
+            Some(other) => found.push(Diagnostic::new(
+                (Code::DuplicateRecord, Severity::Record),
+                print.place(),
                 format!("its samples are those of the record '{other}'"),
                 "remove one of the two: a record counted twice makes intervals too narrow",
             )),
@@ -187,9 +187,9 @@ fn cut_short(fingerprints: &[Fingerprint]) -> Vec<Diagnostic> {
     }
     let short = |p: &&Fingerprint| p.samples > 0 && 10 * p.samples < 8 * usual;
     let diagnostic = |p: &Fingerprint| {
-        p.diagnostic(
-            Code::ShortRecord,
-            Severity::Note,
+        Diagnostic::new(
+            (Code::ShortRecord, Severity::Note),
+            p.place(),
             format!("it holds {} samples, the usual record {usual}", p.samples),
             "copy the file again if it was cut off",
         )
@@ -198,25 +198,8 @@ fn cut_short(fingerprints: &[Fingerprint]) -> Vec<Diagnostic> {
 }
 
 impl Fingerprint {
-    fn diagnostic(
-        &self,
-        code: Code,
-        severity: Severity,
-        message: String,
-        remedy: &str,
-    ) -> Diagnostic {
-        Diagnostic {
-            code,
-            severity,
-            place: Place {
-                file: self.file.clone(),
-                line: None,
-                record: Some(self.id.clone()),
-                item: String::new(),
-            },
-            message,
-            remedy: remedy.to_owned(),
-        }
+    fn place(&self) -> Place {
+        Place::of_record(&self.file, &self.id, "")
     }
 }
 

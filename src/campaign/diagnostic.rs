@@ -97,24 +97,44 @@ pub struct Diagnostic {
     pub remedy: String,
 }
 
-impl Diagnostic {
-    /// A flag of a record of the campaign.
-    pub(super) fn of_record(file: &Path, record: &str, flag: &Flag) -> Self {
+impl Place {
+    /// An item of a record: its channel or attribute; empty for the record as a whole.
+    pub(super) fn of_record(file: &Path, record: &str, item: &str) -> Self {
         Self {
-            code: Code::Flag(flag.code),
-            severity: match flag.excludes {
-                true => Severity::Record,
-                false => Severity::Note,
-            },
-            place: Place {
-                file: file.to_path_buf(),
-                line: None,
-                record: Some(record.to_owned()),
-                item: flag.channel.clone().unwrap_or_default(),
-            },
-            message: flag.message.clone(),
-            remedy: flag.remedy.clone(),
+            file: file.to_path_buf(),
+            line: None,
+            record: Some(record.to_owned()),
+            item: item.to_owned(),
         }
+    }
+}
+
+impl Diagnostic {
+    /// A problem with what it prevents, its place and its remedy.
+    pub(super) fn new(
+        (code, severity): (Code, Severity),
+        place: Place,
+        message: impl Into<String>,
+        remedy: &str,
+    ) -> Self {
+        Self {
+            code,
+            severity,
+            place,
+            message: message.into(),
+            remedy: remedy.to_owned(),
+        }
+    }
+
+    /// A flag of a record of the campaign.
+    pub(super) fn of_flag(file: &Path, record: &str, flag: &Flag) -> Self {
+        let severity = match flag.excludes {
+            true => Severity::Record,
+            false => Severity::Note,
+        };
+        let place = Place::of_record(file, record, flag.channel.as_deref().unwrap_or(""));
+        let code = Code::Flag(flag.code);
+        Self::new((code, severity), place, &flag.message, &flag.remedy)
     }
 }
 
@@ -304,18 +324,15 @@ impl FaultCollector {
         message: impl Into<String>,
         remedy: &str,
     ) {
-        self.found.push(Diagnostic {
-            code,
-            severity: Severity::Campaign,
-            place: Place {
-                file: self.file.clone(),
-                line,
-                record: None,
-                item: item.to_owned(),
-            },
-            message: message.into(),
-            remedy: remedy.to_owned(),
-        });
+        let place = Place {
+            file: self.file.clone(),
+            line,
+            record: None,
+            item: item.to_owned(),
+        };
+        let what = (code, Severity::Campaign);
+        self.found
+            .push(Diagnostic::new(what, place, message, remedy));
     }
 
     /// Take over problems of another file.
@@ -339,18 +356,10 @@ mod tests {
     use super::*;
 
     fn of_record(record: &str, item: &str, message: &str) -> Diagnostic {
-        Diagnostic {
-            code: Code::ShortRecord,
-            severity: Severity::Note,
-            place: Place {
-                file: format!("day1/{record}.csv").into(),
-                line: None,
-                record: Some(record.to_owned()),
-                item: item.to_owned(),
-            },
-            message: message.to_owned(),
-            remedy: "copy the file again".to_owned(),
-        }
+        let file = format!("day1/{record}.csv");
+        let place = Place::of_record(Path::new(&file), record, item);
+        let what = (Code::ShortRecord, Severity::Note);
+        Diagnostic::new(what, place, message, "copy the file again")
     }
 
     #[test]

@@ -266,7 +266,7 @@ pub(super) fn note_flags(listed: &[Discovered], context: &mut ResolveContext<'_>
         }
         // a campaign of one record stops with it
         context.faults.extend(records.iter().map(|one| {
-            let mut problem = Diagnostic::of_record(&one.file, &one.id, flag);
+            let mut problem = Diagnostic::of_flag(&one.file, &one.id, flag);
             if all {
                 problem.severity = Severity::Campaign;
             }

@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_every_fault_of_form_is_told_at_once_with_its_line() {
+    fn every_fault_of_form_is_reported_at_once_with_its_line() {
         let text = "[campaign]\nname = 3\nmachine = \"triple\"\nflite = \"harmonic\"\n\
                     [channels.velocityx]\nchannel = \"v\"\n\
                     [channels.drive]\nchannel = \"d\"\nuni = \"V\"\n[rig]\nrestitution = [1]\n";
@@ -229,13 +229,13 @@ mod tests {
     }
 
     #[test]
-    fn valid_an_unknown_key_names_the_nearest() {
+    fn an_unknown_key_names_the_nearest() {
         let (_, faults) = faults_of("[records]\nclearence = \"1 mm\"\n");
         assert!(faults[0].remedy.contains("'clearance'"), "{faults:?}");
     }
 
     #[test]
-    fn valid_broken_syntax_is_one_fault_with_its_line() {
+    fn broken_syntax_is_one_fault_with_its_line() {
         let (_, faults) = faults_of("[campaign]\nname = \"x\n");
         assert_eq!(faults[0].place.line, Some(2));
         assert!(faults[0].message.contains("TOML"));

@@ -1,7 +1,5 @@
 //! The setting of each record, joined from run table, attributes and defaults.
 
-use std::path::Path;
-
 use super::context::ResolveContext;
 use super::diagnostic::{Code, Diagnostic, Place, Severity};
 use super::discovery::Discovered;
@@ -231,34 +229,12 @@ fn attribute_sweep(
 }
 
 fn attribute_fault(one: &Discovered, name: &str, message: String) -> Diagnostic {
-    of_record(
-        (&one.file, &one.id),
+    Diagnostic::new(
         (Code::Attribute, Severity::Record),
-        name,
+        Place::of_record(&one.file, &one.id, name),
         message,
         "fix [records.attributes], or write a run table",
     )
-}
-
-fn of_record(
-    (file, record): (&Path, &str),
-    (code, severity): (Code, Severity),
-    item: &str,
-    message: String,
-    remedy: &str,
-) -> Diagnostic {
-    Diagnostic {
-        code,
-        severity,
-        place: Place {
-            file: file.to_path_buf(),
-            line: None,
-            record: Some(record.to_owned()),
-            item: item.to_owned(),
-        },
-        message,
-        remedy: remedy.to_owned(),
-    }
 }
 
 /// Settings that are impossible.
@@ -266,11 +242,11 @@ pub(super) fn note_settings(entries: &[RecordEntry], context: &mut ResolveContex
     for entry in entries {
         let setting = &entry.setting;
         let mut note = |severity, item: &str, message: String, remedy: &str| {
-            let record = (entry.file.as_path(), entry.id.as_str());
-            let code = (Code::OutOfRange, severity);
+            let place = Place::of_record(&entry.file, &entry.id, item);
+            let what = (Code::OutOfRange, severity);
             context
                 .faults
-                .extend([of_record(record, code, item, message, remedy)]);
+                .extend([Diagnostic::new(what, place, message, remedy)]);
         };
         if let Some(c) = setting.clearance_m.filter(|c| c.abs() > 1.0) {
             let message = format!("a clearance of {c} m");

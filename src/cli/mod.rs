@@ -205,7 +205,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_the_command_line_is_consistent_and_every_command_shows_an_example() {
+    fn the_command_line_is_consistent_and_every_command_shows_an_example() {
         let command = Cli::command();
         command.clone().debug_assert();
         for sub in command.get_subcommands() {

@@ -199,7 +199,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_the_time_left_is_that_of_the_steps_left_at_the_mean_pace() {
+    fn the_time_left_is_that_of_the_steps_left_at_the_mean_pace() {
         let pace = Pace::default();
         let begin = Instant::now();
         assert_eq!(pace.left(begin, 0, 100), None);
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_after_a_tenth_the_time_left_of_a_run_is_right_within_a_fifth() {
+    fn after_a_tenth_the_time_left_of_a_run_is_right_within_a_fifth() {
         // Records, seconds of observing, seconds of all that follows: idle, on one thread, and under
         // a load (docs/validation.md).
         for (records, observing, following) in [
@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_times_in_words() {
+    fn times_in_words() {
         let words = |s| words(Some(Duration::from_secs(s)));
         assert_eq!(words(7), "7 s left");
         assert_eq!(words(67), "1 min 07 s left");

@@ -144,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_options_are_typed_as_they_were_given() {
+    fn options_are_typed_as_they_were_given() {
         let options = ReportArgs {
             format: vec![Format::Pdf, Format::Html],
             template: Some("my template.typ".into()),

@@ -45,7 +45,7 @@ fn simulated_impacts_are_where_the_measured_ones_are() {
 
 /// The saddle-node boundary of the truth, ρ_s2(1.6) = 1.812702, is within the band or near it.
 #[test]
-fn valid_the_simulated_boundary_is_that_of_the_truth() {
+fn the_simulated_boundary_is_that_of_the_truth() {
     let curves = &whole().compared.curves;
     let s2 = |c: &&super::BoundaryCurve| c.kind == BoundaryKind::SaddleNode && c.periods_n == 1;
     let points = curves.iter().filter(s2).flat_map(|c| &c.band95);

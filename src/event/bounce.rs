@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_flights_without_a_fall_hold_no_bounce() {
+    fn flights_without_a_fall_hold_no_bounce() {
         let climbing = Series::clean((0..80).map(|i| 0.02 * f64::from(i) - 0.4).collect());
         assert!(find(&climbing).is_empty());
     }

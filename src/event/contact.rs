@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_bounces_are_merged_and_pulses_counted() {
+    fn bounces_are_merged_and_pulses_counted() {
         let mut values = vec![0.0; 100];
         for i in [20, 22, 60] {
             values[i] = 5.0;
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_an_idle_contact_has_no_pulse() {
+    fn an_idle_contact_has_no_pulse() {
         use rand::{Rng, SeedableRng};
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(5);
         let values: Vec<f64> = (0..2000).map(|_| rng.random_range(-0.05..0.05)).collect();

@@ -457,7 +457,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_pulse_belongs_to_the_jump_within_its_reach() {
+    fn a_pulse_belongs_to_the_jump_within_its_reach() {
         let velocity = Series::clean(sawtooth(400));
         let closed = [pulse(100, 102), pulse(245, 247)];
         let found = fuse(&velocity, &closed, 8, 10);
@@ -471,7 +471,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_long_pulse_is_a_dead_zone_that_ends_at_the_next_jump() {
+    fn a_long_pulse_is_a_dead_zone_that_ends_at_the_next_jump() {
         let velocity = Series::clean(sawtooth(400));
         let found = fuse(&velocity, &[pulse(100, 120), pulse(200, 330)], 8, 10);
         let dead: Vec<f64> = found.candidates.iter().map(|c| c.dead_samples).collect();
@@ -480,7 +480,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_without_velocity_the_pulses_alone_are_impacts() {
+    fn without_velocity_the_pulses_alone_are_impacts() {
         let mut contact = vec![0.0; 400];
         contact[50..53].fill(5.0);
         contact[150..190].fill(5.0);
@@ -497,7 +497,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_velocity_of_the_wrong_sign_is_flagged() {
+    fn a_velocity_of_the_wrong_sign_is_flagged() {
         let wrong: Vec<f64> = sawtooth(800).iter().map(|v| -v).collect();
         let record = Record::of(1000.0, &[(Role::VelocityX, &wrong)]);
         let found = detect(&record, RigKind::Single, &DetectSettings::default());

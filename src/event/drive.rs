@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_frequency_in_another_unit_is_named() {
+    fn a_frequency_in_another_unit_is_named() {
         let mut stated = record(tone(12.6, 0.0));
         stated.setting.stated_frequency_hz = Some(12.6 * std::f64::consts::TAU);
         let (found, flags) = measure(&stated, 5e-3);
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_two_equal_tones_are_no_drive() {
+    fn two_equal_tones_are_no_drive() {
         let (low, high) = (tone(12.6, 0.0), tone(47.0, 0.0));
         let (found, flags) = measure(&record(|i| low(i) + high(i)), 5e-3);
         assert_eq!(found, None);

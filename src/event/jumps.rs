@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_step_counts_once_and_with_its_direction() {
+    fn a_step_counts_once_and_with_its_direction() {
         for (height, counted) in [(0.8, (1, 0)), (-0.8, (0, 1))] {
             let velocity = stepped(height, 1);
             assert_eq!(JumpSearch::new(&velocity, 8).directions(), counted);
@@ -337,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_step_within_the_noise_is_found_only_with_support() {
+    fn a_step_within_the_noise_is_found_only_with_support() {
         // The step is 4 standard errors of its height: too few alone, enough beside a pulse.
         let flat = stepped(0.0, 1);
         let error = JumpSearch::new(&flat, 8)

@@ -404,7 +404,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_windows_end_before_the_neighbouring_impacts() {
+    fn windows_end_before_the_neighbouring_impacts() {
         let kinematics = flights();
         let velocity = kinematics.relative.velocity.as_ref().unwrap();
         let mut list = candidates(&kinematics);

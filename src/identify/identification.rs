@@ -11,7 +11,7 @@ use crate::identify::fit::{Fit, FitReport};
 use crate::identify::messages::{Finding, LeftOut, PairAgreement, Remark, Sentence};
 use crate::identify::method::Method;
 use crate::identify::uncertainty::Uncertainty;
-use crate::message::{Language, Message, Value, plain, plain_all, sentence};
+use crate::message::{Message, Value, plain, plain_all, sentence};
 use crate::serialised_with_text;
 
 /// What one method found.
@@ -66,24 +66,29 @@ impl Agreement {
 }
 
 impl Message for Agreement {
-    fn kind(&self) -> String {
+    fn kind(&self) -> &'static str {
         match self.agree {
             None => "nothing_to_compare",
             Some(true) => "agreement",
             Some(false) => "pair",
         }
-        .to_owned()
     }
 
-    fn template(&self, language: Language) -> &'static str {
-        match (self.disagreement(), self.agree, language) {
-            (Some(pair), _, language) => pair.template(language),
-            (None, None, Language::English) => "there is nothing to compare",
-            (None, None, Language::German) => "es ist nichts zu vergleichen",
-            (None, Some(_), Language::English) => {
+    fn english(&self) -> &'static str {
+        match (self.disagreement(), self.agree) {
+            (Some(pair), _) => pair.english(),
+            (None, None) => "there is nothing to compare",
+            (None, Some(_)) => {
                 "none of the {count} comparisons differs by more than its uncertainty allows"
             }
-            (None, Some(_), Language::German) => {
+        }
+    }
+
+    fn german(&self) -> &'static str {
+        match (self.disagreement(), self.agree) {
+            (Some(pair), _) => pair.german(),
+            (None, None) => "es ist nichts zu vergleichen",
+            (None, Some(_)) => {
                 "keiner der {count} Vergleiche weicht um mehr ab, als seine Unsicherheit erlaubt"
             }
         }

@@ -2,10 +2,23 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::message::{Language, Message, Value, kind_of};
+use crate::message::{Message, Value};
 
 /// A method of identification.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Hash,
+    Serialize,
+    Deserialize,
+    strum::IntoStaticStr,
+)]
+#[strum(serialize_all = "snake_case")]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
     /// Brackets of s2, s1 and grazing.
@@ -36,40 +49,36 @@ impl Method {
 
     /// Name in `identification.json`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Boundaries => "boundaries",
-            Self::Flights => "flights",
-            Self::FreeDecay => "free_decay",
-            Self::Impacts => "impacts",
-            Self::PublishedSpeeds => "published_speeds",
-            Self::Resonance => "resonance",
-            Self::Trajectories => "trajectories",
-        }
+        self.into()
     }
 }
 
 impl Message for Method {
-    fn kind(&self) -> String {
-        kind_of(self)
+    fn kind(&self) -> &'static str {
+        self.into()
     }
 
-    fn template(&self, language: Language) -> &'static str {
-        use Language::{English, German};
-        match (self, language) {
-            (Self::Boundaries, English) => "Boundaries",
-            (Self::Boundaries, German) => "Grenzen",
-            (Self::Flights, English) => "Multiple shooting",
-            (Self::Flights, German) => "Mehrfachschießen",
-            (Self::FreeDecay, English) => "Free decay",
-            (Self::FreeDecay, German) => "Ausschwingen",
-            (Self::Impacts, English) => "Speeds at impact",
-            (Self::Impacts, German) => "Einzelne Stöße",
-            (Self::PublishedSpeeds, English) => "Published speeds",
-            (Self::PublishedSpeeds, German) => "Veröffentlichte Geschwindigkeiten",
-            (Self::Resonance, English) => "Resonance curve",
-            (Self::Resonance, German) => "Resonanzkurve",
-            (Self::Trajectories, English) => "Trajectories",
-            (Self::Trajectories, German) => "Verläufe",
+    fn english(&self) -> &'static str {
+        match self {
+            Self::Boundaries => "Boundaries",
+            Self::Flights => "Multiple shooting",
+            Self::FreeDecay => "Free decay",
+            Self::Impacts => "Speeds at impact",
+            Self::PublishedSpeeds => "Published speeds",
+            Self::Resonance => "Resonance curve",
+            Self::Trajectories => "Trajectories",
+        }
+    }
+
+    fn german(&self) -> &'static str {
+        match self {
+            Self::Boundaries => "Grenzen",
+            Self::Flights => "Mehrfachschießen",
+            Self::FreeDecay => "Ausschwingen",
+            Self::Impacts => "Einzelne Stöße",
+            Self::PublishedSpeeds => "Veröffentlichte Geschwindigkeiten",
+            Self::Resonance => "Resonanzkurve",
+            Self::Trajectories => "Verläufe",
         }
     }
 
@@ -80,6 +89,6 @@ impl Message for Method {
 
 impl std::fmt::Display for Method {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.template(Language::English))
+        f.write_str(self.english())
     }
 }

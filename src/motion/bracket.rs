@@ -218,7 +218,7 @@ mod tests {
     use BoundaryKind::{Grazing, PeriodDoubling, SaddleNode};
 
     #[test]
-    fn valid_an_upward_sweep_brackets_grazing_doubling_and_saddle_node() {
+    fn an_upward_sweep_brackets_grazing_doubling_and_saddle_node() {
         let list = run(&[
             (11.0, Motion::Impactless),
             (11.1, periodic(1, 1)),
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_excluded_and_undetermined_records_are_passed_over() {
+    fn excluded_and_undetermined_records_are_passed_over() {
         let reason = String::new();
         let mut list = run(&[
             (11.0, periodic(1, 2)),
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_another_gap_drive_or_direction_begins_another_run() {
+    fn another_gap_drive_or_direction_begins_another_run() {
         let base = || run(&[(11.0, periodic(1, 1)), (11.1, Motion::Impactless)]);
         assert_eq!(found(&base()).len(), 1);
         let mut gap = base();

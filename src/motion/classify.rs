@@ -478,7 +478,7 @@ mod tests {
     const TURN: f64 = std::f64::consts::TAU;
 
     #[test]
-    fn valid_hand_made_sequences_of_impacts_alone() {
+    fn hand_made_sequences_of_impacts_alone() {
         let every = |step: f64, speed: f64| move |k: i32| (0.3 + step * f64::from(k), speed);
         assert_eq!(label(at((0..10).map(every(1.0, 1.0))), None), "1");
         assert_eq!(label(at((0..5).map(every(2.0, 1.0))), None), "1/2");
@@ -493,7 +493,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_dead_zone_after_most_impacts_marks_the_motion() {
+    fn a_dead_zone_after_most_impacts_marks_the_motion() {
         let mut impacts = at((0..10).map(|k| (0.3 + f64::from(k), 1.0)));
         for impact in &mut impacts[..4] {
             impact.dead_zone_s = 0.01;
@@ -543,7 +543,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_without_a_drive_or_with_too_few_periods_nothing_is_decided() {
+    fn without_a_drive_or_with_too_few_periods_nothing_is_decided() {
         let mut without = detection(at([(0.3, 1.0)]), None);
         without.drive = None;
         assert_eq!(of(&without).motion.label(), "undetermined");
@@ -564,7 +564,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_more_impacts_than_are_looked_for_are_not_believed() {
+    fn more_impacts_than_are_looked_for_are_undetermined() {
         let record = two_pulses_a_period();
         let detection = detect(&record, RigKind::Double, &DetectSettings::default());
         let looked_for = |most_impacts: u32| {

@@ -167,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_edges_do_not_turn_one_into_twelve_thirteenths() {
+    fn edges_do_not_turn_one_into_twelve_thirteenths() {
         // 12.6 periods of one impact each, at any start phase.
         for k in 0..20 {
             let shift = f64::from(k) / 20.0;
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_samples_beside_impacts_are_blocked() {
+    fn samples_beside_impacts_are_blocked() {
         // 4.5 ± 1 blocks samples 4 and 5, the first and the last impact reach over the edges.
         let blocked = blocked_samples(10, &[4.5, 0.2, 9.6], 1.0);
         let list: Vec<usize> = (0..10).filter(|i| blocked[*i]).collect();

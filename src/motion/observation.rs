@@ -299,7 +299,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_drive_amplitudes_are_relative_to_the_median_of_their_specimen() {
+    fn drive_amplitudes_are_relative_to_the_median_of_their_specimen() {
         let measured = |specimen: &str, amplitude: f64| {
             let mut o = Observation::of("r", 12.0, Motion::Impactless);
             o.setting.specimen = Some(specimen.to_owned());
@@ -325,7 +325,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_pulses_without_jumps_exclude_a_record_if_they_outnumber_the_impacts() {
+    fn pulses_without_jumps_exclude_a_record_if_they_outnumber_the_impacts() {
         let contact = [0.0; 10];
         let record = Record::of(2000.0, &[(Role::Contact, &contact)]);
         let impacts = [

@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_uneven_times_are_refused_by_name_and_equal_steps_give_the_rate() {
+    fn uneven_times_are_refused_by_name_and_equal_steps_give_the_rate() {
         let uneven = |record: &Record| {
             record
                 .flags

@@ -314,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_each_defect_of_samples_has_its_flag() {
+    fn each_defect_of_samples_has_its_flag() {
         let code = |of: &dyn Fn(usize) -> f64| {
             let flags = inspected(record(of), &[None, None]);
             flags.first().map(|f| f.code)
@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_few_clipped_samples_do_not_exclude_a_record() {
+    fn a_few_clipped_samples_do_not_exclude_a_record() {
         // One crest above a stated range of 0.999: 2 · arccos(0.999)/0.05 = 1.8 samples.
         let once = |i: usize| {
             if i < 60 {
@@ -345,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_samples_that_all_channels_hold_were_lost() {
+    fn samples_that_all_channels_hold_were_lost() {
         let mut held = record(sine);
         for channel in &mut held.channels {
             let last = channel.values[499];
@@ -361,7 +361,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_ends_without_values_are_cut_and_lengths_made_equal() {
+    fn ends_without_values_are_cut_and_lengths_made_equal() {
         let mut padded = record(|i| {
             if (3..990).contains(&i) {
                 sine(i)

@@ -253,7 +253,7 @@ mod tests {
     const W: f64 = 80.0;
 
     #[test]
-    fn valid_factors_between_units_are_named() {
+    fn factors_between_units_are_named() {
         for (ratio, named) in [
             (1000.0, "between m and mm"),
             (0.001, "between m and mm"),
@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_channels_that_belong_together_pass_and_others_are_told() {
+    fn channels_that_belong_together_pass_and_others_are_reported() {
         let dx = |t: f64| 1e-3 * (W * t).sin();
         let vx = |t: f64| 1e-3 * W * (W * t).cos();
         let dy = |t: f64| 1e-3 * (2.0 * W * t).sin();

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::message::{Language, Message, Value};
+use crate::message::{Message, Value};
 
 /// Defines [`FlagCode`] with the name of each code in files and tables, and its text in English and
 /// German.
@@ -31,14 +31,19 @@ macro_rules! flag_codes {
         }
 
         impl Message for FlagCode {
-            fn kind(&self) -> String {
-                self.name().to_owned()
+            fn kind(&self) -> &'static str {
+                self.name()
             }
 
-            fn template(&self, language: Language) -> &'static str {
-                match (self, language) {
-                    $((Self::$code, Language::English) => $english,)*
-                    $((Self::$code, Language::German) => $german,)*
+            fn english(&self) -> &'static str {
+                match self {
+                    $(Self::$code => $english,)*
+                }
+            }
+
+            fn german(&self) -> &'static str {
+                match self {
+                    $(Self::$code => $german,)*
                 }
             }
 
@@ -160,7 +165,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_a_code_is_stored_under_its_name() {
+    fn a_code_is_stored_under_its_name() {
         let code = FlagCode::JumpsPointTheWrongWay;
         let stored = serde_json::to_string(&code).unwrap();
         assert_eq!(stored, format!("\"{code}\""));

@@ -18,7 +18,20 @@ use labfiles::units::Dimension;
 pub use flag::{Flag, FlagCode};
 
 /// What a channel measures on the rig.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    strum::IntoStaticStr,
+)]
+#[strum(serialize_all = "snake_case")]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
     /// The harmonic drive (generator voltage or force).
@@ -60,18 +73,7 @@ impl Role {
 
     /// The role's name as campaign.toml spells it.
     pub fn name(self) -> &'static str {
-        match self {
-            Role::Drive => "drive",
-            Role::Contact => "contact",
-            Role::VelocityX => "velocity_x",
-            Role::VelocityY => "velocity_y",
-            Role::DisplacementX => "displacement_x",
-            Role::DisplacementY => "displacement_y",
-            Role::AccelerationX => "acceleration_x",
-            Role::AccelerationY => "acceleration_y",
-            Role::FrameX => "frame_x",
-            Role::FrameY => "frame_y",
-        }
+        self.into()
     }
 
     /// Whether a channel of this role watches the second mass.
@@ -127,7 +129,20 @@ pub struct Channel {
 }
 
 /// Direction in which the drive frequency was stepped when the record was taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    strum::IntoStaticStr,
+)]
+#[strum(serialize_all = "snake_case")]
 #[serde(rename_all = "snake_case")]
 pub enum Sweep {
     /// Frequency stepped upward.
@@ -141,11 +156,7 @@ pub enum Sweep {
 impl Sweep {
     /// The direction's name in tables.
     pub fn name(self) -> &'static str {
-        match self {
-            Sweep::Up => "up",
-            Sweep::Down => "down",
-            Sweep::Unknown => "unknown",
-        }
+        self.into()
     }
 }
 

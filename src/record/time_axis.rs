@@ -210,14 +210,14 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_uniform_axis_gives_its_rate() {
+    fn a_uniform_axis_gives_its_rate() {
         let axis = inspect(&uniform(2000, 5e-4));
         assert!(axis.flags.is_empty());
         assert!((axis.sample_rate_hz.unwrap() - 2000.0).abs() < 1e-6);
     }
 
     #[test]
-    fn valid_rounded_stamps_are_still_uniform() {
+    fn rounded_stamps_are_still_uniform() {
         for digits in [1e3, 1e4, 1e6] {
             let t: Vec<f64> = uniform(2000, 0.000_605_5)
                 .iter()
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_gaps_repetitions_and_backward_time_are_told() {
+    fn gaps_repetitions_and_backward_time_are_reported() {
         let mut t = uniform(1000, 1e-3);
         t.drain(300..303);
         let axis = inspect(&t);
@@ -248,13 +248,13 @@ mod tests {
     }
 
     #[test]
-    fn valid_an_irregular_axis_is_told() {
+    fn an_irregular_axis_is_reported() {
         let t: Vec<f64> = uniform(1000, 1e-3).iter().map(|t| t * t).collect();
         assert_eq!(codes(&inspect(&t)), ["time_not_uniform"]);
     }
 
     #[test]
-    fn valid_a_clock_that_drifts_is_told() {
+    fn a_clock_that_drifts_is_reported() {
         let drift = |by: f64| -> Vec<f64> {
             let t = uniform(2000, 1e-3);
             t.iter().map(|t| t * (1.0 + by * t)).collect()

@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_estimates_show_two_digits_of_their_uncertainty() {
+    fn estimates_show_two_digits_of_their_uncertainty() {
         let locale = Locale::default();
         let r = estimate(0.901_34, 0.002_41);
         assert_eq!(short(&PARAMETERS[0], Some(&r), locale), "0.9013 ± 0.0024");

@@ -369,7 +369,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_a_rig_is_written_and_read_alike() {
+    fn a_rig_is_written_and_read_alike() {
         for text in ["exact", "realistic", "contact=0.3,friction=0.01"] {
             assert_eq!(text.parse::<RigSpec>().unwrap().to_string(), text);
         }
@@ -379,7 +379,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_bad_rigs_are_refused_with_the_list_of_effects() {
+    fn bad_rigs_are_refused_with_the_list_of_effects() {
         for text in [
             "",
             "wobble",

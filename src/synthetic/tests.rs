@@ -71,7 +71,7 @@ fn valid_contacts_of_finite_duration_keep_their_restitution() {
 }
 
 #[test]
-fn valid_instantaneous_contacts_are_instants() {
+fn instantaneous_contacts_are_instants() {
     let impacts = impacts(&Effects::default());
     assert!(impacts.iter().all(|i| i.contact_duration_s.is_none()));
     assert!((restitution(&impacts) / 0.7 - 1.0).abs() < 3e-3);

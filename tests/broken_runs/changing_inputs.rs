@@ -28,7 +28,7 @@ fn append(path: &Path, text: &str) {
 }
 
 #[test]
-fn valid_a_file_that_vanishes_leaves_out_its_record_alone() {
+fn a_file_that_vanishes_leaves_out_its_record_alone() {
     let observed = observed_after(|path| fs::remove_file(path).expect("it is there"));
     let [first, second, third] = &observed.observations[..] else {
         panic!("three records")
@@ -40,7 +40,7 @@ fn valid_a_file_that_vanishes_leaves_out_its_record_alone() {
 }
 
 #[test]
-fn valid_a_file_that_grows_is_read_or_left_out() {
+fn a_file_that_grows_is_read_or_left_out() {
     let observed = observed_after(|path| append(path, "1.000000,0.1,0.02,0.1,0.1\n"));
     assert!(!observed.observations[1].excluded());
     // a row that is being written: half of it is there
@@ -78,7 +78,7 @@ fn read(source: &dyn Source) -> Result<Vec<Samples>, String> {
 }
 
 #[test]
-fn valid_open_files_that_change_give_their_samples_or_an_error() {
+fn open_files_that_change_give_their_samples_or_an_error() {
     let lab = Lab::new();
     for name in in_formats(&lab) {
         let path = lab.path(&name);

@@ -31,7 +31,7 @@ fn assert_yesterday_is_left(lab: &Lab, said: &str) {
 
 /// Writes fail beyond a limit of the shell, as on a full disk.
 #[test]
-fn valid_a_failed_write_is_told_and_what_was_there_stays() {
+fn a_failed_write_is_reported_and_the_old_output_stays() {
     let lab = campaign(8);
     fs::create_dir(lab.path("out")).expect("a folder");
     lab.write("out/report.pdf", "the report of yesterday");
@@ -65,7 +65,7 @@ impl Drop for SmallDisk {
 }
 
 #[test]
-fn valid_a_full_disk_is_told_and_what_was_there_stays() {
+fn a_full_disk_is_reported_and_the_old_output_stays() {
     let lab = campaign(8);
     fs::create_dir(lab.path("out")).expect("a folder");
     let Some(_disk) = SmallDisk::at(&lab.path("out"), 64) else {
@@ -92,7 +92,7 @@ fn valid_a_full_disk_is_told_and_what_was_there_stays() {
 }
 
 #[test]
-fn valid_a_standard_output_that_is_full_is_told() {
+fn a_full_standard_output_is_reported() {
     if !Path::new("/dev/full").exists() {
         println!("skipped: there is no /dev/full");
         return;
@@ -114,7 +114,7 @@ fn valid_a_standard_output_that_is_full_is_told() {
 }
 
 #[test]
-fn valid_a_folder_that_cannot_be_written_into_is_told() {
+fn a_folder_that_cannot_be_written_into_is_reported() {
     let lab = campaign(8);
     let (code, said) = shell(&lab, "impactid -q run campaign.toml --out /proc/results");
     assert_eq!(code, Some(2), "{said}");

@@ -176,7 +176,7 @@ fn kill_again_and_again(victim: &Victim, seed: u64, kills: u64) -> Met {
 }
 
 #[test]
-fn valid_a_killed_run_leaves_nothing_half_written_and_resumes_to_the_same_bytes() {
+fn a_killed_run_leaves_nothing_half_written_and_resumes_to_the_same_bytes() {
     let all = kills();
     let victims = [
         (resonance_curve(), "csv", 3, all - all / 4),

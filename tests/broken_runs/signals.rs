@@ -16,7 +16,7 @@ fn wait_for_lock(lab: &Lab) {
 }
 
 #[test]
-fn valid_a_second_run_into_the_same_folder_is_refused() {
+fn a_second_run_into_the_same_folder_is_refused() {
     let lab = campaign(66);
     let mut first = program(&lab, RUN).spawn().expect("the program starts");
     wait_for_lock(&lab);
@@ -46,7 +46,7 @@ fn spoken(mut run: Child) -> (String, Option<i32>) {
 
 #[cfg(unix)]
 #[test]
-fn valid_ctrl_c_says_so_ends_with_130_and_loses_nothing() {
+fn ctrl_c_is_reported_ends_with_130_and_loses_nothing() {
     let lab = campaign(66);
     fs::create_dir(lab.path("out")).expect("a folder");
     lab.write("out/report.pdf", "the report of yesterday");
@@ -76,7 +76,7 @@ fn valid_ctrl_c_says_so_ends_with_130_and_loses_nothing() {
 
 #[cfg(unix)]
 #[test]
-fn valid_ctrl_c_leaves_no_file_of_a_folder_that_is_being_written() {
+fn ctrl_c_leaves_no_file_of_a_folder_that_is_being_written() {
     let lab = campaign(66);
     fs::create_dir(lab.path("tables")).expect("a folder");
     lab.write("tables/other.csv", "of another program");

@@ -28,7 +28,7 @@ fn same_on_any_number_of_threads(lab: &crate::support::Lab, command: &[&str]) {
 }
 
 #[test]
-fn valid_a_run_with_every_format() {
+fn a_run_with_every_format() {
     let lab = campaign(12);
     let formats = "pdf,html,svg,png";
     let run = ["run", "campaign.toml", "--out", "out", "--format", formats];
@@ -36,14 +36,14 @@ fn valid_a_run_with_every_format() {
 }
 
 #[test]
-fn valid_a_run_that_keeps_observations_on_the_way() {
+fn a_run_that_keeps_observations_on_the_way() {
     let lab = campaign(66);
     let run = ["run", "campaign.toml", "--out", "out", "--format", "csv"];
     same_on_any_number_of_threads(&lab, &run);
 }
 
 #[test]
-fn valid_stages_and_conversions() {
+fn stages_and_conversions() {
     let lab = campaign(8);
     for command in [
         &["ingest", "campaign.toml", "--out", "out"][..],
@@ -108,7 +108,7 @@ fn same_stages(lab: &crate::support::Lab) {
 }
 
 #[test]
-fn valid_simulated_campaigns_and_theory() {
+fn simulated_campaigns_and_theory() {
     let lab = crate::support::Lab::new();
     let simulate = ["simulate", "campaign", "--records", "30", "--out", "out"];
     same_on_any_number_of_threads(&lab, &simulate);
@@ -137,7 +137,7 @@ fn valid_simulated_campaigns_and_theory() {
 }
 
 #[test]
-fn valid_sweeps_basins_and_replayed_studies() {
+fn sweeps_basins_and_replayed_studies() {
     let lab = crate::support::Lab::new();
     let short = "--settle-periods 40 --watch-periods 15";
     for command in [

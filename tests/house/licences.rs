@@ -73,7 +73,7 @@ fn host() -> String {
 }
 
 #[test]
-fn valid_every_library_has_a_licence_that_is_allowed() {
+fn every_library_has_a_licence_that_is_allowed() {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
     let told = Command::new(cargo)
         .args(["metadata", "--format-version", "1", "--locked", "--offline"])

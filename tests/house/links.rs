@@ -64,7 +64,7 @@ fn fault(document: &Path, target: &str) -> Option<String> {
 }
 
 #[test]
-fn valid_every_link_of_the_documents_leads_somewhere() {
+fn every_link_of_the_documents_leads_somewhere() {
     let mut seen = 0;
     for document in documents() {
         let text = fs::read_to_string(&document).expect("a document");
@@ -78,7 +78,7 @@ fn valid_every_link_of_the_documents_leads_somewhere() {
 }
 
 #[test]
-fn valid_a_broken_link_is_seen() {
+fn a_broken_link_is_seen() {
     let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
     assert!(fault(&readme, "docs/none.md").is_some());
     assert!(fault(&readme, "docs/theory.md#no-such-heading").is_some());
@@ -126,7 +126,7 @@ fn is_in_source(path: &str) -> bool {
 }
 
 #[test]
-fn valid_modules_that_the_documents_name_are_there() {
+fn modules_that_the_documents_name_exist() {
     let mut seen = 0;
     for document in documents() {
         let text = fs::read_to_string(&document).expect("a document");

@@ -1,4 +1,4 @@
-//! What the house promises: a room never imports from a room to its right.
+//! The rules of the layout: a module never imports from a module to its right.
 
 mod licences;
 mod links;
@@ -6,8 +6,8 @@ mod links;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The rooms from left to right.
-const ROOMS: [&str; 13] = [
+/// The modules from left to right.
+const MODULES: [&str; 13] = [
     "message",
     "signal",
     "record",
@@ -54,13 +54,13 @@ fn all_sources() -> Vec<(String, String)> {
         .collect()
 }
 
-/// The room of a file: the first part of its path; `None` for lib.rs and main.rs.
-fn room(name: &str) -> Option<usize> {
+/// The module of a file: the first part of its path; `None` for lib.rs and main.rs.
+fn module(name: &str) -> Option<usize> {
     let first = name.split(['/', '.']).next()?;
-    ROOMS.iter().position(|r| *r == first)
+    MODULES.iter().position(|r| *r == first)
 }
 
-/// Rooms that a source names after `crate::`, tests in it included.
+/// Modules that a source names after `crate::`, tests in it included.
 fn imports(text: &str) -> Vec<&str> {
     text.lines()
         .filter(|line| !line.trim_start().starts_with("//"))
@@ -77,14 +77,16 @@ fn imports(text: &str) -> Vec<&str> {
 }
 
 #[test]
-fn valid_no_room_imports_from_its_right() {
+fn no_module_imports_from_its_right() {
     let mut faults = Vec::new();
     for (name, text) in all_sources() {
-        let Some(own) = room(&name) else { continue };
+        let Some(own) = module(&name) else { continue };
         for import in imports(&text) {
-            let other = ROOMS.iter().position(|r| *r == import);
+            let other = MODULES.iter().position(|r| *r == import);
             if other.is_some_and(|o| o > own) {
-                faults.push(format!("{name} imports from {import}, a room to its right"));
+                faults.push(format!(
+                    "{name} imports from {import}, a module to its right"
+                ));
             }
         }
     }
@@ -119,18 +121,18 @@ fn the_report_computes_nothing() {
 }
 
 #[test]
-fn valid_every_room_is_known_and_in_architecture_md() {
+fn the_modules_are_those_of_architecture_md_in_its_order() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let page = fs::read_to_string(root.join("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
-    for room in ROOMS {
-        assert!(
-            page.contains(&format!("`{room}`")),
-            "ARCHITECTURE.md does not name {room}"
-        );
-    }
+    let rows = page.lines().filter_map(|line| line.strip_prefix("| `"));
+    let listed: Vec<&str> = rows
+        .filter_map(|row| row.split('`').next())
+        .filter(|name| !name.contains('/'))
+        .collect();
+    assert_eq!(listed, MODULES, "the table of ARCHITECTURE.md");
     for (name, _) in all_sources() {
-        let known = room(&name).is_some() || ["lib.rs", "main.rs"].contains(&name.as_str());
-        assert!(known, "{name} lies in no room");
+        let known = module(&name).is_some() || ["lib.rs", "main.rs"].contains(&name.as_str());
+        assert!(known, "{name} is in no module");
     }
 }
 
@@ -147,7 +149,7 @@ fn for_tests_alone(name: &str, all: &[(String, String)]) -> bool {
 }
 
 #[test]
-fn valid_only_the_command_line_prints_or_exits() {
+fn only_the_command_line_prints_or_exits() {
     let all = all_sources();
     let printing = [
         "println!",
@@ -212,7 +214,7 @@ fn sockets_are_opened_on_loopback_alone_and_only_by_the_explorer() {
 }
 
 #[test]
-fn valid_a_library_user_of_a_foreign_crate_stays_in_its_room() {
+fn a_foreign_crate_is_used_in_its_module_alone() {
     let homes = [
         ("rustfft", &["signal"][..]),
         ("realfft", &["signal"]),
@@ -226,14 +228,14 @@ fn valid_a_library_user_of_a_foreign_crate_stays_in_its_room() {
         ("futures_util", &["explore"]),
     ];
     for (name, text) in all_sources() {
-        for (foreign, rooms) in homes {
+        for (foreign, modules) in homes {
             let uses = text
                 .lines()
                 .any(|l| l.trim_start().starts_with(&format!("use {foreign}::")));
-            let home = rooms.iter().any(|r| name.starts_with(r));
+            let home = modules.iter().any(|r| name.starts_with(r));
             assert!(
                 !uses || home,
-                "src/{name} uses {foreign}, which belongs to {rooms:?}"
+                "src/{name} uses {foreign}, which belongs to {modules:?}"
             );
         }
     }
@@ -241,7 +243,7 @@ fn valid_a_library_user_of_a_foreign_crate_stays_in_its_room() {
 
 /// What is built is used: a library in Cargo.toml that no source names only costs time.
 #[test]
-fn valid_every_dependency_is_used() {
+fn every_dependency_is_used() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let packages = [
         (".", &["src", "tests", "benches"][..]),

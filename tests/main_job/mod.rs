@@ -74,7 +74,7 @@ fn value(of: &Value, name: &str) -> f64 {
 }
 
 #[test]
-fn valid_parameters_of_synthetic_campaigns_come_back() {
+fn parameters_of_synthetic_campaigns_are_recovered() {
     let truths = [
         (41, ["0.62", "0.035", "14.3"]),
         (42, ["0.88", "0.075", "9.4"]),
@@ -103,7 +103,7 @@ fn valid_parameters_of_synthetic_campaigns_come_back() {
 }
 
 #[test]
-fn valid_a_corner_stated_wrongly_is_named_and_r_comes_out_right() {
+fn a_corner_stated_wrongly_is_named_and_r_is_right() {
     let truth = [
         ("--restitution", "0.7"),
         ("--damping-ratio", "0.05"),
@@ -133,7 +133,7 @@ fn valid_a_corner_stated_wrongly_is_named_and_r_comes_out_right() {
 }
 
 #[test]
-fn valid_stages_alone_give_what_run_gives() {
+fn stages_alone_give_what_run_gives() {
     let truth = [
         ("--restitution", "0.8"),
         ("--damping-ratio", "0.06"),

@@ -119,7 +119,7 @@ fn taken(id: u32) -> Option<(u64, f64)> {
 /// Bombs end in an error within a second of a processor's time and under 256 MiB.
 #[cfg(target_os = "linux")]
 #[test]
-fn valid_bombs_end_soon_and_in_little_memory() {
+fn bombs_end_soon_and_in_little_memory() {
     for case in in_records::bombs() {
         let lab = Lab::new();
         (case.spoil)(&lab);

@@ -141,7 +141,7 @@ fn a_killed_sweep_resumes_to_the_same_bytes() {
 }
 
 #[test]
-fn valid_single_boundary_points_are_json() {
+fn single_boundary_points_are_json() {
     let lab = Lab::new();
     for (words, rho) in [
         ("s2 --eta 1.3", 4.151_754),

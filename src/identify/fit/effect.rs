@@ -38,7 +38,20 @@ pub enum Effect {
 }
 
 /// Effects that a campaign may restrict the fit to, by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    strum::IntoStaticStr,
+)]
+#[strum(serialize_all = "snake_case")]
 #[serde(rename_all = "snake_case")]
 pub enum EffectKind {
     /// Second and third harmonic of the drive
@@ -68,14 +81,7 @@ impl EffectKind {
 
     /// Name in `campaign.toml`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Harmonics => "harmonics",
-            Self::ForceFrequency => "force_frequency",
-            Self::Hardening => "hardening",
-            Self::Friction => "friction",
-            Self::Drift => "drift",
-            Self::ContactDuration => "contact_duration",
-        }
+        self.into()
     }
 
     /// The kind of a name.

@@ -360,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_the_observer_records_every_iteration_with_falling_cost() {
+    fn the_observer_records_every_iteration_with_falling_cost() {
         let report = minimise(&VALLEY, [-1.2, 1.0], &LIMITS).unwrap().report;
         assert_eq!(report.trace.len() as u64, report.iterations);
         assert!(report.cost_evaluations >= report.iterations);
@@ -370,7 +370,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_the_reason_of_the_end_is_reported() {
+    fn the_reason_of_the_end_is_reported() {
         let few = Limits {
             iterations: 2,
             ..LIMITS

@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn valid_a_report_is_stored_with_its_reason() {
+    fn a_report_is_stored_with_its_reason() {
         let report = FitReport {
             iterations: 3,
             cost_evaluations: 5,

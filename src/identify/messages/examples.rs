@@ -275,7 +275,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::message::plain;
+    use crate::message::{Language, plain};
 
     /// The names in braces of a template.
     fn names(template: &str) -> BTreeSet<&str> {

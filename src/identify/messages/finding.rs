@@ -6,13 +6,14 @@ use super::{Note, PairAgreement, Reason, Remark, Sentence};
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::method::Method;
-use crate::message::{Language, Message, Value, kind_of};
+use crate::message::{Message, Value};
 use crate::messages;
 use crate::record::Role;
 
 /// Something that the data give away. Deviations are relative (0.01 is 1 %); a z-score is a deviation
 /// over its standard error.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
 pub enum Finding {
     /// A gap is not as stated.
@@ -117,8 +118,8 @@ pub enum Finding {
 messages!(Finding);
 
 impl Message for Finding {
-    fn kind(&self) -> String {
-        kind_of(self)
+    fn kind(&self) -> &'static str {
+        self.into()
     }
 
     fn key(&self) -> String {
@@ -129,14 +130,87 @@ impl Message for Finding {
                 let way = if *strength > 0.0 { "above" } else { "below" };
                 format!("{}_{}_zero", effect.name(), way)
             }
-            _ => self.kind(),
+            _ => self.kind().to_owned(),
         }
     }
 
-    fn template(&self, language: Language) -> &'static str {
-        match language {
-            Language::English => self.english(),
-            Language::German => self.german(),
+    fn english(&self) -> &'static str {
+        match self {
+            Self::WrongClearance { .. } => {
+                "the gap stated with a clearance of {stated_mm} mm moves like one of {fitting_mm} \
+                 mm: measure it again and correct the run table; its records stay out of the fit"
+            }
+            Self::WrongGain { .. } => {
+                "{channel} reads {share} too {direction}: correct scale in [channels.{channel}], or \
+                 state a larger gain_uncertainty in [rig]"
+            }
+            Self::WrongCorner { .. } => {
+                "the corner of the high-pass of {channel} is {share} too {direction} for the stated \
+                 one: correct high_pass in [channels.{channel}], or state a larger \
+                 corner_uncertainty in [rig]"
+            }
+            Self::SwappedChannels { .. } => {
+                "all data fit far better with the velocities of both masses swapped: swap \
+                 [channels.velocity_x] and [channels.velocity_y], or the displacements"
+            }
+            Self::BeyondModel {
+                effect, strength, ..
+            } => beyond_english(*effect, *strength > 0.0),
+            Self::Misfit { .. } => "{method}: {remark}",
+            Self::Parameter { .. } => "{parameter}: {note}",
+            Self::Disagreement { .. } => "the methods do not agree on {pair}",
+            Self::Specimen { .. } => "{specimen}: {verdict}",
+            Self::MisfiledRecord { .. } => "{record}: {reason}",
+            Self::PrintedDampingFits { .. } => "The printed $β$ = {value} fits the speeds.",
+            Self::PrintedDampingDoesNotFit { .. } => {
+                "The printed $β$ = {value} does not fit: a speed is off by {share}."
+            }
+            Self::PrintedDampingWithoutMotion { .. } => {
+                "The printed $β$ = {value} does not fit: the motion for {settings} does not exist \
+                 with it."
+            }
+        }
+    }
+
+    fn german(&self) -> &'static str {
+        match self {
+            Self::WrongClearance { .. } => {
+                "der mit einem Spiel von {stated_mm} mm angegebene Abstand bewegt sich wie einer \
+                 von {fitting_mm} mm: nachmessen und die Versuchstabelle richtigstellen; seine \
+                 Aufzeichnungen bleiben außerhalb der Anpassung"
+            }
+            Self::WrongGain { .. } => {
+                "{channel} zeigt {share} zu {direction}: scale in [channels.{channel}] \
+                 richtigstellen, oder eine größere gain_uncertainty in [rig] angeben"
+            }
+            Self::WrongCorner { .. } => {
+                "die Grenzfrequenz des Hochpasses von {channel} liegt {share} zu {direction} gegen \
+                 die angegebene: high_pass in [channels.{channel}] richtigstellen, oder eine \
+                 größere corner_uncertainty in [rig] angeben"
+            }
+            Self::SwappedChannels { .. } => {
+                "alle Daten passen weit besser, wenn die Geschwindigkeiten beider Massen vertauscht \
+                 sind: [channels.velocity_x] und [channels.velocity_y] tauschen, oder die Wege"
+            }
+            Self::BeyondModel {
+                effect, strength, ..
+            } => beyond_german(*effect, *strength > 0.0),
+            Self::Misfit { .. } => "{method}: {remark}",
+            Self::Parameter { .. } => "{parameter}: {note}",
+            Self::Disagreement { .. } => "die Verfahren stimmen nicht überein bei {pair}",
+            Self::Specimen { .. } => "{specimen}: {verdict}",
+            Self::MisfiledRecord { .. } => "{record}: {reason}",
+            Self::PrintedDampingFits { .. } => {
+                "Das gedruckte $β$ = {value} passt zu den Geschwindigkeiten."
+            }
+            Self::PrintedDampingDoesNotFit { .. } => {
+                "Das gedruckte $β$ = {value} passt nicht: Eine Geschwindigkeit liegt um {share} \
+                 daneben."
+            }
+            Self::PrintedDampingWithoutMotion { .. } => {
+                "Das gedruckte $β$ = {value} passt nicht: Die Bewegung bei {settings} gibt es damit \
+                 nicht."
+            }
         }
     }
 
@@ -222,7 +296,8 @@ fn sentences(verdict: &[Sentence]) -> Value<'_> {
 }
 
 /// Whether something is too high or too low.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 enum Direction {
     High,
     Low,
@@ -236,108 +311,26 @@ fn direction(deviation: f64) -> Value<'static> {
 }
 
 impl Message for Direction {
-    fn kind(&self) -> String {
+    fn kind(&self) -> &'static str {
+        self.into()
+    }
+
+    fn english(&self) -> &'static str {
         match self {
             Self::High => "high",
             Self::Low => "low",
-        }
-        .to_owned()
-    }
-
-    fn template(&self, language: Language) -> &'static str {
-        use Language::{English, German};
-        match (self, language) {
-            (Self::High, English) => "high",
-            (Self::High, German) => "hoch",
-            (Self::Low, English) => "low",
-            (Self::Low, German) => "tief",
-        }
-    }
-
-    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        Vec::new()
-    }
-}
-
-impl Finding {
-    fn english(&self) -> &'static str {
-        match self {
-            Self::WrongClearance { .. } => {
-                "the gap stated with a clearance of {stated_mm} mm moves like one of {fitting_mm} \
-                 mm: measure it again and correct the run table; its records stay out of the fit"
-            }
-            Self::WrongGain { .. } => {
-                "{channel} reads {share} too {direction}: correct scale in [channels.{channel}], or \
-                 state a larger gain_uncertainty in [rig]"
-            }
-            Self::WrongCorner { .. } => {
-                "the corner of the high-pass of {channel} is {share} too {direction} for the stated \
-                 one: correct high_pass in [channels.{channel}], or state a larger \
-                 corner_uncertainty in [rig]"
-            }
-            Self::SwappedChannels { .. } => {
-                "all data fit far better with the velocities of both masses swapped: swap \
-                 [channels.velocity_x] and [channels.velocity_y], or the displacements"
-            }
-            Self::BeyondModel {
-                effect, strength, ..
-            } => beyond_english(*effect, *strength > 0.0),
-            Self::Misfit { .. } => "{method}: {remark}",
-            Self::Parameter { .. } => "{parameter}: {note}",
-            Self::Disagreement { .. } => "the methods do not agree on {pair}",
-            Self::Specimen { .. } => "{specimen}: {verdict}",
-            Self::MisfiledRecord { .. } => "{record}: {reason}",
-            Self::PrintedDampingFits { .. } => "The printed $β$ = {value} fits the speeds.",
-            Self::PrintedDampingDoesNotFit { .. } => {
-                "The printed $β$ = {value} does not fit: a speed is off by {share}."
-            }
-            Self::PrintedDampingWithoutMotion { .. } => {
-                "The printed $β$ = {value} does not fit: the motion for {settings} does not exist \
-                 with it."
-            }
         }
     }
 
     fn german(&self) -> &'static str {
         match self {
-            Self::WrongClearance { .. } => {
-                "der mit einem Spiel von {stated_mm} mm angegebene Abstand bewegt sich wie einer \
-                 von {fitting_mm} mm: nachmessen und die Versuchstabelle richtigstellen; seine \
-                 Aufzeichnungen bleiben außerhalb der Anpassung"
-            }
-            Self::WrongGain { .. } => {
-                "{channel} zeigt {share} zu {direction}: scale in [channels.{channel}] \
-                 richtigstellen, oder eine größere gain_uncertainty in [rig] angeben"
-            }
-            Self::WrongCorner { .. } => {
-                "die Grenzfrequenz des Hochpasses von {channel} liegt {share} zu {direction} gegen \
-                 die angegebene: high_pass in [channels.{channel}] richtigstellen, oder eine \
-                 größere corner_uncertainty in [rig] angeben"
-            }
-            Self::SwappedChannels { .. } => {
-                "alle Daten passen weit besser, wenn die Geschwindigkeiten beider Massen vertauscht \
-                 sind: [channels.velocity_x] und [channels.velocity_y] tauschen, oder die Wege"
-            }
-            Self::BeyondModel {
-                effect, strength, ..
-            } => beyond_german(*effect, *strength > 0.0),
-            Self::Misfit { .. } => "{method}: {remark}",
-            Self::Parameter { .. } => "{parameter}: {note}",
-            Self::Disagreement { .. } => "die Verfahren stimmen nicht überein bei {pair}",
-            Self::Specimen { .. } => "{specimen}: {verdict}",
-            Self::MisfiledRecord { .. } => "{record}: {reason}",
-            Self::PrintedDampingFits { .. } => {
-                "Das gedruckte $β$ = {value} passt zu den Geschwindigkeiten."
-            }
-            Self::PrintedDampingDoesNotFit { .. } => {
-                "Das gedruckte $β$ = {value} passt nicht: Eine Geschwindigkeit liegt um {share} \
-                 daneben."
-            }
-            Self::PrintedDampingWithoutMotion { .. } => {
-                "Das gedruckte $β$ = {value} passt nicht: Die Bewegung bei {settings} gibt es damit \
-                 nicht."
-            }
+            Self::High => "hoch",
+            Self::Low => "tief",
         }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        Vec::new()
     }
 }
 
@@ -505,15 +498,16 @@ pub struct PublishedSetting {
 }
 
 impl Message for PublishedSetting {
-    fn kind(&self) -> String {
-        "published_setting".to_owned()
+    fn kind(&self) -> &'static str {
+        "published_setting"
     }
 
-    fn template(&self, language: Language) -> &'static str {
-        match language {
-            Language::English => "$R$ = {restitution} at $η$ = {frequency_ratio}",
-            Language::German => "$R$ = {restitution} und $η$ = {frequency_ratio}",
-        }
+    fn english(&self) -> &'static str {
+        "$R$ = {restitution} at $η$ = {frequency_ratio}"
+    }
+
+    fn german(&self) -> &'static str {
+        "$R$ = {restitution} und $η$ = {frequency_ratio}"
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {

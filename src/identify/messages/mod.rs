@@ -18,14 +18,14 @@ pub use remark::{Remark, SpeedPoint};
 pub use sentence::{Sentence, StatedValue};
 
 use crate::identify::fit::parameters::Coordinate;
-use crate::message::{Language, Message, Value, kind_of};
+use crate::message::{Message, Value};
 
 impl Message for Coordinate {
-    fn kind(&self) -> String {
-        kind_of(self)
+    fn kind(&self) -> &'static str {
+        self.name()
     }
 
-    fn template(&self, _: Language) -> &'static str {
+    fn english(&self) -> &'static str {
         match self {
             Self::Restitution => "$R$",
             Self::Frequency => "$f_0$",
@@ -33,6 +33,10 @@ impl Message for Coordinate {
             Self::Deflection => "$x_st$",
             other => other.name(),
         }
+    }
+
+    fn german(&self) -> &'static str {
+        self.english()
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {

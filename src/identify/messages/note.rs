@@ -4,11 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::fit::FitError;
 use crate::identify::fit::parameters::Coordinate;
-use crate::message::{Language, Message, Value, kind_of};
+use crate::message::{Message, Value};
 use crate::messages;
 
 /// Why a parameter is weak or not identifiable, or why a method has no result.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
 pub enum Note {
     /// The data leave the parameter open.
@@ -72,54 +73,54 @@ impl From<&FitError> for Note {
 messages!(Note);
 
 impl Message for Note {
-    fn kind(&self) -> String {
-        kind_of(self)
+    fn kind(&self) -> &'static str {
+        self.into()
     }
 
-    fn template(&self, language: Language) -> &'static str {
-        use Language::{English, German};
-        match (self, language) {
-            (Self::Open { .. }, English) => "the data leave {parameter} open by ± {width}",
-            (Self::Open { .. }, German) => "die Daten lassen {parameter} um ± {width} offen",
-            (Self::NotDetermined { .. }, English) => "the data do not determine {parameter}",
-            (Self::NotDetermined { .. }, German) => "die Daten bestimmen {parameter} nicht",
-            (Self::LeansOn { .. }, English) => "depends on {parameter} (correlation {correlation})",
-            (Self::LeansOn { .. }, German) => {
-                "hängt von {parameter} ab (Korrelation {correlation})"
-            }
-            (Self::MethodsDisagree, English) => {
+    fn english(&self) -> &'static str {
+        match self {
+            Self::Open { .. } => "the data leave {parameter} open by ± {width}",
+            Self::NotDetermined { .. } => "the data do not determine {parameter}",
+            Self::LeansOn { .. } => "depends on {parameter} (correlation {correlation})",
+            Self::MethodsDisagree => {
                 "the methods do not agree on it: the interval is widened by their disagreement"
             }
-            (Self::MethodsDisagree, German) => {
+            Self::NotOneNumber => "$R$ is not one number here: see the remark on its change",
+            Self::SeveralSpecimens => {
+                "the campaign has several specimens; each has its own parameters"
+            }
+            Self::NoPublishedMotion => "no damping ratio gives all of these motions",
+            Self::NoStart { .. } => {
+                "the model has no such motion at the starting values for {count} observations"
+            }
+            Self::NothingToFit => "there are no observations to fit",
+            Self::SolverFailed { .. } => "the solver failed: {report}",
+            Self::NotSeparable => "the data do not separate the parameters",
+        }
+    }
+
+    fn german(&self) -> &'static str {
+        match self {
+            Self::Open { .. } => "die Daten lassen {parameter} um ± {width} offen",
+            Self::NotDetermined { .. } => "die Daten bestimmen {parameter} nicht",
+            Self::LeansOn { .. } => "hängt von {parameter} ab (Korrelation {correlation})",
+            Self::MethodsDisagree => {
                 "die Verfahren stimmen darin nicht überein: das Intervall ist um ihren Unterschied \
                  verbreitert"
             }
-            (Self::NotOneNumber, English) => {
-                "$R$ is not one number here: see the remark on its change"
-            }
-            (Self::NotOneNumber, German) => {
+            Self::NotOneNumber => {
                 "$R$ ist hier nicht eine Zahl: siehe die Anmerkung zu seiner Änderung"
             }
-            (Self::SeveralSpecimens, English) => {
-                "the campaign has several specimens; each has its own parameters"
-            }
-            (Self::SeveralSpecimens, German) => {
+            Self::SeveralSpecimens => {
                 "die Messreihe hat mehrere Prüflinge; jeder hat seine eigenen Parameter"
             }
-            (Self::NoPublishedMotion, English) => "no damping ratio gives all of these motions",
-            (Self::NoPublishedMotion, German) => "kein Dämpfungsgrad ergibt alle diese Bewegungen",
-            (Self::NoStart { .. }, English) => {
-                "the model has no such motion at the starting values for {count} observations"
-            }
-            (Self::NoStart { .. }, German) => {
+            Self::NoPublishedMotion => "kein Dämpfungsgrad ergibt alle diese Bewegungen",
+            Self::NoStart { .. } => {
                 "das Modell hat bei den Startwerten für {count} Beobachtungen keine solche Bewegung"
             }
-            (Self::NothingToFit, English) => "there are no observations to fit",
-            (Self::NothingToFit, German) => "es gibt keine Beobachtungen für eine Anpassung",
-            (Self::SolverFailed { .. }, English) => "the solver failed: {report}",
-            (Self::SolverFailed { .. }, German) => "der Löser versagte: {report}",
-            (Self::NotSeparable, English) => "the data do not separate the parameters",
-            (Self::NotSeparable, German) => "die Daten trennen die Parameter nicht",
+            Self::NothingToFit => "es gibt keine Beobachtungen für eine Anpassung",
+            Self::SolverFailed { .. } => "der Löser versagte: {report}",
+            Self::NotSeparable => "die Daten trennen die Parameter nicht",
         }
     }
 

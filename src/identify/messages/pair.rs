@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::method::Method;
-use crate::message::{Language, Message, Value};
+use crate::message::{Message, Value};
 
 /// The estimates of a parameter by two methods, compared; as a message, how far they are apart.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -22,22 +22,19 @@ pub struct PairAgreement {
 }
 
 impl Message for PairAgreement {
-    fn kind(&self) -> String {
-        "pair".to_owned()
+    fn kind(&self) -> &'static str {
+        "pair"
     }
 
-    fn template(&self, language: Language) -> &'static str {
-        match language {
-            Language::English => {
-                "{parameter}: {value} ({first}) and {other} ({second}) are {distance} standard \
+    fn english(&self) -> &'static str {
+        "{parameter}: {value} ({first}) and {other} ({second}) are {distance} standard \
                  errors apart; trust neither interval until the cause is found"
-            }
-            Language::German => {
-                "{parameter}: {value} ({first}) und {other} ({second}) liegen {distance} \
+    }
+
+    fn german(&self) -> &'static str {
+        "{parameter}: {value} ({first}) und {other} ({second}) liegen {distance} \
                  Standardfehler auseinander; keinem der beiden Intervalle ist zu trauen, bis die \
                  Ursache gefunden ist"
-            }
-        }
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {

@@ -3,13 +3,14 @@
 use serde::{Deserialize, Serialize};
 
 use crate::identify::method::Method;
-use crate::message::{Language, Message, Value, kind_of};
+use crate::message::{Message, Value};
 use crate::messages;
 use crate::motion::BoundaryKind;
 
 /// Something that a fit may leave out. Indices count from 0: records in the order of acquisition, the
 /// rows of records.parquet; brackets in the order of boundaries.csv.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
 pub enum Item {
     /// A record.
@@ -44,7 +45,8 @@ pub enum Item {
 }
 
 /// Why something was left out.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
 pub enum Reason {
     /// The response of a record without impacts fits far worse than those of the others.
@@ -113,22 +115,23 @@ pub struct LeftOut {
 messages!(Item, Reason);
 
 impl Message for Item {
-    fn kind(&self) -> String {
-        kind_of(self)
+    fn kind(&self) -> &'static str {
+        self.into()
     }
 
-    fn template(&self, language: Language) -> &'static str {
-        use Language::{English, German};
-        match (self, language) {
-            (Self::Record { .. }, English | German) => "{record}",
-            (Self::Bracket { .. }, English) => {
-                "bracket {boundary} {low}–{high} Hz at {clearance} mm"
-            }
-            (Self::Bracket { .. }, German) => {
-                "Schranke {boundary} {low}–{high} Hz bei {clearance} mm"
-            }
-            (Self::Impact { .. }, English) => "{record} at {time} s",
-            (Self::Impact { .. }, German) => "{record} bei {time} s",
+    fn english(&self) -> &'static str {
+        match self {
+            Self::Record { .. } => "{record}",
+            Self::Bracket { .. } => "bracket {boundary} {low}–{high} Hz at {clearance} mm",
+            Self::Impact { .. } => "{record} at {time} s",
+        }
+    }
+
+    fn german(&self) -> &'static str {
+        match self {
+            Self::Record { .. } => "{record}",
+            Self::Bracket { .. } => "Schranke {boundary} {low}–{high} Hz bei {clearance} mm",
+            Self::Impact { .. } => "{record} bei {time} s",
         }
     }
 
@@ -156,67 +159,10 @@ impl Message for Item {
 }
 
 impl Message for Reason {
-    fn kind(&self) -> String {
-        kind_of(self)
+    fn kind(&self) -> &'static str {
+        self.into()
     }
 
-    fn template(&self, language: Language) -> &'static str {
-        match language {
-            Language::English => self.english(),
-            Language::German => self.german(),
-        }
-    }
-
-    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        match self {
-            Self::ResponseUnlikeOthers { times_worse } => {
-                vec![("ratio", Value::Number(*times_worse, 0))]
-            }
-            Self::WaveformUnlikeOthers { times_worse } => {
-                vec![("ratio", Value::Number(*times_worse, 1))]
-            }
-            Self::NoSuchMotion
-            | Self::FarFromBoundary
-            | Self::GapNotAsStated
-            | Self::ImpactsDoNotFollow => Vec::new(),
-            Self::Influential { method } => vec![("method", Value::Message(method))],
-            Self::OutlyingImpact {
-                before_m_s,
-                after_m_s,
-            } => vec![
-                ("before", Value::Number(*before_m_s, 3)),
-                ("after", Value::Number(*after_m_s, 3)),
-            ],
-            Self::Misfiled {
-                specimen,
-                specimen_hz,
-                frequency_hz,
-            } => misfiled(specimen, *specimen_hz, *frequency_hz),
-            Self::MisfiledLike {
-                specimen,
-                specimen_hz,
-                frequency_hz,
-                like,
-                like_hz,
-            } => {
-                let mut values = misfiled(specimen, *specimen_hz, *frequency_hz);
-                values.push(("like", Value::Name(like)));
-                values.push(("other", Value::Number(*like_hz, 2)));
-                values
-            }
-        }
-    }
-}
-
-fn misfiled(specimen: &str, own_hz: f64, frequency_hz: f64) -> Vec<(&'static str, Value<'_>)> {
-    vec![
-        ("specimen", Value::Name(specimen)),
-        ("own", Value::Number(own_hz, 2)),
-        ("frequency", Value::Number(frequency_hz, 2)),
-    ]
-}
-
-impl Reason {
     fn english(&self) -> &'static str {
         match self {
             Self::ResponseUnlikeOthers { .. } => {
@@ -302,4 +248,52 @@ impl Reason {
             }
         }
     }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        match self {
+            Self::ResponseUnlikeOthers { times_worse } => {
+                vec![("ratio", Value::Number(*times_worse, 0))]
+            }
+            Self::WaveformUnlikeOthers { times_worse } => {
+                vec![("ratio", Value::Number(*times_worse, 1))]
+            }
+            Self::NoSuchMotion
+            | Self::FarFromBoundary
+            | Self::GapNotAsStated
+            | Self::ImpactsDoNotFollow => Vec::new(),
+            Self::Influential { method } => vec![("method", Value::Message(method))],
+            Self::OutlyingImpact {
+                before_m_s,
+                after_m_s,
+            } => vec![
+                ("before", Value::Number(*before_m_s, 3)),
+                ("after", Value::Number(*after_m_s, 3)),
+            ],
+            Self::Misfiled {
+                specimen,
+                specimen_hz,
+                frequency_hz,
+            } => misfiled(specimen, *specimen_hz, *frequency_hz),
+            Self::MisfiledLike {
+                specimen,
+                specimen_hz,
+                frequency_hz,
+                like,
+                like_hz,
+            } => {
+                let mut values = misfiled(specimen, *specimen_hz, *frequency_hz);
+                values.push(("like", Value::Name(like)));
+                values.push(("other", Value::Number(*like_hz, 2)));
+                values
+            }
+        }
+    }
+}
+
+fn misfiled(specimen: &str, own_hz: f64, frequency_hz: f64) -> Vec<(&'static str, Value<'_>)> {
+    vec![
+        ("specimen", Value::Name(specimen)),
+        ("own", Value::Number(own_hz, 2)),
+        ("frequency", Value::Number(frequency_hz, 2)),
+    ]
 }

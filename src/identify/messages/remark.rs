@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Item, Note};
-use crate::message::{Language, Message, Value, kind_of};
+use crate::message::{Message, Value};
 use crate::messages;
 
 /// R at one approach speed.
@@ -16,7 +16,8 @@ pub struct SpeedPoint {
 }
 
 /// What a method noticed about its data. Shares and deviations are relative (0.01 is 1 %).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
 pub enum Remark {
     /// The responses without impacts are those of one degree of freedom.
@@ -112,89 +113,10 @@ pub enum Remark {
 messages!(Remark);
 
 impl Message for Remark {
-    fn kind(&self) -> String {
-        kind_of(self)
+    fn kind(&self) -> &'static str {
+        self.into()
     }
 
-    fn template(&self, language: Language) -> &'static str {
-        match language {
-            Language::English => self.english(),
-            Language::German => self.german(),
-        }
-    }
-
-    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        match self {
-            Self::OneDegreeOfFreedom { deviation } => {
-                vec![("share", Value::Percent(*deviation, 2))]
-            }
-            Self::NotOneDegreeOfFreedom { deviation } => {
-                vec![("share", Value::Percent(*deviation, 0))]
-            }
-            Self::WaveformsUnexplained { share } => vec![("share", Value::Percent(*share, 2))],
-            Self::WaveformsThinned { fitted, periodic } => vec![
-                ("some", Value::Count(*fitted)),
-                ("count", Value::Count(*periodic)),
-            ],
-            Self::StatesDeviate { ratio } => vec![("ratio", Value::Number(*ratio, 1))],
-            Self::BracketMidpoints {
-                restitution,
-                half_width,
-            } => vec![
-                ("value", Value::Number(*restitution, 3)),
-                ("half", Value::Number(*half_width, 3)),
-            ],
-            Self::RestitutionConstant {
-                slow_m_s,
-                fast_m_s,
-                within,
-            } => vec![
-                ("slow", Value::Number(*slow_m_s, 3)),
-                ("fast", Value::Number(*fast_m_s, 3)),
-                ("change", Value::Number(*within, 3)),
-            ],
-            Self::RestitutionChanges { slower, faster } => change(slower, faster),
-            Self::LongContact {
-                slower,
-                faster,
-                samples,
-            } => {
-                let mut values = change(slower, faster);
-                values.push(("count", Value::Number(*samples, 0)));
-                values
-            }
-            Self::OutlyingImpacts { count, first } => {
-                let mut which: Vec<Value> = first.iter().map(|i| Value::Message(i)).collect();
-                which.extend((*count > first.len()).then_some(Value::Name("…")));
-                vec![
-                    ("count", Value::Count(*count)),
-                    ("which", Value::List(which)),
-                ]
-            }
-            Self::DecaysUnexplained { share } => vec![("share", Value::Percent(*share, 1))],
-            Self::DecaysDiffer { spread } => vec![("share", Value::Percent(*spread, 1))],
-            Self::NoResult { why } => vec![("why", Value::Message(why))],
-            Self::PublishedSpeedsMet {
-                damping_ratio,
-                deviation,
-            } => vec![
-                ("value", Value::Number(*damping_ratio, 4)),
-                ("share", Value::Percent(*deviation, 2)),
-            ],
-        }
-    }
-}
-
-fn change(slower: &SpeedPoint, faster: &SpeedPoint) -> Vec<(&'static str, Value<'static>)> {
-    vec![
-        ("first", Value::Number(slower.restitution, 3)),
-        ("slow", Value::Number(slower.speed_m_s, 3)),
-        ("last", Value::Number(faster.restitution, 3)),
-        ("fast", Value::Number(faster.speed_m_s, 3)),
-    ]
-}
-
-impl Remark {
     fn english(&self) -> &'static str {
         match self {
             Self::OneDegreeOfFreedom { .. } => {
@@ -295,4 +217,74 @@ impl Remark {
             }
         }
     }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        match self {
+            Self::OneDegreeOfFreedom { deviation } => {
+                vec![("share", Value::Percent(*deviation, 2))]
+            }
+            Self::NotOneDegreeOfFreedom { deviation } => {
+                vec![("share", Value::Percent(*deviation, 0))]
+            }
+            Self::WaveformsUnexplained { share } => vec![("share", Value::Percent(*share, 2))],
+            Self::WaveformsThinned { fitted, periodic } => vec![
+                ("some", Value::Count(*fitted)),
+                ("count", Value::Count(*periodic)),
+            ],
+            Self::StatesDeviate { ratio } => vec![("ratio", Value::Number(*ratio, 1))],
+            Self::BracketMidpoints {
+                restitution,
+                half_width,
+            } => vec![
+                ("value", Value::Number(*restitution, 3)),
+                ("half", Value::Number(*half_width, 3)),
+            ],
+            Self::RestitutionConstant {
+                slow_m_s,
+                fast_m_s,
+                within,
+            } => vec![
+                ("slow", Value::Number(*slow_m_s, 3)),
+                ("fast", Value::Number(*fast_m_s, 3)),
+                ("change", Value::Number(*within, 3)),
+            ],
+            Self::RestitutionChanges { slower, faster } => change(slower, faster),
+            Self::LongContact {
+                slower,
+                faster,
+                samples,
+            } => {
+                let mut values = change(slower, faster);
+                values.push(("count", Value::Number(*samples, 0)));
+                values
+            }
+            Self::OutlyingImpacts { count, first } => {
+                let mut which: Vec<Value> = first.iter().map(|i| Value::Message(i)).collect();
+                which.extend((*count > first.len()).then_some(Value::Name("…")));
+                vec![
+                    ("count", Value::Count(*count)),
+                    ("which", Value::List(which)),
+                ]
+            }
+            Self::DecaysUnexplained { share } => vec![("share", Value::Percent(*share, 1))],
+            Self::DecaysDiffer { spread } => vec![("share", Value::Percent(*spread, 1))],
+            Self::NoResult { why } => vec![("why", Value::Message(why))],
+            Self::PublishedSpeedsMet {
+                damping_ratio,
+                deviation,
+            } => vec![
+                ("value", Value::Number(*damping_ratio, 4)),
+                ("share", Value::Percent(*deviation, 2)),
+            ],
+        }
+    }
+}
+
+fn change(slower: &SpeedPoint, faster: &SpeedPoint) -> Vec<(&'static str, Value<'static>)> {
+    vec![
+        ("first", Value::Number(slower.restitution, 3)),
+        ("slow", Value::Number(slower.speed_m_s, 3)),
+        ("last", Value::Number(faster.restitution, 3)),
+        ("fast", Value::Number(faster.speed_m_s, 3)),
+    ]
 }

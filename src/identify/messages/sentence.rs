@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::symbols;
 use crate::identify::fit::parameters::Coordinate;
-use crate::message::{Language, Message, Value, kind_of};
+use crate::message::{Message, Value};
 use crate::messages;
 
 /// A parameter with its value as a sentence states it.
@@ -19,12 +19,16 @@ pub struct StatedValue {
 }
 
 impl Message for StatedValue {
-    fn kind(&self) -> String {
-        "stated_value".to_owned()
+    fn kind(&self) -> &'static str {
+        "stated_value"
     }
 
-    fn template(&self, _: Language) -> &'static str {
+    fn english(&self) -> &'static str {
         "{parameter} = {value} ± {half}{unit}"
+    }
+
+    fn german(&self) -> &'static str {
+        self.english()
     }
 
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {
@@ -46,7 +50,8 @@ impl Message for StatedValue {
 }
 
 /// A sentence of a verdict.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
 pub enum Sentence {
     /// All parameters are identified.
@@ -105,55 +110,8 @@ pub enum Sentence {
 messages!(Sentence);
 
 impl Message for Sentence {
-    fn kind(&self) -> String {
-        kind_of(self)
-    }
-
-    fn template(&self, language: Language) -> &'static str {
-        match language {
-            Language::English => self.english(),
-            Language::German => self.german(),
-        }
-    }
-
-    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
-        match self {
-            Self::Identified { values } => vec![("values", stated(values))],
-            Self::Weak { values, parameters } | Self::PartlyIdentifiable { values, parameters } => {
-                vec![
-                    ("values", stated(values)),
-                    ("parameters", symbols(parameters)),
-                ]
-            }
-            Self::NotIdentifiable { parameters } => vec![("parameters", symbols(parameters))],
-            Self::NothingUsable
-            | Self::DoesNotFit
-            | Self::MethodsAgree
-            | Self::MethodsDoNotAgree
-            | Self::OneMethod
-            | Self::NoPublishedDamping => Vec::new(),
-            Self::Specimens { count } | Self::MisfiledRecords { count } => {
-                vec![("count", Value::Count(*count))]
-            }
-            Self::PublishedDamping { damping_ratio } => {
-                vec![("value", Value::Number(*damping_ratio, 4))]
-            }
-        }
-    }
-}
-
-fn stated(values: &[StatedValue]) -> Value<'_> {
-    Value::List(values.iter().map(|v| Value::Message(v)).collect())
-}
-
-impl Sentence {
-    /// Whether the methods agree; `None` if there is nothing to compare.
-    pub fn on_agreement(agree: Option<bool>) -> Self {
-        match agree {
-            Some(true) => Self::MethodsAgree,
-            Some(false) => Self::MethodsDoNotAgree,
-            None => Self::OneMethod,
-        }
+    fn kind(&self) -> &'static str {
+        self.into()
     }
 
     fn english(&self) -> &'static str {
@@ -211,6 +169,46 @@ impl Sentence {
             Self::NoPublishedDamping => {
                 "Kein Dämpfungsgrad ergibt die veröffentlichten Geschwindigkeiten."
             }
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        match self {
+            Self::Identified { values } => vec![("values", stated(values))],
+            Self::Weak { values, parameters } | Self::PartlyIdentifiable { values, parameters } => {
+                vec![
+                    ("values", stated(values)),
+                    ("parameters", symbols(parameters)),
+                ]
+            }
+            Self::NotIdentifiable { parameters } => vec![("parameters", symbols(parameters))],
+            Self::NothingUsable
+            | Self::DoesNotFit
+            | Self::MethodsAgree
+            | Self::MethodsDoNotAgree
+            | Self::OneMethod
+            | Self::NoPublishedDamping => Vec::new(),
+            Self::Specimens { count } | Self::MisfiledRecords { count } => {
+                vec![("count", Value::Count(*count))]
+            }
+            Self::PublishedDamping { damping_ratio } => {
+                vec![("value", Value::Number(*damping_ratio, 4))]
+            }
+        }
+    }
+}
+
+fn stated(values: &[StatedValue]) -> Value<'_> {
+    Value::List(values.iter().map(|v| Value::Message(v)).collect())
+}
+
+impl Sentence {
+    /// Whether the methods agree; `None` if there is nothing to compare.
+    pub fn on_agreement(agree: Option<bool>) -> Self {
+        match agree {
+            Some(true) => Self::MethodsAgree,
+            Some(false) => Self::MethodsDoNotAgree,
+            None => Self::OneMethod,
         }
     }
 }

@@ -167,7 +167,7 @@ fn plainly(text: &str) -> String {
 
 /// Every phrase is said by one of the examples, or at least stands in the source.
 #[test]
-fn valid_no_phrase_of_the_words_is_idle() {
+fn no_phrase_of_the_words_is_idle() {
     let mut said = String::new();
     for report in marked() {
         let document = serde_json::to_string(&report.document).expect("JSON");
@@ -216,7 +216,7 @@ fn speaks(text: &str) -> bool {
 
 /// With a mark for each phrase no English is left in figures, headings, heads and captions.
 #[test]
-fn valid_all_words_of_figures_and_headings_are_the_reader_s() {
+fn all_words_of_figures_and_headings_are_the_reader_s() {
     let mut english = std::collections::BTreeSet::new();
     for report in marked() {
         for figure in &report.figures {
@@ -238,7 +238,7 @@ fn valid_all_words_of_figures_and_headings_are_the_reader_s() {
 }
 
 #[test]
-fn valid_a_german_report_speaks_german() {
+fn a_german_report_is_german() {
     let options = ReportOptions {
         catalog: Some(catalog::Catalog::german().clone()),
         ..ReportOptions::default()
