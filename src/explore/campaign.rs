@@ -5,13 +5,14 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::ExploreError;
-use super::state::{Panel, RigScale, State, Window};
+use super::state::{Cursor, Panel, RigScale, State, Window};
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::compare::{self, Input, Placed};
 use crate::event::RigKind;
 use crate::identify::evidence::Blocks;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::{Estimate, Identification};
+use crate::motion::Observation;
 use crate::pipeline::identify::{IdentificationFile, evidence, versions};
 use crate::pipeline::observe::read_one;
 use crate::pipeline::theory::plan::Law;
@@ -184,15 +185,33 @@ impl Campaign {
             restitution: Law::Constant(restitution.unwrap_or(0.9).clamp(0.0, 1.0)),
             damping_ratio: damping.unwrap_or(0.05).clamp(0.0, 0.9),
             single: self.resolved.machine == RigKind::Single,
-            cursor: super::state::Cursor {
-                eta: 0.5 * (view.eta.0 + view.eta.1),
-                rho: 0.5 * (view.rho.0 + view.rho.1),
-                ..first.cursor
-            },
+            cursor: self.first_cursor(scale, view),
             view,
             panel: Panel::Motion,
             rig: Some(scale),
             ..first
+        }
+    }
+
+    /// The surest record with z = 1, else the middle of what is shown.
+    fn first_cursor(&self, scale: RigScale, view: Window) -> Cursor {
+        let one = self
+            .observed
+            .observations
+            .iter()
+            .filter(|o| o.one_impact_in() == Some(1));
+        let sure = |o: &&Observation| (1e6 * o.classification.confidence) as u32;
+        let place = one.max_by_key(sure).and_then(|o| {
+            let x_st = scale.static_deflection_m * o.setting.drive_amplitude;
+            let rho = o.setting.clearance_m? / x_st;
+            Some((o.frequency_hz()? / scale.natural_frequency_hz, rho))
+        });
+        let middle = |r: (f64, f64)| 0.5 * (r.0 + r.1);
+        let (eta, rho) = place.unwrap_or((middle(view.eta), middle(view.rho)));
+        Cursor {
+            eta,
+            rho,
+            ..State::default().cursor
         }
     }
 

@@ -15,7 +15,7 @@ use crate::identify::fit::Block;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::joint;
 use crate::identify::plan::{Reach, propose};
-use crate::motion::{Motion, Observation};
+use crate::motion::{BoundaryKind, Motion, Observation};
 use crate::pipeline::identify::evidence;
 use crate::report::style::MotionStyle;
 
@@ -180,7 +180,8 @@ pub(super) fn residuals(campaign: &Campaign, state: &State, job: &Job) -> Result
     }
     let rig = campaign.resolved.machine;
     let predicted = campaign.observed.brackets.iter().map(|b| {
-        let boundary_hz = predicted_hz(b, &at, rig);
+        let closed_form = b.kind != BoundaryKind::Other;
+        let boundary_hz = closed_form.then(|| predicted_hz(b, &at, rig)).flatten();
         let past = boundary_hz.map(|f| (f - b.frequency_high_hz).max(b.frequency_low_hz - f));
         json!({"boundary_hz": boundary_hz, "past_hz": past.map(|p| p.max(0.0))})
     });

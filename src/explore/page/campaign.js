@@ -10,6 +10,16 @@ const make = (name, text, className) => {
   return e;
 };
 
+const SYMBOLS = { "displacement x": "*x*", "displacement y": "*y*", "velocity x": "*x*′", "velocity y": "*y*′", "frame x": "frame *x*", "frame y": "frame *y*" };
+
+/** A factor and the prefix of its unit that make values neither tiny nor huge. */
+function prefixed(lists, unit) {
+  if (!unit.startsWith("m")) return [1, ""];
+  let most = 0;
+  for (const list of lists) for (const v of list) most = Math.max(most, Math.abs(v));
+  return most >= 0.5 || most === 0 ? [1, ""] : most >= 5e-4 ? [1e3, "m"] : [1e6, "µ"];
+}
+
 export class CampaignView {
   constructor(app, facts) {
     this.app = app;
@@ -113,13 +123,15 @@ export class CampaignView {
       const decay = frame.shown === "decay";
       const st = decay ? col.t1 : t, s = decay ? col.simulated1 : col["simulated" + i], r = col["residual" + i] ?? [];
       const unit = decay ? frame.unit : frame.traces[i].unit, role = decay ? "free decay" : frame.traces[i].role.replace("_", " ");
+      const [factor, prefix] = prefixed([m, s], unit);
+      const scaled = (values) => Float32Array.from(values, (v) => v * factor);
       canvas.setAttribute("aria-label", `${role}: measured and simulated`);
       const last = place === list.length - 1;
-      const f = new Frame(canvas, [t[0], t[t.length - 1]], around([m, s]), [last ? "time, s" : "", `${role}, ${unit}`], { bottom: last ? 36 : 20, left: 58 }).axes();
+      const f = new Frame(canvas, [t[0], t[t.length - 1]], around([scaled(m), scaled(s)]), [last ? "time, s" : "", `${SYMBOLS[role] ?? role}${unit ? ", " + prefix + unit : ""}`], { bottom: last ? 36 : 18, left: 56, top: 4 }).axes();
       f.clip((c) => {
-        f.curve(t, m, { colour: colour("ink"), width: 1.3 });
-        f.curve(st, s, { colour: colour("blue"), width: 1.6, dash: [6, 3] });
-        f.curve(t, r, { colour: colour("bad"), width: 0.9 });
+        f.curve(t, scaled(m), { colour: colour("ink"), width: 1.3 });
+        f.curve(st, scaled(s), { colour: colour("blue"), width: 1.6, dash: [6, 3] });
+        f.curve(t, scaled(r), { colour: colour("bad"), width: 0.9 });
         const tick = (x, top, ink) => { c.beginPath(); c.moveTo(f.px(x), top); c.lineTo(f.px(x), top + 6); c.strokeStyle = ink; c.lineWidth = 1.5; c.stroke(); };
         for (const x of col.impacts ?? []) tick(x, f.box.top, colour("ink"));
         for (const x of col.simulated_impacts ?? []) tick(x, f.box.top + 7, colour("blue"));

@@ -116,7 +116,7 @@ class App {
     else if (frame.kind === "motion") { this.carriedTo(frame); this.motion.show(frame); time("motion", 0); }
     else if (frame.kind === "run") { this.carriedTo(frame); this.motion.run(frame); this.runOn(); }
     else if (frame.kind === "line") { this.line.add(frame); }
-    else if (frame.kind === "basins") { this.basins.add(frame); if (frame.level === 1) time("basins", 1); }
+    else if (frame.kind === "basins") { this.basins.add(frame); if (frame.level === 1 && this.basins.tile.filled === frame.size[1]) time("basins", 1); }
     else if (frame.kind === "record") { this.campaign.show(frame); time("record", 0); }
     else if (frame.kind === "residuals") { this.campaign.residuals(frame); time("residuals", 0); }
   }
@@ -443,7 +443,8 @@ class App {
 
   legend(styles) {
     this.legendStyles = styles;
-    const items = styles.filter((s) => s.order[0] !== 1 || s.order[2] <= 5).sort((a, b) => (a.order < b.order ? -1 : 1)).slice(0, 9).map((s) => swatch(s, `z = ${s.label}`));
+    const place = (s) => s.order[0] * 1e6 + s.order[1] * 1e3 + s.order[2];
+    const items = [...styles].sort((a, b) => place(a) - place(b)).map((s) => swatch(s, `z = ${s.label}`));
     for (const kind of this.map.kinds()) {
       const span = document.createElement("span"), canvas = document.createElement("span");
       canvas.style.cssText = `width:1.6rem;border-top:${kind.width}px ${kind.dash ? "dashed" : "solid"} ${colour(kind.colour)}`;

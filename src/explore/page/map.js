@@ -53,7 +53,7 @@ export class MapView {
     if (tile.complete) {
       this.tiles = this.tiles.filter((t) => t === tile || (t.id === tile.id && t.level > tile.level));
       if (tile.level === 1) this.labels = placeLabels(tile);
-      if (tile.level >= 1) this.app.legend(tile.styles);
+      if (tile.level >= 1) this.app.legend(commonest(tile));
     }
     this.redraw();
     return tile;
@@ -271,6 +271,14 @@ class Frame2 {
 
 import { ticks } from "./draw.js";
 const ticksOf = (range, count) => { const t = ticks(range[0], range[1], count); return t.all.map((v) => [v, t.text(v)]); };
+
+/** The motions that take most of a tile. */
+function commonest(tile) {
+  const counts = new Uint32Array(256);
+  for (const cell of tile.cells) counts[cell]++;
+  const order = tile.styles.map((_, i) => i).sort((a, b) => counts[b] - counts[a]);
+  return order.slice(0, 9).filter((i) => counts[i] > 2e-4 * tile.cells.length).map((i) => tile.styles[i]);
+}
 
 /** A label in the middle of every large connected region. */
 function placeLabels(tile) {
