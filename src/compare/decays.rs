@@ -70,7 +70,12 @@ pub(super) fn free_decays(input: &Input<'_>) -> Vec<FreeDecay> {
     decays.collect()
 }
 
-fn free_decay(o: &Observation, record: &Record, reason: Option<&Reason>) -> Option<FreeDecay> {
+/// A record's free decay beside its fit; `None` of one that has none.
+pub(super) fn free_decay(
+    o: &Observation,
+    record: &Record,
+    reason: Option<&Reason>,
+) -> Option<FreeDecay> {
     let decay = o.decay?;
     let fitted = decay.values(record.sample_rate_hz);
     let long_enough = |c: &&Channel| c.values.len() >= decay.first + decay.samples;

@@ -97,6 +97,13 @@ pub(super) fn records(input: &Input<'_>, chosen: &[usize]) -> Vec<RecordRow> {
         .collect()
 }
 
+/// Every record, however many.
+pub(super) fn all_records(input: &Input<'_>) -> Vec<RecordRow> {
+    let reasons = input.record_reasons();
+    let row = |i| record(input, i, reasons.get(&i).copied());
+    (0..input.observations.len()).map(row).collect()
+}
+
 fn record(input: &Input<'_>, index: usize, reason: Option<&Reason>) -> RecordRow {
     let o = &input.observations[index];
     let (eta, rho) = input.place(o);

@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::input::Input;
+use super::input::{Input, place};
 use crate::event::DetectSettings;
 use crate::event::{Detection, DriveTone, detect};
+use crate::identify::fit::parameters::Parameters;
 use crate::identify::replay::{Replay, Stretch};
 use crate::motion::{Motion, Observation};
 use crate::record::{Record, Role};
@@ -114,16 +115,18 @@ pub(super) fn comparisons(input: &Input<'_>, chosen: &[usize]) -> Vec<Comparison
     let lettered = chosen.par_iter().zip(letters);
     lettered
         .filter_map(|(i, letter)| {
-            comparison(input, &input.observations[*i], &(input.read)(*i)?, letter)
+            let o = &input.observations[*i];
+            comparison(input, o, &(input.read)(*i)?, (letter, input.parameters()))
         })
         .collect()
 }
 
-fn comparison(
+/// A record beside its simulation with parameters; `None` without a drive.
+pub(super) fn comparison(
     input: &Input<'_>,
     o: &Observation,
     record: &Record,
-    letter: char,
+    (letter, parameters): (char, Option<&Parameters>),
 ) -> Option<Comparison> {
     let drive = o.drive?;
     let detection = detect(record, input.rig, &DetectSettings::default());
@@ -133,10 +136,8 @@ fn comparison(
         _ => IRREGULAR_PERIODS,
     };
     let stretch = stretch(drive, periods);
-    let simulation = input
-        .parameters()
-        .and_then(|fitted| Replay::of(input.rig, *fitted, o, &stretch));
-    let (eta, rho) = input.place(o);
+    let simulation = parameters.and_then(|p| Replay::of(input.rig, *p, o, &stretch));
+    let (eta, rho) = parameters.map_or((None, None), |p| place(p, o));
     let traces = traces(record, &detection, &stretch, simulation.as_ref());
     let motion = &o.classification.motion;
     let simulated_motion = simulation.as_ref().map(|s| {

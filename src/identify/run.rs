@@ -132,6 +132,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         joint_fit: fits.joint.and_then(Result::ok).map(|found| JointFit {
             fit: found.fit,
             variance_factor: found.factor,
+            weights: fits.weights,
         }),
         specimens: BTreeMap::new(),
     }

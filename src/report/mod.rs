@@ -12,6 +12,7 @@ mod options;
 mod parameters;
 pub(crate) mod picture;
 mod png;
+pub mod style;
 pub(crate) mod theory;
 
 pub use content::{CampaignFacts, DataTable, NominalValue, ProposedPoint, ReportContent, Subject};
