@@ -206,7 +206,7 @@ fn table(
             )?;
         }
         (None, Some(symbol)) => {
-            writeln!(text, "unit = \"{symbol}\"                 # from its name")?
+            writeln!(text, "unit = \"{symbol}\"                 # from its name")?;
         }
         (None, None) => writeln!(
             text,

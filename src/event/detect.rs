@@ -9,6 +9,7 @@ use crate::event::kinematics::{Kinematics, RigKind, Series};
 use crate::event::refine::{self, ArcFit, Candidate, Instant};
 use crate::event::{drift, free_flight, impact_speeds};
 use crate::record::{Flag, FlagCode, Record, Role};
+use crate::signal::whole;
 use labfiles::units::Dimension;
 
 /// Forces on a body between impacts, as far as the detection depends on them.
@@ -218,12 +219,12 @@ fn no_impact() -> Flag {
 }
 
 fn samples_of(time_s: f64, rate_hz: f64) -> usize {
-    (time_s * rate_hz).round() as usize
+    whole::index((time_s * rate_hz).round())
 }
 
 fn window_samples(drive: Option<&DriveTone>, rate_hz: f64, periods: f64) -> usize {
     match drive {
-        Some(d) => ((periods * rate_hz / d.frequency_hz).round() as usize).clamp(4, 16),
+        Some(d) => whole::index((periods * rate_hz / d.frequency_hz).round()).clamp(4, 16),
         None => 5,
     }
 }

@@ -10,3 +10,4 @@ pub mod onsets;
 pub mod robust;
 mod spectrum;
 pub mod tone;
+pub mod whole;

@@ -424,7 +424,7 @@ impl Message for Remark {
             Self::TimesScatter { error_s } => vec![("error", Value::Number(1e3 * error_s, 2))],
             Self::FlightsLeftOut { count } => vec![("count", Value::Count(*count))],
             Self::OutlyingImpacts { count, first } => {
-                let mut which: Vec<Value> = first.iter().map(|i| Value::Message(i)).collect();
+                let mut which: Vec<Value<'_>> = first.iter().map(|i| Value::Message(i)).collect();
                 which.extend((*count > first.len()).then_some(Value::Name("…")));
                 vec![
                     ("count", Value::Count(*count)),
