@@ -1,7 +1,7 @@
 //! R from the times of impacts alone: under a constant force a flight lasts 2v/a, so that each flight is
 //! R times as long as the one before.
 //!
-//! The times of a record are a geometric row, t_k = t_0 + T_0 (1 + R + … + R^(k−1)); R, t_0 and T_0 are
+//! The times of a record are a geometric row, `t_k = t_0 + T_0 (1 + R + … + R^(k−1))`; R, `t_0` and `T_0` are
 //! fitted to them by least squares with the error of each time as the noise.
 
 use nalgebra::{Matrix3, Vector3};
@@ -151,7 +151,7 @@ fn rows(records: &[(usize, &Observation)]) -> (Vec<Row>, usize) {
     (rows, left_out)
 }
 
-/// Gauss–Newton for t_0, T_0 and R from the ratio of the first two flights.
+/// Gauss–Newton for `t_0`, `T_0` and R from the ratio of the first two flights.
 fn fitted(times_s: &[f64]) -> Option<Fitted> {
     let freedom = times_s.len().checked_sub(3)?;
     let (first, second) = (times_s[1] - times_s[0], times_s[2] - times_s[1]);

@@ -145,7 +145,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
 }
 
 /// Whether no record has a drive, so that R rests on the impacts alone.
-fn observations_are_undriven(evidence: &Evidence) -> bool {
+fn observations_are_undriven(evidence: &Evidence<'_>) -> bool {
     evidence.observations.iter().all(|o| o.drive.is_none())
 }
 

@@ -1,6 +1,6 @@
 //! Onsets of sounds: where the envelope of a signal rises above what was heard before.
 
-use super::robust;
+use super::{robust, whole};
 
 /// Window of the envelope, s.
 const WINDOW_S: f64 = 1e-3;
@@ -39,7 +39,7 @@ const OF_PEAK: f64 = 0.2;
 /// assert!((found[0] - 4410.0).abs() < 44.0 && (found[1] - 22_050.0).abs() < 44.0);
 /// ```
 pub fn find(samples: &[f64], rate_hz: f64) -> Vec<f64> {
-    let steps = |time_s: f64| ((time_s * rate_hz).round() as usize).max(1);
+    let steps = |time_s: f64| whole::index((time_s * rate_hz).round()).max(1);
     let envelope = envelope(samples, steps(WINDOW_S));
     let (before, apart) = (steps(BEFORE_S), steps(APART_S));
     let loudest = envelope.iter().copied().fold(0.0, f64::max);

@@ -13,7 +13,7 @@ use crate::event::impact::{DetectionSource, Impact, MassSpeeds};
 use crate::event::kinematics::{Body, Kinematics, RelativeSource, RigKind};
 use crate::record::{Flag, FlagCode};
 use crate::signal::local_fit::crossing;
-use crate::signal::robust;
+use crate::signal::{robust, whole};
 
 use fall::Fall;
 use stretch::{Side, Stretch};
@@ -137,7 +137,7 @@ impl<'a> Search<'a> {
             .iter()
             .map(|f| (f.last - f.first) as f64)
             .collect();
-        robust::median(&gaps).map_or(1, |g| g.round() as usize)
+        robust::median(&gaps).map_or(1, |g| whole::index(g.round()))
     }
 
     /// Samples between the neighbouring falls.

@@ -11,7 +11,7 @@ const SIGNIFICANT: f64 = 4.0;
 /// Relative difference that matters.
 const MATTERS: f64 = 0.02;
 
-/// m_y/m_x with its standard error, from the changes of both speeds: m_x Δx' = m_y Δy'.
+/// `m_y/m_x` with its standard error, from the changes of both speeds: `m_x Δx' = m_y Δy'`.
 fn ratio(impacts: &[&Impact]) -> Option<(f64, f64)> {
     let logs: Vec<(f64, f64)> = impacts
         .iter()
@@ -38,7 +38,7 @@ fn ratio(impacts: &[&Impact]) -> Option<(f64, f64)> {
 
 /// The ratio of the masses as the impacts of a block show it, and the finding that it is not the stated
 /// one; of two masses without a drive alone.
-pub fn momentum(block: &ImpactBlock, evidence: &Evidence) -> Option<(Remark, Option<Finding>)> {
+pub fn momentum(block: &ImpactBlock, evidence: &Evidence<'_>) -> Option<(Remark, Option<Finding>)> {
     if evidence.rig != RigKind::Double {
         return None;
     }

@@ -257,7 +257,8 @@ fn findings(basis: &Basis<'_>, estimates: &[(Coordinate, &Estimate)]) -> Vec<Fin
                 method: *method,
                 remark: remark.clone(),
             };
-            findings.extend(result.remarks.iter().map(misfit));
+            let telling = result.remarks.iter().filter(|r| !is_plain(r));
+            findings.extend(telling.map(misfit));
         }
     }
     let noted = estimates.iter().filter_map(|(parameter, estimate)| {
@@ -270,6 +271,14 @@ fn findings(basis: &Basis<'_>, estimates: &[(Coordinate, &Estimate)]) -> Vec<Fin
     let disagreement = basis.agreement.disagreement().cloned();
     findings.extend(disagreement.map(|pair| Finding::Disagreement { pair }));
     findings
+}
+
+/// Whether a remark only describes the data, so that it is no reason for a misfit.
+fn is_plain(remark: &Remark) -> bool {
+    matches!(
+        remark,
+        Remark::TimesScatter { .. } | Remark::MassRatio { .. } | Remark::FlightsLeftOut { .. }
+    )
 }
 
 fn with_status(estimates: &[(Coordinate, &Estimate)], status: Status) -> Vec<Coordinate> {

@@ -50,9 +50,9 @@ pub enum Finding {
     },
     /// Two free masses do not change their speeds in the ratio of the stated masses.
     MomentumNotConserved {
-        /// m_y/m_x as the speeds show it.
+        /// `m_y/m_x` as the speeds show it.
         measured: f64,
-        /// m_y/m_x as stated.
+        /// `m_y/m_x` as stated.
         stated: f64,
         /// How sure.
         z_score: f64,

@@ -147,7 +147,7 @@ pub enum Remark {
     },
     /// The ratio of the masses by conservation of momentum.
     MassRatio {
-        /// m_y/m_x.
+        /// `m_y/m_x`.
         ratio: f64,
         /// Half its 95 % interval.
         half_width: f64,

@@ -11,10 +11,10 @@ pub(super) struct Signals<'a> {
     pub(super) tails: &'a [(&'a [f64], f64)],
 }
 
-/// State of the search: ω_d and σ per sample with the best linear part of each channel.
+/// State of the search: `ω_d` and σ per sample with the best linear part of each channel.
 #[derive(Debug, Clone)]
 pub(super) struct Point {
-    /// ω_d and σ, per sample.
+    /// `ω_d` and σ, per sample.
     pub(super) rates: Vector2<f64>,
     linear: Vec<Vector3<f64>>,
     /// Weighted sum of squared residuals.
@@ -28,7 +28,7 @@ fn basis(rates: Vector2<f64>, i: usize) -> Vector3<f64> {
     Vector3::new(1.0, envelope * cos, envelope * sin)
 }
 
-/// Slopes of the decay over ω_d and σ at a sample.
+/// Slopes of the decay over `ω_d` and σ at a sample.
 fn slopes(linear: &Vector3<f64>, row: &Vector3<f64>, i: usize) -> Vector2<f64> {
     let t = i as f64;
     Vector2::new(

@@ -1,9 +1,10 @@
-//! A free decay: offset + e^{−σt}(a cos ω_d t + b sin ω_d t), fitted by least squares to all channels
+//! A free decay: offset + e^{−σt}(a cos `ω_d` t + b sin `ω_d` t), fitted by least squares to all channels
 //! that show it, with what its residuals have beside noise.
 
 mod least_squares;
 mod structure;
 
+use super::whole;
 use least_squares::{Point, Signals, descend};
 use nalgebra::Vector2;
 
@@ -12,11 +13,11 @@ pub use structure::Drift;
 /// A fitted free decay.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Decay {
-    /// Natural frequency f0 = √(σ² + ω_d²)/2π, Hz.
+    /// Natural frequency f0 = √(σ² + `ω_d²)/2π`, Hz.
     pub natural_frequency_hz: f64,
     /// Its standard error, Hz.
     pub natural_frequency_error_hz: f64,
-    /// Damping ratio β = σ/√(σ² + ω_d²).
+    /// Damping ratio β = σ/√(σ² + `ω_d²`).
     pub damping_ratio: f64,
     /// Its standard error.
     pub damping_ratio_error: f64,
@@ -148,8 +149,8 @@ impl Start {
             .enumerate()
             .max_by(|a, b| (a.1 - centre).abs().total_cmp(&(b.1 - centre).abs()))?
             .0;
-        let wait = (WAIT_S * rate_hz).ceil() as usize;
-        let first = (peak + wait).max((FROM_S * rate_hz).ceil() as usize);
+        let wait = whole::index((WAIT_S * rate_hz).ceil());
+        let first = (peak + wait).max(whole::index((FROM_S * rate_hz).ceil()));
         let tail = samples.get(first..)?;
         let per_sample = super::spectrum::peak_frequency(tail)?;
         if (tail.len() as f64) < LEAST_PERIODS / per_sample {
@@ -194,7 +195,7 @@ fn other_starts(signals: &Signals<'_>, point: &Point, period: f64, rate_hz: f64)
     let own = point.natural(rate_hz);
     let (mut squares, mut count) = ([0.0, 0.0], 0.0);
     for k in 1..=OTHER_STARTS {
-        let skip = (period * k as f64 / OTHER_STARTS as f64).round() as usize;
+        let skip = whole::index((period * k as f64 / OTHER_STARTS as f64).round());
         let later: Vec<(&[f64], f64)> = signals
             .tails
             .iter()
