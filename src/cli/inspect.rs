@@ -250,8 +250,12 @@ fn describe(info: &DatasetInfo, summaries: &[Summary], text: &mut String) {
                         .to_owned()
                 },
             ),
-            s.first.to_string(),
-            s.last.to_string(),
+            s.texts
+                .as_ref()
+                .map_or_else(|| s.first.to_string(), |t| t[0].clone()),
+            s.texts
+                .as_ref()
+                .map_or_else(|| s.last.to_string(), |t| t[1].clone()),
             s.min.to_string(),
             s.max.to_string(),
         ]);

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::identify::diagnostics::{contact_law, momentum, structure, verdict};
-use crate::identify::evidence::impacts::SpeedPair;
+use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
 use crate::identify::evidence::{Blocks, Evidence, impact_bias};
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
@@ -51,7 +51,8 @@ pub fn impacts(
     if let Some(estimate) = &mut result.parameters.restitution {
         widen(
             estimate,
-            fit.map_or(0.0, |fit| impact_bias(&fit.parameters)),
+            fit.map_or(0.0, |fit| impact_bias(&fit.parameters))
+                .hypot(block.common_error()),
         );
     }
     result.remarks.extend(outlying(blocks, evidence));
@@ -195,6 +196,29 @@ pub fn joint(
     let records = observations.filter(|o| !o.excluded()).count();
     let observations = attempt.as_ref().map_or(0, |f| f.fit.residuals);
     methods::result(attempt, &tells, observations, records)
+}
+
+/// Widen a joint R that rests on impacts between free flights by what their errors have in common.
+pub fn widen_common(joint: &mut MethodResult, block: &ImpactBlock) {
+    let common = block.common_error();
+    let Some(estimate) = joint
+        .parameters
+        .restitution
+        .as_mut()
+        .filter(|_| common > 0.0)
+    else {
+        return;
+    };
+    let (Some(value), Some(error), Some([low, high])) =
+        (estimate.value, estimate.standard_error, estimate.interval95)
+    else {
+        return;
+    };
+    // An interval that ends at 0 or 1 has its width on the other side.
+    let half = (value - low).max(high - value);
+    let half = half.hypot(estimate::NORMAL_975 * common);
+    estimate.standard_error = Some(error.hypot(common));
+    estimate.interval95 = Some([(value - half).max(0.0), (value + half).min(1.0)]);
 }
 
 /// Add a systematic part to the standard error of R.

@@ -105,6 +105,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
     let methods = run.results(&fits);
     let mut joint = results::joint(evidence, fits.joint.as_ref(), &methods);
     if observations_are_undriven(evidence) {
+        results::widen_common(&mut joint, &run.selection.blocks.impact);
         verdict::carry_over(&mut joint, &methods);
     }
     let beyond = succeeded(&fits.joint).map_or_else(Vec::new, beyond::beyond);

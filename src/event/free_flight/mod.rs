@@ -4,6 +4,7 @@
 //! that the law of free flight explains, so that a push by hand before, or a catch after, does not
 //! enter the speeds.
 
+mod duration;
 mod fall;
 mod orientation;
 mod stretch;
@@ -15,13 +16,14 @@ use crate::record::{Flag, FlagCode};
 use crate::signal::local_fit::crossing;
 use crate::signal::{robust, whole};
 
+use duration::Contact;
 use fall::Fall;
 use stretch::{Side, Stretch};
 
 /// Speed at an impact above the fastest sample of its flight that is refused, relative.
 const BEYOND: f64 = 0.1;
 /// Part of the fastest sample that a flight's own acceleration may add up to the impact.
-const ADDED: f64 = 0.35;
+const ADDED: f64 = 0.6;
 /// Greatest ratio of separation to approach speed that an impact can have.
 const GREATEST_RATIO: f64 = 1.3;
 /// Standard errors by which each mass's speed must change.
@@ -110,7 +112,7 @@ impl<'a> Search<'a> {
 
     fn impacts(&self, closed: &[Closed]) -> FreeFlights {
         let mut found = FreeFlights {
-            jump_samples: self.jump_samples(),
+            jump_samples: 1,
             ..FreeFlights::default()
         };
         let (mut cut, mut hidden, mut beyond) = (Vec::new(), Vec::new(), Vec::new());
@@ -125,19 +127,23 @@ impl<'a> Search<'a> {
                 Found::Nothing => {}
             }
         }
+        found.jump_samples = jump_samples(&found.impacts, self.rate_hz);
         found.flags.extend(cut_flag(&cut, self.rate_hz));
         found.flags.extend(hidden_flag(&hidden));
         found.flags.extend(beyond_flag(&beyond));
         found
     }
 
-    fn jump_samples(&self) -> usize {
-        let gaps: Vec<f64> = self
-            .falls
+    /// The contact, if the samples resolve its duration.
+    fn contact(&self, (before, after): (&[Stretch], &[Stretch]), time: f64) -> Option<Contact> {
+        let of_velocity = before.iter().all(|s| s.displacement().is_none());
+        let smoothed = self
+            .bodies
             .iter()
-            .map(|f| (f.last - f.first) as f64)
-            .collect();
-        robust::median(&gaps).map_or(1, |g| whole::index(g.round()))
+            .any(|b| duration::is_smoothed(b, self.rate_hz));
+        of_velocity
+            .then(|| duration::contact(self.relative, (before, after), time, smoothed))
+            .flatten()
     }
 
     /// Samples between the neighbouring falls.
@@ -166,8 +172,14 @@ impl<'a> Search<'a> {
             return Found::NoFlight(middle_s, Side::After);
         };
         let (time, time_error) = self.instant(fall, &before, &after);
-        let approach: f64 = before.iter().map(|s| s.speed(time)).sum();
-        let separation: f64 = -after.iter().map(|s| s.speed(time)).sum::<f64>();
+        let contact = self.contact((&before, &after), time);
+        let [start, end] = match &contact {
+            Some(c) => [time - c.to_centre, time - c.to_centre + c.duration],
+            None => [time, time],
+        };
+        let approach: f64 = before.iter().map(|s| s.speed(start)).sum();
+        let separation: f64 = -after.iter().map(|s| s.speed(end)).sum::<f64>();
+        let time_error = time_error.hypot(contact.map_or(0.0, |c| c.error()));
         let error = speed_error(&before, &after, (time, time_error));
         if self.is_beyond(index, &before, approach, error) {
             return Found::Beyond(time / self.rate_hz);
@@ -205,7 +217,7 @@ impl<'a> Search<'a> {
             y: (self.bodies.len() > 1).then(|| of_body(1)),
             corner_shifts: [None, None],
             dead_zone_s: 0.0,
-            contact_duration_s: None,
+            contact_duration_s: contact.map(|c| c.duration / self.rate_hz),
             external_push_m_s: None,
             source: match touched {
                 true => DetectionSource::Both,
@@ -270,7 +282,9 @@ impl<'a> Search<'a> {
         let fastest = self.relative[low..=fall.first]
             .iter()
             .fold(0.0f64, |m, v| m.max(*v));
-        let gap = 0.5 * (fall.last - fall.first) as f64 + 1.0;
+        let used = before.iter().map(|s| s.samples.1.saturating_sub(1)).min();
+        let middle = 0.5 * (fall.first + fall.last) as f64;
+        let gap = (middle - used.unwrap_or(fall.first) as f64).max(1.0);
         let slope: f64 = before.iter().map(|s| s.step(fall.first as f64)).sum();
         let added = (slope.max(0.0) * gap).min(ADDED * fastest);
         approach > (1.0 + BEYOND) * fastest + added + CHANGED * error
@@ -291,6 +305,15 @@ impl<'a> Search<'a> {
         let turned = self.bodies.len() == 1 && index > 0;
         (!turned && (used as f64) < USED * all as f64).then(|| all - used.min(all))
     }
+}
+
+/// Samples that a contact takes in the median; one where it is not resolved.
+fn jump_samples(impacts: &[Impact], rate_hz: f64) -> usize {
+    let durations: Vec<f64> = impacts
+        .iter()
+        .map(|i| i.contact_duration_s.map_or(1.0, |d| (d * rate_hz).max(1.0)))
+        .collect();
+    robust::median(&durations).map_or(1, |d| whole::index(d.round()))
 }
 
 /// Standard error of either approach speed: of the fits, and of the time where flights are steep.

@@ -52,6 +52,9 @@ pub struct ImpactBlock {
     pub free: bool,
 }
 
+/// Share of the error of an impact between free flights that all have in common.
+const COMMON: f64 = 0.25;
+
 /// Impacts between free flights from which outliers are looked for: fewer are all reported.
 const ENOUGH_FOR_OUTLIERS: usize = 8;
 
@@ -95,6 +98,16 @@ impl ImpactBlock {
             free,
             ..Self::of_pairs(pairs, relative_error)
         }
+    }
+
+    /// What all impacts between free flights have in common of their errors: how their contacts are timed.
+    pub fn common_error(&self) -> f64 {
+        if !self.free {
+            return 0.0;
+        }
+        let error = |p: &SpeedPair| self.error(p, p.after_m_s / p.before_m_s) / p.before_m_s;
+        let errors: Vec<f64> = self.pairs.iter().map(error).collect();
+        COMMON * crate::signal::robust::median(&errors).unwrap_or(0.0)
     }
 
     /// Fewest impacts that a fit needs: one between free flights has a ratio of its own.
