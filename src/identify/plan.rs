@@ -182,8 +182,8 @@ fn information(
     block.find_changes(&fit.parameters);
     let problem = Problem {
         blocks: vec![(&block, 1.0)],
-        priors: Vec::new(),
         free: fit.free.clone(),
+        ..Problem::default()
     };
     let part = problem.item_parts(&fit.parameters).pop()?.pop()?;
     Some(part.matrix)

@@ -151,7 +151,7 @@ fn superscript(exponent: i32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::{Note, Remark};
+    use crate::identify::{Item, Remark};
 
     #[test]
     fn numbers_are_printed_as_books_do() {
@@ -203,9 +203,10 @@ mod tests {
             Locale::default().sentence(&remark),
             "The decays leave 1.2 % of the signal unexplained."
         );
-        let note = Note::SolverFailed {
-            report: "a$b".into(),
+        let item = Item::Record {
+            index: 0,
+            record: "a$b".into(),
         };
-        assert!(!Locale::default().message(&note).contains('$'));
+        assert!(!Locale::default().message(&item).contains('$'));
     }
 }

@@ -95,9 +95,7 @@ fn notes() -> Vec<Note> {
         Note::NoPublishedMotion,
         Note::NoStart { observations: 3 },
         Note::NothingToFit,
-        Note::SolverFailed {
-            report: "…".into()
-        },
+        Note::SolverFailed,
         Note::MethodsDisagree,
         Note::NotSeparable,
     ]
