@@ -36,7 +36,7 @@ impl Campaign {
     ///
     /// # Errors
     /// [`ExploreError`] where none of its records can be used.
-    pub fn of(resolved: ResolvedCampaign, progress: Progress) -> Result<Self, ExploreError> {
+    pub fn of(resolved: ResolvedCampaign, progress: Progress<'_>) -> Result<Self, ExploreError> {
         let observed = Observed::of(&resolved, progress)?;
         progress("identify", 0, 1);
         let found = identify::identify(&resolved, &observed, None)?;
@@ -47,7 +47,10 @@ impl Campaign {
     ///
     /// # Errors
     /// [`ExploreError`] where a file is missing or of another version, or no record can be used.
-    pub fn read(folder: &Path, progress: Progress) -> Result<(Self, Vec<String>), ExploreError> {
+    pub fn read(
+        folder: &Path,
+        progress: Progress<'_>,
+    ) -> Result<(Self, Vec<String>), ExploreError> {
         let resolved = store::read_resolved(folder)?;
         let found = store::read_identification(folder)?;
         check_layout(folder, &found)?;
@@ -89,7 +92,7 @@ impl Campaign {
     }
 
     /// Call a function of the comparison.
-    pub(super) fn with_input<T>(&self, of: impl FnOnce(&Input) -> T) -> T {
+    pub(super) fn with_input<T>(&self, of: impl FnOnce(&Input<'_>) -> T) -> T {
         of(&Input {
             rig: self.resolved.machine,
             observations: &self.observed.observations,

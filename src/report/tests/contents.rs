@@ -9,7 +9,7 @@ use crate::identify::Provenance;
 use crate::motion::Motion;
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
 use crate::record::{Role, Sweep};
-use crate::report::{CampaignFacts, NominalValue, ReportContent, Subject};
+use crate::report::{CampaignFacts, NominalValue, Phrase, ReportContent, Subject};
 
 /// Every kind by its name.
 pub(super) fn kinds() -> &'static [(&'static str, ReportContent)] {
@@ -68,12 +68,12 @@ fn whole() -> ReportContent {
         dates: Some(["2024-06-11".into(), "2024-06-13".into()]),
         nominal: vec![
             NominalValue {
-                name: "natural frequency $f_0$",
+                name: Phrase::NaturalFrequencySymbol,
                 value: 12.6,
                 unit: "Hz",
             },
             NominalValue {
-                name: "damping ratio $β$",
+                name: Phrase::DampingRatioSymbol,
                 value: 0.07,
                 unit: "",
             },
