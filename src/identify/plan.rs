@@ -6,7 +6,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::identify::evidence::Evidence;
-use crate::identify::evidence::trajectory::{TrajectoryBlock, TrajectoryRecord, distinct_phases};
+use crate::identify::evidence::trajectory::{TrajectoryBlock, distinct_phases};
+use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::fit::effect::Effects;
 use crate::identify::fit::normal::inverse;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};

@@ -9,10 +9,12 @@ pub mod direction;
 pub mod flights;
 pub mod high_pass;
 pub mod impacts;
+pub mod nearest_orbit;
 pub mod record_motion;
 pub mod resonance;
 pub mod shared_error;
 pub mod trajectory;
+pub mod trajectory_record;
 pub mod waveform;
 pub mod weighing;
 

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use crate::compare::fixture::{self, Identified};
 use crate::compare::{ImpactScatter, RecordRow};
 use crate::identify::Provenance;
-use crate::motion::Motion;
+use crate::motion::{Motion, Undetermined};
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
 use crate::record::{Role, Sweep};
 use crate::report::{CampaignFacts, NominalValue, Phrase, ReportContent, Subject};
@@ -142,7 +142,7 @@ fn undriven(record: &RecordRow) -> RecordRow {
         clearance_m: None,
         sweep: Sweep::Unknown,
         motion: Motion::Undetermined {
-            reason: "no drive".into(),
+            reason: Undetermined::NoDrive,
         },
         impacts: 18,
         ..record.clone()

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use super::contents::{kind, kinds};
-use crate::compare::{BracketRow, Correlation, Unusable};
+use crate::compare::{BracketRow, Correlation, Unusable, UnusableReason};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::messages::examples;
 use crate::identify::{Identification, Method, Reason};
-use crate::motion::Motion;
+use crate::motion::{Motion, Undetermined};
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
 use crate::record::{Role, Sweep};
 use crate::report::{
@@ -109,10 +109,9 @@ fn unlucky() -> ReportContent {
     }
     compared.free_decays = kind("decays").compared.free_decays.clone();
     compared.unusable = vec![Unusable {
-        flag: None,
         channel: None,
         records: vec!["r1".into(), "r2".into()],
-        message: "0.5".into(),
+        reason: UnusableReason::Undetermined(Undetermined::NoDrive),
         differ: true,
     }];
     content.identification.left_out.clear();

@@ -8,7 +8,7 @@ pub(super) use brackets::brackets;
 pub(super) use estimates::{agreement, methods, specimen_methods, specimens};
 pub(super) use records::records;
 
-use crate::compare::Unusable;
+use crate::compare::{Unusable, UnusableReason};
 use crate::identify::Item;
 use crate::record::Sweep;
 use crate::report::content::ReportContent;
@@ -180,15 +180,17 @@ fn first_few(records: &[String]) -> String {
     }
 }
 
-/// Why records are unusable: the flag, then its details in English.
+/// Why records are unusable: the flag, then its details in English, or why the motion is undetermined.
 fn unusable(unusable: &Unusable, locale: Locale<'_>) -> String {
-    let flag = unusable.flag.as_ref();
-    let flag = flag.map_or_else(
-        || locale.translate(Phrase::MotionUndetermined),
-        |flag| locale.message(flag),
-    );
+    let (what, details) = match &unusable.reason {
+        UnusableReason::Flag(code, details) => (locale.message(code), details.clone()),
+        UnusableReason::Undetermined(why) => {
+            let what = locale.translate(Phrase::MotionUndetermined);
+            (what, locale.message(why))
+        }
+    };
     let of = unusable.channel.as_ref().map(|c| format!(" ({c})"));
-    let text = format!("{flag}{}: {}", of.unwrap_or_default(), unusable.message);
+    let text = format!("{what}{}: {details}", of.unwrap_or_default());
     match unusable.records.first().filter(|_| unusable.differ) {
         Some(record) => {
             let values = [("details", text.as_str()), ("record", record.as_str())];
