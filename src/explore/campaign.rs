@@ -188,9 +188,15 @@ impl Campaign {
             cursor: self.first_cursor(scale, view),
             view,
             panel: Panel::Motion,
-            rig: Some(scale),
+            rig: self.has_places().then_some(scale),
             ..first
         }
+    }
+
+    /// Whether any record has a place in the plane: a frequency and a clearance.
+    fn has_places(&self) -> bool {
+        let mut all = self.observed.observations.iter();
+        all.any(|o| o.frequency_hz().is_some() && o.setting.clearance_m.is_some())
     }
 
     /// The surest record with z = 1, else the middle of what is shown.

@@ -170,6 +170,7 @@ pub(super) fn run(state: &State, periods: f64, job: &Job) -> Result<(), Stop> {
     let strobes = (0..).map(|k| first + f64::from(k) * period);
     let strobes: Vec<f64> = strobes.take_while(|t| *t < periods * period).collect();
     let crossed = stretch.sample(strobes);
+    let hits = &stretch.impacts;
     let frame = job
         .frame("run")
         .with("cursor", cursor)
@@ -182,10 +183,10 @@ pub(super) fn run(state: &State, periods: f64, job: &Job) -> Result<(), Stop> {
         .column("vy", states.iter().map(|s| s.vy))
         .column("poincare_x", crossed.iter().map(|s| s.x))
         .column("poincare_vx", crossed.iter().map(|s| s.vx))
-        .column(
-            "impact_periods",
-            stretch.impacts.iter().map(|i| i.tau / period),
-        );
+        .column("impact_periods", hits.iter().map(|i| i.tau / period))
+        .column("impact_x", hits.iter().map(|i| stretch.at(i.tau).x))
+        .column("impact_vx_before", hits.iter().map(|i| i.vx_before))
+        .column("impact_vx_after", hits.iter().map(|i| i.vx_after));
     Ok(job.send(frame)?)
 }
 

@@ -58,9 +58,9 @@ impl Explorer {
         let wait = Some(Duration::from_secs(60));
         stream.set_read_timeout(wait).expect("a limit");
         stream.write_all(head.as_bytes()).expect("it reads");
-        let mut answer = String::new();
-        let _ = stream.read_to_string(&mut answer);
-        answer
+        let mut answer = Vec::new();
+        let _ = stream.read_to_end(&mut answer);
+        String::from_utf8_lossy(&answer).into_owned()
     }
 
     /// GET a path with the right host.
