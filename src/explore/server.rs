@@ -220,10 +220,8 @@ async fn upgrade(
         return (StatusCode::FORBIDDEN, "the request names no origin\n").into_response();
     }
     let offered = socket.requested_protocols();
-    let offered = offered.filter_map(|v| v.to_str().ok()?.strip_prefix(TOKEN_PREFIX));
-    let known = offered
-        .map(|token| same(token, &app.token))
-        .any(|same| same);
+    let mut offered = offered.filter_map(|v| v.to_str().ok()?.strip_prefix(TOKEN_PREFIX));
+    let known = offered.any(|token| same(token, &app.token));
     if !known {
         return (StatusCode::FORBIDDEN, "the token is wrong\n").into_response();
     }

@@ -28,16 +28,23 @@ fn a_frame_is_its_header_then_numbers_then_cells() {
     assert_eq!(&bytes[4 + length + 8..], [3, 4, 5]);
 }
 
+fn on_line(line: Line) -> State {
+    State {
+        panel: Panel::Line,
+        line: Some(line),
+        ..State::default()
+    }
+}
+
 #[test]
 fn a_state_is_the_same_after_writing_and_reading() {
-    let mut state = State::default();
-    state.line = Some(Line {
+    let line = Line {
         eta: (0.1 + 0.2, 1.0),
         rho: (1.0, -1.0 / 3.0),
         steps: 17,
         start: impact_oscillator::Initial::both(0.1, -0.2),
-    });
-    state.panel = Panel::Line;
+    };
+    let state = on_line(line);
     let value = serde_json::to_value(&state).unwrap();
     let text = value.to_string();
     assert_eq!(State::read(value).unwrap(), state);
@@ -116,9 +123,7 @@ fn demos_that_are_wrong_name_the_step() {
 
 #[test]
 fn the_exported_study_opens_as_the_same_state() {
-    let mut state = State::default();
-    state.panel = Panel::Line;
-    state.line = Some(Line {
+    let state = on_line(Line {
         eta: (1.0, 1.2),
         rho: (2.0, 2.0),
         steps: 3,
