@@ -55,7 +55,7 @@ pub struct Compared {
 }
 
 /// Compare a campaign with its fitted model.
-pub fn compare(input: &Input) -> Compared {
+pub fn compare(input: &Input<'_>) -> Compared {
     let chosen = replays::chosen_records(input);
     Compared {
         overview: records::overview(input),

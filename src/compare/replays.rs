@@ -13,6 +13,7 @@ use crate::motion::{Motion, Observation};
 use crate::record::{Record, Role};
 use crate::signal::drift::fitted_line;
 use crate::signal::robust::rms;
+use crate::signal::whole;
 use labfiles::units::Dimension;
 
 /// A sampled signal on its own time axis.
@@ -48,7 +49,7 @@ pub struct Comparison {
     pub record: String,
     /// η, if f0 is known.
     pub eta: Option<f64>,
-    /// ρ, if x_st is known.
+    /// ρ, if `x_st` is known.
     pub rho: Option<f64>,
     /// Drive period, s.
     pub drive_period_s: f64,
@@ -77,7 +78,7 @@ const IRREGULAR_PERIODS: u32 = 10;
 
 /// Indices of the records to compare: those named, else the surest of each type of motion of the
 /// campaign, periodic motions with impacts first.
-pub(super) fn chosen_records(input: &Input) -> Vec<usize> {
+pub(super) fn chosen_records(input: &Input<'_>) -> Vec<usize> {
     let observations = input.observations;
     let find = |name: &String| observations.iter().position(|o| o.record == *name);
     let by_name: Vec<usize> = input.points.iter().filter_map(find).collect();
@@ -109,7 +110,7 @@ fn quality(o: &Observation) -> f64 {
 }
 
 /// The chosen records with letters in their order; none for a record without a drive.
-pub(super) fn comparisons(input: &Input, chosen: &[usize]) -> Vec<Comparison> {
+pub(super) fn comparisons(input: &Input<'_>, chosen: &[usize]) -> Vec<Comparison> {
     let letters: Vec<char> = ('A'..='Z').collect();
     let lettered = chosen.par_iter().zip(letters);
     lettered
@@ -122,7 +123,7 @@ pub(super) fn comparisons(input: &Input, chosen: &[usize]) -> Vec<Comparison> {
 
 /// A record beside its simulation with parameters; `None` without a drive.
 pub(super) fn comparison(
-    input: &Input,
+    input: &Input<'_>,
     o: &Observation,
     record: &Record,
     (letter, parameters): (char, Option<&Parameters>),
@@ -172,8 +173,8 @@ fn stretch(drive: DriveTone, periods: u32) -> Stretch {
 
 /// The samples of a stretch, their time counted from its start.
 fn cut(values: &[f64], rate_hz: f64, stretch: &Stretch) -> Signal {
-    let first = (stretch.start_s * rate_hz).ceil() as usize;
-    let end = ((stretch.start_s + stretch.length_s) * rate_hz).floor() as usize + 1;
+    let first = whole::index((stretch.start_s * rate_hz).ceil());
+    let end = whole::index(((stretch.start_s + stretch.length_s) * rate_hz).floor()) + 1;
     let range = first.min(values.len())..end.min(values.len());
     let time_s = range.clone().map(|i| i as f64 / rate_hz - stretch.start_s);
     Signal {

@@ -233,7 +233,7 @@ impl<'a> RecordMotion<'a> {
         coordinates.iter().map(&mut column).collect()
     }
 
-    /// Slopes over one of the record's own R, ln f0, ln β, ln x_st, clearance in m.
+    /// Slopes over one of the record's own R, ln f0, ln β, ln `x_st`, clearance in m.
     fn over_own(&self, values: &[f64], i: usize) -> Vec<f64> {
         match Coordinate::PHYSICAL.get(i) {
             Some(coordinate) => self.over_coordinate(values, *coordinate),
