@@ -1,7 +1,13 @@
 //! Latencies of the explorer in a real browser: from the key to the picture on the screen.
 //!
 //! `cargo bench --bench explore` (needs chromium). Each row: median and 95 % point of many keys.
-#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic, dead_code)]
+#![allow(
+    clippy::expect_used,
+    clippy::unwrap_used,
+    clippy::panic,
+    dead_code,
+    reason = "a benchmark fails by panicking, and uses a part of what the tests use"
+)]
 
 #[path = "../tests/explore/chromium.rs"]
 mod chromium;

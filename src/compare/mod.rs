@@ -85,7 +85,7 @@ pub struct Placed {
 }
 
 /// Place every record, bracket and boundary; nothing is replayed.
-pub fn placed(input: &Input) -> Placed {
+pub fn placed(input: &Input<'_>) -> Placed {
     Placed {
         records: records::all_records(input),
         brackets: records::brackets(input),
