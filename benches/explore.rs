@@ -101,14 +101,10 @@ fn report(browser: &mut Chromium, what: &str, kind: &str, level: u32) {
         .filter_map(serde_json::Value::as_f64)
         .collect();
     times.sort_by(f64::total_cmp);
-    let at = |share: f64| {
-        let place = (share * times.len().saturating_sub(1) as f64).round() as usize;
+    // the share of the keys in hundredths
+    let at = |share: usize| {
+        let place = (share * times.len().saturating_sub(1) + 50) / 100;
         times.get(place).copied().unwrap_or(f64::NAN)
     };
-    println!(
-        "{what:46} {:9.1} {:9.1} {:6}",
-        at(0.5),
-        at(0.95),
-        times.len()
-    );
+    println!("{what:46} {:9.1} {:9.1} {:6}", at(50), at(95), times.len());
 }
