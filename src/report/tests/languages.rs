@@ -11,7 +11,8 @@ use crate::motion::{Motion, Undetermined};
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
 use crate::record::{Role, Sweep};
 use crate::report::{
-    NominalValue, Phrase, Report, ReportContent, ReportOptions, Subject, catalog, document,
+    DataTable, NominalValue, Phrase, Report, ReportContent, ReportOptions, Subject, catalog,
+    document,
 };
 
 /// A catalog that prints each phrase and each message as its number in brackets, with its values.
@@ -115,6 +116,11 @@ fn unlucky() -> ReportContent {
         differ: true,
     }];
     content.identification.left_out.clear();
+    content.tables = vec![DataTable {
+        caption: Phrase::TablePublished,
+        heads: vec![Phrase::PublishedSpeed.into()],
+        rows: vec![vec!["1".into()]],
+    }];
     content
 }
 
