@@ -97,21 +97,11 @@ pub fn succeeded(attempt: &Option<FitResult>) -> Option<&MethodFit> {
     attempt.as_ref().and_then(|a| a.as_ref().ok())
 }
 
-/// Fit blocks over free coordinates and find the variance factor.
+/// Fit a problem and find the variance factor.
 ///
 /// # Errors
 /// Those of [`Problem::fit`].
-pub fn fit_blocks(
-    blocks: Vec<(&dyn Block, f64)>,
-    free: Vec<Coordinate>,
-    priors: Vec<Prior>,
-    start: Parameters,
-) -> FitResult {
-    let problem = Problem {
-        blocks,
-        priors,
-        free,
-    };
+pub fn fit_blocks(problem: Problem<'_>, start: Parameters) -> FitResult {
     let fit = problem.fit(start)?;
     let informed = problem.free.len().saturating_sub(problem.priors.len());
     let freedom = fit.residuals.saturating_sub(informed);
@@ -137,7 +127,7 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<FitResult> {
         .filter_map(|start| {
             let mut priors = priors.clone();
             priors.extend(wide_priors(&start, &free));
-            fit_blocks(list.to_vec(), free.clone(), priors, start).ok()
+            fit_blocks(blocks.problem(list.to_vec(), free.clone(), priors), start).ok()
         })
         .min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
     let Some(best) = best else {
@@ -146,7 +136,10 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<FitResult> {
     let start = best.fit.parameters;
     let (mut free, mut priors) = (told.clone(), wide_priors(&start, &told));
     blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
-    Some(fit_blocks(list.to_vec(), free, priors, start))
+    Some(fit_blocks(
+        blocks.problem(list.to_vec(), free, priors),
+        start,
+    ))
 }
 
 /// Starting values of the resonance curve: the stated ones, and a coarse grid whose deflection
@@ -212,7 +205,7 @@ pub fn impacts(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<
     let list: Vec<(&dyn Block, f64)> = vec![(&blocks.impact, 1.0)];
     let (mut free, mut priors) = (vec![Coordinate::Restitution], Vec::new());
     blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
-    Some(fit_blocks(list, free, priors, start))
+    Some(fit_blocks(blocks.problem(list, free, priors), start))
 }
 
 /// s2, s1 and grazing brackets, with f0, β and `x_st` from the impactless records beside them.
@@ -230,7 +223,7 @@ pub fn boundaries(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Opti
         list.push((&blocks.resonance, 1.0));
         blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
     }
-    Some(fit_blocks(list, free, priors, start))
+    Some(fit_blocks(blocks.problem(list, free, priors), start))
 }
 
 /// All four parameters from the folded waveforms.
@@ -247,7 +240,7 @@ fn all_four(block: &dyn Block, blocks: &Blocks, nominal: &Nominal, start: Parame
     let mut priors = wide_priors(&start, &free);
     let list = vec![(block, 1.0)];
     blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
-    fit_blocks(list, free, priors, start)
+    fit_blocks(blocks.problem(list, free, priors), start)
 }
 
 /// Variance of what flights tell over that of independent innovations: an impact's errors of time

@@ -9,6 +9,7 @@ use crate::identify::{Estimate, Finding, VerdictKind};
 use crate::report::content::ReportContent;
 use crate::report::locale::Locale;
 use crate::report::parameters::{self, PARAMETERS, ParameterLook};
+use crate::report::phrase::Phrase;
 
 /// Builds the first page.
 pub(super) fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
@@ -50,11 +51,11 @@ fn campaign_headline(content: &ReportContent, locale: Locale<'_>) -> String {
             !content.compared.records.is_empty(),
         )),
         0 => locale.translate_with(
-            "Identified: the model fits each of the {count} specimens",
+            Phrase::IdentifiedEachSpecimen,
             &[("count", &specimens.to_string())],
         ),
         _ => locale.translate_with(
-            "The model fits {some} of the {count} specimens",
+            Phrase::FitsSomeSpecimens,
             &[
                 ("some", &identified.to_string()),
                 ("count", &specimens.to_string()),
