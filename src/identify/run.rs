@@ -15,7 +15,7 @@ use crate::identify::joint::{self, Weights};
 use crate::identify::messages::{Finding, LeftOut, Reason};
 use crate::identify::method::Method;
 use crate::identify::methods::{self, FitResult, succeeded};
-use crate::identify::selection::Selection;
+use crate::identify::selection::{Influential, Selection};
 use crate::identify::uncertainty::budget;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
@@ -160,6 +160,14 @@ struct Fits {
     weights: Weights,
 }
 
+/// The fits that rest on no other.
+struct Alone {
+    resonance: Option<FitResult>,
+    impacts: Option<FitResult>,
+    trajectories: Option<FitResult>,
+    flights: Option<FitResult>,
+}
+
 /// Gaps that may be found wrong before the campaign as a whole is at fault.
 const MOST_ODD_GAPS: usize = 2;
 
@@ -226,13 +234,32 @@ impl IdentificationRun<'_> {
     ) -> Fits {
         let trajectories = self.selection.trajectories(start);
         let start = succeeded(&trajectories).map_or(start, |f| f.fit.parameters);
+        let flights = self.selection.flights(start);
+        self.together(
+            start,
+            Alone {
+                resonance,
+                impacts,
+                trajectories,
+                flights,
+            },
+        )
+    }
+
+    /// Boundaries and all together, beside what the other methods tell alone.
+    fn together(&mut self, start: Parameters, alone: Alone) -> Fits {
+        let Alone {
+            resonance,
+            impacts,
+            trajectories,
+            flights,
+        } = alone;
         let boundaries = self.selection.boundaries(start);
         self.posterior = succeeded(&resonance).and_then(|found| {
             let error = found.fit.error(Coordinate::Deflection)? * found.factor.sqrt();
             let about = found.fit.parameters;
             posterior::of_brackets(&self.selection.blocks.boundary, &about, error.min(0.3))
         });
-        let flights = self.selection.flights(start);
         let weight = |attempt: &Option<FitResult>| succeeded(attempt).map(|f| 1.0 / f.factor);
         // Flights rest on the speeds at impacts; waveforms tell the same better than either.
         let flown = weight(&flights).filter(|_| succeeded(&trajectories).is_none());
@@ -285,14 +312,32 @@ impl IdentificationRun<'_> {
                 break;
             }
             self.selection.leave_out(&influential);
-            let resonance = if influential.resonance.is_empty() {
-                fits.resonance
-            } else {
-                methods::resonance(&self.selection.blocks, &self.evidence.nominal)
-            };
-            fits = self.fits(start, resonance, fits.impacts);
+            fits = self.fitted_again(start, fits, &influential);
         }
         fits
+    }
+
+    /// The fits after influential records were left out, from a start near the optimum.
+    fn fitted_again(&mut self, start: Parameters, fits: Fits, gone: &Influential) -> Fits {
+        let (blocks, nominal) = (&self.selection.blocks, &self.evidence.nominal);
+        let resonance = match gone.resonance.is_empty() {
+            true => fits.resonance,
+            false => methods::resonance_from(blocks, nominal, start),
+        };
+        let trajectories = match gone.trajectory.is_empty() {
+            true => fits.trajectories,
+            false => methods::trajectories(blocks, nominal, start),
+        };
+        let start = succeeded(&trajectories).map_or(start, |f| f.fit.parameters);
+        self.together(
+            start,
+            Alone {
+                resonance,
+                impacts: fits.impacts,
+                trajectories,
+                flights: fits.flights,
+            },
+        )
     }
 
     /// All blocks in one fit, each with its weight; those without one stay out.

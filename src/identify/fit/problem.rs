@@ -39,7 +39,7 @@ pub struct Problem<'a> {
 /// Least orthogonal share of a column of slopes: differences do not resolve less.
 const LEAST_SHARE: f64 = 1e-8;
 const LIMITS: Limits = Limits {
-    negligible: 1e-4,
+    negligible: 1e-3,
     variance: Variance::Unit,
     damping: 1e-4,
     iterations: 60,
