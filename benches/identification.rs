@@ -62,7 +62,7 @@ fn main() -> Result<(), ModelError> {
     Ok(())
 }
 
-fn time(evidence: &Evidence) -> f64 {
+fn time(evidence: &Evidence<'_>) -> f64 {
     let start = Instant::now();
     let outcome = identify(evidence);
     let seconds = start.elapsed().as_secs_f64();

@@ -28,4 +28,6 @@ pub mod campaign;
 
 pub mod pipeline;
 
+pub mod explore;
+
 pub mod cli;

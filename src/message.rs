@@ -61,9 +61,9 @@ pub enum Value<'a> {
     /// Another message.
     Message(&'a dyn Message),
     /// Several values, separated by commas.
-    List(Vec<Value<'a>>),
+    List(Vec<Self>),
     /// Several sentences.
-    Sentences(Vec<Value<'a>>),
+    Sentences(Vec<Self>),
 }
 
 /// How the values of a message are printed.

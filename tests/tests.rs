@@ -1,11 +1,11 @@
 //! The one integration binary: each module is a subject.
 
-// a test fails by panicking, and a table of cases is as long as it has cases
 #![allow(
     clippy::expect_used,
     clippy::unwrap_used,
     clippy::panic,
-    clippy::too_many_lines
+    clippy::too_many_lines,
+    reason = "a test fails by panicking, and a table of cases is as long as it has cases"
 )]
 
 /// A small laboratory in a temporary folder: a good campaign that tests spoil.
@@ -20,6 +20,9 @@ mod broken_runs;
 
 /// The verbs: help, exit codes, quiet and verbose, what they write and what they leave alone.
 mod command_line;
+
+/// The explorer: protocol, defences, campaigns, the page in a browser.
+mod explore;
 
 /// What record files hold and how they are written anew.
 mod formats;

@@ -60,7 +60,7 @@ pub struct NominalValues {
     pub natural_frequency_hz: Option<f64>,
     /// Damping ratio β.
     pub damping_ratio: Option<f64>,
-    /// Static deflection x_st, m.
+    /// Static deflection `x_st`, m.
     pub static_deflection_m: Option<f64>,
     /// Coefficient of restitution R.
     pub restitution: Option<f64>,

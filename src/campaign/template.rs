@@ -180,7 +180,7 @@ fn table(text: &mut String, role: Role, channel: &InferredChannel) -> std::fmt::
     match (known, unit.and_then(units::symbol_of)) {
         (Some(_), _) => writeln!(text, "# unit = as the file states")?,
         (None, Some(symbol)) => {
-            writeln!(text, "unit = \"{symbol}\"                 # from its name")?
+            writeln!(text, "unit = \"{symbol}\"                 # from its name")?;
         }
         (None, None) => writeln!(
             text,

@@ -124,7 +124,7 @@ pub struct Rig {
     pub natural_frequency: Placed<Quantity>,
     /// Damping ratio β.
     pub damping_ratio: Placed<Quantity>,
-    /// Static deflection x_st = F0/k.
+    /// Static deflection `x_st` = F0/k.
     pub static_deflection: Placed<Quantity>,
     /// Coefficient of restitution R.
     pub restitution: Placed<Quantity>,
@@ -147,7 +147,7 @@ pub struct Rig {
 /// `[channels]`: one table a role.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-#[allow(missing_docs)] // the roles are documented at `record::Role`
+#[allow(missing_docs, reason = "the roles are documented at `record::Role`")]
 pub struct Channels {
     pub drive: Placed<Channel>,
     pub contact: Placed<Channel>,

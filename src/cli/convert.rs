@@ -25,7 +25,7 @@ pub(super) struct Convert {
     /// Store numbers in single precision
     #[arg(long)]
     single: bool,
-    /// Attribute for every record, with the unit in its name: clearance_m=0.0005
+    /// Attribute for every record, with the unit in its name: `clearance_m=0.0005`
     #[arg(long, value_name = "NAME=VALUE", value_parser = name_and_value)]
     set: Vec<(String, String)>,
 }

@@ -170,7 +170,7 @@ fn rendered(message: &str, remedy: &str, severity: Severity) -> String {
     }
 }
 
-/// Colours on a terminal that wants them, none elsewhere or with NO_COLOR.
+/// Colours on a terminal that wants them, none elsewhere or with `NO_COLOR`.
 fn theme() -> GraphicalTheme {
     use std::io::IsTerminal;
     let plain = std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty());

@@ -43,7 +43,10 @@ pub(super) fn watch(folder: PathBuf) {
              (with --resume, if it has that option, it continues).",
             folder.display()
         );
-        #[allow(clippy::exit)] // the working threads need not be waited for: outputs are whole
+        #[expect(
+            clippy::exit,
+            reason = "the working threads need not be waited for: outputs are whole"
+        )]
         std::process::exit(INTERRUPTED);
     });
 }

@@ -9,6 +9,7 @@ mod convert;
 mod coverage;
 mod details;
 mod exit;
+mod explore;
 mod failure;
 mod init;
 mod inspect;
@@ -99,6 +100,8 @@ enum Command {
     Report(stage::Report),
     /// Propose the settings to measure next
     Plan(plan::Plan),
+    /// Explore regions, motions and a campaign live in the browser
+    Explore(explore::Explore),
     /// List the channels of record files: units, rates, ranges
     Inspect(inspect::Inspect),
     /// Convert record files to HDF5, Parquet or CSV
@@ -136,6 +139,7 @@ impl Command {
             Self::Identify(command) => command.run(verbosity),
             Self::Report(command) => command.run(verbosity),
             Self::Plan(command) => command.run(verbosity),
+            Self::Explore(command) => command.run(verbosity),
             Self::Inspect(command) => command.run(verbosity),
             Self::Convert(command) => command.run(verbosity),
             Self::Atlas(command) => command.run(verbosity),

@@ -160,7 +160,7 @@ pub(super) struct Campaign {
     /// Natural frequency f0, Hz
     #[arg(long, value_name = "F", default_value_t = 12.6, value_parser = frequency)]
     pub natural_frequency_hz: f64,
-    /// Static deflection x_st = F0/k, m
+    /// Static deflection `x_st` = F0/k, m
     #[arg(long, value_name = "X", default_value_t = 1e-3, value_parser = deflection)]
     pub static_deflection_m: f64,
     /// Number of records; the usual grid of frequencies and gaps where it is not given

@@ -1,5 +1,7 @@
 //! A small curve of a signal in characters.
 
+use crate::signal::whole;
+
 /// Bits of the eight dots of a braille character, by column and row from the top.
 const DOTS: [[u32; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
 /// The braille character without dots.
@@ -25,7 +27,7 @@ pub(super) fn sparkline(values: &[f64], width: usize, height: usize) -> Vec<Stri
         } else {
             0.5
         };
-        rows - 1 - (share * (rows - 1) as f64).round() as usize
+        rows - 1 - whole::index((share * (rows - 1) as f64).round())
     };
     let mut before: Option<f64> = None;
     for column in 0..columns {

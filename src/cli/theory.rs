@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::{Exit, Failure, Progress, Verbosity, interrupt};
 use crate::pipeline::theory::block_cache::BlockCache;
-use crate::pipeline::theory::{Study, StudyContext, StudyError, run};
+use crate::pipeline::theory::{Pictures, Study, StudyContext, StudyError, run};
 use labfiles::output::{Lock, write_bytes};
 
 /// Where results go.
@@ -105,7 +105,8 @@ pub(super) fn in_folder(
     let progress = Progress::new(verbosity, what, 1);
     let messages = Mutex::new(Vec::new());
     let done = work(&StudyContext {
-        folder,
+        output: &|name, bytes| write_bytes(&folder.join(name), bytes),
+        pictures: Pictures::All,
         blocks: &blocks,
         progress: &|done, all| progress.set(done, all),
         inform: &|text| {

@@ -8,6 +8,7 @@ use crate::identify::Reason;
 use crate::motion::Observation;
 use crate::record::{Channel, Record};
 use crate::signal::decay::Decay;
+use crate::signal::whole;
 use labfiles::units::Dimension;
 
 /// A free decay with its fit.
@@ -59,7 +60,7 @@ fn shown(observations: &[Observation]) -> Vec<usize> {
     shown
 }
 
-pub(super) fn free_decays(input: &Input) -> Vec<FreeDecay> {
+pub(super) fn free_decays(input: &Input<'_>) -> Vec<FreeDecay> {
     let reasons = input.record_reasons();
     let records = shown(input.observations).into_iter();
     let decays = records.filter_map(|i| {
@@ -69,7 +70,12 @@ pub(super) fn free_decays(input: &Input) -> Vec<FreeDecay> {
     decays.collect()
 }
 
-fn free_decay(o: &Observation, record: &Record, reason: Option<&Reason>) -> Option<FreeDecay> {
+/// A record's free decay beside its fit; `None` of one that has none.
+pub(super) fn free_decay(
+    o: &Observation,
+    record: &Record,
+    reason: Option<&Reason>,
+) -> Option<FreeDecay> {
     let decay = o.decay?;
     let fitted = decay.values(record.sample_rate_hz);
     let long_enough = |c: &&Channel| c.values.len() >= decay.first + decay.samples;
@@ -81,7 +87,7 @@ fn free_decay(o: &Observation, record: &Record, reason: Option<&Reason>) -> Opti
             unexplained(a, &decay, &fitted).total_cmp(&unexplained(b, &decay, &fitted))
         })?;
     // the blow itself would dwarf what was fitted
-    let before = (SHOWN_BEFORE_S * record.sample_rate_hz) as usize;
+    let before = whole::index(SHOWN_BEFORE_S * record.sample_rate_hz);
     let first = decay.first.saturating_sub(before);
     Some(FreeDecay {
         record: o.record.clone(),

@@ -123,13 +123,13 @@ const MOST_RESIDUALS: usize = 4000;
 const MOST_POINTS: usize = 20_000;
 
 /// Resonance curves of the channels that have one, velocities first.
-pub(super) fn resonance(input: &Input) -> Vec<ResonanceCurve> {
+pub(super) fn resonance(input: &Input<'_>) -> Vec<ResonanceCurve> {
     let roles = Role::ALL.into_iter().filter(|r| r.is_motion());
     let curves = roles.filter_map(|role| curve(input, role));
     curves.take(MOST_CURVES).collect()
 }
 
-fn curve(input: &Input, role: Role) -> Option<ResonanceCurve> {
+fn curve(input: &Input<'_>, role: Role) -> Option<ResonanceCurve> {
     let left_out = input.record_reasons();
     let observations = input.observations.iter().enumerate();
     let points = observations.filter_map(|(i, o)| {
@@ -164,7 +164,7 @@ fn point(o: &Observation, response: &Response, used: bool) -> ResonancePoint {
     }
 }
 
-fn fitted(input: &Input, role: Role, points: &[ResonancePoint]) -> Vec<[f64; 3]> {
+fn fitted(input: &Input<'_>, role: Role, points: &[ResonancePoint]) -> Vec<[f64; 3]> {
     let (Some(parameters), Some(first), Some(last)) =
         (input.parameters(), points.first(), points.last())
     else {
@@ -190,7 +190,7 @@ fn evidence<'a>(input: &Input<'a>) -> Evidence<'a> {
 }
 
 /// Speeds before and after impact; each specimen by itself if there are several.
-pub(super) fn impacts(input: &Input) -> Vec<ImpactScatter> {
+pub(super) fn impacts(input: &Input<'_>) -> Vec<ImpactScatter> {
     let block = Blocks::new(&evidence(input)).impact;
     let specimens = &input.identification.specimens;
     if specimens.is_empty() {
@@ -215,7 +215,7 @@ pub(super) fn impacts(input: &Input) -> Vec<ImpactScatter> {
 }
 
 fn scatter(
-    input: &Input,
+    input: &Input<'_>,
     specimen: Option<&String>,
     pairs: &[&SpeedPair],
     method: Option<&MethodResult>,
@@ -246,7 +246,7 @@ fn law_curve(method: &MethodResult) -> Vec<[f64; 2]> {
 }
 
 /// The residuals of each method at the fitted parameters.
-pub(super) fn residuals(input: &Input) -> Vec<ResidualSet> {
+pub(super) fn residuals(input: &Input<'_>) -> Vec<ResidualSet> {
     let Some(parameters) = input.parameters() else {
         return Vec::new();
     };
@@ -256,7 +256,7 @@ pub(super) fn residuals(input: &Input) -> Vec<ResidualSet> {
     found.into_iter().map(|m| residual_set(input, m)).collect()
 }
 
-fn residual_set(input: &Input, found: MethodResiduals) -> ResidualSet {
+fn residual_set(input: &Input<'_>, found: MethodResiduals) -> ResidualSet {
     let point = |(owner, residual): &(usize, f64)| {
         let o = &input.observations[*owner];
         ResidualPoint {
@@ -276,7 +276,7 @@ fn residual_set(input: &Input, found: MethodResiduals) -> ResidualSet {
 }
 
 /// Correlation of the parameters that were fitted together.
-pub(super) fn correlation(input: &Input) -> Option<Correlation> {
+pub(super) fn correlation(input: &Input<'_>) -> Option<Correlation> {
     let fit = &input.identification.joint_fit.as_ref()?.fit;
     let between = |a, b| fit.correlation(a, b).unwrap_or(0.0);
     let row = |a| fit.free.iter().map(|b| between(a, *b)).collect();

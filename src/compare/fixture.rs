@@ -21,7 +21,7 @@ pub(crate) struct Identified {
     pub(crate) compared: Compared,
 }
 
-/// The paper's setting: R = 0.9, f0 = 12.6 Hz, β = 0.07, x_st = 1.25 mm, two gaps up and down.
+/// The paper's setting: R = 0.9, f0 = 12.6 Hz, β = 0.07, `x_st` = 1.25 mm, two gaps up and down.
 pub(crate) fn whole() -> &'static Identified {
     static CAMPAIGN: OnceLock<Identified> = OnceLock::new();
     CAMPAIGN.get_or_init(|| identified(&laboratory(), RigKind::Double))

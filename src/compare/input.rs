@@ -53,15 +53,17 @@ impl<'a> Input<'a> {
 
     /// η and ρ of a record's setting with the fitted parameters, as far as they are known.
     pub(super) fn place(&self, o: &Observation) -> (Option<f64>, Option<f64>) {
-        let Some(parameters) = self.parameters() else {
-            return (None, None);
-        };
-        let eta = o
-            .frequency_hz()
-            .map(|f| f / parameters.natural_frequency_hz);
-        let scale = parameters.static_deflection_m * o.setting.drive_amplitude;
-        (eta, o.setting.clearance_m.map(|c| c / scale))
+        self.parameters().map_or((None, None), |p| place(p, o))
     }
+}
+
+/// η and ρ of a record's setting with parameters, as far as they are known.
+pub(super) fn place(parameters: &Parameters, o: &Observation) -> (Option<f64>, Option<f64>) {
+    let eta = o
+        .frequency_hz()
+        .map(|f| f / parameters.natural_frequency_hz);
+    let scale = parameters.static_deflection_m * o.setting.drive_amplitude;
+    (eta, o.setting.clearance_m.map(|c| c / scale))
 }
 
 /// Every second, third … of points that are more than `most`.

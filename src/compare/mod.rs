@@ -11,6 +11,7 @@ mod left_out;
 mod plane;
 mod records;
 mod replays;
+mod single;
 
 pub use decays::FreeDecay;
 pub use evidence::{
@@ -22,6 +23,7 @@ pub use left_out::Unusable;
 pub use plane::{BoundaryCurve, RegionMap};
 pub use records::{BracketRow, Overview, RecordRow};
 pub use replays::{Comparison, Signal, Trace};
+pub use single::{Beside, WhyNot, beside};
 
 /// The fitted model and the measurement, side by side. All quantities are SI; every list may be empty.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -53,7 +55,7 @@ pub struct Compared {
 }
 
 /// Compare a campaign with its fitted model.
-pub fn compare(input: &Input) -> Compared {
+pub fn compare(input: &Input<'_>) -> Compared {
     let chosen = replays::chosen_records(input);
     Compared {
         overview: records::overview(input),
@@ -68,6 +70,26 @@ pub fn compare(input: &Input) -> Compared {
         residuals: evidence::residuals(input),
         correlation: evidence::correlation(input),
         unusable: left_out::unusable(input.observations),
+    }
+}
+
+/// Where a campaign's records, brackets and fitted boundaries are in the (η, ρ) plane.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Placed {
+    /// One row per record.
+    pub records: Vec<RecordRow>,
+    /// Measured brackets of the boundaries.
+    pub brackets: Vec<BracketRow>,
+    /// Simulated boundaries with their 95 % bands.
+    pub curves: Vec<BoundaryCurve>,
+}
+
+/// Place every record, bracket and boundary; nothing is replayed.
+pub fn placed(input: &Input) -> Placed {
+    Placed {
+        records: records::all_records(input),
+        brackets: records::brackets(input),
+        curves: plane::curves(input),
     }
 }
 

@@ -35,7 +35,7 @@ pub struct RegionMap {
     pub y: Vec<f64>,
     /// The motions that occur; `cells` are indices into it.
     pub motions: Vec<Motion>,
-    /// Motion of each cell, row by row: that of (x_i, y_j) at j · x.len() + i.
+    /// Motion of each cell, row by row: that of (`x_i`, `y_j`) at j · `x.len()` + i.
     pub cells: Vec<u16>,
     /// The same from other initial conditions: a difference means hysteresis. May be empty.
     pub second: Vec<u16>,
@@ -61,10 +61,12 @@ impl RegionMap {
 fn indices(motions: &[Motion], known: &mut Vec<Motion>) -> Vec<u16> {
     let index = |motion: &Motion| {
         let found = known.iter().position(|m| m == motion);
-        found.unwrap_or_else(|| {
+        let index = found.unwrap_or_else(|| {
             known.push(motion.clone());
             known.len() - 1
-        }) as u16
+        });
+        // a map has fewer cells than a u16 counts
+        u16::try_from(index).unwrap_or(u16::MAX)
     };
     motions.iter().map(index).collect()
 }
@@ -119,7 +121,7 @@ impl View {
 
 /// The fitted machine without its asymmetry, as the paper draws the plane, and the part that is
 /// shown; `None` without a fitted R, which the regions of impact motion need.
-fn plane(input: &Input) -> Option<(Machine, View)> {
+fn plane(input: &Input<'_>) -> Option<(Machine, View)> {
     let fit = &input.identification.joint_fit.as_ref()?.fit;
     let fitted = &fit.parameters;
     if !fitted.in_range() || !fit.free.contains(&Coordinate::Restitution) {
@@ -136,7 +138,7 @@ fn plane(input: &Input) -> Option<(Machine, View)> {
 }
 
 /// s2 and s1 of z = 1/n and the grazing boundary, each with its 95 % band.
-pub(super) fn curves(input: &Input) -> Vec<BoundaryCurve> {
+pub(super) fn curves(input: &Input<'_>) -> Vec<BoundaryCurve> {
     let joint = input.identification.joint_fit.as_ref();
     let (Some((machine, view)), Some(joint)) = (plane(input), joint) else {
         return Vec::new();
@@ -200,7 +202,7 @@ fn band(
 
 /// Regions of motion: each cell from rest, and the other motion that exists beside it: from a lively
 /// start, else a stable z = 1/n in closed form.
-pub(super) fn region_map(input: &Input) -> Option<RegionMap> {
+pub(super) fn region_map(input: &Input<'_>) -> Option<RegionMap> {
     let (machine, view) = plane(input)?;
     let grid = MapGrid::even(
         (view.eta.0, view.eta.1, MAP.0),
@@ -286,7 +288,7 @@ mod tests {
         assert!((view.rho.0 - 1.5).abs() < 1e-12 && (view.rho.1 - 2.4).abs() < 1e-12);
     }
 
-    /// ρ_s2(1.1) = 6.351142, ρ_s2(1.6) = 1.812702 and ρ_s1(0.9) = 1.760461 of R = 0.9, β = 0.07,
+    /// `ρ_s2(1.1)` = 6.351142, `ρ_s2(1.6)` = 1.812702 and `ρ_s1(0.9)` = 1.760461 of R = 0.9, β = 0.07,
     /// from an independent program in Python.
     #[test]
     fn valid_boundaries_are_the_published_ones() {

@@ -26,7 +26,7 @@ pub struct Overview {
     pub clearances_m: Vec<f64>,
 }
 
-pub(super) fn overview(input: &Input) -> Overview {
+pub(super) fn overview(input: &Input<'_>) -> Overview {
     let all = input.observations;
     let frequencies = || all.iter().filter_map(|o| Some(o.drive?.frequency_hz));
     let mut clearances: Vec<f64> = all.iter().filter_map(|o| o.setting.clearance_m).collect();
@@ -54,7 +54,7 @@ pub(super) fn overview(input: &Input) -> Overview {
 pub struct RecordRow {
     /// The record's name.
     pub id: String,
-    /// RigKind, mass or bumper, if the campaign has several.
+    /// `RigKind`, mass or bumper, if the campaign has several.
     pub specimen: Option<String>,
     /// Measured drive frequency, Hz; `None` without a drive.
     pub frequency_hz: Option<f64>,
@@ -62,7 +62,7 @@ pub struct RecordRow {
     pub eta: Option<f64>,
     /// Clearance r, m.
     pub clearance_m: Option<f64>,
-    /// ρ = r/x_st, if x_st is known.
+    /// ρ = `r/x_st`, if `x_st` is known.
     pub rho: Option<f64>,
     /// Direction of the sweep.
     pub sweep: Sweep,
@@ -86,7 +86,7 @@ pub struct RecordRow {
 /// among them.
 const MOST_RECORDS: usize = 6_000;
 
-pub(super) fn records(input: &Input, chosen: &[usize]) -> Vec<RecordRow> {
+pub(super) fn records(input: &Input<'_>, chosen: &[usize]) -> Vec<RecordRow> {
     let reasons = input.record_reasons();
     let all = input.observations;
     let stride = all.len().div_ceil(MOST_RECORDS).max(1);
@@ -97,7 +97,14 @@ pub(super) fn records(input: &Input, chosen: &[usize]) -> Vec<RecordRow> {
         .collect()
 }
 
-fn record(input: &Input, index: usize, reason: Option<&Reason>) -> RecordRow {
+/// Every record, however many.
+pub(super) fn all_records(input: &Input<'_>) -> Vec<RecordRow> {
+    let reasons = input.record_reasons();
+    let row = |i| record(input, i, reasons.get(&i).copied());
+    (0..input.observations.len()).map(row).collect()
+}
+
+fn record(input: &Input<'_>, index: usize, reason: Option<&Reason>) -> RecordRow {
     let o = &input.observations[index];
     let (eta, rho) = input.place(o);
     let excluding = o.flags.iter().find(|f| f.excludes);
@@ -128,7 +135,7 @@ pub struct BracketRow {
     pub motion: Motion,
     /// Clearance r, m.
     pub clearance_m: f64,
-    /// ρ, if x_st is known.
+    /// ρ, if `x_st` is known.
     pub rho: Option<f64>,
     /// Drive frequency of the record on the low side, Hz.
     pub frequency_low_hz: f64,
@@ -144,14 +151,14 @@ pub struct BracketRow {
     pub left_out: Option<Reason>,
 }
 
-pub(super) fn brackets(input: &Input) -> Vec<BracketRow> {
+pub(super) fn brackets(input: &Input<'_>) -> Vec<BracketRow> {
     let reasons = input.bracket_reasons();
     let brackets = input.brackets.iter().enumerate();
     let row = |(i, b)| bracket(input, b, reasons.get(&i).copied());
     brackets.map(row).collect()
 }
 
-fn bracket(input: &Input, b: &Bracket, reason: Option<&Reason>) -> BracketRow {
+fn bracket(input: &Input<'_>, b: &Bracket, reason: Option<&Reason>) -> BracketRow {
     let parameters = input.parameters();
     let ends = [b.frequency_low_hz, b.frequency_high_hz];
     let closed_form = matches!(b.kind, BoundaryKind::SaddleNode | BoundaryKind::Grazing);

@@ -4,14 +4,16 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::input::Input;
+use super::input::{Input, place};
 use crate::event::DetectSettings;
 use crate::event::{Detection, DriveTone, detect};
+use crate::identify::fit::parameters::Parameters;
 use crate::identify::replay::{Replay, Stretch};
 use crate::motion::{Motion, Observation};
 use crate::record::{Record, Role};
 use crate::signal::drift::fitted_line;
 use crate::signal::robust::rms;
+use crate::signal::whole;
 use labfiles::units::Dimension;
 
 /// A sampled signal on its own time axis.
@@ -47,7 +49,7 @@ pub struct Comparison {
     pub record: String,
     /// η, if f0 is known.
     pub eta: Option<f64>,
-    /// ρ, if x_st is known.
+    /// ρ, if `x_st` is known.
     pub rho: Option<f64>,
     /// Drive period, s.
     pub drive_period_s: f64,
@@ -76,7 +78,7 @@ const IRREGULAR_PERIODS: u32 = 10;
 
 /// Indices of the records to compare: those named, else the surest of each type of motion of the
 /// campaign, periodic motions with impacts first.
-pub(super) fn chosen_records(input: &Input) -> Vec<usize> {
+pub(super) fn chosen_records(input: &Input<'_>) -> Vec<usize> {
     let observations = input.observations;
     let find = |name: &String| observations.iter().position(|o| o.record == *name);
     let by_name: Vec<usize> = input.points.iter().filter_map(find).collect();
@@ -108,17 +110,24 @@ fn quality(o: &Observation) -> f64 {
 }
 
 /// The chosen records with letters in their order; none for a record without a drive.
-pub(super) fn comparisons(input: &Input, chosen: &[usize]) -> Vec<Comparison> {
+pub(super) fn comparisons(input: &Input<'_>, chosen: &[usize]) -> Vec<Comparison> {
     let letters: Vec<char> = ('A'..='Z').collect();
     let lettered = chosen.par_iter().zip(letters);
     lettered
         .filter_map(|(i, letter)| {
-            comparison(input, &input.observations[*i], &(input.read)(*i)?, letter)
+            let o = &input.observations[*i];
+            comparison(input, o, &(input.read)(*i)?, (letter, input.parameters()))
         })
         .collect()
 }
 
-fn comparison(input: &Input, o: &Observation, record: &Record, letter: char) -> Option<Comparison> {
+/// A record beside its simulation with parameters; `None` without a drive.
+pub(super) fn comparison(
+    input: &Input<'_>,
+    o: &Observation,
+    record: &Record,
+    (letter, parameters): (char, Option<&Parameters>),
+) -> Option<Comparison> {
     let drive = o.drive?;
     let detection = detect(record, input.rig, &DetectSettings::default());
     let periods = match o.classification.motion {
@@ -127,10 +136,8 @@ fn comparison(input: &Input, o: &Observation, record: &Record, letter: char) -> 
         _ => IRREGULAR_PERIODS,
     };
     let stretch = stretch(drive, periods);
-    let simulation = input
-        .parameters()
-        .and_then(|fitted| Replay::of(input.rig, *fitted, o, &stretch));
-    let (eta, rho) = input.place(o);
+    let simulation = parameters.and_then(|p| Replay::of(input.rig, *p, o, &stretch));
+    let (eta, rho) = parameters.map_or((None, None), |p| place(p, o));
     let traces = traces(record, &detection, &stretch, simulation.as_ref());
     let motion = &o.classification.motion;
     let simulated_motion = simulation.as_ref().map(|s| {
@@ -166,8 +173,8 @@ fn stretch(drive: DriveTone, periods: u32) -> Stretch {
 
 /// The samples of a stretch, their time counted from its start.
 fn cut(values: &[f64], rate_hz: f64, stretch: &Stretch) -> Signal {
-    let first = (stretch.start_s * rate_hz).ceil() as usize;
-    let end = ((stretch.start_s + stretch.length_s) * rate_hz).floor() as usize + 1;
+    let first = whole::index((stretch.start_s * rate_hz).ceil());
+    let end = whole::index(((stretch.start_s + stretch.length_s) * rate_hz).floor()) + 1;
     let range = first.min(values.len())..end.min(values.len());
     let time_s = range.clone().map(|i| i as f64 / rate_hz - stretch.start_s);
     Signal {

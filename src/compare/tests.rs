@@ -43,7 +43,7 @@ fn simulated_impacts_are_where_the_measured_ones_are() {
     }
 }
 
-/// The saddle-node boundary of the truth, ρ_s2(1.6) = 1.812702, is within the band or near it.
+/// The saddle-node boundary of the truth, `ρ_s2(1.6)` = 1.812702, is within the band or near it.
 #[test]
 fn the_simulated_boundary_is_that_of_the_truth() {
     let curves = &whole().compared.curves;

@@ -1,7 +1,7 @@
 //! Effect of the corner of an integrator's high-pass on the speeds at impacts.
 //!
-//! With the corner ω_c(1 + ε) in place of the stated ω_c, undoing the high-pass leaves the velocity
-//! short by ε ω_c times the displacement (minus its mean, which such a channel does not contain). At
+//! With the corner `ω_c(1` + ε) in place of the stated `ω_c`, undoing the high-pass leaves the velocity
+//! short by ε `ω_c` times the displacement (minus its mean, which such a channel does not contain). At
 //! impacts the displacement is far from its mean, and both speeds are off by the same amount.
 
 use crate::event::impact::CornerShift;
@@ -45,7 +45,7 @@ impl Shifts {
     }
 }
 
-/// ω_c times the displacement by integration, in steps of a time.
+/// `ω_c` times the displacement by integration, in steps of a time.
 fn shift(body: &Body, step_s: f64) -> Option<Shift> {
     let velocity = body.velocity.as_ref()?;
     let corner_hz = velocity.high_pass_hz.filter(|c| *c > 0.0)?;

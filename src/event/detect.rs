@@ -10,6 +10,7 @@ use crate::event::refine::{self, ArcFit, Candidate, Instant};
 use crate::event::{bounce, drift, impact_speeds};
 use crate::record::{Flag, FlagCode, Record, Role};
 use crate::signal::robust;
+use crate::signal::whole;
 
 /// Forces on a body between impacts, as far as the detection depends on them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -168,12 +169,12 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
 }
 
 fn samples_of(time_s: f64, rate_hz: f64) -> usize {
-    (time_s * rate_hz).round() as usize
+    whole::index((time_s * rate_hz).round())
 }
 
 fn window_samples(drive: Option<&DriveTone>, rate_hz: f64, periods: f64) -> usize {
     match drive {
-        Some(d) => ((periods * rate_hz / d.frequency_hz).round() as usize).clamp(4, 16),
+        Some(d) => whole::index((periods * rate_hz / d.frequency_hz).round()).clamp(4, 16),
         None => 5,
     }
 }
@@ -263,7 +264,7 @@ struct Fused {
 fn bounces(velocity: &Series) -> Fused {
     let candidates = bounce::find(velocity);
     let gaps: Vec<f64> = candidates.iter().map(|c| c.jump.gap as f64).collect();
-    let jump_samples = robust::median(&gaps).map_or(1, |g| g.round() as usize);
+    let jump_samples = robust::median(&gaps).map_or(1, |g| whole::index(g.round()));
     Fused {
         candidates,
         jump_samples,

@@ -4,6 +4,7 @@
 use crate::event::drive::DriveTone;
 use crate::event::kinematics::Series;
 use crate::signal::interpolation::interpolate;
+use crate::signal::whole;
 use crate::signal::{drift, robust};
 
 /// Remove the offset (and the ramp, if a high-pass was undone) of an approach velocity.
@@ -43,8 +44,8 @@ fn arc_offsets(values: &[f64], times: &[f64]) -> Vec<(f64, f64, f64)> {
 ///
 /// No sample outside the interval enters, so a jump at its ends does no harm.
 pub(super) fn integral(values: &[f64], from: f64, to: f64) -> Option<f64> {
-    let first = from.ceil().max(0.0) as usize;
-    let last = to.floor() as usize;
+    let first = whole::index(from.ceil().max(0.0));
+    let last = whole::index(to.floor());
     if last >= values.len() || first + 1 >= last {
         return None;
     }

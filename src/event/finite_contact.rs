@@ -16,6 +16,7 @@ use crate::event::jumps::Jump;
 use crate::event::kinematics::Kinematics;
 use crate::event::refine::{ArcFit, Candidate, Instant, arcs, instants};
 use crate::signal::robust;
+use crate::signal::whole;
 
 /// Fewest impacts that show how long they last.
 const FEWEST: usize = 5;
@@ -138,8 +139,8 @@ impl FiniteContact {
             let mut spanned = c.clone();
             spanned.jump = Jump {
                 // Both are small whole numbers.
-                left: left as usize,
-                gap: (right - left) as usize,
+                left: whole::index(left),
+                gap: whole::index(right - left),
                 ..c.jump
             };
             spanned

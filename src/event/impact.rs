@@ -20,9 +20,9 @@ impl DetectionSource {
     /// The name in tables.
     pub fn name(self) -> &'static str {
         match self {
-            DetectionSource::Contact => "contact",
-            DetectionSource::Velocity => "velocity",
-            DetectionSource::Both => "both",
+            Self::Contact => "contact",
+            Self::Velocity => "velocity",
+            Self::Both => "both",
         }
     }
 }

@@ -4,6 +4,7 @@
 use crate::event::kinematics::Series;
 use crate::signal::local_fit::LocalFit;
 use crate::signal::robust;
+use crate::signal::whole;
 
 /// Significance (in standard errors) above which a jump counts by itself.
 const SIGNIFICANT: f64 = 6.0;
@@ -97,7 +98,7 @@ impl<'a> JumpSearch<'a> {
         gaps.sort_by(f64::total_cmp);
         // A contact that lasts about as long as a step takes one step or two, by where it falls.
         gaps.get(gaps.len() * 3 / 4)
-            .map_or(1, |g| (*g as usize).clamp(1, self.window))
+            .map_or(1, |g| whole::index(*g).clamp(1, self.window))
     }
 
     /// Samples of the steep stretch around a jump: steps that exceed the flight's own slope beside

@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::record::{Record, Role};
+use crate::signal::whole;
 use crate::signal::{drift, robust};
 
 /// Kind of rig.
@@ -33,7 +34,7 @@ pub struct Series {
 impl Series {
     /// Correct the undoing of the high-pass for a jump between two samples.
     ///
-    /// The integral ω_c ∫ y dt was taken by trapezoids, as if the jump were in the middle of its
+    /// The integral `ω_c` ∫ y dt was taken by trapezoids, as if the jump were in the middle of its
     /// interval; for a jump at a fraction u of the interval the area differs by
     /// (before − after)(u − ½) steps.
     pub fn correct_jump(&mut self, time_steps: f64, before: f64, after: f64, rate_hz: f64) {
@@ -43,7 +44,7 @@ impl Series {
         let left = time_steps.floor();
         let area = (before - after) * (time_steps - left - 0.5) / rate_hz;
         let step = std::f64::consts::TAU * corner_hz * area;
-        for value in self.values.iter_mut().skip(left as usize + 1) {
+        for value in self.values.iter_mut().skip(whole::index(left) + 1) {
             *value += step;
         }
     }

@@ -7,6 +7,7 @@ use crate::event::impact::{DetectionSource, MassSpeeds};
 use crate::event::jumps::Jump;
 use crate::event::kinematics::{Kinematics, Series};
 use crate::signal::local_fit::{LocalFit, crossing};
+use crate::signal::whole;
 
 /// How the arcs beside an impact are fitted to extrapolate velocity and displacement to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,14 +54,14 @@ fn windows(velocity: &Series, candidates: &[Candidate], index: usize, arc: ArcFi
     let (width, samples) = (arc.width, velocity.values.len());
     let jump = candidates[index].jump;
     let low = match index.checked_sub(1).map(|i| &candidates[i]) {
-        Some(c) => c.jump.left + c.jump.gap + c.dead_samples.ceil() as usize,
+        Some(c) => c.jump.left + c.jump.gap + whole::index(c.dead_samples.ceil()),
         None => 0,
     };
     let high = candidates
         .get(index + 1)
         .map_or(samples, |c| c.jump.left + 1);
     let begin = jump.left + jump.gap;
-    let dead = candidates[index].dead_samples as usize;
+    let dead = whole::index(candidates[index].dead_samples);
     // Within a dead zone the bodies move together: "after" is limited to its samples.
     let end = if dead > 3 {
         begin + dead
@@ -165,7 +166,7 @@ fn kink(
 }
 
 /// Least squares for the shifts δ of all impact times within their sample intervals and the
-/// velocity offset b: for each arc, area + v₋δ_end − v₊δ_start = b · duration.
+/// velocity offset b: for each arc, area + `v₋δ_end` − `v₊δ_start` = b · duration.
 fn closed_arcs(
     velocity: &Series,
     candidates: &[Candidate],

@@ -48,7 +48,7 @@ pub struct ParameterSet {
     /// Damping ratio β = b/(2√(km)).
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub damping_ratio: Option<Estimate>,
-    /// Static deflection x_st = F0/k, m.
+    /// Static deflection `x_st` = F0/k, m.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub static_deflection_m: Option<Estimate>,
 }

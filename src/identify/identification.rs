@@ -166,6 +166,9 @@ pub struct JointFit {
     pub fit: Fit,
     /// Factor on the covariance.
     pub variance_factor: f64,
+    /// Weight of each method's squared residuals.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
+    pub weights: BTreeMap<Method, f64>,
 }
 
 /// A whole identification.

@@ -91,6 +91,9 @@ pub fn problem<'b>(
 }
 
 /// Fit all blocks together from a start that each of them accepts.
+///
+/// # Errors
+/// Those of [`Problem::fit`].
 pub fn fit(problem: &Problem<'_>, start: Parameters) -> Result<MethodFit, FitError> {
     let fit = problem.fit(start)?;
     let freedom = fit.residuals.saturating_sub(4);

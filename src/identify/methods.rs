@@ -67,8 +67,8 @@ impl MethodFit {
     }
 
     /// What the effects beyond the model leave open in a parameter as they are treated to first order:
-    /// a share of what each would change of it if it were left out and R, f0, β and x_st alone were
-    /// fitted again, −(A_pp⁻¹A_pk) times its strength.
+    /// a share of what each would change of it if it were left out and R, f0, β and `x_st` alone were
+    /// fitted again, −(`A_pp⁻¹A_pk`) times its strength.
     pub fn first_order(&self, coordinate: Coordinate) -> Option<f64> {
         let fit = &self.fit;
         let place = |c: &Coordinate| fit.free.iter().position(|f| f == c);
@@ -98,6 +98,9 @@ pub fn succeeded(attempt: &Option<FitResult>) -> Option<&MethodFit> {
 }
 
 /// Fit blocks over free coordinates and find the variance factor.
+///
+/// # Errors
+/// Those of [`Problem::fit`].
 pub fn fit_blocks(
     blocks: Vec<(&dyn Block, f64)>,
     free: Vec<Coordinate>,
@@ -122,8 +125,11 @@ const RESONANCE: [Coordinate; 3] = [
     Coordinate::Deflection,
 ];
 
-/// f0, β and x_st from the impactless records; the gains' uncertainty enters x_st.
+/// f0, β and `x_st` from the impactless records; the gains' uncertainty enters `x_st`.
 pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<FitResult> {
+    if !enough(blocks) {
+        return None;
+    }
     let ideal = nominal.ideal();
     let fits = starts(blocks, nominal)
         .into_iter()
@@ -131,7 +137,7 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<FitResult> {
     let best = fits.min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
     match best {
         Some(best) => resonance_from(blocks, nominal, best.fit.parameters),
-        None => enough(blocks).then_some(Err(FitError::Singular)),
+        None => Some(Err(FitError::Singular)),
     }
 }
 
@@ -214,7 +220,7 @@ pub fn impacts(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<
     Some(fit_blocks(list, free, priors, start))
 }
 
-/// s2, s1 and grazing brackets, with f0, β and x_st from the impactless records beside them.
+/// s2, s1 and grazing brackets, with f0, β and `x_st` from the impactless records beside them.
 pub fn boundaries(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
     if blocks.boundary.brackets.is_empty() {
         return None;
@@ -240,7 +246,7 @@ pub fn trajectories(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Op
     Some(all_four(&blocks.trajectory, blocks, nominal, start))
 }
 
-/// R, f0, β and x_st from one block alone, with the nuisances beside them.
+/// R, f0, β and `x_st` from one block alone, with the nuisances beside them.
 fn all_four(block: &dyn Block, blocks: &Blocks, nominal: &Nominal, start: Parameters) -> FitResult {
     let mut free = Coordinate::PHYSICAL.to_vec();
     let mut priors = wide_priors(&start, &free);

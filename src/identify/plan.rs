@@ -15,6 +15,7 @@ use crate::motion::Observation;
 use crate::motion::{Folded, FoldedChannel, FoldedPoint};
 use crate::record::Role;
 use crate::signal::robust;
+use crate::signal::whole;
 use impact_oscillator::model::orbit::{Orbit, stable_orbit};
 
 /// A setting to measure, with what a record there would bring.
@@ -26,7 +27,7 @@ pub struct Proposal {
     pub clearance_m: f64,
     /// η with the fitted f0.
     pub frequency_ratio: f64,
-    /// ρ with the fitted x_st.
+    /// ρ with the fitted `x_st`.
     pub clearance_ratio: f64,
     /// The motion to expect, z = 1/n.
     pub periods_n: u32,
@@ -76,7 +77,7 @@ const MOST_PERIODS: u32 = 3;
 /// Propose so many settings, the best first; each takes those before it as measured. Empty where
 /// R was not fitted or no velocity or displacement was recorded.
 pub fn propose(
-    evidence: &Evidence,
+    evidence: &Evidence<'_>,
     fit: &Fit,
     factor: f64,
     reach: Reach,
@@ -127,7 +128,7 @@ fn with(covariance: &DMatrix<f64>, information: &DMatrix<f64>) -> Option<DMatrix
 }
 
 fn candidates(
-    evidence: &Evidence,
+    evidence: &Evidence<'_>,
     fit: &Fit,
     reach: Reach,
     usual: &UsualRecord,
@@ -166,7 +167,11 @@ fn candidates(
         .collect()
 }
 
-fn information(evidence: &Evidence, fit: &Fit, record: TrajectoryRecord) -> Option<DMatrix<f64>> {
+fn information(
+    evidence: &Evidence<'_>,
+    fit: &Fit,
+    record: TrajectoryRecord,
+) -> Option<DMatrix<f64>> {
     let mut block = TrajectoryBlock {
         rig: evidence.rig,
         records: vec![record],
@@ -250,7 +255,7 @@ impl UsualRecord {
                 phase_rad: (i as f64 + 0.5) * width,
                 spread_rad: width / 12f64.sqrt(),
                 value: 0.0,
-                samples: (self.samples / bins as f64).max(1.0) as u32,
+                samples: whole::count((self.samples / bins as f64).max(1.0)),
             })
             .collect();
         let folded = Folded {

@@ -19,7 +19,7 @@ use impact_oscillator::model::simulate::{Simulator, Trajectory};
 /// Most measured impacts after which a simulation is started.
 const MOST_STARTS: usize = 6;
 
-/// Closing speed, in units of x_st Ω, of the lively start.
+/// Closing speed, in units of `x_st` Ω, of the lively start.
 pub const LIVELY_SPEED: f64 = 3.0;
 
 /// The fitted model's motion at the setting of a record, in step with the drive.

@@ -25,7 +25,7 @@ pub struct MethodResiduals {
 /// Residuals at the fitted parameters of the methods that have five or more, without those of
 /// observations that the fit left out.
 pub fn residuals(
-    evidence: &Evidence,
+    evidence: &Evidence<'_>,
     fitted: &Parameters,
     left_out: impl Fn(usize) -> bool,
 ) -> Vec<MethodResiduals> {
@@ -61,7 +61,7 @@ pub fn residuals(
     all.into_iter().filter(enough).collect()
 }
 
-/// Autocorrelation at lags 0, 1, 2 …: Σ r_i r_(i+k) over Σ r_i², mean removed, which of n white
+/// Autocorrelation at lags 0, 1, 2 …: Σ `r_i` r_(i+k) over Σ `r_i²`, mean removed, which of n white
 /// residuals has the standard error 1/√n.
 fn autocorrelation(values: &[f64]) -> Vec<f64> {
     let mean = robust::mean(values);

@@ -11,7 +11,7 @@ use crate::identify::methods::{self, FitResult};
 use crate::identify::uncertainty::posterior::Posterior;
 use crate::identify::{Estimate, Item, Method, MethodResult, Remark, bracket_midpoints, estimate};
 
-/// f0, β and x_st from the impactless records.
+/// f0, β and `x_st` from the impactless records.
 pub fn resonance(blocks: &Blocks, fitted: &FitResult) -> MethodResult {
     let tells = [
         Coordinate::Frequency,
@@ -32,7 +32,7 @@ pub fn resonance(blocks: &Blocks, fitted: &FitResult) -> MethodResult {
 pub fn impacts(
     blocks: &Blocks,
     fitted: &FitResult,
-    evidence: &Evidence,
+    evidence: &Evidence<'_>,
     together: Option<&Fit>,
 ) -> MethodResult {
     let fit = together.or(fitted.as_ref().ok().map(|a| &a.fit));
@@ -64,7 +64,7 @@ pub fn impacts(
 const NAMED: usize = 3;
 
 /// The impacts that were left out.
-fn outlying(blocks: &Blocks, evidence: &Evidence) -> Option<Remark> {
+fn outlying(blocks: &Blocks, evidence: &Evidence<'_>) -> Option<Remark> {
     let outlying = &blocks.impact_outliers;
     let first = outlying.iter().take(NAMED);
     (!outlying.is_empty()).then(|| Remark::OutlyingImpacts {
@@ -74,7 +74,7 @@ fn outlying(blocks: &Blocks, evidence: &Evidence) -> Option<Remark> {
 }
 
 /// An impact of a record.
-pub fn impact(pair: &SpeedPair, evidence: &Evidence) -> Item {
+pub fn impact(pair: &SpeedPair, evidence: &Evidence<'_>) -> Item {
     Item::Impact {
         index: pair.observation,
         record: evidence.observations[pair.observation].record.clone(),
@@ -83,7 +83,7 @@ pub fn impact(pair: &SpeedPair, evidence: &Evidence) -> Item {
 }
 
 /// All four parameters from the waveforms.
-pub fn trajectories(blocks: &Blocks, fitted: &FitResult, evidence: &Evidence) -> MethodResult {
+pub fn trajectories(blocks: &Blocks, fitted: &FitResult, evidence: &Evidence<'_>) -> MethodResult {
     let block = &blocks.trajectory;
     let observations = fitted.as_ref().map_or(0, |f| f.fit.residuals);
     let mut result = methods::result(
@@ -113,7 +113,7 @@ pub fn flights(blocks: &Blocks, fitted: &FitResult) -> MethodResult {
 }
 
 /// How many waveforms the trajectories rest on where not all were kept.
-fn thinned(evidence: &Evidence) -> Option<Remark> {
+fn thinned(evidence: &Evidence<'_>) -> Option<Remark> {
     let periodic = evidence.observations.iter().filter(|o| {
         let pair = o.classification.impacts_and_periods();
         !o.excluded() && pair.is_some_and(|(impacts_p, _)| impacts_p == 1)
@@ -171,7 +171,7 @@ fn by_midpoints(estimate: &Estimate) -> Option<Remark> {
 
 /// The joint result; without a joint fit, what the free decays determine.
 pub fn joint(
-    evidence: &Evidence,
+    evidence: &Evidence<'_>,
     attempt: Option<&FitResult>,
     methods: &BTreeMap<Method, MethodResult>,
 ) -> MethodResult {

@@ -20,6 +20,7 @@ use crate::identify::uncertainty::budget;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
 use crate::identify::{decay, estimate, results};
+use crate::motion::Observation;
 
 /// Identify from observations and brackets, as records of one specimen.
 ///
@@ -27,7 +28,7 @@ use crate::identify::{decay, estimate, results};
 ///
 /// # Examples
 ///
-/// Records of a simulated rig whose masses never touch determine f0, β and x_st, but not R:
+/// Records of a simulated rig whose masses never touch determine f0, β and `x_st`, but not R:
 ///
 /// ```
 /// use impactid::event::{DetectSettings, RigKind};
@@ -77,7 +78,7 @@ use crate::identify::{decay, estimate, results};
 /// assert_eq!(r, None);
 /// # Ok::<(), impact_oscillator::model::params::ModelError>(())
 /// ```
-pub fn identify(evidence: &Evidence) -> Identification {
+pub fn identify(evidence: &Evidence<'_>) -> Identification {
     let mut run = IdentificationRun {
         evidence,
         selection: Selection::new(evidence),
@@ -131,6 +132,7 @@ pub fn identify(evidence: &Evidence) -> Identification {
         joint_fit: fits.joint.and_then(Result::ok).map(|found| JointFit {
             fit: found.fit,
             variance_factor: found.factor,
+            weights: fits.weights,
         }),
         specimens: BTreeMap::new(),
     }
@@ -189,7 +191,7 @@ fn with_restitution(start: Parameters, impacts: &Option<FitResult>) -> Parameter
 const MOST_INFLUENTIAL: usize = 2;
 
 /// Starting values: the resonance curve's, else the stated ones, else guesses of scale.
-fn start(evidence: &Evidence, resonance: &Option<FitResult>) -> Parameters {
+fn start(evidence: &Evidence<'_>, resonance: &Option<FitResult>) -> Parameters {
     if let Some(found) = succeeded(resonance) {
         return found.fit.parameters;
     }
@@ -197,7 +199,7 @@ fn start(evidence: &Evidence, resonance: &Option<FitResult>) -> Parameters {
     let frequencies: Vec<f64> = evidence
         .observations
         .iter()
-        .filter_map(|o| o.frequency_hz())
+        .filter_map(Observation::frequency_hz)
         .collect();
     let clearances: Vec<f64> = evidence
         .observations

@@ -266,7 +266,7 @@ impl<'a> Selection<'a> {
     /// The records that draw a joint fit away from what all others state.
     pub fn influential(
         &self,
-        problem: &Problem,
+        problem: &Problem<'_>,
         present: &[Method],
         at: &Parameters,
     ) -> Influential {

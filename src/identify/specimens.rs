@@ -15,7 +15,7 @@ use crate::motion::{Bracket, Observation};
 /// Identify a campaign: as a whole if it holds one specimen, else each specimen by itself.
 ///
 /// Records that look misfiled are noted and left out.
-pub fn identify_campaign(evidence: &Evidence) -> Identification {
+pub fn identify_campaign(evidence: &Evidence<'_>) -> Identification {
     let names: BTreeSet<&str> = evidence
         .observations
         .iter()
@@ -50,7 +50,7 @@ struct Part {
 }
 
 impl Part {
-    fn of(evidence: &Evidence, name: &str, misfiled: &[LeftOut]) -> Self {
+    fn of(evidence: &Evidence<'_>, name: &str, misfiled: &[LeftOut]) -> Self {
         let is_misfiled = |record: usize| {
             let mut items = misfiled.iter().map(|m| &m.item);
             items.any(|item| matches!(item, Item::Record { index, .. } if *index == record))
@@ -81,7 +81,7 @@ impl Part {
     fn in_campaign(&self, mut left: LeftOut) -> LeftOut {
         match &mut left.item {
             Item::Record { index, .. } | Item::Impact { index, .. } => {
-                *index = self.records[*index]
+                *index = self.records[*index];
             }
             Item::Bracket { index, .. } => *index = self.bracket_indices[*index],
         }

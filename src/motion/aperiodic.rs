@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::event::Impact;
+use crate::signal::whole;
 
 /// Measures that distinguish a beat from chaos.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -23,10 +24,10 @@ impl Irregularity {
         if impacts.len() < 4 {
             return None;
         }
-        let periods = (duration_s / period_s).floor().max(1.0) as usize;
+        let periods = whole::index((duration_s / period_s).floor().max(1.0));
         let mut hit = vec![false; periods];
         for impact in impacts {
-            if let Some(slot) = hit.get_mut((impact.time_s / period_s).floor() as usize) {
+            if let Some(slot) = hit.get_mut(whole::index((impact.time_s / period_s).floor())) {
                 *slot = true;
             }
         }

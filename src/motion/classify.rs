@@ -6,6 +6,7 @@ use crate::event::{Detection, Impact};
 use crate::motion::aperiodic::Irregularity;
 use crate::motion::closure::{self, Count, ImpactClosure, WaveformClosure};
 use crate::motion::kind::Motion;
+use crate::signal::whole;
 
 /// Settings of the classification.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -203,7 +204,7 @@ impl View {
         let period = period_s * rate_hz;
         let periods = velocity.values.len() as f64 / period;
         // At least three drive periods, or as many again, must overlap.
-        let reach = (periods - 3.0).max(0.5 * periods).floor().max(1.0) as u32;
+        let reach = whole::count((periods - 3.0).max(0.5 * periods).floor().max(1.0));
         let most = settings.most_periods.min(reach);
         let mean = crate::signal::robust::mean(&velocity.values);
         let centred: Vec<f64> = velocity.values.iter().map(|v| v - mean).collect();
@@ -269,7 +270,7 @@ impl Case<'_> {
             return undetermined("neither velocity nor contact shows any motion", evidence);
         }
         let limit = 0.05f64.max(3.0 * self.timing_noise_rad());
-        let reach = (0.5 * evidence.periods_observed).floor() as u32;
+        let reach = whole::count((0.5 * evidence.periods_observed).floor());
         for n in 1..=self.settings.most_periods.min(reach.max(1)) {
             let Some(count) = self.count(n) else { continue };
             let closure = closure::impacts(impacts, self.period_s, count.impacts_p, n);

@@ -3,6 +3,7 @@
 use crate::event::Impact;
 use crate::signal::interpolation::{interpolate, noise_gain};
 use crate::signal::robust;
+use crate::signal::whole;
 
 /// How well a waveform closes after n drive periods.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +45,7 @@ pub(super) fn waveform(
                     let partner = i as f64 + lag;
                     interpolate(values, partner).map(|v| (i, partner, v))
                 })
-                .filter(|(i, partner, _)| !blocked[*i] && !blocked[partner.round() as usize])
+                .filter(|(i, partner, _)| !blocked[*i] && !blocked[whole::index(partner.round())])
                 .map(|(i, _, v)| v - values[i])
                 .collect();
             let centre = robust::mean(&differences);
@@ -64,8 +65,8 @@ pub(super) fn waveform(
 fn blocked_samples(count: usize, impacts: &[f64], guard: f64) -> Vec<bool> {
     let mut blocked = vec![false; count];
     for time in impacts {
-        let first = (time - guard).ceil().max(0.0) as usize;
-        let last = ((time + guard).floor().max(-1.0) + 1.0) as usize;
+        let first = whole::index((time - guard).ceil().max(0.0));
+        let last = whole::index((time + guard).floor().max(-1.0) + 1.0);
         for slot in blocked.iter_mut().take(last.min(count)).skip(first) {
             *slot = true;
         }
@@ -99,7 +100,8 @@ pub(super) fn count(times: &[f64], period: f64, duration: f64, periods_n: u32) -
             .iter()
             .any(|t| (t - low).abs() < clear || (t - high).abs() < clear);
         if !touches {
-            let inside = times.iter().filter(|t| (low..high).contains(*t)).count() as u32;
+            let inside = u32::try_from(times.iter().filter(|t| (low..high).contains(*t)).count())
+                .unwrap_or(u32::MAX);
             *votes.entry(inside).or_default() += 1;
         }
         start += step;

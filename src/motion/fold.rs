@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::event::{Detection, DriveTone, Series};
 use crate::record::{Channel, Record, Role};
 use crate::signal::interpolation::interpolate;
+use crate::signal::whole;
 
 /// Bins in one drive period.
 const BINS_PER_PERIOD: usize = 64;
@@ -119,8 +120,8 @@ fn blocked(detection: &Detection, guard_s: f64) -> Vec<bool> {
     let rate_hz = detection.kinematics.rate_hz;
     let mut blocked = vec![false; sample_count(detection)];
     for impact in &detection.impacts {
-        let first = ((impact.time_s - guard_s) * rate_hz).floor().max(0.0) as usize;
-        let last = ((impact.time_s + guard_s + impact.dead_zone_s) * rate_hz).ceil() as usize;
+        let first = whole::index(((impact.time_s - guard_s) * rate_hz).floor().max(0.0));
+        let last = whole::index(((impact.time_s + guard_s + impact.dead_zone_s) * rate_hz).ceil());
         let end = (last + 1).min(blocked.len());
         if let Some(range) = blocked.get_mut(first.min(end)..end) {
             range.fill(true);
@@ -165,7 +166,7 @@ impl Axis {
             let Some(later) = interpolate(values, partner) else {
                 break;
             };
-            if !self.blocked[i] && !self.blocked[partner.round() as usize] {
+            if !self.blocked[i] && !self.blocked[whole::index(partner.round())] {
                 let gained = shape(partner) - shape(i as f64);
                 product += (later - values[i]) * gained;
                 square += gained * gained;
@@ -242,7 +243,7 @@ fn points(values: &[f64], axis: &Axis) -> Vec<FoldedPoint> {
             continue;
         }
         let phase = axis.phases[i];
-        let bin = ((phase / axis.span * axis.bins as f64) as usize).min(axis.bins - 1);
+        let bin = whole::index(phase / axis.span * axis.bins as f64).min(axis.bins - 1);
         let sum = &mut sums[bin];
         sum[0] += 1.0;
         sum[1] += phase;
@@ -255,7 +256,7 @@ fn points(values: &[f64], axis: &Axis) -> Vec<FoldedPoint> {
             phase_rad: p / n,
             spread_rad: (pp / n - (p / n).powi(2)).max(0.0).sqrt(),
             value: v / n,
-            samples: *n as u32,
+            samples: whole::count(*n),
         })
         .collect()
 }

@@ -33,6 +33,7 @@ impl Response {
     }
 
     /// The same measured values if the channel has passed another high-pass than was assumed.
+    #[must_use]
     pub fn behind(&self, high_pass_hz: Option<f64>, frequency_hz: f64) -> Self {
         // To divide by iω/(iω + ω_c) is to multiply by 1 − iω_c/ω.
         let undoing =

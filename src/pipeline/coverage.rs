@@ -241,7 +241,7 @@ pub fn study(
     campaigns: usize,
     seed: u64,
     rig: &RigSpec,
-    progress: Progress,
+    progress: Progress<'_>,
 ) -> Result<Coverage, PipelineError> {
     let few = campaigns.div_ceil(5);
     let total = (campaigns + few * (1 + Mistake::ALL.len())) as u64;

@@ -51,7 +51,7 @@ pub fn nominal(campaign: &ResolvedCampaign) -> Nominal {
     }
 }
 
-/// (m_x − m_y)/m of the stated masses, with its standard uncertainty; `None` unless both are stated.
+/// (`m_x` − `m_y)/m` of the stated masses, with its standard uncertainty; `None` unless both are stated.
 fn mass_asymmetry(rig: &NominalValues) -> Option<[f64; 2]> {
     let (x, y) = rig.mass_x_kg.zip(rig.mass_y_kg)?;
     let deviation = rig.mass_uncertainty * std::f64::consts::SQRT_2;

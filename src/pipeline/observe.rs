@@ -44,7 +44,7 @@ const MOST_WAVEFORMS: usize = 4_000;
 const READ_AHEAD: usize = 256;
 
 /// Observe every record, in the order of the campaign.
-pub fn observe_all(campaign: &ResolvedCampaign, progress: Progress) -> Vec<Observation> {
+pub fn observe_all(campaign: &ResolvedCampaign, progress: Progress<'_>) -> Vec<Observation> {
     let total = campaign.records.len() as u64;
     let done = AtomicU64::new(0);
     observe_some(
@@ -66,7 +66,7 @@ pub fn observe_in_chunks(
     campaign: &ResolvedCampaign,
     checkpoint: &Checkpoint,
     chunk: usize,
-    progress: Progress,
+    progress: Progress<'_>,
 ) -> Result<Vec<Observation>, OutputError> {
     let total = campaign.records.len() as u64;
     let done = AtomicU64::new(0);

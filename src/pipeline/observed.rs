@@ -22,7 +22,7 @@ impl Observed {
     ///
     /// # Errors
     /// [`PipelineError::NothingUsable`] where no record can be used.
-    pub fn of(campaign: &ResolvedCampaign, progress: Progress) -> Result<Self, PipelineError> {
+    pub fn of(campaign: &ResolvedCampaign, progress: Progress<'_>) -> Result<Self, PipelineError> {
         Self::from_observations(observe::observe_all(campaign, progress))
     }
 
@@ -34,7 +34,7 @@ impl Observed {
     pub(super) fn resumable(
         campaign: &ResolvedCampaign,
         (out, resume): (&Path, bool),
-        progress: Progress,
+        progress: Progress<'_>,
     ) -> Result<Self, PipelineError> {
         let kept = Checkpoint::open(campaign, out, resume)?;
         let chunk = checkpoint::chunk_of(campaign.records.len());

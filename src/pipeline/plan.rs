@@ -35,7 +35,7 @@ pub fn plan(
     campaign: &ResolvedCampaign,
     count: usize,
     out: &Path,
-    progress: Progress,
+    progress: Progress<'_>,
 ) -> Result<Plan, PipelineError> {
     let observed = Observed::of(campaign, progress)?;
     progress("identify", 0, 1);

@@ -40,7 +40,7 @@ pub struct Completed {
 pub fn run(
     campaign: &ResolvedCampaign,
     destination: &Destination<'_>,
-    progress: Progress,
+    progress: Progress<'_>,
 ) -> Result<Completed, PipelineError> {
     let Destination {
         out, command_line, ..

@@ -49,7 +49,7 @@ struct Ingested {
 pub fn ingest(
     campaign: &ResolvedCampaign,
     out: &Path,
-    progress: Progress,
+    progress: Progress<'_>,
 ) -> Result<usize, PipelineError> {
     let mut writer = IngestWriter::new(out);
     let total = campaign.records.len() as u64;
@@ -198,7 +198,7 @@ fn note_roles(roles: &mut Vec<ChannelSetup>, record: &Record) {
 ///
 /// # Errors
 /// If the files of stage 1 are missing or the outputs cannot be written.
-pub fn classify(out: &Path, progress: Progress) -> Result<Observed, PipelineError> {
+pub fn classify(out: &Path, progress: Progress<'_>) -> Result<Observed, PipelineError> {
     let ingested: Ingested = read_json(&out.join(INGESTED_CAMPAIGN))?;
     let mut observed = Observed::of(&ingested.campaign, progress)?;
     for (observation, flags) in observed.observations.iter_mut().zip(ingested.flags) {

@@ -71,7 +71,7 @@ const RUN_TABLE: &str = "runs.csv";
 
 /// Simulate a campaign and write it: records.h5 (converter counts), runs.csv, campaign.toml and
 /// truth.json. A campaign of more than a thousand records is written to several files as it is
-/// simulated, records_000000.h5 …, each named by the number of its first record.
+/// simulated, `records_000000.h5` …, each named by the number of its first record.
 ///
 /// # Errors
 /// Where the truth lies outside the model's range or a file cannot be written.
@@ -181,10 +181,16 @@ fn write_records(
     Ok(RecordsFile { name, truths })
 }
 
+/// What a converter of 16 bits gives: beyond its range its last number.
+#[expect(clippy::cast_possible_truncation, reason = "a converter saturates too")]
+fn converter_count(steps: f64) -> i16 {
+    steps.round() as i16
+}
+
 fn stored(volts: &[f64], faults: &Faults) -> Stored {
     match converter_step(faults) {
         Some(scale) if FULL_SCALE_V / scale <= f64::from(i16::MAX) => Stored::Counts {
-            counts: volts.iter().map(|v| (v / scale).round() as i16).collect(),
+            counts: volts.iter().map(|v| converter_count(v / scale)).collect(),
             scale,
             offset: 0.0,
         },

@@ -6,6 +6,7 @@ pub use super::bind::{Bound, ChannelKey, ChannelSetup, bind};
 use super::time_axis::{self, TimeAxis};
 use super::{Channel, Flag, FlagCode, Record, Setting};
 use super::{condition, consistency};
+use crate::signal::whole;
 use labfiles::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
 
 /// Everything that turns one dataset into one record.
@@ -292,7 +293,7 @@ fn stated_rate(record: &mut Record, dataset: &DatasetInfo, bound: &[BoundRole<'_
 
 /// Leave out the start of the record.
 fn skip(record: &mut Record, skip_s: f64) {
-    let count = (skip_s * record.sample_rate_hz).round() as usize;
+    let count = whole::index((skip_s * record.sample_rate_hz).round());
     if count == 0 || record.samples() == 0 {
         return;
     }

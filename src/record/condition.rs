@@ -304,7 +304,7 @@ mod tests {
 
     fn record(of: impl Fn(usize) -> f64) -> Record {
         let values: Vec<f64> = (0..1000).map(of).collect();
-        let drive: Vec<f64> = (0..1000).map(|i| (0.07 * i as f64).cos()).collect();
+        let drive: Vec<f64> = (0..1000).map(|i| (0.07 * f64::from(i)).cos()).collect();
         Record::of(2000.0, &[(Role::Drive, &drive), (Role::VelocityX, &values)])
     }
 

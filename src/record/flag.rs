@@ -116,7 +116,7 @@ flag_codes! {
 }
 
 impl fmt::Display for FlagCode {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
     }
 }

@@ -58,17 +58,17 @@ pub enum Role {
 
 impl Role {
     /// All roles, in the order of campaign.toml.
-    pub const ALL: [Role; 10] = [
-        Role::Drive,
-        Role::Contact,
-        Role::VelocityX,
-        Role::VelocityY,
-        Role::DisplacementX,
-        Role::DisplacementY,
-        Role::AccelerationX,
-        Role::AccelerationY,
-        Role::FrameX,
-        Role::FrameY,
+    pub const ALL: [Self; 10] = [
+        Self::Drive,
+        Self::Contact,
+        Self::VelocityX,
+        Self::VelocityY,
+        Self::DisplacementX,
+        Self::DisplacementY,
+        Self::AccelerationX,
+        Self::AccelerationY,
+        Self::FrameX,
+        Self::FrameY,
     ];
 
     /// The role's name as campaign.toml spells it.
@@ -80,18 +80,18 @@ impl Role {
     pub fn is_of_y(self) -> bool {
         matches!(
             self,
-            Role::VelocityY | Role::DisplacementY | Role::AccelerationY
+            Self::VelocityY | Self::DisplacementY | Self::AccelerationY
         )
     }
 
     /// Whether a channel of this role is on the side of the second mass: that mass or its frame.
     pub fn is_on_y_side(self) -> bool {
-        self.is_of_y() || self == Role::FrameY
+        self.is_of_y() || self == Self::FrameY
     }
 
     /// Whether a channel of this role watches a frame.
     pub fn is_frame(self) -> bool {
-        matches!(self, Role::FrameX | Role::FrameY)
+        matches!(self, Self::FrameX | Self::FrameY)
     }
 
     /// Whether a channel of this role watches the motion of a mass.
@@ -103,10 +103,10 @@ impl Role {
     /// (a drive in V or N, a contact in V or N, a frame in m, m/s or m/s²).
     pub fn dimension(self) -> Option<Dimension> {
         match self {
-            Role::Drive | Role::Contact | Role::FrameX | Role::FrameY => None,
-            Role::VelocityX | Role::VelocityY => Some(Dimension::Velocity),
-            Role::DisplacementX | Role::DisplacementY => Some(Dimension::Length),
-            Role::AccelerationX | Role::AccelerationY => Some(Dimension::Acceleration),
+            Self::Drive | Self::Contact | Self::FrameX | Self::FrameY => None,
+            Self::VelocityX | Self::VelocityY => Some(Dimension::Velocity),
+            Self::DisplacementX | Self::DisplacementY => Some(Dimension::Length),
+            Self::AccelerationX | Self::AccelerationY => Some(Dimension::Acceleration),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::bind::ChannelKey;
 use super::{Flag, FlagCode};
+use crate::signal::whole;
 use labfiles::DatasetInfo;
 use labfiles::units;
 
@@ -80,7 +81,7 @@ pub fn inspect(times: &[f64]) -> TimeAxis {
     }
     let in_order = steps.clone();
     steps.sort_by(f64::total_cmp);
-    let quantile = |q: f64| steps[((steps.len() - 1) as f64 * q) as usize];
+    let quantile = |q: f64| steps[whole::index((steps.len() - 1) as f64 * q)];
     let mean = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
     let spread = quantile(0.95) - quantile(0.05);
     if spread > 0.2 * mean {

@@ -86,7 +86,7 @@ pub struct DataTable {
 pub struct ProposedPoint {
     /// η with the fitted f0.
     pub eta: f64,
-    /// ρ with the fitted x_st.
+    /// ρ with the fitted `x_st`.
     pub rho: f64,
     /// Drive frequency, Hz.
     pub frequency_hz: f64,

@@ -3,6 +3,7 @@
 
 use super::catalog::Catalog;
 use crate::message::{Language, Message, Print, filled, sentence};
+use crate::signal::whole;
 
 /// What the reader chose about numbers and language.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -96,7 +97,7 @@ impl Locale<'_> {
         }
         let exponent = decimal_exponent(value, digits);
         if (-4..6).contains(&exponent) {
-            let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+            let decimals = usize::try_from(whole_digits(digits) - 1 - exponent).unwrap_or(0);
             self.fixed(value, decimals)
         } else {
             let mantissa = self.fixed(value / 10f64.powi(exponent), digits.saturating_sub(1));
@@ -126,9 +127,15 @@ impl Print for Locale<'_> {
 
 /// Exponent of ten of a number once rounded to some digits (0.99996 to four digits is 1.000).
 pub(crate) fn decimal_exponent(value: f64, digits: usize) -> i32 {
-    let exponent = value.abs().log10().floor() as i32;
-    let rounded = (value.abs() / 10f64.powi(exponent - digits as i32 + 1)).round();
-    exponent + i32::from(rounded >= 10f64.powi(digits as i32))
+    let exponent = whole::integer(value.abs().log10().floor());
+    let digits = whole_digits(digits);
+    let rounded = (value.abs() / 10f64.powi(exponent - digits + 1)).round();
+    exponent + i32::from(rounded >= 10f64.powi(digits))
+}
+
+/// A count of digits, of which a number has few.
+fn whole_digits(digits: usize) -> i32 {
+    i32::try_from(digits).unwrap_or(i32::MAX)
 }
 
 /// An exponent in raised digits.

@@ -12,6 +12,7 @@ mod options;
 mod parameters;
 pub(crate) mod picture;
 mod png;
+pub mod style;
 pub(crate) mod theory;
 
 pub use content::{CampaignFacts, DataTable, NominalValue, ProposedPoint, ReportContent, Subject};
@@ -45,17 +46,27 @@ impl Report {
     }
 
     /// The report as PDF. The same content gives the same bytes.
+    ///
+    /// # Errors
+    /// [`ReportError::FileName`] for a logo whose file has no usable extension, [`ReportError::Template`]
+    /// and [`ReportError::Pdf`] if the document cannot be typeset or exported.
     pub fn pdf(&self) -> Result<Vec<u8>, ReportError> {
         document::pdf(&self.document, &self.figures, &self.options)
     }
 
     /// The report as one self-contained HTML page.
+    ///
+    /// # Errors
+    /// [`ReportError::Data`] if its data cannot be written as JSON.
     pub fn html(&self) -> Result<String, ReportError> {
         html::html(&self.document, &self.figures, &self.options)
     }
 
     /// The files of a format, by their paths relative to the report's folder: the document itself,
     /// or each figure under `figures/`.
+    ///
+    /// # Errors
+    /// Those of [`Self::pdf`] and [`Self::html`]; [`ReportError::Picture`] if a figure cannot be drawn.
     pub fn files(&self, format: Format) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
         let each = |ending: &str, of: &(dyn Fn(&Figure) -> Result<Vec<u8>, ReportError> + Sync)| {
             let path = |f: &Figure| format!("figures/{}.{ending}", f.name);

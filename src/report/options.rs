@@ -41,13 +41,7 @@ pub enum Format {
 
 impl Format {
     /// All formats.
-    pub const ALL: [Format; 5] = [
-        Format::Pdf,
-        Format::Html,
-        Format::Svg,
-        Format::Png,
-        Format::Csv,
-    ];
+    pub const ALL: [Self; 5] = [Self::Pdf, Self::Html, Self::Svg, Self::Png, Self::Csv];
 
     /// The format's name on the command line.
     pub fn name(self) -> &'static str {

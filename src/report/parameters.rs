@@ -62,7 +62,7 @@ pub(super) fn parameter(key: &str) -> Option<&'static ParameterLook> {
 }
 
 /// Name of a method inside a sentence or a list.
-pub(super) fn method_inline(method: Method, locale: Locale) -> String {
+pub(super) fn method_inline(method: Method, locale: Locale<'_>) -> String {
     let name = locale.message(&method);
     match locale.is_english() {
         true => name.to_lowercase(),
@@ -84,7 +84,7 @@ pub(super) fn decimals_for(uncertainty: f64) -> usize {
     if !(uncertainty.is_finite() && uncertainty > 0.0) {
         return 4;
     }
-    (1 - decimal_exponent(uncertainty, 2)).clamp(0, 9) as usize
+    usize::try_from(1 - decimal_exponent(uncertainty, 2)).map_or(0, |digits| digits.min(9))
 }
 
 /// Standard errors from the middle of a normal distribution to either end of its 95 % interval.
@@ -114,7 +114,11 @@ pub(super) fn interval95(estimate: &Estimate) -> Option<(f64, f64)> {
 
 /// `value ± half width` with unit, `not identifiable` where there is no value, `–` where the
 /// parameter was not asked for.
-pub(super) fn short(look: &ParameterLook, estimate: Option<&Estimate>, locale: Locale) -> String {
+pub(super) fn short(
+    look: &ParameterLook,
+    estimate: Option<&Estimate>,
+    locale: Locale<'_>,
+) -> String {
     let Some(estimate) = estimate else {
         return "–".into();
     };

@@ -1,5 +1,6 @@
 //! Figures as PNG, for pages that cannot show SVG.
 
+use crate::signal::whole;
 use std::sync::{Arc, OnceLock};
 
 use resvg::tiny_skia::{Color, Pixmap, Transform};
@@ -30,7 +31,7 @@ pub(super) fn png(figure: &Figure) -> Result<Vec<u8>, ReportError> {
         (size.width() * scale).ceil(),
         (size.height() * scale).ceil(),
     );
-    let mut pixels = Pixmap::new(width as u32, height as u32)
+    let mut pixels = Pixmap::new(whole::count(width.into()), whole::count(height.into()))
         .ok_or_else(|| failed("the picture has no size".into()))?;
     pixels.fill(Color::WHITE);
     resvg::render(

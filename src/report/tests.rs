@@ -29,7 +29,7 @@ fn written(folder: &Path, name: &str, bytes: &[u8]) -> String {
     path.display().to_string()
 }
 
-/// Renders the examples into the folder named by IMPACTID_REPORT_LOOKS.
+/// Renders the examples into the folder named by `IMPACTID_REPORT_LOOKS`.
 #[test]
 #[ignore = "leaves reports to be looked at; IMPACTID_REPORT_LOOKS names their folder"]
 fn regress_examples_can_be_looked_at() {
@@ -90,7 +90,10 @@ fn text_of(document: &document::model::Document) -> String {
                 ),
                 Block::Table(t) => {
                     let row = |r: &Vec<document::model::Rich>| {
-                        r.iter().map(|c| c.plain()).collect::<Vec<_>>().join(" | ")
+                        r.iter()
+                            .map(document::model::Rich::plain)
+                            .collect::<Vec<_>>()
+                            .join(" | ")
                     };
                     lines.push(format!("[table] {}", row(&t.heads)));
                     lines.extend(t.rows.iter().map(row));

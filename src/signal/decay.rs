@@ -1,15 +1,16 @@
-//! A free decay: offset + e^{−σt}(a cos ω_d t + b sin ω_d t), fitted by least squares.
+//! A free decay: offset + e^{−σt}(a cos `ω_d` t + b sin `ω_d` t), fitted by least squares.
 
+use super::whole;
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 /// A fitted free decay.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Decay {
-    /// Natural frequency f0 = √(σ² + ω_d²)/2π, Hz.
+    /// Natural frequency f0 = √(σ² + `ω_d²)/2π`, Hz.
     pub natural_frequency_hz: f64,
     /// Its standard error, Hz.
     pub natural_frequency_error_hz: f64,
-    /// Damping ratio β = σ/√(σ² + ω_d²).
+    /// Damping ratio β = σ/√(σ² + `ω_d²`).
     pub damping_ratio: f64,
     /// Its standard error.
     pub damping_ratio_error: f64,
@@ -75,13 +76,13 @@ pub fn fit(samples: &[f64], rate_hz: f64) -> Option<Decay> {
         .enumerate()
         .max_by(|a, b| (a.1 - centre).abs().total_cmp(&(b.1 - centre).abs()))?
         .0;
-    let wait = (WAIT_S * rate_hz).ceil() as usize;
-    let first = (peak + wait).max((FROM_S * rate_hz).ceil() as usize);
+    let wait = whole::index((WAIT_S * rate_hz).ceil());
+    let first = (peak + wait).max(whole::index((FROM_S * rate_hz).ceil()));
     let tail = samples.get(first..)?;
     let frequency_hz = super::spectrum::peak_frequency(tail)? * rate_hz;
     let period = rate_hz / frequency_hz;
     let others = (1..=OTHER_STARTS)
-        .map(|k| (period * k as f64 / OTHER_STARTS as f64).round() as usize)
+        .map(|k| whole::index((period * k as f64 / OTHER_STARTS as f64).round()))
         .filter_map(|skip| fit_tail(tail.get(skip..)?, rate_hz, frequency_hz));
     let mut decay = fit_tail(tail, rate_hz, frequency_hz)?;
     let (mut of_frequency, mut of_damping, mut count) = (0.0, 0.0, 0.0);
@@ -109,7 +110,7 @@ fn fit_tail(tail: &[f64], rate_hz: f64, frequency_hz: f64) -> Option<Decay> {
         .finish(tail, rate_hz)
 }
 
-/// State of the search: ω_d and σ per sample with the best linear part.
+/// State of the search: `ω_d` and σ per sample with the best linear part.
 struct Point {
     rates: Vector2<f64>,
     linear: Vector3<f64>,
@@ -208,7 +209,7 @@ impl Point {
     }
 }
 
-/// Factor on a variance for residuals with autocorrelation: 1 + 2 Σ r_k until r_k falls to zero.
+/// Factor on a variance for residuals with autocorrelation: 1 + 2 Σ `r_k` until `r_k` falls to zero.
 fn correlation_factor(residuals: &[f64]) -> f64 {
     let total: f64 = residuals.iter().map(|r| r * r).sum();
     let mut factor = 1.0;

@@ -1,9 +1,9 @@
 //! Undoing the first-order high-pass of an integrator, and the drift this leaves.
 
-/// Undo a first-order high-pass of the given corner: x = y + ω_c ∫ y dt.
+/// Undo a first-order high-pass of the given corner: x = y + `ω_c` ∫ y dt.
 ///
-/// The high-pass takes x to y by y' + ω_c y = x', so the inverse is exact but for one constant
-/// (the filter's state at the first sample); an offset b of the samples becomes the ramp ω_c b t.
+/// The high-pass takes x to y by y' + `ω_c` y = x', so the inverse is exact but for one constant
+/// (the filter's state at the first sample); an offset b of the samples becomes the ramp `ω_c` b t.
 /// Both are left in the result: see [`remove_line`].
 ///
 /// ```

@@ -1,5 +1,7 @@
 //! Values between samples.
 
+use super::whole;
+
 /// Value between samples by a cubic through the four samples around it (linear at the edges);
 /// `None` outside the samples.
 ///
@@ -15,7 +17,7 @@ pub fn interpolate(samples: &[f64], position: f64) -> Option<f64> {
     if !(0.0..=last as f64).contains(&position) {
         return None;
     }
-    let index = (position as usize).min(last.saturating_sub(1));
+    let index = whole::index(position).min(last.saturating_sub(1));
     let u = position - index as f64;
     if index == 0 || index + 2 > last {
         let next = samples[(index + 1).min(last)];

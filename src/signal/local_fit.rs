@@ -37,7 +37,7 @@ impl LocalFit {
         let origin = 0.5 * (first + last - 1) as f64;
         let scale = (0.5 * count as f64).max(1.0);
         let design = DMatrix::from_fn(count, degree + 1, |row, power| {
-            (((first + row) as f64 - origin) / scale).powi(power as i32)
+            (((first + row) as f64 - origin) / scale).powi(i32::try_from(power).unwrap_or(i32::MAX))
         });
         let values = DVector::from_column_slice(&samples[first..last]);
         let covariance = (design.transpose() * &design).try_inverse()?;
@@ -80,7 +80,9 @@ impl LocalFit {
     /// Standard error of the value at a time, per unit of noise deviation.
     pub fn error_factor(&self, time: f64) -> f64 {
         let u = (time - self.origin) / self.scale;
-        let row = DVector::from_fn(self.coefficients.len(), |k, _| u.powi(k as i32));
+        let row = DVector::from_fn(self.coefficients.len(), |k, _| {
+            u.powi(i32::try_from(k).unwrap_or(i32::MAX))
+        });
         (row.transpose() * &self.covariance * row)[(0, 0)]
             .max(0.0)
             .sqrt()

@@ -9,3 +9,4 @@ pub mod local_fit;
 pub mod robust;
 mod spectrum;
 pub mod tone;
+pub mod whole;

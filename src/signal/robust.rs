@@ -82,7 +82,7 @@ mod tests {
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(3);
         let samples: Vec<f64> = (0..4000)
             .map(|i| {
-                let t = i as f64 * 1e-3;
+                let t = f64::from(i) * 1e-3;
                 let jump = if i % 400 > 200 { 1.0 } else { 0.0 };
                 let uniform: f64 = rng.random_range(-1.0..1.0);
                 3.0 * t * t + jump + 0.01 * uniform

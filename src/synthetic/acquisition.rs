@@ -12,7 +12,7 @@ pub const RATE_HZ: f64 = 2000.0;
 /// Full scale of the converter, V (±).
 pub const FULL_SCALE_V: f64 = 5.0;
 
-/// First-order high-pass x → y, y' + ω_c y = x', run at a fine step.
+/// First-order high-pass x → y, y' + `ω_c` y = x', run at a fine step.
 #[derive(Debug, Clone)]
 pub struct HighPass {
     low: f64,
@@ -55,7 +55,7 @@ pub fn convert(volts: &mut [f64], faults: &Faults, rng: &mut ChaCha8Rng) {
 pub fn converter_step(faults: &Faults) -> Option<f64> {
     faults
         .converter_bits
-        .map(|bits| 2.0 * FULL_SCALE_V / 2f64.powi(bits as i32))
+        .map(|bits| 2.0 * FULL_SCALE_V / 2f64.powi(i32::try_from(bits).unwrap_or(i32::MAX)))
 }
 
 /// Voltage of the contact at each of the given times: 5 V while it is closed, at least for the
@@ -128,7 +128,10 @@ impl Disturbance {
     pub fn add(&mut self, volts: &mut [f64]) {
         if self.flicker_v > 0.0 {
             for octave in 0..OCTAVES {
-                self.add_process(SLOWEST_HZ * 2f64.powi(octave as i32), volts);
+                self.add_process(
+                    SLOWEST_HZ * 2f64.powi(i32::try_from(octave).unwrap_or(i32::MAX)),
+                    volts,
+                );
             }
         }
         if self.hum_v > 0.0 {

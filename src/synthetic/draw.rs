@@ -8,6 +8,7 @@ use super::plan::Plan;
 use super::rig_spec::RigSpec;
 use super::run::Laboratory;
 use super::truth::{Faults, Truth, draw_asymmetry};
+use crate::signal::whole;
 
 /// A campaign to simulate.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,7 +38,7 @@ pub enum Reach {
 
 /// Draw campaign number `index` of a study; the same seed and index always give the same.
 ///
-/// R 0.5 to 0.93, β 0.025 to 0.09, f0 8 to 17 Hz, x_st 0.3 to 3 mm, 120 to 260 records, noise 1 to
+/// R 0.5 to 0.93, β 0.025 to 0.09, f0 8 to 17 Hz, `x_st` 0.3 to 3 mm, 120 to 260 records, noise 1 to
 /// 8 mV on ±5 V, integrators' corner 0.2 to 0.8 Hz, asymmetry up to 2 %, and the effects of `rig`.
 pub fn draw(seed: u64, index: u64, reach: Reach, rig: &RigSpec) -> Draw {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -47,7 +48,7 @@ pub fn draw(seed: u64, index: u64, reach: Reach, rig: &RigSpec) -> Draw {
     let damping_ratio = between(0.025f64.ln(), 0.09f64.ln()).exp();
     let natural_frequency_hz = between(8.0, 17.0);
     let static_deflection_m = between(0.3e-3f64.ln(), 3e-3f64.ln()).exp();
-    let records = between(120.0, 260.0) as usize;
+    let records = whole::index(between(120.0, 260.0));
     let faults = Faults {
         noise_v: between(1e-3f64.ln(), 8e-3f64.ln()).exp(),
         high_pass_hz: Some(between(0.2, 0.8)),

@@ -37,7 +37,7 @@ pub struct Effects {
     pub force_curvature: f64,
     /// h of the spring force k x (1 + h x²/A²).
     pub hardening: f64,
-    /// A of `hardening`, m: x_st/(2β).
+    /// A of `hardening`, m: `x_st/(2β)`.
     pub hardening_amplitude_m: f64,
     /// Coulomb friction of each mass over F0.
     pub friction: f64,

@@ -10,6 +10,7 @@ use super::equations::{ContactLaw, Equations, Phase4};
 use super::integrate::{Integrator, Recording};
 use super::plan::Step;
 use super::truth::Truth;
+use crate::signal::whole;
 
 /// What a rig's motion follows from.
 #[derive(Debug, Clone, Copy)]
@@ -22,7 +23,7 @@ pub struct Physics<'a> {
     pub steps: usize,
 }
 
-/// A motion that goes on through a sweep, in units of the nominal x_st and 1/Ω.
+/// A motion that goes on through a sweep, in units of the nominal `x_st` and 1/Ω.
 #[derive(Debug, Clone)]
 pub enum Engine {
     /// Of the model.
@@ -151,7 +152,7 @@ impl Engine {
         }
         let periods = (duration / period).floor();
         let mut states = Vec::new();
-        for _ in 0..periods as usize {
+        for _ in 0..whole::index(periods) {
             self.advance(period);
             states.push(self.state());
             if repeats(&states) {
@@ -313,7 +314,7 @@ mod tests {
             let mut integrated = physics.integrated(0, &step).unwrap();
             assert!(matches!(exact, Engine::Exact(_)));
             let pair = [exact.record(40.0), integrated.record(40.0)];
-            let taus = || (0..4000).map(|i| 0.01 * i as f64);
+            let taus = || (0..4000).map(|i| 0.01 * f64::from(i));
             let (a, b) = (pair[0].sample(taus()), pair[1].sample(taus()));
             for (i, (a, b)) in a.iter().zip(&b).enumerate() {
                 // displacements: a velocity jumps at an impact

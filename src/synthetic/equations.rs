@@ -1,5 +1,5 @@
 //! Equations of motion of a rig with effects beyond the model, dimensionless by the campaign's
-//! nominal Ω, x_st and F0:
+//! nominal Ω, `x_st` and F0:
 //!
 //! X'' + 2δ X' + κ X (1 + h X²/A²) + μ sgn X' = F p(φ) − P, the same for Y, with the drive
 //! p(φ) = cos φ + a₂ cos(2φ + φ₂) + a₃ cos(3φ + φ₃) and the press force P of a contact.

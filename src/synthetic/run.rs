@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use crate::motion::Motion;
 use crate::record::{self, Channel, Record, Role};
+use crate::signal::whole;
 use crate::synthetic::acquisition::{self, Disturbance, HighPass};
 use crate::synthetic::effects::Effects;
 use crate::synthetic::engine::{Engine, Physics, Recorded};
@@ -27,7 +28,7 @@ const SETTLE_PERIODS: f64 = 150.0;
 /// Time before a record for the high-pass to settle, s.
 const PRE_ROLL_S: f64 = 3.0;
 /// The same in fine steps.
-const PRE_ROLL_FINE: usize = (PRE_ROLL_S * RATE_HZ) as usize * FINE;
+const PRE_ROLL_FINE: usize = whole::index(PRE_ROLL_S * RATE_HZ) * FINE;
 /// A fine step, s.
 const FINE_STEP_S: f64 = 1.0 / (RATE_HZ * FINE as f64);
 
@@ -214,7 +215,7 @@ impl VirtualRig<'_> {
         self.physics.truth.static_deflection_m * self.physics.truth.natural_rate()
     }
 
-    fn channels(&self, take: &Take, rng: &mut ChaCha8Rng) -> Vec<RawChannel> {
+    fn channels(&self, take: &Take<'_>, rng: &mut ChaCha8Rng) -> Vec<RawChannel> {
         let delays = self.physics.effects.delays_s;
         let times: Vec<f64> = (0..SAMPLES).map(|i| i as f64 / RATE_HZ).collect();
         let rate = std::f64::consts::TAU * take.step.frequency_hz;
@@ -250,7 +251,7 @@ impl VirtualRig<'_> {
     /// Velocities and displacements of both masses and the frame's, SI, each through its filter
     /// and late by its delay: the laser's velocity of x has no filter, the integrators' signals
     /// have a high-pass.
-    fn motion_samples(&self, take: &Take) -> [Vec<f64>; 5] {
+    fn motion_samples(&self, take: &Take<'_>) -> [Vec<f64>; 5] {
         let delays = &self.physics.effects.delays_s;
         let corner = |i: usize| Some(self.corners[i] * self.faults.high_pass_hz?);
         let channels: [(usize, f64, Option<f64>); 5] = [
@@ -277,7 +278,7 @@ impl VirtualRig<'_> {
     }
 
     /// [x, x', y, y'] in SI at [`FINE`] times the rate of sampling, the pre-roll included.
-    fn fine_states(&self, take: &Take, delay_s: f64) -> Vec<Phase4> {
+    fn fine_states(&self, take: &Take<'_>, delay_s: f64) -> Vec<Phase4> {
         let omega = self.physics.truth.natural_rate();
         let (x_st, speed) = (self.physics.truth.static_deflection_m, self.speed());
         let count = PRE_ROLL_FINE + (SAMPLES - 1) * FINE + 1;

@@ -46,8 +46,8 @@ pub(super) fn true_motion(mut engine: Engine, setting: Setting) -> Motion {
     match (1..=LONGEST.min(watched)).find(|n| closes(*n)) {
         Some(1) if impacts == 0 => Motion::Impactless,
         Some(n) => Motion::Periodic {
-            impacts_p: counts[..n].iter().sum::<usize>() as u32,
-            periods_n: n as u32,
+            impacts_p: u32::try_from(counts[..n].iter().sum::<usize>()).unwrap_or(u32::MAX),
+            periods_n: u32::try_from(n).unwrap_or(u32::MAX),
             dead_zone: 2 * dead_zones >= impacts.max(1),
         },
         None => Motion::Undetermined {

@@ -16,13 +16,13 @@ pub struct Truth {
     pub natural_frequency_hz: f64,
     /// Damping ratio β: the mean of both masses'.
     pub damping_ratio: f64,
-    /// Static deflection x_st = F0/k, m: the mean of both masses'.
+    /// Static deflection `x_st` = F0/k, m: the mean of both masses'.
     pub static_deflection_m: f64,
-    /// (F_x − F_y)/F0, relative.
+    /// (`F_x` − `F_y)/F0`, relative.
     pub drive_asymmetry: f64,
-    /// (k_x − k_y)/k, relative.
+    /// (`k_x` − `k_y)/k`, relative.
     pub stiffness_asymmetry: f64,
-    /// (β_x − β_y)/β, relative; each β_i = b_i/(2√(k_i m)) with the mass's own spring.
+    /// (`β_x` − `β_y)/β`, relative; each `β_i` = `b_i/(2√(k_i` m)) with the mass's own spring.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub damping_asymmetry: f64,
 }
@@ -32,7 +32,7 @@ fn is_zero(value: &f64) -> bool {
 }
 
 impl Truth {
-    /// Two equal masses: R, f0 in Hz, β, x_st in m.
+    /// Two equal masses: R, f0 in Hz, β, `x_st` in m.
     pub fn symmetric(
         restitution: f64,
         natural_frequency_hz: f64,

@@ -1,6 +1,7 @@
 //! SIGKILL at random moments: while records are observed and observations are kept, while the
 //! parameters are fitted, and while the outputs are written.
 
+use impactid::signal::whole;
 use std::collections::BTreeMap;
 use std::fs;
 use std::time::{Duration, Instant};
@@ -159,9 +160,9 @@ fn kill_again_and_again(victim: &Victim, seed: u64, kills: u64) -> Met {
         let moment = match kill % 3 {
             0 => {
                 let outputs = victim.expected.len() as f64;
-                Moment::Writing(1 + (random(&mut state) * outputs) as usize)
+                Moment::Writing(1 + whole::index(random(&mut state) * outputs))
             }
-            1 => Moment::Keeping(1 + (random(&mut state) * 3.0) as usize),
+            1 => Moment::Keeping(1 + whole::index(random(&mut state) * 3.0)),
             _ => Moment::After(random(&mut state)),
         };
         let resume = kill % IN_A_ROW != 0;

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The modules from left to right.
-const MODULES: [&str; 12] = [
+const MODULES: [&str; 13] = [
     "message",
     "signal",
     "record",
@@ -19,6 +19,7 @@ const MODULES: [&str; 12] = [
     "report",
     "campaign",
     "pipeline",
+    "explore",
     "cli",
 ];
 
@@ -175,6 +176,43 @@ fn only_the_command_line_prints_or_exits() {
     }
 }
 
+/// No network but loopback: sockets are opened in `explore` alone, and only on 127.0.0.1; its page names
+/// no other address.
+#[test]
+fn sockets_are_opened_on_loopback_alone_and_only_by_the_explorer() {
+    let sockets = ["TcpListener", "TcpStream", "UdpSocket", "axum", "tokio::"];
+    let mut binds = 0;
+    for (name, text) in all_sources() {
+        let code = text.split("#[cfg(test)]").next().unwrap_or("");
+        for line in code.lines().filter(|l| !l.trim_start().starts_with("//")) {
+            let used = sockets.iter().any(|s| line.contains(s));
+            assert!(!used || name.starts_with("explore/"), "src/{name}: {line}");
+            if line.contains("::bind(") && line.contains("TcpListener") {
+                binds += 1;
+                assert!(line.contains("Ipv4Addr::LOCALHOST"), "src/{name}: {line}");
+            }
+            let connects = line.contains("::connect(");
+            assert!(!connects, "src/{name} connects: {line}");
+        }
+    }
+    assert_eq!(binds, 1);
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/explore/page");
+    for entry in fs::read_dir(page).expect("the page") {
+        let path = entry.expect("an entry").path();
+        let name = path
+            .file_name()
+            .expect("a name")
+            .to_string_lossy()
+            .into_owned();
+        let text = fs::read_to_string(&path).expect("text");
+        let foreign = |scheme: &str| text.matches(scheme).count();
+        // uPlot's first line names its repository
+        let allowed = usize::from(name == "uplot.js");
+        let all = foreign("https://") + foreign("http://");
+        assert!(all <= allowed, "{name} names another address");
+    }
+}
+
 #[test]
 fn a_foreign_crate_is_used_in_its_module_alone() {
     let homes = [
@@ -185,6 +223,9 @@ fn a_foreign_crate_is_used_in_its_module_alone() {
         ("indicatif", &["cli"]),
         ("miette", &["cli"]),
         ("clap", &["cli"]),
+        ("axum", &["explore"]),
+        ("tokio", &["explore"]),
+        ("futures_util", &["explore"]),
     ];
     for (name, text) in all_sources() {
         for (foreign, modules) in homes {

@@ -38,7 +38,7 @@ fn form() -> Vec<Case> {
                 lab.edit(
                     "machine = \"double\"",
                     "machine = \"double\"\nmachine = \"single\"",
-                )
+                );
             },
             &["campaign.toml:4", "duplicate key"],
         ),
@@ -171,7 +171,7 @@ fn channels() -> Vec<Case> {
                 lab.edit(
                     "channel = \"vx\"\nunit = \"V\"",
                     "channel = \"vx\"\nunit = \"Vlt\"",
-                )
+                );
             },
             &["channels.velocity_x.unit", "the unit 'Vlt' is not known"],
         ),
@@ -181,7 +181,7 @@ fn channels() -> Vec<Case> {
                 lab.edit(
                     "scale = \"50 mm/s per V\"\nhigh",
                     "scale = \"50 mm/s\"\nhigh",
-                )
+                );
             },
             &["channels.velocity_x.scale", "\"50 mm/s per V\""],
         ),
@@ -191,7 +191,7 @@ fn channels() -> Vec<Case> {
                 lab.edit(
                     "scale = \"50 mm/s per V\"\nhigh",
                     "scale = \"0 mm/s per V\"\nhigh",
-                )
+                );
             },
             &["channels.velocity_x.scale", "a scale must be positive"],
         ),
@@ -201,7 +201,7 @@ fn channels() -> Vec<Case> {
                 lab.edit(
                     "scale = \"50 mm/s per V\"\nhigh",
                     "scale = \"50 mm/s per N\"\nhigh",
-                )
+                );
             },
             &[
                 "the scale of channel 'vx' does not start from its unit",

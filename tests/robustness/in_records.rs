@@ -158,15 +158,16 @@ fn matlab_bomb() -> Vec<u8> {
     let mut put = |bytes: &[u8]| std::io::Write::write_all(&mut packed, bytes).expect("memory");
     put(&14_u32.to_le_bytes());
     put(&(1_u32 << 28).to_le_bytes());
+    let zeros = vec![0; 1 << 20];
     for _ in 0..256 {
-        put(&[0; 1 << 20]);
+        put(&zeros);
     }
     let packed = packed.finish().expect("memory");
     let mut bytes = b"MATLAB 5.0 MAT-file".to_vec();
     bytes.resize(124, b' ');
     bytes.extend([0, 1, b'I', b'M']);
     bytes.extend(15_u32.to_le_bytes());
-    bytes.extend((packed.len() as u32).to_le_bytes());
+    bytes.extend(u32::try_from(packed.len()).expect("short").to_le_bytes());
     bytes.extend(packed);
     bytes
 }
@@ -187,7 +188,7 @@ fn files() -> Vec<Case> {
             "a file of random bytes",
             |lab| {
                 let bytes: Vec<u8> = (0..4096_u32)
-                    .map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8)
+                    .map(|i| i.wrapping_mul(2_654_435_761).to_le_bytes()[2])
                     .collect();
                 lab.write_bytes("r2.bin", &bytes);
                 lab.replace("runs.csv", "r2.csv", "r2.bin");
@@ -399,7 +400,7 @@ fn times() -> Vec<Case> {
             |lab| {
                 lab.lines("r2.csv", |i, l| {
                     (!(800..817).contains(&i)).then(|| l.to_owned())
-                })
+                });
             },
             &[
                 "17 samples are missing in the time axis",

@@ -71,7 +71,7 @@ fn the_tutorial_runs_as_written_and_its_results_are_read() {
     read_with_python(lab.path());
 }
 
-/// docs/read_results.py reads all that the run left.
+/// `docs/read_results.py` reads all that the run left.
 fn read_with_python(folder: &Path) {
     let Some(python) = python() else {
         println!("skipped: no Python with polars or pandas (IMPACTID_PYTHON names one)");
@@ -135,7 +135,7 @@ fn every_command_has_a_page_and_completions() {
     }
 }
 
-/// On a terminal errors are coloured, unless NO_COLOR is set.
+/// On a terminal errors are coloured, unless `NO_COLOR` is set.
 #[cfg(target_os = "linux")]
 #[test]
 fn no_color_is_heeded_on_a_terminal() {

@@ -2,10 +2,10 @@
 //! driven masses on springs that hit each other when their displacements fill the gap (Peterka's
 //! double impact oscillator), or one mass against a stop.
 //!
-//! Everything is dimensionless: displacement X = x/x_st in units of the static deflection
-//! x_st = F0/k, time τ = Ωt, frequency ratio η = ω/Ω, clearance ρ = r/x_st, damping ratio
+//! Everything is dimensionless: displacement X = `x/x_st` in units of the static deflection
+//! `x_st` = F0/k, time τ = Ωt, frequency ratio η = ω/Ω, clearance ρ = `r/x_st`, damping ratio
 //! β = b/(2√(km)), coefficient of restitution R; the drive is cos(ητ + φ). Speeds are in units of
-//! x_st Ω. The approach speed at an impact is w = X'₋ + Y'₋ (X'₋ against a stop), the separation
+//! `x_st` Ω. The approach speed at an impact is w = X'₋ + Y'₋ (X'₋ against a stop), the separation
 //! speed after it Rw. A motion z = p/n has p impacts in n drive periods.
 //!
 //! Between impacts a motion is a closed form, and the next impact is found by steps that cannot
@@ -48,14 +48,6 @@
 //! # Features
 //! `rayon` (default): region maps, basins and atlases use all threads of the current rayon pool.
 //! Results are the same bytes with any number of threads and without the feature.
-#![warn(
-    unreachable_pub,
-    clippy::cast_possible_truncation,
-    clippy::cast_possible_wrap,
-    clippy::cast_sign_loss,
-    clippy::missing_errors_doc,
-    clippy::missing_panics_doc
-)]
 
 pub mod atlas;
 pub mod model;

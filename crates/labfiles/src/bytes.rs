@@ -163,7 +163,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// A cursor over `at..end` of the same file.
-    pub(crate) fn part(&self, at: u64, end: u64) -> Cursor<'a> {
+    pub(crate) fn part(&self, at: u64, end: u64) -> Self {
         Cursor {
             file: self.file,
             at,

@@ -99,7 +99,7 @@ pub fn convert(
 }
 
 /// A note if a record has texts, which the HDF5 file cannot hold.
-fn texts_left_out(item: &Item) -> Option<String> {
+fn texts_left_out(item: &Item<'_>) -> Option<String> {
     let texts = item.channels().iter();
     let texts = texts.filter(|c| c.stored == StoredType::Text);
     let names: Vec<&str> = texts.map(|c| c.name.as_str()).collect();
@@ -113,7 +113,7 @@ fn texts_left_out(item: &Item) -> Option<String> {
 }
 
 /// A note if a record has channels of several lengths, which the columns of a table cannot have.
-fn filled_up(item: &Item) -> Option<String> {
+fn filled_up(item: &Item<'_>) -> Option<String> {
     let channels = item.channels();
     let longest = channels.iter().map(|c| c.samples).max()?;
     let shorter = channels.iter().filter(|c| c.samples < longest);

@@ -34,25 +34,14 @@
 //! [`hdf5_write::CampaignWriter`]; [`output`] holds what both rest on: files that appear under their
 //! names when they are complete, or not at all. [`units`] converts to SI.
 
-#![warn(
-    unreachable_pub,
-    clippy::cast_lossless,
-    clippy::cast_possible_truncation,
-    clippy::cast_possible_wrap,
-    clippy::cast_sign_loss,
-    clippy::missing_errors_doc
-)]
-// Samples are f64 whatever their type in the file: 64-bit integers beyond 2^53 are rounded, as the
-// documentation of `Samples` states. Counts are converted to compute rates and means.
-#![allow(clippy::cast_precision_loss)]
-// Tests make numbers of known range.
 #![cfg_attr(
     test,
     allow(
         clippy::cast_lossless,
         clippy::cast_possible_truncation,
         clippy::cast_possible_wrap,
-        clippy::cast_sign_loss
+        clippy::cast_sign_loss,
+        reason = "tests make numbers of known range"
     )
 )]
 

@@ -1,4 +1,4 @@
-//! LabVIEW measurement files (LVM): a header, then one or more tables with headers of their own.
+//! `LabVIEW` measurement files (LVM): a header, then one or more tables with headers of their own.
 
 mod header;
 pub(crate) mod scan;
@@ -57,7 +57,7 @@ enum Column {
     Comment,
 }
 
-/// Open a LabVIEW measurement file.
+/// Open a `LabVIEW` measurement file.
 ///
 /// # Errors
 /// If the file cannot be read, a header does not end, or there are no rows.
@@ -168,7 +168,7 @@ impl Builder {
         &self,
         info: &mut DatasetInfo,
         segment: &Segment,
-        made: &Made,
+        made: &Made<'_>,
     ) -> Result<(), ReadError> {
         let Made {
             layout,

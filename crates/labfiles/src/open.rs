@@ -95,7 +95,7 @@ fn is_parquet(front: &[u8]) -> bool {
     front.starts_with(&parquet::SIGNATURE)
 }
 
-/// A LabVIEW measurement file begins with words of its own.
+/// A `LabVIEW` measurement file begins with words of its own.
 fn is_lvm(front: &[u8]) -> bool {
     let text = front.strip_prefix(&[0xEF, 0xBB, 0xBF]).unwrap_or(front);
     text.starts_with(lvm::scan::FIRST_WORDS.as_bytes())

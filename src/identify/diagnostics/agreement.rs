@@ -11,7 +11,7 @@ use crate::identify::method::Method;
 /// Level of the whole test; divided by the number of pairs.
 const LEVEL: f64 = 0.01;
 
-/// Compare all methods that determine a common parameter. `boundaries` takes f0, β and x_st from the
+/// Compare all methods that determine a common parameter. `boundaries` takes f0, β and `x_st` from the
 /// resonance curve, so these two are not compared on them.
 pub fn agreement(methods: &BTreeMap<Method, MethodResult>) -> Agreement {
     let names: Vec<Method> = methods.keys().copied().collect();
@@ -40,7 +40,7 @@ fn differs(pair: &PairAgreement, pairs: usize) -> bool {
 /// What a disagreement of methods leaves open in the joint estimate of each parameter that they
 /// disagree on: standard uncertainty of R absolute, of the others relative.
 ///
-/// DerSimonian and Laird's random effects: with estimates y of variances v and weights 1/v, the
+/// `DerSimonian` and Laird's random effects: with estimates y of variances v and weights 1/v, the
 /// variance between methods is τ² = (Σ w(y − ȳ)² − (k − 1))/(Σw − Σw²/Σw), that of their mean
 /// 1/Σ 1/(v + τ²); what the joint estimate is off that mean is added.
 pub fn between_methods(

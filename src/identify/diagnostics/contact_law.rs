@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
 use crate::identify::fit::normal::inverse;
 use crate::signal::robust;
+use crate::signal::whole;
 
 /// How R depends on the closing speed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -96,7 +97,7 @@ pub fn contact_law(block: &ImpactBlock) -> Option<ContactLaw> {
     let mut speeds: Vec<f64> = pairs.iter().map(|p| p.before_m_s).collect();
     speeds.sort_by(f64::total_cmp);
     let knots: Vec<f64> = [0.0, 1.0, 2.0, 3.0]
-        .map(|k: f64| speeds[((speeds.len() - 1) as f64 * k / 3.0).round() as usize])
+        .map(|k: f64| speeds[whole::index(((speeds.len() - 1) as f64 * k / 3.0).round())])
         .to_vec();
     let fits: Vec<Fitted> = Law::ALL
         .into_iter()

@@ -75,7 +75,7 @@ pub fn judge_trajectories(result: &mut MethodResult, block: &TrajectoryBlock, fi
 
 /// Judge by the contact law whether impacts are instantaneous with one R; the records of the impacts
 /// that it rests on say how long a contact lasts.
-pub fn judge_impacts(result: &mut MethodResult, block: &ImpactBlock, evidence: &Evidence) {
+pub fn judge_impacts(result: &mut MethodResult, block: &ImpactBlock, evidence: &Evidence<'_>) {
     let Some(law) = &result.contact_law else {
         return;
     };
@@ -115,7 +115,7 @@ pub fn judge_impacts(result: &mut MethodResult, block: &ImpactBlock, evidence: &
 }
 
 /// Samples over which a velocity jumps at the impacts, in the median record.
-fn contact_samples(block: &ImpactBlock, evidence: &Evidence) -> f64 {
+fn contact_samples(block: &ImpactBlock, evidence: &Evidence<'_>) -> f64 {
     let used: BTreeSet<usize> = block.pairs.iter().map(|p| p.observation).collect();
     let samples: Vec<f64> = used
         .into_iter()
@@ -139,7 +139,7 @@ pub struct Basis<'a> {
 }
 
 /// The verdict: the model does not fit if it does not fit the data of any one method.
-pub fn verdict(basis: &Basis) -> Verdict {
+pub fn verdict(basis: &Basis<'_>) -> Verdict {
     let estimates: Vec<(Coordinate, &Estimate)> = Coordinate::PHYSICAL
         .into_iter()
         .filter_map(|c| Some((c, basis.joint.parameters.get(c)?)))
@@ -182,7 +182,7 @@ pub fn verdict(basis: &Basis) -> Verdict {
 }
 
 /// Suspicions, remarks of methods that do not fit, notes of the parameters, disagreement.
-fn findings(basis: &Basis, estimates: &[(Coordinate, &Estimate)]) -> Vec<Finding> {
+fn findings(basis: &Basis<'_>, estimates: &[(Coordinate, &Estimate)]) -> Vec<Finding> {
     let mut findings = basis.suspicions.to_vec();
     findings.extend(basis.beyond.iter().cloned());
     for (method, result) in basis.methods {

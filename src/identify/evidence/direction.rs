@@ -5,7 +5,7 @@ use crate::identify::fit::parameters::Coordinate;
 use impact_oscillator::model::params::{Machine, Oscillator};
 use impact_oscillator::model::sensitivity::{Change, MassChange};
 
-/// Change of machine and setting per unit of a record's own R, ln f0, ln β, ln x_st or of an
+/// Change of machine and setting per unit of a record's own R, ln f0, ln β, ln `x_st` or of an
 /// asymmetry, at η and a gap; all other coordinates change neither.
 pub fn change(machine: &Machine, eta: f64, gap: f64, coordinate: Coordinate) -> Change {
     let none = Change::default();

@@ -84,7 +84,7 @@ pub struct FlightBlock {
 const FEWEST_IMPACTS: usize = 4;
 /// Relative error of a speed beside the noise: what its extrapolation to the impact leaves open.
 const SPEED_SCATTER: f64 = 1e-3;
-/// Deviation of the state before the first impact, in units of x_st and x_st Ω: nothing is known.
+/// Deviation of the state before the first impact, in units of `x_st` and `x_st` Ω: nothing is known.
 const UNKNOWN: f64 = 30.0;
 
 impl FlightBlock {

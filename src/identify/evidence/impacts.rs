@@ -127,6 +127,7 @@ impl ImpactBlock {
     }
 
     /// The speeds as they are with the corners that a fit found.
+    #[must_use]
     pub fn corrected(&self, parameters: &Parameters) -> Self {
         let mut block = self.clone();
         for pair in &mut block.pairs {

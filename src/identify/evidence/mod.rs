@@ -43,7 +43,7 @@ pub struct Nominal {
     pub natural_frequency_hz: Option<f64>,
     /// β
     pub damping_ratio: Option<f64>,
-    /// x_st, m
+    /// `x_st`, m
     pub static_deflection_m: Option<f64>,
     /// Standard uncertainty of the channels' gains, relative.
     pub gain_uncertainty: f64,
@@ -55,7 +55,7 @@ pub struct Nominal {
     pub delays_s: [f64; 4],
     /// Standard uncertainties of those delays, s; `None`: half a sample.
     pub delay_uncertainties_s: [Option<f64>; 4],
-    /// (m_x − m_y)/m with its standard uncertainty; `None`: masses that were made alike.
+    /// (`m_x` − `m_y)/m` with its standard uncertainty; `None`: masses that were made alike.
     pub mass_asymmetry: Option<[f64; 2]>,
     /// Effects that the fit allows beyond the model.
     pub effects: Effects,
@@ -73,6 +73,7 @@ impl Nominal {
 
     /// The same rig without errors of clearances, delays and effects beyond the model: for a first
     /// fit, whose result the changes by them are taken at.
+    #[must_use]
     pub fn ideal(&self) -> Self {
         Self {
             clearance_uncertainty_m: 0.0,
@@ -142,16 +143,16 @@ pub struct Blocks {
 
 impl Blocks {
     /// Sort the evidence.
-    pub fn new(evidence: &Evidence) -> Self {
+    pub fn new(evidence: &Evidence<'_>) -> Self {
         Self::with_errors(evidence, RELATIVE_ERROR, IMPACT_SCATTER)
     }
 
     /// The evidence without allowance for anything but noise.
-    pub fn with_noise_alone(evidence: &Evidence) -> Self {
+    pub fn with_noise_alone(evidence: &Evidence<'_>) -> Self {
         Self::with_errors(evidence, 0.0, 0.0)
     }
 
-    fn with_errors(evidence: &Evidence, relative_error: f64, impact_scatter: f64) -> Self {
+    fn with_errors(evidence: &Evidence<'_>, relative_error: f64, impact_scatter: f64) -> Self {
         let Evidence {
             rig,
             observations,

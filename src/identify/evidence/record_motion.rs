@@ -272,7 +272,7 @@ impl<'a> RecordMotion<'a> {
         found.map_or_else(|| vec![0.0; points], |(_, change)| change.clone())
     }
 
-    /// Slopes over one of the record's own R, ln f0, ln β, ln x_st, clearance in m.
+    /// Slopes over one of the record's own R, ln f0, ln β, ln `x_st`, clearance in m.
     fn over_own(&self, values: &[f64], i: usize) -> Vec<f64> {
         match Coordinate::PHYSICAL.get(i) {
             Some(coordinate) => self.over_coordinate(values, *coordinate),

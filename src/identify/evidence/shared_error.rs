@@ -2,14 +2,14 @@
 //! clearance where no other record has the same.
 //!
 //! With independent errors of unit size and shared ones along the columns of V, the covariance is
-//! I + VVᵀ (13); residuals times its inverse root are independent again, and least squares on them is
+//! I + `VVᵀ` (13); residuals times its inverse root are independent again, and least squares on them is
 //! the likelihood.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use crate::identify::fit::factor::dot;
 
-/// The inverse root of I + VVᵀ, by its few directions: I − Σ kept·d dᵀ with orthonormal d.
+/// The inverse root of I + `VVᵀ`, by its few directions: I − Σ kept·d dᵀ with orthonormal d.
 #[derive(Debug, Clone, Default)]
 pub struct Whitening {
     directions: Vec<(f64, Vec<f64>)>,

@@ -57,7 +57,7 @@ const GAP_NAMES: [&str; MOST_GAPS] = [
     "clearance_error_48_mm",
 ];
 
-/// One coordinate of the fit: R itself, the logarithms of f0, β, x_st, the gains and the
+/// One coordinate of the fit: R itself, the logarithms of f0, β, `x_st`, the gains and the
 /// corners, the asymmetries and effects themselves, delays in ms, errors of clearances in mm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
@@ -68,15 +68,15 @@ pub enum Coordinate {
     Frequency,
     /// ln β
     Damping,
-    /// ln x_st
+    /// ln `x_st`
     Deflection,
-    /// (F_x − F_y)/F0
+    /// (`F_x` − `F_y)/F0`
     DriveAsymmetry,
-    /// (k_x − k_y)/k
+    /// (`k_x` − `k_y)/k`
     StiffnessAsymmetry,
-    /// (b_x − b_y)/b
+    /// (`b_x` − `b_y)/b`
     DampingAsymmetry,
-    /// (m_x − m_y)/m
+    /// (`m_x` − `m_y)/m`
     MassAsymmetry,
     /// ln of a channel's gain, by its index in [`Parameters::gains`]
     Gain(usize),
@@ -94,11 +94,11 @@ pub enum Coordinate {
 
 impl Coordinate {
     /// The four parameters that the user asks for.
-    pub const PHYSICAL: [Coordinate; 4] = [
-        Coordinate::Restitution,
-        Coordinate::Frequency,
-        Coordinate::Damping,
-        Coordinate::Deflection,
+    pub const PHYSICAL: [Self; 4] = [
+        Self::Restitution,
+        Self::Frequency,
+        Self::Damping,
+        Self::Deflection,
     ];
 
     /// Name in `identification.json`.
@@ -131,7 +131,7 @@ impl Coordinate {
     }
 
     /// All coordinates.
-    pub fn all() -> impl Iterator<Item = Coordinate> {
+    pub fn all() -> impl Iterator<Item = Self> {
         let single = [
             Self::DriveAsymmetry,
             Self::StiffnessAsymmetry,

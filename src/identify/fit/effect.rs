@@ -29,7 +29,7 @@ pub enum Effect {
     FrequencyBend,
     /// Relative change of β from the first record to the last
     DampingDrift,
-    /// Relative change of x_st (the force) from the first record to the last
+    /// Relative change of `x_st` (the force) from the first record to the last
     DeflectionDrift,
     /// Length of a contact, ms
     ContactDuration,
@@ -62,7 +62,7 @@ pub enum EffectKind {
     Hardening,
     /// Coulomb friction
     Friction,
-    /// f0, β and x_st over the campaign
+    /// f0, β and `x_st` over the campaign
     Drift,
     /// Contacts of finite duration
     ContactDuration,

@@ -1,7 +1,7 @@
 //! Triangular factor of weighted residuals and their slopes.
 //!
 //! Information is carried by its square root: the upper triangular R of [J r], of which the normal
-//! equations are RᵀR. Forming JᵀJ would square the condition of the problem and lose half of its
+//! equations are `RᵀR`. Forming `JᵀJ` would square the condition of the problem and lose half of its
 //! digits. Rows are folded in by Householder reflections (Golub and Van Loan, Matrix Computations,
 //! chapter 5), so that factors of parts stack into that of the whole.
 
@@ -134,7 +134,7 @@ impl Factor {
         self.triangle[column * (self.unknowns + 1) + row]
     }
 
-    /// Norms of the columns of slopes: the square roots of the diagonal of JᵀJ.
+    /// Norms of the columns of slopes: the square roots of the diagonal of `JᵀJ`.
     pub fn norms(&self) -> Vec<f64> {
         self.triangle
             .chunks_exact(self.unknowns + 1)

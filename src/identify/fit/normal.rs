@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 /// Normal equations of some residuals.
 #[derive(Debug, Clone)]
 pub struct Normal {
-    /// JᵀJ over the free coordinates.
+    /// `JᵀJ` over the free coordinates.
     pub matrix: DMatrix<f64>,
     /// Jᵀr.
     pub gradient: DVector<f64>,

@@ -25,10 +25,10 @@ pub struct Circumstances {
 }
 
 /// Derivative of a record's own parameters over one coordinate of the fit: of R, ln f0, ln β,
-/// ln x_st, and of the clearance in m.
+/// ln `x_st`, and of the clearance in m.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct OwnSlope {
-    /// Of R, ln f0, ln β and ln x_st.
+    /// Of R, ln f0, ln β and ln `x_st`.
     pub physical: [f64; 4],
     /// Of the clearance, m.
     pub clearance_m: f64,

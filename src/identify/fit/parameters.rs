@@ -20,16 +20,16 @@ pub struct Parameters {
     pub natural_frequency_hz: f64,
     /// Damping ratio β.
     pub damping_ratio: f64,
-    /// Static deflection x_st, m; of two masses the mean.
+    /// Static deflection `x_st`, m; of two masses the mean.
     pub static_deflection_m: f64,
-    /// (F_x − F_y)/F0.
+    /// (`F_x` − `F_y)/F0`.
     pub drive_asymmetry: f64,
-    /// (k_x − k_y)/k, per unit of mass.
+    /// (`k_x` − `k_y)/k`, per unit of mass.
     pub stiffness_asymmetry: f64,
-    /// (b_x − b_y)/b, per unit of mass.
+    /// (`b_x` − `b_y)/b`, per unit of mass.
     #[serde(default)]
     pub damping_asymmetry: f64,
-    /// (m_x − m_y)/m.
+    /// (`m_x` − `m_y)/m`.
     #[serde(default)]
     pub mass_asymmetry: f64,
     /// Gain of the channels over the stated one: velocity x, y, displacement x, y.
@@ -106,6 +106,7 @@ impl Parameters {
     }
 
     /// Of a machine whose masses are alike.
+    #[must_use]
     pub fn without_asymmetry(self) -> Self {
         Self {
             drive_asymmetry: 0.0,
@@ -175,6 +176,7 @@ impl Parameters {
     }
 
     /// The parameters with one coordinate set.
+    #[must_use]
     pub fn with(mut self, coordinate: Coordinate, value: f64) -> Self {
         match coordinate {
             Coordinate::Restitution => self.restitution = value,

@@ -45,7 +45,7 @@ impl FitReport {
 
 /// One line: iterations, cost, damping and the reason of the termination.
 impl fmt::Display for FitReport {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             iterations,
             cost,

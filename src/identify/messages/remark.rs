@@ -259,7 +259,7 @@ impl Message for Remark {
                 values
             }
             Self::OutlyingImpacts { count, first } => {
-                let mut which: Vec<Value> = first.iter().map(|i| Value::Message(i)).collect();
+                let mut which: Vec<Value<'_>> = first.iter().map(|i| Value::Message(i)).collect();
                 which.extend((*count > first.len()).then_some(Value::Name("…")));
                 vec![
                     ("count", Value::Count(*count)),

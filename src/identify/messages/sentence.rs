@@ -6,6 +6,7 @@ use super::symbols;
 use crate::identify::fit::parameters::Coordinate;
 use crate::message::{Message, Value};
 use crate::messages;
+use crate::signal::whole;
 
 /// A parameter with its value as a sentence states it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -39,7 +40,7 @@ impl Message for StatedValue {
         };
         let (value, half) = (scale * self.value, scale * self.half_width);
         // two significant digits of the half width; the cast is of 0 to 8
-        let decimals = (1.0 - half.max(1e-9).log10().floor()).clamp(0.0, 8.0) as usize;
+        let decimals = whole::index((1.0 - half.max(1e-9).log10().floor()).clamp(0.0, 8.0));
         vec![
             ("parameter", Value::Message(&self.parameter)),
             ("value", Value::Number(value, decimals)),

@@ -42,7 +42,7 @@ impl Bound {
 }
 
 /// Bounds of every method on the evidence, `joint` among them, at given parameters.
-pub fn bounds(evidence: &Evidence, at: &Parameters) -> BTreeMap<String, Bound> {
+pub fn bounds(evidence: &Evidence<'_>, at: &Parameters) -> BTreeMap<String, Bound> {
     let mut blocks = Blocks::with_noise_alone(evidence);
     blocks.trajectory.find_changes(at);
     let blocks = blocks;

@@ -1,10 +1,10 @@
 //! The budget of a joint estimate's uncertainty in the manner of the GUM (JCGM 100): a row for each
 //! source, with what it contributes to each parameter.
 //!
-//! With the joint covariance C = A⁻¹ and the information F_s of a source (a block of residuals, or the
-//! prior of a stated uncertainty), its contribution to the variance of parameter i is (C F_s C)_ii;
-//! as A is the sum of all F_s, the contributions add up to C_ii. Of a prior of standard uncertainty u
-//! on coordinate k that is c²u² with the sensitivity c = C_ik/u².
+//! With the joint covariance C = A⁻¹ and the information `F_s` of a source (a block of residuals, or the
+//! prior of a stated uncertainty), its contribution to the variance of parameter i is (C `F_s` C)_ii;
+//! as A is the sum of all `F_s`, the contributions add up to `C_ii`. Of a prior of standard uncertainty u
+//! on coordinate k that is c²u² with the sensitivity c = `C_ik/u²`.
 
 use serde::{Deserialize, Serialize};
 
@@ -75,7 +75,7 @@ pub struct Row {
     pub standard_uncertainty: Option<f64>,
     /// Degrees of freedom; `None`: infinitely many.
     pub degrees_of_freedom: Option<f64>,
-    /// Contributions to R, f0, β, x_st.
+    /// Contributions to R, f0, β, `x_st`.
     pub contributions: Vec<Contribution>,
 }
 

@@ -27,6 +27,7 @@ use crate::identify::fit::{Fit, Problem};
 use crate::identify::method::Method;
 use crate::identify::uncertainty::budget::Budget;
 use crate::identify::uncertainty::scatter::Scatter;
+use crate::signal::whole;
 
 /// Likelihood of one parameter with all others fitted anew at each of its values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -242,7 +243,7 @@ fn replica(
 fn summary(coordinate: Coordinate, sorted: &[f64]) -> Option<Bootstrapped> {
     let physical = |v: f64| coordinate.physical(v);
     let at = |share: f64| {
-        let i = (share * (sorted.len().saturating_sub(1)) as f64).round() as usize;
+        let i = whole::index((share * (sorted.len().saturating_sub(1)) as f64).round());
         sorted.get(i).copied()
     };
     let mean = crate::signal::robust::mean(sorted);

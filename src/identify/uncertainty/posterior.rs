@@ -2,7 +2,7 @@
 //!
 //! A bracket says that a boundary lies between two settings and nothing more (14); its likelihood is
 //! flat inside, so neither a least-squares optimum nor its curvature means anything. The
-//! posterior is therefore summed over a grid of R and x_st (which the resonance curve tells), with
+//! posterior is therefore summed over a grid of R and `x_st` (which the resonance curve tells), with
 //! the scale of early jumps summed out; f0 and β are the resonance curve's.
 
 use std::collections::BTreeMap;
@@ -13,20 +13,20 @@ use crate::identify::evidence::boundary::{BoundaryBlock, bracket_probability, pr
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::motion::Bracket;
 
-/// What brackets say of R and x_st.
+/// What brackets say of R and `x_st`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Posterior {
     /// Posterior mean and standard deviation of R.
     pub restitution: (f64, f64),
     /// 95 % interval of R with equal tails.
     pub interval95: [f64; 2],
-    /// Posterior mean and standard deviation of ln x_st.
+    /// Posterior mean and standard deviation of ln `x_st`.
     pub ln_deflection: (f64, f64),
 }
 
 /// Scales of early jumps that are summed over, relative to the frequency; each as likely before.
 const EARLY_SCALES: [f64; 8] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2];
-/// Grid of ln x_st in its standard errors.
+/// Grid of ln `x_st` in its standard errors.
 const DEFLECTION_NODES: [f64; 9] = [-3.0, -2.25, -1.5, -0.75, 0.0, 0.75, 1.5, 2.25, 3.0];
 /// Points of the final grid of R.
 const FINE: usize = 61;
@@ -34,7 +34,7 @@ const FINE: usize = 61;
 const NEGLIGIBLE: f64 = 9.0;
 
 /// Posterior about parameters that the resonance curve tells, with the standard error of
-/// ln x_st; `None` where no bracket tells R.
+/// ln `x_st`; `None` where no bracket tells R.
 pub fn of_brackets(block: &BoundaryBlock, about: &Parameters, error: f64) -> Option<Posterior> {
     if !block.tells_restitution() {
         return None;

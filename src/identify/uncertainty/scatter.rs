@@ -1,14 +1,14 @@
 //! Scatter between groups of records beyond noise and nuisances: what the model does not contain.
 //!
 //! Leaving out group g of the records (one gap and direction of the sweep) moves an estimate, to first
-//! order, by Δ_g = (A − A_g)⁻¹u_g with A the information of all, A_g and u_g the group's own and its
+//! order, by `Δ_g` = (A − `A_g)⁻¹u_g` with A the information of all, `A_g` and `u_g` the group's own and its
 //! gradient at the optimum. Were the residuals noise alone, its variance would be
-//! (A − A_g)⁻¹ − A⁻¹. The ratio
+//! (A − `A_g)⁻¹` − A⁻¹. The ratio
 //!
-//! q_i = Σ_g Δ²_{g,i} / Σ_g [(A − A_g)⁻¹ − A⁻¹]_ii                                            (18)
+//! `q_i` = `Σ_g` Δ²_{g,i} / `Σ_g` [(A − `A_g)⁻¹` − A⁻¹]_ii                                            (18)
 //!
 //! is one where the groups differ by no more than they must, and grows with what each group sees
-//! otherwise than the others: the delete-a-group jackknife (CR3; Bell and McCaffrey 2002, Cameron and
+//! otherwise than the others: the delete-a-group jackknife (CR3; Bell and `McCaffrey` 2002, Cameron and
 //! Miller 2015) over its own expectation, a Birge ratio of each parameter. What the data, not the
 //! stated uncertainties, leave open of a parameter is multiplied by it where it exceeds one; the
 //! quantile is Student's with the degrees of freedom that the groups have.
@@ -65,6 +65,7 @@ impl Spread {
     }
 
     /// With a further error that is known itself.
+    #[must_use]
     pub fn with(self, error: f64) -> Self {
         let whole = self.error.hypot(error);
         let grown = if self.error > 0.0 {

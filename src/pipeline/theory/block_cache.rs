@@ -16,7 +16,8 @@ const FOLDER: &str = ".impactid-blocks";
 /// The blocks of one study.
 #[derive(Debug)]
 pub struct BlockCache {
-    folder: PathBuf,
+    /// `None`: nothing is kept.
+    folder: Option<PathBuf>,
     key: String,
 }
 
@@ -27,6 +28,14 @@ struct Block<T> {
 }
 
 impl BlockCache {
+    /// Keeps nothing: for work whose results are not written into a folder.
+    pub fn none() -> Self {
+        Self {
+            folder: None,
+            key: String::new(),
+        }
+    }
+
     /// The blocks in an output folder, of work that a text describes in full. Without `resume`
     /// the blocks of an earlier run are removed.
     ///
@@ -40,21 +49,22 @@ impl BlockCache {
             impact_oscillator::atlas::map::Kernel::of_this_machine()
         ));
         hash.update(work);
+        let folder = out.join(FOLDER);
         let cache = Self {
-            folder: out.join(FOLDER),
+            folder: Some(folder.clone()),
             key: hexadecimal(hash),
         };
         if !resume {
             cache.remove();
         }
-        output::make_folder(&cache.folder)?;
-        output::clear_parts(&cache.folder);
+        output::make_folder(&folder)?;
+        output::clear_parts(&folder);
         Ok(cache)
     }
 
     /// A block; `None` where it is not there, of other work or unreadable.
     pub fn load<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
-        let bytes = std::fs::read(self.path(name)).ok()?;
+        let bytes = std::fs::read(self.path(name)?).ok()?;
         let block: Block<T> = serde_json::from_slice(&bytes).ok()?;
         (block.key == self.key).then_some(block.content)
     }
@@ -64,11 +74,14 @@ impl BlockCache {
     /// # Errors
     /// Where it cannot be written.
     pub fn save<T: Serialize>(&self, name: &str, content: &T) -> Result<(), OutputError> {
+        let Some(path) = self.path(name) else {
+            return Ok(());
+        };
         let block = Block {
             key: self.key.clone(),
             content,
         };
-        output::write_json_line(&self.path(name), &block)
+        output::write_json_line(&path, &block)
     }
 
     /// A block of an earlier run, or one that is computed and saved now.
@@ -90,16 +103,18 @@ impl BlockCache {
 
     /// Remove all blocks: the work is done.
     pub fn remove(&self) {
-        // a block that cannot be removed does no harm: blocks are reused by their key alone
-        let _ = std::fs::remove_dir_all(&self.folder);
+        if let Some(folder) = &self.folder {
+            // a block that cannot be removed does no harm: blocks are reused by their key alone
+            let _ = std::fs::remove_dir_all(folder);
+        }
     }
 
-    fn path(&self, name: &str) -> PathBuf {
+    fn path(&self, name: &str) -> Option<PathBuf> {
         let safe: String = name
             .chars()
             .map(|c| if c.is_alphanumeric() { c } else { '_' })
             .collect();
-        self.folder.join(format!("{safe}.json"))
+        Some(self.folder.as_ref()?.join(format!("{safe}.json")))
     }
 }
 

@@ -3,12 +3,11 @@
 
 pub mod basins;
 pub mod block_cache;
+pub mod map;
 pub mod plan;
 pub mod regions;
 pub mod sweep;
 pub mod time_series;
-
-use std::path::Path;
 
 use crate::pipeline::table::{self, Table};
 use crate::report::ReportError;
@@ -16,7 +15,7 @@ use crate::report::figures::Figure;
 use crate::report::picture::pictures;
 use block_cache::BlockCache;
 use impact_oscillator::model::ModelError;
-use labfiles::output::{OutputError, write_bytes};
+use labfiles::output::OutputError;
 pub use plan::Study;
 
 /// Why a study stopped.
@@ -66,10 +65,26 @@ impl StudyError {
     }
 }
 
+/// Which pictures of its figures a piece of work makes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pictures {
+    /// None.
+    None,
+    /// SVG alone.
+    Svg,
+    /// SVG, PNG and PDF.
+    All,
+}
+
+/// Receives a file: its name and its bytes.
+pub type Output<'a> = &'a (dyn Fn(&str, &[u8]) -> Result<(), OutputError> + Sync);
+
 /// Where a piece of work writes its results, and to whom it reports.
 pub struct StudyContext<'a> {
-    /// The folder.
-    pub folder: &'a Path,
+    /// Receives each file of the results.
+    pub output: Output<'a>,
+    /// The pictures to make.
+    pub pictures: Pictures,
     /// Blocks of an earlier, interrupted run.
     pub blocks: &'a BlockCache,
     /// Receives the steps done and the number of steps.
@@ -89,17 +104,21 @@ impl StudyContext<'_> {
         self.bytes(&format!("{name}.parquet"), &parquet)
     }
 
-    /// Write a figure as SVG, PNG and PDF.
+    /// Write a figure as the pictures that are wanted.
     fn figure(&self, figure: &Figure) -> Result<(), StudyError> {
-        for (name, bytes) in pictures(figure)? {
-            self.bytes(&name, &bytes)?;
+        match self.pictures {
+            Pictures::None => Ok(()),
+            Pictures::Svg => self.bytes(&format!("{}.svg", figure.name), figure.svg.as_bytes()),
+            Pictures::All => {
+                let files = pictures(figure)?;
+                let mut files = files.iter();
+                files.try_for_each(|(name, bytes)| self.bytes(name, bytes))
+            }
         }
-        Ok(())
     }
 
     fn bytes(&self, name: &str, bytes: &[u8]) -> Result<(), StudyError> {
-        write_bytes(&self.folder.join(name), bytes)?;
-        Ok(())
+        Ok((self.output)(name, bytes)?)
     }
 }
 
@@ -118,6 +137,9 @@ pub fn run(study: &Study, context: &StudyContext<'_>) -> Result<(), StudyError> 
     }
     for (name, plan) in &study.basins {
         basins::run(&machine, name, plan, context)?;
+    }
+    for (name, plan) in &study.map {
+        map::run(&machine, name, plan, context)?;
     }
     for (name, plan) in &study.regions {
         regions::run(&machine, name, plan, context)?;

@@ -34,6 +34,9 @@ pub struct Study {
     /// Basins of attraction.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub basins: BTreeMap<String, BasinPlan>,
+    /// Region maps by brute force.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub map: BTreeMap<String, MapPlan>,
     /// Regions of existence and stability.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub regions: BTreeMap<String, RegionsPlan>,
@@ -93,6 +96,19 @@ pub struct BasinPlan {
     pub watch: Watch,
 }
 
+/// The motion that each cell of a grid in the (η, ρ) plane settles on from one start.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MapPlan {
+    /// First and last η, number of columns.
+    pub eta: (f64, f64, usize),
+    /// First and last ρ, number of rows.
+    pub rho: (f64, f64, usize),
+    /// Start, settling and watch of every cell.
+    #[serde(default)]
+    pub map: MapSettings,
+}
+
 /// Regions of all motions in the (η, ρ) plane.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -134,6 +150,7 @@ impl Study {
             time_series: BTreeMap::new(),
             sweep: BTreeMap::new(),
             basins: BTreeMap::new(),
+            map: BTreeMap::new(),
             regions: BTreeMap::new(),
         }
     }

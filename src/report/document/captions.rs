@@ -13,7 +13,7 @@ use crate::report::parameters::parameter;
 type Captioned = (String, String);
 
 /// Groups of figures; narrow ones of one group are side by side.
-pub(super) fn method_figures(content: &ReportContent, locale: Locale) -> Vec<Vec<Captioned>> {
+pub(super) fn method_figures(content: &ReportContent, locale: Locale<'_>) -> Vec<Vec<Captioned>> {
     let mut groups = vec![narrow(content, locale)];
     let alone = |captioned: Vec<Captioned>| captioned.into_iter().map(|c| vec![c]);
     groups.extend(alone(impacts(content, locale)));
@@ -25,7 +25,7 @@ pub(super) fn method_figures(content: &ReportContent, locale: Locale) -> Vec<Vec
 }
 
 /// The caption of a comparison, with markup.
-pub(super) fn comparison(comparison: &Comparison, locale: Locale) -> String {
+pub(super) fn comparison(comparison: &Comparison, locale: Locale<'_>) -> String {
     let letter = comparison.letter.to_string();
     let mut text = locale.translate_with("Point ({letter})", &[("letter", &letter)]);
     let label = locale.translate(&comparison.motion.label());
@@ -63,7 +63,7 @@ fn note(measured: &Motion, simulated: Option<&Motion>) -> Option<&'static str> {
     )
 }
 
-fn narrow(content: &ReportContent, locale: Locale) -> Vec<Captioned> {
+fn narrow(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
     let boundary = "Boundary fit: each bracket, measured less simulated. A bracket that crosses \
                     zero agrees with the fit. Brackets of an upward sweep stand a little above \
                     their clearance, those of a downward sweep below.";
@@ -88,7 +88,7 @@ fn narrow(content: &ReportContent, locale: Locale) -> Vec<Captioned> {
 }
 
 /// A caption with the remarks on its method.
-fn with_remarks(text: &str, method: Option<&MethodResult>, locale: Locale) -> String {
+fn with_remarks(text: &str, method: Option<&MethodResult>, locale: Locale<'_>) -> String {
     let remarks = locale.sentences(method.into_iter().flat_map(|m| &m.remarks));
     match remarks.as_str() {
         "" => text.to_owned(),
@@ -96,7 +96,7 @@ fn with_remarks(text: &str, method: Option<&MethodResult>, locale: Locale) -> St
     }
 }
 
-fn impacts(content: &ReportContent, locale: Locale) -> Vec<Captioned> {
+fn impacts(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
     let text = "Speeds at impact: speed of parting over speed of closing (left) and their ratio, \
                 the restitution, over the closing speed (right).";
     let text = locale.translate(text);
@@ -116,7 +116,7 @@ fn impacts(content: &ReportContent, locale: Locale) -> Vec<Captioned> {
     .collect()
 }
 
-fn resonance(content: &ReportContent, locale: Locale) -> Vec<Captioned> {
+fn resonance(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
     let text = "Resonance curve of the motion without impacts, measured and fitted.";
     let text = locale.translate(text);
     let method = content.identification.methods.get(&Method::Resonance);
@@ -127,7 +127,7 @@ fn resonance(content: &ReportContent, locale: Locale) -> Vec<Captioned> {
         .collect()
 }
 
-fn free_decays(content: &ReportContent, locale: Locale) -> Vec<Captioned> {
+fn free_decays(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
     let each = content
         .compared
         .free_decays
@@ -151,7 +151,7 @@ fn free_decays(content: &ReportContent, locale: Locale) -> Vec<Captioned> {
     .collect()
 }
 
-fn profiles(locale: Locale) -> Captioned {
+fn profiles(locale: Locale<'_>) -> Captioned {
     let text = "Profile likelihoods: the rise of $χ$² when one parameter is held and the others \
                 are fitted again. Tinted: 95 % intervals; dashed: the rise of {rise} that bounds them.";
     let rise = locale.fixed(3.84, 2);
@@ -159,7 +159,7 @@ fn profiles(locale: Locale) -> Captioned {
     ("profiles".into(), text)
 }
 
-fn residuals(content: &ReportContent, locale: Locale) -> Vec<Captioned> {
+fn residuals(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
     let each = content.compared.residuals.iter().enumerate();
     each.map(|(i, set)| {
         let text = "{method}, residual diagnostics ({count} residuals over their standard errors): \

@@ -68,7 +68,7 @@ const CONVENTIONS: [Convention; 8] = [
 ];
 
 /// The conventions in the reader's words; without a drive only those that need none.
-pub(super) fn entries(driven: bool, locale: Locale) -> Vec<Definition> {
+pub(super) fn entries(driven: bool, locale: Locale<'_>) -> Vec<Definition> {
     let said = CONVENTIONS.iter().filter(|c| driven || !c.driven);
     said.map(|c| Definition {
         formula: c.formula,

@@ -7,7 +7,7 @@ use crate::report::content::{CampaignFacts, NominalValue, ReportContent, Subject
 use crate::report::locale::Locale;
 
 /// What was measured, when, with what: labels and values, those that are known.
-pub(super) fn facts(content: &ReportContent, locale: Locale) -> Vec<(Rich, Rich)> {
+pub(super) fn facts(content: &ReportContent, locale: Locale<'_>) -> Vec<(Rich, Rich)> {
     let (campaign, overview) = (&content.campaign, &content.compared.overview);
     let mut facts: Vec<(String, String)> = Vec::new();
     let mut add = |label: &str, value: String| {
@@ -34,7 +34,7 @@ pub(super) fn facts(content: &ReportContent, locale: Locale) -> Vec<(Rich, Rich)
         .collect()
 }
 
-fn subject(subject: Subject, locale: Locale) -> String {
+fn subject(subject: Subject, locale: Locale<'_>) -> String {
     match subject {
         Subject::TwoMasses => locale.translate("two masses against each other"),
         Subject::OneMass => locale.translate("one mass against a stop"),
@@ -45,7 +45,7 @@ fn subject(subject: Subject, locale: Locale) -> String {
 }
 
 /// When it was measured.
-pub(super) fn dates(campaign: &CampaignFacts, locale: Locale) -> String {
+pub(super) fn dates(campaign: &CampaignFacts, locale: Locale<'_>) -> String {
     match &campaign.dates {
         Some([first, last]) if first == last => first.clone(),
         Some([first, last]) => locale.range(first, last),
@@ -53,7 +53,7 @@ pub(super) fn dates(campaign: &CampaignFacts, locale: Locale) -> String {
     }
 }
 
-fn records(overview: &Overview, files: usize, locale: Locale) -> String {
+fn records(overview: &Overview, files: usize, locale: Locale<'_>) -> String {
     if overview.records == 0 {
         return String::new();
     }
@@ -76,7 +76,7 @@ fn records(overview: &Overview, files: usize, locale: Locale) -> String {
     text
 }
 
-fn sampling(overview: &Overview, locale: Locale) -> String {
+fn sampling(overview: &Overview, locale: Locale<'_>) -> String {
     let rate = overview.sample_rate_hz.map(|r| {
         if r >= 1e3 {
             format!(
@@ -103,7 +103,7 @@ fn sampling(overview: &Overview, locale: Locale) -> String {
         .join(", ")
 }
 
-fn drive(overview: &Overview, locale: Locale) -> String {
+fn drive(overview: &Overview, locale: Locale<'_>) -> String {
     overview
         .frequency_range_hz
         .map_or(String::new(), |[low, high]| {
@@ -113,7 +113,7 @@ fn drive(overview: &Overview, locale: Locale) -> String {
         })
 }
 
-fn clearances(overview: &Overview, locale: Locale) -> String {
+fn clearances(overview: &Overview, locale: Locale<'_>) -> String {
     let all: Vec<String> = overview
         .clearances_m
         .iter()
@@ -134,7 +134,7 @@ fn clearances(overview: &Overview, locale: Locale) -> String {
     }
 }
 
-fn nominal(values: &[NominalValue], locale: Locale) -> String {
+fn nominal(values: &[NominalValue], locale: Locale<'_>) -> String {
     let each = values.iter().map(|n| {
         let (value, unit) = match n.unit {
             "m" if n.value.abs() < 1.0 => (n.value * 1e3, "mm"),
@@ -161,7 +161,7 @@ fn trimmed(number: &str) -> String {
     }
 }
 
-fn channels(channels: &[ChannelSetup], locale: Locale) -> String {
+fn channels(channels: &[ChannelSetup], locale: Locale<'_>) -> String {
     let each = channels.iter().map(|c| {
         let role = locale.translate(&c.role.name().replace('_', " "));
         let unit = match c.role.dimension().map_or("", |d| d.si_symbol()) {

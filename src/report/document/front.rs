@@ -37,7 +37,7 @@ pub(super) fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
 }
 
 /// The headline of the whole campaign.
-fn campaign_headline(content: &ReportContent, locale: Locale) -> String {
+fn campaign_headline(content: &ReportContent, locale: Locale<'_>) -> String {
     let id = &content.identification;
     let specimens = id.specimens.len();
     let identified = id.specimens.values();
@@ -64,7 +64,7 @@ fn campaign_headline(content: &ReportContent, locale: Locale) -> String {
 }
 
 /// Reasons and findings; where there are specimens, what was found of each in full.
-fn findings(content: &ReportContent, locale: Locale) -> Vec<Rich> {
+fn findings(content: &ReportContent, locale: Locale<'_>) -> Vec<Rich> {
     let id = &content.identification;
     let of = |finding: &Finding| {
         let mut text = locale.sentence(finding);
@@ -79,7 +79,7 @@ fn findings(content: &ReportContent, locale: Locale) -> Vec<Rich> {
 }
 
 /// The parameters' cards; none where only each specimen alone has an answer.
-fn answers(content: &ReportContent, locale: Locale) -> Vec<Answer> {
+fn answers(content: &ReportContent, locale: Locale<'_>) -> Vec<Answer> {
     let id = &content.identification;
     let estimates = PARAMETERS
         .iter()
@@ -94,7 +94,7 @@ fn answers(content: &ReportContent, locale: Locale) -> Vec<Answer> {
 }
 
 /// A parameter ready to print.
-fn answer(look: &ParameterLook, estimate: Option<&Estimate>, locale: Locale) -> Answer {
+fn answer(look: &ParameterLook, estimate: Option<&Estimate>, locale: Locale<'_>) -> Answer {
     let half = estimate
         .and_then(parameters::half_width)
         .map(|h| h * look.factor);

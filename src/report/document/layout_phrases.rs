@@ -22,7 +22,7 @@ const PHRASES: [&str; 13] = [
 ];
 
 /// From each phrase to what is printed for it.
-pub(super) fn words(locale: Locale) -> BTreeMap<&'static str, String> {
+pub(super) fn words(locale: Locale<'_>) -> BTreeMap<&'static str, String> {
     let each = PHRASES.into_iter();
     each.map(|phrase| (phrase, locale.translate(phrase)))
         .collect()

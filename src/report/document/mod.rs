@@ -40,7 +40,7 @@ pub(super) fn document(
     }
 }
 
-fn subtitle(content: &ReportContent, locale: Locale) -> String {
+fn subtitle(content: &ReportContent, locale: Locale<'_>) -> String {
     let campaign = &content.campaign;
     let dates = facts::dates(campaign, locale);
     let parts = [

@@ -31,7 +31,7 @@ pub(super) fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Sectio
 }
 
 /// Letters before the titles of the appendices, in the order in which they come.
-fn letter_appendices(sections: &mut [Section], locale: Locale) {
+fn letter_appendices(sections: &mut [Section], locale: Locale<'_>) {
     let appendices = sections.iter_mut().filter(|s| s.appendix);
     for (section, letter) in appendices.zip('A'..='Z') {
         let (letter, title) = (letter.to_string(), section.title.plain());
@@ -70,7 +70,7 @@ fn regions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     section(drawn.locale.translate("Regions of motion"), true, blocks)
 }
 
-fn map_caption(content: &ReportContent, locale: Locale) -> String {
+fn map_caption(content: &ReportContent, locale: Locale<'_>) -> String {
     let mut text = locale.translate(
         "Measured motions in the plane of frequency and clearance. Each mark is a record; marks of \
          an upward sweep stand a little above their clearance, those of a downward sweep a little \
@@ -199,7 +199,7 @@ fn conventions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
 }
 
 /// Versions of program and formats.
-fn versions(content: &ReportContent, locale: Locale) -> Option<Block> {
+fn versions(content: &ReportContent, locale: Locale<'_>) -> Option<Block> {
     let versions = &content.provenance.versions;
     let each: Vec<String> = versions.iter().map(|(k, v)| format!("{k} {v}")).collect();
     let list = each.join(", ");

@@ -1,6 +1,7 @@
 //! An axis: its range in data, its title, its ticks.
 
 use crate::report::locale::Locale;
+use crate::signal::whole;
 
 /// One axis: its range in data and its title with unit, in the report's markup.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,8 +100,8 @@ impl Axis {
         } else {
             &[1.0, 2.0, 5.0]
         };
-        let first = self.low.log10().floor() as i32;
-        let last = self.high.log10().ceil() as i32;
+        let first = whole::integer(self.low.log10().floor());
+        let last = whole::integer(self.high.log10().ceil());
         (first..=last)
             .flat_map(|e| per.iter().map(move |m| m * 10f64.powi(e)))
             .filter(|v| *v >= self.low * (1.0 - 1e-9) && *v <= self.high * (1.0 + 1e-9))
@@ -108,7 +109,7 @@ impl Axis {
     }
 
     /// Label of a tick.
-    pub(crate) fn label(&self, value: f64, decimals: usize, locale: Locale) -> String {
+    pub(crate) fn label(&self, value: f64, decimals: usize, locale: Locale<'_>) -> String {
         if self.log {
             locale.significant(value, 1)
         } else {
@@ -141,13 +142,13 @@ fn nice_step(rough: f64) -> f64 {
 
 fn multiples(low: f64, high: f64, step: f64) -> Vec<f64> {
     let slack = 1e-9 * (high - low);
-    let first = ((low - slack) / step).ceil() as i64;
-    let last = ((high + slack) / step).floor() as i64;
-    (first..=last).map(|i| i as f64 * step).collect()
+    let first = whole::integer(((low - slack) / step).ceil());
+    let last = whole::integer(((high + slack) / step).floor());
+    (first..=last).map(|i| f64::from(i) * step).collect()
 }
 
 fn decimals_of(step: f64) -> usize {
-    (-(step * 1.000_001).log10().floor()).max(0.0) as usize
+    whole::index((-(step * 1.000_001).log10().floor()).max(0.0))
 }
 
 #[cfg(test)]

@@ -23,7 +23,7 @@ const LEFT: f64 = 34.0;
 const STACK_STEP: f64 = 4.4;
 
 /// Draws the brackets against the fit; `None` if none has a simulated value.
-pub(crate) fn draw(brackets: &[BracketRow], locale: Locale) -> Option<Figure> {
+pub(crate) fn draw(brackets: &[BracketRow], locale: Locale<'_>) -> Option<Figure> {
     let rows: Vec<(&BracketRow, f64, f64)> = brackets
         .iter()
         .filter_map(|b| {

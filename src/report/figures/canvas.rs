@@ -8,6 +8,7 @@ use super::compact;
 use super::fonts::{FAMILY, Face};
 pub(crate) use super::path::Point;
 use super::richtext;
+use crate::signal::whole;
 
 /// Drawing units in a point: plotters counts in whole units, these are fine enough for a curve.
 const UNITS_PER_POINT: f64 = 20.0;
@@ -254,7 +255,10 @@ impl Canvas {
     /// The drawing as SVG text: its width and height in points, its fonts by name.
     pub(crate) fn into_svg(mut self, title: &str) -> String {
         self.shapes.sort_by_key(|(layer, _)| *layer);
-        let size = (units(self.width) as u32, units(self.height) as u32);
+        let size = (
+            units(self.width).unsigned_abs(),
+            units(self.height).unsigned_abs(),
+        );
         let mut svg = String::new();
         {
             let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
@@ -292,7 +296,7 @@ pub(crate) fn escape(text: &str) -> String {
 }
 
 fn units(points: f64) -> i32 {
-    (points * UNITS_PER_POINT).round() as i32
+    whole::integer((points * UNITS_PER_POINT).round())
 }
 
 fn at((x, y): Point) -> (i32, i32) {
@@ -300,7 +304,7 @@ fn at((x, y): Point) -> (i32, i32) {
 }
 
 fn line_style(stroke: &Stroke) -> ShapeStyle {
-    let width = (stroke.width * UNITS_PER_POINT).round().max(1.0) as u32;
+    let width = whole::count((stroke.width * UNITS_PER_POINT).round().max(1.0));
     ShapeStyle {
         color: stroke.colour.to_rgba(),
         filled: false,

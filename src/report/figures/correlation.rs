@@ -20,7 +20,7 @@ use crate::report::parameters::parameter;
 const TOP: f64 = 14.0;
 
 /// Draws the matrix; `None` if it is empty or not square.
-pub(crate) fn draw(correlation: &Correlation, locale: Locale) -> Option<Figure> {
+pub(crate) fn draw(correlation: &Correlation, locale: Locale<'_>) -> Option<Figure> {
     let n = correlation.parameters.len();
     let square = correlation.matrix.len() == n && correlation.matrix.iter().all(|r| r.len() == n);
     if n < 2 || !square {
@@ -74,7 +74,7 @@ fn columns(correlation: &Correlation) -> Vec<usize> {
 }
 
 /// A tinted cell with its number; `None` for a parameter with itself.
-fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, locale: Locale) {
+fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, locale: Locale<'_>) {
     let (from, to) = (
         (rect.left + 0.5, rect.top + 0.5),
         (rect.right - 0.5, rect.bottom - 0.5),
@@ -93,7 +93,7 @@ fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, locale: Locale) {
 }
 
 /// Symbol of a parameter, or the name of what is fitted beside it.
-fn name(coordinate: Coordinate, locale: Locale) -> String {
+fn name(coordinate: Coordinate, locale: Locale<'_>) -> String {
     let key = coordinate.name();
     if let Some(shown) = parameter(key) {
         return shown.symbol.to_owned();

@@ -25,7 +25,7 @@ const PANEL_HEIGHT: f64 = 74.0;
 const ROW_HEIGHT: f64 = PANEL_HEIGHT + 48.0;
 
 /// Draws up to [`PER_FIGURE`] decays; `None` for none.
-pub(crate) fn draw(decays: &[FreeDecay], name: &str, locale: Locale) -> Option<Figure> {
+pub(crate) fn draw(decays: &[FreeDecay], name: &str, locale: Locale<'_>) -> Option<Figure> {
     if decays.is_empty() {
         return None;
     }
@@ -49,7 +49,7 @@ pub(crate) fn draw(decays: &[FreeDecay], name: &str, locale: Locale) -> Option<F
     ))
 }
 
-fn one(canvas: &mut Canvas, decay: &FreeDecay, rect: Rect, locale: Locale) {
+fn one(canvas: &mut Canvas, decay: &FreeDecay, rect: Rect, locale: Locale<'_>) {
     let peak = decay
         .measured
         .values
@@ -95,7 +95,7 @@ fn signal(canvas: &mut Canvas, panel: &Panel, signal: &Signal, factor: f64, stro
     panel.curve(canvas, data.map(|(t, v)| (*t, v * factor)), stroke);
 }
 
-fn heading(canvas: &mut Canvas, decay: &FreeDecay, rect: &Rect, locale: Locale) {
+fn heading(canvas: &mut Canvas, decay: &FreeDecay, rect: &Rect, locale: Locale<'_>) {
     let bold = TextLook::new(look::NOTE_SIZE, Anchor::Left)
         .face(Face::Bold)
         .colour(look::INK);
@@ -119,7 +119,7 @@ pub(crate) fn title(decay: &FreeDecay) -> String {
     }
 }
 
-fn with_error([value, error]: [f64; 2], locale: Locale) -> String {
+fn with_error([value, error]: [f64; 2], locale: Locale<'_>) -> String {
     if error > 0.0 {
         let decimals = decimals_for(error);
         let [value, error] = [value, error].map(|v| locale.fixed(v, decimals));

@@ -1,5 +1,6 @@
 //! Many small points: those that would cover one another are drawn once.
 
+use crate::signal::whole;
 use std::collections::HashSet;
 
 use super::canvas::{Canvas, Colour, Stroke};
@@ -12,7 +13,7 @@ const CELL: f64 = 0.55;
 /// The squares that hold a dot.
 #[derive(Default)]
 pub(crate) struct Dots {
-    taken: HashSet<(i64, i64)>,
+    taken: HashSet<(i32, i32)>,
 }
 
 impl Dots {
@@ -28,7 +29,7 @@ impl Dots {
             return None;
         }
         let at = panel.at(x, y);
-        let cell = ((at.0 / CELL) as i64, (at.1 / CELL) as i64);
+        let cell = (whole::integer(at.0 / CELL), whole::integer(at.1 / CELL));
         if self.taken.insert(cell) {
             if look.open {
                 canvas.disc(at, look.radius, look::PAPER);

@@ -37,7 +37,7 @@ impl Line<'_> {
 }
 
 /// Draws the estimates; `None` if no parameter has a value.
-pub(crate) fn draw(content: &ReportContent, locale: Locale) -> Option<Figure> {
+pub(crate) fn draw(content: &ReportContent, locale: Locale<'_>) -> Option<Figure> {
     let lines = lines(content, locale);
     let shown: Vec<usize> = (0..PARAMETERS.len())
         .filter(|&k| lines.iter().any(|l| value(l.estimates[k]).is_some()))
@@ -72,7 +72,7 @@ pub(crate) fn draw(content: &ReportContent, locale: Locale) -> Option<Figure> {
     ))
 }
 
-fn lines<'a>(content: &'a ReportContent, locale: Locale) -> Vec<Line<'a>> {
+fn lines<'a>(content: &'a ReportContent, locale: Locale<'_>) -> Vec<Line<'a>> {
     let id = &content.identification;
     let methods = id
         .methods
@@ -98,7 +98,7 @@ fn parameter(
     rect: Rect,
     (shown, k): (&ParameterLook, usize),
     lines: &[Line<'_>],
-    locale: Locale,
+    locale: Locale<'_>,
 ) {
     let ends = lines.iter().filter_map(|l| interval95(l.estimates[k]?));
     let ends: Vec<f64> = ends
@@ -165,7 +165,7 @@ fn mark(
     panel: &Panel,
     (e, factor): (&Estimate, f64),
     (y, joint): (f64, bool),
-    locale: Locale,
+    locale: Locale<'_>,
 ) {
     let colour = if joint { look::BLUE } else { look::INK };
     let Some((low, high)) = interval95(e) else {

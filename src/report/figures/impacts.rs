@@ -19,7 +19,7 @@ const HEIGHT: f64 = 150.0;
 const TOP: f64 = 15.0;
 
 /// Draws one group of impacts; `None` if it is empty.
-pub(crate) fn draw(scatter: &ImpactScatter, name: &str, locale: Locale) -> Option<Figure> {
+pub(crate) fn draw(scatter: &ImpactScatter, name: &str, locale: Locale<'_>) -> Option<Figure> {
     let peak = scatter
         .points
         .iter()
@@ -117,7 +117,7 @@ fn points(
     canvas: &mut Canvas,
     panels: &[Panel; 2],
     scatter: &ImpactScatter,
-    (unit, locale): (PrintUnit, Locale),
+    (unit, locale): (PrintUnit, Locale<'_>),
 ) -> Vec<Spot> {
     let mut spots = Vec::new();
     canvas.layer(1);
@@ -146,7 +146,7 @@ fn points(
     spots
 }
 
-fn keys(scatter: &ImpactScatter, locale: Locale) -> Vec<Key> {
+fn keys(scatter: &ImpactScatter, locale: Locale<'_>) -> Vec<Key> {
     let mut keys = Vec::new();
     if let Some(specimen) = &scatter.specimen {
         keys.push(Key::new(Sign::Nothing, specimen));

@@ -44,11 +44,11 @@ impl Sign {
     /// Its width, points; that of a heading takes back the gap after a sign.
     fn width(self) -> f64 {
         match self {
-            Sign::Mark(_) => 7.0,
-            Sign::Line(_) => 15.0,
-            Sign::Patch(_) => 10.0,
-            Sign::Bracket(_) => 11.0,
-            Sign::Nothing => -SIGN_GAP,
+            Self::Mark(_) => 7.0,
+            Self::Line(_) => 15.0,
+            Self::Patch(_) => 10.0,
+            Self::Bracket(_) => 11.0,
+            Self::Nothing => -SIGN_GAP,
         }
     }
 }
@@ -71,7 +71,7 @@ impl Key {
         }
     }
 
-    fn width(&self, locale: Locale) -> f64 {
+    fn width(&self, locale: Locale<'_>) -> f64 {
         let text = locale.translate_title(&self.text);
         self.sign.width() + SIGN_GAP + richtext::width(&text, Face::Regular, look::NOTE_SIZE)
     }
@@ -85,7 +85,7 @@ const GAP: f64 = 11.0;
 const SIGN_GAP: f64 = 3.0;
 
 /// Lays keys in lines of a width: (key, left, line).
-fn flow<'a>(keys: &'a [Key], width: f64, locale: Locale) -> Vec<(&'a Key, f64, usize)> {
+fn flow<'a>(keys: &'a [Key], width: f64, locale: Locale<'_>) -> Vec<(&'a Key, f64, usize)> {
     let (mut x, mut line) = (0.0, 0);
     keys.iter()
         .map(|key| {
@@ -102,7 +102,7 @@ fn flow<'a>(keys: &'a [Key], width: f64, locale: Locale) -> Vec<(&'a Key, f64, u
 }
 
 /// Height that the keys need at a width.
-pub(crate) fn height(keys: &[Key], width: f64, locale: Locale) -> f64 {
+pub(crate) fn height(keys: &[Key], width: f64, locale: Locale<'_>) -> f64 {
     flow(keys, width, locale)
         .last()
         .map_or(0.0, |(_, _, line)| (*line + 1) as f64 * LINE_HEIGHT)
@@ -114,7 +114,7 @@ pub(crate) fn draw(
     (left, top): (f64, f64),
     width: f64,
     keys: &[Key],
-    locale: Locale,
+    locale: Locale<'_>,
 ) {
     for (key, x, line) in flow(keys, width, locale) {
         let y = top + (line as f64 + 0.5) * LINE_HEIGHT;

@@ -1,6 +1,7 @@
 //! How a motion looks: each has its own shape and its own colour, told apart in grey and by the
 //! colour-blind; and the pale tint of its region.
 
+use crate::signal::whole;
 use plotters::style::RGBColor;
 
 use super::canvas::{Canvas, Colour, Point, Stroke};
@@ -112,7 +113,10 @@ fn looks(shape: Shape, colour: Colour, depth: f64) -> MotionLook {
 
 /// A colour thinned with white.
 pub(crate) fn mix(colour: Colour, depth: f64) -> Colour {
-    let thin = |c: u8| (255.0 - depth * (255.0 - f64::from(c))).round() as u8;
+    let thin = |c: u8| {
+        let thinned = whole::count((255.0 - depth * (255.0 - f64::from(c))).round());
+        u8::try_from(thinned).unwrap_or(u8::MAX)
+    };
     RGBColor(thin(colour.0), thin(colour.1), thin(colour.2))
 }
 

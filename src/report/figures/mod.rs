@@ -41,7 +41,7 @@ use crate::report::locale::Locale;
 type Job<'a> = Box<dyn Fn() -> Option<Figure> + Send + Sync + 'a>;
 
 /// Draws all figures that the content allows, side by side on all cores, in a fixed order.
-pub(crate) fn draw_all(content: &ReportContent, locale: Locale) -> Vec<Figure> {
+pub(crate) fn draw_all(content: &ReportContent, locale: Locale<'_>) -> Vec<Figure> {
     jobs(content, locale)
         .par_iter()
         .filter_map(|job| job())

@@ -124,7 +124,7 @@ impl Panel {
     }
 
     /// Frame, ticks, numbers and titles.
-    pub(crate) fn frame(&self, canvas: &mut Canvas, sides: Sides, locale: Locale) {
+    pub(crate) fn frame(&self, canvas: &mut Canvas, sides: Sides, locale: Locale<'_>) {
         let r = &self.rect;
         let corners = [
             (r.left, r.top),
@@ -139,7 +139,7 @@ impl Panel {
         self.ticks_left(canvas, sides.left, locale);
     }
 
-    fn ticks_below(&self, canvas: &mut Canvas, labels: bool, locale: Locale) {
+    fn ticks_below(&self, canvas: &mut Canvas, labels: bool, locale: Locale<'_>) {
         let (ticks, decimals) = self.x.major();
         let bottom = self.rect.bottom;
         let mut taken = f64::NEG_INFINITY;
@@ -167,7 +167,7 @@ impl Panel {
         }
     }
 
-    fn ticks_left(&self, canvas: &mut Canvas, labels: bool, locale: Locale) {
+    fn ticks_left(&self, canvas: &mut Canvas, labels: bool, locale: Locale<'_>) {
         if self.y.ticks == 0 {
             return;
         }
@@ -201,7 +201,7 @@ impl Panel {
     }
 
     /// The title of the upward axis; line feeds part it into lines.
-    fn title_left(&self, canvas: &mut Canvas, locale: Locale) {
+    fn title_left(&self, canvas: &mut Canvas, locale: Locale<'_>) {
         let reach = self.title_reach.unwrap_or(7.0 + self.widest_label(locale));
         let middle = 0.5 * (self.rect.top + self.rect.bottom);
         let title = locale.translate_title(&self.y.title);
@@ -232,7 +232,7 @@ impl Panel {
     }
 
     /// Width of the widest number on the left.
-    fn widest_label(&self, locale: Locale) -> f64 {
+    fn widest_label(&self, locale: Locale<'_>) -> f64 {
         let (ticks, decimals) = self.y.major();
         ticks
             .iter()

@@ -2,6 +2,7 @@
 
 use super::canvas::Point;
 use super::path::Rect;
+use crate::signal::whole;
 
 /// Which square points of a drawing are taken.
 pub(crate) struct Occupancy {
@@ -13,7 +14,10 @@ pub(crate) struct Occupancy {
 impl Occupancy {
     /// An empty drawing of a size in points.
     pub(crate) fn new(width: f64, height: f64) -> Self {
-        let (columns, rows) = (width.ceil() as usize + 1, height.ceil() as usize + 1);
+        let (columns, rows) = (
+            whole::index(width.ceil()) + 1,
+            whole::index(height.ceil()) + 1,
+        );
         Self {
             columns,
             rows,
@@ -42,7 +46,7 @@ impl Occupancy {
     pub(crate) fn take_line(&mut self, points: &[Point]) {
         for pair in points.windows(2) {
             let length = (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1);
-            let steps = length.ceil().max(1.0) as usize;
+            let steps = whole::index(length.ceil().max(1.0));
             for i in 0..=steps {
                 let t = i as f64 / steps as f64;
                 let x = pair[0].0 + t * (pair[1].0 - pair[0].0);
@@ -58,7 +62,7 @@ impl Occupancy {
     }
 
     fn cells(&self, rect: &Rect) -> impl Iterator<Item = usize> + use<> {
-        let clamp = |v: f64, most: usize| (v.max(0.0) as usize).min(most);
+        let clamp = |v: f64, most: usize| whole::index(v.max(0.0)).min(most);
         let columns = self.columns;
         let x = clamp(rect.left, columns)..clamp(rect.right + 1.0, columns);
         let y = clamp(rect.top, self.rows)..clamp(rect.bottom + 1.0, self.rows);

@@ -1,4 +1,4 @@
-//! The plane of the map: (η, ρ) where f0 and x_st are known, else frequency and clearance.
+//! The plane of the map: (η, ρ) where f0 and `x_st` are known, else frequency and clearance.
 
 use super::axis::{Axis, range};
 use crate::compare::{BracketRow, RecordRow};
@@ -27,7 +27,7 @@ pub(crate) struct Plane {
     pub dimensionless: bool,
     /// f0, Hz, where known.
     pub natural_frequency_hz: Option<f64>,
-    /// x_st, m, where known.
+    /// `x_st`, m, where known.
     pub static_deflection_m: Option<f64>,
 }
 

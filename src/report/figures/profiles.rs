@@ -22,7 +22,7 @@ const HEIGHT: f64 = 80.0;
 const ROW: f64 = HEIGHT + 36.0;
 
 /// Draws all profiles; `None` for none.
-pub(crate) fn draw(id: &Identification, locale: Locale) -> Option<Figure> {
+pub(crate) fn draw(id: &Identification, locale: Locale<'_>) -> Option<Figure> {
     let profiles = id.uncertainty.profiles.iter();
     let drawn: Vec<&ProfileCurve> = profiles.filter(|p| p.values.len() > 2).collect();
     if drawn.is_empty() {
@@ -48,7 +48,7 @@ fn one(
     canvas: &mut Canvas,
     (profile, best): (&ProfileCurve, Option<f64>),
     rect: Rect,
-    locale: Locale,
+    locale: Locale<'_>,
 ) {
     let key = profile.parameter.name();
     let shown = parameter(key);

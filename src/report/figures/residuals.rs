@@ -12,6 +12,7 @@ use super::path::Rect;
 use crate::compare::{ResidualPoint, ResidualSet};
 use crate::report::locale::Locale;
 use crate::report::parameters::NORMAL_95;
+use crate::signal::whole;
 
 /// Height of the panels, points.
 const HEIGHT: f64 = 84.0;
@@ -73,12 +74,12 @@ impl Sheet<'_> {
     fn histogram(&mut self, rect: Rect) {
         let reach = self.reach();
         let n = self.set.points.len() as f64;
-        let bins = (n.sqrt() * 1.2).clamp(7.0, 41.0) as usize | 1;
+        let bins = whole::index((n.sqrt() * 1.2).clamp(7.0, 41.0)) | 1;
         let width = 2.0 * reach / bins as f64;
         let mut counts = vec![0usize; bins];
         for p in &self.set.points {
             let index = ((p.residual + reach) / width).floor();
-            counts[(index.max(0.0) as usize).min(bins - 1)] += 1;
+            counts[whole::index(index.max(0.0)).min(bins - 1)] += 1;
         }
         let density: Vec<f64> = counts.iter().map(|c| *c as f64 / (n * width)).collect();
         let highest = density.iter().copied().fold(0.4, f64::max);

@@ -22,7 +22,7 @@ const TOP: f64 = 15.0;
 pub(crate) fn draw(
     (curve, fits): (&ResonanceCurve, Option<bool>),
     name: &str,
-    locale: Locale,
+    locale: Locale<'_>,
 ) -> Option<Figure> {
     if curve.points.is_empty() {
         return None;
@@ -104,7 +104,7 @@ impl Series<'_> {
         &self,
         canvas: &mut Canvas,
         value: impl Fn(&ResonancePoint) -> [f64; 2],
-        locale: Locale,
+        locale: Locale<'_>,
         spots: &mut Vec<Spot>,
     ) {
         let radius = dots::radius(self.curve.points.len()) + 0.2;

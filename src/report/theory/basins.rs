@@ -19,7 +19,12 @@ const HEIGHT: f64 = 300.0;
 const MOST_KEYS: usize = 12;
 
 /// Draws the motion to which each start (X, X′) leads; `None` if the grid has no area.
-pub(crate) fn draw(basins: &RegionMap, name: &str, title: &str, locale: Locale) -> Option<Figure> {
+pub(crate) fn draw(
+    basins: &RegionMap,
+    name: &str,
+    title: &str,
+    locale: Locale<'_>,
+) -> Option<Figure> {
     let keys = tint_keys(basins, MOST_KEYS);
     let top = keys_height(LEFT, &keys, locale);
     let mut canvas = Canvas::new(look::FULL_WIDTH, top + HEIGHT + 26.0);

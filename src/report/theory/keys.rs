@@ -9,13 +9,13 @@ use crate::report::figures::marks;
 use crate::report::locale::Locale;
 
 /// Draws keys over the whole width of the figure's top; gives the height they take.
-pub(super) fn keys_on_top(canvas: &mut Canvas, left: f64, keys: &[Key], locale: Locale) {
+pub(super) fn keys_on_top(canvas: &mut Canvas, left: f64, keys: &[Key], locale: Locale<'_>) {
     let width = look::FULL_WIDTH - left;
     legend::draw(canvas, (left, 1.0), width, keys, locale);
 }
 
 /// Height of keys on the figure's top.
-pub(super) fn keys_height(left: f64, keys: &[Key], locale: Locale) -> f64 {
+pub(super) fn keys_height(left: f64, keys: &[Key], locale: Locale<'_>) -> f64 {
     legend::height(keys, look::FULL_WIDTH - left, locale) + 4.0
 }
 

@@ -38,7 +38,7 @@ pub(crate) fn draw(
     (map, curves): (&RegionMap, &[Curve]),
     name: &str,
     title: &str,
-    locale: Locale,
+    locale: Locale<'_>,
 ) -> Option<Figure> {
     let keys = keys(curves, map.cells != map.second);
     let top = keys_height(LEFT, &keys, locale);

@@ -91,7 +91,7 @@ const ROWS: [Row; 4] = [
 const PHASE_HEIGHT: f64 = 62.0;
 
 /// Draws the characteristics over the quantity that moves.
-pub(crate) fn draw(data: &Characteristics, name: &str, title: &str, locale: Locale) -> Figure {
+pub(crate) fn draw(data: &Characteristics, name: &str, title: &str, locale: Locale<'_>) -> Figure {
     let keys = keys(!data.impactless_y.is_empty());
     let top = keys_height(LEFT, &keys, locale);
     let rows: f64 = ROWS.iter().map(|r| r.height + GAP).sum();

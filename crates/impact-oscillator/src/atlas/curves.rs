@@ -36,7 +36,7 @@ pub enum CurveKind {
 }
 
 impl CurveKind {
-    /// The name in tables: s1, s2, grazing, dead_zone, …; rho_grazing is ρ', joined is ρp.
+    /// The name in tables: s1, s2, grazing, `dead_zone`, …; `rho_grazing` is ρ', joined is ρp.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

@@ -115,11 +115,11 @@ impl Lanes for f64 {
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        f64::abs(self)
+        Self::abs(self)
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        f64::sqrt(self)
+        Self::sqrt(self)
     }
     #[inline(always)]
     fn reciprocal_rough(self) -> Self {

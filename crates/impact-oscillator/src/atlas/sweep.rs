@@ -136,12 +136,37 @@ impl<'a> Carried<'a> {
         initial: Initial,
         watch: Watch,
     ) -> Result<Self, ModelError> {
-        let start = super::map::clear_of(machine, rho, initial);
+        Self::start_in(machine, Setting::new(eta, rho), initial, watch)
+    }
+
+    /// From a start in a setting with its phase of the drive; beyond the contact it is moved to it.
+    ///
+    /// # Errors
+    /// [`ModelError`] where a parameter is out of range.
+    pub fn start_in(
+        machine: &'a Machine,
+        setting: Setting,
+        initial: Initial,
+        watch: Watch,
+    ) -> Result<Self, ModelError> {
+        let start = super::map::clear_of(machine, setting.clearance, initial);
         Ok(Self {
             machine,
             watch,
-            simulator: Simulator::new(machine, Setting::new(eta, rho), start)?,
+            simulator: Simulator::new(machine, setting, start)?,
         })
+    }
+
+    /// The motion's state and the phase of the drive, rad: where another can start to continue it.
+    pub fn place(&self) -> (Initial, f64) {
+        let s = self.simulator.state();
+        let initial = Initial {
+            x: s.x,
+            vx: s.vx,
+            y: s.y,
+            vy: s.vy,
+        };
+        (initial, self.simulator.phase())
     }
 
     /// Go on from where another was, bit for bit.
@@ -163,6 +188,32 @@ impl<'a> Carried<'a> {
     /// Where the motion is.
     pub fn snapshot(&self) -> Snapshot {
         self.simulator.snapshot()
+    }
+
+    /// Take the motion along a straight way to (η, ρ) in a number of equal steps, each for some drive
+    /// periods, without classifying it.
+    ///
+    /// # Errors
+    /// [`ModelError`] where η or ρ is out of range.
+    pub fn go(
+        &mut self,
+        (from, to): ((f64, f64), (f64, f64)),
+        steps: u32,
+        periods: f64,
+    ) -> Result<(), ModelError> {
+        for step in 1..=steps {
+            let share = f64::from(step) / f64::from(steps);
+            let setting = Setting::new(
+                from.0 + share * (to.0 - from.0),
+                from.1 + share * (to.1 - from.1),
+            );
+            setting.check()?;
+            let (eta, rho) = (setting.frequency_ratio, setting.clearance);
+            self.simulator.set(eta, rho);
+            self.simulator
+                .advance(periods * setting.period(), &mut |_: &Impact| {});
+        }
+        Ok(())
     }
 
     /// Continue the motion at (η, ρ) and classify it there.

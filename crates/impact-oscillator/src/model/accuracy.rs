@@ -17,28 +17,28 @@ fn two_sum(a: f64, b: f64) -> Dd {
 }
 
 impl Add for Dd {
-    type Output = Dd;
-    fn add(self, o: Dd) -> Dd {
+    type Output = Self;
+    fn add(self, o: Self) -> Self {
         let (s, t) = (two_sum(self.0, o.0), two_sum(self.1, o.1));
         let u = two_sum(s.0, s.1 + t.0);
         two_sum(u.0, u.1 + t.1)
     }
 }
 impl Neg for Dd {
-    type Output = Dd;
-    fn neg(self) -> Dd {
-        Dd(-self.0, -self.1)
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(-self.0, -self.1)
     }
 }
 impl Sub for Dd {
-    type Output = Dd;
-    fn sub(self, o: Dd) -> Dd {
+    type Output = Self;
+    fn sub(self, o: Self) -> Self {
         self + -o
     }
 }
 impl Mul for Dd {
-    type Output = Dd;
-    fn mul(self, o: Dd) -> Dd {
+    type Output = Self;
+    fn mul(self, o: Self) -> Self {
         let p = self.0 * o.0;
         let e = self.0.mul_add(o.0, -p) + (self.0 * o.1 + self.1 * o.0);
         two_sum(p, e)
@@ -147,9 +147,9 @@ fn reference(
         for _ in 0..110 {
             let mid = (lo + hi) * dd(0.5);
             if gap(&evaluate(&c, mid)).0 > 0.0 {
-                lo = mid
+                lo = mid;
             } else {
-                hi = mid
+                hi = mid;
             }
         }
         (z, t) = (evaluate(&c, hi), t + hi);
@@ -208,9 +208,9 @@ fn over_one_period(machine: &Machine, eta: f64, rho: f64, start: [Dd; 4]) -> [Dd
         for _ in 0..110 {
             let mid = (lo + hi) * dd(0.5);
             if gap(&evaluate(&c, mid)).0 > 0.0 {
-                lo = mid
+                lo = mid;
             } else {
-                hi = mid
+                hi = mid;
             }
         }
         (z, left) = (evaluate(&c, hi), left - hi);

@@ -1,5 +1,5 @@
 //! Boundaries of z = 1/n in the (η, ρ) plane: saddle-node s2 and period doubling s1 in closed
-//! form, grazing ρ', and the inverse η_s2(ρ). Each point reports whether its orbit exists.
+//! form, grazing ρ', and the inverse `η_s2(ρ)`. Each point reports whether its orbit exists.
 
 use serde::Serialize;
 

@@ -35,7 +35,7 @@ impl ImpactKind {
     }
 }
 
-/// One impact of a simulated motion, dimensionless; speeds in units of x_st Ω. All of it is exact,
+/// One impact of a simulated motion, dimensionless; speeds in units of `x_st` Ω. All of it is exact,
 /// unlike an impact that is detected in a measured signal.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Impact {

@@ -1,7 +1,7 @@
 //! One oscillator, dimensionless: exact flights between impacts, impacts by Newton's law, dead
 //! zones, periodic orbits and their boundaries.
 //!
-//! Quantities as in Peterka's paper: X = x/x_st, τ = Ωt, η = ω/Ω, ρ = r/x_st. Equation numbers in
+//! Quantities as in Peterka's paper: X = `x/x_st`, τ = Ωt, η = ω/Ω, ρ = `r/x_st`. Equation numbers in
 //! round brackets are those of `docs/theory.md` in the repository.
 
 pub mod boundary;

@@ -32,12 +32,12 @@ impl Oscillator {
         }
     }
 
-    /// Coefficient of X' in X'' + 2δX' + Ω²X = …: δ = β_i Ω_i.
+    /// Coefficient of X' in X'' + 2δX' + Ω²X = …: δ = `β_i` `Ω_i`.
     pub fn decay_rate(&self) -> f64 {
         self.damping_ratio * self.natural_frequency_ratio
     }
 
-    /// Coefficient of X: Ω_i².
+    /// Coefficient of X: `Ω_i²`.
     pub fn stiffness_per_mass(&self) -> f64 {
         self.natural_frequency_ratio * self.natural_frequency_ratio
     }
@@ -178,6 +178,7 @@ impl Machine {
     }
 
     /// The same machine with another law of restitution.
+    #[must_use]
     pub fn with_restitution(mut self, restitution: Restitution) -> Self {
         self.contact = Contact::Rigid(restitution);
         self
@@ -248,7 +249,7 @@ impl Machine {
 pub struct Setting {
     /// η = ω/Ω, positive.
     pub frequency_ratio: f64,
-    /// ρ = r/x_st; negative: preload.
+    /// ρ = `r/x_st`; negative: preload.
     pub clearance: f64,
     /// φ: the drive is cos(ητ + φ).
     #[serde(default)]

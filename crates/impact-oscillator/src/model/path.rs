@@ -97,7 +97,8 @@ impl Path {
     }
 
     /// self + factor·other; both of the same η.
-    pub fn plus(mut self, factor: f64, other: &Path) -> Self {
+    #[must_use]
+    pub fn plus(mut self, factor: f64, other: &Self) -> Self {
         for (a, b) in self.polynomial.iter_mut().zip(other.polynomial) {
             *a += factor * b;
         }
@@ -112,11 +113,13 @@ impl Path {
     }
 
     /// The path times a number.
+    #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self::constant(0.0, self.eta).plus(factor, self)
     }
 
     /// The derivative f'.
+    #[must_use]
     pub fn derivative(&self) -> Self {
         let mut d = *self;
         let [_, c1, c2] = self.polynomial;

@@ -209,6 +209,7 @@ impl PeriodicOrbit {
     }
 
     /// The orbit with other unknowns.
+    #[must_use]
     pub fn with_unknowns(&self, z: &DVector<f64>) -> Self {
         let p = self.times.len();
         Self {
@@ -356,11 +357,13 @@ impl PeriodicOrbit {
     }
 
     /// Smallest p/n that it is: an orbit that repeats itself within its period is divided.
+    #[must_use]
     pub fn reduced(&self) -> Self {
         self.reduced_within(1e-7)
     }
 
     /// The same, where times and speeds may differ by a tolerance between the repetitions.
+    #[must_use]
     pub fn reduced_within(&self, tolerance: f64) -> Self {
         let (p, count) = (self.p(), self.times.len());
         let divides = |d: &u32| p.is_multiple_of(*d) && self.n.is_multiple_of(*d);
@@ -383,6 +386,7 @@ impl PeriodicOrbit {
     }
 
     /// The orbit run through twice, which a period doubling branches from.
+    #[must_use]
     pub fn doubled(&self) -> Self {
         let period = self.period();
         let times = self

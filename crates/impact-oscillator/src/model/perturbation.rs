@@ -102,6 +102,7 @@ impl Sampled {
     }
 
     /// Behind a first-order high-pass y' + cy = x' of a corner c.
+    #[must_use]
     pub fn high_passed(&self, corner: f64) -> Self {
         // y = x − w with w' = −cw + cx.
         let fed: Vec<f64> = self.values.iter().map(|x| corner * x).collect();

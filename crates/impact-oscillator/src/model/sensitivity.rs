@@ -13,9 +13,9 @@ use super::path::C64;
 /// A direction in which one mass changes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MassChange {
-    /// Of Ω_i², the stiffness over the mass.
+    /// Of `Ω_i²`, the stiffness over the mass.
     pub stiffness_per_mass: f64,
-    /// Of δ = β_i Ω_i.
+    /// Of δ = `β_i` `Ω_i`.
     pub decay_rate: f64,
     /// Of the driving amplitude over the mass.
     pub drive_per_mass: f64,
@@ -68,7 +68,7 @@ pub struct OrbitMotion {
     pub approach_speed: f64,
 }
 
-/// Differential of a mass's forced amplitude F for drive phase 0, where η changes by d_eta.
+/// Differential of a mass's forced amplitude F for drive phase 0, where η changes by `d_eta`.
 pub fn forced_slope(o: &Oscillator, d: &MassChange, forced: C64, [eta, d_eta]: [f64; 2]) -> C64 {
     let decay = o.decay_rate();
     let dynamic = C64::new(o.stiffness_per_mass() - eta * eta, 2.0 * decay * eta);

@@ -9,7 +9,7 @@ use crate::output::{write_folder_whole_or, write_whole_or};
 use crate::source::Samples;
 
 /// Write one record to a file, or several to the files of a folder.
-pub(super) fn write(items: &[Item], out: &Path) -> Result<(), ConvertError> {
+pub(super) fn write(items: &[Item<'_>], out: &Path) -> Result<(), ConvertError> {
     if let [item] = items {
         return one(item, out, out);
     }
@@ -24,18 +24,18 @@ pub(super) fn write(items: &[Item], out: &Path) -> Result<(), ConvertError> {
     write_folder_whole_or(&target, fill, |source| io(&target)(source).into())
 }
 
-fn file_name(item: &Item) -> String {
+fn file_name(item: &Item<'_>) -> String {
     format!("{}.csv", item.name.replace('/', "_"))
 }
 
 /// Write a record to a file that has another name in an error.
-fn one(item: &Item, path: &Path, named: &Path) -> Result<(), ConvertError> {
+fn one(item: &Item<'_>, path: &Path, named: &Path) -> Result<(), ConvertError> {
     let samples = item.read()?;
     write_whole_or(path, |out| rows(item, &samples, out), |e| e).map_err(io(named))?;
     Ok(())
 }
 
-fn rows(item: &Item, samples: &[Samples], mut out: impl Write) -> std::io::Result<()> {
+fn rows(item: &Item<'_>, samples: &[Samples], mut out: impl Write) -> std::io::Result<()> {
     for (key, value) in item.described() {
         writeln!(out, "# {key} = {}", value.replace(['\n', '\r'], " "))?;
     }
@@ -88,7 +88,7 @@ struct Column {
 
 /// The columns, two for complex numbers. Headings of texts are quoted in any case: a reader learns
 /// early that there are quotes.
-fn columns(item: &Item, samples: &[Samples]) -> Vec<Column> {
+fn columns(item: &Item<'_>, samples: &[Samples]) -> Vec<Column> {
     let mut all = Vec::new();
     for (heading, samples) in item.headings().zip(samples) {
         let text = matches!(samples, Samples::Text(_));

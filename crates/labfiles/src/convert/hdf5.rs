@@ -7,7 +7,7 @@ use crate::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable, Value};
 use crate::source::Samples;
 
 /// Write all records; texts are left out, complex numbers become two channels.
-pub(super) fn write(items: &[Item], out: &Path, options: &Options) -> Result<(), ConvertError> {
+pub(super) fn write(items: &[Item<'_>], out: &Path, options: &Options) -> Result<(), ConvertError> {
     let mut writer = CampaignWriter::create(out);
     if options.single_precision {
         writer = writer.single_precision();
@@ -21,7 +21,7 @@ pub(super) fn write(items: &[Item], out: &Path, options: &Options) -> Result<(),
     Ok(writer.finish()?)
 }
 
-fn record(item: &Item) -> Result<RecordTable, ConvertError> {
+fn record(item: &Item<'_>) -> Result<RecordTable, ConvertError> {
     let mut channels = Vec::new();
     let named = item.names().into_iter().zip(item.channels());
     for ((name, info), samples) in named.zip(item.read()?) {

@@ -17,7 +17,7 @@ use crate::source::{Samples, StoredType};
 
 /// Write all records; with several there is a column `record`, and channels that a record lacks
 /// are empty.
-pub(super) fn write(items: &[Item], out: &Path, options: &Options) -> Result<(), ConvertError> {
+pub(super) fn write(items: &[Item<'_>], out: &Path, options: &Options) -> Result<(), ConvertError> {
     let library = |e: polars::error::PolarsError| WriteError::Library {
         path: out.to_path_buf(),
         reason: e.to_string(),
@@ -61,7 +61,7 @@ fn kind(text: bool, single: bool) -> DataType {
 }
 
 /// All columns in the order in which they come first, and whether they hold texts.
-fn columns(items: &[Item]) -> Vec<(String, bool)> {
+fn columns(items: &[Item<'_>]) -> Vec<(String, bool)> {
     let mut seen = BTreeMap::new();
     let mut all = Vec::new();
     let headed = items.iter().flat_map(|i| i.headings().zip(i.channels()));
@@ -80,8 +80,8 @@ fn columns(items: &[Item]) -> Vec<(String, bool)> {
 }
 
 /// Rates, starts and attributes: of the one record plainly, of several as JSON by name.
-fn footer(items: &[Item]) -> Vec<(String, String)> {
-    let of = |item: &Item| {
+fn footer(items: &[Item<'_>]) -> Vec<(String, String)> {
+    let of = |item: &Item<'_>| {
         let mut all: BTreeMap<String, String> = item
             .described()
             .map(|(k, v)| (k.clone(), v.clone()))
@@ -111,7 +111,7 @@ type Framed = polars::error::PolarsResult<DataFrame>;
 
 /// One record as a table with all columns of the file.
 fn frame(
-    item: &Item,
+    item: &Item<'_>,
     columns: &[(String, bool)],
     several: bool,
     single: bool,

@@ -7,8 +7,8 @@ use std::collections::BTreeMap;
 
 fn same(a: &DatasetInfo, b: &DatasetInfo) {
     assert_eq!(
-        a.sample_rate_hz().map(|r| r.round()),
-        b.sample_rate_hz().map(|r| r.round())
+        a.sample_rate_hz().map(f64::round),
+        b.sample_rate_hz().map(f64::round)
     );
     for channel in &a.channels {
         let other = &b.channels[b.channel_index(&channel.name).unwrap()];

@@ -14,7 +14,7 @@ pub(crate) enum Element {
     /// Two numbers, real and imaginary part.
     Complex {
         /// The type of either part.
-        part: Box<Element>,
+        part: Box<Self>,
         /// Offset of the imaginary part.
         imaginary: usize,
         /// Bytes of an element.
@@ -23,12 +23,12 @@ pub(crate) enum Element {
     /// Enumeration of false and true in one byte or more.
     Bool {
         /// The integers that represent them.
-        base: Box<Element>,
+        base: Box<Self>,
     },
     /// Named fields.
     Fields {
         /// Name, offset and type of each.
-        fields: Vec<(String, usize, Element)>,
+        fields: Vec<(String, usize, Self)>,
         /// Bytes of an element.
         bytes: usize,
     },

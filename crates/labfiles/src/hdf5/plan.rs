@@ -150,7 +150,7 @@ impl Plans {
 
     /// Records of a group's tables and columns; a column as long as a table's rows that is
     /// a time axis goes with the table.
-    fn tables(&mut self, sorted: &Sorted, tree: &Tree, attributes: &Attrs) {
+    fn tables(&mut self, sorted: &Sorted<'_>, tree: &Tree, attributes: &Attrs) {
         let Sorted {
             tables, columns, ..
         } = sorted;

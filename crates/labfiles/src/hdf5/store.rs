@@ -94,7 +94,7 @@ pub(crate) struct Tree {
     /// Its arrays.
     pub arrays: Vec<Array>,
     /// Its groups.
-    pub groups: Vec<Tree>,
+    pub groups: Vec<Self>,
 }
 
 /// Why an array or the tree of a file is not read.

@@ -163,7 +163,7 @@ fn shared_data_goldens_of_matlab_7_3() {
         open(&path)
             .map(|s| {
                 (0..s.datasets().len())
-                    .for_each(|d| drop(crate::conformance::read_all(&*s, d).unwrap()))
+                    .for_each(|d| drop(crate::conformance::read_all(&*s, d).unwrap()));
             })
             .unwrap_or_else(|e| println!("{e}"));
     }

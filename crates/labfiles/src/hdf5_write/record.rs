@@ -94,5 +94,5 @@ pub struct RecordTable {
 pub(super) struct Folder {
     pub(super) names: BTreeSet<String>,
     pub(super) records: Vec<RecordTable>,
-    pub(super) folders: BTreeMap<String, Folder>,
+    pub(super) folders: BTreeMap<String, Self>,
 }

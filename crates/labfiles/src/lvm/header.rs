@@ -1,4 +1,4 @@
-//! What the headers of a LabVIEW measurement file state on a table and its channels.
+//! What the headers of a `LabVIEW` measurement file state on a table and its channels.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! One pass through a LabVIEW measurement file: its headers and the places of its tables.
+//! One pass through a `LabVIEW` measurement file: its headers and the places of its tables.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use crate::source::ReadError;
 use crate::text::cells::{Cells, Lines, Separator};
 use crate::text::{TextFile, decode, number};
 
-/// The first words of a LabVIEW measurement file.
+/// The first words of a `LabVIEW` measurement file.
 pub(crate) const FIRST_WORDS: &str = "LabVIEW Measurement";
 const END_OF_HEADER: &[u8] = b"***End_of_Header***";
 const START_SPECIAL: &[u8] = b"***Start_Special***";
@@ -90,7 +90,7 @@ enum State {
     /// Among the rows.
     Rows,
     /// In a special block, and what follows it.
-    Special(Box<State>),
+    Special(Box<Self>),
 }
 
 struct Pass {

@@ -1,4 +1,4 @@
-//! The raw data index of a channel: type, length, and the scalers of DAQmx data.
+//! The raw data index of a channel: type, length, and the scalers of `DAQmx` data.
 
 use std::sync::Arc;
 

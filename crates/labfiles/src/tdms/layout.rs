@@ -6,7 +6,7 @@ use crate::numbers::Number;
 
 use super::value::Kind;
 
-/// One scaler of a DAQmx channel: the places of its raw samples in the device's buffer.
+/// One scaler of a `DAQmx` channel: the places of its raw samples in the device's buffer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Scaler {
     /// Number of the scale that represents it.
@@ -21,7 +21,7 @@ pub(super) struct Scaler {
     pub bit: Option<u32>,
 }
 
-/// Raw data of a DAQmx channel.
+/// Raw data of a `DAQmx` channel.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Device {
     /// Its scalers, at least one.
@@ -37,9 +37,9 @@ pub(super) struct Share {
     pub kind: Kind,
     /// Samples per chunk.
     pub count: u64,
-    /// Bytes per chunk (of a DAQmx channel: 0, see the buffers).
+    /// Bytes per chunk (of a `DAQmx` channel: 0, see the buffers).
     pub bytes: u64,
-    /// Of a DAQmx channel.
+    /// Of a `DAQmx` channel.
     pub device: Option<Arc<Device>>,
 }
 
@@ -91,7 +91,7 @@ pub(super) struct Layout {
     pub chunk: u64,
     /// Bytes of a row of interleaved samples.
     pub row: u64,
-    /// Rows and width of every DAQmx buffer.
+    /// Rows and width of every `DAQmx` buffer.
     buffers: Vec<(u64, u64)>,
 }
 

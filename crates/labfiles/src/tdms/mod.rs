@@ -8,7 +8,7 @@
 //! - `unit_string` (else `NI_UnitDescription`) is the unit, 1/`wf_increment` the sample rate
 //!   unless `wf_xunit_string` names another unit than seconds, `wf_start_time` the start. All
 //!   properties are kept as text.
-//! - `NI_Scale` chains of linear, polynomial and table scales are applied, also to DAQmx raw
+//! - `NI_Scale` chains of linear, polynomial and table scales are applied, also to `DAQmx` raw
 //!   data; a channel with another scaling is listed, and reading it is refused by the scaling's
 //!   name. A scaled channel is described as 64-bit floating point, with the raw type as a property.
 //! - A channel of time stamps gives seconds since its first stamp (no precision is lost that

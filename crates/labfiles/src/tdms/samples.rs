@@ -43,7 +43,7 @@ impl<'a> Chunks<'a> {
             .collect()
     }
 
-    /// Call `visit` with each run of a channel's samples; `scaler` picks one of a DAQmx channel.
+    /// Call `visit` with each run of a channel's samples; `scaler` picks one of a `DAQmx` channel.
     fn runs(
         &self,
         object: &Object,
@@ -178,7 +178,7 @@ impl<'a> Chunks<'a> {
         })
     }
 
-    /// The scaler of a DAQmx channel that its scaling starts from: index, number, bit.
+    /// The scaler of a `DAQmx` channel that its scaling starts from: index, number, bit.
     fn device(
         &self,
         object: &Object,
@@ -210,7 +210,7 @@ impl<'a> Chunks<'a> {
         Ok(Some((index, scaler.number, scaler.bit)))
     }
 
-    /// The DAQmx description of a channel, if it is one.
+    /// The `DAQmx` description of a channel, if it is one.
     pub(super) fn first_device(&self, object: &Object) -> Option<&'a super::layout::Device> {
         let &(layout, entry) = object.places.first()?;
         self.content.layouts[layout].entries[entry]

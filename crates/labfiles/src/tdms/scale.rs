@@ -79,7 +79,7 @@ pub(super) enum ScalingFault {
 /// The scaling of a channel.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Scaling {
-    /// Which scaler of a DAQmx channel gives the raw samples; `None`: the only data there are.
+    /// Which scaler of a `DAQmx` channel gives the raw samples; `None`: the only data there are.
     pub scaler: Option<u32>,
     steps: Vec<Step>,
 }

@@ -408,7 +408,7 @@ fn texts_and_time_stamps() {
     }
 }
 
-/// Raw data index of a DAQmx channel: scalers as (type, buffer, offset, scale).
+/// Raw data index of a `DAQmx` channel: scalers as (type, buffer, offset, scale).
 fn device_index(
     w: Writer,
     digital: bool,

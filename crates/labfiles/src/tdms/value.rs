@@ -18,7 +18,7 @@ pub(super) enum Kind {
     Text,
     /// 16 bytes: fractions of a second (2^-64) and seconds since 1904.
     Time,
-    /// Samples of a DAQmx device, described by scalers.
+    /// Samples of a `DAQmx` device, described by scalers.
     Device,
 }
 

@@ -11,7 +11,7 @@ pub(crate) struct Stamp {
 
 impl Stamp {
     /// Seconds from `origin` to this stamp; a clock that passed midnight gains a day.
-    pub(crate) fn since(self, origin: Stamp) -> f64 {
+    pub(crate) fn since(self, origin: Self) -> f64 {
         let days = match (self.days, origin.days) {
             (Some(a), Some(b)) => (a - b) as f64,
             _ => 0.0,

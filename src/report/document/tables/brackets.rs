@@ -11,7 +11,7 @@ use crate::report::locale::Locale;
 const MANY_BRACKETS: usize = 14;
 
 /// The measured brackets beside the simulated boundary; many of them small and in two columns.
-pub(crate) fn brackets(content: &ReportContent, locale: Locale) -> Option<Table> {
+pub(crate) fn brackets(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
     let many = content.compared.brackets.len() > MANY_BRACKETS;
     let rows = content
         .compared
@@ -47,7 +47,7 @@ pub(crate) fn brackets(content: &ReportContent, locale: Locale) -> Option<Table>
     })
 }
 
-fn bracket_row(b: &BracketRow, many: bool, locale: Locale) -> Vec<Rich> {
+fn bracket_row(b: &BracketRow, many: bool, locale: Locale<'_>) -> Vec<Rich> {
     let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
     vec![
         Rich::from(locale.translate(symbol(b.kind))),
@@ -79,7 +79,7 @@ fn bracket_sign(b: &BracketRow) -> &'static str {
     }
 }
 
-fn bracket_remark(b: &BracketRow, locale: Locale) -> String {
+fn bracket_remark(b: &BracketRow, locale: Locale<'_>) -> String {
     let by = |phrase: &str, distance: f64| {
         locale.translate_with(phrase, &[("distance", &locale.fixed(distance, 3))])
     };

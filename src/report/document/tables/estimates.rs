@@ -41,14 +41,14 @@ const METHODS_CAPTION: &str = "Estimates with half their 95 % interval, number o
      fits.";
 
 /// What each method found, and the joint estimate.
-pub(crate) fn methods(content: &ReportContent, locale: Locale) -> Option<Table> {
+pub(crate) fn methods(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
     let id = &content.identification;
     let rows = method_rows(&id.methods, &id.joint, locale);
     table(METHODS_CAPTION, &METHOD, rows, locale).map(|t| Table { size: SIZE, ..t })
 }
 
 /// The same for each specimen of a campaign that holds several.
-pub(crate) fn specimen_methods(content: &ReportContent, locale: Locale) -> Option<Table> {
+pub(crate) fn specimen_methods(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
     let specimens = content.identification.specimens.iter();
     let rows = specimens.flat_map(|(specimen, result)| {
         let rows = method_rows(&result.methods, &result.joint, locale);
@@ -67,7 +67,7 @@ pub(crate) fn specimen_methods(content: &ReportContent, locale: Locale) -> Optio
 }
 
 /// The answer for each specimen of a campaign that holds several.
-pub(crate) fn specimens(content: &ReportContent, locale: Locale) -> Option<Table> {
+pub(crate) fn specimens(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
     let rows = content
         .identification
         .specimens
@@ -85,7 +85,7 @@ pub(crate) fn specimens(content: &ReportContent, locale: Locale) -> Option<Table
     table("", &columns, rows.collect(), locale)
 }
 
-fn estimate_cells(set: &ParameterSet, locale: Locale) -> Vec<Rich> {
+fn estimate_cells(set: &ParameterSet, locale: Locale<'_>) -> Vec<Rich> {
     let cell = |look| Rich::from(parameters::short(look, (look.pick)(set), locale));
     PARAMETERS.iter().map(cell).collect()
 }
@@ -94,7 +94,7 @@ fn estimate_cells(set: &ParameterSet, locale: Locale) -> Vec<Rich> {
 fn method_rows(
     methods: &BTreeMap<Method, MethodResult>,
     joint: &MethodResult,
-    locale: Locale,
+    locale: Locale<'_>,
 ) -> Vec<Vec<Rich>> {
     let all = methods.iter().map(|(k, m)| (locale.message(k), m));
     let all = all.chain([(locale.translate("Joint"), joint)]);
@@ -104,7 +104,7 @@ fn method_rows(
         .collect()
 }
 
-fn method_row(name: String, method: &MethodResult, locale: Locale) -> Vec<Rich> {
+fn method_row(name: String, method: &MethodResult, locale: Locale<'_>) -> Vec<Rich> {
     let mut row = vec![Rich::from(name)];
     row.extend(estimate_cells(&method.parameters, locale));
     let observations = method.observations;
@@ -129,7 +129,7 @@ fn method_row(name: String, method: &MethodResult, locale: Locale) -> Vec<Rich> 
 }
 
 /// Whether the methods agree, pair by pair.
-pub(crate) fn agreement(content: &ReportContent, locale: Locale) -> Option<Table> {
+pub(crate) fn agreement(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
     let rows = content.identification.agreement.pairs.iter().map(|pair| {
         let key = pair.parameter.name();
         let symbol = parameters::parameter(key).map_or(key, |p| p.symbol);

@@ -52,7 +52,12 @@ impl Column {
 }
 
 /// A table of columns whose heads are phrases; `None` if it has no rows.
-fn table(caption: &str, columns: &[Column], rows: Vec<Vec<Rich>>, locale: Locale) -> Option<Table> {
+fn table(
+    caption: &str,
+    columns: &[Column],
+    rows: Vec<Vec<Rich>>,
+    locale: Locale<'_>,
+) -> Option<Table> {
     let heads = columns
         .iter()
         .map(|c| Rich::from(locale.translate_title(c.head)));
@@ -124,7 +129,7 @@ fn arrow(sweep: Sweep) -> &'static str {
 }
 
 /// Records that no method could use, by reason, and what the fits left out.
-pub(super) fn left_out(content: &ReportContent, locale: Locale) -> Option<Table> {
+pub(super) fn left_out(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
     let records = content.compared.unusable.iter().map(|u| {
         let count = Some(u.records.len()).filter(|n| *n > 1);
         (first_few(&u.records), count, verbatim(unusable(u, locale)))
@@ -157,7 +162,7 @@ fn first_few(records: &[String]) -> String {
 }
 
 /// Why records are unusable: the flag, then its details in English.
-fn unusable(unusable: &Unusable, locale: Locale) -> String {
+fn unusable(unusable: &Unusable, locale: Locale<'_>) -> String {
     let flag = unusable.flag.as_ref();
     let flag = flag.map_or_else(
         || locale.translate("motion undetermined"),
@@ -188,7 +193,7 @@ pub(super) fn verbatim(text: String) -> Rich {
 }
 
 /// SHA-256 of the inputs.
-pub(super) fn hashes(content: &ReportContent, locale: Locale) -> Option<Table> {
+pub(super) fn hashes(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
     let inputs = &content.provenance.inputs_sha256;
     let rows = inputs
         .iter()

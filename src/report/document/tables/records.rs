@@ -9,12 +9,13 @@ use crate::report::figures::fonts::{self, Face};
 use crate::report::figures::look;
 use crate::report::locale::Locale;
 use crate::report::parameters::method_inline;
+use crate::signal::whole;
 
 /// From how many records on the table is set small and in two columns.
 const MANY_RECORDS: usize = 45;
 
 /// All records; many of them small and in two columns.
-pub(crate) fn records(content: &ReportContent, locale: Locale) -> Option<Table> {
+pub(crate) fn records(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
     let many = content.compared.records.len() > MANY_RECORDS;
     let planar = content
         .compared
@@ -70,7 +71,7 @@ pub(crate) fn records(content: &ReportContent, locale: Locale) -> Option<Table> 
 }
 
 /// Which records the table lists: all, or an even choice of very many.
-fn which(content: &ReportContent, locale: Locale) -> String {
+fn which(content: &ReportContent, locale: Locale<'_>) -> String {
     let (listed, all) = (
         content.compared.records.len(),
         content.compared.overview.records,
@@ -112,7 +113,7 @@ fn crowded(table: Table) -> Table {
         row[0] = shortened(&row[0], room, SIZE);
     }
     let widths = (0..table.heads.len())
-        .map(|i| need(&table, i) as u16)
+        .map(|i| u16::try_from(whole::count(need(&table, i))).unwrap_or(u16::MAX))
         .collect();
     Table {
         size: SIZE,
@@ -137,7 +138,7 @@ fn shortened(name: &Rich, room: f64, size: f64) -> Rich {
     verbatim(fitting.unwrap_or_else(|| "…".into()))
 }
 
-fn record_row(r: &RecordRow, planar: bool, many: bool, locale: Locale) -> Vec<Rich> {
+fn record_row(r: &RecordRow, planar: bool, many: bool, locale: Locale<'_>) -> Vec<Rich> {
     let number = |v: Option<f64>, decimals| v.map_or("–".into(), |v| locale.fixed(v, decimals));
     let mut row: Vec<String> = vec![
         r.id.clone(),
@@ -168,7 +169,7 @@ fn record_row(r: &RecordRow, planar: bool, many: bool, locale: Locale) -> Vec<Ri
     row.into_iter().map(verbatim).collect()
 }
 
-fn motion_label(r: &RecordRow, many: bool, locale: Locale) -> String {
+fn motion_label(r: &RecordRow, many: bool, locale: Locale<'_>) -> String {
     match &r.motion {
         Motion::Undetermined { .. } if r.frequency_hz.is_none() => "–".into(),
         Motion::Undetermined { .. } if many => "?".into(),
@@ -182,7 +183,7 @@ fn short_remark(r: &RecordRow) -> String {
     format!("{used}{flagged}")
 }
 
-fn long_remark(r: &RecordRow, locale: Locale) -> String {
+fn long_remark(r: &RecordRow, locale: Locale<'_>) -> String {
     let used = if r.used_by.is_empty() {
         let reason = r.left_out.as_ref().map(|reason| locale.message(reason));
         let why = r.excluded.clone().or(reason);

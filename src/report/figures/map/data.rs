@@ -8,7 +8,7 @@ use crate::report::figures::csv::Csv;
 use crate::report::locale::Locale;
 
 /// The text that is shown on hovering over a record.
-pub(super) fn describe(record: &RecordRow, locale: Locale) -> String {
+pub(super) fn describe(record: &RecordRow, locale: Locale<'_>) -> String {
     let mut parts = vec![
         record.id.clone(),
         format!("z = {}", locale.translate(&record.motion.label())),

@@ -101,7 +101,7 @@ impl Map<'_> {
     }
 
     /// Frames and values of the strips above the panel.
-    pub(super) fn strip_frames(&mut self, locale: Locale) {
+    pub(super) fn strip_frames(&mut self, locale: Locale<'_>) {
         let r = self.panel.rect;
         for (i, value) in self.strips.clone().into_iter().enumerate() {
             let middle = self.strip_middle(i);
@@ -132,7 +132,7 @@ impl Map<'_> {
     }
 
     /// Frequency in Hz above and clearance in mm on the right.
-    pub(super) fn laboratory_axes(&mut self, locale: Locale) {
+    pub(super) fn laboratory_axes(&mut self, locale: Locale<'_>) {
         let r = self.panel.rect;
         let top = r.top - STRIP_STEP * self.strips.len() as f64;
         let small = TextLook::new(look::TICK_SIZE, Anchor::Middle).colour(look::QUIET);

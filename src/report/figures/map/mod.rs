@@ -36,7 +36,7 @@ const STRIP_STEP: f64 = 15.0;
 const STRIP_HALF: f64 = 5.5;
 
 /// Draws the map; `None` if the records have no place in a plane.
-pub(crate) fn draw(content: &ReportContent, size: MapSize, locale: Locale) -> Option<Figure> {
+pub(crate) fn draw(content: &ReportContent, size: MapSize, locale: Locale<'_>) -> Option<Figure> {
     let plane = Plane::of(content)?;
     let keys = if size == MapSize::Full {
         keys::full(&content.compared, plane)
@@ -94,7 +94,7 @@ impl<'a> Map<'a> {
         content: &'a ReportContent,
         plane: Plane,
         size: MapSize,
-        (keys, locale): (&[Key], Locale),
+        (keys, locale): (&[Key], Locale<'_>),
     ) -> Self {
         let full = size == MapSize::Full;
         let flat = content.compared.region_map.is_none() && heights(content, plane) <= 3;
@@ -137,7 +137,7 @@ impl<'a> Map<'a> {
         self.size == MapSize::Full
     }
 
-    fn regions(&mut self, locale: Locale) {
+    fn regions(&mut self, locale: Locale<'_>) {
         let Some(map) = self
             .content
             .compared
@@ -291,7 +291,7 @@ impl<'a> Map<'a> {
         self.panel.rect.top - STRIP_STEP * (index as f64 + 0.5) - 1.0
     }
 
-    fn records(&mut self, locale: Locale) {
+    fn records(&mut self, locale: Locale<'_>) {
         let radius = self.radius;
         let mut drawn: Vec<(Point, String)> = Vec::new();
         self.canvas.layer(4);
@@ -318,7 +318,7 @@ impl<'a> Map<'a> {
         }
     }
 
-    fn frame(&mut self, locale: Locale, keys: &[Key]) {
+    fn frame(&mut self, locale: Locale<'_>, keys: &[Key]) {
         self.canvas.layer(7);
         self.panel.frame(&mut self.canvas, Sides::BOTH, locale);
         if self.full() && self.plane.dimensionless {
@@ -329,7 +329,7 @@ impl<'a> Map<'a> {
         legend::draw(&mut self.canvas, (0.0, 0.0), width, keys, locale);
     }
 
-    fn finish(self, locale: Locale) -> Figure {
+    fn finish(self, locale: Locale<'_>) -> Figure {
         let csv = data::csv(&self.content.compared);
         let (name, title) = match self.size {
             MapSize::Full => ("map", "Regions of motion, simulated and measured"),

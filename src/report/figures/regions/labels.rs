@@ -24,7 +24,7 @@ impl Regions<'_> {
         &self,
         occupancy: &mut Occupancy,
         size: f64,
-        locale: Locale,
+        locale: Locale<'_>,
     ) -> Vec<RegionLabel> {
         let mut order: Vec<usize> = (0..self.areas.len()).collect();
         order.sort_by_key(|&r| std::cmp::Reverse(self.areas[r]));
@@ -42,7 +42,7 @@ impl Regions<'_> {
 
     fn label(
         &self,
-        (region, locale): (usize, Locale),
+        (region, locale): (usize, Locale<'_>),
         occupancy: &mut Occupancy,
         size: f64,
     ) -> Option<RegionLabel> {
@@ -77,7 +77,7 @@ impl Regions<'_> {
         })
     }
 
-    fn name(&self, cell: usize, locale: Locale) -> String {
+    fn name(&self, cell: usize, locale: Locale<'_>) -> String {
         let (first, second) = self.kind(cell);
         let label = |k: u16| locale.translate(&self.map.motions[usize::from(k)].label());
         if first == second {

@@ -1,6 +1,13 @@
 //! The regions of motion of a simulated grid: tints with smoothed edges, hatched where two motions
 //! are possible.
 
+#![expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    clippy::cast_sign_loss,
+    reason = "cells are counted in isize, which holds the few of a map; negative ones are tested for"
+)]
+
 mod labels;
 
 use crate::compare::RegionMap;
@@ -9,6 +16,7 @@ use crate::report::figures::look;
 use crate::report::figures::marks;
 use crate::report::figures::panel::Panel;
 use crate::report::figures::path;
+use crate::signal::whole;
 
 /// Regions smaller than this share of the map get no label and no outline.
 const LEAST_SHARE: f64 = 0.0025;
@@ -218,7 +226,7 @@ impl<'a> Regions<'a> {
             return;
         }
         let r = self.panel.rect;
-        let lines = ((r.width() + r.height()) / 5.0) as usize;
+        let lines = whole::index((r.width() + r.height()) / 5.0);
         for line in 0..lines {
             let start = (r.left + 5.0 * line as f64 - r.height(), r.bottom);
             self.hatch_line(canvas, start, r.height());
@@ -226,7 +234,7 @@ impl<'a> Regions<'a> {
     }
 
     fn hatch_line(&self, canvas: &mut Canvas, (x0, y0): Point, length: f64) {
-        let steps = length.floor() as usize;
+        let steps = whole::index(length.floor());
         let second_at = |k: usize| {
             let cell = self.cell_at((x0 + k as f64, y0 - k as f64))?;
             let (first, second) = self.kind(cell);

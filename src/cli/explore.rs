@@ -1,0 +1,152 @@
+//! `impactid explore`: the live explorer in the browser.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use clap::Args;
+
+use super::load::load_campaign;
+use super::stdout::print;
+use super::{Exit, Failure, Progress, Verbosity};
+use crate::explore::{Campaign, ExploreError, Server, Session, check};
+use crate::pipeline::theory::Study;
+
+/// Arguments of `impactid explore`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLE)]
+pub(super) struct Explore {
+    /// A folder of results, a campaign.toml or a study; without it, the theory
+    #[arg(value_name = "RESULTS|CAMPAIGN.TOML|STUDY.TOML")]
+    given: Option<PathBuf>,
+    /// Port on 127.0.0.1 [default: one that is free]
+    #[arg(long, value_name = "N")]
+    port: Option<u16>,
+    /// Print the page's address and open no browser
+    #[arg(long)]
+    no_browser: bool,
+    /// Replay a demo of your own with --check, or open the page with it
+    #[arg(long, value_name = "FILE")]
+    demo: Option<PathBuf>,
+    /// Replay all demos without a browser, compare their motions with those stated, and exit
+    #[arg(long, conflicts_with_all = ["given", "port", "no_browser"])]
+    check: bool,
+}
+
+const EXAMPLE: &str = "\
+Example:
+  impactid explore                                 the theory
+  impactid explore results/                        a campaign with its records and its fit
+  impactid explore data-samples/studies/fig5-basins.toml
+  impactid explore --port 8080 --no-browser        for a tunnel: ssh -L 8080:127.0.0.1:8080 HOST
+
+The page is served on 127.0.0.1 alone, to whoever has the token in its address. Press ? there for its
+keys. Ctrl-C ends it. Nothing is written but the files that you export.";
+
+impl From<ExploreError> for Failure {
+    fn from(error: ExploreError) -> Self {
+        Self::new(error.to_string(), error.remedy())
+    }
+}
+
+impl Explore {
+    /// Serve the page, or replay the demos.
+    ///
+    /// # Errors
+    /// [`Failure`] where the input cannot be used or the port is taken.
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+        let demo = self.demo.as_deref().map(read).transpose()?;
+        if self.check {
+            return replay(demo.as_deref(), verbosity);
+        }
+        let mut session = match &self.given {
+            None => Session::theory(),
+            Some(path) => open(path, verbosity)?,
+        };
+        if let Some(text) = demo {
+            Session::check_demo(&text)?;
+            session = session.with_demo(text);
+        }
+        for note in session.notes() {
+            verbosity.info(&format!("note: {note}"));
+        }
+        let server = Server::bind(session, self.port)?;
+        print(&format!("{}\n", server.url()))?;
+        verbosity.info("Ctrl-C ends the explorer.");
+        if !self.no_browser && !open_browser(&server.url()) {
+            verbosity.info("No browser could be started: open the address above.");
+        }
+        server.run()?;
+        Ok(Exit::Done)
+    }
+}
+
+fn replay(demo: Option<&str>, verbosity: Verbosity) -> Result<Exit, Failure> {
+    let lines = match demo {
+        Some(text) => vec![Session::check_demo(text)?],
+        None => check()?,
+    };
+    for line in lines {
+        verbosity.info(&line);
+    }
+    Ok(Exit::Done)
+}
+
+fn read(path: &Path) -> Result<String, Failure> {
+    fs::read_to_string(path).map_err(|e| Failure::io(path, &e))
+}
+
+/// What a path is: a folder is one of results; a file with `damping_ratio` is a study.
+fn open(path: &Path, verbosity: Verbosity) -> Result<Session, Failure> {
+    if !path.exists() {
+        return Err(Failure::new(
+            format!("{}: no such file or folder", path.display()),
+            "name a folder of results, a campaign.toml or a study",
+        ));
+    }
+    let bar = || Progress::new(verbosity, "observe", 0);
+    if path.is_dir() {
+        let bar = bar();
+        let progress = |stage: &'static str, done: u64, total: u64| {
+            bar.stage(stage);
+            bar.set(done, total);
+        };
+        let (campaign, notes) = Campaign::read(path, &progress)?;
+        return Ok(Session::of_campaign(campaign, notes));
+    }
+    let text = read(path)?;
+    let table: toml::Table = toml::from_str(&text).map_err(|e| {
+        let remedy = "name a folder of results, a campaign.toml or a study";
+        Failure::new(format!("{}: {e}", path.display()), remedy)
+    })?;
+    if table.contains_key("damping_ratio") {
+        let study: Study = toml::from_str(&text).map_err(|e| {
+            let remedy = "correct the place named; the studies shipped are examples";
+            Failure::new(format!("{}: {e}", path.display()), remedy)
+        })?;
+        return Ok(Session::study(&study)?);
+    }
+    let campaign = load_campaign(path, verbosity)?;
+    let bar = bar();
+    let progress = |stage: &'static str, done: u64, total: u64| {
+        bar.stage(stage);
+        bar.set(done, total);
+    };
+    let campaign = Campaign::of(campaign, &progress)?;
+    Ok(Session::of_campaign(campaign, Vec::new()))
+}
+
+/// Open an address in the system's browser; whether a program for it could be started.
+fn open_browser(url: &str) -> bool {
+    let (program, first): (&str, &[&str]) = if cfg!(target_os = "macos") {
+        ("open", &[])
+    } else if cfg!(windows) {
+        ("rundll32", &["url.dll,FileProtocolHandler"])
+    } else {
+        ("xdg-open", &[])
+    };
+    let mut command = Command::new(program);
+    command.args(first).arg(url);
+    let silent = command.stdout(Stdio::null()).stderr(Stdio::null());
+    silent.stdin(Stdio::null()).spawn().is_ok()
+}

@@ -1,0 +1,82 @@
+//! Each request with what answers it.
+
+use serde_json::json;
+
+use super::jobs::{Job, Stale, refusal};
+use super::wire::{Ask, Request};
+use super::{ExploreError, Session, State, demo, evidence, export, maps, motions};
+
+/// Why an answer ends early.
+#[derive(Debug)]
+pub(super) enum Stop {
+    /// Nobody waits for it.
+    Stale,
+    /// It is refused.
+    Refused(ExploreError),
+}
+
+impl From<Stale> for Stop {
+    fn from(_: Stale) -> Self {
+        Self::Stale
+    }
+}
+
+impl<E: Into<ExploreError>> From<E> for Stop {
+    fn from(error: E) -> Self {
+        Self::Refused(error.into())
+    }
+}
+
+/// Answer a request.
+pub(super) fn answer(session: &Session, request: &Request, job: &Job) {
+    if let Err(Stop::Refused(error)) = ask(session, request, job) {
+        // a page that is gone needs no refusal
+        let _ = job.send(refusal(job.id, &error));
+    }
+}
+
+fn ask(session: &Session, request: &Request, job: &Job) -> Result<(), Stop> {
+    let state = &request.state;
+    match &request.ask {
+        Ask::Hello {} => hello(session, job),
+        Ask::Map {} => maps::map(state, job),
+        Ask::Boundaries { points } => maps::boundaries(state, *points, job),
+        Ask::Motion { carried_from } => motions::motion(state, *carried_from, job),
+        Ask::Run { periods } => motions::run(state, *periods, job),
+        Ask::Line {} => motions::line(state, job),
+        Ask::Basins {} => motions::basins(state, job),
+        Ask::Record {} => evidence::record(session.campaign()?, state, job),
+        Ask::Residuals {} => evidence::residuals(session.campaign()?, state, job),
+        Ask::Proposals {} => evidence::proposals(session.campaign()?, job),
+        Ask::Export { file } => export::export(state, *file, job),
+        Ask::Demo { name } => send_demo(&demo::shipped(name)?, job),
+        Ask::ReadDemo { text } => send_demo(&demo::Demo::read(text)?, job),
+        Ask::WriteDemo { title, steps } => {
+            let text = demo::write(title, steps)?;
+            Ok(job.send(job.frame("demo_text").with("text", text))?)
+        }
+    }
+}
+
+fn hello(session: &Session, job: &Job) -> Result<(), Stop> {
+    let frame = job
+        .frame("hello")
+        .with("program", env!("CARGO_PKG_VERSION"))
+        .with("state", session.state())
+        .with("first", State::default())
+        .with("demos", demo::list())
+        .with("campaign", session.campaign().ok().map(|c| c.facts()))
+        .with("demo", session.demo())
+        .with("notes", session.notes());
+    Ok(job.send(frame)?)
+}
+
+fn send_demo(demo: &demo::Demo, job: &Job) -> Result<(), Stop> {
+    let steps: Vec<_> = demo
+        .steps
+        .iter()
+        .map(|s| json!({"seconds": s.seconds, "caption": s.caption, "carry": s.carry, "state": s.state}))
+        .collect();
+    let frame = job.frame("demo").with("title", &demo.title);
+    Ok(job.send(frame.with("steps", steps))?)
+}

@@ -1,0 +1,338 @@
+//! A campaign as the page shows it: records, brackets, the fit with its bands.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use super::ExploreError;
+use super::state::{Cursor, Panel, RigScale, State, Window};
+use crate::campaign::resolved::ResolvedCampaign;
+use crate::compare::{self, Input, Placed};
+use crate::event::RigKind;
+use crate::identify::evidence::Blocks;
+use crate::identify::fit::parameters::Parameters;
+use crate::identify::{Estimate, Identification};
+use crate::motion::Observation;
+use crate::pipeline::identify::{IdentificationFile, evidence, versions};
+use crate::pipeline::observe::read_one;
+use crate::pipeline::theory::plan::Law;
+use crate::pipeline::{Observed, PipelineError, Progress, identify, inputs, store};
+use crate::record::Record;
+use crate::report::style::MotionStyle;
+use crate::signal::robust;
+
+/// A campaign with what was observed and identified.
+pub struct Campaign {
+    pub(super) resolved: ResolvedCampaign,
+    pub(super) observed: Observed,
+    pub(super) identification: Identification,
+    /// The evidence sorted and weighed as at the fit.
+    pub(super) blocks: Blocks,
+    placed: Placed,
+}
+
+impl Campaign {
+    /// Observe and identify a campaign.
+    ///
+    /// # Errors
+    /// [`ExploreError`] where none of its records can be used.
+    pub fn of(resolved: ResolvedCampaign, progress: Progress) -> Result<Self, ExploreError> {
+        let observed = Observed::of(&resolved, progress)?;
+        progress("identify", 0, 1);
+        let found = identify::identify(&resolved, &observed)?;
+        Ok(Self::with(resolved, observed, found.identification))
+    }
+
+    /// Read a results folder; with it come notes on inputs that are gone or changed.
+    ///
+    /// # Errors
+    /// [`ExploreError`] where a file is missing or of another version, or no record can be used.
+    pub fn read(folder: &Path, progress: Progress) -> Result<(Self, Vec<String>), ExploreError> {
+        let resolved = store::read_resolved(folder)?;
+        let found = store::read_identification(folder)?;
+        check_layout(folder, &found)?;
+        let notes = changed_inputs(&resolved, &found);
+        let observed = match store::read_observed(folder) {
+            Ok(observed) => observed,
+            Err(_) => Observed::of(&resolved, progress)?,
+        };
+        let known = observed.observations.len();
+        let of_fit = resolved.records.len();
+        if known != of_fit {
+            return Err(ExploreError::Pipeline(PipelineError::Store {
+                path: folder.display().to_string(),
+                reason: format!("{known} records are observed, the campaign has {of_fit}"),
+            }));
+        }
+        Ok((Self::with(resolved, observed, found.identification), notes))
+    }
+
+    fn with(
+        resolved: ResolvedCampaign,
+        observed: Observed,
+        identification: Identification,
+    ) -> Self {
+        let mut blocks = Blocks::new(&evidence(&resolved, &observed));
+        if let Some(joint) = &identification.joint_fit {
+            blocks.weigh(&joint.fit.parameters);
+            blocks.boundary.fit_early_scale(&joint.fit.parameters);
+        }
+        let mut campaign = Self {
+            resolved,
+            observed,
+            identification,
+            blocks,
+            placed: Placed::default(),
+        };
+        campaign.placed = campaign.with_input(compare::placed);
+        campaign
+    }
+
+    /// Call a function of the comparison.
+    pub(super) fn with_input<T>(&self, of: impl FnOnce(&Input) -> T) -> T {
+        of(&Input {
+            rig: self.resolved.machine,
+            observations: &self.observed.observations,
+            brackets: &self.observed.brackets,
+            identification: &self.identification,
+            points: &[],
+            read: &|index| self.record(index),
+        })
+    }
+
+    fn record(&self, index: usize) -> Option<Record> {
+        Some(read_one(&self.resolved, self.resolved.records.get(index)?))
+    }
+
+    /// The fitted parameters with R, f0, β and x_st of the sliders.
+    pub(super) fn at_sliders(&self, state: &State) -> Parameters {
+        let scale = state.rig.unwrap_or_else(|| self.scale());
+        let machine = state.machine();
+        let restitution = machine
+            .restitution()
+            .constant()
+            .unwrap_or_else(|| machine.restitution().at(1.0));
+        let sliders = Parameters::symmetric(
+            restitution,
+            scale.natural_frequency_hz,
+            state.damping_ratio,
+            scale.static_deflection_m,
+        );
+        let Some(joint) = &self.identification.joint_fit else {
+            return sliders;
+        };
+        Parameters {
+            restitution: sliders.restitution,
+            natural_frequency_hz: sliders.natural_frequency_hz,
+            damping_ratio: sliders.damping_ratio,
+            static_deflection_m: sliders.static_deflection_m,
+            ..joint.fit.parameters
+        }
+    }
+
+    /// f0 and x_st: fitted, else stated, else of the campaign's own scale.
+    fn scale(&self) -> RigScale {
+        let value = |e: &Option<Estimate>| e.as_ref().and_then(|e| e.value);
+        let joint = &self.identification.joint.parameters;
+        let fit = self.identification.joint_fit.as_ref();
+        let fit = fit.map(|j| j.fit.parameters);
+        let median = |all: Vec<f64>| robust::median(&all).filter(|v| *v > 0.0);
+        let records = &self.observed.observations;
+        let frequencies = || median(records.iter().filter_map(|o| o.frequency_hz()).collect());
+        let gaps = || {
+            median(
+                records
+                    .iter()
+                    .filter_map(|o| o.setting.clearance_m)
+                    .collect(),
+            )
+        };
+        RigScale {
+            natural_frequency_hz: fit
+                .map(|p| p.natural_frequency_hz)
+                .or(value(&joint.natural_frequency_hz))
+                .or(self.resolved.rig.natural_frequency_hz)
+                .or_else(frequencies)
+                .unwrap_or(1.0),
+            static_deflection_m: fit
+                .map(|p| p.static_deflection_m)
+                .or(value(&joint.static_deflection_m))
+                .or(self.resolved.rig.static_deflection_m)
+                .or_else(gaps)
+                .unwrap_or(1e-3),
+        }
+    }
+
+    /// The state at the fit, with all records in view.
+    pub(super) fn first_state(&self) -> State {
+        let first = State::default();
+        let scale = self.scale();
+        let value = |e: &Option<Estimate>| e.as_ref().and_then(|e| e.value);
+        let joint = &self.identification.joint.parameters;
+        let fit = self.identification.joint_fit.as_ref();
+        let fit = fit.map(|j| j.fit.parameters).filter(|p| p.in_range());
+        let stated = &self.resolved.rig;
+        let restitution = fit.map(|p| p.restitution);
+        let restitution = restitution
+            .or(value(&joint.restitution))
+            .or(stated.restitution);
+        let damping = fit.map(|p| p.damping_ratio);
+        let damping = damping
+            .or(value(&joint.damping_ratio))
+            .or(stated.damping_ratio);
+        let view = self.view(scale, &first);
+        State {
+            restitution: Law::Constant(restitution.unwrap_or(0.9).clamp(0.0, 1.0)),
+            damping_ratio: damping.unwrap_or(0.05).clamp(0.0, 0.9),
+            single: self.resolved.machine == RigKind::Single,
+            cursor: self.first_cursor(scale, view),
+            view,
+            panel: Panel::Motion,
+            rig: Some(scale),
+            ..first
+        }
+    }
+
+    /// The surest record with z = 1, else the middle of what is shown.
+    fn first_cursor(&self, scale: RigScale, view: Window) -> Cursor {
+        let one = self
+            .observed
+            .observations
+            .iter()
+            .filter(|o| o.one_impact_in() == Some(1));
+        let sure = |o: &&Observation| (1e6 * o.classification.confidence) as u32;
+        let place = one.max_by_key(sure).and_then(|o| {
+            let x_st = scale.static_deflection_m * o.setting.drive_amplitude;
+            let rho = o.setting.clearance_m? / x_st;
+            Some((o.frequency_hz()? / scale.natural_frequency_hz, rho))
+        });
+        let middle = |r: (f64, f64)| 0.5 * (r.0 + r.1);
+        let (eta, rho) = place.unwrap_or((middle(view.eta), middle(view.rho)));
+        Cursor {
+            eta,
+            rho,
+            ..State::default().cursor
+        }
+    }
+
+    fn view(&self, scale: RigScale, first: &State) -> Window {
+        let places = self.observed.observations.iter().filter_map(|o| {
+            let rho = o.setting.clearance_m? / scale.static_deflection_m;
+            Some((o.frequency_hz()? / scale.natural_frequency_hz, rho))
+        });
+        let places: Vec<(f64, f64)> = places.collect();
+        let range = |of: fn(&(f64, f64)) -> f64| {
+            let low = places.iter().map(of).fold(f64::INFINITY, f64::min);
+            let high = places.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+            let margin = 0.08 * (high - low).max(0.2);
+            (low - margin, high + margin)
+        };
+        if places.is_empty() {
+            return first.view;
+        }
+        let (eta, rho) = (range(|p| p.0), range(|p| p.1));
+        Window {
+            eta: (eta.0.max(0.05), eta.1),
+            rho: (rho.0.max(0.0).min(rho.1 - 0.1), rho.1.min(20.0)),
+        }
+    }
+
+    /// Everything about the campaign that does not depend on the sliders.
+    pub(super) fn facts(&self) -> Value {
+        let observations = self.observed.observations.iter();
+        let records: Vec<Value> = observations
+            .zip(&self.placed.records)
+            .map(|(o, row)| {
+                json!({
+                    "id": row.id,
+                    "frequency_hz": row.frequency_hz,
+                    "clearance_m": row.clearance_m,
+                    "drive_amplitude": o.setting.drive_amplitude,
+                    "sweep": row.sweep.name(),
+                    "motion": MotionStyle::of(&row.motion),
+                    "confidence": row.confidence,
+                    "impacts": row.impacts,
+                    "used_by": row.used_by.iter().map(ToString::to_string).collect::<Vec<_>>(),
+                    "out": row.excluded.clone().or(row.left_out.as_ref().map(ToString::to_string)),
+                    "decay": o.decay.is_some(),
+                })
+            })
+            .collect();
+        let brackets = self.placed.brackets.iter().zip(&self.observed.brackets);
+        let brackets: Vec<Value> = brackets
+            .map(|(row, b)| {
+                json!({
+                    "kind": row.kind.name(),
+                    "n": b.periods_n,
+                    "motion": row.motion.label(),
+                    "clearance_m": row.clearance_m,
+                    "drive_amplitude": b.drive_amplitude,
+                    "low_hz": row.frequency_low_hz,
+                    "high_hz": row.frequency_high_hz,
+                    "sweep": row.sweep.name(),
+                    "records": b.records,
+                    "out": row.left_out.as_ref().map(ToString::to_string),
+                })
+            })
+            .collect();
+        let curves = self.placed.curves.iter().map(|c| {
+            json!({"kind": c.kind.name(), "n": c.periods_n, "points": c.points, "band": c.band95})
+        });
+        let sentences = &self.identification.verdict.sentences;
+        json!({
+            "name": self.resolved.name,
+            "synthetic": self.resolved.synthetic,
+            "single": self.resolved.machine == RigKind::Single,
+            "verdict": sentences.iter().map(ToString::to_string).collect::<Vec<_>>(),
+            "fit": self.identification.joint_fit.as_ref().map(|j| fitted(&j.fit.parameters)),
+            "intervals": self.identification.joint.parameters,
+            "records": records,
+            "brackets": brackets,
+            "curves": curves.collect::<Vec<_>>(),
+        })
+    }
+}
+
+fn fitted(p: &Parameters) -> Value {
+    json!({
+        "restitution": p.restitution,
+        "damping_ratio": p.damping_ratio,
+        "natural_frequency_hz": p.natural_frequency_hz,
+        "static_deflection_m": p.static_deflection_m,
+    })
+}
+
+/// Results of another layout are refused by name.
+fn check_layout(folder: &Path, found: &IdentificationFile) -> Result<(), ExploreError> {
+    let name = "identification.json";
+    let of = |versions: &std::collections::BTreeMap<String, String>| versions.get(name).cloned();
+    let (theirs, ours) = (of(&found.provenance.versions), of(&versions()));
+    if theirs == ours {
+        return Ok(());
+    }
+    Err(ExploreError::Layout {
+        path: folder.join(name).display().to_string(),
+        found: theirs.unwrap_or("none".into()),
+        expected: ours.unwrap_or_default(),
+    })
+}
+
+/// Inputs that are gone or differ from those that were identified from.
+fn changed_inputs(resolved: &ResolvedCampaign, found: &IdentificationFile) -> Vec<String> {
+    let now = inputs::hashes(resolved);
+    let note = |(name, then): (&String, &String)| match now.get(name).map(String::as_str) {
+        Some(hash) if hash == then => None,
+        None | Some("unreadable") => Some(format!(
+            "{name} is gone: its records cannot be shown as measured"
+        )),
+        Some(_) => Some(format!(
+            "{name} has changed since the campaign was identified"
+        )),
+    };
+    found
+        .provenance
+        .inputs_sha256
+        .iter()
+        .filter_map(note)
+        .collect()
+}

@@ -1,0 +1,97 @@
+//! Why the explorer cannot start, or refuses a request.
+
+use impact_oscillator::ModelError;
+
+/// Why the explorer cannot do something.
+#[derive(Debug, thiserror::Error)]
+pub enum ExploreError {
+    /// A state is of another version of the explorer.
+    #[error("the state has version {found}, this program reads version {expected}")]
+    Version {
+        /// The version that it has.
+        found: String,
+        /// The version that this program reads.
+        expected: u32,
+    },
+    /// A text is not what it should be.
+    #[error("{what}: {reason}")]
+    Malformed {
+        /// What was read.
+        what: String,
+        /// The reader's message.
+        reason: String,
+    },
+    /// A value is outside its range.
+    #[error("{name} = {value} is out of range: {range}")]
+    OutOfRange {
+        /// The key of the state.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// The range.
+        range: &'static str,
+    },
+    /// The model refuses a parameter.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A record has no place here, or no such thing exists.
+    #[error("{0}")]
+    Absent(String),
+    /// The port cannot be listened on.
+    #[error("port {port} of 127.0.0.1: {reason}")]
+    Port {
+        /// The port.
+        port: u16,
+        /// The system's message.
+        reason: String,
+    },
+    /// The server stopped.
+    #[error("the server stopped: {0}")]
+    Server(String),
+    /// Results were written by another version of the program.
+    #[error("{path} has layout {found}; this program reads layout {expected}")]
+    Layout {
+        /// The file.
+        path: String,
+        /// Its layout.
+        found: String,
+        /// The layout that this program reads.
+        expected: String,
+    },
+    /// A stage of the pipeline failed.
+    #[error(transparent)]
+    Pipeline(#[from] crate::pipeline::PipelineError),
+    /// A study failed.
+    #[error(transparent)]
+    Study(#[from] crate::pipeline::theory::StudyError),
+    /// Steps of demos did not show what they state.
+    #[error("{} of the demos' steps differ: {}", .0.len(), .0.join("; "))]
+    Demos(Vec<String>),
+}
+
+impl ExploreError {
+    /// What the user can do.
+    pub fn remedy(&self) -> String {
+        match self {
+            Self::Version { .. } => {
+                "open it with the version of impactid that wrote it, or start from the page's first \
+                 state"
+            }
+            Self::Malformed { .. } => "correct the place named",
+            Self::OutOfRange { .. } | Self::Model(_) => {
+                "give a value within the range that the message names"
+            }
+            Self::Absent(_) => "choose one that the page lists",
+            Self::Port { .. } => {
+                "another program listens there, perhaps another explorer: choose another --port, or \
+                 leave it out"
+            }
+            Self::Server(_) => "start `impactid explore` again",
+            Self::Layout { .. } => "run the campaign again with this version of impactid",
+            Self::Demos(_) => "correct the demos' `expect`, or report the difference",
+            Self::Pipeline(error) => return error.remedy(),
+            Self::Study(error) => error.remedy(),
+        }
+        .to_owned()
+    }
+}

@@ -1,0 +1,211 @@
+//! A campaign at the sliders: a record beside its simulation with the evidence for its label, the
+//! residuals of every method, boundaries against brackets, and what to measure next.
+
+use rayon::prelude::*;
+use serde_json::{Value, json};
+
+use super::answer::Stop;
+use super::campaign::Campaign;
+use super::jobs::Job;
+use super::{ExploreError, State};
+use crate::compare::{Beside, Signal, beside};
+use crate::identify::Method;
+use crate::identify::evidence::boundary::predicted_hz;
+use crate::identify::fit::Block;
+use crate::identify::fit::parameters::Parameters;
+use crate::identify::joint;
+use crate::identify::plan::{Reach, propose};
+use crate::motion::{BoundaryKind, Motion, Observation};
+use crate::pipeline::identify::evidence;
+use crate::report::style::MotionStyle;
+
+/// Settings that are proposed.
+const PROPOSALS: usize = 6;
+
+/// The chosen record, measured beside simulated, with the evidence for its label; or why not.
+pub(super) fn record(campaign: &Campaign, state: &State, job: &Job) -> Result<(), Stop> {
+    let Some(name) = &state.record else {
+        let message = "no record is chosen".to_owned();
+        return Err(Stop::Refused(ExploreError::Absent(message)));
+    };
+    let observations = &campaign.observed.observations;
+    let Some(index) = observations.iter().position(|o| o.record == *name) else {
+        let message = format!("the campaign has no record {name}");
+        return Err(Stop::Refused(ExploreError::Absent(message)));
+    };
+    let parameters = campaign.at_sliders(state);
+    let frame = job
+        .frame("record")
+        .with("record", name)
+        .with("stated", stated(&observations[index]))
+        .with("evidence", evidence_of(campaign, index));
+    let frame = match campaign.with_input(|input| beside(input, index, &parameters)) {
+        Beside::Motion(c) => {
+            let traces = c.traces.iter().map(|t| {
+                json!({
+                    "role": t.role.name(),
+                    "unit": t.dimension.si_symbol(),
+                    "simulated": t.simulated.is_some(),
+                })
+            });
+            let start = frame
+                .with("shown", "motion")
+                .with("eta", c.eta)
+                .with("rho", c.rho)
+                .with("drive_period_s", c.drive_period_s)
+                .with(
+                    "simulated",
+                    c.simulated_motion.as_ref().map(MotionStyle::of),
+                )
+                .with("traces", traces.collect::<Vec<_>>())
+                .column("impacts", c.impacts_s.iter().copied())
+                .column("simulated_impacts", c.simulated_impacts_s.iter().copied());
+            c.traces.iter().enumerate().fold(start, |frame, (i, t)| {
+                let values = |s: &Option<Signal>| s.iter().flat_map(|s| s.values.clone()).collect();
+                let (simulated, residual): (Vec<f64>, Vec<f64>) =
+                    (values(&t.simulated), values(&t.residual));
+                frame
+                    .column(&format!("t{i}"), t.measured.time_s.iter().copied())
+                    .column(&format!("measured{i}"), t.measured.values.iter().copied())
+                    .column(&format!("simulated{i}"), simulated)
+                    .column(&format!("residual{i}"), residual)
+            })
+        }
+        Beside::Decay(d) => frame
+            .with("shown", "decay")
+            .with("unit", d.dimension.si_symbol())
+            .with("natural_frequency_hz", d.natural_frequency_hz)
+            .with("damping_ratio", d.damping_ratio)
+            .column("t0", d.measured.time_s.iter().copied())
+            .column("measured0", d.measured.values.iter().copied())
+            .column("t1", d.fitted.time_s.iter().copied())
+            .column("simulated1", d.fitted.values.iter().copied()),
+        Beside::Nothing(why) => frame.with("shown", "nothing").with("why", why.to_string()),
+    };
+    Ok(job.send(frame)?)
+}
+
+/// What the laboratory states of a record, and what was measured.
+fn stated(o: &Observation) -> Value {
+    json!({
+        "frequency_hz": o.frequency_hz(),
+        "clearance_m": o.setting.clearance_m,
+        "sweep": o.setting.sweep.name(),
+        "specimen": o.setting.specimen,
+        "duration_s": o.duration_s,
+        "sample_rate_hz": o.sample_rate_hz,
+        "motion": MotionStyle::of(&o.classification.motion),
+        "confidence": o.classification.confidence,
+    })
+}
+
+/// What a record's label rests on, its flags, who used it, and why a fit did not.
+fn evidence_of(campaign: &Campaign, index: usize) -> Value {
+    let o = &campaign.observed.observations[index];
+    let reason = match &o.classification.motion {
+        Motion::Undetermined { reason } => Some(reason.clone()),
+        _ => None,
+    };
+    let flags = o
+        .flags
+        .iter()
+        .map(|f| json!({"message": f.message, "remedy": f.remedy, "excludes": f.excludes}));
+    let used = campaign.identification.methods_using(index);
+    let left_out = campaign.identification.left_out.iter();
+    let left_out = left_out.filter(
+        |l| matches!(&l.item, crate::identify::Item::Record { index: i, .. } if *i == index),
+    );
+    json!({
+        "measures": o.classification.evidence,
+        "undetermined": reason,
+        "impacts": o.impacts.len(),
+        "unsupported_pulses": o.unsupported_pulses,
+        "missed_pulses": o.missed_pulses,
+        "flags": flags.collect::<Vec<_>>(),
+        "used_by": used.map(|m| m.to_string()).collect::<Vec<_>>(),
+        "left_out": left_out.map(|l| l.reason.to_string()).collect::<Vec<_>>(),
+    })
+}
+
+/// Weighted residuals of a method: number, root mean square, and observations without a model.
+struct Misfit {
+    count: usize,
+    squares: f64,
+    without: usize,
+}
+
+fn misfit(block: &dyn Block, at: &Parameters) -> Misfit {
+    let of = |item| {
+        let residuals = block.residuals(item, at);
+        residuals.map(|r| (r.len(), r.iter().map(|v| v * v).sum::<f64>()))
+    };
+    let items: Vec<Option<(usize, f64)>> = (0..block.items()).into_par_iter().map(of).collect();
+    let known = || items.iter().flatten();
+    Misfit {
+        count: known().map(|i| i.0).sum(),
+        squares: known().map(|i| i.1).sum(),
+        without: items.iter().filter(|i| i.is_none()).count(),
+    }
+}
+
+fn root_mean(squares: f64, count: usize) -> Option<f64> {
+    let mean = squares / count as f64;
+    (count > 0 && mean.is_finite()).then(|| mean.sqrt())
+}
+
+/// Residuals of every method and of the joint fit at the sliders, and where each boundary is then.
+pub(super) fn residuals(campaign: &Campaign, state: &State, job: &Job) -> Result<(), Stop> {
+    let at = campaign.at_sliders(state);
+    let mut methods = Vec::new();
+    let (mut squares, mut count) = (0.0, 0);
+    let weights = campaign.identification.joint_fit.as_ref();
+    let weights = weights.map(|j| &j.weights);
+    for method in Method::FITTED {
+        if job.is_stale() {
+            return Err(Stop::Stale);
+        }
+        let block = joint::block(method, &campaign.blocks).filter(|b| b.items() > 0);
+        let Some(block) = block else { continue };
+        let found = misfit(block, &at);
+        if let Some(weight) = weights.and_then(|w| w.get(&method)) {
+            squares += weight * found.squares;
+            count += found.count;
+        }
+        methods.push(json!({
+            "method": method.to_string(),
+            "rms": root_mean(found.squares, found.count),
+            "count": found.count,
+            "without": found.without,
+        }));
+    }
+    let rig = campaign.resolved.machine;
+    let predicted = campaign.observed.brackets.iter().map(|b| {
+        let closed_form = b.kind != BoundaryKind::Other;
+        let boundary_hz = closed_form.then(|| predicted_hz(b, &at, rig)).flatten();
+        let past = boundary_hz.map(|f| (f - b.frequency_high_hz).max(b.frequency_low_hz - f));
+        json!({"boundary_hz": boundary_hz, "past_hz": past.map(|p| p.max(0.0))})
+    });
+    let frame = job
+        .frame("residuals")
+        .with("methods", methods)
+        .with("joint", root_mean(squares, count))
+        .with("brackets", predicted.collect::<Vec<_>>());
+    Ok(job.send(frame)?)
+}
+
+/// The settings to measure next.
+pub(super) fn proposals(campaign: &Campaign, job: &Job) -> Result<(), Stop> {
+    let evidence = evidence(&campaign.resolved, &campaign.observed);
+    let reach = Reach::of(&campaign.observed.observations);
+    let found = match (&campaign.identification.joint_fit, reach) {
+        (Some(joint), Some(reach)) => propose(
+            &evidence,
+            &joint.fit,
+            joint.variance_factor,
+            reach,
+            PROPOSALS,
+        ),
+        _ => Vec::new(),
+    };
+    Ok(job.send(job.frame("proposals").with("proposals", found))?)
+}

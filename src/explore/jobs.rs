@@ -1,0 +1,138 @@
+//! Requests become jobs: of each slot the newest counts, and a job that is no longer the newest stops
+//! where it next looks.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use tokio::sync::{mpsc, watch};
+
+use super::answer::answer;
+use super::frame::Frame;
+use super::wire::{Request, Slot};
+use super::{ExploreError, Session};
+
+/// Requests of the queue that wait at most.
+const QUEUE: usize = 16;
+
+/// The jobs of one page.
+pub(super) struct Jobs {
+    newest: BTreeMap<Slot, watch::Sender<Option<Request>>>,
+    queue: mpsc::Sender<Request>,
+    outbox: mpsc::Sender<Frame>,
+}
+
+/// A job that is being done.
+pub(super) struct Job {
+    /// The request's number.
+    pub id: u32,
+    newest: Option<watch::Receiver<Option<Request>>>,
+    outbox: mpsc::Sender<Frame>,
+}
+
+/// The page is gone, or asked for something newer: the job stops.
+#[derive(Debug)]
+pub(super) struct Stale;
+
+impl Job {
+    /// A job that nothing replaces, with its outbox.
+    pub(super) fn alone(id: u32, outbox: mpsc::Sender<Frame>) -> Self {
+        Self {
+            id,
+            newest: None,
+            outbox,
+        }
+    }
+
+    /// Whether the page is gone or has asked for something newer.
+    pub(super) fn is_stale(&self) -> bool {
+        let replaced = |newest: &watch::Receiver<_>| newest.has_changed().unwrap_or(true);
+        self.outbox.is_closed() || self.newest.as_ref().is_some_and(replaced)
+    }
+
+    /// Send a frame.
+    pub(super) fn send(&self, frame: Frame) -> Result<(), Stale> {
+        self.outbox.blocking_send(frame).map_err(|_| Stale)
+    }
+
+    /// A frame in answer to this request.
+    pub(super) fn frame(&self, kind: &str) -> Frame {
+        Frame::new(kind, self.id)
+    }
+}
+
+/// A refusal, as the page shows it.
+pub(super) fn refusal(id: u32, error: &ExploreError) -> Frame {
+    Frame::new("refused", id)
+        .with("message", error.to_string())
+        .with("remedy", error.remedy())
+}
+
+impl Jobs {
+    /// Start the slots of a page; frames go to the outbox.
+    pub(super) fn start(session: &Arc<Session>, outbox: &mpsc::Sender<Frame>) -> Self {
+        let mut newest = BTreeMap::new();
+        for slot in Slot::NEWEST {
+            let (sender, receiver) = watch::channel(None);
+            newest.insert(slot, sender);
+            tokio::spawn(newest_of(Arc::clone(session), receiver, outbox.clone()));
+        }
+        let (queue, waiting) = mpsc::channel(QUEUE);
+        tokio::spawn(one_by_one(Arc::clone(session), waiting, outbox.clone()));
+        Self {
+            newest,
+            queue,
+            outbox: outbox.clone(),
+        }
+    }
+
+    /// Take a request.
+    pub(super) async fn take(&self, request: Request) {
+        let id = request.id;
+        if let Some(slot) = self.newest.get(&request.ask.slot()) {
+            slot.send_replace(Some(request));
+        } else if self.queue.try_send(request).is_err() {
+            let busy = ExploreError::Absent("too many requests wait; ask again".into());
+            let _ = self.outbox.send(refusal(id, &busy)).await;
+        }
+    }
+}
+
+async fn newest_of(
+    session: Arc<Session>,
+    mut newest: watch::Receiver<Option<Request>>,
+    outbox: mpsc::Sender<Frame>,
+) {
+    while newest.changed().await.is_ok() {
+        let Some(request) = newest.borrow_and_update().clone() else {
+            continue;
+        };
+        let job = Job {
+            id: request.id,
+            newest: Some(newest.clone()),
+            outbox: outbox.clone(),
+        };
+        work(&session, request, job).await;
+    }
+}
+
+async fn one_by_one(
+    session: Arc<Session>,
+    mut waiting: mpsc::Receiver<Request>,
+    outbox: mpsc::Sender<Frame>,
+) {
+    while let Some(request) = waiting.recv().await {
+        let job = Job::alone(request.id, outbox.clone());
+        work(&session, request, job).await;
+    }
+}
+
+/// Do a job on a thread of its own; one that panics is refused, the page lives on.
+async fn work(session: &Arc<Session>, request: Request, job: Job) {
+    let (id, outbox) = (job.id, job.outbox.clone());
+    let session = Arc::clone(session);
+    let done = tokio::task::spawn_blocking(move || answer(&session, &request, &job)).await;
+    if done.is_err() {
+        let error = ExploreError::Server("this computation failed".into());
+        let _ = outbox.send(refusal(id, &error)).await;
+    }
+}

@@ -1,0 +1,164 @@
+//! The map's tiles, coarse first, and the boundaries, bare first.
+
+use super::answer::Stop;
+use super::jobs::Job;
+use super::state::MAP_CELLS;
+use super::{ExploreError, State};
+use crate::motion::Motion;
+use crate::report::style::MotionStyle;
+use impact_oscillator::atlas::map::{UnitMass, even};
+use impact_oscillator::model::boundary::{rho_sticking, s1_of_branch, s2_of_branch};
+use impact_oscillator::model::orbit::Branch;
+use impact_oscillator::{
+    BoundaryPoint, Machine, MapGrid, SettledMotion, region_map, rho_grazing, rho_s1, rho_s2,
+};
+
+/// Columns and rows of the first tile.
+const COARSE: (usize, usize) = (32, 24);
+/// Of the last one, of machines that the vector kernel marches.
+const FINE: (usize, usize) = (384, 288);
+/// Cells computed between two looks at whether the page wants something newer.
+const STRIP_CELLS: usize = 12_288;
+/// The same of machines that the exact simulator marches, some 0.4 ms a cell.
+const SLOW_STRIP_CELLS: usize = 192;
+/// Greatest n of the boundaries of z = 1/n.
+const MOST_PERIODS: u32 = 5;
+/// Most points of a boundary that a page may ask for.
+const MOST_POINTS: usize = 2000;
+
+/// Motions as cells: each motion that occurs once, and its number in each cell.
+pub(super) fn cells<'a>(
+    motions: impl Iterator<Item = &'a SettledMotion>,
+) -> (Vec<MotionStyle>, Vec<u8>) {
+    let mut known: Vec<SettledMotion> = Vec::new();
+    let index = |motion: &SettledMotion| {
+        let found = known.iter().position(|m| m == motion);
+        let index = found.unwrap_or_else(|| {
+            known.push(*motion);
+            known.len() - 1
+        });
+        // more motions than that cannot be told apart by eye
+        u8::try_from(index).unwrap_or(254).min(254)
+    };
+    let cells = motions.map(index).collect();
+    let style = |m: &SettledMotion| MotionStyle::of(&Motion::from(*m));
+    (known.iter().map(style).collect(), cells)
+}
+
+/// The region map of what the page shows: 32 × 24, 128 × 96, then strips of 384 × 288.
+pub(super) fn map(state: &State, job: &Job) -> Result<(), Stop> {
+    let machine = state.machine();
+    let fast = UnitMass::of(&machine).is_some();
+    let levels: &[(usize, usize)] = match fast {
+        true => &[COARSE, MAP_CELLS, FINE],
+        false => &[COARSE, MAP_CELLS],
+    };
+    let strip_cells = if fast { STRIP_CELLS } else { SLOW_STRIP_CELLS };
+    for (level, size) in levels.iter().enumerate() {
+        tile(state, &machine, (level, *size, strip_cells), job)?;
+    }
+    Ok(())
+}
+
+/// One level of the map, strip by strip, each a frame.
+fn tile(
+    state: &State,
+    machine: &Machine,
+    (level, size, strip_cells): (usize, (usize, usize), usize),
+    job: &Job,
+) -> Result<(), Stop> {
+    let plan = state.map_plan(size);
+    let (eta, rho) = (even(plan.eta), even(plan.rho));
+    let rows = (strip_cells / size.0).max(1);
+    for (number, strip) in rho.chunks(rows).enumerate() {
+        if job.is_stale() {
+            return Err(Stop::Stale);
+        }
+        let grid = MapGrid {
+            eta: eta.clone(),
+            rho: strip.to_vec(),
+        };
+        let map = region_map(machine, &grid, &plan.map)?;
+        let (motions, cells) = cells(map.cells.iter());
+        let frame = job
+            .frame("map")
+            .with("level", level)
+            .with("size", size)
+            .with("first_row", number * rows)
+            .with("eta", state.view.eta)
+            .with("rho", state.view.rho)
+            .with("motions", motions);
+        job.send(frame.cells(cells))?;
+    }
+    Ok(())
+}
+
+/// A boundary by η.
+type Boundary = fn(&Machine, f64, u32) -> Option<BoundaryPoint>;
+
+/// The boundaries of z = 1/n, ρ' and ρp: first bare, then with where they exist.
+pub(super) fn boundaries(state: &State, points: usize, job: &Job) -> Result<(), Stop> {
+    if !(2..=MOST_POINTS).contains(&points) {
+        return Err(Stop::Refused(ExploreError::OutOfRange {
+            name: "points",
+            value: points as f64,
+            range: "2 to 2000",
+        }));
+    }
+    let machine = state.machine();
+    let (low, high) = state.view.eta;
+    let etas = even((low, high, points));
+    let first = job
+        .frame("boundaries")
+        .column("eta", etas.iter().copied())
+        .column("grazing", etas.iter().map(|e| rho_grazing(&machine, *e)))
+        .column("sticking", etas.iter().map(|e| rho_sticking(&machine, *e)));
+    let bare = (1..=MOST_PERIODS).fold(first, |frame, n| {
+        let frame = frame.column(&format!("s2:{n}"), bare_s2(&machine, &etas, n));
+        frame.column(&format!("s1:{n}"), bare_s1(&machine, &etas, n))
+    });
+    job.send(bare)?;
+    let kinds: [(&str, Boundary); 2] = [("s2", rho_s2), ("s1", rho_s1)];
+    for n in 1..=MOST_PERIODS {
+        for (kind, of) in kinds {
+            if job.is_stale() {
+                return Err(Stop::Stale);
+            }
+            let found: Vec<Option<BoundaryPoint>> =
+                etas.iter().map(|e| of(&machine, *e, n)).collect();
+            let rho = |p: &Option<BoundaryPoint>| p.map_or(f64::NAN, |p| p.rho);
+            let valid = |p: &Option<BoundaryPoint>| f64::from(p.is_some_and(|p| p.is_valid()));
+            let frame = job
+                .frame("boundary")
+                .with("name", format!("{kind}:{n}"))
+                .with("last", n == MOST_PERIODS && kind == "s1")
+                .column("eta", etas.iter().copied())
+                .column("rho", found.iter().map(rho))
+                .column("exists", found.iter().map(valid));
+            job.send(frame)?;
+        }
+    }
+    Ok(())
+}
+
+/// ρ at s2 without a check of existence; none where R depends on the speed.
+fn bare_s2(machine: &Machine, etas: &[f64], n: u32) -> Vec<f64> {
+    let Some(r) = machine.restitution().constant() else {
+        return Vec::new();
+    };
+    let rho = |e: &f64| s2_of_branch(&Branch::new(machine, *e, n), r).0 / machine.gap(1.0);
+    etas.iter().map(rho).collect()
+}
+
+/// ρ at s1 without a check of existence; none where it has no closed form.
+fn bare_s1(machine: &Machine, etas: &[f64], n: u32) -> Vec<f64> {
+    let equal = machine.y.is_none() || machine.is_symmetric();
+    let Some(r) = machine.restitution().constant().filter(|_| equal) else {
+        return Vec::new();
+    };
+    let rho = |e: &f64| {
+        let found = s1_of_branch(machine, &Branch::new(machine, *e, n), r);
+        found.map_or(f64::NAN, |(rho, _)| rho)
+    };
+    etas.iter().map(rho).collect()
+}

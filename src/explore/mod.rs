@@ -1,0 +1,32 @@
+//! The live explorer: a page in the browser, served on loopback, on which the regions of motion, the
+//! motion at a cursor, characteristics, basins and a campaign's records follow the parameters at once.
+//!
+//! It computes nothing of its own: `impact_oscillator`, `identify`, `compare` and the studies of
+//! `pipeline::theory` do. The page sends its whole [`State`] with every request, so that the server keeps
+//! none: the same state is the page's address, a step of a demo and, as TOML, a study.
+
+mod answer;
+mod campaign;
+mod check;
+mod demo;
+mod error;
+mod evidence;
+mod export;
+mod frame;
+mod jobs;
+mod maps;
+mod motions;
+mod server;
+mod session;
+mod state;
+mod wire;
+
+pub use campaign::Campaign;
+pub use check::check;
+pub use error::ExploreError;
+pub use server::Server;
+pub use session::Session;
+pub use state::State;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,339 @@
+//! The motion at the cursor, carried or from its start; characteristics along a line; basins.
+
+use std::time::{Duration, Instant};
+
+use serde_json::json;
+
+use super::answer::Stop;
+use super::frame::Frame;
+use super::jobs::Job;
+use super::maps::cells;
+use super::state::Cursor;
+use super::{ExploreError, State};
+use crate::motion::Motion;
+use crate::report::style::MotionStyle;
+use impact_oscillator::atlas::basins::basin_rows;
+use impact_oscillator::atlas::map::{UnitMass, even};
+use impact_oscillator::atlas::portrait::{Portrait, portrait};
+use impact_oscillator::atlas::sweep::{Carried, SweepPoint, impactless};
+use impact_oscillator::{Machine, MapSettings, Setting, SettledMotion, Simulator, Trajectory};
+
+/// Time after which steps of a sweep are sent together.
+const BATCH: Duration = Duration::from_millis(40);
+/// Starts settled between two looks at whether the page wants something newer.
+const STRIP_CELLS: usize = 2048;
+/// The same where the exact simulator settles them.
+const SLOW_STRIP_CELLS: usize = 128;
+
+/// Greatest steps of η and ρ on the way of a carried motion: a greater one would throw it out of
+/// its basin.
+const STEP: (f64, f64) = (0.01, 0.05);
+/// Most steps of one way.
+const MOST_STEPS: f64 = 400.0;
+/// Drive periods of each.
+const STEP_PERIODS: f64 = 12.0;
+
+/// Steps on the way of a carried motion; none where it stays.
+fn steps_between(from: (f64, f64), to: (f64, f64)) -> u32 {
+    let steps = ((to.0 - from.0).abs() / STEP.0).max((to.1 - from.1).abs() / STEP.1);
+    steps.ceil().clamp(0.0, MOST_STEPS) as u32
+}
+
+/// What is seen at the cursor.
+pub(super) struct Seen {
+    /// Where the motion is now: the next one is carried from there.
+    pub cursor: Cursor,
+    /// What it settles on, with its characteristics.
+    pub point: SweepPoint,
+    /// The motion in full.
+    pub portrait: Portrait,
+}
+
+/// The motion at the cursor: from its start, or carried to it from another (η, ρ), where it settles.
+pub(super) fn seen(state: &State, carried_from: Option<(f64, f64)>) -> Result<Seen, ExploreError> {
+    let machine = state.machine();
+    let cursor = state.cursor;
+    let (eta, rho) = carried_from.unwrap_or((cursor.eta, cursor.rho));
+    let setting = Setting {
+        phase: cursor.phase,
+        ..Setting::new(eta, rho)
+    };
+    let mut carried = Carried::start_in(&machine, setting, cursor.start, state.watch)?;
+    let (begun, phase_then) = carried.place();
+    let to = (cursor.eta, cursor.rho);
+    carried.go(
+        ((eta, rho), to),
+        steps_between((eta, rho), to),
+        STEP_PERIODS,
+    )?;
+    let point = carried.step(to)?;
+    let (start, phase) = match carried_from {
+        Some(_) => carried.place(),
+        None => (begun, phase_then),
+    };
+    let cursor = Cursor {
+        start,
+        phase,
+        ..cursor
+    };
+    let shown = State {
+        cursor,
+        ..state.clone()
+    };
+    Ok(Seen {
+        cursor,
+        point,
+        portrait: portrait(&machine, &shown.portrait())?,
+    })
+}
+
+/// Send the motion at the cursor.
+pub(super) fn motion(
+    state: &State,
+    carried_from: Option<(f64, f64)>,
+    job: &Job,
+) -> Result<(), Stop> {
+    let Seen {
+        cursor,
+        point,
+        portrait,
+    } = seen(state, carried_from)?;
+    let free = impactless(&state.machine(), cursor.eta);
+    let frame = job
+        .frame("motion")
+        .with("cursor", cursor)
+        .with("motion", MotionStyle::of(&Motion::from(point.motion)))
+        .with("x_max", point.x_max)
+        .with("lyapunov", point.lyapunov)
+        .with("approach_speeds", &point.approach_speeds)
+        .with("autocorrelation", &point.autocorrelation)
+        .with("impactless", json!({"x": free.x, "y": free.y}))
+        .with("gap", portrait.gap)
+        .with("two_masses", portrait.two_masses);
+    Ok(job.send(with_portrait(frame, &portrait))?)
+}
+
+fn with_portrait(frame: Frame, p: &Portrait) -> Frame {
+    let (s, i, q) = (&p.samples, &p.impacts, &p.poincare);
+    let or_nan = |v: Option<f64>| v.unwrap_or(f64::NAN);
+    frame
+        .column("periods", s.iter().map(|s| s.periods))
+        .column("x", s.iter().map(|s| s.x))
+        .column("vx", s.iter().map(|s| s.vx))
+        .column("y", s.iter().map(|s| s.y))
+        .column("vy", s.iter().map(|s| s.vy))
+        .column("sticking", s.iter().map(|s| f64::from(s.sticking)))
+        .column("impact_periods", i.iter().map(|i| i.periods))
+        .column("impact_x", i.iter().map(|i| i.x))
+        .column("impact_vx_before", i.iter().map(|i| or_nan(i.vx_before)))
+        .column("impact_vx_after", i.iter().map(|i| or_nan(i.vx_after)))
+        .column("impact_approach", i.iter().map(|i| i.approach_speed))
+        .column("poincare_x", q.iter().map(|s| s[0]))
+        .column("poincare_vx", q.iter().map(|s| s[1]))
+        .column("lag", p.autocorrelation.iter().map(|a| a.0))
+        .column("autocorrelation", p.autocorrelation.iter().map(|a| a.1))
+}
+
+/// Most drive periods that a stretch of a running motion may have.
+const MOST_RUN: f64 = 50.0;
+/// Samples of a running motion in a drive period.
+const RUN_SAMPLES: f64 = 80.0;
+
+/// The next stretch of the motion at the cursor, and where it is then.
+pub(super) fn run(state: &State, periods: f64, job: &Job) -> Result<(), Stop> {
+    if !(periods > 0.0 && periods <= MOST_RUN) {
+        return Err(Stop::Refused(ExploreError::OutOfRange {
+            name: "periods",
+            value: periods,
+            range: "above 0, at most 50",
+        }));
+    }
+    let machine = state.machine();
+    let setting = state.cursor.setting();
+    let start = Carried::start_in(&machine, setting, state.cursor.start, state.watch)?;
+    let mut simulator = Simulator::resume(&machine, &start.snapshot())?;
+    let mut stretch = Trajectory::default();
+    let period = setting.period();
+    simulator.advance(periods * period, &mut stretch);
+    let steps = (periods * RUN_SAMPLES).ceil() as usize;
+    let taus = even((0.0, periods * period, steps + 1));
+    let states = stretch.sample(taus.iter().copied());
+    let place = Carried::resume(&machine, &simulator.snapshot(), state.watch)?.place();
+    let (start, phase) = place;
+    let cursor = Cursor {
+        start,
+        phase,
+        ..state.cursor
+    };
+    let lead = (state.poincare_phase - state.cursor.phase).rem_euclid(std::f64::consts::TAU);
+    let first = lead / setting.frequency_ratio;
+    let strobes = (0..).map(|k| first + f64::from(k) * period);
+    let strobes: Vec<f64> = strobes.take_while(|t| *t < periods * period).collect();
+    let crossed = stretch.sample(strobes);
+    let frame = job
+        .frame("run")
+        .with("cursor", cursor)
+        .with("eta", state.cursor.eta)
+        .with("gap", machine.gap(state.cursor.rho))
+        .column("periods", taus.iter().map(|t| t / period))
+        .column("x", states.iter().map(|s| s.x))
+        .column("vx", states.iter().map(|s| s.vx))
+        .column("y", states.iter().map(|s| s.y))
+        .column("vy", states.iter().map(|s| s.vy))
+        .column("poincare_x", crossed.iter().map(|s| s.x))
+        .column("poincare_vx", crossed.iter().map(|s| s.vx))
+        .column(
+            "impact_periods",
+            stretch.impacts.iter().map(|i| i.tau / period),
+        );
+    Ok(job.send(frame)?)
+}
+
+/// One direction of a sweep, with the steps that were not sent yet.
+struct Way<'a> {
+    name: &'static str,
+    carried: Carried<'a>,
+    places: Vec<(f64, f64)>,
+    sent: usize,
+    points: Vec<SweepPoint>,
+}
+
+impl<'a> Way<'a> {
+    fn new(
+        name: &'static str,
+        machine: &'a Machine,
+        state: &State,
+        (places, start): (Vec<(f64, f64)>, impact_oscillator::Initial),
+    ) -> Result<Self, ExploreError> {
+        let first = places.first().copied().unwrap_or((1.0, 0.0));
+        Ok(Self {
+            name,
+            carried: Carried::start(machine, first, start, state.watch)?,
+            places,
+            sent: 0,
+            points: Vec::new(),
+        })
+    }
+
+    fn step(&mut self) -> Result<(), ExploreError> {
+        if let Some(at) = self.places.get(self.sent + self.points.len()) {
+            self.points.push(self.carried.step(*at)?);
+        }
+        Ok(())
+    }
+
+    /// The steps that were not sent yet.
+    fn frame(&mut self, machine: &Machine, job: &Job) -> Frame {
+        let points = std::mem::take(&mut self.points);
+        let first = self.sent;
+        self.sent += points.len();
+        let speeds = points.iter().enumerate();
+        let speeds = speeds.flat_map(|(i, p)| p.approach_speeds.iter().map(move |v| (i, *v)));
+        let speeds: Vec<(usize, f64)> = speeds.collect();
+        let x_speeds = points.iter().flat_map(|p| p.x_speeds.iter().copied());
+        let free = |p: &SweepPoint| impactless(machine, p.eta);
+        let labels: Vec<String> = points.iter().map(|p| p.motion.label()).collect();
+        job.frame("line")
+            .with("way", self.name)
+            .with("first", first)
+            .with("all", self.places.len())
+            .with("labels", labels)
+            .column("eta", points.iter().map(|p| p.eta))
+            .column("rho", points.iter().map(|p| p.rho))
+            .column("x_max", points.iter().map(|p| p.x_max))
+            .column(
+                "lyapunov",
+                points.iter().map(|p| p.lyapunov.unwrap_or(f64::NAN)),
+            )
+            .column("impactless", points.iter().map(|p| free(p).x.0))
+            .column("impactless_phase", points.iter().map(|p| free(p).x.1))
+            .column(
+                "correlation",
+                points
+                    .iter()
+                    .map(|p| p.autocorrelation.first().copied().unwrap_or(f64::NAN)),
+            )
+            .column("impact_step", speeds.iter().map(|s| (first + s.0) as f64))
+            .column("impact_speed", speeds.iter().map(|s| s.1))
+            .column("impact_x_speed", x_speeds)
+    }
+}
+
+/// Characteristics along the line, up and down, streamed as they are computed.
+pub(super) fn line(state: &State, job: &Job) -> Result<(), Stop> {
+    let Some(line) = &state.line else {
+        let message = "no line is chosen: draw one with L, or press H or I";
+        return Err(Stop::Refused(ExploreError::Absent(message.into())));
+    };
+    let machine = state.machine();
+    let eta = even((line.eta.0, line.eta.1, line.steps));
+    let rho = even((line.rho.0, line.rho.1, line.steps));
+    let up: Vec<(f64, f64)> = eta.into_iter().zip(rho).collect();
+    let down: Vec<(f64, f64)> = up.iter().rev().copied().collect();
+    let mut up = Way::new("up", &machine, state, (up, line.start))?;
+    let mut down = Way::new("down", &machine, state, (down, line.start))?;
+    let mut since = Instant::now();
+    for step in 1..=line.steps {
+        let (a, b) = rayon::join(|| up.step(), || down.step());
+        a.and(b)?;
+        if job.is_stale() {
+            return Err(Stop::Stale);
+        }
+        if step == line.steps || since.elapsed() > BATCH {
+            job.send(up.frame(&machine, job))?;
+            job.send(down.frame(&machine, job))?;
+            since = Instant::now();
+        }
+    }
+    Ok(())
+}
+
+/// Cell of a start that is beyond the contact.
+const BEYOND: u8 = 255;
+
+/// Basins of attraction at the cursor, coarse first, with the share of each motion.
+pub(super) fn basins(state: &State, job: &Job) -> Result<(), Stop> {
+    let machine = state.machine();
+    let fast = UnitMass::of(&machine).is_some();
+    let strip_cells = if fast { STRIP_CELLS } else { SLOW_STRIP_CELLS };
+    let settings = MapSettings {
+        watch: state.watch,
+        ..MapSettings::default()
+    };
+    let fine = state.basin_grid();
+    let mut coarse = fine;
+    (coarse.x.2, coarse.vx.2) = (fine.x.2.min(24), fine.vx.2.min(24));
+    for (level, grid) in [coarse, fine].into_iter().enumerate() {
+        let rows = (strip_cells / grid.x.2).max(1);
+        let mut first = 0;
+        while first < grid.rows() {
+            if job.is_stale() {
+                return Err(Stop::Stale);
+            }
+            let last = (first + rows).min(grid.rows());
+            let setting = state.cursor.setting();
+            let found = basin_rows(&machine, setting, &grid, &settings, first..last)?;
+            let frame = job
+                .frame("basins")
+                .with("level", level)
+                .with("size", (grid.x.2, grid.vx.2))
+                .with("first_row", first)
+                .with("x", (grid.x.0, grid.x.1))
+                .with("vx", (grid.vx.0, grid.vx.1));
+            job.send(with_starts(frame, &found))?;
+            first = last;
+        }
+    }
+    Ok(())
+}
+
+fn with_starts(frame: Frame, found: &[Option<SettledMotion>]) -> Frame {
+    let (motions, known) = cells(found.iter().flatten());
+    let mut known = known.into_iter();
+    let cell = |c: &Option<SettledMotion>| match c {
+        Some(_) => known.next().unwrap_or(BEYOND),
+        None => BEYOND,
+    };
+    let all = found.iter().map(cell).collect();
+    frame.with("motions", motions).cells(all)
+}

@@ -1,0 +1,192 @@
+// A campaign on the map: records, brackets, proposals; a record beside its simulation; residuals.
+import { Frame, around, colour, mark, number, rich, FONT } from "./draw.js";
+import { facts, swatch } from "./plots.js";
+
+const element = (id) => document.getElementById(id);
+const make = (name, text, className) => {
+  const e = document.createElement(name);
+  if (text !== undefined) e.textContent = text;
+  if (className) e.className = className;
+  return e;
+};
+
+const SYMBOLS = { "displacement x": "*x*", "displacement y": "*y*", "velocity x": "*x*′", "velocity y": "*y*′", "frame x": "frame *x*", "frame y": "frame *y*" };
+
+/** A factor and the prefix of its unit that make values neither tiny nor huge. */
+function prefixed(lists, unit) {
+  if (!unit.startsWith("m")) return [1, ""];
+  let most = 0;
+  for (const list of lists) for (const v of list) most = Math.max(most, Math.abs(v));
+  return most >= 0.5 || most === 0 ? [1, ""] : most >= 5e-4 ? [1e3, "m"] : [1e6, "µ"];
+}
+
+export class CampaignView {
+  constructor(app, facts) {
+    this.app = app;
+    this.facts = facts;
+    this.proposals = [];
+    this.fit = facts.fit;
+    this.head();
+    new ResizeObserver(() => this.traces()).observe(element("traces"));
+  }
+
+  /** (η, ρ) of a record or bracket at the sliders. */
+  at(frequency_hz, r) {
+    const rig = this.app.scale();
+    return [frequency_hz / rig.natural_frequency_hz, r.clearance_m / (rig.static_deflection_m * r.drive_amplitude)];
+  }
+
+  placed(f) {
+    return this.facts.records.filter((r) => r.frequency_hz !== null && r.clearance_m !== null).map((r) => {
+      const [eta, rho] = this.at(r.frequency_hz, r);
+      return { r, x: f.px(eta), y: f.py(rho) };
+    });
+  }
+
+  near(f, p, q) {
+    let best = null, least = 9;
+    for (const { r, x, y } of this.placed(f)) {
+      const d = Math.hypot(x - p, y - q);
+      if (d < least) { best = r; least = d; }
+    }
+    return best;
+  }
+
+  draw(f, c) {
+    const chosen = this.app.state.record, many = this.facts.records.length;
+    const radius = many > 1500 ? 2.6 : many > 400 ? 3.6 : 4.6;
+    for (const { r, x, y } of this.placed(f)) {
+      mark(c, x, y, radius, r.motion, r.out !== null);
+      if (r.id === chosen) { c.beginPath(); c.arc(x, y, radius + 5, 0, 7); c.lineWidth = 2.2; c.strokeStyle = colour("bad"); c.stroke(); }
+    }
+    for (const [i, b] of this.facts.brackets.entries()) {
+      if (b.kind === "other") continue;
+      const [low, rho] = this.at(b.low_hz, b), [high] = this.at(b.high_hz, b);
+      const y = f.py(rho), x0 = f.px(low), x1 = f.px(high), past = this.residual?.brackets[i]?.past_hz > 0;
+      c.strokeStyle = past ? colour("bad") : colour("ink"); c.lineWidth = past ? 2.4 : 1.6; c.globalAlpha = b.out === null ? 1 : 0.35;
+      c.beginPath(); c.moveTo(x0, y - 5); c.lineTo(x0, y + 5); c.moveTo(x0, y); c.lineTo(x1, y); c.moveTo(x1, y - 5); c.lineTo(x1, y + 5); c.stroke();
+      c.globalAlpha = 1;
+    }
+    c.font = `bold 14px ${FONT}`; c.textAlign = "center"; c.textBaseline = "middle";
+    this.proposals.forEach((p, i) => {
+      const x = f.px(p.frequency_ratio), y = f.py(p.clearance_ratio);
+      c.beginPath(); c.arc(x, y, 9, 0, 7); c.fillStyle = colour("paper"); c.fill();
+      c.lineWidth = 2; c.strokeStyle = colour("green"); c.stroke();
+      c.fillStyle = colour("green"); c.fillText(String(i + 1), x, y + 1);
+    });
+  }
+
+  head() {
+    const box = element("record-head"), label = make("label", "Record ");
+    this.select = make("select");
+    this.select.append(...this.facts.records.map((r) => {
+      const o = make("option", `${r.id} (${r.decay ? "free decay" : "z = " + r.motion.label}${r.out === null ? "" : ", left out"})`);
+      o.value = r.id;
+      return o;
+    }));
+    this.select.addEventListener("change", () => this.app.choose(this.facts.records.find((r) => r.id === this.select.value)));
+    label.append(this.select);
+    this.title = make("span");
+    box.replaceChildren(label, this.title);
+  }
+
+  /** Choose the record so many places further in the list. */
+  step(by) {
+    const all = this.facts.records;
+    const now = all.findIndex((r) => r.id === this.app.state.record);
+    this.app.choose(all[(now + by + all.length) % all.length]);
+  }
+
+  show(frame) {
+    this.frame = frame;
+    this.select.value = frame.record;
+    const s = frame.stated, same = frame.simulated?.label === s.motion.label;
+    const measured = frame.shown === "decay" ? "free decay" : `measured z = ${s.motion.label} (confidence ${number(s.confidence, 2)})`;
+    const simulated = frame.simulated ? `, simulated z = ${frame.simulated.label}` : "";
+    this.title.textContent = measured + simulated;
+    this.title.className = !frame.simulated ? "" : same ? "good" : "bad";
+    this.traces();
+    this.evidence();
+  }
+
+  traces() {
+    const frame = this.frame, box = element("traces");
+    if (!frame || element("panel-record").hidden) return;
+    if (frame.shown === "nothing") { box.replaceChildren(make("p", frame.why, "bad")); return; }
+    const list = frame.shown === "decay" ? [0] : frame.traces.map((_, i) => i);
+    if (box.childElementCount !== list.length || box.firstElementChild?.tagName !== "CANVAS") {
+      box.replaceChildren(...list.map(() => { const c = make("canvas"); c.setAttribute("role", "img"); return c; }));
+    }
+    const col = frame.column;
+    list.forEach((i, place) => {
+      const canvas = box.children[place], t = col["t" + i], m = col["measured" + i];
+      const decay = frame.shown === "decay";
+      const st = decay ? col.t1 : t, s = decay ? col.simulated1 : col["simulated" + i], r = col["residual" + i] ?? [];
+      const unit = decay ? frame.unit : frame.traces[i].unit, role = decay ? "free decay" : frame.traces[i].role.replace("_", " ");
+      const [factor, prefix] = prefixed([m, s], unit);
+      const scaled = (values) => Float32Array.from(values, (v) => v * factor);
+      canvas.setAttribute("aria-label", `${role}: measured and simulated`);
+      const last = place === list.length - 1;
+      const f = new Frame(canvas, [t[0], t[t.length - 1]], around([scaled(m), scaled(s)]), [last ? "time, s" : "", `${SYMBOLS[role] ?? role}${unit ? ", " + prefix + unit : ""}`], { bottom: last ? 36 : 18, left: 56, top: 4 }).axes();
+      f.clip((c) => {
+        f.curve(t, scaled(m), { colour: colour("ink"), width: 1.3 });
+        f.curve(st, scaled(s), { colour: colour("blue"), width: 1.6, dash: [6, 3] });
+        f.curve(t, scaled(r), { colour: colour("bad"), width: 0.9 });
+        const tick = (x, top, ink) => { c.beginPath(); c.moveTo(f.px(x), top); c.lineTo(f.px(x), top + 6); c.strokeStyle = ink; c.lineWidth = 1.5; c.stroke(); };
+        for (const x of col.impacts ?? []) tick(x, f.box.top, colour("ink"));
+        for (const x of col.simulated_impacts ?? []) tick(x, f.box.top + 7, colour("blue"));
+      });
+    });
+  }
+
+  evidence() {
+    const { frame } = this, { evidence: e, stated: s } = frame, box = element("record-evidence");
+    const words = (key) => key.replaceAll("_", " ");
+    const flat = (o, prefix = "") => Object.entries(o ?? {}).flatMap(([k, v]) => (v === null ? [] : typeof v === "object" ? flat(v, words(k) + ": ") : [[prefix + words(k), typeof v === "number" ? number(v, 4) : String(v)]]));
+    const rows = [["drive", `${number(s.frequency_hz, 6)} Hz`], ["clearance r", s.clearance_m === null ? "–" : `${number(1e3 * s.clearance_m, 5)} mm`], ["sweep", s.sweep]];
+    if (s.specimen) rows.push(["specimen", s.specimen]);
+    if (frame.shown === "decay") {
+      const plus = ([v, d]) => `${number(v, 6)} ± ${number(1.96 * d, 2)}`;
+      rows.push(["f0, Hz", plus(frame.natural_frequency_hz)], ["β", plus(frame.damping_ratio)]);
+    } else rows.push(...flat(e.measures));
+    rows.push(["used by", e.used_by.join(", ") || "no method"]);
+    const list = make("dl", undefined, "facts");
+    list.append(...facts(rows));
+    const notes = [];
+    if (e.undetermined) notes.push(make("p", `Undetermined: ${e.undetermined}`, "bad"));
+    for (const reason of e.left_out) notes.push(make("p", `Left out: ${reason}`, "bad"));
+    for (const flag of e.flags) notes.push(make("p", `${flag.message}. ${flag.remedy}.`, flag.excludes ? "bad" : "note"));
+    const key = make("p", "Black: measured; blue dashed: simulated at the sliders; red: their difference; ticks: impacts.", "note");
+    box.replaceChildren(key, make("h3", frame.shown === "decay" ? "Fit" : "What the label rests on"), list, ...notes);
+  }
+
+  residuals(frame) {
+    this.residual = frame;
+    const box = element("residuals");
+    box.hidden = false;
+    const item = (name, rms, tip) => {
+      const span = make("span");
+      const value = make("b", rms === null ? "no model" : number(rms, 3), rms === null || rms > 2 ? "worse" : "fits");
+      span.append(`${name} `, value); span.title = tip;
+      return span;
+    };
+    const parts = frame.methods.map((m) => item(m.method, m.rms, `${m.count} residuals over their standard errors, root mean square${m.without ? `; ${m.without} observations have no such motion here` : ""}`));
+    if (frame.joint !== null) parts.unshift(item("Joint", frame.joint, "root mean square of all weighted residuals of the joint fit"));
+    const known = frame.brackets.filter((b) => b.boundary_hz !== null), past = known.filter((b) => b.past_hz > 0);
+    const most = Math.max(0, ...past.map((b) => b.past_hz));
+    const brackets = make("span", `Boundaries: ${past.length} of ${known.length} past their brackets${past.length ? `, by up to ${number(most, 3)} Hz` : ""}`);
+    const back = make("button", "Back to the fit (Z)");
+    back.type = "button"; back.disabled = !this.fit;
+    back.addEventListener("click", () => this.app.backToFit());
+    box.replaceChildren(make("span", "Residuals at the sliders:"), ...parts, brackets, back);
+    this.app.map.redraw();
+  }
+
+  legend() {
+    const seen = new Map();
+    for (const r of this.facts.records) seen.set(r.motion.label, r.motion);
+    return [...seen.values()].sort((a, b) => String(a.order).localeCompare(String(b.order)));
+  }
+}
+
+export { swatch, rich };

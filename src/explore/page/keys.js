@@ -1,0 +1,67 @@
+// Every key with what it does; the letters of NON-1-SIM are kept.
+
+/** [keys, text, action(app, event)] */
+export const KEYS = [
+  ["0 … 9", "study pictures: the demos' first pictures", null],
+  ["a", "initial conditions X, X′, Y, Y′, φ", (app) => app.dialogs.initial()],
+  ["b", "parameters of the system: R, β, asymmetries", (app) => app.dialogs.system()],
+  ["c", "parameters of the picture: ranges of η and ρ", (app) => app.dialogs.picture()],
+  ["d", "parameters of the simulation: periods, settling, steps", (app) => app.dialogs.simulation()],
+  ["e", "restitution R(v): constant, table, formula", (app) => app.dialogs.law()],
+  ["g", "series, phase portrait, Poincaré map; run or stop the motion", (app) => app.running()],
+  ["h", "characteristics over η at the cursor's ρ", (app) => app.along("eta")],
+  ["i", "characteristics over ρ at the cursor's η", (app) => app.along("rho")],
+  ["l", "characteristics along a line: drag it, or L again for cursor to cursor", (app) => app.drawLine()],
+  ["s", "basins of attraction at the cursor", (app) => app.panel("basins")],
+  ["m", "the motion at the cursor", (app) => app.panel("motion")],
+  ["f", "demos of the program", (app) => app.dialogs.demos()],
+  ["k", "record a demo; again: save it", (app) => app.record()],
+  ["j", "replay the recorded demo, or one from a file", (app) => app.replay()],
+  ["arrows", "move η and ρ, the motion carried along; Shift: ten steps; Ctrl: a tenth", null],
+  ["+ −", "zoom; wheel: zoom at the pointer; Shift and drag: move the picture", null],
+  ["Home", "all of the plane, or all records", (app) => app.home()],
+  ["0-start", "", null],
+  ["q", "start again from rest at the cursor", (app) => app.start({ x: 0, vx: 0, y: 0, vy: 0 }, 0)],
+  ["w", "map from rest or from a lively start", (app) => app.toggleStart()],
+  ["u", "phase of the Poincaré map, by an eighth of the period", (app) => app.strobe()],
+  ["[ ]", "campaign: the record before, the record after", null],
+  ["Enter", "campaign: the record nearest the cursor", (app) => app.nearest()],
+  ["p", "campaign: settings to measure next", (app) => app.propose()],
+  ["z", "campaign: back to the fit", (app) => app.backToFit()],
+  ["x", "export what is shown: PNG, SVG, CSV, study", (app) => app.dialogs.exports()],
+  ["t", "light or dark", (app) => app.theme()],
+  ["?", "these keys", (app) => app.dialogs.help()],
+  ["Esc", "stop what runs; close", (app) => app.stop()],
+].filter(([key]) => key !== "0-start");
+
+const SPECIAL = {
+  "+": (app) => app.zoom(1 / 1.25), "=": (app) => app.zoom(1 / 1.25), "-": (app) => app.zoom(1.25), "−": (app) => app.zoom(1.25),
+  "[": (app) => app.campaign?.step(-1), "]": (app) => app.campaign?.step(1), Escape: (app) => app.stop(), Home: (app) => app.home(),
+  Enter: (app) => app.nearest(),
+  ArrowLeft: (app, e) => app.nudge(-1, 0, e), ArrowRight: (app, e) => app.nudge(1, 0, e), ArrowUp: (app, e) => app.nudge(0, 1, e), ArrowDown: (app, e) => app.nudge(0, -1, e),
+};
+
+/** Do what a key means; whether it means anything. */
+export function press(app, key, event) {
+  if (/^[0-9]$/.test(key)) { app.picture(Number(key)); return true; }
+  const lower = key.length === 1 ? key.toLowerCase() : key;
+  const action = SPECIAL[lower] ?? KEYS.find(([k]) => k === lower)?.[2];
+  if (!action) return false;
+  action(app, event ?? {});
+  return true;
+}
+
+/** Listen to the keyboard; fields keep their own keys. */
+export function listen(app) {
+  document.addEventListener("keydown", (event) => {
+    const target = event.target, kind = target.tagName;
+    const writes = kind === "TEXTAREA" || kind === "SELECT" || (kind === "INPUT" && target.type !== "range");
+    if (document.getElementById("dialog").open || writes) return;
+    const slides = kind === "INPUT" && target.type === "range";
+    const own = slides && (event.key.startsWith("Arrow") || event.key === "Home");
+    const presses = (kind === "BUTTON") && (event.key === "Enter" || event.key === " ");
+    const tabs = target.getAttribute("role") === "tab" && event.key.startsWith("Arrow");
+    if (own || presses || tabs || event.altKey || event.metaKey || (event.ctrlKey && !event.key.startsWith("Arrow"))) return;
+    if (press(app, event.key, event)) event.preventDefault();
+  });
+}

@@ -1,0 +1,327 @@
+// The (η, ρ) map: tiles, boundaries, records, brackets, bands, cursor, line.
+import { Frame, colour, isDark, mark, markColour, rich, tint, FONT } from "./draw.js";
+
+const KINDS = {
+  s2: { text: "saddle-node *s*₂", colour: "ink", width: 1.6 },
+  s1: { text: "period doubling *s*₁", colour: "mark", width: 1.5, dash: [7, 3] },
+  grazing: { text: "grazing *ρ*′", colour: "blue", width: 1.8 },
+  sticking: { text: "stay together *ρ*ₚ", colour: "quiet", width: 2 },
+};
+
+export class MapView {
+  constructor(canvas, app) {
+    this.canvas = canvas;
+    this.app = app;
+    this.tiles = [];        // { level, eta, rho, size, image, styles, cells, id }
+    this.curves = {};       // "s2:1" → { eta, rho, exists }
+    this.styles = new Map(); // label → style, of what is in view
+    this.drawn = false;
+    this.labels = [];
+    this.theme = "";
+    this.pointer();
+    new ResizeObserver(() => this.redraw()).observe(canvas);
+  }
+
+  redraw() {
+    if (this.drawn) return;
+    this.drawn = true;
+    requestAnimationFrame(() => { this.drawn = false; this.draw(); });
+  }
+
+  /** A strip of a tile. */
+  tile(frame) {
+    let tile = this.tiles.find((t) => t.id === frame.id && t.level === frame.level);
+    if (!tile) {
+      const [columns, rows] = frame.size;
+      const canvas = document.createElement("canvas");
+      canvas.width = columns; canvas.height = rows;
+      tile = { id: frame.id, level: frame.level, eta: frame.eta, rho: frame.rho, size: frame.size, canvas, styles: [], cells: new Uint8Array(columns * rows).fill(255), filled: 0 };
+      // what is older stays below until the first strip of the new one is there
+      this.tiles = this.tiles.filter((t) => t.id === frame.id || t.level <= 1).slice(-3);
+      this.tiles.push(tile);
+    }
+    const index = frame.motions.map((style) => {
+      let at = tile.styles.findIndex((s) => s.label === style.label);
+      if (at < 0) { tile.styles.push(style); at = tile.styles.length - 1; }
+      return at;
+    });
+    const first = frame.first_row * tile.size[0];
+    for (let i = 0; i < frame.cell.length; i++) tile.cells[first + i] = index[frame.cell[i]];
+    this.paint(tile, frame.first_row, frame.cell.length / tile.size[0]);
+    tile.filled += frame.cell.length;
+    tile.complete = tile.filled >= tile.cells.length;
+    if (tile.complete) {
+      this.tiles = this.tiles.filter((t) => t === tile || (t.id === tile.id && t.level > tile.level));
+      if (tile.level === 1) this.labels = placeLabels(tile);
+      if (tile.level >= 1) this.app.legend(commonest(tile));
+    }
+    this.redraw();
+    return tile;
+  }
+
+  paint(tile, firstRow, count) {
+    const [columns, rows] = tile.size;
+    const tints = tile.styles.map(tint);
+    const image = tile.canvas.getContext("2d").createImageData(columns, count);
+    for (let k = 0; k < count; k++) {
+      for (let i = 0; i < columns; i++) {
+        const cell = tile.cells[(firstRow + k) * columns + i];
+        const at = 4 * ((count - 1 - k) * columns + i);
+        if (cell === 255) continue;
+        const [r, g, b] = tints[cell];
+        image.data[at] = r; image.data[at + 1] = g; image.data[at + 2] = b; image.data[at + 3] = 255;
+      }
+    }
+    tile.canvas.getContext("2d").putImageData(image, 0, rows - firstRow - count);
+  }
+
+  /** All boundaries, bare. */
+  bare(frame) {
+    const eta = frame.column.eta;
+    for (const [name, rho] of Object.entries(frame.column)) {
+      if (name === "eta" || rho.length === 0) continue;
+      const always = name === "grazing" || name === "sticking";
+      const before = this.curves[name];
+      this.curves[name] = { eta, rho, exists: always ? null : before?.existsOf ?? null, bare: !always };
+    }
+    for (const name of Object.keys(this.curves)) {
+      if (!(name in frame.column) || frame.column[name].length === 0) this.curves[name].stale = true;
+    }
+    this.redraw();
+  }
+
+  /** One boundary with where it exists. */
+  boundary(frame) {
+    this.curves[frame.name] = { eta: frame.column.eta, rho: frame.column.rho, exists: frame.column.exists, bare: false };
+    this.redraw();
+  }
+
+  draw() {
+    const { app } = this, { state } = app;
+    if (!state) return;
+    if (this.theme !== document.documentElement.dataset.theme) {
+      this.theme = document.documentElement.dataset.theme;
+      for (const t of this.tiles) this.paint(t, 0, t.size[1]);
+    }
+    const titles = ["frequency ratio *η* = *ω*/*Ω*", "clearance ratio *ρ* = *r*/*x*ₛₜ"];
+    const scale = app.scale();
+    const top = scale ? 40 : 8, right = scale ? 50 : 10;
+    const f = this.frame = new Frame(this.canvas, state.view.eta, state.view.rho, titles, { left: 50, right, top });
+    f.clip((c) => {
+      c.imageSmoothingEnabled = false;
+      for (const t of this.tiles) {
+        const dx = (t.eta[1] - t.eta[0]) / (t.size[0] - 1) / 2, dy = (t.rho[1] - t.rho[0]) / (t.size[1] - 1) / 2;
+        const [x0, x1] = [f.px(t.eta[0] - dx), f.px(t.eta[1] + dx)], [y0, y1] = [f.py(t.rho[1] + dy), f.py(t.rho[0] - dy)];
+        c.drawImage(t.canvas, x0, y0, x1 - x0, y1 - y0);
+      }
+      this.bands(f, c);
+      this.boundaries(f);
+      this.regionLabels(f, c);
+      if (app.campaign) app.campaign.draw(f, c);
+      this.line(f, c);
+      this.cursor(f, c);
+    });
+    f.axes();
+    if (scale) this.rigAxes(f, scale);
+  }
+
+  bands(f, c) {
+    for (const curve of this.app.campaign?.facts.curves ?? []) {
+      if (curve.band.length < 2) continue;
+      c.beginPath();
+      curve.band.forEach(([e, lo], i) => (i ? c.lineTo(f.px(e), f.py(lo)) : c.moveTo(f.px(e), f.py(lo))));
+      [...curve.band].reverse().forEach(([e, , hi]) => c.lineTo(f.px(e), f.py(hi)));
+      c.closePath(); c.fillStyle = colour("band"); c.globalAlpha = 0.75; c.fill();
+      // a band thinner than a line is seen as one
+      c.lineWidth = 4; c.strokeStyle = colour("band"); c.stroke(); c.globalAlpha = 1;
+    }
+  }
+
+  boundaries(f) {
+    for (const [name, curve] of Object.entries(this.curves)) {
+      if (curve.stale) continue;
+      const [kind, n] = name.split(":");
+      const style = KINDS[kind], width = style.width * (n > 1 ? 0.75 : 1);
+      const line = { colour: colour(style.colour), width, dash: style.dash };
+      if (curve.exists) {
+        f.curve(curve.eta, curve.rho, { ...line, skip: (i) => !(curve.exists[i] > 0) });
+        f.curve(curve.eta, curve.rho, { ...line, width: 0.8, alpha: 0.25, dash: [2, 3], skip: (i) => curve.exists[i] > 0 && curve.exists[i + 1] > 0 });
+      } else {
+        f.curve(curve.eta, curve.rho, { ...line, alpha: curve.bare ? 0.45 : 1 });
+      }
+    }
+  }
+
+  regionLabels(f, c) {
+    c.textAlign = "center"; c.textBaseline = "middle";
+    for (const { eta, rho, text, share } of this.labels) {
+      const size = Math.round(13 + 14 * Math.min(1, Math.sqrt(share) * 2.2));
+      c.font = `bold ${size}px ${FONT}`;
+      c.lineWidth = 3; c.strokeStyle = colour("paper"); c.globalAlpha = 0.75;
+      c.strokeText(text, f.px(eta), f.py(rho)); c.globalAlpha = 1;
+      c.fillStyle = colour("ink"); c.fillText(text, f.px(eta), f.py(rho));
+    }
+  }
+
+  line(f, c) {
+    const { line } = this.app.state;
+    if (!line || (this.app.state.panel !== "line" && !this.drawing)) return;
+    const ends = [0, 1].map((i) => [f.px(line.eta[i]), f.py(line.rho[i])]);
+    c.beginPath(); c.moveTo(...ends[0]); c.lineTo(...ends[1]);
+    c.lineWidth = 2.2; c.strokeStyle = colour("green"); c.stroke();
+    c.fillStyle = colour("green"); c.font = `bold 15px ${FONT}`;
+    ends.forEach(([x, y], i) => { c.beginPath(); c.arc(x, y, 4, 0, 7); c.fill(); c.fillText("ab"[i], x + 9, y - 8); });
+  }
+
+  cursor(f, c) {
+    const { eta, rho } = this.app.state.cursor;
+    const [x, y] = [f.px(eta), f.py(rho)], b = f.box;
+    c.strokeStyle = colour("ink"); c.lineWidth = 1; c.globalAlpha = 0.55; c.setLineDash([3, 3]);
+    c.beginPath(); c.moveTo(x, b.top); c.lineTo(x, b.top + b.height); c.moveTo(b.left, y); c.lineTo(b.left + b.width, y); c.stroke();
+    c.setLineDash([]); c.globalAlpha = 1;
+    c.beginPath(); c.arc(x, y, 7, 0, 7); c.lineWidth = 3.4; c.strokeStyle = colour("paper"); c.stroke();
+    c.lineWidth = 1.8; c.strokeStyle = colour("ink"); c.stroke();
+  }
+
+  /** Frequency in Hz above, clearance in mm on the right. */
+  rigAxes(f, scale) {
+    const { context: c, box: b } = f;
+    const hz = f.x.map((v) => v * scale.natural_frequency_hz), mm = f.y.map((v) => v * scale.static_deflection_m * 1e3);
+    const top = new Frame2(hz, mm, b);
+    c.fillStyle = colour("ink"); c.strokeStyle = colour("frame"); c.font = `13px ${FONT}`;
+    c.textAlign = "center"; c.textBaseline = "alphabetic"; c.beginPath(); c.lineWidth = 1;
+    for (const [v, text] of top.x()) { const p = top.px(v); c.moveTo(p, b.top); c.lineTo(p, b.top + 4); c.fillText(text, p, b.top - 4); }
+    c.textAlign = "left"; c.textBaseline = "middle";
+    for (const [v, text] of top.y()) { const p = top.py(v); c.moveTo(b.left + b.width, p); c.lineTo(b.left + b.width - 4, p); c.fillText(text, b.left + b.width + 4, p); }
+    c.stroke(); c.textAlign = "center"; c.textBaseline = "alphabetic"; c.font = `14px ${FONT}`;
+    rich(c, "drive frequency, Hz", b.left + b.width / 2, b.top - 22);
+    c.save(); c.translate(f.width - 6, b.top + b.height / 2); c.rotate(-Math.PI / 2); rich(c, "clearance *r*, mm", 0, 0); c.restore();
+  }
+
+  // ---- the pointer -------------------------------------------------------
+  place(event) {
+    const box = this.canvas.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
+  }
+
+  pointer() {
+    const { canvas, app } = this;
+    let mode = null, from = null, view = null;
+    canvas.addEventListener("pointerdown", (event) => {
+      if (!this.frame) return;
+      const [p, q] = this.place(event);
+      if (!this.frame.holds(p, q)) return;
+      canvas.focus(); canvas.setPointerCapture(event.pointerId);
+      from = [p, q]; view = app.state.view;
+      const record = app.campaign?.near(this.frame, p, q);
+      if (this.drawing) mode = "line";
+      else if (event.button === 2 || event.button === 1 || event.shiftKey) mode = "pan";
+      else if (record) { mode = null; app.choose(record); return; }
+      else mode = "cursor";
+      this.moved(mode, p, q, from, view);
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      const [p, q] = this.place(event);
+      if (mode) this.moved(mode, p, q, from, view);
+      else if (this.frame) canvas.title = app.campaign?.near(this.frame, p, q)?.id ?? "";
+    });
+    const end = () => {
+      if (mode === "line") { this.drawing = false; app.panel("line"); app.said("characteristics along the line"); }
+      mode = null;
+    };
+    canvas.addEventListener("pointerup", end);
+    canvas.addEventListener("pointercancel", end);
+    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+    canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      if (!this.frame) return;
+      const [p, q] = this.place(event);
+      app.zoom(Math.exp(0.0015 * event.deltaY), this.frame.ux(p), this.frame.uy(q));
+    }, { passive: false });
+  }
+
+  moved(mode, p, q, from, view) {
+    const f = this.frame, { app } = this;
+    const b = f.box, inside = [Math.min(Math.max(p, b.left), b.left + b.width), Math.min(Math.max(q, b.top), b.top + b.height)];
+    const at = [f.ux(inside[0]), f.uy(inside[1])];
+    if (mode === "cursor") app.carry(at[0], at[1]);
+    else if (mode === "line") {
+      app.set({ line: { eta: [f.ux(from[0]), at[0]], rho: [f.uy(from[1]), at[1]], steps: app.state.line?.steps ?? 200 } }, []);
+    } else if (mode === "pan") {
+      const de = (f.x[1] - f.x[0]) * (p - from[0]) / b.width, dr = (f.y[1] - f.y[0]) * (q - from[1]) / b.height;
+      app.look([view.eta[0] - de, view.eta[1] - de], [view.rho[0] + dr, view.rho[1] + dr]);
+    }
+  }
+
+  /** The kinds of boundaries that are drawn, for the legend. */
+  kinds() {
+    const seen = new Set(Object.entries(this.curves).filter(([, c]) => !c.stale).map(([k]) => k.split(":")[0]));
+    return Object.entries(KINDS).filter(([k]) => seen.has(k)).map(([, style]) => style);
+  }
+}
+
+/** Ticks of the rig's units over the map's box. */
+class Frame2 {
+  constructor(x, y, box) { Object.assign(this, { rx: x, ry: y, box }); }
+  px(v) { return Math.round(this.box.left + this.box.width * (v - this.rx[0]) / (this.rx[1] - this.rx[0])) + 0.5; }
+  py(v) { return Math.round(this.box.top + this.box.height * (1 - (v - this.ry[0]) / (this.ry[1] - this.ry[0]))) + 0.5; }
+  x() { const t = ticksOf(this.rx, this.box.width / 80); return t; }
+  y() { const t = ticksOf(this.ry, this.box.height / 45); return t; }
+}
+
+import { ticks } from "./draw.js";
+const ticksOf = (range, count) => { const t = ticks(range[0], range[1], count); return t.all.map((v) => [v, t.text(v)]); };
+
+/** The motions that take most of a tile. */
+function commonest(tile) {
+  const counts = new Uint32Array(256);
+  for (const cell of tile.cells) counts[cell]++;
+  const order = tile.styles.map((_, i) => i).sort((a, b) => counts[b] - counts[a]);
+  return order.slice(0, 9).filter((i) => counts[i] > 2e-4 * tile.cells.length).map((i) => tile.styles[i]);
+}
+
+/** A label in the middle of every large connected region. */
+function placeLabels(tile) {
+  const [w, h] = tile.size, seen = new Int32Array(w * h).fill(-1), labels = [];
+  const stack = [];
+  for (let start = 0; start < w * h; start++) {
+    if (seen[start] >= 0) continue;
+    const label = tile.cells[start], members = [];
+    stack.push(start); seen[start] = start;
+    while (stack.length) {
+      const at = stack.pop(), x = at % w;
+      members.push(at);
+      for (const next of [x > 0 ? at - 1 : -1, x < w - 1 ? at + 1 : -1, at - w, at + w]) {
+        if (next >= 0 && next < w * h && seen[next] < 0 && tile.cells[next] === label) { seen[next] = start; stack.push(next); }
+      }
+    }
+    const share = members.length / (w * h);
+    if (share < 0.006) continue;
+    const middle = innermost(members, seen, start, w, h);
+    if (middle.depth < 3) continue;
+    const eta = tile.eta[0] + (tile.eta[1] - tile.eta[0]) * middle.x / (w - 1);
+    const rho = tile.rho[0] + (tile.rho[1] - tile.rho[0]) * middle.y / (h - 1);
+    labels.push({ eta, rho, text: tile.styles[label].label, share });
+  }
+  return labels;
+}
+
+/** The member that is furthest from its region's edge. */
+function innermost(members, seen, region, w, h) {
+  const depth = new Int16Array(w * h);
+  const inside = (x, y) => x >= 0 && y >= 0 && x < w && y < h && seen[y * w + x] === region;
+  const sorted = [...members].sort((a, b) => a - b);
+  const relax = (at, dx, dy) => {
+    const x = at % w, y = (at - x) / w, look = (a, b) => (inside(x + a, y + b) ? depth[(y + b) * w + x + a] : 0);
+    return Math.min(look(dx, 0), look(0, dy), look(dx, dy), look(-dx, dy)) + 1;
+  };
+  for (const at of sorted) depth[at] = relax(at, -1, -1);
+  let best = { depth: 0, x: 0, y: 0 };
+  for (const at of sorted.reverse()) {
+    depth[at] = Math.min(depth[at], relax(at, 1, 1));
+    if (depth[at] > best.depth) best = { depth: depth[at], x: at % w, y: Math.floor(at / w) };
+  }
+  return best;
+}
+
+export { KINDS, isDark, mark, markColour };

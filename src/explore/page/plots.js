@@ -1,0 +1,270 @@
+// Beside the map: the motion, characteristics, basins.
+import { Frame, around, colour, fit, markColour, number, tint, FONT } from "./draw.js";
+
+const element = (id) => document.getElementById(id);
+
+/** The motion at the cursor: series, phase portrait, Poincaré map, autocorrelation, numbers. */
+export class MotionPanel {
+  constructor(app) {
+    this.app = app;
+    this.frame = null;
+    this.plot = null;
+    for (const id of ["series", "phase", "poincare", "autocorrelation"]) new ResizeObserver(() => this.draw()).observe(element(id));
+  }
+
+  show(frame) {
+    this.frame = frame;
+    this.live = null;
+    this.draw();
+  }
+
+  /** The next stretch of the running motion joins what is shown. */
+  run(frame) {
+    const span = this.app.state.periods;
+    const old = this.live ?? { t: [], x: [], vx: [], y: [], vy: [], gap: [], px: [], pv: [], end: 0 };
+    const c = frame.column, n = c.periods.length;
+    for (let i = old.t.length ? 1 : 0; i < n; i++) {
+      old.t.push(old.end + c.periods[i]); old.x.push(c.x[i]); old.vx.push(c.vx[i]);
+      old.y.push(c.y[i]); old.vy.push(c.vy[i]); old.gap.push(frame.gap);
+    }
+    old.px.push(...c.poincare_x); old.pv.push(...c.poincare_vx);
+    old.end += c.periods[n - 1];
+    const first = old.t.findIndex((t) => t >= old.end - span);
+    if (first > 0) for (const key of ["t", "x", "vx", "y", "vy", "gap"]) old[key].splice(0, first);
+    if (old.px.length > 500) { old.px.splice(0, old.px.length - 500); old.pv.splice(0, old.pv.length - 500); }
+    this.live = old;
+    this.draw();
+  }
+
+  draw() {
+    if (this.pending) return;
+    this.pending = true;
+    requestAnimationFrame(() => {
+      this.pending = false;
+      if (element("panel-motion").hidden || (!this.frame && !this.live)) return;
+      this.series(); this.phase(); this.poincare();
+      if (this.frame) { this.correlation(); this.numbers(); }
+    });
+  }
+
+  series() {
+    const box = element("series"), l = this.live, c = this.frame?.column;
+    const two = this.frame?.two_masses ?? true;
+    const t = l ? l.t : c.periods, x = l ? l.x : c.x;
+    const other = l ? l.y.map((y, i) => l.gap[i] - y) : Float32Array.from(c.y, (y) => this.frame.gap - y);
+    const data = [t, x, other];
+    const theme = document.documentElement.dataset.theme;
+    const size = { width: Math.max(50, box.clientWidth), height: Math.max(60, box.clientHeight - 24) };
+    if (this.plot && this.theme === theme && this.two === two) {
+      if (this.plot.width !== size.width || this.plot.height !== size.height) this.plot.setSize(size);
+      this.plot.setData(data);
+      return;
+    }
+    this.plot?.destroy();
+    this.theme = theme; this.two = two;
+    const axis = (label) => ({ label, labelFont: `14px ${FONT}`, font: `13px ${FONT}`, stroke: colour("ink"), grid: { show: false }, ticks: { stroke: colour("frame"), size: 4 }, labelSize: 18, labelGap: 0 });
+    this.plot = new uPlot({
+      ...size,
+      pxAlign: 0,
+      scales: { x: { time: false }, y: { range: (u, lo, hi) => around([[lo, hi]]) } },
+      cursor: { y: false, drag: { setScale: false } },
+      legend: { live: true },
+      padding: [8, 10, 0, 0],
+      series: [
+        { label: "τ/T", value: (u, v) => number(v, 5) },
+        { label: "X", stroke: colour("blue"), width: 1.5, points: { show: false }, value: (u, v) => number(v, 5) },
+        { label: two ? "2ρ − Y" : "stop", stroke: two ? colour("vermilion") : colour("ink"), width: 1.5, points: { show: false }, value: (u, v) => number(v, 5) },
+      ],
+      axes: [{ ...axis("time τ/T"), size: 36 }, { ...axis("displacement"), size: 46 }],
+      hooks: { drawAxes: [(u) => this.together(u)] },
+    }, data, box);
+  }
+
+  /** Grey where the masses stick together. */
+  together(u) {
+    const c = this.frame?.column;
+    if (!c || this.live || !c.sticking) return;
+    u.ctx.fillStyle = colour("together");
+    let from = -1;
+    for (let i = 0; i <= c.sticking.length; i++) {
+      const on = i < c.sticking.length && c.sticking[i] > 0;
+      if (on && from < 0) from = i;
+      if (!on && from >= 0) {
+        const a = u.valToPos(c.periods[from], "x", true), b = u.valToPos(c.periods[i - 1], "x", true);
+        u.ctx.fillRect(a, u.bbox.top, Math.max(1, b - a), u.bbox.height);
+        from = -1;
+      }
+    }
+  }
+
+  phase() {
+    const l = this.live, c = l ? { x: l.x, vx: l.vx } : this.frame.column;
+    const f = new Frame(element("phase"), around([c.x]), around([c.vx]), ["*X*", "*X*′"]).axes();
+    const wall = this.frame ? this.frame.gap / (this.frame.two_masses ? 2 : 1) : null;
+    f.clip(() => {
+      if (wall !== null) f.curve([wall, wall], f.y, { colour: colour("quiet"), dash: [3, 3], width: 1 });
+      f.curve(c.x, c.vx, { colour: colour("blue"), width: 1.3 });
+      if (!l) f.dots(c.impact_x, c.impact_vx_before, 2, colour("ink"));
+    });
+  }
+
+  poincare() {
+    const l = this.live, c = this.frame?.column;
+    const xs = l ? l.px : c.poincare_x, vs = l ? l.pv : c.poincare_vx;
+    const grown = (list) => { const [a, b] = around([list], 0.1), m = 0.05; return b - a < 2 * m ? [(a + b) / 2 - m, (a + b) / 2 + m] : [a, b]; };
+    const f = new Frame(element("poincare"), grown(xs), grown(vs), ["*X* once a drive period", "*X*′"]).axes();
+    f.clip(() => f.dots(xs, vs, xs.length > 50 ? 1.2 : 2.5, colour("vermilion")));
+  }
+
+  correlation() {
+    const c = this.frame.column;
+    if (!c.lag.length) { fit(element("autocorrelation")); return; }
+    const f = new Frame(element("autocorrelation"), [0, c.lag[c.lag.length - 1]], [-1.05, 1.05], ["lag, drive periods", "autocorrelation"]).axes();
+    f.clip(() => f.curve(c.lag, c.autocorrelation, { colour: colour("green") }));
+  }
+
+  numbers() {
+    const f = this.frame, s = this.app.state, w = f.approach_speeds;
+    const speeds = w.length === 0 ? "none" : w.length <= 4 ? w.map((v) => number(v, 6)).join(", ") : `${number(Math.min(...w), 5)} to ${number(Math.max(...w), 5)}`;
+    const start = f.cursor.start;
+    const rows = [
+      ["settles on", `z = ${f.motion.label}`],
+      ["approach speed", speeds],
+      ["X greatest", number(f.x_max, 6)],
+      ["Lyapunov", f.lyapunov === null ? "−∞ (a dead zone)" : number(f.lyapunov, 4)],
+      ["without impacts", `${number(f.impactless.x[0], 5)}, ${number(f.impactless.x[1] * 180 / Math.PI, 4)}° behind`],
+      ["start X, X′", `${number(start.x, 5)}, ${number(start.vx, 5)}`],
+    ];
+    if (f.two_masses && (start.x !== start.y || start.vx !== start.vy)) rows.push(["start Y, Y′", `${number(start.y, 5)}, ${number(start.vy, 5)}`]);
+    rows.push(["phase φ", `${number(f.cursor.phase, 5)} rad`], ["Poincaré at", `${number(s.poincare_phase, 4)} rad`]);
+    element("numbers").replaceChildren(...facts(rows));
+  }
+}
+
+/** Rows of a definition list. */
+export function facts(rows) {
+  return rows.flatMap(([name, value]) => {
+    const dt = document.createElement("dt"), dd = document.createElement("dd");
+    dt.textContent = name; dd.textContent = value;
+    return [dt, dd];
+  });
+}
+
+/** Characteristics along a line, up and down, as they arrive. */
+export class LinePanel {
+  constructor(app) {
+    this.app = app;
+    this.clear(0);
+    for (const id of ["line-x", "line-v", "line-l"]) new ResizeObserver(() => this.draw()).observe(element(id));
+  }
+
+  clear(id) { this.id = id; this.ways = {}; this.all = 0; }
+
+  add(frame) {
+    if (frame.id !== this.id) this.clear(frame.id);
+    this.all = frame.all;
+    const way = this.ways[frame.way] ??= { eta: [], rho: [], x_max: [], lyapunov: [], impactless: [], correlation: [], step: [], speed: [], labels: [] };
+    const c = frame.column;
+    for (const key of ["eta", "rho", "x_max", "lyapunov", "impactless", "correlation"]) way[key].push(...c[key]);
+    way.step.push(...c.impact_step); way.speed.push(...c.impact_speed); way.labels.push(...frame.labels);
+    this.draw();
+  }
+
+  draw() {
+    if (this.pending) return;
+    this.pending = true;
+    requestAnimationFrame(() => {
+      this.pending = false;
+      const line = this.app.state?.line;
+      if (element("panel-line").hidden || !line) return;
+      this.pictures(line);
+    });
+  }
+
+  pictures(line) {
+    const { view } = this.app.state;
+    const share = (range, whole) => Math.abs(range[1] - range[0]) / (whole[1] - whole[0]);
+    const byEta = share(line.eta, view.eta) >= share(line.rho, view.rho);
+    const key = byEta ? "eta" : "rho", range = [...line[key]].sort((a, b) => a - b);
+    const title = byEta ? "frequency ratio *η*" : "clearance ratio *ρ*";
+    const ways = Object.entries(this.ways);
+    const paint = { up: colour("blue"), down: colour("vermilion") };
+    const panel = (id, values, name, draw) => {
+      const f = new Frame(element(id), range, values, [title, name], { left: 52 }).axes();
+      f.clip(() => { for (const [way, data] of ways) draw(f, data, paint[way]); });
+      const at = this.app.state.cursor[key];
+      f.clip(() => f.curve([at, at], f.y, { colour: colour("quiet"), dash: [3, 3], width: 1 }));
+    };
+    const lists = (k) => ways.map(([, d]) => d[k]);
+    const top = around(lists("x_max"));
+    panel("line-x", top, "*X* greatest", (f, d, ink) => {
+      f.curve(d[key], d.impactless, { colour: colour("quiet"), width: 1, dash: [4, 3] });
+      f.dots(d[key], d.x_max, 1.3, ink);
+    });
+    panel("line-v", around([...lists("speed"), [0]]), "approach speed *X*′₋ + *Y*′₋", (f, d, ink) => f.dots(d.step.map((s) => d[key][s]), d.speed, 1, ink));
+    panel("line-l", around([...lists("lyapunov"), [0]]), "Lyapunov exponent", (f, d, ink) => {
+      f.curve(range, [0, 0], { colour: colour("quiet"), width: 1 });
+      f.curve(d[key], d.lyapunov, { colour: ink, width: 1.1 });
+    });
+    const done = Math.min(...["up", "down"].map((w) => this.ways[w]?.eta.length ?? 0));
+    element("line-note").textContent = `Blue: from a to b; orange: from b to a; dashed: amplitude without impacts. ${done < this.all ? `${done} of ${this.all} steps` : `${this.all} steps each way`}`;
+    this.done = done === this.all && this.all > 0;
+  }
+}
+
+/** Basins of attraction over the start. */
+export class BasinsPanel {
+  constructor(app) {
+    this.app = app;
+    this.tile = null;
+    new ResizeObserver(() => this.draw()).observe(element("basins"));
+    element("basins").addEventListener("click", (event) => {
+      const box = event.target.getBoundingClientRect(), f = this.frame;
+      const [p, q] = [event.clientX - box.left, event.clientY - box.top];
+      if (f?.holds(p, q)) app.start({ x: f.ux(p), vx: f.uy(q), y: f.ux(p), vy: f.uy(q) });
+    });
+  }
+
+  add(frame) {
+    if (!this.tile || this.tile.id !== frame.id || this.tile.level !== frame.level) {
+      const [w, h] = frame.size, canvas = document.createElement("canvas");
+      canvas.width = w; canvas.height = h;
+      this.below = this.tile?.id === frame.id ? this.tile : null;
+      this.tile = { id: frame.id, level: frame.level, canvas, size: frame.size, x: frame.x, vx: frame.vx, counts: new Map(), total: 0 };
+    }
+    const t = this.tile, [w, h] = t.size, rows = frame.cell.length / w;
+    const image = t.canvas.getContext("2d").createImageData(w, rows), tints = frame.motions.map(tint);
+    for (let k = 0; k < rows; k++) for (let i = 0; i < w; i++) {
+      const cell = frame.cell[k * w + i], at = 4 * ((rows - 1 - k) * w + i);
+      if (cell === 255) continue;
+      const style = frame.motions[cell], seen = t.counts.get(style.label) ?? { style, count: 0 };
+      seen.count++; t.total++; t.counts.set(style.label, seen);
+      image.data.set([...tints[cell], 255], at);
+    }
+    t.canvas.getContext("2d").putImageData(image, 0, h - frame.first_row - rows);
+    t.filled = frame.first_row + rows;
+    this.draw();
+  }
+
+  draw() {
+    if (!this.tile || element("panel-basins").hidden) return;
+    const t = this.tile, f = this.frame = new Frame(element("basins"), t.x, t.vx, ["start *X*(0) of both masses", "start *X*′(0)"]);
+    f.clip((c) => {
+      c.imageSmoothingEnabled = false;
+      for (const tile of [this.below, t]) if (tile) c.drawImage(tile.canvas, f.box.left, f.box.top, f.box.width, f.box.height);
+      const s = this.app.state.cursor.start;
+      c.beginPath(); c.arc(f.px(s.x), f.py(s.vx), 5, 0, 7); c.strokeStyle = colour("ink"); c.lineWidth = 1.8; c.stroke();
+    });
+    f.axes();
+    const shares = [...t.counts.values()].sort((a, b) => b.count - a.count).slice(0, 8);
+    element("basin-shares").replaceChildren(...shares.map(({ style, count }) => swatch(style, `z = ${style.label}: ${(100 * count / t.total).toFixed(1)} %`)));
+  }
+}
+
+/** A tint with a text. */
+export function swatch(style, text) {
+  const span = document.createElement("span"), box = document.createElement("span");
+  box.className = "swatch"; box.style.background = `rgb(${tint(style).join(",")})`; box.style.borderColor = markColour(style);
+  span.append(box, text);
+  return span;
+}

@@ -1,0 +1,88 @@
+// One WebSocket for everything: requests as JSON, answers as frames of a JSON header, columns of
+// 32-bit numbers and cells.
+
+/** Decode a frame: its header, with `column` (name → Float32Array) and `cell` (Uint8Array). */
+export function decode(buffer) {
+  const length = new DataView(buffer).getUint32(0, true);
+  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
+  let offset = 4 + length;
+  header.column = {};
+  for (const [name, count] of header.columns) {
+    header.column[name] = new Float32Array(buffer, offset, count);
+    offset += 4 * count;
+  }
+  header.cell = new Uint8Array(buffer, offset, header.cells);
+  return header;
+}
+
+export class Wire {
+  /** `receive(frame)` is called with every frame that answers the newest request of its slot. */
+  constructor(token, receive, closed) {
+    this.receive = receive;
+    this.next = 1;
+    this.newest = {};      // slot → id of its newest request
+    this.slots = {};       // id → slot
+    this.busy = {};        // slot → id that is waited for, of slots that ask one at a time
+    this.waiting = {};     // slot → request to be sent then
+    this.promises = {};    // id → [resolve, reject]
+    this.sent = {};        // id → time it was asked for, ms
+    const protocols = ["impactid.1", "token." + token];
+    this.socket = new WebSocket(`ws://${location.host}/ws`, protocols);
+    this.socket.binaryType = "arraybuffer";
+    this.opened = new Promise((resolve) => { this.socket.onopen = resolve; });
+    this.socket.onmessage = (event) => this.take(decode(event.data));
+    this.socket.onclose = closed;
+  }
+
+  send(slot, ask, state, since) {
+    const id = this.next++;
+    this.newest[slot] = id;
+    this.slots[id] = slot;
+    this.sent[id] = since ?? performance.now();
+    if (this.socket.readyState === 1) this.socket.send(JSON.stringify({ id, ask, state }));
+    return id;
+  }
+
+  /** Ask for what replaces every earlier request of the slot. */
+  ask(slot, ask, state) { return this.send(slot, ask, state); }
+
+  /** Ask one at a time: while an answer is waited for, only the newest request is kept. `make` gives
+   * [ask, state] when it is sent, so that it starts from the answer before. */
+  askAfter(slot, make) {
+    const since = performance.now();
+    if (this.busy[slot]) {
+      this.waiting[slot] = [make, this.waiting[slot]?.[1] ?? since];
+      return;
+    }
+    this.busy[slot] = this.send(slot, ...make(), since);
+  }
+
+  /** Ask for what is answered once. */
+  once(ask, state) {
+    const id = this.send("once" + this.next, ask, state);
+    return new Promise((resolve, reject) => { this.promises[id] = [resolve, reject]; });
+  }
+
+  take(frame) {
+    const slot = this.slots[frame.id];
+    const promise = this.promises[frame.id];
+    if (promise) {
+      delete this.promises[frame.id];
+      if (frame.kind === "refused") promise[1](frame); else promise[0](frame);
+      return;
+    }
+    const since = this.sent[frame.id];
+    if (this.busy[slot] === frame.id) this.busy[slot] = 0;
+    if (frame.kind === "refused" || this.newest[slot] === frame.id || frame.id === 0) {
+      this.receive(frame, slot, since);
+    }
+    if (!this.busy[slot] && this.waiting[slot]) {
+      const [make, asked] = this.waiting[slot];
+      delete this.waiting[slot];
+      this.busy[slot] = this.send(slot, ...make(), asked);
+    }
+    for (const id of Object.keys(this.slots)) {
+      if (this.newest[this.slots[id]] !== Number(id)) { delete this.slots[id]; delete this.sent[id]; }
+    }
+  }
+}

@@ -1,0 +1,338 @@
+//! The server on loopback: the page, and one WebSocket for all requests.
+//!
+//! Loopback alone is no protection, since every page of every browser on the machine can reach it:
+//! the Host must name loopback, the Origin must be the page's own, and the WebSocket needs the token that is
+//! in the address' fragment, which browsers never send. Nothing that the client names is opened as a file.
+
+use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::sync::Arc;
+
+use axum::Router;
+use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
+use axum::extract::{Request, State as Shared};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::middleware::{self, Next};
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use axum::serve::ListenerExt;
+use futures_util::{SinkExt, StreamExt};
+use tokio::sync::{Semaphore, mpsc};
+
+use super::frame::Frame;
+use super::jobs::{Jobs, refusal};
+use super::{ExploreError, Session, wire};
+use crate::report::style::{FontFace, font};
+
+/// Largest message that a page may send, bytes.
+const LARGEST_MESSAGE: usize = 1 << 18;
+/// Pages that may be open at a time.
+const MOST_PAGES: usize = 12;
+/// Frames that wait for a slow page before its jobs pause.
+const OUTBOX: usize = 64;
+/// The protocol of the WebSocket.
+const PROTOCOL: &str = "impactid.1";
+/// Before the token in the list of protocols that the page offers.
+const TOKEN_PREFIX: &str = "token.";
+
+/// What the page may do: scripts, styles, fonts and the WebSocket of this server, nothing else.
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; font-src 'self'; \
+     img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; \
+     frame-ancestors 'none'";
+
+/// The page's files: path, type, content.
+const FILES: [(&str, &str, &str); 12] = [
+    ("/", HTML, include_str!("page/index.html")),
+    ("/style.css", CSS, include_str!("page/style.css")),
+    ("/uplot.css", CSS, include_str!("page/uplot.css")),
+    ("/uplot.js", SCRIPT, include_str!("page/uplot.js")),
+    ("/main.js", SCRIPT, include_str!("page/main.js")),
+    ("/wire.js", SCRIPT, include_str!("page/wire.js")),
+    ("/map.js", SCRIPT, include_str!("page/map.js")),
+    ("/draw.js", SCRIPT, include_str!("page/draw.js")),
+    ("/plots.js", SCRIPT, include_str!("page/plots.js")),
+    ("/campaign.js", SCRIPT, include_str!("page/campaign.js")),
+    ("/keys.js", SCRIPT, include_str!("page/keys.js")),
+    ("/dialogs.js", SCRIPT, include_str!("page/dialogs.js")),
+];
+
+const HTML: &str = "text/html; charset=utf-8";
+const CSS: &str = "text/css; charset=utf-8";
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+
+/// The faces of the report's type.
+const FONTS: [(&str, FontFace); 3] = [
+    ("/regular.otf", FontFace::Regular),
+    ("/italic.otf", FontFace::Italic),
+    ("/bold.otf", FontFace::Bold),
+];
+
+/// A server that listens on loopback.
+pub struct Server {
+    listener: TcpListener,
+    address: SocketAddr,
+    token: String,
+    session: Session,
+}
+
+struct App {
+    session: Arc<Session>,
+    token: String,
+    pages: Arc<Semaphore>,
+}
+
+impl Server {
+    /// Listen on a port of 127.0.0.1; without one, on any that is free.
+    ///
+    /// # Errors
+    /// [`ExploreError::Port`] where it cannot be listened on.
+    pub fn bind(session: Session, port: Option<u16>) -> Result<Self, ExploreError> {
+        let port = port.unwrap_or(0);
+        let refused = |e: std::io::Error| ExploreError::Port {
+            port,
+            reason: e.to_string(),
+        };
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(refused)?;
+        listener.set_nonblocking(true).map_err(refused)?;
+        let address = listener.local_addr().map_err(refused)?;
+        let mut secret = [0u8; 16];
+        getrandom::fill(&mut secret).map_err(|e| ExploreError::Server(e.to_string()))?;
+        let token = secret.iter().map(|byte| format!("{byte:02x}")).collect();
+        Ok(Self {
+            listener,
+            address,
+            token,
+            session,
+        })
+    }
+
+    /// The page's address, with the token in its fragment.
+    pub fn url(&self) -> String {
+        format!("http://{}/#t={}", self.address, self.token)
+    }
+
+    /// Serve until the process ends.
+    ///
+    /// # Errors
+    /// [`ExploreError::Server`] where the system stops it.
+    pub fn run(self) -> Result<(), ExploreError> {
+        let stopped = |e: std::io::Error| ExploreError::Server(e.to_string());
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .worker_threads(2)
+            .enable_all()
+            .build()
+            .map_err(stopped)?;
+        runtime.block_on(async move {
+            let listener = tokio::net::TcpListener::from_std(self.listener).map_err(stopped)?;
+            let listener = listener.tap_io(|stream| {
+                // without it the frames are only slower
+                let _ = stream.set_nodelay(true);
+            });
+            let app = App {
+                session: Arc::new(self.session),
+                token: self.token,
+                pages: Arc::new(Semaphore::new(MOST_PAGES)),
+            };
+            axum::serve(listener, router(app)).await.map_err(stopped)
+        })
+    }
+}
+
+fn router(app: App) -> Router {
+    let app = Arc::new(app);
+    let mut router = Router::new().route("/ws", get(upgrade));
+    for (path, kind, content) in FILES {
+        router = router.route(path, get(move || async move { file(kind, content) }));
+    }
+    for (path, face) in FONTS {
+        let content = font(face).unwrap_or_default();
+        router = router.route(path, get(move || async move { file("font/otf", content) }));
+    }
+    let licence = include_str!("page/uplot-LICENSE");
+    let text = "text/plain; charset=utf-8";
+    router
+        .route(
+            "/uplot-LICENSE",
+            get(move || async move { file(text, licence) }),
+        )
+        .fallback(|| async { (StatusCode::NOT_FOUND, "no such page\n") })
+        .layer(middleware::from_fn(guarded))
+        .with_state(app)
+}
+
+fn file(kind: &'static str, content: impl IntoResponse) -> Response {
+    let mut response = content.into_response();
+    let kind = HeaderValue::from_static(kind);
+    response.headers_mut().insert(header::CONTENT_TYPE, kind);
+    response
+}
+
+/// Refuse foreign hosts and origins, and restrict what the page may do.
+async fn guarded(request: Request, next: Next) -> Response {
+    let mut response = match permitted(request.headers()) {
+        Ok(()) => next.run(request).await,
+        Err(why) => (StatusCode::FORBIDDEN, why).into_response(),
+    };
+    let fixed = [
+        (header::CONTENT_SECURITY_POLICY, POLICY),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (header::REFERRER_POLICY, "no-referrer"),
+        (header::CACHE_CONTROL, "no-store"),
+    ];
+    for (name, value) in fixed {
+        let value = HeaderValue::from_static(value);
+        response.headers_mut().insert(name, value);
+    }
+    response
+}
+
+/// Whether Host names loopback, and Origin, where there is one, is that of the page itself.
+fn permitted(headers: &HeaderMap) -> Result<(), &'static str> {
+    let text = |name| {
+        headers
+            .get(name)
+            .map(|v: &HeaderValue| v.to_str().unwrap_or("?"))
+    };
+    let host = text(header::HOST).ok_or("the request names no host\n")?;
+    if !is_loopback(host) {
+        return Err("this server answers on 127.0.0.1 and localhost alone\n");
+    }
+    let own = |origin: &str| origin.strip_prefix("http://") == Some(host);
+    match text(header::ORIGIN) {
+        Some(origin) if !own(origin) => Err("requests of other pages are refused\n"),
+        _ => Ok(()),
+    }
+}
+
+/// Whether a Host names loopback; any port, for tunnels.
+fn is_loopback(host: &str) -> bool {
+    let bare = |name: &str| ["127.0.0.1", "localhost", "[::1]"].contains(&name);
+    let port = |port: &str| port.parse::<u16>().is_ok();
+    bare(host) || matches!(host.rsplit_once(':'), Some((name, p)) if bare(name) && port(p))
+}
+
+/// Open a WebSocket for a page that has the token.
+async fn upgrade(
+    Shared(app): Shared<Arc<App>>,
+    headers: HeaderMap,
+    socket: WebSocketUpgrade,
+) -> Response {
+    if !headers.contains_key(header::ORIGIN) {
+        return (StatusCode::FORBIDDEN, "the request names no origin\n").into_response();
+    }
+    let offered = socket.requested_protocols();
+    let offered = offered.filter_map(|v| v.to_str().ok()?.strip_prefix(TOKEN_PREFIX));
+    let known = offered
+        .map(|token| same(token, &app.token))
+        .any(|same| same);
+    if !known {
+        return (StatusCode::FORBIDDEN, "the token is wrong\n").into_response();
+    }
+    let Ok(permit) = Arc::clone(&app.pages).try_acquire_owned() else {
+        return (StatusCode::SERVICE_UNAVAILABLE, "too many pages are open\n").into_response();
+    };
+    let session = Arc::clone(&app.session);
+    socket
+        .protocols([PROTOCOL])
+        .max_message_size(LARGEST_MESSAGE)
+        .max_frame_size(LARGEST_MESSAGE)
+        .write_buffer_size(0)
+        .on_upgrade(move |socket| async move {
+            page(socket, session).await;
+            drop(permit);
+        })
+}
+
+/// Whether two texts are the same, in a time that does not depend on where they differ.
+fn same(a: &str, b: &str) -> bool {
+    let different = a.bytes().zip(b.bytes()).fold(0, |d, (a, b)| d | (a ^ b));
+    a.len() == b.len() && different == 0
+}
+
+/// Serve a page until it goes away.
+async fn page(socket: WebSocket, session: Arc<Session>) {
+    let (mut sink, mut stream) = socket.split();
+    let (outbox, mut frames) = mpsc::channel::<Frame>(OUTBOX);
+    let writer = tokio::spawn(async move {
+        while let Some(frame) = frames.recv().await {
+            if sink
+                .send(Message::Binary(frame.bytes().into()))
+                .await
+                .is_err()
+            {
+                break;
+            }
+        }
+    });
+    let jobs = Jobs::start(&session, &outbox);
+    while let Some(Ok(message)) = stream.next().await {
+        let request = match &message {
+            Message::Text(text) => wire::read(text.as_str()),
+            Message::Binary(_) => Err((0, binary())),
+            Message::Close(_) => break,
+            Message::Ping(_) | Message::Pong(_) => continue,
+        };
+        match request {
+            Ok(request) => jobs.take(request).await,
+            Err((id, error)) => {
+                if outbox.send(refusal(id, &error)).await.is_err() {
+                    break;
+                }
+            }
+        }
+    }
+    writer.abort();
+}
+
+fn binary() -> ExploreError {
+    ExploreError::Malformed {
+        what: "request".into(),
+        reason: "a binary message; requests are text".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn headers(host: &str, origin: Option<&str>) -> HeaderMap {
+        let mut all = HeaderMap::new();
+        all.insert(header::HOST, host.parse().unwrap());
+        if let Some(origin) = origin {
+            all.insert(header::ORIGIN, origin.parse().unwrap());
+        }
+        all
+    }
+
+    #[test]
+    fn only_loopback_and_the_page_itself_are_permitted() {
+        for (host, origin) in [
+            ("127.0.0.1:8080", None),
+            ("localhost:9", Some("http://localhost:9")),
+            ("[::1]:8080", Some("http://[::1]:8080")),
+            ("localhost", None),
+        ] {
+            assert_eq!(permitted(&headers(host, origin)), Ok(()), "{host}");
+        }
+        for (host, origin) in [
+            ("example.org", None),
+            ("127.0.0.1.example.org:8080", None),
+            ("localhost:9@example.org", None),
+            ("127.0.0.1:8080", Some("http://example.org")),
+            ("127.0.0.1:8080", Some("http://127.0.0.1:8081")),
+            ("127.0.0.1:8080", Some("null")),
+            ("127.0.0.1:x", None),
+        ] {
+            assert!(
+                permitted(&headers(host, origin)).is_err(),
+                "{host} {origin:?}"
+            );
+        }
+        assert!(permitted(&HeaderMap::new()).is_err());
+    }
+
+    #[test]
+    fn tokens_are_compared_whole() {
+        assert!(same("abc", "abc"));
+        assert!(!same("abc", "abd") && !same("abc", "ab") && !same("", "a"));
+    }
+}

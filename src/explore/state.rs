@@ -1,0 +1,425 @@
+//! The state of the page: everything that what it shows depends on.
+//!
+//! As JSON it is the fragment of the page's address and part of every request; as TOML a step of a
+//! demo; [`State::study`] makes the study that leaves the same numbers under `impactid study`.
+
+use serde::{Deserialize, Serialize};
+
+use super::ExploreError;
+use crate::pipeline::theory::Study;
+use crate::pipeline::theory::plan::{BasinPlan, Law, MapPlan, SweepPlan};
+use impact_oscillator::atlas::portrait::PortraitPlan;
+use impact_oscillator::atlas::{BasinGrid, MapSettings, Starts};
+use impact_oscillator::model::params::Asymmetry;
+use impact_oscillator::{Initial, Machine, Setting, Watch};
+
+/// The version of the state that this program reads and writes.
+pub(super) const VERSION: u32 = 1;
+
+/// Everything that the page shows follows from this.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct State {
+    /// [`VERSION`].
+    pub version: u32,
+    /// β
+    pub damping_ratio: f64,
+    /// R, a number or a law R(v).
+    pub restitution: Law,
+    /// One mass against a fixed stop instead of two against each other.
+    #[serde(default)]
+    pub single: bool,
+    /// How the second mass differs from the first.
+    #[serde(default)]
+    pub asymmetry: Asymmetry,
+    /// The part of the (η, ρ) plane that is shown.
+    pub view: Window,
+    /// Start of every cell of the map.
+    #[serde(default)]
+    pub map_start: Initial,
+    /// The motion that is shown.
+    pub cursor: Cursor,
+    /// Drive periods of its time series.
+    #[serde(default = "eight")]
+    pub periods: f64,
+    /// Phase of the drive at which the Poincaré map is taken, rad.
+    #[serde(default)]
+    pub poincare_phase: f64,
+    /// Settling and watch of the carried motion and of characteristics, in drive periods.
+    #[serde(default)]
+    pub watch: Watch,
+    /// Where the characteristics are taken.
+    #[serde(default)]
+    pub line: Option<Line>,
+    /// The starts of the basins.
+    #[serde(default)]
+    pub basins: Option<Starting>,
+    /// What is shown beside the map.
+    #[serde(default)]
+    pub panel: Panel,
+    /// Scales of the campaign's rig at the sliders.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rig: Option<RigScale>,
+    /// The campaign's record that is shown.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub record: Option<String>,
+}
+
+fn eight() -> f64 {
+    8.0
+}
+
+/// Ranges of η and ρ.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Window {
+    /// Least and greatest η.
+    pub eta: (f64, f64),
+    /// Least and greatest ρ.
+    pub rho: (f64, f64),
+}
+
+/// A motion: where, and from which start.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cursor {
+    /// η
+    pub eta: f64,
+    /// ρ
+    pub rho: f64,
+    /// Phase of the drive at the start, rad.
+    #[serde(default)]
+    pub phase: f64,
+    /// The start.
+    #[serde(default)]
+    pub start: Initial,
+}
+
+impl Cursor {
+    /// η, ρ and φ.
+    pub fn setting(&self) -> Setting {
+        Setting {
+            phase: self.phase,
+            ..Setting::new(self.eta, self.rho)
+        }
+    }
+}
+
+/// A line in the (η, ρ) plane that a sweep goes along, there and back.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Line {
+    /// First and last η.
+    pub eta: (f64, f64),
+    /// First and last ρ.
+    pub rho: (f64, f64),
+    /// Number of steps.
+    pub steps: usize,
+    /// Start of the sweep there and of the sweep back.
+    #[serde(default)]
+    pub start: Initial,
+}
+
+/// The starts of basins of attraction.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Starting {
+    /// First and last X(0).
+    pub x: (f64, f64),
+    /// First and last X'(0).
+    pub vx: (f64, f64),
+    /// Columns and rows.
+    pub cells: (usize, usize),
+    /// Which masses take the start.
+    #[serde(default)]
+    pub starts: Starts,
+}
+
+/// What is shown beside the map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Panel {
+    /// The motion at the cursor.
+    #[default]
+    Motion,
+    /// Characteristics along a line.
+    Line,
+    /// Basins of attraction at the cursor.
+    Basins,
+    /// A record beside its simulation.
+    Record,
+}
+
+/// What turns Hz and m into η and ρ.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RigScale {
+    /// f0, Hz.
+    pub natural_frequency_hz: f64,
+    /// x_st, m.
+    pub static_deflection_m: f64,
+}
+
+/// Columns and rows of the map that an exported study computes.
+pub(super) const MAP_CELLS: (usize, usize) = (128, 96);
+/// Most drive periods that a request may settle or watch.
+const MOST_PERIODS: f64 = 20_000.0;
+
+impl Default for State {
+    fn default() -> Self {
+        Self {
+            version: VERSION,
+            damping_ratio: 0.07,
+            restitution: Law::Constant(0.9),
+            single: false,
+            asymmetry: Asymmetry::default(),
+            view: Window {
+                eta: (0.5, 3.5),
+                rho: (0.0, 7.0),
+            },
+            map_start: Initial::rest(),
+            cursor: Cursor {
+                eta: 1.3,
+                rho: 1.0,
+                phase: 0.0,
+                start: Initial::rest(),
+            },
+            periods: eight(),
+            poincare_phase: 0.0,
+            watch: Watch::default(),
+            line: None,
+            basins: None,
+            panel: Panel::Motion,
+            rig: None,
+            record: None,
+        }
+    }
+}
+
+impl State {
+    /// Read a state, and check it.
+    ///
+    /// # Errors
+    /// [`ExploreError`] where it is of another version, malformed or out of range.
+    pub fn read(value: serde_json::Value) -> Result<Self, ExploreError> {
+        let version = value.get("version");
+        if version.and_then(serde_json::Value::as_u64) != Some(u64::from(VERSION)) {
+            return Err(ExploreError::Version {
+                found: version.map_or("none".into(), ToString::to_string),
+                expected: VERSION,
+            });
+        }
+        let state: Self = serde_json::from_value(value).map_err(|e| ExploreError::Malformed {
+            what: "state".into(),
+            reason: e.to_string(),
+        })?;
+        state.check()?;
+        Ok(state)
+    }
+
+    /// Check every range.
+    ///
+    /// # Errors
+    /// [`ExploreError`] with the first value that is out of range.
+    pub fn check(&self) -> Result<(), ExploreError> {
+        self.machine().check()?;
+        self.cursor.setting().check()?;
+        self.cursor.start.check()?;
+        self.map_start.check()?;
+        let Window { eta, rho } = self.view;
+        within("view.eta", eta.0, eta.0 > 0.0, "positive")?;
+        rising("view.eta", eta)?;
+        rising("view.rho", rho)?;
+        within(
+            "periods",
+            self.periods,
+            (0.1..=400.0).contains(&self.periods),
+            "0.1 to 400",
+        )?;
+        let Watch {
+            settle_periods,
+            watch_periods,
+            tolerance,
+        } = self.watch;
+        let some = |n: f64, least: f64| (least..=MOST_PERIODS).contains(&n);
+        within(
+            "watch.settle_periods",
+            settle_periods,
+            some(settle_periods, 0.0),
+            "0 to 20000",
+        )?;
+        within(
+            "watch.watch_periods",
+            watch_periods,
+            some(watch_periods, 1.0),
+            "1 to 20000",
+        )?;
+        within("watch.tolerance", tolerance, tolerance > 0.0, "positive")?;
+        self.check_line()?;
+        self.check_basins()?;
+        let scales = self
+            .rig
+            .map(|r| [r.natural_frequency_hz, r.static_deflection_m]);
+        let positive = |v: &f64| within("rig", *v, *v > 0.0, "positive");
+        scales.iter().flatten().try_for_each(positive)
+    }
+
+    fn check_line(&self) -> Result<(), ExploreError> {
+        let Some(line) = &self.line else {
+            return Ok(());
+        };
+        let steps = line.steps as f64;
+        let range = "2 to 2001";
+        within("line.steps", steps, (2.0..=2001.0).contains(&steps), range)?;
+        line.start.check()?;
+        let ends = [(line.eta.0, line.rho.0), (line.eta.1, line.rho.1)];
+        for (eta, rho) in ends {
+            Setting::new(eta, rho).check()?;
+        }
+        Ok(())
+    }
+
+    fn check_basins(&self) -> Result<(), ExploreError> {
+        let Some(basins) = &self.basins else {
+            return Ok(());
+        };
+        rising("basins.x", basins.x)?;
+        rising("basins.vx", basins.vx)?;
+        for cells in [basins.cells.0, basins.cells.1] {
+            let range = "2 to 600";
+            within(
+                "basins.cells",
+                cells as f64,
+                (2..=600).contains(&cells),
+                range,
+            )?;
+        }
+        Ok(())
+    }
+
+    /// The machine.
+    pub fn machine(&self) -> Machine {
+        self.empty_study().machine()
+    }
+
+    fn empty_study(&self) -> Study {
+        Study {
+            single: self.single,
+            asymmetry: self.asymmetry,
+            ..Study::empty(
+                "Seen in the explorer",
+                self.damping_ratio,
+                self.restitution.clone(),
+            )
+        }
+    }
+
+    /// How a motion at the cursor is looked at.
+    pub fn portrait(&self) -> PortraitPlan {
+        PortraitPlan {
+            setting: self.cursor.setting(),
+            start: self.cursor.start,
+            skip_periods: 0.0,
+            periods: self.periods,
+            samples_per_period: 200,
+            poincare_periods: 500,
+            poincare_phase: self.poincare_phase,
+            soft: None,
+        }
+    }
+
+    /// The basins' grid.
+    pub fn basin_grid(&self) -> BasinGrid {
+        let default = self.basins.unwrap_or_else(|| self.own_starts());
+        let Starting {
+            x,
+            vx,
+            cells,
+            starts,
+        } = default;
+        BasinGrid {
+            x: (x.0, x.1, cells.0),
+            vx: (vx.0, vx.1, cells.1),
+            starts,
+        }
+    }
+
+    /// The starts that are shown where none are chosen: about the motion's own size.
+    fn own_starts(&self) -> Starting {
+        let size = 4.0 * self.cursor.rho.abs().max(1.0);
+        Starting {
+            x: (-size, self.cursor.rho.max(0.1 * size - size)),
+            vx: (-size, size),
+            cells: (101, 101),
+            starts: Starts::BothMasses,
+        }
+    }
+
+    /// How the map's cells are marched.
+    pub fn map_settings(&self) -> MapSettings {
+        MapSettings {
+            start: self.map_start,
+            ..MapSettings::default()
+        }
+    }
+
+    /// The map of a number of columns and rows.
+    pub fn map_plan(&self, (columns, rows): (usize, usize)) -> MapPlan {
+        let Window { eta, rho } = self.view;
+        MapPlan {
+            eta: (eta.0, eta.1, columns),
+            rho: (rho.0, rho.1, rows),
+            map: self.map_settings(),
+        }
+    }
+
+    /// The study that reproduces what is shown: the map, and beside it the panel's picture.
+    pub fn study(&self) -> Study {
+        let mut study = self.empty_study();
+        study.map.insert("map".into(), self.map_plan(MAP_CELLS));
+        match (self.panel, &self.line) {
+            (Panel::Line, Some(line)) => {
+                let plan = SweepPlan {
+                    eta: line.eta,
+                    rho: line.rho,
+                    steps: line.steps,
+                    start: line.start,
+                    watch: self.watch,
+                };
+                study.sweep.insert("characteristics".into(), plan);
+            }
+            (Panel::Basins, _) => {
+                let plan = BasinPlan {
+                    setting: self.cursor.setting(),
+                    grid: self.basin_grid(),
+                    restitution: None,
+                    watch: self.watch,
+                };
+                study.basins.insert("basins".into(), plan);
+            }
+            _ => {
+                study.time_series.insert("motion".into(), self.portrait());
+            }
+        }
+        study
+    }
+}
+
+fn within(
+    name: &'static str,
+    value: f64,
+    holds: bool,
+    range: &'static str,
+) -> Result<(), ExploreError> {
+    if holds && value.is_finite() {
+        Ok(())
+    } else {
+        Err(ExploreError::OutOfRange { name, value, range })
+    }
+}
+
+fn rising(name: &'static str, (low, high): (f64, f64)) -> Result<(), ExploreError> {
+    within(name, low, low.abs() < 1e6, "finite and moderate")?;
+    within(name, high, high.abs() < 1e6, "finite and moderate")?;
+    within(name, high, high > low, "above the range's lower end")
+}

@@ -1,0 +1,161 @@
+//! What the page asks.
+
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::{ExploreError, State};
+
+/// A request of the page.
+#[derive(Debug, Clone)]
+pub(super) struct Request {
+    /// The page's number of it, repeated in every answer.
+    pub id: u32,
+    /// What is asked.
+    pub ask: Ask,
+    /// The state for which; the first one where the page has none yet.
+    pub state: State,
+}
+
+/// As it comes: the state is read by itself, so that one of another version is refused as such.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    id: u32,
+    ask: Ask,
+    #[serde(default)]
+    state: Option<Value>,
+}
+
+/// What is asked.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub(super) enum Ask {
+    /// What the page starts from: the state, the campaign, the demos.
+    Hello {},
+    /// Regions of motion, coarse first.
+    Map {},
+    /// Boundaries, bare first.
+    Boundaries {
+        /// Number of η.
+        points: usize,
+    },
+    /// The motion at the cursor.
+    Motion {
+        /// Where the start belongs, if the motion is carried from there: (η, ρ).
+        #[serde(default)]
+        carried_from: Option<(f64, f64)>,
+    },
+    /// The next stretch of the motion at the cursor.
+    Run {
+        /// Its length in drive periods.
+        periods: f64,
+    },
+    /// Characteristics along the line.
+    Line {},
+    /// Basins at the cursor.
+    Basins {},
+    /// The record beside its simulation.
+    Record {},
+    /// Residuals of the methods, and boundaries against brackets.
+    Residuals {},
+    /// Settings to measure next.
+    Proposals {},
+    /// A file of what is shown.
+    Export {
+        /// What.
+        file: ExportFile,
+    },
+    /// A demo that comes with the program.
+    Demo {
+        /// Its name.
+        name: String,
+    },
+    /// A demo as text to be replayed.
+    ReadDemo {
+        /// The text.
+        text: String,
+    },
+    /// The text of a recorded demo.
+    WriteDemo {
+        /// Its title.
+        title: String,
+        /// Its steps: seconds shown, and the state.
+        steps: Vec<(f64, Value)>,
+    },
+}
+
+/// A file that the page can ask for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum ExportFile {
+    /// The study that reproduces it.
+    Study,
+    /// Its tables.
+    Csv,
+    /// Its figures as SVG.
+    Svg,
+}
+
+/// Jobs of one slot replace each other: the newest counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Slot {
+    Map,
+    Boundaries,
+    Motion,
+    Line,
+    Basins,
+    Record,
+    Residuals,
+    /// All others, one after the other.
+    Queue,
+}
+
+impl Slot {
+    /// The slots whose newest job counts.
+    pub(super) const NEWEST: [Self; 7] = [
+        Self::Map,
+        Self::Boundaries,
+        Self::Motion,
+        Self::Line,
+        Self::Basins,
+        Self::Record,
+        Self::Residuals,
+    ];
+}
+
+impl Ask {
+    /// The slot in which it is answered.
+    pub(super) fn slot(&self) -> Slot {
+        match self {
+            Self::Map {} => Slot::Map,
+            Self::Boundaries { .. } => Slot::Boundaries,
+            Self::Motion { .. } | Self::Run { .. } => Slot::Motion,
+            Self::Line {} => Slot::Line,
+            Self::Basins {} => Slot::Basins,
+            Self::Record {} => Slot::Record,
+            Self::Residuals {} => Slot::Residuals,
+            _ => Slot::Queue,
+        }
+    }
+}
+
+/// Read a request; an error comes with the request's number as far as it can be read.
+pub(super) fn read(text: &str) -> Result<Request, (u32, ExploreError)> {
+    let malformed = |e: serde_json::Error| ExploreError::Malformed {
+        what: "request".into(),
+        reason: e.to_string(),
+    };
+    let value: Value = serde_json::from_str(text).map_err(|e| (0, malformed(e)))?;
+    let id = value.get("id").and_then(Value::as_u64).unwrap_or(0);
+    let id = u32::try_from(id).unwrap_or(0);
+    let written: Written = serde_json::from_value(value).map_err(|e| (id, malformed(e)))?;
+    let state = match written.state {
+        None | Some(Value::Null) => Ok(State::default()),
+        Some(state) => State::read(state),
+    };
+    Ok(Request {
+        id: written.id,
+        ask: written.ask,
+        state: state.map_err(|e| (id, e))?,
+    })
+}

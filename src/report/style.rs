@@ -1,0 +1,59 @@
+//! The report's type, colours and marks, for pages that look like it.
+
+use super::figures::canvas::Colour;
+use super::figures::{fonts, marks};
+use crate::motion::Motion;
+use serde::Serialize;
+
+/// How a motion is shown.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct MotionStyle {
+    /// Its label.
+    pub label: String,
+    /// Shape of its marks, by name.
+    pub shape: String,
+    /// Colour of its marks, `#rrggbb`.
+    pub colour: String,
+    /// Tint of its region, `#rrggbb`.
+    pub tint: String,
+    /// Its place in legends.
+    pub order: (u32, u32, u32, bool),
+}
+
+impl MotionStyle {
+    /// Of a motion.
+    pub fn of(motion: &Motion) -> Self {
+        let look = marks::of(motion);
+        Self {
+            label: motion.label(),
+            shape: format!("{:?}", look.shape).to_lowercase(),
+            colour: hexadecimal(look.colour),
+            tint: hexadecimal(look.tint),
+            order: marks::order(motion),
+        }
+    }
+}
+
+fn hexadecimal(c: Colour) -> String {
+    format!("#{:02x}{:02x}{:02x}", c.0, c.1, c.2)
+}
+
+/// A face of the report's type.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FontFace {
+    /// Upright.
+    Regular,
+    /// Slanted.
+    Italic,
+    /// Bold.
+    Bold,
+}
+
+/// The font file of a face.
+pub fn font(face: FontFace) -> Option<&'static [u8]> {
+    fonts::face_bytes(match face {
+        FontFace::Regular => fonts::Face::Regular,
+        FontFace::Italic => fonts::Face::Italic,
+        FontFace::Bold => fonts::Face::Bold,
+    })
+}

@@ -1,0 +1,188 @@
+//! The page in a browser. These tests need chromium; `scripts/check` runs them where it is installed.
+
+use serde_json::json;
+
+use super::chromium::Chromium;
+use super::server::Explorer;
+
+const SIZE: (u32, u32) = (1280, 800);
+
+/// Whether everything that was asked for is drawn.
+const QUIET: &str = "Object.values(impactid.wire.busy).every((b) => !b) \
+     && impactid.map.tiles.length > 0 && impactid.map.tiles.every((t) => t.complete)";
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_the_page_draws_and_nothing_leaves_loopback() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    for key in [
+        "h", "s", "m", "x", "Escape", "?", "Escape", "t", "g", "Escape", "6", "3",
+    ] {
+        browser.key(key, 0);
+    }
+    browser.until(QUIET);
+    let own = [
+        format!("http://127.0.0.1:{}/", explorer.port),
+        format!("ws://127.0.0.1:{}/ws", explorer.port),
+    ];
+    let requests = browser.requests();
+    assert!(requests.len() >= 12, "{requests:?}");
+    for url in requests {
+        let inside = url == "about:blank" || url.starts_with("data:") || url.starts_with("blob:");
+        assert!(inside || own.iter().any(|o| url.starts_with(o)), "{url}");
+    }
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_the_keyboard_alone_reaches_everything() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    let before = browser.evaluate("impactid.state.cursor.eta");
+    browser.key("ArrowRight", 0);
+    browser.until(QUIET);
+    let after = browser.evaluate("impactid.state.cursor.eta");
+    let step = after.as_f64().unwrap() - before.as_f64().unwrap();
+    assert!((step - 3.0 / 200.0).abs() < 1e-9, "{step}");
+    browser.key("ArrowUp", 8);
+    browser.until(&format!(
+        "Math.abs(impactid.state.cursor.rho - {}) < 1e-9",
+        1.0 + 0.35
+    ));
+    for (key, shown) in [
+        ("h", "line"),
+        ("s", "basins"),
+        ("m", "motion"),
+        ("i", "line"),
+    ] {
+        browser.key(key, 0);
+        browser.until(&format!("!document.getElementById('panel-{shown}').hidden"));
+        browser.until(&format!("impactid.state.panel === '{shown}'"));
+    }
+    browser.until("impactid.line.done === true");
+    for (key, title) in [
+        ("a", "Initial conditions"),
+        ("b", "system"),
+        ("c", "picture"),
+        ("d", "simulation"),
+        ("e", "R(v)"),
+        ("f", "Demos"),
+        ("x", "Export"),
+        ("?", "Keys"),
+    ] {
+        browser.key(key, 0);
+        browser.until("document.getElementById('dialog').open");
+        let text = browser.evaluate("document.getElementById('dialog-title').textContent");
+        assert!(text.as_str().unwrap().contains(title), "{key}: {text}");
+        browser.key("Escape", 0);
+        browser.until("!document.getElementById('dialog').open");
+    }
+    // Tab goes round through every button, tab and field, and comes back
+    let count = "document.querySelectorAll('button:not([tabindex=\"-1\"]), input, select, [tabindex=\"0\"]').length";
+    let stops = browser.evaluate(count).as_u64().unwrap();
+    browser.evaluate("document.activeElement.blur(); window.seen = new Set()");
+    for _ in 0..stops {
+        browser.key("Tab", 0);
+        browser.evaluate("window.seen.add(document.activeElement)");
+    }
+    let reached = browser.evaluate("[...document.querySelectorAll('nav button, #map, .slider input')].every((e) => seen.has(e))");
+    assert_eq!(reached, json!(true));
+    for digit in 0..10 {
+        browser.key(&digit.to_string(), 0);
+    }
+    browser.until(
+        "impactid.state.restitution?.table === undefined && impactid.state.view.eta[1] === 2.2",
+    );
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_the_address_restores_the_state_in_a_fresh_browser() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.evaluate("impactid.parameters({ restitution: 0.71, damping_ratio: 0.031 })");
+    browser.evaluate("impactid.look([0.8, 2.1], [0.2, 3.3]); impactid.carry(1.456, 1.2)");
+    browser.until(QUIET);
+    browser.evaluate("impactid.panel('basins')");
+    let state = browser.evaluate("JSON.stringify(impactid.state)");
+    let address = browser.evaluate("location.pathname + '#' + impactid.address()");
+    drop(browser);
+    let url = format!(
+        "http://127.0.0.1:{}{}",
+        explorer.port,
+        address.as_str().unwrap()
+    );
+    let mut fresh = Chromium::open(&url, SIZE);
+    fresh.until(QUIET);
+    assert_eq!(fresh.evaluate("JSON.stringify(impactid.state)"), state);
+    let older = url.replace("%22version%22%3A1", "%22version%22%3A0");
+    assert_ne!(older, url);
+    fresh.go("about:blank");
+    fresh.go(&older);
+    let message = fresh.evaluate("document.getElementById('message').textContent");
+    assert!(message.as_str().unwrap().contains("version 0"), "{message}");
+}
+
+/// The key repeats some 30 times a second for ten seconds: when it is let go, what is drawn is
+/// where the key led, and nothing waits.
+#[test]
+#[ignore = "needs chromium"]
+fn browser_an_arrow_held_for_ten_seconds_never_falls_behind() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    let held = "new Promise((done) => { let n = 0; window.behind = 0; const t = setInterval(() => { \
+         document.dispatchEvent(new KeyboardEvent('keydown', { key: n % 100 < 50 ? 'ArrowRight' : 'ArrowLeft', bubbles: true })); \
+         window.behind = Math.max(window.behind, Object.keys(impactid.wire.waiting).length); \
+         if (++n === 300) { clearInterval(t); done(n); } }, 33); })";
+    // the keys are dispatched on the map, as a user has it in focus
+    browser.evaluate("document.getElementById('map').focus()");
+    let held = held.replace(
+        "document.dispatchEvent",
+        "document.getElementById('map').dispatchEvent",
+    );
+    assert_eq!(browser.evaluate(&held), json!(300));
+    browser.until(QUIET);
+    // at most one request of the slot ever waited
+    assert!(browser.evaluate("window.behind").as_u64().unwrap() <= 1);
+    let same = "Math.abs(impactid.at[0] - impactid.state.cursor.eta) < 1e-12 && Object.keys(impactid.wire.waiting).length === 0";
+    browser.until(same);
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_two_hundred_percent_and_dark_stay_usable() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), (640, 400));
+    browser.until(QUIET);
+    let wide = browser.evaluate("document.documentElement.scrollWidth <= innerWidth");
+    assert_eq!(wide, json!(true));
+    browser.key("t", 0);
+    browser.until("document.documentElement.dataset.theme === 'dark'");
+    let paper = browser.evaluate("getComputedStyle(document.body).backgroundColor");
+    assert_eq!(paper, json!("rgb(22, 25, 29)"));
+}
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_a_click_on_the_map_carries_the_motion_there() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    let place = "(() => { const b = document.getElementById('map').getBoundingClientRect(), f = impactid.map.frame; \
+         return [b.left + f.px(2.5), b.top + f.py(4)]; })()";
+    let place = browser.evaluate(place);
+    browser.click((place[0].as_f64().unwrap(), place[1].as_f64().unwrap()));
+    browser.until(QUIET);
+    browser.until("impactid.shown.motion.label === '0'");
+    let near =
+        "Math.abs(impactid.state.cursor.eta - 2.5) < 0.01 && Math.abs(impactid.at[1] - 4) < 0.03";
+    browser.until(near);
+}

@@ -1,0 +1,173 @@
+//! A campaign on the map: every kind of record with its evidence, residuals at the sliders, results
+//! that are spoiled.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::{Value, json};
+
+use super::server::{Explorer, Page};
+
+fn sample() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("data-samples/double-oscillator/campaign.toml")
+}
+
+/// A record's frame.
+fn shown(page: &mut Page, state: &Value, id: &str) -> super::server::Frame {
+    let mut state = state.clone();
+    state["record"] = json!(id);
+    page.answer(&json!({"kind": "record"}), &state)
+}
+
+#[test]
+fn valid_each_kind_of_record_is_shown_with_its_evidence() {
+    let explorer = Explorer::start(&[&sample().to_string_lossy()], &std::env::temp_dir());
+    let mut page = explorer.page();
+    let hello = page.hello().header;
+    let (state, campaign) = (&hello["state"], &hello["campaign"]);
+    let records = campaign["records"].as_array().expect("records");
+    assert_eq!(records.len(), 200);
+    for label in ["0", "1", "1/2", "2/1", "chaotic", "undetermined"] {
+        let record = records.iter().find(|r| r["motion"]["label"] == label);
+        let id = record.unwrap_or_else(|| panic!("no record with z = {label}"))["id"].as_str();
+        let frame = shown(&mut page, state, id.expect("a name"));
+        let evidence = &frame.header["evidence"];
+        assert_eq!(frame.header["shown"], "motion", "{label}: {}", frame.header);
+        assert!(frame.column("measured0").len() > 100 && !frame.column("simulated0").is_empty());
+        assert!(evidence["measures"]["periods_observed"].as_f64() > Some(2.0));
+        if label == "undetermined" {
+            assert!(evidence["undetermined"].is_string(), "{evidence}");
+        } else if label != "chaotic" {
+            assert_eq!(frame.header["simulated"]["label"], label);
+            let (m, r) = (frame.column("measured0"), frame.column("residual0"));
+            let size = |v: &[f32]| v.iter().map(|x| x * x).sum::<f32>();
+            assert!(
+                size(r) < 0.01 * size(m),
+                "{label}: measured and simulated differ"
+            );
+        }
+    }
+    let missing = shown(&mut page, state, "no such record");
+    assert_eq!(missing.kind(), "refused");
+    residuals_rise_away_from_the_fit(&mut page, state);
+    let found = page.answer(&json!({"kind": "proposals"}), state);
+    let proposals = found.header["proposals"].as_array().expect("a list");
+    assert!(!proposals.is_empty() && proposals[0]["frequency_hz"].as_f64() > Some(5.0));
+}
+
+fn residuals_rise_away_from_the_fit(page: &mut Page, state: &Value) {
+    let at_fit = page.answer(&json!({"kind": "residuals"}), state).header;
+    let joint = at_fit["joint"].as_f64().expect("a joint residual");
+    assert!((0.3..1.5).contains(&joint), "{joint}");
+    let past = |h: &Value| {
+        let all = h["brackets"].as_array().expect("brackets").iter();
+        all.filter_map(|b| b["past_hz"].as_f64()).sum::<f64>()
+    };
+    let mut away = state.clone();
+    away["restitution"] = json!(0.8);
+    away["rig"]["natural_frequency_hz"] = json!(12.9);
+    let off = page.answer(&json!({"kind": "residuals"}), &away).header;
+    assert!(
+        past(&off) > past(&at_fit) + 0.05,
+        "{} {}",
+        past(&off),
+        past(&at_fit)
+    );
+    let methods = |h: &Value| h["methods"].as_array().expect("methods").clone();
+    for (near, far) in methods(&at_fit).iter().zip(methods(&off)) {
+        let (near, far) = (near["rms"].as_f64().expect("a number"), far["rms"].as_f64());
+        assert!(far.is_none_or(|far| far > near), "{near} {far:?}");
+    }
+}
+
+fn explore(folder: &Path) -> (i32, String) {
+    let done = Command::new(env!("CARGO_BIN_EXE_impactid"))
+        .args(["explore", "--no-browser"])
+        .arg(folder)
+        .output()
+        .expect("it runs");
+    let said = String::from_utf8_lossy(&done.stderr).into_owned();
+    (done.status.code().unwrap_or(-1), said)
+}
+
+#[test]
+fn results_that_are_spoiled_are_refused_or_shown_with_a_note() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (campaign, results) = (
+        folder.path().join("campaign"),
+        folder.path().join("results"),
+    );
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_impactid"));
+        assert!(command.args(arguments).status().expect("it runs").code() < Some(2));
+    };
+    let (out, results_text) = (campaign.to_string_lossy(), results.to_string_lossy());
+    run(&[
+        "-q",
+        "simulate",
+        "campaign",
+        "--seed",
+        "7",
+        "--records",
+        "40",
+        "--out",
+        &out,
+    ]);
+    let toml = campaign.join("campaign.toml");
+    run(&[
+        "-q",
+        "run",
+        &toml.to_string_lossy(),
+        "--out",
+        &results_text,
+        "--format",
+        "csv",
+    ]);
+
+    let explorer = Explorer::start(&[&results_text], folder.path());
+    let hello = explorer.page().hello().header;
+    assert_eq!(hello["notes"], json!([]));
+    assert_eq!(
+        hello["campaign"]["records"].as_array().map(Vec::len),
+        Some(40)
+    );
+    let id = hello["campaign"]["records"][0]["id"]
+        .as_str()
+        .expect("a name")
+        .to_owned();
+
+    // changed, then gone: a note, and the reason where the record would be
+    let files: Vec<PathBuf> = std::fs::read_dir(&campaign)
+        .expect("a folder")
+        .map(|e| e.expect("an entry").path())
+        .filter(|p| p.extension().is_some_and(|e| e == "h5"))
+        .collect();
+    assert!(!files.is_empty());
+    let observed = results.join("observations.json.gz");
+    assert!(!observed.exists());
+    for file in &files {
+        std::fs::remove_file(file).expect("removed");
+    }
+    let (code, said) = explore(&results);
+    assert_eq!(code, 2, "{said}");
+    let shown_now = shown(&mut explorer.page(), &hello["state"], &id);
+    assert_eq!(shown_now.header["shown"], "nothing", "{}", shown_now.header);
+
+    let identification = results.join("identification.json");
+    let text = std::fs::read_to_string(&identification).expect("results");
+    std::fs::write(
+        &identification,
+        text.replace(
+            "\"identification.json\": \"2\"",
+            "\"identification.json\": \"1\"",
+        ),
+    )
+    .expect("written");
+    let (code, said) = explore(&results);
+    assert!(code == 2 && said.contains("layout 1"), "{said}");
+    std::fs::remove_file(&identification).expect("removed");
+    let (code, said) = explore(&results);
+    assert!(code == 2 && said.contains("identification.json"), "{said}");
+    let (code, said) = explore(&folder.path().join("nowhere"));
+    assert!(code == 2 && said.contains("nowhere"), "{said}");
+}

@@ -1,0 +1,8 @@
+//! The explorer: its protocol, its defences, its campaign, and the page in a browser.
+
+mod browser;
+mod campaign;
+pub(crate) mod chromium;
+mod defences;
+mod protocol;
+pub(crate) mod server;
