@@ -49,6 +49,7 @@ impl Factor {
     }
 
     /// That over other unknowns, whose slopes are sums of multiples of these slopes.
+    #[must_use]
     pub fn combined(&self, sums: &[Vec<(usize, f64)>]) -> Self {
         let height = self.unknowns + 1;
         let column = |i: usize| &self.triangle[i * height..(i + 1) * height];
