@@ -4,9 +4,9 @@ use toml::Spanned;
 
 use super::context::{ResolveContext, remedy};
 use super::diagnostic::Code;
-use super::written::{Channel, Channels, Machine, Placed, Quantity, value};
-use crate::record::Role;
+use super::written::{Channel, Channels, Flight, Machine, Placed, Quantity, value};
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
+use crate::record::{ContactContent, Role};
 use labfiles::units::{self, Dimension, Scale, Unit};
 
 impl Channels {
@@ -29,7 +29,7 @@ impl Channels {
 /// All channels that campaign.toml names, in the order of the roles.
 pub(super) fn resolve(
     channels: &Channels,
-    machine: Machine,
+    (machine, flight): (Machine, Flight),
     context: &mut ResolveContext<'_>,
 ) -> Vec<ChannelSetup> {
     let mut setups = Vec::new();
@@ -49,13 +49,39 @@ pub(super) fn resolve(
         }
         setups.extend(resolve_one(role, placed, context));
     }
-    demand_motion(&setups, context);
+    demand_motion(&setups, flight, context);
+    refuse_driven_events(&setups, flight, channels, context);
     refuse_twice(&setups, channels, context);
     setups
 }
 
-fn demand_motion(setups: &[ChannelSetup], context: &mut ResolveContext<'_>) {
-    if setups.iter().any(|s| s.role.is_motion()) {
+/// Times of impacts give R under a constant force alone.
+fn refuse_driven_events(
+    setups: &[ChannelSetup],
+    flight: Flight,
+    channels: &Channels,
+    context: &mut ResolveContext<'_>,
+) {
+    let events = setups.iter().any(|s| s.content != ContactContent::Signal);
+    let placed = channels
+        .contact
+        .as_ref()
+        .and_then(|c| c.get_ref().content.as_ref());
+    if let (true, Flight::Harmonic, Some(placed)) = (events, flight, placed) {
+        context.fault(
+            Code::Conflict,
+            placed,
+            "channels.contact.content",
+            "times of impacts alone tell nothing of a driven rig".to_owned(),
+            "set flight = \"constant_force\" for a ball or cart that bounces, or name the contact's signal",
+        );
+    }
+}
+
+fn demand_motion(setups: &[ChannelSetup], flight: Flight, context: &mut ResolveContext<'_>) {
+    let motion = setups.iter().any(|s| s.role.is_motion());
+    let timed = flight == Flight::ConstantForce && setups.iter().any(|s| s.role == Role::Contact);
+    if motion || timed {
         return;
     }
     context.faults.fault(
@@ -117,6 +143,7 @@ fn resolve_one(
         threshold: threshold(role, &written.threshold, &key("threshold"), context),
         range: raw_level(&written.range, &key("range"), unit, context),
         ignore_file_unit: value(&written.ignore_file_unit).unwrap_or(false),
+        content: content(role, &written.content, &key("content"), context),
         instrument: value(&written.instrument),
         ..ChannelSetup::plain(role, source(role, placed, context)?)
     };
@@ -262,6 +289,24 @@ fn any_quantity(
         context.fault(Code::InvalidValue, placed, key, message.as_str(), remedy);
     }
     found.ok()
+}
+
+fn content(
+    role: Role,
+    placed: &Placed<ContactContent>,
+    key: &str,
+    context: &mut ResolveContext<'_>,
+) -> ContactContent {
+    match placed {
+        Some(placed) if role == Role::Contact => *placed.get_ref(),
+        Some(placed) => {
+            let what = format!("a content means nothing for {}", role.name());
+            let remedy = "move it to [channels.contact]";
+            context.fault(Code::Conflict, placed, key, what, remedy);
+            ContactContent::Signal
+        }
+        None => ContactContent::Signal,
+    }
 }
 
 fn threshold(

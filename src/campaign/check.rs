@@ -10,7 +10,8 @@ use sha2::{Digest, Sha256};
 use super::diagnostic::{Code, Diagnostic, Place, Severity};
 use super::discovery::Opener;
 use super::resolved::{RecordEntry, ResolvedCampaign};
-use crate::event::{DetectSettings, Detection, DetectionSource, detect};
+use crate::event::DetectionSource;
+use crate::motion::observe;
 use crate::record::calibrate;
 use crate::record::{Flag, FlagCode, Record, Role};
 use labfiles::Source;
@@ -64,7 +65,10 @@ pub fn read_all(
         all.fingerprints.extend(one.fingerprints);
     }
     all.diagnostics.extend(duplicates(&all.fingerprints));
-    all.diagnostics.extend(cut_short(&all.fingerprints));
+    let driven = campaign.records.iter().any(|r| campaign.driven(r));
+    if driven {
+        all.diagnostics.extend(short(&all.fingerprints));
+    }
     all
 }
 
@@ -88,19 +92,25 @@ fn read_file(campaign: &ResolvedCampaign, entries: &[RecordEntry], open: Opener<
 }
 
 fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Source) -> Checked {
-    let mut record = calibrate::calibrate(source, &campaign.setup_of(entry));
-    if !record.excluded() && campaign.driven(entry) {
-        let found = detect(&record, campaign.machine, &DetectSettings::default());
-        record.flags.extend(contact_without_jump(&record, &found));
-        record.flags.extend(found.flags);
+    let record = calibrate::calibrate(source, &campaign.setup_of(entry));
+    // What `run` would do with it: a record that it refuses is refused here, for the same reason.
+    let (detect, classify) = (campaign.detect_settings(), campaign.classify_settings());
+    let observed = observe(&record, campaign.machine, &detect, &classify);
+    let mut flags = observed.flags;
+    if campaign.driven(entry) && !flags.iter().any(|f| f.excludes) {
+        let supported = observed.impacts.iter();
+        let supported = supported
+            .filter(|i| i.source == DetectionSource::Both)
+            .count();
+        let pulses = (observed.unsupported_pulses, supported);
+        flags.extend(contact_without_jump(&record, pulses));
     }
-    let diagnostics = record
-        .flags
+    let diagnostics = flags
         .iter()
         .filter(|f| !LISTED.contains(&f.code))
         .map(|f| Diagnostic::of_flag(&entry.file, &record.id, f))
         .collect();
-    let usable = usize::from(!record.excluded());
+    let usable = usize::from(!flags.iter().any(|f| f.excludes));
     let print = Fingerprint {
         hash: fingerprint(&record),
         samples: record.samples(),
@@ -115,17 +125,12 @@ fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Sourc
 }
 
 /// A contact that closes again and again while no velocity changes is no contact of the masses.
-fn contact_without_jump(record: &Record, found: &Detection) -> Option<Flag> {
-    let supported = found
-        .impacts
-        .iter()
-        .filter(|i| i.source == DetectionSource::Both)
-        .count();
+fn contact_without_jump(record: &Record, (unsupported, supported): (usize, usize)) -> Option<Flag> {
     let channel = record.channel(Role::Contact)?;
-    (found.unsupported_pulses >= 3 && found.unsupported_pulses > 2 * supported).then(|| {
+    (unsupported >= 3 && unsupported > 2 * supported).then(|| {
         let message = format!(
-            "the contact closes {} times without a jump of the velocity, {supported} times with one",
-            found.unsupported_pulses
+            "the contact closes {unsupported} times without a jump of the velocity, {supported} times \
+             with one"
         );
         let remedy = "fix threshold or channel in [channels.contact], or check whether the \
                       velocity channels belong to this record";
@@ -174,8 +179,9 @@ fn duplicates(fingerprints: &[Fingerprint]) -> Vec<Diagnostic> {
     found
 }
 
-/// Records much shorter than the usual one of the campaign.
-fn cut_short(fingerprints: &[Fingerprint]) -> Vec<Diagnostic> {
+/// Records much shorter than the usual one of a driven campaign: those that end when somebody stops
+/// them are of any length.
+fn short(fingerprints: &[Fingerprint]) -> Vec<Diagnostic> {
     let lengths = fingerprints.iter().map(|p| p.samples).filter(|n| *n > 0);
     let mut lengths: Vec<usize> = lengths.collect();
     lengths.sort_unstable();
@@ -191,7 +197,7 @@ fn cut_short(fingerprints: &[Fingerprint]) -> Vec<Diagnostic> {
             (Code::ShortRecord, Severity::Note),
             p.place(),
             format!("it holds {} samples, the usual record {usual}", p.samples),
-            "copy the file again if it was cut off",
+            "nothing, if it was stopped early; else compare it with the laboratory book",
         )
     };
     fingerprints.iter().filter(short).map(diagnostic).collect()

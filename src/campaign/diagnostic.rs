@@ -111,7 +111,7 @@ impl Place {
 
 impl Diagnostic {
     /// A problem with what it prevents, its place and its remedy.
-    pub(super) fn new(
+    pub fn new(
         (code, severity): (Code, Severity),
         place: Place,
         message: impl Into<String>,
@@ -127,7 +127,7 @@ impl Diagnostic {
     }
 
     /// A flag of a record of the campaign.
-    pub(super) fn of_flag(file: &Path, record: &str, flag: &Flag) -> Self {
+    pub fn of_flag(file: &Path, record: &str, flag: &Flag) -> Self {
         let severity = match flag.excludes {
             true => Severity::Record,
             false => Severity::Note,

@@ -92,12 +92,27 @@ fn list_file(path: &Path, shared: Shared<'_>, open: Opener<'_>) -> Vec<Discovere
             if sets.is_empty() {
                 return vec![failed(path, None, empty_file(path))];
             }
-            sets.iter()
-                .enumerate()
-                .map(|(i, set)| listed(path, i, set, None, shared))
-                .collect()
+            let used = records_of(sets, shared);
+            let listed = |i: usize| listed(path, i, &sets[i], None, shared);
+            used.into_iter().map(listed).collect()
         }
         Err(error) => vec![failed(path, None, calibrate::read_flag(&error))],
+    }
+}
+
+/// The datasets of a file that are records: those with a channel that campaign.toml names, where any has
+/// one (a workbook has sheets of notes too), else all.
+fn records_of(sets: &[DatasetInfo], shared: Shared<'_>) -> Vec<usize> {
+    let named = |i: &usize| {
+        let mut sources = shared.channels.iter().map(|c| &c.source);
+        sources.any(|source| source.find(&sets[*i]).is_some())
+    };
+    let all = 0..sets.len();
+    let found: Vec<usize> = all.clone().filter(named).collect();
+    if found.is_empty() {
+        all.collect()
+    } else {
+        found
     }
 }
 

@@ -75,9 +75,10 @@ fn resolve(
         context,
     );
     let machine = machine.unwrap_or(Machine::Double);
+    let flight = value(&written.campaign.flight).unwrap_or(Flight::Harmonic);
     let channels = match written.published {
         Some(_) => Vec::new(),
-        None => channels::resolve(&written.channels, machine, context),
+        None => channels::resolve(&written.channels, (machine, flight), context),
     };
     let time = value(&written.records.time).map(|t| t.0);
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -93,8 +94,6 @@ fn resolve(
     exclude(&mut records, &written.analysis.exclude, context);
     rig::refuse_long_delays(&channels, &records, &written.channels, context);
     let name = name(&written.campaign.name, folder);
-    let flight = value(&written.campaign.flight).unwrap_or(Flight::Harmonic);
-    demand_one_mass(machine, flight, &written.campaign.flight, context);
     let run_table = value(&written.records.run_table).map(|t| folder.join(t));
     ResolvedCampaign {
         run_table,
@@ -134,24 +133,6 @@ fn required<T: Copy>(
             .fault(Code::Missing, None, key, "it is not given", remedy);
     }
     value(placed)
-}
-
-fn demand_one_mass(
-    machine: Machine,
-    flight: Flight,
-    placed: &Placed<Flight>,
-    context: &mut ResolveContext<'_>,
-) {
-    if let (Machine::Double, Flight::ConstantForce, Some(placed)) = (machine, flight, placed) {
-        let what = "a flight under constant force is for one mass against a stop".to_owned();
-        context.fault(
-            Code::Conflict,
-            placed,
-            "campaign.flight",
-            what,
-            "set machine = \"single\"",
-        );
-    }
 }
 
 fn name(placed: &Placed<String>, folder: &Path) -> String {

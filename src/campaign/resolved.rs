@@ -6,8 +6,10 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::written::{Excitation, Flight, Format, Language, Machine, Paper};
+use crate::event::DetectSettings;
 use crate::identify::fit::effect::EffectKind;
 use crate::identify::uncertainty::IntervalMethod;
+use crate::motion::ClassifySettings;
 use crate::record::Setting;
 use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup};
 
@@ -152,6 +154,23 @@ impl ResolvedCampaign {
     /// Whether a record must contain a harmonic drive.
     pub fn driven(&self, entry: &RecordEntry) -> bool {
         self.flight == Flight::Harmonic && entry.setting.excitation == Excitation::Harmonic
+    }
+
+    /// Settings of the detection of impacts.
+    pub fn detect_settings(&self) -> DetectSettings {
+        DetectSettings {
+            flight: self.flight,
+            ..DetectSettings::default()
+        }
+    }
+
+    /// Settings of the classification of motions.
+    pub fn classify_settings(&self) -> ClassifySettings {
+        ClassifySettings {
+            most_periods: self.analysis.longest_period_n,
+            most_impacts: self.analysis.most_impacts_p,
+            ..ClassifySettings::default()
+        }
     }
 
     /// What [`crate::record::calibrate::calibrate`] needs for one of its records.

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::infer::{FolderContents, InferredChannel};
-use crate::record::Role;
+use super::infer::{Experiment, FolderContents, InferredChannel};
+use crate::record::{ContactContent, Role};
 use labfiles::units::{self, Dimension};
 
 /// The text of campaign.toml for what was found in a folder named so.
@@ -28,6 +28,10 @@ fn has_role(found: &FolderContents, role: Role) -> bool {
 }
 
 fn head(text: &mut String, name: &str, found: &FolderContents) -> std::fmt::Result {
+    let flight = match found.experiment {
+        Experiment::FreeFlight(_) | Experiment::Events(_) => "constant_force",
+        Experiment::Driven | Experiment::FreeDecay => "harmonic",
+    };
     let two = [Role::VelocityY, Role::DisplacementY, Role::AccelerationY];
     let machine = if two.iter().any(|r| has_role(found, *r)) {
         "double"
@@ -42,7 +46,8 @@ fn head(text: &mut String, name: &str, found: &FolderContents) -> std::fmt::Resu
          [campaign]\n\
          name = {}\n\
          machine = \"{machine}\"            # \"double\": two masses; \"single\": one and a stop\n\
-         flight = \"harmonic\"           # or \"constant_force\": no spring, e.g. a cart on a slope\n",
+         flight = \"{flight}\"           # \"harmonic\": springs and a drive; \"constant_force\": free flights, \
+         as of balls and carts\n",
         found.files,
         found.format,
         quoted(name)
@@ -62,7 +67,7 @@ fn records(text: &mut String, found: &FolderContents) -> std::fmt::Result {
     if found.run_table.is_none() {
         text.write_str(RUN_TABLE)?;
     }
-    if !found.timed {
+    if !found.timed && !matches!(found.experiment, Experiment::Events(_)) {
         writeln!(
             text,
             "sample_rate = \"2 kHz\"       # FILL IN: the files state none"
@@ -77,7 +82,14 @@ fn records(text: &mut String, found: &FolderContents) -> std::fmt::Result {
                         gap to a stop"
         )?;
     }
-    text.write_str(RECORD_DEFAULTS)?;
+    if found.experiment == Experiment::FreeDecay {
+        writeln!(
+            text,
+            "excitation = \"free_decay\"    # the records look like free decays after a release or a blow"
+        )?;
+    } else {
+        text.write_str(RECORD_DEFAULTS)?;
+    }
     if !attributes.is_empty() && found.run_table.is_none() {
         writeln!(
             text,
@@ -146,7 +158,7 @@ fn channels(text: &mut String, found: &FolderContents) -> std::fmt::Result {
         let Some(channel) = found.channels.iter().find(|c| c.role == Some(role)) else {
             continue;
         };
-        table(text, role, channel)?;
+        table(text, role, channel, found)?;
         named += 1;
     }
     if named == 0 {
@@ -169,7 +181,12 @@ fn describe(channel: &InferredChannel) -> String {
     format!("{name} ({unit}, {} samples{range}{time})", channel.samples)
 }
 
-fn table(text: &mut String, role: Role, channel: &InferredChannel) -> std::fmt::Result {
+fn table(
+    text: &mut String,
+    role: Role,
+    channel: &InferredChannel,
+    found: &FolderContents,
+) -> std::fmt::Result {
     writeln!(text, "[channels.{}]", role.name())?;
     writeln!(text, "channel = {}", quoted(&channel.name))?;
     let known = channel.unit.as_deref().and_then(units::parse_unit);
@@ -179,6 +196,15 @@ fn table(text: &mut String, role: Role, channel: &InferredChannel) -> std::fmt::
     let unit = known.or(of_name);
     match (known, unit.and_then(units::symbol_of)) {
         (Some(_), _) => writeln!(text, "# unit = as the file states")?,
+        (None, None) if found.experiment == Experiment::Events(ContactContent::Sound) => {}
+        (None, None) if found.experiment != Experiment::Driven && role.dimension().is_some() => {
+            let symbol = role.dimension().map_or("1", Dimension::si_symbol);
+            let symbol = symbol.replace('²', "2");
+            writeln!(
+                text,
+                "unit = \"{symbol}\"               # CHECK: the file states none"
+            )?;
+        }
         (None, Some(symbol)) => {
             writeln!(text, "unit = \"{symbol}\"                 # from its name")?;
         }
@@ -187,7 +213,11 @@ fn table(text: &mut String, role: Role, channel: &InferredChannel) -> std::fmt::
             "# unit = \"V\"               # FILL IN: the file states none"
         )?,
     }
-    let volts = unit.is_none_or(|u| u.dimension == Dimension::Voltage);
+    if let Experiment::Events(content) = found.experiment {
+        return events(text, content);
+    }
+    let guessed = unit.is_none() && found.experiment != Experiment::Driven;
+    let volts = !guessed && unit.is_none_or(|u| u.dimension == Dimension::Voltage);
     match (role.dimension(), role) {
         (Some(dimension), _) if volts => {
             let symbol = dimension.si_symbol().replace('²', "2");
@@ -202,7 +232,8 @@ fn table(text: &mut String, role: Role, channel: &InferredChannel) -> std::fmt::
     if role.dimension().is_some() {
         writeln!(
             text,
-            "sign = 1                     # -1 if it is positive away from the other mass"
+            "sign = {:<21}# -1 if it is positive away from the other mass or the stop",
+            channel.sign
         )?;
     }
     if matches!(role, Role::VelocityX | Role::VelocityY) {
@@ -212,6 +243,20 @@ fn table(text: &mut String, role: Role, channel: &InferredChannel) -> std::fmt::
         )?;
     }
     writeln!(text)
+}
+
+/// What the contact's channel contains.
+fn events(text: &mut String, content: ContactContent) -> std::fmt::Result {
+    let (word, what) = match content {
+        ContactContent::Signal => return writeln!(text),
+        ContactContent::Times => ("times", "each row is the time of an impact"),
+        ContactContent::Intervals => (
+            "intervals",
+            "each row is the time from an impact to the next",
+        ),
+        ContactContent::Sound => ("sound", "a microphone: the impacts are heard in it"),
+    };
+    writeln!(text, "content = \"{word}\"          # {what}\n")
 }
 
 fn threshold(

@@ -12,6 +12,7 @@ use toml::Spanned;
 
 pub use crate::event::{FlightKind as Flight, RigKind as Machine};
 pub use crate::identify::uncertainty::IntervalMethod;
+use crate::record::ContactContent;
 use crate::record::calibrate::ChannelKey;
 pub use crate::record::{Excitation, Sweep};
 pub use crate::report::Format;
@@ -188,6 +189,8 @@ pub struct Channel {
     pub range: Placed<Quantity>,
     /// Use the unit of this table even if the file states another.
     pub ignore_file_unit: Placed<bool>,
+    /// What the contact's channel contains: a signal, times, intervals or sound.
+    pub content: Placed<ContactContent>,
     /// What recorded it, as text: sensor, amplifier, serial number.
     pub instrument: Placed<String>,
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 use miette::{GraphicalReportHandler, GraphicalTheme};
 
 use super::Verbosity;
-use crate::campaign::diagnostic::{Diagnostic, Diagnostics, Severity};
-use crate::pipeline::PipelineError;
+use crate::campaign::diagnostic::{Code, Diagnostic, Diagnostics, Place, Severity};
+use crate::pipeline::{PipelineError, RefusedRecord};
 use labfiles::ReadError;
 use labfiles::output::OutputError;
 use labfiles::panic_is_caught;
@@ -97,9 +97,32 @@ impl From<PipelineError> for Failure {
     fn from(error: PipelineError) -> Self {
         match error {
             PipelineError::Read(error) => Self::from(error),
+            PipelineError::NothingUsable(records) => Self::Campaign(nothing_usable(&records)),
             error => Self::new(error.to_string(), error.remedy()),
         }
     }
+}
+
+/// That no record can be used, and why each of them cannot.
+fn nothing_usable(records: &[RefusedRecord]) -> Diagnostics {
+    let error = PipelineError::NothingUsable(records.to_vec());
+    let whole = Diagnostic {
+        code: Code::Missing,
+        severity: Severity::Campaign,
+        place: Place {
+            item: "records".to_owned(),
+            ..Place::default()
+        },
+        message: error.to_string(),
+        remedy: error.remedy(),
+    };
+    let flags = records.iter().flat_map(|r| {
+        let excluding = r.flags.iter().filter(|f| f.excludes);
+        excluding.map(|f| Diagnostic::of_flag(Path::new(""), &r.record, f))
+    });
+    let mut all = Diagnostics(std::iter::once(whole).chain(flags).collect());
+    all.sort();
+    all
 }
 
 /// Problems that are alike are printed as one from this many on.

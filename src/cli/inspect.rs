@@ -40,7 +40,7 @@ Example:
   impactid inspect record.lvm --plot
   impactid inspect campaign.h5 --dataset run0001 --json
 
-Formats: HDF5, CSV and other text tables, LVM, TDMS, UFF 58, MATLAB 4 to 7.3, WAV, Parquet.
+Formats: HDF5, CSV and other text tables, Excel, LVM, TDMS, UFF 58, MATLAB 4 to 7.3, WAV, Parquet.
 Exit codes: 0 success; 2 a file could not be read.";
 
 /// A file of more datasets is listed with one line per dataset.
@@ -67,11 +67,11 @@ impl Inspect {
                 true => self.list(&*s, &mut listed),
                 false => self.describe(&*s, &mut text),
             });
-            if let Err(error) = done {
+            print(&std::mem::take(&mut text))?;
+            for error in done.unwrap_or_else(|error| vec![error]) {
                 Failure::from(error).print(verbosity);
                 exit = Exit::BadInput;
             }
-            print(&std::mem::take(&mut text))?;
         }
         if self.json {
             print_json(&listed)?;
@@ -102,13 +102,18 @@ impl Inspect {
         Ok(found)
     }
 
-    fn list(&self, source: &dyn Source, listed: &mut Vec<Listed>) -> Result<(), ReadError> {
+    /// List the channels; gives what cannot be read.
+    fn list(
+        &self,
+        source: &dyn Source,
+        listed: &mut Vec<Listed>,
+    ) -> Result<Vec<ReadError>, ReadError> {
         let chosen = self.chosen(source)?;
-        let read: Vec<Vec<Summary>> = chosen
-            .par_iter()
-            .map(|&d| summaries(source, d).map(|(s, _)| s))
-            .collect::<Result<_, _>>()?;
-        for (&d, summaries) in chosen.iter().zip(read) {
+        let read: Vec<Inspected> = chosen.par_iter().map(|&d| inspected(source, d)).collect();
+        let mut errors = Vec::new();
+        for (&d, inspected) in chosen.iter().zip(read) {
+            let summaries = inspected.summaries;
+            errors.extend(inspected.errors);
             let dataset = &source.datasets()[d].name;
             let file = source.path().display().to_string();
             listed.extend(summaries.into_iter().map(|summary| Listed {
@@ -117,10 +122,15 @@ impl Inspect {
                 file: file.clone(),
             }));
         }
-        Ok(())
+        Ok(errors)
     }
 
-    fn describe(&self, source: &dyn Source, text: &mut String) -> Result<(), ReadError> {
+    /// Describe the datasets; gives what cannot be read.
+    fn describe(
+        &self,
+        source: &dyn Source,
+        text: &mut String,
+    ) -> Result<Vec<ReadError>, ReadError> {
         let chosen = self.chosen(source)?;
         heading(source, text);
         if chosen.len() > FEW && !self.all && !self.plot {
@@ -128,33 +138,56 @@ impl Inspect {
                 one_line(&source.datasets()[d], text);
             }
             let _ = writeln!(text, "--dataset NAME or --all shows the channels");
-            return Ok(());
+            return Ok(Vec::new());
         }
+        let mut errors = Vec::new();
         for d in chosen {
-            let (summaries, samples) = summaries(source, d)?;
-            describe(&source.datasets()[d], &summaries, text);
+            let inspected = inspected(source, d);
+            describe(&source.datasets()[d], &inspected.summaries, text);
             if self.plot {
-                draw(&summaries, &samples, text);
+                draw(&inspected.summaries, &inspected.samples, text);
             }
+            errors.extend(inspected.errors);
         }
-        Ok(())
+        Ok(errors)
     }
 }
 
-/// All channels of a dataset: their statistics and their samples.
-fn summaries(
-    source: &dyn Source,
-    dataset: usize,
-) -> Result<(Vec<Summary>, Vec<Samples>), ReadError> {
+/// The channels of a dataset: their statistics, their samples, and what cannot be read of them.
+struct Inspected {
+    summaries: Vec<Summary>,
+    samples: Vec<Samples>,
+    errors: Vec<ReadError>,
+}
+
+/// Read all channels of a dataset; where that fails, one at a time, so that a faulty one does not hide
+/// the others.
+fn inspected(source: &dyn Source, dataset: usize) -> Inspected {
     let channels = &source.datasets()[dataset].channels;
     let all: Vec<usize> = (0..channels.len()).collect();
-    let samples = source.read(dataset, &all)?;
+    let mut errors: Vec<ReadError> = Vec::new();
+    let samples = source.read(dataset, &all).unwrap_or_else(|_| {
+        let one = |channel: usize| match source.read(dataset, &[channel]) {
+            Ok(mut read) => read.pop().unwrap_or(Samples::Text(Vec::new())),
+            Err(error) => {
+                if !errors.contains(&error) {
+                    errors.push(error);
+                }
+                Samples::Text(Vec::new())
+            }
+        };
+        all.iter().copied().map(one).collect()
+    });
     let summaries = channels
         .iter()
         .zip(&samples)
         .map(|(c, s)| summarise(c, s))
         .collect();
-    Ok((summaries, samples))
+    Inspected {
+        summaries,
+        samples,
+        errors,
+    }
 }
 
 fn heading(source: &dyn Source, text: &mut String) {
@@ -217,8 +250,12 @@ fn describe(info: &DatasetInfo, summaries: &[Summary], text: &mut String) {
                         .to_owned()
                 },
             ),
-            s.first.to_string(),
-            s.last.to_string(),
+            s.texts
+                .as_ref()
+                .map_or_else(|| s.first.to_string(), |t| t[0].clone()),
+            s.texts
+                .as_ref()
+                .map_or_else(|| s.last.to_string(), |t| t[1].clone()),
             s.min.to_string(),
             s.max.to_string(),
         ]);

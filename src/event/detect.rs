@@ -7,10 +7,10 @@ use crate::event::impact::{DetectionSource, Impact};
 use crate::event::jumps::{Jump, JumpSearch, SUPPORTED};
 use crate::event::kinematics::{Kinematics, RigKind, Series};
 use crate::event::refine::{self, ArcFit, Candidate, Instant};
-use crate::event::{bounce, drift, impact_speeds};
+use crate::event::{drift, free_flight, impact_speeds};
 use crate::record::{Flag, FlagCode, Record, Role};
-use crate::signal::robust;
 use crate::signal::whole;
+use labfiles::units::Dimension;
 
 /// Forces on a body between impacts, as far as the detection depends on them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -116,34 +116,29 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
     let (drive, mut flags) = drive::measure(record, settings.drive_tolerance);
     let mut kinematics = Kinematics::of(record, rig);
     let rate_hz = record.sample_rate_hz;
-    let closed = record
-        .channel(Role::Contact)
-        .map_or_else(Vec::new, |channel| {
-            closed_intervals(channel, samples_of(settings.bounce_s, rate_hz))
-        });
+    let contact = record.channel(Role::Contact);
+    if let Some(channel) = contact.filter(|c| c.dimension == Dimension::Time) {
+        return listed(kinematics, &channel.values);
+    }
+    let closed = contact.map_or_else(Vec::new, |channel| {
+        closed_intervals(channel, samples_of(settings.bounce_s, rate_hz))
+    });
+    if settings.flight == FlightKind::ConstantForce {
+        return freely(record, kinematics, rig, &closed);
+    }
     let dead_from = samples_of(settings.dead_zone_s, rate_hz).max(4);
     let width = window_samples(drive.as_ref(), rate_hz, settings.window_periods);
     let found = match &kinematics.relative.velocity {
-        Some(velocity) if settings.flight == FlightKind::ConstantForce => bounces(velocity),
         Some(velocity) => fuse(velocity, &closed, width, dead_from),
         None => from_contact_alone(&closed, dead_from),
     };
     if let Some(flag) = wrong_way(&found, record) {
         flags.push(flag);
     }
-    let arc = match settings.flight {
-        FlightKind::Harmonic => ArcFit {
-            degree: 3,
-            displacement_degree: 3,
-            width: (4 * width / 3).max(6),
-            same_way: false,
-        },
-        FlightKind::ConstantForce => ArcFit {
-            degree: 1,
-            displacement_degree: 2,
-            width: 24,
-            same_way: true,
-        },
+    let arc = ArcFit {
+        degree: 3,
+        displacement_degree: 3,
+        width: (4 * width / 3).max(6),
     };
     let impacts = refined(
         &mut kinematics,
@@ -168,6 +163,61 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
     }
 }
 
+/// Impacts between flights under a constant force, without a drive.
+fn freely(record: &Record, kinematics: Kinematics, rig: RigKind, closed: &[Closed]) -> Detection {
+    let found = match kinematics.relative.velocity {
+        Some(_) => free_flight::detect(&kinematics, rig, closed),
+        None => free_flight::FreeFlights {
+            impacts: without_speeds(
+                &from_contact_alone(closed, usize::MAX).candidates,
+                None,
+                kinematics.rate_hz,
+            ),
+            jump_samples: 1,
+            flags: Vec::new(),
+        },
+    };
+    let mut found = found;
+    if found.impacts.is_empty() && !found.flags.iter().any(|f| f.excludes) {
+        found.flags.push(no_impact());
+    }
+    let closed_samples: usize = closed.iter().map(Closed::samples).sum();
+    Detection {
+        drive: None,
+        impacts: found.impacts,
+        jump_samples: found.jump_samples,
+        unsupported_pulses: 0,
+        missed_pulses: 0,
+        closed_fraction: closed_samples as f64 / record.samples().max(1) as f64,
+        kinematics,
+        flags: found.flags,
+    }
+}
+
+/// Impacts that the record states as a list of times.
+fn listed(kinematics: Kinematics, times_s: &[f64]) -> Detection {
+    let impacts = times_s.iter().map(|time_s| Impact::timed(*time_s, 0.0));
+    Detection {
+        drive: None,
+        impacts: impacts.collect(),
+        jump_samples: 1,
+        unsupported_pulses: 0,
+        missed_pulses: 0,
+        closed_fraction: 0.0,
+        kinematics,
+        flags: Vec::new(),
+    }
+}
+
+fn no_impact() -> Flag {
+    Flag::new(
+        FlagCode::NoImpact,
+        None,
+        "no impact between two free flights was found",
+        "check that the record holds an impact, and the sign and unit of its channels",
+    )
+}
+
 fn samples_of(time_s: f64, rate_hz: f64) -> usize {
     whole::index((time_s * rate_hz).round())
 }
@@ -188,11 +238,6 @@ fn refined(
 ) -> Vec<Impact> {
     if kinematics.relative.velocity.is_none() {
         return without_speeds(candidates, drive, kinematics.rate_hz);
-    }
-    if arc.same_way {
-        // Straight arcs have few samples: no drift can be estimated from them.
-        let instants = refine::instants(kinematics, candidates, arc);
-        return impact_speeds::impacts(kinematics, candidates, &instants, drive, (arc, None));
     }
     let Some(contact) = finite_contact::measure(kinematics, candidates, arc) else {
         return undrifted(kinematics, candidates, drive, (rig, arc, None));
@@ -258,18 +303,6 @@ struct Fused {
     upward: usize,
     /// Jumps downward, as impacts make them.
     downward: usize,
-}
-
-/// Bounces under a constant force, from the velocity alone.
-fn bounces(velocity: &Series) -> Fused {
-    let candidates = bounce::find(velocity);
-    let gaps: Vec<f64> = candidates.iter().map(|c| c.jump.gap as f64).collect();
-    let jump_samples = robust::median(&gaps).map_or(1, |g| whole::index(g.round()));
-    Fused {
-        candidates,
-        jump_samples,
-        ..Fused::default()
-    }
 }
 
 /// Fuse jumps and contact pulses: a jump within reach of a pulse belongs to it; a pulse without a
@@ -401,19 +434,10 @@ fn without_speeds(
         .map(|c| {
             let time_s = c.jump.middle() / rate_hz;
             Impact {
-                time_s,
-                time_error_s: 1.0 / (rate_hz * 12f64.sqrt()),
                 drive_phase_rad: drive.map(|d| d.phase_at(time_s)),
-                approach_speed_before_m_s: None,
-                approach_speed_after_m_s: None,
-                speed_error_m_s: None,
-                x: None,
-                y: None,
-                corner_shifts: [None, None],
                 dead_zone_s: c.dead_samples / rate_hz,
-                contact_duration_s: None,
-                external_push_m_s: None,
                 source: c.source,
+                ..Impact::timed(time_s, 1.0 / (rate_hz * 12f64.sqrt()))
             }
         })
         .collect()

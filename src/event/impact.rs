@@ -86,6 +86,27 @@ pub struct CornerShift {
     pub speed_m_s: f64,
 }
 
+impl Impact {
+    /// An impact of which nothing is known but its time and the standard error of that.
+    pub(super) fn timed(time_s: f64, time_error_s: f64) -> Self {
+        Self {
+            time_s,
+            time_error_s,
+            drive_phase_rad: None,
+            approach_speed_before_m_s: None,
+            approach_speed_after_m_s: None,
+            speed_error_m_s: None,
+            x: None,
+            y: None,
+            corner_shifts: [None, None],
+            dead_zone_s: 0.0,
+            contact_duration_s: None,
+            external_push_m_s: None,
+            source: DetectionSource::Contact,
+        }
+    }
+}
+
 #[cfg(test)]
 impl Impact {
     /// An impact of a time and an approach speed; nothing else is known.

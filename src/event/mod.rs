@@ -4,7 +4,6 @@
 //! Times become sample indices by `as usize`, which saturates (negative and NaN give 0); an index is
 //! bounded by the number of samples before it is used.
 
-mod bounce;
 mod contact;
 mod contact_profile;
 mod contact_samples;
@@ -13,6 +12,7 @@ mod detect;
 mod drift;
 mod drive;
 mod finite_contact;
+mod free_flight;
 mod impact;
 mod impact_speeds;
 mod jumps;

@@ -18,9 +18,6 @@ pub(super) struct ArcFit {
     pub displacement_degree: usize,
     /// Most samples on either side.
     pub width: usize,
-    /// Use only samples on which the body still moves toward the impact (after it: away), as
-    /// friction bends the arc where it turns.
-    pub same_way: bool,
 }
 
 /// An impact's time in samples with its standard error.
@@ -68,28 +65,14 @@ fn windows(velocity: &Series, candidates: &[Candidate], index: usize, arc: ArcFi
     } else {
         begin + width
     };
-    let mut found = Windows {
+    Windows {
         before: (
             low.max((jump.left + 1).saturating_sub(width))
                 .min(jump.left),
             jump.left + 1,
         ),
         after: (begin, end.min(high).min(begin + width).max(begin + 1)),
-    };
-    if arc.same_way {
-        let values = &velocity.values;
-        let (first, last) = found.before;
-        let toward = values[first..last]
-            .iter()
-            .rev()
-            .take_while(|v| **v > 0.0)
-            .count();
-        found.before.0 = (last - toward.max(1)).max(first);
-        let (first, last) = found.after;
-        let away = values[first..last].iter().take_while(|v| **v < 0.0).count();
-        found.after.1 = (first + away.max(1)).min(last);
     }
-    found
 }
 
 /// Times of all candidates: from the kink of the displacement if it is measured, else from the
@@ -102,17 +85,9 @@ pub(super) fn instants(
 ) -> Vec<Instant> {
     let middle = |c: &Candidate| Instant {
         time: c.jump.middle(),
-        error: if arc.same_way {
-            0.5
-        } else {
-            c.jump.gap as f64 / 12f64.sqrt()
-        },
+        error: c.jump.gap as f64 / 12f64.sqrt(),
     };
     let plain: Vec<Instant> = candidates.iter().map(middle).collect();
-    if arc.same_way {
-        // A contact of several samples: its middle replaces the instant of the impact.
-        return plain;
-    }
     match (
         &kinematics.relative.displacement,
         &kinematics.relative.velocity,
@@ -247,12 +222,7 @@ pub(super) fn speeds(
 ) -> Option<(MassSpeeds, f64)> {
     let [before, after] = arcs(velocity, candidates, index, arc)?;
     let time = instant.time;
-    let mut error = velocity.noise * before.error_factor(time).max(after.error_factor(time));
-    if arc.same_way {
-        // Straight arcs are steep: the uncertainty of the middle adds to the error.
-        let slope = before.slope(time).abs().max(after.slope(time).abs());
-        error = error.hypot(slope * instant.error);
-    }
+    let error = velocity.noise * before.error_factor(time).max(after.error_factor(time));
     let speeds = MassSpeeds {
         before_m_s: before.value(time),
         after_m_s: after.value(time),
@@ -301,7 +271,6 @@ mod tests {
         degree: 3,
         displacement_degree: 3,
         width: 16,
-        same_way: false,
     };
 
     /// Velocity and displacement of flights v = V(−R + as + bs²), s = 0…1, whose displacement is

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::estimate;
+use crate::identify::estimate::{self, Status};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::identification::MethodResult;
-use crate::identify::messages::{Item, LeftOut, Reason, Remark};
+use crate::identify::messages::{Item, LeftOut, Note, Reason, Remark};
 use crate::motion::Observation;
 use crate::signal::decay::Decay;
 use crate::signal::robust;
@@ -14,6 +14,12 @@ use crate::signal::robust;
 const ONE_OSCILLATOR: f64 = 0.02;
 /// Relative difference of f0 from its own group's from which a record is looked at.
 const STRANGE: f64 = 0.05;
+/// Share of the signal that is neither the fitted decay nor noise from which a decay does not fit.
+const STRUCTURE: f64 = 0.15;
+/// Standard errors from which a drift of the frequency is significant.
+const DRIFTS: f64 = 5.0;
+/// Drift from which a decay has no single frequency, in half widths of its 95 % interval.
+const NO_SINGLE: f64 = 5.0;
 
 /// All free decays of a campaign, pooled; `None` without any.
 pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
@@ -28,10 +34,9 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
     let frequencies: Vec<(f64, f64)> = decays
         .iter()
         .map(|d| {
-            (
-                d.natural_frequency_hz.ln(),
-                d.natural_frequency_error_hz / d.natural_frequency_hz,
-            )
+            let error = d.natural_frequency_error_hz.hypot(drift_error_hz(d));
+            let f = d.natural_frequency_hz;
+            (f.ln(), error / f)
         })
         .collect();
     let dampings: Vec<(f64, f64)> = decays
@@ -54,20 +59,70 @@ pub fn pooled(observations: &[Observation]) -> Option<MethodResult> {
         Some(estimate::estimate(Coordinate::Frequency, f, f_error, None));
     result.parameters.damping_ratio =
         Some(estimate::estimate(Coordinate::Damping, b, b_error, None));
-    let residual = robust::median(&decays.iter().map(|d| d.residual_ratio).collect::<Vec<_>>());
     let spread = frequencies
         .iter()
         .map(|p| (p.0 - f).abs())
         .fold(0.0, f64::max);
+    judge(&mut result, &decays, spread);
+    Some(result)
+}
+
+/// Judge whether the decays are of one linear oscillator: by what their residuals have beside noise,
+/// not by the size of the noise.
+fn judge(result: &mut MethodResult, decays: &[&Decay], spread: f64) {
+    let median = |of: &dyn Fn(&Decay) -> f64| {
+        robust::median(&decays.iter().map(|d| of(d)).collect::<Vec<_>>()).unwrap_or(0.0)
+    };
     if spread > ONE_OSCILLATOR {
         result.fits = Some(false);
         result.remarks.push(Remark::DecaysDiffer { spread });
-    } else if let Some(residual) = residual {
-        result.fits = Some(residual < 0.2);
-        let share = residual;
-        result.remarks.push(Remark::DecaysUnexplained { share });
+        return;
     }
-    Some(result)
+    let share = median(&|d| d.residual_ratio);
+    let structure = median(&|d| d.structured_ratio);
+    result.fits = Some(structure < STRUCTURE);
+    result.remarks.push(match structure < STRUCTURE {
+        true => Remark::DecaysUnexplained { share, structure },
+        false => Remark::DecaysHaveStructure { share, structure },
+    });
+    let drifting: Vec<&Decay> = decays.iter().copied().filter(|d| drifts(d)).collect();
+    let half = |d: &Decay| estimate::NORMAL_975 * d.natural_frequency_error_hz;
+    let change = |d: &Decay| d.drift.map_or(0.0, |d| d.last_hz - d.first_hz);
+    let worst = drifting
+        .iter()
+        .max_by(|a, b| change(a).abs().total_cmp(&change(b).abs()));
+    let Some((worst, drift)) = worst.and_then(|d| Some((d, d.drift?))) else {
+        return;
+    };
+    let no_single = drifting
+        .iter()
+        .any(|d| change(d).abs() > NO_SINGLE * half(d).max(f64::MIN_POSITIVE));
+    result.remarks.push(Remark::DecaysDrift {
+        count: drifting.len(),
+        first_hz: drift.first_hz,
+        last_hz: drift.last_hz,
+        intervals: change(worst).abs() / half(worst).max(f64::MIN_POSITIVE),
+    });
+    if no_single && 2 * drifting.len() > decays.len() {
+        result.fits = Some(false);
+        if let Some(estimate) = &mut result.parameters.natural_frequency_hz {
+            estimate.status = Status::Weak;
+            estimate.note = Some(Note::Drifts);
+        }
+    }
+}
+
+/// Whether the frequency of a decay drifts significantly.
+fn drifts(decay: &Decay) -> bool {
+    decay.drift.is_some_and(|d| d.z_score().abs() > DRIFTS)
+}
+
+/// What a significant drift leaves open of the frequency, Hz: it is anywhere between its ends.
+fn drift_error_hz(decay: &Decay) -> f64 {
+    match decay.drift.filter(|_| drifts(decay)) {
+        Some(drift) => (drift.last_hz - drift.first_hz).abs() / 12f64.sqrt(),
+        None => 0.0,
+    }
 }
 
 /// Weighted mean with the greater of inner and outer standard error.

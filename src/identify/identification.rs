@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::identify::diagnostics::contact_law::ContactLaw;
+use crate::identify::diagnostics::structure::ImpactGroups;
 use crate::identify::estimate::{Estimate, ParameterSet};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::fit::{Fit, FitReport};
@@ -36,6 +37,9 @@ pub struct MethodResult {
     /// How R depends on the approach speed; of impacts alone.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub contact_law: Option<ContactLaw>,
+    /// R of each bounce and of each record; of records without a drive alone.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub impact_groups: Option<ImpactGroups>,
     /// R by plain least squares on the midpoints of the saddle-node brackets; of boundaries alone.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub restitution_by_midpoints: Option<Estimate>,

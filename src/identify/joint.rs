@@ -17,7 +17,7 @@ pub fn block(method: Method, blocks: &Blocks) -> Option<&dyn Block> {
         Method::Boundaries => Some(&blocks.boundary),
         Method::Impacts => Some(&blocks.impact),
         Method::Flights => Some(&blocks.flight),
-        Method::FreeDecay | Method::PublishedSpeeds => None,
+        Method::FlightTimes | Method::FreeDecay | Method::PublishedSpeeds => None,
     }
 }
 

@@ -25,6 +25,8 @@ pub enum Method {
     Boundaries,
     /// Multiple shooting: records followed from impact to impact.
     Flights,
+    /// Times between impacts under a constant force.
+    FlightTimes,
     /// Free decays.
     FreeDecay,
     /// Speeds at impacts.
@@ -62,6 +64,7 @@ impl Message for Method {
         match self {
             Self::Boundaries => "Boundaries",
             Self::Flights => "Multiple shooting",
+            Self::FlightTimes => "Flight times",
             Self::FreeDecay => "Free decay",
             Self::Impacts => "Speeds at impact",
             Self::PublishedSpeeds => "Published speeds",
@@ -74,6 +77,7 @@ impl Message for Method {
         match self {
             Self::Boundaries => "Grenzen",
             Self::Flights => "Mehrfachschießen",
+            Self::FlightTimes => "Flugzeiten",
             Self::FreeDecay => "Ausschwingen",
             Self::Impacts => "Einzelne Stöße",
             Self::PublishedSpeeds => "Veröffentlichte Geschwindigkeiten",

@@ -211,7 +211,7 @@ fn deflection_guess(blocks: &Blocks, unit: &Parameters) -> f64 {
 
 /// R alone from the speeds at impacts, with the corners of the velocities' high-pass as nuisances.
 pub fn impacts(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
-    if blocks.impact.pairs.len() < 3 {
+    if blocks.impact.pairs.len() < blocks.impact.fewest() {
         return None;
     }
     let list: Vec<(&dyn Block, f64)> = vec![(&blocks.impact, 1.0)];

@@ -11,6 +11,7 @@ pub mod diagnostics;
 pub mod estimate;
 pub mod evidence;
 pub mod fit;
+pub mod flight_times;
 mod identification;
 pub mod joint;
 pub mod messages;

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::identify::diagnostics::{contact_law, verdict};
-use crate::identify::evidence::impacts::SpeedPair;
+use crate::identify::diagnostics::{contact_law, momentum, structure, verdict};
+use crate::identify::evidence::impacts::{ImpactBlock, SpeedPair};
 use crate::identify::evidence::{Blocks, Evidence, impact_bias};
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
@@ -51,12 +51,20 @@ pub fn impacts(
     if let Some(estimate) = &mut result.parameters.restitution {
         widen(
             estimate,
-            fit.map_or(0.0, |fit| impact_bias(&fit.parameters)),
+            fit.map_or(0.0, |fit| impact_bias(&fit.parameters))
+                .hypot(block.common_error()),
         );
     }
     result.remarks.extend(outlying(blocks, evidence));
+    result
+        .remarks
+        .extend(momentum::momentum(block, evidence).map(|m| m.0));
     result.contact_law = contact_law::contact_law(block);
-    verdict::judge_impacts(&mut result, block, evidence);
+    let ratios = structure::ratios(block, &blocks.impact_outliers, evidence.observations);
+    if !ratios.is_empty() {
+        result.impact_groups = Some(structure::groups(&ratios, evidence.observations));
+    }
+    verdict::judge_impacts(&mut result, block, evidence, structure::structure(&ratios));
     result
 }
 
@@ -169,15 +177,16 @@ fn by_midpoints(estimate: &Estimate) -> Option<Remark> {
     })
 }
 
-/// The joint result; without a joint fit, what the free decays determine.
+/// The joint result; without a joint fit, what the free decays or the flight times determine.
 pub fn joint(
     evidence: &Evidence<'_>,
     attempt: Option<&FitResult>,
     methods: &BTreeMap<Method, MethodResult>,
 ) -> MethodResult {
     let Some(attempt) = attempt else {
-        let only = methods.get(&Method::FreeDecay);
-        return only.cloned().unwrap_or_default();
+        let of = |method| methods.get(&method).cloned();
+        let only = of(Method::FreeDecay).or_else(|| of(Method::FlightTimes));
+        return only.unwrap_or_default();
     };
     let tells: Vec<Coordinate> = match attempt {
         Ok(found) => found.fit.free.clone(),
@@ -187,6 +196,29 @@ pub fn joint(
     let records = observations.filter(|o| !o.excluded()).count();
     let observations = attempt.as_ref().map_or(0, |f| f.fit.residuals);
     methods::result(attempt, &tells, observations, records)
+}
+
+/// Widen a joint R that rests on impacts between free flights by what their errors have in common.
+pub fn widen_common(joint: &mut MethodResult, block: &ImpactBlock) {
+    let common = block.common_error();
+    let Some(estimate) = joint
+        .parameters
+        .restitution
+        .as_mut()
+        .filter(|_| common > 0.0)
+    else {
+        return;
+    };
+    let (Some(value), Some(error), Some([low, high])) =
+        (estimate.value, estimate.standard_error, estimate.interval95)
+    else {
+        return;
+    };
+    // An interval that ends at 0 or 1 has its width on the other side.
+    let half = (value - low).max(high - value);
+    let half = half.hypot(estimate::NORMAL_975 * common);
+    estimate.standard_error = Some(error.hypot(common));
+    estimate.interval95 = Some([(value - half).max(0.0), (value + half).min(1.0)]);
 }
 
 /// Add a systematic part to the standard error of R.

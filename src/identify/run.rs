@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::identify::diagnostics::agreement::{agreement, between_methods};
 use crate::identify::diagnostics::beyond;
+use crate::identify::diagnostics::momentum;
 use crate::identify::diagnostics::suspicion::{self, OddGap};
 use crate::identify::diagnostics::swapped_channels;
 use crate::identify::diagnostics::verdict::{self, Basis};
@@ -19,7 +20,7 @@ use crate::identify::selection::{Influential, Selection};
 use crate::identify::uncertainty::budget;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
-use crate::identify::{decay, estimate, results};
+use crate::identify::{decay, estimate, flight_times, results};
 use crate::motion::Observation;
 
 /// Identify from observations and brackets, as records of one specimen.
@@ -99,8 +100,14 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
     }
     fits = run.without_influential(fits);
     suspicions.extend(run.other_suspicions(&fits));
+    let of_masses = momentum::momentum(&run.selection.blocks.impact, evidence);
+    suspicions.extend(of_masses.and_then(|m| m.1));
     let methods = run.results(&fits);
     let mut joint = results::joint(evidence, fits.joint.as_ref(), &methods);
+    if observations_are_undriven(evidence) {
+        results::widen_common(&mut joint, &run.selection.blocks.impact);
+        verdict::carry_over(&mut joint, &methods);
+    }
     let beyond = succeeded(&fits.joint).map_or_else(Vec::new, beyond::beyond);
     let agreement = match beyond.is_empty() {
         true => agreement(&methods),
@@ -136,6 +143,11 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         }),
         specimens: BTreeMap::new(),
     }
+}
+
+/// Whether no record has a drive, so that R rests on the impacts alone.
+fn observations_are_undriven(evidence: &Evidence<'_>) -> bool {
+    evidence.observations.iter().all(|o| o.drive.is_none())
 }
 
 /// The results of all methods but one.
@@ -463,6 +475,8 @@ impl IdentificationRun<'_> {
                 .as_ref()
                 .map(|a| (Method::Flights, results::flights(blocks, a))),
             decay::pooled(self.evidence.observations).map(|result| (Method::FreeDecay, result)),
+            flight_times::pooled(self.evidence.observations)
+                .map(|result| (Method::FlightTimes, result)),
         ];
         found.into_iter().flatten().collect()
     }

@@ -9,6 +9,7 @@ use crate::identify::evidence::{Blocks, Evidence};
 use crate::identify::fit::normal::Normal;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::fit::{Problem, mean_squares};
+use crate::identify::flight_times;
 use crate::identify::messages::{Item, LeftOut, Reason};
 use crate::identify::method::Method;
 use crate::identify::methods::{self, FitResult};
@@ -277,6 +278,7 @@ impl<'a> Selection<'a> {
                 Method::Boundaries
                 | Method::Impacts
                 | Method::Flights
+                | Method::FlightTimes
                 | Method::FreeDecay
                 | Method::PublishedSpeeds => others.extend(part),
             }
@@ -369,6 +371,13 @@ impl<'a> Selection<'a> {
                 .iter()
                 .map(|r| r.observation)
                 .collect(),
+            Method::FlightTimes => {
+                let indexed = observations.iter().enumerate();
+                indexed
+                    .filter(|(_, o)| !o.excluded() && flight_times::is_timed(o))
+                    .map(|(i, _)| i)
+                    .collect()
+            }
             Method::FreeDecay => {
                 let indexed = observations.iter().enumerate();
                 indexed

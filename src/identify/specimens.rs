@@ -2,7 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::identify::estimate::Status;
 use crate::identify::evidence::Evidence;
+use crate::identify::fit::parameters::Coordinate;
 use crate::identify::identification::{
     Agreement, Identification, MethodResult, SpecimenResult, Verdict, VerdictKind,
 };
@@ -115,12 +117,33 @@ impl Whole {
         self.results.insert(name.to_owned(), result);
     }
 
+    /// How many specimens the model fits, and in how many each parameter is poorly known.
+    fn judged(&self) -> Vec<Sentence> {
+        let fits = |r: &&SpecimenResult| {
+            matches!(r.verdict.kind, VerdictKind::Identified | VerdictKind::Weak)
+        };
+        let fitting = self.results.values().filter(fits).count();
+        let poorly = Coordinate::PHYSICAL.into_iter().filter_map(|parameter| {
+            let weak = |r: &&SpecimenResult| {
+                let estimate = r.joint.parameters.get(parameter);
+                estimate.is_some_and(|e| e.status == Status::Weak)
+            };
+            let count = self.results.values().filter(fits).filter(weak).count();
+            (count > 0).then_some(Sentence::SpecimensPoorlyKnown { parameter, count })
+        });
+        let count = self.results.len();
+        std::iter::once(Sentence::SpecimensFit { fitting, count })
+            .chain(poorly)
+            .collect()
+    }
+
     /// The campaign's own result: the worst of the verdicts, no parameters.
     fn identification(self, misfiled: &[LeftOut]) -> Identification {
         let kinds = self.results.values().map(|r| r.verdict.kind);
         let mut sentences = vec![Sentence::Specimens {
             count: self.results.len(),
         }];
+        sentences.extend(self.judged());
         if !misfiled.is_empty() {
             let count = misfiled.len();
             sentences.push(Sentence::MisfiledRecords { count });

@@ -216,14 +216,18 @@ pub fn scale_drives(observations: &mut [Observation]) {
 /// Relative change of the measured drive amplitude from which it counts.
 const DRIVE_CHANGES: f64 = 5e-3;
 
-/// Free decay of the first motion channel that shows one.
+/// Free decay of the motion channels of mass x, else of mass y, each with its noise.
 fn free_decay(record: &Record) -> Option<Decay> {
-    Role::ALL
-        .into_iter()
-        .filter(|role| role.is_motion())
-        .filter_map(|role| record.values(role))
-        .filter(|values| values.iter().all(|v| v.is_finite()))
-        .find_map(|values| decay::fit(values, record.sample_rate_hz))
+    let of_mass = |y: bool| {
+        let channels: Vec<&[f64]> = Role::ALL
+            .into_iter()
+            .filter(|role| role.is_motion() && role.is_of_y() == y)
+            .filter_map(|role| record.values(role))
+            .filter(|values| values.iter().all(|v| v.is_finite()))
+            .collect();
+        decay::fit_channels(&channels, record.sample_rate_hz)
+    };
+    of_mass(false).or_else(|| of_mass(true))
 }
 
 fn contact_flag(record: &Record, impacts: &[Impact], unsupported: usize) -> Option<Flag> {

@@ -1,10 +1,20 @@
 //! Why the pipeline stops, and how it reports its progress.
 
+use crate::record::Flag;
 use labfiles::ReadError;
 use labfiles::output::OutputError;
 
 /// Called with the stage, the steps done and the total steps.
 pub type Progress<'a> = &'a (dyn Fn(&'static str, u64, u64) + Sync);
+
+/// A record that cannot be used, with the flags that say why.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RefusedRecord {
+    /// Its name.
+    pub record: String,
+    /// Its flags.
+    pub flags: Vec<Flag>,
+}
 
 /// Why the pipeline stopped.
 #[derive(Debug, thiserror::Error)]
@@ -32,8 +42,8 @@ pub enum PipelineError {
         reason: String,
     },
     /// No record of the campaign could be used.
-    #[error("none of the {0} records can be used")]
-    NothingUsable(usize),
+    #[error("none of the {} records can be used", .0.len())]
+    NothingUsable(Vec<RefusedRecord>),
     /// A template, a table of words or a logo could not be read.
     #[error("{path}: {reason}")]
     ReportFile {
@@ -63,10 +73,7 @@ impl PipelineError {
                 "run the previous stage again; the stages are ingest, classify, identify, report"
                     .to_owned()
             }
-            Self::NothingUsable(_) => {
-                "run `impactid check` on the campaign; it lists what is wrong with each record"
-                    .to_owned()
-            }
+            Self::NothingUsable(_) => "fix what is wrong with the records, as listed".to_owned(),
             Self::ReportFile { .. } => {
                 "check path and content of the template, the words and the logo, or leave them out"
                     .to_owned()

@@ -23,6 +23,6 @@ mod table;
 pub mod tables;
 pub mod theory;
 
-pub use error::{PipelineError, Progress};
+pub use error::{PipelineError, Progress, RefusedRecord};
 pub use observed::Observed;
 pub use run::{Completed, Destination, run};

@@ -8,8 +8,7 @@ use rayon::prelude::*;
 
 use crate::campaign::check::by_file;
 use crate::campaign::resolved::{RecordEntry, ResolvedCampaign};
-use crate::event::DetectSettings;
-use crate::motion::{ClassifySettings, Observation, observe};
+use crate::motion::{Observation, observe};
 use crate::pipeline::Progress;
 use crate::pipeline::checkpoint::Checkpoint;
 use crate::record::calibrate::{calibrate, unreadable};
@@ -17,23 +16,6 @@ use crate::record::{Flag, FlagCode, Record};
 use labfiles::open;
 use labfiles::output::OutputError;
 use labfiles::{ReadError, Source};
-
-/// Settings of the detection as the campaign has them.
-fn detect_settings(campaign: &ResolvedCampaign) -> DetectSettings {
-    DetectSettings {
-        flight: campaign.flight,
-        ..DetectSettings::default()
-    }
-}
-
-/// Settings of the classification as the campaign has them.
-fn classify_settings(campaign: &ResolvedCampaign) -> ClassifySettings {
-    ClassifySettings {
-        most_periods: campaign.analysis.longest_period_n,
-        most_impacts: campaign.analysis.most_impacts_p,
-        ..ClassifySettings::default()
-    }
-}
 
 /// Most records of a campaign whose folded waveforms are kept. Of more records those of every
 /// second, third … are kept, so that memory does not grow with them: thousands of waveforms
@@ -112,13 +94,12 @@ fn observe_some(
     cache: &SourceCache,
     each: &(dyn Fn() + Sync),
 ) -> Vec<Observation> {
-    let settings = classify_settings(campaign);
+    let (detect, settings) = (campaign.detect_settings(), campaign.classify_settings());
     let stride = campaign.records.len().div_ceil(MOST_WAVEFORMS).max(1);
     let parts: Vec<Vec<Observation>> = by_file(entries)
         .into_par_iter()
         .map(|entries| {
             records_of(campaign, entries, cache, |entry, record| {
-                let detect = detect_settings(campaign);
                 let mut observation = observe(&record, campaign.machine, &detect, &settings);
                 if !entry.setting.sequence.is_multiple_of(stride) {
                     observation.folded = None;

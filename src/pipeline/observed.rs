@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::checkpoint::{self, Checkpoint};
-use super::error::{PipelineError, Progress};
+use super::error::{PipelineError, Progress, RefusedRecord};
 use super::observe;
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::motion::{Bracket, Observation, brackets, scale_drives};
@@ -45,7 +45,11 @@ impl Observed {
     fn from_observations(mut observations: Vec<Observation>) -> Result<Self, PipelineError> {
         scale_drives(&mut observations);
         if observations.iter().all(Observation::excluded) {
-            return Err(PipelineError::NothingUsable(observations.len()));
+            let refused = observations.into_iter().map(|o| RefusedRecord {
+                record: o.record,
+                flags: o.flags,
+            });
+            return Err(PipelineError::NothingUsable(refused.collect()));
         }
         let brackets = brackets(&observations);
         Ok(Self {

@@ -8,11 +8,11 @@ use crate::motion::{Observation, brackets};
 use crate::pipeline::identify::IdentificationFile;
 use crate::pipeline::json::{read_json, store_error, write_json};
 use crate::pipeline::observe::each_record;
-use crate::pipeline::{Observed, PipelineError, Progress, gzip_json};
+use crate::pipeline::{Observed, PipelineError, Progress, RefusedRecord, gzip_json};
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
-use crate::record::{Flag, Record, Role};
+use crate::record::{ContactContent, Flag, Record, Role};
 use labfiles::hdf5_write::{CampaignWriter, ColumnToWrite, RecordTable};
-use labfiles::units::{Quantity, Unit};
+use labfiles::units::{Dimension, Quantity, Unit};
 
 const RESOLVED: &str = "campaign.resolved.json";
 const INGESTED: &str = "ingested.h5";
@@ -65,7 +65,12 @@ pub fn ingest(
         ..
     } = writer.finish()?;
     if entries.iter().all(|e| e.dataset.is_none()) {
-        return Err(PipelineError::NothingUsable(entries.len()));
+        let refused = entries.into_iter().zip(flags);
+        let refused = refused.map(|(entry, flags)| RefusedRecord {
+            record: entry.id,
+            flags,
+        });
+        return Err(PipelineError::NothingUsable(refused.collect()));
     }
     write_resolved(campaign, out)?;
     let ingested = Ingested {
@@ -189,6 +194,10 @@ fn note_roles(roles: &mut Vec<ChannelSetup>, record: &Record) {
                     dimension: channel.dimension,
                 })
                 .filter(|_| channel.role == Role::Contact),
+            content: match (channel.role, channel.dimension) {
+                (Role::Contact, Dimension::Time) => ContactContent::Times,
+                _ => ContactContent::Signal,
+            },
             ..ChannelSetup::plain(channel.role, key)
         });
     }

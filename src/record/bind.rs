@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Flag, FlagCode, Role};
+use super::{ContactContent, Flag, FlagCode, Role};
 use labfiles::units::{self, Dimension, Quantity, Scale, Unit};
 use labfiles::{ChannelInfo, DatasetInfo};
 
@@ -85,6 +85,9 @@ pub struct ChannelSetup {
     pub range: Option<f64>,
     /// Use `unit` although the file states another.
     pub ignore_file_unit: bool,
+    /// What the contact's channel contains.
+    #[serde(default)]
+    pub content: ContactContent,
     /// What recorded it, in words.
     #[serde(default)]
     pub instrument: Option<String>,
@@ -106,6 +109,7 @@ impl ChannelSetup {
             threshold: None,
             range: None,
             ignore_file_unit: false,
+            content: ContactContent::Signal,
             instrument: None,
         }
     }
@@ -191,6 +195,11 @@ fn settle_unit(setup: &ChannelSetup, info: &ChannelInfo) -> Result<Unit, Flag> {
         }
         (Some(ours), _) => Ok(ours),
         (None, Some(theirs)) => Ok(theirs),
+        // The loudness of a sound has no bearing on when it begins.
+        (None, None) if setup.content == ContactContent::Sound => Ok(Unit {
+            dimension: Dimension::Number,
+            to_si: 1.0,
+        }),
         (None, None) => Err(without_unit(setup, info, stated)),
     }
 }
@@ -261,7 +270,10 @@ fn check_dimension(setup: &ChannelSetup, info: &ChannelInfo, found: Dimension) -
         let remedy = format!("correct unit and scale in [channels.{}]", role.name());
         Err(flag(setup, &info.name, FlagCode::WrongUnit, what, &remedy))
     };
+    let list = setup.content.is_list();
     match role.dimension() {
+        None if list && found != Dimension::Time => return wrong("a time, as of impacts"),
+        None if list => return Ok(()),
         Some(expected) if found != expected => return wrong(&format!("a {}", expected.name())),
         None if !serves(role, found) => return wrong("a quantity that serves there"),
         _ => {}

@@ -4,8 +4,8 @@
 use super::bind::flag;
 pub use super::bind::{Bound, ChannelKey, ChannelSetup, bind};
 use super::time_axis::{self, TimeAxis};
-use super::{Channel, Flag, FlagCode, Record, Setting};
-use super::{condition, consistency};
+use super::{Channel, ContactContent, Flag, FlagCode, Record, Role, Setting};
+use super::{condition, consistency, events};
 use crate::signal::whole;
 use labfiles::{ChannelInfo, DatasetInfo, ReadError, Samples, Source};
 
@@ -116,7 +116,7 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
     };
     let bound = bind_all(setup, dataset, &mut record.flags);
     let axis = match time_axis::find(setup.time, dataset) {
-        Ok(axis) => axis,
+        Ok(axis) => axis.or_else(|| frames(setup, dataset)),
         Err(flag) => {
             record.flags.push(flag);
             None
@@ -132,8 +132,23 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
         }
     };
     let times = axis.and_then(|index| seconds(samples.pop(), dataset, index));
+    let times = match (
+        axis.filter(|i| time_axis::counts_frames(dataset, *i)),
+        setup.sample_rate_hz,
+    ) {
+        (Some(_), Some(rate_hz)) => times.map(|t| t.iter().map(|n| n / rate_hz).collect()),
+        _ => times,
+    };
     let ranges = scale_all(&mut record, dataset, &bound, samples);
+    if is_list(setup) {
+        events::settle(&mut record, content(setup));
+        return record;
+    }
     settle(&mut record, setup, dataset, &bound, times);
+    if content(setup) != ContactContent::Signal {
+        events::settle(&mut record, content(setup));
+        return record;
+    }
     condition::inspect(&mut record, &ranges, setup.driven);
     if !record.excluded() {
         let flags = consistency::inspect(&record);
@@ -141,6 +156,23 @@ pub fn calibrate(source: &dyn Source, setup: &RecordSetup<'_>) -> Record {
     }
     skip(&mut record, setup.skip_s);
     record
+}
+
+/// What the channel of the contact contains.
+fn content(setup: &RecordSetup<'_>) -> ContactContent {
+    let contact = setup.channels.iter().find(|c| c.role == Role::Contact);
+    contact.map_or(ContactContent::Signal, |c| c.content)
+}
+
+/// Whether the rows of the dataset are impacts, not samples.
+fn is_list(setup: &RecordSetup<'_>) -> bool {
+    content(setup).is_list()
+}
+
+/// A column that counts a camera's frames, if the rate of the frames is stated: it shows lost ones.
+fn frames(setup: &RecordSetup<'_>, dataset: &DatasetInfo) -> Option<usize> {
+    setup.sample_rate_hz?;
+    (0..dataset.channels.len()).find(|i| time_axis::counts_frames(dataset, *i))
 }
 
 fn no_dataset(source: &dyn Source, index: usize) -> Flag {
@@ -260,7 +292,12 @@ fn settle_rate(
     let stated = stated_rate(record, dataset, bound);
     let rate = sample_rate_hz.or(stated).or(setup.sample_rate_hz);
     match rate.filter(|r| r.is_finite() && *r > 0.0) {
-        Some(rate) => record.sample_rate_hz = rate,
+        Some(rate) => {
+            record.sample_rate_hz = rate;
+            record
+                .flags
+                .extend(contradicting_step(rate, dataset, bound));
+        }
         None => record.flags.push(Flag::new(
             FlagCode::NoSampleRate,
             None,
@@ -268,6 +305,32 @@ fn settle_rate(
             "write sample_rate = \"2 kHz\" or time = \"…\" in [records]",
         )),
     }
+}
+
+/// Relative difference of rates that rounding of a printed step does not explain.
+const RATES_DIFFER: f64 = 5e-3;
+
+/// A step that a file states beside a time axis of another step.
+fn contradicting_step(
+    rate_hz: f64,
+    dataset: &DatasetInfo,
+    bound: &[BoundRole<'_>],
+) -> Option<Flag> {
+    let stated = bound.iter().find_map(|(_, b)| {
+        let text = dataset.channels[b.index].properties.get("Delta_X")?;
+        text.replace(',', ".").trim().parse::<f64>().ok()
+    });
+    let step_s = stated.filter(|s| s.is_finite() && *s > 0.0)?;
+    if (step_s * rate_hz - 1.0).abs() < RATES_DIFFER {
+        return None;
+    }
+    let found = format!(
+        "the header states a step of {step_s} s (Delta_X), the time channel has {:.6} s: the channel is \
+         used",
+        1.0 / rate_hz
+    );
+    let remedy = "check which of the two is right; without the time channel the step would be used";
+    Some(Flag::new(FlagCode::RateContradicts, None, found, remedy).excluding(false))
 }
 
 /// The rate that the file states for the channels; a flag if they differ.
@@ -317,7 +380,6 @@ fn all_skipped(duration_s: f64, skip_s: f64) -> Flag {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::Role;
 
     /// A table of two columns, as a Record whose time axis is the first.
     fn record(times_s: impl Iterator<Item = f64>) -> Record {

@@ -119,7 +119,8 @@ pub(super) fn inspect(record: &mut Record, ranges: &[Option<f64>], driven: bool)
             .or_else(|| clipped(channel, *range));
         flags.extend(found.map(|f| lenient(channel.role, f)));
     }
-    if flags.is_empty() {
+    if flags.is_empty() && driven {
+        // Without a drive a body comes to rest.
         flags.extend(held(record));
     }
     record.flags.extend(flags);
@@ -240,8 +241,12 @@ fn at_rails(channel: &Channel, low: f64, high: f64, step: f64) -> usize {
     }
 }
 
-/// Number of samples in runs at a rail that were entered and left by more than a crest's steps.
+/// Number of samples in runs at a rail that were entered and left in motion, by more than a crest's
+/// steps. A body at rest is no rail: at zero, or before or after its motion.
 fn at_rail(values: &[f64], rail: f64, step: f64) -> usize {
+    if rail == 0.0 {
+        return 0;
+    }
     let mut count = 0;
     let mut start = 0;
     while start < values.len() {
@@ -253,7 +258,7 @@ fn at_rail(values: &[f64], rail: f64, step: f64) -> usize {
         let end = start + length;
         let steep = |i: Option<usize>| {
             i.and_then(|i| values.get(i))
-                .is_none_or(|v| (v - rail).abs() > 3.0 * step)
+                .is_some_and(|v| (v - rail).abs() > 3.0 * step)
         };
         if length >= 3 && steep(start.checked_sub(1)) && steep(Some(end)) {
             count += length;
@@ -325,6 +330,29 @@ mod tests {
         assert_eq!(code(&gap), Some(FlagCode::NotANumber));
         // A sine cut at 0.9 stays there for 18 samples of every crest: 2 · 0.451/0.05.
         assert_eq!(code(&|i| sine(i).clamp(-0.9, 0.9)), Some(FlagCode::Clipped));
+    }
+
+    #[test]
+    fn a_cart_at_rest_is_not_clipped() {
+        // It rests at zero for a third of the record, is pushed to 0.5 m/s, and stands still at the end.
+        let speed = |i: usize| match i {
+            i if i < 330 => 0.0,
+            i if i < 360 => (i - 330) as f64 / 60.0,
+            i if i < 800 => 0.5 - 1e-4 * (i - 360) as f64,
+            _ => 0.0,
+        };
+        assert_eq!(inspected(record(speed), &[None, None]), []);
+        // Turned around, zero is its greatest value.
+        assert_eq!(inspected(record(|i| -speed(i)), &[None, None]), []);
+        // An accelerometer that rests off zero before a blow and after it.
+        let blow = |i: usize| {
+            if (400..420).contains(&i) {
+                sine(7 * i)
+            } else {
+                -1.1
+            }
+        };
+        assert_eq!(inspected(record(blow), &[None, None]), []);
     }
 
     #[test]

@@ -91,6 +91,8 @@ flag_codes! {
     TimeNotUniform = "time_not_uniform", "time not uniform", "Zeit nicht gleichmäßig",
     /// No sample rate is known.
     NoSampleRate = "no_sample_rate", "no sample rate", "keine Abtastrate",
+    /// The rate that the file states is not that of its time axis.
+    RateContradicts = "rate_contradicts", "rate contradicts", "Abtastrate widerspricht",
     /// The channels differ in sample rate.
     UnequalSampleRates = "unequal_sample_rates", "unequal sample rates", "ungleiche Abtastraten",
     /// Channels of the two masses are swapped.
@@ -105,6 +107,18 @@ flag_codes! {
     DriveFrequencyContradicts = "drive_frequency_contradicts", "drive frequency contradicts", "Erregerfrequenz widerspricht",
     /// Jumps of the approach velocity go up.
     JumpsPointTheWrongWay = "jumps_point_the_wrong_way", "jumps point the wrong way", "Sprünge in falscher Richtung",
+    /// A channel is positive away from the stop or the other mass; the record was turned around.
+    MeasuredAway = "measured_away", "measured away", "in Gegenrichtung gemessen",
+    /// Two masses fly freely and one alone is measured.
+    OneMassAlone = "one_mass_alone", "one mass alone", "nur eine Masse",
+    /// Part of the approach before an impact is no free flight.
+    ApproachCut = "approach_cut", "approach cut", "Anflug gekürzt",
+    /// Falls of the velocity without a free flight beside them.
+    NoFreeFlight = "no_free_flight", "no free flight", "kein freier Flug",
+    /// An impact's approach speed would be above any that was measured.
+    SpeedNeverMeasured = "speed_never_measured", "speed never measured", "nie gemessene Geschwindigkeit",
+    /// Under constant force no impact was found.
+    NoImpact = "no_impact", "no impact", "kein Stoß",
     /// No free decay was found.
     NoFreeDecay = "no_free_decay", "no free decay", "kein Ausschwingen",
     /// Contact pulses without a jump of velocity, of a record that is identified.

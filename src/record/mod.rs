@@ -8,6 +8,7 @@ mod bind;
 pub mod calibrate;
 mod condition;
 pub mod consistency;
+mod events;
 mod flag;
 pub mod time_axis;
 
@@ -15,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use labfiles::units::Dimension;
 
+pub use events::ContactContent;
 pub use flag::{Flag, FlagCode};
 
 /// What a channel measures on the rig.

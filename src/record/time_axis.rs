@@ -52,6 +52,22 @@ fn by_name(dataset: &DatasetInfo) -> Option<usize> {
     })
 }
 
+/// Whether a channel counts the frames of a camera.
+pub(super) fn counts_frames(dataset: &DatasetInfo, index: usize) -> bool {
+    let info = &dataset.channels[index];
+    let name = units::split_unit(&info.name).0.trim().to_lowercase();
+    let named = [
+        "frame",
+        "frames",
+        "frame number",
+        "frame no",
+        "image",
+        "bild",
+        "slice",
+    ];
+    info.unit.is_none() && named.contains(&name.as_str())
+}
+
 /// Factor to seconds of a time axis from its unit or its name (`time_ms`); 1 if neither states it.
 pub fn seconds_per_unit(dataset: &DatasetInfo, index: usize) -> f64 {
     let info = &dataset.channels[index];

@@ -194,14 +194,14 @@ mod tests {
             decimal_comma: true,
             catalog: Some(Catalog::german()),
         };
-        let remark = Remark::DecaysUnexplained { share: 0.0123 };
+        let remark = Remark::WaveformsUnexplained { share: 0.0123 };
         assert_eq!(
             german.sentence(&remark),
-            "Die Ausschwingversuche lassen 1,2 % des Signals unerklärt."
+            "Die simulierten Verläufe lassen 1,23 % der gemessenen unerklärt."
         );
         assert_eq!(
             Locale::default().sentence(&remark),
-            "The decays leave 1.2 % of the signal unexplained."
+            "The simulated waveforms leave 1.23 % of the measured ones unexplained."
         );
         let note = Note::SolverFailed {
             report: "a$b".into(),

@@ -83,6 +83,20 @@ impl LocalFit {
         let row = DVector::from_fn(self.coefficients.len(), |k, _| {
             u.powi(i32::try_from(k).unwrap_or(i32::MAX))
         });
+        self.spread(&row)
+    }
+
+    /// Standard error of the slope per step at a time, per unit of noise deviation.
+    pub fn slope_error_factor(&self, time: f64) -> f64 {
+        let u = (time - self.origin) / self.scale;
+        let row = DVector::from_fn(self.coefficients.len(), |k, _| match k {
+            0 => 0.0,
+            _ => k as f64 * u.powi(i32::try_from(k).unwrap_or(i32::MAX) - 1),
+        });
+        self.spread(&row) / self.scale
+    }
+
+    fn spread(&self, row: &DVector<f64>) -> f64 {
         (row.transpose() * &self.covariance * row)[(0, 0)]
             .max(0.0)
             .sqrt()

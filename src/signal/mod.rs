@@ -6,6 +6,7 @@ pub mod decay;
 pub mod drift;
 pub mod interpolation;
 pub mod local_fit;
+pub mod onsets;
 pub mod robust;
 mod spectrum;
 pub mod tone;

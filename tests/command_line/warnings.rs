@@ -106,3 +106,23 @@ fn messages_alike_but_for_a_number_are_one_with_its_range() {
         );
     }
 }
+
+#[test]
+fn run_states_why_no_record_can_be_used_as_check_does() {
+    let lab = Lab::new();
+    for name in ["r1.csv", "r2.csv", "r3.csv"] {
+        lab.column(name, 3, |_, _| "0.1".into());
+    }
+    let checked = lab.run(&["check", "campaign.toml"]);
+    let ran = lab.run(&["run", "campaign.toml", "--out", "out"]);
+    assert_eq!((checked.code, ran.code), (2, 2), "{}", ran.said);
+    assert!(
+        ran.said.contains("none of the 3 records can be used"),
+        "{}",
+        ran.said
+    );
+    for said in [&checked.said, &ran.said] {
+        assert!(said.contains("channel 'vx' is constant"), "{said}");
+        assert!(said.contains("in 3 records: r1, r2, r3"), "{said}");
+    }
+}

@@ -2,6 +2,8 @@
 //! bounces on a stop. They are not part of the repository, so these tests run by name only
 //! (`cargo test -- --ignored real_data`).
 
+mod free_flights;
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;

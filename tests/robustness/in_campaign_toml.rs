@@ -289,9 +289,17 @@ fn channels() -> Vec<Case> {
             ],
         ),
         refused(
-            "a constant force on two masses",
-            |lab| lab.edit("\"harmonic\"", "\"constant_force\""),
-            &["campaign.flight", "set machine = \"single\""],
+            "times of impacts of a driven rig",
+            |lab| {
+                lab.edit(
+                    "channel = \"contact\"\n",
+                    "channel = \"contact\"\ncontent = \"times\"\n",
+                )
+            },
+            &[
+                "channels.contact.content",
+                "set flight = \"constant_force\"",
+            ],
         ),
     ]
 }

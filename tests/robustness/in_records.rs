@@ -222,7 +222,7 @@ fn files() -> Vec<Case> {
             &[
                 "r2.csv: it holds 99",
                 "the usual record 2000",
-                "copy the file again",
+                "stopped early",
             ],
         ),
     ]

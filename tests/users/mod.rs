@@ -1,6 +1,8 @@
 //! What a new user does: the commands of the tutorial as written, the script that reads the
 //! results, the manual pages and the shell completions.
 
+mod experiments;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -26,10 +26,17 @@ use crate::text::table::{self, Kind, Layout};
 /// Bytes at the front of a file from which its dialect is found.
 const HEAD_BYTES: usize = 1 << 16;
 
-struct CsvReader {
+pub(crate) struct CsvReader {
     text: TextFile,
     layout: Layout,
     rows: usize,
+}
+
+/// A table of text that was opened.
+pub(crate) struct OpenedTable {
+    pub(crate) dataset: DatasetInfo,
+    pub(crate) notes: Vec<String>,
+    pub(crate) reader: CsvReader,
 }
 
 /// Open a text table.
@@ -37,7 +44,21 @@ struct CsvReader {
 /// # Errors
 /// If the file cannot be read, is empty, or no separator makes a table of numbers of it.
 pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
-    let text = TextFile::open(path)?;
+    let table = open_text(TextFile::open(path)?, "")?;
+    Ok(Box::new(Opened {
+        format: "csv",
+        path: path.to_path_buf(),
+        datasets: vec![table.dataset],
+        notes: table.notes,
+        reader: table.reader,
+    }))
+}
+
+/// Open the table in a text, as a dataset of a name.
+///
+/// # Errors
+/// As [`open`].
+pub(crate) fn open_text(text: TextFile, name: &str) -> Result<OpenedTable, ReadError> {
     let head = text.head(HEAD_BYTES)?;
     let quotes = memchr::memchr(b'"', &head).is_some();
     let front = Front::read(&text, &head, quotes)?;
@@ -50,18 +71,19 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let axis = time_axis::find(&front.header, &layout, &rows, last_row.as_deref(), count);
     layout.names.clone_from(&front.header.names);
     notes.extend(axis.iter().flat_map(|a| a.note.clone()));
-    let dataset = dataset(front.header, &layout, count, axis.as_ref());
-    Ok(Box::new(Opened {
-        format: "csv",
-        path: path.to_path_buf(),
-        datasets: vec![dataset],
+    let dataset = DatasetInfo {
+        name: name.to_owned(),
+        ..dataset(front.header, &layout, count, axis.as_ref())
+    };
+    Ok(OpenedTable {
+        dataset,
         notes,
         reader: CsvReader {
             text,
             layout,
             rows: to_usize(count),
         },
-    }))
+    })
 }
 
 /// Refuse a table whose rows are so much shorter than its header that filling them up would

@@ -92,7 +92,16 @@ fn open_store(path: &Path) -> Result<(Store, Tree), ReadError> {
 
 impl Hdf5Reader {
     fn refused(&self, array: &Array, fault: &StoreError) -> ReadError {
-        self.error(array, fault.to_string())
+        let Some(filter) = fault.unsupported_filter() else {
+            return self.error(array, fault.to_string());
+        };
+        ReadError::new(
+            &self.path,
+            "a dataset that is packed by a filter that this program has",
+            format!("the filter {filter}"),
+            "Write it again without this filter, for example by `h5repack -f GZIP=4 IN OUT`.",
+        )
+        .channel(&array.path)
     }
 
     fn error(&self, array: &Array, found: String) -> ReadError {

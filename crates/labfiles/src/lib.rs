@@ -1,5 +1,5 @@
 //! Readers and writers of the files that vibration laboratories keep: HDF5, MATLAB (v4 to v7.3),
-//! TDMS, UFF 58, LVM, WAV, Parquet, CSV and other text tables.
+//! TDMS, UFF 58, LVM, WAV, Parquet, Excel, CSV and other text tables.
 //!
 //! [`open`] recognises a file by its first bytes and gives a [`Source`]: *datasets* (records), each
 //! a table of *channels* with name, unit, sample rate and attributes. Opening reads metadata only;
@@ -49,6 +49,7 @@ pub mod attribute;
 mod bytes;
 pub mod convert;
 mod csv;
+mod excel;
 mod hdf5;
 pub mod hdf5_write;
 mod inflate;

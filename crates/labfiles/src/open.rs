@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::bytes::{read_exact_at, to_usize};
 use crate::csv;
+use crate::excel;
 use crate::hdf5;
 use crate::lvm;
 use crate::mat;
@@ -32,6 +33,7 @@ const BY_BYTES: &[(Test, Reader)] = &[
     (uff::recognises, uff::open),
     (wav::recognises, wav::open),
     (mat::recognises, mat::open),
+    (excel::recognises, excel::open),
 ];
 
 /// Formats recognised by the file's extension if there is no signature, one line each.
@@ -132,7 +134,7 @@ fn unknown(path: &Path, front: &[u8]) -> ReadError {
     let bytes: Vec<String> = front.iter().take(8).map(|b| format!("{b:02x}")).collect();
     ReadError::new(
         path,
-        "HDF5, Parquet, MATLAB, TDMS, UFF, WAV, LVM or a text table",
+        "HDF5, Parquet, MATLAB, TDMS, UFF, WAV, LVM, Excel or a text table",
         format!("bytes {} of no known format", bytes.join(" ")),
         "Convert the file with the program that wrote it, for example to CSV.",
     )

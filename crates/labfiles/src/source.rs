@@ -117,7 +117,8 @@ pub struct ReadError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Source: Send + Sync {
-    /// Short name of the format (`hdf5`, `csv`, `lvm`, `tdms`, `uff`, `mat`, `wav`, `parquet`).
+    /// Short name of the format (`hdf5`, `csv`, `lvm`, `tdms`, `uff`, `mat`, `wav`, `parquet`,
+    /// `excel`).
     fn format(&self) -> &'static str;
 
     /// The file's path.

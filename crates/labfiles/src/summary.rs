@@ -96,6 +96,9 @@ pub struct Summary {
     /// Start of the acquisition, if the file states it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start_time: Option<String>,
+    /// First and last text of a channel of texts, shortened.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub texts: Option<[String; 2]>,
 }
 
 fn is_zero(count: &u64) -> bool {
@@ -128,13 +131,28 @@ pub fn summarise(info: &ChannelInfo, samples: &Samples) -> Summary {
         max: Number::None,
         missing: 0,
         start_time: info.start_time.clone(),
+        texts: None,
     };
     match samples {
         Samples::Real(values) => real(&mut summary, values),
         Samples::Complex(values) => complex(&mut summary, values),
-        Samples::Text(_) => {}
+        Samples::Text(values) => {
+            let ends = values.first().zip(values.last());
+            summary.texts = ends.map(|(first, last)| [first, last].map(|t| shortened(t)));
+        }
     }
     summary
+}
+
+/// Characters of a text that a summary shows.
+const SHOWN: usize = 40;
+
+fn shortened(text: &str) -> String {
+    let text = text.trim();
+    if text.chars().count() <= SHOWN {
+        return text.to_owned();
+    }
+    text.chars().take(SHOWN).chain(['…']).collect()
 }
 
 fn real(summary: &mut Summary, values: &[f64]) {

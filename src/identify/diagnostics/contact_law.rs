@@ -75,7 +75,7 @@ impl ContactLaw {
 }
 
 /// Fewest impacts from which a law is chosen.
-const FEWEST: usize = 15;
+const FEWEST: usize = 10;
 /// Difference of Bayes' criterion from which evidence is very strong.
 const VERY_STRONG: f64 = 10.0;
 /// Points of the curve.
@@ -88,7 +88,7 @@ struct Fitted {
     chi2: f64,
 }
 
-/// Choose the law of a block's impacts; `None` with fewer than fifteen.
+/// Choose the law of a block's impacts; `None` with fewer than ten.
 pub fn contact_law(block: &ImpactBlock) -> Option<ContactLaw> {
     let pairs = &block.pairs;
     if pairs.len() < FEWEST {

@@ -5,6 +5,8 @@ pub mod agreement;
 pub mod beyond;
 pub mod contact_law;
 pub mod influence;
+pub mod momentum;
+pub mod structure;
 pub mod suspicion;
 pub mod swapped_channels;
 pub mod verdict;

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::identify::diagnostics::structure::Grouping;
 use crate::identify::estimate::{Estimate, NORMAL_975, Status};
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::impacts::ImpactBlock;
@@ -10,7 +11,9 @@ use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::identification::{Agreement, MethodResult, Verdict, VerdictKind};
-use crate::identify::messages::{Finding, Note, Remark, Sentence, SpeedPoint, StatedValue};
+use crate::identify::messages::{
+    Finding, GroupPoint, Note, Remark, Sentence, SpeedPoint, StatedValue,
+};
 use crate::identify::method::Method;
 use crate::signal::robust;
 
@@ -73,9 +76,72 @@ pub fn judge_trajectories(result: &mut MethodResult, block: &TrajectoryBlock, fi
     result.remarks.push(Remark::WaveformsUnexplained { share });
 }
 
-/// Judge by the contact law whether impacts are instantaneous with one R; the records of the impacts
-/// that it rests on say how long a contact lasts.
-pub fn judge_impacts(result: &mut MethodResult, block: &ImpactBlock, evidence: &Evidence<'_>) {
+/// Judge whether impacts are instantaneous with one R: first by a structure over bounces and records,
+/// then by the contact law; the records of the impacts that it rests on say how long a contact lasts.
+pub fn judge_impacts(
+    result: &mut MethodResult,
+    block: &ImpactBlock,
+    evidence: &Evidence<'_>,
+    structure: Option<Grouping>,
+) {
+    judge_law(result, block, evidence);
+    if let Some(grouping) = structure {
+        judge_structure(result, grouping);
+    }
+}
+
+/// R that differs between bounces or records is not one number, whatever interval would hold it.
+pub fn judge_structure(result: &mut MethodResult, grouping: Grouping) {
+    let Some(groups) = &result.impact_groups else {
+        return;
+    };
+    let by = match grouping {
+        Grouping::Bounce => &groups.by_bounce,
+        Grouping::Record => &groups.by_record,
+    };
+    let points: Vec<GroupPoint> = by.iter().map(GroupPoint::of).collect();
+    let values: Vec<f64> = by.iter().map(|g| g.restitution).collect();
+    result.fits = Some(false);
+    // A law over the speed, if there is one, has been named already; it is the same structure.
+    let named = |r: &Remark| matches!(r, Remark::LongContact { .. });
+    if !result.remarks.iter().any(named) {
+        result
+            .remarks
+            .retain(|r| !matches!(r, Remark::RestitutionConstant { .. }));
+        result.remarks.push(match grouping {
+            Grouping::Bounce => Remark::RestitutionByBounce { points },
+            Grouping::Record => Remark::RecordsDiffer { points },
+        });
+    }
+    if let Some(estimate) = &mut result.parameters.restitution {
+        not_one_number(estimate, &values);
+    }
+}
+
+/// Mark R as not one number, with an interval that holds all of its values.
+fn not_one_number(estimate: &mut Estimate, values: &[f64]) {
+    estimate.status = Status::Weak;
+    estimate.note = Some(Note::NotOneNumber);
+    if let Some([low, high]) = &mut estimate.interval95 {
+        *low = values.iter().copied().fold(*low, f64::min).max(0.0);
+        *high = values.iter().copied().fold(*high, f64::max).min(1.0);
+    }
+}
+
+/// R from the impacts alone that is not one number makes the joint R no better.
+pub fn carry_over(joint: &mut MethodResult, methods: &BTreeMap<Method, MethodResult>) {
+    let of_impacts = [Method::Impacts, Method::FlightTimes]
+        .into_iter()
+        .filter_map(|m| methods.get(&m)?.parameters.restitution.as_ref())
+        .find(|r| r.note == Some(Note::NotOneNumber));
+    let (Some(impacts), Some(estimate)) = (of_impacts, &mut joint.parameters.restitution) else {
+        return;
+    };
+    not_one_number(estimate, &impacts.interval95.unwrap_or_default());
+}
+
+/// Judge by the contact law.
+fn judge_law(result: &mut MethodResult, block: &ImpactBlock, evidence: &Evidence<'_>) {
     let Some(law) = &result.contact_law else {
         return;
     };
@@ -108,9 +174,9 @@ pub fn judge_impacts(result: &mut MethodResult, block: &ImpactBlock, evidence: &
         },
         false => Remark::RestitutionChanges { slower, faster },
     });
+    let ends = [slower.restitution, faster.restitution];
     if let Some(estimate) = &mut result.parameters.restitution {
-        estimate.status = Status::Weak;
-        estimate.note = Some(Note::NotOneNumber);
+        not_one_number(estimate, &ends);
     }
 }
 
@@ -191,7 +257,8 @@ fn findings(basis: &Basis<'_>, estimates: &[(Coordinate, &Estimate)]) -> Vec<Fin
                 method: *method,
                 remark: remark.clone(),
             };
-            findings.extend(result.remarks.iter().map(misfit));
+            let telling = result.remarks.iter().filter(|r| !is_plain(r));
+            findings.extend(telling.map(misfit));
         }
     }
     let noted = estimates.iter().filter_map(|(parameter, estimate)| {
@@ -204,6 +271,14 @@ fn findings(basis: &Basis<'_>, estimates: &[(Coordinate, &Estimate)]) -> Vec<Fin
     let disagreement = basis.agreement.disagreement().cloned();
     findings.extend(disagreement.map(|pair| Finding::Disagreement { pair }));
     findings
+}
+
+/// Whether a remark only describes the data, so that it is no reason for a misfit.
+fn is_plain(remark: &Remark) -> bool {
+    matches!(
+        remark,
+        Remark::TimesScatter { .. } | Remark::MassRatio { .. } | Remark::FlightsLeftOut { .. }
+    )
 }
 
 fn with_status(estimates: &[(Coordinate, &Estimate)], status: Status) -> Vec<Coordinate> {

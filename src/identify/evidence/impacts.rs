@@ -48,13 +48,21 @@ pub struct ImpactBlock {
     pub relative_error: f64,
     /// On which corners the speeds depend, by their index.
     corners: [bool; 4],
+    /// Whether the impacts are between free flights, of records without a drive.
+    pub free: bool,
 }
+
+/// Share of the error of an impact between free flights that all have in common.
+const COMMON: f64 = 0.25;
+
+/// Impacts between free flights from which outliers are looked for: fewer are all reported.
+const ENOUGH_FOR_OUTLIERS: usize = 8;
 
 impl ImpactBlock {
     /// Collect impacts without dead zone, faster than six standard errors (twelve where a contact
     /// lasts several samples, as slow ones are then swayed by where its middle is put).
     pub fn new(observations: &[Observation], relative_error: f64) -> Self {
-        let pairs = observations
+        let pairs: Vec<SpeedPair> = observations
             .iter()
             .enumerate()
             .filter(|(_, o)| !o.excluded())
@@ -83,7 +91,28 @@ impl ImpactBlock {
             })
             .filter(|p| p.after_m_s > -4.0 * p.error_m_s)
             .collect();
-        Self::of_pairs(pairs, relative_error)
+        let free = pairs
+            .iter()
+            .all(|p: &SpeedPair| observations[p.observation].drive.is_none());
+        Self {
+            free,
+            ..Self::of_pairs(pairs, relative_error)
+        }
+    }
+
+    /// What all impacts between free flights have in common of their errors: how their contacts are timed.
+    pub fn common_error(&self) -> f64 {
+        if !self.free {
+            return 0.0;
+        }
+        let error = |p: &SpeedPair| self.error(p, p.after_m_s / p.before_m_s) / p.before_m_s;
+        let errors: Vec<f64> = self.pairs.iter().map(error).collect();
+        COMMON * crate::signal::robust::median(&errors).unwrap_or(0.0)
+    }
+
+    /// Fewest impacts that a fit needs: one between free flights has a ratio of its own.
+    pub fn fewest(&self) -> usize {
+        if self.free { 1 } else { 3 }
     }
 
     /// Of given pairs.
@@ -93,6 +122,7 @@ impl ImpactBlock {
             pairs,
             relative_error,
             corners,
+            free: false,
         }
     }
 
@@ -112,6 +142,9 @@ impl ImpactBlock {
         let Some(centre) = crate::signal::robust::median(&ratios) else {
             return (self, Vec::new());
         };
+        if self.free && self.pairs.len() < ENOUGH_FOR_OUTLIERS {
+            return (self, Vec::new());
+        }
         let scores: Vec<f64> = self
             .pairs
             .iter()

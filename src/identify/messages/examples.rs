@@ -11,6 +11,7 @@ pub fn examples() -> Vec<Box<dyn Message>> {
     let methods = [
         Method::Boundaries,
         Method::Flights,
+        Method::FlightTimes,
         Method::FreeDecay,
         Method::Impacts,
         Method::PublishedSpeeds,
@@ -91,6 +92,7 @@ fn notes() -> Vec<Note> {
             correlation: 0.9,
         },
         Note::NotOneNumber,
+        Note::Drifts,
         Note::SeveralSpecimens,
         Note::NoPublishedMotion,
         Note::NoStart { observations: 3 },
@@ -101,6 +103,15 @@ fn notes() -> Vec<Note> {
         Note::MethodsDisagree,
         Note::NotSeparable,
     ]
+}
+
+fn group_points() -> Vec<GroupPoint> {
+    let point = |group: &str, restitution| GroupPoint {
+        group: group.to_owned(),
+        restitution,
+        half_width: 0.01,
+    };
+    vec![point("1", 0.41), point("2", 0.50)]
 }
 
 fn remarks() -> Vec<Remark> {
@@ -133,11 +144,36 @@ fn remarks() -> Vec<Remark> {
             faster,
             samples: 5.0,
         },
+        Remark::RestitutionByBounce {
+            points: group_points(),
+        },
+        Remark::RecordsDiffer {
+            points: group_points(),
+        },
+        Remark::MassRatio {
+            ratio: 2.0,
+            half_width: 0.02,
+        },
+        Remark::TimesScatter { error_s: 2e-3 },
+        Remark::FlightsLeftOut { count: 2 },
         Remark::OutlyingImpacts {
             count: 4,
             first: items().into_iter().skip(2).collect(),
         },
-        Remark::DecaysUnexplained { share: 0.01 },
+        Remark::DecaysUnexplained {
+            share: 0.01,
+            structure: 0.004,
+        },
+        Remark::DecaysHaveStructure {
+            share: 0.3,
+            structure: 0.2,
+        },
+        Remark::DecaysDrift {
+            count: 1,
+            first_hz: 2.0,
+            last_hz: 2.01,
+            intervals: 20.0,
+        },
         Remark::DecaysDiffer { spread: 0.1 },
         Remark::NoResult {
             why: Note::NotSeparable,
@@ -199,6 +235,11 @@ pub fn example_findings() -> Vec<Finding> {
             z_score,
         },
         Finding::SwappedChannels { z_score: 9.0 },
+        Finding::MomentumNotConserved {
+            measured: 2.2,
+            stated: 2.0,
+            z_score: 8.0,
+        },
         Finding::Misfit {
             method: Method::Impacts,
             remark: Remark::DecaysDiffer { spread: 0.1 },
@@ -256,6 +297,14 @@ fn sentences() -> Vec<Sentence> {
             parameters: parameters.clone(),
         },
         Sentence::NotIdentifiable { parameters },
+        Sentence::SpecimensFit {
+            fitting: 27,
+            count: 28,
+        },
+        Sentence::SpecimensPoorlyKnown {
+            parameter: Coordinate::Damping,
+            count: 10,
+        },
         Sentence::NothingUsable,
         Sentence::DoesNotFit,
         Sentence::MethodsAgree,

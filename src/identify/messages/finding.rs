@@ -48,6 +48,15 @@ pub enum Finding {
         /// How sure.
         z_score: f64,
     },
+    /// Two free masses do not change their speeds in the ratio of the stated masses.
+    MomentumNotConserved {
+        /// `m_y/m_x` as the speeds show it.
+        measured: f64,
+        /// `m_y/m_x` as stated.
+        stated: f64,
+        /// How sure.
+        z_score: f64,
+    },
     /// The rig has an effect beyond the model, which the estimates allow for.
     BeyondModel {
         /// The effect; a harmonic's cosine names its amplitude.
@@ -153,6 +162,11 @@ impl Message for Finding {
                 "all data fit far better with the velocities of both masses swapped: swap \
                  [channels.velocity_x] and [channels.velocity_y], or the displacements"
             }
+            Self::MomentumNotConserved { .. } => {
+                "the speeds of both masses change as if $m_y$/$m_x$ were {measured}, the stated masses \
+                 give {stated}: weigh them again, check the scales of both velocities, and that nothing \
+                 else touches the masses"
+            }
             Self::BeyondModel {
                 effect, strength, ..
             } => beyond_english(*effect, *strength > 0.0),
@@ -191,6 +205,11 @@ impl Message for Finding {
             Self::SwappedChannels { .. } => {
                 "alle Daten passen weit besser, wenn die Geschwindigkeiten beider Massen vertauscht \
                  sind: [channels.velocity_x] und [channels.velocity_y] tauschen, oder die Wege"
+            }
+            Self::MomentumNotConserved { .. } => {
+                "die Geschwindigkeiten beider Massen ändern sich, als wäre $m_y$/$m_x$ = {measured}; \
+                 die angegebenen Massen geben {stated}: nachwiegen, die Maßstäbe beider \
+                 Geschwindigkeiten prüfen, und dass sonst nichts die Massen berührt"
             }
             Self::BeyondModel {
                 effect, strength, ..
@@ -256,6 +275,12 @@ impl Message for Finding {
                 ]
             }
             Self::SwappedChannels { .. } => Vec::new(),
+            Self::MomentumNotConserved {
+                measured, stated, ..
+            } => vec![
+                ("measured", Value::Number(*measured, 3)),
+                ("stated", Value::Number(*stated, 3)),
+            ],
             Self::Misfit { method, remark } => vec![
                 ("method", Value::Message(method)),
                 ("remark", Value::Message(remark)),

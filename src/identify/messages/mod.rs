@@ -14,7 +14,7 @@ pub use finding::{Finding, PublishedSetting};
 pub use note::Note;
 pub use pair::PairAgreement;
 pub use reason::{Item, LeftOut, Reason};
-pub use remark::{Remark, SpeedPoint};
+pub use remark::{GroupPoint, Remark, SpeedPoint};
 pub use sentence::{Sentence, StatedValue};
 
 use crate::identify::fit::parameters::Coordinate;

@@ -35,6 +35,8 @@ pub enum Note {
     MethodsDisagree,
     /// R depends on the speed.
     NotOneNumber,
+    /// The frequency changes over the decay.
+    Drifts,
     /// Each specimen has parameters of its own.
     SeveralSpecimens,
     /// No damping ratio gives the published motions.
@@ -86,6 +88,9 @@ impl Message for Note {
                 "the methods do not agree on it: the interval is widened by their disagreement"
             }
             Self::NotOneNumber => "$R$ is not one number here: see the remark on its change",
+            Self::Drifts => {
+                "the frequency changes over the decay, so that it is no single $f_0$: see the remark"
+            }
             Self::SeveralSpecimens => {
                 "the campaign has several specimens; each has its own parameters"
             }
@@ -110,6 +115,10 @@ impl Message for Note {
             }
             Self::NotOneNumber => {
                 "$R$ ist hier nicht eine Zahl: siehe die Anmerkung zu seiner Änderung"
+            }
+            Self::Drifts => {
+                "die Frequenz ändert sich beim Ausschwingen und ist nicht ein $f_0$: siehe die \
+                 Anmerkung"
             }
             Self::SeveralSpecimens => {
                 "die Messreihe hat mehrere Prüflinge; jeder hat seine eigenen Parameter"
@@ -147,6 +156,7 @@ impl Message for Note {
             Self::NoStart { observations } => vec![("count", Value::Count(*observations))],
             Self::SolverFailed { report } => vec![("report", Value::Name(report))],
             Self::NotOneNumber
+            | Self::Drifts
             | Self::MethodsDisagree
             | Self::SeveralSpecimens
             | Self::NoPublishedMotion

@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Item, Note};
+use crate::identify::diagnostics::structure::ImpactGroup;
+use crate::identify::estimate::NORMAL_975;
 use crate::message::{Message, Value};
 use crate::messages;
 
@@ -13,6 +15,60 @@ pub struct SpeedPoint {
     pub speed_m_s: f64,
     /// R at this speed.
     pub restitution: f64,
+}
+
+/// R of a bounce or of a record.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct GroupPoint {
+    /// Number of the bounce, from 1, or name of the record.
+    pub group: String,
+    /// R.
+    pub restitution: f64,
+    /// Half its 95 % interval.
+    pub half_width: f64,
+}
+
+impl GroupPoint {
+    /// Of a group of impacts.
+    pub fn of(group: &ImpactGroup) -> Self {
+        Self {
+            group: group.group.clone(),
+            restitution: group.restitution,
+            half_width: NORMAL_975 * group.standard_error,
+        }
+    }
+}
+
+impl Message for GroupPoint {
+    fn kind(&self) -> &'static str {
+        "group_point"
+    }
+
+    fn english(&self) -> &'static str {
+        "{value} ± {half} ({group})"
+    }
+
+    fn german(&self) -> &'static str {
+        self.english()
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        vec![
+            ("value", Value::Number(self.restitution, 3)),
+            ("half", Value::Number(self.half_width, 3)),
+            ("group", Value::Name(&self.group)),
+        ]
+    }
+}
+
+/// Groups that a remark names.
+const NAMED: usize = 6;
+
+/// The first few groups, and the last.
+fn points(all: &[GroupPoint]) -> Value<'_> {
+    let mut which: Vec<Value> = all.iter().take(NAMED).map(|p| Value::Message(p)).collect();
+    which.extend((all.len() > NAMED).then_some(Value::Name("…")));
+    Value::List(which)
 }
 
 /// What a method noticed about its data. Shares and deviations are relative (0.01 is 1 %).
@@ -79,6 +135,33 @@ pub enum Remark {
         /// Length of a contact, samples.
         samples: f64,
     },
+    /// R changes from bounce to bounce.
+    RestitutionByBounce {
+        /// R of the first, the second … bounce.
+        points: Vec<GroupPoint>,
+    },
+    /// R differs between records.
+    RecordsDiffer {
+        /// R of each record.
+        points: Vec<GroupPoint>,
+    },
+    /// The ratio of the masses by conservation of momentum.
+    MassRatio {
+        /// `m_y/m_x`.
+        ratio: f64,
+        /// Half its 95 % interval.
+        half_width: f64,
+    },
+    /// How far the times of impacts are off the fitted rows.
+    TimesScatter {
+        /// Standard error of a time, s.
+        error_s: f64,
+    },
+    /// Flights that follow none of R times their length were left out.
+    FlightsLeftOut {
+        /// How many.
+        count: usize,
+    },
     /// Impacts whose speeds are far from those of the others were left out.
     OutlyingImpacts {
         /// How many.
@@ -90,6 +173,27 @@ pub enum Remark {
     DecaysUnexplained {
         /// Root mean square of the residuals over that of the signal.
         share: f64,
+        /// The part of it that is no noise.
+        #[serde(default)]
+        structure: f64,
+    },
+    /// The free decays have more than one oscillator and noise.
+    DecaysHaveStructure {
+        /// Root mean square of the residuals over that of the signal.
+        share: f64,
+        /// The part of it that is no noise.
+        structure: f64,
+    },
+    /// The frequency changes over the decays.
+    DecaysDrift {
+        /// Number of decays that do.
+        count: usize,
+        /// Natural frequency in the first quarter of the decay that drifts most, Hz.
+        first_hz: f64,
+        /// In its last quarter, Hz.
+        last_hz: f64,
+        /// The change over half the 95 % interval of the whole decay's frequency.
+        intervals: f64,
     },
     /// The free decays are not of one oscillator.
     DecaysDiffer {
@@ -150,10 +254,37 @@ impl Message for Remark {
                  {count} samples: it is not an instantaneous impact, so one coefficient of \
                  restitution does not describe it"
             }
+            Self::RestitutionByBounce { .. } => {
+                "$R$ changes from bounce to bounce, and with it the speed: {points}; one constant does \
+                 not describe it"
+            }
+            Self::RecordsDiffer { .. } => {
+                "$R$ differs between the records by more than its errors: {points}; they are not of \
+                 one contact"
+            }
+            Self::MassRatio { .. } => {
+                "by conservation of momentum the masses are $m_y$/$m_x$ = {value} ± {half}"
+            }
+            Self::TimesScatter { .. } => "the times of the impacts scatter by {error} ms",
+            Self::FlightsLeftOut { .. } => {
+                "flights that do not follow from the one before, as where an impact was missed, left \
+                 out: {count}"
+            }
             Self::OutlyingImpacts { .. } => {
                 "impacts with speeds far from those of the others, left out: {count} ({which})"
             }
-            Self::DecaysUnexplained { .. } => "the decays leave {share} of the signal unexplained",
+            Self::DecaysUnexplained { .. } => {
+                "the fits leave {share} of the decays unexplained; {structure} is no noise"
+            }
+            Self::DecaysHaveStructure { .. } => {
+                "the fits leave {share} of the decays unexplained, and {structure} is no noise: there \
+                 is another mode, or the damping is not viscous"
+            }
+            Self::DecaysDrift { .. } => {
+                "in {count} decays the frequency drifts, at most from {first} Hz in the first quarter \
+                 to {last} Hz in the last, {intervals} times half its interval: the spring is not \
+                 linear, or the mass moves in another direction too"
+            }
             Self::DecaysDiffer { .. } => {
                 "the decays' natural frequencies differ by up to {share}: they are not of one \
                  oscillator"
@@ -200,16 +331,41 @@ impl Message for Remark {
                  dauert {count} Abtastwerte: Es ist kein augenblicklicher Stoß, und eine Stoßzahl \
                  beschreibt ihn nicht"
             }
+            Self::RestitutionByBounce { .. } => {
+                "$R$ ändert sich von Stoß zu Stoß, und mit ihm die Geschwindigkeit: {points}; eine \
+                 Konstante beschreibt es nicht"
+            }
+            Self::RecordsDiffer { .. } => {
+                "$R$ unterscheidet sich zwischen den Aufzeichnungen um mehr als seine Fehler: \
+                 {points}; sie sind nicht die eines Kontakts"
+            }
+            Self::MassRatio { .. } => {
+                "nach der Impulserhaltung verhalten sich die Massen wie $m_y$/$m_x$ = {value} ± {half}"
+            }
+            Self::TimesScatter { .. } => "die Zeiten der Stöße streuen um {error} ms",
+            Self::FlightsLeftOut { .. } => {
+                "Flüge, die nicht aus dem vorigen folgen, etwa wo ein Stoß fehlt, ausgelassen: {count}"
+            }
             Self::OutlyingImpacts { .. } => {
                 "Stöße mit Geschwindigkeiten weit von denen der übrigen, ausgelassen: {count} \
                  ({which})"
             }
             Self::DecaysUnexplained { .. } => {
-                "die Ausschwingversuche lassen {share} des Signals unerklärt"
+                "die Anpassungen lassen {share} der Ausschwingversuche unerklärt; {structure} ist \
+                 kein Rauschen"
+            }
+            Self::DecaysHaveStructure { .. } => {
+                "die Anpassungen lassen {share} der Ausschwingversuche unerklärt, und {structure} ist \
+                 kein Rauschen: Es gibt eine weitere Eigenschwingung, oder die Dämpfung ist nicht zäh"
+            }
+            Self::DecaysDrift { .. } => {
+                "in {count} Ausschwingversuchen wandert die Frequenz, am meisten von {first} Hz im \
+                 ersten Viertel auf {last} Hz im letzten, um das {intervals}-Fache ihres halben \
+                 Intervalls: Die Feder ist nicht linear, oder die Masse bewegt sich auch anders"
             }
             Self::DecaysDiffer { .. } => {
-                "die Eigenfrequenzen der Ausschwingversuche unterscheiden sich um bis zu {share} \
-                 %: Sie sind nicht die eines Schwingers"
+                "die Eigenfrequenzen der Ausschwingversuche unterscheiden sich um bis zu {share}: \
+                 Sie sind nicht die eines Schwingers"
             }
             Self::NoResult { .. } => "{why}",
             Self::PublishedSpeedsMet { .. } => {
@@ -258,6 +414,15 @@ impl Message for Remark {
                 values.push(("count", Value::Number(*samples, 0)));
                 values
             }
+            Self::RestitutionByBounce { points: all } | Self::RecordsDiffer { points: all } => {
+                vec![("points", points(all))]
+            }
+            Self::MassRatio { ratio, half_width } => vec![
+                ("value", Value::Number(*ratio, 3)),
+                ("half", Value::Number(*half_width, 3)),
+            ],
+            Self::TimesScatter { error_s } => vec![("error", Value::Number(1e3 * error_s, 2))],
+            Self::FlightsLeftOut { count } => vec![("count", Value::Count(*count))],
             Self::OutlyingImpacts { count, first } => {
                 let mut which: Vec<Value<'_>> = first.iter().map(|i| Value::Message(i)).collect();
                 which.extend((*count > first.len()).then_some(Value::Name("…")));
@@ -266,7 +431,22 @@ impl Message for Remark {
                     ("which", Value::List(which)),
                 ]
             }
-            Self::DecaysUnexplained { share } => vec![("share", Value::Percent(*share, 1))],
+            Self::DecaysUnexplained { share, structure }
+            | Self::DecaysHaveStructure { share, structure } => vec![
+                ("share", Value::Percent(*share, 1)),
+                ("structure", Value::Percent(*structure, 1)),
+            ],
+            Self::DecaysDrift {
+                count,
+                first_hz,
+                last_hz,
+                intervals,
+            } => vec![
+                ("count", Value::Count(*count)),
+                ("first", Value::Number(*first_hz, 4)),
+                ("last", Value::Number(*last_hz, 4)),
+                ("intervals", Value::Number(*intervals, 0)),
+            ],
             Self::DecaysDiffer { spread } => vec![("share", Value::Percent(*spread, 1))],
             Self::NoResult { why } => vec![("why", Value::Message(why))],
             Self::PublishedSpeedsMet {

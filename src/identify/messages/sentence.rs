@@ -94,6 +94,20 @@ pub enum Sentence {
         /// How many.
         count: usize,
     },
+    /// How many specimens the model fits.
+    SpecimensFit {
+        /// How many it fits.
+        fitting: usize,
+        /// Of how many.
+        count: usize,
+    },
+    /// A parameter is only weakly identified in some specimens.
+    SpecimensPoorlyKnown {
+        /// The parameter.
+        parameter: Coordinate,
+        /// In how many specimens.
+        count: usize,
+    },
     /// Records look misfiled.
     MisfiledRecords {
         /// How many.
@@ -133,6 +147,8 @@ impl Message for Sentence {
             Self::Specimens { .. } => {
                 "The campaign has {count} specimens; each is identified by itself."
             }
+            Self::SpecimensFit { .. } => "The model fits {some} of {count}.",
+            Self::SpecimensPoorlyKnown { .. } => "{parameter} is poorly known in {count}.",
             Self::MisfiledRecords { .. } => "Records that look misfiled: {count}.",
             Self::PublishedDamping { .. } => {
                 "The published speeds belong to a damping ratio $β$ of {value}."
@@ -160,6 +176,8 @@ impl Message for Sentence {
             Self::Specimens { .. } => {
                 "Die Messreihe hat {count} Prüflinge; jeder ist für sich identifiziert."
             }
+            Self::SpecimensFit { .. } => "Das Modell passt zu {some} von {count}.",
+            Self::SpecimensPoorlyKnown { .. } => "{parameter} ist in {count} schlecht bekannt.",
             Self::MisfiledRecords { .. } => {
                 "Aufzeichnungen, die falsch abgelegt aussehen: {count}."
             }
@@ -189,6 +207,14 @@ impl Message for Sentence {
             | Self::MethodsDoNotAgree
             | Self::OneMethod
             | Self::NoPublishedDamping => Vec::new(),
+            Self::SpecimensFit { fitting, count } => vec![
+                ("some", Value::Count(*fitting)),
+                ("count", Value::Count(*count)),
+            ],
+            Self::SpecimensPoorlyKnown { parameter, count } => vec![
+                ("parameter", Value::Message(parameter)),
+                ("count", Value::Count(*count)),
+            ],
             Self::Specimens { count } | Self::MisfiledRecords { count } => {
                 vec![("count", Value::Count(*count))]
             }

@@ -42,7 +42,7 @@ fn campaign_headline(content: &ReportContent, locale: Locale<'_>) -> String {
     let specimens = id.specimens.len();
     let identified = id.specimens.values();
     let identified = identified
-        .filter(|s| s.verdict.kind == VerdictKind::Identified)
+        .filter(|s| matches!(s.verdict.kind, VerdictKind::Identified | VerdictKind::Weak))
         .count();
     match specimens - identified {
         _ if specimens == 0 => locale.translate(headline(
@@ -63,19 +63,27 @@ fn campaign_headline(content: &ReportContent, locale: Locale<'_>) -> String {
     }
 }
 
-/// Reasons and findings; where there are specimens, what was found of each in full.
+/// Reasons and findings; of each specimen what was found beside its values, which are in the table.
 fn findings(content: &ReportContent, locale: Locale<'_>) -> Vec<Rich> {
     let id = &content.identification;
     let of = |finding: &Finding| {
-        let mut text = locale.sentence(finding);
-        if let Finding::Specimen { specimen, .. } = finding
-            && let Some(result) = id.specimens.get(specimen)
-        {
-            text = format!("{text} {}", locale.sentences(&result.verdict.findings));
-        }
-        Rich::from(text)
+        let Finding::Specimen { specimen, .. } = finding else {
+            return Some(locale.sentence(finding));
+        };
+        let found = &id.specimens.get(specimen)?.verdict.findings;
+        let name = Finding::Specimen {
+            specimen: specimen.clone(),
+            verdict: Vec::new(),
+        };
+        let text = format!(
+            "{} {}",
+            locale.message(&name).trim_end(),
+            locale.sentences(found)
+        );
+        (!found.is_empty()).then_some(text)
     };
-    id.verdict.findings.iter().map(of).collect()
+    let texts = id.verdict.findings.iter().filter_map(of);
+    texts.map(Rich::from).collect()
 }
 
 /// The parameters' cards; none where only each specimen alone has an answer.

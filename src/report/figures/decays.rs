@@ -22,7 +22,9 @@ const COLUMNS: usize = 3;
 /// Height of a panel, points.
 const PANEL_HEIGHT: f64 = 74.0;
 /// Height of a row with the words above and the numbers below its panels, points.
-const ROW_HEIGHT: f64 = PANEL_HEIGHT + 48.0;
+const ROW_HEIGHT: f64 = PANEL_HEIGHT + 58.0;
+/// Characters of a title that fit above a panel.
+const TITLE_LENGTH: usize = 30;
 
 /// Draws up to [`PER_FIGURE`] decays; `None` for none.
 pub(crate) fn draw(decays: &[FreeDecay], name: &str, locale: Locale<'_>) -> Option<Figure> {
@@ -33,7 +35,7 @@ pub(crate) fn draw(decays: &[FreeDecay], name: &str, locale: Locale<'_>) -> Opti
     let mut canvas = Canvas::new(look::FULL_WIDTH, rows as f64 * ROW_HEIGHT);
     for (i, decay) in decays.iter().enumerate() {
         let left = 34.0 + (i % COLUMNS) as f64 * 161.0;
-        let top = (i / COLUMNS) as f64 * ROW_HEIGHT + 23.0;
+        let top = (i / COLUMNS) as f64 * ROW_HEIGHT + 33.0;
         one(
             &mut canvas,
             decay,
@@ -99,7 +101,12 @@ fn heading(canvas: &mut Canvas, decay: &FreeDecay, rect: &Rect, locale: Locale<'
     let bold = TextLook::new(look::NOTE_SIZE, Anchor::Left)
         .face(Face::Bold)
         .colour(look::INK);
-    canvas.text((rect.left, rect.top - 13.5), &title(decay), bold);
+    // the values have lines of their own, so that a long name does not run into them
+    canvas.text(
+        (rect.left, rect.top - 23.0),
+        &shortened(&title(decay)),
+        bold,
+    );
     let plain = TextLook::new(look::TICK_SIZE, Anchor::Right).colour(look::QUIET);
     let frequency = with_error(decay.natural_frequency_hz, locale);
     let lines = [
@@ -109,6 +116,17 @@ fn heading(canvas: &mut Canvas, decay: &FreeDecay, rect: &Rect, locale: Locale<'
     for (i, line) in lines.iter().enumerate() {
         canvas.text((rect.right, rect.top - 13.5 + 9.5 * i as f64), line, plain);
     }
+}
+
+/// A title with its middle left out where it is too long: names differ at their ends.
+fn shortened(title: &str) -> String {
+    let count = title.chars().count();
+    if count <= TITLE_LENGTH {
+        return title.to_owned();
+    }
+    let front: String = title.chars().take(TITLE_LENGTH / 3).collect();
+    let end: String = title.chars().skip(count - 2 * TITLE_LENGTH / 3).collect();
+    format!("{front}…{end}")
 }
 
 /// Name of a decay: its record's, after its specimen's if there are several.

@@ -103,6 +103,7 @@ changes! {
     ("channels.ROLE.threshold", Classify, as_is, Replace(r#""2.5 V""#, r#""6 V""#));
     ("channels.ROLE.range", Classify, as_is, Add("channels.velocity_x", r#"range = "0.5 V""#));
     ("channels.ROLE.ignore_file_unit", Classify, in_mv, Add("channels.velocity_x", "ignore_file_unit = true"));
+    ("channels.ROLE.content", Classify, timed, Replace(r#""times""#, r#""intervals""#));
     ("channels.ROLE.instrument", Html, one_record, Add("channels.contact", r#"instrument = "a wire""#));
     ("analysis.exclude", Classify, as_is, Add("analysis", r#"exclude = ["r2"]"#));
     ("analysis.skip", Classify, as_is, Add("analysis", r#"skip = "0.3 s""#));
@@ -157,6 +158,15 @@ fn with_attributes(lab: &Lab) {
     for name in ["r1.csv", "r2.csv", "r3.csv"] {
         lab.write(name, &format!("{attributes}{}", lab.read(name)));
     }
+}
+
+/// A list of impacts instead of records.
+fn timed(lab: &Lab) {
+    lab.write("list.txt", "t [s]\n1.0\n1.5\n1.9\n2.22\n2.476\n");
+    let campaign = "[campaign]\nname = \"ball\"\nmachine = \"single\"\nflight = \"constant_force\"\n\
+                    [records]\nfiles = \"list.txt\"\n\
+                    [channels.contact]\nchannel = \"t\"\ncontent = \"times\"\n";
+    lab.write("campaign.toml", campaign);
 }
 
 /// Files without a time column.

@@ -33,8 +33,8 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect) -> Header {
     if units.is_some() {
         rows.pop();
     }
-    if rows.last().is_some_and(|r| fits(r, dialect.columns)) {
-        header.names = rows.pop().unwrap_or_default();
+    if let Some(names) = names_row(&rows, dialect.columns) {
+        header.names = rows.remove(names);
     } else if let Some(names) = commented_names(&comments, dialect) {
         header.names = names;
     }
@@ -71,6 +71,21 @@ fn cells(line: &[u8], dialect: &Dialect) -> Vec<String> {
 fn fits(row: &[String], columns: usize) -> bool {
     let filled = row.iter().rposition(|c| !c.is_empty()).map_or(0, |i| i + 1);
     filled > 0 && (row.len() == columns || filled == columns || row.len() == columns + 1)
+}
+
+/// Lines above the table among which its heading is looked for.
+const HEADING_LINES: usize = 4;
+
+/// The row that heads the table: of the last ones that fit, the one that tells most columns apart.
+fn names_row(rows: &[Vec<String>], columns: usize) -> Option<usize> {
+    let distinct = |row: &Vec<String>| {
+        let filled = row.iter().filter(|c| !c.is_empty());
+        filled.collect::<std::collections::BTreeSet<_>>().len()
+    };
+    let first = rows.len().saturating_sub(HEADING_LINES);
+    (first..rows.len())
+        .filter(|i| fits(&rows[*i], columns))
+        .max_by_key(|i| (distinct(&rows[*i]), *i))
 }
 
 /// The last row, if it holds units under a row of names.
@@ -238,6 +253,19 @@ mod tests {
         );
         assert_eq!(h.attributes["clearance_m"], "0.001");
         assert_eq!(h.attributes["Operator"], "Novák");
+    }
+
+    #[test]
+    fn of_two_heading_lines_the_one_that_tells_columns_apart_is_taken() {
+        assert_eq!(
+            header(&["Run 1;Run 1;Run 1", "t;x;y"]).names,
+            ["t", "x", "y"]
+        );
+        assert_eq!(header(&["t;x;y", "Run 1;Run 1;"]).names, ["t", "x", "y"]);
+        assert_eq!(
+            header(&["Frame;X1;Y1", "Tracks 1 to 1"]).names,
+            ["Frame", "X1", "Y1"]
+        );
     }
 
     #[test]

@@ -126,6 +126,21 @@ pub(super) enum StoreError {
 }
 
 impl StoreError {
+    /// The filter that neither library has, by its name.
+    pub(super) fn unsupported_filter(&self) -> Option<String> {
+        let (Self::Library(error) | Self::Dataset { error, .. } | Self::Both { first: error, .. }) =
+            self
+        else {
+            return None;
+        };
+        match error {
+            ::hdf5::Error::Format(::hdf5::FormatError::UnsupportedFilter(id)) => {
+                Some(filter_name(*id))
+            }
+            _ => None,
+        }
+    }
+
     /// Whether the file ends too early.
     pub(super) fn is_cut_off(&self) -> bool {
         let (Self::Library(error) | Self::Dataset { error, .. }) = self else {
@@ -136,6 +151,27 @@ impl StoreError {
             ::hdf5::Error::Format(::hdf5::FormatError::UnexpectedEof { .. })
         )
     }
+}
+
+/// Name of a filter by the number that The HDF Group registered for it.
+fn filter_name(id: u16) -> String {
+    let name = match id {
+        4 => "SZIP",
+        5 => "N-bit",
+        6 => "scale-offset",
+        307 => "bzip2",
+        32000 => "LZF",
+        32001 => "Blosc",
+        32004 => "LZ4",
+        32008 => "bitshuffle",
+        32013 => "ZFP",
+        32014 => "FPZIP",
+        32015 => "Zstandard",
+        32017 | 32024 => "SZ",
+        32026 => "Blosc2",
+        _ => return format!("number {id}"),
+    };
+    format!("{name} (number {id})")
 }
 
 /// What a reference points at.

@@ -285,7 +285,8 @@ impl<'t> Builder<'t> {
             }
         }
         let is_time = |c: &ChannelInfo| c.samples > 1 && is_time_name(&c.name);
-        let time_axis = channels.iter().position(is_time);
+        let named = channels.iter().position(is_time);
+        let time_axis = named.or_else(|| self.pairs(&origins, &mut channels));
         self.arranged.datasets.push(DatasetInfo {
             name,
             channels,
@@ -293,6 +294,50 @@ impl<'t> Builder<'t> {
             attributes,
         });
         self.arranged.origins.push(origins);
+    }
+
+    /// Matrices of two columns, time and signal, with the signal's name and unit in texts beside them:
+    /// name the signals; gives the first time axis.
+    fn pairs(&self, origins: &[Origin], channels: &mut [ChannelInfo]) -> Option<usize> {
+        let mut first = None;
+        for (i, origin) in origins.iter().enumerate() {
+            let leaf = &self.tree.leaves[origin.leaf];
+            if leaf.dims.len() != 2 || leaf.dims[1] != 2 || origin.slice != Slice::Column(0) {
+                continue;
+            }
+            let unit = self.beside(&leaf.name, &["unit", "units", "yunit", "chanunit"]);
+            let name = self.beside(&leaf.name, &["channame", "channelname", "channel", "name"]);
+            let [time, signal, ..] = &mut channels[i..] else {
+                continue;
+            };
+            if unit.is_none() && name.is_none() {
+                continue;
+            }
+            time.unit = Some("s".to_owned());
+            signal.unit = unit.or(signal.unit.take());
+            if let Some(name) = name {
+                signal.name = name;
+            }
+            first = first.or(Some(i));
+        }
+        first
+    }
+
+    /// A text beside an array: a variable or field of one of these names, whatever its case.
+    fn beside(&self, name: &str, keys: &[&str]) -> Option<String> {
+        let parent = name.rsplit_once('.').map_or("", |(parent, _)| parent);
+        let is_it = |text: &str| {
+            let (own, last) = text.rsplit_once('.').unwrap_or(("", text));
+            own == parent && keys.contains(&last.to_lowercase().as_str())
+        };
+        let mut found: Vec<&str> = self
+            .texts
+            .iter()
+            .filter(|(text, value)| is_it(text) && !value.trim().is_empty())
+            .map(|(_, value)| value.trim())
+            .collect();
+        found.sort_unstable();
+        found.first().map(|text| (*text).to_owned())
     }
 
     fn channel(&self, leaf: usize, name: String, samples: u64, rate: Option<f64>) -> ChannelInfo {

@@ -1,6 +1,7 @@
 //! Reading text files in blocks of whole lines: what CSV and LVM share.
 //!
-//! A file is never held whole, except one in UTF-16, which is transcoded once.
+//! A file is never held whole, except one in UTF-16 or with lines ended by carriage returns alone, which
+//! is transcoded once.
 
 pub(crate) mod cells;
 pub(crate) mod clock;
@@ -53,7 +54,31 @@ impl TextFile {
         } else if head.starts_with(&[0xEF, 0xBB, 0xBF]) {
             text.start = 3;
         }
+        if text.ends_lines_by_returns()? {
+            let mut bytes = text.range(0, to_usize(text.length))?;
+            for byte in bytes.iter_mut().filter(|b| **b == b'\r') {
+                *byte = b'\n';
+            }
+            text.backing = Backing::Memory(bytes);
+        }
         Ok(text)
+    }
+
+    /// A text that is held whole, as if it were in a file.
+    pub(crate) fn of_bytes(path: &Path, bytes: Vec<u8>) -> Self {
+        Self {
+            path: path.to_path_buf(),
+            length: bytes.len() as u64,
+            backing: Backing::Memory(bytes),
+            start: 0,
+        }
+    }
+
+    /// Whether lines end by carriage returns alone, as old Macintosh programs wrote them.
+    fn ends_lines_by_returns(&self) -> Result<bool, ReadError> {
+        let front = self.range(0, BLOCK_BYTES)?;
+        let returns = memchr::memchr(b'\r', &front).is_some();
+        Ok(returns && memchr::memchr(b'\n', &front).is_none())
     }
 
     /// The file's path.

@@ -1,12 +1,16 @@
 //! The records in a folder of files, and the role that each channel probably has.
 
+mod experiment;
+mod roles;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::discovery::Opener;
 use crate::record::Role;
-use labfiles::units::{self, Dimension};
 use labfiles::{ChannelInfo, DatasetInfo, Samples, Source};
+
+pub use experiment::Experiment;
 
 /// Depth of the search below the folder.
 const DEPTH: usize = 4;
@@ -34,6 +38,8 @@ pub struct FolderContents {
     pub refused: Vec<(String, String)>,
     /// Whether the file has a time axis or a sample rate.
     pub timed: bool,
+    /// What was probably measured.
+    pub experiment: Experiment,
 }
 
 /// A channel and the role inferred for it.
@@ -53,6 +59,8 @@ pub struct InferredChannel {
     pub role: Option<Role>,
     /// Levels of a signal that has only two.
     pub levels: Option<[f64; 2]>,
+    /// The sign that its impacts show: 1 toward the other mass or the stop, -1 away from it.
+    pub sign: i8,
 }
 
 /// Read the headers of all files below a folder, and infer the channels' roles.
@@ -80,6 +88,8 @@ pub fn inspect_folder(folder: &Path, open: Opener<'_>) -> FolderContents {
         found.example = slashed(path);
         describe(source.as_ref(), &mut found);
     }
+    let sources: Vec<&dyn Source> = records.iter().map(|(_, s)| s.as_ref()).collect();
+    experiment::infer(&sources, &mut found);
     found
 }
 
@@ -135,10 +145,15 @@ fn is_run_table(path: &Path) -> bool {
 }
 
 fn holds_record(source: &dyn Source) -> bool {
-    source
-        .datasets()
-        .iter()
-        .any(|d| d.channels.iter().any(|c| c.samples >= 16))
+    source.datasets().iter().any(is_record)
+}
+
+/// Fewest samples of a record.
+const FEWEST_SAMPLES: u64 = 16;
+
+/// Whether a dataset is a record: of many samples, or a list of events.
+fn is_record(set: &DatasetInfo) -> bool {
+    set.channels.iter().any(|c| c.samples >= FEWEST_SAMPLES) || experiment::is_event_list(set)
 }
 
 /// One glob per folder and extension; `**` for files in many folders.
@@ -170,19 +185,15 @@ fn globs(paths: &[PathBuf]) -> Vec<String> {
 fn describe(source: &dyn Source, found: &mut FolderContents) {
     found.format = source.format();
     found.datasets = source.datasets().len();
-    let Some((index, set)) = source
-        .datasets()
-        .iter()
-        .enumerate()
-        .find(|(_, d)| d.channels.iter().any(|c| c.samples >= 16))
-    else {
+    let sets = source.datasets().iter().enumerate();
+    let Some((index, set)) = sets.clone().find(|(_, d)| is_record(d)) else {
         return;
     };
     found.attributes = set.attributes.clone();
     found.timed =
         set.time_axis.is_some() || set.channels.iter().any(|c| c.sample_rate_hz.is_some());
     found.channels = channels(source, index, set);
-    assign(&mut found.channels);
+    roles::assign(&mut found.channels);
 }
 
 fn channels(source: &dyn Source, dataset: usize, set: &DatasetInfo) -> Vec<InferredChannel> {
@@ -200,6 +211,7 @@ fn channels(source: &dyn Source, dataset: usize, set: &DatasetInfo) -> Vec<Infer
             is_time: set.time_axis == Some(i),
             role: None,
             levels: two_levels(&values),
+            sign: 1,
         }
     };
     set.channels.iter().enumerate().map(seen).collect()
@@ -215,6 +227,9 @@ fn range(values: &[f64]) -> Option<[f64; 2]> {
 
 /// The two levels of a signal that is nearly always at one of them, as a contact.
 fn two_levels(values: &[f64]) -> Option<[f64; 2]> {
+    if (values.len() as u64) < FEWEST_SAMPLES {
+        return None;
+    }
     let [low, high] = range(values)?;
     let near = |level: f64| {
         let width = 0.15 * (high - low);
@@ -238,117 +253,6 @@ fn two_levels(values: &[f64]) -> Option<[f64; 2]> {
         .then_some([low, high])
 }
 
-/// Give each role to the channel that fits best.
-fn assign(channels: &mut [InferredChannel]) {
-    let y_first = sides(channels);
-    for role in Role::ALL {
-        let best = channels
-            .iter()
-            .enumerate()
-            .filter(|(_, c)| c.role.is_none() && !c.is_time)
-            .map(|(i, c)| (score(c, role, y_first), i))
-            .filter(|(s, _)| *s > 0)
-            .max_by_key(|(s, i)| (*s, std::cmp::Reverse(*i)));
-        if let Some((_, index)) = best {
-            channels[index].role = Some(role);
-        }
-    }
-}
-
-/// Whether any name refers to the second mass.
-fn sides(channels: &[InferredChannel]) -> bool {
-    channels.iter().any(|c| side(&c.name) == Some('y'))
-}
-
-fn words(name: &str) -> Vec<String> {
-    name.to_lowercase()
-        .split(|c: char| !c.is_alphanumeric())
-        .filter(|w| !w.is_empty())
-        .map(str::to_owned)
-        .collect()
-}
-
-/// The mass that a name refers to.
-fn side(name: &str) -> Option<char> {
-    let of = |word: &str| match word {
-        "x" | "1" | "left" | "a" | "vx" | "ax" | "dx" | "x1" | "v1" | "mass1" => Some('x'),
-        "y" | "2" | "right" | "b" | "vy" | "ay" | "dy" | "x2" | "v2" | "mass2" => Some('y'),
-        _ => None,
-    };
-    words(name).iter().rev().find_map(|w| of(w))
-}
-
-/// How well a channel fits a role; 0: not at all.
-fn score(channel: &InferredChannel, role: Role, two_sided: bool) -> u32 {
-    let kind = kind(channel);
-    let fits = match role {
-        Role::Drive => kind == Kind::Drive,
-        Role::Contact => kind == Kind::Contact,
-        Role::VelocityX | Role::VelocityY => kind == Kind::Velocity,
-        Role::DisplacementX | Role::DisplacementY => kind == Kind::Displacement,
-        Role::AccelerationX | Role::AccelerationY => kind == Kind::Acceleration,
-        Role::FrameX | Role::FrameY => kind == Kind::Frame,
-    };
-    let of_y = role.is_on_y_side();
-    let alive = channel.range.is_some_and(|[low, high]| high > low);
-    let base = 1 + 4 * u32::from(alive) + u32::from(channel.unit.is_some());
-    match (
-        fits,
-        role.is_motion() || kind == Kind::Frame,
-        side(&channel.name),
-    ) {
-        (false, _, _) => 0,
-        (true, false, _) => base,
-        (true, true, Some('y')) if of_y => base + 2,
-        (true, true, _) if of_y => 0,
-        (true, true, Some('x')) if two_sided => base + 2,
-        (true, true, Some('y')) => 0,
-        _ => base,
-    }
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Drive,
-    Contact,
-    Velocity,
-    Displacement,
-    Acceleration,
-    Frame,
-    Unknown,
-}
-
-/// Quantity of a channel, from its name, unit and shape.
-fn kind(channel: &InferredChannel) -> Kind {
-    let words = words(&channel.name);
-    let has = |stems: &[&str]| words.iter().any(|w| stems.iter().any(|s| w.starts_with(s)));
-    if has(&["frame", "base", "found", "housing"]) {
-        return Kind::Frame;
-    }
-    if has(&["contact", "touch", "switch", "kontakt"]) {
-        return Kind::Contact;
-    }
-    let unit = channel.unit.as_deref().and_then(units::parse_unit);
-    let of_name = units::split_unit(&channel.name)
-        .1
-        .and_then(units::parse_split_unit);
-    match unit.or(of_name).map(|u| u.dimension) {
-        Some(Dimension::Velocity) => return Kind::Velocity,
-        Some(Dimension::Length) => return Kind::Displacement,
-        Some(Dimension::Acceleration) => return Kind::Acceleration,
-        Some(Dimension::Force) => return Kind::Drive,
-        _ => {}
-    }
-    match () {
-        () if has(&["drive", "gen", "exc", "hammer", "force", "input", "shaker"]) => Kind::Drive,
-        () if has(&["vel", "speed", "laser", "ldv", "vib", "vx", "vy"]) => Kind::Velocity,
-        () if has(&["disp", "pos", "dx", "dy"]) => Kind::Displacement,
-        () if has(&["acc"]) => Kind::Acceleration,
-        () if channel.levels.is_some() => Kind::Contact,
-        () => Kind::Unknown,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -362,6 +266,7 @@ mod tests {
             is_time: false,
             role: None,
             levels: None,
+            sign: 1,
         }
     }
 
@@ -375,7 +280,7 @@ mod tests {
             seen("acc y", Some("g")),
             seen("temperature", None),
         ];
-        assign(&mut channels);
+        roles::assign(&mut channels);
         let roles: Vec<_> = channels.iter().map(|c| c.role).collect();
         assert_eq!(
             roles,
@@ -388,6 +293,42 @@ mod tests {
                 None
             ]
         );
+    }
+
+    #[test]
+    fn like_named_groups_are_the_masses_and_their_forces_no_drive() {
+        let mut channels: Vec<InferredChannel> = ["Blue", "Red"]
+            .iter()
+            .flat_map(|group| {
+                [("Force", "N"), ("Position", "m"), ("Velocity", "m/s")]
+                    .map(|(quantity, unit)| seen(&format!("{group} {quantity}"), Some(unit)))
+            })
+            .collect();
+        roles::assign(&mut channels);
+        let roles: Vec<_> = channels.iter().map(|c| c.role).collect();
+        assert_eq!(
+            roles,
+            [
+                None,
+                Some(Role::DisplacementX),
+                Some(Role::VelocityX),
+                None,
+                Some(Role::DisplacementY),
+                Some(Role::VelocityY),
+            ]
+        );
+        // The second cart of a run with one stands still.
+        for channel in &mut channels[3..] {
+            channel.range = Some([0.0, 0.0]);
+        }
+        channels.iter_mut().for_each(|c| c.role = None);
+        roles::assign(&mut channels);
+        assert!(channels[3..].iter().all(|c| c.role.is_none()));
+    }
+
+    #[test]
+    fn a_few_numbers_are_no_contact() {
+        assert!(two_levels(&[0.0, 5.0, 0.0, 5.0]).is_none());
     }
 
     #[test]

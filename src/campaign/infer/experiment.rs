@@ -1,0 +1,254 @@
+//! What was probably measured: a driven rig, free decays, free flights, or the times of impacts.
+
+use super::{FolderContents, InferredChannel};
+use crate::event::{DetectSettings, FlightKind, RigKind, detect};
+use crate::record::calibrate::{ChannelKey, ChannelSetup, RecordSetup, calibrate};
+use crate::record::{ContactContent, Excitation, FlagCode, Record, Role, Setting, Sweep};
+use crate::signal::{decay, onsets};
+use labfiles::units::{self, Dimension};
+use labfiles::{DatasetInfo, Source};
+
+/// What was probably measured.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Experiment {
+    /// A driven rig, or nothing that the records show.
+    #[default]
+    Driven,
+    /// Free decays.
+    FreeDecay,
+    /// Masses that fly freely between impacts.
+    FreeFlight(RigKind),
+    /// The times of impacts alone.
+    Events(ContactContent),
+}
+
+/// Records that are looked at.
+const MOST_RECORDS: usize = 6;
+/// Most rows of a list of events.
+const MOST_EVENTS: u64 = 400;
+/// Part of a signal that a decay's fit may leave.
+const DECAY_LEAVES: f64 = 0.45;
+/// Fewest periods of a decay.
+const DECAY_PERIODS: f64 = 5.0;
+/// Fewest sounds that are bounces.
+const FEWEST_SOUNDS: usize = 4;
+
+/// Whether a dataset is a list of events: few rows, and nothing but times in it.
+pub(super) fn is_event_list(set: &DatasetInfo) -> bool {
+    let of_time = |c: &labfiles::ChannelInfo| {
+        let own = units::split_unit(&c.name)
+            .1
+            .and_then(units::parse_split_unit);
+        let unit = c.unit.as_deref().and_then(units::parse_unit).or(own);
+        unit.is_some_and(|u| u.dimension == Dimension::Time)
+    };
+    let rows = set.channels.iter().map(|c| c.samples).max().unwrap_or(0);
+    let timed = set.channels.iter().filter(|c| of_time(c)).count();
+    (3..=MOST_EVENTS).contains(&rows) && timed > 0 && timed == set.channels.len()
+}
+
+/// Find out what was measured, and set roles and signs for it.
+pub(super) fn infer(sources: &[&dyn Source], found: &mut FolderContents) {
+    let Some(first) = sources.first() else { return };
+    if first.datasets().iter().any(is_event_list) {
+        found.experiment = Experiment::Events(events(&mut found.channels));
+        return;
+    }
+    let moving = |c: &InferredChannel| c.role.is_some_and(Role::is_motion);
+    if !found.channels.iter().any(moving) {
+        if first.format() == "wav" && sounds(*first) {
+            found.experiment = Experiment::Events(ContactContent::Sound);
+            if let Some(channel) = found.channels.first_mut() {
+                channel.role = Some(Role::Contact);
+            }
+        }
+        return;
+    }
+    if found.channels.iter().any(|c| c.role == Some(Role::Drive)) {
+        return;
+    }
+    let records: Vec<Record> = sources
+        .iter()
+        .take(MOST_RECORDS)
+        .map(|source| read(*source, &found.channels))
+        .collect();
+    let most =
+        |is: &dyn Fn(&Record) -> bool| 2 * records.iter().filter(|r| is(r)).count() > records.len();
+    let two = found
+        .channels
+        .iter()
+        .any(|c| c.role.is_some_and(Role::is_of_y));
+    let rig = if two {
+        RigKind::Double
+    } else {
+        RigKind::Single
+    };
+    if most(&decays) {
+        found.experiment = Experiment::FreeDecay;
+    } else if most(&|r| !flights(r, rig).is_empty() || measured_along_one_axis(r, rig)) {
+        found.experiment = Experiment::FreeFlight(rig);
+        orient(&records, rig, &mut found.channels);
+        without_acceleration(&mut found.channels);
+    }
+}
+
+/// The column of a list of events that states the impacts.
+fn events(channels: &mut [InferredChannel]) -> ContactContent {
+    let is_interval = |c: &InferredChannel| {
+        let name = c.name.to_lowercase();
+        ["interval", "duration", "diff", "dt"]
+            .iter()
+            .any(|w| name.contains(w))
+    };
+    let times = channels.iter().position(|c| !is_interval(c));
+    let (at, content) = match times {
+        Some(at) => (at, ContactContent::Times),
+        None => (0, ContactContent::Intervals),
+    };
+    for channel in channels.iter_mut() {
+        channel.role = None;
+    }
+    if let Some(channel) = channels.get_mut(at) {
+        channel.role = Some(Role::Contact);
+    }
+    content
+}
+
+/// Whether a sound is one of bounces: each follows the one before sooner.
+fn sounds(source: &dyn Source) -> bool {
+    let Some(rate_hz) = source
+        .datasets()
+        .first()
+        .and_then(DatasetInfo::sample_rate_hz)
+    else {
+        return false;
+    };
+    let samples = source.read(0, &[0]).ok().and_then(|mut s| s.pop());
+    let Some(values) = samples.and_then(labfiles::Samples::into_real) else {
+        return false;
+    };
+    let found = onsets::find(&values, rate_hz);
+    let flights: Vec<f64> = found.windows(2).map(|w| w[1] - w[0]).collect();
+    let shorter = flights.windows(2).filter(|w| w[1] < w[0]).count();
+    found.len() >= FEWEST_SOUNDS && 3 * shorter >= 2 * flights.len().saturating_sub(1)
+}
+
+/// A record by the inferred roles, in SI as far as units are known.
+fn read(source: &dyn Source, channels: &[InferredChannel]) -> Record {
+    let setups: Vec<ChannelSetup> = channels
+        .iter()
+        .filter_map(|c| {
+            let role = c.role.filter(|r| r.is_motion())?;
+            Some(ChannelSetup {
+                unit: role.dimension().map(|dimension| units::Unit {
+                    dimension,
+                    to_si: 1.0,
+                }),
+                ignore_file_unit: true,
+                ..ChannelSetup::plain(role, ChannelKey::Name(c.name.clone()))
+            })
+        })
+        .collect();
+    let setting = Setting {
+        stated_frequency_hz: None,
+        clearance_m: None,
+        sweep: Sweep::Unknown,
+        drive_amplitude: 1.0,
+        sequence: 0,
+        specimen: None,
+        excitation: Excitation::Harmonic,
+    };
+    let setup = RecordSetup {
+        id: "",
+        dataset: 0,
+        channels: &setups,
+        time: None,
+        sample_rate_hz: None,
+        setting: &setting,
+        driven: false,
+        skip_s: 0.0,
+    };
+    calibrate(source, &setup)
+}
+
+fn decays(record: &Record) -> bool {
+    let channels: Vec<&[f64]> = record
+        .channels
+        .iter()
+        .filter(|c| !c.role.is_of_y() && c.values.iter().all(|v| v.is_finite()))
+        .map(|c| c.values.as_slice())
+        .collect();
+    if channels.is_empty() || record.sample_rate_hz <= 0.0 {
+        return false;
+    }
+    decay::fit_channels(&channels, record.sample_rate_hz).is_some_and(|d| {
+        let periods = d.samples as f64 / record.sample_rate_hz * d.natural_frequency_hz;
+        d.residual_ratio < DECAY_LEAVES && periods > DECAY_PERIODS && d.damping_ratio < 0.5
+    })
+}
+
+fn settings() -> DetectSettings {
+    DetectSettings {
+        flight: FlightKind::ConstantForce,
+        ..DetectSettings::default()
+    }
+}
+
+fn flights(record: &Record, rig: RigKind) -> Vec<FlagCode> {
+    if record.sample_rate_hz <= 0.0 {
+        return Vec::new();
+    }
+    let found = detect(record, rig, &settings());
+    match found.impacts.is_empty() {
+        true => Vec::new(),
+        false => {
+            let codes = found.flags.iter().map(|f| f.code);
+            std::iter::once(FlagCode::NoImpact).chain(codes).collect()
+        }
+    }
+}
+
+fn measured_along_one_axis(record: &Record, rig: RigKind) -> bool {
+    record.sample_rate_hz > 0.0
+        && detect(record, rig, &settings())
+            .flags
+            .iter()
+            .any(|f| f.code == FlagCode::OppositeSign)
+}
+
+/// Signs of the channels as most impacts show them.
+fn orient(records: &[Record], rig: RigKind, channels: &mut [InferredChannel]) {
+    let count = |is: &dyn Fn(&Record) -> bool| records.iter().filter(|r| is(r)).count();
+    let away = count(&|r| flights(r, rig).contains(&FlagCode::MeasuredAway));
+    let along = count(&|r| measured_along_one_axis(r, rig));
+    for channel in channels {
+        let Some(role) = channel.role.filter(|r| r.is_motion()) else {
+            continue;
+        };
+        if 2 * away > records.len() {
+            channel.sign = -1;
+        }
+        if 2 * along > records.len() && role.is_of_y() {
+            channel.sign = -1;
+        }
+    }
+}
+
+/// Free flights are told by velocity and displacement; an accelerometer adds its drift.
+fn without_acceleration(channels: &mut [InferredChannel]) {
+    let better = |c: &InferredChannel| {
+        let role = c.role.filter(|r| r.is_motion());
+        role.is_some_and(|r| !matches!(r, Role::AccelerationX | Role::AccelerationY))
+    };
+    if !channels.iter().any(better) {
+        return;
+    }
+    for channel in channels {
+        if matches!(
+            channel.role,
+            Some(Role::AccelerationX | Role::AccelerationY | Role::Contact)
+        ) {
+            channel.role = None;
+        }
+    }
+}

@@ -1,0 +1,393 @@
+//! Impacts between free flights under a constant force: one mass against a stop, or two masses.
+//!
+//! The approach velocity falls at an impact. The flights beside the fall are the longest stretches
+//! that the law of free flight explains, so that a push by hand before, or a catch after, does not
+//! enter the speeds.
+
+mod duration;
+mod fall;
+mod orientation;
+mod stretch;
+
+use crate::event::contact::Closed;
+use crate::event::impact::{DetectionSource, Impact, MassSpeeds};
+use crate::event::kinematics::{Body, Kinematics, RelativeSource, RigKind};
+use crate::record::{Flag, FlagCode};
+use crate::signal::local_fit::crossing;
+use crate::signal::{robust, whole};
+
+use duration::Contact;
+use fall::Fall;
+use stretch::{Side, Stretch};
+
+/// Speed at an impact above the fastest sample of its flight that is refused, relative.
+const BEYOND: f64 = 0.1;
+/// Part of the fastest sample that a flight's own acceleration may add up to the impact.
+const ADDED: f64 = 0.6;
+/// Greatest ratio of separation to approach speed that an impact can have.
+const GREATEST_RATIO: f64 = 1.3;
+/// Standard errors by which each mass's speed must change.
+const CHANGED: f64 = 3.0;
+/// Standard error of the time of a crossing of two parabolas, samples: what the contact takes.
+const BLUR: f64 = 0.25;
+/// Standard deviation of the place of a jump between two samples, samples.
+const STEP_SPREAD: f64 = 0.29;
+/// Least standard error of the time of an impact between two lines of velocity, samples.
+const LEAST_SPREAD: f64 = 0.1;
+/// Share of a flight that may be left out without a note.
+const USED: f64 = 0.6;
+
+/// Impacts of a record under constant force.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct FreeFlights {
+    /// The impacts in order of time.
+    pub impacts: Vec<Impact>,
+    /// Samples that a fall takes in the median.
+    pub jump_samples: usize,
+    /// What was turned around and what was left out.
+    pub flags: Vec<Flag>,
+}
+
+/// Detect the impacts. Signs of the channels are taken as the impacts show them: masses cannot
+/// attract each other, so a record whose velocity rises at its impacts is measured the other way round.
+pub(super) fn detect(kinematics: &Kinematics, rig: RigKind, closed: &[Closed]) -> FreeFlights {
+    if rig == RigKind::Double && kinematics.relative_from != Some(RelativeSource::Both) {
+        return FreeFlights {
+            flags: vec![one_mass_alone()],
+            jump_samples: 1,
+            ..FreeFlights::default()
+        };
+    }
+    let plain = Search::new(kinematics, rig).impacts(closed);
+    if !plain.impacts.is_empty() {
+        return plain;
+    }
+    orientation::search(kinematics, rig, closed).unwrap_or(plain)
+}
+
+fn one_mass_alone() -> Flag {
+    Flag::new(
+        FlagCode::OneMassAlone,
+        None,
+        "two masses fly freely, but the motion of one alone is measured",
+        "name a channel of motion of each mass, or set machine = \"single\" for a fixed stop",
+    )
+}
+
+/// The bodies of a record and where their approach velocity falls.
+struct Search<'a> {
+    bodies: Vec<&'a Body>,
+    rate_hz: f64,
+    falls: Vec<Fall>,
+    relative: &'a [f64],
+    greatest_m_s: f64,
+}
+
+/// An impact, or why a fall is none.
+enum Found {
+    Impact(Box<Impact>, Option<usize>),
+    /// No flight beside the fall: time, s, and on which side.
+    NoFlight(f64, Side),
+    /// The speed at the impact is beyond any that was measured.
+    Beyond(f64),
+    Nothing,
+}
+
+impl<'a> Search<'a> {
+    fn new(kinematics: &'a Kinematics, rig: RigKind) -> Self {
+        let bodies = match rig {
+            RigKind::Single => vec![&kinematics.x],
+            RigKind::Double => vec![&kinematics.x, &kinematics.y],
+        };
+        let velocity = kinematics.relative.velocity.as_ref();
+        let relative = velocity.map_or(&[][..], |v| v.values.as_slice());
+        Self {
+            bodies,
+            rate_hz: kinematics.rate_hz,
+            falls: velocity.map_or_else(Vec::new, fall::find),
+            relative,
+            greatest_m_s: typical_greatest(relative),
+        }
+    }
+
+    fn impacts(&self, closed: &[Closed]) -> FreeFlights {
+        let mut found = FreeFlights {
+            jump_samples: 1,
+            ..FreeFlights::default()
+        };
+        let (mut cut, mut hidden, mut beyond) = (Vec::new(), Vec::new(), Vec::new());
+        for index in 0..self.falls.len() {
+            match self.impact(index, closed) {
+                Found::Impact(impact, left_out) => {
+                    cut.extend(left_out.map(|n| (impact.time_s, n)));
+                    found.impacts.push(*impact);
+                }
+                Found::NoFlight(time_s, side) => hidden.push((time_s, side)),
+                Found::Beyond(time_s) => beyond.push(time_s),
+                Found::Nothing => {}
+            }
+        }
+        found.jump_samples = jump_samples(&found.impacts, self.rate_hz);
+        found.flags.extend(cut_flag(&cut, self.rate_hz));
+        found.flags.extend(hidden_flag(&hidden));
+        found.flags.extend(beyond_flag(&beyond));
+        found
+    }
+
+    /// The contact, if the samples resolve its duration.
+    fn contact(&self, (before, after): (&[Stretch], &[Stretch]), time: f64) -> Option<Contact> {
+        let of_velocity = before.iter().all(|s| s.displacement().is_none());
+        let smoothed = self
+            .bodies
+            .iter()
+            .any(|b| duration::is_smoothed(b, self.rate_hz));
+        of_velocity
+            .then(|| duration::contact(self.relative, (before, after), time, smoothed))
+            .flatten()
+    }
+
+    /// Samples between the neighbouring falls.
+    fn bounds(&self, index: usize) -> (usize, usize) {
+        let low = index.checked_sub(1).map_or(0, |i| self.falls[i].last);
+        let next = self.falls.get(index + 1);
+        (low, next.map_or(self.relative.len(), |f| f.first + 1))
+    }
+
+    fn stretches(&self, index: usize, side: Side) -> Option<Vec<Stretch>> {
+        let scale = (self.rate_hz, self.greatest_m_s);
+        let bounds = self.bounds(index);
+        self.bodies
+            .iter()
+            .map(|body| stretch::find(body, side, self.falls[index], bounds, scale))
+            .collect()
+    }
+
+    fn impact(&self, index: usize, closed: &[Closed]) -> Found {
+        let fall = self.falls[index];
+        let middle_s = 0.5 * (fall.first + fall.last) as f64 / self.rate_hz;
+        let Some(before) = self.stretches(index, Side::Before) else {
+            return Found::NoFlight(middle_s, Side::Before);
+        };
+        let Some(after) = self.stretches(index, Side::After) else {
+            return Found::NoFlight(middle_s, Side::After);
+        };
+        let (time, time_error) = self.instant(fall, &before, &after);
+        let contact = self.contact((&before, &after), time);
+        let [start, end] = match &contact {
+            Some(c) => [time - c.to_centre, time - c.to_centre + c.duration],
+            None => [time, time],
+        };
+        let approach: f64 = before.iter().map(|s| s.speed(start)).sum();
+        let separation: f64 = -after.iter().map(|s| s.speed(end)).sum::<f64>();
+        let time_error = time_error.hypot(contact.map_or(0.0, |c| c.error()));
+        let error = speed_error(&before, &after, (time, time_error));
+        if self.is_beyond(index, &before, approach, error) {
+            return Found::Beyond(time / self.rate_hz);
+        }
+        let rebounds = match self.bodies.len() {
+            1 => separation > CHANGED * error,
+            _ => separation > -CHANGED * error.max(0.02 * approach),
+        };
+        let changed = before.iter().zip(&after).all(|(b, a)| {
+            let drop = b.speed(time) - a.speed(time);
+            drop > (CHANGED * b.error(time).hypot(a.error(time))).max(0.02 * approach)
+        });
+        if approach < CHANGED * error
+            || !rebounds
+            || !changed
+            || separation > GREATEST_RATIO * approach
+        {
+            return Found::Nothing;
+        }
+        let of_body = |body: usize| MassSpeeds {
+            before_m_s: before[body].speed(time),
+            after_m_s: after[body].speed(time),
+        };
+        let touched = closed
+            .iter()
+            .any(|c| c.first <= fall.last + 1 && fall.first <= c.last + 1);
+        let impact = Impact {
+            time_s: time / self.rate_hz,
+            time_error_s: time_error / self.rate_hz,
+            drive_phase_rad: None,
+            approach_speed_before_m_s: Some(approach),
+            approach_speed_after_m_s: Some(-separation),
+            speed_error_m_s: Some(error),
+            x: Some(of_body(0)),
+            y: (self.bodies.len() > 1).then(|| of_body(1)),
+            corner_shifts: [None, None],
+            dead_zone_s: 0.0,
+            contact_duration_s: contact.map(|c| c.duration / self.rate_hz),
+            external_push_m_s: None,
+            source: match touched {
+                true => DetectionSource::Both,
+                false => DetectionSource::Velocity,
+            },
+        };
+        Found::Impact(Box::new(impact), self.left_out(index, &before))
+    }
+
+    /// Time of an impact in samples with its standard error: where the displacements of both flights
+    /// cross.
+    fn instant(&self, fall: Fall, before: &[Stretch], after: &[Stretch]) -> (f64, f64) {
+        let (low, high) = (fall.first as f64 - 1.0, fall.last as f64 + 1.0);
+        if let ([before], [after]) = (before, after)
+            && let (Some(b), Some(a)) = (before.displacement(), after.displacement())
+            && let Some(time) = crossing(b, a, low, high)
+        {
+            return (time, BLUR);
+        }
+        self.crossing_of_areas(fall, before, after)
+    }
+
+    /// Time at which the displacements of both flights meet: they enclose the area under the velocity.
+    /// It does not depend on how many samples the contact takes, nor on a smoothing of the velocity.
+    fn crossing_of_areas(&self, fall: Fall, before: &[Stretch], after: &[Stretch]) -> (f64, f64) {
+        let middle = 0.5 * (fall.first + fall.last) as f64;
+        let from = before.iter().map(|s| s.samples.1.saturating_sub(1)).min();
+        let to = after.iter().map(|s| s.samples.0).max();
+        let (Some(from), Some(to)) = (from, to) else {
+            return (middle, 0.5);
+        };
+        let area: f64 = self.relative[from..=to]
+            .windows(2)
+            .map(|w| 0.5 * (w[0] + w[1]))
+            .sum();
+        let speed = |flights: &[Stretch], t: f64| flights.iter().map(|s| s.speed(t)).sum::<f64>();
+        let under = |flights: &[Stretch], a: f64, b: f64| {
+            0.5 * (speed(flights, a) + speed(flights, b)) * (b - a)
+        };
+        let (low, high) = (from as f64, to as f64);
+        let mut time = middle;
+        for _ in 0..20 {
+            let off = under(before, low, time) + under(after, time, high) - area;
+            let step = off / (speed(before, time) - speed(after, time));
+            time -= step;
+            if !time.is_finite() || time < low || time > high {
+                return (middle, 0.5);
+            }
+            if step.abs() < 1e-9 {
+                break;
+            }
+        }
+        // A jump between two samples is somewhere between them; one over several is resolved.
+        let steps = (fall.last - fall.first).max(1) as f64;
+        (time, (STEP_SPREAD / steps).max(LEAST_SPREAD))
+    }
+
+    /// Whether the approach speed is beyond what was measured on its flight.
+    fn is_beyond(&self, index: usize, before: &[Stretch], approach: f64, error: f64) -> bool {
+        let (low, _) = self.bounds(index);
+        let fall = self.falls[index];
+        let fastest = self.relative[low..=fall.first]
+            .iter()
+            .fold(0.0f64, |m, v| m.max(*v));
+        let used = before.iter().map(|s| s.samples.1.saturating_sub(1)).min();
+        let middle = 0.5 * (fall.first + fall.last) as f64;
+        let gap = (middle - used.unwrap_or(fall.first) as f64).max(1.0);
+        let slope: f64 = before.iter().map(|s| s.step(fall.first as f64)).sum();
+        let added = (slope.max(0.0) * gap).min(ADDED * fastest);
+        approach > (1.0 + BEYOND) * fastest + added + CHANGED * error
+    }
+
+    /// Samples of the approach that are no free flight, if they are many.
+    fn left_out(&self, index: usize, before: &[Stretch]) -> Option<usize> {
+        let (low, _) = self.bounds(index);
+        let moving = 0.1 * self.greatest_m_s;
+        let last = self.falls[index].first;
+        let all = (low..=last)
+            .rev()
+            .take_while(|i| self.relative[*i] > moving)
+            .count();
+        let from = before.iter().map(|s| s.samples.0).max()?;
+        let to = before.iter().map(|s| s.samples.1).min()?;
+        let used = to.saturating_sub(from);
+        let turned = self.bodies.len() == 1 && index > 0;
+        (!turned && (used as f64) < USED * all as f64).then(|| all - used.min(all))
+    }
+}
+
+/// Samples that a contact takes in the median; one where it is not resolved.
+fn jump_samples(impacts: &[Impact], rate_hz: f64) -> usize {
+    let durations: Vec<f64> = impacts
+        .iter()
+        .map(|i| i.contact_duration_s.map_or(1.0, |d| (d * rate_hz).max(1.0)))
+        .collect();
+    robust::median(&durations).map_or(1, |d| whole::index(d.round()))
+}
+
+/// Standard error of either approach speed: of the fits, and of the time where flights are steep.
+fn speed_error(before: &[Stretch], after: &[Stretch], (time, time_error): (f64, f64)) -> f64 {
+    let side = |flights: &[Stretch]| {
+        let squares: f64 = flights.iter().map(|s| s.error(time).powi(2)).sum();
+        let step: f64 = flights.iter().map(|s| s.step(time)).sum();
+        squares.sqrt().hypot(step * time_error)
+    };
+    side(before).max(side(after))
+}
+
+/// The greatest speed but for a few samples, which may be faults.
+fn typical_greatest(values: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let at = sizes.len().saturating_sub(1) * 98 / 100;
+    sizes.get(at).copied().unwrap_or(0.0)
+}
+
+fn cut_flag(cut: &[(f64, usize)], rate_hz: f64) -> Option<Flag> {
+    let (time_s, samples) = cut.first()?;
+    let seconds = *samples as f64 / rate_hz;
+    Some(
+        Flag::new(
+            FlagCode::ApproachCut,
+            None,
+            format!(
+                "before the impact at {time_s:.3} s the last {seconds:.3} s of the approach that are \
+                 no free flight are left out, as of a push by hand"
+            ),
+            "nothing, if the mass was pushed or released there",
+        )
+        .excluding(false),
+    )
+}
+
+fn hidden_flag(hidden: &[(f64, Side)]) -> Option<Flag> {
+    let (time_s, side) = hidden.first()?;
+    let side = match side {
+        Side::Before => "before",
+        Side::After => "after",
+    };
+    Some(
+        Flag::new(
+            FlagCode::NoFreeFlight,
+            None,
+            format!(
+                "{} falls of the velocity have no free flight beside them, the first at {time_s:.3} s \
+                 {side} it: they are left out",
+                hidden.len()
+            ),
+            "let the mass move freely for a few samples before and after each impact",
+        )
+        .excluding(false),
+    )
+}
+
+fn beyond_flag(beyond: &[f64]) -> Option<Flag> {
+    let time_s = beyond.first()?;
+    Some(
+        Flag::new(
+            FlagCode::SpeedNeverMeasured,
+            None,
+            format!(
+                "{} impacts, the first at {time_s:.3} s, would have an approach speed above any that \
+                 was measured: they are left out",
+                beyond.len()
+            ),
+            "let the mass move freely for a few samples before the impact",
+        )
+        .excluding(false),
+    )
+}
+
+#[cfg(test)]
+mod tests;

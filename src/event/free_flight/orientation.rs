@@ -1,0 +1,72 @@
+//! Records whose channels are positive the other way round.
+
+use crate::event::contact::Closed;
+use crate::event::free_flight::{FreeFlights, Search};
+use crate::event::kinematics::{Body, Kinematics, RigKind, Series};
+use crate::record::{Flag, FlagCode};
+
+/// The impacts of a record that is measured the other way round; `None` if it has none then either.
+pub(super) fn search(
+    kinematics: &Kinematics,
+    rig: RigKind,
+    closed: &[Closed],
+) -> Option<FreeFlights> {
+    let with = |signs: [f64; 2]| {
+        let turned = turned(kinematics, rig, signs);
+        let found = Search::new(&turned, rig).impacts(closed);
+        (!found.impacts.is_empty()).then_some(found)
+    };
+    if let Some(mut found) = with([-1.0, -1.0]) {
+        found.flags.insert(0, away(rig));
+        return Some(found);
+    }
+    if rig == RigKind::Single {
+        return None;
+    }
+    let along_one_axis = with([1.0, -1.0]).is_some() || with([-1.0, 1.0]).is_some();
+    along_one_axis.then(|| FreeFlights {
+        flags: vec![same_direction()],
+        jump_samples: 1,
+        ..FreeFlights::default()
+    })
+}
+
+fn away(rig: RigKind) -> Flag {
+    let what = match rig {
+        RigKind::Single => "the velocity is positive away from the stop, as its impacts show",
+        RigKind::Double => {
+            "the velocities are positive away from the other mass, as the impact shows"
+        }
+    };
+    Flag::new(
+        FlagCode::MeasuredAway,
+        None,
+        format!("{what}: the record is turned around"),
+        "set sign = -1 in [channels.*], if all records are so",
+    )
+    .excluding(false)
+}
+
+fn same_direction() -> Flag {
+    Flag::new(
+        FlagCode::OppositeSign,
+        None,
+        "both masses are measured along one axis, not toward each other: at the impact one speed \
+         rises and the other falls",
+        "set sign = -1 in the [channels.*] of one of the two masses",
+    )
+}
+
+fn turned(kinematics: &Kinematics, rig: RigKind, [x, y]: [f64; 2]) -> Kinematics {
+    let mut turned = kinematics.clone();
+    turn(&mut turned.x, x);
+    turn(&mut turned.y, y);
+    turned.update_relative(rig);
+    turned
+}
+
+fn turn(body: &mut Body, sign: f64) {
+    let turn = |series: &mut Series| series.values.iter_mut().for_each(|v| *v *= sign);
+    body.velocity.iter_mut().for_each(turn);
+    body.displacement.iter_mut().for_each(turn);
+}

@@ -1,0 +1,203 @@
+//! The stretch of a record beside an impact that free flight explains.
+
+use crate::event::free_flight::fall::Fall;
+use crate::event::kinematics::{Body, Series};
+use crate::signal::local_fit::LocalFit;
+
+/// Most samples of a stretch.
+const MOST: usize = 1500;
+/// Samples beside a fall that may still belong to the contact, beside its own.
+const BESIDE: usize = 4;
+/// Relative scatter of a speed beside the noise: wheels, rails and rolling friction are uneven.
+const UNEVEN: f64 = 4e-3;
+/// Scatter about a flight, in standard deviations of the noise, above which it is none.
+const IN_NOISE: f64 = 2.0;
+/// F of one more power of time above which a stretch is no flight.
+const BENT: f64 = 16.0;
+/// Samples by which a stretch is shortened: one in this many.
+const STEP: usize = 8;
+/// Standard error of a speed beside all others, relative.
+const SPEED_SCATTER: f64 = 1e-3;
+
+/// Which flight beside a fall.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    Before,
+    After,
+}
+
+/// A stretch of free flight.
+#[derive(Debug, Clone)]
+pub(super) struct Stretch {
+    fit: LocalFit,
+    /// Whether the displacement is fitted, else the velocity.
+    of_displacement: bool,
+    /// Samples per second, Hz.
+    rate_hz: f64,
+    /// Standard deviation of the fitted signal about the flight, as far as independent.
+    deviation: f64,
+    /// First sample and the one after the last.
+    pub samples: (usize, usize),
+}
+
+impl Stretch {
+    /// Velocity at a time in samples, m/s.
+    pub(super) fn speed(&self, time: f64) -> f64 {
+        match self.of_displacement {
+            true => self.fit.slope(time) * self.rate_hz,
+            false => self.fit.value(time),
+        }
+    }
+
+    /// Change of the velocity per sample.
+    pub(super) fn step(&self, time: f64) -> f64 {
+        self.speed(time + 0.5) - self.speed(time - 0.5)
+    }
+
+    /// Standard error of the velocity at a time, m/s.
+    pub(super) fn error(&self, time: f64) -> f64 {
+        let factor = match self.of_displacement {
+            true => self.fit.slope_error_factor(time) * self.rate_hz,
+            false => self.fit.error_factor(time),
+        };
+        (self.deviation * factor).hypot(SPEED_SCATTER * self.speed(time).abs())
+    }
+
+    /// The fitted displacement, if it is the one that is fitted.
+    pub(super) fn displacement(&self) -> Option<&LocalFit> {
+        self.of_displacement.then_some(&self.fit)
+    }
+}
+
+/// What is fitted: a signal, the degree of its flights, its scatter beside the noise.
+struct Signal<'a> {
+    values: &'a [f64],
+    degree: usize,
+    least: usize,
+    noise: f64,
+    of_displacement: bool,
+}
+
+impl<'a> Signal<'a> {
+    /// The velocity as measured; a displacement where the velocity was derived from it.
+    fn of(body: &'a Body, greatest_m_s: f64) -> Option<Self> {
+        let velocity = body.velocity.as_ref()?;
+        let derived = |d: &&Series| d.role == velocity.role;
+        Some(match body.displacement.as_ref().filter(derived) {
+            Some(displacement) => Self {
+                values: &displacement.values,
+                degree: 2,
+                least: 6,
+                noise: displacement.noise,
+                of_displacement: true,
+            },
+            None => Self {
+                values: &velocity.values,
+                degree: 1,
+                least: 4,
+                noise: velocity.noise.max(UNEVEN * greatest_m_s),
+                of_displacement: false,
+            },
+        })
+    }
+
+    /// A fit of samples that free flight explains; `None` where it does not.
+    fn flight(&self, (first, last): (usize, usize)) -> Option<(LocalFit, f64)> {
+        let fit = LocalFit::new(self.values, first, last, self.degree)?;
+        let count = last - first;
+        let freedom = count.checked_sub(self.degree + 1).filter(|f| *f > 0)? as f64;
+        let scatter = (fit.residual_squares / freedom).sqrt();
+        if scatter > IN_NOISE * self.noise {
+            return None;
+        }
+        if freedom >= 2.0 {
+            let bent = LocalFit::new(self.values, first, last, self.degree + 1)?;
+            let left = (bent.residual_squares / (freedom - 1.0)).max(0.25 * self.noise.powi(2));
+            if (fit.residual_squares - bent.residual_squares) / left > BENT {
+                return None;
+            }
+        }
+        let correlated = correlation(self.values, &fit, first, last);
+        Some((fit, scatter.max(0.5 * self.noise) * correlated))
+    }
+}
+
+/// Factor on a standard error for residuals that are correlated with their neighbours.
+fn correlation(values: &[f64], fit: &LocalFit, first: usize, last: usize) -> f64 {
+    let residual = |i: usize| values[i] - fit.value(i as f64);
+    let products: f64 = (first + 1..last)
+        .map(|i| residual(i) * residual(i - 1))
+        .sum();
+    let share = products / fit.residual_squares.max(f64::MIN_POSITIVE);
+    let share = share.clamp(0.0, 0.8);
+    ((1.0 + share) / (1.0 - share)).sqrt()
+}
+
+/// The longest stretch beside a fall that free flight explains: a line of the velocity or a parabola
+/// of the displacement.
+///
+/// `bounds`: samples between the neighbouring falls; `greatest_m_s`: the scale of the speeds. Samples
+/// beside the fall that still belong to the contact are left out; of the possible stretches the one
+/// with the least error at the fall's middle is taken.
+pub(super) fn find(
+    body: &Body,
+    side: Side,
+    fall: Fall,
+    bounds: (usize, usize),
+    (rate_hz, greatest_m_s): (f64, f64),
+) -> Option<Stretch> {
+    let signal = Signal::of(body, greatest_m_s)?;
+    let velocity = body.velocity.as_ref()?;
+    let middle = 0.5 * (fall.first + fall.last) as f64;
+    let beside = BESIDE + (fall.last - fall.first) / 2;
+    let stretches = (0..=beside).filter_map(|skipped| {
+        let (first, last) = window(&velocity.values, side, fall, bounds, skipped, greatest_m_s)?;
+        let mut count = last - first;
+        while count >= signal.least {
+            let samples = match side {
+                Side::Before => (last - count, last),
+                Side::After => (first, first + count),
+            };
+            if let Some((fit, deviation)) = signal.flight(samples) {
+                return Some(Stretch {
+                    fit,
+                    of_displacement: signal.of_displacement,
+                    rate_hz,
+                    deviation,
+                    samples,
+                });
+            }
+            count -= (count / STEP).max(1);
+        }
+        None
+    });
+    stretches.min_by(|a, b| a.error(middle).total_cmp(&b.error(middle)))
+}
+
+/// Samples beside a fall on which the body moves in one direction: friction changes where it turns.
+fn window(
+    velocity: &[f64],
+    side: Side,
+    fall: Fall,
+    (low, high): (usize, usize),
+    skipped: usize,
+    greatest_m_s: f64,
+) -> Option<(usize, usize)> {
+    let turned = |edge: usize, i: usize| {
+        velocity[i] * velocity[edge] < 0.0 && velocity[i].abs() > 0.02 * greatest_m_s
+    };
+    match side {
+        Side::Before => {
+            let edge = fall.first.checked_sub(skipped).filter(|e| *e >= low)?;
+            let from = low.max((edge + 1).saturating_sub(MOST));
+            let turn = (from..edge).rev().find(|i| turned(edge, *i));
+            Some((turn.map_or(from, |i| i + 1), edge + 1))
+        }
+        Side::After => {
+            let edge = Some(fall.last + skipped).filter(|e| *e < high)?;
+            let to = high.min(edge + MOST);
+            let turn = (edge..to).find(|i| turned(edge, *i));
+            Some((edge, turn.unwrap_or(to)))
+        }
+    }
+}
