@@ -29,7 +29,7 @@ pub(crate) fn draw(correlation: &Correlation, locale: Locale<'_>) -> Option<Figu
     let names: Vec<String> = correlation
         .parameters
         .iter()
-        .map(|p| name(*p, locale))
+        .map(|p| coordinate_name(*p, locale))
         .collect();
     let columns = columns(correlation);
     let widths = names
@@ -93,7 +93,7 @@ fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, locale: Locale<'_>
 }
 
 /// Symbol of a parameter, or the name of what is fitted beside it.
-fn name(coordinate: Coordinate, locale: Locale<'_>) -> String {
+pub(crate) fn coordinate_name(coordinate: Coordinate, locale: Locale<'_>) -> String {
     let key = coordinate.name();
     if let Some(shown) = parameter(key) {
         return shown.symbol.to_owned();
