@@ -113,7 +113,7 @@ fn quantities() -> Vec<Case> {
                     "restitution = 0.9\nclearance_uncertainty = \"-3 um\"",
                 );
             },
-            &["rig.clearance_uncertainty", "-3 um"],
+            &["rig.clearance_uncertainty", "is out of range"],
         ),
         refused(
             "an effect that is not known",
