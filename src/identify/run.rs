@@ -13,7 +13,8 @@ use crate::identify::fit::Problem;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::identification::{Identification, JointFit, MethodResult};
 use crate::identify::joint::{self, Weights};
-use crate::identify::messages::{Finding, LeftOut, Reason};
+use crate::identify::estimate::ParameterSet;
+use crate::identify::messages::{Finding, LeftOut, Reason, Remark};
 use crate::identify::method::Method;
 use crate::identify::methods::{self, FitResult, succeeded};
 use crate::identify::selection::{Influential, Selection};
@@ -102,13 +103,16 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
     suspicions.extend(run.other_suspicions(&fits));
     let of_masses = momentum::momentum(&run.selection.blocks.impact, evidence);
     suspicions.extend(of_masses.and_then(|m| m.1));
-    let methods = run.results(&fits);
+    let mut methods = run.results(&fits);
     let mut joint = results::joint(evidence, fits.joint.as_ref(), &methods);
     if observations_are_undriven(evidence) {
         results::widen_common(&mut joint, &run.selection.blocks.impact);
         verdict::carry_over(&mut joint, &methods);
     }
     let beyond = succeeded(&fits.joint).map_or_else(Vec::new, beyond::beyond);
+    if !beyond.is_empty() {
+        widen_ideal(&mut methods, &joint);
+    }
     let agreement = match beyond.is_empty() {
         true => agreement(&methods),
         // Flights take the rig for ideal.
@@ -148,6 +152,26 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
 /// Whether no record has a drive, so that R rests on the impacts alone.
 fn observations_are_undriven(evidence: &Evidence<'_>) -> bool {
     evidence.observations.iter().all(|o| o.drive.is_none())
+}
+
+/// Widen what multiple shooting, which takes the rig as ideal, is off the joint estimate on a rig that
+/// is not.
+fn widen_ideal(methods: &mut BTreeMap<Method, MethodResult>, joint: &MethodResult) {
+    let Some(flights) = methods.get_mut(&Method::Flights) else {
+        return;
+    };
+    for coordinate in Coordinate::PHYSICAL {
+        let value = |set: &ParameterSet| set.get(coordinate)?.value;
+        let Some((own, all)) = value(&flights.parameters).zip(value(&joint.parameters)) else {
+            continue;
+        };
+        let unit = if coordinate.is_logarithm() { all } else { 1.0 };
+        if let Some(Some(estimate)) = flights.parameters.slot(coordinate) {
+            *estimate = estimate::widened(coordinate, estimate, (own - all).abs() / unit);
+            estimate.note = None;
+        }
+    }
+    flights.remarks.push(Remark::IdealRig);
 }
 
 /// The results of all methods but one.
