@@ -615,6 +615,7 @@ mod tests {
         effects[Effect::FrequencyDrift.place()] = 2e-3;
         effects[Effect::ContactDuration.place()] = 0.3;
         effects[Effect::ContactLaw.place()] = 0.1;
+        effects[Effect::ContactReach.place()] = 0.05;
         Parameters {
             drive_asymmetry: 0.02,
             stiffness_asymmetry: -0.03,

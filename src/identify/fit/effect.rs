@@ -35,6 +35,8 @@ pub enum Effect {
     ContactDuration,
     /// Relative departure of what a contact's length makes of R from that of a spring and a damper
     ContactLaw,
+    /// Relative departure of the distance that masses press into each other from that of a spring and a damper
+    ContactReach,
 }
 
 /// Effects that a campaign may restrict the fit to, by name.
@@ -92,7 +94,7 @@ impl EffectKind {
 
 impl Effect {
     /// Number of effects.
-    pub const COUNT: usize = 14;
+    pub const COUNT: usize = 15;
 
     /// All of them, in the order of their places.
     pub const ALL: [Self; Self::COUNT] = [
@@ -110,6 +112,7 @@ impl Effect {
         Self::DeflectionDrift,
         Self::ContactDuration,
         Self::ContactLaw,
+        Self::ContactReach,
     ];
 
     /// Place among all.
@@ -131,7 +134,9 @@ impl Effect {
             | Self::FrequencyBend
             | Self::DampingDrift
             | Self::DeflectionDrift => EffectKind::Drift,
-            Self::ContactDuration | Self::ContactLaw => EffectKind::ContactDuration,
+            Self::ContactDuration | Self::ContactLaw | Self::ContactReach => {
+                EffectKind::ContactDuration
+            }
         }
     }
 
@@ -151,6 +156,7 @@ impl Effect {
             Self::DeflectionDrift => 5e-3,
             Self::ContactDuration => 0.6,
             Self::ContactLaw => 0.1,
+            Self::ContactReach => 0.05,
         }
     }
 
@@ -178,6 +184,7 @@ impl Effect {
             Self::DeflectionDrift => "deflection_drift",
             Self::ContactDuration => "contact_duration_ms",
             Self::ContactLaw => "contact_law",
+            Self::ContactReach => "contact_reach",
         }
     }
 }

@@ -69,7 +69,8 @@ impl Parameters {
             ..*self
         };
         let error = at.gap.map_or(0.0, |i| self.gap_errors_m.of(i));
-        let reach_m = at.approach_m_s * contact_s * contact.reach / at.masses.max(1.0);
+        let reach = contact.reach * (1.0 + self.effect(Effect::ContactReach));
+        let reach_m = at.approach_m_s * contact_s * reach / at.masses.max(1.0);
         (own, at.clearance_m + self.screw_zero_m + error + reach_m)
     }
 
@@ -95,6 +96,7 @@ impl Parameters {
         let speed = at.approach_m_s / at.masses.max(1.0);
         let decay = self.decay_per_s();
         let law = 1.0 + self.effect(Effect::ContactLaw);
+        let reach = 1.0 + self.effect(Effect::ContactReach);
         let drag = contact_s * law * contact.drag * decay;
         let beyond = contact.press * at.press_per_s + contact.drag * decay;
         match coordinate {
@@ -107,7 +109,7 @@ impl Parameters {
                     0.0,
                     0.0,
                 ],
-                clearance_m: contact_s * speed * contact.reach_slope,
+                clearance_m: contact_s * speed * contact.reach_slope * reach,
             }),
             Coordinate::Frequency => Some(OwnSlope {
                 physical: [drag, 1.0, 0.0, -eta * over_eta / lean],
@@ -129,9 +131,10 @@ impl Parameters {
                 Effect::DeflectionDrift => only(3, at.place),
                 Effect::ContactDuration => Some(OwnSlope {
                     physical: [1e-3 * law * beyond, 0.0, 0.0, 0.0],
-                    clearance_m: 1e-3 * speed * contact.reach,
+                    clearance_m: 1e-3 * speed * contact.reach * reach,
                 }),
                 Effect::ContactLaw => only(0, contact_s * beyond),
+                Effect::ContactReach => clearance(contact_s * speed * contact.reach),
                 _ => None,
             },
             _ => None,

@@ -430,6 +430,10 @@ fn beyond_english(effect: Effect, rises: bool) -> &'static str {
             "a contact's length changes the speeds by {strength} ± {error} % otherwise than a spring \
              and a damper would"
         }
+        (Effect::ContactReach, _) => {
+            "masses in contact press into each other by {strength} ± {error} % otherwise than a \
+             spring and a damper would"
+        }
         (Effect::ContactDuration, _) => {
             "a contact acts like one of {strength} ± {error} ms: use harder bumpers"
         }
@@ -506,6 +510,10 @@ fn beyond_german(effect: Effect, rises: bool) -> &'static str {
         (Effect::ContactLaw, _) => {
             "die Dauer eines Kontakts ändert die Geschwindigkeiten um {strength} ± {error} % anders als \
              eine Feder und ein Dämpfer"
+        }
+        (Effect::ContactReach, _) => {
+            "die Massen dringen im Kontakt um {strength} ± {error} % anders ineinander ein als eine \
+             Feder und ein Dämpfer"
         }
         (Effect::ContactDuration, _) => {
             "ein Kontakt wirkt wie einer von {strength} ± {error} ms: härtere Puffer verwenden"
