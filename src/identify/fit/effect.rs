@@ -35,7 +35,8 @@ pub enum Effect {
     ContactDuration,
     /// Relative departure of what a contact's length makes of R from that of a spring and a damper
     ContactLaw,
-    /// Relative departure of the distance that masses press into each other from that of a spring and a damper
+    /// What the masses' acceleration during a contact adds to the distance that they press into each
+    /// other: relative, per unit of acceleration × duration / approach speed
     ContactReach,
 }
 
@@ -156,7 +157,7 @@ impl Effect {
             Self::DeflectionDrift => 5e-3,
             Self::ContactDuration => 0.6,
             Self::ContactLaw => 0.1,
-            Self::ContactReach => 0.05,
+            Self::ContactReach => 0.3,
         }
     }
 

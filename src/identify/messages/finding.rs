@@ -431,8 +431,8 @@ fn beyond_english(effect: Effect, rises: bool) -> &'static str {
              and a damper would"
         }
         (Effect::ContactReach, _) => {
-            "masses in contact press into each other by {strength} ± {error} % otherwise than a \
-             spring and a damper would"
+            "the masses' acceleration changes the distance that they press into each other: use \
+             harder bumpers"
         }
         (Effect::ContactDuration, _) => {
             "a contact acts like one of {strength} ± {error} ms: use harder bumpers"
@@ -512,8 +512,8 @@ fn beyond_german(effect: Effect, rises: bool) -> &'static str {
              eine Feder und ein Dämpfer"
         }
         (Effect::ContactReach, _) => {
-            "die Massen dringen im Kontakt um {strength} ± {error} % anders ineinander ein als eine \
-             Feder und ein Dämpfer"
+            "die Beschleunigung der Massen ändert, wie weit sie ineinander eindringen: härtere Puffer \
+             verwenden"
         }
         (Effect::ContactDuration, _) => {
             "ein Kontakt wirkt wie einer von {strength} ± {error} ms: härtere Puffer verwenden"
