@@ -19,7 +19,7 @@ pub use evidence::{
     ResonancePoint,
 };
 pub use input::Input;
-pub use left_out::Unusable;
+pub use left_out::{Unusable, UnusableReason};
 pub use plane::{BoundaryCurve, RegionMap};
 pub use records::{BracketRow, Overview, RecordRow};
 pub use replays::{Comparison, Signal, Trace};
@@ -85,7 +85,7 @@ pub struct Placed {
 }
 
 /// Place every record, bracket and boundary; nothing is replayed.
-pub fn placed(input: &Input) -> Placed {
+pub fn placed(input: &Input<'_>) -> Placed {
     Placed {
         records: records::all_records(input),
         brackets: records::brackets(input),

@@ -43,7 +43,7 @@ impl fmt::Display for WhyNot {
 }
 
 /// A record by its index beside what the model with parameters does there.
-pub fn beside(input: &Input, index: usize, parameters: &Parameters) -> Beside {
+pub fn beside(input: &Input<'_>, index: usize, parameters: &Parameters) -> Beside {
     let Some(o) = input.observations.get(index) else {
         return Beside::Nothing(WhyNot::Unknown);
     };

@@ -36,10 +36,10 @@ impl Campaign {
     ///
     /// # Errors
     /// [`ExploreError`] where none of its records can be used.
-    pub fn of(resolved: ResolvedCampaign, progress: Progress) -> Result<Self, ExploreError> {
+    pub fn of(resolved: ResolvedCampaign, progress: Progress<'_>) -> Result<Self, ExploreError> {
         let observed = Observed::of(&resolved, progress)?;
         progress("identify", 0, 1);
-        let found = identify::identify(&resolved, &observed)?;
+        let found = identify::identify(&resolved, &observed, None)?;
         Ok(Self::with(resolved, observed, found.identification))
     }
 
@@ -47,7 +47,10 @@ impl Campaign {
     ///
     /// # Errors
     /// [`ExploreError`] where a file is missing or of another version, or no record can be used.
-    pub fn read(folder: &Path, progress: Progress) -> Result<(Self, Vec<String>), ExploreError> {
+    pub fn read(
+        folder: &Path,
+        progress: Progress<'_>,
+    ) -> Result<(Self, Vec<String>), ExploreError> {
         let resolved = store::read_resolved(folder)?;
         let found = store::read_identification(folder)?;
         check_layout(folder, &found)?;
@@ -89,7 +92,7 @@ impl Campaign {
     }
 
     /// Call a function of the comparison.
-    pub(super) fn with_input<T>(&self, of: impl FnOnce(&Input) -> T) -> T {
+    pub(super) fn with_input<T>(&self, of: impl FnOnce(&Input<'_>) -> T) -> T {
         of(&Input {
             rig: self.resolved.machine,
             observations: &self.observed.observations,
@@ -104,7 +107,7 @@ impl Campaign {
         Some(read_one(&self.resolved, self.resolved.records.get(index)?))
     }
 
-    /// The fitted parameters with R, f0, β and x_st of the sliders.
+    /// The fitted parameters with R, f0, β and `x_st` of the sliders.
     pub(super) fn at_sliders(&self, state: &State) -> Parameters {
         let scale = state.rig.unwrap_or_else(|| self.scale());
         let machine = state.machine();
@@ -130,7 +133,7 @@ impl Campaign {
         }
     }
 
-    /// f0 and x_st: fitted, else stated, else of the campaign's own scale.
+    /// f0 and `x_st`: fitted, else stated, else of the campaign's own scale.
     fn scale(&self) -> RigScale {
         let value = |e: &Option<Estimate>| e.as_ref().and_then(|e| e.value);
         let joint = &self.identification.joint.parameters;
@@ -188,9 +191,15 @@ impl Campaign {
             cursor: self.first_cursor(scale, view),
             view,
             panel: Panel::Motion,
-            rig: Some(scale),
+            rig: self.has_places().then_some(scale),
             ..first
         }
+    }
+
+    /// Whether any record has a place in the plane: a frequency and a clearance.
+    fn has_places(&self) -> bool {
+        let mut all = self.observed.observations.iter();
+        all.any(|o| o.frequency_hz().is_some() && o.setting.clearance_m.is_some())
     }
 
     /// The surest record with z = 1, else the middle of what is shown.
@@ -200,12 +209,16 @@ impl Campaign {
             .observations
             .iter()
             .filter(|o| o.one_impact_in() == Some(1));
-        let sure = |o: &&Observation| (1e6 * o.classification.confidence) as u32;
-        let place = one.max_by_key(sure).and_then(|o| {
-            let x_st = scale.static_deflection_m * o.setting.drive_amplitude;
-            let rho = o.setting.clearance_m? / x_st;
-            Some((o.frequency_hz()? / scale.natural_frequency_hz, rho))
-        });
+        let place = one
+            .max_by(|a, b| {
+                let sure = |o: &Observation| o.classification.confidence;
+                sure(a).total_cmp(&sure(b))
+            })
+            .and_then(|o| {
+                let x_st = scale.static_deflection_m * o.setting.drive_amplitude;
+                let rho = o.setting.clearance_m? / x_st;
+                Some((o.frequency_hz()? / scale.natural_frequency_hz, rho))
+            });
         let middle = |r: (f64, f64)| 0.5 * (r.0 + r.1);
         let (eta, rho) = place.unwrap_or((middle(view.eta), middle(view.rho)));
         Cursor {

@@ -36,6 +36,10 @@ impl Frame {
     }
 
     /// With a column of numbers.
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "pictures need no more digits"
+    )]
     pub(super) fn column(mut self, name: &str, values: impl IntoIterator<Item = f64>) -> Self {
         let narrow = values.into_iter().map(|v| v as f32).collect();
         self.columns.push((name.to_owned(), narrow));

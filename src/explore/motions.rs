@@ -36,7 +36,17 @@ const STEP_PERIODS: f64 = 12.0;
 /// Steps on the way of a carried motion; none where it stays.
 fn steps_between(from: (f64, f64), to: (f64, f64)) -> u32 {
     let steps = ((to.0 - from.0).abs() / STEP.0).max((to.1 - from.1).abs() / STEP.1);
-    steps.ceil().clamp(0.0, MOST_STEPS) as u32
+    whole(steps.clamp(0.0, MOST_STEPS))
+}
+
+/// The whole number at or above a number between 0 and some thousands.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the numbers of steps and samples are small and not negative; `as` saturates"
+)]
+fn whole(number: f64) -> u32 {
+    number.ceil() as u32
 }
 
 /// What is seen at the cursor.
@@ -155,7 +165,7 @@ pub(super) fn run(state: &State, periods: f64, job: &Job) -> Result<(), Stop> {
     let mut stretch = Trajectory::default();
     let period = setting.period();
     simulator.advance(periods * period, &mut stretch);
-    let steps = (periods * RUN_SAMPLES).ceil() as usize;
+    let steps = whole(periods * RUN_SAMPLES) as usize;
     let taus = even((0.0, periods * period, steps + 1));
     let states = stretch.sample(taus.iter().copied());
     let place = Carried::resume(&machine, &simulator.snapshot(), state.watch)?.place();
@@ -170,6 +180,7 @@ pub(super) fn run(state: &State, periods: f64, job: &Job) -> Result<(), Stop> {
     let strobes = (0..).map(|k| first + f64::from(k) * period);
     let strobes: Vec<f64> = strobes.take_while(|t| *t < periods * period).collect();
     let crossed = stretch.sample(strobes);
+    let hits = &stretch.impacts;
     let frame = job
         .frame("run")
         .with("cursor", cursor)
@@ -182,10 +193,10 @@ pub(super) fn run(state: &State, periods: f64, job: &Job) -> Result<(), Stop> {
         .column("vy", states.iter().map(|s| s.vy))
         .column("poincare_x", crossed.iter().map(|s| s.x))
         .column("poincare_vx", crossed.iter().map(|s| s.vx))
-        .column(
-            "impact_periods",
-            stretch.impacts.iter().map(|i| i.tau / period),
-        );
+        .column("impact_periods", hits.iter().map(|i| i.tau / period))
+        .column("impact_x", hits.iter().map(|i| stretch.at(i.tau).x))
+        .column("impact_vx_before", hits.iter().map(|i| i.vx_before))
+        .column("impact_vx_after", hits.iter().map(|i| i.vx_after));
     Ok(job.send(frame)?)
 }
 

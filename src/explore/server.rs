@@ -219,11 +219,9 @@ async fn upgrade(
     if !headers.contains_key(header::ORIGIN) {
         return (StatusCode::FORBIDDEN, "the request names no origin\n").into_response();
     }
-    let offered = socket.requested_protocols();
-    let offered = offered.filter_map(|v| v.to_str().ok()?.strip_prefix(TOKEN_PREFIX));
-    let known = offered
-        .map(|token| same(token, &app.token))
-        .any(|same| same);
+    let token_of = |v: &HeaderValue| Some(v.to_str().ok()?.strip_prefix(TOKEN_PREFIX)?.to_owned());
+    let offered: Vec<String> = socket.requested_protocols().filter_map(token_of).collect();
+    let known = offered.iter().any(|token| same(token, &app.token));
     if !known {
         return (StatusCode::FORBIDDEN, "the token is wrong\n").into_response();
     }

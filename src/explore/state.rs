@@ -156,7 +156,7 @@ pub enum Panel {
 pub struct RigScale {
     /// f0, Hz.
     pub natural_frequency_hz: f64,
-    /// x_st, m.
+    /// `x_st`, m.
     pub static_deflection_m: f64,
 }
 

@@ -97,21 +97,11 @@ pub fn succeeded(attempt: &Option<FitResult>) -> Option<&MethodFit> {
     attempt.as_ref().and_then(|a| a.as_ref().ok())
 }
 
-/// Fit blocks over free coordinates and find the variance factor.
+/// Fit a problem and find the variance factor.
 ///
 /// # Errors
 /// Those of [`Problem::fit`].
-pub fn fit_blocks(
-    blocks: Vec<(&dyn Block, f64)>,
-    free: Vec<Coordinate>,
-    priors: Vec<Prior>,
-    start: Parameters,
-) -> FitResult {
-    let problem = Problem {
-        blocks,
-        priors,
-        free,
-    };
+pub fn fit_blocks(problem: Problem<'_>, start: Parameters) -> FitResult {
     let fit = problem.fit(start)?;
     let informed = problem.free.len().saturating_sub(problem.priors.len());
     let freedom = fit.residuals.saturating_sub(informed);
@@ -147,7 +137,7 @@ pub fn resonance_from(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> 
     let mut priors = wide_priors(&start, &free);
     let list: [(&dyn Block, f64); 1] = [(&blocks.resonance, 1.0)];
     blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
-    enough(blocks).then(|| fit_blocks(list.to_vec(), free, priors, start))
+    enough(blocks).then(|| fit_blocks(blocks.problem(list.to_vec(), free, priors), start))
 }
 
 fn enough(blocks: &Blocks) -> bool {
@@ -217,7 +207,7 @@ pub fn impacts(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<
     let list: Vec<(&dyn Block, f64)> = vec![(&blocks.impact, 1.0)];
     let (mut free, mut priors) = (vec![Coordinate::Restitution], Vec::new());
     blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
-    Some(fit_blocks(list, free, priors, start))
+    Some(fit_blocks(blocks.problem(list, free, priors), start))
 }
 
 /// s2, s1 and grazing brackets, with f0, β and `x_st` from the impactless records beside them.
@@ -235,7 +225,7 @@ pub fn boundaries(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Opti
         list.push((&blocks.resonance, 1.0));
         blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
     }
-    Some(fit_blocks(list, free, priors, start))
+    Some(fit_blocks(blocks.problem(list, free, priors), start))
 }
 
 /// All four parameters from the folded waveforms.
@@ -252,7 +242,7 @@ fn all_four(block: &dyn Block, blocks: &Blocks, nominal: &Nominal, start: Parame
     let mut priors = wide_priors(&start, &free);
     let list = vec![(block, 1.0)];
     blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
-    fit_blocks(list, free, priors, start)
+    fit_blocks(blocks.problem(list, free, priors), start)
 }
 
 /// Variance of what flights tell over that of independent innovations: an impact's errors of time

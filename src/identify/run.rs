@@ -71,6 +71,7 @@ use crate::motion::Observation;
 ///     brackets: &[],
 ///     nominal: Nominal { gain_uncertainty: 5e-3, corner_uncertainty: 2e-2, ..Nominal::default() },
 ///     uncertainty: Default::default(),
+///     progress: None,
 /// });
 /// assert_eq!(found.used_by[&Method::Resonance].len(), 14);
 /// let f0 = found.joint.parameters.natural_frequency_hz.as_ref().expect("an estimate");

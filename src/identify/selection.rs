@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::identify::diagnostics::influence;
-use crate::identify::evidence::trajectory::TrajectoryRecord;
+use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::weighing::Bulk;
 use crate::identify::evidence::{Blocks, Evidence};
 use crate::identify::fit::normal::Normal;

@@ -179,6 +179,7 @@ fn evidence<'a>(
             intervals: IntervalMethod::Covariance,
             ..UncertaintyOptions::default()
         },
+        progress: None,
     }
 }
 

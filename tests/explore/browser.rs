@@ -186,3 +186,39 @@ fn browser_a_click_on_the_map_carries_the_motion_there() {
         "Math.abs(impactid.state.cursor.eta - 2.5) < 0.01 && Math.abs(impactid.at[1] - 4) < 0.03";
     browser.until(near);
 }
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_a_campaign_is_explored() {
+    let sample = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/data-samples/double-oscillator/campaign.toml"
+    );
+    let explorer = Explorer::start(&[sample], &std::env::temp_dir());
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    let place = "(() => { const b = document.getElementById('map').getBoundingClientRect(); \
+         const all = impactid.campaign.placed(impactid.map.frame); \
+         const r = all.find((p) => p.r.motion.label === '1/2'); return [b.left + r.x, b.top + r.y]; })()";
+    let place = browser.evaluate(place);
+    browser.click((place[0].as_f64().unwrap(), place[1].as_f64().unwrap()));
+    browser.until("impactid.campaign.frame?.stated?.motion?.label === '1/2'");
+    let evidence = "document.getElementById('record-evidence').textContent";
+    browser.until(&format!("{evidence}.includes('periods observed')"));
+    let text = browser.evaluate("document.getElementById('record-head').textContent");
+    assert!(
+        text.as_str().unwrap().contains("simulated z = 1/2"),
+        "{text}"
+    );
+    browser.key("]", 0);
+    browser.until(QUIET);
+    let joint = "impactid.campaign.residual.joint";
+    let at_fit = browser.evaluate(joint).as_f64().unwrap();
+    browser.evaluate("impactid.parameters({ restitution: 0.85 })");
+    browser.until(&format!("{joint} > {}", 3.0 * at_fit));
+    browser.key("z", 0);
+    browser.until(&format!("Math.abs({joint} - {at_fit}) < 1e-9"));
+    browser.key("p", 0);
+    browser.until("impactid.campaign.proposals.length > 0");
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}

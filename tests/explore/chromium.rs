@@ -1,4 +1,4 @@
-//! A headless chromium over the DevTools protocol: enough to press keys, evaluate and take pictures.
+//! A headless chromium over the `DevTools` protocol: enough to press keys, evaluate and take pictures.
 
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader};
@@ -151,7 +151,7 @@ impl Chromium {
         }
     }
 
-    /// Press and release a key: a letter, or a name such as ArrowLeft; 8: with Shift.
+    /// Press and release a key: a letter, or a name such as `ArrowLeft`; 8: with Shift.
     pub(crate) fn key(&mut self, key: &str, modifiers: u32) {
         self.key_event("keyDown", key, modifiers);
         self.key_event("keyUp", key, modifiers);

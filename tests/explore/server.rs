@@ -58,9 +58,9 @@ impl Explorer {
         let wait = Some(Duration::from_secs(60));
         stream.set_read_timeout(wait).expect("a limit");
         stream.write_all(head.as_bytes()).expect("it reads");
-        let mut answer = String::new();
-        let _ = stream.read_to_string(&mut answer);
-        answer
+        let mut answer = Vec::new();
+        let _ = stream.read_to_end(&mut answer);
+        String::from_utf8_lossy(&answer).into_owned()
     }
 
     /// GET a path with the right host.
@@ -121,7 +121,8 @@ impl Frame {
         let mut rest = &bytes[4 + length..];
         let mut columns = Vec::new();
         for column in header["columns"].as_array().expect("columns") {
-            let count = column[1].as_u64().expect("a length") as usize;
+            let count = column[1].as_u64().expect("a length");
+            let count = usize::try_from(count).expect("a length");
             let (own, after) = rest.split_at(4 * count);
             let number = |b: &[u8]| f32::from_le_bytes(b.try_into().expect("four bytes"));
             let values = own.chunks_exact(4).map(number).collect();

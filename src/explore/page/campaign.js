@@ -143,7 +143,7 @@ export class CampaignView {
     const { frame } = this, { evidence: e, stated: s } = frame, box = element("record-evidence");
     const words = (key) => key.replaceAll("_", " ");
     const flat = (o, prefix = "") => Object.entries(o ?? {}).flatMap(([k, v]) => (v === null ? [] : typeof v === "object" ? flat(v, words(k) + ": ") : [[prefix + words(k), typeof v === "number" ? number(v, 4) : String(v)]]));
-    const rows = [["drive", `${number(s.frequency_hz, 6)} Hz`], ["clearance r", s.clearance_m === null ? "–" : `${number(1e3 * s.clearance_m, 5)} mm`], ["sweep", s.sweep]];
+    const rows = [["drive", s.frequency_hz === null ? "none" : `${number(s.frequency_hz, 6)} Hz`], ["clearance r", s.clearance_m === null ? "not stated" : `${number(1e3 * s.clearance_m, 5)} mm`], ["sweep", s.sweep]];
     if (s.specimen) rows.push(["specimen", s.specimen]);
     if (frame.shown === "decay") {
       const plus = ([v, d]) => `${number(v, 6)} ± ${number(1.96 * d, 2)}`;
@@ -153,17 +153,18 @@ export class CampaignView {
     const list = make("dl", undefined, "facts");
     list.append(...facts(rows));
     const notes = [];
-    if (e.undetermined) notes.push(make("p", `Undetermined: ${e.undetermined}`, "bad"));
+    if (e.undetermined && frame.shown !== "decay") notes.push(make("p", `Undetermined: ${e.undetermined}`, "bad"));
     for (const reason of e.left_out) notes.push(make("p", `Left out: ${reason}`, "bad"));
     for (const flag of e.flags) notes.push(make("p", `${flag.message}. ${flag.remedy}.`, flag.excludes ? "bad" : "note"));
-    const key = make("p", "Black: measured; blue dashed: simulated at the sliders; red: their difference; ticks: impacts.", "note");
-    box.replaceChildren(key, make("h3", frame.shown === "decay" ? "Fit" : "What the label rests on"), list, ...notes);
+    const key = make("p", frame.shown === "decay" ? "Black: measured; blue dashed: the fitted decay." : frame.shown === "nothing" ? "" : "Black: measured; blue dashed: simulated at the sliders; red: their difference; ticks: impacts.", "note");
+    box.replaceChildren(key, make("h2", frame.shown === "decay" ? "Fit" : "What the label rests on"), list, ...notes);
   }
 
   residuals(frame) {
     this.residual = frame;
     const box = element("residuals");
-    box.hidden = false;
+    box.hidden = !this.fit;
+    if (!this.fit) return;
     const item = (name, rms, tip) => {
       const span = make("span");
       const value = make("b", rms === null ? "no model" : number(rms, 3), rms === null || rms > 2 ? "worse" : "fits");

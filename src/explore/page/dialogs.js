@@ -12,12 +12,19 @@ export class Dialogs {
   constructor(app) {
     this.app = app;
     this.box = document.getElementById("dialog");
+    this.before = null;
+    // the focus goes back at once, so that the next key counts
+    this.box.addEventListener("close", () => {
+      const back = this.before?.isConnected && this.before !== document.body ? this.before : document.getElementById("map");
+      document.activeElement?.blur();
+      back.focus({ preventScroll: true });
+    });
   }
 
   open(title, ...content) {
     document.getElementById("dialog-title").textContent = title;
     document.getElementById("dialog-body").replaceChildren(...content);
-    if (!this.box.open) this.box.showModal();
+    if (!this.box.open) { this.before = document.activeElement; this.box.showModal(); }
     this.box.querySelector("input, select, textarea, #dialog-body button, button")?.focus();
   }
 

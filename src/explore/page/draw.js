@@ -87,7 +87,7 @@ export class Frame {
     c.strokeRect(b.left + 0.5, b.top + 0.5, b.width, b.height);
     c.font = `13px ${FONT}`; c.textAlign = "center"; c.textBaseline = "top";
     c.beginPath();
-    const tx = ticks(...this.x, b.width / 75), ty = ticks(...this.y, b.height / 42);
+    const tx = ticks(...this.x, b.width / 75), ty = ticks(...this.y, Math.max(2.4, b.height / 42));
     for (const v of tx.all) {
       const p = Math.round(this.px(v)) + 0.5;
       c.moveTo(p, b.top + b.height); c.lineTo(p, b.top + b.height - 4);

@@ -55,7 +55,8 @@ export function press(app, key, event) {
 export function listen(app) {
   document.addEventListener("keydown", (event) => {
     const target = event.target, kind = target.tagName;
-    const writes = kind === "TEXTAREA" || kind === "SELECT" || (kind === "INPUT" && target.type !== "range");
+    const closed = target.closest("dialog") && !document.getElementById("dialog").open;
+    const writes = !closed && (kind === "TEXTAREA" || kind === "SELECT" || (kind === "INPUT" && target.type !== "range"));
     if (document.getElementById("dialog").open || writes) return;
     const slides = kind === "INPUT" && target.type === "range";
     const own = slides && (event.key.startsWith("Arrow") || event.key === "Home");

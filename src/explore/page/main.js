@@ -18,7 +18,6 @@ class App {
     this.recorded = null;
     this.playing = 0;
     this.timings = [];      // { kind, level, ms } of what was asked for and first drawn
-    this.looked = 0;
     this.dialogs = new Dialogs(this);
     this.map = new MapView(element("map"), this);
     this.motion = new MotionPanel(this);
@@ -105,7 +104,6 @@ class App {
 
   receive(frame, slot, since) {
     if (frame.kind === "refused") { this.message(frame.message, frame.remedy); return; }
-    element("message").hidden = element("message").dataset.fixed !== "yes";
     const time = (kind, level) => this.timed(kind, level, since);
     if (frame.kind === "map") {
       const tile = this.map.tile(frame);
@@ -165,7 +163,6 @@ class App {
   nudge(de, dr, event) {
     const { view, cursor } = this.state, by = event.shiftKey ? 10 : event.ctrlKey ? 0.1 : 1;
     const step = (range) => by * (range[1] - range[0]) / 200;
-    this.looked = performance.now();
     const eta = Math.max(1e-3, cursor.eta + de * step(view.eta)), rho = cursor.rho + dr * step(view.rho);
     this.carry(eta, rho);
     if (eta < view.eta[0] || eta > view.eta[1] || rho < view.rho[0] || rho > view.rho[1]) {
@@ -469,6 +466,8 @@ class App {
     box.dataset.fixed = fixed ? "yes" : "no";
     box.replaceChildren(`${text} ${remedy ?? ""}`, close);
     box.hidden = false;
+    clearTimeout(this.closing);
+    if (!fixed) this.closing = setTimeout(() => { box.hidden = true; }, 15_000);
   }
 
   // ---- sliders ---------------------------------------------------------------------

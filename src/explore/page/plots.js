@@ -22,7 +22,8 @@ export class MotionPanel {
   run(frame) {
     const span = this.app.state.periods;
     const old = this.live ?? { t: [], x: [], vx: [], y: [], vy: [], gap: [], px: [], pv: [], end: 0 };
-    const c = frame.column, n = c.periods.length;
+    const c = frame.column, n = c.periods.length, jumps = withJumps(c);
+    old.jumps = (old.jumps ?? []).concat(jumps.map((p) => [old.end + p[0], p[1], p[2]]));
     for (let i = old.t.length ? 1 : 0; i < n; i++) {
       old.t.push(old.end + c.periods[i]); old.x.push(c.x[i]); old.vx.push(c.vx[i]);
       old.y.push(c.y[i]); old.vy.push(c.vy[i]); old.gap.push(frame.gap);
@@ -31,6 +32,7 @@ export class MotionPanel {
     old.end += c.periods[n - 1];
     const first = old.t.findIndex((t) => t >= old.end - span);
     if (first > 0) for (const key of ["t", "x", "vx", "y", "vy", "gap"]) old[key].splice(0, first);
+    old.jumps = old.jumps.filter((p) => p[0] >= old.end - span);
     if (old.px.length > 500) { old.px.splice(0, old.px.length - 500); old.pv.splice(0, old.pv.length - 500); }
     this.live = old;
     this.draw();
@@ -98,12 +100,13 @@ export class MotionPanel {
   }
 
   phase() {
-    const l = this.live, c = l ? { x: l.x, vx: l.vx } : this.frame.column;
-    const f = new Frame(element("phase"), around([c.x]), around([c.vx]), ["*X*", "*X*′"]).axes();
+    const l = this.live, c = this.frame?.column, path = l ? l.jumps : withJumps(c);
+    const xs = path.map((p) => p[1]), vs = path.map((p) => p[2]);
+    const f = new Frame(element("phase"), around([xs]), around([vs]), ["*X*", "*X*′"]).axes();
     const wall = this.frame ? this.frame.gap / (this.frame.two_masses ? 2 : 1) : null;
     f.clip(() => {
       if (wall !== null) f.curve([wall, wall], f.y, { colour: colour("quiet"), dash: [3, 3], width: 1 });
-      f.curve(c.x, c.vx, { colour: colour("blue"), width: 1.3 });
+      f.curve(xs, vs, { colour: colour("blue"), width: 1.3 });
       if (!l) f.dots(c.impact_x, c.impact_vx_before, 2, colour("ink"));
     });
   }
@@ -139,6 +142,19 @@ export class MotionPanel {
     rows.push(["phase φ", `${number(f.cursor.phase, 5)} rad`], ["Poincaré at", `${number(s.poincare_phase, 4)} rad`]);
     element("numbers").replaceChildren(...facts(rows));
   }
+}
+
+/** [time, X, X′] of a series with the instants just before and after each impact. */
+function withJumps(c) {
+  const path = [], hits = c.impact_periods;
+  let k = 0;
+  for (let i = 0; i < c.periods.length; i++) {
+    for (; k < hits.length && hits[k] <= c.periods[i]; k++) {
+      path.push([hits[k], c.impact_x[k], c.impact_vx_before[k]], [hits[k], c.impact_x[k], c.impact_vx_after[k]]);
+    }
+    path.push([c.periods[i], c.x[i], c.vx[i]]);
+  }
+  return path;
 }
 
 /** Rows of a definition list. */

@@ -26,6 +26,8 @@ export class Wire {
     this.waiting = {};     // slot → request to be sent then
     this.promises = {};    // id → [resolve, reject]
     this.sent = {};        // id → time it was asked for, ms
+    this.keyAt = 0;        // time of the last key, ms
+    document.addEventListener("keydown", (event) => { this.keyAt = event.timeStamp; }, true);
     const protocols = ["impactid.1", "token." + token];
     this.socket = new WebSocket(`ws://${location.host}/ws`, protocols);
     this.socket.binaryType = "arraybuffer";
@@ -34,11 +36,17 @@ export class Wire {
     this.socket.onclose = closed;
   }
 
+  /** Now, or the key that led here. */
+  clock() {
+    const now = performance.now();
+    return now - this.keyAt < 30 ? this.keyAt : now;
+  }
+
   send(slot, ask, state, since) {
     const id = this.next++;
     this.newest[slot] = id;
     this.slots[id] = slot;
-    this.sent[id] = since ?? performance.now();
+    this.sent[id] = since ?? this.clock();
     if (this.socket.readyState === 1) this.socket.send(JSON.stringify({ id, ask, state }));
     return id;
   }
@@ -49,7 +57,7 @@ export class Wire {
   /** Ask one at a time: while an answer is waited for, only the newest request is kept. `make` gives
    * [ask, state] when it is sent, so that it starts from the answer before. */
   askAfter(slot, make) {
-    const since = performance.now();
+    const since = this.clock();
     if (this.busy[slot]) {
       this.waiting[slot] = [make, this.waiting[slot]?.[1] ?? since];
       return;

@@ -13,7 +13,7 @@ use crate::identify::fit::factor::Factor;
 use crate::identify::fit::least_squares::{LeastSquares, Limits, Variance, minimise};
 use crate::identify::fit::normal::Normal;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::{Fit, FitError};
+use crate::identify::fit::{Fit, FitError, FitProgress};
 
 /// Gaussian prior on one coordinate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +27,7 @@ pub struct Prior {
 }
 
 /// A least-squares problem: blocks with weights, priors, and the coordinates that are free.
+#[derive(Default)]
 pub struct Problem<'a> {
     /// Blocks, each with a factor on its squared residuals (1 / variance factor).
     pub blocks: Vec<(&'a dyn Block, f64)>,
@@ -34,6 +35,8 @@ pub struct Problem<'a> {
     pub priors: Vec<Prior>,
     /// Free coordinates.
     pub free: Vec<Coordinate>,
+    /// What counts the iterations of its fits.
+    pub progress: FitProgress,
 }
 
 /// Least orthogonal share of a column of slopes: differences do not resolve less.
@@ -54,7 +57,7 @@ impl Problem<'_> {
     pub fn fit(&self, start: Parameters) -> Result<Fit, FitError> {
         let minimum = minimise(self, start, &LIMITS).map_err(|error| {
             let own = error.downcast::<FitError>();
-            own.unwrap_or_else(|other| FitError::Solver(other.to_string()))
+            own.unwrap_or(FitError::Solver)
         })?;
         let factor = minimum.factor;
         Ok(Fit {
@@ -180,6 +183,7 @@ impl Problem<'_> {
                 .copied()
                 .filter(|c| *c != coordinate)
                 .collect(),
+            progress: self.progress.clone(),
         };
         Some(held.fit(start).ok()?.cost)
     }
@@ -265,6 +269,10 @@ impl LeastSquares for Problem<'_> {
 
     fn cost(&self, at: &Parameters) -> Option<f64> {
         Problem::cost(self, at)
+    }
+
+    fn progress(&self) -> FitProgress {
+        self.progress.clone()
     }
 
     fn moved(&self, from: &Parameters, step: &[f64]) -> Parameters {

@@ -31,6 +31,8 @@ pub fn examples() -> Vec<Box<dyn Message>> {
         let effects = Effect::ALL.map(|effect| beyond(effect, strength));
         all.extend(effects.map(|m| Box::new(m) as Box<dyn Message>));
     }
+    let undetermined = crate::motion::undetermined_examples().into_iter();
+    all.extend(undetermined.map(|m| Box::new(m) as Box<dyn Message>));
     all.extend(FlagCode::ALL.map(|m| Box::new(m) as Box<dyn Message>));
     let sentences = sentences().into_iter();
     all.extend(sentences.map(|m| Box::new(m) as Box<dyn Message>));
@@ -97,9 +99,7 @@ fn notes() -> Vec<Note> {
         Note::NoPublishedMotion,
         Note::NoStart { observations: 3 },
         Note::NothingToFit,
-        Note::SolverFailed {
-            report: "…".into()
-        },
+        Note::SolverFailed,
         Note::MethodsDisagree,
         Note::NotSeparable,
     ]

@@ -12,6 +12,7 @@ use crate::identify::{Estimate, Finding, VerdictKind};
 use crate::report::content::ReportContent;
 use crate::report::locale::Locale;
 use crate::report::parameters::{self, PARAMETERS, ParameterLook};
+use crate::report::phrase::Phrase;
 
 /// Builds the first page.
 pub(super) fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
@@ -53,11 +54,11 @@ fn campaign_headline(content: &ReportContent, locale: Locale<'_>) -> String {
             !content.compared.records.is_empty(),
         )),
         0 => locale.translate_with(
-            "Identified: the model fits each of the {count} specimens",
+            Phrase::IdentifiedEachSpecimen,
             &[("count", &specimens.to_string())],
         ),
         _ => locale.translate_with(
-            "The model fits {some} of the {count} specimens",
+            Phrase::FitsSomeSpecimens,
             &[
                 ("some", &identified.to_string()),
                 ("count", &specimens.to_string()),
@@ -109,21 +110,20 @@ fn beyond_model(findings: &[&Finding], locale: Locale<'_>) -> String {
     let names = kinds.into_iter().map(|k| locale.translate(phrase(k)));
     let names: Vec<String> = names.collect();
     locale.translate_with(
-        "Beyond the model the rig has, and the intervals allow for: {effects}. The section on the \
-         uncertainty tells how much of each, and what helps.",
+        Phrase::BeyondTheModel,
         &[("effects", &names.join(", "))],
     )
 }
 
 /// A kind of effect as a phrase.
-fn phrase(kind: EffectKind) -> &'static str {
+fn phrase(kind: EffectKind) -> Phrase {
     match kind {
-        EffectKind::Harmonics => "harmonics of the drive",
-        EffectKind::ForceFrequency => "a force that depends on frequency",
-        EffectKind::Hardening => "springs that are not linear",
-        EffectKind::Friction => "dry friction",
-        EffectKind::Drift => "drift over the campaign",
-        EffectKind::ContactDuration => "contacts of finite duration",
+        EffectKind::Harmonics => Phrase::HarmonicsOfTheDrive,
+        EffectKind::ForceFrequency => Phrase::ForceDependsOnFrequency,
+        EffectKind::Hardening => Phrase::NonlinearSprings,
+        EffectKind::Friction => Phrase::DryFriction,
+        EffectKind::Drift => Phrase::DriftOverTheCampaign,
+        EffectKind::ContactDuration => Phrase::ContactsOfFiniteDuration,
     }
 }
 

@@ -1,13 +1,14 @@
 //! The uncertainty budget of the joint estimate.
 
-use super::{Column, table};
+use super::{Column, Head, table};
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::uncertainty::budget::{Budget, Combined, Contribution, Row, Source};
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
-use crate::report::figures::correlation::coordinate_name;
+use crate::report::figures::correlation::name;
 use crate::report::locale::Locale;
+use crate::report::phrase::Phrase;
 
 /// Size of the table's type, points.
 const SIZE: f64 = 7.5;
@@ -19,19 +20,15 @@ const UNIT: f64 = 1e-4;
 const MANY: f64 = 1e4;
 
 const COLUMNS: [Column; 8] = [
-    Column::wide("source", 1),
-    Column::center("type"),
-    Column::right("uncertainty"),
-    Column::right("$R$"),
-    Column::right("$f_0$"),
-    Column::right("$β$"),
-    Column::right("$x_st$"),
-    Column::right("degrees of freedom"),
+    Column::wide(Head::Of(Phrase::UncertaintySource), 1),
+    Column::center(Head::Of(Phrase::EvaluationType)),
+    Column::right(Head::Of(Phrase::StandardUncertainty)),
+    Column::right(Head::Symbol("$R$")),
+    Column::right(Head::Symbol("$f_0$")),
+    Column::right(Head::Symbol("$β$")),
+    Column::right(Head::Symbol("$x_st$")),
+    Column::right(Head::Of(Phrase::DegreesOfFreedom)),
 ];
-
-const CAPTION: &str = "Uncertainty budget: standard uncertainty of each source and what it \
-     contributes to that of the joint estimate, in units of 0.0001 (of $R$ absolute, of the others \
-     relative). Type A: by statistics; B: by other means.";
 
 /// A row for each source that matters, one for all others, and what they amount to.
 pub(crate) fn budget(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
@@ -44,7 +41,7 @@ pub(crate) fn budget(content: &ReportContent, locale: Locale<'_>) -> Option<Tabl
         rows.push(others(&minor, locale));
     }
     rows.extend(sums(budget, locale));
-    table(CAPTION, &COLUMNS, rows, locale).map(|t| Table { size: SIZE, ..t })
+    table(&Phrase::UncertaintyBudget.into(), &COLUMNS, rows, locale).map(|t| Table { size: SIZE, ..t })
 }
 
 fn matters(row: &Row, budget: &Budget) -> bool {
@@ -81,10 +78,10 @@ fn source(source: Source, locale: Locale<'_>) -> String {
     match source {
         Source::Noise { method } => {
             let method = locale.message(&method);
-            locale.translate_with("noise: {method}", &[("method", &method)])
+            locale.translate_with(Phrase::NoiseOf, &[("method", &method)])
         }
         Source::BetweenGroups { groups } => locale.translate_with(
-            "scatter between {count} groups of records",
+            Phrase::ScatterBetweenGroups,
             &[("count", &groups.to_string())],
         ),
         Source::Stated {
@@ -93,13 +90,13 @@ fn source(source: Source, locale: Locale<'_>) -> String {
         } => {
             let clearance = locale.significant(1e3 * m, 3);
             locale.translate_with(
-                "clearance {clearance} mm as stated",
+                Phrase::StatedClearance,
                 &[("clearance", &clearance)],
             )
         }
-        Source::Stated { coordinate, .. } => coordinate_name(coordinate, locale),
-        Source::FirstOrder => locale.translate("effects beyond the model, second order"),
-        Source::BetweenMethods => locale.translate("disagreement of the methods"),
+        Source::Stated { coordinate, .. } => name(coordinate, locale),
+        Source::FirstOrder => locale.translate(Phrase::BeyondFirstOrder),
+        Source::BetweenMethods => locale.translate(Phrase::DisagreementOfMethods),
     }
 }
 
@@ -138,7 +135,7 @@ fn others(minor: &[&Row], locale: Locale<'_>) -> Vec<Rich> {
         Some(sum.sqrt())
     };
     let mut cells = vec![
-        Rich::from(locale.translate_with("{count} further sources", &[("count", &count)])),
+        Rich::from(locale.translate_with(Phrase::FurtherSources, &[("count", &count)])),
         Rich::from("A, B"),
         Rich::from("–"),
     ];
@@ -150,7 +147,7 @@ fn others(minor: &[&Row], locale: Locale<'_>) -> Vec<Rich> {
 /// Combined standard uncertainty, degrees of freedom, coverage factor, expanded uncertainty.
 fn sums(budget: &Budget, locale: Locale<'_>) -> [Vec<Rich>; 4] {
     let of = |c: Coordinate| budget.combined.iter().find(|sum| sum.parameter == c);
-    let line = |name: &str, cells: Vec<Rich>| {
+    let line = |name: Phrase, cells: Vec<Rich>| {
         let head = [locale.translate(name), String::new(), "–".into()];
         let mut row: Vec<Rich> = head.into_iter().map(Rich::from).collect();
         row.extend(cells);
@@ -163,19 +160,19 @@ fn sums(budget: &Budget, locale: Locale<'_>) -> [Vec<Rich>; 4] {
     };
     [
         line(
-            "combined standard uncertainty",
+            Phrase::CombinedUncertainty,
             per_parameter(|c| of(c).map(|sum| sum.standard_uncertainty), locale).collect(),
         ),
         line(
-            "effective degrees of freedom",
+            Phrase::EffectiveDegreesOfFreedom,
             texts(&|sum| freedom(sum.degrees_of_freedom, locale)),
         ),
         line(
-            "coverage factor for 95 %",
+            Phrase::CoverageFactor,
             texts(&|sum| locale.fixed(sum.coverage_factor, 2)),
         ),
         line(
-            "expanded uncertainty",
+            Phrase::ExpandedUncertainty,
             per_parameter(|c| of(c).map(|sum| sum.expanded_uncertainty), locale).collect(),
         ),
     ]
