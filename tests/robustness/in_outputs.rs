@@ -73,8 +73,18 @@ fn commands() -> Vec<Case> {
         case(
             "a simulated rig with an effect that is not known",
             |_| {},
-            &["simulate", "campaign", "--rig", "wobble", "--out", "synthetic"],
-            &["no effect is called \"wobble\"", "second-harmonic, third-harmonic"],
+            &[
+                "simulate",
+                "campaign",
+                "--rig",
+                "wobble",
+                "--out",
+                "synthetic",
+            ],
+            &[
+                "no effect is called \"wobble\"",
+                "second-harmonic, third-harmonic",
+            ],
         ),
         case(
             "a simulated frequency that is no number",

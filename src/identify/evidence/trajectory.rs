@@ -223,7 +223,10 @@ impl Block for TrajectoryBlock {
         let total = |sum: &Vec<(usize, f64)>| {
             let mut total = vec![0.0; residuals.len()];
             for (i, times) in sum {
-                total.iter_mut().zip(&columns[*i]).for_each(|(t, c)| *t += times * c);
+                total
+                    .iter_mut()
+                    .zip(&columns[*i])
+                    .for_each(|(t, c)| *t += times * c);
             }
             total
         };

@@ -66,7 +66,7 @@ const NAMED: usize = 6;
 
 /// The first few groups, and the last.
 fn points(all: &[GroupPoint]) -> Value<'_> {
-    let mut which: Vec<Value> = all.iter().take(NAMED).map(|p| Value::Message(p)).collect();
+    let mut which: Vec<Value<'_>> = all.iter().take(NAMED).map(|p| Value::Message(p)).collect();
     which.extend((all.len() > NAMED).then_some(Value::Name("…")));
     Value::List(which)
 }

@@ -109,10 +109,7 @@ fn beyond_model(findings: &[&Finding], locale: Locale<'_>) -> String {
         .collect();
     let names = kinds.into_iter().map(|k| locale.translate(phrase(k)));
     let names: Vec<String> = names.collect();
-    locale.translate_with(
-        Phrase::BeyondTheModel,
-        &[("effects", &names.join(", "))],
-    )
+    locale.translate_with(Phrase::BeyondTheModel, &[("effects", &names.join(", "))])
 }
 
 /// A kind of effect as a phrase.

@@ -41,7 +41,8 @@ pub(crate) fn budget(content: &ReportContent, locale: Locale<'_>) -> Option<Tabl
         rows.push(others(&minor, locale));
     }
     rows.extend(sums(budget, locale));
-    table(&Phrase::UncertaintyBudget.into(), &COLUMNS, rows, locale).map(|t| Table { size: SIZE, ..t })
+    table(&Phrase::UncertaintyBudget.into(), &COLUMNS, rows, locale)
+        .map(|t| Table { size: SIZE, ..t })
 }
 
 fn matters(row: &Row, budget: &Budget) -> bool {
@@ -89,10 +90,7 @@ fn source(source: Source, locale: Locale<'_>) -> String {
             ..
         } => {
             let clearance = locale.significant(1e3 * m, 3);
-            locale.translate_with(
-                Phrase::StatedClearance,
-                &[("clearance", &clearance)],
-            )
+            locale.translate_with(Phrase::StatedClearance, &[("clearance", &clearance)])
         }
         Source::Stated { coordinate, .. } => name(coordinate, locale),
         Source::FirstOrder => locale.translate(Phrase::BeyondFirstOrder),
@@ -102,7 +100,8 @@ fn source(source: Source, locale: Locale<'_>) -> String {
 
 /// The standard uncertainty of a source in its own unit.
 fn stated(row: &Row, locale: Locale<'_>) -> String {
-    let (Some(u), Source::Stated { coordinate, .. }) = (row.standard_uncertainty, row.source) else {
+    let (Some(u), Source::Stated { coordinate, .. }) = (row.standard_uncertainty, row.source)
+    else {
         return "–".into();
     };
     let (factor, unit) = match coordinate {
@@ -118,7 +117,10 @@ fn per_parameter(
     locale: Locale<'_>,
 ) -> impl Iterator<Item = Rich> {
     let cell = move |c| of(c).map_or("–".into(), |u| locale.fixed(u / UNIT, 2));
-    Coordinate::PHYSICAL.into_iter().map(cell).map(|text: String| Rich::from(text))
+    Coordinate::PHYSICAL
+        .into_iter()
+        .map(cell)
+        .map(|text: String| Rich::from(text))
 }
 
 fn freedom(freedom: Option<f64>, locale: Locale<'_>) -> String {
