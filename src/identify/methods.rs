@@ -45,7 +45,7 @@ pub struct MethodFit {
 
 /// Share of an effect that its first order does not hold: what campaigns on rigs with all effects
 /// showed.
-const FIRST_ORDER: f64 = 0.03;
+const FIRST_ORDER: f64 = 0.02;
 
 impl MethodFit {
     /// Of a fit of a problem, judged with degrees of freedom.
@@ -108,38 +108,40 @@ pub fn fit_blocks(problem: Problem<'_>, start: Parameters) -> FitResult {
     Ok(MethodFit::of(&problem, fit, freedom))
 }
 
+/// What the impactless records tell.
+const RESONANCE: [Coordinate; 3] = [
+    Coordinate::Frequency,
+    Coordinate::Damping,
+    Coordinate::Deflection,
+];
+
 /// f0, β and `x_st` from the impactless records; the gains' uncertainty enters `x_st`.
 pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<FitResult> {
-    if blocks.resonance.points.len() < 3 {
+    if !enough(blocks) {
         return None;
     }
-    let mut free = vec![
-        Coordinate::Frequency,
-        Coordinate::Damping,
-        Coordinate::Deflection,
-    ];
-    let list: [(&dyn Block, f64); 1] = [(&blocks.resonance, 1.0)];
-    let mut priors = Vec::new();
-    let told = free.clone();
-    blocks.add_nuisances(&nominal.ideal(), &list, (&mut free, &mut priors));
-    let best = starts(blocks, nominal)
+    let ideal = nominal.ideal();
+    let fits = starts(blocks, nominal)
         .into_iter()
-        .filter_map(|start| {
-            let mut priors = priors.clone();
-            priors.extend(wide_priors(&start, &free));
-            fit_blocks(blocks.problem(list.to_vec(), free.clone(), priors), start).ok()
-        })
-        .min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
-    let Some(best) = best else {
-        return Some(Err(FitError::Singular));
-    };
-    let start = best.fit.parameters;
-    let (mut free, mut priors) = (told.clone(), wide_priors(&start, &told));
+        .filter_map(|start| resonance_from(blocks, &ideal, start)?.ok());
+    let best = fits.min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
+    match best {
+        Some(best) => resonance_from(blocks, nominal, best.fit.parameters),
+        None => Some(Err(FitError::Singular)),
+    }
+}
+
+/// The same from a start near the optimum.
+pub fn resonance_from(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
+    let mut free = RESONANCE.to_vec();
+    let mut priors = wide_priors(&start, &free);
+    let list: [(&dyn Block, f64); 1] = [(&blocks.resonance, 1.0)];
     blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
-    Some(fit_blocks(
-        blocks.problem(list.to_vec(), free, priors),
-        start,
-    ))
+    enough(blocks).then(|| fit_blocks(blocks.problem(list.to_vec(), free, priors), start))
+}
+
+fn enough(blocks: &Blocks) -> bool {
+    blocks.resonance.points.len() >= RESONANCE.len()
 }
 
 /// Starting values of the resonance curve: the stated ones, and a coarse grid whose deflection

@@ -37,6 +37,31 @@ macro_rules! phrases {
 }
 
 phrases! {
+// Uncertainty
+ContactReach => "contact reach", "Kontaktweg";
+BeyondTheModel => "Beyond the model the rig has, and the intervals allow for: {effects}. The section on the uncertainty tells how much of each, and what helps.", "Über das Modell hinaus hat die Maschine, und die Intervalle berücksichtigen es: {effects}. Der Abschnitt zur Unsicherheit nennt die Größe und was hilft.";
+UncertaintyBudget => "Uncertainty budget: standard uncertainty of each source and what it contributes to that of the joint estimate, in units of 0.0001 (of $R$ absolute, of the others relative). Type A: by statistics; B: by other means.", "Unsicherheitsbudget: Standardunsicherheit jeder Quelle und ihr Beitrag zu der des gemeinsamen Schätzwerts, in Einheiten von 0,0001 (bei $R$ absolut, sonst relativ). Typ A: statistisch; B: auf andere Weise.";
+UncertaintyAndEffects => "Uncertainty, and effects beyond the model", "Unsicherheit, und Effekte über das Modell hinaus";
+ForceDependsOnFrequency => "a force that depends on frequency", "eine Kraft, die von der Frequenz abhängt";
+StatedClearance => "clearance {clearance} mm as stated", "Spiel {clearance} mm wie angegeben";
+CombinedUncertainty => "combined standard uncertainty", "kombinierte Standardunsicherheit";
+ContactsOfFiniteDuration => "contacts of finite duration", "Kontakte endlicher Dauer";
+CoverageFactor => "coverage factor for 95 %", "Erweiterungsfaktor für 95 %";
+DegreesOfFreedom => "degrees of freedom", "Freiheitsgrade";
+DisagreementOfMethods => "disagreement of the methods", "Unterschied der Verfahren";
+DriftOverTheCampaign => "drift over the campaign", "Drift über die Messreihe";
+DryFriction => "dry friction", "trockene Reibung";
+EffectiveDegreesOfFreedom => "effective degrees of freedom", "effektive Freiheitsgrade";
+BeyondFirstOrder => "effects beyond the model, second order", "Effekte über das Modell hinaus, zweite Ordnung";
+ExpandedUncertainty => "expanded uncertainty", "erweiterte Unsicherheit";
+HarmonicsOfTheDrive => "harmonics of the drive", "Oberschwingungen der Erregung";
+NoiseOf => "noise: {method}", "Rauschen: {method}";
+ScatterBetweenGroups => "scatter between {count} groups of records", "Streuung zwischen {count} Gruppen von Aufzeichnungen";
+UncertaintySource => "source", "Quelle";
+NonlinearSprings => "springs that are not linear", "nichtlineare Federn";
+EvaluationType => "type", "Typ";
+StandardUncertainty => "uncertainty", "Unsicherheit";
+FurtherSources => "{count} further sources", "{count} weitere Quellen";
 // Axes
 TimeInDrivePeriods => "$t$/$T$ (drive periods)", "$t$/$T$ (Erregerperioden)";
 Amplitude => "amplitude", "Amplitude";

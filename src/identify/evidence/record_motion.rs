@@ -11,6 +11,7 @@ use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::waveform::{
     Phases, Timing, TimingSlope, Vibration, delayed, delayed_slope, velocity, velocity_slope,
 };
+use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::motion::FoldedChannel;
 use crate::record::Role;
@@ -61,6 +62,35 @@ struct Direction {
     eta: f64,
     /// The record's own coordinate that may change the channels' units, corners and delays.
     coordinate: Option<Coordinate>,
+}
+
+/// Slopes of a record's values over coordinates.
+#[derive(Debug, Default)]
+pub struct Slopes {
+    /// The distinct columns.
+    pub columns: Vec<Column>,
+    /// Of each coordinate the columns and their multiples that its slopes are the sum of.
+    pub sums: Vec<Vec<(usize, f64)>>,
+}
+
+/// A column of slopes.
+#[derive(Debug)]
+pub enum Column {
+    /// At all points.
+    Values(Vec<f64>),
+    /// Over a gain, by its index: the values of the channels that have it.
+    Gain(usize),
+}
+
+impl Slopes {
+    fn add(&mut self, column: Column) -> usize {
+        self.columns.push(column);
+        self.columns.len() - 1
+    }
+
+    fn alone(&mut self, column: Column) -> Vec<(usize, f64)> {
+        vec![(self.add(column), 1.0)]
+    }
 }
 
 impl<'a> RecordMotion<'a> {
@@ -161,33 +191,43 @@ impl<'a> RecordMotion<'a> {
         values
     }
 
-    /// Slopes of the values over coordinates of the fit, column by column; `None` for a gain.
-    pub fn slopes(&self, values: &[f64], coordinates: &[Coordinate]) -> Vec<Option<Vec<f64>>> {
+    /// Slopes of the values over coordinates of the fit: few distinct columns, and of what multiples of
+    /// them each coordinate's slopes are the sum.
+    pub fn slopes(&self, values: &[f64], coordinates: &[Coordinate]) -> Slopes {
         let at = self.record.circumstances(self.rig);
-        let mut own: [Option<Vec<f64>>; 5] = Default::default();
-        let mut column = |coordinate: &Coordinate| match coordinate {
-            Coordinate::Gain(_) => None,
-            Coordinate::Effect(effect) if effect.is_acceleration() => {
-                let mut found = self.record.perturbations.iter();
-                let found = found.find(|(e, _)| e == effect);
-                Some(found.map_or_else(|| vec![0.0; values.len()], |(_, c)| c.clone()))
-            }
-            _ => match self.common.own_slope(&at, *coordinate) {
-                Some(slope) => {
-                    let mut sum = vec![0.0; values.len()];
-                    let [r, f, b, x] = slope.physical;
-                    for (i, weight) in [r, f, b, x, slope.clearance_m].into_iter().enumerate() {
-                        if weight != 0.0 {
-                            let base = own[i].get_or_insert_with(|| self.over_own(values, i));
-                            add(&mut sum, weight, base);
-                        }
-                    }
-                    Some(sum)
+        let mut slopes = Slopes::default();
+        let mut own: [Option<usize>; 5] = [None; 5];
+        for coordinate in coordinates {
+            let sum = match (coordinate, self.common.own_slope(&at, *coordinate)) {
+                (Coordinate::Gain(gain), _) => slopes.alone(Column::Gain(*gain)),
+                (Coordinate::Effect(effect), _) if effect.is_acceleration() => {
+                    slopes.alone(Column::Values(self.perturbed(*effect, values.len())))
                 }
-                None => Some(self.over_coordinate(values, *coordinate)),
-            },
-        };
-        coordinates.iter().map(&mut column).collect()
+                (_, Some(slope)) => {
+                    let [r, f, b, x] = slope.physical;
+                    let weights = [r, f, b, x, slope.clearance_m].into_iter().enumerate();
+                    let parts = weights.filter(|(_, weight)| *weight != 0.0);
+                    parts
+                        .map(|(i, weight)| {
+                            let column = || Column::Values(self.over_own(values, i));
+                            (*own[i].get_or_insert_with(|| slopes.add(column())), weight)
+                        })
+                        .collect()
+                }
+                (_, None) => {
+                    slopes.alone(Column::Values(self.over_coordinate(values, *coordinate)))
+                }
+            };
+            slopes.sums.push(sum);
+        }
+        slopes
+    }
+
+    /// The change by an effect that acts as an extra acceleration, per unit of its strength.
+    fn perturbed(&self, effect: Effect, points: usize) -> Vec<f64> {
+        let mut found = self.record.perturbations.iter();
+        let found = found.find(|(e, _)| *e == effect);
+        found.map_or_else(|| vec![0.0; points], |(_, change)| change.clone())
     }
 
     /// Slopes over one of the record's own R, ln f0, ln β, ln `x_st`, clearance in m.
@@ -448,6 +488,7 @@ mod tests {
         effects[Effect::FrequencyDrift.place()] = 2e-3;
         effects[Effect::ContactDuration.place()] = 0.3;
         effects[Effect::ContactLaw.place()] = 0.1;
+        effects[Effect::ContactReach.place()] = 0.05;
         Parameters {
             drive_asymmetry: 0.02,
             stiffness_asymmetry: -0.03,
@@ -537,10 +578,16 @@ mod tests {
             let effects = Effects::all().iter().filter(|e| !e.is_acceleration());
             coordinates.extend(effects.map(Coordinate::Effect));
             let slopes = motion.slopes(&here, &coordinates);
-            for (coordinate, exact) in coordinates.into_iter().zip(slopes) {
+            for (coordinate, sum) in coordinates.into_iter().zip(&slopes.sums) {
                 let at =
                     |by: f64| values(&record, &p.with(coordinate, p.coordinate(coordinate) + by));
-                let exact = exact.expect("slopes");
+                let mut exact = vec![0.0; here.len()];
+                for (i, times) in sum {
+                    match &slopes.columns[*i] {
+                        Column::Values(column) => add(&mut exact, *times, column),
+                        Column::Gain(_) => panic!("no gain is asked for"),
+                    }
+                }
                 agree(&exact, &at(step), &at(-step), 2.0 * step);
             }
             let driven = |by: f64| {

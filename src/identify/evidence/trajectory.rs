@@ -4,12 +4,13 @@ use rayon::prelude::*;
 
 use crate::event::RigKind;
 use crate::identify::evidence::nearest_orbit::NearestOrbit;
-use crate::identify::evidence::record_motion::RecordMotion;
+use crate::identify::evidence::record_motion::{Column, RecordMotion};
 use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::waveform::Phases;
 use crate::identify::fit::Block;
 use crate::identify::fit::effect::{Effect, Effects};
+use crate::identify::fit::factor::Factor;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
 use crate::motion::{Folded, FoldedChannel};
@@ -80,6 +81,33 @@ impl TrajectoryBlock {
         }
     }
 
+    /// Weighted residuals of a record and their slopes: distinct columns, and the sums of multiples of
+    /// them that belong to the coordinates.
+    fn weighted_slopes(
+        &self,
+        item: usize,
+        parameters: &Parameters,
+        coordinates: &[Coordinate],
+    ) -> Option<WeightedSlopes> {
+        let record = &self.records[item];
+        let motion = RecordMotion::new(self.rig, record, parameters)?;
+        let values = motion.values();
+        let weighing = Weighing::new(record, &values, self.relative_error);
+        let slopes = motion.slopes(&values, coordinates);
+        let weighted = |column: Column| {
+            let mut change = match column {
+                Column::Values(values) => values,
+                // Values are proportional to their gain.
+                Column::Gain(gain) => weighing.only(&values, gain),
+            };
+            change.iter_mut().for_each(|c| *c = -*c);
+            weighing.weighted(&change)
+        };
+        let columns = slopes.columns.into_iter().map(weighted).collect();
+        let residuals = weighing.weighted(&weighing.apart(&values));
+        Some((residuals, columns, slopes.sums))
+    }
+
     fn changes(&self, record: &TrajectoryRecord, parameters: &Parameters) -> Option<Changes> {
         let motion = RecordMotion::new(self.rig, record, parameters)?;
         let values = motion.values();
@@ -103,6 +131,9 @@ impl TrajectoryBlock {
         })
     }
 }
+
+/// Residuals, distinct columns of slopes, and the sums of multiples of them.
+type WeightedSlopes = (Vec<f64>, Vec<Vec<f64>>, Vec<Vec<(usize, f64)>>);
 
 /// What is found of a record at good parameters.
 #[derive(Default)]
@@ -188,23 +219,30 @@ impl Block for TrajectoryBlock {
         parameters: &Parameters,
         coordinates: &[Coordinate],
     ) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
-        let record = &self.records[item];
-        let motion = RecordMotion::new(self.rig, record, parameters)?;
-        let values = motion.values();
-        let weighing = Weighing::new(record, &values, self.relative_error);
-        let slopes = motion.slopes(&values, coordinates);
-        let columns = coordinates.iter().zip(slopes);
-        let columns = columns.map(|(coordinate, slopes)| {
-            let mut change = match (coordinate, slopes) {
-                // Values are proportional to their gain.
-                (Coordinate::Gain(gain), None) => weighing.only(&values, *gain),
-                (_, slopes) => slopes.unwrap_or_else(|| vec![0.0; values.len()]),
-            };
-            change.iter_mut().for_each(|c| *c = -*c);
-            weighing.weighted(&change)
-        });
-        let columns = columns.collect();
-        Some((weighing.weighted(&weighing.apart(&values)), columns))
+        let (residuals, columns, sums) = self.weighted_slopes(item, parameters, coordinates)?;
+        let total = |sum: &Vec<(usize, f64)>| {
+            let mut total = vec![0.0; residuals.len()];
+            for (i, times) in sum {
+                total
+                    .iter_mut()
+                    .zip(&columns[*i])
+                    .for_each(|(t, c)| *t += times * c);
+            }
+            total
+        };
+        let slopes = sums.iter().map(total).collect();
+        Some((residuals, slopes))
+    }
+
+    fn factor(
+        &self,
+        item: usize,
+        parameters: &Parameters,
+        coordinates: &[Coordinate],
+        weight: f64,
+    ) -> Option<Factor> {
+        let (residuals, columns, sums) = self.weighted_slopes(item, parameters, coordinates)?;
+        Some(Factor::of(&residuals, &columns, weight).combined(&sums))
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {

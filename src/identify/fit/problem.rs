@@ -42,7 +42,7 @@ pub struct Problem<'a> {
 /// Least orthogonal share of a column of slopes: differences do not resolve less.
 const LEAST_SHARE: f64 = 1e-8;
 const LIMITS: Limits = Limits {
-    negligible: 1e-4,
+    negligible: 1e-3,
     variance: Variance::Unit,
     damping: 1e-4,
     iterations: 60,
@@ -197,8 +197,7 @@ impl Problem<'_> {
                 .into_par_iter()
                 .map(|i| {
                     let (places, coordinates) = self.touched(*block, i);
-                    let (residuals, columns) = block.slopes(i, parameters, &coordinates)?;
-                    Some((Factor::of(&residuals, &columns, *weight), places))
+                    Some((block.factor(i, parameters, &coordinates, *weight)?, places))
                 })
                 .collect();
             for (i, part) in parts.iter().enumerate() {
@@ -236,22 +235,8 @@ impl Problem<'_> {
         at: &Parameters,
     ) -> Option<Normal> {
         let (places, coordinates) = self.touched(block, item);
-        let (residuals, columns) = block.slopes(item, at, &coordinates)?;
-        let mut normal = Normal::zeros(self.free.len());
-        let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
-        for (i, a) in places.iter().zip(&columns) {
-            normal.gradient[*i] = weight * dot(a, &residuals);
-            for (k, b) in places.iter().zip(&columns) {
-                if k <= i {
-                    let product = weight * dot(a, b);
-                    normal.matrix[(*i, *k)] = product;
-                    normal.matrix[(*k, *i)] = product;
-                }
-            }
-        }
-        normal.cost = weight * dot(&residuals, &residuals);
-        normal.count = residuals.len();
-        Some(normal)
+        let factor = block.factor(item, at, &coordinates, weight)?;
+        Some(factor.normal(&places, self.free.len()))
     }
 
     /// Normal equations of one prior.

@@ -73,6 +73,9 @@ pub(super) fn beyond_english(effect: Effect, rises: bool) -> &'static str {
             "a contact's length changes the speeds by {strength} ± {error} % otherwise than a spring \
              and a damper would"
         }
+        (Effect::ContactReach, _) => {
+            "the masses' acceleration changes how far they press into each other: use harder bumpers"
+        }
         (Effect::ContactDuration, _) => {
             "a contact acts like one of {strength} ± {error} ms: use harder bumpers"
         }
@@ -149,6 +152,10 @@ pub(super) fn beyond_german(effect: Effect, rises: bool) -> &'static str {
         (Effect::ContactLaw, _) => {
             "die Dauer eines Kontakts ändert die Geschwindigkeiten um {strength} ± {error} % anders als \
              eine Feder und ein Dämpfer"
+        }
+        (Effect::ContactReach, _) => {
+            "die Beschleunigung der Massen ändert, wie weit sie ineinander eindringen: härtere Puffer \
+             verwenden"
         }
         (Effect::ContactDuration, _) => {
             "ein Kontakt wirkt wie einer von {strength} ± {error} ms: härtere Puffer verwenden"

@@ -128,6 +128,7 @@ fn remarks() -> Vec<Remark> {
             fitted: 100,
             periodic: 1000,
         },
+        Remark::IdealRig,
         Remark::StatesDeviate { ratio: 1.5 },
         Remark::BracketMidpoints {
             restitution: 0.9,

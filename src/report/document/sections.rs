@@ -5,6 +5,7 @@ use super::model::{Block, Rich, Section};
 use super::settings::settings;
 use super::tables;
 use super::{captions, conventions};
+use crate::identify::Finding;
 use crate::report::content::ReportContent;
 use crate::report::figures::comparison;
 use crate::report::figures::plane::Plane;
@@ -18,6 +19,7 @@ pub(super) fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Sectio
         regions(content, drawn),
         comparisons(content, drawn),
         methods(content, drawn),
+        uncertainty(content, drawn),
         specimens(content, drawn),
         left_out(content, drawn),
         records(content, drawn),
@@ -164,6 +166,18 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
         false,
         blocks,
     )
+}
+
+/// What the rig has beyond the model, and the uncertainty budget.
+fn uncertainty(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let findings = content.identification.verdict.findings.iter();
+    let beyond = findings.filter(|f| matches!(f, Finding::BeyondModel { .. }));
+    let mut blocks: Vec<Block> = beyond
+        .map(|finding| paragraph(drawn.locale.sentence(finding)))
+        .collect();
+    blocks.extend(tables::budget(content, drawn.locale).map(Block::Table));
+    let title = Phrase::UncertaintyAndEffects;
+    section(drawn.locale.translate(title), false, blocks)
 }
 
 fn left_out(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {

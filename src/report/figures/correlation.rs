@@ -95,7 +95,7 @@ fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, locale: Locale<'_>
 }
 
 /// Symbol of a parameter, or the name of what is fitted beside it.
-pub(super) fn name(coordinate: Coordinate, locale: Locale<'_>) -> String {
+pub(crate) fn name(coordinate: Coordinate, locale: Locale<'_>) -> String {
     let of_channel = |phrase: Phrase, channel: usize| {
         let role = GAIN_ROLES.get(channel).copied();
         let role = role.map_or_else(String::new, |role| locale.role(role));
@@ -147,6 +147,7 @@ fn effect_phrase(effect: Effect) -> Phrase {
         Effect::DeflectionDrift => Phrase::DeflectionDrift,
         Effect::ContactDuration => Phrase::ContactDuration,
         Effect::ContactLaw => Phrase::ContactLaw,
+        Effect::ContactReach => Phrase::ContactReach,
     }
 }
 

@@ -1,10 +1,12 @@
 //! The tables of the document.
 
 mod brackets;
+mod budget;
 mod estimates;
 mod records;
 
 pub(super) use brackets::brackets;
+pub(super) use budget::budget;
 pub(super) use estimates::{agreement, methods, specimen_methods, specimens};
 pub(super) use records::records;
 
