@@ -38,7 +38,9 @@ pub(crate) fn read(lines: &[&[u8]], dialect: &Dialect) -> Header {
     } else if let Some(names) = commented_names(&comments, dialect) {
         header.names = names;
     }
-    for row in rows {
+    for mut row in rows {
+        let filled = row.iter().rposition(|c| !c.is_empty()).map_or(0, |i| i + 1);
+        row.truncate(filled);
         remark(
             &row.join(if row.len() == 2 { "=" } else { " " }),
             &mut header.attributes,

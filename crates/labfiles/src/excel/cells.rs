@@ -59,6 +59,10 @@ impl SheetCells {
                 self.filled.len()
             )));
         }
+        // A row is as long as the widest, where that takes little: a column of few notes is one too.
+        let widest = self.filled.iter().map(|(_, column, _)| *column).max();
+        let rows = self.filled.chunk_by(|a, b| a.0 == b.0).count() as u64;
+        let last = widest.filter(|w| rows * (u64::from(*w - first) + 1) <= most);
         let mut text = Vec::new();
         for row in self.filled.chunk_by(|a, b| a.0 == b.0) {
             let mut at = first;
@@ -68,6 +72,10 @@ impl SheetCells {
                     at += 1;
                 }
                 text.extend_from_slice(value.as_bytes());
+            }
+            while last.is_some_and(|last| at < last) {
+                text.push(b'\t');
+                at += 1;
             }
             text.push(b'\n');
         }
