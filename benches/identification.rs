@@ -53,6 +53,7 @@ fn main() -> Result<(), ModelError> {
                 intervals,
                 ..UncertaintyOptions::default()
             },
+            progress: None,
         };
         let mut seconds: Vec<f64> = (0..runs).map(|_| time(&evidence)).collect();
         seconds.sort_by(f64::total_cmp);

@@ -155,7 +155,8 @@ pub fn sentence(text: &str) -> String {
     let mut chars = text.chars();
     // a symbol or a record's name keeps its small letter
     let word = text.split_whitespace().next().unwrap_or("");
-    let plain = word.chars().count() > 1 && word.chars().all(char::is_lowercase);
+    let article = word == "a";
+    let plain = article || word.chars().count() > 1 && word.chars().all(char::is_lowercase);
     let start = match chars.next() {
         Some(first) if plain => first.to_uppercase().chain(chars).collect(),
         _ => text.to_owned(),

@@ -68,7 +68,7 @@ fn none_found(folder: &Path, found: &FolderContents) -> Failure {
     };
     Failure::new(
         format!("no record found in {}{refused}", folder.display()),
-        "name the folder that holds HDF5, CSV, LVM, TDMS, UFF, MATLAB, WAV or Parquet files",
+        "name the folder that holds HDF5, CSV, Excel, LVM, TDMS, UFF, MATLAB, WAV or Parquet files",
     )
 }
 

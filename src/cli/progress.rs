@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use super::Verbosity;
+use crate::identify::fit::FitProgress;
 
 /// The progress of the stages of a command; shared by threads.
 #[derive(Debug)]
@@ -15,6 +16,8 @@ pub struct Progress {
     bar: ProgressBar,
     pace: Pace,
     verbosity: Verbosity,
+    /// Iterations of the fits, shown beside the bar.
+    fits: FitProgress,
     /// The stage that runs, and when it began.
     stage: Mutex<(&'static str, Instant)>,
 }
@@ -22,21 +25,22 @@ pub struct Progress {
 impl Progress {
     /// A bar for `total` steps of a stage.
     pub fn new(verbosity: Verbosity, stage: &'static str, total: u64) -> Self {
-        let pace = Pace::default();
+        let (pace, fits) = (Pace::default(), FitProgress::default());
         let visible = !verbosity.is_quiet() && std::io::stderr().is_terminal();
         let bar = match visible {
-            true => Self::bar(&pace, stage, total),
+            true => Self::bar(&pace, &fits, stage, total),
             false => ProgressBar::hidden(),
         };
         Self {
             bar,
             pace,
             verbosity,
+            fits,
             stage: Mutex::new((stage, Instant::now())),
         }
     }
 
-    fn bar(pace: &Pace, stage: &'static str, total: u64) -> ProgressBar {
+    fn bar(pace: &Pace, fits: &FitProgress, stage: &'static str, total: u64) -> ProgressBar {
         let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
         if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
             let pace = pace.clone();
@@ -45,11 +49,23 @@ impl Progress {
                 // a bar that cannot be drawn is no fault
                 let _ = text.write_str(&words(left));
             };
-            bar.set_style(style.with_key("left", left));
+            let fits = fits.clone();
+            let iterations = move |_: &ProgressState, text: &mut dyn Write| {
+                if fits.iterations() > 0 {
+                    let _ = write!(text, "{} iterations", fits.iterations());
+                }
+            };
+            let style = style.with_key("left", left);
+            bar.set_style(style.with_key("iterations", iterations));
         }
         bar.set_message(stage);
         bar.enable_steady_tick(Duration::from_millis(250));
         bar
+    }
+
+    /// What counts the iterations of the fits; the bar shows their number.
+    pub fn fits(&self) -> &FitProgress {
+        &self.fits
     }
 
     /// Steps done so far and steps in all.
@@ -96,7 +112,7 @@ impl Drop for Progress {
     }
 }
 
-const TEMPLATE: &str = "{msg:12} {wide_bar} {pos}/{len}  {left}";
+const TEMPLATE: &str = "{msg:12} {wide_bar} {pos}/{len}  {left} {iterations}";
 
 /// What the stages after the first take, as measured: they grow with the steps of the first and
 /// slow down with them.

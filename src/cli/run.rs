@@ -69,6 +69,7 @@ impl Run {
             resume: self.resume,
             keep_from: keep_from(),
             command_line: &command,
+            fits: bar.fits(),
         };
         let done = pipeline::run(&campaign, &destination, &progress)?;
         drop(bar);

@@ -167,7 +167,7 @@ impl Identify {
         let campaign = store::read_resolved(&folder)?;
         let observed = store::read_observed(&folder)?;
         let bar = Progress::new(verbosity, "identify", 1);
-        let found = pipeline::identify::identify(&campaign, &observed)?;
+        let found = pipeline::identify::identify(&campaign, &observed, Some(bar.fits()))?;
         pipeline::identify::write(&found, &folder)?;
         drop(bar);
         print_fits(&found.identification, verbosity);

@@ -186,6 +186,7 @@ fn evidence<'a>(input: &Input<'a>) -> Evidence<'a> {
         brackets: input.brackets,
         nominal: Nominal::default(),
         uncertainty: Default::default(),
+        progress: None,
     }
 }
 

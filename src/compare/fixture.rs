@@ -122,6 +122,7 @@ fn identified(records: &[Record], rig: RigKind) -> Identified {
             ..Nominal::default()
         },
         uncertainty: Default::default(),
+        progress: None,
     });
     let compared = compare(&Input {
         rig,

@@ -19,7 +19,7 @@ pub use evidence::{
     ResonancePoint,
 };
 pub use input::Input;
-pub use left_out::Unusable;
+pub use left_out::{Unusable, UnusableReason};
 pub use plane::{BoundaryCurve, RegionMap};
 pub use records::{BracketRow, Overview, RecordRow};
 pub use replays::{Comparison, Signal, Trace};

@@ -1,7 +1,7 @@
 //! Whole campaigns of known truth, compared with their fitted model.
 
 use super::fixture::{decay, decays, nothing_touches, whole};
-use super::left_out::unusable;
+use super::left_out::{UnusableReason, unusable};
 use crate::event::{DetectSettings, RigKind};
 use crate::identify::Method;
 use crate::motion::{BoundaryKind, ClassifySettings, Motion, observe};
@@ -125,8 +125,6 @@ fn unusable_records_are_grouped_by_flag_and_channel() {
         (Some("a"), false)
     );
     assert_eq!(found[1].records, ["r1", "r3"]);
-    assert_eq!(
-        (found[1].message.as_str(), found[1].differ),
-        ("at 5 V", true)
-    );
+    let clipped = UnusableReason::Flag(FlagCode::Clipped, "at 5 V".to_owned());
+    assert_eq!((&found[1].reason, found[1].differ), (&clipped, true));
 }

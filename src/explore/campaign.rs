@@ -39,7 +39,7 @@ impl Campaign {
     pub fn of(resolved: ResolvedCampaign, progress: Progress<'_>) -> Result<Self, ExploreError> {
         let observed = Observed::of(&resolved, progress)?;
         progress("identify", 0, 1);
-        let found = identify::identify(&resolved, &observed)?;
+        let found = identify::identify(&resolved, &observed, None)?;
         Ok(Self::with(resolved, observed, found.identification))
     }
 

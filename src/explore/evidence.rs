@@ -103,7 +103,7 @@ fn stated(o: &Observation) -> Value {
 fn evidence_of(campaign: &Campaign, index: usize) -> Value {
     let o = &campaign.observed.observations[index];
     let reason = match &o.classification.motion {
-        Motion::Undetermined { reason } => Some(reason.clone()),
+        Motion::Undetermined { reason } => Some(reason.to_string()),
         _ => None,
     };
     let flags = o

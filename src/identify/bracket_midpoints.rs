@@ -3,8 +3,8 @@
 
 use crate::event::RigKind;
 use crate::identify::evidence::boundary::{BoundaryBlock, predicted_hz};
-use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::{Block, Problem};
 use crate::identify::methods::fit_blocks;
 use crate::identify::{Estimate, estimate};
 use crate::motion::{BoundaryKind, Bracket};
@@ -43,8 +43,12 @@ pub fn restitution(block: &BoundaryBlock, at: &Parameters) -> Option<Estimate> {
             .cloned()
             .collect(),
     };
-    let free = vec![Coordinate::Restitution];
-    let found = fit_blocks(vec![(&midpoints, 1.0)], free, Vec::new(), *at).ok()?;
+    let problem = Problem {
+        blocks: vec![(&midpoints, 1.0)],
+        free: vec![Coordinate::Restitution],
+        ..Problem::default()
+    };
+    let found = fit_blocks(problem, *at).ok()?;
     let error = found.fit.error(Coordinate::Restitution)? * found.factor.sqrt();
     let value = found.fit.parameters.restitution;
     let name = Coordinate::Restitution;

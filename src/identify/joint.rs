@@ -87,6 +87,7 @@ pub fn problem<'b>(
         blocks: list,
         priors,
         free,
+        progress: blocks.progress.clone(),
     })
 }
 

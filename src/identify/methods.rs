@@ -45,7 +45,7 @@ pub struct MethodFit {
 
 /// Share of an effect that its first order does not hold: what campaigns on rigs with all effects
 /// showed.
-const FIRST_ORDER: f64 = 0.03;
+const FIRST_ORDER: f64 = 0.02;
 
 impl MethodFit {
     /// Of a fit of a problem, judged with degrees of freedom.
@@ -97,56 +97,51 @@ pub fn succeeded(attempt: &Option<FitResult>) -> Option<&MethodFit> {
     attempt.as_ref().and_then(|a| a.as_ref().ok())
 }
 
-/// Fit blocks over free coordinates and find the variance factor.
+/// Fit a problem and find the variance factor.
 ///
 /// # Errors
 /// Those of [`Problem::fit`].
-pub fn fit_blocks(
-    blocks: Vec<(&dyn Block, f64)>,
-    free: Vec<Coordinate>,
-    priors: Vec<Prior>,
-    start: Parameters,
-) -> FitResult {
-    let problem = Problem {
-        blocks,
-        priors,
-        free,
-    };
+pub fn fit_blocks(problem: Problem<'_>, start: Parameters) -> FitResult {
     let fit = problem.fit(start)?;
     let informed = problem.free.len().saturating_sub(problem.priors.len());
     let freedom = fit.residuals.saturating_sub(informed);
     Ok(MethodFit::of(&problem, fit, freedom))
 }
 
+/// What the impactless records tell.
+const RESONANCE: [Coordinate; 3] = [
+    Coordinate::Frequency,
+    Coordinate::Damping,
+    Coordinate::Deflection,
+];
+
 /// f0, β and `x_st` from the impactless records; the gains' uncertainty enters `x_st`.
 pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<FitResult> {
-    if blocks.resonance.points.len() < 3 {
+    if !enough(blocks) {
         return None;
     }
-    let mut free = vec![
-        Coordinate::Frequency,
-        Coordinate::Damping,
-        Coordinate::Deflection,
-    ];
-    let list: [(&dyn Block, f64); 1] = [(&blocks.resonance, 1.0)];
-    let mut priors = Vec::new();
-    let told = free.clone();
-    blocks.add_nuisances(&nominal.ideal(), &list, (&mut free, &mut priors));
-    let best = starts(blocks, nominal)
+    let ideal = nominal.ideal();
+    let fits = starts(blocks, nominal)
         .into_iter()
-        .filter_map(|start| {
-            let mut priors = priors.clone();
-            priors.extend(wide_priors(&start, &free));
-            fit_blocks(list.to_vec(), free.clone(), priors, start).ok()
-        })
-        .min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
-    let Some(best) = best else {
-        return Some(Err(FitError::Singular));
-    };
-    let start = best.fit.parameters;
-    let (mut free, mut priors) = (told.clone(), wide_priors(&start, &told));
+        .filter_map(|start| resonance_from(blocks, &ideal, start)?.ok());
+    let best = fits.min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
+    match best {
+        Some(best) => resonance_from(blocks, nominal, best.fit.parameters),
+        None => Some(Err(FitError::Singular)),
+    }
+}
+
+/// The same from a start near the optimum.
+pub fn resonance_from(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
+    let mut free = RESONANCE.to_vec();
+    let mut priors = wide_priors(&start, &free);
+    let list: [(&dyn Block, f64); 1] = [(&blocks.resonance, 1.0)];
     blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
-    Some(fit_blocks(list.to_vec(), free, priors, start))
+    enough(blocks).then(|| fit_blocks(blocks.problem(list.to_vec(), free, priors), start))
+}
+
+fn enough(blocks: &Blocks) -> bool {
+    blocks.resonance.points.len() >= RESONANCE.len()
 }
 
 /// Starting values of the resonance curve: the stated ones, and a coarse grid whose deflection
@@ -212,7 +207,7 @@ pub fn impacts(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<
     let list: Vec<(&dyn Block, f64)> = vec![(&blocks.impact, 1.0)];
     let (mut free, mut priors) = (vec![Coordinate::Restitution], Vec::new());
     blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
-    Some(fit_blocks(list, free, priors, start))
+    Some(fit_blocks(blocks.problem(list, free, priors), start))
 }
 
 /// s2, s1 and grazing brackets, with f0, β and `x_st` from the impactless records beside them.
@@ -230,7 +225,7 @@ pub fn boundaries(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Opti
         list.push((&blocks.resonance, 1.0));
         blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
     }
-    Some(fit_blocks(list, free, priors, start))
+    Some(fit_blocks(blocks.problem(list, free, priors), start))
 }
 
 /// All four parameters from the folded waveforms.
@@ -247,7 +242,7 @@ fn all_four(block: &dyn Block, blocks: &Blocks, nominal: &Nominal, start: Parame
     let mut priors = wide_priors(&start, &free);
     let list = vec![(block, 1.0)];
     blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
-    fit_blocks(list, free, priors, start)
+    fit_blocks(blocks.problem(list, free, priors), start)
 }
 
 /// Variance of what flights tell over that of independent innovations: an impact's errors of time

@@ -28,6 +28,8 @@ pub mod specimens;
 pub mod uncertainty;
 
 pub use estimate::{Estimate, ParameterSet, Status};
+pub use fit::effect::Effect;
+pub use fit::parameters::GAIN_ROLES;
 pub use identification::{
     Agreement, Identification, JointFit, MethodResult, Provenance, SpecimenResult, Verdict,
     VerdictKind,

@@ -6,7 +6,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::identify::evidence::Evidence;
-use crate::identify::evidence::trajectory::{TrajectoryBlock, TrajectoryRecord, distinct_phases};
+use crate::identify::evidence::trajectory::{TrajectoryBlock, distinct_phases};
+use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::fit::effect::Effects;
 use crate::identify::fit::normal::inverse;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
@@ -182,8 +183,8 @@ fn information(
     block.find_changes(&fit.parameters);
     let problem = Problem {
         blocks: vec![(&block, 1.0)],
-        priors: Vec::new(),
         free: fit.free.clone(),
+        ..Problem::default()
     };
     let part = problem.item_parts(&fit.parameters).pop()?.pop()?;
     Some(part.matrix)

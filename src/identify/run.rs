@@ -8,15 +8,16 @@ use crate::identify::diagnostics::momentum;
 use crate::identify::diagnostics::suspicion::{self, OddGap};
 use crate::identify::diagnostics::swapped_channels;
 use crate::identify::diagnostics::verdict::{self, Basis};
+use crate::identify::estimate::ParameterSet;
 use crate::identify::evidence::{Blocks, Evidence};
 use crate::identify::fit::Problem;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::identification::{Identification, JointFit, MethodResult};
 use crate::identify::joint::{self, Weights};
-use crate::identify::messages::{Finding, LeftOut, Reason};
+use crate::identify::messages::{Finding, LeftOut, Reason, Remark};
 use crate::identify::method::Method;
 use crate::identify::methods::{self, FitResult, succeeded};
-use crate::identify::selection::Selection;
+use crate::identify::selection::{Influential, Selection};
 use crate::identify::uncertainty::budget;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
@@ -70,6 +71,7 @@ use crate::motion::Observation;
 ///     brackets: &[],
 ///     nominal: Nominal { gain_uncertainty: 5e-3, corner_uncertainty: 2e-2, ..Nominal::default() },
 ///     uncertainty: Default::default(),
+///     progress: None,
 /// });
 /// assert_eq!(found.used_by[&Method::Resonance].len(), 14);
 /// let f0 = found.joint.parameters.natural_frequency_hz.as_ref().expect("an estimate");
@@ -102,13 +104,16 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
     suspicions.extend(run.other_suspicions(&fits));
     let of_masses = momentum::momentum(&run.selection.blocks.impact, evidence);
     suspicions.extend(of_masses.and_then(|m| m.1));
-    let methods = run.results(&fits);
+    let mut methods = run.results(&fits);
     let mut joint = results::joint(evidence, fits.joint.as_ref(), &methods);
     if observations_are_undriven(evidence) {
         results::widen_common(&mut joint, &run.selection.blocks.impact);
         verdict::carry_over(&mut joint, &methods);
     }
     let beyond = succeeded(&fits.joint).map_or_else(Vec::new, beyond::beyond);
+    if !beyond.is_empty() {
+        widen_ideal(&mut methods, &joint);
+    }
     let agreement = match beyond.is_empty() {
         true => agreement(&methods),
         // Flights take the rig for ideal.
@@ -150,6 +155,26 @@ fn observations_are_undriven(evidence: &Evidence<'_>) -> bool {
     evidence.observations.iter().all(|o| o.drive.is_none())
 }
 
+/// Widen what multiple shooting, which takes the rig as ideal, is off the joint estimate on a rig that
+/// is not.
+fn widen_ideal(methods: &mut BTreeMap<Method, MethodResult>, joint: &MethodResult) {
+    let Some(flights) = methods.get_mut(&Method::Flights) else {
+        return;
+    };
+    for coordinate in Coordinate::PHYSICAL {
+        let value = |set: &ParameterSet| set.get(coordinate)?.value;
+        let Some((own, all)) = value(&flights.parameters).zip(value(&joint.parameters)) else {
+            continue;
+        };
+        let unit = if coordinate.is_logarithm() { all } else { 1.0 };
+        if let Some(Some(estimate)) = flights.parameters.slot(coordinate) {
+            *estimate = estimate::widened(coordinate, estimate, (own - all).abs() / unit);
+            estimate.note = None;
+        }
+    }
+    flights.remarks.push(Remark::IdealRig);
+}
+
 /// The results of all methods but one.
 fn without(
     methods: &BTreeMap<Method, MethodResult>,
@@ -172,6 +197,14 @@ struct Fits {
     /// Where the joint fit started, and the weights of its blocks.
     start: Parameters,
     weights: Weights,
+}
+
+/// The fits that rest on no other.
+struct Alone {
+    resonance: Option<FitResult>,
+    impacts: Option<FitResult>,
+    trajectories: Option<FitResult>,
+    flights: Option<FitResult>,
 }
 
 /// Gaps that may be found wrong before the campaign as a whole is at fault.
@@ -240,13 +273,32 @@ impl IdentificationRun<'_> {
     ) -> Fits {
         let trajectories = self.selection.trajectories(start);
         let start = succeeded(&trajectories).map_or(start, |f| f.fit.parameters);
+        let flights = self.selection.flights(start);
+        self.together(
+            start,
+            Alone {
+                resonance,
+                impacts,
+                trajectories,
+                flights,
+            },
+        )
+    }
+
+    /// Boundaries and all together, beside what the other methods tell alone.
+    fn together(&mut self, start: Parameters, alone: Alone) -> Fits {
+        let Alone {
+            resonance,
+            impacts,
+            trajectories,
+            flights,
+        } = alone;
         let boundaries = self.selection.boundaries(start);
         self.posterior = succeeded(&resonance).and_then(|found| {
             let error = found.fit.error(Coordinate::Deflection)? * found.factor.sqrt();
             let about = found.fit.parameters;
             posterior::of_brackets(&self.selection.blocks.boundary, &about, error.min(0.3))
         });
-        let flights = self.selection.flights(start);
         let weight = |attempt: &Option<FitResult>| succeeded(attempt).map(|f| 1.0 / f.factor);
         // Flights rest on the speeds at impacts; waveforms tell the same better than either.
         let flown = weight(&flights).filter(|_| succeeded(&trajectories).is_none());
@@ -299,14 +351,32 @@ impl IdentificationRun<'_> {
                 break;
             }
             self.selection.leave_out(&influential);
-            let resonance = if influential.resonance.is_empty() {
-                fits.resonance
-            } else {
-                methods::resonance(&self.selection.blocks, &self.evidence.nominal)
-            };
-            fits = self.fits(start, resonance, fits.impacts);
+            fits = self.fitted_again(start, fits, &influential);
         }
         fits
+    }
+
+    /// The fits after influential records were left out, from a start near the optimum.
+    fn fitted_again(&mut self, start: Parameters, fits: Fits, gone: &Influential) -> Fits {
+        let (blocks, nominal) = (&self.selection.blocks, &self.evidence.nominal);
+        let resonance = match gone.resonance.is_empty() {
+            true => fits.resonance,
+            false => methods::resonance_from(blocks, nominal, start),
+        };
+        let trajectories = match gone.trajectory.is_empty() {
+            true => fits.trajectories,
+            false => methods::trajectories(blocks, nominal, start),
+        };
+        let start = succeeded(&trajectories).map_or(start, |f| f.fit.parameters);
+        self.together(
+            start,
+            Alone {
+                resonance,
+                impacts: fits.impacts,
+                trajectories,
+                flights: fits.flights,
+            },
+        )
     }
 
     /// All blocks in one fit, each with its weight; those without one stay out.

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::identify::diagnostics::influence;
-use crate::identify::evidence::trajectory::TrajectoryRecord;
+use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::weighing::Bulk;
 use crate::identify::evidence::{Blocks, Evidence};
 use crate::identify::fit::normal::Normal;
@@ -17,6 +17,8 @@ use crate::motion::Bracket;
 
 /// Rounds of leaving outlying records out and fitting again.
 const ROUNDS: usize = 2;
+/// Relative change of the error allowed beside the noise below which another round changes nothing.
+const SETTLED: f64 = 0.1;
 
 /// Influential records, by their place in the blocks, rising.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -111,7 +113,7 @@ impl<'a> Selection<'a> {
                 );
             }
         }
-        methods::resonance(&self.blocks, &self.evidence.nominal)
+        methods::resonance_from(&self.blocks, &self.evidence.nominal, parameters)
     }
 
     /// Fit the folded records, first as if the rig were ideal, then with all that may add to it; those
@@ -135,12 +137,18 @@ impl<'a> Selection<'a> {
         self.blocks.trajectory.find_changes(&found.fit.parameters);
         for _ in 0..ROUNDS {
             let parameters = found.fit.parameters;
+            let allowed = self.blocks.trajectory.relative_error;
+            let lost = self.lost.len();
             self.keep_fitting(&parameters);
             self.keep_those_with_orbits(&parameters);
             found = match methods::trajectories(&self.blocks, &self.evidence.nominal, parameters)? {
                 Ok(found) => found,
                 failed => return Some(failed),
             };
+            let change = self.blocks.trajectory.relative_error / allowed - 1.0;
+            if self.lost.len() == lost && change.abs() < SETTLED {
+                break;
+            }
         }
         Some(Ok(found))
     }
@@ -228,24 +236,32 @@ impl<'a> Selection<'a> {
     /// as where an impact was missed, are left out and named.
     pub fn flights(&mut self, start: Parameters) -> Option<FitResult> {
         let mut parameters = start;
-        for _ in 0..ROUNDS {
+        let mut found = None;
+        for _ in 0..=ROUNDS {
             let scores = mean_squares(&self.blocks.flight, &parameters);
             let known: Vec<f64> = scores.iter().flatten().copied().collect();
             let limit = Bulk::of(&known).limit;
+            let follows = |score: &Option<f64>| score.is_some_and(|s| s <= limit);
+            if found.is_some() && scores.iter().all(follows) {
+                break;
+            }
             let records = std::mem::take(&mut self.blocks.flight.records);
             for (record, score) in records.into_iter().zip(scores) {
-                if score.is_some_and(|s| s <= limit) {
+                if follows(&score) {
                     self.blocks.flight.records.push(record);
                 } else {
                     self.note(record.observation, Reason::ImpactsDoNotFollow);
                 }
             }
             match methods::flights(&self.blocks, &self.evidence.nominal, parameters)? {
-                Ok(found) => parameters = found.fit.parameters,
+                Ok(fit) => {
+                    parameters = fit.fit.parameters;
+                    found = Some(Ok(fit));
+                }
                 failed => return Some(failed),
             }
         }
-        methods::flights(&self.blocks, &self.evidence.nominal, parameters)
+        found
     }
 
     /// The records that draw a joint fit away from what all others state.

@@ -244,7 +244,7 @@ mod tests {
 
     #[test]
     fn excluded_and_undetermined_records_are_passed_over() {
-        let reason = String::new();
+        let reason = crate::motion::Undetermined::NoDrive;
         let mut list = run(&[
             (11.0, periodic(1, 2)),
             (11.1, Motion::Undetermined { reason }),

@@ -6,6 +6,7 @@ use crate::event::{Detection, Impact};
 use crate::motion::aperiodic::Irregularity;
 use crate::motion::closure::{self, Count, ImpactClosure, WaveformClosure};
 use crate::motion::kind::Motion;
+use crate::motion::undetermined::Undetermined;
 use crate::signal::whole;
 
 /// Settings of the classification.
@@ -82,11 +83,9 @@ impl Classification {
     }
 }
 
-fn undetermined(reason: impl Into<String>, evidence: Evidence) -> Classification {
+fn undetermined(reason: Undetermined, evidence: Evidence) -> Classification {
     Classification {
-        motion: Motion::Undetermined {
-            reason: reason.into(),
-        },
+        motion: Motion::Undetermined { reason },
         confidence: 0.0,
         evidence,
     }
@@ -145,12 +144,12 @@ pub fn classify(
         ..Evidence::default()
     };
     let Some(drive) = &detection.drive else {
-        return undetermined("no drive was measured, so no period can be told", evidence);
+        return undetermined(Undetermined::NoDrive, evidence);
     };
     let period_s = drive.period_s();
     evidence.periods_observed = duration_s / period_s;
     if evidence.periods_observed < 2.0 {
-        return undetermined("the record holds fewer than two drive periods", evidence);
+        return undetermined(Undetermined::FewerThanTwoPeriods, evidence);
     }
     let View {
         closures,
@@ -236,7 +235,7 @@ impl Case<'_> {
         // scatter between the ratios, and interpolation a little more.
         let slack = 1.12 * best + 1e-4;
         let Some(chosen) = closures.iter().find(|c| c.ratio <= slack) else {
-            return undetermined("the waveform could not be compared with itself", evidence);
+            return undetermined(Undetermined::NotComparable, evidence);
         };
         evidence.waveform_closure = Some(chosen.ratio);
         evidence.shorter_closure = closures
@@ -251,11 +250,9 @@ impl Case<'_> {
         }
         if chosen.ratio > closed {
             return undetermined(
-                format!(
-                    "the motion nearly closes after {} drive periods but not within the noise: \
-                     still settling, or of a longer period",
-                    chosen.periods_n
-                ),
+                Undetermined::NearlyCloses {
+                    periods_n: chosen.periods_n,
+                },
                 evidence,
             );
         }
@@ -267,7 +264,7 @@ impl Case<'_> {
     fn by_impacts_alone(&self, mut evidence: Evidence) -> Classification {
         let impacts = &self.detection.impacts;
         if impacts.is_empty() {
-            return undetermined("neither velocity nor contact shows any motion", evidence);
+            return undetermined(Undetermined::NoMotion, evidence);
         }
         let limit = 0.05f64.max(3.0 * self.timing_noise_rad());
         let reach = whole::count((0.5 * evidence.periods_observed).floor());
@@ -279,7 +276,7 @@ impl Case<'_> {
             }
         }
         evidence.irregularity = Irregularity::of(impacts, self.period_s, self.duration_s);
-        undetermined("the impact times alone show no period", evidence)
+        undetermined(Undetermined::NoPeriodOfImpacts, evidence)
     }
 
     fn timing_noise_rad(&self) -> f64 {
@@ -301,21 +298,18 @@ impl Case<'_> {
     fn periodic(&self, periods_n: u32, quality: f64, mut evidence: Evidence) -> Classification {
         evidence.cycles_observed = evidence.periods_observed / f64::from(periods_n);
         let Some(count) = self.count(periods_n) else {
-            return undetermined(
-                "no whole period of the motion fits into the record",
-                evidence,
-            );
+            return undetermined(Undetermined::NoWholePeriod, evidence);
         };
         evidence.count_agreement = Some(count.agreement);
         if count.impacts_p == 0 {
             return self.impactless(periods_n, count, quality, evidence);
         }
         if count.impacts_p > self.settings.most_impacts {
-            let reason = format!(
-                "the waveform closes after {periods_n} drive periods with {} impacts, more than \
-                 the {} that are looked for (analysis.most_impacts_p)",
-                count.impacts_p, self.settings.most_impacts
-            );
+            let reason = Undetermined::TooManyImpacts {
+                periods_n,
+                impacts_p: count.impacts_p,
+                most: self.settings.most_impacts,
+            };
             return undetermined(reason, evidence);
         }
         let closure = closure::impacts(
@@ -328,10 +322,7 @@ impl Case<'_> {
         let limit = 0.1f64.max(4.0 * self.timing_noise_rad());
         let steady = closure.is_none_or(|c| c.phase_rad <= limit);
         if count.agreement < 0.6 || !steady {
-            let reason = format!(
-                "the waveform closes after {periods_n} drive periods, but the impacts found do \
-                 not repeat with it: some were missed or are too slow to see"
-            );
+            let reason = Undetermined::ImpactsDoNotRepeat { periods_n };
             return undetermined(reason, evidence);
         }
         let motion = Motion::Periodic {
@@ -358,13 +349,7 @@ impl Case<'_> {
         evidence: Evidence,
     ) -> Classification {
         if periods_n > 1 && evidence.shorter_closure > evidence.waveform_closure.map(|c| 2.0 * c) {
-            return undetermined(
-                format!(
-                    "no impact was found, yet the motion repeats only after {periods_n} \
-                         drive periods: impacts too slow to see, or still settling"
-                ),
-                evidence,
-            );
+            return undetermined(Undetermined::RepeatsWithoutImpact { periods_n }, evidence);
         }
         let confidence = quality * count.agreement.powi(2);
         Classification {
@@ -377,14 +362,11 @@ impl Case<'_> {
     fn aperiodic(&self, mut evidence: Evidence) -> Classification {
         let impacts = &self.detection.impacts;
         if impacts.is_empty() {
-            return undetermined(
-                "no impact was found, yet the motion does not repeat: still settling",
-                evidence,
-            );
+            return undetermined(Undetermined::SettlingWithoutImpact, evidence);
         }
         evidence.irregularity = Irregularity::of(impacts, self.period_s, self.duration_s);
         let Some(irregularity) = evidence.irregularity else {
-            return undetermined("too few impacts to tell an irregular motion", evidence);
+            return undetermined(Undetermined::FewImpacts, evidence);
         };
         let motion = if irregularity.is_beat() {
             Motion::Beat
@@ -579,6 +561,9 @@ mod tests {
         let Motion::Undetermined { reason } = looked_for(1).motion else {
             panic!("believed");
         };
-        assert!(reason.contains("most_impacts_p"), "{reason}");
+        assert!(matches!(
+            reason,
+            Undetermined::TooManyImpacts { most: 1, .. }
+        ));
     }
 }

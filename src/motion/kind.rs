@@ -3,6 +3,8 @@
 use impact_oscillator::{SettledMotion, periodic_label};
 use serde::{Deserialize, Serialize};
 
+use super::undetermined::Undetermined;
+
 /// The type of motion that a record shows.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -29,7 +31,7 @@ pub enum Motion {
     /// The record does not determine the motion.
     Undetermined {
         /// Why it does not.
-        reason: String,
+        reason: Undetermined,
     },
 }
 

@@ -8,6 +8,7 @@ use crate::motion::classify::{Classification, ClassifySettings, classify};
 use crate::motion::fold::{Folded, fold};
 use crate::motion::kind::Motion;
 use crate::motion::response::{Response, responses};
+use crate::motion::undetermined::Undetermined;
 use crate::record::{Excitation, Flag, FlagCode, Record, Role, Setting};
 use crate::signal::decay::{self, Decay};
 
@@ -169,7 +170,7 @@ fn observe_decay(record: &Record) -> Observation {
         drive: None,
         classification: Classification {
             motion: Motion::Undetermined {
-                reason: "a free decay, without drive".into(),
+                reason: Undetermined::DecayWithoutDrive,
             },
             confidence: 0.0,
             evidence: Default::default(),

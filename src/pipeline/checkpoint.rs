@@ -95,7 +95,7 @@ pub fn remove(out: &Path) {
 }
 
 /// Version of the layout of saved observations; another one is not loaded.
-const LAYOUT: u32 = 2;
+const LAYOUT: u32 = 3;
 
 /// A hash of everything that observations depend on.
 fn key(campaign: &ResolvedCampaign) -> String {

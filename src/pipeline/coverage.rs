@@ -179,6 +179,7 @@ fn evidence<'a>(
             intervals: IntervalMethod::Covariance,
             ..UncertaintyOptions::default()
         },
+        progress: None,
     }
 }
 
@@ -222,6 +223,7 @@ fn parameters(truth: &Truth) -> Parameters {
     Parameters {
         drive_asymmetry: truth.drive_asymmetry,
         stiffness_asymmetry: truth.stiffness_asymmetry,
+        damping_asymmetry: truth.damping_asymmetry,
         ..Parameters::symmetric(
             truth.restitution,
             truth.natural_frequency_hz,

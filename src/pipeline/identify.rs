@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::campaign::resolved::{NominalValues, ResolvedCampaign};
 use crate::identify::evidence::{Evidence, Nominal};
+use crate::identify::fit::FitProgress;
 use crate::identify::fit::effect::Effects;
 use crate::identify::fit::parameters::gain_index;
 use crate::identify::uncertainty::UncertaintyOptions;
@@ -82,19 +83,25 @@ pub fn evidence<'a>(campaign: &ResolvedCampaign, observed: &'a Observed) -> Evid
             replicas: campaign.analysis.replicas,
             seed: campaign.analysis.seed,
         },
+        progress: None,
     }
 }
 
-/// Identify what was observed.
+/// Identify what was observed; `progress` counts the iterations of the fits.
 ///
 /// # Errors
 /// Where the settings cannot be written as JSON.
 pub fn identify(
     campaign: &ResolvedCampaign,
     observed: &Observed,
+    progress: Option<&FitProgress>,
 ) -> Result<IdentificationFile, PipelineError> {
+    let evidence = Evidence {
+        progress,
+        ..evidence(campaign, observed)
+    };
     Ok(IdentificationFile {
-        identification: identify_campaign(&evidence(campaign, observed)),
+        identification: identify_campaign(&evidence),
         provenance: provenance(campaign)?,
     })
 }

@@ -39,7 +39,7 @@ pub fn plan(
 ) -> Result<Plan, PipelineError> {
     let observed = Observed::of(campaign, progress)?;
     progress("identify", 0, 1);
-    let found = identify::identify(campaign, &observed)?;
+    let found = identify::identify(campaign, &observed, None)?;
     let evidence = identify::evidence(campaign, &observed);
     let reach = Reach::of(&observed.observations);
     let proposals = match (&found.identification.joint_fit, reach) {

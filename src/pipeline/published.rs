@@ -10,6 +10,7 @@ use crate::identify::published::{PublishedSpeed, Where, identify, predicted};
 use crate::pipeline::identify::{IdentificationFile, provenance};
 use crate::pipeline::{PipelineError, report, store};
 use crate::report::{CampaignFacts, DataTable, ReportContent, Subject};
+use crate::report::{Phrase, Text};
 use labfiles::ReadError;
 
 /// Identify from published speeds and write identification.json and report.pdf.
@@ -57,8 +58,9 @@ fn found_damping(found: &Identification) -> Option<f64> {
 fn table(speeds: &[PublishedSpeed], found: Option<f64>, published: &Published) -> DataTable {
     let printed = &published.damping_ratio_hypotheses;
     let dampings: Vec<f64> = found.into_iter().chain(printed.iter().copied()).collect();
-    let texts = ["$R$", "$ρ$", "$η$", "published speed"].map(str::to_owned);
-    let heads = dampings.iter().map(|b| format!("$β$ = {b:.4}"));
+    let symbols = ["$R$", "$ρ$", "$η$"].map(Text::from);
+    let texts = symbols.into_iter().chain([Phrase::PublishedSpeed.into()]);
+    let heads = dampings.iter().map(|b| Text::from(format!("$β$ = {b:.4}")));
     let row = |s: &PublishedSpeed| {
         let eta = match s.place {
             Where::At => s.frequency_ratio.to_string(),
@@ -83,10 +85,8 @@ fn table(speeds: &[PublishedSpeed], found: Option<f64>, published: &Published) -
         given.into_iter().chain([printed]).chain(model).collect()
     };
     DataTable {
-        caption: "Closing speeds at impact, dimensionless: as published, and as the model has \
-                  them for the damping ratio found and for those printed."
-            .to_owned(),
-        heads: texts.into_iter().chain(heads).collect(),
+        caption: Phrase::TablePublished,
+        heads: texts.chain(heads).collect(),
         rows: speeds.iter().map(row).collect(),
     }
 }

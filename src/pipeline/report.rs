@@ -11,6 +11,7 @@ use crate::identify::Provenance;
 use crate::pipeline::identify::{IdentificationFile, settings};
 use crate::pipeline::observe::read_one;
 use crate::pipeline::{Observed, PipelineError};
+use crate::report::Phrase;
 use crate::report::catalog::Catalog;
 use crate::report::{
     CampaignFacts, Format, Logo, NominalValue, Paper, Report, ReportContent, ReportOptions, Subject,
@@ -183,11 +184,15 @@ fn nominal(campaign: &ResolvedCampaign) -> Vec<NominalValue> {
     let rig = &campaign.rig;
     let gain = (!campaign.channels.is_empty()).then_some(rig.gain_uncertainty);
     let stated = [
-        ("natural frequency $f_0$", rig.natural_frequency_hz, "Hz"),
-        ("damping ratio $β$", rig.damping_ratio, ""),
-        ("static deflection $x_st$", rig.static_deflection_m, "m"),
-        ("restitution $R$", rig.restitution, ""),
-        ("uncertainty of the gains", gain, ""),
+        (
+            Phrase::NaturalFrequencySymbol,
+            rig.natural_frequency_hz,
+            "Hz",
+        ),
+        (Phrase::DampingRatioSymbol, rig.damping_ratio, ""),
+        (Phrase::StaticDeflectionSymbol, rig.static_deflection_m, "m"),
+        (Phrase::Restitution, rig.restitution, ""),
+        (Phrase::UncertaintyOfTheGains, gain, ""),
     ];
     let value = |(name, value, unit)| {
         let value: Option<f64> = value;

@@ -7,6 +7,7 @@ use super::observed::Observed;
 use super::{checkpoint, identify, published, report, store, tables};
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::Identification;
+use crate::identify::fit::FitProgress;
 use crate::motion::Observation;
 
 /// Where a run's results go.
@@ -21,6 +22,8 @@ pub struct Destination<'a> {
     pub keep_from: usize,
     /// The command line for the report.
     pub command_line: &'a str,
+    /// Counts the iterations of the fits.
+    pub fits: &'a FitProgress,
 }
 
 /// What a run found, all of it written already.
@@ -56,7 +59,7 @@ pub fn run(
         false => Observed::resumable(campaign, (out, destination.resume), progress)?,
     };
     progress("identify", 0, 1);
-    let found = identify::identify(campaign, &observed)?;
+    let found = identify::identify(campaign, &observed, Some(destination.fits))?;
     progress("report", 0, 1);
     let report = report::files(campaign, &observed, &found, command_line)?;
     progress("write", 0, 1);

@@ -19,7 +19,7 @@ fn amplitude(o: &Observation, role: Role) -> Option<f64> {
 
 fn reason(o: &Observation) -> Option<String> {
     match &o.classification.motion {
-        Motion::Undetermined { reason } => Some(reason.clone()),
+        Motion::Undetermined { reason } => Some(reason.to_string()),
         _ => None,
     }
 }

@@ -2,13 +2,11 @@
 //! reader's, and from each kind of message of the identification to its template.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::OnceLock;
+use std::sync::LazyLock;
 
+use super::phrase::Phrase;
 use crate::identify::messages::examples;
 use crate::message::{Language, Message};
-
-/// The German phrases, whose keys are at the same time all phrases that a report has.
-const GERMAN: &str = include_str!("words-de.toml");
 
 /// Phrases and messages, and what is printed instead of their English.
 #[derive(Debug, Clone, Default, PartialEq, Eq, serde::Deserialize)]
@@ -67,54 +65,68 @@ impl Catalog {
         Ok(catalog)
     }
 
-    /// The German catalog of the program.
+    /// The German catalog of the program: no words of its own, as all texts have German ones.
     pub fn german() -> &'static Self {
-        static CATALOG: OnceLock<Catalog> = OnceLock::new();
-        CATALOG.get_or_init(|| Self::read(GERMAN).unwrap_or_default())
+        static CATALOG: LazyLock<Catalog> = LazyLock::new(|| Catalog {
+            language: Some("de".to_owned()),
+            ..Catalog::default()
+        });
+        &CATALOG
     }
 
     /// Every English phrase of a report, in order.
-    pub fn phrases() -> impl Iterator<Item = &'static str> {
-        Self::german().words.keys().map(String::as_str)
+    pub fn phrases() -> BTreeSet<&'static str> {
+        Phrase::ALL.iter().map(|p| p.english()).collect()
+    }
+
+    /// The language of texts that the catalog does not have.
+    fn fallback(&self) -> Language {
+        match self.language.as_deref() {
+            Some("de") => Language::German,
+            _ => Language::English,
+        }
     }
 
     /// A catalog to be filled in: every phrase and every message with its English.
     pub fn blank() -> String {
         let quoted = |text: &str| toml::Value::from(text).to_string();
         let line = |phrase: &str| format!("{0} = {0}\n", quoted(phrase));
-        let words: String = Self::phrases().map(line).collect();
+        let words: String = Self::phrases().into_iter().map(line).collect();
         let messages = messages();
         let message = |(key, english): (&String, &&str)| format!("{key} = {}\n", quoted(english));
         let findings: String = messages.iter().map(message).collect();
         format!("language = \"en\"\n\n[words]\n{words}\n[findings]\n{findings}")
     }
 
-    /// What is printed for a phrase; the phrase itself if the catalog does not have it.
-    pub fn get<'a>(&'a self, phrase: &'a str) -> &'a str {
-        self.words.get(phrase).map_or(phrase, String::as_str)
+    /// What is printed for a phrase: the catalog's words, else those of the program.
+    pub fn get(&self, phrase: Phrase) -> &str {
+        let own = self.words.get(phrase.english()).map(String::as_str);
+        own.unwrap_or_else(|| match self.fallback() {
+            Language::English => phrase.english(),
+            Language::German => phrase.german(),
+        })
     }
 
     /// The template of a message: that of its key in the catalog, else the translation of its English
     /// template, else the program's in the catalog's language, else the English one.
     pub fn template<'a>(&'a self, message: &dyn Message) -> &'a str {
-        let language = match self.language.as_deref() {
-            Some("de") => Language::German,
-            _ => Language::English,
-        };
         let keyed = match self.findings.is_empty() {
             true => None,
             false => self.findings.get(&message.key()),
         };
         let own = keyed.or_else(|| self.words.get(message.template(Language::English)));
-        own.map_or_else(|| message.template(language), String::as_str)
+        own.map_or_else(|| message.template(self.fallback()), String::as_str)
     }
 
     /// What is to be known of a catalog: phrases that it lacks, and entries that no report uses.
     pub fn remarks(&self) -> Vec<String> {
-        let phrases: BTreeSet<&str> = Self::phrases().collect();
+        let phrases = Self::phrases();
         let here: BTreeSet<&str> = self.words.keys().map(String::as_str).collect();
         let messages = messages();
-        let lacking: Vec<&str> = phrases.difference(&here).copied().collect();
+        let lacking: Vec<&str> = match self.fallback() {
+            Language::English => phrases.difference(&here).copied().collect(),
+            Language::German => Vec::new(),
+        };
         let unknown = self.findings.keys().map(String::as_str);
         let unknown = unknown.filter(|key| !messages.contains_key(*key));
         let templates: BTreeSet<&str> = messages.values().copied().collect();
@@ -199,10 +211,20 @@ mod tests {
 
     #[test]
     fn german_is_a_catalog_and_blank_lists_its_phrases_and_all_messages() {
-        Catalog::read(GERMAN).expect("a catalog");
+        let german = Catalog::german();
+        assert_eq!(german.get(Phrase::Drive), "Erregung");
+        for phrase in Phrase::ALL {
+            check(phrase.english(), phrase.english(), phrase.german()).expect("the same values");
+        }
         let blank = Catalog::read(&Catalog::blank()).expect("a catalog");
         assert!(blank.words.iter().all(|(a, b)| a == b));
-        assert!(blank.words.keys().eq(Catalog::german().words.keys()));
+        assert!(
+            blank
+                .words
+                .keys()
+                .map(String::as_str)
+                .eq(Catalog::phrases())
+        );
         assert!(blank.findings.contains_key("wrong_clearance"));
         assert!(blank.remarks().is_empty(), "{:?}", blank.remarks());
     }
@@ -245,6 +267,6 @@ mod tests {
         let remarks = catalog.remarks();
         assert_eq!(remarks.len(), 2);
         assert!(remarks[0].contains("stay English") && remarks[1].contains("no such phrase"));
-        assert_eq!(catalog.get("some text"), "some text");
+        assert_eq!(catalog.get(Phrase::Drive), "drive");
     }
 }

@@ -3,6 +3,7 @@
 use crate::compare::Compared;
 use crate::identify::{Identification, Provenance};
 use crate::record::calibrate::ChannelSetup;
+use crate::report::phrase::{Phrase, Text};
 
 /// Everything that a report shows. All quantities are SI; what a campaign does not have is empty, so
 /// that free decays alone give a report of the pages that apply.
@@ -62,8 +63,8 @@ pub enum Subject {
 /// A nominal value of the rig.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NominalValue {
-    /// Its name, a phrase with a symbol in dollars, as in `natural frequency $f_0$`.
-    pub name: &'static str,
+    /// Its name.
+    pub name: Phrase,
     /// Value in SI.
     pub value: f64,
     /// The SI unit's symbol; empty for a plain number.
@@ -74,9 +75,9 @@ pub struct NominalValue {
 #[derive(Debug, Clone, PartialEq)]
 pub struct DataTable {
     /// What it shows.
-    pub caption: String,
+    pub caption: Phrase,
     /// Heads of the columns, with their units.
-    pub heads: Vec<String>,
+    pub heads: Vec<Text>,
     /// The rows, one cell per head.
     pub rows: Vec<Vec<String>>,
 }

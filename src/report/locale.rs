@@ -2,7 +2,10 @@
 //! reader's language.
 
 use super::catalog::Catalog;
+use super::phrase::{Phrase, Text, motion_text, role_text};
 use crate::message::{Language, Message, Print, filled, sentence};
+use crate::motion::Motion;
+use crate::record::Role;
 use crate::signal::whole;
 
 /// What the reader chose about numbers and language.
@@ -16,16 +19,39 @@ pub(crate) struct Locale<'a> {
 
 impl Locale<'_> {
     /// A phrase of the report in the reader's language.
-    pub(crate) fn translate(self, phrase: &str) -> String {
-        self.catalog.map_or(phrase, |c| c.get(phrase)).to_owned()
+    pub(crate) fn translate(self, phrase: Phrase) -> String {
+        let text = match self.catalog {
+            Some(catalog) => catalog.get(phrase),
+            None => phrase.english(),
+        };
+        text.to_owned()
     }
 
     /// A phrase in the reader's language, with values for the names in braces.
-    pub(crate) fn translate_with(self, phrase: &str, values: &[(&str, &str)]) -> String {
+    pub(crate) fn translate_with(self, phrase: Phrase, values: &[(&str, &str)]) -> String {
         filled(&self.translate(phrase), |name| {
             let value = values.iter().find(|v| v.0 == name)?;
             Some(value.1.to_owned())
         })
+    }
+
+    /// A text of a figure or a table.
+    pub(crate) fn text(self, text: &Text) -> String {
+        match text {
+            Text::Phrase(phrase) => self.translate(*phrase),
+            Text::Followed(phrase, rest) => self.translate(*phrase) + rest,
+            Text::Plain(text) => text.clone(),
+        }
+    }
+
+    /// The label of a motion.
+    pub(crate) fn motion(self, motion: &Motion) -> String {
+        self.text(&motion_text(motion))
+    }
+
+    /// The name of what a channel measures.
+    pub(crate) fn role(self, role: Role) -> String {
+        self.text(&role_text(role))
     }
 
     /// A message in the reader's language, its symbols between dollars.
@@ -55,19 +81,7 @@ impl Locale<'_> {
 
     /// A range in words.
     pub(crate) fn range(self, first: &str, last: &str) -> String {
-        self.translate_with("{first} to {last}", &[("first", first), ("last", last)])
-    }
-
-    /// A title whose end in brackets, a unit or a count, is no part of the phrase.
-    pub(crate) fn translate_title(self, title: &str) -> String {
-        let whole = self.translate(title);
-        match title.rfind('(') {
-            Some(at) if title.ends_with(')') && whole == title => {
-                let phrase = title[..at].trim_end();
-                format!("{}{}", self.translate(phrase), &title[phrase.len()..])
-            }
-            _ => whole,
-        }
+        self.translate_with(Phrase::Range, &[("first", first), ("last", last)])
     }
 
     /// A number with a fixed count of decimals, a true minus and the chosen decimal sign.
@@ -151,7 +165,7 @@ fn superscript(exponent: i32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::{Note, Remark};
+    use crate::identify::{Item, Remark};
 
     #[test]
     fn numbers_are_printed_as_books_do() {
@@ -170,22 +184,19 @@ mod tests {
 
     #[test]
     fn phrases_are_translated_and_units_stay() {
-        let text = "[words]\n\"clearance $r$\" = \"Spiel $r$\"\n\"{a} of {b}\" = \"von {b} {a}\"";
+        let text = "[words]\n\"clearance $r$\" = \"Weite $r$\"\n\"{first} to {last}\" = \"bis {last} ab {first}\"";
         let catalog = Catalog::read(text).expect("a catalog");
         let locale = Locale {
             catalog: Some(&catalog),
             ..Locale::default()
         };
+        let title = locale.text(&(Phrase::Clearance, "mm").into());
+        assert_eq!(title, "Weite $r$ (mm)");
         assert_eq!(
-            locale.translate_title("clearance $r$ (mm)"),
-            "Spiel $r$ (mm)"
+            locale.range("two {last}", "three"),
+            "bis three ab two {last}"
         );
-        assert_eq!(locale.translate_title("residual\n(mm)"), "residual\n(mm)");
-        let values = [("a", "two {b}"), ("b", "three")];
-        assert_eq!(
-            locale.translate_with("{a} of {b}", &values),
-            "von three two {b}"
-        );
+        assert_eq!(locale.translate(Phrase::Drive), "drive");
     }
 
     #[test]
@@ -203,9 +214,10 @@ mod tests {
             Locale::default().sentence(&remark),
             "The simulated waveforms leave 1.23 % of the measured ones unexplained."
         );
-        let note = Note::SolverFailed {
-            report: "a$b".into(),
+        let item = Item::Record {
+            index: 0,
+            record: "a$b".into(),
         };
-        assert!(!Locale::default().message(&note).contains('$'));
+        assert!(!Locale::default().message(&item).contains('$'));
     }
 }

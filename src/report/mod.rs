@@ -10,6 +10,7 @@ mod html;
 pub(crate) mod locale;
 mod options;
 mod parameters;
+mod phrase;
 pub(crate) mod picture;
 mod png;
 pub mod style;
@@ -18,6 +19,7 @@ pub(crate) mod theory;
 pub use content::{CampaignFacts, DataTable, NominalValue, ProposedPoint, ReportContent, Subject};
 pub use error::ReportError;
 pub use options::{Format, Logo, Paper, ReportOptions};
+pub use phrase::{Phrase, Text};
 
 use figures::Figure;
 use locale::Locale;

@@ -2,6 +2,7 @@
 
 use super::locale::{Locale, decimal_exponent};
 use crate::identify::{Estimate, Method, ParameterSet, Status};
+use crate::report::phrase::Phrase;
 
 /// How a parameter is named and printed.
 #[derive(Debug, Clone, Copy)]
@@ -11,7 +12,7 @@ pub(super) struct ParameterLook {
     /// Its symbol, with markup.
     pub symbol: &'static str,
     /// Its name in words.
-    pub name: &'static str,
+    pub name: Phrase,
     /// Its unit as printed.
     pub unit: &'static str,
     /// Multiply an SI value by this.
@@ -25,7 +26,7 @@ pub(super) const PARAMETERS: [ParameterLook; 4] = [
     ParameterLook {
         key: "restitution",
         symbol: "$R$",
-        name: "coefficient of restitution",
+        name: Phrase::CoefficientOfRestitution,
         unit: "",
         factor: 1.0,
         pick: |p| p.restitution.as_ref(),
@@ -33,7 +34,7 @@ pub(super) const PARAMETERS: [ParameterLook; 4] = [
     ParameterLook {
         key: "natural_frequency_hz",
         symbol: "$f_0$",
-        name: "natural frequency",
+        name: Phrase::NaturalFrequency,
         unit: "Hz",
         factor: 1.0,
         pick: |p| p.natural_frequency_hz.as_ref(),
@@ -41,7 +42,7 @@ pub(super) const PARAMETERS: [ParameterLook; 4] = [
     ParameterLook {
         key: "damping_ratio",
         symbol: "$β$",
-        name: "damping ratio",
+        name: Phrase::DampingRatio,
         unit: "",
         factor: 1.0,
         pick: |p| p.damping_ratio.as_ref(),
@@ -49,7 +50,7 @@ pub(super) const PARAMETERS: [ParameterLook; 4] = [
     ParameterLook {
         key: "static_deflection_m",
         symbol: "$x_{st}$",
-        name: "static deflection",
+        name: Phrase::StaticDeflection,
         unit: "mm",
         factor: 1e3,
         pick: |p| p.static_deflection_m.as_ref(),
@@ -123,7 +124,7 @@ pub(super) fn short(
         return "–".into();
     };
     let Some(value) = estimate.value else {
-        return locale.translate("not identifiable");
+        return locale.translate(Phrase::NotIdentifiable);
     };
     let half = half_width(estimate).map(|h| h * look.factor);
     let decimals = decimals_for(half.unwrap_or(0.0));

@@ -1,7 +1,7 @@
 //! On which motion a simulated rig has settled.
 
 use super::engine::{Engine, repeats};
-use crate::motion::Motion;
+use crate::motion::{Motion, Undetermined};
 use impact_oscillator::model::params::Setting;
 
 /// Largest period looked for in the noiseless motion, drive periods.
@@ -51,7 +51,7 @@ pub(super) fn true_motion(mut engine: Engine, setting: Setting) -> Motion {
             dead_zone: 2 * dead_zones >= impacts.max(1),
         },
         None => Motion::Undetermined {
-            reason: "the noiseless simulation is not periodic".into(),
+            reason: Undetermined::NotPeriodic,
         },
     }
 }

@@ -106,6 +106,39 @@ fn quantities() -> Vec<Case> {
             ],
         ),
         refused(
+            "a negative uncertainty of the clearances",
+            |lab| {
+                lab.edit(
+                    "restitution = 0.9",
+                    "restitution = 0.9\nclearance_uncertainty = \"-3 um\"",
+                );
+            },
+            &["rig.clearance_uncertainty", "is out of range"],
+        ),
+        refused(
+            "an effect that is not known",
+            |lab| {
+                lab.edit(
+                    "restitution = 0.9",
+                    "restitution = 0.9\neffects = [\"stiction\"]",
+                );
+            },
+            &[
+                "rig.effects",
+                "no effect is called 'stiction'",
+                "friction",
+                "remove the line to allow all",
+            ],
+        ),
+        refused(
+            "a delay that is longer than a period of the drive",
+            |lab| lab.edit("sign = 1", "sign = 1\ndelay = \"100 ms\""),
+            &[
+                "channels.velocity_x.delay",
+                "longer than a period of the drive",
+            ],
+        ),
+        refused(
             "a clearance in quotes without unit",
             |lab| lab.edit("run_table =", "clearance = \"1.0\"\nrun_table ="),
             &[

@@ -71,6 +71,22 @@ fn commands() -> Vec<Case> {
             &["it must lie between 0 and 1"],
         ),
         case(
+            "a simulated rig with an effect that is not known",
+            |_| {},
+            &[
+                "simulate",
+                "campaign",
+                "--rig",
+                "wobble",
+                "--out",
+                "synthetic",
+            ],
+            &[
+                "no effect is called \"wobble\"",
+                "second-harmonic, third-harmonic",
+            ],
+        ),
+        case(
             "a simulated frequency that is no number",
             |_| {},
             &[

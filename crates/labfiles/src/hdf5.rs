@@ -51,8 +51,9 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
     let Plans {
         mut datasets,
         plans,
-        notes,
+        mut notes,
     } = plan::plan(&store, &tree);
+    notes.extend(tree.unreadable().map(|fault| format!("left out: {fault}")));
     if datasets.is_empty() {
         return Err(ReadError::new(
             path,

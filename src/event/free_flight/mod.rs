@@ -4,7 +4,6 @@
 //! that the law of free flight explains, so that a push by hand before, or a catch after, does not
 //! enter the speeds.
 
-mod duration;
 mod fall;
 mod orientation;
 mod stretch;
@@ -16,7 +15,6 @@ use crate::record::{Flag, FlagCode};
 use crate::signal::local_fit::crossing;
 use crate::signal::{robust, whole};
 
-use duration::Contact;
 use fall::Fall;
 use stretch::{Side, Stretch};
 
@@ -34,8 +32,8 @@ const BLUR: f64 = 0.25;
 const STEP_SPREAD: f64 = 0.29;
 /// Least standard error of the time of an impact between two lines of velocity, samples.
 const LEAST_SPREAD: f64 = 0.1;
-/// Share of a flight that may be left out without a note.
-const USED: f64 = 0.6;
+/// Share of the approach that must be free flight, else what is left out is noted.
+const USED: f64 = 0.85;
 
 /// Impacts of a record under constant force.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -112,7 +110,7 @@ impl<'a> Search<'a> {
 
     fn impacts(&self, closed: &[Closed]) -> FreeFlights {
         let mut found = FreeFlights {
-            jump_samples: 1,
+            jump_samples: self.jump_samples(),
             ..FreeFlights::default()
         };
         let (mut cut, mut hidden, mut beyond) = (Vec::new(), Vec::new(), Vec::new());
@@ -127,23 +125,29 @@ impl<'a> Search<'a> {
                 Found::Nothing => {}
             }
         }
-        found.jump_samples = jump_samples(&found.impacts, self.rate_hz);
         found.flags.extend(cut_flag(&cut, self.rate_hz));
         found.flags.extend(hidden_flag(&hidden));
         found.flags.extend(beyond_flag(&beyond));
         found
     }
 
-    /// The contact, if the samples resolve its duration.
-    fn contact(&self, (before, after): (&[Stretch], &[Stretch]), time: f64) -> Option<Contact> {
-        let of_velocity = before.iter().all(|s| s.displacement().is_none());
-        let smoothed = self
-            .bodies
+    /// Samples that a fall takes in the median; a velocity derived from a displacement smears it by two.
+    fn jump_samples(&self) -> usize {
+        let gaps: Vec<f64> = self
+            .falls
             .iter()
-            .any(|b| duration::is_smoothed(b, self.rate_hz));
-        of_velocity
-            .then(|| duration::contact(self.relative, (before, after), time, smoothed))
-            .flatten()
+            .map(|f| (f.last - f.first) as f64)
+            .collect();
+        let derived = |b: &&Body| match (&b.velocity, &b.displacement) {
+            (Some(velocity), Some(displacement)) => velocity.role == displacement.role,
+            _ => false,
+        };
+        let smeared = if self.bodies.iter().any(derived) {
+            2.0
+        } else {
+            0.0
+        };
+        robust::median(&gaps).map_or(1, |g| whole::index((g - smeared).round().max(1.0)))
     }
 
     /// Samples between the neighbouring falls.
@@ -172,14 +176,9 @@ impl<'a> Search<'a> {
             return Found::NoFlight(middle_s, Side::After);
         };
         let (time, time_error) = self.instant(fall, &before, &after);
-        let contact = self.contact((&before, &after), time);
-        let [start, end] = match &contact {
-            Some(c) => [time - c.to_centre, time - c.to_centre + c.duration],
-            None => [time, time],
-        };
-        let approach: f64 = before.iter().map(|s| s.speed(start)).sum();
-        let separation: f64 = -after.iter().map(|s| s.speed(end)).sum::<f64>();
-        let time_error = time_error.hypot(contact.map_or(0.0, |c| c.error()));
+        let half = half_contact(&before, &after);
+        let approach: f64 = before.iter().map(|s| s.speed(time - half)).sum();
+        let separation: f64 = -after.iter().map(|s| s.speed(time + half)).sum::<f64>();
         let error = speed_error(&before, &after, (time, time_error));
         if self.is_beyond(index, &before, approach, error) {
             return Found::Beyond(time / self.rate_hz);
@@ -217,7 +216,7 @@ impl<'a> Search<'a> {
             y: (self.bodies.len() > 1).then(|| of_body(1)),
             corner_shifts: [None, None],
             dead_zone_s: 0.0,
-            contact_duration_s: contact.map(|c| c.duration / self.rate_hz),
+            contact_duration_s: None,
             external_push_m_s: None,
             source: match touched {
                 true => DetectionSource::Both,
@@ -307,13 +306,17 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Samples that a contact takes in the median; one where it is not resolved.
-fn jump_samples(impacts: &[Impact], rate_hz: f64) -> usize {
-    let durations: Vec<f64> = impacts
-        .iter()
-        .map(|i| i.contact_duration_s.map_or(1.0, |d| (d * rate_hz).max(1.0)))
-        .collect();
-    robust::median(&durations).map_or(1, |d| whole::index(d.round()))
+/// Half of what a contact between two lines of velocity takes, samples. The gap between the flights is the
+/// contact and what smooths the velocity, of which neither is known: a contact of anything up to half of the
+/// gap is taken as one of a quarter. A displacement is not smoothed, and its contact an instant.
+fn half_contact(before: &[Stretch], after: &[Stretch]) -> f64 {
+    let of_displacement = before.iter().any(|s| s.displacement().is_some());
+    let from = before.iter().map(|s| s.samples.1.saturating_sub(1)).min();
+    let to = after.iter().map(|s| s.samples.0).max();
+    match (from, to) {
+        (Some(from), Some(to)) if !of_displacement => to.saturating_sub(from) as f64 / 8.0,
+        _ => 0.0,
+    }
 }
 
 /// Standard error of either approach speed: of the fits, and of the time where flights are steep.

@@ -6,7 +6,8 @@
 
 use nalgebra::DVector;
 
-use crate::identify::evidence::trajectory::{TrajectoryBlock, TrajectoryRecord};
+use crate::identify::evidence::trajectory::TrajectoryBlock;
+use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::{Blocks, Nominal};
 use crate::identify::fit::factor::dot;
 use crate::identify::fit::parameters::{Coordinate, Parameters};

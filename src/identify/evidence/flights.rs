@@ -417,6 +417,7 @@ mod tests {
             blocks: vec![(&block, 1.0)],
             priors: wide_priors(&start, &free),
             free,
+            ..Problem::default()
         };
         let found = problem.fit(start).expect("a fit").parameters;
         for coordinate in Coordinate::PHYSICAL {

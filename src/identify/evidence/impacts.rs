@@ -53,7 +53,7 @@ pub struct ImpactBlock {
 }
 
 /// Share of the error of an impact between free flights that all have in common.
-const COMMON: f64 = 0.25;
+const COMMON: f64 = 0.4;
 
 /// Impacts between free flights from which outliers are looked for: fewer are all reported.
 const ENOUGH_FOR_OUTLIERS: usize = 8;

@@ -9,10 +9,12 @@ pub mod direction;
 pub mod flights;
 pub mod high_pass;
 pub mod impacts;
+pub mod nearest_orbit;
 pub mod record_motion;
 pub mod resonance;
 pub mod shared_error;
 pub mod trajectory;
+pub mod trajectory_record;
 pub mod waveform;
 pub mod weighing;
 
@@ -27,7 +29,7 @@ use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::fit::effect::{Effect, Effects};
 use crate::identify::fit::gap_errors::MOST_GAPS;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
-use crate::identify::fit::{Block, Prior};
+use crate::identify::fit::{Block, FitProgress, Prior, Problem};
 use crate::identify::uncertainty::UncertaintyOptions;
 use crate::motion::Amplitude;
 use crate::motion::{Bracket, Observation};
@@ -98,6 +100,8 @@ pub struct Evidence<'a> {
     pub nominal: Nominal,
     /// What is asked for of the uncertainty.
     pub uncertainty: UncertaintyOptions,
+    /// What counts the iterations of the fits, if anything shows them.
+    pub progress: Option<&'a FitProgress>,
 }
 
 /// Relative error of instruments and model that noise does not show.
@@ -139,6 +143,8 @@ pub struct Blocks {
     pub gaps_m: Vec<f64>,
     /// Half a sample, s.
     half_sample_s: f64,
+    /// What counts the iterations of the fits.
+    pub progress: FitProgress,
 }
 
 impl Blocks {
@@ -170,6 +176,7 @@ impl Blocks {
             impact_outliers,
             gaps_m: Vec::new(),
             half_sample_s: half_sample_s(observations),
+            progress: evidence.progress.cloned().unwrap_or_default(),
         };
         blocks.place(&places(observations), &groups(observations));
         blocks.give_gaps_errors(evidence.nominal.clearance_uncertainty_m);
@@ -177,6 +184,21 @@ impl Blocks {
         (blocks.trajectory.reach_m, blocks.resonance.reach_m) = (reach_m, reach_m);
         blocks.trajectory.effects = evidence.nominal.effects;
         blocks
+    }
+
+    /// A problem over some of the blocks, whose fits are counted.
+    pub fn problem<'b>(
+        &self,
+        blocks: Vec<(&'b dyn Block, f64)>,
+        free: Vec<Coordinate>,
+        priors: Vec<Prior>,
+    ) -> Problem<'b> {
+        Problem {
+            blocks,
+            priors,
+            free,
+            progress: self.progress.clone(),
+        }
     }
 
     /// Set when in the campaign each record was taken, and its group.

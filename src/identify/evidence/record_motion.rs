@@ -1,10 +1,13 @@
 //! A periodic record as the model has it: the values at all its points, and their exact slopes
 //! over every parameter, over the drive's phase and over its frequency.
 
+mod effects;
+
 use crate::event::RigKind;
 use crate::identify::evidence::direction::{change, relative_length, relative_rate};
 use crate::identify::evidence::high_pass::{HighPass, HighPassSlope, Passed, Tail};
-use crate::identify::evidence::trajectory::TrajectoryRecord;
+use crate::identify::evidence::nearest_orbit::NearestOrbit;
+use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::waveform::{
     Phases, Timing, TimingSlope, Vibration, delayed, delayed_slope, velocity, velocity_slope,
 };
@@ -12,51 +15,9 @@ use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::motion::FoldedChannel;
 use crate::record::Role;
-use impact_oscillator::model::orbit::Branch;
-use impact_oscillator::model::params::{Machine, Oscillator, Setting};
+use impact_oscillator::model::params::Machine;
 use impact_oscillator::model::path::C64;
-use impact_oscillator::model::perturbation::{Grid, PeriodicResponse};
 use impact_oscillator::model::sensitivity::{Change, MassMotion, OrbitMotion, Sensitivity};
-
-/// The z = 1/n orbit at a record's setting whose closing speed is nearest to the measured one.
-pub struct NearestOrbit {
-    /// The record's own parameters.
-    pub own: Parameters,
-    /// The machine.
-    pub machine: Machine,
-    /// η and ρ.
-    pub setting: Setting,
-    /// The orbits at η.
-    pub branch: Branch,
-    /// Its closing speed, dimensionless.
-    pub closing_speed: f64,
-}
-
-impl NearestOrbit {
-    /// At given parameters; `None` beyond the saddle-node.
-    pub fn of(rig: RigKind, record: &TrajectoryRecord, parameters: &Parameters) -> Option<Self> {
-        let (own, clearance_m) = parameters.own(&record.circumstances(rig));
-        let machine = own.machine(rig);
-        let setting = own.setting(record.frequency_hz, clearance_m, record.drive_amplitude);
-        let n = record.folded.periods_n;
-        let branch = Branch::new(&machine, setting.frequency_ratio, n);
-        let restitution = own.restitution.clamp(0.0, 1.0);
-        let speeds = branch.approach_speeds(restitution, machine.gap(setting.clearance))?;
-        let scale = own.static_deflection_m * record.drive_amplitude * own.natural_rate();
-        let measured = record.closing_speed_m_s / scale;
-        let closing_speed = speeds
-            .into_iter()
-            .filter(|w| *w > 0.0)
-            .min_by(|a, b| (a - measured).abs().total_cmp(&(b - measured).abs()))?;
-        Some(Self {
-            own,
-            machine,
-            setting,
-            branch,
-            closing_speed,
-        })
-    }
-}
 
 /// A record's orbit at its points.
 pub struct RecordMotion<'a> {
@@ -103,8 +64,34 @@ struct Direction {
     coordinate: Option<Coordinate>,
 }
 
-/// Nodes of a drive period on which extra accelerations are taken.
-const NODES: usize = 128;
+/// Slopes of a record's values over coordinates.
+#[derive(Debug, Default)]
+pub struct Slopes {
+    /// The distinct columns.
+    pub columns: Vec<Column>,
+    /// Of each coordinate the columns and their multiples that its slopes are the sum of.
+    pub sums: Vec<Vec<(usize, f64)>>,
+}
+
+/// A column of slopes.
+#[derive(Debug)]
+pub enum Column {
+    /// At all points.
+    Values(Vec<f64>),
+    /// Over a gain, by its index: the values of the channels that have it.
+    Gain(usize),
+}
+
+impl Slopes {
+    fn add(&mut self, column: Column) -> usize {
+        self.columns.push(column);
+        self.columns.len() - 1
+    }
+
+    fn alone(&mut self, column: Column) -> Vec<(usize, f64)> {
+        vec![(self.add(column), 1.0)]
+    }
+}
 
 impl<'a> RecordMotion<'a> {
     /// At given parameters; `None` where there is no such orbit.
@@ -204,33 +191,43 @@ impl<'a> RecordMotion<'a> {
         values
     }
 
-    /// Slopes of the values over coordinates of the fit, column by column; `None` for a gain.
-    pub fn slopes(&self, values: &[f64], coordinates: &[Coordinate]) -> Vec<Option<Vec<f64>>> {
+    /// Slopes of the values over coordinates of the fit: few distinct columns, and of what multiples of
+    /// them each coordinate's slopes are the sum.
+    pub fn slopes(&self, values: &[f64], coordinates: &[Coordinate]) -> Slopes {
         let at = self.record.circumstances(self.rig);
-        let mut own: [Option<Vec<f64>>; 5] = Default::default();
-        let mut column = |coordinate: &Coordinate| match coordinate {
-            Coordinate::Gain(_) => None,
-            Coordinate::Effect(effect) if effect.is_acceleration() => {
-                let mut found = self.record.perturbations.iter();
-                let found = found.find(|(e, _)| e == effect);
-                Some(found.map_or_else(|| vec![0.0; values.len()], |(_, c)| c.clone()))
-            }
-            _ => match self.common.own_slope(&at, *coordinate) {
-                Some(slope) => {
-                    let mut sum = vec![0.0; values.len()];
-                    let [r, f, b, x] = slope.physical;
-                    for (i, weight) in [r, f, b, x, slope.clearance_m].into_iter().enumerate() {
-                        if weight != 0.0 {
-                            let base = own[i].get_or_insert_with(|| self.over_own(values, i));
-                            add(&mut sum, weight, base);
-                        }
-                    }
-                    Some(sum)
+        let mut slopes = Slopes::default();
+        let mut own: [Option<usize>; 5] = [None; 5];
+        for coordinate in coordinates {
+            let sum = match (coordinate, self.common.own_slope(&at, *coordinate)) {
+                (Coordinate::Gain(gain), _) => slopes.alone(Column::Gain(*gain)),
+                (Coordinate::Effect(effect), _) if effect.is_acceleration() => {
+                    slopes.alone(Column::Values(self.perturbed(*effect, values.len())))
                 }
-                None => Some(self.over_coordinate(values, *coordinate)),
-            },
-        };
-        coordinates.iter().map(&mut column).collect()
+                (_, Some(slope)) => {
+                    let [r, f, b, x] = slope.physical;
+                    let weights = [r, f, b, x, slope.clearance_m].into_iter().enumerate();
+                    let parts = weights.filter(|(_, weight)| *weight != 0.0);
+                    parts
+                        .map(|(i, weight)| {
+                            let column = || Column::Values(self.over_own(values, i));
+                            (*own[i].get_or_insert_with(|| slopes.add(column())), weight)
+                        })
+                        .collect()
+                }
+                (_, None) => {
+                    slopes.alone(Column::Values(self.over_coordinate(values, *coordinate)))
+                }
+            };
+            slopes.sums.push(sum);
+        }
+        slopes
+    }
+
+    /// The change by an effect that acts as an extra acceleration, per unit of its strength.
+    fn perturbed(&self, effect: Effect, points: usize) -> Vec<f64> {
+        let mut found = self.record.perturbations.iter();
+        let found = found.find(|(e, _)| *e == effect);
+        found.map_or_else(|| vec![0.0; points], |(_, change)| change.clone())
     }
 
     /// Slopes over one of the record's own R, ln f0, ln β, ln `x_st`, clearance in m.
@@ -313,80 +310,6 @@ impl<'a> RecordMotion<'a> {
             })
             .sum();
         press / self.orbit.approach_speed * self.own.natural_rate()
-    }
-
-    /// Change of the values by an effect that acts as a small extra acceleration, per unit of its
-    /// strength, to first order; `reach_m` is the displacement at which springs harden by that much.
-    pub fn perturbation(&self, values: &[f64], effect: Effect, reach_m: f64) -> Vec<f64> {
-        let intervals = NODES * self.record.folded.periods_n as usize;
-        let grid = Grid::new(self.period(), intervals);
-        let masses = [
-            Some((self.machine.x, self.orbit.x)),
-            self.machine.y.map(|y| (y, self.orbit.y)),
-        ];
-        let responses = masses.map(|mass| {
-            let (oscillator, motion) = mass?;
-            let p = self.accelerations(&oscillator, &motion, grid, (effect, reach_m));
-            Some(PeriodicResponse::new(&oscillator, grid, &p))
-        });
-        let at_impact = responses.iter().flatten().map(PeriodicResponse::at_impact);
-        let [displacement, velocity] =
-            at_impact.fold([0.0; 2], |sum, at| [sum[0] + at[0], sum[1] + at[1]]);
-        let change = Change {
-            displacement,
-            velocity,
-            ..Change::default()
-        };
-        let mut slopes = self.along(values, &self.direction(&change, None));
-        let extra = self.channel_by_channel(|channel, vibration| {
-            let Some(response) = &responses[usize::from(channel.role.is_of_y())] else {
-                return vec![0.0; channel.points];
-            };
-            let mut seen = match measured(channel.role) {
-                Measured::Displacement => response.displacement(),
-                Measured::Velocity => response.velocity(),
-            };
-            if let Some(filter) = &channel.filter {
-                seen = seen.high_passed(filter.high_pass.corner());
-            }
-            let times = vibration.time().iter();
-            let times = times.map(|t| (t - channel.delay).rem_euclid(self.period()));
-            times.map(|t| seen.at(t)).collect()
-        });
-        add(&mut slopes, 1.0, &extra);
-        slopes
-    }
-
-    /// The extra acceleration of one mass at the nodes, per unit of an effect's strength.
-    fn accelerations(
-        &self,
-        oscillator: &Oscillator,
-        motion: &MassMotion,
-        grid: Grid,
-        (effect, reach_m): (Effect, f64),
-    ) -> Vec<f64> {
-        let length_m = self.own.static_deflection_m * self.record.drive_amplitude;
-        let harmonic = |order: f64, lag: f64| -> Vec<f64> {
-            let force = oscillator.drive_per_mass();
-            let phase = |t: f64| order * (self.orbit.phase + self.eta * t) - lag;
-            grid.times().map(|t| force * phase(t).cos()).collect()
-        };
-        let states = || grid.states(motion, self.orbit.phase, self.eta);
-        match effect {
-            Effect::SecondHarmonicCos => harmonic(2.0, 0.0),
-            Effect::SecondHarmonicSin => harmonic(2.0, std::f64::consts::FRAC_PI_2),
-            Effect::ThirdHarmonicCos => harmonic(3.0, 0.0),
-            Effect::ThirdHarmonicSin => harmonic(3.0, std::f64::consts::FRAC_PI_2),
-            Effect::Hardening => {
-                let share = oscillator.stiffness_per_mass() * (length_m / reach_m).powi(2);
-                states().iter().map(|s| -share * s[0].powi(3)).collect()
-            }
-            Effect::Friction => {
-                let force = self.common.static_deflection_m / length_m;
-                friction(&states()).iter().map(|p| force * p).collect()
-            }
-            _ => vec![0.0; grid.intervals + 1],
-        }
     }
 
     fn along(&self, values: &[f64], direction: &Direction) -> Vec<f64> {
@@ -507,18 +430,6 @@ fn add(to: &mut [f64], share: f64, column: &[f64]) {
     }
 }
 
-/// Coulomb friction of unit size, −sign X', at the nodes; where X' changes its sign, the mean over
-/// the node's neighbourhood.
-fn friction(states: &[[f64; 2]]) -> Vec<f64> {
-    let change = |k: usize| {
-        let (a, b) = (k.saturating_sub(1), (k + 1).min(states.len() - 1));
-        0.5 * (states[b][1] - states[a][1]).abs()
-    };
-    let of =
-        |(k, s): (usize, &[f64; 2])| -(s[1] / change(k).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0);
-    states.iter().enumerate().map(of).collect()
-}
-
 /// Of each set of phases, the free vibrations of the masses that are measured.
 fn vibrations<'a>(
     record: &'a TrajectoryRecord,
@@ -558,6 +469,7 @@ fn measured(role: Role) -> Measured {
 mod tests {
     use super::*;
     use crate::identify::evidence::trajectory::distinct_phases;
+    use crate::identify::fit::effect::Effect;
     use crate::identify::fit::effect::Effects;
     use crate::motion::{Folded, FoldedPoint};
 
@@ -576,6 +488,7 @@ mod tests {
         effects[Effect::FrequencyDrift.place()] = 2e-3;
         effects[Effect::ContactDuration.place()] = 0.3;
         effects[Effect::ContactLaw.place()] = 0.1;
+        effects[Effect::ContactReach.place()] = 0.05;
         Parameters {
             drive_asymmetry: 0.02,
             stiffness_asymmetry: -0.03,
@@ -665,10 +578,16 @@ mod tests {
             let effects = Effects::all().iter().filter(|e| !e.is_acceleration());
             coordinates.extend(effects.map(Coordinate::Effect));
             let slopes = motion.slopes(&here, &coordinates);
-            for (coordinate, exact) in coordinates.into_iter().zip(slopes) {
+            for (coordinate, sum) in coordinates.into_iter().zip(&slopes.sums) {
                 let at =
                     |by: f64| values(&record, &p.with(coordinate, p.coordinate(coordinate) + by));
-                let exact = exact.expect("slopes");
+                let mut exact = vec![0.0; here.len()];
+                for (i, times) in sum {
+                    match &slopes.columns[*i] {
+                        Column::Values(column) => add(&mut exact, *times, column),
+                        Column::Gain(_) => panic!("no gain is asked for"),
+                    }
+                }
                 agree(&exact, &at(step), &at(-step), 2.0 * step);
             }
             let driven = |by: f64| {

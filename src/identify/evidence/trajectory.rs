@@ -3,78 +3,20 @@
 use rayon::prelude::*;
 
 use crate::event::RigKind;
-use crate::identify::evidence::record_motion::{NearestOrbit, RecordMotion};
+use crate::identify::evidence::nearest_orbit::NearestOrbit;
+use crate::identify::evidence::record_motion::{Column, RecordMotion};
 use crate::identify::evidence::shared_error::Whitening;
+use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::waveform::Phases;
 use crate::identify::fit::Block;
 use crate::identify::fit::effect::{Effect, Effects};
-use crate::identify::fit::own::Circumstances;
+use crate::identify::fit::factor::Factor;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
 use crate::motion::{Folded, FoldedChannel};
 use crate::record::Role;
 use impact_oscillator::model::flight::State;
 use impact_oscillator::model::orbit::orbit_with_speed;
-
-/// One folded record.
-#[derive(Debug, Clone)]
-pub struct TrajectoryRecord {
-    /// Index among the observations.
-    pub observation: usize,
-    /// Drive frequency, Hz.
-    pub frequency_hz: f64,
-    /// Half the gap, m.
-    pub clearance_m: f64,
-    /// Drive amplitude relative to the nominal one.
-    pub drive_amplitude: f64,
-    /// The folded waveform.
-    pub folded: Folded,
-    /// Phases of the points: usually one set that all channels share.
-    pub phases: Vec<Phases>,
-    /// Median closing speed before impacts as measured, m/s.
-    pub closing_speed_m_s: f64,
-    /// Standard error of the drive's frequency, relative.
-    pub frequency_error: f64,
-    /// Standard error of the drive's phase, rad.
-    pub phase_error_rad: f64,
-    /// Place of the clearance among those that carry an error of their own.
-    pub gap: Option<usize>,
-    /// Standard error of the clearance, m, where no other record has the same.
-    pub lone_clearance_error_m: f64,
-    /// Place in the campaign, −½ … ½.
-    pub place: f64,
-    /// The group of records that it belongs to.
-    pub group: usize,
-    /// Acceleration of the masses toward each other at the impacts over the approach speed, 1/s; zero
-    /// until it is found at good parameters.
-    pub press_per_s: f64,
-    /// Changes of all points' values, SI, by one standard error of phase, of frequency and of a lone
-    /// clearance; empty until they are found at good parameters.
-    pub shared: Vec<Vec<f64>>,
-    /// Changes of all points' values, SI, by effects that act as extra accelerations, per unit of
-    /// their strengths; empty until they are found at good parameters.
-    pub perturbations: Vec<(Effect, Vec<f64>)>,
-}
-
-impl TrajectoryRecord {
-    /// Where and when it was taken.
-    pub fn circumstances(&self, rig: RigKind) -> Circumstances {
-        Circumstances {
-            frequency_hz: self.frequency_hz,
-            clearance_m: self.clearance_m,
-            gap: self.gap,
-            place: self.place,
-            approach_m_s: self.closing_speed_m_s,
-            press_per_s: self.press_per_s,
-            masses: if rig == RigKind::Double { 2.0 } else { 1.0 },
-        }
-    }
-
-    fn has(&self, index: usize) -> bool {
-        let mut channels = self.folded.channels.iter();
-        channels.any(|c| gain_index(c.role) == Some(index))
-    }
-}
 
 /// All periodic records with one impact in n drive periods.
 #[derive(Debug, Clone)]
@@ -139,6 +81,33 @@ impl TrajectoryBlock {
         }
     }
 
+    /// Weighted residuals of a record and their slopes: distinct columns, and the sums of multiples of
+    /// them that belong to the coordinates.
+    fn weighted_slopes(
+        &self,
+        item: usize,
+        parameters: &Parameters,
+        coordinates: &[Coordinate],
+    ) -> Option<WeightedSlopes> {
+        let record = &self.records[item];
+        let motion = RecordMotion::new(self.rig, record, parameters)?;
+        let values = motion.values();
+        let weighing = Weighing::new(record, &values, self.relative_error);
+        let slopes = motion.slopes(&values, coordinates);
+        let weighted = |column: Column| {
+            let mut change = match column {
+                Column::Values(values) => values,
+                // Values are proportional to their gain.
+                Column::Gain(gain) => weighing.only(&values, gain),
+            };
+            change.iter_mut().for_each(|c| *c = -*c);
+            weighing.weighted(&change)
+        };
+        let columns = slopes.columns.into_iter().map(weighted).collect();
+        let residuals = weighing.weighted(&weighing.apart(&values));
+        Some((residuals, columns, slopes.sums))
+    }
+
     fn changes(&self, record: &TrajectoryRecord, parameters: &Parameters) -> Option<Changes> {
         let motion = RecordMotion::new(self.rig, record, parameters)?;
         let values = motion.values();
@@ -162,6 +131,9 @@ impl TrajectoryBlock {
         })
     }
 }
+
+/// Residuals, distinct columns of slopes, and the sums of multiples of them.
+type WeightedSlopes = (Vec<f64>, Vec<Vec<f64>>, Vec<Vec<(usize, f64)>>);
 
 /// What is found of a record at good parameters.
 #[derive(Default)]
@@ -247,23 +219,30 @@ impl Block for TrajectoryBlock {
         parameters: &Parameters,
         coordinates: &[Coordinate],
     ) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
-        let record = &self.records[item];
-        let motion = RecordMotion::new(self.rig, record, parameters)?;
-        let values = motion.values();
-        let weighing = Weighing::new(record, &values, self.relative_error);
-        let slopes = motion.slopes(&values, coordinates);
-        let columns = coordinates.iter().zip(slopes);
-        let columns = columns.map(|(coordinate, slopes)| {
-            let mut change = match (coordinate, slopes) {
-                // Values are proportional to their gain.
-                (Coordinate::Gain(gain), None) => weighing.only(&values, *gain),
-                (_, slopes) => slopes.unwrap_or_else(|| vec![0.0; values.len()]),
-            };
-            change.iter_mut().for_each(|c| *c = -*c);
-            weighing.weighted(&change)
-        });
-        let columns = columns.collect();
-        Some((weighing.weighted(&weighing.apart(&values)), columns))
+        let (residuals, columns, sums) = self.weighted_slopes(item, parameters, coordinates)?;
+        let total = |sum: &Vec<(usize, f64)>| {
+            let mut total = vec![0.0; residuals.len()];
+            for (i, times) in sum {
+                total
+                    .iter_mut()
+                    .zip(&columns[*i])
+                    .for_each(|(t, c)| *t += times * c);
+            }
+            total
+        };
+        let slopes = sums.iter().map(total).collect();
+        Some((residuals, slopes))
+    }
+
+    fn factor(
+        &self,
+        item: usize,
+        parameters: &Parameters,
+        coordinates: &[Coordinate],
+        weight: f64,
+    ) -> Option<Factor> {
+        let (residuals, columns, sums) = self.weighted_slopes(item, parameters, coordinates)?;
+        Some(Factor::of(&residuals, &columns, weight).combined(&sums))
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {

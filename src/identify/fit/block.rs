@@ -5,6 +5,7 @@
 
 use rayon::prelude::*;
 
+use crate::identify::fit::factor::Factor;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 
 /// Weighted residuals of one kind of observation.
@@ -32,6 +33,19 @@ pub trait Block: Sync {
             })
             .collect::<Option<Vec<_>>>()?;
         Some((here, columns))
+    }
+
+    /// Triangular factor of an item's residuals and slopes over some coordinates, each squared
+    /// residual weighted; `None` if the model has no such motion there.
+    fn factor(
+        &self,
+        item: usize,
+        parameters: &Parameters,
+        coordinates: &[Coordinate],
+        weight: f64,
+    ) -> Option<Factor> {
+        let (residuals, columns) = self.slopes(item, parameters, coordinates)?;
+        Some(Factor::of(&residuals, &columns, weight))
     }
 
     /// Which coordinates the block depends on.

@@ -35,6 +35,9 @@ pub enum Effect {
     ContactDuration,
     /// Relative departure of what a contact's length makes of R from that of a spring and a damper
     ContactLaw,
+    /// What the masses' acceleration during a contact adds to the distance that they press into each
+    /// other: relative, per unit of acceleration × duration / approach speed
+    ContactReach,
 }
 
 /// Effects that a campaign may restrict the fit to, by name.
@@ -92,7 +95,7 @@ impl EffectKind {
 
 impl Effect {
     /// Number of effects.
-    pub const COUNT: usize = 14;
+    pub const COUNT: usize = 15;
 
     /// All of them, in the order of their places.
     pub const ALL: [Self; Self::COUNT] = [
@@ -110,6 +113,7 @@ impl Effect {
         Self::DeflectionDrift,
         Self::ContactDuration,
         Self::ContactLaw,
+        Self::ContactReach,
     ];
 
     /// Place among all.
@@ -131,7 +135,9 @@ impl Effect {
             | Self::FrequencyBend
             | Self::DampingDrift
             | Self::DeflectionDrift => EffectKind::Drift,
-            Self::ContactDuration | Self::ContactLaw => EffectKind::ContactDuration,
+            Self::ContactDuration | Self::ContactLaw | Self::ContactReach => {
+                EffectKind::ContactDuration
+            }
         }
     }
 
@@ -151,6 +157,7 @@ impl Effect {
             Self::DeflectionDrift => 5e-3,
             Self::ContactDuration => 0.6,
             Self::ContactLaw => 0.1,
+            Self::ContactReach => 0.3,
         }
     }
 
@@ -178,6 +185,7 @@ impl Effect {
             Self::DeflectionDrift => "deflection_drift",
             Self::ContactDuration => "contact_duration_ms",
             Self::ContactLaw => "contact_law",
+            Self::ContactReach => "contact_reach",
         }
     }
 }

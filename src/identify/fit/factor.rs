@@ -7,6 +7,8 @@
 
 use nalgebra::DMatrix;
 
+use crate::identify::fit::normal::Normal;
+
 /// Upper triangular factor R of the rows [J r] of some residuals, with their cost and number.
 #[derive(Debug, Clone)]
 pub struct Factor {
@@ -44,6 +46,43 @@ impl Factor {
         factor.cost = weight * dot(residuals, residuals);
         factor.count = residuals.len();
         factor
+    }
+
+    /// That over other unknowns, whose slopes are sums of multiples of these slopes.
+    #[must_use]
+    pub fn combined(&self, sums: &[Vec<(usize, f64)>]) -> Self {
+        let height = self.unknowns + 1;
+        let column = |i: usize| &self.triangle[i * height..(i + 1) * height];
+        let mut rows = vec![0.0; height * (sums.len() + 1)];
+        let (slopes, residuals) = rows.split_at_mut(height * sums.len());
+        for (sum, into) in sums.iter().zip(slopes.chunks_exact_mut(height)) {
+            for (i, times) in sum {
+                subtract(into, -times, column(*i));
+            }
+        }
+        residuals.copy_from_slice(column(self.unknowns));
+        let mut factor = Self::empty(sums.len());
+        factor.fold(&mut rows, height);
+        factor.cost = self.cost;
+        factor.count = self.count;
+        factor
+    }
+
+    /// The normal equations over all unknowns, of which these are at the given places.
+    pub fn normal(&self, places: &[usize], unknowns: usize) -> Normal {
+        let mut normal = Normal::zeros(unknowns);
+        let column = |i: usize| &self.triangle[i * (self.unknowns + 1)..][..=i];
+        for (i, to) in places.iter().enumerate() {
+            normal.gradient[*to] = dot(column(i), &column(self.unknowns)[..=i]);
+            for (k, other) in places.iter().enumerate().take(i + 1) {
+                let product = dot(&column(i)[..=k], column(k));
+                normal.matrix[(*to, *other)] = product;
+                normal.matrix[(*other, *to)] = product;
+            }
+        }
+        normal.cost = self.cost;
+        normal.count = self.count;
+        normal
     }
 
     /// Add other residuals, whose unknowns are those at the given places among this factor's.

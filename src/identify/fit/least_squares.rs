@@ -14,6 +14,7 @@ use argmin::core::{
 use argmin::{argmin_error_closure, kv};
 
 use crate::identify::fit::factor::Factor;
+use crate::identify::fit::progress::FitProgress;
 use crate::identify::fit::report::{FitReport, Iteration, STALLED};
 
 /// A sum of squared residuals over some unknowns, which [`minimise`] makes least.
@@ -32,6 +33,11 @@ pub trait LeastSquares {
 
     /// The point that a step in the unknowns leads to.
     fn moved(&self, from: &Self::Point, step: &[f64]) -> Self::Point;
+
+    /// What counts the iterations.
+    fn progress(&self) -> FitProgress {
+        FitProgress::default()
+    }
 }
 
 /// When the solver ends, and how it begins.
@@ -87,6 +93,7 @@ where
     let result = Executor::new(problem, DampedSteps::new(limits))
         .configure(|state: FitState<P::Point>| state.param(start).max_iters(limits.iterations))
         .add_observer(Recorder(Rc::clone(&trace)), ObserverMode::Always)
+        .add_observer(problem.progress(), ObserverMode::Always)
         .run()?;
     let mut state = result.state;
     let (iterations, termination) = (state.get_iter(), state.get_termination_reason().cloned());

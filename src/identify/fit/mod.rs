@@ -11,6 +11,7 @@ pub mod normal;
 pub mod own;
 pub mod parameters;
 pub mod problem;
+mod progress;
 mod report;
 
 use nalgebra::DMatrix;
@@ -20,6 +21,7 @@ pub use block::{Block, mean_squares};
 use normal::inverse;
 use parameters::{Coordinate, Parameters};
 pub use problem::{Prior, Problem};
+pub use progress::FitProgress;
 pub use report::FitReport;
 
 /// A finished fit.
@@ -102,9 +104,9 @@ pub enum FitError {
     /// Nothing to fit.
     #[error("there are no observations to fit")]
     Empty,
-    /// The solver itself failed.
-    #[error("the solver failed: {0}")]
-    Solver(String),
+    /// The solver ended without a point.
+    #[error("the solver failed")]
+    Solver,
     /// The slopes are dependent: the data do not determine the coordinates.
     #[error("the data do not separate the parameters")]
     Singular,

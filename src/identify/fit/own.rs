@@ -69,7 +69,9 @@ impl Parameters {
             ..*self
         };
         let error = at.gap.map_or(0.0, |i| self.gap_errors_m.of(i));
-        let reach_m = at.approach_m_s * contact_s * contact.reach / at.masses.max(1.0);
+        let bent = self.effect(Effect::ContactReach) * contact_s * at.press_per_s;
+        let reach = contact.reach * (1.0 + bent);
+        let reach_m = at.approach_m_s * contact_s * reach / at.masses.max(1.0);
         (own, at.clearance_m + self.screw_zero_m + error + reach_m)
     }
 
@@ -95,6 +97,8 @@ impl Parameters {
         let speed = at.approach_m_s / at.masses.max(1.0);
         let decay = self.decay_per_s();
         let law = 1.0 + self.effect(Effect::ContactLaw);
+        let pressed = contact_s * at.press_per_s;
+        let bent = self.effect(Effect::ContactReach) * pressed;
         let drag = contact_s * law * contact.drag * decay;
         let beyond = contact.press * at.press_per_s + contact.drag * decay;
         match coordinate {
@@ -107,7 +111,7 @@ impl Parameters {
                     0.0,
                     0.0,
                 ],
-                clearance_m: contact_s * speed * contact.reach_slope,
+                clearance_m: contact_s * speed * contact.reach_slope * (1.0 + bent),
             }),
             Coordinate::Frequency => Some(OwnSlope {
                 physical: [drag, 1.0, 0.0, -eta * over_eta / lean],
@@ -129,9 +133,10 @@ impl Parameters {
                 Effect::DeflectionDrift => only(3, at.place),
                 Effect::ContactDuration => Some(OwnSlope {
                     physical: [1e-3 * law * beyond, 0.0, 0.0, 0.0],
-                    clearance_m: 1e-3 * speed * contact.reach,
+                    clearance_m: 1e-3 * speed * contact.reach * (1.0 + 2.0 * bent),
                 }),
                 Effect::ContactLaw => only(0, contact_s * beyond),
+                Effect::ContactReach => clearance(contact_s * speed * contact.reach * pressed),
                 _ => None,
             },
             _ => None,

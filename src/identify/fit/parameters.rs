@@ -211,13 +211,15 @@ impl Parameters {
     }
 }
 
+/// The motion channels in the order of the gains, the corners and the delays.
+pub const GAIN_ROLES: [Role; 4] = [
+    Role::VelocityX,
+    Role::VelocityY,
+    Role::DisplacementX,
+    Role::DisplacementY,
+];
+
 /// Position of a motion channel among the gains and among the corners.
 pub fn gain_index(role: Role) -> Option<usize> {
-    match role {
-        Role::VelocityX => Some(0),
-        Role::VelocityY => Some(1),
-        Role::DisplacementX => Some(2),
-        Role::DisplacementY => Some(3),
-        _ => None,
-    }
+    GAIN_ROLES.iter().position(|r| *r == role)
 }

@@ -13,7 +13,7 @@ use crate::identify::fit::factor::Factor;
 use crate::identify::fit::least_squares::{LeastSquares, Limits, Variance, minimise};
 use crate::identify::fit::normal::Normal;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::{Fit, FitError};
+use crate::identify::fit::{Fit, FitError, FitProgress};
 
 /// Gaussian prior on one coordinate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +27,7 @@ pub struct Prior {
 }
 
 /// A least-squares problem: blocks with weights, priors, and the coordinates that are free.
+#[derive(Default)]
 pub struct Problem<'a> {
     /// Blocks, each with a factor on its squared residuals (1 / variance factor).
     pub blocks: Vec<(&'a dyn Block, f64)>,
@@ -34,12 +35,14 @@ pub struct Problem<'a> {
     pub priors: Vec<Prior>,
     /// Free coordinates.
     pub free: Vec<Coordinate>,
+    /// What counts the iterations of its fits.
+    pub progress: FitProgress,
 }
 
 /// Least orthogonal share of a column of slopes: differences do not resolve less.
 const LEAST_SHARE: f64 = 1e-8;
 const LIMITS: Limits = Limits {
-    negligible: 1e-4,
+    negligible: 1e-3,
     variance: Variance::Unit,
     damping: 1e-4,
     iterations: 60,
@@ -54,7 +57,7 @@ impl Problem<'_> {
     pub fn fit(&self, start: Parameters) -> Result<Fit, FitError> {
         let minimum = minimise(self, start, &LIMITS).map_err(|error| {
             let own = error.downcast::<FitError>();
-            own.unwrap_or_else(|other| FitError::Solver(other.to_string()))
+            own.unwrap_or(FitError::Solver)
         })?;
         let factor = minimum.factor;
         Ok(Fit {
@@ -180,6 +183,7 @@ impl Problem<'_> {
                 .copied()
                 .filter(|c| *c != coordinate)
                 .collect(),
+            progress: self.progress.clone(),
         };
         Some(held.fit(start).ok()?.cost)
     }
@@ -193,8 +197,7 @@ impl Problem<'_> {
                 .into_par_iter()
                 .map(|i| {
                     let (places, coordinates) = self.touched(*block, i);
-                    let (residuals, columns) = block.slopes(i, parameters, &coordinates)?;
-                    Some((Factor::of(&residuals, &columns, *weight), places))
+                    Some((block.factor(i, parameters, &coordinates, *weight)?, places))
                 })
                 .collect();
             for (i, part) in parts.iter().enumerate() {
@@ -232,22 +235,8 @@ impl Problem<'_> {
         at: &Parameters,
     ) -> Option<Normal> {
         let (places, coordinates) = self.touched(block, item);
-        let (residuals, columns) = block.slopes(item, at, &coordinates)?;
-        let mut normal = Normal::zeros(self.free.len());
-        let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
-        for (i, a) in places.iter().zip(&columns) {
-            normal.gradient[*i] = weight * dot(a, &residuals);
-            for (k, b) in places.iter().zip(&columns) {
-                if k <= i {
-                    let product = weight * dot(a, b);
-                    normal.matrix[(*i, *k)] = product;
-                    normal.matrix[(*k, *i)] = product;
-                }
-            }
-        }
-        normal.cost = weight * dot(&residuals, &residuals);
-        normal.count = residuals.len();
-        Some(normal)
+        let factor = block.factor(item, at, &coordinates, weight)?;
+        Some(factor.normal(&places, self.free.len()))
     }
 
     /// Normal equations of one prior.
@@ -280,6 +269,10 @@ impl LeastSquares for Problem<'_> {
 
     fn cost(&self, at: &Parameters) -> Option<f64> {
         Problem::cost(self, at)
+    }
+
+    fn progress(&self) -> FitProgress {
+        self.progress.clone()
     }
 
     fn moved(&self, from: &Parameters, step: &[f64]) -> Parameters {

@@ -31,6 +31,8 @@ pub fn examples() -> Vec<Box<dyn Message>> {
         let effects = Effect::ALL.map(|effect| beyond(effect, strength));
         all.extend(effects.map(|m| Box::new(m) as Box<dyn Message>));
     }
+    let undetermined = crate::motion::undetermined_examples().into_iter();
+    all.extend(undetermined.map(|m| Box::new(m) as Box<dyn Message>));
     all.extend(FlagCode::ALL.map(|m| Box::new(m) as Box<dyn Message>));
     let sentences = sentences().into_iter();
     all.extend(sentences.map(|m| Box::new(m) as Box<dyn Message>));
@@ -97,9 +99,7 @@ fn notes() -> Vec<Note> {
         Note::NoPublishedMotion,
         Note::NoStart { observations: 3 },
         Note::NothingToFit,
-        Note::SolverFailed {
-            report: "…".into()
-        },
+        Note::SolverFailed,
         Note::MethodsDisagree,
         Note::NotSeparable,
     ]
@@ -128,6 +128,7 @@ fn remarks() -> Vec<Remark> {
             fitted: 100,
             periodic: 1000,
         },
+        Remark::IdealRig,
         Remark::StatesDeviate { ratio: 1.5 },
         Remark::BracketMidpoints {
             restitution: 0.9,
@@ -373,8 +374,10 @@ mod tests {
             sentences()[1].to_string(),
             "The rig has x_st = 1.000 ± 0.010 mm; R, β only weakly."
         );
+        let outlying = |r: &Remark| matches!(r, Remark::OutlyingImpacts { .. });
+        let outlying = remarks().into_iter().find(outlying).expect("an example");
         assert_eq!(
-            remarks()[9].to_string(),
+            outlying.to_string(),
             "impacts with speeds far from those of the others, left out: 4 (r1 at 0.250 s, …)"
         );
     }

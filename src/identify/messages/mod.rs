@@ -1,6 +1,8 @@
 //! What an identification states: notes on parameters, remarks of methods, reasons why something was
 //! left out, findings, and the sentences of the verdict; each a variant with its numbers in SI.
 
+mod beyond;
+mod direction;
 mod examples;
 mod finding;
 mod note;

@@ -49,10 +49,7 @@ pub enum Note {
     /// There is nothing to fit.
     NothingToFit,
     /// The solver failed.
-    SolverFailed {
-        /// What it reported, in English.
-        report: String,
-    },
+    SolverFailed,
     /// The data do not separate the parameters.
     NotSeparable,
 }
@@ -64,9 +61,7 @@ impl From<&FitError> for Note {
                 observations: items.len(),
             },
             FitError::Empty => Self::NothingToFit,
-            FitError::Solver(report) => Self::SolverFailed {
-                report: report.clone(),
-            },
+            FitError::Solver => Self::SolverFailed,
             FitError::Singular => Self::NotSeparable,
         }
     }
@@ -99,7 +94,7 @@ impl Message for Note {
                 "the model has no such motion at the starting values for {count} observations"
             }
             Self::NothingToFit => "there are no observations to fit",
-            Self::SolverFailed { .. } => "the solver failed: {report}",
+            Self::SolverFailed => "the solver failed",
             Self::NotSeparable => "the data do not separate the parameters",
         }
     }
@@ -128,7 +123,7 @@ impl Message for Note {
                 "das Modell hat bei den Startwerten für {count} Beobachtungen keine solche Bewegung"
             }
             Self::NothingToFit => "es gibt keine Beobachtungen für eine Anpassung",
-            Self::SolverFailed { .. } => "der Löser versagte: {report}",
+            Self::SolverFailed => "der Löser versagte",
             Self::NotSeparable => "die Daten trennen die Parameter nicht",
         }
     }
@@ -154,13 +149,13 @@ impl Message for Note {
                 ("correlation", Value::Number(*correlation, 2)),
             ],
             Self::NoStart { observations } => vec![("count", Value::Count(*observations))],
-            Self::SolverFailed { report } => vec![("report", Value::Name(report))],
             Self::NotOneNumber
             | Self::Drifts
             | Self::MethodsDisagree
             | Self::SeveralSpecimens
             | Self::NoPublishedMotion
             | Self::NothingToFit
+            | Self::SolverFailed
             | Self::NotSeparable => Vec::new(),
         }
     }

@@ -66,7 +66,7 @@ const NAMED: usize = 6;
 
 /// The first few groups, and the last.
 fn points(all: &[GroupPoint]) -> Value<'_> {
-    let mut which: Vec<Value> = all.iter().take(NAMED).map(|p| Value::Message(p)).collect();
+    let mut which: Vec<Value<'_>> = all.iter().take(NAMED).map(|p| Value::Message(p)).collect();
     which.extend((all.len() > NAMED).then_some(Value::Name("…")));
     Value::List(which)
 }
@@ -98,6 +98,8 @@ pub enum Remark {
         /// Number of periodic records.
         periodic: usize,
     },
+    /// The method takes the rig as ideal, where effects beyond the model were found.
+    IdealRig,
     /// How far the states deviate from impact to impact.
     StatesDeviate {
         /// Root mean square of the deviations over their standard errors.
@@ -236,6 +238,10 @@ impl Message for Remark {
             Self::WaveformsThinned { .. } => {
                 "waveforms of {some} of {count} periodic records are fitted, evenly chosen"
             }
+            Self::IdealRig => {
+                "it takes the rig as ideal, without the effects found beyond the model: it is not \
+                 compared, and its intervals are widened by what it is off the joint estimate"
+            }
             Self::StatesDeviate { .. } => {
                 "from impact to impact, the states deviate {ratio} times their errors"
             }
@@ -312,6 +318,11 @@ impl Message for Remark {
                 "angepasst sind die Verläufe von {some} der {count} periodischen Aufzeichnungen, \
                  gleichmäßig gewählt"
             }
+            Self::IdealRig => {
+                "es nimmt die Maschine als ideal an, ohne die Effekte über das Modell hinaus: es wird \
+                 nicht verglichen, und seine Intervalle sind um die Abweichung vom gemeinsamen \
+                 Schätzwert erweitert"
+            }
             Self::StatesDeviate { .. } => {
                 "von Stoß zu Stoß weichen die Zustände um das {ratio}-Fache ihrer Fehler ab"
             }
@@ -387,6 +398,7 @@ impl Message for Remark {
                 ("some", Value::Count(*fitted)),
                 ("count", Value::Count(*periodic)),
             ],
+            Self::IdealRig => Vec::new(),
             Self::StatesDeviate { ratio } => vec![("ratio", Value::Number(*ratio, 1))],
             Self::BracketMidpoints {
                 restitution,

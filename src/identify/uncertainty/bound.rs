@@ -88,6 +88,7 @@ fn bound(blocks: &Blocks, methods: &[Method], nominal: &Nominal, at: &Parameters
         blocks: list,
         priors,
         free,
+        ..Problem::default()
     };
     let covariance = problem.covariance_at(at)?;
     Some(Bound {

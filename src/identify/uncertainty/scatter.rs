@@ -220,6 +220,7 @@ mod tests {
                 deviation: 1e3,
             }],
             free: vec![Coordinate::Restitution],
+            ..Problem::default()
         };
         let fit = problem
             .fit(Parameters::symmetric(0.5, 10.0, 0.05, 1e-3))

@@ -4,7 +4,7 @@ use super::plan::BasinPlan;
 use super::table::Table;
 use super::{StudyContext, StudyError};
 use crate::compare::RegionMap;
-use crate::motion::Motion;
+use crate::motion::{Motion, Undetermined};
 use crate::report::locale::Locale;
 use crate::report::theory::basins::draw;
 use impact_oscillator::atlas::basins::{Basins, basin_rows};
@@ -47,7 +47,7 @@ fn motions(basins: &Basins) -> RegionMap {
     let motion = |cell: &Option<SettledMotion>| match cell {
         Some(motion) => Motion::from(*motion),
         None => Motion::Undetermined {
-            reason: "starts beyond the contact".into(),
+            reason: Undetermined::BeyondContact,
         },
     };
     let cells: Vec<Motion> = basins.cells.iter().map(motion).collect();

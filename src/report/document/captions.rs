@@ -8,6 +8,7 @@ use crate::report::content::ReportContent;
 use crate::report::figures::{decays, numbered};
 use crate::report::locale::Locale;
 use crate::report::parameters::parameter;
+use crate::report::phrase::Phrase;
 
 /// A figure's name and its caption.
 type Captioned = (String, String);
@@ -27,21 +28,20 @@ pub(super) fn method_figures(content: &ReportContent, locale: Locale<'_>) -> Vec
 /// The caption of a comparison, with markup.
 pub(super) fn comparison(comparison: &Comparison, locale: Locale<'_>) -> String {
     let letter = comparison.letter.to_string();
-    let mut text = locale.translate_with("Point ({letter})", &[("letter", &letter)]);
-    let label = locale.translate(&comparison.motion.label());
+    let mut text = locale.translate_with(Phrase::CaptionPoint, &[("letter", &letter)]);
+    let label = locale.motion(&comparison.motion);
     text.push_str(&format!(", $z$ = {label}"));
     if let (Some(eta), Some(rho)) = (comparison.eta, comparison.rho) {
         let (eta, rho) = (locale.fixed(eta, 3), locale.fixed(rho, 3));
         let values = [("eta", eta.as_str()), ("rho", rho.as_str())];
-        text.push_str(&locale.translate_with(", at $η$ = {eta}, $ρ$ = {rho}", &values));
+        text.push_str(&locale.translate_with(Phrase::CaptionSetting, &values));
     }
     let record = [("record", comparison.record.as_str())];
-    text.push_str(&locale.translate_with("; record {record}.", &record));
+    text.push_str(&locale.translate_with(Phrase::CaptionRecord, &record));
     let simulated = comparison.simulated_motion.as_ref();
     if let Some(other) = simulated.filter(|m| **m != comparison.motion) {
-        let label = locale.translate(&other.label());
-        let said =
-            locale.translate_with("The simulated motion is {motion}.", &[("motion", &label)]);
+        let label = locale.motion(other);
+        let said = locale.translate_with(Phrase::CaptionSimulatedMotion, &[("motion", &label)]);
         text.push_str(&format!(" {said}"));
     }
     if let Some(note) = note(&comparison.motion, simulated) {
@@ -51,26 +51,19 @@ pub(super) fn comparison(comparison: &Comparison, locale: Locale<'_>) -> String 
 }
 
 /// Why a simulated motion may differ from the measured one.
-fn note(measured: &Motion, simulated: Option<&Motion>) -> Option<&'static str> {
+fn note(measured: &Motion, simulated: Option<&Motion>) -> Option<Phrase> {
     let simulated = simulated?;
     if measured.is_periodic() {
-        let note =
-            "From none of the starts tried does the fitted model settle on the measured motion.";
+        let note = Phrase::CaptionOtherMotion;
         return (simulated != measured).then_some(note);
     }
-    matches!(measured, Motion::Chaotic | Motion::Beat).then_some(
-        "Two runs of such a motion part from each other: they are alike in kind, not in course.",
-    )
+    matches!(measured, Motion::Chaotic | Motion::Beat).then_some(Phrase::CaptionAlikeInKind)
 }
 
 fn narrow(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
-    let boundary = "Boundary fit: each bracket, measured less simulated. A bracket that crosses \
-                    zero agrees with the fit. Brackets of an upward sweep stand a little above \
-                    their clearance, those of a downward sweep below.";
-    let correlation = "Correlation of the joint estimates. Strong correlation means that the data \
-                       tell a combination of the two better than either.";
-    let others = "How the quantities that are fitted beside them hang together among themselves is \
-                  in correlation.csv.";
+    let boundary = Phrase::CaptionBoundaryFit;
+    let correlation = Phrase::CaptionCorrelation;
+    let others = Phrase::CaptionCorrelationOthers;
     let shown = content.compared.correlation.as_ref();
     let beside = shown.is_some_and(|c| c.parameters.iter().any(|p| parameter(p.name()).is_none()));
     let correlation = match beside {
@@ -97,8 +90,7 @@ fn with_remarks(text: &str, method: Option<&MethodResult>, locale: Locale<'_>) -
 }
 
 fn impacts(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
-    let text = "Speeds at impact: speed of parting over speed of closing (left) and their ratio, \
-                the restitution, over the closing speed (right).";
+    let text = Phrase::CaptionImpacts;
     let text = locale.translate(text);
     let id = &content.identification;
     let each = content.compared.impacts.iter().enumerate();
@@ -117,7 +109,7 @@ fn impacts(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
 }
 
 fn resonance(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
-    let text = "Resonance curve of the motion without impacts, measured and fitted.";
+    let text = Phrase::CaptionResonance;
     let text = locale.translate(text);
     let method = content.identification.methods.get(&Method::Resonance);
     let text = with_remarks(&text, method, locale);
@@ -140,8 +132,7 @@ fn free_decays(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
             Some(sentence(&text))
         });
         let reasons = reasons.collect::<Vec<_>>().join(" ");
-        let text = "Free decays (black) and their fits (vermilion), with natural frequency and \
-                    damping ratio ± standard error.";
+        let text = Phrase::CaptionDecays;
         let text = match reasons.as_str() {
             "" => locale.translate(text),
             reasons => format!("{} {reasons}", locale.translate(text)),
@@ -152,8 +143,7 @@ fn free_decays(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
 }
 
 fn profiles(locale: Locale<'_>) -> Captioned {
-    let text = "Profile likelihoods: the rise of $χ$² when one parameter is held and the others \
-                are fitted again. Tinted: 95 % intervals; dashed: the rise of {rise} that bounds them.";
+    let text = Phrase::CaptionProfiles;
     let rise = locale.fixed(3.84, 2);
     let text = locale.translate_with(text, &[("rise", &rise)]);
     ("profiles".into(), text)
@@ -162,9 +152,7 @@ fn profiles(locale: Locale<'_>) -> Captioned {
 fn residuals(content: &ReportContent, locale: Locale<'_>) -> Vec<Captioned> {
     let each = content.compared.residuals.iter().enumerate();
     each.map(|(i, set)| {
-        let text = "{method}, residual diagnostics ({count} residuals over their standard errors): \
-                    histogram with the normal curve, autocorrelation with the 95 % band of white \
-                    noise, over frequency and over gap.";
+        let text = Phrase::CaptionResiduals;
         let method = locale.message(&set.method);
         let count = set.total.to_string();
         let text = locale.translate_with(text, &[("method", &method), ("count", &count)]);

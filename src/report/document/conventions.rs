@@ -2,6 +2,7 @@
 
 use super::model::{Definition, Rich};
 use crate::report::locale::Locale;
+use crate::report::phrase::Phrase;
 
 /// A quantity's definition.
 struct Convention {
@@ -10,7 +11,7 @@ struct Convention {
     /// The same as plain text.
     plain: &'static str,
     /// What it means, with markup.
-    meaning: &'static str,
+    meaning: Phrase,
     /// Whether it takes a drive.
     driven: bool,
 }
@@ -20,49 +21,49 @@ const CONVENTIONS: [Convention; 8] = [
     Convention {
         formula: "R = - (X'_+ + Y'_+) / (X'_- + Y'_-)",
         plain: "R = −(X′₊ + Y′₊)/(X′₋ + Y′₋)",
-        meaning: "coefficient of restitution: speed of parting over speed of closing",
+        meaning: Phrase::MeaningOfRestitution,
         driven: false,
     },
     Convention {
         formula: "beta = b / (2 sqrt(k m))",
         plain: "β = b/(2√(km))",
-        meaning: "damping ratio of a mass $m$ on a spring $k$ with viscous damping $b$",
+        meaning: Phrase::MeaningOfDampingRatio,
         driven: false,
     },
     Convention {
         formula: "tau = Omega t",
         plain: "τ = Ωt",
-        meaning: "time counted in natural angle, Ω = √($k$/$m$) = 2π$f_0$",
+        meaning: Phrase::MeaningOfTime,
         driven: false,
     },
     Convention {
         formula: "eta = omega / Omega = f / f_0",
         plain: "η = ω/Ω = f/f0",
-        meaning: "frequency ratio of the drive",
+        meaning: Phrase::MeaningOfFrequencyRatio,
         driven: true,
     },
     Convention {
         formula: "x_\"st\" = F_0 / k",
         plain: "x_st = F0/k",
-        meaning: "static deflection under the drive's amplitude $F_0$",
+        meaning: Phrase::MeaningOfStaticDeflection,
         driven: true,
     },
     Convention {
         formula: "rho = r / x_\"st\" = r k / F_0",
         plain: "ρ = r/x_st = rk/F0",
-        meaning: "clearance ratio; the gap between the masses is 2$r$",
+        meaning: Phrase::MeaningOfClearanceRatio,
         driven: true,
     },
     Convention {
         formula: "z = p / n",
         plain: "z = p/n",
-        meaning: "$p$ impacts in $n$ drive periods; 1j: a dead zone follows the impact",
+        meaning: Phrase::MeaningOfMotion,
         driven: true,
     },
     Convention {
         formula: "X'' + 2 beta X' + X = cos(eta tau + phi)",
         plain: "X″ + 2βX′ + X = cos(ητ + φ)",
-        meaning: "motion of each mass between impacts, $X$ = $x$/$x_st$; impact where $X$ + $Y$ ≥ 2$ρ$",
+        meaning: Phrase::MeaningOfEquation,
         driven: true,
     },
 ];

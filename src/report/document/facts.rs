@@ -5,29 +5,30 @@ use crate::compare::Overview;
 use crate::record::calibrate::ChannelSetup;
 use crate::report::content::{CampaignFacts, NominalValue, ReportContent, Subject};
 use crate::report::locale::Locale;
+use crate::report::phrase::Phrase;
 
 /// What was measured, when, with what: labels and values, those that are known.
 pub(super) fn facts(content: &ReportContent, locale: Locale<'_>) -> Vec<(Rich, Rich)> {
     let (campaign, overview) = (&content.campaign, &content.compared.overview);
     let mut facts: Vec<(String, String)> = Vec::new();
-    let mut add = |label: &str, value: String| {
+    let mut add = |label: Phrase, value: String| {
         if !value.is_empty() {
             facts.push((locale.translate(label), value));
         }
     };
-    add("campaign", campaign.name.clone());
-    add("rig", subject(campaign.subject, locale));
+    add(Phrase::Campaign, campaign.name.clone());
+    add(Phrase::Rig, subject(campaign.subject, locale));
     add(
-        "laboratory",
+        Phrase::Laboratory,
         campaign.laboratory.clone().unwrap_or_default(),
     );
-    add("measured", dates(campaign, locale));
-    add("records", records(overview, campaign.files, locale));
-    add("sampling", sampling(overview, locale));
-    add("drive", drive(overview, locale));
-    add("clearances", clearances(overview, locale));
-    add("nominal values", nominal(&campaign.nominal, locale));
-    add("channels", channels(&campaign.channels, locale));
+    add(Phrase::Measured, dates(campaign, locale));
+    add(Phrase::Records, records(overview, campaign.files, locale));
+    add(Phrase::Sampling, sampling(overview, locale));
+    add(Phrase::Drive, drive(overview, locale));
+    add(Phrase::Clearances, clearances(overview, locale));
+    add(Phrase::NominalValues, nominal(&campaign.nominal, locale));
+    add(Phrase::Channels, channels(&campaign.channels, locale));
     facts
         .into_iter()
         .map(|(l, v)| (Rich::from(l), Rich::from(v)))
@@ -36,11 +37,9 @@ pub(super) fn facts(content: &ReportContent, locale: Locale<'_>) -> Vec<(Rich, R
 
 fn subject(subject: Subject, locale: Locale<'_>) -> String {
     match subject {
-        Subject::TwoMasses => locale.translate("two masses against each other"),
-        Subject::OneMass => locale.translate("one mass against a stop"),
-        Subject::PublishedSpeeds => {
-            locale.translate("approach speeds as published; nothing was measured here")
-        }
+        Subject::TwoMasses => locale.translate(Phrase::TwoMasses),
+        Subject::OneMass => locale.translate(Phrase::OneMass),
+        Subject::PublishedSpeeds => locale.translate(Phrase::PublishedSpeeds),
     }
 }
 
@@ -59,20 +58,17 @@ fn records(overview: &Overview, files: usize, locale: Locale<'_>) -> String {
     }
     let read = overview.records.to_string();
     let used = overview.records_used.to_string();
-    let mut text = locale.translate_with(
-        "{read} read, {used} used",
-        &[("read", &read), ("used", &used)],
-    );
-    let mut add = |phrase: &str, count: usize| {
+    let mut text = locale.translate_with(Phrase::ReadAndUsed, &[("read", &read), ("used", &used)]);
+    let mut add = |phrase: Phrase, count: usize| {
         if count > 0 {
             text.push_str(&locale.translate_with(phrase, &[("count", &count.to_string())]));
         }
     };
     match files {
-        1 => add(", from {count} file", 1),
-        files => add(", from {count} files", files),
+        1 => add(Phrase::FromOneFile, 1),
+        files => add(Phrase::FromFiles, files),
     }
-    add("; {count} impacts detected", overview.impacts);
+    add(Phrase::ImpactsDetected, overview.impacts);
     text
 }
 
@@ -92,7 +88,7 @@ fn sampling(overview: &Overview, locale: Locale<'_>) -> String {
     });
     let length = overview.record_length_s.map(|l| {
         locale.translate_with(
-            "{length}\u{2009}s a record",
+            Phrase::RecordLength,
             &[("length", &locale.significant(l, 3))],
         )
     });
@@ -109,7 +105,7 @@ fn drive(overview: &Overview, locale: Locale<'_>) -> String {
         .map_or(String::new(), |[low, high]| {
             let (low, high) = (locale.fixed(low, 2), locale.fixed(high, 2));
             let values = [("low", low.as_str()), ("high", high.as_str())];
-            locale.translate_with("{low} to {high}\u{2009}Hz, as measured", &values)
+            locale.translate_with(Phrase::MeasuredFrequencies, &values)
         })
 }
 
@@ -127,7 +123,7 @@ fn clearances(overview: &Overview, locale: Locale<'_>) -> String {
             let (first, last) = (&many[0], &many[many.len() - 1]);
             let count = many.len().to_string();
             locale.translate_with(
-                "{count} values of $r$ from {first} to {last}\u{2009}mm",
+                Phrase::ManyClearances,
                 &[("count", &count), ("first", first), ("last", last)],
             )
         }
@@ -142,7 +138,11 @@ fn nominal(values: &[NominalValue], locale: Locale<'_>) -> String {
         };
         let space = if unit.is_empty() { "" } else { "\u{2009}" };
         let value = trimmed(&locale.significant(value, 4));
-        let equals = if n.name.ends_with('$') { " =" } else { "" };
+        let equals = if n.name.english().ends_with('$') {
+            " ="
+        } else {
+            ""
+        };
         let name = locale.translate(n.name);
         format!("{name}{equals} {value}{space}{unit}")
     });
@@ -163,7 +163,7 @@ fn trimmed(number: &str) -> String {
 
 fn channels(channels: &[ChannelSetup], locale: Locale<'_>) -> String {
     let each = channels.iter().map(|c| {
-        let role = locale.translate(&c.role.name().replace('_', " "));
+        let role = locale.role(c.role);
         let unit = match c.role.dimension().map_or("", |d| d.si_symbol()) {
             "" => String::new(),
             unit => format!(" ({unit})"),
@@ -171,7 +171,7 @@ fn channels(channels: &[ChannelSetup], locale: Locale<'_>) -> String {
         let corner = c.high_pass_hz.map(|f| {
             let frequency = locale.digits(&f.to_string());
             let value = [("frequency", frequency.as_str())];
-            locale.translate_with("high-pass at {frequency} Hz", &value)
+            locale.translate_with(Phrase::HighPassAt, &value)
         });
         let instrument = c.instrument.clone().filter(|i| !i.is_empty());
         let parts = [Some(format!("{role}{unit}")), instrument, corner];

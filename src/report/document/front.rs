@@ -1,14 +1,18 @@
 //! The first page's data: the verdict, the answer, the agreement, what was measured.
 
+use std::collections::BTreeSet;
+
 use super::drawn::Drawn;
 use super::facts::facts;
 use super::model::{Answer, Front, Rich};
 use super::tables;
 use super::verdict::{headline, verdict_name};
+use crate::identify::fit::effect::EffectKind;
 use crate::identify::{Estimate, Finding, VerdictKind};
 use crate::report::content::ReportContent;
 use crate::report::locale::Locale;
 use crate::report::parameters::{self, PARAMETERS, ParameterLook};
+use crate::report::phrase::Phrase;
 
 /// Builds the first page.
 pub(super) fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
@@ -50,11 +54,11 @@ fn campaign_headline(content: &ReportContent, locale: Locale<'_>) -> String {
             !content.compared.records.is_empty(),
         )),
         0 => locale.translate_with(
-            "Identified: the model fits each of the {count} specimens",
+            Phrase::IdentifiedEachSpecimen,
             &[("count", &specimens.to_string())],
         ),
         _ => locale.translate_with(
-            "The model fits {some} of the {count} specimens",
+            Phrase::FitsSomeSpecimens,
             &[
                 ("some", &identified.to_string()),
                 ("count", &specimens.to_string()),
@@ -82,8 +86,42 @@ fn findings(content: &ReportContent, locale: Locale<'_>) -> Vec<Rich> {
         );
         (!found.is_empty()).then_some(text)
     };
-    let texts = id.verdict.findings.iter().filter_map(of);
-    texts.map(Rich::from).collect()
+    let all = id.verdict.findings.iter();
+    let (beyond, others): (Vec<&Finding>, Vec<&Finding>) =
+        all.partition(|f| matches!(f, Finding::BeyondModel { .. }));
+    let mut texts: Vec<String> = others.into_iter().filter_map(of).collect();
+    match beyond[..] {
+        [] => {}
+        [alone] => texts.push(locale.sentence(alone)),
+        _ => texts.push(beyond_model(&beyond, locale)),
+    }
+    texts.into_iter().map(Rich::from).collect()
+}
+
+/// The significant effects beyond the model by their kinds, in one sentence.
+fn beyond_model(findings: &[&Finding], locale: Locale<'_>) -> String {
+    let kinds: BTreeSet<EffectKind> = findings
+        .iter()
+        .filter_map(|finding| match finding {
+            Finding::BeyondModel { effect, .. } => Some(effect.kind()),
+            _ => None,
+        })
+        .collect();
+    let names = kinds.into_iter().map(|k| locale.translate(phrase(k)));
+    let names: Vec<String> = names.collect();
+    locale.translate_with(Phrase::BeyondTheModel, &[("effects", &names.join(", "))])
+}
+
+/// A kind of effect as a phrase.
+fn phrase(kind: EffectKind) -> Phrase {
+    match kind {
+        EffectKind::Harmonics => Phrase::HarmonicsOfTheDrive,
+        EffectKind::ForceFrequency => Phrase::ForceDependsOnFrequency,
+        EffectKind::Hardening => Phrase::NonlinearSprings,
+        EffectKind::Friction => Phrase::DryFriction,
+        EffectKind::Drift => Phrase::DriftOverTheCampaign,
+        EffectKind::ContactDuration => Phrase::ContactsOfFiniteDuration,
+    }
 }
 
 /// The parameters' cards; none where only each specimen alone has an answer.

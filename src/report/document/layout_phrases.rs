@@ -3,27 +3,28 @@
 use std::collections::BTreeMap;
 
 use crate::report::locale::Locale;
+use crate::report::phrase::Phrase;
 
 /// Those of template.typ, of the page and of its script.
-const PHRASES: [&str; 13] = [
-    "Synthetic data: simulated records, not a measurement.",
-    "The methods agree.",
-    "The methods disagree.",
-    "Agreement cannot be judged.",
-    "What was measured",
-    "Figure",
-    "weakly identified",
-    "not identifiable",
-    "not determined by these data",
-    "zoom in",
-    "zoom out",
-    "whole figure",
-    "save as SVG",
+const PHRASES: [Phrase; 13] = [
+    Phrase::SyntheticData,
+    Phrase::MethodsAgree,
+    Phrase::MethodsDisagree,
+    Phrase::AgreementUnknown,
+    Phrase::WhatWasMeasured,
+    Phrase::Figure,
+    Phrase::WeaklyIdentified,
+    Phrase::NotIdentifiable,
+    Phrase::NotDetermined,
+    Phrase::ZoomIn,
+    Phrase::ZoomOut,
+    Phrase::WholeFigure,
+    Phrase::SaveAsSVG,
 ];
 
 /// From each phrase to what is printed for it.
 pub(super) fn words(locale: Locale<'_>) -> BTreeMap<&'static str, String> {
     let each = PHRASES.into_iter();
-    each.map(|phrase| (phrase, locale.translate(phrase)))
+    each.map(|phrase| (phrase.english(), locale.translate(phrase)))
         .collect()
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Serialize, Serializer};
 
 use crate::report::figures::richtext::{self, Run};
+use crate::report::phrase::Phrase;
 
 /// A text with markup, split into runs; serialised as a string where it has none.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -54,8 +55,9 @@ pub(crate) struct Document {
 
 impl Document {
     /// What is printed for a phrase of the layout.
-    pub(crate) fn translate<'a>(&'a self, phrase: &'a str) -> &'a str {
-        self.words.get(phrase).map_or(phrase, String::as_str)
+    pub(crate) fn translate(&self, phrase: Phrase) -> &str {
+        let english = phrase.english();
+        self.words.get(english).map_or(english, String::as_str)
     }
 }
 

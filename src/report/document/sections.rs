@@ -5,11 +5,13 @@ use super::model::{Block, Rich, Section};
 use super::settings::settings;
 use super::tables;
 use super::{captions, conventions};
+use crate::identify::Finding;
 use crate::report::content::ReportContent;
 use crate::report::figures::comparison;
 use crate::report::figures::plane::Plane;
 use crate::report::locale::Locale;
 use crate::report::parameters::method_inline;
+use crate::report::phrase::Phrase;
 
 /// All sections in their order.
 pub(super) fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Section> {
@@ -17,6 +19,7 @@ pub(super) fn sections(content: &ReportContent, drawn: &Drawn<'_>) -> Vec<Sectio
         regions(content, drawn),
         comparisons(content, drawn),
         methods(content, drawn),
+        uncertainty(content, drawn),
         specimens(content, drawn),
         left_out(content, drawn),
         records(content, drawn),
@@ -36,7 +39,7 @@ fn letter_appendices(sections: &mut [Section], locale: Locale<'_>) {
     for (section, letter) in appendices.zip('A'..='Z') {
         let (letter, title) = (letter.to_string(), section.title.plain());
         let values = [("letter", letter.as_str()), ("title", title.as_str())];
-        section.title = Rich::from(locale.translate_with("Appendix {letter}. {title}", &values));
+        section.title = Rich::from(locale.translate_with(Phrase::Appendix, &values));
     }
 }
 
@@ -67,35 +70,29 @@ fn regions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
     blocks.extend(drawn.figures_block(&[("map", &map_caption(content, drawn.locale))]));
     blocks.extend(tables::brackets(content, drawn.locale).map(Block::Table));
-    section(drawn.locale.translate("Regions of motion"), true, blocks)
+    section(
+        drawn.locale.translate(Phrase::RegionsOfMotion),
+        true,
+        blocks,
+    )
 }
 
 fn map_caption(content: &ReportContent, locale: Locale<'_>) -> String {
-    let mut text = locale.translate(
-        "Measured motions in the plane of frequency and clearance. Each mark is a record; marks of \
-         an upward sweep stand a little above their clearance, those of a downward sweep a little \
-         below.",
-    );
+    let mut text = locale.translate(Phrase::CaptionMap);
     let mut add = |sentence: &str| text.push_str(&format!(" {sentence}"));
     let strips = Plane::of(content).map(|p| p.view(content).strips);
     if strips.is_some_and(|s| !s.is_empty()) {
-        add(&locale.translate("Clearances far above all impacts stand in a strip of their own."));
+        add(&locale.translate(Phrase::CaptionStrips));
     }
     if content.compared.region_map.is_some() {
-        add(&locale.translate(
-            "Tinted regions: simulated with the fitted parameters, labelled by $z$ = $p$/$n$; \
-             hatched, with two labels, where two motions are possible (hysteresis).",
-        ));
-        add(&locale.translate(
-            "Every cell simulated from rest and from a lively start, and the stable orbits z = 1/n \
-             in closed form; where they differ, both motions exist.",
-        ));
+        add(&locale.translate(Phrase::CaptionRegions));
+        add(&locale.translate(Phrase::CaptionCells));
     }
     if content.compared.curves.iter().any(|c| !c.band95.is_empty()) {
-        add(&locale.translate("Grey bands: 95 % bands of the simulated boundaries."));
+        add(&locale.translate(Phrase::CaptionBands));
     }
     if !content.compared.comparisons.is_empty() {
-        add(&locale.translate("Letters: the points compared in the next figures."));
+        add(&locale.translate(Phrase::CaptionLetters));
     }
     text
 }
@@ -108,14 +105,11 @@ fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
         blocks.extend(drawn.figures_block(&[(&name, &caption)]));
     }
     if !blocks.is_empty() {
-        let keys = "Each point as simulated with the fitted parameters (left) and as measured \
-                    (middle), on the same scales, with the residual (measured less simulated) and \
-                    the phase portraits (simulated: broad and pale; measured: thin and dark). Mass \
-                    $x$ is blue, mass $y$ vermilion; dotted lines are impacts.";
+        let keys = Phrase::CaptionComparisons;
         blocks.insert(0, paragraph(drawn.locale.translate(keys)));
     }
     section(
-        drawn.locale.translate("Simulated and measured motions"),
+        drawn.locale.translate(Phrase::SimulatedAndMeasuredMotions),
         false,
         blocks,
     )
@@ -135,7 +129,7 @@ fn specimens(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
         }
     }
     section(
-        drawn.locale.translate("Specimen by specimen"),
+        drawn.locale.translate(Phrase::SpecimenBySpecimen),
         false,
         blocks,
     )
@@ -167,19 +161,35 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
             .collect();
         blocks.extend(drawn.figures_block(&named));
     }
-    section(drawn.locale.translate("Method by method"), false, blocks)
+    section(
+        drawn.locale.translate(Phrase::MethodByMethod),
+        false,
+        blocks,
+    )
+}
+
+/// What the rig has beyond the model, and the uncertainty budget.
+fn uncertainty(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
+    let findings = content.identification.verdict.findings.iter();
+    let beyond = findings.filter(|f| matches!(f, Finding::BeyondModel { .. }));
+    let mut blocks: Vec<Block> = beyond
+        .map(|finding| paragraph(drawn.locale.sentence(finding)))
+        .collect();
+    blocks.extend(tables::budget(content, drawn.locale).map(Block::Table));
+    let title = Phrase::UncertaintyAndEffects;
+    section(drawn.locale.translate(title), false, blocks)
 }
 
 fn left_out(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let table = tables::left_out(content, drawn.locale).map(Block::Table);
-    let title = drawn.locale.translate("What was left out, and why");
+    let title = drawn.locale.translate(Phrase::WhatWasLeftOut);
     section(title, false, table.into_iter().collect())
 }
 
 fn records(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let table = tables::records(content, drawn.locale).map(Block::Table);
     appendix(
-        drawn.locale.translate("All records"),
+        drawn.locale.translate(Phrase::AllRecords),
         table.into_iter().collect(),
     )
 }
@@ -187,15 +197,14 @@ fn records(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
 fn conventions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let records = &content.compared.records;
     let driven = records.is_empty() || records.iter().any(|r| r.frequency_hz.is_some());
-    let intervals = "Intervals are at 95 % confidence; a number after ± is half of that interval. \
-                     All quantities are in SI units.";
+    let intervals = Phrase::IntervalsAndUnits;
     let blocks = vec![
         Block::Definitions {
             entries: conventions::entries(driven, drawn.locale),
         },
         paragraph(drawn.locale.translate(intervals)),
     ];
-    appendix(drawn.locale.translate("Conventions"), blocks)
+    appendix(drawn.locale.translate(Phrase::Conventions), blocks)
 }
 
 /// Versions of program and formats.
@@ -203,7 +212,7 @@ fn versions(content: &ReportContent, locale: Locale<'_>) -> Option<Block> {
     let versions = &content.provenance.versions;
     let each: Vec<String> = versions.iter().map(|(k, v)| format!("{k} {v}")).collect();
     let list = each.join(", ");
-    let text = locale.translate_with("Versions of program and files: {list}.", &[("list", &list)]);
+    let text = locale.translate_with(Phrase::Versions, &[("list", &list)]);
     (!each.is_empty()).then(|| Block::Paragraph {
         text: tables::verbatim(text),
     })
@@ -212,11 +221,7 @@ fn versions(content: &ReportContent, locale: Locale<'_>) -> Option<Block> {
 fn provenance(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
     if !content.command_line.is_empty() {
-        blocks.push(paragraph(
-            drawn
-                .locale
-                .translate("The command that makes this report again:"),
-        ));
+        blocks.push(paragraph(drawn.locale.translate(Phrase::CommandAgain)));
         blocks.push(Block::Verbatim {
             text: content.command_line.clone(),
             columns: 1,
@@ -225,8 +230,13 @@ fn provenance(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     blocks.extend(versions(content, drawn.locale));
     blocks.extend(tables::hashes(content, drawn.locale).map(Block::Table));
     if !content.provenance.settings.is_null() {
-        blocks.push(paragraph(drawn.locale.translate("Settings, as resolved:")));
+        blocks.push(paragraph(
+            drawn.locale.translate(Phrase::SettingsAsResolved),
+        ));
         blocks.push(settings(&content.provenance.settings));
     }
-    appendix(drawn.locale.translate("Settings, versions, inputs"), blocks)
+    appendix(
+        drawn.locale.translate(Phrase::SettingsVersionsInputs),
+        blocks,
+    )
 }

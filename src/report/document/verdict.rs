@@ -1,6 +1,7 @@
 //! A verdict as a name and as a headline.
 
 use crate::identify::VerdictKind;
+use crate::report::phrase::Phrase;
 
 /// Name of a verdict in the document.
 pub(super) fn verdict_name(kind: VerdictKind) -> &'static str {
@@ -13,13 +14,13 @@ pub(super) fn verdict_name(kind: VerdictKind) -> &'static str {
 }
 
 /// A verdict as a headline, a phrase; of a rig where records of one were measured.
-pub(super) fn headline(kind: VerdictKind, of_a_rig: bool) -> &'static str {
+pub(super) fn headline(kind: VerdictKind, of_a_rig: bool) -> Phrase {
     match (kind, of_a_rig) {
-        (VerdictKind::Identified, true) => "Identified: the model fits the rig",
-        (VerdictKind::Identified, false) => "Identified: the model fits",
-        (VerdictKind::Weak, _) => "Identified in part",
-        (VerdictKind::NotIdentifiable, _) => "Not identifiable from these data",
-        (VerdictKind::DoesNotFit, true) => "The model does not fit the rig",
-        (VerdictKind::DoesNotFit, false) => "The model does not fit",
+        (VerdictKind::Identified, true) => Phrase::IdentifiedRig,
+        (VerdictKind::Identified, false) => Phrase::Identified,
+        (VerdictKind::Weak, _) => Phrase::IdentifiedInPart,
+        (VerdictKind::NotIdentifiable, _) => Phrase::NotIdentifiableTitle,
+        (VerdictKind::DoesNotFit, true) => Phrase::RigDoesNotFit,
+        (VerdictKind::DoesNotFit, false) => Phrase::DoesNotFit,
     }
 }

@@ -1,6 +1,7 @@
 //! An axis: its range in data, its title, its ticks.
 
 use crate::report::locale::Locale;
+use crate::report::phrase::Text;
 use crate::signal::whole;
 
 /// One axis: its range in data and its title with unit, in the report's markup.
@@ -11,7 +12,7 @@ pub(crate) struct Axis {
     /// Greatest value shown.
     pub high: f64,
     /// Title with unit; empty for none.
-    pub title: String,
+    pub title: Text,
     /// Whether it counts in powers of ten.
     pub log: bool,
     /// Wanted number of ticks; none at all for 0.
@@ -20,7 +21,7 @@ pub(crate) struct Axis {
 
 impl Axis {
     /// A linear axis.
-    pub(crate) fn new(low: f64, high: f64, title: impl Into<String>) -> Self {
+    pub(crate) fn new(low: f64, high: f64, title: impl Into<Text>) -> Self {
         let (low, high) = if high > low {
             (low, high)
         } else {
@@ -39,7 +40,7 @@ impl Axis {
     pub(crate) fn around(
         values: impl IntoIterator<Item = f64>,
         margin: f64,
-        title: impl Into<String>,
+        title: impl Into<Text>,
     ) -> Self {
         let (low, high) = range(values).unwrap_or((0.0, 1.0));
         let alone = if high == 0.0 { 1.0 } else { 0.05 * high.abs() };

@@ -3,6 +3,7 @@
 use super::canvas::Stroke;
 use super::look;
 use crate::motion::BoundaryKind;
+use crate::report::phrase::{Phrase, Text};
 
 /// The boundaries in the order in which brackets are stacked.
 pub(crate) const ALL: [BoundaryKind; 4] = [
@@ -21,12 +22,12 @@ pub(crate) fn name(kind: BoundaryKind) -> &'static str {
 }
 
 /// The paper's symbol, with markup.
-pub(crate) fn symbol(kind: BoundaryKind) -> &'static str {
+pub(crate) fn symbol(kind: BoundaryKind) -> Text {
     match kind {
-        BoundaryKind::PeriodDoubling => "$s_1$",
-        BoundaryKind::SaddleNode => "$s_2$",
-        BoundaryKind::Grazing => "$ρ$′",
-        BoundaryKind::Other => "edge",
+        BoundaryKind::PeriodDoubling => "$s_1$".into(),
+        BoundaryKind::SaddleNode => "$s_2$".into(),
+        BoundaryKind::Grazing => "$ρ$′".into(),
+        BoundaryKind::Other => Phrase::Edge.into(),
     }
 }
 

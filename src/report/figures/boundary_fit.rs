@@ -14,6 +14,7 @@ use super::plane::same;
 use crate::compare::BracketRow;
 use crate::motion::BoundaryKind;
 use crate::report::locale::Locale;
+use crate::report::phrase::Phrase;
 
 /// Height of the panel, points.
 const HEIGHT: f64 = 132.0;
@@ -40,12 +41,12 @@ pub(crate) fn draw(brackets: &[BracketRow], locale: Locale<'_>) -> Option<Figure
     let x = Axis::around(
         rows.iter().flat_map(|r| [r.1, r.2, 0.0]),
         0.08,
-        "bracket less simulated boundary (Hz)",
+        (Phrase::BracketLessSimulatedBoundary, "Hz"),
     );
     let y = Axis::around(
         rows.iter().map(|r| 1e3 * r.0.clearance_m),
         0.10,
-        "clearance $r$ (mm)",
+        (Phrase::Clearance, "mm"),
     );
     let panel = Panel::new(rect, x, y);
     let mut canvas = Canvas::new(look::HALF_WIDTH, top + HEIGHT + look::BELOW_PANEL);
@@ -78,7 +79,7 @@ pub(crate) fn draw(brackets: &[BracketRow], locale: Locale<'_>) -> Option<Figure
     legend::draw(&mut canvas, (rect.left, 0.0), rect.width(), &keys, locale);
     Some(Figure::new(
         "boundary_fit",
-        &locale.translate("Measured brackets against the fitted boundary"),
+        &locale.translate(Phrase::BracketsAgainstBoundary),
         canvas,
         csv(&rows),
     ))
@@ -109,7 +110,7 @@ fn keys(rows: &[(&BracketRow, f64, f64)]) -> Vec<Key> {
     if rows.iter().any(|r| r.0.left_out.is_some()) {
         keys.push(Key::new(
             Sign::Bracket(marks::mix(look::INK, 0.35)),
-            "pale: not used",
+            Phrase::PaleNotUsed,
         ));
     }
     keys

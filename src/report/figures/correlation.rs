@@ -13,8 +13,10 @@ use super::path::Rect;
 use super::richtext;
 use crate::compare::Correlation;
 use crate::identify::fit::parameters::Coordinate;
+use crate::identify::{Effect, GAIN_ROLES};
 use crate::report::locale::Locale;
 use crate::report::parameters::parameter;
+use crate::report::phrase::{Phrase, Text};
 
 /// Room above the cells for the columns' symbols, points.
 const TOP: f64 = 14.0;
@@ -59,7 +61,7 @@ pub(crate) fn draw(correlation: &Correlation, locale: Locale<'_>) -> Option<Figu
     }
     Some(Figure::new(
         "correlation",
-        &locale.translate("Correlation of the parameters"),
+        &locale.translate(Phrase::CorrelationOfTheParameters),
         canvas,
         csv(correlation),
     ))
@@ -93,26 +95,59 @@ fn cell(canvas: &mut Canvas, rect: &Rect, value: Option<f64>, locale: Locale<'_>
 }
 
 /// Symbol of a parameter, or the name of what is fitted beside it.
-fn name(coordinate: Coordinate, locale: Locale<'_>) -> String {
-    let key = coordinate.name();
-    if let Some(shown) = parameter(key) {
-        return shown.symbol.to_owned();
-    }
-    let words = key.trim_end_matches("_ms").trim_end_matches("_mm");
-    let words = words.replace('_', " ");
-    let of_channel = |phrase: &str| {
-        let role = words.split_once(' ').map_or("", |(_, role)| role);
-        locale.translate_with(phrase, &[("channel", &locale.translate(role))])
+pub(crate) fn name(coordinate: Coordinate, locale: Locale<'_>) -> String {
+    let of_channel = |phrase: Phrase, channel: usize| {
+        let role = GAIN_ROLES.get(channel).copied();
+        let role = role.map_or_else(String::new, |role| locale.role(role));
+        locale.translate_with(phrase, &[("channel", &role)])
     };
     match coordinate {
-        Coordinate::Gain(_) => of_channel("gain of {channel}"),
-        Coordinate::Corner(_) => of_channel("corner of {channel}"),
-        Coordinate::Delay(_) => of_channel("delay of {channel}"),
+        Coordinate::Gain(i) => of_channel(Phrase::GainOf, i),
+        Coordinate::Corner(i) => of_channel(Phrase::CornerOf, i),
+        Coordinate::Delay(i) => of_channel(Phrase::DelayOf, i),
         Coordinate::Gap(i) => {
             let number = (i + 1).to_string();
-            locale.translate_with("error of clearance {number}", &[("number", &number)])
+            locale.translate_with(Phrase::ClearanceErrorOf, &[("number", &number)])
         }
-        _ => locale.translate(&words),
+        other => locale.text(&coordinate_text(other)),
+    }
+}
+
+/// Name of a coordinate that belongs to no channel and no single clearance.
+fn coordinate_text(coordinate: Coordinate) -> Text {
+    let phrase = match coordinate {
+        Coordinate::DriveAsymmetry => Phrase::DriveAsymmetry,
+        Coordinate::StiffnessAsymmetry => Phrase::StiffnessAsymmetry,
+        Coordinate::DampingAsymmetry => Phrase::DampingAsymmetry,
+        Coordinate::MassAsymmetry => Phrase::MassAsymmetry,
+        Coordinate::ScrewZero => Phrase::ScrewZero,
+        Coordinate::Effect(effect) => effect_phrase(effect),
+        other => {
+            return parameter(other.name())
+                .map_or(other.name(), |p| p.symbol)
+                .into();
+        }
+    };
+    phrase.into()
+}
+
+fn effect_phrase(effect: Effect) -> Phrase {
+    match effect {
+        Effect::SecondHarmonicCos => Phrase::DriveHarmonic2Cos,
+        Effect::SecondHarmonicSin => Phrase::DriveHarmonic2Sin,
+        Effect::ThirdHarmonicCos => Phrase::DriveHarmonic3Cos,
+        Effect::ThirdHarmonicSin => Phrase::DriveHarmonic3Sin,
+        Effect::ForceSlope => Phrase::ForceSlope,
+        Effect::ForceCurve => Phrase::ForceCurve,
+        Effect::Hardening => Phrase::Hardening,
+        Effect::Friction => Phrase::Friction,
+        Effect::FrequencyDrift => Phrase::FrequencyDrift,
+        Effect::FrequencyBend => Phrase::FrequencyDriftBend,
+        Effect::DampingDrift => Phrase::DampingDrift,
+        Effect::DeflectionDrift => Phrase::DeflectionDrift,
+        Effect::ContactDuration => Phrase::ContactDuration,
+        Effect::ContactLaw => Phrase::ContactLaw,
+        Effect::ContactReach => Phrase::ContactReach,
     }
 }
 

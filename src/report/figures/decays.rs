@@ -12,6 +12,7 @@ use super::units::print_unit;
 use crate::compare::{FreeDecay, Signal};
 use crate::report::locale::Locale;
 use crate::report::parameters::decimals_for;
+use crate::report::phrase::{Phrase, Text};
 use labfiles::units::Dimension;
 
 /// How many decays one figure holds.
@@ -45,7 +46,7 @@ pub(crate) fn draw(decays: &[FreeDecay], name: &str, locale: Locale<'_>) -> Opti
     }
     Some(Figure::new(
         name,
-        &locale.translate("Free decays and their fits"),
+        &locale.translate(Phrase::FreeDecaysAndTheirFits),
         canvas,
         csv(decays),
     ))
@@ -59,16 +60,20 @@ fn one(canvas: &mut Canvas, decay: &FreeDecay, rect: Rect, locale: Locale<'_>) {
         .fold(0.0_f64, |m, v| m.max(v.abs()));
     let unit = print_unit(decay.dimension, peak);
     let symbol = match decay.dimension {
-        Dimension::Acceleration => "$a$",
-        Dimension::Velocity => "$v$",
-        Dimension::Length => "$x$",
-        _ => "signal",
+        Dimension::Acceleration => Some("$a$"),
+        Dimension::Velocity => Some("$v$"),
+        Dimension::Length => Some("$x$"),
+        _ => None,
+    };
+    let title = match symbol {
+        Some(symbol) => format!("{symbol} ({})", unit.symbol).into(),
+        None => Text::from((Phrase::Signal, unit.symbol)),
     };
     let times = decay.measured.time_s.iter().copied();
     let (start, end) = range(times).unwrap_or((0.0, 1.0));
     let x = Axis::new(start, end, "$t$ (s)").with_ticks(4);
     let values = decay.measured.values.iter().map(|v| v * unit.factor);
-    let y = Axis::around(values, 0.06, format!("{symbol} ({})", unit.symbol)).with_ticks(4);
+    let y = Axis::around(values, 0.06, title).with_ticks(4);
     let panel = Panel::new(rect, x, y);
     canvas.layer(0);
     panel.level(canvas, 0.0, look::ZERO_STROKE);

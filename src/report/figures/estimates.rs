@@ -13,6 +13,7 @@ use crate::identify::{Estimate, Status};
 use crate::report::content::ReportContent;
 use crate::report::locale::Locale;
 use crate::report::parameters::{PARAMETERS, ParameterLook, interval95};
+use crate::report::phrase::Phrase;
 
 /// Height of a method's line, points.
 const ROW: f64 = 14.5;
@@ -66,7 +67,7 @@ pub(crate) fn draw(content: &ReportContent, locale: Locale<'_>) -> Option<Figure
     }
     Some(Figure::new(
         "estimates",
-        &locale.translate("Estimates of all methods"),
+        &locale.translate(Phrase::EstimatesOfAllMethods),
         canvas,
         csv(&lines),
     ))
@@ -80,7 +81,10 @@ fn lines<'a>(content: &'a ReportContent, locale: Locale<'_>) -> Vec<Line<'a>> {
         .map(|(method, m)| (Some(*method), &m.parameters));
     let all = methods.chain([(None, &id.joint.parameters)]);
     all.map(|(method, parameters)| Line {
-        name: method.map_or_else(|| locale.translate("Joint"), |m| locale.message(&m)),
+        name: method.map_or_else(
+            || locale.translate(Phrase::JointTitle),
+            |m| locale.message(&m),
+        ),
         key: method.map_or_else(|| "Joint".to_owned(), |m| m.to_string()),
         joint: method.is_none(),
         estimates: std::array::from_fn(|k| (PARAMETERS[k].pick)(parameters)),
@@ -171,7 +175,11 @@ fn mark(
     let Some((low, high)) = interval95(e) else {
         let (x, y) = panel.at(0.5 * (panel.x.low + panel.x.high), y);
         let quiet = TextLook::new(6.5, Anchor::Middle).colour(look::QUIET);
-        canvas.text((x, y + 2.2), &locale.translate("not identifiable"), quiet);
+        canvas.text(
+            (x, y + 2.2),
+            &locale.translate(Phrase::NotIdentifiable),
+            quiet,
+        );
         return;
     };
     let ends = [(low * factor, y), (high * factor, y)];

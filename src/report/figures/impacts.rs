@@ -11,6 +11,7 @@ use super::panel::{PAIR_LEFT, Panel, Sides, pair};
 use super::units::{PrintUnit, print_unit};
 use crate::compare::{ImpactPoint, ImpactScatter};
 use crate::report::locale::Locale;
+use crate::report::phrase::Phrase;
 use labfiles::units::Dimension;
 
 /// Height of the panels, points.
@@ -43,7 +44,7 @@ pub(crate) fn draw(scatter: &ImpactScatter, name: &str, locale: Locale<'_>) -> O
         &keys(scatter, locale),
         locale,
     );
-    let title = locale.translate("Speeds after over before impact");
+    let title = locale.translate(Phrase::SpeedsAfterOverBeforeImpact);
     Some(Figure::new(name, &title, canvas, csv(scatter)).with_spots(spots))
 }
 
@@ -53,13 +54,13 @@ fn panels(scatter: &ImpactScatter, unit: PrintUnit) -> [Panel; 2] {
         scatter.points.iter().map(f).fold(0.0, f64::max) * unit.factor * 1.04
     };
     let before = || {
-        let title = format!("closing speed before impact ({})", unit.symbol);
+        let title = (Phrase::ClosingSpeedBeforeImpact, unit.symbol);
         Axis::new(0.0, peak(|p| p.before_m_s), title)
     };
     let after = Axis::new(
         0.0,
         peak(|p| p.after_m_s),
-        format!("parting speed after ({})", unit.symbol),
+        (Phrase::PartingSpeedAfter, unit.symbol),
     );
     let ratio = ratio_axis(scatter);
     let [left, right] = pair(TOP, HEIGHT);
@@ -85,7 +86,7 @@ fn ratio_axis(scatter: &ImpactScatter) -> Axis {
     let (low, high) = range(trimmed.chain(fitted)).unwrap_or((0.0, 1.0));
     let (low, high) = (low.max(-0.1), high.min(1.5));
     let pad = (0.1 * (high - low)).max(0.01);
-    Axis::new(low - pad, high + pad, "restitution $R$ (1)")
+    Axis::new(low - pad, high + pad, (Phrase::Restitution, "1"))
 }
 
 fn lines(canvas: &mut Canvas, panels: &[Panel; 2], scatter: &ImpactScatter, unit: PrintUnit) {
@@ -149,11 +150,11 @@ fn points(
 fn keys(scatter: &ImpactScatter, locale: Locale<'_>) -> Vec<Key> {
     let mut keys = Vec::new();
     if let Some(specimen) = &scatter.specimen {
-        keys.push(Key::new(Sign::Nothing, specimen));
+        keys.push(Key::new(Sign::Nothing, specimen.as_str()));
     }
     keys.push(Key::new(
         Sign::dot(look::BLUE),
-        format!("impacts used ({})", scatter.total),
+        (Phrase::ImpactsUsed, scatter.total.to_string().as_str()),
     ));
     if let Some(r) = scatter.restitution {
         let stroke = Stroke::solid(look::VERMILION, 1.0);
@@ -163,11 +164,11 @@ fn keys(scatter: &ImpactScatter, locale: Locale<'_>) -> Vec<Key> {
         ));
     }
     if scatter.interval95.is_some() {
-        keys.push(Key::new(Sign::Patch(look::BAND), "95 % interval"));
+        keys.push(Key::new(Sign::Patch(look::BAND), Phrase::Interval95));
     }
     if !scatter.restitution_of_speed.is_empty() {
         let stroke = Stroke::dashed(look::VERMILION, 1.0, look::DASH);
-        keys.push(Key::new(Sign::Line(stroke), "$R$ over speed"));
+        keys.push(Key::new(Sign::Line(stroke), Phrase::RestitutionOverSpeed));
     }
     keys
 }

@@ -6,6 +6,7 @@ use super::look;
 use super::marks::{self, MotionLook, Shape};
 use super::richtext;
 use crate::report::locale::Locale;
+use crate::report::phrase::Text;
 
 /// The sign before a key's text.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,12 +60,12 @@ pub(crate) struct Key {
     /// The sign.
     pub sign: Sign,
     /// The text, with markup.
-    pub text: String,
+    pub text: Text,
 }
 
 impl Key {
     /// A key.
-    pub(crate) fn new(sign: Sign, text: impl Into<String>) -> Self {
+    pub(crate) fn new(sign: Sign, text: impl Into<Text>) -> Self {
         Self {
             sign,
             text: text.into(),
@@ -72,7 +73,7 @@ impl Key {
     }
 
     fn width(&self, locale: Locale<'_>) -> f64 {
-        let text = locale.translate_title(&self.text);
+        let text = locale.text(&self.text);
         self.sign.width() + SIGN_GAP + richtext::width(&text, Face::Regular, look::NOTE_SIZE)
     }
 }
@@ -124,7 +125,7 @@ pub(crate) fn draw(
             y + 0.33 * look::NOTE_SIZE,
         );
         let text_look = TextLook::new(look::NOTE_SIZE, Anchor::Left).colour(look::INK);
-        canvas.text(at, &locale.translate_title(&key.text), text_look);
+        canvas.text(at, &locale.text(&key.text), text_look);
     }
 }
 

@@ -162,7 +162,7 @@ impl Panel {
         if labels {
             let middle = 0.5 * (self.rect.left + self.rect.right);
             let text_look = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::INK);
-            let title = locale.translate_title(&self.x.title);
+            let title = locale.text(&self.x.title);
             canvas.text((middle, bottom + 19.5), &title, text_look);
         }
     }
@@ -204,7 +204,7 @@ impl Panel {
     fn title_left(&self, canvas: &mut Canvas, locale: Locale<'_>) {
         let reach = self.title_reach.unwrap_or(7.0 + self.widest_label(locale));
         let middle = 0.5 * (self.rect.top + self.rect.bottom);
-        let title = locale.translate_title(&self.y.title);
+        let title = locale.text(&self.y.title);
         let lines: Vec<&str> = title.lines().collect();
         let title_look = TextLook {
             upward: true,

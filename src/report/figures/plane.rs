@@ -5,6 +5,7 @@ use crate::compare::{BracketRow, RecordRow};
 use crate::identify::Estimate;
 use crate::motion::Motion;
 use crate::report::content::{ProposedPoint, ReportContent};
+use crate::report::phrase::Phrase;
 
 /// Least and greatest value, where there is any.
 type Range = Option<(f64, f64)>;
@@ -118,12 +119,9 @@ impl Plane {
         };
         let (x, y) = (x.unwrap_or((0.5, 3.0)), y.unwrap_or((0.0, 3.0)));
         let titles = if self.dimensionless {
-            (
-                "frequency ratio $η$ = $f$/$f_0$ (1)",
-                "clearance ratio $ρ$ = $r$/$x_st$ (1)",
-            )
+            ((Phrase::FrequencyRatio, "1"), (Phrase::ClearanceRatio, "1"))
         } else {
-            ("drive frequency $f$ (Hz)", "clearance $r$ (mm)")
+            ((Phrase::DriveFrequency, "Hz"), (Phrase::Clearance, "mm"))
         };
         View {
             x: Axis::new(x.0, x.1, titles.0).with_ticks(8),

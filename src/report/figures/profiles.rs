@@ -9,8 +9,10 @@ use super::panel::{Panel, Sides};
 use super::path::Rect;
 use crate::identify::Identification;
 use crate::identify::uncertainty::ProfileCurve;
+use crate::report::figures::correlation::name;
 use crate::report::locale::Locale;
 use crate::report::parameters::parameter;
+use crate::report::phrase::{Phrase, Text};
 
 /// Rise of χ² at the ends of a 95 % interval of one parameter.
 const RISE_95: f64 = 3.841_458_820_694_124;
@@ -40,7 +42,7 @@ pub(crate) fn draw(id: &Identification, locale: Locale<'_>) -> Option<Figure> {
         let best = best.and_then(|e| e.value);
         one(&mut canvas, (profile, best), rect, locale);
     }
-    let title = locale.translate("Profile likelihoods");
+    let title = locale.translate(Phrase::ProfileLikelihoods);
     Some(Figure::new("profiles", &title, canvas, csv(&drawn)))
 }
 
@@ -54,20 +56,17 @@ fn one(
     let shown = parameter(key);
     let factor = shown.map_or(1.0, |p| p.factor);
     let title = shown.map_or_else(
-        || locale.translate(&key.replace('_', " ")),
+        || Text::from(name(profile.parameter, locale)),
         |p| {
-            format!(
-                "{} ({})",
-                p.symbol,
-                if p.unit.is_empty() { "1" } else { p.unit }
-            )
+            let unit = if p.unit.is_empty() { "1" } else { p.unit };
+            format!("{} ({unit})", p.symbol).into()
         },
     );
     let x = Axis::around(profile.values.iter().map(|v| v * factor), 0.02, title).with_ticks(3);
     let panel = Panel::new(
         rect,
         x,
-        Axis::new(0.0, 9.0, "rise of $χ$² (1)").with_ticks(5),
+        Axis::new(0.0, 9.0, (Phrase::RiseOfChiSquared, "1")).with_ticks(5),
     );
     if let Some([low, high]) = profile.interval95 {
         let low = panel.at((low * factor).max(panel.x.low), 0.0).0;
@@ -92,7 +91,7 @@ fn one(
     let quiet = TextLook::new(look::NOTE_SIZE, Anchor::Middle).colour(look::QUIET);
     canvas.text(
         (0.5 * (rect.left + rect.right), rect.top - 3.5),
-        &locale.translate("joint"),
+        &locale.translate(Phrase::Joint),
         quiet,
     );
 }

@@ -12,6 +12,7 @@ use super::path::Rect;
 use crate::compare::{ResidualPoint, ResidualSet};
 use crate::report::locale::Locale;
 use crate::report::parameters::NORMAL_95;
+use crate::report::phrase::{Phrase, Text};
 use crate::signal::whole;
 
 /// Height of the panels, points.
@@ -35,10 +36,14 @@ pub(crate) fn draw<'a>(set: &'a ResidualSet, name: &str, locale: Locale<'a>) -> 
         drawers.push(|s, r| s.autocorrelation(r));
     }
     if set.points.iter().any(|p| p.frequency_hz.is_some()) {
-        drawers.push(|s, r| s.over(r, "drive frequency $f$ (Hz)", |p| p.frequency_hz));
+        drawers.push(|s, r| s.over(r, (Phrase::DriveFrequency, "Hz"), |p| p.frequency_hz));
     }
     if set.points.iter().any(|p| p.clearance_m.is_some()) {
-        drawers.push(|s, r| s.over(r, "clearance $r$ (mm)", |p| p.clearance_m.map(|c| 1e3 * c)));
+        drawers.push(|s, r| {
+            s.over(r, (Phrase::Clearance, "mm"), |p| {
+                p.clearance_m.map(|c| 1e3 * c)
+            })
+        });
     }
     let count = drawers.len() as f64;
     let step = (look::FULL_WIDTH - 2.0) / count;
@@ -48,7 +53,7 @@ pub(crate) fn draw<'a>(set: &'a ResidualSet, name: &str, locale: Locale<'a>) -> 
             Rect::new(31.0 + i as f64 * step, TOP, step - 36.0, HEIGHT),
         );
     }
-    let title = locale.translate("Residual diagnostics");
+    let title = locale.translate(Phrase::ResidualDiagnostics);
     Some(Figure::new(name, &title, sheet.canvas, csv(set)).with_spots(sheet.spots))
 }
 
@@ -83,8 +88,8 @@ impl Sheet<'_> {
         }
         let density: Vec<f64> = counts.iter().map(|c| *c as f64 / (n * width)).collect();
         let highest = density.iter().copied().fold(0.4, f64::max);
-        let x = Axis::new(-reach, reach, "weighted residual (1)").with_ticks(4);
-        let y = Axis::new(0.0, 1.1 * highest, "density (1)").with_ticks(3);
+        let x = Axis::new(-reach, reach, (Phrase::WeightedResidual, "1")).with_ticks(4);
+        let y = Axis::new(0.0, 1.1 * highest, (Phrase::Density, "1")).with_ticks(3);
         let panel = Panel::new(rect, x, y);
         for (i, d) in density.iter().enumerate() {
             let from = -reach + i as f64 * width;
@@ -112,9 +117,9 @@ impl Sheet<'_> {
         let rho = &self.set.autocorrelation;
         let limit = NORMAL_95 / (self.set.total as f64).sqrt();
         let (low, high) = range(rho[1..].iter().copied()).unwrap_or((0.0, 0.0));
-        let x = Axis::new(0.0, rho.len() as f64, "lag (observations)").with_ticks(4);
+        let x = Axis::new(0.0, rho.len() as f64, Phrase::LagInObservations).with_ticks(4);
         let reach = (1.2 * low.abs().max(high.abs())).max(2.0 * limit).min(1.0);
-        let y = Axis::new(-reach, reach, "autocorrelation (1)").with_ticks(4);
+        let y = Axis::new(-reach, reach, (Phrase::Autocorrelation, "1")).with_ticks(4);
         let panel = Panel::new(rect, x, y);
         let corners = (
             panel.at(panel.x.low, limit.min(reach)),
@@ -134,13 +139,18 @@ impl Sheet<'_> {
     }
 
     /// Residuals over a quantity, with lines at ±1.96.
-    fn over(&mut self, rect: Rect, title: &str, of: fn(&ResidualPoint) -> Option<f64>) {
+    fn over(
+        &mut self,
+        rect: Rect,
+        title: impl Into<Text> + Clone,
+        of: fn(&ResidualPoint) -> Option<f64>,
+    ) {
         let reach = self.reach();
         let x = over_axis(self.set.points.iter().filter_map(of), title);
         let panel = Panel::new(
             rect,
             x,
-            Axis::new(-reach, reach, "weighted residual (1)").with_ticks(4),
+            Axis::new(-reach, reach, (Phrase::WeightedResidual, "1")).with_ticks(4),
         );
         panel.level(&mut self.canvas, 0.0, look::ZERO_STROKE);
         for level in [-NORMAL_95, NORMAL_95] {
@@ -165,7 +175,7 @@ impl Sheet<'_> {
                         "{}\n{}",
                         p.record,
                         self.locale
-                            .translate_with("residual {value}", &[("value", &r)])
+                            .translate_with(Phrase::ResidualOf, &[("value", &r)])
                     ),
                 });
             }
@@ -175,10 +185,10 @@ impl Sheet<'_> {
 }
 
 /// An axis over values as they are set on a rig: what differs by less than one can set is one.
-fn over_axis(values: impl Iterator<Item = f64> + Clone, title: &str) -> Axis {
+fn over_axis(values: impl Iterator<Item = f64> + Clone, title: impl Into<Text> + Clone) -> Axis {
     /// Relative difference of settings that are one.
     const SAME: f64 = 1e-3;
-    let axis = Axis::around(values.clone(), 0.05, title);
+    let axis = Axis::around(values.clone(), 0.05, title.clone());
     let (low, high) = range(values).unwrap_or((0.0, 1.0));
     let axis = if high - low < SAME * high.abs() {
         Axis::around([0.5 * (low + high)], 0.05, title)

@@ -12,6 +12,7 @@ use super::path::Rect;
 use super::units::{PrintUnit, print_unit};
 use crate::compare::{ResonanceCurve, ResonancePoint};
 use crate::report::locale::Locale;
+use crate::report::phrase::{Phrase, role_text};
 
 /// Height of the panels, points.
 const HEIGHT: f64 = 128.0;
@@ -49,7 +50,7 @@ pub(crate) fn draw(
         &keys(curve, fits),
         locale,
     );
-    let title = locale.translate("Resonance curve without impacts");
+    let title = locale.translate(Phrase::ResonanceCurve);
     Some(Figure::new(name, &title, canvas, csv(curve)).with_spots(spots))
 }
 
@@ -57,7 +58,7 @@ fn frequency_axis(curve: &ResonanceCurve) -> Axis {
     Axis::around(
         curve.points.iter().map(|p| p.frequency_hz),
         0.04,
-        "drive frequency $f$ (Hz)",
+        (Phrase::DriveFrequency, "Hz"),
     )
 }
 
@@ -74,7 +75,7 @@ fn amplitude_panel(curve: &ResonanceCurve, unit: PrintUnit, rect: Rect) -> Panel
         .map(|p| p.amplitude)
         .chain(within)
         .collect();
-    let title = format!("amplitude ({})", unit.symbol);
+    let title = (Phrase::Amplitude, unit.symbol);
     let (low, high) = super::axis::range(values.iter().copied()).unwrap_or((0.0, 1.0));
     let y = if low > 0.0 && high / low > 12.0 {
         Axis::new(0.8 * low * unit.factor, 1.25 * high * unit.factor, title).logarithmic()
@@ -89,7 +90,7 @@ fn phase_panel(curve: &ResonanceCurve, rect: Rect) -> Panel {
     let values = phases
         .chain(curve.fitted.iter().map(|f| f[2]))
         .map(f64::to_degrees);
-    let y = Axis::around(values, 0.06, "phase behind the drive (°)");
+    let y = Axis::around(values, 0.06, (Phrase::PhaseBehindTheDrive, "°"));
     Panel::new(rect, frequency_axis(curve), y)
 }
 
@@ -148,16 +149,16 @@ impl Series<'_> {
 
 fn keys(curve: &ResonanceCurve, fits: Option<bool>) -> Vec<Key> {
     let mut keys = vec![
-        Key::new(Sign::Nothing, curve.role.name().replace('_', " ")),
-        Key::new(Sign::dot(look::BLUE), "measured, with standard error"),
+        Key::new(Sign::Nothing, role_text(curve.role)),
+        Key::new(Sign::dot(look::BLUE), Phrase::MeasuredWithStandardError),
     ];
     if curve.points.iter().any(|p| !p.used) {
-        keys.push(Key::new(Sign::ring(look::QUIET), "not used"));
+        keys.push(Key::new(Sign::ring(look::QUIET), Phrase::NotUsed));
     }
     if !curve.fitted.is_empty() {
         let text = match fits {
-            Some(false) => "fit of one degree of freedom (does not fit)",
-            _ => "fit of one degree of freedom",
+            Some(false) => Phrase::FitOfOneDegreeFails,
+            _ => Phrase::FitOfOneDegree,
         };
         keys.push(Key::new(
             Sign::Line(Stroke::solid(look::VERMILION, 1.0)),

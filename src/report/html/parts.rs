@@ -6,6 +6,7 @@ use crate::report::figures::Figure;
 use crate::report::figures::canvas::escape;
 use crate::report::figures::look;
 use crate::report::figures::richtext::Level;
+use crate::report::phrase::Phrase;
 
 /// Longer tables can be scrolled.
 const MOST_ROWS: usize = 40;
@@ -50,7 +51,7 @@ impl<'a> Parts<'a> {
     fn front(&mut self, front: &Front) -> Result<String, ReportError> {
         let mut text = String::new();
         if front.synthetic {
-            let synthetic = "Synthetic data: simulated records, not a measurement.";
+            let synthetic = Phrase::SyntheticData;
             let synthetic = escape(self.document.translate(synthetic));
             text.push_str(&format!("<p class=\"synthetic\">{synthetic}</p>\n"));
         }
@@ -87,7 +88,7 @@ impl<'a> Parts<'a> {
             text.push_str(&format!("<ul>\n{findings}</ul>\n"));
         }
         if !front.facts.is_empty() {
-            let title = escape(self.document.translate("What was measured"));
+            let title = escape(self.document.translate(Phrase::WhatWasMeasured));
             text.push_str(&format!("<h2>{title}</h2>\n"));
             text.push_str(&pairs(
                 "facts",
@@ -148,7 +149,7 @@ impl<'a> Parts<'a> {
         if !caption.is_empty() {
             self.numbered += 1;
             let number = self.numbered;
-            let word = escape(self.document.translate("Figure"));
+            let word = escape(self.document.translate(Phrase::Figure));
             text.push_str(&format!(
                 "<figcaption><b>{word} {number}.</b> {caption}</figcaption>\n"
             ));
@@ -177,7 +178,7 @@ fn rich(text: &Rich) -> String {
 }
 
 fn answer(a: &Answer, document: &Document) -> String {
-    let say = |phrase| escape(document.translate(phrase));
+    let say = |phrase: Phrase| escape(document.translate(phrase));
     let mut text = format!(
         "<div class=\"answer\"><div class=\"label\">{}</div>",
         rich(&a.name)
@@ -198,7 +199,7 @@ fn answer(a: &Answer, document: &Document) -> String {
                 ));
             }
             if a.status == "weak" {
-                let weak = say("weakly identified");
+                let weak = say(Phrase::WeaklyIdentified);
                 text.push_str(&format!("<div class=\"warn\">{weak}</div>"));
             }
         }
@@ -208,8 +209,8 @@ fn answer(a: &Answer, document: &Document) -> String {
                 rich(&a.symbol)
             ));
             let (class, phrase) = match a.status {
-                "not_identifiable" => ("bad", "not identifiable"),
-                _ => ("label", "not determined by these data"),
+                "not_identifiable" => ("bad", Phrase::NotIdentifiable),
+                _ => ("label", Phrase::NotDetermined),
             };
             text.push_str(&format!("<div class=\"{class}\">{}</div>", say(phrase)));
         }
@@ -227,9 +228,9 @@ fn agreement(front: &Front, document: &Document) -> String {
         return text;
     }
     let word = match front.agree {
-        "yes" => "The methods agree.",
-        "no" => "The methods disagree.",
-        _ => "Agreement cannot be judged.",
+        "yes" => Phrase::MethodsAgree,
+        "no" => Phrase::MethodsDisagree,
+        _ => Phrase::AgreementUnknown,
     };
     let word = escape(document.translate(word));
     format!("<p><b class=\"{}\">{word}</b> {text}</p>\n", front.agree)

@@ -6,10 +6,10 @@ use std::sync::OnceLock;
 use crate::compare::fixture::{self, Identified};
 use crate::compare::{ImpactScatter, RecordRow};
 use crate::identify::Provenance;
-use crate::motion::Motion;
+use crate::motion::{Motion, Undetermined};
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
 use crate::record::{Role, Sweep};
-use crate::report::{CampaignFacts, NominalValue, ReportContent, Subject};
+use crate::report::{CampaignFacts, NominalValue, Phrase, ReportContent, Subject};
 
 /// Every kind by its name.
 pub(super) fn kinds() -> &'static [(&'static str, ReportContent)] {
@@ -68,12 +68,12 @@ fn whole() -> ReportContent {
         dates: Some(["2024-06-11".into(), "2024-06-13".into()]),
         nominal: vec![
             NominalValue {
-                name: "natural frequency $f_0$",
+                name: Phrase::NaturalFrequencySymbol,
                 value: 12.6,
                 unit: "Hz",
             },
             NominalValue {
-                name: "damping ratio $β$",
+                name: Phrase::DampingRatioSymbol,
                 value: 0.07,
                 unit: "",
             },
@@ -142,7 +142,7 @@ fn undriven(record: &RecordRow) -> RecordRow {
         clearance_m: None,
         sweep: Sweep::Unknown,
         motion: Motion::Undetermined {
-            reason: "no drive".into(),
+            reason: Undetermined::NoDrive,
         },
         impacts: 18,
         ..record.clone()

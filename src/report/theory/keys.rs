@@ -33,7 +33,7 @@ pub(super) fn tint_keys(map: &RegionMap, most: usize) -> Vec<Key> {
     let key = |i: &usize| {
         let motion = &map.motions[*i];
         let text = match motion {
-            Motion::Undetermined { reason } => reason.clone(),
+            Motion::Undetermined { reason } => reason.to_string(),
             Motion::Beat | Motion::Chaotic | Motion::Sticking => motion.label(),
             _ => format!("$z$ = {}", motion.label()),
         };

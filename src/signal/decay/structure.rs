@@ -7,7 +7,7 @@ use super::least_squares::{Point, Signals, descend};
 /// Parts of a decay whose frequencies are compared.
 const PARTS: usize = 4;
 /// Fewest periods of a part.
-const PERIODS_OF_A_PART: f64 = 3.0;
+const PERIODS_OF_A_PART: f64 = 2.0;
 
 /// Frequency at the beginning and at the end of a decay.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -1,5 +1,5 @@
 use super::*;
-use crate::conformance::shared_data;
+use crate::conformance::{mutate, own, shared_data, survive_within, wave};
 
 fn real(source: &dyn Source, dataset: usize, channel: usize) -> Vec<f64> {
     let samples = source.read(dataset, &[channel]).unwrap().remove(0);
@@ -30,6 +30,37 @@ fn valid_shared_data_workbooks_of_a_phone_are_read() {
             .all(|(a, b)| (a - b).abs() < 1e-9)
     });
     assert!(same, "{times:?}");
+}
+
+#[test]
+fn valid_sheets_of_other_programs_are_records() {
+    let source = open(&own("two_runs.xlsx")).unwrap();
+    let names: Vec<&str> = source.datasets().iter().map(|d| d.name.as_str()).collect();
+    assert_eq!(names, ["Run 1", "Run 2"]);
+    assert!(
+        source.notes()[0].contains("'Notes' is no table"),
+        "{:?}",
+        source.notes()
+    );
+    let info = &source.datasets()[0];
+    assert_eq!(info.channels[1].name, "Position");
+    assert_eq!(info.channels[1].unit.as_deref(), Some("mm"));
+    assert_eq!(info.time_axis, Some(0));
+    assert!((info.sample_rate_hz().unwrap() - 2000.0).abs() < 1e-6);
+    for (i, v) in real(source.as_ref(), 0, 1).iter().enumerate() {
+        assert!((v - wave(i)).abs() < 1e-15);
+    }
+    assert!((real(source.as_ref(), 1, 1)[9] - 2.0 * wave(9)).abs() < 1e-15);
+    let old = open(&own("one_run.xls")).unwrap();
+    assert_eq!(old.datasets()[0].channels[1].unit.as_deref(), Some("mm"));
+    assert!((real(old.as_ref(), 0, 1)[9] - wave(9)).abs() < 1e-15);
+}
+
+#[test]
+fn prop_mutated_workbooks_are_read_or_refused() {
+    let seeds = ["two_runs.xlsx", "one_run.xls"].map(|name| std::fs::read(own(name)).unwrap());
+    // A sheet of .xls is at most 65,536 rows of 256 cells, which the library holds as one block.
+    survive_within(&seeds, open, mutate, [1024, 600 << 20]);
 }
 
 #[test]

@@ -143,8 +143,14 @@ impl Walk {
         };
         for (name, dataset) in group.iter_datasets()? {
             self.count()?;
-            let array = self.array(dataset, join(&tree.path, &name), name)?;
-            tree.arrays.push(array);
+            match self.array(dataset, join(&tree.path, &name), name) {
+                Ok(array) => tree.arrays.push(array),
+                // One dataset that cannot be described does not hide the others.
+                Err(fault @ StoreError::Dataset { .. }) if !fault.is_cut_off() => {
+                    tree.unreadable.push(fault.to_string());
+                }
+                Err(fault) => return Err(fault),
+            }
         }
         for (name, child) in group.iter_groups()? {
             self.count()?;

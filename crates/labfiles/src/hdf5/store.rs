@@ -95,6 +95,16 @@ pub(crate) struct Tree {
     pub arrays: Vec<Array>,
     /// Its groups.
     pub groups: Vec<Self>,
+    /// Datasets that cannot be described, with the reason.
+    pub unreadable: Vec<String>,
+}
+
+impl Tree {
+    /// Datasets of this group and those in it that cannot be described.
+    pub(super) fn unreadable(&self) -> Box<dyn Iterator<Item = &String> + '_> {
+        let inner = self.groups.iter().flat_map(Self::unreadable);
+        Box::new(self.unreadable.iter().chain(inner))
+    }
 }
 
 /// Why an array or the tree of a file is not read.

@@ -217,3 +217,23 @@ fn shared_data_mutated_files_are_read_or_refused() {
     all.retain(|b| b.starts_with(b"MATLAB"));
     survive_within(&all, open, mutate, [1200, 8 << 20]);
 }
+
+#[test]
+fn valid_filters_of_plugins_are_undone_and_others_are_refused_by_name() {
+    let s = open(&own("packed_by_plugins.h5")).unwrap();
+    assert_eq!(s.datasets().len(), 6);
+    for (number, info) in s.datasets().iter().enumerate() {
+        let x = real(&*s, number, "x");
+        assert_eq!(x.len(), 50, "{}", info.name);
+        for (i, v) in x.iter().enumerate() {
+            assert!((v - wave(i)).abs() < 1e-15, "{} at {i}", info.name);
+        }
+    }
+    let s = open(&own("packed_by_zfp.h5")).unwrap();
+    let x = s.datasets()[0].channel_index("x").unwrap();
+    let error = s.read(0, &[x]).unwrap_err();
+    assert!(error.found.contains("ZFP"), "{error}");
+    assert!(error.remedy.contains("h5repack"), "{error}");
+    // The array beside it is read all the same.
+    assert_eq!(real(&*s, 0, "y").len(), 50);
+}

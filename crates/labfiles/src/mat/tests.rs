@@ -496,3 +496,20 @@ fn shared_data_mutated_files_are_read_or_refused() {
     seeds.retain(|seed| recognises(seed));
     conformance::survive(&seeds, open, mutate_inside, 40);
 }
+
+#[test]
+fn valid_a_matrix_of_time_and_signal_has_the_name_and_unit_beside_it() {
+    let source = open(&conformance::own("pair_with_name_and_unit.mat")).unwrap();
+    let info = &source.datasets()[0];
+    let time = info.time_axis.unwrap();
+    assert_eq!(info.channels[time].unit.as_deref(), Some("s"));
+    let laser = info.channel_index("Laser").unwrap();
+    assert_eq!(info.channels[laser].unit.as_deref(), Some("m/s"));
+    let samples = source
+        .read(0, &[laser])
+        .unwrap()
+        .remove(0)
+        .into_real()
+        .unwrap();
+    assert!((samples[9] - conformance::wave(9)).abs() < 1e-15);
+}

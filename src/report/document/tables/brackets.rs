@@ -1,11 +1,12 @@
 //! The table of measured brackets.
 
-use super::{Column, arrow, table};
+use super::{Column, Head, arrow, table};
 use crate::compare::BracketRow;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
 use crate::report::figures::boundaries::symbol;
 use crate::report::locale::Locale;
+use crate::report::phrase::Phrase;
 
 /// From how many brackets on their table is set small and in two columns.
 const MANY_BRACKETS: usize = 14;
@@ -20,22 +21,36 @@ pub(crate) fn brackets(content: &ReportContent, locale: Locale<'_>) -> Option<Ta
         .map(|b| bracket_row(b, many, locale))
         .collect();
     let columns: [Column; 8] = [
-        Column::left(if many { "" } else { "boundary" }),
-        Column::left("$z$"),
-        Column::right("$r$ (mm)"),
-        Column::right("$ρ$"),
-        Column::center(if many { "" } else { "sweep" }),
-        Column::center("measured between (Hz)"),
-        Column::right("simulated (Hz)"),
-        Column::wide(if many { "" } else { "remark" }, 1),
+        Column::left(if many {
+            Head::Symbol("")
+        } else {
+            Head::Of(Phrase::Boundary)
+        }),
+        Column::left(Head::Symbol("$z$")),
+        Column::right(Head::Symbol("$r$ (mm)")),
+        Column::right(Head::Symbol("$ρ$")),
+        Column::center(if many {
+            Head::Symbol("")
+        } else {
+            Head::Of(Phrase::Sweep)
+        }),
+        Column::center(Head::Unit(Phrase::MeasuredBetween, "Hz")),
+        Column::right(Head::Unit(Phrase::Simulated, "Hz")),
+        Column::wide(
+            if many {
+                Head::Symbol("")
+            } else {
+                Head::Of(Phrase::Remark)
+            },
+            1,
+        ),
     ];
     let caption = if many {
-        "Measured brackets of the boundaries, and the boundary of the fitted model: = within the \
-         bracket, < below, > above it; × not used in the fit."
+        Phrase::TableManyBrackets
     } else {
-        "Measured brackets of the boundaries, and the boundary of the fitted model."
+        Phrase::TableBrackets
     };
-    let table = table(caption, &columns, rows, locale)?;
+    let table = table(&caption.into(), &columns, rows, locale)?;
     Some(if many {
         Table {
             size: 6.8,
@@ -50,8 +65,8 @@ pub(crate) fn brackets(content: &ReportContent, locale: Locale<'_>) -> Option<Ta
 fn bracket_row(b: &BracketRow, many: bool, locale: Locale<'_>) -> Vec<Rich> {
     let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
     vec![
-        Rich::from(locale.translate(symbol(b.kind))),
-        Rich::from(locale.translate(&b.motion.label())),
+        Rich::from(locale.text(&symbol(b.kind))),
+        Rich::from(locale.motion(&b.motion)),
         Rich::from(locale.significant(1e3 * b.clearance_m, 3)),
         Rich::from(b.rho.map_or("–".into(), |r| locale.fixed(r, 3))),
         Rich::from(arrow(b.sweep)),
@@ -80,18 +95,18 @@ fn bracket_sign(b: &BracketRow) -> &'static str {
 }
 
 fn bracket_remark(b: &BracketRow, locale: Locale<'_>) -> String {
-    let by = |phrase: &str, distance: f64| {
+    let by = |phrase: Phrase, distance: f64| {
         locale.translate_with(phrase, &[("distance", &locale.fixed(distance, 3))])
     };
     let (low, high) = (b.frequency_low_hz, b.frequency_high_hz);
     match (&b.left_out, b.simulated_hz) {
         (Some(why), _) => {
             let why = locale.message(why);
-            locale.translate_with("not used: {why}", &[("why", &why)])
+            locale.translate_with(Phrase::NotUsedBecause, &[("why", &why)])
         }
-        (None, Some(f)) if f < low => by("below by {distance} Hz", low - f),
-        (None, Some(f)) if f > high => by("above by {distance} Hz", f - high),
-        (None, Some(_)) => locale.translate("within"),
+        (None, Some(f)) if f < low => by(Phrase::BelowBy, low - f),
+        (None, Some(f)) if f > high => by(Phrase::AboveBy, f - high),
+        (None, Some(_)) => locale.translate(Phrase::Within),
         (None, None) => String::new(),
     }
 }

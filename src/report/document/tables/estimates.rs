@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use super::{Column, table, verbatim};
+use super::{Column, Head, table, verbatim};
 use crate::identify::{Method, MethodResult, ParameterSet};
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
 use crate::report::document::verdict::headline;
 use crate::report::locale::Locale;
 use crate::report::parameters::{self, PARAMETERS};
+use crate::report::phrase::{Phrase, Text};
 
 /// Size of the type of the methods' tables, points.
 const SIZE: f64 = 7.5;
@@ -17,34 +18,32 @@ const LEAST_P: f64 = 1e-3;
 
 /// The estimates, as [`estimate_cells`] fills them.
 const ESTIMATES: [Column; 4] = [
-    Column::wide("$R$", 1),
-    Column::wide("$f_0$", 1),
-    Column::wide("$β$", 1),
-    Column::wide("$x_st$", 1),
+    Column::wide(Head::Symbol("$R$"), 1),
+    Column::wide(Head::Symbol("$f_0$"), 1),
+    Column::wide(Head::Symbol("$β$"), 1),
+    Column::wide(Head::Symbol("$x_st$"), 1),
 ];
 
 /// A row of a method, as [`method_row`] fills it.
 const METHOD: [Column; 8] = [
-    Column::left("method"),
+    Column::left(Head::Of(Phrase::Method)),
     ESTIMATES[0],
     ESTIMATES[1],
     ESTIMATES[2],
     ESTIMATES[3],
-    Column::right("obs."),
-    Column::right("residual"),
-    Column::center("fits"),
+    Column::right(Head::Of(Phrase::ObservationsShort)),
+    Column::right(Head::Of(Phrase::Residual)),
+    Column::center(Head::Of(Phrase::Fits)),
 ];
 
 /// What the columns of the methods hold.
-const METHODS_CAPTION: &str = "Estimates with half their 95 % interval, number of observations, \
-     root mean square of the weighted residuals (1: as the stated noise), and whether the model \
-     fits.";
+const METHODS_CAPTION: Phrase = Phrase::TableMethods;
 
 /// What each method found, and the joint estimate.
 pub(crate) fn methods(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
     let id = &content.identification;
     let rows = method_rows(&id.methods, &id.joint, locale);
-    table(METHODS_CAPTION, &METHOD, rows, locale).map(|t| Table { size: SIZE, ..t })
+    table(&METHODS_CAPTION.into(), &METHOD, rows, locale).map(|t| Table { size: SIZE, ..t })
 }
 
 /// The same for each specimen of a campaign that holds several.
@@ -61,9 +60,10 @@ pub(crate) fn specimen_methods(content: &ReportContent, locale: Locale<'_>) -> O
             std::iter::once(name).chain(row).collect()
         })
     });
-    let mut columns: Vec<Column> = vec![Column::left("specimen")];
+    let mut columns: Vec<Column> = vec![Column::left(Head::Of(Phrase::Specimen))];
     columns.extend(METHOD);
-    table(METHODS_CAPTION, &columns, rows.collect(), locale).map(|t| Table { size: SIZE, ..t })
+    table(&METHODS_CAPTION.into(), &columns, rows.collect(), locale)
+        .map(|t| Table { size: SIZE, ..t })
 }
 
 /// The answer for each specimen of a campaign that holds several.
@@ -79,10 +79,10 @@ pub(crate) fn specimens(content: &ReportContent, locale: Locale<'_>) -> Option<T
             row.push(Rich::from(locale.translate(headline)));
             row
         });
-    let mut columns = vec![Column::left("specimen")];
+    let mut columns = vec![Column::left(Head::Of(Phrase::Specimen))];
     columns.extend(ESTIMATES);
-    columns.push(Column::wide("verdict", 2));
-    table("", &columns, rows.collect(), locale)
+    columns.push(Column::wide(Head::Of(Phrase::Verdict), 2));
+    table(&"".into(), &columns, rows.collect(), locale)
 }
 
 fn estimate_cells(set: &ParameterSet, locale: Locale<'_>) -> Vec<Rich> {
@@ -97,7 +97,7 @@ fn method_rows(
     locale: Locale<'_>,
 ) -> Vec<Vec<Rich>> {
     let all = methods.iter().map(|(k, m)| (locale.message(k), m));
-    let all = all.chain([(locale.translate("Joint"), joint)]);
+    let all = all.chain([(locale.translate(Phrase::JointTitle), joint)]);
     let says = |m: &MethodResult| PARAMETERS.iter().any(|p| (p.pick)(&m.parameters).is_some());
     all.filter(|(_, m)| says(m))
         .map(|(name, m)| method_row(name, m, locale))
@@ -116,14 +116,14 @@ fn method_row(name: String, method: &MethodResult, locale: Locale<'_>) -> Vec<Ri
     let residual = method.reduced_residual;
     let residual = residual.map_or("–".into(), |r| locale.significant(r, 2));
     let fits = match method.fits {
-        Some(true) => "yes",
-        Some(false) => "no",
-        None => "–",
+        Some(true) => Phrase::Yes.into(),
+        Some(false) => Phrase::No.into(),
+        None => Text::from("–"),
     };
     row.extend([
         Rich::from(observations),
         Rich::from(residual),
-        Rich::from(locale.translate(fits)),
+        Rich::from(locale.text(&fits)),
     ]);
     row
 }
@@ -147,14 +147,14 @@ pub(crate) fn agreement(content: &ReportContent, locale: Locale<'_>) -> Option<T
         ]
     });
     let columns: [Column; 5] = [
-        Column::left("parameter"),
-        Column::wide("method", 1),
-        Column::wide("and method", 1),
-        Column::right("difference / its error"),
-        Column::right("p-value"),
+        Column::left(Head::Of(Phrase::Parameter)),
+        Column::wide(Head::Of(Phrase::Method), 1),
+        Column::wide(Head::Of(Phrase::AndMethod), 1),
+        Column::right(Head::Of(Phrase::DifferenceOverError)),
+        Column::right(Head::Of(Phrase::PValue)),
     ];
     table(
-        "Agreement of the methods, pair by pair.",
+        &Phrase::TableAgreement.into(),
         &columns,
         rows.collect(),
         locale,

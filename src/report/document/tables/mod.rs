@@ -1,26 +1,50 @@
 //! The tables of the document.
 
 mod brackets;
+mod budget;
 mod estimates;
 mod records;
 
 pub(super) use brackets::brackets;
+pub(super) use budget::budget;
 pub(super) use estimates::{agreement, methods, specimen_methods, specimens};
 pub(super) use records::records;
 
-use crate::compare::Unusable;
+use crate::compare::{Unusable, UnusableReason};
 use crate::identify::Item;
 use crate::record::Sweep;
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Align, Rich, Table};
 use crate::report::figures::richtext::{Level, Run};
 use crate::report::locale::Locale;
+use crate::report::phrase::{Phrase, Text};
+
+/// The head of a column.
+#[derive(Debug, Clone, Copy)]
+enum Head {
+    /// Symbols, which are the same in every language.
+    Symbol(&'static str),
+    /// A phrase.
+    Of(Phrase),
+    /// A phrase and its unit.
+    Unit(Phrase, &'static str),
+}
+
+impl From<Head> for Text {
+    fn from(head: Head) -> Self {
+        match head {
+            Head::Symbol(symbol) => symbol.into(),
+            Head::Of(phrase) => phrase.into(),
+            Head::Unit(phrase, unit) => (phrase, unit).into(),
+        }
+    }
+}
 
 /// A column of a table.
 #[derive(Debug, Clone, Copy)]
 struct Column {
-    /// Its head, a phrase with markup.
-    head: &'static str,
+    /// Its head, with markup.
+    head: Head,
     align: Align,
     /// Relative width; 0: as wide as its content.
     width: u16,
@@ -28,24 +52,24 @@ struct Column {
 
 impl Column {
     /// As wide as its content, left-aligned.
-    const fn left(head: &'static str) -> Self {
+    const fn left(head: Head) -> Self {
         Self::wide(head, 0)
     }
 
     /// With a share of the width that the others leave, left-aligned.
-    const fn wide(head: &'static str, width: u16) -> Self {
+    const fn wide(head: Head, width: u16) -> Self {
         let align = Align::Left;
         Self { head, align, width }
     }
 
     /// As wide as its content, right-aligned: numbers.
-    const fn right(head: &'static str) -> Self {
+    const fn right(head: Head) -> Self {
         let (align, width) = (Align::Right, 0);
         Self { head, align, width }
     }
 
     /// As wide as its content, centred: signs.
-    const fn center(head: &'static str) -> Self {
+    const fn center(head: Head) -> Self {
         let (align, width) = (Align::Center, 0);
         Self { head, align, width }
     }
@@ -53,16 +77,16 @@ impl Column {
 
 /// A table of columns whose heads are phrases; `None` if it has no rows.
 fn table(
-    caption: &str,
+    caption: &Text,
     columns: &[Column],
     rows: Vec<Vec<Rich>>,
     locale: Locale<'_>,
 ) -> Option<Table> {
     let heads = columns
         .iter()
-        .map(|c| Rich::from(locale.translate_title(c.head)));
+        .map(|c| Rich::from(locale.text(&c.head.into())));
     let table = Table {
-        caption: Rich::from(locale.translate(caption)),
+        caption: Rich::from(locale.text(caption)),
         heads: heads.collect(),
         align: columns.iter().map(|c| c.align).collect(),
         widths: columns.iter().map(|c| c.width).collect(),
@@ -106,12 +130,9 @@ pub(super) fn further<'a>(
             .rows
             .iter()
             .map(|row| row.iter().map(Rich::from).collect());
-        let heads = t
-            .heads
-            .iter()
-            .map(|h| Rich::from(locale.translate_title(h)));
+        let heads = t.heads.iter().map(|h| Rich::from(locale.text(h)));
         Table {
-            caption: Rich::from(locale.translate(&t.caption)),
+            caption: Rich::from(locale.translate(t.caption)),
             heads: heads.collect(),
             align: vec![Align::Right; t.heads.len()],
             widths: vec![0; t.heads.len()],
@@ -146,11 +167,11 @@ pub(super) fn left_out(content: &ReportContent, locale: Locale<'_>) -> Option<Ta
         vec![verbatim(what), Rich::from(count), why]
     });
     let columns: [Column; 3] = [
-        Column::wide("left out", 2),
-        Column::right("count"),
-        Column::wide("why", 5),
+        Column::wide(Head::Of(Phrase::LeftOut), 2),
+        Column::right(Head::Of(Phrase::Count)),
+        Column::wide(Head::Of(Phrase::Why), 5),
     ];
-    table("", &columns, rows.collect(), locale)
+    table(&"".into(), &columns, rows.collect(), locale)
 }
 
 /// The first few names.
@@ -161,19 +182,21 @@ fn first_few(records: &[String]) -> String {
     }
 }
 
-/// Why records are unusable: the flag, then its details in English.
+/// Why records are unusable: the flag, then its details in English, or why the motion is undetermined.
 fn unusable(unusable: &Unusable, locale: Locale<'_>) -> String {
-    let flag = unusable.flag.as_ref();
-    let flag = flag.map_or_else(
-        || locale.translate("motion undetermined"),
-        |flag| locale.message(flag),
-    );
+    let (what, details) = match &unusable.reason {
+        UnusableReason::Flag(code, details) => (locale.message(code), details.clone()),
+        UnusableReason::Undetermined(why) => {
+            let what = locale.translate(Phrase::MotionUndetermined);
+            (what, locale.message(why))
+        }
+    };
     let of = unusable.channel.as_ref().map(|c| format!(" ({c})"));
-    let text = format!("{flag}{}: {}", of.unwrap_or_default(), unusable.message);
+    let text = format!("{what}{}: {details}", of.unwrap_or_default());
     match unusable.records.first().filter(|_| unusable.differ) {
         Some(record) => {
             let values = [("details", text.as_str()), ("record", record.as_str())];
-            locale.translate_with("{details} (in {record}; similar in the others)", &values)
+            locale.translate_with(Phrase::DetailsOfOne, &values)
         }
         None => text,
     }
@@ -199,10 +222,13 @@ pub(super) fn hashes(content: &ReportContent, locale: Locale<'_>) -> Option<Tabl
         .iter()
         .map(|(k, v)| vec![verbatim(k.clone()), verbatim(v.clone())])
         .collect();
-    let caption = "SHA-256 of every input.";
+    let caption = Phrase::TableHashes;
     table(
-        caption,
-        &[Column::wide("input", 2), Column::left("SHA-256")],
+        &caption.into(),
+        &[
+            Column::wide(Head::Of(Phrase::Input), 2),
+            Column::left(Head::Symbol("SHA-256")),
+        ],
         rows,
         locale,
     )

@@ -1,6 +1,6 @@
 //! The table of all records.
 
-use super::{Column, arrow, table, verbatim};
+use super::{Column, Head, arrow, table, verbatim};
 use crate::compare::RecordRow;
 use crate::motion::Motion;
 use crate::report::content::ReportContent;
@@ -9,6 +9,7 @@ use crate::report::figures::fonts::{self, Face};
 use crate::report::figures::look;
 use crate::report::locale::Locale;
 use crate::report::parameters::method_inline;
+use crate::report::phrase::{Phrase, Text};
 use crate::signal::whole;
 
 /// From how many records on the table is set small and in two columns.
@@ -22,32 +23,38 @@ pub(crate) fn records(content: &ReportContent, locale: Locale<'_>) -> Option<Tab
         .records
         .iter()
         .any(|r| r.eta.is_some() && r.rho.is_some());
-    let mut columns: Vec<Column> = vec![Column::left("record"), Column::left("specimen")];
+    let mut columns: Vec<Column> = vec![
+        Column::left(Head::Of(Phrase::Record)),
+        Column::left(Head::Of(Phrase::Specimen)),
+    ];
     columns.extend([
-        Column::center(""),
-        Column::right("$f$ (Hz)"),
-        Column::right("$r$ (mm)"),
+        Column::center(Head::Symbol("")),
+        Column::right(Head::Symbol("$f$ (Hz)")),
+        Column::right(Head::Symbol("$r$ (mm)")),
     ]);
     if planar {
-        columns.extend([Column::right("$η$"), Column::right("$ρ$")]);
+        columns.extend([
+            Column::right(Head::Symbol("$η$")),
+            Column::right(Head::Symbol("$ρ$")),
+        ]);
     }
     columns.extend([
-        Column::center("$z$"),
-        Column::right("conf."),
-        Column::right("impacts"),
+        Column::center(Head::Symbol("$z$")),
+        Column::right(Head::Of(Phrase::ConfidenceShort)),
+        Column::right(Head::Of(Phrase::Impacts)),
     ]);
     columns.push(if many {
-        Column::left("")
+        Column::left(Head::Symbol(""))
     } else {
-        Column::wide("used by; flags", 1)
+        Column::wide(Head::Of(Phrase::UsedByAndFlags), 1)
     });
     let row = |r: &RecordRow| record_row(r, planar, many, locale);
     let rows = content.compared.records.iter().map(row).collect();
-    let caption = if many {
-        let signs = "{records}: sweep, measured drive frequency, clearance, motion, confidence. \
-                     ? undetermined; • used in the identification; ! flagged. Reasons and flags \
-                     in full are in records.parquet.";
-        locale.translate_with(signs, &[("records", &which(content, locale))])
+    let caption: Text = if many {
+        let signs = Phrase::TableManyRecords;
+        locale
+            .translate_with(signs, &[("records", &which(content, locale))])
+            .into()
     } else {
         match content
             .compared
@@ -55,12 +62,10 @@ pub(crate) fn records(content: &ReportContent, locale: Locale<'_>) -> Option<Tab
             .iter()
             .any(|r| r.frequency_hz.is_some())
         {
-            true => {
-                "All records: sweep, measured drive frequency, clearance, motion and confidence."
-            }
-            false => "All records, and which methods used them.",
+            true => Phrase::TableRecords,
+            false => Phrase::TableRecordsByMethod,
         }
-        .to_owned()
+        .into()
     };
     let table = table(&caption, &columns, rows, locale)?;
     Some(if many {
@@ -78,11 +83,11 @@ fn which(content: &ReportContent, locale: Locale<'_>) -> String {
     );
     if listed < all {
         locale.translate_with(
-            "{some} of the {count} records, evenly chosen (records.parquet holds all)",
+            Phrase::SomeRecords,
             &[("some", &listed.to_string()), ("count", &all.to_string())],
         )
     } else {
-        locale.translate("All records")
+        locale.translate(Phrase::AllRecords)
     }
 }
 
@@ -173,7 +178,7 @@ fn motion_label(r: &RecordRow, many: bool, locale: Locale<'_>) -> String {
     match &r.motion {
         Motion::Undetermined { .. } if r.frequency_hz.is_none() => "–".into(),
         Motion::Undetermined { .. } if many => "?".into(),
-        motion => locale.translate(&motion.label()),
+        motion => locale.motion(motion),
     }
 }
 
@@ -187,7 +192,7 @@ fn long_remark(r: &RecordRow, locale: Locale<'_>) -> String {
     let used = if r.used_by.is_empty() {
         let reason = r.left_out.as_ref().map(|reason| locale.message(reason));
         let why = r.excluded.clone().or(reason);
-        why.map(|why| locale.translate_with("not used: {why}", &[("why", &why)]))
+        why.map(|why| locale.translate_with(Phrase::NotUsedBecause, &[("why", &why)]))
     } else {
         Some(
             r.used_by

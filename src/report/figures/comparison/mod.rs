@@ -18,6 +18,7 @@ use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
 use crate::report::figures::richtext;
 use crate::report::locale::Locale;
+use crate::report::phrase::Phrase;
 use rows::{Row, root_mean_square, rows, shown, symbol};
 
 /// Room left of the first column, for numbers and titles, points.
@@ -63,7 +64,7 @@ pub(crate) fn draw<'a>(comparison: &'a Comparison, locale: Locale<'a>) -> Option
     let name = name(comparison);
     let letter = comparison.letter.to_string();
     let values = [("letter", letter.as_str())];
-    let title = locale.translate_with("Point ({letter}): simulated and measured", &values);
+    let title = locale.translate_with(Phrase::PointComparedTitle, &values);
     Some(Figure::new(
         name,
         &title,
@@ -101,7 +102,7 @@ struct TimeAxis {
 
 impl TimeAxis {
     fn axis(&self) -> Axis {
-        Axis::new(self.shown.0, self.shown.1, "$t$/$T$ (drive periods)").with_ticks(5)
+        Axis::new(self.shown.0, self.shown.1, Phrase::TimeInDrivePeriods).with_ticks(5)
     }
 
     fn of(&self, time_s: f64) -> f64 {
@@ -153,7 +154,10 @@ impl Sheet<'_> {
         let title = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::QUIET);
         let middle = |sheet: &Self, side: Side| sheet.left(side) + 0.5 * sheet.column;
         if !rows.is_empty() {
-            for (side, word) in [(Side::Simulated, "simulated"), (Side::Measured, "measured")] {
+            for (side, word) in [
+                (Side::Simulated, Phrase::Simulated),
+                (Side::Measured, Phrase::Measured),
+            ] {
                 let at = (middle(self, side), TOP - 4.0);
                 self.canvas.text(at, &self.locale.translate(word), title);
             }
@@ -253,7 +257,7 @@ impl Sheet<'_> {
         let at = (0.5 * (r.left + r.right), 0.5 * (r.top + r.bottom) + 2.5);
         let quiet = TextLook::new(look::NOTE_SIZE, Anchor::Middle).colour(look::QUIET);
         self.canvas
-            .text(at, &self.locale.translate("not modelled"), quiet);
+            .text(at, &self.locale.translate(Phrase::NotModelled), quiet);
     }
 
     /// The impacts of the simulation as stems on a level line.
@@ -275,7 +279,7 @@ impl Sheet<'_> {
             let value = self.locale.significant(rms * row.unit.factor, 2);
             let share = self.locale.significant(100.0 * rms / whole, 2);
             let name = symbol(trace.role);
-            let text = "{name}: rms residual {value} = {share} % of rms";
+            let text = Phrase::RmsResidual;
             let value = format!("{value} {}", row.unit.symbol);
             let values = [("name", name), ("value", &value), ("share", &share)];
             Some(self.locale.translate_with(text, &values))

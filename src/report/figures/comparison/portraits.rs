@@ -9,6 +9,7 @@ use crate::report::figures::panel::{Panel, Sides};
 use crate::report::figures::path::Rect;
 use crate::report::figures::units::{PrintUnit, print_unit};
 use crate::report::figures::{look, marks};
+use crate::report::phrase::Phrase;
 use labfiles::units::Dimension;
 
 /// Velocity over displacement of one mass: points (m, m/s) in order of time.
@@ -68,7 +69,7 @@ impl Sheet<'_> {
         let middle = PORTRAIT_LEFT + 0.5 * PORTRAIT_WIDTH;
         self.canvas.text(
             (middle, TOP - 4.0),
-            &self.locale.translate("phase portraits"),
+            &self.locale.translate(Phrase::PhasePortraits),
             title,
         );
         let units = units(shown);

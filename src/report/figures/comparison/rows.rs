@@ -5,6 +5,7 @@ use crate::record::Role;
 use crate::report::figures::canvas::Colour;
 use crate::report::figures::look;
 use crate::report::figures::units::{PrintUnit, print_unit};
+use crate::report::phrase::{Phrase, Text};
 use crate::signal::robust::rms;
 
 /// A row of panels: which channels, how tall, how titled.
@@ -16,7 +17,7 @@ pub(super) struct Row<'a> {
     /// The unit in which they are printed.
     pub unit: PrintUnit,
     /// Title of the upward axis.
-    pub title: String,
+    pub title: Text,
     /// Whether it shows residuals.
     pub residual: bool,
 }
@@ -24,16 +25,16 @@ pub(super) struct Row<'a> {
 /// The rows of a comparison, those with anything to show; residuals last.
 pub(super) fn rows(comparison: &Comparison) -> Vec<Row<'_>> {
     let pairs = [
-        ([Role::DisplacementX, Role::DisplacementY], "", 38.0),
-        ([Role::VelocityX, Role::VelocityY], "", 38.0),
-        ([Role::AccelerationX, Role::AccelerationY], "", 38.0),
-        ([Role::Drive, Role::Drive], "drive", 22.0),
-        ([Role::Contact, Role::Contact], "contact", 21.0),
-        ([Role::FrameX, Role::FrameY], "frame", 21.0),
+        ([Role::DisplacementX, Role::DisplacementY], None, 38.0),
+        ([Role::VelocityX, Role::VelocityY], None, 38.0),
+        ([Role::AccelerationX, Role::AccelerationY], None, 38.0),
+        ([Role::Drive, Role::Drive], Some(Phrase::Drive), 22.0),
+        ([Role::Contact, Role::Contact], Some(Phrase::Contact), 21.0),
+        ([Role::FrameX, Role::FrameY], Some(Phrase::Frame), 21.0),
     ];
     let mut rows: Vec<Row<'_>> = pairs
         .iter()
-        .filter_map(|(roles, name, height)| row(comparison, roles, name, *height))
+        .filter_map(|(roles, name, height)| row(comparison, roles, *name, *height))
         .collect();
     rows.extend(residual_row(comparison));
     rows
@@ -42,7 +43,7 @@ pub(super) fn rows(comparison: &Comparison) -> Vec<Row<'_>> {
 fn row<'a>(
     comparison: &'a Comparison,
     roles: &[Role; 2],
-    name: &str,
+    name: Option<Phrase>,
     height: f64,
 ) -> Option<Row<'a>> {
     let traces = pick(comparison, roles, |_| true);
@@ -57,12 +58,11 @@ fn row<'a>(
     let unit = print_unit(dimension, peak);
     let between = if height < 30.0 { "\n" } else { " " };
     let symbols: Vec<&str> = traces.iter().map(|(t, _)| symbol(t.role)).collect();
-    let name = if symbols.iter().all(|s| s.starts_with('$')) {
-        symbols.join(", ")
-    } else {
-        name.into()
+    let unit_text = format!("{between}({})", unit.symbol);
+    let title = match name {
+        Some(name) => Text::Followed(name, unit_text),
+        None => Text::Plain(symbols.join(", ") + &unit_text),
     };
-    let title = format!("{name}{between}({})", unit.symbol);
     Some(Row {
         traces,
         height,
@@ -88,7 +88,7 @@ fn residual_row(comparison: &Comparison) -> Option<Row<'_>> {
             .map(peak)
             .fold(0.0, f64::max);
         let unit = print_unit(dimension, peak);
-        let title = format!("residual\n({})", unit.symbol);
+        let title = Text::Followed(Phrase::Residual, format!("\n({})", unit.symbol));
         Some(Row {
             traces,
             height: 30.0,

@@ -6,12 +6,13 @@ use crate::record::Sweep;
 use crate::report::figures::boundaries;
 use crate::report::figures::csv::Csv;
 use crate::report::locale::Locale;
+use crate::report::phrase::Phrase;
 
 /// The text that is shown on hovering over a record.
 pub(super) fn describe(record: &RecordRow, locale: Locale<'_>) -> String {
     let mut parts = vec![
         record.id.clone(),
-        format!("z = {}", locale.translate(&record.motion.label())),
+        format!("z = {}", locale.motion(&record.motion)),
     ];
     if let Some(f) = record.frequency_hz {
         parts.push(format!("f = {} Hz", locale.fixed(f, 3)));
@@ -27,13 +28,13 @@ pub(super) fn describe(record: &RecordRow, locale: Locale<'_>) -> String {
         ));
     }
     let sweep = match record.sweep {
-        Sweep::Up => "sweep up",
-        Sweep::Down => "sweep down",
-        Sweep::Unknown => "sweep unknown",
+        Sweep::Up => Phrase::SweepUp,
+        Sweep::Down => Phrase::SweepDown,
+        Sweep::Unknown => Phrase::SweepUnknown,
     };
     parts.push(locale.translate(sweep));
     let share = locale.fixed(record.confidence, 2);
-    parts.push(locale.translate_with("confidence {share}", &[("share", &share)]));
+    parts.push(locale.translate_with(Phrase::ConfidenceOf, &[("share", &share)]));
     parts.join("\n")
 }
 

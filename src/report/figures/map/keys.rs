@@ -5,23 +5,27 @@ use crate::motion::BoundaryKind;
 use crate::report::figures::legend::{Key, Sign};
 use crate::report::figures::plane::Plane;
 use crate::report::figures::{boundaries, look, marks};
+use crate::report::phrase::{Phrase, motion_text};
 
 /// Keys of the motions that were measured.
 pub(super) fn motions(compared: &Compared) -> Vec<Key> {
     let met = marks::met(compared.records.iter().map(|r| &r.motion));
     met.into_iter()
-        .map(|m| Key::new(Sign::Mark(marks::of(m)), m.label()))
+        .map(|m| Key::new(Sign::Mark(marks::of(m)), motion_text(m)))
         .collect()
 }
 
 /// All keys of the large map.
 pub(super) fn full(compared: &Compared, plane: Plane) -> Vec<Key> {
-    let mut keys = vec![Key::new(Sign::Nothing, "measured $z$ = $p$/$n$:")];
+    let mut keys = vec![Key::new(Sign::Nothing, Phrase::MeasuredMotions)];
     keys.extend(motions(compared));
     if !compared.brackets.is_empty() {
-        keys.push(Key::new(Sign::Bracket(look::INK), "measured bracket"));
+        keys.push(Key::new(Sign::Bracket(look::INK), Phrase::MeasuredBracket));
         if compared.brackets.iter().any(|b| b.left_out.is_some()) {
-            keys.push(Key::new(Sign::Bracket(look::UNUSED), "bracket not used"));
+            keys.push(Key::new(
+                Sign::Bracket(look::UNUSED),
+                Phrase::BracketNotUsed,
+            ));
         }
     }
     if plane.dimensionless {
@@ -32,13 +36,13 @@ pub(super) fn full(compared: &Compared, plane: Plane) -> Vec<Key> {
 
 fn curve_keys(compared: &Compared) -> Vec<Key> {
     let kinds = [
-        (BoundaryKind::SaddleNode, "saddle-node $s_2$, simulated"),
+        (BoundaryKind::SaddleNode, Phrase::SaddleNodeSimulated),
         (
             BoundaryKind::PeriodDoubling,
-            "period doubling $s_1$, simulated",
+            Phrase::PeriodDoublingSimulated,
         ),
-        (BoundaryKind::Grazing, "grazing $ρ$′, simulated"),
-        (BoundaryKind::Other, "other edge, simulated"),
+        (BoundaryKind::Grazing, Phrase::GrazingSimulated),
+        (BoundaryKind::Other, Phrase::OtherEdgeSimulated),
     ];
     let mut keys: Vec<Key> = kinds
         .into_iter()
@@ -46,7 +50,7 @@ fn curve_keys(compared: &Compared) -> Vec<Key> {
         .map(|(kind, text)| Key::new(Sign::Line(boundaries::stroke(kind, 1.1)), text))
         .collect();
     if compared.curves.iter().any(|c| !c.band95.is_empty()) {
-        keys.push(Key::new(Sign::Patch(look::BOUNDARY_BAND), "95 % band"));
+        keys.push(Key::new(Sign::Patch(look::BOUNDARY_BAND), Phrase::Band95));
     }
     keys
 }

@@ -11,10 +11,15 @@ use crate::report::figures::look;
 use crate::report::figures::path::Rect;
 use crate::report::figures::richtext;
 use crate::report::locale::Locale;
+use crate::report::phrase::Phrase;
 
 impl Map<'_> {
     /// Names a curve beside the middle of its longest visible piece.
-    pub(super) fn curve_label(&mut self, curve: &BoundaryCurve, pieces: &[Vec<Point>]) {
+    pub(super) fn curve_label(
+        &mut self,
+        (curve, pieces): (&BoundaryCurve, &[Vec<Point>]),
+        locale: Locale<'_>,
+    ) {
         let length = |p: &[Point]| -> f64 {
             p.windows(2)
                 .map(|s| (s[1].0 - s[0].0).hypot(s[1].1 - s[0].1))
@@ -26,7 +31,11 @@ impl Map<'_> {
         if length(piece) < 30.0 {
             return;
         }
-        let text = curve_name(curve);
+        let symbol = locale.text(&symbol(curve.kind));
+        let text = match curve.periods_n {
+            1 => symbol,
+            n => format!("{symbol} (1/{n})"),
+        };
         let width = richtext::width(&text, Face::Regular, 8.5) + 2.0;
         let bounds = self.panel.rect;
         let best = (1..20)
@@ -148,7 +157,7 @@ impl Map<'_> {
                     .text((x, top - 3.0), &locale.fixed(v, decimals), small);
             }
             let at = (0.5 * (r.left + r.right), top - 14.0);
-            let name = locale.translate_title("drive frequency $f$ (Hz)");
+            let name = locale.text(&(Phrase::DriveFrequency, "Hz").into());
             self.canvas.text(at, &name, title);
         }
         if let Some(x_st) = self.plane.static_deflection_m.map(|x| 1e3 * x) {
@@ -169,20 +178,13 @@ impl Map<'_> {
             let at = (r.right + 24.0, 0.5 * (r.top + r.bottom));
             self.canvas.text(
                 at,
-                &locale.translate_title("clearance $r$ (mm)"),
+                &locale.text(&(Phrase::Clearance, "mm").into()),
                 TextLook {
                     upward: true,
                     ..title
                 },
             );
         }
-    }
-}
-
-fn curve_name(curve: &BoundaryCurve) -> String {
-    match (curve.kind, curve.periods_n) {
-        (kind, 1) => symbol(kind).to_owned(),
-        (kind, n) => format!("{} (1/{n})", symbol(kind)),
     }
 }
 

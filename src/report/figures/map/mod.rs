@@ -20,6 +20,7 @@ use crate::report::figures::placing::Occupancy;
 use crate::report::figures::plane::{Plane, View, same};
 use crate::report::figures::regions::Regions;
 use crate::report::locale::Locale;
+use crate::report::phrase::Phrase;
 
 /// Which of the two maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,7 +49,7 @@ pub(crate) fn draw(content: &ReportContent, size: MapSize, locale: Locale<'_>) -
     map.take_records_and_curves();
     map.take_brackets();
     map.regions(locale);
-    map.curves();
+    map.curves(locale);
     map.draw_brackets();
     map.records(locale);
     if size == MapSize::Full {
@@ -190,7 +191,7 @@ impl<'a> Map<'a> {
         }
     }
 
-    fn curves(&mut self) {
+    fn curves(&mut self, locale: Locale<'_>) {
         if !self.plane.dimensionless {
             return;
         }
@@ -204,7 +205,7 @@ impl<'a> Map<'a> {
             let data = curve.points.iter().map(|p| (p[0], p[1]));
             let pieces = self.panel.curve(&mut self.canvas, data, stroke);
             if self.full() {
-                self.curve_label(curve, &pieces);
+                self.curve_label((curve, &pieces), locale);
             }
         }
     }
@@ -332,8 +333,8 @@ impl<'a> Map<'a> {
     fn finish(self, locale: Locale<'_>) -> Figure {
         let csv = data::csv(&self.content.compared);
         let (name, title) = match self.size {
-            MapSize::Full => ("map", "Regions of motion, simulated and measured"),
-            MapSize::Small => ("map_small", "Measured motions and boundaries"),
+            MapSize::Full => ("map", Phrase::RegionsSimulatedAndMeasured),
+            MapSize::Small => ("map_small", Phrase::MotionsAndBoundaries),
         };
         Figure::new(name, &locale.translate(title), self.canvas, csv).with_spots(self.spots)
     }

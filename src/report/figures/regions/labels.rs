@@ -79,7 +79,7 @@ impl Regions<'_> {
 
     fn name(&self, cell: usize, locale: Locale<'_>) -> String {
         let (first, second) = self.kind(cell);
-        let label = |k: u16| locale.translate(&self.map.motions[usize::from(k)].label());
+        let label = |k: u16| locale.motion(&self.map.motions[usize::from(k)]);
         if first == second {
             label(first)
         } else {

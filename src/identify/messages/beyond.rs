@@ -1,0 +1,164 @@
+//! Texts on the effects beyond the model.
+
+use crate::identify::fit::effect::Effect;
+
+/// An effect beyond the model, and what can be done about it; `rises`: whether its strength is positive.
+pub(super) fn beyond_english(effect: Effect, rises: bool) -> &'static str {
+    match (effect, rises) {
+        (Effect::SecondHarmonicCos | Effect::SecondHarmonicSin, _) => {
+            "the driving force has a second harmonic of {strength} ± {error} % of its amplitude: check \
+             the amplifier, and that the drive current is not rectified"
+        }
+        (Effect::ThirdHarmonicCos | Effect::ThirdHarmonicSin, _) => {
+            "the driving force has a third harmonic of {strength} ± {error} % of its amplitude: drive \
+             the amplifier less hard"
+        }
+        (Effect::ForceSlope, true) => {
+            "the driving force rises by {strength} ± {error} % per natural frequency: record the force \
+             or the current"
+        }
+        (Effect::ForceSlope, false) => {
+            "the driving force falls by {strength} ± {error} % per natural frequency: record the force \
+             or the current"
+        }
+        (Effect::ForceCurve, _) => {
+            "the driving force against frequency is curved, by {strength} ± {error} % one natural \
+             frequency off resonance: record the force or the current"
+        }
+        (Effect::Hardening, true) => {
+            "the springs harden by {strength} ± {error} % at the greatest displacement: use smaller \
+             motions or longer springs"
+        }
+        (Effect::Hardening, false) => {
+            "the springs soften by {strength} ± {error} % at the greatest displacement: check their \
+             clamps, or use smaller motions"
+        }
+        (Effect::Friction, true) => {
+            "there is dry friction of {strength} ± {error} % of the driving force: look for cables, \
+             guides and loose clamps"
+        }
+        (Effect::Friction, false) => {
+            "the damping grows faster than the velocity, as with air drag (dry friction of −{strength} \
+             ± {error} % of the driving force)"
+        }
+        (Effect::FrequencyDrift, true) => {
+            "the natural frequency rises by {strength} ± {error} % over the campaign: check clamps and \
+             temperature"
+        }
+        (Effect::FrequencyDrift, false) => {
+            "the natural frequency falls by {strength} ± {error} % over the campaign: check clamps and \
+             temperature"
+        }
+        (Effect::FrequencyBend, _) => {
+            "the natural frequency in the middle of the campaign is off that of both ends by twice \
+             {strength} ± {error} %: check clamps and temperature"
+        }
+        (Effect::DampingDrift, true) => {
+            "the damping ratio rises by {strength} ± {error} % over the campaign: check clamps and \
+             temperature"
+        }
+        (Effect::DampingDrift, false) => {
+            "the damping ratio falls by {strength} ± {error} % over the campaign: check clamps and \
+             temperature"
+        }
+        (Effect::DeflectionDrift, true) => {
+            "the static deflection rises by {strength} ± {error} % over the campaign: check the \
+             amplifier and the springs"
+        }
+        (Effect::DeflectionDrift, false) => {
+            "the static deflection falls by {strength} ± {error} % over the campaign: check the \
+             amplifier and the springs"
+        }
+        (Effect::ContactLaw, _) => {
+            "a contact's length changes the speeds by {strength} ± {error} % otherwise than a spring \
+             and a damper would"
+        }
+        (Effect::ContactReach, _) => {
+            "the masses' acceleration changes how far they press into each other: use harder bumpers"
+        }
+        (Effect::ContactDuration, _) => {
+            "a contact acts like one of {strength} ± {error} ms: use harder bumpers"
+        }
+    }
+}
+
+/// The same in German.
+pub(super) fn beyond_german(effect: Effect, rises: bool) -> &'static str {
+    match (effect, rises) {
+        (Effect::SecondHarmonicCos | Effect::SecondHarmonicSin, _) => {
+            "die Antriebskraft hat eine zweite Oberwelle von {strength} ± {error} % ihrer Amplitude: \
+             den Verstärker prüfen, und ob der Antriebsstrom gleichgerichtet wird"
+        }
+        (Effect::ThirdHarmonicCos | Effect::ThirdHarmonicSin, _) => {
+            "die Antriebskraft hat eine dritte Oberwelle von {strength} ± {error} % ihrer Amplitude: \
+             den Verstärker weniger aussteuern"
+        }
+        (Effect::ForceSlope, true) => {
+            "die Antriebskraft steigt um {strength} ± {error} % je Eigenfrequenz: die Kraft oder den \
+             Strom aufzeichnen"
+        }
+        (Effect::ForceSlope, false) => {
+            "die Antriebskraft sinkt um {strength} ± {error} % je Eigenfrequenz: die Kraft oder den \
+             Strom aufzeichnen"
+        }
+        (Effect::ForceCurve, _) => {
+            "die Antriebskraft ist über der Frequenz gekrümmt, um {strength} ± {error} % eine \
+             Eigenfrequenz neben der Resonanz: die Kraft oder den Strom aufzeichnen"
+        }
+        (Effect::Hardening, true) => {
+            "die Federn versteifen sich um {strength} ± {error} % beim größten Weg: kleinere \
+             Bewegungen oder längere Federn"
+        }
+        (Effect::Hardening, false) => {
+            "die Federn werden um {strength} ± {error} % weicher beim größten Weg: ihre Einspannungen \
+             prüfen, oder kleinere Bewegungen"
+        }
+        (Effect::Friction, true) => {
+            "es gibt trockene Reibung von {strength} ± {error} % der Antriebskraft: Kabel, Führungen \
+             und lose Einspannungen suchen"
+        }
+        (Effect::Friction, false) => {
+            "die Dämpfung wächst schneller als die Geschwindigkeit, wie bei Luftwiderstand (trockene \
+             Reibung von −{strength} ± {error} % der Antriebskraft)"
+        }
+        (Effect::FrequencyDrift, true) => {
+            "die Eigenfrequenz steigt um {strength} ± {error} % während der Messreihe: Einspannungen \
+             und Temperatur prüfen"
+        }
+        (Effect::FrequencyDrift, false) => {
+            "die Eigenfrequenz sinkt um {strength} ± {error} % während der Messreihe: Einspannungen \
+             und Temperatur prüfen"
+        }
+        (Effect::FrequencyBend, _) => {
+            "die Eigenfrequenz in der Mitte der Messreihe weicht von der an beiden Enden um zweimal \
+             {strength} ± {error} % ab: Einspannungen und Temperatur prüfen"
+        }
+        (Effect::DampingDrift, true) => {
+            "der Dämpfungsgrad steigt um {strength} ± {error} % während der Messreihe: Einspannungen \
+             und Temperatur prüfen"
+        }
+        (Effect::DampingDrift, false) => {
+            "der Dämpfungsgrad sinkt um {strength} ± {error} % während der Messreihe: Einspannungen \
+             und Temperatur prüfen"
+        }
+        (Effect::DeflectionDrift, true) => {
+            "die statische Auslenkung steigt um {strength} ± {error} % während der Messreihe: \
+             Verstärker und Federn prüfen"
+        }
+        (Effect::DeflectionDrift, false) => {
+            "die statische Auslenkung sinkt um {strength} ± {error} % während der Messreihe: \
+             Verstärker und Federn prüfen"
+        }
+        (Effect::ContactLaw, _) => {
+            "die Dauer eines Kontakts ändert die Geschwindigkeiten um {strength} ± {error} % anders als \
+             eine Feder und ein Dämpfer"
+        }
+        (Effect::ContactReach, _) => {
+            "die Beschleunigung der Massen ändert, wie weit sie ineinander eindringen: härtere Puffer \
+             verwenden"
+        }
+        (Effect::ContactDuration, _) => {
+            "ein Kontakt wirkt wie einer von {strength} ± {error} ms: härtere Puffer verwenden"
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! Whether a deviation is high or low, as a word.
+
+use crate::message::{Message, Value};
+
+/// Whether something is too high or too low.
+#[derive(Debug, Clone, Copy, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
+enum Direction {
+    High,
+    Low,
+}
+
+/// The direction of a deviation.
+pub(super) fn direction(deviation: f64) -> Value<'static> {
+    match deviation > 0.0 {
+        true => Value::Message(&Direction::High),
+        false => Value::Message(&Direction::Low),
+    }
+}
+
+impl Message for Direction {
+    fn kind(&self) -> &'static str {
+        self.into()
+    }
+
+    fn english(&self) -> &'static str {
+        match self {
+            Self::High => "high",
+            Self::Low => "low",
+        }
+    }
+
+    fn german(&self) -> &'static str {
+        match self {
+            Self::High => "hoch",
+            Self::Low => "tief",
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        Vec::new()
+    }
+}

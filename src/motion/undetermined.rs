@@ -1,0 +1,182 @@
+//! Why a record does not determine its motion.
+
+use serde::{Deserialize, Serialize};
+
+use crate::message::{Message, Value};
+use crate::messages;
+
+/// Why a record does not determine its motion.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
+#[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
+pub enum Undetermined {
+    /// A free decay has no drive.
+    DecayWithoutDrive,
+    /// No drive was measured.
+    NoDrive,
+    /// The record is too short.
+    FewerThanTwoPeriods,
+    /// The waveform could not be compared with itself.
+    NotComparable,
+    /// The motion closes, but not within the noise.
+    NearlyCloses {
+        /// Drive periods after which it does.
+        periods_n: u32,
+    },
+    /// No channel shows a motion.
+    NoMotion,
+    /// Without velocity, the impact times show no period.
+    NoPeriodOfImpacts,
+    /// The record is shorter than the motion's period.
+    NoWholePeriod,
+    /// More impacts than the settings allow.
+    TooManyImpacts {
+        /// Drive periods of the motion.
+        periods_n: u32,
+        /// Impacts in them.
+        impacts_p: u32,
+        /// Most impacts that are looked for.
+        most: u32,
+    },
+    /// The waveform closes, the impacts do not repeat with it.
+    ImpactsDoNotRepeat {
+        /// Drive periods of the motion.
+        periods_n: u32,
+    },
+    /// No impact, but a motion of several drive periods.
+    RepeatsWithoutImpact {
+        /// Drive periods of the motion.
+        periods_n: u32,
+    },
+    /// No impact, and no period.
+    SettlingWithoutImpact,
+    /// Too few impacts for an irregular motion.
+    FewImpacts,
+    /// A simulation that is not periodic.
+    NotPeriodic,
+    /// Starts beyond the contact.
+    BeyondContact,
+}
+
+messages!(Undetermined);
+
+impl Message for Undetermined {
+    fn kind(&self) -> &'static str {
+        self.into()
+    }
+
+    fn english(&self) -> &'static str {
+        match self {
+            Self::DecayWithoutDrive => "a free decay, without drive",
+            Self::NoDrive => "no drive was measured, so no period is known",
+            Self::FewerThanTwoPeriods => "the record holds fewer than two drive periods",
+            Self::NotComparable => "the waveform could not be compared with itself",
+            Self::NearlyCloses { .. } => {
+                "the motion nearly closes after {periods} drive periods but not within the noise: \
+                 still settling, or of a longer period"
+            }
+            Self::NoMotion => "neither velocity nor contact shows any motion",
+            Self::NoPeriodOfImpacts => "the impact times alone show no period",
+            Self::NoWholePeriod => "no whole period of the motion fits into the record",
+            Self::TooManyImpacts { .. } => {
+                "the waveform closes after {periods} drive periods with {impacts} impacts, more than \
+                 the {most} that are looked for (analysis.most_impacts_p)"
+            }
+            Self::ImpactsDoNotRepeat { .. } => {
+                "the waveform closes after {periods} drive periods, but the impacts found do not \
+                 repeat with it: some were missed or are too slow to see"
+            }
+            Self::RepeatsWithoutImpact { .. } => {
+                "no impact was found, yet the motion repeats only after {periods} drive periods: \
+                 impacts too slow to see, or still settling"
+            }
+            Self::SettlingWithoutImpact => {
+                "no impact was found, yet the motion does not repeat: still settling"
+            }
+            Self::FewImpacts => "too few impacts to recognise an irregular motion",
+            Self::NotPeriodic => "the noiseless simulation is not periodic",
+            Self::BeyondContact => "starts beyond the contact",
+        }
+    }
+
+    fn german(&self) -> &'static str {
+        match self {
+            Self::DecayWithoutDrive => "ein Ausschwingversuch, ohne Erregung",
+            Self::NoDrive => "keine Erregung wurde gemessen, daher ist keine Periode bekannt",
+            Self::FewerThanTwoPeriods => {
+                "die Aufzeichnung enthält weniger als zwei Erregerperioden"
+            }
+            Self::NotComparable => "der Verlauf ließ sich nicht mit sich selbst vergleichen",
+            Self::NearlyCloses { .. } => {
+                "die Bewegung schließt sich nach {periods} Erregerperioden beinahe, aber nicht \
+                 innerhalb des Rauschens: noch nicht eingeschwungen, oder von längerer Periode"
+            }
+            Self::NoMotion => "weder Geschwindigkeit noch Kontakt zeigt eine Bewegung",
+            Self::NoPeriodOfImpacts => "die Stoßzeiten allein zeigen keine Periode",
+            Self::NoWholePeriod => "keine ganze Periode der Bewegung passt in die Aufzeichnung",
+            Self::TooManyImpacts { .. } => {
+                "der Verlauf schließt sich nach {periods} Erregerperioden mit {impacts} Stößen, mehr \
+                 als den {most}, nach denen gesucht wird (analysis.most_impacts_p)"
+            }
+            Self::ImpactsDoNotRepeat { .. } => {
+                "der Verlauf schließt sich nach {periods} Erregerperioden, aber die gefundenen Stöße \
+                 wiederholen sich nicht mit ihm: einige fehlen oder sind zu langsam, um sichtbar zu sein"
+            }
+            Self::RepeatsWithoutImpact { .. } => {
+                "kein Stoß wurde gefunden, doch wiederholt sich die Bewegung erst nach {periods} \
+                 Erregerperioden: Stöße, die zu langsam sind, oder noch nicht eingeschwungen"
+            }
+            Self::SettlingWithoutImpact => {
+                "kein Stoß wurde gefunden, doch wiederholt sich die Bewegung nicht: noch nicht \
+                 eingeschwungen"
+            }
+            Self::FewImpacts => "zu wenige Stöße, um eine unregelmäßige Bewegung zu erkennen",
+            Self::NotPeriodic => "die rauschfreie Simulation ist nicht periodisch",
+            Self::BeyondContact => "beginnt jenseits des Kontakts",
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        let count = |n: u32| Value::Count(usize::try_from(n).unwrap_or(usize::MAX));
+        match *self {
+            Self::NearlyCloses { periods_n }
+            | Self::ImpactsDoNotRepeat { periods_n }
+            | Self::RepeatsWithoutImpact { periods_n } => vec![("periods", count(periods_n))],
+            Self::TooManyImpacts {
+                periods_n,
+                impacts_p,
+                most,
+            } => vec![
+                ("periods", count(periods_n)),
+                ("impacts", count(impacts_p)),
+                ("most", count(most)),
+            ],
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// One example of each kind.
+pub(crate) fn examples() -> Vec<Undetermined> {
+    vec![
+        Undetermined::DecayWithoutDrive,
+        Undetermined::NoDrive,
+        Undetermined::FewerThanTwoPeriods,
+        Undetermined::NotComparable,
+        Undetermined::NearlyCloses { periods_n: 2 },
+        Undetermined::NoMotion,
+        Undetermined::NoPeriodOfImpacts,
+        Undetermined::NoWholePeriod,
+        Undetermined::TooManyImpacts {
+            periods_n: 1,
+            impacts_p: 9,
+            most: 8,
+        },
+        Undetermined::ImpactsDoNotRepeat { periods_n: 1 },
+        Undetermined::RepeatsWithoutImpact { periods_n: 2 },
+        Undetermined::SettlingWithoutImpact,
+        Undetermined::FewImpacts,
+        Undetermined::NotPeriodic,
+        Undetermined::BeyondContact,
+    ]
+}
