@@ -322,7 +322,7 @@ impl State {
             skip_periods: 0.0,
             periods: self.periods,
             samples_per_period: 200,
-            poincare_periods: 500,
+            poincare_periods: 300,
             poincare_phase: self.poincare_phase,
             soft: None,
         }

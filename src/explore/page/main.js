@@ -68,7 +68,8 @@ class App {
     this.state = { ...this.state, ...part };
     this.save();
     this.note();
-    this.map.redraw();
+    // a picture that is about to come need not be drawn before
+    if (!what.includes("boundaries") || part.view) this.map.redraw();
     this.refresh(what);
   }
 
