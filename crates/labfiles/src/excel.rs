@@ -4,6 +4,7 @@
 //! found as in any other.
 
 mod cells;
+mod compound;
 
 use std::io::Cursor;
 use std::path::Path;
@@ -56,7 +57,10 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
             refuse_bomb(path, &bytes)?;
             caught(|| xlsx(path, bytes))
         }
-        false => caught(|| xls(path, bytes)),
+        false => {
+            compound::check(path, &bytes)?;
+            caught(|| xls(path, bytes))
+        }
     };
     let sheets =
         sheets.unwrap_or_else(|| Err(damaged(path, "contents that contradict each other")))?;
