@@ -74,7 +74,8 @@ pub(super) fn beyond_english(effect: Effect, rises: bool) -> &'static str {
              and a damper would"
         }
         (Effect::ContactReach, _) => {
-            "the masses' acceleration changes how far they press into each other: use harder bumpers"
+            "in contact, the masses' acceleration adds {strength} ± {error} % of its share to how far they \
+             press into each other: use harder bumpers"
         }
         (Effect::ContactDuration, _) => {
             "a contact acts like one of {strength} ± {error} ms: use harder bumpers"
@@ -154,8 +155,8 @@ pub(super) fn beyond_german(effect: Effect, rises: bool) -> &'static str {
              eine Feder und ein Dämpfer"
         }
         (Effect::ContactReach, _) => {
-            "die Beschleunigung der Massen ändert, wie weit sie ineinander eindringen: härtere Puffer \
-             verwenden"
+            "im Kontakt erhöht die Beschleunigung der Massen um {strength} ± {error} % ihres Anteils, wie \
+             weit sie ineinander eindringen: härtere Puffer verwenden"
         }
         (Effect::ContactDuration, _) => {
             "ein Kontakt wirkt wie einer von {strength} ± {error} ms: härtere Puffer verwenden"

@@ -33,6 +33,9 @@ const COLUMNS: [Column; 8] = [
 /// A row for each source that matters, one for all others, and what they amount to.
 pub(crate) fn budget(content: &ReportContent, locale: Locale<'_>) -> Option<Table> {
     let budget = &content.identification.uncertainty.budget;
+    if budget.rows.is_empty() {
+        return None;
+    }
     let (mut main, minor): (Vec<&Row>, Vec<&Row>) =
         budget.rows.iter().partition(|row| matters(row, budget));
     main.sort_by(|a, b| greatest_share(b, budget).total_cmp(&greatest_share(a, budget)));
