@@ -327,7 +327,7 @@ fn channels() -> Vec<Case> {
                 lab.edit(
                     "channel = \"contact\"\n",
                     "channel = \"contact\"\ncontent = \"times\"\n",
-                )
+                );
             },
             &[
                 "channels.contact.content",

@@ -1,6 +1,12 @@
 //! Experiments without a drive as a new user plays them: a folder of files, `init`, `check`, `run`, and
 //! nothing edited in between.
 
+#![expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "numbers of a test's own, small and positive"
+)]
+
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;

@@ -385,6 +385,7 @@ impl Message for Remark {
         }
     }
 
+    #[expect(clippy::too_many_lines, reason = "one arm for each variant")]
     fn values(&self) -> Vec<(&'static str, Value<'_>)> {
         match self {
             Self::OneDegreeOfFreedom { deviation } => {

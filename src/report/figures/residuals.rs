@@ -42,7 +42,7 @@ pub(crate) fn draw<'a>(set: &'a ResidualSet, name: &str, locale: Locale<'a>) -> 
         drawers.push(|s, r| {
             s.over(r, (Phrase::Clearance, "mm"), |p| {
                 p.clearance_m.map(|c| 1e3 * c)
-            })
+            });
         });
     }
     let count = drawers.len() as f64;

@@ -39,6 +39,7 @@ fn marks_for_phrases() -> catalog::Catalog {
 }
 
 /// A campaign to which all happened that the others were spared.
+#[expect(clippy::too_many_lines, reason = "one value for each field")]
 fn unlucky() -> ReportContent {
     let mut content = kind("small").clone();
     let campaign = &mut content.campaign;

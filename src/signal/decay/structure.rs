@@ -80,7 +80,7 @@ pub(super) fn structured(residuals: &[f64]) -> f64 {
     (all - 0.5 * steps / (count - 1.0)).max(0.0).sqrt()
 }
 
-/// Factor on a variance for residuals with autocorrelation: 1 + 2 Σ r_k until r_k falls to zero.
+/// Factor on a variance for residuals with autocorrelation: 1 + 2 Σ `r_k` until `r_k` falls to zero.
 pub(super) fn correlation_factor(residuals: &[f64]) -> f64 {
     let total: f64 = residuals.iter().map(|r| r * r).sum();
     let mut factor = 1.0;
