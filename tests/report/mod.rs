@@ -121,7 +121,7 @@ fn paper_logo_template_and_decimal_sign_are_the_user_s() {
         for wanted in [
             "Laboratory of Mechanics",
             "May 1971",
-            "R = 0,9",
+            "R = 0,",
             "Point (A)",
             "impactid ingest",
             "impactid report",
