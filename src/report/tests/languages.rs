@@ -4,9 +4,13 @@ use std::path::Path;
 
 use super::contents::{kind, kinds};
 use crate::compare::{BracketRow, Correlation, Unusable, UnusableReason};
+use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::messages::examples;
-use crate::identify::{Identification, Method, Reason};
+use crate::identify::uncertainty::budget::{
+    Budget, Combined, Contribution, Evaluation, Row, Source,
+};
+use crate::identify::{Finding, Identification, Method, Reason};
 use crate::motion::{Motion, Undetermined};
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
 use crate::record::{Role, Sweep};
@@ -126,13 +130,73 @@ fn unlucky() -> ReportContent {
 }
 
 /// All kinds of report with a mark for each phrase.
+/// A campaign on a rig with effects beyond the model, with every kind of source in its budget.
+fn real_rig() -> ReportContent {
+    let mut content = kind("small").clone();
+    let id = &mut content.identification;
+    let effects = [
+        Effect::SecondHarmonicCos,
+        Effect::ForceSlope,
+        Effect::Hardening,
+        Effect::Friction,
+        Effect::FrequencyDrift,
+        Effect::ContactDuration,
+    ];
+    let findings = effects.map(|effect| Finding::BeyondModel {
+        effect,
+        strength: 0.01,
+        standard_error: 1e-3,
+        z_score: 10.0,
+    });
+    id.verdict.findings.extend(findings);
+    let stated = |coordinate, clearance_m| Source::Stated {
+        coordinate,
+        clearance_m,
+    };
+    let method = Method::Trajectories;
+    let sources = [
+        (Source::Noise { method }, 1e-3),
+        (Source::BetweenGroups { groups: 9 }, 1e-3),
+        (stated(Coordinate::Gap(0), Some(1e-3)), 1e-3),
+        (Source::FirstOrder, 1e-3),
+        (Source::BetweenMethods, 1e-3),
+        (stated(Coordinate::ScrewZero, None), 1e-9),
+    ];
+    let rows = sources.map(|(source, uncertainty)| Row {
+        source,
+        evaluation: Evaluation::A,
+        standard_uncertainty: Some(1e-3),
+        degrees_of_freedom: None,
+        contributions: Coordinate::PHYSICAL
+            .map(|parameter| Contribution {
+                parameter,
+                sensitivity: None,
+                uncertainty,
+            })
+            .into(),
+    });
+    id.uncertainty.budget = Budget {
+        rows: rows.into(),
+        combined: Coordinate::PHYSICAL
+            .map(|parameter| Combined {
+                parameter,
+                standard_uncertainty: 2.3e-3,
+                degrees_of_freedom: Some(30.0),
+                coverage_factor: 2.04,
+                expanded_uncertainty: 4.7e-3,
+            })
+            .into(),
+    };
+    content
+}
+
 fn marked() -> Vec<Report> {
     let options = ReportOptions {
         catalog: Some(marks_for_phrases()),
         ..ReportOptions::default()
     };
     let each = kinds().iter().map(|(_, content)| content);
-    each.chain([&unlucky()])
+    each.chain([&unlucky(), &real_rig()])
         .map(|content| Report::new(content, &options))
         .collect()
 }
