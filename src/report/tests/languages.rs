@@ -129,7 +129,6 @@ fn unlucky() -> ReportContent {
     content
 }
 
-/// All kinds of report with a mark for each phrase.
 /// A campaign on a rig with effects beyond the model, with every kind of source in its budget.
 fn real_rig() -> ReportContent {
     let mut content = kind("small").clone();
@@ -190,6 +189,7 @@ fn real_rig() -> ReportContent {
     content
 }
 
+/// All kinds of report with a mark for each phrase.
 fn marked() -> Vec<Report> {
     let options = ReportOptions {
         catalog: Some(marks_for_phrases()),
