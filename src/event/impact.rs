@@ -112,19 +112,9 @@ impl Impact {
     /// An impact of a time and an approach speed; nothing else is known.
     pub(crate) fn at(time_s: f64, approach_speed_m_s: f64) -> Self {
         Self {
-            time_s,
-            time_error_s: 1e-5,
-            drive_phase_rad: None,
             approach_speed_before_m_s: Some(approach_speed_m_s),
-            approach_speed_after_m_s: None,
-            speed_error_m_s: None,
-            x: None,
-            y: None,
-            corner_shifts: [None, None],
-            dead_zone_s: 0.0,
-            contact_duration_s: None,
-            external_push_m_s: None,
             source: DetectionSource::Both,
+            ..Self::timed(time_s, 1e-5)
         }
     }
 }

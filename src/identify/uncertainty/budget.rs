@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::evidence::Blocks;
 use crate::identify::fit::Problem;
+use crate::identify::fit::normal::Normal;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::method::Method;
 use crate::identify::methods::MethodFit;
@@ -108,11 +109,12 @@ fn finite(freedom: f64) -> Option<f64> {
     freedom.is_finite().then_some(freedom)
 }
 
-/// The budget of a joint fit of a problem whose blocks belong to the methods; `between_methods` are
+/// The budget of a joint fit of a problem whose blocks belong to the methods and have these normal
+/// equations at its optimum, those of the priors last; `between_methods` are
 /// the standard uncertainties by their disagreement.
 pub fn budget(
     problem: &Problem<'_>,
-    methods: &[Method],
+    (methods, parts): (&[Method], &[Normal]),
     found: &MethodFit,
     blocks: &Blocks,
     between_methods: &[(Coordinate, f64)],
@@ -125,7 +127,7 @@ pub fn budget(
         .enumerate()
         .filter(|(_, c)| Coordinate::PHYSICAL.contains(c))
         .collect();
-    let mut rows = noise_rows(problem, methods, found, &told);
+    let mut rows = noise_rows((methods, parts), found, &told);
     rows.extend(stated_rows(problem, found, blocks, &told));
     let spreads: Vec<_> = told.iter().filter_map(|(_, c)| found.spread(*c)).collect();
     let freedom = spreads
@@ -183,15 +185,14 @@ pub fn budget(
 
 /// The noise of each method's residuals.
 fn noise_rows(
-    problem: &Problem<'_>,
-    methods: &[Method],
+    (methods, parts): (&[Method], &[Normal]),
     found: &MethodFit,
     told: &[(usize, Coordinate)],
 ) -> Vec<Row> {
     let fit = &found.fit;
     let covariance = &fit.covariance * found.factor;
     let mut rows = Vec::new();
-    for (method, part) in methods.iter().zip(problem.parts(&fit.parameters)) {
+    for (method, part) in methods.iter().zip(parts) {
         let spread = &fit.covariance * &part.matrix * &covariance;
         rows.push(Row {
             source: Source::Noise { method: *method },

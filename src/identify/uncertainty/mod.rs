@@ -91,10 +91,11 @@ const OFFSETS: [f64; 12] = [
     -3.0, -2.5, -2.0, -1.5, -1.0, -0.5, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0,
 ];
 
-/// All that is asked for, about a joint fit; `methods` are those of the problem's blocks.
+/// All that is asked for, about a joint fit; `by_method`: the methods of the problem's blocks and the
+/// blocks' normal equations at its optimum, those of the priors last.
 pub fn uncertainty(
     problem: &Problem<'_>,
-    methods: &[Method],
+    by_method: (&[Method], &[Normal]),
     fit: &Fit,
     factor: f64,
     options: &UncertaintyOptions,
@@ -104,7 +105,7 @@ pub fn uncertainty(
         .filter(|c| fit.free.contains(c))
         .collect();
     Uncertainty {
-        information_share: shares(problem, methods, fit, &told),
+        information_share: shares(by_method, fit, &told),
         profiles: match options.intervals {
             IntervalMethod::Profile => told
                 .iter()
@@ -122,16 +123,14 @@ pub fn uncertainty(
 
 /// Share of each block in the information on each coordinate: (C F C)ᵢᵢ/Cᵢᵢ with the block's F.
 fn shares(
-    problem: &Problem<'_>,
-    methods: &[Method],
+    (methods, parts): (&[Method], &[Normal]),
     fit: &Fit,
     told: &[Coordinate],
 ) -> BTreeMap<Coordinate, BTreeMap<InformationSource, f64>> {
     let mut all: BTreeMap<Coordinate, BTreeMap<InformationSource, f64>> = BTreeMap::new();
-    let parts = problem.parts(&fit.parameters);
     let methods = methods.iter().copied().map(InformationSource::Method);
     let sources = methods.chain([InformationSource::Stated]);
-    for (source, part) in sources.zip(&parts) {
+    for (source, part) in sources.zip(parts) {
         let spread = &fit.covariance * &part.matrix * &fit.covariance;
         for coordinate in told {
             let Some(i) = fit.free.iter().position(|c| c == coordinate) else {
