@@ -90,6 +90,7 @@ fn campaign() -> Result<Vec<Observation>, ModelError> {
         faults: &faults,
         effects: &Effects::default(),
         plan: &plan,
+        rig_seed: 1,
         seed: 1,
     })?;
     let mut observations: Vec<Observation> = raw

@@ -20,6 +20,8 @@ pub mod synthetic;
 
 pub mod identify;
 
+pub mod difference;
+
 pub mod compare;
 
 pub mod report;

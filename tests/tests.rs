@@ -21,6 +21,9 @@ mod broken_runs;
 /// The verbs: help, exit codes, quiet and verbose, what they write and what they leave alone.
 mod command_line;
 
+/// Campaigns compared, from records to the report.
+mod campaigns;
+
 /// The explorer: protocol, defences, campaigns, the page in a browser.
 mod explore;
 

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::written::{Excitation, Flight, Format, Language, Machine, Paper};
+use crate::difference::Common;
 use crate::event::DetectSettings;
 use crate::identify::fit::effect::EffectKind;
 use crate::identify::uncertainty::IntervalMethod;
@@ -82,6 +83,12 @@ pub struct NominalValues {
     /// Effects beyond the model that the fit allows; `None`: all.
     #[serde(default)]
     pub effects: Option<Vec<EffectKind>>,
+    /// Which rig it is, in words.
+    #[serde(default)]
+    pub name: Option<String>,
+    /// What stays the same in all campaigns on the rig.
+    #[serde(default)]
+    pub shared: Vec<Common>,
 }
 
 /// Settings of the analysis.

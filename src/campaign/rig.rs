@@ -4,6 +4,7 @@ use super::context::ResolveContext;
 use super::diagnostic::Code;
 use super::resolved::{NominalValues, RecordEntry};
 use super::written::{self, Placed};
+use crate::difference::Common;
 use crate::identify::fit::effect::EffectKind;
 use crate::record::calibrate::ChannelSetup;
 use labfiles::units::Dimension;
@@ -41,7 +42,29 @@ pub(super) fn resolve(rig: &written::Rig, context: &mut ResolveContext<'_>) -> N
         clearance_uncertainty_m: clearance.unwrap_or(1e-5),
         mass_uncertainty: mass.unwrap_or(0.005),
         effects: effects(&rig.effects, context),
+        name: written::value(&rig.name),
+        shared: shared(&rig.shared, context),
     }
+}
+
+/// What the campaigns on the rig have in common, by its names.
+fn shared(placed: &Placed<Vec<String>>, context: &mut ResolveContext<'_>) -> Vec<Common> {
+    let Some(placed) = placed else {
+        return Vec::new();
+    };
+    let mut kinds = Vec::new();
+    for name in placed.get_ref() {
+        match Common::named(name) {
+            Some(kind) => kinds.push(kind),
+            None => {
+                let known = Common::ALL.map(Common::name).join(", ");
+                let what = format!("campaigns cannot share '{name}'");
+                let remedy = format!("choose among {known}, or remove the line");
+                context.fault(Code::OutOfRange, placed, "rig.shared", what, &remedy);
+            }
+        }
+    }
+    kinds
 }
 
 /// The effects that the fit allows, by their names.

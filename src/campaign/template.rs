@@ -304,6 +304,8 @@ clearance_uncertainty = \"10 um\"  # of each stated clearance, and of the zero t
 # mass_x = \"1.50 kg\"             # both masses, if weighed, with mass_uncertainty = \"0.5 %\"
 # effects = [\"harmonics\", \"force_frequency\", \"hardening\", \"friction\", \"drift\", \"contact_duration\"]
 #                                # what springs, drive and contact may add to the model; all by default
+# name = \"rig 1\"                 # which rig it is, where campaigns are compared (impactid compare)
+# shared = [\"clearances\"]        # errors that stay the same in all campaigns on it
 
 ";
 

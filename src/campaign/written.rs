@@ -121,6 +121,10 @@ pub struct Attributes {
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Rig {
+    /// Which rig it is, as text: campaigns on other rigs share nothing.
+    pub name: Placed<String>,
+    /// What stays the same in all campaigns on the rig.
+    pub shared: Placed<Vec<String>>,
     /// Natural frequency f0.
     pub natural_frequency: Placed<Quantity>,
     /// Damping ratio β.

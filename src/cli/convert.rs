@@ -1,4 +1,4 @@
-//! `impactid convert`: records of any format to HDF5, Parquet or CSV.
+//! `impactid convert`: records of any format to HDF5, Parquet, CSV or universal files.
 
 use std::path::{Path, PathBuf};
 
@@ -39,12 +39,17 @@ enum To {
     Parquet,
     /// CSV: one file per record
     Csv,
+    /// Universal file, binary (58b): one function per channel
+    Uff,
+    /// Universal file as text (58): about 13 digits of each number
+    UffText,
 }
 
 const EXAMPLE: &str = "\
 Example:
   impactid convert runs/*.tdms --out campaign.h5 --set clearance_m=0.0005
   impactid convert campaign.h5 --out records.parquet
+  impactid convert campaign.h5 --out records.uff
 
 The layout of the HDF5 file is described in docs/formats.md.
 Exit codes: 0 success; 2 a file could not be read or written (then no output is left).";
@@ -69,6 +74,8 @@ impl Convert {
             Some(To::Hdf5) => Some(Target::Hdf5),
             Some(To::Parquet) => Some(Target::Parquet),
             Some(To::Csv) => Some(Target::Csv),
+            Some(To::Uff) => Some(Target::Uff),
+            Some(To::UffText) => Some(Target::UffText),
             None => Target::of(&self.out),
         };
         let unknown = || {
@@ -76,7 +83,10 @@ impl Convert {
                 "{}: the extension is not that of a format",
                 self.out.display()
             );
-            Failure::new(message, "end it in .h5, .parquet or .csv, or give --to")
+            Failure::new(
+                message,
+                "end it in .h5, .parquet, .csv or .uff, or give --to",
+            )
         };
         let target = target.ok_or_else(unknown)?;
         let log = ReadLog::new(verbosity);

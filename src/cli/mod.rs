@@ -4,6 +4,7 @@ mod atlas;
 mod basins;
 mod boundary;
 mod check;
+mod compare;
 mod completions;
 mod convert;
 mod coverage;
@@ -19,6 +20,7 @@ mod machine;
 mod merge;
 #[cfg(feature = "mpi")]
 mod mpi;
+mod pairs;
 mod plan;
 mod progress;
 mod read_log;
@@ -98,13 +100,15 @@ enum Command {
     Identify(stage::Identify),
     /// Stage 4: write the report
     Report(stage::Report),
+    /// Compare campaigns: before and after, or one rig a year
+    Compare(compare::Compare),
     /// Propose the settings to measure next
     Plan(plan::Plan),
     /// Explore regions, motions and a campaign live in the browser
     Explore(explore::Explore),
     /// List the channels of record files: units, rates, ranges
     Inspect(inspect::Inspect),
-    /// Convert record files to HDF5, Parquet or CSV
+    /// Convert record files to HDF5, Parquet, CSV or universal files
     Convert(convert::Convert),
     /// Compute regions and boundaries of all motions in the (η, ρ) plane
     Atlas(atlas::Atlas),
@@ -138,6 +142,7 @@ impl Command {
             Self::Classify(command) => command.run(verbosity),
             Self::Identify(command) => command.run(verbosity),
             Self::Report(command) => command.run(verbosity),
+            Self::Compare(command) => command.run(verbosity),
             Self::Plan(command) => command.run(verbosity),
             Self::Explore(command) => command.run(verbosity),
             Self::Inspect(command) => command.run(verbosity),

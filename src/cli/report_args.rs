@@ -16,7 +16,8 @@ use crate::report::Format;
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Report")]
 pub(super) struct ReportArgs {
-    /// Formats of the report: pdf, html, svg, png (several: pdf,html)
+    /// Formats of the report: pdf, html; of its figures: svg, png, figure-pdf; of its tables: tex
+    /// (several: pdf,html)
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     format: Vec<Format>,
     /// Typst template instead of the built-in one
@@ -118,7 +119,8 @@ pub(super) fn print_report_paths(campaign: &ResolvedCampaign, out: &Path, verbos
         let name = match format {
             Format::Pdf => "report.pdf",
             Format::Html => "report.html",
-            Format::Svg | Format::Png | Format::Csv => "figures/",
+            Format::Svg | Format::Png | Format::FigurePdf | Format::Csv => "figures/",
+            Format::Tex => "tables/",
         };
         verbosity.info(&format!(
             "Report ({}): {}",

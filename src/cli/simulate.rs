@@ -151,6 +151,10 @@ pub(super) struct Campaign {
     /// Seed of everything random
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
+    /// Seed of the rig's own errors (gains, corners, gaps, asymmetries, effects), to measure one rig
+    /// several times; campaign.toml then states what the campaigns share [default: that of --seed]
+    #[arg(long, value_name = "N")]
+    pub rig_seed: Option<u64>,
     /// Coefficient of restitution R, 0 to 1
     #[arg(long, value_name = "R", default_value_t = 0.9, value_parser = restitution)]
     pub restitution: f64,
@@ -232,7 +236,8 @@ impl Campaign {
         } else {
             Faults::default()
         };
-        let (drive_asymmetry, stiffness_asymmetry) = draw_asymmetry(&faults, self.seed);
+        let (drive_asymmetry, stiffness_asymmetry) =
+            draw_asymmetry(&faults, self.rig_seed.unwrap_or(self.seed));
         let recipe = Recipe {
             truth: Truth {
                 drive_asymmetry,
@@ -250,6 +255,7 @@ impl Campaign {
                 .records
                 .map_or(DEFAULT_RECORDS, std::num::NonZeroUsize::get),
             seed: self.seed,
+            rig_seed: self.rig_seed,
         };
         let count = write_campaign(&recipe, &self.out)?;
         verbosity.info(&format!(

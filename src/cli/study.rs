@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 
 use super::coverage::Coverage;
+use super::pairs::Pairs;
 use super::theory::{COPY, in_folder};
 use super::{Exit, Failure, Verbosity, interrupt};
 use crate::pipeline::theory::{self, Study as Written};
@@ -33,6 +34,8 @@ pub(super) struct Study {
 enum Kind {
     /// Bias, error and coverage of the identification over many synthetic campaigns
     Coverage(Coverage),
+    /// Coverage and width of the differences between two campaigns on one synthetic rig
+    Pairs(Pairs),
 }
 
 const EXAMPLE: &str = "\
@@ -50,8 +53,10 @@ impl Study {
     /// [`Failure`] where a study cannot be read, a parameter is out of range or a file cannot
     /// be written.
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
-        if let Some(Kind::Coverage(verb)) = self.kind {
-            return verb.run(verbosity);
+        match self.kind {
+            Some(Kind::Coverage(verb)) => return verb.run(verbosity),
+            Some(Kind::Pairs(verb)) => return verb.run(verbosity),
+            None => {}
         }
         let out = self.out.unwrap_or_default();
         let files = all_files(&self.files)?;

@@ -62,6 +62,7 @@ fn laboratory() -> Vec<Record> {
         faults: &faults,
         effects: &Effects::default(),
         plan: &plan,
+        rig_seed: 2026,
         seed: 2026,
     };
     let raw = records(&laboratory).expect("a campaign");

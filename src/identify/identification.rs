@@ -8,7 +8,7 @@ use crate::identify::diagnostics::contact_law::ContactLaw;
 use crate::identify::diagnostics::structure::ImpactGroups;
 use crate::identify::estimate::{Estimate, ParameterSet};
 use crate::identify::fit::parameters::Coordinate;
-use crate::identify::fit::{Fit, FitReport};
+use crate::identify::fit::{Fit, FitReport, Prior};
 use crate::identify::messages::{Finding, LeftOut, PairAgreement, Remark, Sentence};
 use crate::identify::method::Method;
 use crate::identify::uncertainty::Uncertainty;
@@ -160,10 +160,13 @@ pub struct SpecimenResult {
     pub methods: BTreeMap<Method, MethodResult>,
     /// Whether the methods agree.
     pub agreement: Agreement,
+    /// The joint fit; `None` without one.
+    #[serde(default)]
+    pub joint_fit: Option<JointFit>,
 }
 
 /// The joint fit.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JointFit {
     /// Parameters, coordinates and their covariance for unit variance of the weighted residuals.
     #[serde(flatten)]
@@ -173,6 +176,27 @@ pub struct JointFit {
     /// Weight of each method's squared residuals.
     #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
     pub weights: BTreeMap<Method, f64>,
+    /// What was known of the coordinates beforehand.
+    #[serde(default)]
+    pub priors: Vec<Prior>,
+    /// Stated clearances whose errors are coordinates, m, by the numbers of those coordinates.
+    #[serde(default)]
+    pub gaps_m: Vec<f64>,
+    /// How far R, f0, β and `x_st` may be off by all that the intervals allow for.
+    #[serde(default)]
+    pub allowed: Vec<Allowed>,
+}
+
+/// How far a parameter may be off by all that its interval allows for: covariance, scatter between
+/// groups, first order of the effects, disagreement of methods.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Allowed {
+    /// The parameter.
+    pub parameter: Coordinate,
+    /// Standard uncertainty: of R absolute, of the others relative.
+    pub standard_uncertainty: f64,
+    /// Degrees of freedom with which it is known; `None`: infinitely many.
+    pub degrees_of_freedom: Option<f64>,
 }
 
 /// A whole identification.

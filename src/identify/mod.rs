@@ -31,8 +31,8 @@ pub use estimate::{Estimate, ParameterSet, Status};
 pub use fit::effect::Effect;
 pub use fit::parameters::GAIN_ROLES;
 pub use identification::{
-    Agreement, Identification, JointFit, MethodResult, Provenance, SpecimenResult, Verdict,
-    VerdictKind,
+    Agreement, Allowed, Identification, JointFit, MethodResult, Provenance, SpecimenResult,
+    Verdict, VerdictKind,
 };
 pub use messages::{Finding, Item, LeftOut, Note, PairAgreement, Reason, Remark, Sentence};
 pub use method::Method;

@@ -12,7 +12,7 @@ use crate::identify::estimate::ParameterSet;
 use crate::identify::evidence::{Blocks, Evidence};
 use crate::identify::fit::Problem;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::identification::{Identification, JointFit, MethodResult};
+use crate::identify::identification::{Allowed, Identification, JointFit, MethodResult};
 use crate::identify::joint::{self, Weights};
 use crate::identify::messages::{Finding, LeftOut, Reason, Remark};
 use crate::identify::method::Method;
@@ -55,6 +55,7 @@ use crate::motion::Observation;
 ///     faults: &faults,
 ///     effects: &effects,
 ///     plan: &Plan { steps: (0..14).map(step).collect() },
+///     rig_seed: 1,
 ///     seed: 1,
 /// };
 /// let observations: Vec<_> = records(&laboratory)?
@@ -132,6 +133,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         agreement: &agreement,
         suspicions: &suspicions,
     });
+    let joint_fit = run.joint_fit(&fits, &joint.parameters);
     Identification {
         verdict,
         joint,
@@ -141,11 +143,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         left_out: run.left_out(),
         used_by: run.used_by(&methods),
         methods,
-        joint_fit: fits.joint.and_then(Result::ok).map(|found| JointFit {
-            fit: found.fit,
-            variance_factor: found.factor,
-            weights: fits.weights,
-        }),
+        joint_fit,
         specimens: BTreeMap::new(),
     }
 }
@@ -393,6 +391,35 @@ impl IdentificationRun<'_> {
     ) -> Option<Problem<'b>> {
         let posterior = self.posterior.as_ref();
         joint::problem(blocks, start, weights, &self.evidence.nominal, posterior)
+    }
+
+    /// The joint fit with all that other campaigns' fits are combined with it by; `estimates`: what was
+    /// made of it.
+    fn joint_fit(&self, fits: &Fits, estimates: &ParameterSet) -> Option<JointFit> {
+        let blocks = &self.selection.blocks;
+        let found = succeeded(&fits.joint)?;
+        let priors = self.problem(blocks, fits.start, &fits.weights)?.priors;
+        let allowed = Coordinate::PHYSICAL.into_iter().filter_map(|parameter| {
+            let estimate = estimates.get(parameter)?;
+            let unit = match parameter.is_logarithm() {
+                true => estimate.value?,
+                false => 1.0,
+            };
+            let freedom = found.spread(parameter)?.freedom;
+            Some(Allowed {
+                parameter,
+                standard_uncertainty: estimate.standard_error? / unit,
+                degrees_of_freedom: freedom.is_finite().then_some(freedom),
+            })
+        });
+        Some(JointFit {
+            allowed: allowed.collect(),
+            fit: found.fit.clone(),
+            variance_factor: found.factor,
+            weights: fits.weights.clone(),
+            priors,
+            gaps_m: blocks.gaps_m.clone(),
+        })
     }
 
     /// The uncertainty of the joint fit as the options want it; `apart`: what disagreement of methods

@@ -113,6 +113,7 @@ impl Whole {
             joint: found.joint,
             methods: found.methods,
             agreement: found.agreement,
+            joint_fit: found.joint_fit,
         };
         self.results.insert(name.to_owned(), result);
     }

@@ -142,6 +142,7 @@ mod tests {
             rig: crate::synthetic::RigSpec::exact(),
             records: 12,
             seed: 5,
+            rig_seed: None,
         };
         write_campaign(&recipe, folder.path()).unwrap();
         let toml = folder.path().join("campaign.toml");

@@ -169,8 +169,8 @@ fn evidence<'a>(
         observations,
         brackets,
         nominal: Nominal {
-            gain_uncertainty: 5e-3,
-            corner_uncertainty: 2e-2,
+            gain_uncertainty: draw.faults.gain_deviation,
+            corner_uncertainty: draw.faults.corner_deviation,
             clearance_uncertainty_m: draw.clearance_uncertainty_m.unwrap_or(0.0),
             ..Nominal::default()
         },
@@ -210,6 +210,14 @@ fn campaign(draw: &Draw, mistake: Option<Mistake>) -> Result<Seen, PipelineError
         brackets,
         outcome,
     })
+}
+
+/// Simulate, observe and identify a campaign without a mistake.
+///
+/// # Errors
+/// Where the simulation refuses its parameters.
+pub(super) fn identified(draw: &Draw) -> Result<Identification, PipelineError> {
+    Ok(campaign(draw, None)?.outcome)
 }
 
 /// What a campaign contributes to the scores.

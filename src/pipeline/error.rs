@@ -41,6 +41,19 @@ pub enum PipelineError {
         /// What is wrong with it.
         reason: String,
     },
+    /// A folder or a file holds no results.
+    #[error("{path}: {reason}")]
+    NoResults {
+        /// The path.
+        path: String,
+        /// What is wrong with it.
+        reason: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// Campaigns cannot be compared.
+    #[error(transparent)]
+    Comparison(#[from] crate::difference::ComparisonError),
     /// No record of the campaign could be used.
     #[error("none of the {} records can be used", .0.len())]
     NothingUsable(Vec<RefusedRecord>),
@@ -73,6 +86,8 @@ impl PipelineError {
                 "run the previous stage again; the stages are ingest, classify, identify, report"
                     .to_owned()
             }
+            Self::NoResults { remedy, .. } => remedy.clone(),
+            Self::Comparison(error) => error.remedy().to_owned(),
             Self::NothingUsable(_) => "fix what is wrong with the records, as listed".to_owned(),
             Self::ReportFile { .. } => {
                 "check path and content of the template, the words and the logo, or leave them out"

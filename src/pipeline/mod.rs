@@ -3,6 +3,7 @@
 //! `run` = [`observe`] every record → brackets → [`identify`] → [`report`]; the stages alone
 //! use [`store`].
 
+pub mod campaigns;
 pub mod checkpoint;
 pub mod coverage;
 pub mod error;
@@ -12,6 +13,7 @@ pub mod inputs;
 mod json;
 pub mod observe;
 pub mod observed;
+pub mod pairs;
 pub mod plan;
 pub mod published;
 pub mod report;

@@ -174,6 +174,8 @@ fn facts(campaign: &ResolvedCampaign) -> CampaignFacts {
         laboratory: campaign.laboratory.clone(),
         dates: dates(campaign),
         files: files.len(),
+        rig: campaign.rig.name.clone(),
+        shared: campaign.rig.shared.clone(),
         nominal: nominal(campaign),
         channels: campaign.channels.clone(),
         synthetic: campaign.synthetic,

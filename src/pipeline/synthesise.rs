@@ -30,6 +30,17 @@ pub struct Recipe {
     pub records: usize,
     /// Seed of everything random.
     pub seed: u64,
+    /// Seed of the rig's own errors (gains, corners, gaps, effects), if they are those of another
+    /// campaign on the same rig.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rig_seed: Option<u64>,
+}
+
+impl Recipe {
+    /// Seed of the rig's own errors.
+    fn seed_of_rig(&self) -> u64 {
+        self.rig_seed.unwrap_or(self.seed)
+    }
 }
 
 /// One record's truth in truth.json.
@@ -68,6 +79,8 @@ struct TruthFile<'a> {
 /// The file that holds a campaign's records where one does.
 const RECORDS_FILE: &str = "records.h5";
 const RUN_TABLE: &str = "runs.csv";
+/// What campaigns on one simulated rig have in common beside the instruments.
+const SHARED: &str = r#"["clearances", "delays", "asymmetries", "harmonics", "force_frequency"]"#;
 
 /// Simulate a campaign and write it: records.h5 (converter counts), runs.csv, campaign.toml and
 /// truth.json. A campaign of more than a thousand records is written to several files as it is
@@ -83,13 +96,15 @@ pub fn write_campaign(recipe: &Recipe, out: &Path) -> Result<usize, PipelineErro
         recipe.records,
     );
     let mut recipe = recipe.clone();
-    let effects = recipe.rig.draw(&mut recipe.truth, &plan, recipe.seed);
+    let rig_seed = recipe.seed_of_rig();
+    let effects = recipe.rig.draw(&mut recipe.truth, &plan, rig_seed);
     let recipe = &recipe;
     let laboratory = Laboratory {
         truth: &recipe.truth,
         faults: &recipe.faults,
         effects: &effects,
         plan: &plan,
+        rig_seed,
         seed: recipe.seed,
     };
     labfiles::output::make_folder(out)?;
@@ -261,6 +276,9 @@ fn campaign_toml(recipe: &Recipe) -> String {
             1e6 * uncertainty_m
         );
     }
+    if let Some(seed) = recipe.rig_seed {
+        let _ = writeln!(text, "name = \"simulated rig {seed}\"\nshared = {SHARED}");
+    }
     for (sensitivity, (role, dimension, filtered)) in sensitivities(&recipe.truth).iter().zip(ROLES)
     {
         let _ = write!(
@@ -275,6 +293,13 @@ fn campaign_toml(recipe: &Recipe) -> String {
         }
         if let (Some(corner), true) = (recipe.faults.high_pass_hz, filtered) {
             let _ = writeln!(text, "high_pass = \"{corner} Hz\"");
+        }
+        if let Some(seed) = recipe.rig_seed {
+            let _ = writeln!(
+                text,
+                "instrument = \"simulated {}, no. {seed}\"",
+                sensitivity.name
+            );
         }
         if role == crate::record::Role::Contact {
             text.push_str("threshold = \"2.5 V\"\n");

@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
 use super::phrase::Phrase;
-use crate::identify::messages::examples;
+use crate::difference;
+use crate::identify;
 use crate::message::{Language, Message};
 
 /// Phrases and messages, and what is printed instead of their English.
@@ -155,7 +156,8 @@ impl Catalog {
 
 /// The English template of every message, by its key.
 fn messages() -> BTreeMap<String, &'static str> {
-    let each = examples().into_iter();
+    let identified = identify::messages::examples();
+    let each = identified.into_iter().chain(difference::examples());
     each.map(|m| (m.key(), m.template(Language::English)))
         .collect()
 }

@@ -1,6 +1,7 @@
 //! What a report shows: the campaign, the answer, and the comparison with the model, as plain data.
 
 use crate::compare::Compared;
+use crate::difference::{Common, Comparison};
 use crate::identify::{Identification, Provenance};
 use crate::record::calibrate::ChannelSetup;
 use crate::report::phrase::{Phrase, Text};
@@ -27,6 +28,19 @@ pub struct ReportContent {
     pub command_line: String,
 }
 
+/// What the report of several campaigns shows.
+#[derive(Debug, Clone)]
+pub struct CampaignsContent {
+    /// Title.
+    pub title: String,
+    /// The campaigns, their differences, what they share.
+    pub comparison: Comparison,
+    /// Version of the program.
+    pub version: String,
+    /// The command that makes this report again.
+    pub command_line: String,
+}
+
 /// What a campaign states about itself.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CampaignFacts {
@@ -40,6 +54,10 @@ pub struct CampaignFacts {
     pub dates: Option<[String; 2]>,
     /// Number of input files.
     pub files: usize,
+    /// Which rig it was measured on, as stated.
+    pub rig: Option<String>,
+    /// What the campaigns on that rig have in common, as stated.
+    pub shared: Vec<Common>,
     /// Nominal values of the rig as stated.
     pub nominal: Vec<NominalValue>,
     /// The channels.

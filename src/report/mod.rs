@@ -7,6 +7,7 @@ mod document;
 mod error;
 pub(crate) mod figures;
 mod html;
+mod latex;
 pub(crate) mod locale;
 mod options;
 mod parameters;
@@ -16,7 +17,9 @@ mod png;
 pub mod style;
 pub(crate) mod theory;
 
-pub use content::{CampaignFacts, DataTable, NominalValue, ProposedPoint, ReportContent, Subject};
+pub use content::{
+    CampaignFacts, CampaignsContent, DataTable, NominalValue, ProposedPoint, ReportContent, Subject,
+};
 pub use error::ReportError;
 pub use options::{Format, Logo, Paper, ReportOptions};
 pub use phrase::{Phrase, Text};
@@ -32,6 +35,8 @@ pub struct Report {
     /// The figures.
     figures: Vec<Figure>,
     options: ReportOptions,
+    /// Stem of the document's file name.
+    name: &'static str,
 }
 
 impl Report {
@@ -44,6 +49,21 @@ impl Report {
             document,
             figures,
             options: options.clone(),
+            name: "report",
+        }
+    }
+
+    /// The same of several campaigns that were compared.
+    pub fn of_campaigns(content: &CampaignsContent, options: &ReportOptions) -> Self {
+        let locale = options.locale();
+        let trend = figures::trend::draw(&content.comparison, locale);
+        let figures: Vec<Figure> = trend.into_iter().collect();
+        let document = document::campaigns(content, &figures, locale);
+        Self {
+            document,
+            figures,
+            options: options.clone(),
+            name: "comparison",
         }
     }
 
@@ -78,10 +98,15 @@ impl Report {
                 .collect()
         };
         match format {
-            Format::Pdf => Ok(vec![("report.pdf".into(), self.pdf()?)]),
-            Format::Html => Ok(vec![("report.html".into(), self.html()?.into_bytes())]),
+            Format::Pdf => Ok(vec![(format!("{}.pdf", self.name), self.pdf()?)]),
+            Format::Html => Ok(vec![(
+                format!("{}.html", self.name),
+                self.html()?.into_bytes(),
+            )]),
             Format::Svg => each("svg", &|f| Ok(f.svg.clone().into_bytes())),
             Format::Png => each("png", &png::png),
+            Format::FigurePdf => each("pdf", &picture::pdf),
+            Format::Tex => Ok(latex::tables(&self.document)),
             Format::Csv => each("csv", &|f| Ok(f.csv.clone().into_bytes())),
         }
     }

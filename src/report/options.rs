@@ -35,13 +35,26 @@ pub enum Format {
     Svg,
     /// Each figure as PNG.
     Png,
+    /// Each figure as PDF of its size, for papers.
+    #[serde(rename = "figure-pdf")]
+    FigurePdf,
+    /// Each table as LaTeX.
+    Tex,
     /// Each figure's data as CSV.
     Csv,
 }
 
 impl Format {
     /// All formats.
-    pub const ALL: [Self; 5] = [Self::Pdf, Self::Html, Self::Svg, Self::Png, Self::Csv];
+    pub const ALL: [Self; 7] = [
+        Self::Pdf,
+        Self::Html,
+        Self::Svg,
+        Self::Png,
+        Self::FigurePdf,
+        Self::Tex,
+        Self::Csv,
+    ];
 
     /// The format's name on the command line.
     pub fn name(self) -> &'static str {
@@ -50,6 +63,8 @@ impl Format {
             Self::Html => "html",
             Self::Svg => "svg",
             Self::Png => "png",
+            Self::FigurePdf => "figure-pdf",
+            Self::Tex => "tex",
             Self::Csv => "csv",
         }
     }
@@ -60,7 +75,8 @@ impl std::str::FromStr for Format {
 
     fn from_str(name: &str) -> Result<Self, String> {
         let found = Self::ALL.into_iter().find(|f| f.name() == name);
-        found.ok_or_else(|| format!("unknown format '{name}'; known are pdf, html, svg, png, csv"))
+        let known = Self::ALL.map(Self::name).join(", ");
+        found.ok_or_else(|| format!("unknown format '{name}'; known are {known}"))
     }
 }
 

@@ -37,6 +37,25 @@ macro_rules! phrases {
 }
 
 phrases! {
+// Campaigns compared
+AgainstTheFirst => "against campaign 1, errors in common cancelled (95 %)", "gegen Messreihe 1, gemeinsame Fehler heben sich auf (95 %)";
+CampaignsCompared => "The campaigns", "Die Messreihen";
+CaptionTrend => "The campaigns in the order given. Grey: each campaign's own estimate with its 95 % interval. Blue: the first campaign's estimate plus the difference from it, with the 95 % interval of the difference, in which the errors that both campaigns have in common cancel.", "Die Messreihen in der angegebenen Reihenfolge. Grau: der Schätzwert jeder Messreihe mit ihrem 95-%-Intervall. Blau: der Schätzwert der ersten Messreihe und der Unterschied zu ihr, mit dem 95-%-Intervall des Unterschieds, in dem sich die gemeinsamen Fehler beider aufheben.";
+DifferenceOf => "difference", "Unterschied";
+DifferencesFromTheFirst => "Differences from campaign 1", "Unterschiede zu Messreihe 1";
+EachAlone => "each campaign alone (95 %)", "jede Messreihe allein (95 %)";
+ErrorsInCommon => "What the campaigns have in common", "Was den Messreihen gemeinsam ist";
+ErrorsOfTheRig => "errors shared by its campaigns", "gemeinsame Fehler seiner Messreihen";
+HowDifferencesAreFound => "Each campaign's joint fit is a Gaussian of its parameters and of what is fitted beside them: gains, corners, delays, errors of clearances, asymmetries, effects. What the campaigns share is one unknown with one prior; what is not shared, is one of each campaign. The differences and their covariance are those of all campaigns together. Scatter between groups of records, disagreement of methods and what the first order of the effects does not hold are taken as independent.", "Die gemeinsame Anpassung jeder Messreihe ist eine Normalverteilung ihrer Parameter und dessen, was daneben angepasst wird: Verstärkungen, Eckfrequenzen, Verzögerungen, Fehler der Spiele, Unsymmetrien, Effekte. Was die Messreihen gemeinsam haben, ist eine Unbekannte mit einem Vorwissen; alles andere ist eine Unbekannte jeder Messreihe. Die Unterschiede und ihre Kovarianz sind die aller Messreihen zusammen. Streuung zwischen Gruppen von Aufzeichnungen, Unterschiede der Verfahren und was die erste Ordnung der Effekte nicht enthält, gelten als unabhängig.";
+IfNothingWereShared => "if nothing were shared", "wenn nichts gemeinsam wäre";
+RelativeDifference => "relative", "relativ";
+SharedBy => "in campaigns", "in den Messreihen";
+TableCampaigns => "The campaigns: joint estimates with half their 95 % interval.", "Die Messreihen: gemeinsame Schätzwerte mit ihrem halben 95-%-Intervall.";
+TableDifferences => "Differences from campaign 1 with half their 95 % interval; beside it what it would be if the campaigns had no error in common; p-value of no change.", "Unterschiede zu Messreihe 1 mit ihrem halben 95-%-Intervall; daneben, wie groß es ohne gemeinsame Fehler wäre; p-Wert dafür, dass sich nichts geändert hat.";
+TableNotShared => "What two campaigns do not share although something speaks for it.", "Was zwei Messreihen nicht gemeinsam haben, obwohl etwas dafür spricht.";
+TableShared => "What is one unknown of several campaigns, and why.", "Was eine Unbekannte mehrerer Messreihen ist, und warum.";
+TestOfNoChange => "All {count} differences together: F = {statistic}, p {p}.", "Alle {count} Unterschiede zusammen: F = {statistic}, p {p}.";
+Trend => "Estimates of the campaigns", "Schätzwerte der Messreihen";
 // Uncertainty
 ContactReach => "contact reach", "Kontaktweg";
 BeyondTheModel => "Beyond the model the rig has, and the intervals allow for: {effects}. The section on the uncertainty tells how much of each, and what helps.", "Über das Modell hinaus hat die Maschine, und die Intervalle berücksichtigen es: {effects}. Der Abschnitt zur Unsicherheit nennt die Größe und was hilft.";

@@ -23,7 +23,10 @@ pub(crate) fn pictures(figure: &Figure) -> Result<Vec<(String, Vec<u8>)>, Report
 }
 
 /// A figure as a PDF of one page. The same figure gives the same bytes.
-fn pdf(figure: &Figure) -> Result<Vec<u8>, ReportError> {
+///
+/// # Errors
+/// [`ReportError::Picture`] where the renderer refuses the figure.
+pub(super) fn pdf(figure: &Figure) -> Result<Vec<u8>, ReportError> {
     let files = [("figure.svg".to_owned(), figure.svg.clone().into_bytes())];
     let world = MemoryWorld::new(PAGE, files).ok_or(ReportError::FileName)?;
     world.pdf(&figure.title).map_err(|e| match e {

@@ -179,6 +179,14 @@ fn words_within_margins(name: &str, boxes: &str) {
 }
 
 #[test]
+fn regress_campaigns_compared_as_text() {
+    let report = Report::of_campaigns(&contents::compared(), &ReportOptions::default());
+    insta::assert_snapshot!("compared", text_of(&report.document));
+    assert_eq!(report.figures[0].overfull, Vec::<String>::new());
+    assert!(report.figures[0].csv.contains("before,restitution"));
+}
+
+#[test]
 fn prop_same_content_gives_same_bytes() {
     let content = kind("cart");
     let options = ReportOptions::default();
@@ -251,7 +259,8 @@ fn every_format_has_its_files() {
         let files = report.files(format).expect("files");
         assert!(!files.is_empty() && files.iter().all(|(_, bytes)| !bytes.is_empty()));
         for (path, bytes) in files {
-            assert!(path.ends_with(format.name()), "{path}");
+            let ending = format.name().trim_start_matches("figure-");
+            assert!(path.ends_with(ending), "{path}");
             if format == Format::Png {
                 assert_eq!(bytes[..8], *b"\x89PNG\r\n\x1a\n");
             }

@@ -23,6 +23,8 @@ pub struct Draw {
     pub clearance_uncertainty_m: Option<f64>,
     /// The settings visited.
     pub plan: Plan,
+    /// Seed of the rig's own errors.
+    pub rig_seed: u64,
     /// Seed of its noise.
     pub seed: u64,
 }
@@ -86,11 +88,35 @@ pub fn draw(seed: u64, index: u64, reach: Reach, rig: &RigSpec) -> Draw {
         faults,
         effects,
         plan,
+        rig_seed: own_seed,
         seed: own_seed,
     }
 }
 
 impl Draw {
+    /// The same with about another number of records, on the same rig.
+    #[must_use]
+    pub fn with_records(mut self, records: usize, rig: &RigSpec) -> Self {
+        self.plan = Plan::for_rig(
+            self.truth.natural_frequency_hz,
+            self.truth.damping_ratio,
+            self.truth.static_deflection_m,
+            records,
+        );
+        self.effects = rig.draw(&mut self.truth, &self.plan, self.rig_seed);
+        self
+    }
+
+    /// The same rig measured again, with the same plan: its parameters may have changed.
+    #[must_use]
+    pub fn again(&self, truth: Truth, seed: u64) -> Self {
+        Self {
+            truth,
+            seed,
+            ..self.clone()
+        }
+    }
+
     /// The laboratory that runs it.
     pub fn laboratory(&self) -> Laboratory<'_> {
         Laboratory {
@@ -98,6 +124,7 @@ impl Draw {
             faults: &self.faults,
             effects: &self.effects,
             plan: &self.plan,
+            rig_seed: self.rig_seed,
             seed: self.seed,
         }
     }

@@ -79,7 +79,9 @@ pub struct Laboratory<'a> {
     pub effects: &'a Effects,
     /// The settings that are visited.
     pub plan: &'a Plan,
-    /// Seed of everything random.
+    /// Seed of the rig's own errors: its gains and corners.
+    pub rig_seed: u64,
+    /// Seed of everything else that is random.
     pub seed: u64,
 }
 
@@ -111,6 +113,7 @@ pub fn blocks<K: Send, W: Send, E: From<ModelError> + Send>(
         faults,
         effects,
         plan,
+        rig_seed,
         seed,
     } = *laboratory;
     let rig = VirtualRig {
@@ -120,8 +123,8 @@ pub fn blocks<K: Send, W: Send, E: From<ModelError> + Send>(
             steps: plan.steps.len(),
         },
         faults,
-        gains: draw_gains(faults, sensitivities(truth).len(), seed),
-        corners: draw_corners(faults, seed),
+        gains: draw_gains(faults, sensitivities(truth).len(), rig_seed),
+        corners: draw_corners(faults, rig_seed),
         seed,
     };
     let parts: Result<Vec<Vec<W>>, E> = sweeps(plan)

@@ -16,6 +16,7 @@ fn impacts(effects: &Effects) -> Vec<Impact> {
         faults: &faults,
         effects,
         plan: &plan,
+        rig_seed: 3,
         seed: 3,
     })
     .unwrap();

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The modules from left to right.
-const MODULES: [&str; 13] = [
+const MODULES: [&str; 14] = [
     "message",
     "signal",
     "record",
@@ -15,6 +15,7 @@ const MODULES: [&str; 13] = [
     "motion",
     "synthetic",
     "identify",
+    "difference",
     "compare",
     "report",
     "campaign",

@@ -131,6 +131,20 @@ fn quantities() -> Vec<Case> {
             ],
         ),
         refused(
+            "something shared between campaigns that is not known",
+            |lab| {
+                lab.edit(
+                    "restitution = 0.9",
+                    "restitution = 0.9\nshared = [\"weather\"]",
+                );
+            },
+            &[
+                "rig.shared",
+                "campaigns cannot share 'weather'",
+                "gains, corners, delays",
+            ],
+        ),
+        refused(
             "a delay that is longer than a period of the drive",
             |lab| lab.edit("sign = 1", "sign = 1\ndelay = \"100 ms\""),
             &[

@@ -120,6 +120,58 @@ fn folders() -> Vec<Case> {
             &["nowhere is not a folder with results", "impactid ingest"],
         ),
         case(
+            "a comparison with a folder that is not there",
+            |_| {},
+            &["compare", "before", "after", "--out", "out"],
+            &[
+                "before: there is no such file or folder",
+                "results folders of `impactid run`",
+            ],
+        ),
+        case(
+            "a comparison with a folder of records",
+            |lab| {
+                std::fs::create_dir(lab.path("records")).expect("a folder");
+                lab.write("records/campaign.toml", "[campaign]\n");
+            },
+            &["compare", "records", "campaign.toml", "--out", "out"],
+            &[
+                "records/identification.json",
+                "this folder holds records, not results: give records/campaign.toml",
+            ],
+        ),
+        case(
+            "a comparison with results of another version",
+            |lab| {
+                std::fs::create_dir(lab.path("old")).expect("a folder");
+                let versions = r#"{"versions": {"impactid": "0.1.0", "identification.json": "1"}}"#;
+                lab.write("old/identification.json", versions);
+            },
+            &["compare", "old", "campaign.toml", "--out", "out"],
+            &[
+                "its layout is version 1, written by impactid 0.1.0; a comparison needs version 3",
+                "impactid run CAMPAIGN.TOML --out old",
+            ],
+        ),
+        case(
+            "a comparison of a campaign with itself",
+            |lab| {
+                let versions = r#"{"versions": {"identification.json": "1"}}"#;
+                lab.write("identification.json", versions);
+            },
+            &[
+                "compare",
+                "campaign.toml",
+                "./campaign.toml",
+                "--out",
+                "out",
+            ],
+            &[
+                "./campaign.toml is given twice",
+                "give each measurement once",
+            ],
+        ),
+        case(
             "init in a folder without records",
             |lab| std::fs::create_dir(lab.path("empty")).expect("a folder"),
             &["init", "empty"],

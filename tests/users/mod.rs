@@ -37,15 +37,17 @@ fn shell(folder: &Path, script: &str) -> String {
     said
 }
 
-/// A Python that has polars or pandas: `IMPACTID_PYTHON`, else the usual names.
+/// A Python that has numpy and polars or pandas: `IMPACTID_PYTHON`, else the usual names.
 fn python() -> Option<String> {
     let named = std::env::var("IMPACTID_PYTHON").ok();
     let usual = ["python3", "python"].map(String::from);
     named.into_iter().chain(usual).find(|python| {
-        ["import polars", "import pandas, pyarrow"].iter().any(|c| {
-            let tried = Command::new(python).args(["-c", c]).output();
-            tried.is_ok_and(|o| o.status.success())
-        })
+        ["import numpy, polars", "import numpy, pandas, pyarrow"]
+            .iter()
+            .any(|c| {
+                let tried = Command::new(python).args(["-c", c]).output();
+                tried.is_ok_and(|o| o.status.success())
+            })
     })
 }
 
@@ -73,17 +75,19 @@ fn the_tutorial_runs_as_written_and_its_results_are_read() {
     read_with_python(lab.path());
 }
 
-/// `docs/read_results.py` reads all that the run left.
+/// `python/examples/read_results.py` reads all that the run left.
 fn read_with_python(folder: &Path) {
     let Some(python) = python() else {
-        println!("skipped: no Python with polars or pandas (IMPACTID_PYTHON names one)");
+        println!("skipped: no Python with numpy and polars or pandas (IMPACTID_PYTHON names one)");
         return;
     };
-    let script = root().join("docs/read_results.py");
+    let script = root().join("python/examples/read_results.py");
     let output = Command::new(python)
         .arg(script)
         .arg("results")
         .current_dir(folder)
+        .env("PYTHONPATH", root().join("python"))
+        .env("IMPACTID_PROGRAM", env!("CARGO_BIN_EXE_impactid"))
         .output()
         .expect("it starts");
     let said = String::from_utf8_lossy(&output.stdout).into_owned();

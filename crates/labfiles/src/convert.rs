@@ -1,4 +1,4 @@
-//! Records of any format to HDF5, Parquet or CSV, self-describing.
+//! Records of any format to HDF5, Parquet, CSV or universal files, self-describing.
 //!
 //! ```
 //! use labfiles::convert::{Options, Target, convert};
@@ -18,6 +18,7 @@ mod csv;
 mod hdf5;
 mod item;
 mod parquet;
+mod uff;
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -36,6 +37,10 @@ pub enum Target {
     Parquet,
     /// One CSV file for one record, a folder of CSV files for several.
     Csv,
+    /// One universal file of functions (58b): binary.
+    Uff,
+    /// The same as text (58), in which numbers have at most about 13 digits.
+    UffText,
 }
 
 impl Target {
@@ -51,7 +56,16 @@ impl Target {
             "h5" | "hdf5" | "hdf" => Some(Self::Hdf5),
             "parquet" | "pq" => Some(Self::Parquet),
             "csv" => Some(Self::Csv),
+            "uff" | "unv" | "uf" => Some(Self::Uff),
             _ => None,
+        }
+    }
+
+    /// How a universal file of this target holds numbers.
+    fn numbers(self) -> uff::Numbers {
+        match self {
+            Self::UffText => uff::Numbers::Text,
+            _ => uff::Numbers::Binary,
         }
     }
 }
@@ -79,9 +93,17 @@ pub fn convert(
     let mut items = items(sources, options);
     let notes = match target {
         Target::Hdf5 => items.iter().filter_map(texts_left_out).collect(),
+        Target::Uff | Target::UffText => {
+            let left_out = items.iter().filter_map(texts_left_out);
+            let single = options.single_precision;
+            let rounded = items
+                .iter()
+                .flat_map(|i| uff::notes(i, target.numbers(), single));
+            left_out.chain(rounded).collect()
+        }
         Target::Parquet | Target::Csv => items.iter().filter_map(filled_up).collect(),
     };
-    if target == Target::Hdf5 {
+    if !matches!(target, Target::Parquet | Target::Csv) {
         items.retain(Item::has_numbers);
     }
     if !items.iter().any(Item::has_numbers) {
@@ -91,6 +113,7 @@ pub fn convert(
         Target::Hdf5 => hdf5::write(&items, out, options)?,
         Target::Parquet => parquet::write(&items, out, options)?,
         Target::Csv => csv::write(&items, out)?,
+        Target::Uff | Target::UffText => uff::write(&items, out, options, target.numbers())?,
     }
     Ok(Converted {
         records: items.len(),
@@ -98,7 +121,7 @@ pub fn convert(
     })
 }
 
-/// A note if a record has texts, which the HDF5 file cannot hold.
+/// A note if a record has texts, which HDF5 and universal files cannot hold.
 fn texts_left_out(item: &Item<'_>) -> Option<String> {
     let texts = item.channels().iter();
     let texts = texts.filter(|c| c.stored == StoredType::Text);

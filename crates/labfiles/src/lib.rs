@@ -30,7 +30,7 @@
 //! was expected, what was found, at which byte, and the remedy), neither a panic nor an allocation
 //! far beyond the file's own size.
 //!
-//! Records are written by [`convert::convert`] (any format to HDF5, Parquet or CSV) and by
+//! Records are written by [`convert::convert`] (any format to HDF5, Parquet, CSV or UFF 58) and by
 //! [`hdf5_write::CampaignWriter`]; [`output`] holds what both rest on: files that appear under their
 //! names when they are complete, or not at all. [`units`] converts to SI.
 

@@ -25,7 +25,7 @@ pub use progress::FitProgress;
 pub use report::FitReport;
 
 /// A finished fit.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fit {
     /// Best parameters.
     pub parameters: Parameters,

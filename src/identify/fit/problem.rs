@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::identify::fit::block::Block;
 use crate::identify::fit::factor::Factor;
@@ -16,7 +17,7 @@ use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Fit, FitError, FitProgress};
 
 /// Gaussian prior on one coordinate.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Prior {
     /// The coordinate.
     pub coordinate: Coordinate,

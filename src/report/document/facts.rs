@@ -17,7 +17,14 @@ pub(super) fn facts(content: &ReportContent, locale: Locale<'_>) -> Vec<(Rich, R
         }
     };
     add(Phrase::Campaign, campaign.name.clone());
-    add(Phrase::Rig, subject(campaign.subject, locale));
+    let rig = [
+        campaign.rig.clone(),
+        Some(subject(campaign.subject, locale)),
+    ];
+    let rig: Vec<String> = rig.into_iter().flatten().collect();
+    add(Phrase::Rig, rig.join(", "));
+    let shared: Vec<&str> = campaign.shared.iter().map(|c| c.name()).collect();
+    add(Phrase::ErrorsOfTheRig, shared.join(", "));
     add(
         Phrase::Laboratory,
         campaign.laboratory.clone().unwrap_or_default(),

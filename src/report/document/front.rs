@@ -24,7 +24,7 @@ pub(super) fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
         summary: Rich::from(drawn.locale.sentences(&id.verdict.sentences)),
         findings: findings(content, drawn.locale),
         answers: answers(content, drawn.locale),
-        specimens: tables::specimens(content, drawn.locale),
+        specimens: tables::specimens(content, drawn.locale).map(|t| t.named("specimens")),
         agree: match id.agreement.agree {
             Some(true) => "yes",
             Some(false) => "no",

@@ -1,5 +1,6 @@
 //! The document: from content and figures to plain document data, and from there to PDF.
 
+mod campaigns;
 mod captions;
 mod conventions;
 mod drawn;
@@ -14,6 +15,7 @@ mod tables;
 mod verdict;
 pub(super) mod world;
 
+pub(super) use campaigns::campaigns;
 pub(super) use pdf::pdf;
 
 use drawn::Drawn;

@@ -208,6 +208,9 @@ impl Align {
 /// A table.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct Table {
+    /// Stem of the file that it is written into by itself; empty for none.
+    #[serde(skip)]
+    pub name: &'static str,
     /// Caption; empty for none.
     pub caption: Rich,
     /// Heads of the columns.
@@ -235,6 +238,7 @@ impl Table {
     /// A table of some rows, without caption and heads, set once and in the usual size.
     pub(crate) fn of(rows: Vec<Vec<Rich>>) -> Self {
         Self {
+            name: "",
             caption: Rich::default(),
             heads: Vec::new(),
             align: Vec::new(),
@@ -245,6 +249,40 @@ impl Table {
             dense: false,
             columns_text: Vec::new(),
         }
+    }
+
+    /// The same table with a name for a file of its own.
+    pub(crate) fn named(self, name: &'static str) -> Self {
+        Self { name, ..self }
+    }
+
+    /// The table as a part of a section.
+    pub(crate) fn block(self, name: &'static str) -> Block {
+        Block::Table(self.named(name))
+    }
+
+    /// The cells, row by row, of a dense table too.
+    pub(crate) fn cells(&self) -> Vec<Vec<Rich>> {
+        if !self.dense {
+            return self.rows.clone();
+        }
+        let columns: Vec<Vec<&str>> = self
+            .columns_text
+            .iter()
+            .map(|c| c.split('\n').collect())
+            .collect();
+        let rows = columns.iter().map(Vec::len).max().unwrap_or(0);
+        let cell = |column: &Vec<&str>, row: usize| {
+            let text = column.get(row).copied().unwrap_or_default();
+            Rich(vec![Run {
+                text: text.to_owned(),
+                italic: false,
+                level: richtext::Level::Base,
+            }])
+        };
+        (0..rows)
+            .map(|row| columns.iter().map(|c| cell(c, row)).collect())
+            .collect()
     }
 
     /// The same table with its columns as text, which is set far faster and drops all markup.

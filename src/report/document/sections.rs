@@ -50,7 +50,7 @@ fn appendix(title: String, blocks: Vec<Block>) -> Option<Section> {
     })
 }
 
-fn section(title: String, new_page: bool, blocks: Vec<Block>) -> Option<Section> {
+pub(super) fn section(title: String, new_page: bool, blocks: Vec<Block>) -> Option<Section> {
     (!blocks.is_empty()).then(|| Section {
         title: Rich::from(title),
         level: 1,
@@ -60,7 +60,7 @@ fn section(title: String, new_page: bool, blocks: Vec<Block>) -> Option<Section>
     })
 }
 
-fn paragraph(text: impl AsRef<str>) -> Block {
+pub(super) fn paragraph(text: impl AsRef<str>) -> Block {
     Block::Paragraph {
         text: Rich::from(text),
     }
@@ -69,7 +69,7 @@ fn paragraph(text: impl AsRef<str>) -> Block {
 fn regions(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
     blocks.extend(drawn.figures_block(&[("map", &map_caption(content, drawn.locale))]));
-    blocks.extend(tables::brackets(content, drawn.locale).map(Block::Table));
+    blocks.extend(tables::brackets(content, drawn.locale).map(|t| t.block("brackets")));
     section(
         drawn.locale.translate(Phrase::RegionsOfMotion),
         true,
@@ -117,7 +117,8 @@ fn comparisons(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
 
 /// What was found of each specimen, by method.
 fn specimens(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
-    let table = tables::specimen_methods(content, drawn.locale).map(Block::Table);
+    let table =
+        tables::specimen_methods(content, drawn.locale).map(|t| t.block("specimen_methods"));
     let mut blocks: Vec<Block> = table.into_iter().collect();
     for (specimen, result) in &content.identification.specimens {
         for (method, result) in &result.methods {
@@ -138,9 +139,9 @@ fn specimens(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
 fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks = Vec::new();
     if content.identification.specimens.is_empty() {
-        blocks.extend(tables::methods(content, drawn.locale).map(Block::Table));
+        blocks.extend(tables::methods(content, drawn.locale).map(|t| t.block("methods")));
     }
-    blocks.extend(tables::agreement(content, drawn.locale).map(Block::Table));
+    blocks.extend(tables::agreement(content, drawn.locale).map(|t| t.block("agreement")));
     let remarks = content
         .identification
         .methods
@@ -153,7 +154,7 @@ fn methods(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
                 .map(move |r| paragraph(format!("{name}: {}", drawn.locale.sentence(r))))
         });
     blocks.extend(remarks);
-    blocks.extend(tables::further(content, drawn.locale).map(Block::Table));
+    blocks.extend(tables::further(content, drawn.locale).map(|t| t.block("further")));
     for group in captions::method_figures(content, drawn.locale) {
         let named: Vec<(&str, &str)> = group
             .iter()
@@ -175,19 +176,19 @@ fn uncertainty(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
     let mut blocks: Vec<Block> = beyond
         .map(|finding| paragraph(drawn.locale.sentence(finding)))
         .collect();
-    blocks.extend(tables::budget(content, drawn.locale).map(Block::Table));
+    blocks.extend(tables::budget(content, drawn.locale).map(|t| t.block("budget")));
     let title = Phrase::UncertaintyAndEffects;
     section(drawn.locale.translate(title), false, blocks)
 }
 
 fn left_out(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
-    let table = tables::left_out(content, drawn.locale).map(Block::Table);
+    let table = tables::left_out(content, drawn.locale).map(|t| t.block("left_out"));
     let title = drawn.locale.translate(Phrase::WhatWasLeftOut);
     section(title, false, table.into_iter().collect())
 }
 
 fn records(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
-    let table = tables::records(content, drawn.locale).map(Block::Table);
+    let table = tables::records(content, drawn.locale).map(|t| t.block("records"));
     appendix(
         drawn.locale.translate(Phrase::AllRecords),
         table.into_iter().collect(),
@@ -228,7 +229,7 @@ fn provenance(content: &ReportContent, drawn: &Drawn<'_>) -> Option<Section> {
         });
     }
     blocks.extend(versions(content, drawn.locale));
-    blocks.extend(tables::hashes(content, drawn.locale).map(Block::Table));
+    blocks.extend(tables::hashes(content, drawn.locale).map(|t| t.block("hashes")));
     if !content.provenance.settings.is_null() {
         blocks.push(paragraph(
             drawn.locale.translate(Phrase::SettingsAsResolved),

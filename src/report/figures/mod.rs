@@ -27,6 +27,7 @@ pub(super) mod regions;
 pub(super) mod residuals;
 pub(super) mod resonance;
 pub(super) mod richtext;
+pub(super) mod trend;
 pub(super) mod units;
 
 pub(crate) use figure::{Figure, numbered};

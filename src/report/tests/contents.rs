@@ -5,11 +5,18 @@ use std::sync::OnceLock;
 
 use crate::compare::fixture::{self, Identified};
 use crate::compare::{ImpactScatter, RecordRow};
-use crate::identify::Provenance;
+use crate::difference::{
+    Comparison, Difference, EqualityTest, NotShared, Remark, SeparateNuisance, SharedNuisance,
+    Summary, WhyShared,
+};
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::{Provenance, VerdictKind};
 use crate::motion::{Motion, Undetermined};
 use crate::record::calibrate::{ChannelKey, ChannelSetup};
 use crate::record::{Role, Sweep};
-use crate::report::{CampaignFacts, NominalValue, Phrase, ReportContent, Subject};
+use crate::report::{
+    CampaignFacts, CampaignsContent, NominalValue, Phrase, ReportContent, Subject,
+};
 
 /// Every kind by its name.
 pub(super) fn kinds() -> &'static [(&'static str, ReportContent)] {
@@ -157,4 +164,56 @@ fn unidentified() -> ReportContent {
         (r.eta, r.rho) = (None, None);
     }
     content
+}
+
+/// Two campaigns on one rig, between which R has fallen.
+pub(super) fn compared() -> CampaignsContent {
+    let parameters = fixture::whole().identification.joint.parameters.clone();
+    let campaign = |name: &str| Summary {
+        name: name.into(),
+        measured: Some("May".into()),
+        synthetic: true,
+        verdict: VerdictKind::Identified,
+        parameters: parameters.clone(),
+    };
+    let test = EqualityTest {
+        statistic: 12.0,
+        differences: 4,
+        degrees_of_freedom: Some(20.0),
+        p_value: 1e-5,
+    };
+    CampaignsContent {
+        title: "Before and after".into(),
+        comparison: Comparison {
+            campaigns: vec![campaign("before"), campaign("after")],
+            differences: vec![Difference {
+                campaign: 1,
+                parameter: Coordinate::Restitution,
+                value: -0.03,
+                standard_error: 0.001,
+                interval95: [-0.032, -0.028],
+                relative: [-0.033, -0.035, -0.031],
+                degrees_of_freedom: None,
+                independent_interval95: [-0.036, -0.024],
+                p_value: 1e-6,
+            }],
+            unchanged: Some(test),
+            unchanged_by_parameter: vec![(Coordinate::Restitution, test)],
+            shared: vec![SharedNuisance {
+                coordinate: Coordinate::Gap(2),
+                clearance_m: Some(1.5e-3),
+                campaigns: vec![0, 1],
+                why: WhyShared::StatedAsShared,
+            }],
+            separate: vec![SeparateNuisance {
+                coordinate: Coordinate::Gain(0),
+                clearance_m: None,
+                campaigns: [0, 1],
+                why: NotShared::StatedOtherwise,
+            }],
+            remarks: vec![Remark::NothingShared],
+        },
+        version: "0.2.0".into(),
+        command_line: "impactid compare before after --out compared".into(),
+    }
 }

@@ -31,7 +31,9 @@ fn marks_for_phrases() -> catalog::Catalog {
         text.push_str(&format!("{key} = \"⟦{i}⟧{values}\"\n"));
     }
     text.push_str("\n[findings]\n");
-    for (i, message) in examples().iter().enumerate() {
+    let all = examples().into_iter();
+    let all = all.chain(crate::difference::examples());
+    for (i, message) in all.enumerate() {
         let names: String = message
             .values()
             .iter()
@@ -196,9 +198,11 @@ fn marked() -> Vec<Report> {
         ..ReportOptions::default()
     };
     let each = kinds().iter().map(|(_, content)| content);
-    each.chain([&unlucky(), &real_rig()])
-        .map(|content| Report::new(content, &options))
-        .collect()
+    let (unlucky, real) = (unlucky(), real_rig());
+    let single = each.chain([&unlucky, &real]);
+    let single = single.map(|content| Report::new(content, &options));
+    let compared = Report::of_campaigns(&super::contents::compared(), &options);
+    single.chain([compared]).collect()
 }
 
 /// All source files of a folder.

@@ -90,6 +90,8 @@ changes! {
     ("rig.mass_x", Identify, weighed, Replace(r#"mass_x = "1 kg""#, r#"mass_x = "1.02 kg""#));
     ("rig.mass_y", Identify, weighed, Replace(r#"mass_y = "1 kg""#, r#"mass_y = "1.02 kg""#));
     ("rig.mass_uncertainty", Identify, weighed, Add("rig", r#"mass_uncertainty = "5 %""#));
+    ("rig.name", Html, one_record, Add("rig", r#"name = "rig 2""#));
+    ("rig.shared", Html, one_record, Add("rig", r#"shared = ["gains"]"#));
     ("rig.effects", Identify, synthetic, Add("rig", r#"effects = ["drift"]"#));
     ("rig.clearance_uncertainty", Identify, synthetic, Add("rig", r#"clearance_uncertainty = "50 um""#));
     ("channels.ROLE.channel", Classify, with_spare_channels, Replace(r#""vx""#, r#""spare""#));

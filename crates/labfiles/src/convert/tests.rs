@@ -366,3 +366,120 @@ fn every_kind_of_channel_comes_back_from_every_target() {
         }
     }
 }
+
+/// A record of numbers that need all their bits, with attributes, and one without a rate.
+fn bits(dir: &Path) -> Vec<Box<dyn Source>> {
+    let made = dir.join("made.h5");
+    let mut writer = CampaignWriter::create(&made);
+    let odd: Vec<f64> = (0..257).map(|i| (f64::from(i) * 0.1).sin() / 3.0).collect();
+    let even: Vec<f64> = odd.iter().map(|v| 1e-7 * v.exp()).collect();
+    for (name, rate) in [
+        ("run 1", Some(2000.0)),
+        ("run 2", Some(2000.0)),
+        ("run 3", None),
+    ] {
+        let channels = vec![
+            ColumnToWrite::numbers("velocity of mass x", "mm/s", odd.clone()),
+            ColumnToWrite::numbers("displacement of mass x", "m", even.clone()),
+        ];
+        let record = RecordTable {
+            name: name.to_owned(),
+            sample_rate_hz: rate,
+            channels,
+            attributes: vec![
+                ("clearance_m".to_owned(), 5e-4.into()),
+                ("sweep".to_owned(), "up".into()),
+            ],
+        };
+        writer.add(record).unwrap();
+    }
+    writer.finish().unwrap();
+    vec![open(&made).unwrap()]
+}
+
+#[test]
+fn universal_files_keep_every_bit_in_binary_and_thirteen_digits_as_text() {
+    let dir = tempfile::tempdir().unwrap();
+    let sources = bits(dir.path());
+    for (target, digits) in [(Target::Uff, 0.0), (Target::UffText, 1e-12)] {
+        let out = dir.path().join("out.uff");
+        let done = convert(&sources, target, &out, &Options::default()).unwrap();
+        assert_eq!(done.records, 3);
+        assert_eq!(
+            done.notes.len(),
+            if digits > 0.0 { 3 } else { 0 },
+            "{:?}",
+            done.notes
+        );
+        let back = open(&out).unwrap();
+        assert_eq!(back.datasets().len(), 3);
+        for (d, info) in back.datasets().iter().enumerate() {
+            assert_eq!(info.attributes["clearance_m"], "0.0005");
+            assert_eq!(info.attributes["sweep"], "up");
+            assert_eq!(info.attributes["id2"], format!("run {}", d + 1));
+            assert_eq!(info.sample_rate_hz(), (d < 2).then_some(2000.0));
+            for name in ["velocity of mass x", "displacement of mass x"] {
+                let index = info.channel_index(name).unwrap();
+                let unit = if name.starts_with('v') { "mm/s" } else { "m" };
+                assert_eq!(info.channels[index].unit.as_deref(), Some(unit));
+                let (Samples::Real(a), Samples::Real(b)) =
+                    (samples(&*sources[0], d, name), samples(&*back, d, name))
+                else {
+                    panic!("real numbers")
+                };
+                assert_eq!(a.len(), b.len());
+                let near = |(a, b): (&f64, &f64)| (a - b).abs() <= digits * a.abs();
+                assert!(a.iter().zip(&b).all(near), "{name}");
+            }
+        }
+    }
+}
+
+/// The bytes of a file that pyuff has read back bit by bit (`data/goldens/check_written.py`).
+#[test]
+fn valid_universal_files_are_those_that_pyuff_has_read() {
+    let dir = tempfile::tempdir().unwrap();
+    let sources = bits(dir.path());
+    let goldens = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/goldens");
+    for (target, name) in [
+        (Target::Uff, "written_binary.uff"),
+        (Target::UffText, "written_text.uff"),
+    ] {
+        let out = dir.path().join("out.uff");
+        convert(&sources, target, &out, &Options::default()).unwrap();
+        let written = std::fs::read(&out).unwrap();
+        let golden = goldens.join(name);
+        if std::env::var_os("UPDATE_GOLDENS").is_some() {
+            std::fs::write(&golden, &written).unwrap();
+        }
+        assert!(
+            written == std::fs::read(&golden).unwrap(),
+            "{name} has changed"
+        );
+    }
+}
+
+#[test]
+fn a_rate_that_the_columns_do_not_hold_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let made = dir.path().join("made.h5");
+    let mut writer = CampaignWriter::create(&made);
+    let record = RecordTable {
+        name: "run".to_owned(),
+        sample_rate_hz: Some(44_100.0),
+        channels: vec![ColumnToWrite::numbers("x", "V", vec![1.0, 2.0])],
+        attributes: Vec::new(),
+    };
+    writer.add(record).unwrap();
+    writer.finish().unwrap();
+    let sources = [open(&made).unwrap()];
+    let out = dir.path().join("out.uff");
+    let done = convert(&sources, Target::Uff, &out, &Options::default()).unwrap();
+    assert!(
+        done.notes[0].contains("instead of 44100 Hz"),
+        "{:?}",
+        done.notes
+    );
+    let rate = open(&out).unwrap().datasets()[0].sample_rate_hz().unwrap();
+    assert!((rate / 44_100.0 - 1.0).abs() < 1e-6);
+}

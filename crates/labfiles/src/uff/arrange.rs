@@ -216,6 +216,17 @@ fn ordinate(sets: &Sets, function: &Function, name: String) -> ChannelInfo {
     }
 }
 
+/// Attributes that a line holds as `name=value; name=value`, as our own files have them.
+fn pairs(line: &str) -> Option<Vec<(String, String)>> {
+    let pair = |text: &str| {
+        let (name, value) = text.split_once('=')?;
+        let (name, value) = (name.trim(), value.trim());
+        let word = !name.is_empty() && !name.contains(char::is_whitespace);
+        word.then(|| (name.to_owned(), value.to_owned()))
+    };
+    line.split(';').map(pair).collect()
+}
+
 /// Names and unit system of the file, and the identification of the record. The file's names go
 /// with its first datasets only, so that many small records do not multiply them.
 fn attributes(sets: &Sets, first: &Function, number: usize) -> BTreeMap<String, String> {
@@ -232,6 +243,9 @@ fn attributes(sets: &Sets, first: &Function, number: usize) -> BTreeMap<String, 
         .enumerate()
         .filter(|(_, line)| !line.is_empty());
     all.extend(lines.map(|(index, line)| (format!("id{}", index + 1), line.clone())));
+    for line in &first.header.lines[3..] {
+        all.extend(pairs(line).into_iter().flatten());
+    }
     all.insert("load_case_id".into(), first.header.load_case.to_string());
     all
 }

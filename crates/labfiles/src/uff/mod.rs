@@ -13,7 +13,7 @@
 //!   abscissa (frequency, or uneven time) is the dataset's first channel.
 //! - The unit is that of the ordinate (`(numerator)/(denominator)` of a frequency response);
 //!   if it is missing and a set 164 names the unit system, it follows from the data type.
-//! - Sets 151 and 164 give attributes. All other sets are skipped with a note.
+//! - Sets 151 and 164 give attributes, and lines 4 and 5 of a function where they are `name=value; …`. All other sets are skipped with a note.
 //! - A function that holds fewer points than its header states is read as far as it goes, with a
 //!   note: long throughputs are often cut.
 

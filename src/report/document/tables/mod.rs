@@ -2,11 +2,13 @@
 
 mod brackets;
 mod budget;
+mod campaigns;
 mod estimates;
 mod records;
 
 pub(super) use brackets::brackets;
 pub(super) use budget::budget;
+pub(super) use campaigns::{campaigns, differences, p_equals, separate, shared};
 pub(super) use estimates::{agreement, methods, specimen_methods, specimens};
 pub(super) use records::records;
 

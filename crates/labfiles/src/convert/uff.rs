@@ -1,0 +1,373 @@
+//! Records to a universal file: one function (set 58) for each channel, binary or as text.
+//!
+//! Line 1 of a function is the channel's name, line 2 the record's, line 3 the time, lines 4 and 5 hold
+//! attributes as `name=value; …` as far as they go in; the load case numbers the records, so that readers
+//! tell their functions apart. Of an even abscissa of time the step is written in the thirteen columns that
+//! the format has for it; a record without a rate has the sample's number as abscissa.
+
+use std::io::Write;
+use std::path::Path;
+
+use crate::convert::item::{ConvertError, Item, Options, io};
+use crate::output::write_whole_or;
+use crate::source::{ChannelInfo, Samples};
+use crate::units::{Dimension, parse_unit};
+
+/// How numbers are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Numbers {
+    /// IEEE 754, little-endian (58b).
+    Binary,
+    /// Decimal, in fields of 13 or 20 columns (58).
+    Text,
+}
+
+/// Columns of a line of identification.
+const LINE: usize = 80;
+/// Columns of a label of an axis.
+const LABEL: usize = 20;
+/// Columns of a number of record 7, and of one in single precision.
+const NARROW: usize = 13;
+/// Columns of a number in double precision.
+const WIDE: usize = 20;
+/// Lines of text before binary numbers.
+const HEADER_LINES: usize = 11;
+
+/// Write all records; texts are left out.
+pub(super) fn write(
+    items: &[Item<'_>],
+    out: &Path,
+    options: &Options,
+    numbers: Numbers,
+) -> Result<(), ConvertError> {
+    let read: Vec<_> = items
+        .iter()
+        .map(|item| Ok((item, item.read()?)))
+        .collect::<Result<_, ConvertError>>()?;
+    let fill = |mut file: &mut dyn Write| {
+        for (number, (item, samples)) in read.iter().enumerate() {
+            let record = Record {
+                item,
+                number: number + 1,
+                numbers,
+                single: options.single_precision,
+            };
+            record.write(samples, &mut file)?;
+        }
+        Ok(())
+    };
+    write_whole_or(out, |mut file| fill(&mut file), |e: std::io::Error| e).map_err(io(out))?;
+    Ok(())
+}
+
+/// Notes on what the file cannot hold of a record.
+pub(super) fn notes(item: &Item<'_>, numbers: Numbers, single: bool) -> Vec<String> {
+    let mut notes = Vec::new();
+    let name = &item.name;
+    if let Some(rate) = item.sample_rate_hz() {
+        let step = fitted(rate.recip(), NARROW);
+        let kept = step.trim().parse::<f64>().map_or(0.0, f64::recip);
+        if kept != rate {
+            notes.push(format!(
+                "record '{name}': the file states the sample rate as {kept} Hz instead of {rate} Hz: its \
+                 step has thirteen columns; HDF5 and Parquet keep it"
+            ));
+        }
+    }
+    if numbers == Numbers::Text {
+        let digits = if single { 6 } else { 13 };
+        notes.push(format!(
+            "record '{name}': numbers that need more than about {digits} digits are rounded, as text \
+             has fields of fixed width; the binary form (--to uff) keeps every bit"
+        ));
+    }
+    notes
+}
+
+/// A record on its way into the file.
+struct Record<'a> {
+    item: &'a Item<'a>,
+    number: usize,
+    numbers: Numbers,
+    single: bool,
+}
+
+impl Record<'_> {
+    fn write(&self, samples: &[Samples], out: &mut dyn Write) -> std::io::Result<()> {
+        let named = self.item.names().into_iter().zip(self.item.channels());
+        for ((name, info), samples) in named.zip(samples) {
+            let (values, complex) = match samples {
+                Samples::Real(values) => (values.clone(), false),
+                Samples::Complex(values) => (
+                    values.iter().flat_map(|(re, im)| [*re, *im]).collect(),
+                    true,
+                ),
+                Samples::Text(_) => continue,
+            };
+            self.function(&name, info, (&values, complex), out)?;
+        }
+        Ok(())
+    }
+
+    fn function(
+        &self,
+        name: &str,
+        info: &ChannelInfo,
+        (values, complex): (&[f64], bool),
+        out: &mut dyn Write,
+    ) -> std::io::Result<()> {
+        writeln!(out, "    -1")?;
+        let width = if self.single { 4 } else { 8 };
+        match self.numbers {
+            Numbers::Text => writeln!(out, "    58")?,
+            // byte order 1: little-endian, format 2: IEEE 754
+            Numbers::Binary => writeln!(
+                out,
+                "    58b{:6}{:6}{HEADER_LINES:12}{:12}{:6}{:6}{:12}{:12}",
+                1,
+                2,
+                values.len() * width,
+                0,
+                0,
+                0,
+                0
+            )?,
+        }
+        let points = values.len() / if complex { 2 } else { 1 };
+        self.header(name, info, (points, complex), out)?;
+        match self.numbers {
+            Numbers::Text => self.text(values, out)?,
+            Numbers::Binary => self.binary(values, out)?,
+        }
+        writeln!(out, "    -1")
+    }
+
+    /// Records 1 to 11 of a function.
+    fn header(
+        &self,
+        name: &str,
+        info: &ChannelInfo,
+        (points, complex): (usize, bool),
+        out: &mut dyn Write,
+    ) -> std::io::Result<()> {
+        let [fourth, fifth] = self.attributes();
+        let time = info.start_time.as_deref().and_then(date);
+        let lines = [
+            line(name),
+            line(&self.item.name),
+            line(&time.unwrap_or_default()),
+            fourth,
+            fifth,
+        ];
+        for text in lines {
+            writeln!(out, "{text}")?;
+        }
+        // time response, load case, no names and nodes of freedoms
+        writeln!(
+            out,
+            "{:5}{:10}{:5}{:10} {:10}{:10}{:4} {:10}{:10}{:4}",
+            1, self.number, 0, self.number, "NONE", 0, 0, "NONE", 0, 0
+        )?;
+        let kind =
+            2 + 2 * u8::from(!self.single) + u8::from(complex) * if self.single { 3 } else { 2 };
+        let step = self.item.sample_rate_hz().map_or(1.0, f64::recip);
+        writeln!(
+            out,
+            "{kind:10}{points:10}{:10}{}{}{}",
+            1,
+            fitted(0.0, NARROW),
+            fitted(step, NARROW),
+            fitted(0.0, NARROW)
+        )?;
+        let timed = self.item.sample_rate_hz().is_some();
+        let abscissa = match timed {
+            true => axis(17, 0, "time", Some("s")),
+            false => axis(0, 0, "sample", None),
+        };
+        let (kind, length) = data_type(info.unit.as_deref());
+        let ordinate = axis(kind, length, "NONE", info.unit.as_deref());
+        let none = axis(0, 0, "NONE", None);
+        for axis in [abscissa, ordinate, none.clone(), none] {
+            writeln!(out, "{axis}")?;
+        }
+        Ok(())
+    }
+
+    /// The record's attributes in two lines, as far as they go in.
+    fn attributes(&self) -> [String; 2] {
+        let mut lines = [String::new(), String::new()];
+        for (name, value) in self.item.described() {
+            let pair = format!("{name}={value}");
+            let plain = pair.is_ascii() && !pair.contains([';', '\n', '\r']);
+            let fits = |l: &&mut String| l.len() + 2 + pair.len() <= LINE;
+            let room = lines.iter_mut().find(fits).filter(|_| plain);
+            if let Some(line) = room {
+                if !line.is_empty() {
+                    line.push_str("; ");
+                }
+                line.push_str(&pair);
+            }
+        }
+        lines.map(|l| line(&l))
+    }
+
+    fn binary(&self, values: &[f64], out: &mut dyn Write) -> std::io::Result<()> {
+        for value in values {
+            match self.single {
+                true => out.write_all(&single(*value).to_le_bytes())?,
+                false => out.write_all(&value.to_le_bytes())?,
+            }
+        }
+        writeln!(out)
+    }
+
+    fn text(&self, values: &[f64], out: &mut dyn Write) -> std::io::Result<()> {
+        let (columns, width) = if self.single { (6, NARROW) } else { (4, WIDE) };
+        for row in values.chunks(columns) {
+            for value in row {
+                out.write_all(fitted(*value, width).as_bytes())?;
+            }
+            writeln!(out)?;
+        }
+        Ok(())
+    }
+}
+
+/// A number in single precision.
+#[expect(clippy::cast_possible_truncation, reason = "it was asked for")]
+fn single(value: f64) -> f32 {
+    value as f32
+}
+
+/// A line of identification: blanks where a file would be read otherwise, NONE for nothing.
+fn line(text: &str) -> String {
+    let clean: String = text
+        .chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect();
+    let short = cut(clean.trim(), LINE);
+    if short.is_empty() {
+        "NONE".to_owned()
+    } else {
+        short.to_owned()
+    }
+}
+
+/// At most so many bytes of a text, in whole characters.
+fn cut(text: &str, most: usize) -> &str {
+    let ends = text.char_indices().map(|(at, c)| at + c.len_utf8());
+    let end = ends.take_while(|end| *end <= most).last().unwrap_or(0);
+    &text[..end]
+}
+
+/// Records 8 to 11: specific data type, exponents of length, force, temperature, label, unit.
+fn axis(kind: u32, length: i32, label: &str, unit: Option<&str>) -> String {
+    let unit = unit.map_or("NONE", |u| cut(u, LABEL));
+    // columns count bytes, so that names with signs beyond ASCII stay in theirs
+    let padded = |text: &str| format!("{text}{}", " ".repeat(LABEL.saturating_sub(text.len())));
+    format!(
+        "{kind:10}{length:5}{:5}{:5} {} {}",
+        0,
+        0,
+        padded(label),
+        padded(unit)
+    )
+}
+
+/// Specific data type of a unit and the exponent of its length.
+fn data_type(unit: Option<&str>) -> (u32, i32) {
+    match unit.and_then(parse_unit).map(|u| u.dimension) {
+        Some(Dimension::Length) => (8, 1),
+        Some(Dimension::Velocity) => (11, 1),
+        Some(Dimension::Acceleration) => (12, 1),
+        Some(Dimension::Force) => (13, 0),
+        Some(Dimension::Time) => (17, 0),
+        Some(Dimension::Frequency) => (18, 0),
+        _ => (0, 0),
+    }
+}
+
+/// A number in a field of so many columns, a blank before it: its shortest text if that goes in, else with
+/// as many digits as do.
+fn fitted(value: f64, width: usize) -> String {
+    let room = width - 1;
+    let shortest = format!("{value:E}");
+    if shortest.len() <= room {
+        return format!("{shortest:>width$}");
+    }
+    let mut digits = room;
+    loop {
+        let text = format!("{value:.digits$E}");
+        if text.len() <= room || digits == 0 {
+            return format!("{text:>width$}");
+        }
+        digits -= 1;
+    }
+}
+
+/// A time such as `2016-04-18T13:49:58` as `18-Apr-16 13:49:58`; `None` for another form or another
+/// century.
+fn date(iso: &str) -> Option<String> {
+    const MONTHS: [&str; 12] = [
+        "Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec",
+    ];
+    let (date, clock) = iso.split_once(['T', ' '])?;
+    let mut parts = date.split('-');
+    let (year, month, day) = (parts.next()?, parts.next()?, parts.next()?);
+    let (year, month): (u32, usize) = (year.parse().ok()?, month.parse().ok()?);
+    let day: u32 = day.parse().ok()?;
+    let month = MONTHS.get(month.checked_sub(1)?)?;
+    let clock = clock
+        .get(..8)
+        .filter(|c| c.bytes().all(|b| b.is_ascii_digit() || b == b':'))?;
+    (1970..2070)
+        .contains(&year)
+        .then(|| format!("{day:02}-{month}-{:02} {clock}", year % 100))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stay_in_their_columns_and_keep_what_goes_in() {
+        for value in [
+            0.0,
+            -0.5,
+            1e-3,
+            -1.25e-7,
+            1.0 / 3.0,
+            -1e100 / 3.0,
+            f64::MIN_POSITIVE,
+        ] {
+            for width in [NARROW, WIDE] {
+                let text = fitted(value, width);
+                assert_eq!(text.len(), width, "{text}");
+                assert!(text.starts_with(' '), "{text}");
+                let back: f64 = text.trim().parse().expect("a number");
+                let least = if width == WIDE { 1e-11 } else { 1e-4 };
+                assert!(
+                    (back - value).abs() <= least * value.abs(),
+                    "{value} {text}"
+                );
+            }
+        }
+        assert_eq!(fitted(5e-4, NARROW).trim(), "5E-4");
+    }
+
+    #[test]
+    fn times_are_those_of_the_format() {
+        assert_eq!(
+            date("2016-04-18T13:49:58Z").as_deref(),
+            Some("18-Apr-16 13:49:58")
+        );
+        assert_eq!(date("1890-04-18T13:49:58"), None);
+        assert_eq!(date("yesterday"), None);
+    }
+
+    #[test]
+    fn texts_are_cut_between_characters() {
+        assert_eq!(cut("m/s²", 4), "m/s");
+        assert_eq!(cut("Novák", 80), "Novák");
+    }
+}

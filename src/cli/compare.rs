@@ -1,0 +1,243 @@
+//! `impactid compare`: what changed between campaigns.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+
+use super::load::load_campaign;
+use super::progress::Progress;
+use super::report_args::quoted;
+use super::stdout::{print, print_json};
+use super::{Exit, Failure, Verbosity, interrupt};
+use crate::campaign::written::Paper as WrittenPaper;
+use crate::difference::{self, Campaign, Comparison};
+use crate::pipeline::campaigns::{self, Wanted};
+use crate::pipeline::{self, Observed};
+use crate::report::catalog::Catalog;
+use crate::report::{Format, Paper, ReportOptions};
+use labfiles::output::Lock;
+
+/// Arguments of `impactid compare`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLE)]
+pub(super) struct Compare {
+    /// Results folders, or campaign.toml files, which are identified first; the first is the reference
+    #[arg(value_name = "CAMPAIGN", required = true, num_args = 1..)]
+    campaigns: Vec<PathBuf>,
+    /// Folder for comparison.json, comparison.csv and the report; created if it does not exist
+    #[arg(long, short, value_name = "DIR")]
+    out: PathBuf,
+    /// Formats of the report: pdf, html; of its figures: svg, png, figure-pdf; of its tables: tex
+    /// (several: pdf,html)
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        default_value = "pdf,html"
+    )]
+    format: Vec<Format>,
+    /// Title of the report
+    #[arg(long, value_name = "TEXT", default_value = "Campaigns compared")]
+    title: String,
+    /// Language of the report
+    #[arg(long, value_name = "LANGUAGE", value_enum, default_value = "en")]
+    language: Language,
+    /// Paper size
+    #[arg(long, value_name = "PAPER", value_enum)]
+    paper: Option<WrittenPaper>,
+    /// Print numbers with a decimal comma
+    #[arg(long)]
+    decimal_comma: bool,
+    /// Print JSON instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+/// Language of the report.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Language {
+    /// English
+    En,
+    /// German
+    De,
+}
+
+const EXAMPLE: &str = "\
+Example:
+  impactid compare results-before/ results-after/ --out comparison/
+  impactid compare 2023/ 2024/ 2025/campaign.toml --out trend/ --format pdf,html
+
+Each campaign is compared with the first. Errors that campaigns have in common cancel: those of channels
+with the same instrument (a serial number in the channel's key `instrument`), and what both campaigns state
+in campaign.toml as `[rig] shared = [...]`. A campaign with several specimens gives one entry for each.
+Outputs: comparison.json, comparison.csv, comparison.pdf, comparison.html, figures/trend.csv.
+Exit codes: 0 success, whether anything changed or not; 2 bad input.";
+
+impl Compare {
+    /// Read or identify, compare, write.
+    ///
+    /// # Errors
+    /// [`Failure`] where a campaign cannot be used, they cannot be compared or an output cannot be written.
+    pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+        let _lock = Lock::take(&self.out)?;
+        interrupt::watch(self.out.clone());
+        let mut all = Vec::new();
+        for (number, path) in self.campaigns.iter().enumerate() {
+            self.refuse_twice(number)?;
+            all.extend(of_path(path, number, verbosity)?);
+        }
+        let places: Vec<String> = self
+            .campaigns
+            .iter()
+            .map(|p| p.display().to_string())
+            .collect();
+        campaigns::tell_apart(&mut all, &places);
+        let comparison = difference::compare(&all).map_err(pipeline::PipelineError::from)?;
+        let files = campaigns::files(&comparison, &self.wanted())?;
+        pipeline::report::write(&files, &self.out)?;
+        if self.json {
+            print_json(&comparison)?;
+        } else if !verbosity.is_quiet() {
+            print(&table(&comparison))?;
+        }
+        for (name, _) in files.iter().filter(|(name, _)| !name.contains('/')) {
+            verbosity.info(&format!("Written: {}", self.out.join(name).display()));
+        }
+        Ok(Exit::Done)
+    }
+
+    /// Refuse a path that was given before.
+    fn refuse_twice(&self, number: usize) -> Result<(), Failure> {
+        let real = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+        let path = &self.campaigns[number];
+        let before = self.campaigns[..number].iter();
+        if before.map(|p| real(p)).any(|p| p == real(path)) {
+            return Err(Failure::new(
+                format!("{} is given twice", path.display()),
+                "give each measurement once",
+            ));
+        }
+        Ok(())
+    }
+
+    fn wanted(&self) -> Wanted {
+        let german = self.language == Language::De;
+        Wanted {
+            formats: self.format.clone(),
+            options: ReportOptions {
+                paper: match self.paper {
+                    Some(WrittenPaper::UsLetter) => Paper::Letter,
+                    _ => Paper::A4,
+                },
+                language: if german { "de" } else { "en" }.to_owned(),
+                catalog: german.then(|| Catalog::german().clone()),
+                decimal_comma: self.decimal_comma,
+                ..ReportOptions::default()
+            },
+            title: self.title.clone(),
+            command_line: self.typed(),
+        }
+    }
+
+    /// The command as typed.
+    fn typed(&self) -> String {
+        let paths: Vec<String> = self.campaigns.iter().map(|p| quoted(p)).collect();
+        let formats: Vec<&str> = self.format.iter().map(|f| f.name()).collect();
+        let mut text = format!(
+            "impactid compare {} --out {} --format {} --title {}",
+            paths.join(" "),
+            quoted(&self.out),
+            formats.join(","),
+            quoted(Path::new(&self.title))
+        );
+        if self.language == Language::De {
+            text.push_str(" --language de");
+        }
+        if let Some(paper) = self.paper {
+            text += &format!(" --paper {}", paper.name().trim_start_matches("us-"));
+        }
+        if self.decimal_comma {
+            text.push_str(" --decimal-comma");
+        }
+        text
+    }
+}
+
+/// The campaigns at a path: results as they are, a campaign.toml identified.
+fn of_path(path: &Path, number: usize, verbosity: Verbosity) -> Result<Vec<Campaign>, Failure> {
+    if !path.exists() {
+        return Err(Failure::new(
+            format!("{}: there is no such file or folder", path.display()),
+            "give results folders of `impactid run`, or campaign.toml files",
+        ));
+    }
+    let described = path.is_file() && path.extension().is_some_and(|e| e == "toml");
+    if !described {
+        return Ok(campaigns::read(path, number)?);
+    }
+    let campaign = load_campaign(path, verbosity)?;
+    if campaign.published.is_some() {
+        return Err(Failure::new(
+            format!(
+                "{}: published speeds are no measurement of a rig",
+                path.display()
+            ),
+            "compare campaigns that have records",
+        ));
+    }
+    let bar = Progress::new(verbosity, "observe", campaign.records.len() as u64);
+    let progress = |stage: &'static str, done: u64, total: u64| {
+        bar.stage(stage);
+        bar.set(done, total);
+    };
+    let observed = Observed::of(&campaign, &progress)?;
+    progress("identify", 0, 1);
+    let found = pipeline::identify::identify(&campaign, &observed, Some(bar.fits()))?;
+    drop(bar);
+    Ok(campaigns::campaigns(
+        &campaign,
+        found.identification,
+        number,
+    ))
+}
+
+/// The differences as lines.
+fn table(comparison: &Comparison) -> String {
+    let mut text = String::new();
+    for (i, campaign) in comparison.campaigns.iter().enumerate() {
+        text += &format!("{:>3}  {}\n", i + 1, campaign.name);
+    }
+    text += &format!(
+        "\n{:>8} {:>21} {:>12} {:>27} {:>12} {:>8}\n",
+        "campaign", "parameter", "difference", "95 % interval", "independent", "p"
+    );
+    for d in &comparison.differences {
+        let [low, high] = d.interval95;
+        let [least, most] = d.independent_interval95;
+        text += &format!(
+            "{:>8} {:>21} {:>12.4e} {:>27} {:>12} {:>8.4}\n",
+            d.campaign + 1,
+            d.parameter.name(),
+            d.value,
+            format!("{low:.4e} to {high:.4e}"),
+            format!("± {:.2e}", 0.5 * (most - least)),
+            d.p_value
+        );
+    }
+    text += &format!("\n{}", comparison.outcome());
+    if let Some(test) = &comparison.unchanged {
+        let (f, p) = (test.statistic, test.p_value);
+        text += &format!(
+            " ({} differences: F = {f:.3}, p = {p:.4})",
+            test.differences
+        );
+    }
+    text += &format!(
+        ".\n{} errors are shared; comparison.json names each with its reason.\n",
+        comparison.shared.len()
+    );
+    for remark in &comparison.remarks {
+        text += &format!("note: {remark}\n");
+    }
+    text
+}

@@ -1,0 +1,268 @@
+//! What a comparison states of itself: why a nuisance is shared or not, and what to keep in mind.
+
+use serde::{Deserialize, Serialize};
+
+use crate::identify::VerdictKind;
+use crate::identify::fit::coordinate::Coordinate;
+use crate::message::{Message, Value};
+use crate::messages;
+
+/// Why a nuisance is one unknown of several campaigns.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
+#[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
+pub enum WhyShared {
+    /// All of them state it.
+    StatedAsShared,
+    /// The channels have the same instrument.
+    SameInstrument {
+        /// The instrument as stated.
+        instrument: String,
+    },
+    /// They are specimens of one campaign.
+    OneCampaign,
+}
+
+/// Why a nuisance that might have been shared is an unknown of each campaign.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
+#[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
+pub enum NotShared {
+    /// Stated as shared, but the instruments differ.
+    OtherInstrument {
+        /// The one's.
+        first: String,
+        /// The other's.
+        second: String,
+    },
+    /// Stated as shared, but of rigs of different names.
+    OtherRig {
+        /// The one's.
+        first: String,
+        /// The other's.
+        second: String,
+    },
+    /// The scale, the corner, the delay or the masses are stated otherwise, so that the errors about
+    /// them differ.
+    StatedOtherwise,
+    /// One campaign states it, the other does not.
+    StatedByOne,
+}
+
+/// What to keep in mind about the differences.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
+#[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
+pub enum Remark {
+    /// The model does not describe a campaign's data.
+    CampaignDoesNotFit {
+        /// The campaign.
+        campaign: String,
+        /// The verdict on it.
+        verdict: VerdictKind,
+    },
+    /// A campaign has no joint fit, so that nothing of it is shared.
+    NoJointFit {
+        /// The campaign.
+        campaign: String,
+    },
+    /// Nothing is shared although the campaigns might.
+    NothingShared,
+}
+
+/// Whether anything changed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
+#[serde(remote = "Self", tag = "kind", rename_all = "snake_case")]
+pub enum Outcome {
+    /// The differences are no greater than chance makes them.
+    NothingChanged,
+    /// These parameters did.
+    Changed {
+        /// Those that show it alone.
+        parameters: Vec<Coordinate>,
+    },
+    /// Something did, though no parameter alone shows it.
+    ChangedTogether,
+    /// It cannot be told.
+    CannotBeTold,
+}
+
+messages!(WhyShared, NotShared, Remark, Outcome);
+
+impl Message for Outcome {
+    fn kind(&self) -> &'static str {
+        self.into()
+    }
+
+    fn english(&self) -> &'static str {
+        match self {
+            Self::NothingChanged => "No change found",
+            Self::Changed { .. } => "Changed: {parameters}",
+            Self::ChangedTogether => "Something changed, though no parameter alone shows it",
+            Self::CannotBeTold => "Whether anything changed cannot be told",
+        }
+    }
+
+    fn german(&self) -> &'static str {
+        match self {
+            Self::NothingChanged => "Keine Änderung gefunden",
+            Self::Changed { .. } => "Geändert: {parameters}",
+            Self::ChangedTogether => {
+                "Etwas hat sich geändert, auch wenn es kein Parameter allein zeigt"
+            }
+            Self::CannotBeTold => "Ob sich etwas geändert hat, ist nicht zu entscheiden",
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        match self {
+            Self::Changed { parameters } => {
+                let each = parameters.iter().map(|p| Value::Message(p));
+                vec![("parameters", Value::List(each.collect()))]
+            }
+            Self::NothingChanged | Self::ChangedTogether | Self::CannotBeTold => Vec::new(),
+        }
+    }
+}
+
+impl Message for WhyShared {
+    fn kind(&self) -> &'static str {
+        self.into()
+    }
+
+    fn english(&self) -> &'static str {
+        match self {
+            Self::StatedAsShared => "stated under shared",
+            Self::SameInstrument { .. } => "the same instrument: {instrument}",
+            Self::OneCampaign => "measured in one campaign",
+        }
+    }
+
+    fn german(&self) -> &'static str {
+        match self {
+            Self::StatedAsShared => "unter shared angegeben",
+            Self::SameInstrument { .. } => "dasselbe Gerät: {instrument}",
+            Self::OneCampaign => "in einer Messreihe gemessen",
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        match self {
+            Self::SameInstrument { instrument } => vec![("instrument", Value::Name(instrument))],
+            Self::StatedAsShared | Self::OneCampaign => Vec::new(),
+        }
+    }
+}
+
+impl Message for NotShared {
+    fn kind(&self) -> &'static str {
+        self.into()
+    }
+
+    fn english(&self) -> &'static str {
+        match self {
+            Self::OtherInstrument { .. } => "the instruments differ: {first}, {second}",
+            Self::OtherRig { .. } => "the rigs differ: {first}, {second}",
+            Self::StatedOtherwise => "the value that it is an error of is stated otherwise",
+            Self::StatedByOne => "stated under shared by one of the campaigns alone",
+        }
+    }
+
+    fn german(&self) -> &'static str {
+        match self {
+            Self::OtherInstrument { .. } => "verschiedene Geräte: {first}, {second}",
+            Self::OtherRig { .. } => "verschiedene Prüfstände: {first}, {second}",
+            Self::StatedOtherwise => "der Wert, dessen Fehler es ist, ist verschieden angegeben",
+            Self::StatedByOne => "nur von einer der Messreihen unter shared angegeben",
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        match self {
+            Self::OtherInstrument { first, second } | Self::OtherRig { first, second } => vec![
+                ("first", Value::Name(first)),
+                ("second", Value::Name(second)),
+            ],
+            Self::StatedOtherwise | Self::StatedByOne => Vec::new(),
+        }
+    }
+}
+
+impl Message for Remark {
+    fn kind(&self) -> &'static str {
+        self.into()
+    }
+
+    fn english(&self) -> &'static str {
+        match self {
+            Self::CampaignDoesNotFit { .. } => {
+                "the model does not describe the data of {campaign}: its differences may be off by \
+                 more than their intervals; read its own report first"
+            }
+            Self::NoJointFit { .. } => {
+                "{campaign} rests on no joint fit: its errors are taken as independent"
+            }
+            Self::NothingShared => {
+                "nothing is shared, so the campaigns' errors add: state shared under [rig] what stayed \
+                 the same, or the instruments' serial numbers"
+            }
+        }
+    }
+
+    fn german(&self) -> &'static str {
+        match self {
+            Self::CampaignDoesNotFit { .. } => {
+                "das Modell beschreibt die Daten von {campaign} nicht: die Unterschiede können um mehr \
+                 als ihre Intervalle falsch sein; zuerst den Bericht dazu lesen"
+            }
+            Self::NoJointFit { .. } => {
+                "{campaign} beruht auf keiner gemeinsamen Anpassung: die Fehler gelten als unabhängig"
+            }
+            Self::NothingShared => {
+                "nichts ist gemeinsam, daher addieren sich die Fehler der Messreihen: unter [rig] mit \
+                 shared angeben, was gleich geblieben ist, oder die Seriennummern der Geräte"
+            }
+        }
+    }
+
+    fn values(&self) -> Vec<(&'static str, Value<'_>)> {
+        match self {
+            Self::CampaignDoesNotFit { campaign, .. } | Self::NoJointFit { campaign } => {
+                vec![("campaign", Value::Name(campaign))]
+            }
+            Self::NothingShared => Vec::new(),
+        }
+    }
+}
+
+/// One example of each kind of message of a comparison.
+pub fn examples() -> Vec<Box<dyn Message>> {
+    let (first, second) = ("S/N 12".to_owned(), "S/N 13".to_owned());
+    let instrument = first.clone();
+    let campaign = "before".to_owned();
+    vec![
+        Box::new(WhyShared::StatedAsShared),
+        Box::new(WhyShared::SameInstrument { instrument }),
+        Box::new(WhyShared::OneCampaign),
+        Box::new(NotShared::OtherRig {
+            first: first.clone(),
+            second: second.clone(),
+        }),
+        Box::new(NotShared::OtherInstrument { first, second }),
+        Box::new(NotShared::StatedOtherwise),
+        Box::new(NotShared::StatedByOne),
+        Box::new(Remark::CampaignDoesNotFit {
+            campaign: campaign.clone(),
+            verdict: VerdictKind::DoesNotFit,
+        }),
+        Box::new(Remark::NoJointFit { campaign }),
+        Box::new(Remark::NothingShared),
+        Box::new(Outcome::NothingChanged),
+        Box::new(Outcome::Changed {
+            parameters: vec![Coordinate::Restitution],
+        }),
+        Box::new(Outcome::ChangedTogether),
+        Box::new(Outcome::CannotBeTold),
+    ]
+}

@@ -1,0 +1,243 @@
+//! Several campaigns: their results read, compared, and written as tables and documents.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::campaign::resolved::ResolvedCampaign;
+use crate::difference::{Campaign, Comparison, Difference};
+use crate::identify::{Identification, JointFit, ParameterSet, VerdictKind};
+use crate::pipeline::PipelineError;
+use crate::pipeline::identify::{FILE, IdentificationFile, versions};
+use crate::pipeline::report::ReportFile;
+use crate::report::{CampaignsContent, Format, Report, ReportOptions};
+
+/// Name of the result's file.
+pub const COMPARISON: &str = "comparison.json";
+/// Name of the table of estimates and differences.
+pub const TABLE: &str = "comparison.csv";
+/// The layout that carries what a comparison needs.
+const NAME: &str = "identification.json";
+
+/// The campaigns that a folder of results holds, one for each specimen; `measurement` is its number among
+/// those given.
+///
+/// # Errors
+/// [`PipelineError::NoResults`] if the folder holds no results of this version.
+pub fn read(folder: &Path, measurement: usize) -> Result<Vec<Campaign>, PipelineError> {
+    let file = match folder.is_dir() {
+        true => folder.join(FILE),
+        false => folder.to_path_buf(),
+    };
+    let unusable = |reason: String, remedy: String| PipelineError::NoResults {
+        path: file.display().to_string(),
+        reason,
+        remedy,
+    };
+    let text =
+        std::fs::read_to_string(&file).map_err(|e| unusable(e.to_string(), missing(folder)))?;
+    let again = || {
+        format!(
+            "identify the campaign again: impactid run CAMPAIGN.TOML --out {}",
+            folder.display()
+        )
+    };
+    let json: serde_json::Value =
+        serde_json::from_str(&text).map_err(|e| unusable(e.to_string(), again()))?;
+    let current = versions();
+    let wanted = current.get(NAME).map_or("", String::as_str);
+    let found = json["versions"][NAME].as_str().unwrap_or("none");
+    if found != wanted {
+        let program = json["versions"]["impactid"].as_str().unwrap_or("unknown");
+        let reason = format!(
+            "its layout is version {found}, written by impactid {program}; a comparison needs \
+             version {wanted}"
+        );
+        return Err(unusable(reason, again()));
+    }
+    let found: IdentificationFile =
+        serde_json::from_value(json).map_err(|e| unusable(e.to_string(), again()))?;
+    let campaign: ResolvedCampaign = serde_json::from_value(found.provenance.settings)
+        .map_err(|e| unusable(e.to_string(), again()))?;
+    Ok(campaigns(&campaign, found.identification, measurement))
+}
+
+/// What to do where there are no results.
+fn missing(folder: &Path) -> String {
+    let campaign = folder.join("campaign.toml");
+    match campaign.is_file() {
+        true => format!(
+            "this folder holds records, not results: give {}",
+            campaign.display()
+        ),
+        false => {
+            "give folders that `impactid run` or `impactid identify` has written, or campaign.toml \
+                  files"
+                .to_owned()
+        }
+    }
+}
+
+/// The campaigns that an identification holds, one for each specimen.
+pub fn campaigns(
+    campaign: &ResolvedCampaign,
+    found: Identification,
+    measurement: usize,
+) -> Vec<Campaign> {
+    let one =
+        |name: String, verdict: VerdictKind, parameters: ParameterSet, fit: Option<JointFit>| {
+            Campaign {
+                name,
+                measurement,
+                machine: campaign.machine,
+                flight: campaign.flight,
+                measured: campaign.measured.clone(),
+                synthetic: campaign.synthetic,
+                verdict,
+                parameters,
+                fit,
+                rig: campaign.rig.name.clone(),
+                shared: campaign.rig.shared.clone(),
+                channels: campaign.channels.clone(),
+            }
+        };
+    if found.specimens.is_empty() {
+        let (name, joint) = (campaign.name.clone(), found.joint.parameters);
+        return vec![one(name, found.verdict.kind, joint, found.joint_fit)];
+    }
+    let specimens = found.specimens.into_iter();
+    specimens
+        .map(|(specimen, result)| {
+            let name = format!("{}, {specimen}", campaign.name);
+            let joint = result.joint.parameters;
+            one(name, result.verdict.kind, joint, result.joint_fit)
+        })
+        .collect()
+}
+
+/// Give campaigns of one name the places that they came from.
+pub fn tell_apart(campaigns: &mut [Campaign], places: &[String]) {
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for campaign in campaigns.iter() {
+        *counts.entry(campaign.name.clone()).or_default() += 1;
+    }
+    for campaign in campaigns {
+        let several = counts.get(&campaign.name).is_some_and(|n| *n > 1);
+        if let Some(place) = places.get(campaign.measurement).filter(|_| several) {
+            campaign.name = format!("{} ({place})", campaign.name);
+        }
+    }
+}
+
+/// comparison.json: the comparison, whether anything changed in words, and versions.
+#[derive(Serialize)]
+struct Written<'a> {
+    outcome: crate::difference::Outcome,
+    #[serde(flatten)]
+    comparison: &'a Comparison,
+    versions: BTreeMap<String, String>,
+}
+
+/// What a comparison is written as.
+#[derive(Debug, Clone)]
+pub struct Wanted {
+    /// Documents and figures beside the tables.
+    pub formats: Vec<Format>,
+    /// Their look.
+    pub options: ReportOptions,
+    /// Title of the documents.
+    pub title: String,
+    /// The command that makes them again.
+    pub command_line: String,
+}
+
+/// The files of a comparison: comparison.json, comparison.csv, the data of the figure, and the documents
+/// that are wanted.
+///
+/// # Errors
+/// If a document cannot be set or the result is no JSON.
+pub fn files(comparison: &Comparison, wanted: &Wanted) -> Result<Vec<ReportFile>, PipelineError> {
+    let content = CampaignsContent {
+        title: wanted.title.clone(),
+        comparison: comparison.clone(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        command_line: wanted.command_line.clone(),
+    };
+    let report = Report::of_campaigns(&content, &wanted.options);
+    let written = Written {
+        outcome: comparison.outcome(),
+        comparison,
+        versions: versions(),
+    };
+    let json = serde_json::to_string_pretty(&written).map_err(|e| PipelineError::Table {
+        table: COMPARISON.to_owned(),
+        reason: e.to_string(),
+    })?;
+    let mut files = vec![
+        (COMPARISON.to_owned(), (json + "\n").into_bytes()),
+        (TABLE.to_owned(), table(comparison)?),
+    ];
+    let mut formats = wanted.formats.clone();
+    formats.retain(|f| *f != Format::Csv);
+    formats.push(Format::Csv);
+    for format in formats {
+        files.extend(report.files(format)?);
+    }
+    Ok(files)
+}
+
+/// One line of comparison.csv; SI, differences against the first campaign.
+#[derive(Serialize)]
+struct Line<'a> {
+    campaign: &'a str,
+    measured: Option<&'a str>,
+    parameter: &'static str,
+    value: Option<f64>,
+    low95: Option<f64>,
+    high95: Option<f64>,
+    difference: Option<f64>,
+    difference_low95: Option<f64>,
+    difference_high95: Option<f64>,
+    independent_low95: Option<f64>,
+    independent_high95: Option<f64>,
+    p_value: Option<f64>,
+}
+
+/// The estimates of all campaigns and their differences as CSV.
+fn table(comparison: &Comparison) -> Result<Vec<u8>, PipelineError> {
+    use crate::identify::fit::parameters::Coordinate;
+    let unwritable = |reason: String| PipelineError::Table {
+        table: TABLE.to_owned(),
+        reason,
+    };
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for (number, campaign) in comparison.campaigns.iter().enumerate() {
+        for parameter in Coordinate::PHYSICAL {
+            let Some(estimate) = campaign.parameters.get(parameter) else {
+                continue;
+            };
+            let mut all = comparison.differences.iter();
+            let found = all.find(|d| d.campaign == number && d.parameter == parameter);
+            let of = |pick: fn(&Difference) -> f64| found.map(pick);
+            let line = Line {
+                campaign: &campaign.name,
+                measured: campaign.measured.as_deref(),
+                parameter: parameter.name(),
+                value: estimate.value,
+                low95: estimate.interval95.map(|i| i[0]),
+                high95: estimate.interval95.map(|i| i[1]),
+                difference: of(|d| d.value),
+                difference_low95: of(|d| d.interval95[0]),
+                difference_high95: of(|d| d.interval95[1]),
+                independent_low95: of(|d| d.independent_interval95[0]),
+                independent_high95: of(|d| d.independent_interval95[1]),
+                p_value: of(|d| d.p_value),
+            };
+            writer
+                .serialize(line)
+                .map_err(|e| unwritable(e.to_string()))?;
+        }
+    }
+    writer.into_inner().map_err(|e| unwritable(e.to_string()))
+}

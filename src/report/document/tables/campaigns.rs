@@ -1,0 +1,167 @@
+//! The tables of campaigns compared: their estimates, the differences, what they share.
+
+use super::{Column, Head, table, verbatim};
+use crate::difference::{Comparison, Difference};
+use crate::identify::fit::parameters::Coordinate;
+use crate::report::document::model::{Rich, Table};
+use crate::report::document::verdict::headline;
+use crate::report::figures::correlation::name;
+use crate::report::locale::Locale;
+use crate::report::parameters::{self, PARAMETERS};
+use crate::report::phrase::Phrase;
+
+/// Smaller p-values are printed as smaller than this.
+const LEAST_P: f64 = 1e-3;
+
+/// A p-value as printed behind its name.
+pub(crate) fn p_equals(p: f64, locale: Locale<'_>) -> String {
+    let relation = if p < LEAST_P { "" } else { "= " };
+    format!("{relation}{}", p_value(p, locale))
+}
+
+/// A p-value as printed.
+fn p_value(p: f64, locale: Locale<'_>) -> String {
+    match p < LEAST_P {
+        true => format!("< {}", locale.fixed(LEAST_P, 3)),
+        false => locale.fixed(p, 3),
+    }
+}
+
+/// The campaigns with their joint estimates.
+pub(crate) fn campaigns(comparison: &Comparison, locale: Locale<'_>) -> Option<Table> {
+    let rows = comparison.campaigns.iter().enumerate().map(|(i, c)| {
+        let mut row = vec![
+            Rich::from((i + 1).to_string()),
+            verbatim(c.name.clone()),
+            verbatim(c.measured.clone().unwrap_or_default()),
+        ];
+        let cell = |look| Rich::from(parameters::short(look, (look.pick)(&c.parameters), locale));
+        row.extend(PARAMETERS.iter().map(cell));
+        row.push(Rich::from(locale.translate(headline(c.verdict, true))));
+        row
+    });
+    let columns = [
+        Column::right(Head::Symbol("")),
+        Column::wide(Head::Of(Phrase::Campaign), 2),
+        Column::left(Head::Of(Phrase::Measured)),
+        Column::left(Head::Symbol("$R$")),
+        Column::left(Head::Symbol("$f_0$")),
+        Column::left(Head::Symbol("$β$")),
+        Column::left(Head::Symbol("$x_{st}$")),
+        Column::wide(Head::Of(Phrase::Verdict), 2),
+    ];
+    let table = table(
+        &Phrase::TableCampaigns.into(),
+        &columns,
+        rows.collect(),
+        locale,
+    )?;
+    Some(Table { size: 7.5, ..table })
+}
+
+/// The differences from the first campaign.
+pub(crate) fn differences(comparison: &Comparison, locale: Locale<'_>) -> Option<Table> {
+    let rows = comparison.differences.iter().map(|d| row(d, locale));
+    let columns = [
+        Column::right(Head::Of(Phrase::Campaign)),
+        Column::left(Head::Of(Phrase::Parameter)),
+        Column::right(Head::Of(Phrase::DifferenceOf)),
+        Column::right(Head::Of(Phrase::RelativeDifference)),
+        Column::right(Head::Of(Phrase::IfNothingWereShared)),
+        Column::right(Head::Of(Phrase::DegreesOfFreedom)),
+        Column::right(Head::Of(Phrase::PValue)),
+    ];
+    table(
+        &Phrase::TableDifferences.into(),
+        &columns,
+        rows.collect(),
+        locale,
+    )
+}
+
+fn row(d: &Difference, locale: Locale<'_>) -> Vec<Rich> {
+    let key = d.parameter.name();
+    let Some(look) = parameters::parameter(key) else {
+        return vec![Rich::default(); 7];
+    };
+    let half = |[low, high]: [f64; 2]| 0.5 * (high - low) * look.factor;
+    let own = half(d.interval95);
+    let decimals = parameters::decimals_for(own);
+    let with_unit = |text: String| match look.unit {
+        "" => text,
+        unit => format!("{text}\u{2009}{unit}"),
+    };
+    let value = locale.fixed(d.value * look.factor, decimals);
+    let [relative, low, high] = d.relative.map(|r| 100.0 * r);
+    let relative_half = 0.5 * (high - low);
+    let few = parameters::decimals_for(relative_half);
+    let relative = format!(
+        "{} ± {} %",
+        locale.fixed(relative, few),
+        locale.fixed(relative_half, few)
+    );
+    let freedom = d.degrees_of_freedom.filter(|n| *n < 1000.0);
+    [
+        (d.campaign + 1).to_string(),
+        look.symbol.to_owned(),
+        with_unit(format!("{value} ± {}", locale.fixed(own, decimals))),
+        relative,
+        with_unit(format!(
+            "± {}",
+            locale.fixed(half(d.independent_interval95), decimals)
+        )),
+        freedom.map_or("∞".into(), |n| locale.fixed(n, 0)),
+        p_value(d.p_value, locale),
+    ]
+    .map(Rich::from)
+    .to_vec()
+}
+
+/// What is one unknown of several campaigns.
+pub(crate) fn shared(comparison: &Comparison, locale: Locale<'_>) -> Option<Table> {
+    let rows = comparison.shared.iter().map(|s| {
+        vec![
+            Rich::from(nuisance(s.coordinate, s.clearance_m, locale)),
+            Rich::from(numbers(&s.campaigns)),
+            Rich::from(locale.message(&s.why)),
+        ]
+    });
+    of_nuisances(Phrase::TableShared, rows.collect(), locale)
+}
+
+/// What two campaigns do not share although something speaks for it.
+pub(crate) fn separate(comparison: &Comparison, locale: Locale<'_>) -> Option<Table> {
+    let rows = comparison.separate.iter().map(|s| {
+        vec![
+            Rich::from(nuisance(s.coordinate, s.clearance_m, locale)),
+            Rich::from(numbers(&s.campaigns)),
+            Rich::from(locale.message(&s.why)),
+        ]
+    });
+    of_nuisances(Phrase::TableNotShared, rows.collect(), locale)
+}
+
+fn of_nuisances(caption: Phrase, rows: Vec<Vec<Rich>>, locale: Locale<'_>) -> Option<Table> {
+    let columns = [
+        Column::wide(Head::Of(Phrase::UncertaintySource), 3),
+        Column::left(Head::Of(Phrase::SharedBy)),
+        Column::wide(Head::Of(Phrase::Why), 4),
+    ];
+    table(&caption.into(), &columns, rows, locale)
+}
+
+/// Campaigns by their numbers from 1.
+fn numbers(campaigns: &[usize]) -> String {
+    let each: Vec<String> = campaigns.iter().map(|c| (c + 1).to_string()).collect();
+    each.join(", ")
+}
+
+fn nuisance(coordinate: Coordinate, clearance_m: Option<f64>, locale: Locale<'_>) -> String {
+    match clearance_m {
+        Some(m) => {
+            let clearance = locale.significant(1e3 * m, 4);
+            locale.translate_with(Phrase::StatedClearance, &[("clearance", &clearance)])
+        }
+        None => name(coordinate, locale),
+    }
+}

@@ -1,0 +1,232 @@
+//! The document's tables as LaTeX, one file each, to be set in a paper: `booktabs` rules, symbols as
+//! mathematics.
+
+use std::collections::BTreeMap;
+
+use super::document::model::{Align, Block, Document, Rich, Table};
+use super::figures::richtext::Level;
+
+/// From this many rows on a table may run over pages.
+const LONG: usize = 45;
+
+/// The files of a document's tables by their paths relative to the report's folder: `tables/NAME.tex`.
+pub(super) fn tables(document: &Document) -> Vec<(String, Vec<u8>)> {
+    let blocks = document.sections.iter().flat_map(|s| &s.blocks);
+    let in_sections = blocks.filter_map(|block| match block {
+        Block::Table(table) => Some(table),
+        _ => None,
+    });
+    let all = document.front.specimens.iter().chain(in_sections);
+    let mut taken: BTreeMap<&str, usize> = BTreeMap::new();
+    all.filter(|t| !t.name.is_empty())
+        .map(|table| {
+            let count = taken.entry(table.name).or_default();
+            *count += 1;
+            let number = if *count > 1 {
+                format!("_{count}")
+            } else {
+                String::new()
+            };
+            let path = format!("tables/{}{number}.tex", table.name);
+            (path, latex(table).into_bytes())
+        })
+        .collect()
+}
+
+/// A table as LaTeX.
+fn latex(table: &Table) -> String {
+    let rows = table.cells();
+    let long = rows.len() >= LONG;
+    let columns: String = table.align.iter().map(|a| column(*a)).collect();
+    let caption = rich(&table.caption);
+    let heads = cells(&table.heads);
+    let mut text = format!(
+        "% \\usepackage{{booktabs}}{}\n",
+        if long {
+            " and \\usepackage{longtable}"
+        } else {
+            ""
+        }
+    );
+    let caption = match caption.is_empty() {
+        true => String::new(),
+        false => format!("\\caption{{{caption}}}\n"),
+    };
+    let body: String = rows.iter().map(|row| cells(row) + " \\\\\n").collect();
+    let rules = format!("\\toprule\n{heads} \\\\\n\\midrule\n");
+    text += &match long {
+        true => {
+            let caption = caption.trim_end();
+            let end = if caption.is_empty() { "" } else { " \\\\\n" };
+            format!(
+                "\\begin{{longtable}}{{{columns}}}\n{caption}{end}{rules}\\endhead\n\
+                 \\bottomrule\n\\endfoot\n{body}\\end{{longtable}}\n"
+            )
+        }
+        false => format!(
+            "\\begin{{table}}\n\\centering\n{caption}\\begin{{tabular}}{{{columns}}}\n{rules}{body}\
+             \\bottomrule\n\\end{{tabular}}\n\\end{{table}}\n"
+        ),
+    };
+    text
+}
+
+fn column(align: Align) -> char {
+    match align {
+        Align::Left => 'l',
+        Align::Right => 'r',
+        Align::Center => 'c',
+    }
+}
+
+fn cells(row: &[Rich]) -> String {
+    let each: Vec<String> = row.iter().map(rich).collect();
+    each.join(" & ")
+}
+
+/// A text with markup.
+fn rich(text: &Rich) -> String {
+    let runs = text.0.iter().map(|run| {
+        let plain = escaped(&run.text);
+        let set = if run.italic {
+            format!("\\textit{{{plain}}}")
+        } else {
+            plain
+        };
+        match run.level {
+            Level::Base => set,
+            Level::Sub => format!("\\textsubscript{{{set}}}"),
+            Level::Super => format!("\\textsuperscript{{{set}}}"),
+        }
+    });
+    runs.collect()
+}
+
+/// A text without markup: what LaTeX reads otherwise is escaped, signs beyond Latin letters are named.
+fn escaped(text: &str) -> String {
+    let mut all = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' | '%' | '$' | '#' | '_' | '{' | '}' => all.extend(['\\', c]),
+            '\\' => all.push_str("\\textbackslash{}"),
+            '~' => all.push_str("\\textasciitilde{}"),
+            '^' => all.push_str("\\textasciicircum{}"),
+            '<' => all.push_str("\\ensuremath{<}"),
+            '>' => all.push_str("\\ensuremath{>}"),
+            '|' => all.push_str("\\textbar{}"),
+            '\n' => all.push(' '),
+            '\u{2009}' | '\u{202f}' => all.push_str("\\,"),
+            '\u{a0}' => all.push('~'),
+            '\u{2212}' => all.push_str("\\ensuremath{-}"),
+            other => match symbol(other) {
+                Some(name) => all.push_str(&format!("\\ensuremath{{{name}}}")),
+                None => all.push(other),
+            },
+        }
+    }
+    all
+}
+
+/// A sign's name in mathematics; `None` of letters, which a file in UTF-8 may hold.
+fn symbol(sign: char) -> Option<&'static str> {
+    Some(match sign {
+        '±' => "\\pm",
+        '·' => "\\cdot",
+        '×' => "\\times",
+        '∞' => "\\infty",
+        '≤' => "\\leq",
+        '≥' => "\\geq",
+        '≈' => "\\approx",
+        '√' => "\\surd",
+        '→' => "\\rightarrow",
+        '↑' => "\\uparrow",
+        '↓' => "\\downarrow",
+        '½' => "\\frac{1}{2}",
+        'α' => "\\alpha",
+        'β' => "\\beta",
+        'γ' => "\\gamma",
+        'δ' => "\\delta",
+        'Δ' => "\\Delta",
+        'η' => "\\eta",
+        'λ' => "\\lambda",
+        'µ' | 'μ' => "\\mu",
+        'π' => "\\pi",
+        'ρ' => "\\rho",
+        'σ' => "\\sigma",
+        'τ' => "\\tau",
+        'φ' => "\\varphi",
+        'χ' => "\\chi",
+        'Ω' => "\\Omega",
+        'ω' => "\\omega",
+        'ζ' => "\\zeta",
+        'κ' => "\\kappa",
+        '⁻' => "^{-}",
+        '⁰' => "^{0}",
+        '¹' => "^{1}",
+        '²' => "^{2}",
+        '³' => "^{3}",
+        '⁴' => "^{4}",
+        '⁵' => "^{5}",
+        '⁶' => "^{6}",
+        '⁷' => "^{7}",
+        '⁸' => "^{8}",
+        '⁹' => "^{9}",
+        '⊙' => "\\odot",
+        '●' => "\\bullet",
+        '○' => "\\circ",
+        '✓' => "\\checkmark",
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(rows: usize) -> Table {
+        let row = vec![Rich::from("$x_{st}$ ± 5\u{2009}%"), Rich::from("r_1 & r_2")];
+        Table {
+            name: "example",
+            caption: Rich::from("Estimates of $β$."),
+            heads: vec![Rich::from("a"), Rich::from("b")],
+            align: vec![Align::Right, Align::Left],
+            widths: vec![0, 0],
+            ..Table::of(vec![row; rows])
+        }
+    }
+
+    #[test]
+    fn what_latex_reads_otherwise_is_escaped_and_symbols_are_named() {
+        let text = latex(&table(1));
+        let row =
+            "\\textit{x}\\textsubscript{st} \\ensuremath{\\pm} 5\\,\\% & r\\_1 \\& r\\_2 \\\\";
+        assert!(text.contains(row), "{text}");
+        assert!(text.contains("\\begin{tabular}{rl}"), "{text}");
+        assert!(text.contains("\\caption{Estimates of \\textit{\\ensuremath{\\beta}}.}"));
+        assert_eq!(
+            escaped("a\\b^c~d"),
+            "a\\textbackslash{}b\\textasciicircum{}c\\textasciitilde{}d"
+        );
+    }
+
+    #[test]
+    fn braces_and_environments_are_closed() {
+        for rows in [1, LONG] {
+            for table in [table(rows), table(rows).densely()] {
+                let text = latex(&table);
+                let depth = text.replace("\\{", "").replace("\\}", "");
+                let count = |c| depth.matches(c).count();
+                assert_eq!(count('{'), count('}'), "{text}");
+                assert_eq!(
+                    text.matches("\\begin{").count(),
+                    text.matches("\\end{").count()
+                );
+                assert_eq!(
+                    text.matches(" \\\\\n").count(),
+                    rows + if rows < LONG { 1 } else { 2 }
+                );
+                assert_eq!(text.contains("longtable"), rows == LONG);
+            }
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! Campaigns compared: one simulated rig measured twice, from records to the report.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+use serde_json::Value;
+
+struct Ran {
+    code: i32,
+    said: String,
+}
+
+fn impactid(folder: &Path, arguments: &[&str]) -> Ran {
+    let out = Command::new(env!("CARGO_BIN_EXE_impactid"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .expect("the program runs");
+    Ran {
+        code: out.status.code().unwrap_or(-1),
+        said: String::from_utf8_lossy(&[out.stdout, out.stderr].concat()).into_owned(),
+    }
+}
+
+/// One rig, measured before and after R has fallen: campaigns `before` and `after` with their results.
+fn rig() -> &'static Path {
+    static RIG: OnceLock<(tempfile::TempDir, PathBuf)> = OnceLock::new();
+    let made = RIG.get_or_init(|| {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().to_owned();
+        for (name, seed, restitution) in [("before", "5", "0.9"), ("after", "6", "0.87")] {
+            let simulated = impactid(
+                &path,
+                &[
+                    "-q",
+                    "simulate",
+                    "campaign",
+                    "--rig",
+                    "gaps,gap-offset",
+                    "--rig-seed",
+                    "3",
+                    "--records",
+                    "60",
+                    "--seed",
+                    seed,
+                    "--restitution",
+                    restitution,
+                    "--out",
+                    name,
+                ],
+            );
+            assert_eq!(simulated.code, 0, "{}", simulated.said);
+            let file = format!("{name}/campaign.toml");
+            let stated = fs::read_to_string(path.join(&file)).expect("campaign.toml");
+            let stated = stated.replace("Synthetic double impact oscillator", name);
+            fs::write(path.join(&file), stated).expect("campaign.toml");
+        }
+        let run = ["-q", "run", "before/campaign.toml", "--out", "results"];
+        assert_eq!(impactid(&path, &run).code, 0);
+        (folder, path)
+    });
+    &made.1
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).expect("a file")).expect("JSON")
+}
+
+#[test]
+fn valid_a_change_of_r_is_found_and_shared_errors_cancel() {
+    let rig = rig();
+    let ran = impactid(
+        rig,
+        &[
+            "compare",
+            "results",
+            "after/campaign.toml",
+            "--out",
+            "compared",
+        ],
+    );
+    assert_eq!(ran.code, 0, "{}", ran.said);
+    assert!(ran.said.contains("Changed: R"), "{}", ran.said);
+    let found = json(&rig.join("compared/comparison.json"));
+    let differences = found["differences"].as_array().expect("differences");
+    assert_eq!(differences.len(), 4);
+    let of = |name: &str| {
+        let mut all = differences.iter();
+        all.find(|d| d["parameter"] == name).expect(name)
+    };
+    let interval = |d: &Value, key: &str| [0, 1].map(|i| d[key][i].as_f64().expect("a number"));
+    let r = of("restitution");
+    let [low, high] = interval(r, "interval95");
+    assert!(low < -0.03 && -0.03 < high, "{low} {high}");
+    let deflection = of("static_deflection_m");
+    let width = |key| {
+        let [low, high] = interval(deflection, key);
+        high - low
+    };
+    let narrower = width("independent_interval95") / width("interval95");
+    assert!(narrower > 1.5, "{narrower}");
+    let shared = found["shared"].as_array().expect("what is shared");
+    let kinds = |kind: &str| shared.iter().filter(|s| s["why"]["kind"] == kind).count();
+    assert!(
+        kinds("same_instrument") >= 4 && kinds("stated_as_shared") >= 4,
+        "{shared:?}"
+    );
+    assert_eq!(found["outcome"]["kind"], "changed");
+    for name in [
+        "comparison.pdf",
+        "comparison.html",
+        "comparison.csv",
+        "figures/trend.csv",
+    ] {
+        let size = fs::metadata(rig.join("compared").join(name))
+            .expect(name)
+            .len();
+        assert!(size > 200, "{name}: {size} bytes");
+    }
+}
+
+#[test]
+fn campaigns_of_different_machines_are_refused() {
+    let rig = rig();
+    let other = rig.join("other");
+    fs::create_dir_all(&other).expect("a folder");
+    let mut found = json(&rig.join("results/identification.json"));
+    found["settings"]["machine"] = "single".into();
+    fs::write(other.join("identification.json"), found.to_string()).expect("results");
+    let ran = impactid(rig, &["compare", "results", "other", "--out", "machines"]);
+    assert_eq!(ran.code, 2, "{}", ran.said);
+    for words in [
+        "two masses",
+        "one mass against a stop",
+        "check machine and flight",
+    ] {
+        assert!(ran.said.contains(words), "{}", ran.said);
+    }
+    assert!(!rig.join("machines/comparison.json").exists());
+}
+
+#[test]
+fn results_that_were_copied_are_refused_as_the_same_measurement() {
+    let rig = rig();
+    let copy = rig.join("copy");
+    fs::create_dir_all(&copy).expect("a folder");
+    let name = "identification.json";
+    fs::copy(rig.join("results").join(name), copy.join(name)).expect("a copy");
+    let ran = impactid(rig, &["compare", "results", "copy", "--out", "refused"]);
+    assert_eq!(ran.code, 2, "{}", ran.said);
+    assert!(
+        ran.said.contains("are the same measurement"),
+        "{}",
+        ran.said
+    );
+}
