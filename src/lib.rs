@@ -7,16 +7,16 @@
 //! `campaign`, `pipeline`, `explore`, `cli`. The model itself is the crate `impact-oscillator`, files
 //! are read by the crate `labfiles`.
 
-pub mod message;
-pub mod signal;
-pub mod record;
-pub mod event;
-pub mod motion;
-pub mod synthetic;
-pub mod identify;
-pub mod compare;
-pub mod report;
 pub mod campaign;
-pub mod pipeline;
-pub mod explore;
 pub mod cli;
+pub mod compare;
+pub mod event;
+pub mod explore;
+pub mod identify;
+pub mod message;
+pub mod motion;
+pub mod pipeline;
+pub mod record;
+pub mod report;
+pub mod signal;
+pub mod synthetic;

@@ -92,7 +92,7 @@ fn one(
     match checked.and_then(|()| options.run(campaign, folder, verbosity)) {
         Ok(done) => (
             Exit::of(done.identification.verdict.kind),
-            Outcome::Result(Found::of(&done)),
+            Outcome::Result(Box::new(Found::of(&done))),
         ),
         Err(failure) => {
             interrupt::give_way();

@@ -51,7 +51,7 @@ pub struct Row {
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// Its results are in the folder.
-    Result(Found),
+    Result(Box<Found>),
     /// It could not be run; what was in its folder is untouched.
     Errors(Vec<Fault>),
 }
@@ -234,7 +234,7 @@ mod tests {
             remedy: "a remedy".to_owned(),
         }];
         let summary = Summary::of(vec![
-            row("day1", 0, Outcome::Result(found)),
+            row("day1", 0, Outcome::Result(Box::new(found))),
             row("day2", 2, Outcome::Errors(faults)),
         ]);
         let folder = tempfile::tempdir().unwrap();

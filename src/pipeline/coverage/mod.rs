@@ -8,13 +8,13 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::event::{DetectSettings, RigKind};
+use crate::identify::Identification;
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::run::identify;
 use crate::identify::uncertainty::bound::bounds;
 use crate::identify::uncertainty::coverage::{Score, Trial, scores, table};
 use crate::identify::uncertainty::{IntervalMethod, UncertaintyOptions};
-use crate::identify::Identification;
 use crate::motion::{
     Bracket, ClassifySettings, Motion, Observation, brackets, observe, scale_drives,
 };
