@@ -109,13 +109,15 @@ fn tallies(found: &Tallies) -> String {
         periodic,
         right,
         undetermined,
+        doubtful,
         wrong,
         not_periodic,
         called_periodic,
     } = found.motions;
     text += &format!(
         "motion types of {periodic} periodic records: {right} right, {undetermined} undetermined, \
-         {wrong} wrong; of {not_periodic} others {called_periodic} called periodic\n"
+         {doubtful} wrong but not sure, {wrong} surely wrong; of {not_periodic} others \
+         {called_periodic} surely called periodic\n"
     );
     text
 }

@@ -38,33 +38,42 @@ pub struct MotionTally {
     pub right: usize,
     /// Those called undetermined.
     pub undetermined: usize,
-    /// Those classified as something else.
+    /// Those classified as something else, but not surely.
+    pub doubtful: usize,
+    /// Those surely classified as something else.
     pub wrong: usize,
     /// Records whose simulated motion does not repeat within 96 drive periods.
     pub not_periodic: usize,
-    /// Those classified as impactless or periodic.
+    /// Those surely classified as impactless or periodic.
     pub called_periodic: usize,
 }
 
+/// Confidence from which on a classification is sure.
+const SURE: f64 = 0.9;
+
 impl MotionTally {
-    pub(super) fn add(&mut self, truth: &Motion, found: &Motion) {
-        let undetermined = matches!(found, Motion::Undetermined { .. });
+    pub(super) fn add(&mut self, truth: &Motion, found: (&Motion, f64)) {
+        let (motion, sure) = (found.0, found.1 >= SURE);
         if matches!(truth, Motion::Undetermined { .. }) {
             self.not_periodic += 1;
-            self.called_periodic += usize::from(found.is_periodic());
-        } else {
-            let right = truth.label() == found.label();
-            self.periodic += 1;
-            self.right += usize::from(right);
-            self.undetermined += usize::from(undetermined);
-            self.wrong += usize::from(!right && !undetermined);
+            self.called_periodic += usize::from(sure && motion.is_periodic());
+            return;
         }
+        self.periodic += 1;
+        let counter = match motion {
+            Motion::Undetermined { .. } => &mut self.undetermined,
+            _ if truth.label() == motion.label() => &mut self.right,
+            _ if sure => &mut self.wrong,
+            _ => &mut self.doubtful,
+        };
+        *counter += 1;
     }
 
     fn join(&mut self, other: &Self) {
         self.periodic += other.periodic;
         self.right += other.right;
         self.undetermined += other.undetermined;
+        self.doubtful += other.doubtful;
         self.wrong += other.wrong;
         self.not_periodic += other.not_periodic;
         self.called_periodic += other.called_periodic;
@@ -106,7 +115,8 @@ impl Statement {
 fn motions(observations: &[Observation], truth: &[Motion]) -> MotionTally {
     let mut tally = MotionTally::default();
     for (observation, truth) in observations.iter().zip(truth) {
-        tally.add(truth, &observation.classification.motion);
+        let found = &observation.classification;
+        tally.add(truth, (&found.motion, found.confidence));
     }
     tally
 }
@@ -162,19 +172,21 @@ mod tests {
         };
         let one = Motion::periodic(1, 1);
         let mut tally = MotionTally::default();
-        for (truth, found) in [
-            (&one, &one),
-            (&one, &unknown),
-            (&one, &Motion::periodic(2, 2)),
-            (&unknown, &Motion::Chaotic),
-            (&unknown, &one),
+        for (truth, found, confidence) in [
+            (&one, &one, 0.5),
+            (&one, &unknown, 0.0),
+            (&one, &Motion::periodic(2, 2), 0.95),
+            (&one, &Motion::periodic(2, 2), 0.5),
+            (&unknown, &Motion::Chaotic, 0.95),
+            (&unknown, &one, 0.95),
         ] {
-            tally.add(truth, found);
+            tally.add(truth, (found, confidence));
         }
         let want = MotionTally {
-            periodic: 3,
+            periodic: 4,
             right: 1,
             undetermined: 1,
+            doubtful: 1,
             wrong: 1,
             not_periodic: 2,
             called_periodic: 1,
