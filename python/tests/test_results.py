@@ -42,7 +42,7 @@ def test_frames(results, library):
         assert frame.shape[0] > 0
     assert read.records.shape[0] == 40
     assert {"frequency_hz", "motion"} <= set(read.records.columns)
-    speeds = [v for v in read.impacts["approach_speed_m_s"] if v is not None and not math.isnan(v)]
+    speeds = [v for v in read.impacts["closing_speed_before_m_s"] if v is not None and not math.isnan(v)]
     assert min(speeds) >= 0
 
 

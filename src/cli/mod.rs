@@ -26,6 +26,7 @@ mod progress;
 mod read_log;
 mod report_args;
 mod run;
+mod run_several;
 mod selftest;
 mod simulate;
 mod sparkline;

@@ -8,23 +8,22 @@ use serde::Serialize;
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::difference::{Campaign, Comparison, Difference};
 use crate::identify::{Identification, JointFit, ParameterSet, VerdictKind};
-use crate::pipeline::PipelineError;
 use crate::pipeline::identify::{FILE, IdentificationFile, versions};
 use crate::pipeline::report::ReportFile;
+use crate::pipeline::{PipelineError, layout};
 use crate::report::{CampaignsContent, Format, Report, ReportOptions};
 
 /// Name of the result's file.
 pub const COMPARISON: &str = "comparison.json";
 /// Name of the table of estimates and differences.
 pub const TABLE: &str = "comparison.csv";
-/// The layout that carries what a comparison needs.
-const NAME: &str = "identification.json";
 
 /// The campaigns that a folder of results holds, one for each specimen; `measurement` is its number among
 /// those given.
 ///
 /// # Errors
-/// [`PipelineError::NoResults`] if the folder holds no results of this version.
+/// [`PipelineError::NoResults`] if the folder holds no results, [`PipelineError::Layout`] if they are of
+/// another version.
 pub fn read(folder: &Path, measurement: usize) -> Result<Vec<Campaign>, PipelineError> {
     let file = match folder.is_dir() {
         true => folder.join(FILE),
@@ -39,23 +38,14 @@ pub fn read(folder: &Path, measurement: usize) -> Result<Vec<Campaign>, Pipeline
         std::fs::read_to_string(&file).map_err(|e| unusable(e.to_string(), missing(folder)))?;
     let again = || {
         format!(
-            "identify the campaign again: impactid run CAMPAIGN.TOML --out {}",
+            "identify the campaign again into another folder than {}: impactid run CAMPAIGN.TOML --out DIR",
             folder.display()
         )
     };
     let json: serde_json::Value =
         serde_json::from_str(&text).map_err(|e| unusable(e.to_string(), again()))?;
-    let current = versions();
-    let wanted = current.get(NAME).map_or("", String::as_str);
-    let found = json["versions"][NAME].as_str().unwrap_or("none");
-    if found != wanted {
-        let program = json["versions"]["impactid"].as_str().unwrap_or("unknown");
-        let reason = format!(
-            "its layout is version {found}, written by impactid {program}; a comparison needs \
-             version {wanted}"
-        );
-        return Err(unusable(reason, again()));
-    }
+    let stated = serde_json::from_value(json["versions"].clone()).unwrap_or_default();
+    layout::check_versions(&file, FILE, &stated)?;
     let found: IdentificationFile =
         serde_json::from_value(json).map_err(|e| unusable(e.to_string(), again()))?;
     let campaign: ResolvedCampaign = serde_json::from_value(found.provenance.settings)

@@ -54,6 +54,16 @@ pub enum PipelineError {
     /// Campaigns cannot be compared.
     #[error(transparent)]
     Comparison(#[from] crate::difference::ComparisonError),
+    /// Results were written by another version of the program.
+    #[error("{path} has layout {found}; this program reads and writes layout {expected}")]
+    Layout {
+        /// The file.
+        path: String,
+        /// Its layout.
+        found: String,
+        /// The layout of this program.
+        expected: String,
+    },
     /// No record of the campaign could be used.
     #[error("none of the {} records can be used", .0.len())]
     NothingUsable(Vec<RefusedRecord>),
@@ -88,6 +98,11 @@ impl PipelineError {
             }
             Self::NoResults { remedy, .. } => remedy.clone(),
             Self::Comparison(error) => error.remedy().to_owned(),
+            Self::Layout { .. } => {
+                "run the campaign with this version of impactid into another folder (--out), or remove \
+                 the results of the other version"
+                    .to_owned()
+            }
             Self::NothingUsable(_) => "fix what is wrong with the records, as listed".to_owned(),
             Self::ReportFile { .. } => {
                 "check path and content of the template, the words and the logo, or leave them out"

@@ -3,6 +3,7 @@
 //! `run` = [`observe`] every record → brackets → [`identify`] → [`report`]; the stages alone
 //! use [`store`].
 
+pub mod campaign_folders;
 pub mod campaigns;
 pub mod checkpoint;
 pub mod coverage;
@@ -11,6 +12,7 @@ mod gzip_json;
 pub mod identify;
 pub mod inputs;
 mod json;
+pub mod layout;
 pub mod observe;
 pub mod observed;
 pub mod pairs;
@@ -20,6 +22,7 @@ pub mod report;
 mod run;
 pub mod selftest;
 pub mod store;
+pub mod summary;
 pub mod synthesise;
 mod table;
 pub mod tables;

@@ -1,6 +1,7 @@
 //! The commands as a user meets them.
 
 mod keys;
+mod several;
 mod verbosity;
 mod warnings;
 

@@ -46,6 +46,32 @@ fn commands() -> Vec<Case> {
             &["--out"],
         ),
         case(
+            "run on a pattern that no campaign matches",
+            |_| {},
+            &["run", "*/campaign.toml", "--out", "out"],
+            &[
+                "no file matches '*/campaign.toml'",
+                "name the campaign.toml",
+            ],
+        ),
+        case(
+            "run on several campaigns, one of which is not there",
+            |_| {},
+            &[
+                "run",
+                "campaign.toml",
+                "nowhere/campaign.toml",
+                "--out",
+                "out",
+            ],
+            &[
+                "nowhere/campaign.toml",
+                "campaign.toml cannot be read",
+                "impactid init",
+                "summary.csv",
+            ],
+        ),
+        case(
             "run on a faulty campaign",
             |lab| lab.edit("\"double\"", "\"triple\""),
             &["run", "campaign.toml", "--out", "out"],
@@ -114,6 +140,15 @@ fn folders() -> Vec<Case> {
             ],
         ),
         case(
+            "several campaigns into a folder with a summary of another version",
+            |lab| {
+                std::fs::create_dir(lab.path("out")).expect("a folder");
+                lab.write("out/summary.json", r#"{"versions": {"summary.json": "0"}}"#);
+            },
+            &["run", "campaign.toml", "other.toml", "--out", "out"],
+            &["summary.json has layout 0", "into another folder (--out)"],
+        ),
+        case(
             "a stage on a folder that is not there",
             |_| {},
             &["classify", "nowhere"],
@@ -149,8 +184,8 @@ fn folders() -> Vec<Case> {
             },
             &["compare", "old", "campaign.toml", "--out", "out"],
             &[
-                "its layout is version 1, written by impactid 0.1.0; a comparison needs version 3",
-                "impactid run CAMPAIGN.TOML --out old",
+                "old/identification.json has layout 1; this program reads and writes layout 3",
+                "run the campaign with this version of impactid into another folder",
             ],
         ),
         case(
