@@ -209,7 +209,12 @@ impl View {
         let centred: Vec<f64> = velocity.values.iter().map(|v| v - mean).collect();
         let level = crate::signal::robust::rms(&centred);
         Self {
-            closures: closures_beside_hum(&velocity.values, period, (&times, guard), (most, rate_hz)),
+            closures: closures_beside_hum(
+                &velocity.values,
+                period,
+                (&times, guard),
+                (most, rate_hz),
+            ),
             noise_ratio: (level > 0.0).then(|| velocity.noise / level),
             rest: level < 3.0 * velocity.noise,
         }
@@ -227,11 +232,18 @@ fn closures_beside_hum(
     (most, rate_hz): (u32, f64),
 ) -> Vec<WaveformClosure> {
     let closures = closure::waveform(values, period, impacts, most, &[]);
-    if closures.first().is_some_and(|first| first.ratio <= slack(&closures)) {
+    if closures
+        .first()
+        .is_some_and(|first| first.ratio <= slack(&closures))
+    {
         return closures;
     }
     let below = |f: &f64| *f < 0.5 * rate_hz;
-    let hum: Vec<f64> = MAINS_HZ.into_iter().filter(below).map(|f| f / rate_hz).collect();
+    let hum: Vec<f64> = MAINS_HZ
+        .into_iter()
+        .filter(below)
+        .map(|f| f / rate_hz)
+        .collect();
     closure::waveform(values, period, impacts, most, &hum)
 }
 
