@@ -11,7 +11,7 @@ use crate::difference::{Campaign, Outcome, Remark};
 use crate::event::{FlightKind, RigKind};
 use crate::identify::fit::coordinate::Coordinate;
 use crate::identify::fit::normal::inverse;
-use crate::identify::uncertainty::scatter::student_975;
+use crate::identify::uncertainty::quantile::student_975;
 use crate::identify::{ParameterSet, VerdictKind};
 
 /// What is shown of a campaign.

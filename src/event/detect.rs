@@ -510,7 +510,7 @@ mod tests {
     fn a_pulse_belongs_to_the_jump_within_its_reach() {
         let velocity = Series::clean(sawtooth(400));
         let closed = [pulse(100, 102), pulse(245, 247)];
-        let found = fuse(&velocity, &closed, 8, 10);
+        let found = fuse(&velocity, &closed, 8, 10).confirmed(&velocity, ARC);
         let sources: Vec<_> = found.candidates.iter().map(|c| c.source).collect();
         use DetectionSource::{Both, Velocity};
         assert_eq!(sources, [Both, Velocity, Velocity]);
@@ -518,6 +518,31 @@ mod tests {
         assert_eq!((found.upward, found.downward), (0, 3));
         assert_eq!(found.candidates[0].jump.left, 99);
         assert!(found.candidates.iter().all(|c| c.dead_samples == 0.0));
+    }
+
+    const ARC: ArcFit = ArcFit {
+        degree: 3,
+        displacement_degree: 3,
+        width: 10,
+    };
+
+    #[test]
+    fn a_jump_that_the_flights_do_not_show_needs_a_pulse() {
+        let velocity = Series::clean(sawtooth(400));
+        let mut found = fuse(&velocity, &[], 8, 10);
+        assert_eq!(found.candidates.len(), 3);
+        // Between two impacts the velocity climbs steadily.
+        let mut seeming = found.candidates[0].clone();
+        seeming.jump.left = 150;
+        found.candidates.insert(1, seeming);
+        found.candidates[1].source = DetectionSource::Both;
+        let with_pulse = found.confirmed(&velocity, ARC);
+        assert_eq!(with_pulse.candidates.len(), 4);
+        let mut without = with_pulse;
+        without.candidates[1].source = DetectionSource::Velocity;
+        let kept = without.confirmed(&velocity, ARC);
+        let places: Vec<usize> = kept.candidates.iter().map(|c| c.jump.left).collect();
+        assert_eq!((places, kept.missed), (vec![99, 199, 299], 3));
     }
 
     #[test]
