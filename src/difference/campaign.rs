@@ -3,6 +3,7 @@
 use crate::difference::Common;
 use crate::event::{FlightKind, RigKind};
 use crate::identify::fit::coordinate::Coordinate;
+use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::identify::{Allowed, Estimate, JointFit, ParameterSet, VerdictKind};
 use crate::record::calibrate::ChannelSetup;
 
@@ -45,9 +46,6 @@ pub(super) struct Known {
     /// Degrees of freedom of that variance.
     pub freedom: f64,
 }
-
-/// 97.5 % point of the normal distribution.
-const NORMAL_975: f64 = crate::identify::estimate::NORMAL_975;
 
 impl Campaign {
     /// What is known of a parameter; `None` where it has no value with an interval.

@@ -371,8 +371,8 @@ fn every_kind_of_channel_comes_back_from_every_target() {
 fn bits(dir: &Path) -> Vec<Box<dyn Source>> {
     let made = dir.join("made.h5");
     let mut writer = CampaignWriter::create(&made);
-    let odd: Vec<f64> = (0..257).map(|i| (f64::from(i) * 0.1).sin() / 3.0).collect();
-    let even: Vec<f64> = odd.iter().map(|v| 1e-7 * v.exp()).collect();
+    let odd: Vec<f64> = (0..257).map(|i| f64::from(i) / 3.0 - 41.0).collect();
+    let even: Vec<f64> = (0..257).map(|i| 1e-7 / (1.0 + f64::from(i))).collect();
     for (name, rate) in [
         ("run 1", Some(2000.0)),
         ("run 2", Some(2000.0)),
