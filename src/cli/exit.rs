@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use crate::identify::VerdictKind;
 
 /// How the program ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Exit {
     /// Done: 0.
     Done,

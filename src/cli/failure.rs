@@ -56,6 +56,20 @@ impl Failure {
         }
     }
 
+    /// Every problem that stops the command: its message, with the place, and its remedy.
+    pub(super) fn problems(&self) -> Vec<(String, String)> {
+        match self {
+            Self::Campaign(all) => {
+                let gravest = all.0.iter().map(|d| d.severity).max();
+                let stopping = all.0.iter().filter(|d| Some(d.severity) == gravest);
+                let each =
+                    |d: &Diagnostic| (format!("{}: {}", d.place, d.message), d.remedy.clone());
+                stopping.map(each).collect()
+            }
+            Self::Other { message, remedy } => vec![(message.clone(), remedy.clone())],
+        }
+    }
+
     /// A file that could not be read or written.
     pub fn io(path: &Path, error: &std::io::Error) -> Self {
         Self::new(

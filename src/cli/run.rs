@@ -1,6 +1,6 @@
 //! `impactid run`: all stages, from campaign.toml to the report.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -8,18 +8,18 @@ use super::details::{print_fits, print_records};
 use super::load::load_campaign;
 use super::progress::{LATER, Progress};
 use super::report_args::{ReportArgs, print_report_paths, quoted};
-use super::{Exit, Failure, Verbosity, interrupt};
-use crate::pipeline::{self, Destination, checkpoint};
+use super::{Exit, Failure, Verbosity, interrupt, run_several};
+use crate::pipeline::{self, Completed, Destination, checkpoint};
 use labfiles::output::Lock;
 
 /// Arguments of `impactid run`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE)]
 pub(super) struct Run {
-    /// The campaign's description
-    #[arg(value_name = "CAMPAIGN.TOML")]
-    campaign: PathBuf,
-    /// Folder for the results; created if it does not exist
+    /// The campaign's description; several are run one after the other
+    #[arg(value_name = "CAMPAIGN.TOML", required = true)]
+    campaigns: Vec<PathBuf>,
+    /// Folder for the results; created if it does not exist. Of several campaigns each has a folder in it
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
     /// Resume an interrupted run in DIR
@@ -33,14 +33,17 @@ const EXAMPLE: &str = "\
 Example:
   impactid run data-samples/double-oscillator/campaign.toml --out results/
   impactid run campaign.toml --out results/ --format pdf,html,svg,png --paper letter
+  impactid run */campaign.toml --out results/
 
 Outputs: report.pdf, the data of the figures in figures/, identification.json, records.parquet, impacts.parquet, boundaries.csv.
 Outputs are written atomically.
-Exit codes: 0 success; 1 the model does not fit or a parameter is not identifiable; 2 bad input.";
+Several campaigns: each has the folder in DIR that is named after its own, as if it had been run alone with that folder as
+--out; summary.csv and summary.json in DIR list the answers. One that fails does not stop the others.
+Exit codes: 0 success; 1 the model does not fit or a parameter is not identifiable; 2 bad input; of several campaigns the greatest.";
 
 /// From how many records on checkpoints are written; `IMPACTID_KEEP_FROM` sets another number, for
 /// trials with small campaigns.
-fn keep_from() -> usize {
+pub(super) fn keep_from() -> usize {
     let set = std::env::var("IMPACTID_KEEP_FROM").ok();
     set.and_then(|n| n.parse().ok())
         .unwrap_or(checkpoint::FEWEST)
@@ -48,39 +51,84 @@ fn keep_from() -> usize {
 
 impl Run {
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
-        let mut campaign = load_campaign(&self.campaign, verbosity)?;
-        self.options.apply(&mut campaign.report, verbosity)?;
-        let _lock = Lock::take(&self.out)?;
-        interrupt::watch(self.out.clone());
-        let records = campaign.records.len() as u64;
+        let options = RunOptions {
+            resume: self.resume,
+            report: &self.options,
+        };
+        let campaigns = run_several::expanded(&self.campaigns)?;
+        match &campaigns[..] {
+            [alone] => {
+                let done = options.run(alone, &self.out, verbosity)?;
+                Ok(Exit::of(done.identification.verdict.kind))
+            }
+            several => run_several::run(several, &self.out, options, verbosity),
+        }
+    }
+}
+
+/// How a campaign is run.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RunOptions<'a> {
+    /// Whether an interrupted run is resumed.
+    resume: bool,
+    /// The report.
+    report: &'a ReportArgs,
+}
+
+impl RunOptions<'_> {
+    /// Run one campaign into a folder and print what came of it.
+    ///
+    /// # Errors
+    /// [`Failure`] where the campaign cannot be used or an output cannot be written.
+    pub(super) fn run(
+        self,
+        campaign: &Path,
+        out: &Path,
+        verbosity: Verbosity,
+    ) -> Result<Completed, Failure> {
+        let mut resolved = load_campaign(campaign, verbosity)?;
+        self.report.apply(&mut resolved.report, verbosity)?;
+        let _lock = Lock::take(out)?;
+        interrupt::watch(out.to_path_buf());
+        let records = resolved.records.len() as u64;
         let bar = Progress::new(verbosity, "observe", records).with_later(LATER);
         let progress = |stage: &'static str, done: u64, total: u64| {
             bar.stage(stage);
             bar.set(done, total);
         };
-        let command = format!(
-            "impactid run {} --out {}{}",
-            quoted(&self.campaign),
-            quoted(&self.out),
-            self.options.typed()
-        );
         let destination = Destination {
-            out: &self.out,
+            out,
             resume: self.resume,
             keep_from: keep_from(),
-            command_line: &command,
+            command_line: &command_line(campaign, out, self.report),
+            also: None,
             fits: bar.fits(),
         };
-        let done = pipeline::run(&campaign, &destination, &progress)?;
+        let done = pipeline::run(&resolved, &destination, &progress)?;
         drop(bar);
-        print_records(&done.observations, verbosity);
-        print_fits(&done.identification, verbosity);
-        let verdict = &done.identification.verdict;
-        verbosity.info(&verdict.to_string());
-        for finding in &verdict.findings {
-            verbosity.info(&format!("  - {finding}"));
-        }
-        print_report_paths(&campaign, &self.out, verbosity);
-        Ok(Exit::of(verdict.kind))
+        print_completed(&done, verbosity);
+        print_report_paths(&resolved, out, verbosity);
+        Ok(done)
+    }
+}
+
+/// The command that a report names: one that gives the same results.
+pub(super) fn command_line(campaign: &Path, out: &Path, report: &ReportArgs) -> String {
+    format!(
+        "impactid run {} --out {}{}",
+        quoted(campaign),
+        quoted(out),
+        report.typed()
+    )
+}
+
+/// Print the answer of a run, and with `-v` what led to it.
+pub(super) fn print_completed(done: &Completed, verbosity: Verbosity) {
+    print_records(&done.observations, verbosity);
+    print_fits(&done.identification, verbosity);
+    let verdict = &done.identification.verdict;
+    verbosity.info(&verdict.to_string());
+    for finding in &verdict.findings {
+        verbosity.info(&format!("  - {finding}"));
     }
 }

@@ -13,10 +13,11 @@ use crate::identify::evidence::Blocks;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::{Estimate, Identification};
 use crate::motion::Observation;
-use crate::pipeline::identify::{IdentificationFile, evidence, versions};
+use crate::pipeline::identify::{IdentificationFile, evidence};
 use crate::pipeline::observe::read_one;
 use crate::pipeline::theory::plan::Law;
-use crate::pipeline::{Observed, PipelineError, Progress, identify, inputs, store};
+use crate::pipeline::watch::Live;
+use crate::pipeline::{Observed, PipelineError, Progress, identify, inputs, layout, store};
 use crate::record::Record;
 use crate::report::style::MotionStyle;
 use crate::signal::robust;
@@ -43,6 +44,15 @@ impl Campaign {
         Ok(Self::with(resolved, observed, found.identification))
     }
 
+    /// The records that have arrived so far, with their fit.
+    pub fn live(live: &Live) -> Self {
+        Self::with(
+            live.campaign.clone(),
+            live.observed.clone(),
+            live.found.identification.clone(),
+        )
+    }
+
     /// Read a results folder; with it come notes on inputs that are gone or changed.
     ///
     /// # Errors
@@ -53,7 +63,8 @@ impl Campaign {
     ) -> Result<(Self, Vec<String>), ExploreError> {
         let resolved = store::read_resolved(folder)?;
         let found = store::read_identification(folder)?;
-        check_layout(folder, &found)?;
+        let name = identify::FILE;
+        layout::check_versions(&folder.join(name), name, &found.provenance.versions)?;
         let notes = changed_inputs(&resolved, &found);
         let observed = match store::read_observed(folder) {
             Ok(observed) => observed,
@@ -312,21 +323,6 @@ fn fitted(p: &Parameters) -> Value {
         "damping_ratio": p.damping_ratio,
         "natural_frequency_hz": p.natural_frequency_hz,
         "static_deflection_m": p.static_deflection_m,
-    })
-}
-
-/// Results of another layout are refused by name.
-fn check_layout(folder: &Path, found: &IdentificationFile) -> Result<(), ExploreError> {
-    let name = "identification.json";
-    let of = |versions: &std::collections::BTreeMap<String, String>| versions.get(name).cloned();
-    let (theirs, ours) = (of(&found.provenance.versions), of(&versions()));
-    if theirs == ours {
-        return Ok(());
-    }
-    Err(ExploreError::Layout {
-        path: folder.join(name).display().to_string(),
-        found: theirs.unwrap_or("none".into()),
-        expected: ours.unwrap_or_default(),
     })
 }
 

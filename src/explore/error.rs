@@ -48,16 +48,6 @@ pub enum ExploreError {
     /// The server stopped.
     #[error("the server stopped: {0}")]
     Server(String),
-    /// Results were written by another version of the program.
-    #[error("{path} has layout {found}; this program reads layout {expected}")]
-    Layout {
-        /// The file.
-        path: String,
-        /// Its layout.
-        found: String,
-        /// The layout that this program reads.
-        expected: String,
-    },
     /// A stage of the pipeline failed.
     #[error(transparent)]
     Pipeline(#[from] crate::pipeline::PipelineError),
@@ -87,7 +77,6 @@ impl ExploreError {
                  leave it out"
             }
             Self::Server(_) => "start `impactid explore` again",
-            Self::Layout { .. } => "run the campaign again with this version of impactid",
             Self::Demos(_) => "correct the demos' `expect`, or report the difference",
             Self::Pipeline(error) => return error.remedy(),
             Self::Study(error) => error.remedy(),

@@ -41,6 +41,16 @@ pub enum PipelineError {
         /// What is wrong with it.
         reason: String,
     },
+    /// Results were written by another version of the program.
+    #[error("{path} has layout {found}; this program reads and writes layout {expected}")]
+    Layout {
+        /// The file.
+        path: String,
+        /// Its layout.
+        found: String,
+        /// The layout of this program.
+        expected: String,
+    },
     /// No record of the campaign could be used.
     #[error("none of the {} records can be used", .0.len())]
     NothingUsable(Vec<RefusedRecord>),
@@ -71,6 +81,11 @@ impl PipelineError {
             Self::Read(error) => error.remedy.clone(),
             Self::Store { .. } => {
                 "run the previous stage again; the stages are ingest, classify, identify, report"
+                    .to_owned()
+            }
+            Self::Layout { .. } => {
+                "run the campaign with this version of impactid into another folder (--out), or remove \
+                 the results of the other version"
                     .to_owned()
             }
             Self::NothingUsable(_) => "fix what is wrong with the records, as listed".to_owned(),

@@ -3,6 +3,7 @@
 //! `run` = [`observe`] every record → brackets → [`identify`] → [`report`]; the stages alone
 //! use [`store`].
 
+pub mod campaign_folders;
 pub mod checkpoint;
 pub mod coverage;
 pub mod error;
@@ -10,6 +11,7 @@ mod gzip_json;
 pub mod identify;
 pub mod inputs;
 mod json;
+pub mod layout;
 pub mod observe;
 pub mod observed;
 pub mod plan;
@@ -18,10 +20,12 @@ pub mod report;
 mod run;
 pub mod selftest;
 pub mod store;
+pub mod summary;
 pub mod synthesise;
 mod table;
 pub mod tables;
 pub mod theory;
+pub mod watch;
 
 pub use error::{PipelineError, Progress, RefusedRecord};
 pub use observed::Observed;

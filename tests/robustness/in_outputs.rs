@@ -46,6 +46,32 @@ fn commands() -> Vec<Case> {
             &["--out"],
         ),
         case(
+            "run on a pattern that no campaign matches",
+            |_| {},
+            &["run", "*/campaign.toml", "--out", "out"],
+            &[
+                "no file matches '*/campaign.toml'",
+                "name the campaign.toml",
+            ],
+        ),
+        case(
+            "run on several campaigns, one of which is not there",
+            |_| {},
+            &[
+                "run",
+                "campaign.toml",
+                "nowhere/campaign.toml",
+                "--out",
+                "out",
+            ],
+            &[
+                "nowhere/campaign.toml",
+                "campaign.toml cannot be read",
+                "impactid init",
+                "summary.csv",
+            ],
+        ),
+        case(
             "run on a faulty campaign",
             |lab| lab.edit("\"double\"", "\"triple\""),
             &["run", "campaign.toml", "--out", "out"],
@@ -112,6 +138,45 @@ fn folders() -> Vec<Case> {
                 "the folder out cannot be written into",
                 "name another folder with --out",
             ],
+        ),
+        case(
+            "several campaigns into a folder with a summary of another version",
+            |lab| {
+                std::fs::create_dir(lab.path("out")).expect("a folder");
+                lab.write("out/summary.json", r#"{"versions": {"summary.json": "0"}}"#);
+            },
+            &["run", "campaign.toml", "other.toml", "--out", "out"],
+            &["summary.json has layout 0", "into another folder (--out)"],
+        ),
+        case(
+            "watch into results of another version",
+            |lab| {
+                std::fs::create_dir(lab.path("out")).expect("a folder");
+                lab.write("out/identification.json", r#"{"versions": {}}"#);
+            },
+            &["watch", "campaign.toml", "--out", "out"],
+            &[
+                "identification.json has layout none",
+                "into another folder (--out)",
+            ],
+        ),
+        case(
+            "watch a campaign that is not there",
+            |_| {},
+            &["watch", "nowhere/campaign.toml", "--out", "out"],
+            &["campaign.toml cannot be read", "impactid init"],
+        ),
+        case(
+            "explore --watch on a folder",
+            |_| {},
+            &["explore", "--watch", "."],
+            &["is not a campaign.toml", "impactid init"],
+        ),
+        case(
+            "watch without a pause between two looks",
+            |_| {},
+            &["watch", "campaign.toml", "--out", "out", "--poll", "0"],
+            &["it must lie between 0.05 and 86400 seconds"],
         ),
         case(
             "a stage on a folder that is not there",

@@ -15,6 +15,7 @@ mod verdict;
 pub(super) mod world;
 
 pub(super) use pdf::pdf;
+pub use tables::budget_source;
 
 use drawn::Drawn;
 use model::{Document, Rich};

@@ -1,0 +1,264 @@
+//! What several campaigns gave, side by side: a row each, as CSV and as JSON.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::identify;
+use super::json::{store_error, write_json};
+use super::{Completed, PipelineError};
+use crate::identify::{Estimate, ParameterSet, VerdictKind};
+use labfiles::output::write_bytes;
+
+/// Name of the summary as a table.
+pub const CSV: &str = "summary.csv";
+/// Name of the summary as JSON.
+pub const JSON: &str = "summary.json";
+
+/// Versions of the program and of the layouts that it writes, that of the summary among them.
+pub(super) fn versions() -> BTreeMap<String, String> {
+    let mut versions = identify::versions();
+    versions.insert(JSON.to_owned(), "1".to_owned());
+    versions
+}
+
+/// Several campaigns in their order.
+#[derive(Debug, Clone, Serialize)]
+pub struct Summary {
+    /// Versions of the program and of the files' layouts.
+    pub versions: BTreeMap<String, String>,
+    /// A row for each campaign.
+    pub campaigns: Vec<Row>,
+}
+
+/// One campaign.
+#[derive(Debug, Clone, Serialize)]
+pub struct Row {
+    /// Its campaign.toml, as given.
+    pub campaign: String,
+    /// The folder of its results in that of the summary.
+    pub folder: String,
+    /// The exit code of a run of it alone.
+    pub exit_code: u8,
+    /// What came of it.
+    #[serde(flatten)]
+    pub outcome: Outcome,
+}
+
+/// What came of a campaign.
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// Its results are in the folder.
+    Result(Box<Found>),
+    /// It could not be run; what was in its folder is untouched.
+    Errors(Vec<Fault>),
+}
+
+/// The answer of a campaign.
+#[derive(Debug, Clone, Serialize)]
+pub struct Found {
+    /// The verdict in a word.
+    pub verdict: VerdictKind,
+    /// Number of records.
+    pub records: usize,
+    /// Number of those that can be used.
+    pub usable_records: usize,
+    /// The joint estimate.
+    pub joint: ParameterSet,
+}
+
+/// Why a campaign could not be run.
+#[derive(Debug, Clone, Serialize)]
+pub struct Fault {
+    /// What happened, with the place.
+    pub message: String,
+    /// What the user can do.
+    pub remedy: String,
+}
+
+impl Found {
+    /// The answer of a completed run.
+    pub fn of(done: &Completed) -> Self {
+        let usable = done.observations.iter().filter(|o| !o.excluded());
+        Self {
+            verdict: done.identification.verdict.kind,
+            records: done.observations.len(),
+            usable_records: usable.count(),
+            joint: done.identification.joint.parameters.clone(),
+        }
+    }
+
+    /// The estimates under the names that the table gives them; `None`: not determined at all.
+    fn estimates(&self) -> [Option<&Estimate>; 4] {
+        let p = &self.joint;
+        [
+            p.restitution.as_ref(),
+            p.natural_frequency_hz.as_ref(),
+            p.damping_ratio.as_ref(),
+            p.static_deflection_m.as_ref(),
+        ]
+    }
+}
+
+/// The parameters' names in the table, in the order of [`Found::estimates`].
+const PARAMETERS: [&str; 4] = [
+    "restitution",
+    "natural_frequency_hz",
+    "damping_ratio",
+    "static_deflection_m",
+];
+
+impl Summary {
+    /// Rows with this program's versions.
+    pub fn of(campaigns: Vec<Row>) -> Self {
+        Self {
+            versions: versions(),
+            campaigns,
+        }
+    }
+
+    /// Write summary.csv and summary.json into a folder.
+    ///
+    /// # Errors
+    /// Where one cannot be written.
+    pub fn write(&self, out: &Path) -> Result<(), PipelineError> {
+        let path = out.join(CSV);
+        let table = self.csv().map_err(|e| store_error(&path, e))?;
+        write_bytes(&path, &table)?;
+        write_json(&out.join(JSON), self)
+    }
+
+    fn csv(&self) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
+        let mut table = csv::Writer::from_writer(Vec::new());
+        let mut heads: Vec<String> = ["campaign", "folder", "exit_code", "verdict", "records"]
+            .map(String::from)
+            .to_vec();
+        heads.push("usable_records".to_owned());
+        for name in PARAMETERS {
+            heads.extend(
+                ["", "_standard_error", "_low", "_high", "_status"].map(|e| format!("{name}{e}")),
+            );
+        }
+        heads.push("error".to_owned());
+        table.write_record(&heads)?;
+        for row in &self.campaigns {
+            table.write_record(row.cells()?)?;
+        }
+        Ok(table.into_inner()?)
+    }
+}
+
+impl Row {
+    fn cells(&self) -> Result<Vec<String>, serde_json::Error> {
+        let mut cells = vec![
+            self.campaign.clone(),
+            self.folder.clone(),
+            self.exit_code.to_string(),
+        ];
+        match &self.outcome {
+            Outcome::Result(found) => {
+                cells.push(word(&found.verdict)?);
+                cells.push(found.records.to_string());
+                cells.push(found.usable_records.to_string());
+                for estimate in found.estimates() {
+                    cells.extend(estimate_cells(estimate)?);
+                }
+                cells.push(String::new());
+            }
+            Outcome::Errors(faults) => {
+                cells.resize(6 + 5 * PARAMETERS.len(), String::new());
+                let messages: Vec<&str> = faults.iter().map(|f| f.message.as_str()).collect();
+                cells.push(messages.join("; "));
+            }
+        }
+        Ok(cells)
+    }
+}
+
+fn estimate_cells(estimate: Option<&Estimate>) -> Result<[String; 5], serde_json::Error> {
+    let Some(estimate) = estimate else {
+        return Ok(Default::default());
+    };
+    let number = |v: Option<f64>| v.map(|v| v.to_string()).unwrap_or_default();
+    Ok([
+        number(estimate.value),
+        number(estimate.standard_error),
+        number(estimate.interval95.map(|i| i[0])),
+        number(estimate.interval95.map(|i| i[1])),
+        word(&estimate.status)?,
+    ])
+}
+
+/// A variant by its name in JSON.
+fn word(variant: &impl Serialize) -> Result<String, serde_json::Error> {
+    let text = serde_json::to_value(variant)?;
+    Ok(text.as_str().unwrap_or_default().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::Status;
+
+    fn row(folder: &str, exit_code: u8, outcome: Outcome) -> Row {
+        Row {
+            campaign: format!("{folder}/campaign.toml"),
+            folder: folder.to_owned(),
+            exit_code,
+            outcome,
+        }
+    }
+
+    #[test]
+    fn the_table_has_a_whole_row_for_each_campaign() {
+        let restitution = Estimate {
+            value: Some(0.9),
+            standard_error: Some(0.01),
+            interval95: Some([0.88, 0.92]),
+            status: Status::Identified,
+            note: None,
+        };
+        let found = Found {
+            verdict: VerdictKind::Weak,
+            records: 3,
+            usable_records: 2,
+            joint: ParameterSet {
+                restitution: Some(restitution),
+                ..ParameterSet::default()
+            },
+        };
+        let faults = vec![Fault {
+            message: "a, \"quoted\" message".to_owned(),
+            remedy: "a remedy".to_owned(),
+        }];
+        let summary = Summary::of(vec![
+            row("day1", 0, Outcome::Result(Box::new(found))),
+            row("day2", 2, Outcome::Errors(faults)),
+        ]);
+        let folder = tempfile::tempdir().unwrap();
+        summary.write(folder.path()).unwrap();
+        let mut table = csv::Reader::from_path(folder.path().join(CSV)).unwrap();
+        let heads = table.headers().unwrap().clone();
+        let rows: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
+        let cell = |i: usize, name: &str| {
+            let at = heads.iter().position(|h| h == name).unwrap();
+            rows[i][at].to_owned()
+        };
+        assert_eq!(cell(0, "verdict"), "weak");
+        assert_eq!(cell(0, "restitution_low"), "0.88");
+        assert_eq!(cell(0, "restitution_status"), "identified");
+        assert_eq!(cell(0, "damping_ratio"), "");
+        assert_eq!(cell(1, "exit_code"), "2");
+        assert_eq!(cell(1, "error"), "a, \"quoted\" message");
+        let json = std::fs::read_to_string(folder.path().join(JSON)).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+        assert_eq!(
+            json["campaigns"][0]["result"]["joint"]["restitution"]["value"],
+            0.9
+        );
+        assert_eq!(json["campaigns"][1]["errors"][0]["remedy"], "a remedy");
+        assert_eq!(json["versions"][JSON], "1");
+    }
+}
