@@ -1,33 +1,22 @@
 //! `impactid`: from a laboratory campaign on an impact oscillator to the coefficient of
-//! restitution R, the natural frequency f0 and the damping ratio β, each with an honest interval.
+//! restitution R, the natural frequency f0 and the damping ratio β, each with a 95 % interval.
 //!
-//! Data walks one street, and a room never imports from a room to its right:
+//! Data passes through the modules in one direction; a module imports only from those before it:
 //!
-//! `units` < `output` < `signal` < `record` < `event` < `motion` < `model` < `atlas` <
-//! `synthetic` < `identify` < `compare` < `report` < `campaign` < `pipeline` < `cli`.
-
-pub mod message;
-
-pub mod signal;
-
-pub mod record;
-
-pub mod event;
-
-pub mod motion;
-
-pub mod synthetic;
-
-pub mod identify;
-
-pub mod compare;
-
-pub mod report;
+//! `message`, `signal`, `record`, `event`, `motion`, `synthetic`, `identify`, `compare`, `report`,
+//! `campaign`, `pipeline`, `explore`, `cli`. The model itself is the crate `impact-oscillator`, files
+//! are read by the crate `labfiles`.
 
 pub mod campaign;
-
-pub mod pipeline;
-
-pub mod explore;
-
 pub mod cli;
+pub mod compare;
+pub mod event;
+pub mod explore;
+pub mod identify;
+pub mod message;
+pub mod motion;
+pub mod pipeline;
+pub mod record;
+pub mod report;
+pub mod signal;
+pub mod synthetic;

@@ -7,7 +7,7 @@ use clap::Args;
 use super::stdout::{print, print_json};
 use super::{Exit, Failure, Progress, Verbosity};
 use crate::identify::uncertainty::coverage::Score;
-use crate::pipeline::coverage::{self, Tally};
+use crate::pipeline::coverage::{self, MotionTally, Tallies, Tally};
 use crate::synthetic::RigSpec;
 use labfiles::output::write_bytes;
 
@@ -15,9 +15,12 @@ use labfiles::output::write_bytes;
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLE)]
 pub(super) struct Coverage {
-    /// Number of campaigns; a fifth as many more for each mistake of the laboratory
+    /// Number of campaigns
     #[arg(long, value_name = "N", default_value_t = 100)]
     campaigns: usize,
+    /// Number of further campaigns for each mistake of the laboratory [default: a fifth of --campaigns]
+    #[arg(long, value_name = "N")]
+    mistakes: Option<usize>,
     /// Seed of everything random
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
@@ -48,7 +51,9 @@ impl Coverage {
     /// [`Failure`] where a simulation refuses its parameters.
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let bar = Progress::new(verbosity, "campaigns", self.campaigns as u64);
-        let found = coverage::study(self.campaigns, self.seed, &self.rig, &|_, done, total| {
+        let few = self.mistakes.unwrap_or(self.campaigns.div_ceil(5));
+        let counts = [self.campaigns, few];
+        let found = coverage::study(counts, self.seed, &self.rig, &|_, done, total| {
             bar.set(done, total);
         })?;
         drop(bar);
@@ -66,7 +71,7 @@ impl Coverage {
 
 fn table(found: &coverage::Coverage) -> String {
     let mut text = format!(
-        "{:13} {:21} {:>4} {:>7} {:>10} {:>10} {:>10} {:>9} {:>8}\n",
+        "{:13} {:21} {:>4} {:>7} {:>10} {:>10} {:>10} {:>9} {:>8} {:>10}\n",
         "method",
         "parameter",
         "n",
@@ -75,7 +80,8 @@ fn table(found: &coverage::Coverage) -> String {
         "rms error",
         "bound",
         "rms/bound",
-        "coverage"
+        "coverage",
+        "half width"
     );
     for (method, parameters) in &found.methods {
         for (parameter, score) in parameters {
@@ -86,20 +92,47 @@ fn table(found: &coverage::Coverage) -> String {
     for (name, tally) in &found.mistakes {
         text += &tally_line(&format!("found: {}", name.replace('_', " ")), *tally);
     }
-    text += &tally_line("false alarms", found.false_alarms);
+    text + &tallies(&found.tallies)
+}
+
+fn tallies(found: &Tallies) -> String {
+    let mut text = tally_line("false alarms", found.false_alarms);
+    text += &tally_line("  of them a gap accused", found.gaps_accused);
+    text += &tally_line("methods do not agree", found.methods_disagree);
+    for (kind, count) in &found.verdicts {
+        text += &format!("verdict {}: {count}\n", kind.name().replace('_', " "));
+    }
+    for (effect, tally) in &found.named_effects {
+        text += &tally_line(&format!("named: {}", effect.replace('_', " ")), *tally);
+    }
+    let MotionTally {
+        periodic,
+        right,
+        undetermined,
+        doubtful,
+        wrong,
+        not_periodic,
+        called_periodic,
+    } = found.motions;
+    text += &format!(
+        "motion types of {periodic} periodic records: {right} right, {undetermined} undetermined, \
+         {doubtful} wrong but not sure, {wrong} surely wrong; of {not_periodic} others \
+         {called_periodic} surely called periodic\n"
+    );
     text
 }
 
 fn score_line(method: &str, parameter: &str, s: &Score) -> String {
     format!(
-        "{method:13} {parameter:21} {:>4} {:>7} {:>10.2e} {:>10.2e} {:>10.2e} {:>9.2} {:>6.1} %\n",
+        "{method:13} {parameter:21} {:>4} {:>7} {:>10.2e} {:>10.2e} {:>10.2e} {:>9.2} {:>6.1} % {:>10.2e}\n",
         s.estimates,
         s.refused,
         s.bias,
         s.rms_error,
         s.bound,
         s.rms_error_over_bound,
-        100.0 * s.coverage95
+        100.0 * s.coverage95,
+        s.median_half_width95
     )
 }
 

@@ -209,7 +209,8 @@ type Place = [f64; 3];
 
 impl Search {
     fn best(&self) -> Option<FiniteContact> {
-        let instant: Vec<f64> = self.costs(&[0.0; 3], 0.0).collect();
+        let each = |impact: &Samples| self.cost_of(impact, &[0.0; 3], 0.0);
+        let instant: Vec<f64> = self.impacts.iter().map(each).collect();
         let unexplained: f64 = instant.iter().map(|c| (c - EXPLAINED).max(0.0)).sum();
         if unexplained < SIGNIFICANT {
             return None;
@@ -218,8 +219,13 @@ impl Search {
             let duration = LONGEST * (f64::from(i) / 12.0).powi(2);
             (-4..=4).map(move |k| [duration, 0.0, LATEST * f64::from(k) / 4.0])
         });
-        let coarse = grid.map(|place| (self.costs(&place, LOOSE).sum::<f64>(), place));
-        let (_, start) = coarse.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let mut best = (f64::INFINITY, [0.0; 3]);
+        for place in grid {
+            if let Some(cost) = self.cost_below(best.0, &place, LOOSE) {
+                best = (cost, place);
+            }
+        }
+        let (_, start) = best;
         let (cost, [duration, mean, apart]) = self.refined(start);
         let known = |v: f64| if v.abs() < SHORTEST { 0.0 } else { v };
         let found = FiniteContact {
@@ -231,35 +237,51 @@ impl Search {
         (differs && instant.iter().sum::<f64>() - cost > SIGNIFICANT).then_some(found)
     }
 
-    /// Cost of each impact; `loose` is added to the errors of their times.
-    fn costs(&self, place: &Place, loose: f64) -> impl Iterator<Item = f64> {
-        self.impacts.iter().map(move |i| self.cost(i, place, loose))
+    /// Cost of all impacts where it is below a limit; `loose` is added to the errors of their times.
+    fn cost_below(&self, limit: f64, place: &Place, loose: f64) -> Option<f64> {
+        let mut sum = 0.0;
+        for impact in &self.impacts {
+            sum += self.cost_of(impact, place, loose);
+            if sum >= limit {
+                return None;
+            }
+        }
+        (sum < limit).then_some(sum)
     }
 
     /// Least squared deviation of an impact's samples over its time.
-    fn cost(&self, impact: &Samples, [duration, mean, apart]: &Place, loose: f64) -> f64 {
+    fn cost_of(&self, impact: &Samples, [duration, mean, apart]: &Place, loose: f64) -> f64 {
         let error = impact.time_error.hypot(loose);
         let centre = self.profile.centre() * duration;
         let delays = [mean + 0.5 * apart, mean - 0.5 * apart];
-        let at = |shift: f64| -> f64 {
-            let deviation = |(p, body): &(Passage, usize)| {
-                let since = p.offset - shift - delays[*body];
-                let done = if *duration > 0.0 {
-                    self.profile.done((since + centre) / duration)
-                } else {
-                    f64::from(since > 0.0)
-                };
-                ((p.share - done) / p.share_error).powi(2).min(OUTLYING)
+        let deviation = |(p, body): &(Passage, usize), shift: f64| {
+            let since = p.offset - shift - delays[*body];
+            let done = if *duration > 0.0 {
+                self.profile.done((since + centre) / duration)
+            } else {
+                f64::from(since > 0.0)
             };
-            (shift / error).powi(2) + impact.passages.iter().map(deviation).sum::<f64>()
+            ((p.share - done) / p.share_error).powi(2).min(OUTLYING)
         };
-        let steps = (-8..=8).map(|k| 0.3 * f64::from(k) * error);
-        steps.map(at).fold(f64::INFINITY, f64::min)
+        // Shifts from zero outwards; one whose sum exceeds the least is given up.
+        let shifts = (0..=8).flat_map(|k| [-0.3 * f64::from(k), 0.3 * f64::from(k)]);
+        let mut least = f64::INFINITY;
+        for shift in shifts.skip(1).map(|steps| steps * error) {
+            let mut sum = (shift / error).powi(2);
+            let mut passages = impact.passages.iter();
+            while sum < least
+                && let Some(passage) = passages.next()
+            {
+                sum += deviation(passage, shift);
+            }
+            least = least.min(sum);
+        }
+        least
     }
 
     /// Search along the coordinates in steps that are halved.
     fn refined(&self, mut at: Place) -> (f64, Place) {
-        let mut least: f64 = self.costs(&at, 0.0).sum();
+        let mut least: f64 = self.impacts.iter().map(|i| self.cost_of(i, &at, 0.0)).sum();
         let mut step = 0.16f64;
         while step > 0.004 {
             let mut better = false;
@@ -268,8 +290,7 @@ impl Search {
                     let mut next = at;
                     next[axis] += sign * step;
                     next[0] = next[0].max(0.0);
-                    let cost: f64 = self.costs(&next, 0.0).sum();
-                    if cost < least {
+                    if let Some(cost) = self.cost_below(least, &next, 0.0) {
                         (least, at, better) = (cost, next, true);
                     }
                 }

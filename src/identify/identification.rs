@@ -128,6 +128,18 @@ pub enum VerdictKind {
     DoesNotFit,
 }
 
+impl VerdictKind {
+    /// Name in `identification.json`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Identified => "identified",
+            Self::Weak => "weak",
+            Self::NotIdentifiable => "not_identifiable",
+            Self::DoesNotFit => "does_not_fit",
+        }
+    }
+}
+
 /// The verdict: one word, plain sentences (its `Display`, `summary` in JSON), and the findings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(remote = "Self")]

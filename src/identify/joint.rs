@@ -88,6 +88,7 @@ pub fn problem<'b>(
         priors,
         free,
         progress: blocks.progress.clone(),
+        ..Problem::default()
     })
 }
 

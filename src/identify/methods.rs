@@ -6,7 +6,7 @@ use crate::identify::estimate;
 use crate::identify::evidence::{Blocks, Nominal};
 use crate::identify::fit::normal::inverse;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::{Block, Fit, FitError, Prior, Problem, mean_squares};
+use crate::identify::fit::{Block, Fit, FitError, Precision, Prior, Problem, mean_squares};
 use crate::identify::identification::MethodResult;
 use crate::identify::messages::{Note, Remark};
 use crate::identify::uncertainty::scatter::{self, Scatter, Spread};
@@ -39,7 +39,7 @@ pub struct MethodFit {
     pub factor: f64,
     /// Reduced sum of squares as it came out.
     pub reduced: f64,
-    /// Scatter between groups of records beyond it.
+    /// Scatter between groups of records beyond it; not looked for where the fit only starts another.
     pub scatter: Scatter,
 }
 
@@ -51,10 +51,14 @@ impl MethodFit {
     /// Of a fit of a problem, judged with degrees of freedom.
     pub fn of(problem: &Problem<'_>, fit: Fit, freedom: usize) -> Self {
         let reduced = fit.cost / freedom.max(1) as f64;
+        let scatter = match problem.precision {
+            Precision::Result => scatter::scatter(problem, &fit),
+            Precision::Start => Scatter::default(),
+        };
         Self {
             factor: reduced.max(1.0),
             reduced,
-            scatter: scatter::scatter(problem, &fit),
+            scatter,
             fit,
         }
     }
@@ -123,7 +127,7 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<FitResult> {
     let ideal = nominal.ideal();
     let fits = starts(blocks, nominal)
         .into_iter()
-        .filter_map(|start| resonance_from(blocks, &ideal, start)?.ok());
+        .filter_map(|start| resonance_curve(blocks, &ideal, start, Precision::Start)?.ok());
     let best = fits.min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
     match best {
         Some(best) => resonance_from(blocks, nominal, best.fit.parameters),
@@ -133,11 +137,24 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<FitResult> {
 
 /// The same from a start near the optimum.
 pub fn resonance_from(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
+    resonance_curve(blocks, nominal, start, Precision::Result)
+}
+
+fn resonance_curve(
+    blocks: &Blocks,
+    nominal: &Nominal,
+    start: Parameters,
+    precision: Precision,
+) -> Option<FitResult> {
     let mut free = RESONANCE.to_vec();
     let mut priors = wide_priors(&start, &free);
     let list: [(&dyn Block, f64); 1] = [(&blocks.resonance, 1.0)];
     blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
-    enough(blocks).then(|| fit_blocks(blocks.problem(list.to_vec(), free, priors), start))
+    let problem = Problem {
+        precision,
+        ..blocks.problem(list.to_vec(), free, priors)
+    };
+    enough(blocks).then(|| fit_blocks(problem, start))
 }
 
 fn enough(blocks: &Blocks) -> bool {
@@ -229,20 +246,35 @@ pub fn boundaries(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Opti
 }
 
 /// All four parameters from the folded waveforms.
-pub fn trajectories(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
+pub fn trajectories(
+    blocks: &Blocks,
+    nominal: &Nominal,
+    start: Parameters,
+    precision: Precision,
+) -> Option<FitResult> {
     if blocks.trajectory.records.is_empty() {
         return None;
     }
-    Some(all_four(&blocks.trajectory, blocks, nominal, start))
+    let block = &blocks.trajectory;
+    Some(all_four(block, blocks, nominal, (start, precision)))
 }
 
 /// R, f0, β and `x_st` from one block alone, with the nuisances beside them.
-fn all_four(block: &dyn Block, blocks: &Blocks, nominal: &Nominal, start: Parameters) -> FitResult {
+fn all_four(
+    block: &dyn Block,
+    blocks: &Blocks,
+    nominal: &Nominal,
+    (start, precision): (Parameters, Precision),
+) -> FitResult {
     let mut free = Coordinate::PHYSICAL.to_vec();
     let mut priors = wide_priors(&start, &free);
     let list = vec![(block, 1.0)];
     blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
-    fit_blocks(blocks.problem(list, free, priors), start)
+    let problem = Problem {
+        precision,
+        ..blocks.problem(list, free, priors)
+    };
+    fit_blocks(problem, start)
 }
 
 /// Variance of what flights tell over that of independent innovations: an impact's errors of time
@@ -255,7 +287,8 @@ pub fn flights(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<
     if blocks.flight.records.is_empty() {
         return None;
     }
-    let found = all_four(&blocks.flight, blocks, nominal, start);
+    let begin = (start, Precision::Result);
+    let found = all_four(&blocks.flight, blocks, nominal, begin);
     Some(found.map(|found| MethodFit {
         factor: found.factor * SHARED_IN_FLIGHTS,
         ..found

@@ -10,8 +10,8 @@ use crate::identify::diagnostics::swapped_channels;
 use crate::identify::diagnostics::verdict::{self, Basis};
 use crate::identify::estimate::ParameterSet;
 use crate::identify::evidence::{Blocks, Evidence};
-use crate::identify::fit::Problem;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::{Precision, Problem};
 use crate::identify::identification::{Identification, JointFit, MethodResult};
 use crate::identify::joint::{self, Weights};
 use crate::identify::messages::{Finding, LeftOut, Reason, Remark};
@@ -365,7 +365,7 @@ impl IdentificationRun<'_> {
         };
         let trajectories = match gone.trajectory.is_empty() {
             true => fits.trajectories,
-            false => methods::trajectories(blocks, nominal, start),
+            false => methods::trajectories(blocks, nominal, start, Precision::Result),
         };
         let start = succeeded(&trajectories).map_or(start, |f| f.fit.parameters);
         self.together(
@@ -446,8 +446,11 @@ impl IdentificationRun<'_> {
         };
         let start = joint.fit.parameters;
         let cost = |blocks: &Blocks, weights: &Weights| {
-            let attempt = self.joint(blocks, start, weights);
-            let found = succeeded(&attempt)?;
+            let problem = Problem {
+                precision: Precision::Start,
+                ..self.problem(blocks, start, weights)?
+            };
+            let found = joint::fit(&problem, start).ok()?;
             Some((found.fit.cost, found.fit.residuals))
         };
         if let Some(found) = swapped_channels::swapped(&self.selection.blocks, &cost) {

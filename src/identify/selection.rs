@@ -8,7 +8,7 @@ use crate::identify::evidence::weighing::Bulk;
 use crate::identify::evidence::{Blocks, Evidence};
 use crate::identify::fit::normal::Normal;
 use crate::identify::fit::parameters::Parameters;
-use crate::identify::fit::{Problem, mean_squares};
+use crate::identify::fit::{Precision, Problem, mean_squares};
 use crate::identify::flight_times;
 use crate::identify::messages::{Item, LeftOut, Reason};
 use crate::identify::method::Method;
@@ -122,17 +122,19 @@ impl<'a> Selection<'a> {
         let nominal = self.evidence.nominal;
         let all = self.blocks.trajectory.records.clone();
         self.keep_those_with_orbits(&start);
-        let first = match methods::trajectories(&self.blocks, &nominal.ideal(), start)? {
-            Ok(first) => first.fit.parameters,
-            failed => return Some(failed),
-        };
+        let first =
+            match methods::trajectories(&self.blocks, &nominal.ideal(), start, Precision::Start)? {
+                Ok(first) => first.fit.parameters,
+                failed => return Some(failed),
+            };
         self.blocks.trajectory.records.clone_from(&all);
         self.keep_those_with_orbits(&first);
         self.blocks.weigh_trajectories(&first);
-        let mut found = match methods::trajectories(&self.blocks, &nominal, first)? {
-            Ok(found) => found,
-            failed => return Some(failed),
-        };
+        let mut found =
+            match methods::trajectories(&self.blocks, &nominal, first, Precision::Start)? {
+                Ok(found) => found,
+                failed => return Some(failed),
+            };
         self.blocks.trajectory.records = all;
         self.blocks.trajectory.find_changes(&found.fit.parameters);
         for _ in 0..ROUNDS {
@@ -141,10 +143,12 @@ impl<'a> Selection<'a> {
             let lost = self.lost.len();
             self.keep_fitting(&parameters);
             self.keep_those_with_orbits(&parameters);
-            found = match methods::trajectories(&self.blocks, &self.evidence.nominal, parameters)? {
-                Ok(found) => found,
-                failed => return Some(failed),
-            };
+            found =
+                match methods::trajectories(&self.blocks, &nominal, parameters, Precision::Result)?
+                {
+                    Ok(found) => found,
+                    failed => return Some(failed),
+                };
             let change = self.blocks.trajectory.relative_error / allowed - 1.0;
             if self.lost.len() == lost && change.abs() < SETTLED {
                 break;

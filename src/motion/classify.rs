@@ -209,11 +209,49 @@ impl View {
         let centred: Vec<f64> = velocity.values.iter().map(|v| v - mean).collect();
         let level = crate::signal::robust::rms(&centred);
         Self {
-            closures: closure::waveform(&velocity.values, period, &times, guard, most),
+            closures: closures_beside_hum(
+                &velocity.values,
+                period,
+                (&times, guard),
+                (most, rate_hz),
+            ),
             noise_ratio: (level > 0.0).then(|| velocity.noise / level),
             rest: level < 3.0 * velocity.noise,
         }
     }
+}
+
+/// Frequencies of the mains and of what a rectifier makes of them, Hz.
+const MAINS_HZ: [f64; 6] = [50.0, 60.0, 100.0, 120.0, 150.0, 180.0];
+
+/// The closures of a waveform; where one drive period is not the best, without hum.
+fn closures_beside_hum(
+    values: &[f64],
+    period: f64,
+    impacts: (&[f64], f64),
+    (most, rate_hz): (u32, f64),
+) -> Vec<WaveformClosure> {
+    let closures = closure::waveform(values, period, impacts, most, &[]);
+    if closures
+        .first()
+        .is_some_and(|first| first.ratio <= slack(&closures))
+    {
+        return closures;
+    }
+    let below = |f: &f64| *f < 0.5 * rate_hz;
+    let hum: Vec<f64> = MAINS_HZ
+        .into_iter()
+        .filter(below)
+        .map(|f| f / rate_hz)
+        .collect();
+    closure::waveform(values, period, impacts, most, &hum)
+}
+
+/// Up to what ratio a motion closes about as well as at its best: white noise leaves a few per cent of
+/// scatter between the ratios, and interpolation a little more.
+fn slack(closures: &[WaveformClosure]) -> f64 {
+    let ratios = closures.iter().map(|c| c.ratio);
+    1.12 * ratios.fold(f64::INFINITY, f64::min) + 1e-4
 }
 
 /// One record under decision.
@@ -227,13 +265,8 @@ struct Case<'a> {
 
 impl Case<'_> {
     fn by_waveform(&self, closures: &[WaveformClosure], mut evidence: Evidence) -> Classification {
-        let best = closures
-            .iter()
-            .map(|c| c.ratio)
-            .fold(f64::INFINITY, f64::min);
-        // The smallest n that closes about as well as any: white noise leaves a few per cent of
-        // scatter between the ratios, and interpolation a little more.
-        let slack = 1.12 * best + 1e-4;
+        // The smallest n that closes about as well as any.
+        let slack = slack(closures);
         let Some(chosen) = closures.iter().find(|c| c.ratio <= slack) else {
             return undetermined(Undetermined::NotComparable, evidence);
         };

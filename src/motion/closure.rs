@@ -1,5 +1,7 @@
 //! Closure of a motion after n drive periods: of its waveform and of its impacts.
 
+use nalgebra::{DMatrix, DVector};
+
 use crate::event::Impact;
 use crate::signal::interpolation::{interpolate, noise_gain};
 use crate::signal::robust;
@@ -20,13 +22,14 @@ pub(super) struct WaveformClosure {
 ///
 /// `period` in samples, `impacts` in samples; a sample is left out when it, or its partner nT
 /// later, is within `guard` samples of an impact, where interpolation fails. A constant
-/// difference (drift) does not count.
+/// difference (drift) does not count, nor do tones at the given frequencies, in cycles per sample:
+/// mains hum repeats after periods of its own.
 pub(super) fn waveform(
     values: &[f64],
     period: f64,
-    impacts: &[f64],
-    guard: f64,
+    (impacts, guard): (&[f64], f64),
     most: u32,
+    hum: &[f64],
 ) -> Vec<WaveformClosure> {
     let blocked = blocked_samples(values.len(), impacts, guard);
     let free: Vec<f64> = values
@@ -40,14 +43,15 @@ pub(super) fn waveform(
     (1..=most)
         .filter_map(|n| {
             let lag = f64::from(n) * period;
-            let differences: Vec<f64> = (0..values.len())
+            let (places, mut differences): (Vec<f64>, Vec<f64>) = (0..values.len())
                 .map_while(|i| {
                     let partner = i as f64 + lag;
                     interpolate(values, partner).map(|v| (i, partner, v))
                 })
                 .filter(|(i, partner, _)| !blocked[*i] && !blocked[whole::index(partner.round())])
-                .map(|(i, _, v)| v - values[i])
-                .collect();
+                .map(|(i, _, v)| (i as f64, v - values[i]))
+                .unzip();
+            remove_tones(&places, &mut differences, hum);
             let centre = robust::mean(&differences);
             let square: f64 = differences.iter().map(|d| (d - centre).powi(2)).sum();
             let samples = differences.len();
@@ -60,6 +64,26 @@ pub(super) fn waveform(
             })
         })
         .collect()
+}
+
+/// Subtract the least-squares fit of a constant and of tones, in cycles per unit of the places; what
+/// is left is unchanged where the tones cannot be told apart.
+fn remove_tones(places: &[f64], values: &mut [f64], tones: &[f64]) {
+    if tones.is_empty() || places.len() < 4 * (1 + 2 * tones.len()) {
+        return;
+    }
+    let angle = |column: usize, place: f64| std::f64::consts::TAU * tones[column] * place;
+    let columns = DMatrix::from_fn(places.len(), 1 + 2 * tones.len(), |i, k| match k {
+        0 => 1.0,
+        k if k % 2 == 1 => angle(k / 2, places[i]).cos(),
+        k => angle(k / 2 - 1, places[i]).sin(),
+    });
+    let measured = DVector::from_column_slice(values);
+    let Some(factor) = columns.tr_mul(&columns).cholesky() else {
+        return;
+    };
+    let fitted = &columns * factor.solve(&columns.tr_mul(&measured));
+    values.iter_mut().zip(&fitted).for_each(|(v, f)| *v -= f);
 }
 
 fn blocked_samples(count: usize, impacts: &[f64], guard: f64) -> Vec<bool> {
@@ -192,10 +216,36 @@ mod tests {
             .map(|i| f64::from(i) * std::f64::consts::TAU / 157.3)
             .map(|a| a.cos() + 0.1 * (0.5 * a).sin())
             .collect();
-        let found = waveform(&values, 157.3, &[], 2.0, 4);
+        let found = waveform(&values, 157.3, (&[], 2.0), 4, &[]);
         assert!(found[0].ratio > 0.05);
         assert!(found[1].ratio < 1e-5);
         assert!(found[3].ratio < 1e-5);
+    }
+
+    #[test]
+    fn hum_does_not_look_like_a_longer_period() {
+        // A drive at 14 Hz with hum at 50 Hz, which repeats after two drive periods by nearly a whole
+        // number of its own.
+        let (rate_hz, drive_hz, hum_hz) = (2000.0, 14.0, 50.0);
+        let values: Vec<f64> = (0..2000)
+            .map(|i| std::f64::consts::TAU * f64::from(i) / rate_hz)
+            .map(|t| (drive_hz * t).cos() + 0.02 * (hum_hz * t + 1.0).cos())
+            .collect();
+        let period = rate_hz / drive_hz;
+        let with = waveform(&values, period, (&[], 2.0), 2, &[]);
+        assert!(with[0].ratio > 3.0 * with[1].ratio);
+        let without = waveform(&values, period, (&[], 2.0), 2, &[hum_hz / rate_hz]);
+        assert!(without.iter().all(|c| c.ratio < 1e-5), "{without:?}");
+    }
+
+    #[test]
+    fn a_subharmonic_is_left_beside_hum() {
+        let values: Vec<f64> = (0..2000)
+            .map(|i| f64::from(i) * std::f64::consts::TAU / 157.3)
+            .map(|a| a.cos() + 0.1 * (0.5 * a).sin())
+            .collect();
+        let found = waveform(&values, 157.3, (&[], 2.0), 2, &[0.025, 0.03]);
+        assert!(found[0].ratio > 0.05 && found[1].ratio < 1e-5);
     }
 
     #[test]

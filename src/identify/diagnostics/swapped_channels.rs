@@ -26,26 +26,41 @@ pub fn swapped(
     ) = (LEAST_ALLOWANCE, LEAST_ALLOWANCE);
     // What was recorded under the other's name came through its own filter, or the filters too
     // are stated the wrong way round. One after the other: each is a copy of all waveforms.
-    let best = |weights: &Weights| {
+    let best = |blocks: &Blocks, weights: &Weights| {
         [Filters::OfTheData, Filters::OfTheName]
             .into_iter()
-            .filter_map(|filters| cost(&interchanged(&here, filters)?, weights))
+            .filter_map(|filters| cost(&interchanged(blocks, filters)?, weights))
             .min_by(|a, b| a.0.total_cmp(&b.0))
     };
-    // Often the resonance curve alone speaks against it.
     let alone = Weights::from([(Method::Resonance, 1.0)]);
-    if let (Some((here, _)), Some((there, _))) = (cost(&here, &alone), best(&alone))
-        && there > 2.0 * here
-    {
-        return None;
-    }
     let both = Weights::from([(Method::Resonance, 1.0), (Method::Trajectories, 1.0)]);
-    let ((here, freedom), (there, _)) = (cost(&here, &both)?, best(&both)?);
+    // Often the resonance curve alone, or a few waveforms beside it, speak against it.
+    let few = thinned(&here);
+    for (weights, against) in [(&alone, 2.0), (&both, 1.0)] {
+        if let (Some((here, _)), Some((there, _))) = (cost(&few, weights), best(&few, weights))
+            && there > against * here
+        {
+            return None;
+        }
+    }
+    let ((here, freedom), (there, _)) = (cost(&here, &both)?, best(&here, &both)?);
     let typical = (there / freedom.max(1) as f64).max(1.0);
     let z_score = ((here - there) / typical).max(0.0).sqrt();
     // Where the model leaves more than noise, chance may favour either by some of it.
     let clearly = 1.0 + MODEL_CHANCE * (1.0 - typical.recip());
     (z_score > SURE && here > clearly * there).then_some(Finding::SwappedChannels { z_score })
+}
+
+/// Waveforms that are looked at first.
+const FEW: usize = 16;
+
+/// The blocks with a few of the waveforms, spread over the campaign.
+fn thinned(blocks: &Blocks) -> Blocks {
+    let mut few = blocks.clone();
+    let step = few.trajectory.records.len().div_ceil(FEW).max(1);
+    let all = std::mem::take(&mut few.trajectory.records);
+    few.trajectory.records = all.into_iter().step_by(step).collect();
+    few
 }
 
 /// Whose filter an interchanged velocity has passed.

@@ -198,6 +198,7 @@ impl Blocks {
             priors,
             free,
             progress: self.progress.clone(),
+            ..Problem::default()
         }
     }
 

@@ -22,6 +22,9 @@ pub struct Factor {
     pub count: usize,
 }
 
+/// Rows that are folded in together: as many as stay in the processor's first cache.
+const BLOCK: usize = 128;
+
 impl Factor {
     /// That of no residuals, over n unknowns.
     pub fn empty(unknowns: usize) -> Self {
@@ -38,11 +41,15 @@ impl Factor {
     pub fn of(residuals: &[f64], slopes: &[Vec<f64>], weight: f64) -> Self {
         let mut factor = Self::empty(slopes.len());
         let root = weight.sqrt();
-        let mut rows = Vec::with_capacity(residuals.len() * (slopes.len() + 1));
-        for column in slopes.iter().map(Vec::as_slice).chain([residuals]) {
-            rows.extend(column.iter().map(|x| root * x));
+        let mut rows = Vec::with_capacity(BLOCK * (slopes.len() + 1));
+        for start in (0..residuals.len()).step_by(BLOCK) {
+            let block = start..(start + BLOCK).min(residuals.len());
+            rows.clear();
+            for column in slopes.iter().map(Vec::as_slice).chain([residuals]) {
+                rows.extend(column[block.clone()].iter().map(|x| root * x));
+            }
+            factor.fold(&mut rows, block.len());
         }
-        factor.fold(&mut rows, residuals.len());
         factor.cost = weight * dot(residuals, residuals);
         factor.count = residuals.len();
         factor
@@ -93,20 +100,35 @@ impl Factor {
         for (column, to) in other.triangle.chunks_exact(height).zip(targets) {
             rows[to * height..(to + 1) * height].copy_from_slice(column);
         }
-        self.fold(&mut rows, height);
+        // The other factor is triangular: a column has entries in as many rows as there are unknowns
+        // up to it, the residuals in all.
+        let filled: Vec<usize> = if places.is_sorted() {
+            let known = |to: usize| places.partition_point(|p| *p <= to);
+            (0..self.unknowns).map(known).chain([height]).collect()
+        } else {
+            vec![height; self.unknowns + 1]
+        };
+        self.fold_columns(&mut rows, height, |column| filled[column]);
         self.cost += other.cost;
         self.count += other.count;
     }
 
     /// Fold rows [J r], given column by column, into the triangle; the rows are used up.
     fn fold(&mut self, rows: &mut [f64], height: usize) {
+        self.fold_columns(rows, height, |_| height);
+    }
+
+    /// The same where only some first rows of each column, never fewer than of the one before, have
+    /// entries.
+    fn fold_columns(&mut self, rows: &mut [f64], height: usize, filled: impl Fn(usize) -> usize) {
         if height == 0 {
             return;
         }
         let width = self.unknowns + 1;
         for j in 0..width {
             let (done, rest) = rows.split_at_mut((j + 1) * height);
-            let pivot = &done[j * height..];
+            let filled = filled(j);
+            let pivot = &done[j * height..][..filled];
             let below = dot(pivot, pivot);
             if below == 0.0 {
                 continue;
@@ -119,6 +141,7 @@ impl Factor {
             let scale = -(end * lead).recip();
             for (k, column) in rest.chunks_exact_mut(height).enumerate() {
                 let head = &mut self.triangle[(j + 1 + k) * width + j];
+                let column = &mut column[..filled];
                 let share = scale * (lead * *head + dot(pivot, column));
                 *head -= share * lead;
                 subtract(column, share, pivot);
@@ -195,18 +218,17 @@ impl Factor {
     }
 }
 
-/// Inner product, in four sums that do not wait for each other.
+/// Inner product, in sixteen sums that do not wait for each other.
 pub(in crate::identify) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
-    let (mut s, mut t, mut u, mut v) = (0.0, 0.0, 0.0, 0.0);
+    let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<16>(), b.as_chunks::<16>());
+    let mut sums = [0.0; 16];
     for (x, y) in a.iter().zip(b) {
-        s += x[0] * y[0];
-        t += x[1] * y[1];
-        u += x[2] * y[2];
-        v += x[3] * y[3];
+        for ((sum, x), y) in sums.iter_mut().zip(x).zip(y) {
+            *sum += x * y;
+        }
     }
     let rest: f64 = rest_a.iter().zip(rest_b).map(|(x, y)| x * y).sum();
-    (s + t) + (u + v) + rest
+    sums.iter().sum::<f64>() + rest
 }
 
 /// Subtract a multiple of another column.

@@ -57,8 +57,8 @@ pub struct Limits {
 /// Variance of the residuals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Variance {
-    /// One: the residuals are weighted.
-    Unit,
+    /// One, as the residuals are weighted, or more where they are greater than the weights have it.
+    AtLeastUnit,
     /// Estimated from the residuals.
     Estimated,
 }
@@ -198,6 +198,8 @@ impl<'a> DampedSteps<'a> {
     /// the damping nevertheless.
     fn decrease_damping(&mut self, share: f64) {
         let factor = match share {
+            // As good as linear: soon it is Gauss and Newton's step.
+            s if s > 0.95 => 0.01,
             s if s > 0.75 => 0.2,
             s if s < 0.25 => 4.0,
             _ => 1.0,
@@ -293,13 +295,12 @@ impl<P: LeastSquares> Solver<&P, FitState<P::Point>> for DampedSteps<'_> {
 
 /// Standard deviation of the residuals.
 fn deviation(factor: &Factor, variance: Variance) -> f64 {
+    let freedom = factor.count.saturating_sub(factor.unknowns()).max(1);
+    // counts of residuals are far below 2⁵³
+    let estimated = (factor.cost / freedom as f64).sqrt();
     match variance {
-        Variance::Unit => 1.0,
-        Variance::Estimated => {
-            let freedom = factor.count.saturating_sub(factor.unknowns()).max(1);
-            // counts of residuals are far below 2⁵³
-            (factor.cost / freedom as f64).sqrt()
-        }
+        Variance::AtLeastUnit => estimated.max(1.0),
+        Variance::Estimated => estimated,
     }
 }
 
@@ -351,7 +352,7 @@ mod tests {
 
     const LIMITS: Limits = Limits {
         negligible: 1e-9,
-        variance: Variance::Unit,
+        variance: Variance::AtLeastUnit,
         damping: 1e-6,
         iterations: 200,
     };

@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 pub use block::{Block, mean_squares};
 use normal::inverse;
 use parameters::{Coordinate, Parameters};
-pub use problem::{Prior, Problem};
+pub use problem::{Precision, Prior, Problem};
 pub use progress::FitProgress;
 pub use report::FitReport;
 

@@ -37,16 +37,37 @@ pub struct Problem<'a> {
     pub free: Vec<Coordinate>,
     /// What counts the iterations of its fits.
     pub progress: FitProgress,
+    /// How close to the least sum of squares its fits end.
+    pub precision: Precision,
+}
+
+/// How close to the least sum of squares a fit ends.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// Within a thousandth of the standard errors.
+    #[default]
+    Result,
+    /// Close enough to start another fit from, or to tell which of two arrangements fits.
+    Start,
+}
+
+impl Precision {
+    fn limits(self) -> Limits {
+        let (negligible, iterations) = match self {
+            Self::Result => (1e-3, 60),
+            Self::Start => (0.1, 12),
+        };
+        Limits {
+            negligible,
+            variance: Variance::AtLeastUnit,
+            damping: 1e-4,
+            iterations,
+        }
+    }
 }
 
 /// Least orthogonal share of a column of slopes: differences do not resolve less.
 const LEAST_SHARE: f64 = 1e-8;
-const LIMITS: Limits = Limits {
-    negligible: 1e-3,
-    variance: Variance::Unit,
-    damping: 1e-4,
-    iterations: 60,
-};
 
 impl Problem<'_> {
     /// Fit from a start.
@@ -55,7 +76,7 @@ impl Problem<'_> {
     /// [`FitError`] if there is nothing to fit, if observations have no counterpart in the model at the
     /// start, or if the data do not determine the coordinates.
     pub fn fit(&self, start: Parameters) -> Result<Fit, FitError> {
-        let minimum = minimise(self, start, &LIMITS).map_err(|error| {
+        let minimum = minimise(self, start, &self.precision.limits()).map_err(|error| {
             let own = error.downcast::<FitError>();
             own.unwrap_or(FitError::Solver)
         })?;
@@ -184,6 +205,7 @@ impl Problem<'_> {
                 .filter(|c| *c != coordinate)
                 .collect(),
             progress: self.progress.clone(),
+            precision: self.precision,
         };
         Some(held.fit(start).ok()?.cost)
     }

@@ -33,6 +33,8 @@ pub struct Score {
     pub median_error_over_bound: f64,
     /// Share of the 95 % intervals that hold the truth.
     pub coverage95: f64,
+    /// Median of half their widths.
+    pub median_half_width95: f64,
     /// Campaign with the greatest error over its bound, counted from 0.
     pub worst_campaign: Option<usize>,
 }
@@ -94,6 +96,7 @@ fn score(trials: &[Trial], method: &str, coordinate: Coordinate) -> Option<Score
     let (weak, _) = crate::identify::estimate::limits(coordinate);
     let mut score = Score::default();
     let (mut errors, mut ratios, mut bounds, mut covered) = (vec![], vec![], vec![], 0);
+    let mut half_widths = vec![];
     let mut worst = 0.0;
     for (number, trial) in trials.iter().enumerate() {
         let Some(estimate) = trial.estimates.get(method).and_then(|p| p.get(coordinate)) else {
@@ -111,6 +114,7 @@ fn score(trials: &[Trial], method: &str, coordinate: Coordinate) -> Option<Score
             usize::from(claimed && bound.is_some_and(|b| b > weak * CLEAR));
         errors.push((value - truth) / unit);
         covered += usize::from(low <= truth && truth <= high);
+        half_widths.push((high - low) / 2.0 / unit);
         if let Some(bound) = bound.filter(|b| *b > 0.0) {
             let ratio = (value - truth) / unit / bound;
             if ratio.abs() > worst {
@@ -132,6 +136,7 @@ fn score(trials: &[Trial], method: &str, coordinate: Coordinate) -> Option<Score
     let sizes: Vec<f64> = ratios.iter().map(|r| r.abs()).collect();
     score.median_error_over_bound = crate::signal::robust::median(&sizes).unwrap_or(0.0);
     score.coverage95 = covered as f64 / count;
+    score.median_half_width95 = crate::signal::robust::median(&half_widths).unwrap_or(0.0);
     Some(score)
 }
 

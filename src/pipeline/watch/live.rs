@@ -1,9 +1,11 @@
 //! The answer of the records so far, and the page that shows it.
 
 use std::path::Path;
+use std::time::Duration;
 
 use sha2::{Digest, Sha256};
 
+use super::processor_time::Meter;
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::plan::{Proposal, Reach, propose};
 use crate::pipeline::identify::{self, IdentificationFile};
@@ -26,27 +28,30 @@ pub struct Live {
 }
 
 impl Live {
-    /// Fit what was observed, and propose the next setting.
+    /// Fit what was observed, and propose the next setting; with the processor time after the fit.
     ///
     /// # Errors
     /// Where the settings cannot be written as JSON.
     pub(super) fn of(
         campaign: ResolvedCampaign,
         observed: Observed,
-    ) -> Result<Self, PipelineError> {
+        meter: Meter,
+    ) -> Result<(Self, Duration), PipelineError> {
         let found = identify::identify(&campaign, &observed, None)?;
+        let identified = meter.read();
         let evidence = identify::evidence(&campaign, &observed);
         let reach = Reach::of(&observed.observations);
         let joint = found.identification.joint_fit.as_ref();
         let next = joint.zip(reach).and_then(|(joint, reach)| {
             propose(&evidence, &joint.fit, joint.variance_factor, reach, 1).pop()
         });
-        Ok(Self {
+        let live = Self {
             campaign,
             observed,
             found,
             next,
-        })
+        };
+        Ok((live, identified))
     }
 
     /// Whether the fit is that of these records.

@@ -274,10 +274,11 @@ impl Watcher {
         let Ok(observed) = Observed::from_observations(observations) else {
             return Ok(None);
         };
-        let live = Live::of(campaign, observed)?;
+        let (live, identified) = Live::of(campaign, observed, self.meter)?;
         then(&live)?;
-        let cost = self.meter.read().saturating_sub(begin);
-        self.spacing.fitted(cost, self.usable);
+        let identifying = identified.saturating_sub(begin);
+        let showing = self.meter.read().saturating_sub(identified);
+        self.spacing.fitted(identifying, showing, self.usable);
         Ok(Some(self.last.insert(live)))
     }
 

@@ -6,7 +6,7 @@ use super::drawn::Drawn;
 use super::facts::facts;
 use super::model::{Answer, Front, Rich};
 use super::tables;
-use super::verdict::{headline, verdict_name};
+use super::verdict::headline;
 use crate::identify::fit::effect::EffectKind;
 use crate::identify::{Estimate, Finding, VerdictKind};
 use crate::report::content::ReportContent;
@@ -19,7 +19,7 @@ pub(super) fn front(content: &ReportContent, drawn: &Drawn<'_>) -> Front {
     let id = &content.identification;
     Front {
         synthetic: content.campaign.synthetic,
-        verdict: verdict_name(id.verdict.kind),
+        verdict: id.verdict.kind.name(),
         headline: campaign_headline(content, drawn.locale),
         summary: Rich::from(drawn.locale.sentences(&id.verdict.sentences)),
         findings: findings(content, drawn.locale),

@@ -1,17 +1,7 @@
-//! A verdict as a name and as a headline.
+//! A verdict as a headline.
 
 use crate::identify::VerdictKind;
 use crate::report::phrase::Phrase;
-
-/// Name of a verdict in the document.
-pub(super) fn verdict_name(kind: VerdictKind) -> &'static str {
-    match kind {
-        VerdictKind::Identified => "identified",
-        VerdictKind::Weak => "weak",
-        VerdictKind::NotIdentifiable => "not_identifiable",
-        VerdictKind::DoesNotFit => "does_not_fit",
-    }
-}
 
 /// A verdict as a headline, a phrase; of a rig where records of one were measured.
 pub(super) fn headline(kind: VerdictKind, of_a_rig: bool) -> Phrase {

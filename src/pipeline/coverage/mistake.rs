@@ -1,0 +1,130 @@
+//! Mistakes of a laboratory, made in simulated records on purpose.
+
+use super::Seen;
+use crate::identify::Finding;
+use crate::record::{FlagCode, Record, Role};
+use crate::synthetic::{Draw, Effect};
+
+/// A mistake of the laboratory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Mistake {
+    /// One gap is stated 0.05 mm too wide.
+    WrongClearance,
+    /// One gap is off by five times its stated uncertainty.
+    GapOffByFive,
+    /// One gap is off by its stated uncertainty: no mistake, and not to be called one.
+    GapOffByOne,
+    /// The velocities of both masses are plugged the wrong way round.
+    SwappedChannels,
+    /// One channel's gain is 5 % off.
+    WrongGain,
+}
+
+impl Mistake {
+    /// All of them.
+    pub(super) const ALL: [Self; 5] = [
+        Self::WrongClearance,
+        Self::GapOffByFive,
+        Self::GapOffByOne,
+        Self::SwappedChannels,
+        Self::WrongGain,
+    ];
+
+    /// Name in the result.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::WrongClearance => "wrong_clearance",
+            Self::GapOffByFive => "gap_off_by_five_uncertainties",
+            Self::GapOffByOne => "gap_off_by_its_uncertainty",
+            Self::SwappedChannels => "swapped_channels",
+            Self::WrongGain => "wrong_gain",
+        }
+    }
+
+    /// The campaign with an uncertainty of its gaps stated, where the mistake is measured by it.
+    pub(super) fn stated(self, draw: &Draw) -> Draw {
+        let typical_m = Effect::Gaps.typical_strength() * draw.truth.static_deflection_m;
+        let uncertainty_m = match self {
+            Self::GapOffByFive | Self::GapOffByOne => {
+                Some(draw.clearance_uncertainty_m.unwrap_or(typical_m))
+            }
+            _ => draw.clearance_uncertainty_m,
+        };
+        Draw {
+            clearance_uncertainty_m: uncertainty_m,
+            ..draw.clone()
+        }
+    }
+
+    /// Make the mistake in a campaign's records.
+    pub(super) fn commit(self, records: &mut [Record], clearance_uncertainty_m: f64) {
+        match self {
+            Self::WrongClearance => widen_one_gap(records, 0.05e-3),
+            Self::GapOffByFive => widen_one_gap(records, 5.0 * clearance_uncertainty_m),
+            Self::GapOffByOne => widen_one_gap(records, clearance_uncertainty_m),
+            Self::SwappedChannels => {
+                for record in records {
+                    swap_roles(record, Role::VelocityX, Role::VelocityY);
+                }
+            }
+            Self::WrongGain => {
+                for record in records {
+                    let channel = record
+                        .channels
+                        .iter_mut()
+                        .find(|c| c.role == Role::DisplacementX);
+                    for v in channel.into_iter().flat_map(|c| &mut c.values) {
+                        *v *= 1.05;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether a finding is this mistake.
+    fn is(self, finding: &Finding) -> bool {
+        match self {
+            Self::WrongClearance | Self::GapOffByFive | Self::GapOffByOne => {
+                matches!(finding, Finding::WrongClearance { .. })
+            }
+            Self::SwappedChannels => matches!(finding, Finding::SwappedChannels { .. }),
+            Self::WrongGain => matches!(finding, Finding::WrongGain { .. }),
+        }
+    }
+
+    /// Whether an outcome names it.
+    pub(super) fn is_named_by(self, seen: &Seen) -> bool {
+        match self {
+            Self::SwappedChannels if seen.flag(FlagCode::SwappedMasses) => true,
+            _ => seen.outcome.suspicions.iter().any(|s| self.is(s)),
+        }
+    }
+}
+
+/// State the gap that most records have (the open one of the resonance curve apart) too wide.
+fn widen_one_gap(records: &mut [Record], by_m: f64) {
+    let open = records.first().and_then(|r| r.setting.clearance_m);
+    let Some(gap) = records
+        .iter()
+        .map(|r| r.setting.clearance_m)
+        .find(|c| *c != open)
+        .flatten()
+    else {
+        return;
+    };
+    for record in records {
+        if record.setting.clearance_m == Some(gap) {
+            record.setting.clearance_m = Some(gap + by_m);
+        }
+    }
+}
+
+fn swap_roles(record: &mut Record, a: Role, b: Role) {
+    for channel in &mut record.channels {
+        if channel.role == a {
+            channel.role = b;
+        } else if channel.role == b {
+            channel.role = a;
+        }
+    }
+}
