@@ -63,7 +63,7 @@ pub(super) fn list_files(
     let mut paths = Vec::new();
     for pattern in &files.get_ref().0 {
         let found = expand(shared.folder, pattern);
-        if found.is_empty() {
+        if found.is_empty() && shared.taken.is_none() {
             let what = format!("no file matches '{pattern}' in {}", shared.folder.display());
             context.fault(
                 Code::UnreadableFile,

@@ -68,7 +68,7 @@ pub(super) fn status(watcher: &Watcher, outline: &Outline) -> String {
 /// Columns of the map.
 const COLUMNS: usize = 64;
 /// Most rows of the map.
-const MOST_ROWS: usize = 16;
+const MOST_ROWS: usize = 12;
 
 /// The motions over drive frequency and clearance, a row for each clearance, with the brackets.
 fn map(outline: &Outline) -> String {
@@ -122,7 +122,7 @@ fn map(outline: &Outline) -> String {
         high,
         w = COLUMNS - 10
     );
-    text += "            0 no impact  1 2 3 z = 1/n  + other  ~ beat  # chaos  ? undetermined  │ bracket\n";
+    text += "0 none  1 2 3 z = 1/n  + other  ~ beat  # chaos  j joined  ? unclear  │ bracket\n";
     text
 }
 
@@ -172,7 +172,7 @@ fn newest_bracket(brackets: &[Bracket]) -> String {
     let count = brackets.len();
     let s = if count == 1 { "" } else { "s" };
     format!(
-        "{count} bracket{s}, the newest: {} of z = {} at {:.3} mm between {:.3} and {:.3} Hz, {}\n",
+        "{count} bracket{s}; newest: {} of z = {}, {:.3} mm, {:.3} to {:.3} Hz, {}\n",
         newest.kind.name(),
         newest.from,
         1e3 * newest.clearance_m,
@@ -192,13 +192,12 @@ fn answer(found: &Identification) -> String {
     if let Some(frequency) = &joint.natural_frequency_hz {
         text += &format!(", f0 = {} Hz", with_error(frequency));
     }
+    text += "\n";
     if let Some((source, share)) = greatest_item(found) {
-        text += &format!(
-            "; most of R's uncertainty: {source} ({:.0} % of the variance)",
-            1e2 * share
-        );
+        let percent = 1e2 * share;
+        text += &format!("most of R's uncertainty: {source} ({percent:.0} % of the variance)\n");
     }
-    text + "\n"
+    text
 }
 
 /// The source that contributes most to the variance of R, with its share.
@@ -223,7 +222,7 @@ fn next(proposal: Option<&Proposal>) -> String {
         return String::new();
     };
     format!(
-        "measure next: {:.3} Hz at {:.3} mm (z = {}); the standard error of R is then {:.1e}\n",
+        "measure next: {:.3} Hz, {:.3} mm (z = {}): standard error of R then {:.1e}\n",
         next.frequency_hz,
         1e3 * next.clearance_m,
         Motion::periodic(1, next.periods_n).label(),
@@ -247,4 +246,71 @@ fn counts(outline: &Outline, last: Option<&Live>, waiting: usize) -> String {
         text += &format!("; files that are not whole yet: {waiting}");
     }
     text + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::brackets;
+    use crate::record::Sweep;
+
+    fn observed(sequence: usize, frequency_hz: f64, motion: Motion) -> Observation {
+        let mut o = Observation::of("r", frequency_hz, motion);
+        o.setting.sequence = sequence;
+        o.setting.sweep = Sweep::Up;
+        o.setting.clearance_m = Some(if sequence < 4 { 1e-3 } else { 2e-3 });
+        o
+    }
+
+    #[test]
+    fn the_map_has_a_row_for_each_clearance_and_shows_how_brackets_close() {
+        let one = || Motion::periodic(1, 1);
+        let mut records = vec![
+            observed(0, 10.0, Motion::Impactless),
+            observed(1, 12.0, one()),
+            observed(3, 14.0, Motion::periodic(2, 2)),
+            observed(4, 10.0, Motion::Chaotic),
+        ];
+        let drawn = |records: &[Observation]| {
+            map(&Outline {
+                brackets: brackets(records),
+                records: records.to_vec(),
+            })
+        };
+        let open = drawn(&records);
+        let lines: Vec<&str> = open.lines().collect();
+        assert!(lines[0].starts_with("   2.000 mm #"), "{open}");
+        assert!(lines[1].starts_with("   1.000 mm 0"), "{open}");
+        assert!(lines[1].ends_with('+') && lines[1].matches('┊').count() == 2);
+        assert!(lines[2].contains("10.00 Hz") && lines[2].ends_with("14.00 Hz"));
+        records.insert(2, observed(2, 13.97, one()));
+        let closed = drawn(&records);
+        let row = closed.lines().nth(1).unwrap();
+        assert_eq!((row.matches('┊').count(), row.matches('│').count()), (1, 1));
+        assert!(
+            closed.lines().all(|line| line.chars().count() < 80),
+            "{closed}"
+        );
+        assert_eq!(drawn(&[]), "");
+    }
+
+    #[test]
+    fn news_name_a_few_files_and_count_the_others() {
+        let path = Path::new("r1.csv");
+        let all = vec![(path, None); 6];
+        assert_eq!(
+            news(Happened::Removed, &all[..1]),
+            "r1.csv is gone: its records are left out."
+        );
+        let many = news(Happened::Replaced, &all);
+        assert!(
+            many.contains("r1.csv and 2 more are written anew"),
+            "{many}"
+        );
+        let torn = news(Happened::HalfWritten, &[(path, Some("no signature"))]);
+        assert!(
+            torn.starts_with("r1.csv (no signature) is not whole after an hour"),
+            "{torn}"
+        );
+    }
 }

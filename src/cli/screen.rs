@@ -49,7 +49,7 @@ impl Screen {
             return;
         }
         self.erase();
-        self.put(text);
+        self.put_cut(text);
         text.clone_into(&mut self.drawn);
     }
 
@@ -71,7 +71,15 @@ impl Screen {
         self.erase();
         print(self);
         if self.is_terminal {
-            self.put(&self.drawn);
+            self.put_cut(&self.drawn);
+        }
+    }
+
+    /// Lines that are longer than those of the terminal are cut there: the number of lines must be known.
+    fn put_cut(&self, text: &str) {
+        match self.is_terminal {
+            true => self.put(&format!("\x1b[?7l{text}\x1b[?7h")),
+            false => self.put(text),
         }
     }
 

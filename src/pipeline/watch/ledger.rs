@@ -12,8 +12,8 @@ pub(super) struct Stamp {
     pub(super) length: u64,
     /// When it was changed last, as its file system says.
     pub(super) changed: Option<SystemTime>,
-    /// Its number in the file system, where that has any: another one is another file.
-    pub(super) number: Option<u64>,
+    /// When it was made, where its file system says: a file made later is another one.
+    pub(super) made: Option<SystemTime>,
 }
 
 impl Stamp {
@@ -23,30 +23,19 @@ impl Stamp {
         Some(Self {
             length: metadata.len(),
             changed: metadata.modified().ok(),
-            number: number(&metadata),
+            made: metadata.created().ok(),
         })
     }
 
-    /// Whether the file is as it was: numbers are not compared, some network drives change them.
+    /// Whether the file is as it was.
     fn is_as(&self, other: &Self) -> bool {
         self.length == other.length && self.changed == other.changed
     }
 
     /// Whether a file that has changed was written anew, rather than continued.
     fn replaces(&self, before: &Self) -> bool {
-        self.number != before.number || self.length <= before.length
+        self.made != before.made || self.length <= before.length
     }
-}
-
-#[cfg(unix)]
-#[expect(clippy::unnecessary_wraps, reason = "other systems have none")]
-fn number(metadata: &std::fs::Metadata) -> Option<u64> {
-    Some(std::os::unix::fs::MetadataExt::ino(metadata))
-}
-
-#[cfg(not(unix))]
-fn number(_: &std::fs::Metadata) -> Option<u64> {
-    None
 }
 
 /// Something about a file that the user should know.
@@ -251,7 +240,7 @@ mod tests {
         Stamp {
             length,
             changed: Some(SystemTime::UNIX_EPOCH + Duration::from_secs(length)),
-            number: Some(7),
+            made: Some(SystemTime::UNIX_EPOCH),
         }
     }
 
@@ -303,34 +292,21 @@ mod tests {
 
     #[test]
     fn a_file_that_is_replaced_is_named_once() {
-        let other_file = Stamp {
-            number: Some(8),
+        let made_later = Stamp {
+            made: Some(SystemTime::UNIX_EPOCH + SECOND),
             ..stamp(9)
         };
         let rewritten = Stamp {
             changed: stamp(9).changed,
             ..stamp(3)
         };
-        for new in [stamp(2), other_file, rewritten] {
+        for new in [stamp(2), made_later, rewritten] {
             let mut ledger = with_taken(3);
             let look = ledger.look(20 * SECOND, &seen(&[("a", new)]));
             assert_eq!(look.news, [News::Replaced("a".into())], "{new:?}");
             let look = ledger.look(25 * SECOND, &seen(&[("a", new)]));
             assert_eq!((look.settled.len(), look.news.len()), (1, 0));
         }
-    }
-
-    #[test]
-    fn a_number_alone_is_no_change() {
-        let mut ledger = with_taken(3);
-        let same = Stamp {
-            number: Some(8),
-            ..stamp(3)
-        };
-        assert_eq!(
-            ledger.look(20 * SECOND, &seen(&[("a", same)])),
-            Look::default()
-        );
     }
 
     #[test]

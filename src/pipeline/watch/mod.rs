@@ -43,8 +43,8 @@ pub struct Watcher {
     kept: Kept,
     spacing: Spacing,
     meter: Meter,
-    /// Whether nothing was looked at yet.
-    is_new: bool,
+    /// campaign.toml and the run table as they were read last.
+    described: Vec<Option<Stamp>>,
     /// The campaign with the records taken so far; `None` before any could be listed.
     campaign: Option<ResolvedCampaign>,
     /// What was told to be wrong with it.
@@ -103,7 +103,7 @@ impl Watcher {
             kept: Kept::default(),
             spacing: Spacing::new(pace.idle),
             meter: Meter::start(),
-            is_new: true,
+            described: Vec::new(),
             campaign: None,
             told: Vec::new(),
             changed: Duration::ZERO,
@@ -117,9 +117,11 @@ impl Watcher {
     /// any one moment.
     pub fn look(&mut self, now: Duration) -> Seen {
         let begin = self.meter.read();
-        let look = self.ledger.look(now, &self.stamps());
+        let stamps = self.stamps();
+        let edited = self.reread(&stamps);
+        let look = self.ledger.look(now, &stamps);
         let mut seen = Seen {
-            changed: std::mem::take(&mut self.is_new),
+            changed: edited,
             ..Seen::default()
         };
         for news in look.news {
@@ -130,11 +132,14 @@ impl Watcher {
             seen.changed |= self.take(&path, now, &mut seen.faults);
         }
         if seen.changed {
-            self.changed = now;
-            self.is_fitted = false;
-            self.reload(&mut seen.faults);
+            let is_other = self.reload(edited, &mut seen.faults);
             let listed = self.meter.read();
             seen.observed = self.observe();
+            seen.changed = is_other || seen.observed > 0;
+            if seen.changed {
+                self.changed = now;
+                self.is_fitted = false;
+            }
             self.spacing.managed(listed.saturating_sub(begin));
             self.spacing
                 .observed(self.meter.read().saturating_sub(listed));
@@ -150,6 +155,21 @@ impl Watcher {
         let files = self.named.files().into_iter().chain(descriptions);
         let stamped = |path: PathBuf| Stamp::of(&path).map(|stamp| (path, stamp));
         files.filter_map(stamped).collect()
+    }
+
+    /// Read campaign.toml and the run table as soon as they have changed, for a table may never stop growing;
+    /// whether they have.
+    fn reread(&mut self, stamps: &BTreeMap<PathBuf, Stamp>) -> bool {
+        let descriptions = [Some(&self.path), self.named.run_table.as_ref()];
+        let now: Vec<_> = descriptions.map(|d| stamps.get(d?).copied()).into();
+        if now == self.described {
+            return false;
+        }
+        self.described = now;
+        if let Ok(named) = NamedFiles::read(&self.path) {
+            self.named = named;
+        }
+        true
     }
 
     fn is_description(&self, path: &Path) -> bool {
@@ -192,16 +212,20 @@ impl Watcher {
     }
 
     /// List the records of the files taken so far. A campaign that cannot be read at the moment stays
-    /// as it was.
-    fn reload(&mut self, faults: &mut Diagnostics) {
+    /// as it was; that is told once what was edited has settled. Returns whether it is another one.
+    fn reload(&mut self, edited: bool, faults: &mut Diagnostics) -> bool {
         let ledger = &self.ledger;
         let taken = |path: &Path| ledger.taken(path).is_some();
         self.listings.keep(taken);
         let outcome = load_taken(&self.path, &|path| self.listings.open(path), &taken);
-        faults.0.extend(outcome.diagnostics.0);
-        if let Some(campaign) = outcome.campaign {
-            self.campaign = Some(campaign);
+        if outcome.campaign.is_some() || !edited {
+            faults.0.extend(outcome.diagnostics.0);
         }
+        let is_other = outcome.campaign.is_some() && outcome.campaign != self.campaign;
+        if is_other {
+            self.campaign = outcome.campaign;
+        }
+        is_other
     }
 
     /// Observe the records that are new.

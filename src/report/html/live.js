@@ -3,17 +3,24 @@
 // script beside it states the version of the newest; it is gone when the last page is written.
 (() => {
   const { state, version } = document.currentScript.dataset;
-  const place = `impactid ${location.pathname}`;
-  let seen = false;
+  const key = `impactid ${location.pathname}`;
+  let seen = false, before = {};
 
-  function reload() {
-    try { sessionStorage.setItem(place, String(window.scrollY)); } catch { /* then at its top */ }
+  // where the reader was, and for which version the page was reloaded
+  try {
+    before = JSON.parse(sessionStorage.getItem(key)) ?? {};
+    sessionStorage.removeItem(key);
+  } catch { /* then the browser decides where the page opens */ }
+
+  function reload(newest) {
+    try { sessionStorage.setItem(key, JSON.stringify({ place: window.scrollY, newest })); } catch { /* as above */ }
     location.reload();
   }
 
   window.impactidLive = (newest) => {
     seen = true;
-    if (newest !== version) reload();
+    // once for each version: the page may be written a moment before its version is stated
+    if (newest !== version && newest !== before.newest) reload(newest);
   };
 
   function look() {
@@ -22,16 +29,12 @@
     script.src = `${state}?${Date.now()}`;
     script.onload = () => script.remove();
     // a page that was copied to another place never sees the state, and stays as it is
-    script.onerror = () => { script.remove(); if (seen) reload(); };
+    script.onerror = () => { script.remove(); if (seen) reload(null); };
     document.head.append(script);
   }
 
   window.addEventListener("load", () => {
-    try {
-      const at = sessionStorage.getItem(place);
-      sessionStorage.removeItem(place);
-      if (at !== null) window.scrollTo(0, Number(at));
-    } catch { /* then where the browser has put it */ }
+    if (before.place !== undefined) window.scrollTo(0, before.place);
     look();
   });
   document.addEventListener("visibilitychange", look);
