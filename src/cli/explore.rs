@@ -75,7 +75,7 @@ impl Explore {
             None => Session::theory(),
             Some(path) if self.watch => {
                 let mut arriving = Watched::new(path, self.pace, verbosity)?;
-                let campaign = arriving.next();
+                let campaign = arriving.at_next_fit();
                 watched = Some(arriving);
                 Session::of_campaign(campaign, Vec::new())
             }
@@ -89,12 +89,10 @@ impl Explore {
             verbosity.info(&format!("note: {note}"));
         }
         let server = Server::bind(session, self.port)?;
-        if let Some(mut watched) = watched {
+        if let Some(watched) = watched {
             let session = server.session();
             std::thread::spawn(move || {
-                loop {
-                    session.replace_campaign(watched.next());
-                }
+                watched.for_each(|campaign| session.replace_campaign(campaign));
             });
         }
         print(&format!("{}\n", server.url()))?;
@@ -189,7 +187,7 @@ impl Watched {
     }
 
     /// The campaign at its next fit.
-    fn next(&mut self) -> Campaign {
+    fn at_next_fit(&mut self) -> Campaign {
         loop {
             let seen = self.watcher.look(self.begin.elapsed());
             tell(&seen, &mut self.screen);
@@ -203,6 +201,15 @@ impl Watched {
             }
             self.pace.wait(&AtomicBool::new(false));
         }
+    }
+}
+
+/// The campaign at each fit, without end.
+impl Iterator for Watched {
+    type Item = Campaign;
+
+    fn next(&mut self) -> Option<Campaign> {
+        Some(self.at_next_fit())
     }
 }
 
