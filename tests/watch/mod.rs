@@ -34,7 +34,9 @@ struct Arriving {
 impl Arriving {
     fn new(records: usize) -> Self {
         let lab = Lab::new();
-        ["campaign.toml", "runs.csv", "r1.csv", "r2.csv", "r3.csv"].map(|name| lab.remove(name));
+        for name in ["campaign.toml", "runs.csv", "r1.csv", "r2.csv", "r3.csv"] {
+            lab.remove(name);
+        }
         let records = records.to_string();
         let seed = ["--seed", "7", "--records", &records, "--out", "rig"];
         let made = lab.run(&[&["-q", "simulate", "campaign"][..], &seed].concat());
