@@ -128,18 +128,18 @@ pub fn detect(record: &Record, rig: RigKind, settings: &DetectSettings) -> Detec
     }
     let dead_from = samples_of(settings.dead_zone_s, rate_hz).max(4);
     let width = window_samples(drive.as_ref(), rate_hz, settings.window_periods);
-    let found = match &kinematics.relative.velocity {
-        Some(velocity) => fuse(velocity, &closed, width, dead_from),
-        None => from_contact_alone(&closed, dead_from),
-    };
-    if let Some(flag) = wrong_way(&found, record) {
-        flags.push(flag);
-    }
     let arc = ArcFit {
         degree: 3,
         displacement_degree: 3,
         width: (4 * width / 3).max(6),
     };
+    let found = match &kinematics.relative.velocity {
+        Some(velocity) => fuse(velocity, &closed, width, dead_from).confirmed(velocity, arc),
+        None => from_contact_alone(&closed, dead_from),
+    };
+    if let Some(flag) = wrong_way(&found, record) {
+        flags.push(flag);
+    }
     let impacts = refined(
         &mut kinematics,
         &found.candidates,
@@ -326,18 +326,43 @@ fn fuse(velocity: &Series, closed: &[Closed], width: usize, dead_from: usize) ->
             None => unsupported += 1,
         }
     }
-    let candidates = candidates(&jumps, closed, search.gap, dead_from, velocity);
-    let missed = candidates
-        .iter()
-        .filter(|c| c.source == DetectionSource::Velocity)
-        .count();
     Fused {
-        candidates,
+        candidates: candidates(&jumps, closed, search.gap, dead_from, velocity),
         jump_samples: search.gap,
         unsupported,
-        missed,
+        missed: 0,
         upward,
         downward,
+    }
+}
+
+/// Share of a jump that the flights beside it must show.
+const SHOWN: f64 = 0.5;
+
+impl Fused {
+    /// Without the jumps that no contact pulse and no difference of the flights beside them confirm:
+    /// extrapolated across an impact nearby, a velocity seems to jump.
+    fn confirmed(self, velocity: &Series, arc: ArcFit) -> Self {
+        let without_pulse = |c: &Candidate| c.source == DetectionSource::Velocity;
+        let all = &self.candidates;
+        let shows = |i: usize| {
+            let Some([before, after]) = refine::arcs(velocity, all, i, arc) else {
+                return true;
+            };
+            let middle = all[i].jump.middle();
+            let fall = before.value(middle) - after.value(middle);
+            let error = before
+                .error_factor(middle)
+                .hypot(after.error_factor(middle));
+            fall + 3.0 * velocity.noise * error > SHOWN * all[i].jump.height.abs()
+        };
+        let kept = (0..all.len()).filter(|i| !without_pulse(&all[*i]) || shows(*i));
+        let candidates: Vec<Candidate> = kept.map(|i| all[i].clone()).collect();
+        Self {
+            missed: candidates.iter().filter(|c| without_pulse(c)).count(),
+            candidates,
+            ..self
+        }
     }
 }
 
@@ -485,7 +510,7 @@ mod tests {
     fn a_pulse_belongs_to_the_jump_within_its_reach() {
         let velocity = Series::clean(sawtooth(400));
         let closed = [pulse(100, 102), pulse(245, 247)];
-        let found = fuse(&velocity, &closed, 8, 10);
+        let found = fuse(&velocity, &closed, 8, 10).confirmed(&velocity, ARC);
         let sources: Vec<_> = found.candidates.iter().map(|c| c.source).collect();
         use DetectionSource::{Both, Velocity};
         assert_eq!(sources, [Both, Velocity, Velocity]);
@@ -493,6 +518,31 @@ mod tests {
         assert_eq!((found.upward, found.downward), (0, 3));
         assert_eq!(found.candidates[0].jump.left, 99);
         assert!(found.candidates.iter().all(|c| c.dead_samples == 0.0));
+    }
+
+    const ARC: ArcFit = ArcFit {
+        degree: 3,
+        displacement_degree: 3,
+        width: 10,
+    };
+
+    #[test]
+    fn a_jump_that_the_flights_do_not_show_needs_a_pulse() {
+        let velocity = Series::clean(sawtooth(400));
+        let mut found = fuse(&velocity, &[], 8, 10);
+        assert_eq!(found.candidates.len(), 3);
+        // Between two impacts the velocity climbs steadily.
+        let mut seeming = found.candidates[0].clone();
+        seeming.jump.left = 150;
+        found.candidates.insert(1, seeming);
+        found.candidates[1].source = DetectionSource::Both;
+        let with_pulse = found.confirmed(&velocity, ARC);
+        assert_eq!(with_pulse.candidates.len(), 4);
+        let mut without = with_pulse;
+        without.candidates[1].source = DetectionSource::Velocity;
+        let kept = without.confirmed(&velocity, ARC);
+        let places: Vec<usize> = kept.candidates.iter().map(|c| c.jump.left).collect();
+        assert_eq!((places, kept.missed), (vec![99, 199, 299], 3));
     }
 
     #[test]

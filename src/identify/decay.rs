@@ -6,6 +6,7 @@ use crate::identify::estimate::{self, Status};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::identification::MethodResult;
 use crate::identify::messages::{Item, LeftOut, Note, Reason, Remark};
+use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::motion::Observation;
 use crate::signal::decay::Decay;
 use crate::signal::robust;
@@ -86,7 +87,7 @@ fn judge(result: &mut MethodResult, decays: &[&Decay], spread: f64) {
         false => Remark::DecaysHaveStructure { share, structure },
     });
     let drifting: Vec<&Decay> = decays.iter().copied().filter(|d| drifts(d)).collect();
-    let half = |d: &Decay| estimate::NORMAL_975 * d.natural_frequency_error_hz;
+    let half = |d: &Decay| NORMAL_975 * d.natural_frequency_error_hz;
     let change = |d: &Decay| d.drift.map_or(0.0, |d| d.last_hz - d.first_hz);
     let worst = drifting
         .iter()

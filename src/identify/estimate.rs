@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::messages::Note;
-use crate::identify::methods::MethodFit;
+use crate::identify::method_fit::MethodFit;
+use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::identify::uncertainty::scatter::Spread;
 
 /// How well the data determine a parameter.
@@ -52,9 +53,6 @@ pub struct ParameterSet {
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub static_deflection_m: Option<Estimate>,
 }
-
-/// 97.5 % point of the normal distribution.
-pub const NORMAL_975: f64 = 1.959_963_984_540_054;
 
 /// Standard errors (of the coordinate: R absolute, the others relative) from which a parameter is
 /// weak and from which it is not identifiable.

@@ -6,7 +6,8 @@ use crate::identify::evidence::{Blocks, Nominal, impact_bias};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, FitError, Prior, Problem};
 use crate::identify::method::Method;
-use crate::identify::methods::{self, MethodFit};
+use crate::identify::method_fit::MethodFit;
+use crate::identify::methods;
 use crate::identify::uncertainty::posterior::Posterior;
 
 /// The residuals that a method fits; `None` of a method that has no block.

@@ -16,6 +16,7 @@ mod identification;
 pub mod joint;
 pub mod messages;
 pub mod method;
+pub mod method_fit;
 pub mod methods;
 pub mod plan;
 pub mod published;

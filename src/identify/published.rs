@@ -7,13 +7,14 @@ use argmin::core::{CostFunction, Executor};
 use argmin::solver::brent::BrentOpt;
 use serde::Deserialize;
 
-use crate::identify::estimate::{NORMAL_975, estimate, not_identifiable};
+use crate::identify::estimate::{estimate, not_identifiable};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::identification::{
     Agreement, Identification, MethodResult, Verdict, VerdictKind,
 };
 use crate::identify::messages::{Finding, Note, PublishedSetting, Remark, Sentence};
 use crate::identify::method::Method;
+use crate::identify::uncertainty::quantile::NORMAL_975;
 use impact_oscillator::model::orbit::Branch;
 use impact_oscillator::model::params::Machine;
 

@@ -9,6 +9,7 @@ use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::methods::{self, FitResult};
 use crate::identify::uncertainty::posterior::Posterior;
+use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::identify::{Estimate, Item, Method, MethodResult, Remark, bracket_midpoints, estimate};
 
 /// f0, β and `x_st` from the impactless records.
@@ -173,7 +174,7 @@ pub fn boundaries(
 fn by_midpoints(estimate: &Estimate) -> Option<Remark> {
     Some(Remark::BracketMidpoints {
         restitution: estimate.value?,
-        half_width: estimate::NORMAL_975 * estimate.standard_error?,
+        half_width: NORMAL_975 * estimate.standard_error?,
     })
 }
 
@@ -216,7 +217,7 @@ pub fn widen_common(joint: &mut MethodResult, block: &ImpactBlock) {
     };
     // An interval that ends at 0 or 1 has its width on the other side.
     let half = (value - low).max(high - value);
-    let half = half.hypot(estimate::NORMAL_975 * common);
+    let half = half.hypot(NORMAL_975 * common);
     estimate.standard_error = Some(error.hypot(common));
     estimate.interval95 = Some([(value - half).max(0.0), (value + half).min(1.0)]);
 }
@@ -225,7 +226,7 @@ pub fn widen_common(joint: &mut MethodResult, block: &ImpactBlock) {
 fn widen(restitution: &mut Estimate, systematic: f64) {
     if let (Some(value), Some(error)) = (restitution.value, restitution.standard_error) {
         let error = error.hypot(systematic);
-        let half = estimate::NORMAL_975 * error;
+        let half = NORMAL_975 * error;
         restitution.standard_error = Some(error);
         restitution.interval95 = Some([(value - half).max(0.0), (value + half).min(1.0)]);
     }

@@ -224,9 +224,9 @@ mod tests {
 
     #[test]
     fn hum_does_not_look_like_a_longer_period() {
-        // A drive at 14 Hz with hum at 50 Hz, which repeats after two drive periods by nearly a whole
+        // A drive at 14.2 Hz with hum at 50 Hz, which repeats after two drive periods by nearly a whole
         // number of its own.
-        let (rate_hz, drive_hz, hum_hz) = (2000.0, 14.0, 50.0);
+        let (rate_hz, drive_hz, hum_hz) = (2000.0, 14.2, 50.0);
         let values: Vec<f64> = (0..2000)
             .map(|i| std::f64::consts::TAU * f64::from(i) / rate_hz)
             .map(|t| (drive_hz * t).cos() + 0.02 * (hum_hz * t + 1.0).cos())

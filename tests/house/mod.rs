@@ -1,5 +1,6 @@
 //! The rules of the layout: a module never imports from a module to its right.
 
+mod circles;
 mod licences;
 mod links;
 

@@ -2,11 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::identify::estimate::{Estimate, NORMAL_975, Status};
+use crate::identify::estimate::{Estimate, Status};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::identification::{Agreement, MethodResult};
 use crate::identify::messages::PairAgreement;
 use crate::identify::method::Method;
+use crate::identify::uncertainty::quantile::NORMAL_975;
 
 /// Level of the whole test; divided by the number of pairs.
 const LEVEL: f64 = 0.01;

@@ -3,7 +3,7 @@
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::messages::Finding;
-use crate::identify::methods::MethodFit;
+use crate::identify::method_fit::MethodFit;
 
 /// Standard errors from which an effect is named: by chance one in two thousand reaches them.
 const NAMED: f64 = 3.5;

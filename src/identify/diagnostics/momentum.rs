@@ -1,10 +1,10 @@
 //! The masses' ratio by conservation of momentum at impacts of two free masses, against the stated one.
 
 use crate::event::{Impact, RigKind};
-use crate::identify::estimate::NORMAL_975;
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::impacts::ImpactBlock;
 use crate::identify::messages::{Finding, Remark};
+use crate::identify::uncertainty::quantile::NORMAL_975;
 
 /// Standard errors by which the ratio must be off the stated one.
 const SIGNIFICANT: f64 = 4.0;

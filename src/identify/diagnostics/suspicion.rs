@@ -13,7 +13,7 @@ use crate::identify::fit::factor::dot;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Fit, mean_squares};
 use crate::identify::messages::Finding;
-use crate::identify::methods::MethodFit;
+use crate::identify::method_fit::MethodFit;
 use crate::record::Role;
 
 /// Standard errors from which a deviation is named.

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::identify::diagnostics::structure::Grouping;
-use crate::identify::estimate::{Estimate, NORMAL_975, Status};
+use crate::identify::estimate::{Estimate, Status};
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::impacts::ImpactBlock;
 use crate::identify::evidence::resonance::{self, ResonanceBlock};
@@ -15,6 +15,7 @@ use crate::identify::messages::{
     Finding, GroupPoint, Note, Remark, Sentence, SpeedPoint, StatedValue,
 };
 use crate::identify::method::Method;
+use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::signal::robust;
 
 /// Relative deviation of responses from which one degree of freedom does not fit.

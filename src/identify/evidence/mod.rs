@@ -30,7 +30,7 @@ use crate::identify::fit::effect::{Effect, Effects};
 use crate::identify::fit::gap_errors::MOST_GAPS;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::identify::fit::{Block, FitProgress, Prior, Problem};
-use crate::identify::uncertainty::UncertaintyOptions;
+use crate::identify::uncertainty::options::UncertaintyOptions;
 use crate::motion::Amplitude;
 use crate::motion::{Bracket, Observation};
 use crate::record::Role;

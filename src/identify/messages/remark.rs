@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Item, Note};
 use crate::identify::diagnostics::structure::ImpactGroup;
-use crate::identify::estimate::NORMAL_975;
+use crate::identify::uncertainty::quantile::NORMAL_975;
 use crate::message::{Message, Value};
 use crate::messages;
 

@@ -2,9 +2,9 @@
 //! the boundaries of the symmetric machine depend there.
 
 use crate::event::RigKind;
-use crate::identify::estimate::NORMAL_975;
 use crate::identify::fit::Fit;
 use crate::identify::fit::parameters::Coordinate;
+use crate::identify::uncertainty::quantile::NORMAL_975;
 use impact_oscillator::model::params::Machine;
 
 /// The machines that a fit leaves possible, one standard error off in R and in β.

@@ -13,8 +13,8 @@ use crate::identify::fit::Problem;
 use crate::identify::fit::normal::Normal;
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::method::Method;
-use crate::identify::methods::MethodFit;
-use crate::identify::uncertainty::scatter::student_975;
+use crate::identify::method_fit::MethodFit;
+use crate::identify::uncertainty::quantile::student_975;
 
 /// Where an uncertainty comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

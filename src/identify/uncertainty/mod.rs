@@ -7,8 +7,9 @@ pub mod band;
 pub mod bound;
 pub mod budget;
 pub mod coverage;
-mod options;
+pub mod options;
 pub mod posterior;
+pub mod quantile;
 pub mod scatter;
 
 pub use options::{IntervalMethod, UncertaintyOptions};

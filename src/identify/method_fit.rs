@@ -1,0 +1,71 @@
+//! A method's fit and the errors of what it estimates.
+
+use nalgebra::DMatrix;
+
+use crate::identify::fit::normal::inverse;
+use crate::identify::fit::parameters::Coordinate;
+use crate::identify::fit::{Fit, Precision, Problem};
+use crate::identify::uncertainty::scatter::{self, Scatter, Spread};
+
+/// A method's fit with its variance factor and the items left out.
+#[derive(Debug, Clone)]
+pub struct MethodFit {
+    /// The fit.
+    pub fit: Fit,
+    /// Factor on the covariance: the reduced sum of squares, at least 1.
+    pub factor: f64,
+    /// Reduced sum of squares as it came out.
+    pub reduced: f64,
+    /// Scatter between groups of records beyond it; not looked for where the fit only starts another.
+    pub scatter: Scatter,
+}
+
+/// Share of an effect that its first order does not hold: what campaigns on rigs with all effects
+/// showed.
+const FIRST_ORDER: f64 = 0.02;
+
+impl MethodFit {
+    /// Of a fit of a problem, judged with degrees of freedom.
+    pub fn of(problem: &Problem<'_>, fit: Fit, freedom: usize) -> Self {
+        let reduced = fit.cost / freedom.max(1) as f64;
+        let scatter = match problem.precision {
+            Precision::Result => scatter::scatter(problem, &fit),
+            Precision::Start => Scatter::default(),
+        };
+        Self {
+            factor: reduced.max(1.0),
+            reduced,
+            scatter,
+            fit,
+        }
+    }
+
+    /// Standard error of a coordinate by all that is allowed for; `None` where it was not free.
+    pub fn spread(&self, coordinate: Coordinate) -> Option<Spread> {
+        let spread = self.scatter.spread(&self.fit, self.factor, coordinate)?;
+        let beyond = self.first_order(coordinate).unwrap_or(0.0);
+        Some(spread.with(beyond))
+    }
+
+    /// What the effects beyond the model leave open in a parameter as they are treated to first order:
+    /// a share of what each would change of it if it were left out and R, f0, β and `x_st` alone were
+    /// fitted again, −(`A_pp⁻¹A_pk`) times its strength.
+    pub fn first_order(&self, coordinate: Coordinate) -> Option<f64> {
+        let fit = &self.fit;
+        let place = |c: &Coordinate| fit.free.iter().position(|f| f == c);
+        let told: Vec<usize> = Coordinate::PHYSICAL.iter().filter_map(place).collect();
+        let row = told.iter().position(|i| fit.free[*i] == coordinate)?;
+        let information = inverse(&fit.covariance)?;
+        let count = told.len();
+        let own = DMatrix::from_fn(count, count, |i, k| information[(told[i], told[k])]);
+        let back = inverse(&own)?;
+        let effects = fit.free.iter().enumerate();
+        let effects = effects.filter(|(_, c)| matches!(c, Coordinate::Effect(_)));
+        let change = |(k, c): (usize, &Coordinate)| {
+            let pulled = told.iter().enumerate();
+            let pulled = pulled.map(|(i, at)| back[(row, i)] * information[(*at, k)]);
+            FIRST_ORDER * pulled.sum::<f64>() * fit.parameters.coordinate(*c)
+        };
+        Some(effects.map(change).map(|c| c * c).sum::<f64>().sqrt())
+    }
+}
