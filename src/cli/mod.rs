@@ -26,6 +26,7 @@ mod progress;
 mod read_log;
 mod report_args;
 mod run;
+mod run_one;
 mod run_several;
 mod screen;
 mod selftest;

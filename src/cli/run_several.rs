@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use super::estimate_text::with_error;
-use super::run::RunOptions;
+use super::run_one::RunOptions;
 use super::{Exit, Failure, Verbosity, interrupt};
 use crate::identify::VerdictKind;
 use crate::pipeline::summary::{Fault, Found, Outcome, Row, Summary};

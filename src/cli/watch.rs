@@ -9,7 +9,7 @@ use clap::Args;
 use super::load::load_campaign;
 use super::progress::Progress;
 use super::report_args::{ReportArgs, print_report_paths};
-use super::run::{command_line, keep_from, print_completed};
+use super::run_one::{command_line, keep_from, print_completed};
 use super::screen::Screen;
 use super::{Exit, Failure, Verbosity, interrupt, live_text};
 use crate::pipeline::watch::{News, Pace, Patience, Seen, Watcher, write_live};
@@ -156,6 +156,7 @@ impl Watch {
         drop(bar);
         print_completed(&done, verbosity);
         print_report_paths(&campaign, &self.out, verbosity);
+        verbosity.info(&format!("Page: {}", self.out.join("report.html").display()));
         Ok(done)
     }
 }

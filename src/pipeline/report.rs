@@ -23,6 +23,16 @@ use labfiles::output::{make_folder, write_bytes};
 /// Name of the report's file.
 pub const FILE: &str = "report.pdf";
 
+/// Name of the file beside the page that tells it which page was written last; it is there while a
+/// campaign is watched.
+pub(super) const LIVE_STATE: &str = "report.live.js";
+
+/// The records are complete: no page is newer than the one there.
+pub(super) fn remove_live_state(out: &Path) {
+    // one that stays makes a page look in vain, no more
+    let _ = std::fs::remove_file(out.join(LIVE_STATE));
+}
+
 /// A file of the report: its path relative to the results' folder, and its bytes.
 pub type ReportFile = (String, Vec<u8>);
 

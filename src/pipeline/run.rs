@@ -5,7 +5,7 @@ use std::path::Path;
 use super::error::{PipelineError, Progress};
 use super::identify::IdentificationFile;
 use super::observed::Observed;
-use super::{checkpoint, identify, published, report, store, tables, watch};
+use super::{checkpoint, identify, published, report, store, tables};
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::Identification;
 use crate::identify::fit::FitProgress;
@@ -90,7 +90,7 @@ pub(super) fn complete(
     identify::write(&found, out)?;
     report::write(&report, out)?;
     checkpoint::remove(out);
-    watch::remove_state(out);
+    report::remove_live_state(out);
     Ok(Completed {
         observations: observed.observations,
         identification: found.identification,

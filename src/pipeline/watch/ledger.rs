@@ -365,7 +365,7 @@ mod tests {
     #[test]
     fn a_file_that_does_not_open_is_tried_again() {
         let mut ledger = ledger();
-        ledger.look(0 * SECOND, &seen(&[("a", stamp(3))]));
+        ledger.look(Duration::ZERO, &seen(&[("a", stamp(3))]));
         ledger.look(5 * SECOND, &seen(&[("a", stamp(3))]));
         ledger.refuse(Path::new("a"), 5 * SECOND, "held".to_owned());
         for (at, length, settled) in [(10, 3, 0), (34, 3, 0), (35, 3, 1), (36, 4, 0), (41, 4, 1)] {

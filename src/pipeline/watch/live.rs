@@ -62,9 +62,6 @@ impl Live {
     }
 }
 
-/// Name of the file beside the page that tells it which page was written last; it is there while the
-/// campaign is watched.
-const STATE: &str = "report.live.js";
 /// Name of the page.
 const PAGE: &str = "report.html";
 
@@ -76,7 +73,7 @@ pub fn write_live(live: &Live, command_line: &str, out: &Path) -> Result<(), Pip
     let version = version(&live.found);
     let usable = live.observed.observations.iter();
     let page = LivePage {
-        state: STATE.to_owned(),
+        state: report::LIVE_STATE.to_owned(),
         version: version.clone(),
         records: usable.filter(|o| !o.excluded()).count(),
     };
@@ -85,13 +82,10 @@ pub fn write_live(live: &Live, command_line: &str, out: &Path) -> Result<(), Pip
     write_bytes(&out.join(PAGE), html.as_bytes())?;
     write_json(&out.join(identify::FILE), &live.found)?;
     let state = format!("impactidLive(\"{version}\");\n");
-    Ok(write_bytes(&out.join(STATE), state.as_bytes())?)
-}
-
-/// The records are complete: nothing is newer than the pages there.
-pub(in crate::pipeline) fn remove_state(out: &Path) {
-    // one that stays makes a page look in vain, no more
-    let _ = std::fs::remove_file(out.join(STATE));
+    Ok(write_bytes(
+        &out.join(report::LIVE_STATE),
+        state.as_bytes(),
+    )?)
 }
 
 /// What tells an answer from another one: all that it was made from.

@@ -13,7 +13,6 @@ mod processor_time;
 mod spacing;
 
 pub use ledger::{News, Patience};
-pub(super) use live::remove_state;
 pub use live::{Live, write_live};
 
 use std::collections::BTreeMap;
