@@ -48,5 +48,8 @@ mod report;
 /// The verbs of the theory: what they leave, replays, parts and their merge, runs broken off.
 mod theory;
 
+/// Campaigns whose records are still arriving.
+mod watch;
+
 /// The tutorial as it stands, the script that reads the results, manual pages, completions.
 mod users;

@@ -18,6 +18,9 @@ use labfiles::{DatasetInfo, ReadError, Source};
 /// How a file is opened; [`labfiles::open`] but for tests.
 pub type Opener<'a> = &'a (dyn Fn(&Path) -> Result<Box<dyn Source>, ReadError> + Sync);
 
+/// Which files are listed, while others are still being written.
+pub type Taken<'a> = &'a (dyn Fn(&Path) -> bool + Sync);
+
 /// A record as its file's metadata and the run table describe it, before it is read.
 #[derive(Debug, Clone)]
 pub(super) struct Discovered {
@@ -33,7 +36,7 @@ pub(super) struct Discovered {
 }
 
 /// What the records of a campaign share.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(super) struct Shared<'a> {
     /// The folder of campaign.toml.
     pub(super) folder: &'a Path,
@@ -41,6 +44,14 @@ pub(super) struct Shared<'a> {
     pub(super) channels: &'a [ChannelSetup],
     /// The channel with the time.
     pub(super) time: Option<&'a ChannelKey>,
+    /// The files to list; `None`: all.
+    pub(super) taken: Option<Taken<'a>>,
+}
+
+impl Shared<'_> {
+    fn lists(&self, file: &Path) -> bool {
+        self.taken.is_none_or(|taken| taken(file))
+    }
 }
 
 pub(super) fn list_files(
@@ -52,7 +63,7 @@ pub(super) fn list_files(
     let mut paths = Vec::new();
     for pattern in &files.get_ref().0 {
         let found = expand(shared.folder, pattern);
-        if found.is_empty() {
+        if found.is_empty() && shared.taken.is_none() {
             let what = format!("no file matches '{pattern}' in {}", shared.folder.display());
             context.fault(
                 Code::UnreadableFile,
@@ -66,6 +77,7 @@ pub(super) fn list_files(
     }
     paths.sort_by_cached_key(|p| natural_key(&p.to_string_lossy()));
     paths.dedup();
+    paths.retain(|path| shared.lists(path));
     let listed: Vec<Vec<Discovered>> = paths
         .par_iter()
         .map(|path| list_file(path, shared, open))
@@ -74,7 +86,7 @@ pub(super) fn list_files(
 }
 
 /// The files that a glob matches, folders left out.
-fn expand(folder: &Path, pattern: &str) -> Vec<PathBuf> {
+pub(super) fn expand(folder: &Path, pattern: &str) -> Vec<PathBuf> {
     let whole = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
     let Ok(paths) = glob::glob(&whole.to_string_lossy()) else {
         return Vec::new();
@@ -172,9 +184,10 @@ pub(super) fn list_rows(
 ) -> Vec<Discovered> {
     let path = shared.folder.join(table);
     let mut faults = FaultCollector::new(&path);
-    let rows = run_table::read(&path, &mut faults);
+    let mut rows = run_table::read(&path, &mut faults);
     refuse_twice(&rows, &mut faults);
     context.faults.extend(faults.into_diagnostics().0);
+    rows.retain(|row| shared.lists(&shared.folder.join(&row.file)));
     let mut by_file: HashMap<&str, Vec<&Row>> = HashMap::new();
     for row in &rows {
         by_file.entry(&row.file).or_default().push(row);

@@ -7,6 +7,7 @@ mod context;
 pub mod diagnostic;
 mod discovery;
 pub mod infer;
+mod named_files;
 mod names;
 mod read;
 mod records;
@@ -18,5 +19,6 @@ mod settings;
 pub mod template;
 pub mod written;
 
-pub use discovery::Opener;
-pub use resolve::{Outcome, load};
+pub use discovery::{Opener, Taken};
+pub use named_files::NamedFiles;
+pub use resolve::{Outcome, load, load_taken};

@@ -2,6 +2,7 @@
 //! each offending entry is noted and taken out, and what is left is read again.
 
 use std::ops::Range;
+use std::path::Path;
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -35,6 +36,22 @@ impl<'a> Text<'a> {
     pub(super) fn line_of<T>(&self, placed: &Spanned<T>) -> Option<usize> {
         Some(self.line(placed.span().start))
     }
+}
+
+/// The text of campaign.toml; `None`, and a fault, where it cannot be read.
+pub(super) fn text(path: &Path, faults: &mut FaultCollector) -> Option<String> {
+    let error = match std::fs::read_to_string(path) {
+        Ok(text) => return Some(text),
+        Err(error) => error,
+    };
+    faults.fault(
+        Code::UnreadableFile,
+        None,
+        "",
+        format!("campaign.toml cannot be read: {error}"),
+        "name the right file; `impactid init DIR` writes one",
+    );
+    None
 }
 
 /// Read the text; what cannot be read is noted in `faults` and left at its default.
@@ -187,8 +204,6 @@ fn covers(outer: &Range<usize>, inner: &Range<usize>) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
     use crate::campaign::diagnostic::Diagnostic;
 

@@ -7,7 +7,7 @@ use toml::Spanned;
 use super::channels;
 use super::context::ResolveContext;
 use super::diagnostic::{Code, Diagnostics, FaultCollector};
-use super::discovery::{Opener, Shared};
+use super::discovery::{Opener, Shared, Taken};
 use super::read::{self, Text};
 use super::records;
 use super::resolved::{Analysis, RecordEntry, Report, ResolvedCampaign};
@@ -29,30 +29,29 @@ pub struct Outcome {
 
 /// Read campaign.toml and list its records, opening files by `open`.
 pub fn load(path: &Path, open: Opener<'_>) -> Outcome {
+    load_listed(path, (open, None))
+}
+
+/// As [`load`], while records are still arriving: only the files that are taken are listed, none at
+/// all is no fault, and records that campaign.toml names may not be there yet.
+pub fn load_taken(path: &Path, open: Opener<'_>, taken: Taken<'_>) -> Outcome {
+    load_listed(path, (open, Some(taken)))
+}
+
+fn load_listed(path: &Path, files: (Opener<'_>, Option<Taken<'_>>)) -> Outcome {
     let mut faults = FaultCollector::new(path);
-    let text = match std::fs::read_to_string(path) {
-        Ok(text) => text,
-        Err(error) => {
-            let what = format!("campaign.toml cannot be read: {error}");
-            faults.fault(
-                Code::UnreadableFile,
-                None,
-                "",
-                what,
-                "name the right file; `impactid init DIR` writes one",
-            );
-            return Outcome {
-                campaign: None,
-                diagnostics: faults.into_diagnostics(),
-            };
-        }
+    let Some(text) = read::text(path, &mut faults) else {
+        return Outcome {
+            campaign: None,
+            diagnostics: faults.into_diagnostics(),
+        };
     };
     let written = read::read(&text, &mut faults);
     let mut context = ResolveContext {
         text: Text::new(&text),
         faults,
     };
-    let campaign = resolve(path, &written, open, &mut context);
+    let campaign = resolve(path, &written, files, &mut context);
     let blocks = context.faults.blocks();
     let mut diagnostics = context.faults.into_diagnostics();
     diagnostics.sort();
@@ -65,7 +64,7 @@ pub fn load(path: &Path, open: Opener<'_>) -> Outcome {
 fn resolve(
     path: &Path,
     written: &WrittenCampaign,
-    open: Opener<'_>,
+    (open, taken): (Opener<'_>, Option<Taken<'_>>),
     context: &mut ResolveContext<'_>,
 ) -> ResolvedCampaign {
     let machine = required(
@@ -86,12 +85,14 @@ fn resolve(
         folder,
         channels: &channels,
         time: time.as_ref(),
+        taken,
     };
     let mut records = match written.published {
         Some(_) => Vec::new(),
         None => records::resolve(&written.records, shared, open, context),
     };
-    exclude(&mut records, &written.analysis.exclude, context);
+    let all = taken.is_none();
+    exclude(&mut records, (&written.analysis.exclude, all), context);
     rig::refuse_long_delays(&channels, &records, &written.channels, context);
     let name = name(&written.campaign.name, folder);
     let run_table = value(&written.records.run_table).map(|t| folder.join(t));
@@ -106,7 +107,7 @@ fn resolve(
             Dimension::Frequency,
         ),
         analysis: analysis(&written.analysis, context),
-        report: report(&written.report, &name, (folder, &records), context),
+        report: report(&written.report, &name, (folder, &records, all), context),
         synthetic: written.campaign.synthetic,
         laboratory: value(&written.campaign.laboratory),
         measured: value(&written.campaign.measured),
@@ -180,19 +181,24 @@ fn analysis(written: &written::Analysis, context: &mut ResolveContext<'_>) -> An
 fn report(
     written: &written::Report,
     name: &str,
-    (folder, records): (&Path, &[RecordEntry]),
+    (folder, records, all): (&Path, &[RecordEntry], bool),
     context: &mut ResolveContext<'_>,
 ) -> Report {
-    if let Some(points) = &written.points {
+    let known = |point: &String| records.iter().any(|r| r.id == *point);
+    if let Some(points) = written.points.as_ref().filter(|_| all) {
         for point in points.get_ref() {
-            if !records.iter().any(|r| r.id == *point) && !records.is_empty() {
+            if !known(point) && !records.is_empty() {
                 unknown_record(points, "report.points", point, records, context);
             }
         }
     }
     Report {
         title: value(&written.title).unwrap_or_else(|| name.to_owned()),
-        points: value(&written.points).unwrap_or_default(),
+        points: value(&written.points)
+            .unwrap_or_default()
+            .into_iter()
+            .filter(|point| all || known(point))
+            .collect(),
         paper: value(&written.paper).unwrap_or(Paper::A4),
         language: value(&written.language).unwrap_or(Language::En),
         decimal_comma: value(&written.decimal_comma).unwrap_or(false),
@@ -266,7 +272,7 @@ fn unknown_record<T>(
 
 fn exclude(
     records: &mut [RecordEntry],
-    placed: &Placed<Vec<String>>,
+    (placed, all): (&Placed<Vec<String>>, bool),
     context: &mut ResolveContext<'_>,
 ) {
     let Some(placed) = placed else { return };
@@ -284,7 +290,7 @@ fn exclude(
             record.excluded = true;
             found = true;
         }
-        if !found && !records.is_empty() {
+        if all && !found && !records.is_empty() {
             unknown_record(placed, "analysis.exclude", name, records, context);
         }
     }

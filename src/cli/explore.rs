@@ -3,14 +3,19 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
 
 use clap::Args;
 
 use super::load::load_campaign;
+use super::screen::Screen;
 use super::stdout::print;
+use super::watch::{PaceArgs, tell};
 use super::{Exit, Failure, Progress, Verbosity};
 use crate::explore::{Campaign, ExploreError, Server, Session, check};
 use crate::pipeline::theory::Study;
+use crate::pipeline::watch::Watcher;
 
 /// Arguments of `impactid explore`.
 #[derive(Debug, Args)]
@@ -28,6 +33,11 @@ pub(super) struct Explore {
     /// Replay a demo of your own with --check, or open the page with it
     #[arg(long, value_name = "FILE")]
     demo: Option<PathBuf>,
+    /// Watch the campaign.toml while its records arrive: the page follows at each fit
+    #[arg(long, requires = "given", conflicts_with = "check")]
+    watch: bool,
+    #[command(flatten)]
+    pace: PaceArgs,
     /// Replay all demos without a browser, compare their motions with those stated, and exit
     #[arg(long, conflicts_with_all = ["given", "port", "no_browser"])]
     check: bool,
@@ -37,6 +47,7 @@ const EXAMPLE: &str = "\
 Example:
   impactid explore                                 the theory
   impactid explore results/                        a campaign with its records and its fit
+  impactid explore --watch campaign.toml           a campaign whose records are arriving
   impactid explore data-samples/studies/fig5-basins.toml
   impactid explore --port 8080 --no-browser        for a tunnel: ssh -L 8080:127.0.0.1:8080 HOST
 
@@ -59,8 +70,15 @@ impl Explore {
         if self.check {
             return replay(demo.as_deref(), verbosity);
         }
+        let mut watched = None;
         let mut session = match &self.given {
             None => Session::theory(),
+            Some(path) if self.watch => {
+                let mut arriving = Watched::new(path, self.pace, verbosity)?;
+                let campaign = arriving.at_next_fit();
+                watched = Some(arriving);
+                Session::of_campaign(campaign, Vec::new())
+            }
             Some(path) => open(path, verbosity)?,
         };
         if let Some(text) = demo {
@@ -71,6 +89,12 @@ impl Explore {
             verbosity.info(&format!("note: {note}"));
         }
         let server = Server::bind(session, self.port)?;
+        if let Some(watched) = watched {
+            let session = server.session();
+            std::thread::spawn(move || {
+                watched.for_each(|campaign| session.replace_campaign(campaign));
+            });
+        }
         print(&format!("{}\n", server.url()))?;
         verbosity.info("Ctrl-C ends the explorer.");
         if !self.no_browser && !open_browser(&server.url()) {
@@ -134,6 +158,59 @@ fn open(path: &Path, verbosity: Verbosity) -> Result<Session, Failure> {
     };
     let campaign = Campaign::of(campaign, &progress)?;
     Ok(Session::of_campaign(campaign, Vec::new()))
+}
+
+/// A campaign whose records are arriving.
+struct Watched {
+    watcher: Watcher,
+    begin: Instant,
+    pace: PaceArgs,
+    screen: Screen,
+}
+
+impl Watched {
+    fn new(campaign: &Path, pace: PaceArgs, verbosity: Verbosity) -> Result<Self, Failure> {
+        if !campaign.is_file() {
+            return Err(Failure::new(
+                format!("{} is not a campaign.toml", campaign.display()),
+                "name the campaign.toml whose records arrive; `impactid init DIR` writes one",
+            ));
+        }
+        let mut screen = Screen::new(verbosity);
+        screen.say("Waiting for records; the page opens at the first fit.");
+        Ok(Self {
+            watcher: Watcher::new(campaign, pace.pace())?,
+            begin: Instant::now(),
+            pace,
+            screen,
+        })
+    }
+
+    /// The campaign at its next fit.
+    fn at_next_fit(&mut self) -> Campaign {
+        loop {
+            let seen = self.watcher.look(self.begin.elapsed());
+            tell(&seen, &mut self.screen);
+            if self.watcher.is_due(self.begin.elapsed()) {
+                let fitted = self.watcher.fit::<Failure>(|_| Ok(()), |_| Ok(()));
+                match fitted.map(|live| live.map(Campaign::live)) {
+                    Ok(Some(campaign)) => return campaign,
+                    Ok(None) => {}
+                    Err(failure) => self.screen.fail(&failure),
+                }
+            }
+            self.pace.wait(&AtomicBool::new(false));
+        }
+    }
+}
+
+/// The campaign at each fit, without end.
+impl Iterator for Watched {
+    type Item = Campaign;
+
+    fn next(&mut self) -> Option<Campaign> {
+        Some(self.at_next_fit())
+    }
 }
 
 /// Open an address in the system's browser; whether a program for it could be started.

@@ -23,46 +23,77 @@ static FOLDERS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// From now on Ctrl-C removes the partial files in `folder` too, prints a message and ends the program.
 pub(super) fn watch(folder: PathBuf) {
+    if !remember(folder) {
+        return;
+    }
+    if let Some(flag) = flag_of_signals() {
+        std::thread::spawn(move || {
+            wait_for(&flag);
+            end();
+        });
+    }
+}
+
+/// From now on the first Ctrl-C sets what is returned; the second removes the partial files in `folder`
+/// and ends the program.
+pub(super) fn asked(folder: PathBuf) -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    remember(folder);
+    if let Some(flag) = flag_of_signals() {
+        let asked = Arc::clone(&stop);
+        std::thread::spawn(move || {
+            wait_for(&flag);
+            asked.store(true, Ordering::SeqCst);
+            flag.store(false, Ordering::SeqCst);
+            eprintln!("\nimpactid: the results are being completed; Ctrl-C again ends at once.");
+            wait_for(&flag);
+            end();
+        });
+    }
+    stop
+}
+
+/// Note a folder; whether it is the first.
+fn remember(folder: PathBuf) -> bool {
     let mut folders = FOLDERS.lock().unwrap_or_else(PoisonError::into_inner);
     folders.push(match folder.as_os_str().is_empty() {
         true => PathBuf::from("."),
         false => folder,
     });
-    if folders.len() == 1 {
-        drop(folders);
-        end_at_signal();
+    folders.len() == 1
+}
+
+/// What a signal sets; `None` where the system does not allow it.
+fn flag_of_signals() -> Option<Arc<AtomicBool>> {
+    let flag = Arc::new(AtomicBool::new(false));
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        signal_hook::flag::register(signal, Arc::clone(&flag)).ok()?;
+    }
+    Some(flag)
+}
+
+fn wait_for(flag: &AtomicBool) {
+    while !flag.load(Ordering::SeqCst) {
+        std::thread::sleep(Duration::from_millis(20));
     }
 }
 
-/// End the program at the first signal.
-fn end_at_signal() {
-    let flag = Arc::new(AtomicBool::new(false));
-    let signals = [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM];
-    if signals
-        .iter()
-        .any(|s| signal_hook::flag::register(*s, Arc::clone(&flag)).is_err())
-    {
-        return;
+/// End the program: outputs are complete or absent.
+fn end() {
+    ENDING.store(true, Ordering::SeqCst);
+    let folders = FOLDERS.lock().map(|f| f.clone()).unwrap_or_default();
+    for folder in &folders {
+        labfiles::output::clear_own_parts(folder);
     }
-    std::thread::spawn(move || {
-        while !flag.load(Ordering::Relaxed) {
-            std::thread::sleep(Duration::from_millis(20));
-        }
-        ENDING.store(true, Ordering::SeqCst);
-        let folders = FOLDERS.lock().map(|f| f.clone()).unwrap_or_default();
-        for folder in &folders {
-            labfiles::output::clear_own_parts(folder);
-        }
-        let first = folders.first().map(PathBuf::as_path);
-        eprintln!(
-            "\nimpactid: interrupted. Outputs in {} are complete or absent; run the same command again \
-             (with --resume, if it has that option, it continues).",
-            first.unwrap_or(Path::new(".")).display()
-        );
-        #[expect(
-            clippy::exit,
-            reason = "the working threads need not be waited for: outputs are whole"
-        )]
-        std::process::exit(INTERRUPTED);
-    });
+    let first = folders.first().map(PathBuf::as_path);
+    eprintln!(
+        "\nimpactid: interrupted. Outputs in {} are complete or absent; run the same command again \
+         (with --resume, if it has that option, it continues).",
+        first.unwrap_or(Path::new(".")).display()
+    );
+    #[expect(
+        clippy::exit,
+        reason = "the working threads need not be waited for: outputs are whole"
+    )]
+    std::process::exit(INTERRUPTED);
 }

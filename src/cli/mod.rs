@@ -9,12 +9,14 @@ mod completions;
 mod convert;
 mod coverage;
 mod details;
+mod estimate_text;
 mod exit;
 mod explore;
 mod failure;
 mod init;
 mod inspect;
 mod interrupt;
+mod live_text;
 mod load;
 mod machine;
 mod merge;
@@ -26,7 +28,9 @@ mod progress;
 mod read_log;
 mod report_args;
 mod run;
+mod run_one;
 mod run_several;
+mod screen;
 mod selftest;
 mod simulate;
 mod sparkline;
@@ -36,6 +40,7 @@ mod study;
 mod sweep;
 mod theory;
 mod verbosity;
+mod watch;
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -93,6 +98,8 @@ enum Command {
     Check(check::Check),
     /// Run all stages, from campaign.toml to identification.json and report.pdf
     Run(run::Run),
+    /// Watch a campaign while its records arrive: the answer grows
+    Watch(watch::Watch),
     /// Stage 1: read and calibrate the records
     Ingest(stage::Ingest),
     /// Stage 2: detect the impacts and classify the motion of each record
@@ -139,6 +146,7 @@ impl Command {
             Self::Init(command) => command.run(verbosity),
             Self::Check(command) => command.run(verbosity),
             Self::Run(command) => command.run(verbosity),
+            Self::Watch(command) => command.run(verbosity),
             Self::Ingest(command) => command.run(verbosity),
             Self::Classify(command) => command.run(verbosity),
             Self::Identify(command) => command.run(verbosity),

@@ -1,16 +1,12 @@
-//! `impactid run`: all stages, from campaign.toml to the report.
+//! `impactid run`: all stages, from campaign.toml to the report, of one campaign or of several.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
-use super::details::{print_fits, print_records};
-use super::load::load_campaign;
-use super::progress::{LATER, Progress};
-use super::report_args::{ReportArgs, print_report_paths, quoted};
-use super::{Exit, Failure, Verbosity, interrupt, run_several};
-use crate::pipeline::{self, Completed, Destination, checkpoint};
-use labfiles::output::Lock;
+use super::report_args::ReportArgs;
+use super::run_one::RunOptions;
+use super::{Exit, Failure, Verbosity, run_several};
 
 /// Arguments of `impactid run`.
 #[derive(Debug, Args)]
@@ -41,14 +37,6 @@ Several campaigns: each has the folder in DIR that is named after its own, as if
 --out; summary.csv and summary.json in DIR list the answers. One that fails does not stop the others.
 Exit codes: 0 success; 1 the model does not fit or a parameter is not identifiable; 2 bad input; of several campaigns the greatest.";
 
-/// From how many records on checkpoints are written; `IMPACTID_KEEP_FROM` sets another number, for
-/// trials with small campaigns.
-fn keep_from() -> usize {
-    let set = std::env::var("IMPACTID_KEEP_FROM").ok();
-    set.and_then(|n| n.parse().ok())
-        .unwrap_or(checkpoint::FEWEST)
-}
-
 impl Run {
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
         let options = RunOptions {
@@ -63,71 +51,5 @@ impl Run {
             }
             several => run_several::run(several, &self.out, options, verbosity),
         }
-    }
-}
-
-/// How a campaign is run.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct RunOptions<'a> {
-    /// Whether an interrupted run is resumed.
-    resume: bool,
-    /// The report.
-    report: &'a ReportArgs,
-}
-
-impl RunOptions<'_> {
-    /// Run one campaign into a folder and print what came of it.
-    ///
-    /// # Errors
-    /// [`Failure`] where the campaign cannot be used or an output cannot be written.
-    pub(super) fn run(
-        self,
-        campaign: &Path,
-        out: &Path,
-        verbosity: Verbosity,
-    ) -> Result<Completed, Failure> {
-        let mut resolved = load_campaign(campaign, verbosity)?;
-        self.report.apply(&mut resolved.report, verbosity)?;
-        let _lock = Lock::take(out)?;
-        interrupt::watch(out.to_path_buf());
-        let records = resolved.records.len() as u64;
-        let bar = Progress::new(verbosity, "observe", records).with_later(LATER);
-        let progress = |stage: &'static str, done: u64, total: u64| {
-            bar.stage(stage);
-            bar.set(done, total);
-        };
-        let destination = Destination {
-            out,
-            resume: self.resume,
-            keep_from: keep_from(),
-            command_line: &command_line(campaign, out, self.report),
-            fits: bar.fits(),
-        };
-        let done = pipeline::run(&resolved, &destination, &progress)?;
-        drop(bar);
-        print_completed(&done, verbosity);
-        print_report_paths(&resolved, out, verbosity);
-        Ok(done)
-    }
-}
-
-/// The command that a report names: one that gives the same results.
-pub(super) fn command_line(campaign: &Path, out: &Path, report: &ReportArgs) -> String {
-    format!(
-        "impactid run {} --out {}{}",
-        quoted(campaign),
-        quoted(out),
-        report.typed()
-    )
-}
-
-/// Print the answer of a run, and with `-v` what led to it.
-pub(super) fn print_completed(done: &Completed, verbosity: Verbosity) {
-    print_records(&done.observations, verbosity);
-    print_fits(&done.identification, verbosity);
-    let verdict = &done.identification.verdict;
-    verbosity.info(&verdict.to_string());
-    for finding in &verdict.findings {
-        verbosity.info(&format!("  - {finding}"));
     }
 }

@@ -3,9 +3,10 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use super::run::RunOptions;
+use super::estimate_text::with_error;
+use super::run_one::RunOptions;
 use super::{Exit, Failure, Verbosity, interrupt};
-use crate::identify::{Estimate, Status, VerdictKind};
+use crate::identify::VerdictKind;
 use crate::pipeline::summary::{Fault, Found, Outcome, Row, Summary};
 use crate::pipeline::{campaign_folders, layout, summary};
 use labfiles::output::Lock;
@@ -136,26 +137,6 @@ fn found_line(found: &Found) -> String {
         cells.join(" "),
         verdict(found.verdict)
     )
-}
-
-/// A value with half of its 95 % interval.
-pub(super) fn with_error(estimate: &Estimate) -> String {
-    let (Some(value), Some([low, high])) = (estimate.value, estimate.interval95) else {
-        return "not identifiable".to_owned();
-    };
-    let half = 0.5 * (high - low);
-    let decimals = (1.0 - half.abs().max(1e-9).log10().floor()).clamp(0.0, 9.0);
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "it lies between 0 and 9"
-    )]
-    let decimals = decimals as usize;
-    let weak = match estimate.status {
-        Status::Weak => " (weak)",
-        Status::Identified | Status::NotIdentifiable => "",
-    };
-    format!("{value:.decimals$} ± {half:.decimals$}{weak}")
 }
 
 fn verdict(kind: VerdictKind) -> &'static str {

@@ -2,6 +2,7 @@
 
 use serde_json::json;
 
+use super::frame::Frame;
 use super::jobs::{Job, Stale, refusal};
 use super::wire::{Ask, Request};
 use super::{ExploreError, Session, State, demo, evidence, export, maps, motions};
@@ -45,9 +46,9 @@ fn ask(session: &Session, request: &Request, job: &Job) -> Result<(), Stop> {
         Ask::Run { periods } => motions::run(state, *periods, job),
         Ask::Line {} => motions::line(state, job),
         Ask::Basins {} => motions::basins(state, job),
-        Ask::Record {} => evidence::record(session.campaign()?, state, job),
-        Ask::Residuals {} => evidence::residuals(session.campaign()?, state, job),
-        Ask::Proposals {} => evidence::proposals(session.campaign()?, job),
+        Ask::Record {} => evidence::record(&*session.campaign()?, state, job),
+        Ask::Residuals {} => evidence::residuals(&*session.campaign()?, state, job),
+        Ask::Proposals {} => evidence::proposals(&*session.campaign()?, job),
         Ask::Export { file } => export::export(state, *file, job),
         Ask::Demo { name } => send_demo(&demo::shipped(name)?, job),
         Ask::ReadDemo { text } => send_demo(&demo::Demo::read(text)?, job),
@@ -69,6 +70,13 @@ fn hello(session: &Session, job: &Job) -> Result<(), Stop> {
         .with("demo", session.demo())
         .with("notes", session.notes());
     Ok(job.send(frame)?)
+}
+
+/// The campaign as it is now, which no page asked for.
+pub(super) fn campaign_now(session: &Session) -> Option<Frame> {
+    let campaign = session.campaign().ok()?;
+    let frame = Frame::new("campaign", 0).with("state", session.state());
+    Some(frame.with("campaign", campaign.facts()))
 }
 
 fn send_demo(demo: &demo::Demo, job: &Job) -> Result<(), Stop> {

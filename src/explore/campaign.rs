@@ -16,6 +16,7 @@ use crate::motion::Observation;
 use crate::pipeline::identify::{IdentificationFile, evidence};
 use crate::pipeline::observe::read_one;
 use crate::pipeline::theory::plan::Law;
+use crate::pipeline::watch::Live;
 use crate::pipeline::{Observed, PipelineError, Progress, identify, inputs, layout, store};
 use crate::record::Record;
 use crate::report::style::MotionStyle;
@@ -41,6 +42,15 @@ impl Campaign {
         progress("identify", 0, 1);
         let found = identify::identify(&resolved, &observed, None)?;
         Ok(Self::with(resolved, observed, found.identification))
+    }
+
+    /// The records that have arrived so far, with their fit.
+    pub fn live(live: &Live) -> Self {
+        Self::with(
+            live.campaign.clone(),
+            live.observed.clone(),
+            live.found.identification.clone(),
+        )
     }
 
     /// Read a results folder; with it come notes on inputs that are gone or changed.

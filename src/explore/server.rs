@@ -18,6 +18,7 @@ use axum::serve::ListenerExt;
 use futures_util::{SinkExt, StreamExt};
 use tokio::sync::{Semaphore, mpsc};
 
+use super::answer::campaign_now;
 use super::frame::Frame;
 use super::jobs::{Jobs, refusal};
 use super::{ExploreError, Session, wire};
@@ -71,7 +72,7 @@ pub struct Server {
     listener: TcpListener,
     address: SocketAddr,
     token: String,
-    session: Session,
+    session: Arc<Session>,
 }
 
 struct App {
@@ -101,8 +102,13 @@ impl Server {
             listener,
             address,
             token,
-            session,
+            session: Arc::new(session),
         })
+    }
+
+    /// What is served; its campaign may be replaced while it is.
+    pub fn session(&self) -> Arc<Session> {
+        Arc::clone(&self.session)
     }
 
     /// The page's address, with the token in its fragment.
@@ -128,7 +134,7 @@ impl Server {
                 let _ = stream.set_nodelay(true);
             });
             let app = App {
-                session: Arc::new(self.session),
+                session: self.session,
                 token: self.token,
                 pages: Arc::new(Semaphore::new(MOST_PAGES)),
             };
@@ -261,6 +267,7 @@ async fn page(socket: WebSocket, session: Arc<Session>) {
             }
         }
     });
+    let news = tokio::spawn(tell_changes(Arc::clone(&session), outbox.clone()));
     let jobs = Jobs::start(&session, &outbox);
     while let Some(Ok(message)) = stream.next().await {
         let request = match &message {
@@ -278,7 +285,21 @@ async fn page(socket: WebSocket, session: Arc<Session>) {
             }
         }
     }
+    news.abort();
     writer.abort();
+}
+
+/// Send the campaign whenever it is replaced.
+async fn tell_changes(session: Arc<Session>, outbox: mpsc::Sender<Frame>) {
+    let mut changes = session.changes();
+    while changes.changed().await.is_ok() {
+        let now = campaign_now(&session);
+        if let Some(frame) = now
+            && outbox.send(frame).await.is_err()
+        {
+            return;
+        }
+    }
 }
 
 fn binary() -> ExploreError {

@@ -1,4 +1,8 @@
-//! What a page is opened on: the theory, a study, or a campaign.
+//! What a page is opened on: the theory, a study, or a campaign, which may grow.
+
+use std::sync::{Arc, PoisonError, RwLock};
+
+use tokio::sync::watch;
 
 use super::campaign::Campaign;
 use super::state::{Line, Panel, State, Window};
@@ -7,31 +11,55 @@ use crate::pipeline::theory::Study;
 
 /// What the explorer was started with.
 pub struct Session {
-    state: State,
-    campaign: Option<Campaign>,
+    opened: RwLock<Opened>,
+    /// How often the campaign was replaced.
+    changes: watch::Sender<u64>,
     notes: Vec<String>,
     demo: Option<String>,
 }
 
+/// What a page shows when it opens.
+struct Opened {
+    state: State,
+    campaign: Option<Arc<Campaign>>,
+}
+
 impl Session {
-    /// The theory alone.
-    pub fn theory() -> Self {
+    fn new(state: State, campaign: Option<Campaign>, notes: Vec<String>) -> Self {
         Self {
-            state: State::default(),
-            campaign: None,
-            notes: Vec::new(),
+            opened: RwLock::new(Opened {
+                state,
+                campaign: campaign.map(Arc::new),
+            }),
+            changes: watch::Sender::new(0),
+            notes,
             demo: None,
         }
     }
 
+    /// The theory alone.
+    pub fn theory() -> Self {
+        Self::new(State::default(), None, Vec::new())
+    }
+
     /// A campaign with its fit.
     pub fn of_campaign(campaign: Campaign, notes: Vec<String>) -> Self {
-        Self {
+        Self::new(campaign.first_state(), Some(campaign), notes)
+    }
+
+    /// The campaign has more records, or another fit: pages that are open show it at once.
+    pub fn replace_campaign(&self, campaign: Campaign) {
+        let opened = Opened {
             state: campaign.first_state(),
-            campaign: Some(campaign),
-            notes,
-            demo: None,
-        }
+            campaign: Some(Arc::new(campaign)),
+        };
+        *self.opened.write().unwrap_or_else(PoisonError::into_inner) = opened;
+        self.changes.send_modify(|count| *count += 1);
+    }
+
+    /// Tells when the campaign is replaced.
+    pub(super) fn changes(&self) -> watch::Receiver<u64> {
+        self.changes.subscribe()
     }
 
     /// A study: its machine and the first of each of its kinds of work.
@@ -91,17 +119,13 @@ impl Session {
             state.poincare_phase = plan.poincare_phase;
         }
         state.check()?;
-        Ok(Self {
-            state,
-            campaign: None,
-            notes: Vec::new(),
-            demo: None,
-        })
+        Ok(Self::new(state, None, Vec::new()))
     }
 
     /// The state that a page without one starts from.
-    pub fn state(&self) -> &State {
-        &self.state
+    pub fn state(&self) -> State {
+        let opened = self.opened.read().unwrap_or_else(PoisonError::into_inner);
+        opened.state.clone()
     }
 
     /// With a demo that the page plays when it opens.
@@ -125,8 +149,9 @@ impl Session {
     ///
     /// # Errors
     /// [`ExploreError::Absent`] where the explorer shows the theory alone.
-    pub(super) fn campaign(&self) -> Result<&Campaign, ExploreError> {
-        self.campaign.as_ref().ok_or_else(|| {
+    pub(super) fn campaign(&self) -> Result<Arc<Campaign>, ExploreError> {
+        let opened = self.opened.read().unwrap_or_else(PoisonError::into_inner);
+        opened.campaign.clone().ok_or_else(|| {
             ExploreError::Absent("no campaign is open: start `impactid explore RESULTS`".into())
         })
     }

@@ -80,6 +80,23 @@ impl Observation {
         self.flags.iter().any(|f| f.excludes)
     }
 
+    /// The observation without what takes room: impacts, amplitudes, responses, waveform and decay.
+    #[must_use]
+    pub fn outline(&self) -> Self {
+        Self {
+            record: self.record.clone(),
+            setting: self.setting.clone(),
+            classification: self.classification.clone(),
+            flags: self.flags.clone(),
+            impacts: Vec::new(),
+            amplitudes: Vec::new(),
+            response: Vec::new(),
+            folded: None,
+            decay: None,
+            ..*self
+        }
+    }
+
     /// Whether the masses never touched: no impact was detected and nothing indicates one. Motion
     /// that is not harmonic widens the error of such a record's response.
     fn has_no_impact(&self) -> bool {

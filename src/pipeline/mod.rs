@@ -27,6 +27,7 @@ pub mod synthesise;
 mod table;
 pub mod tables;
 pub mod theory;
+pub mod watch;
 
 pub use error::{PipelineError, Progress, RefusedRecord};
 pub use observed::Observed;

@@ -94,20 +94,46 @@ fn observe_some(
     cache: &SourceCache,
     each: &(dyn Fn() + Sync),
 ) -> Vec<Observation> {
+    each_cached(campaign, entries, cache, |entry, record| {
+        let mut observation = observe_record(campaign, &record);
+        if !keeps_waveform(campaign, entry) {
+            observation.folded = None;
+        }
+        each();
+        observation
+    })
+}
+
+/// Observe one record that was read.
+pub(super) fn observe_record(campaign: &ResolvedCampaign, record: &Record) -> Observation {
     let (detect, settings) = (campaign.detect_settings(), campaign.classify_settings());
+    observe(record, campaign.machine, &detect, &settings)
+}
+
+/// Whether the folded waveform of a record is kept.
+pub(super) fn keeps_waveform(campaign: &ResolvedCampaign, entry: &RecordEntry) -> bool {
     let stride = campaign.records.len().div_ceil(MOST_WAVEFORMS).max(1);
-    let parts: Vec<Vec<Observation>> = by_file(entries)
+    entry.setting.sequence.is_multiple_of(stride)
+}
+
+/// Read some records of a campaign and call `act` on each, in parallel; the results are in their order.
+pub(super) fn each_of<T: Send>(
+    campaign: &ResolvedCampaign,
+    entries: &[RecordEntry],
+    act: impl Fn(&RecordEntry, Record) -> T + Sync,
+) -> Vec<T> {
+    each_cached(campaign, entries, &SourceCache::default(), act)
+}
+
+fn each_cached<T: Send>(
+    campaign: &ResolvedCampaign,
+    entries: &[RecordEntry],
+    cache: &SourceCache,
+    act: impl Fn(&RecordEntry, Record) -> T + Sync,
+) -> Vec<T> {
+    let parts: Vec<Vec<T>> = by_file(entries)
         .into_par_iter()
-        .map(|entries| {
-            records_of(campaign, entries, cache, |entry, record| {
-                let mut observation = observe(&record, campaign.machine, &detect, &settings);
-                if !entry.setting.sequence.is_multiple_of(stride) {
-                    observation.folded = None;
-                }
-                each();
-                observation
-            })
-        })
+        .map(|entries| records_of(campaign, entries, cache, &act))
         .collect();
     parts.into_iter().flatten().collect()
 }

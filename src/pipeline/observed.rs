@@ -42,7 +42,13 @@ impl Observed {
         Self::from_observations(observations)
     }
 
-    fn from_observations(mut observations: Vec<Observation>) -> Result<Self, PipelineError> {
+    /// What was observed, with the brackets in it.
+    ///
+    /// # Errors
+    /// [`PipelineError::NothingUsable`] where no record can be used.
+    pub(super) fn from_observations(
+        mut observations: Vec<Observation>,
+    ) -> Result<Self, PipelineError> {
         scale_drives(&mut observations);
         if observations.iter().all(Observation::excluded) {
             let refused = observations.into_iter().map(|o| RefusedRecord {

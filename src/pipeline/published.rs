@@ -43,7 +43,7 @@ pub fn run(
         tables: vec![table(&speeds, damping_ratio, published)],
         command_line: command_line.to_owned(),
     };
-    let report = report::render(&content, campaign)?;
+    let report = report::render(&content, campaign, None)?;
     store::write_resolved(campaign, out)?;
     super::identify::write(&found, out)?;
     report::write(&report, out)?;

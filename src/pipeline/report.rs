@@ -14,13 +14,24 @@ use crate::pipeline::{Observed, PipelineError};
 use crate::report::Phrase;
 use crate::report::catalog::Catalog;
 use crate::report::{
-    CampaignFacts, Format, Logo, NominalValue, Paper, Report, ReportContent, ReportOptions, Subject,
+    CampaignFacts, Format, LivePage, Logo, NominalValue, Paper, Report, ReportContent,
+    ReportOptions, Subject,
 };
 use labfiles::open;
 use labfiles::output::{make_folder, write_bytes};
 
 /// Name of the report's file.
 pub const FILE: &str = "report.pdf";
+
+/// Name of the file beside the page that tells it which page was written last; it is there while a
+/// campaign is watched.
+pub(super) const LIVE_STATE: &str = "report.live.js";
+
+/// The records are complete: no page is newer than the one there.
+pub(super) fn remove_live_state(out: &Path) {
+    // one that stays makes a page look in vain, no more
+    let _ = std::fs::remove_file(out.join(LIVE_STATE));
+}
 
 /// A file of the report: its path relative to the results' folder, and its bytes.
 pub type ReportFile = (String, Vec<u8>);
@@ -36,19 +47,22 @@ pub fn files(
     found: &IdentificationFile,
     command_line: &str,
 ) -> Result<Vec<ReportFile>, PipelineError> {
-    render(&content(campaign, observed, found, command_line)?, campaign)
+    let content = content(campaign, observed, found, command_line)?;
+    render(&content, campaign, None)
 }
 
-/// Draw a content as the campaign asks for it.
+/// Draw a content as the campaign asks for it, and in one format more.
 ///
 /// # Errors
 /// If the template or the logo cannot be read, or the document cannot be set.
 pub fn render(
     content: &ReportContent,
     campaign: &ResolvedCampaign,
+    also: Option<Format>,
 ) -> Result<Vec<ReportFile>, PipelineError> {
     let report = Report::new(content, &options(&campaign.report)?);
     let mut formats = campaign.report.formats.clone();
+    formats.extend(also.filter(|f| !formats.contains(f)));
     formats.retain(|f| *f != Format::Csv);
     formats.push(Format::Csv);
     let mut out = Vec::new();
@@ -56,6 +70,22 @@ pub fn render(
         out.extend(report.files(format)?);
     }
     Ok(out)
+}
+
+/// The page of a campaign whose records are still arriving.
+///
+/// # Errors
+/// As [`render`].
+pub(super) fn page(
+    content: &ReportContent,
+    campaign: &ResolvedCampaign,
+    live: LivePage,
+) -> Result<String, PipelineError> {
+    let options = ReportOptions {
+        live: Some(live),
+        ..options(&campaign.report)?
+    };
+    Ok(Report::new(content, &options).html()?)
 }
 
 /// Write the report's files into the results' folder.
@@ -159,6 +189,7 @@ fn options(stated: &StatedOptions) -> Result<ReportOptions, PipelineError> {
         .to_owned(),
         template: stated.template.as_ref().map(template).transpose()?,
         logo: stated.logo.as_ref().map(logo).transpose()?,
+        live: None,
     })
 }
 

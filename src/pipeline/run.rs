@@ -3,12 +3,14 @@
 use std::path::Path;
 
 use super::error::{PipelineError, Progress};
+use super::identify::IdentificationFile;
 use super::observed::Observed;
 use super::{checkpoint, identify, published, report, store, tables};
 use crate::campaign::resolved::ResolvedCampaign;
 use crate::identify::Identification;
 use crate::identify::fit::FitProgress;
 use crate::motion::Observation;
+use crate::report::Format;
 
 /// Where a run's results go.
 #[derive(Debug, Clone, Copy)]
@@ -22,6 +24,8 @@ pub struct Destination<'a> {
     pub keep_from: usize,
     /// The command line for the report.
     pub command_line: &'a str,
+    /// A format of the report beside those that the campaign asks for.
+    pub also: Option<Format>,
     /// Counts the iterations of the fits.
     pub fits: &'a FitProgress,
 }
@@ -58,16 +62,35 @@ pub fn run(
         true => Observed::of(campaign, progress)?,
         false => Observed::resumable(campaign, (out, destination.resume), progress)?,
     };
+    complete(campaign, (observed, None), destination, progress)
+}
+
+/// Everything after observing: fits, unless they are made already, report, and all outputs.
+///
+/// # Errors
+/// As [`run`].
+pub(super) fn complete(
+    campaign: &ResolvedCampaign,
+    (observed, found): (Observed, Option<IdentificationFile>),
+    destination: &Destination<'_>,
+    progress: Progress<'_>,
+) -> Result<Completed, PipelineError> {
+    let out = destination.out;
     progress("identify", 0, 1);
-    let found = identify::identify(campaign, &observed, Some(destination.fits))?;
+    let found = match found {
+        Some(found) => found,
+        None => identify::identify(campaign, &observed, Some(destination.fits))?,
+    };
     progress("report", 0, 1);
-    let report = report::files(campaign, &observed, &found, command_line)?;
+    let content = report::content(campaign, &observed, &found, destination.command_line)?;
+    let report = report::render(&content, campaign, destination.also)?;
     progress("write", 0, 1);
     store::write_resolved(campaign, out)?;
     tables::write_all(&observed, out)?;
     identify::write(&found, out)?;
     report::write(&report, out)?;
     checkpoint::remove(out);
+    report::remove_live_state(out);
     Ok(Completed {
         observations: observed.observations,
         identification: found.identification,

@@ -20,8 +20,9 @@ pub(crate) mod theory;
 pub use content::{
     CampaignFacts, CampaignsContent, DataTable, NominalValue, ProposedPoint, ReportContent, Subject,
 };
+pub use document::budget_source;
 pub use error::ReportError;
-pub use options::{Format, Logo, Paper, ReportOptions};
+pub use options::{Format, LivePage, Logo, Paper, ReportOptions};
 pub use phrase::{Phrase, Text};
 
 use figures::Figure;

@@ -104,6 +104,19 @@ pub struct ReportOptions {
     pub template: Option<String>,
     /// A logo.
     pub logo: Option<Logo>,
+    /// How a page knows that a newer one was written, while records are still arriving.
+    pub live: Option<LivePage>,
+}
+
+/// A page that reloads itself when a newer one is there.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LivePage {
+    /// The script beside the page that calls `impactidLive` with the version of the newest page.
+    pub state: String,
+    /// The version of this page.
+    pub version: String,
+    /// Number of records that can be used so far.
+    pub records: usize,
 }
 
 impl Default for ReportOptions {
@@ -115,6 +128,7 @@ impl Default for ReportOptions {
             decimal_comma: false,
             template: None,
             logo: None,
+            live: None,
         }
     }
 }

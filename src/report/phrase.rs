@@ -81,6 +81,8 @@ NonlinearSprings => "springs that are not linear", "nichtlineare Federn";
 EvaluationType => "type", "Typ";
 StandardUncertainty => "uncertainty", "Unsicherheit";
 FurtherSources => "{count} further sources", "{count} weitere Quellen";
+// The page while records arrive
+RecordsAreArriving => "Records are still arriving: this is the answer of {count} records so far. The page reloads itself when there is a newer one.", "Es kommen noch Aufzeichnungen hinzu: Dies ist die Antwort aus bisher {count} Aufzeichnungen. Die Seite lädt sich neu, sobald es eine neuere gibt.";
 // Axes
 TimeInDrivePeriods => "$t$/$T$ (drive periods)", "$t$/$T$ (Erregerperioden)";
 Amplitude => "amplitude", "Amplitude";

@@ -14,7 +14,7 @@ fn help_of_each_command_shows_an_example_and_ends_with_0() {
     let lab = Lab::new();
     for command in [
         "init", "check", "run", "ingest", "classify", "identify", "report", "simulate", "sweep",
-        "basins", "atlas", "merge", "study", "boundary",
+        "basins", "atlas", "watch", "merge", "study", "boundary",
     ] {
         let ran = lab.run(&[command, "--help"]);
         assert_eq!(ran.code, 0, "{command}");

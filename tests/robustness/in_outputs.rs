@@ -149,6 +149,36 @@ fn folders() -> Vec<Case> {
             &["summary.json has layout 0", "into another folder (--out)"],
         ),
         case(
+            "watch into results of another version",
+            |lab| {
+                std::fs::create_dir(lab.path("out")).expect("a folder");
+                lab.write("out/identification.json", r#"{"versions": {}}"#);
+            },
+            &["watch", "campaign.toml", "--out", "out"],
+            &[
+                "identification.json has layout none",
+                "into another folder (--out)",
+            ],
+        ),
+        case(
+            "watch a campaign that is not there",
+            |_| {},
+            &["watch", "nowhere/campaign.toml", "--out", "out"],
+            &["campaign.toml cannot be read", "impactid init"],
+        ),
+        case(
+            "explore --watch on a folder",
+            |_| {},
+            &["explore", "--watch", "."],
+            &["is not a campaign.toml", "impactid init"],
+        ),
+        case(
+            "watch without a pause between two looks",
+            |_| {},
+            &["watch", "campaign.toml", "--out", "out", "--poll", "0"],
+            &["it must lie between 0.05 and 86400 seconds"],
+        ),
+        case(
             "a stage on a folder that is not there",
             |_| {},
             &["classify", "nowhere"],

@@ -3,6 +3,7 @@
 //! The cells of a sheet are written out as a text table, so that headings, units and the time axis are
 //! found as in any other.
 
+mod biff;
 mod cells;
 mod compound;
 
@@ -13,6 +14,7 @@ use calamine::{Data, DataRef, Reader as _, Xls, Xlsx};
 
 use crate::csv::{self, CsvReader};
 use crate::excel::cells::SheetCells;
+use crate::excel::compound::Compound;
 use crate::parquet::guard::caught;
 use crate::source::{DatasetInfo, Opened, ReadError, Reader, Samples, Source};
 use crate::text::TextFile;
@@ -58,7 +60,7 @@ pub(crate) fn open(path: &Path) -> Result<Box<dyn Source>, ReadError> {
             caught(|| xlsx(path, bytes))
         }
         false => {
-            compound::check(path, &bytes)?;
+            refuse_scattered(path, &bytes)?;
             caught(|| xls(path, bytes))
         }
     };
@@ -131,6 +133,14 @@ fn refuse_bomb(path: &Path, bytes: &[u8]) -> Result<(), ReadError> {
         format!("parts of {} MiB", stated >> 20),
         "Save the sheet as CSV.",
     ))
+}
+
+/// Refuse a compound file that the library would not end with, or whose cells it would lay out in far
+/// more memory than the file takes.
+fn refuse_scattered(path: &Path, bytes: &[u8]) -> Result<(), ReadError> {
+    let stream = Compound::new(path, bytes)?.stream(&["Workbook", "Book"]);
+    let fault = stream.and_then(|stream| biff::fault(&stream));
+    fault.map_or(Ok(()), |found| Err(damaged(path, &found)))
 }
 
 /// Names of sheets with their tables as text, or why one has none.

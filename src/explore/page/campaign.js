@@ -30,6 +30,16 @@ export class CampaignView {
     new ResizeObserver(() => this.traces()).observe(element("traces"));
   }
 
+  /** More records: what was shown of the old ones is asked for again. */
+  replace(facts) {
+    this.facts = facts;
+    this.fit = facts.fit;
+    this.proposals = [];
+    this.residual = null;
+    this.head();
+    this.select.value = this.app.state.record ?? "";
+  }
+
   /** (η, ρ) of a record or bracket at the sliders. */
   at(frequency_hz, r) {
     const rig = this.app.scale();

@@ -49,6 +49,7 @@ class App {
     for (const note of hello.notes) this.message(note, "");
     if (hello.demo) this.play(await this.wire.once({ kind: "read_demo", text: hello.demo }));
     this.ready = true;
+    if (this.early) this.arrived(this.early);
   }
 
   restored(text) {
@@ -104,6 +105,7 @@ class App {
   from() { return this.at ?? [this.state.cursor.eta, this.state.cursor.rho]; }
 
   receive(frame, slot, since) {
+    if (frame.kind === "campaign") { this.arrived(frame); return; }
     if (frame.kind === "refused") { this.message(frame.message, frame.remedy); return; }
     const time = (kind, level) => this.timed(kind, level, since);
     if (frame.kind === "map") {
@@ -306,6 +308,24 @@ class App {
     const fit = this.campaign?.fit;
     if (!fit) return;
     this.parameters({ restitution: fit.restitution, damping_ratio: fit.damping_ratio, rig: { natural_frequency_hz: fit.natural_frequency_hz, static_deflection_m: fit.static_deflection_m } });
+  }
+
+  /** More records were fitted. Sliders and view that are still where the fit before put them follow. */
+  arrived(frame) {
+    if (!this.ready) { this.early = frame; return; }
+    if (!this.campaign) return;
+    const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+    const { restitution, damping_ratio, rig, view } = this.state, first = this.first;
+    const atFit = same([restitution, damping_ratio, rig], [first.restitution, first.damping_ratio, first.rig]);
+    const atView = same(view, first.view);
+    this.first = frame.state;
+    this.campaign.replace(frame.campaign);
+    const next = frame.state;
+    if (atFit) this.parameters({ restitution: next.restitution, damping_ratio: next.damping_ratio, rig: next.rig });
+    else this.refresh(["residuals"]);
+    if (atView) this.home(); else this.map.redraw();
+    this.refreshPanel();
+    this.said(`${frame.campaign.records.length} records`);
   }
 
   async propose() {

@@ -17,6 +17,7 @@ pub(super) mod world;
 
 pub(super) use campaigns::campaigns;
 pub(super) use pdf::pdf;
+pub use tables::budget_source;
 
 use drawn::Drawn;
 use model::{Document, Rich};

@@ -10,11 +10,15 @@ use super::figures::Figure;
 use super::figures::canvas::escape;
 use super::figures::fonts::{self, FAMILY, Face};
 use super::options::ReportOptions;
+use super::phrase::Phrase;
 
 /// The page's look.
 const STYLE: &str = include_str!("style.css");
 /// What the page does: zooming, hovering, saving.
 const SCRIPT: &str = include_str!("script.js");
+
+/// What a page does while records are still arriving: it reloads itself.
+const LIVE: &str = include_str!("live.js");
 
 /// The page. The same input gives the same bytes; nothing is loaded from elsewhere.
 pub(super) fn html(
@@ -37,6 +41,7 @@ pub(super) fn html(
     page.push_str(STYLE);
     page.push_str("</style>\n</head>\n<body>\n");
     page.push_str(&logo(options));
+    page.push_str(&live(options));
     let mut parts = parts::Parts::new(document, figures);
     page.push_str(&parts.body()?);
     let words = serde_json::to_string(&document.words).map_err(ReportError::Data)?;
@@ -65,6 +70,23 @@ fn font_face(face: Face, style: &str, weight: &str) -> String {
         "@font-face {{ font-family: \"{FAMILY}\"; font-style: {style}; font-weight: {weight}; \
          src: url(data:font/otf;base64,{}) format(\"opentype\"); }}\n",
         base64::encode(bytes)
+    )
+}
+
+/// What tells that records are still arriving, with the script that reloads the page.
+fn live(options: &ReportOptions) -> String {
+    let Some(live) = &options.live else {
+        return String::new();
+    };
+    let count = live.records.to_string();
+    let text = options.locale();
+    let text = text.translate_with(Phrase::RecordsAreArriving, &[("count", &count)]);
+    format!(
+        "<p style=\"border-left:5px solid var(--warn);padding-left:0.7rem\" role=\"status\">{}</p>\n\
+         <script data-state=\"{}\" data-version=\"{}\">\n{LIVE}</script>\n",
+        escape(&text),
+        escape(&live.state),
+        escape(&live.version)
     )
 }
 

@@ -7,6 +7,7 @@ use crate::identify::uncertainty::budget::{Budget, Combined, Contribution, Row, 
 use crate::report::content::ReportContent;
 use crate::report::document::model::{Rich, Table};
 use crate::report::figures::correlation::name;
+use crate::report::figures::richtext::plain;
 use crate::report::locale::Locale;
 use crate::report::phrase::Phrase;
 
@@ -99,6 +100,11 @@ fn source(source: Source, locale: Locale<'_>) -> String {
         Source::FirstOrder => locale.translate(Phrase::BeyondFirstOrder),
         Source::BetweenMethods => locale.translate(Phrase::DisagreementOfMethods),
     }
+}
+
+/// The name of a source of uncertainty in English.
+pub fn budget_source(of: Source) -> String {
+    plain(&source(of, Locale::default()))
 }
 
 /// The standard uncertainty of a source in its own unit.

@@ -1,0 +1,52 @@
+//! Estimates in a line of the terminal.
+
+use crate::identify::{Estimate, Status};
+
+/// A value with half of its 95 % interval.
+pub(super) fn with_error(estimate: &Estimate) -> String {
+    let (Some(value), Some([low, high])) = (estimate.value, estimate.interval95) else {
+        return "not identifiable".to_owned();
+    };
+    let half = 0.5 * (high - low);
+    let decimals = (1.0 - half.abs().max(1e-9).log10().floor()).clamp(0.0, 9.0);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "it lies between 0 and 9"
+    )]
+    let decimals = decimals as usize;
+    let weak = match estimate.status {
+        Status::Weak => " (weak)",
+        Status::Identified | Status::NotIdentifiable => "",
+    };
+    format!("{value:.decimals$} ± {half:.decimals$}{weak}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_has_as_many_decimals_as_its_uncertainty() {
+        let estimate = |value, half: f64, status| Estimate {
+            value: Some(value),
+            standard_error: Some(0.5 * half),
+            interval95: Some([value - half, value + half]),
+            status,
+            note: None,
+        };
+        let text = |value, half, status| with_error(&estimate(value, half, status));
+        assert_eq!(text(0.9, 0.0123, Status::Identified), "0.900 ± 0.012");
+        assert_eq!(text(12.6, 2.0, Status::Weak), "12.6 ± 2.0 (weak)");
+        assert_eq!(
+            text(0.9, 0.0, Status::Identified),
+            "0.900000000 ± 0.000000000"
+        );
+        let open = Estimate {
+            value: None,
+            interval95: None,
+            ..estimate(0.0, 1.0, Status::NotIdentifiable)
+        };
+        assert_eq!(with_error(&open), "not identifiable");
+    }
+}
