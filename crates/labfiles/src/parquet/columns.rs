@@ -13,7 +13,7 @@ use polars_parquet::parquet::page::CompressedPage;
 use polars_parquet::read::PageReader;
 
 use crate::bytes::{read_exact_at, to_usize};
-use crate::parquet::field::{Field, samples};
+use crate::parquet::field::{Field, plain, samples};
 use crate::parquet::{footer, guard};
 use crate::source::{ReadError, Samples, StoredType};
 use crate::text::clock::Stamp;
@@ -250,6 +250,7 @@ impl Columns {
                 )?;
             }
             let (arrays, _) = to_deserializer(pages, arrow, None)?;
+            let arrays: Vec<_> = arrays.into_iter().map(plain).collect();
             samples(&Series::try_from((name, arrays))?)
         })?;
         match samples.len() == group.num_rows() {

@@ -1,6 +1,8 @@
 //! The type of a column and its way to samples.
 
+use half::f16;
 use polars::prelude::{ArrowDataType, ArrowTimeUnit, DataType, PolarsResult, Series, polars_bail};
+use polars_arrow::array::{ArrayRef, FixedSizeBinaryArray, PrimitiveArray};
 
 use crate::source::{Samples, StoredType};
 
@@ -37,12 +39,15 @@ impl Field {
             A::UInt16 => (Some(StoredType::UInt(16)), A::Int32, 1.0),
             A::UInt32 => (Some(StoredType::UInt(32)), A::UInt32, 1.0),
             A::UInt64 => (Some(StoredType::UInt(64)), A::UInt64, 1.0),
+            A::Float16 => (Some(StoredType::Float(16)), A::FixedSizeBinary(2), 1.0),
             A::Float32 => (Some(StoredType::Float(32)), A::Float32, 1.0),
             A::Float64 => (Some(StoredType::Float(64)), A::Float64, 1.0),
             A::Boolean => (Some(StoredType::Bool), A::Boolean, 1.0),
-            A::Timestamp(unit, _) | A::Time64(unit) | A::Duration(unit) => {
-                (Some(StoredType::Time), A::Int64, ticks(unit))
+            A::Timestamp(unit, _) => {
+                let stored = Some(StoredType::Time);
+                (stored, A::Timestamp(*unit, None), ticks(unit))
             }
+            A::Time64(unit) | A::Duration(unit) => (Some(StoredType::Time), A::Int64, ticks(unit)),
             A::Time32(unit) => (Some(StoredType::Time), A::Int32, ticks(unit)),
             A::Date32 => (Some(StoredType::Time), A::Int32, 1.0 / 86_400.0),
             A::Dictionary(_, inner, _) if text(inner) => (Some(StoredType::Text), A::Utf8View, 1.0),
@@ -55,6 +60,25 @@ impl Field {
             physical,
             ticks_per_second,
         }
+    }
+}
+
+/// Points in time as the integers that they are, and numbers of two bytes as numbers; others as they
+/// are.
+pub(crate) fn plain(array: ArrayRef) -> ArrayRef {
+    let any = array.as_any();
+    match array.dtype() {
+        ArrowDataType::Timestamp(..) => {
+            let ticks = any.downcast_ref::<PrimitiveArray<i64>>().cloned();
+            ticks.map_or(array, |t| t.to(ArrowDataType::Int64).boxed())
+        }
+        ArrowDataType::FixedSizeBinary(2) => {
+            let number = |bytes: &[u8]| f16::from_le_bytes([bytes[0], bytes[1]]).to_f64();
+            let halves = any.downcast_ref::<FixedSizeBinaryArray>();
+            let numbers = halves.map(|all| all.iter().map(|v| v.map(number)).collect());
+            numbers.map_or(array, |n: PrimitiveArray<f64>| n.boxed())
+        }
+        _ => array,
     }
 }
 

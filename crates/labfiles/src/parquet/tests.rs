@@ -29,6 +29,21 @@ fn valid_wide_table_of_all_types() {
 }
 
 #[test]
+fn valid_times_of_twelve_bytes_and_numbers_of_two() {
+    let s = open(&own("int96_and_half.parquet")).unwrap();
+    let info = &s.datasets()[0];
+    // Nanoseconds since 1970 as a floating-point number are good to 256.
+    assert!((info.sample_rate_hz().unwrap() - 2000.0).abs() < 0.05);
+    assert_eq!(s.notes(), [""; 0]);
+    let x = real(&*s, 0, "x");
+    assert!(x[3].is_nan());
+    // Eleven bits of a number between 0.5 and 1.
+    assert!((x[43] - wave(43)).abs() < 2.5e-4 && x[43] != wave(43));
+    let when = real(&*s, 0, "when");
+    assert!((when[49] - 0.0245).abs() < 3e-7);
+}
+
+#[test]
 fn valid_every_compression_and_several_row_groups() {
     for codec in ["snappy", "gzip", "zstd", "lz4", "uncompressed"] {
         let s = open(&own(&format!("wide_{codec}.parquet"))).unwrap();

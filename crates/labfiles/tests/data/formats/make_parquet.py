@@ -1,8 +1,10 @@
-"""Makes the Parquet files of this folder with polars: python make_parquet.py"""
+"""Makes the Parquet files of this folder with polars and pyarrow: python make_parquet.py"""
 from datetime import datetime, timedelta
 
 import numpy as np
 import polars as pl
+import pyarrow as pa
+import pyarrow.parquet as pq
 
 n = 50
 t = np.arange(n) / 2000.0
@@ -35,3 +37,9 @@ tidy = [
     for c, s in (("vx", 1.0), ("vy", -1.0))
 ]
 pl.concat(tidy).sort("run", "time", "channel").write_parquet("long_tidy.parquet")
+
+# as Spark and older programs write points in time, and numbers of two bytes
+when = (np.arange(n) * 500_000 + 1_714_521_600_000_000_000).astype("datetime64[ns]")
+half = [None if i == 3 else v for i, v in enumerate(x.astype("f2"))]
+old = pa.table({"when": pa.array(when), "x [mm/s]": pa.array(half, pa.float16()), "f64": pa.array(x)})
+pq.write_table(old, "int96_and_half.parquet", use_deprecated_int96_timestamps=True, row_group_size=20)
