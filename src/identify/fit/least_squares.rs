@@ -150,6 +150,8 @@ impl<Point: Clone> Observe<FitState<Point>> for Recorder {
 struct DampedSteps<'a> {
     limits: &'a Limits,
     damping: f64,
+    /// Steps in a row that were as good as linear.
+    linear: u32,
     /// Scales of the unknowns: the norms of their slopes, falling slowly. A slope that vanishes
     /// suddenly does not set its unknown free (Moré 1978), and an old one is forgotten.
     scales: Vec<f64>,
@@ -161,6 +163,8 @@ const LEAST_DAMPING: f64 = 1e-18;
 /// Damping that a refused step has at least.
 const REFUSED_DAMPING: f64 = 1e-10;
 const MOST_TRIALS: usize = 40;
+/// Steps in a row that were as good as linear, from which on the problem is taken to be.
+const LINEAR: u32 = 3;
 
 /// What the trials from a point led to.
 enum Trial<Point> {
@@ -177,6 +181,7 @@ impl<'a> DampedSteps<'a> {
         Self {
             limits,
             damping: limits.damping,
+            linear: 0,
             scales: Vec::new(),
         }
     }
@@ -195,11 +200,11 @@ impl<'a> DampedSteps<'a> {
     }
 
     /// After a step whose reduction is this share of the predicted one; a poor prediction increases
-    /// the damping nevertheless.
+    /// the damping nevertheless, and after several good ones the steps soon are Gauss and Newton's.
     fn decrease_damping(&mut self, share: f64) {
+        self.linear = if share > 0.95 { self.linear + 1 } else { 0 };
         let factor = match share {
-            // As good as linear: soon it is Gauss and Newton's step.
-            s if s > 0.95 => 0.01,
+            _ if self.linear >= LINEAR => 0.01,
             s if s > 0.75 => 0.2,
             s if s < 0.25 => 4.0,
             _ => 1.0,

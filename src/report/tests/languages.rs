@@ -205,6 +205,21 @@ fn marked() -> Vec<Report> {
     single.chain([compared]).collect()
 }
 
+/// The page of a report while records are arriving.
+fn live_page() -> String {
+    let live = crate::report::options::LivePage {
+        state: String::new(),
+        version: String::new(),
+        records: 3,
+    };
+    let options = ReportOptions {
+        catalog: Some(marks_for_phrases()),
+        live: Some(live),
+        ..ReportOptions::default()
+    };
+    Report::new(&unlucky(), &options).html().expect("a page")
+}
+
 /// All source files of a folder.
 fn source(folder: &Path) -> String {
     let entries = std::fs::read_dir(folder).expect("a folder");
@@ -231,6 +246,7 @@ fn no_phrase_of_the_words_is_idle() {
             printed.extend(figure.spots.iter().map(|s| s.text.as_str()));
         }
     }
+    printed.push_str(&live_page());
     let source = source(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/src")));
     let names: Vec<String> = catalog::Catalog::phrases()
         .iter()
