@@ -125,6 +125,11 @@ impl Watcher {
         };
         for news in look.news {
             seen.changed |= matches!(news, News::Removed(_));
+            if let News::Removed(path) | News::Replaced(path) = &news
+                && !self.is_description(path)
+            {
+                self.spacing.outdated();
+            }
             seen.news.extend(self.worth_telling(news));
         }
         for path in look.settled {

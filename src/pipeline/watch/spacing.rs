@@ -7,6 +7,9 @@
 //! observing and the fit at the end, watching costs at most q + 1 runs. c is estimated from the last
 //! fit: what identifies the parameters grows with the number of records or faster, what draws the page is
 //! taken to be constant.
+//!
+//! A fit that rests on records which are gone or were written anew is made again in the next pause,
+//! whatever it costs.
 
 use std::time::Duration;
 
@@ -27,6 +30,8 @@ pub(super) struct Spacing {
     observing: Duration,
     fitting: Duration,
     last: Option<Last>,
+    /// The last fit rests on records that are not there any more.
+    is_outdated: bool,
 }
 
 /// The last fit.
@@ -55,7 +60,13 @@ impl Spacing {
             observing: Duration::ZERO,
             fitting: Duration::ZERO,
             last: None,
+            is_outdated: false,
         }
+    }
+
+    /// Records that the last fit rests on are gone, or others.
+    pub(super) fn outdated(&mut self) {
+        self.is_outdated = true;
     }
 
     /// Records were observed.
@@ -71,6 +82,7 @@ impl Spacing {
     /// So many usable records were fitted, which cost so much to identify from, and to show.
     pub(super) fn fitted(&mut self, identifying: Duration, showing: Duration, records: usize) {
         self.fitting += identifying + showing;
+        self.is_outdated = false;
         self.last = Some(Last {
             identifying,
             showing,
@@ -85,6 +97,9 @@ impl Spacing {
         let Some(last) = self.last else {
             return records >= FIRST || (records > 0 && idle);
         };
+        if self.is_outdated && idle && records > 0 {
+            return true;
+        }
         let grown = records as f64 >= GROWTH * last.records as f64;
         let cost = last.cost(records);
         (grown && self.affords(cost, WHILE_GROWING)) || (idle && self.affords(cost, WHILE_IDLE))
@@ -113,6 +128,18 @@ mod tests {
         assert!(!spacing.is_due(FIRST - 1, seconds(1.0)));
         assert!(spacing.is_due(FIRST - 1, IDLE));
         assert!(spacing.is_due(FIRST, Duration::ZERO));
+    }
+
+    #[test]
+    fn a_fit_of_records_that_are_gone_is_made_again_in_the_next_pause() {
+        let mut spacing = Spacing::new(IDLE);
+        spacing.fitted(Duration::ZERO, seconds(100.0), 10);
+        assert!(!spacing.is_due(9, IDLE));
+        spacing.outdated();
+        assert!(spacing.is_due(9, IDLE) && !spacing.is_due(9, Duration::ZERO));
+        assert!(!spacing.is_due(0, IDLE));
+        spacing.fitted(Duration::ZERO, seconds(1.0), 9);
+        assert!(!spacing.is_due(9, IDLE));
     }
 
     #[test]
