@@ -1,10 +1,8 @@
 //! Several campaigns in one run.
 
-use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
 
-use crate::support::Lab;
+use crate::support::{Lab, files};
 
 /// A laboratory with three days: two good ones, and one whose machine is not known.
 fn days() -> Lab {
@@ -18,21 +16,6 @@ fn days() -> Lab {
     }
     lab.replace("day2/campaign.toml", "\"double\"", "\"triple\"");
     lab
-}
-
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut all = BTreeMap::new();
-    for entry in fs::read_dir(folder).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        let name = path.file_name().expect("a name").to_string_lossy();
-        if path.is_dir() {
-            let below = files(&path).into_iter();
-            all.extend(below.map(|(n, bytes)| (format!("{name}/{n}"), bytes)));
-        } else {
-            all.insert(name.into_owned(), fs::read(&path).expect("a file"));
-        }
-    }
-    all
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! A good campaign in a temporary folder, and the program run in it.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -202,4 +203,20 @@ pub(crate) fn table(frequency_hz: f64) -> String {
         );
     }
     text
+}
+
+/// The files of a folder and of those below it, by their paths.
+pub(crate) fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let name = path.file_name().expect("a name").to_string_lossy();
+        if path.is_dir() {
+            let below = files(&path).into_iter();
+            all.extend(below.map(|(n, bytes)| (format!("{name}/{n}"), bytes)));
+        } else {
+            all.insert(name.into_owned(), fs::read(&path).expect("a file"));
+        }
+    }
+    all
 }

@@ -7,12 +7,11 @@ mod library;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Read;
-use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::explore::server::Explorer;
-use crate::support::Lab;
+use crate::support::{Lab, files};
 
 const WATCH: &[&str] = &[
     "watch",
@@ -105,21 +104,6 @@ fn end(mut watch: Child) -> (Option<i32>, String) {
     let words = watch.stderr.as_mut().expect("its words");
     words.read_to_string(&mut said).expect("text");
     (watch.wait().expect("it ends").code(), said)
-}
-
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut all = BTreeMap::new();
-    for entry in fs::read_dir(folder).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        let name = path.file_name().expect("a name").to_string_lossy();
-        if path.is_dir() {
-            let below = files(&path).into_iter();
-            all.extend(below.map(|(n, bytes)| (format!("{name}/{n}"), bytes)));
-        } else {
-            all.insert(name.into_owned(), fs::read(&path).expect("a file"));
-        }
-    }
-    all
 }
 
 /// What `run` leaves in the place of the watch's results.

@@ -2,11 +2,9 @@
 //! in one rectangle.
 
 use crate::bytes::to_usize;
+use crate::excel::cells::{GREATEST_SPARSITY, HARMLESS_CELLS};
+use crate::excel::compound::number;
 
-/// Cells of a rectangle for each of those that are filled.
-const GREATEST_SPARSITY: u64 = 64;
-/// Rectangles up to this number of cells are laid out whatever they hold.
-const HARMLESS_CELLS: u64 = 1 << 20;
 /// Cells of the largest sheet that the format has: 65536 rows of 256.
 const GREATEST_SHEET: u64 = 1 << 24;
 
@@ -21,7 +19,7 @@ const CELLS: [u16; 7] = [0x0006, 0x00D6, 0x00FD, 0x0203, 0x0204, 0x0205, 0x027E]
 /// What is wrong with the sheets of a workbook's stream, if anything is.
 pub(super) fn fault(stream: &[u8]) -> Option<String> {
     let sheets = Records(stream).filter(|r| r.kind == BOUND_SHEET);
-    let places = sheets.filter_map(|r| long(r.data, 0));
+    let places = sheets.filter_map(|r| number(r.data, 0));
     let sheets = places.filter_map(|at| stream.get(to_usize(at.into())..));
     sheets.map(Spread::of).find_map(|spread| spread.fault())
 }
@@ -49,11 +47,6 @@ impl<'a> Iterator for Records<'a> {
 fn short(bytes: &[u8], at: usize) -> Option<u16> {
     let field = bytes.get(at..at.checked_add(2)?)?;
     Some(u16::from_le_bytes(field.try_into().ok()?))
-}
-
-fn long(bytes: &[u8], at: usize) -> Option<u32> {
-    let field = bytes.get(at..at.checked_add(4)?)?;
-    Some(u32::from_le_bytes(field.try_into().ok()?))
 }
 
 /// Where the cells of a sheet are.
@@ -115,7 +108,7 @@ impl Spread {
 fn stated(data: &[u8]) -> Option<u64> {
     let (rows, at) = match data.len() {
         0..=11 => ([0, 2].map(|at| short(data, at).map(u32::from)), 4),
-        _ => ([0, 4].map(|at| long(data, at)), 8),
+        _ => ([0, 4].map(|at| number(data, at)), 8),
     };
     let columns = [at, at + 2].map(|at| short(data, at).map(u32::from));
     let span = |[first, last]: [Option<u32>; 2]| Some(u64::from(last?.wrapping_sub(first?)) + 1);

@@ -7,9 +7,9 @@ use calamine::Data;
 use crate::source::ReadError;
 
 /// Cells of a table beyond those that hold something, for each of these.
-const GREATEST_SPARSITY: u64 = 64;
+pub(super) const GREATEST_SPARSITY: u64 = 64;
 /// Tables up to this number of cells are written whatever they hold.
-const HARMLESS_CELLS: u64 = 1 << 20;
+pub(super) const HARMLESS_CELLS: u64 = 1 << 20;
 /// The largest number of cells of a sheet.
 const MOST_CELLS: usize = 50_000_000;
 

@@ -13,7 +13,8 @@ const ENTRY: usize = 128;
 /// Streams below this number of bytes are kept in small sectors.
 const SMALL: usize = 4096;
 
-fn number(bytes: &[u8], at: usize) -> Option<u32> {
+/// The unsigned number of four bytes at a place.
+pub(super) fn number(bytes: &[u8], at: usize) -> Option<u32> {
     let field = bytes.get(at..at.checked_add(4)?)?;
     Some(u32::from_le_bytes(field.try_into().ok()?))
 }
