@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::evidence::Evidence;
 use crate::identify::evidence::trajectory::{TrajectoryBlock, distinct_phases};
-use crate::identify::evidence::trajectory_record::TrajectoryRecord;
-use crate::identify::fit::effect::Effects;
+use crate::identify::evidence::trajectory_record::{TrajectoryRecord, Weighing};
+use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
 use crate::identify::fit::normal::inverse;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::identify::fit::{Fit, Problem};
@@ -173,13 +173,7 @@ fn information(
     fit: &Fit,
     record: TrajectoryRecord,
 ) -> Option<DMatrix<f64>> {
-    let mut block = TrajectoryBlock {
-        rig: evidence.rig,
-        records: vec![record],
-        relative_error: 1e-6,
-        effects: Effects::none(),
-        reach_m: 1.0,
-    };
+    let mut block = TrajectoryBlock::of_records(evidence.rig, vec![record], LEAST_ALLOWANCE);
     block.find_changes(&fit.parameters);
     let problem = Problem {
         blocks: vec![(&block, 1.0)],
@@ -291,6 +285,7 @@ impl UsualRecord {
             press_per_s: 0.0,
             shared: Vec::new(),
             perturbations: Vec::new(),
+            weighing: Weighing::default(),
         }
     }
 }

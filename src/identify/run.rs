@@ -17,7 +17,7 @@ use crate::identify::joint::{self, Weights};
 use crate::identify::messages::{Finding, LeftOut, Reason, Remark};
 use crate::identify::method::Method;
 use crate::identify::methods::{self, FitResult, succeeded};
-use crate::identify::selection::{Influential, Selection};
+use crate::identify::selection::{Influential, Selection, TooMany};
 use crate::identify::uncertainty::budget;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 use crate::identify::uncertainty::{self, Uncertainty};
@@ -337,19 +337,27 @@ impl IdentificationRun<'_> {
             let start = joint.fit.parameters;
             let blocks = &self.selection.blocks;
             let present = joint::present(blocks, &fits.weights);
-            let influential = self
-                .problem(blocks, fits.start, &fits.weights)
-                .map(|problem| self.selection.influential(&problem, &present, &start));
-            let Some(influential) = influential.filter(|p| !p.is_empty()) else {
+            let Some(problem) = self.problem(blocks, fits.start, &fits.weights) else {
                 break;
             };
-            left_out += influential.count();
-            if left_out > MOST_INFLUENTIAL.max(self.selection.judged() / 30) {
-                // That many do not err alone: it is the model, and their scatter widens the intervals.
+            let judged = self.selection.judged() + left_out;
+            let most = MOST_INFLUENTIAL.max(judged / 30).saturating_sub(left_out);
+            let found = self
+                .selection
+                .influential(&problem, &present, (&start, most));
+            // More than that do not err alone: it is the model, and their scatter widens the intervals.
+            let (influential, too_many) = match found {
+                Ok(found) => (found, false),
+                Err(TooMany(found)) => (found, true),
+            };
+            if !influential.is_empty() {
+                left_out += influential.count();
+                self.selection.leave_out(&influential);
+                fits = self.fitted_again(start, fits, &influential);
+            }
+            if influential.is_empty() || too_many {
                 break;
             }
-            self.selection.leave_out(&influential);
-            fits = self.fitted_again(start, fits, &influential);
         }
         fits
     }

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeSet;
 
+use rayon::prelude::*;
+
 use crate::identify::diagnostics::influence;
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::weighing::Bulk;
 use crate::identify::evidence::{Blocks, Evidence};
-use crate::identify::fit::normal::Normal;
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::fit::{Precision, Problem, mean_squares};
 use crate::identify::flight_times;
@@ -30,6 +31,19 @@ pub struct Influential {
 }
 
 impl Influential {
+    /// Of the places of records in the blocks of their methods.
+    fn of(mut places: Vec<(Method, usize)>) -> Self {
+        places.sort_unstable();
+        let of = |method: Method| {
+            let own = places.iter().filter(|(m, _)| *m == method);
+            own.map(|(_, place)| *place).collect()
+        };
+        Self {
+            resonance: of(Method::Resonance),
+            trajectory: of(Method::Trajectories),
+        }
+    }
+
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.count() == 0
@@ -40,6 +54,9 @@ impl Influential {
         self.resonance.len() + self.trajectory.len()
     }
 }
+
+/// More records are influential than err alone; those that were found before.
+pub struct TooMany(pub Influential);
 
 /// What is fitted, and what was left out of it.
 pub struct Selection<'a> {
@@ -139,7 +156,7 @@ impl<'a> Selection<'a> {
         self.blocks.trajectory.find_changes(&found.fit.parameters);
         for _ in 0..ROUNDS {
             let parameters = found.fit.parameters;
-            let allowed = self.blocks.trajectory.relative_error;
+            let allowed = self.blocks.trajectory.relative_error();
             let lost = self.lost.len();
             self.keep_fitting(&parameters);
             self.keep_those_with_orbits(&parameters);
@@ -149,7 +166,7 @@ impl<'a> Selection<'a> {
                     Ok(found) => found,
                     failed => return Some(failed),
                 };
-            let change = self.blocks.trajectory.relative_error / allowed - 1.0;
+            let change = self.blocks.trajectory.relative_error() / allowed - 1.0;
             if self.lost.len() == lost && change.abs() < SETTLED {
                 break;
             }
@@ -268,45 +285,49 @@ impl<'a> Selection<'a> {
         found
     }
 
-    /// The records that draw a joint fit away from what all others state.
+    /// The records that draw a joint fit away from what all others state, `most` of them at most; one
+    /// batch of them more says that there are too many. After each batch the others are judged again at
+    /// the optimum without it, to first order.
     pub fn influential(
         &self,
         problem: &Problem<'_>,
         present: &[Method],
-        at: &Parameters,
-    ) -> Influential {
-        let (mut items, mut others) = (Vec::new(), Vec::new());
-        for (part, method) in problem.item_parts(at).into_iter().zip(present) {
-            match method {
-                Method::Resonance | Method::Trajectories => items.push((*method, part)),
-                Method::Boundaries
-                | Method::Impacts
-                | Method::Flights
-                | Method::FlightTimes
-                | Method::FreeDecay
-                | Method::PublishedSpeeds => others.extend(part),
+        (at, most): (&Parameters, usize),
+    ) -> Result<Influential, TooMany> {
+        let (mut owners, mut parts) = (Vec::new(), Vec::new());
+        let mut others = problem.priors_normal(at);
+        for ((block, weight), method) in problem.blocks.iter().zip(present) {
+            if matches!(method, Method::Resonance | Method::Trajectories) {
+                let items = problem.items_of(*block, *weight, at);
+                owners.extend((0..items.len()).map(|i| (*method, i)));
+                parts.extend(items);
+            } else {
+                others.add(&problem.block_normal(*block, *weight, at));
             }
         }
-        let priors = problem.priors.iter();
-        others.extend(priors.map(|p| problem.prior_normal(p, at)));
-        let owners: Vec<(Method, usize)> = items
-            .iter()
-            .flat_map(|(method, part)| (0..part.len()).map(|i| (*method, i)))
-            .collect();
-        let parts: Vec<Normal> = items.into_iter().flat_map(|(_, part)| part).collect();
-        let doubtful: Vec<bool> = owners
-            .iter()
+        let mut doubtful: Vec<bool> = owners
+            .par_iter()
             .map(|(method, i)| *method == Method::Trajectories && self.settles_slowly(*i, at))
             .collect();
-        let mut influential = Influential::default();
-        let influences = influence::influences(&parts, &others).unwrap_or_default();
-        for i in influence::strongest(&influences, &doubtful) {
-            match owners[i] {
-                (Method::Resonance, point) => influential.resonance.push(point),
-                (_, record) => influential.trajectory.push(record),
+        let mut found = Vec::new();
+        while let Some(influences) = influence::influences(&parts, &others) {
+            let batch = influence::strongest(&influences, &doubtful);
+            if batch.is_empty() {
+                break;
+            }
+            if found.len() + batch.len() > most {
+                return Err(TooMany(Influential::of(found)));
+            }
+            for i in batch.into_iter().rev() {
+                parts.remove(i);
+                doubtful.remove(i);
+                found.push(owners.remove(i));
+            }
+            if influence::without_gradient(&mut parts, &mut others).is_none() {
+                break;
             }
         }
-        influential
+        Ok(Influential::of(found))
     }
 
     /// Whether a periodic record's motion, once disturbed, decays by less than a factor e while it

@@ -7,8 +7,9 @@
 //! u, Σ u²/(h(1−h)) is χ² of as many degrees of freedom as the record informs directions.
 
 use nalgebra::{DMatrix, SymmetricEigen};
+use rayon::prelude::*;
 
-use crate::identify::fit::normal::Normal;
+use crate::identify::fit::normal::{Normal, inverse};
 use crate::signal::robust;
 
 /// A record's influence on a fit.
@@ -26,10 +27,10 @@ const LEAST_SHARE: f64 = 1e-6;
 const LEAST_OTHERS: f64 = 1e-6;
 
 /// The influences of items at a fit's optimum; `None` where the information of all is singular.
-pub fn influences(items: &[Normal], others: &[Normal]) -> Option<Vec<Influence>> {
+pub fn influences(items: &[Normal], others: &Normal) -> Option<Vec<Influence>> {
     let size = items.first()?.gradient.len();
-    let mut all = Normal::zeros(size);
-    items.iter().chain(others).for_each(|part| all.add(part));
+    let mut all = others.clone();
+    items.iter().for_each(|part| all.add(part));
     let scale = all.matrix.diagonal().map(|d| d.sqrt().recip());
     let scaled = |matrix: &DMatrix<f64>| {
         DMatrix::from_fn(size, size, |i, k| matrix[(i, k)] * scale[i] * scale[k])
@@ -53,7 +54,21 @@ pub fn influences(items: &[Normal], others: &[Normal]) -> Option<Vec<Influence>>
         }
         Some(influence)
     };
-    items.iter().map(influence).collect()
+    items.par_iter().map(influence).collect()
+}
+
+/// Move all to the optimum of the sum of squares that they make together, to first order; `None` where
+/// their information is singular.
+pub fn without_gradient(items: &mut [Normal], others: &mut Normal) -> Option<()> {
+    let mut all = others.clone();
+    items.iter().for_each(|part| all.add(part));
+    let step = -(inverse(&all.matrix)? * &all.gradient);
+    for part in items.iter_mut().chain([others]) {
+        let change = &part.matrix * &step;
+        part.cost += 2.0 * part.gradient.dot(&step) + step.dot(&change);
+        part.gradient += change;
+    }
+    Some(())
 }
 
 /// Standard deviations of a normal variable from which an influence is not due to chance.
@@ -128,7 +143,7 @@ mod tests {
                 n
             })
             .collect();
-        let found = influences(&items, &[]).expect("regular");
+        let found = influences(&items, &Normal::zeros(1)).expect("regular");
         for (influence, value) in found.iter().zip(values) {
             // Against the mean of the other two: variance 1 + 1/2.
             let others = (3.0 * mean - value) / 2.0;
@@ -145,7 +160,7 @@ mod tests {
             .collect();
         items.push(item([0.0, 1.0], 10.0));
         items.push(item([0.0, 1.0], -10.0));
-        let found = influences(&items, &[]).expect("regular");
+        let found = influences(&items, &Normal::zeros(2)).expect("regular");
         // Two that contradict each other accuse each other alike.
         assert_eq!(strongest(&found, &[false; 42]), vec![40, 41]);
         assert!((found[40].chi2 - 200.0).abs() < 1e-6);

@@ -195,10 +195,7 @@ fn slope_over_gap(
     parameters: &Parameters,
 ) -> Option<Vec<f64>> {
     const STEP: f64 = 2e-6;
-    let mut one = TrajectoryBlock {
-        records: vec![block.records[item].clone()],
-        ..*block
-    };
+    let mut one = block.with_records(vec![block.records[item].clone()]);
     let stated_m = one.records[0].clearance_m;
     let mut moved = |by: f64| {
         one.records[0].clearance_m = stated_m * (1.0 + by);
@@ -245,7 +242,7 @@ fn recover(
     typical: f64,
 ) -> Option<OddGap> {
     let stated = records[0].clearance_m;
-    let mut moved = TrajectoryBlock { records, ..*block };
+    let mut moved = block.with_records(records);
     let mut cost = |factor: f64| -> f64 {
         for record in &mut moved.records {
             record.clearance_m = stated * factor;

@@ -20,10 +20,8 @@ pub fn swapped(
 ) -> Option<Finding> {
     // An allowance for what the model leaves open would hide what the interchange explains.
     let mut here = blocks.clone();
-    (
-        here.resonance.relative_error,
-        here.trajectory.relative_error,
-    ) = (LEAST_ALLOWANCE, LEAST_ALLOWANCE);
+    here.resonance.allow(LEAST_ALLOWANCE);
+    here.trajectory.allow(LEAST_ALLOWANCE);
     // What was recorded under the other's name came through its own filter, or the filters too
     // are stated the wrong way round. One after the other: each is a copy of all waveforms.
     let best = |blocks: &Blocks, weights: &Weights| {
@@ -111,6 +109,7 @@ fn interchanged(blocks: &Blocks, filters: Filters) -> Option<Blocks> {
             response.role = role;
         }
     }
+    other.resonance.allow(LEAST_ALLOWANCE);
     moved.then_some(other)
 }
 

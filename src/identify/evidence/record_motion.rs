@@ -173,7 +173,22 @@ impl<'a> RecordMotion<'a> {
 
     /// Values at all points, channel after channel, SI, gains and effects included.
     pub fn values(&self) -> Vec<f64> {
-        let mut values = self.channel_by_channel(|channel, vibration| {
+        let mut values = self.unperturbed();
+        self.perturb(&mut values);
+        values
+    }
+
+    /// Add what the effects that act as extra accelerations change: as it was found, whatever the
+    /// parameters are now.
+    pub fn perturb(&self, values: &mut [f64]) {
+        for (effect, change) in &self.record.perturbations {
+            add(values, self.common.effect(*effect), change);
+        }
+    }
+
+    /// The values without the effects that act as extra accelerations; all slopes are taken of these.
+    pub fn unperturbed(&self) -> Vec<f64> {
+        self.channel_by_channel(|channel, vibration| {
             let seen = |motion: &MassMotion| delayed(motion, self.eta, channel.delay);
             match &channel.filter {
                 None => vibration.values(&seen(&channel.motion)),
@@ -184,15 +199,11 @@ impl<'a> RecordMotion<'a> {
                     values
                 }
             }
-        });
-        for (effect, change) in &self.record.perturbations {
-            add(&mut values, self.common.effect(*effect), change);
-        }
-        values
+        })
     }
 
-    /// Slopes of the values over coordinates of the fit: few distinct columns, and of what multiples of
-    /// them each coordinate's slopes are the sum.
+    /// Slopes over coordinates of the fit, by the values that effects do not perturb: few distinct
+    /// columns, and of what multiples of them each coordinate's slopes are the sum.
     pub fn slopes(&self, values: &[f64], coordinates: &[Coordinate]) -> Slopes {
         let at = self.record.circumstances(self.rig);
         let mut slopes = Slopes::default();
@@ -469,6 +480,7 @@ fn measured(role: Role) -> Measured {
 mod tests {
     use super::*;
     use crate::identify::evidence::trajectory::distinct_phases;
+    use crate::identify::evidence::trajectory_record::Weighing;
     use crate::identify::fit::effect::Effect;
     use crate::identify::fit::effect::Effects;
     use crate::motion::{Folded, FoldedPoint};
@@ -542,6 +554,7 @@ mod tests {
             press_per_s: -40.0,
             shared: Vec::new(),
             perturbations: Vec::new(),
+            weighing: Weighing::default(),
         }
     }
 

@@ -35,6 +35,11 @@ pub struct ResonancePoint {
     pub group: usize,
     /// Responses of the channels.
     pub responses: Vec<Response>,
+    /// Slopes of the responses over the logarithm of the drive's frequency; empty until they are found
+    /// at good parameters.
+    over_frequency: Vec<Complex<f64>>,
+    /// The errors that all responses share: those of the drive's phase and frequency.
+    shared: Whitening,
 }
 
 impl ResonancePoint {
@@ -55,7 +60,7 @@ pub struct ResonanceBlock {
     /// The records.
     pub points: Vec<ResonancePoint>,
     /// Relative error added to every response: what gains and model leave open.
-    pub relative_error: f64,
+    relative_error: f64,
     /// Displacement at which springs harden by the strength of that effect, m.
     pub reach_m: f64,
 }
@@ -83,15 +88,43 @@ impl ResonanceBlock {
                         .filter(|r| rig == RigKind::Double || !r.role.is_of_y())
                         .copied()
                         .collect(),
+                    over_frequency: Vec::new(),
+                    shared: Whitening::none(),
                 })
             })
             .collect();
-        Self {
+        let mut block = Self {
             rig,
             points,
             relative_error,
             reach_m: 1.0,
+        };
+        block.allow(relative_error);
+        block
+    }
+
+    /// Allow every response a relative error beside the noise.
+    pub fn allow(&mut self, relative_error: f64) {
+        self.relative_error = relative_error;
+        let mut points = std::mem::take(&mut self.points);
+        for point in &mut points {
+            point.shared = self.whitening(point);
         }
+        self.points = points;
+    }
+
+    /// Find at good parameters what the frequency of the drive changes in every record.
+    pub fn find_changes(&mut self, parameters: &Parameters) {
+        let mut points = std::mem::take(&mut self.points);
+        for point in &mut points {
+            let eta = point.frequency_hz / parameters.natural_frequency_hz;
+            let found = self.responses(point, parameters);
+            let strengths = Strengths::of(parameters, 0.0);
+            let slopes = found.iter().map(|p| p.over_frequency(eta, &strengths));
+            point.over_frequency = slopes.collect();
+        }
+        self.points = points;
+        self.allow(self.relative_error);
     }
 
     /// Role and high-pass corner, Hz, of every channel of every record.
@@ -197,19 +230,52 @@ impl Predicted {
         }
     }
 
-    /// Slope where mass and η change; the drive's frequency, and with it the unit, does not.
-    fn along(&self, of_y: bool, change: &Change, eta: f64) -> Complex<f64> {
+    /// Slope where mass and η change, and the unit of length by a share; the drive's frequency, and with
+    /// it the unit of time, does not.
+    fn along(
+        &self,
+        (of_y, change): (bool, &Change),
+        eta: f64,
+        (length, own): (f64, &Strengths),
+    ) -> Complex<f64> {
         let mass = if of_y { &change.y } else { &change.x };
-        forced_slope(&self.oscillator, mass, self.forced, [eta, change.eta]) * self.unit
+        let forced = forced_slope(&self.oscillator, mass, self.forced, [eta, change.eta]);
+        // Relative slopes of X_h = −¾ h|F|²F²/D and of X_f = −(4/π) iφ F²/(D|F|).
+        let relative = forced / self.forced;
+        let both = relative * 2.0 - mass.drive_per_mass / self.oscillator.drive_per_mass();
+        let stiffness = mass.stiffness_per_mass / self.oscillator.stiffness_per_mass();
+        let hardening = both + 2.0 * relative.re + stiffness + 2.0 * length;
+        let friction = both - relative.re - length * own.friction_over_length;
+        let [of_hardening, of_friction] = self.extra;
+        let extra =
+            of_hardening * hardening * own.strengths[0] + of_friction * friction * own.strengths[1];
+        (forced + extra) * self.unit + self.value * length
     }
 
     /// Slope over the logarithm of the drive's frequency.
-    fn over_frequency(&self, eta: f64) -> Complex<f64> {
+    fn over_frequency(&self, eta: f64, own: &Strengths) -> Complex<f64> {
         let change = Change {
             eta,
             ..Change::default()
         };
-        self.along(false, &change, eta) + self.value * self.order
+        self.along((false, &change), eta, (0.0, own)) + self.value * self.order
+    }
+}
+
+/// Strengths of the effects in the order of [`Predicted::extra`].
+struct Strengths {
+    strengths: [f64; 2],
+    /// Power of the inverse of a record's own unit of length that friction, which is stated over that of
+    /// the campaign, goes with: 1 where that of the record alone changes, 0 where both do.
+    friction_over_length: f64,
+}
+
+impl Strengths {
+    fn of(parameters: &Parameters, friction_over_length: f64) -> Self {
+        Self {
+            strengths: EXTRA.map(|e| parameters.effect(e)),
+            friction_over_length,
+        }
     }
 }
 
@@ -250,9 +316,13 @@ impl ResonanceBlock {
         let (own, _) = parameters.own(&at);
         let machine = own.machine(self.rig);
         let eta = point.frequency_hz / own.natural_frequency_hz;
+        // The campaign's x_st moves with the record's own where it is what changes.
+        let of_campaign = f64::from(u8::from(coordinate == Coordinate::Deflection));
+        let strengths = Strengths::of(parameters, 1.0 - of_campaign);
         let along = |coordinate: Coordinate, r: &Response, p: &Predicted| {
             let change = change(&machine, eta, 0.0, coordinate);
-            p.along(r.role.is_of_y(), &change, eta) + p.value * relative_length(coordinate)
+            let length = relative_length(coordinate);
+            p.along((r.role.is_of_y(), &change), eta, (length, &strengths))
         };
         let slope = parameters.own_slope(&at, coordinate);
         let rate = Complex::new(0.0, std::f64::consts::TAU * point.frequency_hz);
@@ -302,14 +372,18 @@ impl ResonanceBlock {
             .collect()
     }
 
-    /// The errors that all responses of a point share: those of the drive's phase and frequency.
-    fn whitening(&self, point: &ResonancePoint, found: &[Predicted], eta: f64) -> Whitening {
+    /// The errors that all responses of a point share, by what was measured: weights that follow the
+    /// parameters would reward a model that moves more.
+    fn whitening(&self, point: &ResonancePoint) -> Whitening {
         let turn = Complex::new(0.0, point.phase_error_rad);
-        let turned = found.iter().map(|p| turn * p.value);
-        let shifted = found
-            .iter()
-            .map(|p| p.over_frequency(eta) * point.frequency_error);
-        let columns = [self.weighted(point, turned), self.weighted(point, shifted)];
+        let turned = point.responses.iter();
+        let turned = turned.map(|r| turn * Complex::new(r.real, r.imaginary));
+        let shifted = point.over_frequency.iter();
+        let shifted = shifted.map(|slope| slope * point.frequency_error);
+        let mut columns = vec![self.weighted(point, turned)];
+        if !point.over_frequency.is_empty() {
+            columns.push(self.weighted(point, shifted));
+        }
         Whitening::new(&columns)
     }
 
@@ -327,10 +401,8 @@ impl Block for ResonanceBlock {
 
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let point = &self.points[item];
-        let eta = point.frequency_hz / parameters.natural_frequency_hz;
-        let found = self.responses(point, parameters);
-        let mut out = self.apart(point, &found);
-        self.whitening(point, &found, eta).apply(&mut out);
+        let mut out = self.apart(point, &self.responses(point, parameters));
+        point.shared.apply(&mut out);
         Some(out)
     }
 
@@ -341,11 +413,9 @@ impl Block for ResonanceBlock {
         coordinates: &[Coordinate],
     ) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
         let point = &self.points[item];
-        let eta = point.frequency_hz / parameters.natural_frequency_hz;
         let found = self.responses(point, parameters);
-        let whitening = self.whitening(point, &found, eta);
         let white = |mut column: Vec<f64>| {
-            whitening.apply(&mut column);
+            point.shared.apply(&mut column);
             column
         };
         let column = |coordinate: &Coordinate| {
@@ -408,6 +478,8 @@ mod tests {
                         high_pass_hz: role.is_of_y().then_some(0.5),
                     })
                     .to_vec(),
+                over_frequency: Vec::new(),
+                shared: Whitening::none(),
             }],
             relative_error: 1e-3,
             reach_m: 3e-3,
@@ -415,6 +487,8 @@ mod tests {
         let mut effects = [0.0; Effect::COUNT];
         effects[Effect::ForceSlope.place()] = 0.02;
         effects[Effect::DeflectionDrift.place()] = 0.01;
+        effects[Effect::Hardening.place()] = 0.02;
+        effects[Effect::Friction.place()] = 0.03;
         let p = Parameters {
             drive_asymmetry: 0.03,
             stiffness_asymmetry: -0.02,

@@ -5,15 +5,14 @@ use rayon::prelude::*;
 use crate::event::RigKind;
 use crate::identify::evidence::nearest_orbit::NearestOrbit;
 use crate::identify::evidence::record_motion::{Column, RecordMotion};
-use crate::identify::evidence::shared_error::Whitening;
-use crate::identify::evidence::trajectory_record::TrajectoryRecord;
+use crate::identify::evidence::trajectory_record::{TrajectoryRecord, Weighing};
 use crate::identify::evidence::waveform::Phases;
 use crate::identify::fit::Block;
 use crate::identify::fit::effect::{Effect, Effects};
 use crate::identify::fit::factor::Factor;
-use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
+use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::motion::Folded;
 use crate::motion::Observation;
-use crate::motion::{Folded, FoldedChannel};
 use crate::record::Role;
 use impact_oscillator::model::flight::State;
 use impact_oscillator::model::orbit::orbit_with_speed;
@@ -26,7 +25,7 @@ pub struct TrajectoryBlock {
     /// The records.
     pub records: Vec<TrajectoryRecord>,
     /// Relative error added to every point: what instruments and model leave open.
-    pub relative_error: f64,
+    relative_error: f64,
     /// Effects that the fit allows beyond the model.
     pub effects: Effects,
     /// Displacement at which springs harden by the strength of that effect, m.
@@ -42,13 +41,50 @@ impl TrajectoryBlock {
             .filter(|(_, o)| !o.excluded() && o.classification.confidence >= 0.7)
             .filter_map(|(i, o)| trajectory_record(i, o))
             .collect();
-        Self {
+        Self::of_records(rig, records, relative_error)
+    }
+
+    /// Of given records, on a rig without effects beyond the model.
+    pub fn of_records(rig: RigKind, records: Vec<TrajectoryRecord>, relative_error: f64) -> Self {
+        let mut block = Self {
             rig,
             records,
             relative_error,
             effects: Effects::none(),
             reach_m: 1.0,
-        }
+        };
+        block.allow(relative_error);
+        block
+    }
+
+    /// A block like this one of other records.
+    #[must_use]
+    pub fn with_records(&self, records: Vec<TrajectoryRecord>) -> Self {
+        let mut other = Self { records, ..*self };
+        other.allow(self.relative_error);
+        other
+    }
+
+    /// Relative error that every point is allowed beside the noise.
+    pub fn relative_error(&self) -> f64 {
+        self.relative_error
+    }
+
+    /// Allow every point a relative error beside the noise.
+    pub fn allow(&mut self, relative_error: f64) {
+        self.relative_error = relative_error;
+        self.records
+            .par_iter_mut()
+            .for_each(|record| record.weigh(relative_error));
+    }
+
+    /// Measured less modelled values of each record, not weighted; `None` where there is no such orbit.
+    pub fn differences(&self, parameters: &Parameters) -> Vec<Option<Vec<f64>>> {
+        let of = |record: &TrajectoryRecord| {
+            let motion = RecordMotion::new(self.rig, record, parameters)?;
+            Some(record.apart(&motion.values()))
+        };
+        self.records.par_iter().map(of).collect()
     }
 
     /// Role and high-pass corner, Hz, of every channel of every record.
@@ -79,6 +115,7 @@ impl TrajectoryBlock {
             (record.shared, record.perturbations) = (change.shared, change.perturbations);
             record.press_per_s = change.press_per_s;
         }
+        self.allow(self.relative_error);
     }
 
     /// Weighted residuals of a record and their slopes: distinct columns, and the sums of multiples of
@@ -91,26 +128,26 @@ impl TrajectoryBlock {
     ) -> Option<WeightedSlopes> {
         let record = &self.records[item];
         let motion = RecordMotion::new(self.rig, record, parameters)?;
-        let values = motion.values();
-        let weighing = Weighing::new(record, &values, self.relative_error);
+        let mut values = motion.unperturbed();
         let slopes = motion.slopes(&values, coordinates);
         let weighted = |column: Column| {
             let mut change = match column {
                 Column::Values(values) => values,
                 // Values are proportional to their gain.
-                Column::Gain(gain) => weighing.only(&values, gain),
+                Column::Gain(gain) => record.only(&values, gain),
             };
             change.iter_mut().for_each(|c| *c = -*c);
-            weighing.weighted(&change)
+            record.weighing.weighted(&change)
         };
         let columns = slopes.columns.into_iter().map(weighted).collect();
-        let residuals = weighing.weighted(&weighing.apart(&values));
+        motion.perturb(&mut values);
+        let residuals = record.weighing.weighted(&record.apart(&values));
         Some((residuals, columns, slopes.sums))
     }
 
     fn changes(&self, record: &TrajectoryRecord, parameters: &Parameters) -> Option<Changes> {
         let motion = RecordMotion::new(self.rig, record, parameters)?;
-        let values = motion.values();
+        let values = motion.unperturbed();
         let times = |slopes: Vec<f64>, error: f64| slopes.iter().map(|s| error * s).collect();
         let mut shared: Vec<Vec<f64>> = vec![
             times(motion.over_phase(&values), record.phase_error_rad),
@@ -163,6 +200,7 @@ fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> 
         press_per_s: 0.0,
         shared: Vec::new(),
         perturbations: Vec::new(),
+        weighing: Weighing::default(),
         clearance_m: o.setting.clearance_m?,
         drive_amplitude: o.setting.drive_amplitude,
         phases: distinct_phases(&folded),
@@ -209,8 +247,7 @@ impl Block for TrajectoryBlock {
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let record = &self.records[item];
         let values = RecordMotion::new(self.rig, record, parameters)?.values();
-        let weighing = Weighing::new(record, &values, self.relative_error);
-        Some(weighing.weighted(&weighing.apart(&values)))
+        Some(record.weighing.weighted(&record.apart(&values)))
     }
 
     fn slopes(
@@ -263,100 +300,5 @@ impl Block for TrajectoryBlock {
             }
             _ => true,
         }
-    }
-}
-
-/// How a record's residuals are weighted at given parameters: by the errors of the points, the
-/// channels' offsets projected out, the errors that all points share made independent.
-struct Weighing<'a> {
-    record: &'a TrajectoryRecord,
-    channels: Vec<Weights>,
-    shared: Whitening,
-}
-
-impl<'a> Weighing<'a> {
-    fn new(record: &'a TrajectoryRecord, values: &[f64], relative_error: f64) -> Self {
-        let mut channels = Vec::with_capacity(record.folded.channels.len());
-        let mut rest = values;
-        for channel in &record.folded.channels {
-            let (own, others) = rest.split_at(channel.points.len());
-            channels.push(Weights::of(channel, own, relative_error));
-            rest = others;
-        }
-        let mut weighing = Self {
-            record,
-            channels,
-            shared: Whitening::none(),
-        };
-        let columns: Vec<Vec<f64>> = record.shared.iter().map(|c| weighing.centred(c)).collect();
-        weighing.shared = Whitening::new(&columns);
-        weighing
-    }
-
-    /// Measured less modelled values.
-    fn apart(&self, values: &[f64]) -> Vec<f64> {
-        let points = self.record.folded.channels.iter().flat_map(|c| &c.points);
-        points.zip(values).map(|(p, v)| p.value - v).collect()
-    }
-
-    /// Values of the channels that carry one gain, zero for the others.
-    fn only(&self, values: &[f64], gain: usize) -> Vec<f64> {
-        let mut out = Vec::with_capacity(values.len());
-        for channel in &self.record.folded.channels {
-            let range = out.len()..out.len() + channel.points.len();
-            if gain_index(channel.role) == Some(gain) {
-                out.extend_from_slice(&values[range]);
-            } else {
-                out.resize(range.end, 0.0);
-            }
-        }
-        out
-    }
-
-    fn centred(&self, differences: &[f64]) -> Vec<f64> {
-        let mut out = Vec::with_capacity(differences.len());
-        for weights in &self.channels {
-            let end = out.len() + weights.roots.len();
-            weights.centred(&differences[out.len()..end], &mut out);
-        }
-        out
-    }
-
-    fn weighted(&self, differences: &[f64]) -> Vec<f64> {
-        let mut out = self.centred(differences);
-        self.shared.apply(&mut out);
-        out
-    }
-}
-
-/// Weights of a channel's points, with the channel's offset, a nuisance, projected out.
-struct Weights {
-    roots: Vec<f64>,
-    total: f64,
-}
-
-impl Weights {
-    fn of(channel: &FoldedChannel, model: &[f64], relative_error: f64) -> Self {
-        let scale = relative_error * crate::signal::robust::rms(model);
-        let roots: Vec<f64> = channel
-            .points
-            .iter()
-            .map(|p| {
-                let variance = channel.noise.powi(2) / f64::from(p.samples.max(1)) + scale * scale;
-                1.0 / variance.sqrt()
-            })
-            .collect();
-        let total: f64 = roots.iter().map(|w| w * w).sum();
-        Self {
-            roots,
-            total: total.max(f64::MIN_POSITIVE),
-        }
-    }
-
-    /// Differences less their weighted mean, times the roots of the weights.
-    fn centred(&self, differences: &[f64], out: &mut Vec<f64>) {
-        let pairs = || differences.iter().zip(&self.roots);
-        let offset = pairs().map(|(d, w)| d * w * w).sum::<f64>() / self.total;
-        out.extend(pairs().map(|(d, w)| (d - offset) * w));
     }
 }

@@ -1,11 +1,13 @@
 //! A periodic record as the fits use it.
 
 use crate::event::RigKind;
+use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::evidence::waveform::Phases;
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::own::Circumstances;
 use crate::identify::fit::parameters::gain_index;
-use crate::motion::Folded;
+use crate::motion::{Folded, FoldedChannel};
+use crate::signal::robust;
 
 /// One folded record.
 #[derive(Debug, Clone)]
@@ -45,6 +47,8 @@ pub struct TrajectoryRecord {
     /// Changes of all points' values, SI, by effects that act as extra accelerations, per unit of
     /// their strengths; empty until they are found at good parameters.
     pub perturbations: Vec<(Effect, Vec<f64>)>,
+    /// How its residuals are weighted.
+    pub weighing: Weighing,
 }
 
 impl TrajectoryRecord {
@@ -65,5 +69,105 @@ impl TrajectoryRecord {
     pub(super) fn has(&self, index: usize) -> bool {
         let mut channels = self.folded.channels.iter();
         channels.any(|c| gain_index(c.role) == Some(index))
+    }
+
+    /// Weigh the residuals with a relative error of every point beside the noise.
+    pub(super) fn weigh(&mut self, relative_error: f64) {
+        self.weighing = Weighing::new(self, relative_error);
+    }
+
+    /// Measured less modelled values.
+    pub(super) fn apart(&self, values: &[f64]) -> Vec<f64> {
+        let points = self.folded.channels.iter().flat_map(|c| &c.points);
+        points.zip(values).map(|(p, v)| p.value - v).collect()
+    }
+
+    /// Values of the channels that carry one gain, zero for the others.
+    pub(super) fn only(&self, values: &[f64], gain: usize) -> Vec<f64> {
+        let mut out = Vec::with_capacity(values.len());
+        for channel in &self.folded.channels {
+            let range = out.len()..out.len() + channel.points.len();
+            if gain_index(channel.role) == Some(gain) {
+                out.extend_from_slice(&values[range]);
+            } else {
+                out.resize(range.end, 0.0);
+            }
+        }
+        out
+    }
+}
+
+/// How a record's residuals are weighted: by the errors of the points, the channels' offsets projected
+/// out, the errors that all points share made independent. It rests on what was measured, not on the
+/// model's values: weights that follow the parameters would reward a model that moves more.
+#[derive(Debug, Clone, Default)]
+pub struct Weighing {
+    channels: Vec<Weights>,
+    shared: Whitening,
+}
+
+impl Weighing {
+    /// With a relative error of every point beside the noise.
+    pub(super) fn new(record: &TrajectoryRecord, relative_error: f64) -> Self {
+        let channels = record.folded.channels.iter();
+        let mut weighing = Self {
+            channels: channels.map(|c| Weights::of(c, relative_error)).collect(),
+            shared: Whitening::none(),
+        };
+        let columns: Vec<Vec<f64>> = record.shared.iter().map(|c| weighing.centred(c)).collect();
+        weighing.shared = Whitening::new(&columns);
+        weighing
+    }
+
+    fn centred(&self, differences: &[f64]) -> Vec<f64> {
+        let mut out = Vec::with_capacity(differences.len());
+        for weights in &self.channels {
+            let end = out.len() + weights.roots.len();
+            weights.centred(&differences[out.len()..end], &mut out);
+        }
+        out
+    }
+
+    /// Differences of all points, weighted.
+    pub(super) fn weighted(&self, differences: &[f64]) -> Vec<f64> {
+        let mut out = self.centred(differences);
+        self.shared.apply(&mut out);
+        out
+    }
+}
+
+/// Weights of a channel's points, with the channel's offset, a nuisance, projected out.
+#[derive(Debug, Clone)]
+struct Weights {
+    roots: Vec<f64>,
+    total: f64,
+}
+
+impl Weights {
+    fn of(channel: &FoldedChannel, relative_error: f64) -> Self {
+        let values: Vec<f64> = channel.points.iter().map(|p| p.value).collect();
+        let offset = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        let moved: Vec<f64> = values.iter().map(|v| v - offset).collect();
+        let scale = relative_error * robust::rms(&moved);
+        let roots: Vec<f64> = channel
+            .points
+            .iter()
+            .map(|p| {
+                let variance = channel.noise.powi(2) / f64::from(p.samples.max(1)) + scale * scale;
+                1.0 / variance.sqrt()
+            })
+            .collect();
+        let total: f64 = roots.iter().map(|w| w * w).sum();
+        Self {
+            roots,
+            total: total.max(f64::MIN_POSITIVE),
+        }
+    }
+
+    /// Differences less their weighted mean, times the roots of the weights.
+    fn centred(&self, differences: &[f64], out: &mut Vec<f64>) {
+        let pairs = || differences.iter().zip(&self.roots);
+        let offset = pairs().map(|(d, w)| d * w * w).sum::<f64>() / self.total;
+        out.extend(pairs().map(|(d, w)| (d - offset) * w));
     }
 }

@@ -1,9 +1,13 @@
 //! How much residuals may be trusted: what is allowed beside the noise, and which records do not
 //! belong to the bulk.
 
+use rayon::prelude::*;
+
 use crate::identify::evidence::Blocks;
+use crate::identify::evidence::trajectory_record::{TrajectoryRecord, Weighing};
+use crate::identify::fit::factor::dot;
+use crate::identify::fit::mean_squares;
 use crate::identify::fit::parameters::Parameters;
-use crate::identify::fit::{Block, mean_squares};
 use crate::signal::robust;
 
 impl Blocks {
@@ -13,11 +17,19 @@ impl Blocks {
         self.weigh_trajectories(parameters);
     }
 
-    /// Allow the impactless records the least relative error that explains them.
+    /// Find what the errors of the drive's frequency change in the impactless records, and allow them
+    /// the least relative error that explains the rest.
     pub fn weigh_resonance(&mut self, parameters: &Parameters) {
         let block = &mut self.resonance;
-        block.relative_error =
-            least_allowance(block.clone(), parameters, |b, e| b.relative_error = e);
+        block.find_changes(parameters);
+        let allowed = least_allowance(|allowance| {
+            block.allow(allowance);
+            mean_squares(block, parameters)
+                .into_iter()
+                .flatten()
+                .collect()
+        });
+        block.allow(allowed);
     }
 
     /// Find what the points of each periodic record share and what effects beyond the model change
@@ -25,8 +37,17 @@ impl Blocks {
     pub fn weigh_trajectories(&mut self, parameters: &Parameters) {
         let block = &mut self.trajectory;
         block.find_changes(parameters);
-        block.relative_error =
-            least_allowance(block.clone(), parameters, |b, e| b.relative_error = e);
+        let differences = block.differences(parameters);
+        let scores = |allowance: f64| {
+            let pairs = block.records.par_iter().zip(&differences);
+            let of = |(record, apart): (&TrajectoryRecord, &Option<Vec<f64>>)| {
+                let residuals = Weighing::new(record, allowance).weighted(apart.as_ref()?);
+                Some(dot(&residuals, &residuals) / residuals.len().max(1) as f64)
+            };
+            pairs.filter_map(of).collect()
+        };
+        let allowed = least_allowance(scores);
+        block.allow(allowed);
     }
 }
 
@@ -35,22 +56,10 @@ pub const LEAST_ALLOWANCE: f64 = 1e-6;
 /// Greatest relative error that instruments and model may be allowed.
 const MOST_ALLOWANCE: f64 = 0.1;
 
-/// The least relative error beside the noise with which the residuals at given parameters are of
-/// unit size; next to none where the noise alone explains them. The median of the items' mean
-/// squares is judged, so that a few records that do not belong change nothing.
-fn least_allowance<B: Block>(
-    mut block: B,
-    parameters: &Parameters,
-    allow: impl Fn(&mut B, f64),
-) -> f64 {
-    let mut excess = |allowance: f64| {
-        allow(&mut block, allowance);
-        let scores: Vec<f64> = mean_squares(&block, parameters)
-            .into_iter()
-            .flatten()
-            .collect();
-        robust::median(&scores).unwrap_or(0.0) - 1.0
-    };
+/// The least relative error beside the noise with which residuals are of unit size; next to none where
+/// the noise alone explains them. The median of the items' mean squares, `scores`, is judged, so that a few records that do not belong change nothing.
+fn least_allowance(mut scores: impl FnMut(f64) -> Vec<f64>) -> f64 {
+    let mut excess = |allowance: f64| robust::median(&scores(allowance)).unwrap_or(0.0) - 1.0;
     if excess(LEAST_ALLOWANCE) <= 0.0 {
         return LEAST_ALLOWANCE;
     }

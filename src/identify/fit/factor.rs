@@ -5,6 +5,7 @@
 //! digits. Rows are folded in by Householder reflections (Golub and Van Loan, Matrix Computations,
 //! chapter 5), so that factors of parts stack into that of the whole.
 
+use multiversion::multiversion;
 use nalgebra::DMatrix;
 
 use crate::identify::fit::normal::Normal;
@@ -129,23 +130,7 @@ impl Factor {
             let (done, rest) = rows.split_at_mut((j + 1) * height);
             let filled = filled(j);
             let pivot = &done[j * height..][..filled];
-            let below = dot(pivot, pivot);
-            if below == 0.0 {
-                continue;
-            }
-            let top = self.triangle[j * width + j];
-            let end = -(top * top + below).sqrt().copysign(top);
-            self.triangle[j * width + j] = end;
-            // The reflection I − 2vvᵀ/vᵀv with v = (lead, pivot), where vᵀv = −2·end·lead.
-            let lead = top - end;
-            let scale = -(end * lead).recip();
-            for (k, column) in rest.chunks_exact_mut(height).enumerate() {
-                let head = &mut self.triangle[(j + 1 + k) * width + j];
-                let column = &mut column[..filled];
-                let share = scale * (lead * *head + dot(pivot, column));
-                *head -= share * lead;
-                subtract(column, share, pivot);
-            }
+            reflect(&mut self.triangle, (j, width), pivot, (rest, height));
         }
     }
 
@@ -218,8 +203,51 @@ impl Factor {
     }
 }
 
-/// Inner product, in sixteen sums that do not wait for each other.
+/// Fold the rows of one column, the pivot, into its diagonal entry of a triangle of so many columns by
+/// a Householder reflection, which acts on the rows of all later columns, `height` apart.
+///
+/// The same arithmetic, in the same order, on vectors of any width: no bit depends on the processor.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn reflect(
+    triangle: &mut [f64],
+    (j, width): (usize, usize),
+    pivot: &[f64],
+    (rest, height): (&mut [f64], usize),
+) {
+    let below = inner(pivot, pivot);
+    if below == 0.0 {
+        return;
+    }
+    let top = triangle[j * width + j];
+    let end = -(top * top + below).sqrt().copysign(top);
+    triangle[j * width + j] = end;
+    // The reflection I − 2vvᵀ/vᵀv with v = (lead, pivot), where vᵀv = −2·end·lead.
+    let lead = top - end;
+    let scale = -(end * lead).recip();
+    for (k, column) in rest.chunks_exact_mut(height).enumerate() {
+        let head = &mut triangle[(j + 1 + k) * width + j];
+        let column = &mut column[..pivot.len()];
+        let share = scale * (lead * *head + inner(pivot, column));
+        *head -= share * lead;
+        less(column, share, pivot);
+    }
+}
+
+/// Inner product.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 pub(in crate::identify) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    inner(a, b)
+}
+
+/// Subtract a multiple of another column.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn subtract(from: &mut [f64], share: f64, column: &[f64]) {
+    less(from, share, column);
+}
+
+/// Inner product, in sixteen sums that do not wait for each other.
+#[inline(always)]
+fn inner(a: &[f64], b: &[f64]) -> f64 {
     let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<16>(), b.as_chunks::<16>());
     let mut sums = [0.0; 16];
     for (x, y) in a.iter().zip(b) {
@@ -232,14 +260,14 @@ pub(in crate::identify) fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Subtract a multiple of another column.
-fn subtract(from: &mut [f64], share: f64, column: &[f64]) {
-    let (fours, rest) = from.as_chunks_mut::<4>();
-    let (others, other_rest) = column.as_chunks::<4>();
-    for (x, y) in fours.iter_mut().zip(others) {
-        x[0] -= share * y[0];
-        x[1] -= share * y[1];
-        x[2] -= share * y[2];
-        x[3] -= share * y[3];
+#[inline(always)]
+fn less(from: &mut [f64], share: f64, column: &[f64]) {
+    let ((wide, rest), (others, other_rest)) =
+        (from.as_chunks_mut::<8>(), column.as_chunks::<8>());
+    for (x, y) in wide.iter_mut().zip(others) {
+        for (x, y) in x.iter_mut().zip(y) {
+            *x -= share * y;
+        }
     }
     for (x, y) in rest.iter_mut().zip(other_rest) {
         *x -= share * y;

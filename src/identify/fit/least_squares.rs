@@ -80,7 +80,7 @@ type FitState<Point> = IterState<Point, (), Factor, (), (), f64>;
 /// Least sum of squares from a start.
 ///
 /// # Errors
-/// Those of the problem's factor, at the start and where a step leads.
+/// Those of the problem's factor at the start.
 pub fn minimise<P: LeastSquares>(
     problem: &P,
     start: P::Point,
@@ -101,7 +101,7 @@ where
     Ok(Minimum {
         report: FitReport {
             iterations,
-            cost_evaluations: result.problem.counts.get(COST).copied().unwrap_or(0),
+            cost_evaluations: result.solver.trials,
             cost: factor.cost,
             damping: result.solver.damping,
             termination: termination.unwrap_or_default(),
@@ -126,6 +126,7 @@ fn taken<Point: Clone>(state: &mut FitState<Point>) -> Result<(Point, Factor), E
 /// Names under which argmin counts the evaluations.
 const COST: &str = "cost_count";
 const FACTOR: &str = "factor_count";
+const STEP: &str = "step_count";
 /// Name of the damping among an iteration's values.
 const DAMPING: &str = "damping";
 
@@ -152,6 +153,13 @@ struct DampedSteps<'a> {
     damping: f64,
     /// Steps in a row that were as good as linear.
     linear: u32,
+    /// Whether the last step was taken as it was first tried: then the next is expected to be, and its
+    /// factor is evaluated at once.
+    sure: bool,
+    /// Length of the last step, in standard errors for residuals of unit variance; zero before the first.
+    length: f64,
+    /// Steps that were tried.
+    trials: u64,
     /// Scales of the unknowns: the norms of their slopes, falling slowly. A slope that vanishes
     /// suddenly does not set its unknown free (Moré 1978), and an old one is forgotten.
     scales: Vec<f64>,
@@ -165,11 +173,18 @@ const REFUSED_DAMPING: f64 = 1e-10;
 const MOST_TRIALS: usize = 40;
 /// Steps in a row that were as good as linear, from which on the problem is taken to be.
 const LINEAR: u32 = 3;
+/// How far from 1 the share of the predicted reduction may be where steps shrink steadily, and how much
+/// shorter each step must then be.
+const STEADY: f64 = 0.2;
 
 /// What the trials from a point led to.
 enum Trial<Point> {
-    /// A point of lower cost.
-    Lower { to: Point, negligible: bool },
+    /// A point of lower cost with its factor, and whether what remains is negligible.
+    Lower {
+        to: Point,
+        factor: Factor,
+        negligible: bool,
+    },
     /// No lower cost within a negligible step.
     Negligible,
     /// No lower cost at any damping.
@@ -182,6 +197,9 @@ impl<'a> DampedSteps<'a> {
             limits,
             damping: limits.damping,
             linear: 0,
+            sure: true,
+            length: 0.0,
+            trials: 0,
             scales: Vec::new(),
         }
     }
@@ -213,7 +231,33 @@ impl<'a> DampedSteps<'a> {
     }
 
     fn increase_damping(&mut self) {
+        self.sure = false;
         self.damping = (self.damping * 4.0).max(REFUSED_DAMPING);
+    }
+
+    /// Whether steps are negligible from here on: the last was, or it was so much shorter than the one
+    /// before that the next, shorter by the same factor, will be.
+    fn is_last(&self, length: f64, share: f64, negligible: f64) -> bool {
+        let shrinks = length / self.length;
+        let steady = (share - 1.0).abs() < STEADY && shrinks < STEADY;
+        length < negligible || (steady && length * shrinks < negligible)
+    }
+
+    /// Cost where a step leads, with the factor where the step is expected to be taken; `None` where
+    /// there is none.
+    fn evaluate<P: LeastSquares>(
+        &mut self,
+        problem: &mut Problem<&P>,
+        to: &P::Point,
+        at_once: bool,
+    ) -> Result<Option<(f64, Option<Factor>)>, Error> {
+        self.trials += 1;
+        if at_once {
+            let found = problem.problem(FACTOR, |p| Ok(p.factor(to).ok()))?;
+            return Ok(found.map(|factor| (factor.cost, Some(factor))));
+        }
+        let cost = problem.problem(COST, |p| Ok(p.cost(to)))?;
+        Ok(cost.map(|cost| (cost, None)))
     }
 
     /// Try steps of increasing damping until one lowers the cost.
@@ -230,17 +274,24 @@ impl<'a> DampedSteps<'a> {
                 continue;
             };
             let length = factor.length(&step);
-            let (to, cost) = problem.problem(COST, |p| {
-                let to = p.moved(from, &step);
-                let cost = p.cost(&to);
-                Ok((to, cost))
-            })?;
-            match cost {
-                Some(cost) if cost < factor.cost => {
+            let to = problem.problem(STEP, |p| Ok(p.moved(from, &step)))?;
+            let found = self.evaluate(problem, &to, self.sure)?;
+            match found {
+                Some((cost, there)) if cost < factor.cost => {
                     let predicted = self.predicted_reduction(&step, length);
-                    self.decrease_damping((factor.cost - cost) / predicted);
-                    let negligible = length < negligible;
-                    return Ok(Trial::Lower { to, negligible });
+                    let share = (factor.cost - cost) / predicted;
+                    let negligible = self.is_last(length, share, negligible);
+                    self.decrease_damping(share);
+                    (self.sure, self.length) = (true, length);
+                    let factor = match there {
+                        Some(factor) => factor,
+                        None => problem.problem(FACTOR, |p| p.factor(&to))?,
+                    };
+                    return Ok(Trial::Lower {
+                        to,
+                        factor,
+                        negligible,
+                    });
                 }
                 _ if length < negligible => return Ok(Trial::Negligible),
                 _ => self.increase_damping(),
@@ -278,8 +329,11 @@ impl<P: LeastSquares> Solver<&P, FitState<P::Point>> for DampedSteps<'_> {
         self.update_scales(&factor);
         let trial = self.try_steps(problem, &from, &factor)?;
         let (point, factor, end) = match trial {
-            Trial::Lower { to, negligible } => {
-                let factor = problem.problem(FACTOR, |p| p.factor(&to))?;
+            Trial::Lower {
+                to,
+                factor,
+                negligible,
+            } => {
                 let end = negligible.then_some(TerminationReason::SolverConverged);
                 (to, factor, end)
             }

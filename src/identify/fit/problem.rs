@@ -54,14 +54,15 @@ pub enum Precision {
 
 impl Precision {
     fn limits(self) -> Limits {
-        let (negligible, iterations) = match self {
-            Self::Result => (1e-3, 60),
-            Self::Start => (0.1, 12),
+        // What a result is fitted from is near it: its first steps are hardly damped.
+        let (negligible, damping, iterations) = match self {
+            Self::Result => (1e-3, 1e-8, 60),
+            Self::Start => (0.1, 1e-4, 12),
         };
         Limits {
             negligible,
             variance: Variance::AtLeastUnit,
-            damping: 1e-4,
+            damping,
             iterations,
         }
     }
@@ -126,13 +127,20 @@ impl Problem<'_> {
 
     /// Normal equations item by item of each block; items without a model are left out.
     pub fn item_parts(&self, parameters: &Parameters) -> Vec<Vec<Normal>> {
-        self.blocks
-            .iter()
-            .map(|(block, weight)| {
-                (0..block.items())
-                    .into_par_iter()
-                    .filter_map(|i| self.item_normal(*block, i, *weight, parameters))
-                    .collect()
+        let blocks = self.blocks.iter();
+        blocks
+            .map(|(block, weight)| self.items_of(*block, *weight, parameters))
+            .collect()
+    }
+
+    /// Normal equations item by item of a block with its weight; items without a model are left out.
+    pub fn items_of(&self, block: &dyn Block, weight: f64, at: &Parameters) -> Vec<Normal> {
+        (0..block.items())
+            .into_par_iter()
+            .filter_map(|i| {
+                let (places, coordinates) = self.touched(block, i);
+                let factor = block.factor(i, at, &coordinates, weight)?;
+                Some(factor.normal(&places, self.free.len()))
             })
             .collect()
     }
@@ -140,42 +148,52 @@ impl Problem<'_> {
     /// Normal equations of the items of each group, by the group's number, over the items that have a
     /// model; those of the blocks and priors that belong to no group last.
     pub fn groups(&self, parameters: &Parameters) -> (BTreeMap<usize, Normal>, Normal) {
-        let zeros = || Normal::zeros(self.free.len());
-        let (mut groups, mut rest) = (BTreeMap::new(), zeros());
+        let n = self.free.len();
+        let (mut groups, mut rest) = (BTreeMap::new(), Normal::zeros(n));
         for (block, weight) in &self.blocks {
-            let parts: Vec<Option<Normal>> = (0..block.items())
-                .into_par_iter()
-                .map(|i| self.item_normal(*block, i, *weight, parameters))
-                .collect();
-            for (i, part) in parts.iter().enumerate() {
-                let Some(part) = part else { continue };
-                match block.group(i) {
-                    Some(group) => groups.entry(group).or_insert_with(zeros).add(part),
-                    None => rest.add(part),
+            let mut items: BTreeMap<Option<usize>, Vec<usize>> = BTreeMap::new();
+            for i in 0..block.items() {
+                items.entry(block.group(i)).or_default().push(i);
+            }
+            for (group, items) in items {
+                let part = self.part_of(*block, *weight, parameters, &items);
+                match group {
+                    Some(group) => groups
+                        .entry(group)
+                        .or_insert_with(|| Normal::zeros(n))
+                        .add(&part.normal(n)),
+                    None => rest.add(&part.normal(n)),
                 }
             }
         }
-        for prior in &self.priors {
-            rest.add(&self.prior_normal(prior, parameters));
-        }
+        rest.add(&self.priors_normal(parameters));
         (groups, rest)
     }
 
-    /// Normal equations of each block, then those of all priors.
+    /// Normal equations of each block, over the items that have a model, then those of all priors.
     pub fn parts(&self, parameters: &Parameters) -> Vec<Normal> {
-        let total = |items: &mut dyn Iterator<Item = Normal>| {
-            let mut sum = Normal::zeros(self.free.len());
-            items.for_each(|item| sum.add(&item));
-            sum
-        };
-        let mut parts: Vec<Normal> = self
-            .item_parts(parameters)
-            .into_iter()
-            .map(|items| total(&mut items.into_iter()))
+        let blocks = self.blocks.iter();
+        let mut parts: Vec<Normal> = blocks
+            .map(|(block, weight)| self.block_normal(*block, *weight, parameters))
             .collect();
-        let mut priors = self.priors.iter().map(|p| self.prior_normal(p, parameters));
-        parts.push(total(&mut priors));
+        parts.push(self.priors_normal(parameters));
         parts
+    }
+
+    /// Normal equations of a block with its weight, over the items that have a model.
+    pub fn block_normal(&self, block: &dyn Block, weight: f64, at: &Parameters) -> Normal {
+        let items: Vec<usize> = (0..block.items()).collect();
+        let part = self.part_of(block, weight, at, &items);
+        part.normal(self.free.len())
+    }
+
+    /// Normal equations of all priors.
+    pub fn priors_normal(&self, parameters: &Parameters) -> Normal {
+        let mut sum = Normal::zeros(self.free.len());
+        for prior in &self.priors {
+            sum.add(&self.prior_normal(prior, parameters));
+        }
+        sum
     }
 
     /// Least cost with one coordinate held at a value, all others fitted again from where the
@@ -216,19 +234,10 @@ impl Problem<'_> {
         let mut total = Factor::empty(self.free.len());
         let mut missing = Vec::new();
         for (b, (block, weight)) in self.blocks.iter().enumerate() {
-            let parts: Vec<Option<(Factor, Vec<usize>)>> = (0..block.items())
-                .into_par_iter()
-                .map(|i| {
-                    let (places, coordinates) = self.touched(*block, i);
-                    Some((block.factor(i, parameters, &coordinates, *weight)?, places))
-                })
-                .collect();
-            for (i, part) in parts.iter().enumerate() {
-                match part {
-                    Some((part, places)) => total.add(part, places),
-                    None => missing.push((b, i)),
-                }
-            }
+            let items: Vec<usize> = (0..block.items()).collect();
+            let part = self.part_of(*block, *weight, parameters, &items);
+            total.add(&part.factor, &part.places);
+            missing.extend(part.missing.into_iter().map(|i| (b, i)));
         }
         for prior in &self.priors {
             let place = self.free.iter().position(|c| *c == prior.coordinate);
@@ -240,6 +249,50 @@ impl Problem<'_> {
         (total, missing)
     }
 
+    /// Factor of some items of a block with its weight, over the coordinates that the block depends on.
+    /// Items are folded together in shares of fixed size, so that the number of threads changes nothing.
+    fn part_of(&self, block: &dyn Block, weight: f64, at: &Parameters, items: &[usize]) -> Part {
+        let (places, coordinates): (Vec<usize>, Vec<Coordinate>) = self
+            .free
+            .iter()
+            .copied()
+            .enumerate()
+            .filter(|(_, c)| block.touches(*c))
+            .unzip();
+        let shares: Vec<(Factor, Vec<usize>)> = items
+            .par_chunks(SHARE)
+            .map(|items| {
+                let mut share = Factor::empty(places.len());
+                let mut missing = Vec::new();
+                for i in items {
+                    let (own, touched): (Vec<usize>, Vec<Coordinate>) = coordinates
+                        .iter()
+                        .copied()
+                        .enumerate()
+                        .filter(|(_, c)| block.item_touches(*i, *c))
+                        .unzip();
+                    match block.factor(*i, at, &touched, weight) {
+                        Some(factor) => share.add(&factor, &own),
+                        None => missing.push(*i),
+                    }
+                }
+                (share, missing)
+            })
+            .collect();
+        let mut factor = Factor::empty(places.len());
+        let mut missing = Vec::new();
+        let all: Vec<usize> = (0..places.len()).collect();
+        for (share, without) in shares {
+            factor.add(&share, &all);
+            missing.extend(without);
+        }
+        Part {
+            factor,
+            places,
+            missing,
+        }
+    }
+
     /// Places among the free coordinates, and the coordinates, that an item of a block depends on.
     fn touched(&self, block: &dyn Block, item: usize) -> (Vec<usize>, Vec<Coordinate>) {
         self.free
@@ -248,18 +301,6 @@ impl Problem<'_> {
             .enumerate()
             .filter(|(_, c)| block.item_touches(item, *c))
             .unzip()
-    }
-
-    fn item_normal(
-        &self,
-        block: &dyn Block,
-        item: usize,
-        weight: f64,
-        at: &Parameters,
-    ) -> Option<Normal> {
-        let (places, coordinates) = self.touched(block, item);
-        let factor = block.factor(item, at, &coordinates, weight)?;
-        Some(factor.normal(&places, self.free.len()))
     }
 
     /// Normal equations of one prior.
@@ -276,10 +317,31 @@ impl Problem<'_> {
     }
 }
 
+/// Items of a block that are folded together.
+const SHARE: usize = 16;
+
+/// Factor of some items of a block.
+struct Part {
+    factor: Factor,
+    /// Places of its coordinates among the free ones.
+    places: Vec<usize>,
+    /// Items without a model.
+    missing: Vec<usize>,
+}
+
+impl Part {
+    fn normal(&self, unknowns: usize) -> Normal {
+        self.factor.normal(&self.places, unknowns)
+    }
+}
+
 impl LeastSquares for Problem<'_> {
     type Point = Parameters;
 
     fn factor(&self, at: &Parameters) -> Result<Factor, argmin::core::Error> {
+        if !at.in_range() {
+            return Err(FitError::NoModel(Vec::new()).into());
+        }
         let (factor, missing) = self.known_factor(at);
         if !missing.is_empty() {
             return Err(FitError::NoModel(missing).into());

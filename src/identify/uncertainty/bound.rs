@@ -44,6 +44,7 @@ impl Bound {
 /// Bounds of every method on the evidence, `joint` among them, at given parameters.
 pub fn bounds(evidence: &Evidence<'_>, at: &Parameters) -> BTreeMap<String, Bound> {
     let mut blocks = Blocks::with_noise_alone(evidence);
+    blocks.resonance.find_changes(at);
     blocks.trajectory.find_changes(at);
     let blocks = blocks;
     use Method::{Boundaries, Flights, Impacts, Resonance, Trajectories};
