@@ -49,16 +49,22 @@ pub fn swapped(
     (z_score > SURE && here > clearly * there).then_some(Finding::SwappedChannels { z_score })
 }
 
-/// Waveforms that are looked at first.
+/// Waveforms, and points of the resonance curve, that are looked at first.
 const FEW: usize = 16;
+const FEW_POINTS: usize = 64;
 
-/// The blocks with a few of the waveforms, spread over the campaign.
+/// The blocks with a few of the waveforms and of the impactless records, spread over the campaign.
 fn thinned(blocks: &Blocks) -> Blocks {
     let mut few = blocks.clone();
-    let step = few.trajectory.records.len().div_ceil(FEW).max(1);
-    let all = std::mem::take(&mut few.trajectory.records);
-    few.trajectory.records = all.into_iter().step_by(step).collect();
+    few.trajectory.records = every(few.trajectory.records, FEW);
+    few.resonance.points = every(few.resonance.points, FEW_POINTS);
     few
+}
+
+/// About so many of some, evenly spread.
+fn every<T>(all: Vec<T>, count: usize) -> Vec<T> {
+    let step = all.len().div_ceil(count).max(1);
+    all.into_iter().step_by(step).collect()
 }
 
 /// Whose filter an interchanged velocity has passed.

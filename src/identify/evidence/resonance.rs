@@ -117,10 +117,10 @@ impl ResonanceBlock {
     pub fn find_changes(&mut self, parameters: &Parameters) {
         let mut points = std::mem::take(&mut self.points);
         for point in &mut points {
-            let eta = point.frequency_hz / parameters.natural_frequency_hz;
-            let found = self.responses(point, parameters);
             let strengths = Strengths::of(parameters, 0.0);
-            let slopes = found.iter().map(|p| p.over_frequency(eta, &strengths));
+            let found = self.model(point, parameters);
+            let slopes = found.responses.iter();
+            let slopes = slopes.map(|p| p.over_frequency(found.eta, &strengths));
             point.over_frequency = slopes.collect();
         }
         self.points = points;
@@ -279,54 +279,38 @@ impl Strengths {
     }
 }
 
-impl ResonanceBlock {
-    fn responses(&self, point: &ResonancePoint, parameters: &Parameters) -> Vec<Predicted> {
-        let (own, _) = parameters.own(&point.circumstances());
-        let machine = own.machine(self.rig);
-        let setting = [point.frequency_hz, point.drive_amplitude];
-        let length_m = own.static_deflection_m * point.drive_amplitude;
-        let hardening = (length_m / self.reach_m).powi(2);
-        let friction = parameters.static_deflection_m / length_m;
-        let responses = point.responses.iter();
-        responses
-            .map(|r| {
-                let found = respond(&own, &machine, r.role, setting);
-                let stiffness = found.oscillator.stiffness_per_mass();
-                let found = found.with_effects(parameters, [stiffness * hardening, friction]);
-                match r.high_pass_hz {
-                    Some(stated_hz) => {
-                        let corner = own.corner(r.role);
-                        found.behind(stated_hz, corner, point.frequency_hz)
-                    }
-                    None => found,
-                }
-            })
-            .collect()
-    }
+/// An impactless record as the model has it.
+struct Model<'a> {
+    point: &'a ResonancePoint,
+    at: Circumstances,
+    parameters: &'a Parameters,
+    machine: Machine,
+    eta: f64,
+    responses: Vec<Predicted>,
+}
 
+impl Model<'_> {
     /// Slopes of the responses over one coordinate.
-    fn over(
-        &self,
-        point: &ResonancePoint,
-        found: &[Predicted],
-        parameters: &Parameters,
-        coordinate: Coordinate,
-    ) -> Vec<Complex<f64>> {
-        let at = point.circumstances();
-        let (own, _) = parameters.own(&at);
-        let machine = own.machine(self.rig);
-        let eta = point.frequency_hz / own.natural_frequency_hz;
+    fn over(&self, coordinate: Coordinate) -> Vec<Complex<f64>> {
         // The campaign's x_st moves with the record's own where it is what changes.
         let of_campaign = f64::from(u8::from(coordinate == Coordinate::Deflection));
-        let strengths = Strengths::of(parameters, 1.0 - of_campaign);
-        let along = |coordinate: Coordinate, r: &Response, p: &Predicted| {
-            let change = change(&machine, eta, 0.0, coordinate);
-            let length = relative_length(coordinate);
-            p.along((r.role.is_of_y(), &change), eta, (length, &strengths))
+        let strengths = Strengths::of(self.parameters, 1.0 - of_campaign);
+        let along = |coordinate: Coordinate, weight: f64| {
+            let change = change(&self.machine, self.eta, 0.0, coordinate);
+            (change, relative_length(coordinate), weight)
         };
-        let slope = parameters.own_slope(&at, coordinate);
-        let rate = Complex::new(0.0, std::f64::consts::TAU * point.frequency_hz);
-        let pairs = point.responses.iter().zip(found);
+        let physical = Coordinate::PHYSICAL.into_iter();
+        let parts: Vec<(Change, f64, f64)> = match self.parameters.own_slope(&self.at, coordinate) {
+            Some(slope) => physical
+                .zip(slope.physical)
+                .skip(1)
+                .filter(|(_, weight)| *weight != 0.0)
+                .map(|(c, weight)| along(c, weight))
+                .collect(),
+            None => vec![along(coordinate, 1.0)],
+        };
+        let rate = Complex::new(0.0, std::f64::consts::TAU * self.point.frequency_hz);
+        let pairs = self.point.responses.iter().zip(&self.responses);
         pairs
             .map(|(r, p)| match coordinate {
                 Coordinate::Gain(i) | Coordinate::Corner(i) | Coordinate::Delay(i)
@@ -339,16 +323,50 @@ impl ResonanceBlock {
                 Coordinate::Delay(_) => -p.value * rate * 1e-3,
                 Coordinate::Effect(Effect::Hardening) => p.extra[0] * p.unit,
                 Coordinate::Effect(Effect::Friction) => p.extra[1] * p.unit,
-                _ => match &slope {
-                    Some(slope) => {
-                        let own = Coordinate::PHYSICAL.into_iter().zip(slope.physical).skip(1);
-                        let own = own.filter(|(_, weight)| *weight != 0.0);
-                        own.map(|(c, weight)| along(c, r, p) * weight).sum()
-                    }
-                    None => along(coordinate, r, p),
-                },
+                _ => parts
+                    .iter()
+                    .map(|(change, length, weight)| {
+                        let of = (r.role.is_of_y(), change);
+                        p.along(of, self.eta, (*length, &strengths)) * weight
+                    })
+                    .sum(),
             })
             .collect()
+    }
+}
+
+impl ResonanceBlock {
+    fn model<'a>(&self, point: &'a ResonancePoint, parameters: &'a Parameters) -> Model<'a> {
+        let at = point.circumstances();
+        let (own, _) = parameters.own(&at);
+        let machine = own.machine(self.rig);
+        let setting = [point.frequency_hz, point.drive_amplitude];
+        let length_m = own.static_deflection_m * point.drive_amplitude;
+        let hardening = (length_m / self.reach_m).powi(2);
+        let friction = parameters.static_deflection_m / length_m;
+        let responses = point.responses.iter();
+        let responses = responses
+            .map(|r| {
+                let found = respond(&own, &machine, r.role, setting);
+                let stiffness = found.oscillator.stiffness_per_mass();
+                let found = found.with_effects(parameters, [stiffness * hardening, friction]);
+                match r.high_pass_hz {
+                    Some(stated_hz) => {
+                        let corner = own.corner(r.role);
+                        found.behind(stated_hz, corner, point.frequency_hz)
+                    }
+                    None => found,
+                }
+            })
+            .collect();
+        Model {
+            point,
+            at,
+            parameters,
+            machine,
+            eta: point.frequency_hz / own.natural_frequency_hz,
+            responses,
+        }
     }
 
     fn error(&self, response: &Response) -> f64 {
@@ -401,7 +419,7 @@ impl Block for ResonanceBlock {
 
     fn residuals(&self, item: usize, parameters: &Parameters) -> Option<Vec<f64>> {
         let point = &self.points[item];
-        let mut out = self.apart(point, &self.responses(point, parameters));
+        let mut out = self.apart(point, &self.model(point, parameters).responses);
         point.shared.apply(&mut out);
         Some(out)
     }
@@ -413,17 +431,17 @@ impl Block for ResonanceBlock {
         coordinates: &[Coordinate],
     ) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
         let point = &self.points[item];
-        let found = self.responses(point, parameters);
+        let found = self.model(point, parameters);
         let white = |mut column: Vec<f64>| {
             point.shared.apply(&mut column);
             column
         };
         let column = |coordinate: &Coordinate| {
-            let slopes = self.over(point, &found, parameters, *coordinate);
+            let slopes = found.over(*coordinate);
             white(self.weighted(point, slopes.into_iter().map(|s| -s)))
         };
         let columns = coordinates.iter().map(column).collect();
-        Some((white(self.apart(point, &found)), columns))
+        Some((white(self.apart(point, &found.responses)), columns))
     }
 
     fn group(&self, item: usize) -> Option<usize> {

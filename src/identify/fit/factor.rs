@@ -23,6 +23,9 @@ pub struct Factor {
     pub count: usize,
 }
 
+/// Share of the square of a column that rounding may leave.
+const ROUNDING: f64 = 1e-26;
+
 /// Rows that are folded in together: as many as stay in the processor's first cache.
 const BLOCK: usize = 128;
 
@@ -41,6 +44,9 @@ impl Factor {
     /// residual weighted.
     pub fn of(residuals: &[f64], slopes: &[Vec<f64>], weight: f64) -> Self {
         let mut factor = Self::empty(slopes.len());
+        if residuals.len() <= slopes.len() {
+            return factor.of_few(residuals, slopes, weight);
+        }
         let root = weight.sqrt();
         let mut rows = Vec::with_capacity(BLOCK * (slopes.len() + 1));
         for start in (0..residuals.len()).step_by(BLOCK) {
@@ -54,6 +60,28 @@ impl Factor {
         factor.cost = weight * dot(residuals, residuals);
         factor.count = residuals.len();
         factor
+    }
+
+    /// That of fewer residuals than unknowns: each reflection uses up one of them. A column that those
+    /// before it leave nothing but rounding of uses up none.
+    fn of_few(mut self, residuals: &[f64], slopes: &[Vec<f64>], weight: f64) -> Self {
+        let (width, height) = (self.unknowns + 1, residuals.len());
+        let columns = slopes.iter().map(Vec::as_slice).chain([residuals]);
+        let mut rows: Vec<f64> = columns.flatten().map(|x| weight.sqrt() * x).collect();
+        let square = |column: &[f64]| inner(column, column);
+        let squares: Vec<f64> = rows.chunks_exact(height.max(1)).map(square).collect();
+        let mut used = 0;
+        for (j, whole) in squares.iter().enumerate() {
+            let (done, rest) = rows.split_at_mut((j + 1) * height);
+            let pivot = &done[j * height..];
+            if used < height && square(pivot) > ROUNDING * whole {
+                reflect(&mut self.triangle, (j, width), pivot, (rest, height));
+                used += 1;
+            }
+        }
+        self.cost = weight * dot(residuals, residuals);
+        self.count = height;
+        self
     }
 
     /// That over other unknowns, whose slopes are sums of multiples of these slopes.
@@ -95,16 +123,25 @@ impl Factor {
 
     /// Add other residuals, whose unknowns are those at the given places among this factor's.
     pub fn add(&mut self, other: &Self, places: &[usize]) {
-        let height = other.unknowns + 1;
+        // Fewer residuals than unknowns leave rows without entries.
+        let width = other.unknowns + 1;
+        let present: Vec<usize> = (0..width).filter(|i| other.entry(*i, *i) != 0.0).collect();
+        let height = present.len();
         let mut rows = vec![0.0; height * (self.unknowns + 1)];
         let targets = places.iter().copied().chain([self.unknowns]);
-        for (column, to) in other.triangle.chunks_exact(height).zip(targets) {
-            rows[to * height..(to + 1) * height].copy_from_slice(column);
+        for (column, to) in other.triangle.chunks_exact(width).zip(targets) {
+            let into = &mut rows[to * height..(to + 1) * height];
+            into.iter_mut()
+                .zip(&present)
+                .for_each(|(x, i)| *x = column[*i]);
         }
-        // The other factor is triangular: a column has entries in as many rows as there are unknowns
-        // up to it, the residuals in all.
+        // The other factor is triangular: a column has entries in the rows of the unknowns up to it, the
+        // residuals in all.
         let filled: Vec<usize> = if places.is_sorted() {
-            let known = |to: usize| places.partition_point(|p| *p <= to);
+            let known = |to: usize| {
+                let unknowns = places.partition_point(|p| *p <= to);
+                present.partition_point(|i| *i < unknowns)
+            };
             (0..self.unknowns).map(known).chain([height]).collect()
         } else {
             vec![height; self.unknowns + 1]
@@ -207,7 +244,7 @@ impl Factor {
 /// a Householder reflection, which acts on the rows of all later columns, `height` apart.
 ///
 /// The same arithmetic, in the same order, on vectors of any width: no bit depends on the processor.
-#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2"))]
 fn reflect(
     triangle: &mut [f64],
     (j, width): (usize, usize),
@@ -234,13 +271,13 @@ fn reflect(
 }
 
 /// Inner product.
-#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2"))]
 pub(in crate::identify) fn dot(a: &[f64], b: &[f64]) -> f64 {
     inner(a, b)
 }
 
 /// Subtract a multiple of another column.
-#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx2"))]
 fn subtract(from: &mut [f64], share: f64, column: &[f64]) {
     less(from, share, column);
 }
@@ -251,9 +288,7 @@ fn inner(a: &[f64], b: &[f64]) -> f64 {
     let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<16>(), b.as_chunks::<16>());
     let mut sums = [0.0; 16];
     for (x, y) in a.iter().zip(b) {
-        for ((sum, x), y) in sums.iter_mut().zip(x).zip(y) {
-            *sum += x * y;
-        }
+        sums = std::array::from_fn(|i| sums[i] + x[i] * y[i]);
     }
     let rest: f64 = rest_a.iter().zip(rest_b).map(|(x, y)| x * y).sum();
     sums.iter().sum::<f64>() + rest
@@ -262,12 +297,9 @@ fn inner(a: &[f64], b: &[f64]) -> f64 {
 /// Subtract a multiple of another column.
 #[inline(always)]
 fn less(from: &mut [f64], share: f64, column: &[f64]) {
-    let ((wide, rest), (others, other_rest)) =
-        (from.as_chunks_mut::<8>(), column.as_chunks::<8>());
+    let ((wide, rest), (others, other_rest)) = (from.as_chunks_mut::<8>(), column.as_chunks::<8>());
     for (x, y) in wide.iter_mut().zip(others) {
-        for (x, y) in x.iter_mut().zip(y) {
-            *x -= share * y;
-        }
+        *x = std::array::from_fn(|i| x[i] - share * y[i]);
     }
     for (x, y) in rest.iter_mut().zip(other_rest) {
         *x -= share * y;
