@@ -224,7 +224,7 @@ impl Problem<'_> {
                 .filter(|c| *c != coordinate)
                 .collect(),
             progress: self.progress.clone(),
-            precision: self.precision,
+            precision: Precision::Start,
         };
         Some(held.fit(start).ok()?.cost)
     }

@@ -153,12 +153,19 @@ fn profile(
 ) -> Option<ProfileCurve> {
     let error = fit.error(coordinate)? * factor.sqrt();
     let best = fit.parameters.coordinate(coordinate);
+    let rise = |k: f64| {
+        let cost = problem.cost_with(fit, coordinate, best + k * error)?;
+        Some((cost - fit.cost) / factor)
+    };
+    let smooth = smooth_rise(rise);
     let mut points: Vec<(f64, f64)> = OFFSETS
         .iter()
         .filter_map(|k| {
-            let value = best + k * error;
-            let cost = problem.cost_with(fit, coordinate, value)?;
-            Some((value, (cost - fit.cost) / factor))
+            let rise = match smooth {
+                Some([cubic, quartic]) => k * k * (1.0 + cubic * k + quartic * k * k),
+                None => rise(*k)?,
+            };
+            Some((best + k * error, rise))
         })
         .collect();
     points.push((best, 0.0));
@@ -178,6 +185,21 @@ fn profile(
         delta_chi2: points.iter().map(|p| p.1.max(0.0)).collect(),
         interval95: ends.map(|(a, b)| [physical(a), physical(b)]),
     })
+}
+
+/// Greatest difference of a rise from k²(1 + ak + bk²), as a share of k², where it is taken to be that.
+const SMOOTH: f64 = 0.01;
+
+/// The coefficients a and b with which the rise k standard errors from the optimum is k²(1 + ak + bk²):
+/// by the rises at ±3, where those at ±1.5 confirm it; `None` where they do not.
+fn smooth_rise(rise: impl Fn(f64) -> Option<f64>) -> Option<[f64; 2]> {
+    let beyond = |k: f64| Some(rise(k)? / (k * k) - 1.0);
+    let (below, above) = (beyond(-3.0)?, beyond(3.0)?);
+    let [cubic, quartic] = [(above - below) / 6.0, (above + below) / 18.0];
+    let confirmed = [-1.5, 1.5]
+        .into_iter()
+        .all(|k| beyond(k).is_some_and(|found| (found - (cubic + quartic * k) * k).abs() < SMOOTH));
+    confirmed.then_some([cubic, quartic])
 }
 
 /// Where a rise along points away from the optimum reaches [`CHI2_95`]; interpolated in its root,
@@ -256,4 +278,19 @@ fn summary(coordinate: Coordinate, sorted: &[f64]) -> Option<Bootstrapped> {
         standard_error: crate::signal::robust::rms(&apart),
         interval95: [physical(at(0.025)?), physical(at(0.975)?)],
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rise_that_is_nearly_a_square_is_told_by_four_of_its_points() {
+        let told = smooth_rise(|k| Some(k * k * (1.0 + 0.02 * k + 0.003 * k * k)));
+        let [cubic, quartic] = told.expect("smooth");
+        assert!((cubic - 0.02).abs() < 1e-12 && (quartic - 0.003).abs() < 1e-12);
+        // A kink between the points, and a point without a fit.
+        assert_eq!(smooth_rise(|k| Some(k * k + k.abs())), None);
+        assert_eq!(smooth_rise(|k| (k < 2.0).then_some(k * k)), None);
+    }
 }
