@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::identify::diagnostics::agreement::{agreement, between_methods};
 use crate::identify::diagnostics::beyond;
+use crate::identify::diagnostics::contradicting_gap::contradicting_gap;
 use crate::identify::diagnostics::momentum;
 use crate::identify::diagnostics::suspicion::{self, OddGap};
 use crate::identify::diagnostics::swapped_channels;
@@ -94,7 +95,7 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
     let start = with_restitution(start, &impacts);
     let mut fits = run.fits(start, resonance, impacts);
     let mut suspicions = Vec::new();
-    while let Some(odd) = run.odd_gap(&fits, suspicions.len()) {
+    while let Some(odd) = run.odd_gap(&fits, start, suspicions.len()) {
         suspicions.push(odd.into());
         if !run.selection.leave_out_gap(odd.stated_m) {
             break;
@@ -455,7 +456,7 @@ impl IdentificationRun<'_> {
     }
 
     /// The gap that deviates most from what the others say, if one does.
-    fn odd_gap(&self, fits: &Fits, found: usize) -> Option<OddGap> {
+    fn odd_gap(&self, fits: &Fits, start: Parameters, found: usize) -> Option<OddGap> {
         if found >= MOST_ODD_GAPS {
             return None;
         }
@@ -468,9 +469,23 @@ impl IdentificationRun<'_> {
         } = &self.selection;
         let weight = 1.0 / succeeded(&fits.trajectories)?.factor;
         let uncertainty_m = self.evidence.nominal.clearance_uncertainty_m;
+        let both = Weights::from([(Method::Resonance, 1.0), (Method::Trajectories, 1.0)]);
+        let fit = |blocks: &Blocks| {
+            let nominal = &self.evidence.nominal;
+            let problem = Problem {
+                precision: Precision::Start,
+                ..joint::problem(blocks, start, &both, nominal, None)?
+            };
+            let found = problem.fit(start).ok()?;
+            let mean_square = found.cost / found.residuals.max(1) as f64;
+            Some((found.parameters, mean_square))
+        };
+        let contradicting = contradicting_gap(blocks, lost, &start, &fit);
         let lost = suspicion::lost_gap(&blocks.trajectory, lost, &joint.fit.parameters, *typical);
         let allowed = |odd: &OddGap| (odd.fitting_m - odd.stated_m).abs() > 4.0 * uncertainty_m;
-        lost.filter(allowed)
+        contradicting
+            .or(lost)
+            .filter(allowed)
             .or_else(|| suspicion::odd_gap(blocks, weight, joint, uncertainty_m))
     }
 

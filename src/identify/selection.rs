@@ -285,9 +285,11 @@ impl<'a> Selection<'a> {
         found
     }
 
-    /// The records that draw a joint fit away from what all others state, `most` of them at most; one
-    /// batch of them more says that there are too many. After each batch the others are judged again at
-    /// the optimum without it, to first order.
+    /// The records that draw a joint fit away from what all others state, `most` of them at most. After
+    /// each batch the others are judged again at the optimum without it, to first order.
+    ///
+    /// # Errors
+    /// [`TooMany`] where another batch would exceed `most`.
     pub fn influential(
         &self,
         problem: &Problem<'_>,

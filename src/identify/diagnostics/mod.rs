@@ -4,6 +4,7 @@
 pub mod agreement;
 pub mod beyond;
 pub mod contact_law;
+pub mod contradicting_gap;
 pub mod influence;
 pub mod momentum;
 pub mod structure;

@@ -162,7 +162,7 @@ fn shift(block: &TrajectoryBlock, weight: f64, fit: &Fit, factor: f64, gap: f64)
         if record.clearance_m != gap {
             continue;
         }
-        let over_gap = slope_over_gap(block, item, &fit.parameters);
+        let over_gap = block.over_relative_clearance(item, &fit.parameters);
         let over_all = block.slopes(item, &fit.parameters, &fit.free);
         let Some((slope, (residuals, columns))) = over_gap.zip(over_all) else {
             continue;
@@ -186,24 +186,6 @@ fn shift(block: &TrajectoryBlock, weight: f64, fit: &Fit, factor: f64, gap: f64)
             z_score: relative * (left / factor).sqrt(),
         }
     })
-}
-
-/// Slope of one record's residuals over the relative clearance, by central differences.
-fn slope_over_gap(
-    block: &TrajectoryBlock,
-    item: usize,
-    parameters: &Parameters,
-) -> Option<Vec<f64>> {
-    const STEP: f64 = 2e-6;
-    let mut one = block.with_records(vec![block.records[item].clone()]);
-    let stated_m = one.records[0].clearance_m;
-    let mut moved = |by: f64| {
-        one.records[0].clearance_m = stated_m * (1.0 + by);
-        one.residuals(0, parameters)
-    };
-    let (above, below) = (moved(STEP)?, moved(-STEP)?);
-    let difference = above.iter().zip(&below).map(|(a, b)| a - b);
-    Some(difference.map(|d| d / (2.0 * STEP)).collect())
 }
 
 /// Records of a gap that the model reaches only with another clearance: of the gaps whose records
@@ -235,7 +217,9 @@ pub fn lost_gap(
 /// Mean squares beyond this times the typical one count the same.
 const CAP: f64 = 400.0;
 
-fn recover(
+/// Records of one gap with the clearance, within a third of the stated one, with which they fit like
+/// typical ones at given parameters; `None` where none brings them there.
+pub(super) fn recover(
     block: &TrajectoryBlock,
     records: Vec<TrajectoryRecord>,
     parameters: &Parameters,

@@ -213,3 +213,28 @@ pub fn study(
         tallies: Tallies::of(&statements),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::Finding;
+
+    #[test]
+    fn valid_a_gap_that_is_a_seventh_of_the_deflection_off_is_named_alone_with_its_true_value() {
+        let rig = "exact".parse().expect("a rig");
+        let draw = draw(0x00FA_0175 ^ 14_001, 11, Reach::Full, &rig);
+        let seen = campaign(&draw, Some(Mistake::WrongClearance)).expect("a campaign");
+        let [
+            Finding::WrongClearance {
+                stated_m,
+                fitting_m,
+                ..
+            },
+        ] = seen.outcome.suspicions[..]
+        else {
+            panic!("{:?}", seen.outcome.suspicions);
+        };
+        assert!(draw.truth.static_deflection_m < 7.0 * 0.05e-3);
+        assert!((stated_m - 0.05e-3 - fitting_m).abs() < 1e-7, "{fitting_m}");
+    }
+}

@@ -1,0 +1,90 @@
+//! A gap that is stated so far off that a fit of all records is nowhere near the rig: each gap is left
+//! out in turn, and what remains is fitted anew.
+//!
+//! The first order about a fit, which tells smaller errors of a gap, may then accuse another gap.
+
+use crate::identify::diagnostics::suspicion::{OddGap, recover};
+use crate::identify::evidence::Blocks;
+use crate::identify::evidence::trajectory_record::TrajectoryRecord;
+use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
+use crate::identify::fit::mean_squares;
+use crate::identify::fit::parameters::Parameters;
+use crate::signal::robust;
+
+/// Mean square of the residuals from which the records contradict each other.
+const MISFIT: f64 = 4.0;
+/// Greatest share of it that may remain without the odd gap, and of what remains without any other.
+const REMAINS: f64 = 0.25;
+/// Waveforms of each gap that are looked at.
+const FEW: usize = 8;
+/// Fewest gaps that can outvote one.
+const FEWEST_GAPS: usize = 3;
+
+/// A fit of some records: its parameters, and the mean square of its residuals.
+pub type Fitted = (Parameters, f64);
+
+/// The gap without which all other records fit far better, by `fit`, where that is so of one gap alone;
+/// `lost` are records that the blocks have no more, `start` is where fits start.
+pub fn contradicting_gap(
+    blocks: &Blocks,
+    lost: &[TrajectoryRecord],
+    start: &Parameters,
+    fit: &dyn Fn(&Blocks) -> Option<Fitted>,
+) -> Option<OddGap> {
+    let mut few = blocks.clone();
+    let records = few.trajectory.records.drain(..).chain(lost.iter().cloned());
+    few.trajectory.records = of_each_gap(records.collect());
+    few.trajectory.find_changes(start);
+    few.resonance.allow(LEAST_ALLOWANCE);
+    few.trajectory.allow(LEAST_ALLOWANCE);
+    let has_orbit = mean_squares(&few.trajectory, start);
+    let mut has_orbit = has_orbit.iter().map(Option::is_some);
+    few.trajectory
+        .records
+        .retain(|_| has_orbit.next().unwrap_or(false));
+    let mut gaps: Vec<f64> = few
+        .trajectory
+        .records
+        .iter()
+        .map(|r| r.clearance_m)
+        .collect();
+    gaps.dedup();
+    let (_, all) = fit(&few)?;
+    if gaps.len() < FEWEST_GAPS || all < MISFIT {
+        return None;
+    }
+    let mut left: Vec<(f64, Parameters, f64)> = gaps
+        .into_iter()
+        .filter_map(|gap| {
+            let mut others = few.clone();
+            others.trajectory.records.retain(|r| r.clearance_m != gap);
+            let (parameters, remains) = fit(&others)?;
+            Some((remains, parameters, gap))
+        })
+        .collect();
+    left.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let [(best, parameters, gap), (next, ..), ..] = left.as_slice() else {
+        return None;
+    };
+    let alone = *best < REMAINS * all && *best < REMAINS * next;
+    let block = &few.trajectory;
+    let own = block.records.iter().filter(|r| r.clearance_m == *gap);
+    let own: Vec<TrajectoryRecord> = own.cloned().collect();
+    let scores: Vec<f64> = mean_squares(block, parameters)
+        .into_iter()
+        .flatten()
+        .collect();
+    let typical = robust::median(&scores).unwrap_or(1.0).max(1.0);
+    alone.then(|| recover(block, own, parameters, typical))?
+}
+
+/// A few records of each gap, spread over them, in the order of the gaps.
+fn of_each_gap(mut records: Vec<TrajectoryRecord>) -> Vec<TrajectoryRecord> {
+    records.sort_by(|a, b| a.clearance_m.total_cmp(&b.clearance_m));
+    let gaps = records.chunk_by(|a, b| a.clearance_m == b.clearance_m);
+    gaps.flat_map(|gap| {
+        let step = gap.len().div_ceil(FEW).max(1);
+        gap.iter().step_by(step).cloned()
+    })
+    .collect()
+}
