@@ -21,8 +21,8 @@ use impactid::synthetic::{Effects, Faults, Laboratory, Plan, Truth, records};
 const RECORDS: usize = 846;
 
 fn main() -> Result<(), ModelError> {
-    // `cargo test --benches` passes --test: nothing is measured then
-    if std::env::args().any(|a| a == "--test") {
+    // `cargo bench` passes --bench; under `cargo test` nothing is measured
+    if !std::env::args().any(|a| a == "--bench") {
         return Ok(());
     }
     let observations = campaign()?;

@@ -19,8 +19,8 @@ const SAMPLES: usize = 2000;
 const REPETITIONS: usize = 5;
 
 fn main() {
-    // `cargo test --benches` passes --test: nothing is measured then
-    if std::env::args().any(|a| a == "--test") {
+    // `cargo bench` passes --bench; under `cargo test` nothing is measured
+    if !std::env::args().any(|a| a == "--bench") {
         return;
     }
     let named = std::env::args().skip(1).find(|a| !a.starts_with('-'));
