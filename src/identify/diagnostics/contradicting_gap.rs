@@ -31,9 +31,8 @@ pub fn contradicting_gap(
     start: &Parameters,
     fit: &dyn Fn(&Blocks) -> Option<Fitted>,
 ) -> Option<OddGap> {
-    let mut few = blocks.clone();
-    let records = few.trajectory.records.drain(..).chain(lost.iter().cloned());
-    few.trajectory.records = of_each_gap(records.collect());
+    let records = of_each_gap(blocks.trajectory.records.iter().chain(lost).collect());
+    let mut few = blocks.with_trajectory(blocks.trajectory.with_records(records));
     few.trajectory.find_changes(start);
     few.resonance.allow(LEAST_ALLOWANCE);
     few.trajectory.allow(LEAST_ALLOWANCE);
@@ -79,12 +78,12 @@ pub fn contradicting_gap(
 }
 
 /// A few records of each gap, spread over them, in the order of the gaps.
-fn of_each_gap(mut records: Vec<TrajectoryRecord>) -> Vec<TrajectoryRecord> {
+fn of_each_gap(mut records: Vec<&TrajectoryRecord>) -> Vec<TrajectoryRecord> {
     records.sort_by(|a, b| a.clearance_m.total_cmp(&b.clearance_m));
     let gaps = records.chunk_by(|a, b| a.clearance_m == b.clearance_m);
     gaps.flat_map(|gap| {
         let step = gap.len().div_ceil(FEW).max(1);
-        gap.iter().step_by(step).cloned()
+        gap.iter().step_by(step).copied().cloned()
     })
     .collect()
 }

@@ -186,6 +186,22 @@ impl Blocks {
         blocks
     }
 
+    /// The same with other periodic records.
+    #[must_use]
+    pub fn with_trajectory(&self, trajectory: TrajectoryBlock) -> Self {
+        Self {
+            trajectory,
+            resonance: self.resonance.clone(),
+            boundary: self.boundary.clone(),
+            impact: self.impact.clone(),
+            flight: self.flight.clone(),
+            impact_outliers: self.impact_outliers.clone(),
+            gaps_m: self.gaps_m.clone(),
+            half_sample_s: self.half_sample_s,
+            progress: self.progress.clone(),
+        }
+    }
+
     /// A problem over some of the blocks, whose fits are counted.
     pub fn problem<'b>(
         &self,
