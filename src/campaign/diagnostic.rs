@@ -126,6 +126,14 @@ impl Diagnostic {
         }
     }
 
+    /// The place, where there is one, and the message.
+    pub fn headline(&self) -> String {
+        match self.place.to_string() {
+            place if place.is_empty() => self.message.clone(),
+            place => format!("{place}: {}", self.message),
+        }
+    }
+
     /// A flag of a record of the campaign.
     pub fn of_flag(file: &Path, record: &str, flag: &Flag) -> Self {
         let severity = match flag.excludes {
@@ -140,7 +148,7 @@ impl Diagnostic {
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}. {}", self.place, self.message, self.remedy)
+        write!(f, "{}. {}", self.headline(), self.remedy)
     }
 }
 

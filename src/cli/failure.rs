@@ -166,8 +166,7 @@ pub(super) fn print_diagnostics(all: &Diagnostics, verbosity: Verbosity) {
 }
 
 fn print_one(one: &Diagnostic) {
-    let message = format!("{}: {}", one.place, one.message);
-    eprint!("{}", rendered(&message, &one.remedy, one.severity));
+    eprint!("{}", rendered(&one.headline(), &one.remedy, one.severity));
 }
 
 /// A problem in the form that miette prints.

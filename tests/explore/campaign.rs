@@ -173,6 +173,99 @@ fn results_that_are_spoiled_are_refused_or_shown_with_a_note() {
     assert!(code == 2 && said.contains("nowhere"), "{said}");
 }
 
+/// Settled motion at (η, ρ = 2) of the paper's rig (R = 0.9, β = 0.07) as a record of 12 drive periods:
+/// f0 = 12.6 Hz and `x_st` = 1 mm.
+fn simulated_record(folder: &Path, name: &str, eta: f64) {
+    let out = folder.join(format!("{name}-motion"));
+    let done = Command::new(env!("CARGO_BIN_EXE_impactid"))
+        .args([
+            "simulate",
+            "--eta",
+            &eta.to_string(),
+            "--rho",
+            "2",
+            "--skip-periods",
+            "300",
+        ])
+        .args([
+            "--periods",
+            "12",
+            "--out",
+            &out.to_string_lossy(),
+            "--quiet",
+        ])
+        .status()
+        .expect("it runs");
+    assert!(done.success());
+    let numbers = |line: &str| -> Vec<f64> {
+        let cells = line.split(',').map_while(|cell| cell.parse().ok());
+        cells.collect()
+    };
+    let table = |file: &str| -> Vec<Vec<f64>> {
+        let text = std::fs::read_to_string(out.join(file)).expect("a table");
+        text.lines().skip(1).map(numbers).collect()
+    };
+    let impacts: Vec<f64> = table("motion-impacts.csv")
+        .iter()
+        .map(|row| row[0])
+        .collect();
+    let (drive_hz, speed_m_s) = (12.6 * eta, std::f64::consts::TAU * 12.6 * 1e-3);
+    let mut text = String::from("time [s],drive [V],contact [V],vx [m/s],vy [m/s],x [m],y [m]\n");
+    for row in table("motion.csv") {
+        let turns = row[0] - 300.0;
+        let closed = |at: &f64| (0.0..3e-4 * drive_hz).contains(&(row[0] - at));
+        let contact = if impacts.iter().any(closed) { 5.0 } else { 0.0 };
+        text += &format!(
+            "{:.8},{:.6},{contact},{:.8},{:.8},{:.10},{:.10}\n",
+            turns / drive_hz,
+            (std::f64::consts::TAU * turns).cos(),
+            row[2] * speed_m_s,
+            row[4] * speed_m_s,
+            row[1] * 1e-3,
+            row[3] * 1e-3,
+        );
+    }
+    std::fs::write(folder.join(format!("{name}.csv")), text).expect("written");
+}
+
+#[test]
+fn longer_periods_chaos_and_records_left_out_are_shown_with_their_evidence() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, eta) in [("doubled", 0.79), ("chaos", 0.725), ("excluded", 1.1)] {
+        simulated_record(folder.path(), name, eta);
+    }
+    let campaign = "[campaign]\nmachine = \"double\"\n[records]\nfiles = \"*.csv\"\n\
+         clearance = \"2 mm\"\n\
+         [rig]\nnatural_frequency = \"12.6 Hz\"\ndamping_ratio = 0.07\n\
+         static_deflection = \"1 mm\"\nrestitution = 0.9\n\
+         [channels.drive]\nchannel = \"drive\"\n\
+         [channels.contact]\nchannel = \"contact\"\nthreshold = \"2.5 V\"\n\
+         [channels.velocity_x]\nchannel = \"vx\"\n[channels.velocity_y]\nchannel = \"vy\"\n\
+         [channels.displacement_x]\nchannel = \"x\"\n[channels.displacement_y]\nchannel = \"y\"\n\
+         [analysis]\nexclude = [\"excluded\"]\n";
+    std::fs::write(folder.path().join("campaign.toml"), campaign).expect("written");
+    let explorer = Explorer::start(&["campaign.toml"], folder.path());
+    let mut page = explorer.page();
+    let hello = page.hello().header;
+    for (name, label) in [("doubled", "2/2"), ("chaos", "chaotic")] {
+        let frame = shown(&mut page, &hello["state"], name);
+        assert_eq!(frame.header["shown"], "motion", "{name}: {}", frame.header);
+        let evidence = &frame.header["evidence"];
+        assert_eq!(frame.header["stated"]["motion"]["label"], label);
+        assert_eq!(frame.header["simulated"]["label"], label);
+        assert!(evidence["measures"]["periods_observed"].as_f64() > Some(10.0));
+        assert!(frame.column("measured0").len() > 500 && !frame.column("simulated0").is_empty());
+    }
+    let left_out = shown(&mut page, &hello["state"], "excluded");
+    let evidence = &left_out.header["evidence"];
+    assert!(evidence["used_by"].as_array().is_some_and(Vec::is_empty));
+    let flag = evidence["flags"][0]["message"]
+        .as_str()
+        .expect("why it is left out");
+    assert!(flag.contains("excludes this record"), "{flag}");
+    assert!(left_out.column("measured0").len() > 500);
+}
+
 /// Two releases of a mass on a spring, and a record without drive or decay.
 #[test]
 fn a_free_decay_is_shown_with_its_fit_and_a_record_with_nothing_says_why() {

@@ -365,8 +365,8 @@ fn hidden_flag(hidden: &[(f64, Side)]) -> Option<Flag> {
             FlagCode::NoFreeFlight,
             None,
             format!(
-                "{} falls of the velocity have no free flight beside them, the first at {time_s:.3} s \
-                 {side} it: they are left out",
+                "falls of the velocity without a free flight on both sides, left out: {}, the first at \
+                 {time_s:.3} s, with none {side} it",
                 hidden.len()
             ),
             "let the mass move freely for a few samples before and after each impact",
@@ -382,8 +382,8 @@ fn beyond_flag(beyond: &[f64]) -> Option<Flag> {
             FlagCode::SpeedNeverMeasured,
             None,
             format!(
-                "{} impacts, the first at {time_s:.3} s, would have an approach speed above any that \
-                 was measured: they are left out",
+                "impacts whose approach speed would be above any that was measured, left out: {}, the \
+                 first at {time_s:.3} s",
                 beyond.len()
             ),
             "let the mass move freely for a few samples before the impact",
