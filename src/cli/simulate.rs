@@ -142,6 +142,9 @@ Effects and the strengths they have if none is given (0 switches one off):
   delays=0.5               greatest delay of a channel against the drive, samples
   flicker=0.001            1/f noise, V rms
   hum=0.001                mains hum, V amplitude
+  drag=0.005               quadratic drag of each mass over F0, at the speed 2 pi f0 x_st/(2 beta)
+  spring-asymmetry=0.003   relative stiffening of the springs from rest to x_st/(2 beta) toward the other mass
+  damping-slope=0.05       relative change of the dashpots per unit of ln eta
 truth.json states what was drawn.";
 
 /// Arguments of `impactid simulate campaign`.

@@ -69,7 +69,10 @@ impl Common {
             Coordinate::Effect(effect) => match effect.kind() {
                 EffectKind::Harmonics => Some(Self::Harmonics),
                 EffectKind::ForceFrequency => Some(Self::ForceFrequency),
-                EffectKind::Hardening
+                EffectKind::Drag
+                | EffectKind::SpringAsymmetry
+                | EffectKind::DampingFrequency
+                | EffectKind::Hardening
                 | EffectKind::Friction
                 | EffectKind::Drift
                 | EffectKind::ContactDuration => None,

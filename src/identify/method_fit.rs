@@ -20,9 +20,14 @@ pub struct MethodFit {
     pub scatter: Scatter,
 }
 
-/// Share of an effect that its first order does not hold: what campaigns on rigs with all effects
-/// showed.
-const FIRST_ORDER: f64 = 0.02;
+/// Share of an effect that its first order does not hold, of what it changes of a parameter: what
+/// campaigns on rigs with all effects showed. Phases tell f0, and hold it better than amplitudes the others.
+fn beyond_first_order(parameter: Coordinate) -> f64 {
+    match parameter {
+        Coordinate::Frequency => 0.005,
+        _ => 0.02,
+    }
+}
 
 impl MethodFit {
     /// Of a fit of a problem, judged with degrees of freedom.
@@ -59,12 +64,13 @@ impl MethodFit {
         let count = told.len();
         let own = DMatrix::from_fn(count, count, |i, k| information[(told[i], told[k])]);
         let back = inverse(&own)?;
+        let share = beyond_first_order(coordinate);
         let effects = fit.free.iter().enumerate();
         let effects = effects.filter(|(_, c)| matches!(c, Coordinate::Effect(_)));
         let change = |(k, c): (usize, &Coordinate)| {
             let pulled = told.iter().enumerate();
             let pulled = pulled.map(|(i, at)| back[(row, i)] * information[(*at, k)]);
-            FIRST_ORDER * pulled.sum::<f64>() * fit.parameters.coordinate(*c)
+            share * pulled.sum::<f64>() * fit.parameters.coordinate(*c)
         };
         Some(effects.map(change).map(|c| c * c).sum::<f64>().sqrt())
     }

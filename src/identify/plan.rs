@@ -9,6 +9,7 @@ use crate::identify::evidence::Evidence;
 use crate::identify::evidence::trajectory::{TrajectoryBlock, distinct_phases};
 use crate::identify::evidence::trajectory_record::{TrajectoryRecord, Weighing};
 use crate::identify::evidence::weighing::LEAST_ALLOWANCE;
+use crate::identify::fit::group::Group;
 use crate::identify::fit::normal::inverse;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::identify::fit::{Fit, Problem};
@@ -281,7 +282,7 @@ impl UsualRecord {
             gap: None,
             lone_clearance_error_m: 0.0,
             place: 0.0,
-            group: 0,
+            group: Group::default(),
             press_per_s: 0.0,
             shared: Vec::new(),
             perturbations: Vec::new(),

@@ -37,8 +37,8 @@ pub struct Effects {
     pub force_curvature: f64,
     /// h of the spring force k x (1 + h x²/A²).
     pub hardening: f64,
-    /// A of `hardening`, m: `x_st/(2β)`.
-    pub hardening_amplitude_m: f64,
+    /// A of `hardening`, `spring_asymmetry` and `drag`, m: the amplitude at resonance `x_st/(2β)`.
+    pub resonance_amplitude_m: f64,
     /// Coulomb friction of each mass over F0.
     pub friction: f64,
     /// Relative change of f0 from the first to the last record; it is the stiffness that changes.
@@ -54,6 +54,12 @@ pub struct Effects {
     pub flicker_v: f64,
     /// Mains hum, V amplitude.
     pub hum_v: f64,
+    /// Quadratic drag of each mass over F0 at the speed ΩA.
+    pub drag: f64,
+    /// q of the spring force k x (1 + q x/A).
+    pub spring_asymmetry: f64,
+    /// Exponent s of the dashpots over the drive's frequency: b ∝ η^s.
+    pub damping_slope: f64,
 }
 
 impl Effects {
@@ -75,6 +81,9 @@ impl Effects {
             self.frequency_drift,
             self.damping_drift,
             self.contact_duration_s,
+            self.drag,
+            self.spring_asymmetry,
+            self.damping_slope,
         ];
         sizes.iter().all(|s| *s == 0.0)
     }

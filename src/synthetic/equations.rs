@@ -1,7 +1,7 @@
 //! Equations of motion of a rig with effects beyond the model, dimensionless by the campaign's
 //! nominal Ω, `x_st` and F0:
 //!
-//! X'' + 2δ X' + κ X (1 + h X²/A²) + μ sgn X' = F p(φ) − P, the same for Y, with the drive
+//! X'' + 2δ X' + κ X (1 + q X/A + h X²/A²) + μ sgn X' + d |X'|X'/A² = F p(φ) − P, the same for Y, with the drive
 //! p(φ) = cos φ + a₂ cos(2φ + φ₂) + a₃ cos(3φ + φ₃) and the press force P of a contact.
 
 use impact_oscillator::model::params::ModelError;
@@ -113,6 +113,10 @@ pub struct Equations {
     force: [f64; 2],
     /// h/A²
     cubic: f64,
+    /// q/A
+    quadratic: f64,
+    /// d/A²
+    drag: f64,
     /// a cos p and a sin p of the second and third harmonic.
     harmonics: [[f64; 2]; 2],
 }
@@ -131,14 +135,14 @@ impl Equations {
         let machine = truth.machine();
         let masses = [machine.x, machine.y.unwrap_or(machine.x)];
         let stiffening = (1.0 + effects.frequency_drift * (elapsed - 0.5)).powi(2);
-        let damping = 2.0 * (1.0 + effects.damping_drift * (elapsed - 0.5));
+        let damping =
+            2.0 * (1.0 + effects.damping_drift * (elapsed - 0.5)) * eta.powf(effects.damping_slope);
         let beyond = eta - 1.0;
         let lean = 1.0 + beyond * (effects.force_slope + beyond * effects.force_curvature);
-        let amplitude = effects.hardening_amplitude_m / x_st;
-        let cubic = if effects.hardening > 0.0 {
-            effects.hardening / (amplitude * amplitude)
-        } else {
-            0.0
+        let amplitude = effects.resonance_amplitude_m / x_st;
+        let over_amplitude = |strength: f64, power: i32| match strength == 0.0 {
+            true => 0.0,
+            false => strength / amplitude.powi(power),
         };
         let harmonic = |h: super::effects::Harmonic| {
             [h.phase_rad.cos(), h.phase_rad.sin()].map(|c| c * h.amplitude)
@@ -151,7 +155,9 @@ impl Equations {
             damping: masses.map(|m| damping * m.decay_rate()),
             stiffness: masses.map(|m| stiffening * m.stiffness_per_mass()),
             force: masses.map(|m| lean * m.drive_per_mass()),
-            cubic,
+            cubic: over_amplitude(effects.hardening, 2),
+            quadratic: over_amplitude(effects.spring_asymmetry, 1),
+            drag: over_amplitude(effects.drag, 2),
             harmonics: [effects.second_harmonic, effects.third_harmonic].map(harmonic),
         }
     }
@@ -168,6 +174,8 @@ impl Equations {
             stiffness: [stiffness; 2],
             force: [0.0; 2],
             cubic,
+            quadratic: 0.0,
+            drag: 0.0,
             harmonics: [[0.0; 2]; 2],
         }
     }
@@ -187,7 +195,8 @@ impl Equations {
             let (x, v) = (s[2 * i], s[2 * i + 1]);
             self.force[i] * drive
                 - self.damping[i] * v
-                - self.stiffness[i] * x * (1.0 + self.cubic * x * x)
+                - self.drag * v * v.abs()
+                - self.stiffness[i] * x * (1.0 + self.quadratic * x + self.cubic * x * x)
         })
     }
 

@@ -13,6 +13,7 @@ use nalgebra::{Matrix4, Vector4};
 use crate::event::{CornerShift, Impact, RigKind};
 use crate::identify::evidence::impacts::corners_in;
 use crate::identify::fit::Block;
+use crate::identify::fit::group::Group;
 use crate::identify::fit::own::Circumstances;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::motion::{Motion, Observation};
@@ -61,8 +62,8 @@ pub struct FlightRecord {
     pub clearance_m: f64,
     /// Place of the clearance among those that carry an error of their own.
     pub gap: Option<usize>,
-    /// The group of records that it belongs to.
-    pub group: usize,
+    /// The groups of records that it belongs to.
+    pub group: Group,
     /// Drive amplitude relative to the nominal one.
     pub drive_amplitude: f64,
     /// Its impacts, in their order, none missing between them.
@@ -149,7 +150,7 @@ fn flight_record(rig: RigKind, index: usize, o: &Observation) -> Option<FlightRe
         frequency_hz: drive.frequency_hz,
         clearance_m: o.setting.clearance_m?,
         gap: None,
-        group: 0,
+        group: Group::default(),
         drive_amplitude: o.setting.drive_amplitude,
         nodes,
     })
@@ -325,7 +326,7 @@ impl Block for FlightBlock {
         }
     }
 
-    fn group(&self, item: usize) -> Option<usize> {
+    fn group(&self, item: usize) -> Option<Group> {
         Some(self.records[item].group)
     }
 
@@ -376,7 +377,7 @@ mod tests {
                     frequency_hz,
                     clearance_m,
                     gap: None,
-                    group: 0,
+                    group: Group::default(),
                     drive_amplitude: 1.0,
                     nodes: nodes.collect(),
                 }

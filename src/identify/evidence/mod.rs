@@ -7,6 +7,7 @@
 pub mod boundary;
 pub mod direction;
 pub mod flights;
+mod groups;
 pub mod high_pass;
 pub mod impacts;
 pub mod nearest_orbit;
@@ -18,8 +19,6 @@ pub mod trajectory_record;
 pub mod waveform;
 pub mod weighing;
 
-use std::collections::BTreeMap;
-
 use crate::event::RigKind;
 use crate::identify::evidence::boundary::BoundaryBlock;
 use crate::identify::evidence::flights::FlightBlock;
@@ -28,12 +27,11 @@ use crate::identify::evidence::resonance::ResonanceBlock;
 use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::fit::effect::{Effect, Effects};
 use crate::identify::fit::gap_errors::MOST_GAPS;
+use crate::identify::fit::group::Group;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::identify::fit::{Block, FitProgress, Prior, Problem};
 use crate::identify::uncertainty::options::UncertaintyOptions;
-use crate::motion::Amplitude;
 use crate::motion::{Bracket, Observation};
-use crate::record::Role;
 use crate::signal::robust;
 
 /// What the laboratory states about its rig.
@@ -178,7 +176,7 @@ impl Blocks {
             half_sample_s: half_sample_s(observations),
             progress: evidence.progress.cloned().unwrap_or_default(),
         };
-        blocks.place(&places(observations), &groups(observations));
+        blocks.place(&places(observations), &groups::groups(observations));
         blocks.give_gaps_errors(evidence.nominal.clearance_uncertainty_m);
         let reach_m = reach_m(observations);
         (blocks.trajectory.reach_m, blocks.resonance.reach_m) = (reach_m, reach_m);
@@ -219,7 +217,7 @@ impl Blocks {
     }
 
     /// Set when in the campaign each record was taken, and its group.
-    fn place(&mut self, places: &[f64], groups: &[usize]) {
+    fn place(&mut self, places: &[f64], groups: &[Group]) {
         for point in &mut self.resonance.points {
             point.place = places[point.observation];
             point.group = groups[point.observation];
@@ -386,30 +384,6 @@ fn places(observations: &[Observation]) -> Vec<f64> {
     places
 }
 
-/// Fewest groups that are looked for.
-const FEWEST_GROUPS: usize = 8;
-
-/// The group of each record: those of one gap and direction of the sweep; parts of them, in the order
-/// of acquisition, where that makes too few.
-fn groups(observations: &[Observation]) -> Vec<usize> {
-    let mut of: BTreeMap<(u64, &str), Vec<usize>> = BTreeMap::new();
-    let mut order: Vec<usize> = (0..observations.len()).collect();
-    order.sort_by_key(|i| observations[*i].setting.sequence);
-    for i in order {
-        let setting = &observations[i].setting;
-        let gap = setting.clearance_m.unwrap_or(f64::NAN).to_bits();
-        of.entry((gap, setting.sweep.name())).or_default().push(i);
-    }
-    let parts = FEWEST_GROUPS.div_ceil(of.len().max(1));
-    let mut groups = vec![0; observations.len()];
-    for (number, records) in of.values().enumerate() {
-        for (rank, i) in records.iter().enumerate() {
-            groups[*i] = number * parts + rank * parts / records.len();
-        }
-    }
-    groups
-}
-
 /// Half the time between two samples in the median record, s.
 fn half_sample_s(observations: &[Observation]) -> f64 {
     let rates: Vec<f64> = observations.iter().map(|o| o.sample_rate_hz).collect();
@@ -418,17 +392,9 @@ fn half_sample_s(observations: &[Observation]) -> f64 {
         .map_or(0.0, |r| 0.5 / r)
 }
 
-/// The greatest displacement of the campaign, m: as measured, else by velocity and frequency.
+/// The greatest displacement of the campaign, m.
 fn reach_m(observations: &[Observation]) -> f64 {
     let usable = observations.iter().filter(|o| !o.excluded());
-    let of = |o: &Observation, a: &Amplitude| match a.role {
-        Role::DisplacementX | Role::DisplacementY => Some(a.half_range),
-        Role::VelocityX | Role::VelocityY => {
-            Some(a.half_range / (std::f64::consts::TAU * o.frequency_hz()?))
-        }
-        _ => None,
-    };
-    let all = usable.flat_map(|o| o.amplitudes.iter().filter_map(move |a| of(o, a)));
-    let most = all.filter(|a| a.is_finite()).fold(0.0, f64::max);
+    let most = usable.map(groups::amplitude).fold(0.0, f64::max);
     if most > 0.0 { most } else { 1.0 }
 }

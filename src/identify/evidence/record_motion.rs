@@ -501,6 +501,7 @@ mod tests {
         effects[Effect::ContactDuration.place()] = 0.3;
         effects[Effect::ContactLaw.place()] = 0.1;
         effects[Effect::ContactReach.place()] = 0.05;
+        effects[Effect::DampingSlope.place()] = -0.1;
         Parameters {
             drive_asymmetry: 0.02,
             stiffness_asymmetry: -0.03,
@@ -550,7 +551,7 @@ mod tests {
             gap: Some(1),
             lone_clearance_error_m: 0.0,
             place: 0.3,
-            group: 0,
+            group: crate::identify::fit::group::Group::default(),
             press_per_s: -40.0,
             shared: Vec::new(),
             perturbations: Vec::new(),

@@ -7,6 +7,7 @@ use crate::identify::evidence::direction::{change, relative_length};
 use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::fit::Block;
 use crate::identify::fit::effect::{Effect, EffectKind};
+use crate::identify::fit::group::Group;
 use crate::identify::fit::own::Circumstances;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
@@ -31,8 +32,8 @@ pub struct ResonancePoint {
     pub phase_error_rad: f64,
     /// Place in the campaign, −½ … ½.
     pub place: f64,
-    /// The group of records that it belongs to.
-    pub group: usize,
+    /// The groups of records that it belongs to.
+    pub group: Group,
     /// Responses of the channels.
     pub responses: Vec<Response>,
     /// Slopes of the responses over the logarithm of the drive's frequency; empty until they are found
@@ -81,7 +82,7 @@ impl ResonanceBlock {
                     phase_error_rad: o.drive_phase_error_rad(),
                     drive_amplitude: o.setting.drive_amplitude,
                     place: 0.0,
-                    group: 0,
+                    group: Group::default(),
                     responses: o
                         .response
                         .iter()
@@ -141,7 +142,7 @@ struct Predicted {
     /// Dimensionless amplitude of the mass's displacement without effects beyond the model.
     forced: Complex<f64>,
     /// What hardening and friction change of it, per unit of their strengths.
-    extra: [Complex<f64>; 2],
+    extra: [Complex<f64>; EXTRA.len()],
     oscillator: Oscillator,
     /// SI units in one of the model's displacement.
     unit: Complex<f64>,
@@ -174,7 +175,7 @@ fn respond(
     Predicted {
         value: forced * unit,
         forced,
-        extra: [Complex::default(); 2],
+        extra: [Complex::default(); EXTRA.len()],
         oscillator,
         unit,
         order: f64::from(order),
@@ -183,7 +184,7 @@ fn respond(
 }
 
 /// The effects that change an impactless response, in the order of [`Predicted::extra`].
-const EXTRA: [Effect; 2] = [Effect::Hardening, Effect::Friction];
+const EXTRA: [Effect; 3] = [Effect::Hardening, Effect::Friction, Effect::Drag];
 
 /// Predicted complex response of a channel, SI, gain included; the drive is cos θ.
 pub fn predicted(
@@ -198,16 +199,18 @@ pub fn predicted(
 }
 
 impl Predicted {
-    /// With hardening springs and friction, by their describing functions: a force εX³ acts at the
-    /// drive's frequency like ¾ε|F|²X, one of sign X' like (4/π)X'/|X'|. `hardening` is ε and
-    /// `friction` the force per unit of their strengths.
-    fn with_effects(self, parameters: &Parameters, [hardening, friction]: [f64; 2]) -> Self {
+    /// With hardening springs, friction and drag, by their describing functions: a force εX³ acts at
+    /// the drive's frequency like ¾ε|F|²X, one of sign X' like (4/π)X'/|X'|, one of |X'|X' like
+    /// (8/3π)|X'|X'. `per_unit` holds ε and the other forces per unit of the effects' strengths.
+    fn with_effects(self, parameters: &Parameters, eta: f64, per_unit: [f64; EXTRA.len()]) -> Self {
+        use std::f64::consts::PI;
+        let [hardening, friction, drag] = per_unit;
         let size = self.forced.norm();
         let compliance = self.forced / self.oscillator.drive_per_mass();
         let stiffening = self.forced * (0.75 * hardening * size * size);
-        let resisting =
-            Complex::new(0.0, friction * 4.0 / std::f64::consts::PI / size) * self.forced;
-        let extra = [-compliance * stiffening, -compliance * resisting];
+        let resisting = Complex::new(0.0, friction * 4.0 / PI / size) * self.forced;
+        let dragging = Complex::new(0.0, drag * 8.0 / (3.0 * PI) * eta * eta * size) * self.forced;
+        let extra = [stiffening, resisting, dragging].map(|force| -compliance * force);
         let changes = EXTRA.iter().zip(extra);
         let change: Complex<f64> = changes.map(|(e, c)| c * parameters.effect(*e)).sum();
         Self {
@@ -240,15 +243,20 @@ impl Predicted {
     ) -> Complex<f64> {
         let mass = if of_y { &change.y } else { &change.x };
         let forced = forced_slope(&self.oscillator, mass, self.forced, [eta, change.eta]);
-        // Relative slopes of X_h = −¾ h|F|²F²/D and of X_f = −(4/π) iφ F²/(D|F|).
+        // Relative slopes of X_h = −¾ h|F|²F²/D, X_f = −(4/π) iφ F²/(D|F|) and
+        // X_d = −(8/3π) iδη²|F|F²/D.
         let relative = forced / self.forced;
         let both = relative * 2.0 - mass.drive_per_mass / self.oscillator.drive_per_mass();
         let stiffness = mass.stiffness_per_mass / self.oscillator.stiffness_per_mass();
         let hardening = both + 2.0 * relative.re + stiffness + 2.0 * length;
         let friction = both - relative.re - length * own.friction_over_length;
-        let [of_hardening, of_friction] = self.extra;
-        let extra =
-            of_hardening * hardening * own.strengths[0] + of_friction * friction * own.strengths[1];
+        let drag =
+            both + relative.re + 2.0 * change.eta / eta + length * (2.0 - own.friction_over_length);
+        let relative = [hardening, friction, drag];
+        let parts = self.extra.iter().zip(relative).zip(own.strengths);
+        let extra: Complex<f64> = parts
+            .map(|((x, slope), strength)| x * slope * strength)
+            .sum();
         (forced + extra) * self.unit + self.value * length
     }
 
@@ -264,9 +272,9 @@ impl Predicted {
 
 /// Strengths of the effects in the order of [`Predicted::extra`].
 struct Strengths {
-    strengths: [f64; 2],
-    /// Power of the inverse of a record's own unit of length that friction, which is stated over that of
-    /// the campaign, goes with: 1 where that of the record alone changes, 0 where both do.
+    strengths: [f64; EXTRA.len()],
+    /// Power of the inverse of a record's own unit of length that friction and drag, which are stated
+    /// over that of the campaign, go with: 1 where that of the record alone changes, 0 where both do.
     friction_over_length: f64,
 }
 
@@ -323,6 +331,7 @@ impl Model<'_> {
                 Coordinate::Delay(_) => -p.value * rate * 1e-3,
                 Coordinate::Effect(Effect::Hardening) => p.extra[0] * p.unit,
                 Coordinate::Effect(Effect::Friction) => p.extra[1] * p.unit,
+                Coordinate::Effect(Effect::Drag) => p.extra[2] * p.unit,
                 _ => parts
                     .iter()
                     .map(|(change, length, weight)| {
@@ -344,12 +353,15 @@ impl ResonanceBlock {
         let length_m = own.static_deflection_m * point.drive_amplitude;
         let hardening = (length_m / self.reach_m).powi(2);
         let friction = parameters.static_deflection_m / length_m;
+        let drag = friction * hardening;
+        let eta = point.frequency_hz / own.natural_frequency_hz;
         let responses = point.responses.iter();
         let responses = responses
             .map(|r| {
                 let found = respond(&own, &machine, r.role, setting);
                 let stiffness = found.oscillator.stiffness_per_mass();
-                let found = found.with_effects(parameters, [stiffness * hardening, friction]);
+                let per_unit = [stiffness * hardening, friction, drag];
+                let found = found.with_effects(parameters, eta, per_unit);
                 match r.high_pass_hz {
                     Some(stated_hz) => {
                         let corner = own.corner(r.role);
@@ -364,7 +376,7 @@ impl ResonanceBlock {
             at,
             parameters,
             machine,
-            eta: point.frequency_hz / own.natural_frequency_hz,
+            eta,
             responses,
         }
     }
@@ -444,7 +456,7 @@ impl Block for ResonanceBlock {
         Some((white(self.apart(point, &found.responses)), columns))
     }
 
-    fn group(&self, item: usize) -> Option<usize> {
+    fn group(&self, item: usize) -> Option<Group> {
         Some(self.points[item].group)
     }
 
@@ -456,7 +468,7 @@ impl Block for ResonanceBlock {
             | Coordinate::Gap(_) => false,
             Coordinate::Effect(effect) => !matches!(
                 effect.kind(),
-                EffectKind::Harmonics | EffectKind::ContactDuration
+                EffectKind::Harmonics | EffectKind::ContactDuration | EffectKind::SpringAsymmetry
             ),
             _ => true,
         }
@@ -485,7 +497,7 @@ mod tests {
                 frequency_error: 0.0,
                 phase_error_rad: 0.0,
                 place: 0.2,
-                group: 0,
+                group: Group::default(),
                 responses: roles
                     .map(|role| Response {
                         role,
@@ -507,6 +519,8 @@ mod tests {
         effects[Effect::DeflectionDrift.place()] = 0.01;
         effects[Effect::Hardening.place()] = 0.02;
         effects[Effect::Friction.place()] = 0.03;
+        effects[Effect::Drag.place()] = 0.02;
+        effects[Effect::DampingSlope.place()] = -0.1;
         let p = Parameters {
             drive_asymmetry: 0.03,
             stiffness_asymmetry: -0.02,

@@ -10,6 +10,7 @@ use crate::identify::evidence::waveform::Phases;
 use crate::identify::fit::Block;
 use crate::identify::fit::effect::{Effect, Effects};
 use crate::identify::fit::factor::Factor;
+use crate::identify::fit::group::Group;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::motion::Folded;
 use crate::motion::Observation;
@@ -205,7 +206,7 @@ fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> 
         gap: None,
         lone_clearance_error_m: 0.0,
         place: 0.0,
-        group: 0,
+        group: Group::default(),
         press_per_s: 0.0,
         shared: Vec::new(),
         perturbations: Vec::new(),
@@ -295,7 +296,7 @@ impl Block for TrajectoryBlock {
         (0..self.records.len()).any(|item| self.item_touches(item, coordinate))
     }
 
-    fn group(&self, item: usize) -> Option<usize> {
+    fn group(&self, item: usize) -> Option<Group> {
         Some(self.records[item].group)
     }
 

@@ -4,6 +4,7 @@ use crate::event::RigKind;
 use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::evidence::waveform::Phases;
 use crate::identify::fit::effect::Effect;
+use crate::identify::fit::group::Group;
 use crate::identify::fit::own::Circumstances;
 use crate::identify::fit::parameters::gain_index;
 use crate::motion::{Folded, FoldedChannel};
@@ -36,8 +37,8 @@ pub struct TrajectoryRecord {
     pub lone_clearance_error_m: f64,
     /// Place in the campaign, −½ … ½.
     pub place: f64,
-    /// The group of records that it belongs to.
-    pub group: usize,
+    /// The groups of records that it belongs to.
+    pub group: Group,
     /// Acceleration of the masses toward each other at the impacts over the approach speed, 1/s; zero
     /// until it is found at good parameters.
     pub press_per_s: f64,

@@ -6,6 +6,7 @@
 use rayon::prelude::*;
 
 use crate::identify::fit::factor::Factor;
+use crate::identify::fit::group::Group;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 
 /// Weighted residuals of one kind of observation.
@@ -51,8 +52,8 @@ pub trait Block: Sync {
     /// Which coordinates the block depends on.
     fn touches(&self, coordinate: Coordinate) -> bool;
 
-    /// The group of records that an item belongs to, whose misfits may be alike; `None`: no group.
-    fn group(&self, _item: usize) -> Option<usize> {
+    /// The groups of records that an item belongs to, whose misfits may be alike; `None`: no group.
+    fn group(&self, _item: usize) -> Option<Group> {
         None
     }
 

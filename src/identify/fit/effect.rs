@@ -38,6 +38,14 @@ pub enum Effect {
     /// What the masses' acceleration during a contact adds to the distance that they press into each
     /// other: relative, per unit of acceleration × duration / approach speed
     ContactReach,
+    /// Drag that grows with the square of the velocity, relative to F0 at the velocity 2πf0 times the
+    /// greatest displacement measured
+    Drag,
+    /// Relative rise of the springs' secant stiffness from rest to the greatest displacement measured
+    /// toward the other mass, and fall as far on the other side
+    SpringAsymmetry,
+    /// Relative change of β per unit of ln η, about η = 1; −1 for hysteretic (structural) damping
+    DampingSlope,
 }
 
 /// Effects that a campaign may restrict the fit to, by name.
@@ -69,17 +77,26 @@ pub enum EffectKind {
     Drift,
     /// Contacts of finite duration
     ContactDuration,
+    /// Drag of the air
+    Drag,
+    /// Springs that are stiffer to one side
+    SpringAsymmetry,
+    /// The damping against frequency
+    DampingFrequency,
 }
 
 impl EffectKind {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 9] = [
         Self::Harmonics,
         Self::ForceFrequency,
         Self::Hardening,
         Self::Friction,
         Self::Drift,
         Self::ContactDuration,
+        Self::Drag,
+        Self::SpringAsymmetry,
+        Self::DampingFrequency,
     ];
 
     /// Name in `campaign.toml`.
@@ -95,7 +112,7 @@ impl EffectKind {
 
 impl Effect {
     /// Number of effects.
-    pub const COUNT: usize = 15;
+    pub const COUNT: usize = 18;
 
     /// All of them, in the order of their places.
     pub const ALL: [Self; Self::COUNT] = [
@@ -114,6 +131,9 @@ impl Effect {
         Self::ContactDuration,
         Self::ContactLaw,
         Self::ContactReach,
+        Self::Drag,
+        Self::SpringAsymmetry,
+        Self::DampingSlope,
     ];
 
     /// Place among all.
@@ -138,6 +158,9 @@ impl Effect {
             Self::ContactDuration | Self::ContactLaw | Self::ContactReach => {
                 EffectKind::ContactDuration
             }
+            Self::Drag => EffectKind::Drag,
+            Self::SpringAsymmetry => EffectKind::SpringAsymmetry,
+            Self::DampingSlope => EffectKind::DampingFrequency,
         }
     }
 
@@ -158,6 +181,9 @@ impl Effect {
             Self::ContactDuration => 0.6,
             Self::ContactLaw => 0.1,
             Self::ContactReach => 0.3,
+            Self::Drag => 1e-2,
+            Self::SpringAsymmetry => 5e-3,
+            Self::DampingSlope => 0.1,
         }
     }
 
@@ -165,7 +191,10 @@ impl Effect {
     /// of a perturbation; the others change the parameters of a record.
     pub fn is_acceleration(self) -> bool {
         self.place() <= Self::ThirdHarmonicSin.place()
-            || matches!(self, Self::Hardening | Self::Friction)
+            || matches!(
+                self,
+                Self::Hardening | Self::Friction | Self::Drag | Self::SpringAsymmetry
+            )
     }
 
     /// Name in `identification.json`.
@@ -186,6 +215,9 @@ impl Effect {
             Self::ContactDuration => "contact_duration_ms",
             Self::ContactLaw => "contact_law",
             Self::ContactReach => "contact_reach",
+            Self::Drag => "drag",
+            Self::SpringAsymmetry => "spring_asymmetry",
+            Self::DampingSlope => "damping_slope",
         }
     }
 }

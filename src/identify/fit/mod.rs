@@ -6,6 +6,7 @@ pub mod coordinate;
 pub mod effect;
 pub mod factor;
 pub mod gap_errors;
+pub mod group;
 pub mod least_squares;
 pub mod normal;
 pub mod own;

@@ -45,6 +45,14 @@ impl Parameters {
         [1.0 + off * (slope + curve * off), slope + 2.0 * curve * off]
     }
 
+    /// Frequency ratio of a record; 1 where nothing is known of its drive.
+    fn eta(&self, at: &Circumstances) -> f64 {
+        match at.frequency_hz > 0.0 {
+            true => at.frequency_hz / self.natural_frequency_hz,
+            false => 1.0,
+        }
+    }
+
     /// The parameters that a record has of its own, and its clearance, m: where drift, the force
     /// against frequency, errors of the clearances and the length of contacts have been applied.
     ///
@@ -52,7 +60,8 @@ impl Parameters {
     pub fn own(&self, at: &Circumstances) -> (Self, f64) {
         let drift = |effect| self.effect(effect) * at.place;
         let bend = self.effect(Effect::FrequencyBend) * bend(at.place);
-        let [lean, _] = self.lean(at.frequency_hz / self.natural_frequency_hz);
+        let eta = self.eta(at);
+        let [lean, _] = self.lean(eta);
         let contact_s = 1e-3 * self.effect(Effect::ContactDuration);
         let contact = short_contact(self.restitution);
         let beyond = contact.press * at.press_per_s + contact.drag * self.decay_per_s();
@@ -62,7 +71,9 @@ impl Parameters {
             restitution: restitution.clamp(0.0, 1.0),
             natural_frequency_hz: self.natural_frequency_hz
                 * (drift(Effect::FrequencyDrift) + bend).exp(),
-            damping_ratio: self.damping_ratio * drift(Effect::DampingDrift).exp(),
+            damping_ratio: self.damping_ratio
+                * (drift(Effect::DampingDrift) + self.effect(Effect::DampingSlope) * eta.ln())
+                    .exp(),
             static_deflection_m: self.static_deflection_m
                 * lean.max(0.01)
                 * drift(Effect::DeflectionDrift).exp(),
@@ -90,7 +101,7 @@ impl Parameters {
                 ..none
             })
         };
-        let eta = at.frequency_hz / self.natural_frequency_hz;
+        let eta = self.eta(at);
         let [lean, over_eta] = self.lean(eta);
         let contact = short_contact(self.restitution);
         let contact_s = 1e-3 * self.effect(Effect::ContactDuration);
@@ -114,7 +125,12 @@ impl Parameters {
                 clearance_m: contact_s * speed * contact.reach_slope * (1.0 + bent),
             }),
             Coordinate::Frequency => Some(OwnSlope {
-                physical: [drag, 1.0, 0.0, -eta * over_eta / lean],
+                physical: [
+                    drag,
+                    1.0,
+                    -self.effect(Effect::DampingSlope),
+                    -eta * over_eta / lean,
+                ],
                 ..none
             }),
             Coordinate::Damping => Some(OwnSlope {
@@ -130,6 +146,7 @@ impl Parameters {
                 Effect::FrequencyDrift => only(1, at.place),
                 Effect::FrequencyBend => only(1, bend(at.place)),
                 Effect::DampingDrift => only(2, at.place),
+                Effect::DampingSlope => only(2, eta.ln()),
                 Effect::DeflectionDrift => only(3, at.place),
                 Effect::ContactDuration => Some(OwnSlope {
                     physical: [1e-3 * law * beyond, 0.0, 0.0, 0.0],

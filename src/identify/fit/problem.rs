@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::identify::fit::block::Block;
 use crate::identify::fit::factor::Factor;
+use crate::identify::fit::group::Group;
 use crate::identify::fit::least_squares::{LeastSquares, Limits, Variance, minimise};
 use crate::identify::fit::normal::Normal;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
@@ -145,13 +146,13 @@ impl Problem<'_> {
             .collect()
     }
 
-    /// Normal equations of the items of each group, by the group's number, over the items that have a
-    /// model; those of the blocks and priors that belong to no group last.
-    pub fn groups(&self, parameters: &Parameters) -> (BTreeMap<usize, Normal>, Normal) {
+    /// Normal equations of the items that belong to the same groups, over the items that have a model;
+    /// those of the blocks and priors that belong to no group last.
+    pub fn groups(&self, parameters: &Parameters) -> (BTreeMap<Group, Normal>, Normal) {
         let n = self.free.len();
         let (mut groups, mut rest) = (BTreeMap::new(), Normal::zeros(n));
         for (block, weight) in &self.blocks {
-            let mut items: BTreeMap<Option<usize>, Vec<usize>> = BTreeMap::new();
+            let mut items: BTreeMap<Option<Group>, Vec<usize>> = BTreeMap::new();
             for i in 0..block.items() {
                 items.entry(block.group(i)).or_default().push(i);
             }

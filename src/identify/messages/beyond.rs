@@ -80,6 +80,31 @@ pub(super) fn beyond_english(effect: Effect, rises: bool) -> &'static str {
         (Effect::ContactDuration, _) => {
             "a contact acts like one of {strength} ± {error} ms: use harder bumpers"
         }
+        (Effect::Drag, true) => {
+            "there is drag that grows with the square of the velocity, of {strength} ± {error} % of the \
+             driving force at the greatest displacement: use smaller motions, or guides without \
+             flat faces"
+        }
+        (Effect::Drag, false) => {
+            "the damping grows slower than the velocity (a quadratic part of −{strength} ± {error} % of \
+             the driving force at the greatest displacement): look for slip in joints"
+        }
+        (Effect::SpringAsymmetry, true) => {
+            "the springs are stiffer toward the other mass, by {strength} ± {error} % at the greatest \
+             displacement: check that they are straight at rest"
+        }
+        (Effect::SpringAsymmetry, false) => {
+            "the springs are softer toward the other mass, by {strength} ± {error} % at the greatest \
+             displacement: check that they are straight at rest"
+        }
+        (Effect::DampingSlope, true) => {
+            "the damping ratio rises with the drive's frequency, by {strength} ± {error} % for a \
+             frequency e times as high: it is stated for resonance"
+        }
+        (Effect::DampingSlope, false) => {
+            "the damping ratio falls with the drive's frequency, by {strength} ± {error} % for a \
+             frequency e times as high, as with hysteretic damping: it is stated for resonance"
+        }
     }
 }
 
@@ -160,6 +185,31 @@ pub(super) fn beyond_german(effect: Effect, rises: bool) -> &'static str {
         }
         (Effect::ContactDuration, _) => {
             "ein Kontakt wirkt wie einer von {strength} ± {error} ms: härtere Puffer verwenden"
+        }
+        (Effect::Drag, true) => {
+            "es gibt einen Widerstand, der mit dem Quadrat der Geschwindigkeit wächst, von {strength} ± \
+             {error} % der Antriebskraft beim größten Weg: kleinere Bewegungen, oder Führungen ohne \
+             flache Stirnseiten"
+        }
+        (Effect::Drag, false) => {
+            "die Dämpfung wächst langsamer als die Geschwindigkeit (ein quadratischer Anteil von \
+             −{strength} ± {error} % der Antriebskraft beim größten Weg): Schlupf in Verbindungen suchen"
+        }
+        (Effect::SpringAsymmetry, true) => {
+            "die Federn sind zur anderen Masse hin steifer, um {strength} ± {error} % beim größten Weg: \
+             prüfen, ob sie in Ruhe gerade sind"
+        }
+        (Effect::SpringAsymmetry, false) => {
+            "die Federn sind zur anderen Masse hin weicher, um {strength} ± {error} % beim größten Weg: \
+             prüfen, ob sie in Ruhe gerade sind"
+        }
+        (Effect::DampingSlope, true) => {
+            "der Dämpfungsgrad steigt mit der Erregerfrequenz, um {strength} ± {error} % für eine e-mal \
+             so hohe Frequenz: angegeben ist er für die Resonanz"
+        }
+        (Effect::DampingSlope, false) => {
+            "der Dämpfungsgrad sinkt mit der Erregerfrequenz, um {strength} ± {error} % für eine e-mal \
+             so hohe Frequenz, wie bei Strukturdämpfung: angegeben ist er für die Resonanz"
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Quantiles of the normal and of Student's distribution.
+//! Quantiles of the normal, of Student's and of the χ² distribution.
 
 /// 97.5 % point of the normal distribution.
 pub const NORMAL_975: f64 = 1.959_963_984_540_054;
@@ -20,9 +20,33 @@ pub fn student_975(freedom: f64) -> f64 {
     z + series
 }
 
+/// 99 % point of the χ² distribution (Wilson and Hilferty; within 2 % from 2 degrees of freedom on).
+pub fn chi_squared_99(freedom: f64) -> f64 {
+    const NORMAL_99: f64 = 2.326_347_874_040_841;
+    let ninth = 2.0 / (9.0 * freedom);
+    freedom * (1.0 - ninth + NORMAL_99 * ninth.sqrt()).powi(3)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn valid_quantiles_of_chi_squared() {
+        // Tables: 9.210 (2), 15.086 (5), 18.475 (7), 23.209 (10), 37.566 (20).
+        for (freedom, want) in [
+            (2.0, 9.21),
+            (5.0, 15.086),
+            (7.0, 18.475),
+            (10.0, 23.209),
+            (20.0, 37.566),
+        ] {
+            assert!(
+                (chi_squared_99(freedom) / want - 1.0).abs() < 0.02,
+                "{freedom}"
+            );
+        }
+    }
 
     #[test]
     fn valid_students_quantiles() {

@@ -1,6 +1,7 @@
 //! Scatter between groups of records beyond noise and nuisances: what the model does not contain.
 //!
-//! Leaving out group g of the records (one gap and direction of the sweep) moves an estimate, to first
+//! The records are parted by setting (one gap and direction of the sweep), by frequency and by
+//! amplitude. Leaving out group g of a partition moves an estimate, to first
 //! order, by `Δ_g` = (A − `A_g)⁻¹u_g` with A the information of all, `A_g` and `u_g` the group's own and its
 //! gradient at the optimum. Were the residuals noise alone, its variance would be
 //! (A − `A_g)⁻¹` − A⁻¹. The ratio
@@ -11,17 +12,23 @@
 //! otherwise than the others: the delete-a-group jackknife (CR3; Bell and `McCaffrey` 2002, Cameron and
 //! Miller 2015) over its own expectation, a Birge ratio of each parameter. What the data, not the
 //! stated uncertainties, leave open of a parameter is multiplied by it where it exceeds one; the
-//! quantile is Student's with the degrees of freedom that the groups have.
+//! quantile is Student's with the degrees of freedom that the groups have. Of the partitions the one
+//! that leaves the widest interval counts; those by frequency and amplitude only where `q_i` is beyond
+//! its 99 % point under noise.
+
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
+use crate::identify::fit::group::Group;
 use crate::identify::fit::normal::{Normal, inverse};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::fit::{Fit, Problem};
-use crate::identify::uncertainty::quantile::student_975;
+use crate::identify::uncertainty::quantile::{chi_squared_99, student_975};
 
-/// How much groups of records scatter in one coordinate.
+/// How much the groups of one partition scatter in one coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Excess {
     /// The coordinate.
@@ -37,9 +44,9 @@ pub struct Excess {
 /// Scatter between groups in all coordinates that a fit estimates.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scatter {
-    /// Number of groups.
+    /// Number of groups by setting.
     pub groups: usize,
-    /// Of each coordinate.
+    /// Of each coordinate and partition.
     pub excess: Vec<Excess>,
 }
 
@@ -91,40 +98,104 @@ const FEWEST: usize = 3;
 /// Least part of a variance that a group must inform to count.
 const LEAST: f64 = 1e-9;
 
-/// The scatter between groups at a fit's optimum.
+/// The scatter between groups at a fit's optimum, by each partition of the records.
 pub fn scatter(problem: &Problem<'_>, fit: &Fit) -> Scatter {
-    let (groups, rest) = problem.groups(&fit.parameters);
-    if groups.len() < FEWEST {
-        return Scatter::default();
-    }
+    let (cells, rest) = problem.groups(&fit.parameters);
     let mut all = rest.clone();
-    groups.values().for_each(|g| all.add(g));
-    let data = &all.matrix - &rest.matrix;
+    cells.values().for_each(|cell| all.add(cell));
     let Some(covariance) = inverse(&all.matrix) else {
         return Scatter::default();
     };
-    let moves: Vec<(Vec<f64>, Vec<f64>)> = groups
-        .values()
-        .filter_map(|group| left_out(&all, group, &covariance))
-        .collect();
-    let by_data = &covariance * data * &covariance;
-    let excess = fit.free.iter().enumerate().filter_map(|(i, coordinate)| {
-        let expected = |m: &(Vec<f64>, Vec<f64>)| m.1[i];
-        let least = LEAST * covariance[(i, i)];
-        let counted: Vec<_> = moves.iter().filter(|m| expected(m) > least).collect();
-        let sum: f64 = counted.iter().map(|m| expected(m)).sum();
-        let squares: f64 = counted.iter().map(|m| expected(m).powi(2)).sum();
-        let found: f64 = counted.iter().map(|m| m.0[i].powi(2)).sum();
-        (sum > 0.0).then(|| Excess {
-            coordinate: *coordinate,
-            ratio: found / sum,
-            freedom: (sum * sum / squares - 1.0).max(1.0),
-            share: (by_data[(i, i)] / covariance[(i, i)]).clamp(0.0, 1.0),
+    let data = &all.matrix - &rest.matrix;
+    let whole = Whole {
+        by_data: &covariance * data * &covariance,
+        all,
+        covariance,
+    };
+    let mut scatter = Scatter::default();
+    for partition in 0..Group::PARTITIONS {
+        let groups = merged(&cells, partition);
+        if groups.len() < FEWEST {
+            continue;
+        }
+        if partition == 0 {
+            scatter.groups = groups.len();
+        }
+        let found = whole.excess(&groups, &fit.free);
+        // the partition by settings is that of the campaign's design; the others count where chance
+        // does not explain them
+        scatter
+            .excess
+            .extend(found.filter(|e| partition == 0 || e.is_significant()));
+    }
+    scatter
+}
+
+/// The groups of one partition.
+fn merged(cells: &BTreeMap<Group, Normal>, partition: usize) -> Vec<Normal> {
+    let mut groups: BTreeMap<usize, Normal> = BTreeMap::new();
+    for (group, cell) in cells {
+        match groups.entry(group.of_each()[partition]) {
+            Entry::Occupied(mut sum) => sum.get_mut().add(cell),
+            Entry::Vacant(place) => {
+                place.insert(cell.clone());
+            }
+        }
+    }
+    groups.into_values().collect()
+}
+
+/// Normal equations of all data and priors, their inverse, and what the data inform of it.
+struct Whole {
+    all: Normal,
+    covariance: DMatrix<f64>,
+    by_data: DMatrix<f64>,
+}
+
+impl Whole {
+    /// How much groups scatter in each coordinate.
+    fn excess(&self, groups: &[Normal], free: &[Coordinate]) -> impl Iterator<Item = Excess> {
+        let moves: Vec<(Vec<f64>, Vec<f64>)> = groups
+            .iter()
+            .filter_map(|group| left_out(&self.all, group, &self.covariance))
+            .collect();
+        free.iter().enumerate().filter_map(move |(i, coordinate)| {
+            let expected = |m: &(Vec<f64>, Vec<f64>)| m.1[i];
+            let variance = self.covariance[(i, i)];
+            let counted = || moves.iter().filter(|m| expected(m) > LEAST * variance);
+            let sum: f64 = counted().map(expected).sum();
+            let squares: f64 = counted().map(|m| expected(m).powi(2)).sum();
+            let found: f64 = counted().map(|m| m.0[i].powi(2)).sum();
+            (sum > 0.0).then(|| Excess {
+                coordinate: *coordinate,
+                ratio: found / sum,
+                freedom: (sum * sum / squares - 1.0).max(1.0),
+                share: (self.by_data[(i, i)] / variance).clamp(0.0, 1.0),
+            })
         })
-    });
-    Scatter {
-        groups: groups.len(),
-        excess: excess.collect(),
+    }
+}
+
+impl Excess {
+    /// Whether chance makes the groups scatter so only in one of a hundred cases.
+    fn is_significant(&self) -> bool {
+        self.ratio * self.freedom > chi_squared_99(self.freedom)
+    }
+
+    /// Standard error of the coordinate that has a variance without it.
+    fn spread(&self, variance: f64, factor: f64) -> Spread {
+        let beyond = (self.ratio / factor - 1.0).max(0.0) * self.share * variance;
+        let whole = variance + beyond;
+        // Welch and Satterthwaite: only what the groups' scatter was found from is uncertain.
+        let freedom = match beyond > 0.0 {
+            true => self.freedom * (whole / beyond).powi(2),
+            false => f64::INFINITY,
+        };
+        Spread {
+            error: whole.sqrt(),
+            between_groups: beyond.sqrt(),
+            freedom,
+        }
     }
 }
 
@@ -141,25 +212,14 @@ fn left_out(
 }
 
 impl Scatter {
-    /// Standard error of a coordinate of a fit whose covariance is multiplied by a factor.
+    /// Standard error of a coordinate of a fit whose covariance is multiplied by a factor, by the
+    /// partition whose groups leave the widest interval.
     pub fn spread(&self, fit: &Fit, factor: f64, coordinate: Coordinate) -> Option<Spread> {
         let variance = fit.error(coordinate)?.powi(2) * factor;
-        let mut found = self.excess.iter();
-        let Some(excess) = found.find(|e| e.coordinate == coordinate) else {
-            return Some(Spread::known(variance.sqrt()));
-        };
-        let beyond = (excess.ratio / factor - 1.0).max(0.0) * excess.share * variance;
-        let whole = variance + beyond;
-        // Welch and Satterthwaite: only what the groups' scatter was found from is uncertain.
-        let freedom = match beyond > 0.0 {
-            true => excess.freedom * (whole / beyond).powi(2),
-            false => f64::INFINITY,
-        };
-        Some(Spread {
-            error: whole.sqrt(),
-            between_groups: beyond.sqrt(),
-            freedom,
-        })
+        let found = self.excess.iter().filter(|e| e.coordinate == coordinate);
+        let spreads = found.map(|e| e.spread(variance, factor));
+        let widest = spreads.max_by(|a, b| a.half95().total_cmp(&b.half95()));
+        Some(widest.unwrap_or(Spread::known(variance.sqrt())))
     }
 }
 
@@ -189,8 +249,11 @@ mod tests {
             coordinate == Coordinate::Restitution
         }
 
-        fn group(&self, item: usize) -> Option<usize> {
-            Some(item)
+        fn group(&self, item: usize) -> Option<Group> {
+            Some(Group {
+                setting: item,
+                ..Group::default()
+            })
         }
     }
 

@@ -121,6 +121,9 @@ fn phrase(kind: EffectKind) -> Phrase {
         EffectKind::Friction => Phrase::DryFriction,
         EffectKind::Drift => Phrase::DriftOverTheCampaign,
         EffectKind::ContactDuration => Phrase::ContactsOfFiniteDuration,
+        EffectKind::Drag => Phrase::DragOfTheAir,
+        EffectKind::SpringAsymmetry => Phrase::SpringsStifferToOneSide,
+        EffectKind::DampingFrequency => Phrase::DampingDependsOnFrequency,
     }
 }
 

@@ -148,6 +148,9 @@ fn effect_phrase(effect: Effect) -> Phrase {
         Effect::ContactDuration => Phrase::ContactDuration,
         Effect::ContactLaw => Phrase::ContactLaw,
         Effect::ContactReach => Phrase::ContactReach,
+        Effect::Drag => Phrase::Drag,
+        Effect::SpringAsymmetry => Phrase::SpringAsymmetry,
+        Effect::DampingSlope => Phrase::DampingSlope,
     }
 }
 

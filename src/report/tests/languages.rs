@@ -142,6 +142,9 @@ fn real_rig() -> ReportContent {
         Effect::Friction,
         Effect::FrequencyDrift,
         Effect::ContactDuration,
+        Effect::Drag,
+        Effect::SpringAsymmetry,
+        Effect::DampingSlope,
     ];
     let findings = effects.map(|effect| Finding::BeyondModel {
         effect,

@@ -11,7 +11,7 @@ const NODES: usize = 128;
 
 impl RecordMotion<'_> {
     /// Change of the values by an effect that acts as a small extra acceleration, per unit of its
-    /// strength, to first order; `reach_m` is the displacement at which springs harden by that much.
+    /// strength, to first order; `reach_m` is the displacement at which springs change and drag acts by that much.
     pub fn perturbation(&self, values: &[f64], effect: Effect, reach_m: f64) -> Vec<f64> {
         let intervals = NODES * self.record.folded.periods_n as usize;
         let grid = Grid::new(self.period(), intervals);
@@ -79,6 +79,15 @@ impl RecordMotion<'_> {
             Effect::Friction => {
                 let force = self.common.static_deflection_m / length_m;
                 friction(&states()).iter().map(|p| force * p).collect()
+            }
+            Effect::Drag => {
+                let share = self.common.static_deflection_m * length_m / reach_m.powi(2);
+                let drag = |s: &[f64; 2]| -share * s[1] * s[1].abs();
+                states().iter().map(drag).collect()
+            }
+            Effect::SpringAsymmetry => {
+                let share = oscillator.stiffness_per_mass() * length_m / reach_m;
+                states().iter().map(|s| -share * s[0].powi(2)).collect()
             }
             _ => vec![0.0; grid.intervals + 1],
         }

@@ -1,0 +1,91 @@
+//! The groups of each record, whose scatter tells what the model does not contain.
+
+use std::collections::BTreeMap;
+
+use crate::identify::fit::group::Group;
+use crate::motion::Observation;
+use crate::record::Role;
+
+/// Fewest groups by setting that are looked for.
+const FEWEST_GROUPS: usize = 8;
+/// Bands of drive frequencies and of amplitudes.
+const BANDS: usize = 8;
+
+/// The groups of each record.
+pub(super) fn groups(observations: &[Observation]) -> Vec<Group> {
+    let by_setting = by_setting(observations);
+    let frequencies: Vec<f64> = observations
+        .iter()
+        .map(|o| o.frequency_hz().unwrap_or(0.0))
+        .collect();
+    let amplitudes: Vec<f64> = observations.iter().map(amplitude).collect();
+    let (by_frequency, by_amplitude) = (bands(&frequencies), bands(&amplitudes));
+    (0..observations.len())
+        .map(|i| Group {
+            setting: by_setting[i],
+            frequency: by_frequency[i],
+            amplitude: by_amplitude[i],
+        })
+        .collect()
+}
+
+/// Records of one gap and direction of the sweep; parts of them, in the order of acquisition, where
+/// that makes too few groups.
+fn by_setting(observations: &[Observation]) -> Vec<usize> {
+    let mut of: BTreeMap<(u64, &str), Vec<usize>> = BTreeMap::new();
+    let mut order: Vec<usize> = (0..observations.len()).collect();
+    order.sort_by_key(|i| observations[*i].setting.sequence);
+    for i in order {
+        let setting = &observations[i].setting;
+        let gap = setting.clearance_m.unwrap_or(f64::NAN).to_bits();
+        of.entry((gap, setting.sweep.name())).or_default().push(i);
+    }
+    let parts = FEWEST_GROUPS.div_ceil(of.len().max(1));
+    let mut groups = vec![0; observations.len()];
+    for (number, records) in of.values().enumerate() {
+        for (rank, i) in records.iter().enumerate() {
+            groups[*i] = number * parts + rank * parts / records.len();
+        }
+    }
+    groups
+}
+
+/// The band of each value among bands that hold as many values each.
+fn bands(values: &[f64]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+    let mut bands = vec![0; values.len()];
+    for (rank, i) in order.into_iter().enumerate() {
+        bands[i] = rank * BANDS / values.len();
+    }
+    bands
+}
+
+/// Half the range of the displacement, m: as measured, else by velocity and frequency.
+pub(super) fn amplitude(observation: &Observation) -> f64 {
+    let of = |role: Role, half_range: f64| match role {
+        Role::DisplacementX | Role::DisplacementY => Some(half_range),
+        Role::VelocityX | Role::VelocityY => {
+            Some(half_range / (std::f64::consts::TAU * observation.frequency_hz()?))
+        }
+        _ => None,
+    };
+    let all = observation.amplitudes.iter();
+    let all = all.filter_map(|a| of(a.role, a.half_range));
+    all.filter(|a| a.is_finite()).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prop_bands_hold_as_many_values_each_in_their_order() {
+        let values: Vec<f64> = (0..24).map(|i| f64::from(i * 7 % 24)).collect();
+        let found = bands(&values);
+        for (value, band) in values.iter().zip(found) {
+            assert_eq!(band, *value as usize / 3);
+        }
+        assert!(bands(&[]).is_empty());
+    }
+}
