@@ -180,6 +180,16 @@ impl Equations {
         }
     }
 
+    /// The same with quadratic stiffness q/A and drag d/A².
+    #[cfg(test)]
+    pub fn with(self, quadratic: f64, drag: f64) -> Self {
+        Self {
+            quadratic,
+            drag,
+            ..self
+        }
+    }
+
     /// The drive p at a phase.
     pub fn drive(&self, phase: f64) -> f64 {
         let (s, c) = phase.sin_cos();
@@ -209,6 +219,28 @@ impl Equations {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::Sweep;
+
+    #[test]
+    fn prop_the_dashpots_follow_a_power_of_the_frequency() {
+        let truth = Truth::symmetric(0.8, 12.0, 0.05, 1e-3);
+        let at_twice_f0 = |truth: &Truth, damping_slope| {
+            let effects = Effects {
+                damping_slope,
+                ..Effects::default()
+            };
+            let step = Step {
+                frequency_hz: 24.0,
+                clearance_m: 1e-3,
+                sweep: Sweep::Up,
+                from_rest: true,
+            };
+            Equations::new(truth, &effects, ContactLaw::Newton(0.8), &step, 0.5)
+        };
+        // 2^−1 = half the dashpots, which is half the damping ratio
+        let half = Truth::symmetric(0.8, 12.0, 0.025, 1e-3);
+        assert_eq!(at_twice_f0(&truth, -1.0), at_twice_f0(&half, 0.0));
+    }
 
     #[test]
     fn valid_an_elastic_contact_lasts_half_a_period_of_its_spring() {

@@ -299,10 +299,13 @@ impl<'a> RecordMotion<'a> {
             ..Change::default()
         };
         let mut slopes = self.along(values, &self.direction(&change, None));
-        let over_frequency = self.common.deflection_over_drive(self.record.frequency_hz);
-        if over_frequency != 0.0 {
-            let over_deflection = self.over_coordinate(values, Coordinate::Deflection);
-            add(&mut slopes, over_frequency, &over_deflection);
+        let own = self.common.own_over_drive(self.record.frequency_hz);
+        for (coordinate, weight) in own.into_iter().filter(|(_, weight)| *weight != 0.0) {
+            add(
+                &mut slopes,
+                weight,
+                &self.over_coordinate(values, coordinate),
+            );
         }
         slopes
     }

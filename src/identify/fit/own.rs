@@ -160,12 +160,15 @@ impl Parameters {
         }
     }
 
-    /// Relative change of a record's static deflection per unit of the logarithm of its drive's
-    /// frequency: the force against frequency.
-    pub fn deflection_over_drive(&self, frequency_hz: f64) -> f64 {
+    /// Relative changes of a record's own `x_st` and β per unit of the logarithm of its drive's
+    /// frequency: force and damping against frequency.
+    pub fn own_over_drive(&self, frequency_hz: f64) -> [(Coordinate, f64); 2] {
         let eta = frequency_hz / self.natural_frequency_hz;
         let [lean, over_eta] = self.lean(eta);
-        eta * over_eta / lean
+        [
+            (Coordinate::Deflection, eta * over_eta / lean),
+            (Coordinate::Damping, self.effect(Effect::DampingSlope)),
+        ]
     }
 
     /// βΩ, 1/s.

@@ -354,6 +354,33 @@ mod tests {
     }
 
     #[test]
+    fn valid_drag_takes_what_its_first_integral_says_from_every_half_cycle() {
+        // x'' = −x + d x'² while x' < 0: from a turning point a to the next one b,
+        // (1 + 2db) e^{−2db} = (1 + 2da) e^{−2da}
+        let d = 0.02;
+        let equations = Equations::undriven(1.0, 0.0, 0.0, ContactLaw::Newton(0.9));
+        let turns = turning_points(equations.with(0.0, d), 1.5, 20);
+        let invariant = |x: f64| (1.0 + 2.0 * d * x) * (-2.0 * d * x).exp();
+        for pair in turns.windows(2) {
+            let [a, b] = [pair[0].1.abs(), pair[1].1.abs()];
+            assert!(
+                b < a && (invariant(a) - invariant(-b)).abs() < 1e-8,
+                "{a} {b}"
+            );
+        }
+    }
+
+    #[test]
+    fn valid_springs_stiffer_to_one_side_turn_where_their_energy_is_the_same() {
+        let q = 0.05;
+        let equations = Equations::undriven(1.0, 0.0, 0.0, ContactLaw::Newton(0.9));
+        let energy = |x: f64| x * x / 2.0 + q * x.powi(3) / 3.0;
+        for (_, x) in turning_points(equations.with(q, 0.0), 1.5, 10) {
+            assert!((energy(x) - energy(1.5)).abs() < 1e-7, "{x}");
+        }
+    }
+
+    #[test]
     fn valid_friction_takes_four_times_its_share_from_every_cycle() {
         // free decay under Coulomb friction: the amplitude falls by 2μ/k in every half cycle
         let mu = 0.01;
