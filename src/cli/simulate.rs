@@ -144,7 +144,7 @@ Effects and the strengths they have if none is given (0 switches one off):
   hum=0.001                mains hum, V amplitude
   drag=0.005               quadratic drag of each mass over F0, at the speed 2 pi f0 x_st/(2 beta)
   spring-asymmetry=0.003   relative stiffening of the springs from rest to x_st/(2 beta) toward the other mass
-  damping-slope=0.05       relative change of the dashpots per unit of ln eta
+  hysteretic-damping=0.05  share of the damping that falls with the frequency, as inside of springs
 truth.json states what was drawn.";
 
 /// Arguments of `impactid simulate campaign`.

@@ -71,7 +71,7 @@ impl Common {
                 EffectKind::ForceFrequency => Some(Self::ForceFrequency),
                 EffectKind::Drag
                 | EffectKind::SpringAsymmetry
-                | EffectKind::DampingFrequency
+                | EffectKind::HystereticDamping
                 | EffectKind::Hardening
                 | EffectKind::Friction
                 | EffectKind::Drift

@@ -58,8 +58,8 @@ pub struct Effects {
     pub drag: f64,
     /// q of the spring force k x (1 + q x/A).
     pub spring_asymmetry: f64,
-    /// Exponent s of the dashpots over the drive's frequency: b ∝ η^s.
-    pub damping_slope: f64,
+    /// Hysteretic share s of the damping: b ∝ 1 + s (1/η − 1).
+    pub hysteretic_damping: f64,
 }
 
 impl Effects {
@@ -83,7 +83,7 @@ impl Effects {
             self.contact_duration_s,
             self.drag,
             self.spring_asymmetry,
-            self.damping_slope,
+            self.hysteretic_damping,
         ];
         sizes.iter().all(|s| *s == 0.0)
     }

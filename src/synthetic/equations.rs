@@ -135,8 +135,9 @@ impl Equations {
         let machine = truth.machine();
         let masses = [machine.x, machine.y.unwrap_or(machine.x)];
         let stiffening = (1.0 + effects.frequency_drift * (elapsed - 0.5)).powi(2);
-        let damping =
-            2.0 * (1.0 + effects.damping_drift * (elapsed - 0.5)) * eta.powf(effects.damping_slope);
+        let damping = 2.0
+            * (1.0 + effects.damping_drift * (elapsed - 0.5))
+            * (1.0 + effects.hysteretic_damping * (1.0 / eta - 1.0));
         let beyond = eta - 1.0;
         let lean = 1.0 + beyond * (effects.force_slope + beyond * effects.force_curvature);
         let amplitude = effects.resonance_amplitude_m / x_st;
@@ -222,11 +223,11 @@ mod tests {
     use crate::record::Sweep;
 
     #[test]
-    fn prop_the_dashpots_follow_a_power_of_the_frequency() {
+    fn prop_hysteretic_damping_halves_at_twice_the_frequency() {
         let truth = Truth::symmetric(0.8, 12.0, 0.05, 1e-3);
-        let at_twice_f0 = |truth: &Truth, damping_slope| {
+        let at_twice_f0 = |truth: &Truth, hysteretic_damping| {
             let effects = Effects {
-                damping_slope,
+                hysteretic_damping,
                 ..Effects::default()
             };
             let step = Step {
@@ -237,9 +238,9 @@ mod tests {
             };
             Equations::new(truth, &effects, ContactLaw::Newton(0.8), &step, 0.5)
         };
-        // 2^−1 = half the dashpots, which is half the damping ratio
+        // b ∝ 1/η: half the dashpots, which is half the damping ratio
         let half = Truth::symmetric(0.8, 12.0, 0.025, 1e-3);
-        assert_eq!(at_twice_f0(&truth, -1.0), at_twice_f0(&half, 0.0));
+        assert_eq!(at_twice_f0(&truth, 1.0), at_twice_f0(&half, 0.0));
     }
 
     #[test]

@@ -15,7 +15,7 @@
 //! | `damping-drift` | relative, first to last record | b drifts |
 //! | `drag` | drag / F0 at the speed Ω x_st/(2β) | quadratic drag on each mass |
 //! | `spring-asymmetry` | relative stiffening at x_st/(2β) | spring force k x (1 + q x/A), A = x_st/(2β) |
-//! | `damping-slope` | per unit of ln η | b ∝ η^s |
+//! | `hysteretic-damping` | share | a share s of the dashpots is hysteretic: b ∝ 1 + s (1/η − 1) |
 //! | `contact` | ms | impacts last this long: a spring and a damper that only press |
 //! | `delays` | samples | each channel lags the drive by a delay within ± the strength |
 //! | `flicker` | V rms | 1/f noise on every channel beside the white one |
@@ -73,8 +73,8 @@ pub enum Effect {
     Drag,
     /// Springs that are stiffer to one side (quadratic stiffness).
     SpringAsymmetry,
-    /// Dashpots that change with the drive's frequency.
-    DampingSlope,
+    /// Damping of which a share is hysteretic.
+    HystereticDamping,
 }
 
 impl Effect {
@@ -97,7 +97,7 @@ impl Effect {
         Self::Hum,
         Self::Drag,
         Self::SpringAsymmetry,
-        Self::DampingSlope,
+        Self::HystereticDamping,
     ];
 
     /// Name on the command line and in truth.json.
@@ -120,7 +120,7 @@ impl Effect {
             Self::Hum => "hum",
             Self::Drag => "drag",
             Self::SpringAsymmetry => "spring-asymmetry",
-            Self::DampingSlope => "damping-slope",
+            Self::HystereticDamping => "hysteretic-damping",
         }
     }
 
@@ -134,7 +134,7 @@ impl Effect {
             Self::Hardening => 0.004,
             Self::FrequencyDrift => 0.002,
             Self::DampingDrift => 0.02,
-            Self::DampingSlope => 0.05,
+            Self::HystereticDamping => 0.05,
             Self::Contact => 0.64,
             Self::Delays => 0.5,
             Self::Flicker | Self::Hum => 1e-3,
@@ -221,7 +221,7 @@ impl Switch {
             Effect::Hardening => effects.hardening = size,
             Effect::Drag => effects.drag = size,
             Effect::SpringAsymmetry => effects.spring_asymmetry = sign * size,
-            Effect::DampingSlope => effects.damping_slope = sign * size,
+            Effect::HystereticDamping => effects.hysteretic_damping = sign * size,
             Effect::Friction => effects.friction = size,
             Effect::FrequencyDrift => effects.frequency_drift = sign * size,
             Effect::DampingDrift => effects.damping_drift = sign * size,

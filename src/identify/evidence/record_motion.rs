@@ -504,7 +504,7 @@ mod tests {
         effects[Effect::ContactDuration.place()] = 0.3;
         effects[Effect::ContactLaw.place()] = 0.1;
         effects[Effect::ContactReach.place()] = 0.05;
-        effects[Effect::DampingSlope.place()] = -0.1;
+        effects[Effect::HystereticDamping.place()] = 0.1;
         Parameters {
             drive_asymmetry: 0.02,
             stiffness_asymmetry: -0.03,

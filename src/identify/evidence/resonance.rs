@@ -520,7 +520,7 @@ mod tests {
         effects[Effect::Hardening.place()] = 0.02;
         effects[Effect::Friction.place()] = 0.03;
         effects[Effect::Drag.place()] = 0.02;
-        effects[Effect::DampingSlope.place()] = -0.1;
+        effects[Effect::HystereticDamping.place()] = 0.1;
         let p = Parameters {
             drive_asymmetry: 0.03,
             stiffness_asymmetry: -0.02,

@@ -44,8 +44,8 @@ pub enum Effect {
     /// Relative rise of the springs' secant stiffness from rest to the greatest displacement measured
     /// toward the other mass, and fall as far on the other side
     SpringAsymmetry,
-    /// Relative change of β per unit of ln η, about η = 1; −1 for hysteretic (structural) damping
-    DampingSlope,
+    /// Share of the damping at η = 1 that is hysteretic (structural): it falls with the frequency
+    HystereticDamping,
 }
 
 /// Effects that a campaign may restrict the fit to, by name.
@@ -81,8 +81,8 @@ pub enum EffectKind {
     Drag,
     /// Springs that are stiffer to one side
     SpringAsymmetry,
-    /// The damping against frequency
-    DampingFrequency,
+    /// Hysteretic damping beside the viscous one
+    HystereticDamping,
 }
 
 impl EffectKind {
@@ -96,7 +96,7 @@ impl EffectKind {
         Self::ContactDuration,
         Self::Drag,
         Self::SpringAsymmetry,
-        Self::DampingFrequency,
+        Self::HystereticDamping,
     ];
 
     /// Name in `campaign.toml`.
@@ -133,7 +133,7 @@ impl Effect {
         Self::ContactReach,
         Self::Drag,
         Self::SpringAsymmetry,
-        Self::DampingSlope,
+        Self::HystereticDamping,
     ];
 
     /// Place among all.
@@ -160,7 +160,7 @@ impl Effect {
             }
             Self::Drag => EffectKind::Drag,
             Self::SpringAsymmetry => EffectKind::SpringAsymmetry,
-            Self::DampingSlope => EffectKind::DampingFrequency,
+            Self::HystereticDamping => EffectKind::HystereticDamping,
         }
     }
 
@@ -183,7 +183,7 @@ impl Effect {
             Self::ContactReach => 0.3,
             Self::Drag => 1e-2,
             Self::SpringAsymmetry => 5e-3,
-            Self::DampingSlope => 0.1,
+            Self::HystereticDamping => 0.1,
         }
     }
 
@@ -217,7 +217,7 @@ impl Effect {
             Self::ContactReach => "contact_reach",
             Self::Drag => "drag",
             Self::SpringAsymmetry => "spring_asymmetry",
-            Self::DampingSlope => "damping_slope",
+            Self::HystereticDamping => "hysteretic_damping",
         }
     }
 }

@@ -45,6 +45,17 @@ impl Parameters {
         [1.0 + off * (slope + curve * off), slope + 2.0 * curve * off]
     }
 
+    /// Equivalent viscous damping over its value at η = 1, and its derivative over η: of a hysteretic
+    /// share s, 1 + s (1/η − 1).
+    fn equivalent_damping(&self, eta: f64) -> [f64; 2] {
+        let share = self.effect(Effect::HystereticDamping);
+        let whole = 1.0 + share * (1.0 / eta - 1.0);
+        match whole > 0.01 {
+            true => [whole, -share / (eta * eta)],
+            false => [0.01, 0.0],
+        }
+    }
+
     /// Frequency ratio of a record; 1 where nothing is known of its drive.
     fn eta(&self, at: &Circumstances) -> f64 {
         match at.frequency_hz > 0.0 {
@@ -62,6 +73,7 @@ impl Parameters {
         let bend = self.effect(Effect::FrequencyBend) * bend(at.place);
         let eta = self.eta(at);
         let [lean, _] = self.lean(eta);
+        let [viscous, _] = self.equivalent_damping(eta);
         let contact_s = 1e-3 * self.effect(Effect::ContactDuration);
         let contact = short_contact(self.restitution);
         let beyond = contact.press * at.press_per_s + contact.drag * self.decay_per_s();
@@ -71,9 +83,7 @@ impl Parameters {
             restitution: restitution.clamp(0.0, 1.0),
             natural_frequency_hz: self.natural_frequency_hz
                 * (drift(Effect::FrequencyDrift) + bend).exp(),
-            damping_ratio: self.damping_ratio
-                * (drift(Effect::DampingDrift) + self.effect(Effect::DampingSlope) * eta.ln())
-                    .exp(),
+            damping_ratio: self.damping_ratio * viscous * drift(Effect::DampingDrift).exp(),
             static_deflection_m: self.static_deflection_m
                 * lean.max(0.01)
                 * drift(Effect::DeflectionDrift).exp(),
@@ -103,6 +113,7 @@ impl Parameters {
         };
         let eta = self.eta(at);
         let [lean, over_eta] = self.lean(eta);
+        let [viscous, damping_over_eta] = self.equivalent_damping(eta);
         let contact = short_contact(self.restitution);
         let contact_s = 1e-3 * self.effect(Effect::ContactDuration);
         let speed = at.approach_m_s / at.masses.max(1.0);
@@ -128,7 +139,7 @@ impl Parameters {
                 physical: [
                     drag,
                     1.0,
-                    -self.effect(Effect::DampingSlope),
+                    -eta * damping_over_eta / viscous,
                     -eta * over_eta / lean,
                 ],
                 ..none
@@ -146,7 +157,7 @@ impl Parameters {
                 Effect::FrequencyDrift => only(1, at.place),
                 Effect::FrequencyBend => only(1, bend(at.place)),
                 Effect::DampingDrift => only(2, at.place),
-                Effect::DampingSlope => only(2, eta.ln()),
+                Effect::HystereticDamping => only(2, (1.0 / eta - 1.0) / viscous),
                 Effect::DeflectionDrift => only(3, at.place),
                 Effect::ContactDuration => Some(OwnSlope {
                     physical: [1e-3 * law * beyond, 0.0, 0.0, 0.0],
@@ -165,9 +176,10 @@ impl Parameters {
     pub fn own_over_drive(&self, frequency_hz: f64) -> [(Coordinate, f64); 2] {
         let eta = frequency_hz / self.natural_frequency_hz;
         let [lean, over_eta] = self.lean(eta);
+        let [viscous, damping_over_eta] = self.equivalent_damping(eta);
         [
             (Coordinate::Deflection, eta * over_eta / lean),
-            (Coordinate::Damping, self.effect(Effect::DampingSlope)),
+            (Coordinate::Damping, eta * damping_over_eta / viscous),
         ]
     }
 

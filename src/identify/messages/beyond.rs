@@ -97,13 +97,13 @@ pub(super) fn beyond_english(effect: Effect, rises: bool) -> &'static str {
             "the springs are softer toward the other mass, by {strength} ± {error} % at the greatest \
              displacement: check that they are straight at rest"
         }
-        (Effect::DampingSlope, true) => {
-            "the damping ratio rises with the drive's frequency, by {strength} ± {error} % for a \
-             frequency e times as high: it is stated for resonance"
+        (Effect::HystereticDamping, true) => {
+            "a share of {strength} ± {error} % of the damping falls with the drive's frequency, as that \
+             inside of springs does (hysteretic damping): the damping ratio holds at resonance"
         }
-        (Effect::DampingSlope, false) => {
-            "the damping ratio falls with the drive's frequency, by {strength} ± {error} % for a \
-             frequency e times as high, as with hysteretic damping: it is stated for resonance"
+        (Effect::HystereticDamping, false) => {
+            "the damping rises with the drive's frequency (a hysteretic share of −{strength} ± {error} \
+             %): the damping ratio holds at resonance"
         }
     }
 }
@@ -203,13 +203,13 @@ pub(super) fn beyond_german(effect: Effect, rises: bool) -> &'static str {
             "die Federn sind zur anderen Masse hin weicher, um {strength} ± {error} % beim größten Weg: \
              prüfen, ob sie in Ruhe gerade sind"
         }
-        (Effect::DampingSlope, true) => {
-            "der Dämpfungsgrad steigt mit der Erregerfrequenz, um {strength} ± {error} % für eine e-mal \
-             so hohe Frequenz: angegeben ist er für die Resonanz"
+        (Effect::HystereticDamping, true) => {
+            "ein Anteil von {strength} ± {error} % der Dämpfung sinkt mit der Erregerfrequenz, wie der \
+             im Inneren von Federn (Strukturdämpfung): der Dämpfungsgrad gilt bei Resonanz"
         }
-        (Effect::DampingSlope, false) => {
-            "der Dämpfungsgrad sinkt mit der Erregerfrequenz, um {strength} ± {error} % für eine e-mal \
-             so hohe Frequenz, wie bei Strukturdämpfung: angegeben ist er für die Resonanz"
+        (Effect::HystereticDamping, false) => {
+            "die Dämpfung steigt mit der Erregerfrequenz (ein Anteil an Strukturdämpfung von −{strength} \
+             ± {error} %): der Dämpfungsgrad gilt bei Resonanz"
         }
     }
 }

@@ -123,7 +123,7 @@ fn phrase(kind: EffectKind) -> Phrase {
         EffectKind::ContactDuration => Phrase::ContactsOfFiniteDuration,
         EffectKind::Drag => Phrase::DragOfTheAir,
         EffectKind::SpringAsymmetry => Phrase::SpringsStifferToOneSide,
-        EffectKind::DampingFrequency => Phrase::DampingDependsOnFrequency,
+        EffectKind::HystereticDamping => Phrase::HystereticDampingOfTheSprings,
     }
 }
 

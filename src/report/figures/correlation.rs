@@ -150,7 +150,7 @@ fn effect_phrase(effect: Effect) -> Phrase {
         Effect::ContactReach => Phrase::ContactReach,
         Effect::Drag => Phrase::Drag,
         Effect::SpringAsymmetry => Phrase::SpringAsymmetry,
-        Effect::DampingSlope => Phrase::DampingSlope,
+        Effect::HystereticDamping => Phrase::HystereticDamping,
     }
 }
 

@@ -144,7 +144,7 @@ fn real_rig() -> ReportContent {
         Effect::ContactDuration,
         Effect::Drag,
         Effect::SpringAsymmetry,
-        Effect::DampingSlope,
+        Effect::HystereticDamping,
     ];
     let findings = effects.map(|effect| Finding::BeyondModel {
         effect,
