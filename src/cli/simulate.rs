@@ -145,6 +145,10 @@ Effects and the strengths they have if none is given (0 switches one off):
   drag=0.005               quadratic drag of each mass over F0, at the speed 2 pi f0 x_st/(2 beta)
   spring-asymmetry=0.003   relative stiffening of the springs from rest to x_st/(2 beta) toward the other mass
   hysteretic-damping=0.05  share of the damping that falls with the frequency, as inside of springs
+Effects that the fit does not know, and that realistic leaves out:
+  gap-drift=0.01           drift of all gaps over the campaign, over x_st
+  backlash=0.005           gaps of upward sweeps are wider than those of downward ones, over x_st
+  compression=0.005        relative loss of the motion channels at x_st/(2 beta), by the square of the signal
 truth.json states what was drawn.";
 
 /// Arguments of `impactid simulate campaign`.
@@ -176,7 +180,7 @@ pub(super) struct Campaign {
     /// Folder for the campaign
     #[arg(long, short, value_name = "DIR")]
     pub out: PathBuf,
-    /// Effects beyond the model: exact (none), realistic (all of them at sizes drawn at random), or
+    /// Effects beyond the model: exact (none), realistic (all that the fit knows, at sizes drawn at random), or
     /// EFFECT[=STRENGTH],… as listed below
     #[arg(long, value_name = "RIG", default_value = "exact")]
     pub rig: RigSpec,

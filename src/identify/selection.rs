@@ -16,6 +16,9 @@ use crate::identify::method::Method;
 use crate::identify::methods::{self, FitResult};
 use crate::motion::Bracket;
 
+/// Slowest multiplier's distance from 1 at which a motion is at its end.
+const END: f64 = 2e-3;
+
 /// Rounds of leaving outlying records out and fitting again.
 const ROUNDS: usize = 2;
 /// Relative change of the error allowed beside the noise below which another round changes nothing.
@@ -189,9 +192,10 @@ impl<'a> Selection<'a> {
         let known: Vec<f64> = scores.iter().flatten().copied().collect();
         let bulk = Bulk::of(&known);
         self.typical = bulk.typical;
+        let ended = self.at_their_end(parameters).trajectory;
         let records = std::mem::take(&mut self.blocks.trajectory.records);
-        for (record, score) in records.into_iter().zip(scores) {
-            let reason = match score {
+        for (item, (record, score)) in records.into_iter().zip(scores).enumerate() {
+            let reason = match score.filter(|_| !ended.contains(&item)) {
                 Some(s) if s <= bulk.limit => {
                     self.blocks.trajectory.records.push(record);
                     continue;
@@ -311,9 +315,19 @@ impl<'a> Selection<'a> {
             .par_iter()
             .map(|(method, i)| *method == Method::Trajectories && self.settles_slowly(*i, at))
             .collect();
+        let ended = self.at_their_end(at).trajectory;
+        let has_ended = |(method, item): &(Method, usize)| {
+            *method == Method::Trajectories && ended.contains(item)
+        };
+        let mut ends: Vec<usize> = (0..owners.len())
+            .filter(|k| has_ended(&owners[*k]))
+            .collect();
         let mut found = Vec::new();
         while let Some(influences) = influence::influences(&parts, &others) {
-            let batch = influence::strongest(&influences, &doubtful);
+            let batch = match ends.is_empty() {
+                true => influence::strongest(&influences, &doubtful),
+                false => std::mem::take(&mut ends),
+            };
             if batch.is_empty() {
                 break;
             }
@@ -342,6 +356,21 @@ impl<'a> Selection<'a> {
             .evidence;
         let slowest = block.slowest_multiplier(item, at).unwrap_or(1.0);
         slowest.powf(evidence.cycles_observed) > (-1f64).exp()
+    }
+
+    /// The periodic records whose motion ends at the parameters: at a saddle-node it moves without bound
+    /// for the least change of the setting, so that no fit by slopes can use it.
+    pub fn at_their_end(&self, at: &Parameters) -> Influential {
+        let block = &self.blocks.trajectory;
+        let is_at_its_end = |item: &usize| {
+            let slowest = block.slowest_multiplier(*item, at);
+            slowest.is_some_and(|m| m > 1.0 - END)
+        };
+        let items = 0..block.records.len();
+        Influential {
+            resonance: Vec::new(),
+            trajectory: items.into_par_iter().filter(is_at_its_end).collect(),
+        }
     }
 
     /// Number of records whose influence is judged.

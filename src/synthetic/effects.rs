@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::plan::Plan;
+use super::plan::{Plan, Step};
+use crate::record::Sweep;
 
 /// A gap as stated and as it is.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -58,6 +59,12 @@ pub struct Effects {
     pub drag: f64,
     /// q of the spring force k x (1 + q x/A).
     pub spring_asymmetry: f64,
+    /// Change of every gap from the first to the last record, m.
+    pub gap_drift_m: f64,
+    /// What gaps of upward sweeps are wider than those of downward ones, m.
+    pub backlash_m: f64,
+    /// Relative loss of the motion channels at A and ΩA, growing with the square of the signal.
+    pub compression: f64,
     /// Hysteretic share s of the damping: b ∝ 1 + s (1/η − 1).
     pub hysteretic_damping: f64,
 }
@@ -67,6 +74,18 @@ impl Effects {
     pub fn true_clearance_m(&self, stated_m: f64) -> f64 {
         let gap = self.gaps.iter().find(|g| g.stated_m == stated_m);
         gap.map_or(stated_m, |g| g.true_m)
+    }
+
+    /// True clearance of a step, m, when a share `elapsed` (0 to 1) of the campaign has gone by.
+    pub(super) fn clearance_m(&self, step: &Step, elapsed: f64) -> f64 {
+        let lag = match step.sweep {
+            Sweep::Up => 0.5,
+            Sweep::Down => -0.5,
+            Sweep::Unknown => 0.0,
+        };
+        self.true_clearance_m(step.clearance_m)
+            + self.gap_drift_m * (elapsed - 0.5)
+            + self.backlash_m * lag
     }
 
     /// Whether the motion is that of the model: exact flights and Newton's impacts.
@@ -84,6 +103,8 @@ impl Effects {
             self.drag,
             self.spring_asymmetry,
             self.hysteretic_damping,
+            self.gap_drift_m,
+            self.backlash_m,
         ];
         sizes.iter().all(|s| *s == 0.0)
     }

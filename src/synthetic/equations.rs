@@ -150,7 +150,7 @@ impl Equations {
         };
         Self {
             eta,
-            gap: 2.0 * effects.true_clearance_m(step.clearance_m) / x_st,
+            gap: 2.0 * effects.clearance_m(step, elapsed) / x_st,
             law,
             friction: effects.friction,
             damping: masses.map(|m| damping * m.decay_rate()),

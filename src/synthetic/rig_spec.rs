@@ -16,6 +16,9 @@
 //! | `drag` | drag / F0 at the speed Ω x_st/(2β) | quadratic drag on each mass |
 //! | `spring-asymmetry` | relative stiffening at x_st/(2β) | spring force k x (1 + q x/A), A = x_st/(2β) |
 //! | `hysteretic-damping` | share | a share s of the dashpots is hysteretic: b ∝ 1 + s (1/η − 1) |
+//! | `gap-drift` | share of x_st, first to last record | the gaps drift; unknown to the fit |
+//! | `backlash` | share of x_st | gaps of upward sweeps are wider than those of downward ones; unknown to the fit |
+//! | `compression` | relative at x_st/(2β) | motion channels show less of large signals; unknown to the fit |
 //! | `contact` | ms | impacts last this long: a spring and a damper that only press |
 //! | `delays` | samples | each channel lags the drive by a delay within ± the strength |
 //! | `flicker` | V rms | 1/f noise on every channel beside the white one |
@@ -75,11 +78,17 @@ pub enum Effect {
     SpringAsymmetry,
     /// Damping of which a share is hysteretic.
     HystereticDamping,
+    /// Gaps that drift over the campaign.
+    GapDrift,
+    /// Gaps that differ between upward and downward sweeps.
+    Backlash,
+    /// Sensors that show less of large signals.
+    Compression,
 }
 
 impl Effect {
     /// All effects.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 21] = [
         Self::Gaps,
         Self::GapOffset,
         Self::DampingAsymmetry,
@@ -98,6 +107,9 @@ impl Effect {
         Self::Drag,
         Self::SpringAsymmetry,
         Self::HystereticDamping,
+        Self::GapDrift,
+        Self::Backlash,
+        Self::Compression,
     ];
 
     /// Name on the command line and in truth.json.
@@ -121,6 +133,9 @@ impl Effect {
             Self::Drag => "drag",
             Self::SpringAsymmetry => "spring-asymmetry",
             Self::HystereticDamping => "hysteretic-damping",
+            Self::GapDrift => "gap-drift",
+            Self::Backlash => "backlash",
+            Self::Compression => "compression",
         }
     }
 
@@ -129,8 +144,13 @@ impl Effect {
         match self {
             Self::Gaps | Self::GapOffset | Self::ThirdHarmonic | Self::SpringAsymmetry => 0.003,
             Self::DampingAsymmetry => 0.05,
-            Self::SecondHarmonic | Self::ForceCurvature | Self::Friction | Self::Drag => 0.005,
-            Self::ForceSlope => 0.01,
+            Self::SecondHarmonic
+            | Self::ForceCurvature
+            | Self::Friction
+            | Self::Drag
+            | Self::Backlash
+            | Self::Compression => 0.005,
+            Self::ForceSlope | Self::GapDrift => 0.01,
             Self::Hardening => 0.004,
             Self::FrequencyDrift => 0.002,
             Self::DampingDrift => 0.02,
@@ -139,6 +159,11 @@ impl Effect {
             Self::Delays => 0.5,
             Self::Flicker | Self::Hum => 1e-3,
         }
+    }
+
+    /// Whether the fit has it as an effect or as a stated uncertainty; the others break its assumptions.
+    pub fn is_in_the_fit(self) -> bool {
+        !matches!(self, Self::GapDrift | Self::Backlash | Self::Compression)
     }
 
     /// Greatest strength that the simulation takes.
@@ -222,6 +247,9 @@ impl Switch {
             Effect::Drag => effects.drag = size,
             Effect::SpringAsymmetry => effects.spring_asymmetry = sign * size,
             Effect::HystereticDamping => effects.hysteretic_damping = sign * size,
+            Effect::GapDrift => effects.gap_drift_m = sign * size * truth.static_deflection_m,
+            Effect::Backlash => effects.backlash_m = sign * size * truth.static_deflection_m,
+            Effect::Compression => effects.compression = sign * size,
             Effect::Friction => effects.friction = size,
             Effect::FrequencyDrift => effects.frequency_drift = sign * size,
             Effect::DampingDrift => effects.damping_drift = sign * size,
@@ -257,15 +285,17 @@ impl RigSpec {
         Self::default()
     }
 
-    /// A rig with all effects at typical strengths, their sizes drawn for each campaign.
+    /// A rig with all effects that the fit knows at typical strengths, their sizes drawn for each
+    /// campaign.
     pub fn realistic() -> Self {
-        let switches = Effect::ALL.map(|effect| Switch {
+        let known = Effect::ALL.into_iter().filter(|e| e.is_in_the_fit());
+        let switches = known.map(|effect| Switch {
             effect,
             strength: effect.typical_strength(),
             spread: true,
         });
         Self {
-            switches: switches.to_vec(),
+            switches: switches.collect(),
         }
     }
 

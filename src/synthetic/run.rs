@@ -240,7 +240,11 @@ impl VirtualRig<'_> {
                     "generator" | "contact" => 1.0,
                     _ => gain / sensitivity.si_per_volt,
                 };
-                let mut volts: Vec<f64> = values.iter().map(|v| v * factor).collect();
+                let bend = self.bend(sensitivity.name);
+                let mut volts: Vec<f64> = values
+                    .iter()
+                    .map(|v| v * factor * (1.0 - bend * v * v))
+                    .collect();
                 disturbance.add(&mut volts);
                 acquisition::convert(&mut volts, self.faults, rng);
                 RawChannel {
@@ -249,6 +253,20 @@ impl VirtualRig<'_> {
                 }
             })
             .collect()
+    }
+
+    /// Relative loss of a channel per square of its signal, SI.
+    fn bend(&self, channel: &str) -> f64 {
+        let effects = self.physics.effects;
+        let full = match channel {
+            "generator" | "contact" | "frame_x" => return 0.0,
+            "integrator_x" | "integrator_y" => effects.resonance_amplitude_m,
+            _ => effects.resonance_amplitude_m * self.physics.truth.natural_rate(),
+        };
+        match effects.compression == 0.0 {
+            true => 0.0,
+            false => effects.compression / (full * full),
+        }
     }
 
     /// Velocities and displacements of both masses and the frame's, SI, each through its filter

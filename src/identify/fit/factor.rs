@@ -240,6 +240,9 @@ impl Factor {
     }
 }
 
+/// Square of rows that are nothing: what rounding leaves of rounding, whose reciprocal overflows.
+const NOTHING: f64 = 1e-280;
+
 /// Fold the rows of one column, the pivot, into its diagonal entry of a triangle of so many columns by
 /// a Householder reflection, which acts on the rows of all later columns, `height` apart.
 ///
@@ -252,7 +255,7 @@ fn reflect(
     (rest, height): (&mut [f64], usize),
 ) {
     let below = inner(pivot, pivot);
-    if below == 0.0 {
+    if below < NOTHING {
         return;
     }
     let top = triangle[j * width + j];
@@ -303,5 +306,21 @@ fn less(from: &mut [f64], share: f64, column: &[f64]) {
     }
     for (x, y) in rest.iter_mut().zip(other_rest) {
         *x -= share * y;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prop_what_rounding_leaves_of_rounding_stays_finite() {
+        for tiny in [1e-150, 1e-155, 1e-158, 1e-161, 5e-324] {
+            let slopes = [vec![1.0, 2.0, 3.0], vec![tiny, -tiny, tiny]];
+            let mut factor = Factor::of(&[0.1, 0.2, -0.1], &slopes, 1.0);
+            let other = Factor::of(&[0.3, 0.1, 0.2], &slopes, 1.0);
+            factor.add(&other, &[0, 1]);
+            assert!(factor.triangle.iter().all(|x| x.is_finite()), "{tiny:e}");
+        }
     }
 }
