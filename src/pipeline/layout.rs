@@ -66,7 +66,7 @@ mod tests {
         std::fs::write(&path, &text).unwrap();
         check(folder.path()).unwrap();
         for other in [
-            text.replace("\"3\"", "\"1\""),
+            text.replace("\"4\"", "\"1\""),
             "{}".into(),
             "no JSON".into(),
         ] {

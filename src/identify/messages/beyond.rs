@@ -3,6 +3,7 @@
 use crate::identify::fit::effect::Effect;
 
 /// An effect beyond the model, and what can be done about it; `rises`: whether its strength is positive.
+#[expect(clippy::too_many_lines, reason = "one arm for each effect")]
 pub(super) fn beyond_english(effect: Effect, rises: bool) -> &'static str {
     match (effect, rises) {
         (Effect::SecondHarmonicCos | Effect::SecondHarmonicSin, _) => {
@@ -109,6 +110,7 @@ pub(super) fn beyond_english(effect: Effect, rises: bool) -> &'static str {
 }
 
 /// The same in German.
+#[expect(clippy::too_many_lines, reason = "one arm for each effect")]
 pub(super) fn beyond_german(effect: Effect, rises: bool) -> &'static str {
     match (effect, rises) {
         (Effect::SecondHarmonicCos | Effect::SecondHarmonicSin, _) => {
