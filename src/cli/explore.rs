@@ -66,6 +66,12 @@ impl Explore {
     /// # Errors
     /// [`Failure`] where the input cannot be used or the port is taken.
     pub(super) fn run(self, verbosity: Verbosity) -> Result<Exit, Failure> {
+        if self.pace.is_given() && !self.watch {
+            return Err(Failure::new(
+                "--poll and --settle say how files that arrive are waited for",
+                "add --watch, or leave them out",
+            ));
+        }
         let demo = self.demo.as_deref().map(read).transpose()?;
         if self.check {
             return replay(demo.as_deref(), verbosity);

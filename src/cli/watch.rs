@@ -51,13 +51,18 @@ Exit codes: those of `impactid run`.";
 /// How patiently files are waited for.
 #[derive(Debug, Clone, Copy, Args)]
 pub(super) struct PaceArgs {
-    /// Seconds between two looks at the files
-    #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = seconds)]
-    poll: Duration,
-    /// Seconds for which a file must not have changed to count as whole
-    #[arg(long, value_name = "SECONDS", default_value = "5", value_parser = seconds)]
-    settle: Duration,
+    /// Seconds between two looks at the files [default: 2]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    poll: Option<Duration>,
+    /// Seconds for which a file must not have changed to count as whole [default: 5]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    settle: Option<Duration>,
 }
+
+/// Time between two looks at the files.
+const POLL: Duration = Duration::from_secs(2);
+/// Time for which a file must not have changed.
+const SETTLE: Duration = Duration::from_secs(5);
 
 /// A pause of so many times `--settle` is a good time for a fit.
 const PAUSE: u32 = 4;
@@ -73,20 +78,26 @@ fn seconds(text: &str) -> Result<Duration, String> {
 impl PaceArgs {
     /// For the library.
     pub(super) fn pace(self) -> Pace {
+        let settle = self.settle.unwrap_or(SETTLE);
         Pace {
             patience: Patience {
-                quiet: self.settle,
+                quiet: settle,
                 ..Patience::default()
             },
-            idle: PAUSE * self.settle,
+            idle: PAUSE * settle,
         }
+    }
+
+    /// Whether either was given.
+    pub(super) fn is_given(self) -> bool {
+        self.poll.is_some() || self.settle.is_some()
     }
 
     /// Wait until the next look, or until the end is asked for.
     pub(super) fn wait(self, stop: &AtomicBool) {
-        let begin = Instant::now();
-        while begin.elapsed() < self.poll && !stop.load(Ordering::SeqCst) {
-            let left = self.poll.saturating_sub(begin.elapsed());
+        let (begin, poll) = (Instant::now(), self.poll.unwrap_or(POLL));
+        while begin.elapsed() < poll && !stop.load(Ordering::SeqCst) {
+            let left = poll.saturating_sub(begin.elapsed());
             std::thread::sleep(left.min(Duration::from_millis(50)));
         }
     }

@@ -173,6 +173,19 @@ fn results_that_are_spoiled_are_refused_or_shown_with_a_note() {
     assert!(code == 2 && said.contains("nowhere"), "{said}");
 }
 
+#[test]
+fn times_of_waiting_are_refused_without_watch() {
+    let done = Command::new(env!("CARGO_BIN_EXE_impactid"))
+        .args(["explore", "--no-browser", "--poll", "3"])
+        .output()
+        .expect("it runs");
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert!(
+        done.status.code() == Some(2) && said.contains("add --watch"),
+        "{said}"
+    );
+}
+
 /// Settled motion at (η, ρ = 2) of the paper's rig (R = 0.9, β = 0.07) as a record of 12 drive periods:
 /// f0 = 12.6 Hz and `x_st` = 1 mm.
 fn simulated_record(folder: &Path, name: &str, eta: f64) {
