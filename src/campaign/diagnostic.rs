@@ -236,7 +236,7 @@ impl Group<'_> {
         Some(summary)
     }
 
-    /// What tells the members apart: records, lines or files.
+    /// What distinguishes the members: records, lines or files.
     fn names(&self) -> (&'static str, Vec<String>) {
         let places = self.0.iter().map(|d| &d.place);
         let records: Option<Vec<String>> = places.clone().map(|p| p.record.clone()).collect();

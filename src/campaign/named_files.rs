@@ -19,7 +19,7 @@ pub struct NamedFiles {
 }
 
 impl NamedFiles {
-    /// Read campaign.toml and its run table. What is wrong with the table is told when the campaign is
+    /// Read campaign.toml and its run table. What is wrong with the table is reported when the campaign is
     /// loaded: here it names the files that can be read from it.
     ///
     /// # Errors
@@ -79,7 +79,7 @@ mod tests {
         assert_eq!(named.run_table, None);
         let files: Vec<PathBuf> = named.files().into_iter().collect();
         assert_eq!(files, [at("a.csv"), at("b.csv")]);
-        // a pattern is matched anew each time
+        // a pattern is matched again each time
         std::fs::write(at("c.csv"), "").unwrap();
         assert_eq!(named.files().len(), 3);
 

@@ -85,7 +85,7 @@ fn table(found: &coverage::Coverage) -> String {
     );
     for (method, parameters) in &found.methods {
         for (parameter, score) in parameters {
-            text += &score_line(method, parameter, score);
+            text += &score_line(method.name(), parameter, score);
         }
     }
     text += &tally_line("R refused where nothing touches", found.nothing_touches);

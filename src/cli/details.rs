@@ -1,15 +1,16 @@
 //! What `-v` and `-vv` print of records and fits.
 
 use super::Verbosity;
-use crate::identify::Identification;
+use crate::identify::{Estimator, Identification};
 use crate::motion::Observation;
 
 /// Print how each fit ended, with `-v`.
 pub(super) fn print_fits(identification: &Identification, verbosity: Verbosity) {
-    let methods = identification.methods.iter().map(|(m, r)| (m.name(), r));
-    for (name, result) in methods.chain([("joint", &identification.joint)]) {
+    let methods = identification.methods.iter();
+    let methods = methods.map(|(method, result)| (Estimator::Method(*method), result));
+    for (estimator, result) in methods.chain([(Estimator::Joint, &identification.joint)]) {
         if let Some(report) = &result.fit_report {
-            verbosity.detail(&format!("fit of {name}: {report}"));
+            verbosity.detail(&format!("fit of {}: {report}", estimator.name()));
         }
     }
 }

@@ -53,7 +53,7 @@ pub(super) fn news(what: Happened, files: &[(&Path, Option<&str>)]) -> String {
     }
 }
 
-/// Everything that is drawn anew.
+/// Everything that is drawn again.
 pub(super) fn status(watcher: &Watcher, outline: &Outline) -> String {
     let mut text = map(outline);
     text += &newest_bracket(&outline.brackets);

@@ -12,7 +12,7 @@ use crate::pipeline::theory::plan::RegionsPlan;
 use impact_oscillator::atlas::shard::AtlasPart;
 
 /// What a rank sends to the first: its part as JSON, or why it has none.
-type Told = Result<AtlasPart, String>;
+type PartResult = Result<AtlasPart, String>;
 
 /// Compute this rank's part; the first rank gathers all of them and writes the atlas.
 ///
@@ -35,21 +35,21 @@ pub fn run(
         (rank.unsigned_abs() as usize, size.unsigned_abs() as usize),
     );
     if rank != 0 {
-        let told: Told = own.as_ref().map(Clone::clone).map_err(Failure::text);
-        let bytes = serde_json::to_vec(&told).unwrap_or_default();
+        let part: PartResult = own.as_ref().map(Clone::clone).map_err(Failure::text);
+        let bytes = serde_json::to_vec(&part).unwrap_or_default();
         world.process_at_rank(0).send(&bytes[..]);
         return own.map(|_| Exit::Done);
     }
     // every rank's message is received even where this one failed, so that none waits without end
-    let others: Vec<Told> = (1..size)
+    let others: Vec<PartResult> = (1..size)
         .map(|k| {
             let (bytes, _) = world.process_at_rank(k).receive_vec::<u8>();
             serde_json::from_slice(&bytes).unwrap_or_else(|e| Err(e.to_string()))
         })
         .collect();
     let mut parts = vec![own?];
-    for (told, k) in others.into_iter().zip(1..) {
-        parts.push(told.map_err(|e| {
+    for (part, k) in others.into_iter().zip(1..) {
+        parts.push(part.map_err(|e| {
             let remedy = "look at that rank's own message; give --kernel where machines differ";
             Failure::new(format!("rank {k}: {e}"), remedy)
         })?);

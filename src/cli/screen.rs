@@ -1,4 +1,4 @@
-//! A part of the terminal that is drawn anew; in a pipe, its texts one after the other.
+//! A part of the terminal that is drawn again; in a pipe, its texts one after the other.
 
 use std::io::{IsTerminal, Write};
 
@@ -6,7 +6,7 @@ use super::failure::print_diagnostics;
 use super::{Failure, Verbosity};
 use crate::campaign::diagnostic::Diagnostics;
 
-/// The part at the end of the standard error stream that is drawn anew.
+/// The part at the end of the standard error stream that is drawn again.
 #[derive(Debug)]
 pub(super) struct Screen {
     verbosity: Verbosity,

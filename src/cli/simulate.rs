@@ -180,7 +180,7 @@ pub(super) struct Campaign {
     /// Folder for the campaign
     #[arg(long, short, value_name = "DIR")]
     pub out: PathBuf,
-    /// Effects beyond the model: exact (none), realistic (all that the fit knows, at sizes drawn at random), or
+    /// Effects beyond the model: exact (none), realistic (all that the fit models, at sizes drawn at random), or
     /// EFFECT[=STRENGTH],… as listed below
     #[arg(long, value_name = "RIG", default_value = "exact")]
     pub rig: RigSpec,

@@ -134,7 +134,7 @@ impl Watch {
         Ok(Exit::of(done.identification.verdict.kind))
     }
 
-    /// Fit, and replace the page and identification.json; what fails is told, and the watch goes on.
+    /// Fit, and replace the page and identification.json; what fails is reported, and the watch goes on.
     fn fit(&self, watcher: &mut Watcher, screen: &mut Screen) {
         let command = command_line(&self.campaign, &self.out, &self.options);
         let fitted = watcher.fit(

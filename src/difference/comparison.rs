@@ -82,13 +82,13 @@ pub struct Comparison {
     pub campaigns: Vec<Summary>,
     /// The differences from the first, campaign by campaign.
     pub differences: Vec<Difference>,
-    /// Whether nothing changed, by all differences together; `None` where that cannot be told.
+    /// Whether nothing changed, by all differences together; `None` where that cannot be determined.
     pub unchanged: Option<EqualityTest>,
     /// The same by each parameter alone.
     pub unchanged_by_parameter: Vec<(Coordinate, EqualityTest)>,
     /// What the campaigns share.
     pub shared: Vec<SharedNuisance>,
-    /// What two of them do not share although something speaks for it.
+    /// What two of them do not share although something suggests it.
     pub separate: Vec<SeparateNuisance>,
     /// What to keep in mind.
     pub remarks: Vec<Remark>,
@@ -98,7 +98,7 @@ impl Comparison {
     /// Whether anything changed, and what.
     pub fn outcome(&self) -> Outcome {
         let Some(test) = &self.unchanged else {
-            return Outcome::CannotBeTold;
+            return Outcome::Undetermined;
         };
         if !test.changed() {
             return Outcome::NothingChanged;

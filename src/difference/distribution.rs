@@ -1,6 +1,6 @@
 //! Tail probabilities of Student's and of Fisher's distribution.
 
-/// From this many degrees of freedom on, none are told from infinitely many.
+/// From this many degrees of freedom on, none are distinguished from infinitely many.
 const MOST: f64 = 1e6;
 /// Relative error of the continued fraction.
 const ENOUGH: f64 = 1e-14;

@@ -84,8 +84,8 @@ pub enum Outcome {
     },
     /// Something did, though no parameter alone shows it.
     ChangedTogether,
-    /// It cannot be told.
-    CannotBeTold,
+    /// It cannot be determined.
+    Undetermined,
 }
 
 messages!(WhyShared, NotShared, Remark, Outcome);
@@ -100,7 +100,7 @@ impl Message for Outcome {
             Self::NothingChanged => "No change found",
             Self::Changed { .. } => "Changed: {parameters}",
             Self::ChangedTogether => "Something changed, though no parameter alone shows it",
-            Self::CannotBeTold => "Whether anything changed cannot be told",
+            Self::Undetermined => "Whether anything changed cannot be determined",
         }
     }
 
@@ -111,7 +111,7 @@ impl Message for Outcome {
             Self::ChangedTogether => {
                 "Etwas hat sich geändert, auch wenn es kein Parameter allein zeigt"
             }
-            Self::CannotBeTold => "Ob sich etwas geändert hat, ist nicht zu entscheiden",
+            Self::Undetermined => "Ob sich etwas geändert hat, ist nicht zu entscheiden",
         }
     }
 
@@ -121,7 +121,7 @@ impl Message for Outcome {
                 let each = parameters.iter().map(|p| Value::Message(p));
                 vec![("parameters", Value::List(each.collect()))]
             }
-            Self::NothingChanged | Self::ChangedTogether | Self::CannotBeTold => Vec::new(),
+            Self::NothingChanged | Self::ChangedTogether | Self::Undetermined => Vec::new(),
         }
     }
 }
@@ -263,6 +263,6 @@ pub fn examples() -> Vec<Box<dyn Message>> {
             parameters: vec![Coordinate::Restitution],
         }),
         Box::new(Outcome::ChangedTogether),
-        Box::new(Outcome::CannotBeTold),
+        Box::new(Outcome::Undetermined),
     ]
 }

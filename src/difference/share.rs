@@ -60,7 +60,7 @@ impl Nuisance {
 }
 
 /// The nuisances that are shared, each by the campaigns that share it, and those that are not although
-/// something speaks for it.
+/// something suggests it.
 #[derive(Debug, Default)]
 pub(super) struct Sharing {
     pub shared: Vec<(Nuisance, SharedNuisance)>,
@@ -145,7 +145,7 @@ impl Sharing {
     }
 }
 
-/// Why two campaigns share a nuisance, or why not; `Err(None)` where nothing speaks for it.
+/// Why two campaigns share a nuisance, or why not; `Err(None)` where nothing suggests it.
 fn verdict(
     campaigns: &[Campaign],
     first: &Member,
@@ -176,7 +176,7 @@ fn channel_role(coordinate: Coordinate) -> Option<Role> {
 }
 
 /// Whether two channels share an error: by the same instrument, or because both campaigns state it and
-/// no instrument speaks against it.
+/// no instrument contradicts it.
 fn of_channels(
     a: &Campaign,
     b: &Campaign,

@@ -126,7 +126,7 @@ impl Sum {
             if places.contains_key(&parameter) || !(known.variance > 0.0) {
                 continue;
             }
-            // what rests on no fit stands by itself
+            // what rests on no fit is separate
             let place = self.next();
             self.add(place, place, known.variance.recip());
             self.vector[place] += known.value / known.variance;

@@ -1,6 +1,6 @@
 //! The methods of identification.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 use crate::message::{Message, Value};
 
@@ -52,6 +52,31 @@ impl Method {
     /// Name in `identification.json`.
     pub fn name(self) -> &'static str {
         self.into()
+    }
+}
+
+/// What gives an estimate: a method alone, or the joint fit of all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Estimator {
+    /// One method.
+    Method(Method),
+    /// The joint fit.
+    Joint,
+}
+
+impl Estimator {
+    /// The method's name, or `joint`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Method(method) => method.name(),
+            Self::Joint => "joint",
+        }
+    }
+}
+
+impl Serialize for Estimator {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
     }
 }
 

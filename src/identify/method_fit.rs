@@ -21,10 +21,12 @@ pub struct MethodFit {
 }
 
 /// Share of an effect that its first order does not hold, of what it changes of a parameter: what
-/// campaigns on rigs with all effects showed. Phases tell f0, and hold it better than amplitudes the others.
+/// campaigns on rigs with all effects showed. f0 follows from phases and R from speeds at the same
+/// impact, in which effects cancel; β and `x_st` follow from amplitudes.
 fn beyond_first_order(parameter: Coordinate) -> f64 {
     match parameter {
         Coordinate::Frequency => 0.005,
+        Coordinate::Restitution => 0.012,
         _ => 0.02,
     }
 }
@@ -58,17 +60,19 @@ impl MethodFit {
     pub fn first_order(&self, coordinate: Coordinate) -> Option<f64> {
         let fit = &self.fit;
         let place = |c: &Coordinate| fit.free.iter().position(|f| f == c);
-        let told: Vec<usize> = Coordinate::PHYSICAL.iter().filter_map(place).collect();
-        let row = told.iter().position(|i| fit.free[*i] == coordinate)?;
+        let estimated: Vec<usize> = Coordinate::PHYSICAL.iter().filter_map(place).collect();
+        let row = estimated.iter().position(|i| fit.free[*i] == coordinate)?;
         let information = inverse(&fit.covariance)?;
-        let count = told.len();
-        let own = DMatrix::from_fn(count, count, |i, k| information[(told[i], told[k])]);
+        let count = estimated.len();
+        let own = DMatrix::from_fn(count, count, |i, k| {
+            information[(estimated[i], estimated[k])]
+        });
         let back = inverse(&own)?;
         let share = beyond_first_order(coordinate);
         let effects = fit.free.iter().enumerate();
         let effects = effects.filter(|(_, c)| matches!(c, Coordinate::Effect(_)));
         let change = |(k, c): (usize, &Coordinate)| {
-            let pulled = told.iter().enumerate();
+            let pulled = estimated.iter().enumerate();
             let pulled = pulled.map(|(i, at)| back[(row, i)] * information[(*at, k)]);
             share * pulled.sum::<f64>() * fit.parameters.coordinate(*c)
         };

@@ -36,5 +36,5 @@ pub use identification::{
     Verdict, VerdictKind,
 };
 pub use messages::{Finding, Item, LeftOut, Note, PairAgreement, Reason, Remark, Sentence};
-pub use method::Method;
+pub use method::{Estimator, Method};
 pub use specimens::identify_campaign;

@@ -134,7 +134,7 @@ fn thinned(evidence: &Evidence<'_>) -> Option<Remark> {
     })
 }
 
-/// R from the brackets, by its posterior where the resonance curve tells the rest.
+/// R from the brackets, by its posterior where the resonance curve determines the rest.
 pub fn boundaries(
     blocks: &Blocks,
     fitted: &FitResult,

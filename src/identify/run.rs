@@ -258,7 +258,7 @@ fn start(evidence: &Evidence<'_>, resonance: &Option<FitResult>) -> Parameters {
 struct IdentificationRun<'a> {
     evidence: &'a Evidence<'a>,
     selection: Selection<'a>,
-    /// What the brackets say of R where the resonance curve tells the rest.
+    /// What the brackets say of R where the resonance curve determines the rest.
     posterior: Option<Posterior>,
 }
 

@@ -23,7 +23,7 @@ use labfiles::output::{make_folder, write_bytes};
 /// Name of the report's file.
 pub const FILE: &str = "report.pdf";
 
-/// Name of the file beside the page that tells it which page was written last; it is there while a
+/// Name of the file beside the page that states which page was written last; it is there while a
 /// campaign is watched.
 pub(super) const LIVE_STATE: &str = "report.live.js";
 

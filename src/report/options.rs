@@ -104,7 +104,7 @@ pub struct ReportOptions {
     pub template: Option<String>,
     /// A logo.
     pub logo: Option<Logo>,
-    /// How a page knows that a newer one was written, while records are still arriving.
+    /// How a page finds out that a newer one was written, while records are still arriving.
     pub live: Option<LivePage>,
 }
 

@@ -130,7 +130,7 @@ PhasePortraits => "phase portraits", "Phasenporträts";
 SaddleNodeSimulated => "saddle-node $s_2$, simulated", "Sattel-Knoten $s_2$, simuliert";
 Simulated => "simulated", "simuliert";
 RmsResidual => "{name}: rms residual {value} = {share} % of rms", "{name}: Residuum {value} (eff.) = {share} %";
-// What hovering over a point tells
+// What hovering over a point shows
 ConfidenceOf => "confidence {share}", "Sicherheit {share}";
 ResidualOf => "residual {value}", "Residuum {value}";
 SweepDown => "sweep down", "Durchlauf abwärts";

@@ -1,6 +1,6 @@
 //! Filters, spectra, tones and local polynomials on plain slices; the only user of rustfft.
 //!
-//! Nothing here knows what a record is: every function takes samples at a uniform step.
+//! Nothing here depends on records: every function takes samples at a uniform step.
 
 pub mod decay;
 pub mod drift;

@@ -285,7 +285,7 @@ impl RigSpec {
         Self::default()
     }
 
-    /// A rig with all effects that the fit knows at typical strengths, their sizes drawn for each
+    /// A rig with all effects that the fit models at typical strengths, their sizes drawn for each
     /// campaign.
     pub fn realistic() -> Self {
         let known = Effect::ALL.into_iter().filter(|e| e.is_in_the_fit());

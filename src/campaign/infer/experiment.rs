@@ -234,7 +234,7 @@ fn orient(records: &[Record], rig: RigKind, channels: &mut [InferredChannel]) {
     }
 }
 
-/// Free flights are told by velocity and displacement; an accelerometer adds its drift.
+/// Free flights are recognised by velocity and displacement; an accelerometer adds its drift.
 fn without_acceleration(channels: &mut [InferredChannel]) {
     let better = |c: &InferredChannel| {
         let role = c.role.filter(|r| r.is_motion());

@@ -1,7 +1,7 @@
 //! A gap that is stated so far off that a fit of all records is nowhere near the rig: each gap is left
-//! out in turn, and what remains is fitted anew.
+//! out in turn, and what remains is fitted again.
 //!
-//! The first order about a fit, which tells smaller errors of a gap, may then accuse another gap.
+//! The first order about a fit, which finds smaller errors of a gap, may then accuse another gap.
 
 use crate::identify::diagnostics::suspicion::{OddGap, recover};
 use crate::identify::evidence::Blocks;

@@ -34,7 +34,7 @@ impl BoundaryBlock {
         }
     }
 
-    /// Whether any bracket tells R.
+    /// Whether any bracket determines R.
     pub fn tells_restitution(&self) -> bool {
         self.brackets
             .iter()

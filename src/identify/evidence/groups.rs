@@ -1,4 +1,4 @@
-//! The groups of each record, whose scatter tells what the model does not contain.
+//! The groups of each record, whose scatter shows what the model does not contain.
 
 use std::collections::BTreeMap;
 

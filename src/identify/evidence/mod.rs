@@ -1,4 +1,4 @@
-//! The evidence of a campaign sorted by what it tells, and the nuisances that come with it.
+//! The evidence of a campaign sorted by what it determines, and the nuisances that come with it.
 //!
 //! Each kind is a block of residuals of its own: impactless records ([`resonance`]), periodic ones
 //! ([`trajectory`]), brackets of boundaries ([`boundary`]), speeds at impacts ([`impacts`]) and records
@@ -288,7 +288,7 @@ impl Blocks {
         (0..4).filter(filtered).map(Coordinate::Corner)
     }
 
-    /// Whether both masses are measured, so that asymmetries can be told.
+    /// Whether both masses are measured, so that asymmetries can be determined.
     fn sees_both(&self) -> bool {
         let has = |i: usize| self.measures(i, |_| true);
         self.resonance.rig == RigKind::Double && (has(0) || has(2)) && (has(1) || has(3))

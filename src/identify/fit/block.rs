@@ -57,7 +57,7 @@ pub trait Block: Sync {
         None
     }
 
-    /// Which coordinates one of its items depends on; as the whole block does, unless it knows better.
+    /// Which coordinates one of its items depends on; as the whole block does, unless it overrides this.
     fn item_touches(&self, _item: usize, coordinate: Coordinate) -> bool {
         self.touches(coordinate)
     }

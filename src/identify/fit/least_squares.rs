@@ -1,7 +1,7 @@
 //! Levenberg–Marquardt on the triangular factor of the residuals and their slopes, as a solver of
 //! argmin's executor.
 //!
-//! The solver knows nothing of what is fitted: a problem gives its factor and its cost at a point and
+//! The solver is independent of what is fitted: a problem gives its factor and its cost at a point and
 //! the point that a step leads to.
 
 use std::cell::RefCell;

@@ -19,8 +19,8 @@ pub struct Spread {
 impl Spread {
     /// Of a fit with a factor on its covariance; asymmetries are left out.
     pub fn of(fit: &Fit, factor: f64, rig: RigKind) -> Self {
-        let told = [Coordinate::Restitution, Coordinate::Damping];
-        let ends = told
+        let estimated = [Coordinate::Restitution, Coordinate::Damping];
+        let ends = estimated
             .into_iter()
             .filter_map(|coordinate| {
                 let error = fit.error(coordinate)? * factor.sqrt();
@@ -33,7 +33,7 @@ impl Spread {
             .collect();
         Self {
             ends,
-            correlation: fit.correlation(told[0], told[1]).unwrap_or(0.0),
+            correlation: fit.correlation(estimated[0], estimated[1]).unwrap_or(0.0),
         }
     }
 

@@ -13,7 +13,7 @@ use crate::identify::evidence::{Blocks, Evidence, Nominal};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Prior, Problem};
 use crate::identify::joint;
-use crate::identify::method::Method;
+use crate::identify::method::{Estimator, Method};
 use crate::identify::methods::wide_priors;
 use crate::identify::uncertainty::posterior::{self, Posterior};
 
@@ -41,32 +41,35 @@ impl Bound {
     }
 }
 
-/// Bounds of every method on the evidence, `joint` among them, at given parameters.
-pub fn bounds(evidence: &Evidence<'_>, at: &Parameters) -> BTreeMap<String, Bound> {
+/// Bounds of every method on the evidence and of the joint fit, at given parameters.
+pub fn bounds(evidence: &Evidence<'_>, at: &Parameters) -> BTreeMap<Estimator, Bound> {
     let mut blocks = Blocks::with_noise_alone(evidence);
     blocks.resonance.find_changes(at);
     blocks.trajectory.find_changes(at);
     let blocks = blocks;
     use Method::{Boundaries, Flights, Impacts, Resonance, Trajectories};
-    let methods: [(&str, &[Method]); 6] = [
-        (Resonance.name(), &[Resonance]),
-        (Trajectories.name(), &[Trajectories]),
-        (Boundaries.name(), &[Boundaries, Resonance]),
-        (Impacts.name(), &[Impacts]),
-        (Flights.name(), &[Flights]),
-        ("joint", &[Resonance, Trajectories, Boundaries, Impacts]),
+    let methods: [(Estimator, &[Method]); 6] = [
+        (Estimator::Method(Resonance), &[Resonance]),
+        (Estimator::Method(Trajectories), &[Trajectories]),
+        (Estimator::Method(Boundaries), &[Boundaries, Resonance]),
+        (Estimator::Method(Impacts), &[Impacts]),
+        (Estimator::Method(Flights), &[Flights]),
+        (
+            Estimator::Joint,
+            &[Resonance, Trajectories, Boundaries, Impacts],
+        ),
     ];
-    let mut bounds: BTreeMap<String, Bound> = methods
+    let mut bounds: BTreeMap<Estimator, Bound> = methods
         .into_iter()
-        .filter_map(|(name, methods)| {
-            let found = bound(&blocks, methods, &evidence.nominal, at)?;
-            Some((name.to_owned(), found))
+        .filter_map(|(estimator, methods)| {
+            Some((estimator, bound(&blocks, methods, &evidence.nominal, at)?))
         })
         .collect();
     let deflection = bounds
-        .get(Resonance.name())
+        .get(&Estimator::Method(Resonance))
         .and_then(|b| b.error(Coordinate::Deflection));
-    if let (Some(error), Some(found)) = (deflection, bounds.get_mut(Boundaries.name())) {
+    let brackets = bounds.get_mut(&Estimator::Method(Boundaries));
+    if let (Some(error), Some(found)) = (deflection, brackets) {
         found.take_intervals(posterior::of_brackets(&blocks.boundary, at, error.min(0.3)));
     }
     bounds

@@ -120,16 +120,19 @@ pub fn budget(
     between_methods: &[(Coordinate, f64)],
 ) -> Budget {
     let fit = &found.fit;
-    let told: Vec<(usize, Coordinate)> = fit
+    let estimated: Vec<(usize, Coordinate)> = fit
         .free
         .iter()
         .copied()
         .enumerate()
         .filter(|(_, c)| Coordinate::PHYSICAL.contains(c))
         .collect();
-    let mut rows = noise_rows((methods, parts), found, &told);
-    rows.extend(stated_rows(problem, found, blocks, &told));
-    let spreads: Vec<_> = told.iter().filter_map(|(_, c)| found.spread(*c)).collect();
+    let mut rows = noise_rows((methods, parts), found, &estimated);
+    rows.extend(stated_rows(problem, found, blocks, &estimated));
+    let spreads: Vec<_> = estimated
+        .iter()
+        .filter_map(|(_, c)| found.spread(*c))
+        .collect();
     let freedom = spreads
         .iter()
         .map(|s| s.freedom)
@@ -141,7 +144,7 @@ pub fn budget(
         evaluation: Evaluation::A,
         standard_uncertainty: None,
         degrees_of_freedom: finite(freedom),
-        contributions: contributions(&told, |_, c| {
+        contributions: contributions(&estimated, |_, c| {
             (None, found.spread(c).map_or(0.0, |s| s.between_groups))
         }),
     });
@@ -150,7 +153,9 @@ pub fn budget(
         evaluation: Evaluation::B,
         standard_uncertainty: None,
         degrees_of_freedom: None,
-        contributions: contributions(&told, |_, c| (None, found.first_order(c).unwrap_or(0.0))),
+        contributions: contributions(&estimated, |_, c| {
+            (None, found.first_order(c).unwrap_or(0.0))
+        }),
     });
     let apart = |c: Coordinate| {
         let mut all = between_methods.iter();
@@ -162,10 +167,10 @@ pub fn budget(
             evaluation: Evaluation::A,
             standard_uncertainty: None,
             degrees_of_freedom: finite(methods.len().saturating_sub(1).max(1) as f64),
-            contributions: contributions(&told, |_, c| (None, apart(c))),
+            contributions: contributions(&estimated, |_, c| (None, apart(c))),
         });
     }
-    let combined = told.iter().filter_map(|(_, parameter)| {
+    let combined = estimated.iter().filter_map(|(_, parameter)| {
         let spread = found.spread(*parameter)?;
         let standard_uncertainty = spread.error.hypot(apart(*parameter));
         let coverage_factor = student_975(spread.freedom);
@@ -187,7 +192,7 @@ pub fn budget(
 fn noise_rows(
     (methods, parts): (&[Method], &[Normal]),
     found: &MethodFit,
-    told: &[(usize, Coordinate)],
+    estimated: &[(usize, Coordinate)],
 ) -> Vec<Row> {
     let fit = &found.fit;
     let covariance = &fit.covariance * found.factor;
@@ -199,7 +204,7 @@ fn noise_rows(
             evaluation: Evaluation::A,
             standard_uncertainty: None,
             degrees_of_freedom: finite(part.count.saturating_sub(fit.free.len()).max(1) as f64),
-            contributions: contributions(told, |i, _| (None, spread[(i, i)].max(0.0).sqrt())),
+            contributions: contributions(estimated, |i, _| (None, spread[(i, i)].max(0.0).sqrt())),
         });
     }
     rows
@@ -210,7 +215,7 @@ fn stated_rows(
     problem: &Problem<'_>,
     found: &MethodFit,
     blocks: &Blocks,
-    told: &[(usize, Coordinate)],
+    estimated: &[(usize, Coordinate)],
 ) -> Vec<Row> {
     let fit = &found.fit;
     let covariance = &fit.covariance * found.factor;
@@ -236,7 +241,7 @@ fn stated_rows(
             evaluation: Evaluation::B,
             standard_uncertainty: Some(prior.deviation),
             degrees_of_freedom: None,
-            contributions: contributions(told, |i, _| {
+            contributions: contributions(estimated, |i, _| {
                 (Some(sensitivity(i)), (sensitivity(i) * size).abs())
             }),
         });
@@ -245,10 +250,10 @@ fn stated_rows(
 }
 
 fn contributions(
-    told: &[(usize, Coordinate)],
+    estimated: &[(usize, Coordinate)],
     of: impl Fn(usize, Coordinate) -> (Option<f64>, f64),
 ) -> Vec<Contribution> {
-    let each = told.iter().map(|(i, parameter)| {
+    let each = estimated.iter().map(|(i, parameter)| {
         let (sensitivity, uncertainty) = of(*i, *parameter);
         Contribution {
             parameter: *parameter,

@@ -1,13 +1,13 @@
 //! How good estimates are over many campaigns with known truth: bias, root-mean-square error
 //! against the Cramér–Rao bound, and coverage of the 95 % intervals.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::uncertainty::bound::Bound;
-use crate::identify::{Method, MethodResult, ParameterSet, Status};
+use crate::identify::{Estimator, Method, MethodResult, ParameterSet, Status};
 
 /// How one parameter came out of one method over all campaigns. Errors of R are absolute, those
 /// of the others relative.
@@ -39,15 +39,15 @@ pub struct Score {
     pub worst_campaign: Option<usize>,
 }
 
-/// One campaign's outcome: estimates and bounds of each method, `joint` among them.
+/// One campaign's outcome: estimates and bounds of each method and of the joint fit.
 #[derive(Debug, Clone)]
 pub struct Trial {
     /// The true parameters.
     pub truth: Parameters,
     /// Estimates by method.
-    pub estimates: BTreeMap<String, ParameterSet>,
+    pub estimates: BTreeMap<Estimator, ParameterSet>,
     /// Bounds by method.
-    pub bounds: BTreeMap<String, Bound>,
+    pub bounds: BTreeMap<Estimator, Bound>,
 }
 
 impl Trial {
@@ -56,13 +56,13 @@ impl Trial {
         truth: Parameters,
         joint: &MethodResult,
         methods: &BTreeMap<Method, MethodResult>,
-        bounds: BTreeMap<String, Bound>,
+        bounds: BTreeMap<Estimator, Bound>,
     ) -> Self {
-        let mut estimates: BTreeMap<String, ParameterSet> = methods
+        let mut estimates: BTreeMap<Estimator, ParameterSet> = methods
             .iter()
-            .map(|(method, m)| (method.name().to_owned(), m.parameters.clone()))
+            .map(|(method, m)| (Estimator::Method(*method), m.parameters.clone()))
             .collect();
-        estimates.insert("joint".into(), joint.parameters.clone());
+        estimates.insert(Estimator::Joint, joint.parameters.clone());
         Self {
             truth,
             estimates,
@@ -75,34 +75,40 @@ impl Trial {
 /// which a claim has none, as a multiple.
 const CLEAR: f64 = 3.0;
 
-/// Scores by method and parameter.
-pub fn scores(trials: &[Trial]) -> BTreeMap<String, BTreeMap<String, Score>> {
-    let mut all: BTreeMap<String, BTreeMap<String, Score>> = BTreeMap::new();
-    let names: std::collections::BTreeSet<&String> =
-        trials.iter().flat_map(|t| t.estimates.keys()).collect();
-    for name in names {
+/// Scores by method and name of the parameter.
+pub fn scores(trials: &[Trial]) -> BTreeMap<Estimator, BTreeMap<&'static str, Score>> {
+    let mut all: BTreeMap<_, BTreeMap<_, _>> = BTreeMap::new();
+    let estimators: BTreeSet<Estimator> = trials
+        .iter()
+        .flat_map(|t| t.estimates.keys().copied())
+        .collect();
+    for estimator in estimators {
         for coordinate in Coordinate::PHYSICAL {
-            if let Some(score) = score(trials, name, coordinate) {
-                let method = all.entry(name.clone()).or_default();
-                method.insert(coordinate.name().into(), score);
+            if let Some(score) = score(trials, estimator, coordinate) {
+                let scores = all.entry(estimator).or_default();
+                scores.insert(coordinate.name(), score);
             }
         }
     }
     all
 }
 
-/// Score of one parameter; `None` where no campaign's method speaks of it.
-fn score(trials: &[Trial], method: &str, coordinate: Coordinate) -> Option<Score> {
+/// Score of one parameter; `None` where no campaign's method estimates it.
+fn score(trials: &[Trial], estimator: Estimator, coordinate: Coordinate) -> Option<Score> {
     let (weak, _) = crate::identify::estimate::limits(coordinate);
     let mut score = Score::default();
     let (mut errors, mut ratios, mut bounds, mut covered) = (vec![], vec![], vec![], 0);
     let mut half_widths = vec![];
     let mut worst = 0.0;
     for (number, trial) in trials.iter().enumerate() {
-        let Some(estimate) = trial.estimates.get(method).and_then(|p| p.get(coordinate)) else {
+        let estimates = trial.estimates.get(&estimator);
+        let Some(estimate) = estimates.and_then(|p| p.get(coordinate)) else {
             continue;
         };
-        let bound = trial.bounds.get(method).and_then(|b| b.error(coordinate));
+        let bound = trial
+            .bounds
+            .get(&estimator)
+            .and_then(|b| b.error(coordinate));
         let Some((value, [low, high])) = estimate.value.zip(estimate.interval95) else {
             score.refused += 1;
             score.refused_without_reason += usize::from(bound.is_some_and(|b| b < weak / CLEAR));
@@ -147,13 +153,16 @@ pub fn table(trials: &[Trial]) -> String {
         String::from("campaign,method,parameter,truth,value,interval_low,interval_high,bound\n");
     let number = |v: Option<f64>| v.map(|v| format!("{v:.9e}")).unwrap_or_default();
     for (campaign, trial) in trials.iter().enumerate() {
-        for (method, estimates) in &trial.estimates {
+        for (estimator, estimates) in &trial.estimates {
             for coordinate in Coordinate::PHYSICAL {
                 let Some(estimate) = estimates.get(coordinate) else {
                     continue;
                 };
-                let bound = trial.bounds.get(method).and_then(|b| b.error(coordinate));
-                let name = coordinate.name();
+                let bound = trial
+                    .bounds
+                    .get(estimator)
+                    .and_then(|b| b.error(coordinate));
+                let (method, name) = (estimator.name(), coordinate.name());
                 let known = [
                     Some(true_value(&trial.truth, coordinate).0),
                     estimate.value,

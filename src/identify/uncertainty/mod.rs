@@ -30,7 +30,7 @@ use crate::identify::uncertainty::budget::Budget;
 use crate::identify::uncertainty::scatter::Scatter;
 use crate::signal::whole;
 
-/// Likelihood of one parameter with all others fitted anew at each of its values.
+/// Likelihood of one parameter with all others fitted again at each of its values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ProfileCurve {
     /// The parameter.
@@ -74,7 +74,7 @@ pub struct Uncertainty {
     pub bootstrap: Vec<Bootstrapped>,
 }
 
-/// What tells something of the parameters: a method, or the laboratory's own statements.
+/// What contains information on the parameters: a method, or the laboratory's own statements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum InformationSource {
@@ -101,21 +101,21 @@ pub fn uncertainty(
     factor: f64,
     options: &UncertaintyOptions,
 ) -> Uncertainty {
-    let told: Vec<Coordinate> = Coordinate::PHYSICAL
+    let estimated: Vec<Coordinate> = Coordinate::PHYSICAL
         .into_iter()
         .filter(|c| fit.free.contains(c))
         .collect();
     Uncertainty {
-        information_share: shares(by_method, fit, &told),
+        information_share: shares(by_method, fit, &estimated),
         profiles: match options.intervals {
-            IntervalMethod::Profile => told
+            IntervalMethod::Profile => estimated
                 .iter()
                 .filter_map(|c| profile(problem, fit, factor, *c))
                 .collect(),
             _ => Vec::new(),
         },
         bootstrap: match options.intervals {
-            IntervalMethod::Bootstrap => bootstrap(problem, fit, options, &told),
+            IntervalMethod::Bootstrap => bootstrap(problem, fit, options, &estimated),
             _ => Vec::new(),
         },
         ..Uncertainty::default()
@@ -126,14 +126,14 @@ pub fn uncertainty(
 fn shares(
     (methods, parts): (&[Method], &[Normal]),
     fit: &Fit,
-    told: &[Coordinate],
+    estimated: &[Coordinate],
 ) -> BTreeMap<Coordinate, BTreeMap<InformationSource, f64>> {
     let mut all: BTreeMap<Coordinate, BTreeMap<InformationSource, f64>> = BTreeMap::new();
     let methods = methods.iter().copied().map(InformationSource::Method);
     let sources = methods.chain([InformationSource::Stated]);
     for (source, part) in sources.zip(parts) {
         let spread = &fit.covariance * &part.matrix * &fit.covariance;
-        for coordinate in told {
+        for coordinate in estimated {
             let Some(i) = fit.free.iter().position(|c| c == coordinate) else {
                 continue;
             };
@@ -218,14 +218,15 @@ fn bootstrap(
     problem: &Problem<'_>,
     fit: &Fit,
     options: &UncertaintyOptions,
-    told: &[Coordinate],
+    estimated: &[Coordinate],
 ) -> Vec<Bootstrapped> {
     let blocks = problem.item_parts(&fit.parameters);
     let replicas: Vec<Vec<f64>> = (0..options.replicas as u64)
         .into_par_iter()
         .filter_map(|i| replica(problem, fit, &blocks, (options.seed, i)))
         .collect();
-    told.iter()
+    estimated
+        .iter()
         .filter_map(|coordinate| {
             let i = fit.free.iter().position(|c| c == coordinate)?;
             let best = fit.parameters.coordinate(*coordinate);
@@ -286,8 +287,8 @@ mod tests {
 
     #[test]
     fn a_rise_that_is_nearly_a_square_is_told_by_four_of_its_points() {
-        let told = smooth_rise(|k| Some(k * k * (1.0 + 0.02 * k + 0.003 * k * k)));
-        let [cubic, quartic] = told.expect("smooth");
+        let rise = smooth_rise(|k| Some(k * k * (1.0 + 0.02 * k + 0.003 * k * k)));
+        let [cubic, quartic] = rise.expect("smooth");
         assert!((cubic - 0.02).abs() < 1e-12 && (quartic - 0.003).abs() < 1e-12);
         // A kink between the points, and a point without a fit.
         assert_eq!(smooth_rise(|k| Some(k * k + k.abs())), None);

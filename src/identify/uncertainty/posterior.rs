@@ -2,7 +2,7 @@
 //!
 //! A bracket says that a boundary lies between two settings and nothing more (14); its likelihood is
 //! flat inside, so neither a least-squares optimum nor its curvature means anything. The
-//! posterior is therefore summed over a grid of R and `x_st` (which the resonance curve tells), with
+//! posterior is therefore summed over a grid of R and `x_st` (which the resonance curve determines), with
 //! the scale of early jumps summed out; f0 and β are the resonance curve's.
 
 use std::collections::BTreeMap;
@@ -33,8 +33,8 @@ const FINE: usize = 61;
 /// Log-likelihood below the greatest at which the grid of R may end.
 const NEGLIGIBLE: f64 = 9.0;
 
-/// Posterior about parameters that the resonance curve tells, with the standard error of
-/// ln `x_st`; `None` where no bracket tells R.
+/// Posterior about parameters that the resonance curve determines, with the standard error of
+/// ln `x_st`; `None` where no bracket determines R.
 pub fn of_brackets(block: &BoundaryBlock, about: &Parameters, error: f64) -> Option<Posterior> {
     if !block.tells_restitution() {
         return None;

@@ -8,13 +8,13 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::event::{DetectSettings, RigKind};
-use crate::identify::Identification;
 use crate::identify::evidence::{Evidence, Nominal};
 use crate::identify::fit::parameters::Parameters;
 use crate::identify::run::identify;
 use crate::identify::uncertainty::bound::bounds;
 use crate::identify::uncertainty::coverage::{Score, Trial, scores, table};
 use crate::identify::uncertainty::{IntervalMethod, UncertaintyOptions};
+use crate::identify::{Estimator, Identification};
 use crate::motion::{
     Bracket, ClassifySettings, Motion, Observation, brackets, observe, scale_drives,
 };
@@ -42,8 +42,8 @@ pub struct Coverage {
     /// Every estimate of every campaign, as CSV.
     #[serde(skip)]
     pub estimates: String,
-    /// Scores by method (`joint` among them) and parameter.
-    pub methods: BTreeMap<String, BTreeMap<String, Score>>,
+    /// Scores by method (`joint` among them) and name of the parameter.
+    pub methods: BTreeMap<Estimator, BTreeMap<&'static str, Score>>,
     /// Campaigns in which nothing touches: how often R was called not identifiable, as it must.
     pub nothing_touches: Tally,
     /// Mistakes of the laboratory: how often each was found and named.

@@ -36,7 +36,7 @@ struct One {
 
 impl Kept {
     /// Observe the records of a campaign that are not kept, and forget those that it no longer has;
-    /// `stamp` tells how a file is. A record whose samples are still the same, in a file that has grown,
+    /// `stamp` identifies the state of a file. A record whose samples are still the same, in a file that has grown,
     /// is not observed again. Returns how many were observed.
     pub(super) fn observe(
         &mut self,

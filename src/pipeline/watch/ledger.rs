@@ -32,7 +32,7 @@ impl Stamp {
         self.length == other.length && self.changed == other.changed
     }
 
-    /// Whether a file that has changed was written anew, rather than continued.
+    /// Whether a file that has changed was rewritten, rather than continued.
     fn replaces(&self, before: &Self) -> bool {
         self.made != before.made || self.length <= before.length
     }
@@ -77,12 +77,12 @@ struct Entry {
     taken: Option<Stamp>,
     /// When it was opened in vain, and why.
     refused: Option<(Duration, String)>,
-    /// Whether it was told that it is half-written, or replaced, since it waits.
-    told: Told,
+    /// Whether it was reported that it is half-written, or replaced, since it waits.
+    reported: Reported,
 }
 
 #[derive(Debug, Default, Clone, Copy)]
-struct Told {
+struct Reported {
     half_written: bool,
     replaced: bool,
 }
@@ -155,7 +155,7 @@ impl Ledger {
         if let Some(entry) = self.files.get_mut(path) {
             entry.taken = Some(entry.stamp);
             entry.refused = None;
-            entry.told = Told::default();
+            entry.reported = Reported::default();
         }
     }
 
@@ -185,7 +185,7 @@ impl Entry {
             waiting: now,
             taken: None,
             refused: None,
-            told: Told::default(),
+            reported: Reported::default(),
         }
     }
 
@@ -214,13 +214,13 @@ impl Entry {
     fn news(&mut self, path: &Path, now: Duration, patience: Patience) -> Vec<News> {
         let mut news = Vec::new();
         let replaced = self.taken.is_some_and(|t| self.stamp.replaces(&t));
-        if replaced && !self.told.replaced {
-            self.told.replaced = true;
+        if replaced && !self.reported.replaced {
+            self.reported.replaced = true;
             news.push(News::Replaced(path.to_path_buf()));
         }
         let late = now.saturating_sub(self.waiting) >= patience.half_written;
-        if late && !self.told.half_written {
-            self.told.half_written = true;
+        if late && !self.reported.half_written {
+            self.reported.half_written = true;
             news.push(News::HalfWritten {
                 path: path.to_path_buf(),
                 reason: self.refused.as_ref().map(|(_, reason)| reason.clone()),

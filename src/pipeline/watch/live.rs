@@ -88,7 +88,7 @@ pub fn write_live(live: &Live, command_line: &str, out: &Path) -> Result<(), Pip
     )?)
 }
 
-/// What tells an answer from another one: all that it was made from.
+/// What distinguishes an answer from another one: all that it was made from.
 fn version(found: &IdentificationFile) -> String {
     let mut hash = Sha256::new();
     hash.update(found.provenance.settings.to_string());

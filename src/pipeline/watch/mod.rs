@@ -2,7 +2,7 @@
 //! record observed once, and the fit made again from the kept observations at times. The end is that
 //! of [`super::run()`], with the same bytes.
 //!
-//! The caller tells the time and asks: [`Watcher::look`] every few seconds, [`Watcher::fit`] when
+//! The caller gives the time and asks: [`Watcher::look`] every few seconds, [`Watcher::fit`] when
 //! [`Watcher::is_due`], [`Watcher::complete`] at the end.
 
 mod kept;
@@ -46,8 +46,8 @@ pub struct Watcher {
     described: Vec<Option<Stamp>>,
     /// The campaign with the records taken so far; `None` before any could be listed.
     campaign: Option<ResolvedCampaign>,
-    /// What was told to be wrong with it.
-    told: Vec<Diagnostic>,
+    /// What was reported to be wrong with it.
+    reported: Vec<Diagnostic>,
     /// When a record came or went last.
     changed: Duration,
     /// Records that can be used.
@@ -66,7 +66,7 @@ pub struct Seen {
     pub changed: bool,
     /// How many records were observed.
     pub observed: usize,
-    /// What is wrong with the campaign and was not yet told.
+    /// What is wrong with the campaign and was not yet reported.
     pub faults: Diagnostics,
 }
 
@@ -104,7 +104,7 @@ impl Watcher {
             meter: Meter::start(),
             described: Vec::new(),
             campaign: None,
-            told: Vec::new(),
+            reported: Vec::new(),
             changed: Duration::ZERO,
             usable: 0,
             last: None,
@@ -216,7 +216,7 @@ impl Watcher {
     }
 
     /// List the records of the files taken so far. A campaign that cannot be read at the moment stays
-    /// as it was; that is told once what was edited has settled. Returns whether it is another one.
+    /// as it was; that is reported once what was edited has settled. Returns whether it is another one.
     fn reload(&mut self, edited: bool, faults: &mut Diagnostics) -> bool {
         let ledger = &self.ledger;
         let taken = |path: &Path| ledger.taken(path).is_some();
@@ -244,10 +244,10 @@ impl Watcher {
         observed
     }
 
-    /// Keep what was not told yet.
+    /// Keep what was not reported yet.
     fn told_once(&mut self, faults: &mut Diagnostics) {
-        faults.0.retain(|fault| !self.told.contains(fault));
-        self.told.extend(faults.0.iter().cloned());
+        faults.0.retain(|fault| !self.reported.contains(fault));
+        self.reported.extend(faults.0.iter().cloned());
         faults.sort();
     }
 

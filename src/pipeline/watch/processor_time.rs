@@ -25,7 +25,7 @@ impl Meter {
     }
 }
 
-/// User and system time of all threads, as Linux tells them: in hundredths of a second.
+/// User and system time of all threads, as Linux gives them: in hundredths of a second.
 #[cfg(target_os = "linux")]
 fn told_by_the_system() -> Option<Duration> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;

@@ -8,7 +8,7 @@
 //! fit: what identifies the parameters grows with the number of records or faster, what draws the page is
 //! taken to be constant.
 //!
-//! A fit that rests on records which are gone or were written anew is made again in the next pause,
+//! A fit that rests on records which are gone or were rewritten is made again in the next pause,
 //! whatever it costs.
 
 use std::time::Duration;

@@ -133,10 +133,10 @@ fn answers(content: &ReportContent, locale: Locale<'_>) -> Vec<Answer> {
     let estimates = PARAMETERS
         .iter()
         .map(|look| (look, (look.pick)(&id.joint.parameters)));
-    let told = estimates
+    let known = estimates
         .clone()
         .any(|(_, e)| e.is_some_and(|e| e.value.is_some()));
-    if !told && !id.specimens.is_empty() {
+    if !known && !id.specimens.is_empty() {
         return Vec::new();
     }
     estimates.map(|(look, e)| answer(look, e, locale)).collect()

@@ -1,4 +1,4 @@
-//! How a motion looks: each has its own shape and its own colour, told apart in grey and by the
+//! How a motion looks: each has its own shape and its own colour, distinguishable in grey and by the
 //! colour-blind; and the pale tint of its region.
 
 use crate::signal::whole;

@@ -73,7 +73,7 @@ fn font_face(face: Face, style: &str, weight: &str) -> String {
     )
 }
 
-/// What tells that records are still arriving, with the script that reloads the page.
+/// What shows that records are still arriving, with the script that reloads the page.
 fn live(options: &ReportOptions) -> String {
     let Some(live) = &options.live else {
         return String::new();

@@ -78,7 +78,7 @@ fn fits(row: &[String], columns: usize) -> bool {
 /// Lines above the table among which its heading is looked for.
 const HEADING_LINES: usize = 4;
 
-/// The row that heads the table: of the last ones that fit, the one that tells most columns apart.
+/// The row that heads the table: of the last ones that fit, the one with most distinct columns.
 fn names_row(rows: &[Vec<String>], columns: usize) -> Option<usize> {
     let distinct = |row: &Vec<String>| {
         let filled = row.iter().filter(|c| !c.is_empty());

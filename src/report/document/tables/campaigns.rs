@@ -129,7 +129,7 @@ pub(crate) fn shared(comparison: &Comparison, locale: Locale<'_>) -> Option<Tabl
     of_nuisances(Phrase::TableShared, rows.collect(), locale)
 }
 
-/// What two campaigns do not share although something speaks for it.
+/// What two campaigns do not share although something suggests it.
 pub(crate) fn separate(comparison: &Comparison, locale: Locale<'_>) -> Option<Table> {
     let rows = comparison.separate.iter().map(|s| {
         vec![
