@@ -9,7 +9,7 @@ use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::weighing::Bulk;
 use crate::identify::evidence::{Blocks, Evidence};
 use crate::identify::fit::parameters::Parameters;
-use crate::identify::fit::{Precision, Problem, mean_squares};
+use crate::identify::fit::{FitError, Precision, Problem, mean_squares};
 use crate::identify::flight_times;
 use crate::identify::messages::{Item, LeftOut, Reason};
 use crate::identify::method::Method;
@@ -18,6 +18,8 @@ use crate::motion::Bracket;
 
 /// Slowest multiplier's distance from 1 at which a motion is at its end.
 const END: f64 = 2e-3;
+/// That at which a fit may pull it there.
+const NEAR_END: f64 = 0.1;
 
 /// Rounds of leaving outlying records out and fitting again.
 const ROUNDS: usize = 2;
@@ -163,18 +165,48 @@ impl<'a> Selection<'a> {
             let lost = self.lost.len();
             self.keep_fitting(&parameters);
             self.keep_those_with_orbits(&parameters);
-            found =
-                match methods::trajectories(&self.blocks, &nominal, parameters, Precision::Result)?
-                {
-                    Ok(found) => found,
-                    failed => return Some(failed),
-                };
+            found = match self.trajectories_without_ends(parameters)? {
+                Ok(found) => found,
+                failed => return Some(failed),
+            };
             let change = self.blocks.trajectory.relative_error() / allowed - 1.0;
             if self.lost.len() == lost && change.abs() < SETTLED {
                 break;
             }
         }
         Some(Ok(found))
+    }
+
+    /// Fit the folded records. Where one is pulled onto its saddle-node, where its slopes are infinite and
+    /// the fit is singular, the worst of those near theirs is named, left out, and all others are fitted.
+    fn trajectories_without_ends(&mut self, start: Parameters) -> Option<FitResult> {
+        loop {
+            let nominal = &self.evidence.nominal;
+            let found = methods::trajectories(&self.blocks, nominal, start, Precision::Result)?;
+            let pulled = match &found {
+                Err(FitError::Singular) => self.worst_near_its_end(&start),
+                _ => None,
+            };
+            let Some((item, times_worse)) = pulled else {
+                return Some(found);
+            };
+            let record = self.blocks.trajectory.records.remove(item);
+            let reason = Reason::WaveformUnlikeOthers { times_worse };
+            self.note(record.observation, reason);
+            self.lost.push(record);
+        }
+    }
+
+    /// The periodic record near its end at the parameters that fits worst, and how many times worse than
+    /// is typical; `None` if none fits worse.
+    fn worst_near_its_end(&self, at: &Parameters) -> Option<(usize, f64)> {
+        let scores = mean_squares(&self.blocks.trajectory, at);
+        let near = self.near_their_end(at, NEAR_END);
+        let scores = near.into_iter().filter_map(|item| {
+            let times_worse = scores[item]? / self.typical;
+            (times_worse > 1.0).then_some((item, times_worse))
+        });
+        scores.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Keep the periodic records that have an orbit at given parameters.
@@ -361,16 +393,21 @@ impl<'a> Selection<'a> {
     /// The periodic records whose motion ends at the parameters: at a saddle-node it moves without bound
     /// for the least change of the setting, so that no fit by slopes can use it.
     pub fn at_their_end(&self, at: &Parameters) -> Influential {
-        let block = &self.blocks.trajectory;
-        let is_at_its_end = |item: &usize| {
-            let slowest = block.slowest_multiplier(*item, at);
-            slowest.is_some_and(|m| m > 1.0 - END)
-        };
-        let items = 0..block.records.len();
         Influential {
             resonance: Vec::new(),
-            trajectory: items.into_par_iter().filter(is_at_its_end).collect(),
+            trajectory: self.near_their_end(at, END),
         }
+    }
+
+    /// The periodic records whose slowest multiplier is within a distance of 1, or beyond it.
+    fn near_their_end(&self, at: &Parameters, distance: f64) -> Vec<usize> {
+        let block = &self.blocks.trajectory;
+        let is_near = |item: &usize| {
+            let slowest = block.slowest_multiplier(*item, at);
+            slowest.is_some_and(|m| m > 1.0 - distance)
+        };
+        let items = (0..block.records.len()).into_par_iter();
+        items.filter(is_near).collect()
     }
 
     /// Number of records whose influence is judged.

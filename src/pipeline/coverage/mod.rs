@@ -217,7 +217,7 @@ pub fn study(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::Finding;
+    use crate::identify::{Finding, Method};
 
     #[test]
     fn valid_a_gap_that_is_a_seventh_of_the_deflection_off_is_named_alone_with_its_true_value() {
@@ -236,5 +236,16 @@ mod tests {
         };
         assert!(draw.truth.static_deflection_m < 7.0 * 0.05e-3);
         assert!((stated_m - 0.05e-3 - fitting_m).abs() < 1e-7, "{fitting_m}");
+    }
+
+    #[test]
+    fn regress_a_record_that_a_fit_pulls_onto_its_saddle_node_is_left_out() {
+        let rig = "realistic".parse().expect("a rig");
+        let draw = draw(61_001, 145, Reach::Full, &rig);
+        let found = identified(&draw).expect("a campaign");
+        let trajectories = &found.methods[&Method::Trajectories].parameters;
+        let estimate = trajectories.restitution.as_ref().expect("R");
+        let value = estimate.value.expect("the fit is not singular");
+        assert!((value - draw.truth.restitution).abs() < 1e-3, "{value}");
     }
 }
