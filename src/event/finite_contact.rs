@@ -209,8 +209,7 @@ type Place = [f64; 3];
 
 impl Search {
     fn best(&self) -> Option<FiniteContact> {
-        let each = |impact: &Samples| self.cost_of(impact, &[0.0; 3], 0.0);
-        let instant: Vec<f64> = self.impacts.iter().map(each).collect();
+        let instant: Vec<f64> = self.costs(&[0.0; 3]).collect();
         let unexplained: f64 = instant.iter().map(|c| (c - EXPLAINED).max(0.0)).sum();
         if unexplained < SIGNIFICANT {
             return None;
@@ -241,7 +240,7 @@ impl Search {
     fn cost_below(&self, limit: f64, place: &Place, loose: f64) -> Option<f64> {
         let mut sum = 0.0;
         for impact in &self.impacts {
-            sum += self.cost_of(impact, place, loose);
+            sum += self.cost_of(impact, place, (loose, limit - sum))?;
             if sum >= limit {
                 return None;
             }
@@ -249,8 +248,19 @@ impl Search {
         (sum < limit).then_some(sum)
     }
 
-    /// Least squared deviation of an impact's samples over its time.
-    fn cost_of(&self, impact: &Samples, [duration, mean, apart]: &Place, loose: f64) -> f64 {
+    /// Cost of each impact.
+    fn costs(&self, place: &Place) -> impl Iterator<Item = f64> {
+        let cost = |i| self.cost_of(i, place, (0.0, f64::INFINITY));
+        self.impacts.iter().filter_map(cost)
+    }
+
+    /// Least squared deviation of an impact's samples over its time where it is below a limit.
+    fn cost_of(
+        &self,
+        impact: &Samples,
+        [duration, mean, apart]: &Place,
+        (loose, limit): (f64, f64),
+    ) -> Option<f64> {
         let error = impact.time_error.hypot(loose);
         let centre = self.profile.centre() * duration;
         let delays = [mean + 0.5 * apart, mean - 0.5 * apart];
@@ -265,7 +275,7 @@ impl Search {
         };
         // Shifts from zero outwards; one whose sum exceeds the least is given up.
         let shifts = (0..=8).flat_map(|k| [-0.3 * f64::from(k), 0.3 * f64::from(k)]);
-        let mut least = f64::INFINITY;
+        let mut least = limit;
         for shift in shifts.skip(1).map(|steps| steps * error) {
             let mut sum = (shift / error).powi(2);
             let mut passages = impact.passages.iter();
@@ -276,12 +286,12 @@ impl Search {
             }
             least = least.min(sum);
         }
-        least
+        (least < limit).then_some(least)
     }
 
     /// Search along the coordinates in steps that are halved.
     fn refined(&self, mut at: Place) -> (f64, Place) {
-        let mut least: f64 = self.impacts.iter().map(|i| self.cost_of(i, &at, 0.0)).sum();
+        let mut least: f64 = self.costs(&at).sum();
         let mut step = 0.16f64;
         while step > 0.004 {
             let mut better = false;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::event::DriveTone;
 use crate::record::{Record, Role};
+use crate::signal::tone::Phasor;
 
 /// Complex amplitude of one channel: it moves as Re[(real + i·imaginary) e^{iθ}] while the drive
 /// is cos θ.
@@ -52,12 +53,17 @@ impl Response {
 
 /// Response of all motion channels of a record to its drive.
 pub(super) fn responses(record: &Record, drive: &DriveTone) -> Vec<Response> {
-    record
-        .channels
-        .iter()
-        .filter(|c| c.role.is_motion())
+    // as a rule all channels are as long
+    let mut basis: Option<Basis> = None;
+    let motion = record.channels.iter().filter(|c| c.role.is_motion());
+    motion
         .filter_map(|c| {
-            let raw = tone_at_drive(&c.values, record.sample_rate_hz, drive)?;
+            let count = c.values.len();
+            basis = basis
+                .take()
+                .filter(|b| b.rows.len() == count)
+                .or_else(|| Basis::new(count, record.sample_rate_hz, drive));
+            let raw = basis.as_ref()?.fit(&c.values)?;
             let measured = Response {
                 role: c.role,
                 real: raw.0,
@@ -71,35 +77,46 @@ pub(super) fn responses(record: &Record, drive: &DriveTone) -> Vec<Response> {
         .collect()
 }
 
-/// Least squares of 1, t, cos θ, sin θ: (real, imaginary, error, residual rms).
-fn tone_at_drive(values: &[f64], rate_hz: f64, drive: &DriveTone) -> Option<(f64, f64, f64, f64)> {
-    let count = values.len();
-    if count < 8 || values.iter().any(|v| !v.is_finite()) {
-        return None;
+/// 1, t, cos θ, sin θ at the samples of a record, and the inverse of their normal equations.
+struct Basis {
+    rows: Vec<Vector4<f64>>,
+    inverse: Matrix4<f64>,
+}
+
+impl Basis {
+    fn new(count: usize, rate_hz: f64, drive: &DriveTone) -> Option<Self> {
+        let tone = Phasor::new(drive.frequency_hz / rate_hz, drive.phase_rad);
+        let row = |(i, (cos, sin)): (usize, (f64, f64))| {
+            Vector4::new(1.0, 2.0 * i as f64 / count as f64 - 1.0, cos, sin)
+        };
+        let rows: Vec<Vector4<f64>> = tone.take(count).enumerate().map(row).collect();
+        let mut normal = Matrix4::zeros();
+        rows.iter().for_each(|row| normal += row * row.transpose());
+        Some(Self {
+            inverse: normal.try_inverse()?,
+            rows,
+        })
     }
-    let row = |i: usize| {
-        let time = i as f64 / rate_hz;
-        let (sin, cos) = drive.phase_at(time).sin_cos();
-        Vector4::new(1.0, 2.0 * i as f64 / count as f64 - 1.0, cos, sin)
-    };
-    let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
-    for (i, value) in values.iter().enumerate() {
-        let row = row(i);
-        normal += row * row.transpose();
-        right += row * *value;
+
+    /// Least squares: (real, imaginary, error, residual rms); `None` where a channel is too short or
+    /// has gaps.
+    fn fit(&self, values: &[f64]) -> Option<(f64, f64, f64, f64)> {
+        let count = values.len();
+        if count < 8 || values.iter().any(|v| !v.is_finite()) {
+            return None;
+        }
+        let mut right = Vector4::zeros();
+        let rows = || values.iter().zip(&self.rows);
+        rows().for_each(|(value, row)| right += row * *value);
+        let solution = self.inverse * right;
+        let squares: f64 = rows().map(|(v, row)| (v - solution.dot(row)).powi(2)).sum();
+        let deviation = (squares / (count - 4) as f64).sqrt();
+        let inverse = &self.inverse;
+        let error = deviation * (0.5 * (inverse[(2, 2)] + inverse[(3, 3)])).sqrt();
+        let rms = (squares / count as f64).sqrt();
+        // a cos θ + b sin θ = Re[(a − i b) e^{iθ}].
+        Some((solution[2], -solution[3], error, rms))
     }
-    let inverse = normal.try_inverse()?;
-    let solution = inverse * right;
-    let squares: f64 = values
-        .iter()
-        .enumerate()
-        .map(|(i, v)| (v - solution.dot(&row(i))).powi(2))
-        .sum();
-    let deviation = (squares / (count - 4) as f64).sqrt();
-    let error = deviation * (0.5 * (inverse[(2, 2)] + inverse[(3, 3)])).sqrt();
-    let rms = (squares / count as f64).sqrt();
-    // a cos θ + b sin θ = Re[(a − i b) e^{iθ}].
-    Some((solution[2], -solution[3], error, rms))
 }
 
 #[cfg(test)]

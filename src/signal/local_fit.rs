@@ -36,13 +36,29 @@ impl LocalFit {
         let degree = degree.min(count.saturating_sub(2));
         let origin = 0.5 * (first + last - 1) as f64;
         let scale = (0.5 * count as f64).max(1.0);
-        let design = DMatrix::from_fn(count, degree + 1, |row, power| {
-            (((first + row) as f64 - origin) / scale).powi(i32::try_from(power).unwrap_or(i32::MAX))
-        });
-        let values = DVector::from_column_slice(&samples[first..last]);
-        let covariance = (design.transpose() * &design).try_inverse()?;
-        let coefficients = &covariance * design.transpose() * &values;
-        let residual_squares = (values - design * &coefficients).norm_squared();
+        let values = &samples[first..last];
+        let place = |row: usize| ((first + row) as f64 - origin) / scale;
+        let mut moments = vec![0.0; 2 * degree + 1];
+        let mut right = DVector::zeros(degree + 1);
+        for (row, value) in values.iter().enumerate() {
+            let mut power = 1.0;
+            for (k, moment) in moments.iter_mut().enumerate() {
+                *moment += power;
+                if k <= degree {
+                    right[k] += power * value;
+                }
+                power *= place(row);
+            }
+        }
+        let normal = DMatrix::from_fn(degree + 1, degree + 1, |i, k| moments[i + k]);
+        let covariance = normal.try_inverse()?;
+        let coefficients = &covariance * right;
+        let residual = |(row, value): (usize, &f64)| {
+            let powers = coefficients.iter().rev();
+            value - powers.fold(0.0, |sum, c| sum * place(row) + c)
+        };
+        let squares = values.iter().enumerate().map(residual).map(|r| r * r);
+        let residual_squares = squares.sum();
         Some(Self {
             coefficients,
             covariance,

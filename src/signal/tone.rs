@@ -26,7 +26,7 @@ pub struct Tone {
 fn fit_known_frequency(samples: &[f64], rate_hz: f64, frequency_hz: f64) -> Option<Tone> {
     let mut normal = Matrix3::zeros();
     let mut right = Vector3::zeros();
-    for (sample, (c, s)) in samples.iter().zip(Phasor::new(frequency_hz / rate_hz)) {
+    for (sample, (c, s)) in samples.iter().zip(Phasor::new(frequency_hz / rate_hz, 0.0)) {
         let row = Vector3::new(1.0, c, s);
         normal += row * row.transpose();
         right += row * *sample;
@@ -84,7 +84,7 @@ fn frequency_step(samples: &[f64], rate_hz: f64, tone: &Tone) -> Option<(f64, f6
     let mut normal = Matrix4::zeros();
     let mut right = Vector4::zeros();
     let middle = 0.5 * samples.len() as f64;
-    let phasor = Phasor::new(tone.frequency_hz / rate_hz);
+    let phasor = Phasor::new(tone.frequency_hz / rate_hz, 0.0);
     for (i, (sample, (c, s))) in samples.iter().zip(phasor).enumerate() {
         let time = (i as f64 - middle) / rate_hz;
         let slope = std::f64::consts::TAU * time * (b * c - a * s);
@@ -102,7 +102,7 @@ fn frequency_step(samples: &[f64], rate_hz: f64, tone: &Tone) -> Option<(f64, f6
 fn tone_from(samples: &[f64], rate_hz: f64, frequency_hz: f64, [o, a, b]: [f64; 3]) -> Tone {
     let squares: f64 = samples
         .iter()
-        .zip(Phasor::new(frequency_hz / rate_hz))
+        .zip(Phasor::new(frequency_hz / rate_hz, 0.0))
         .map(|(sample, (c, s))| (sample - o - a * c - b * s).powi(2))
         .sum();
     Tone {
@@ -115,21 +115,25 @@ fn tone_from(samples: &[f64], rate_hz: f64, frequency_hz: f64, [o, a, b]: [f64; 
     }
 }
 
-/// (cos, sin) of 2π·ratio·i for i = 0, 1, …, by rotation, re-anchored every 64 steps.
-struct Phasor {
+/// (cos, sin) of 2π·ratio·i + phase for i = 0, 1, …, by rotation, re-anchored every 64 steps.
+pub(crate) struct Phasor {
     ratio: f64,
+    phase_rad: f64,
     index: u64,
     current: (f64, f64),
     step: (f64, f64),
 }
 
 impl Phasor {
-    fn new(ratio: f64) -> Self {
+    /// Of a frequency over the sampling rate, and the phase at i = 0, rad.
+    pub(crate) fn new(ratio: f64, phase_rad: f64) -> Self {
         let (sin, cos) = (std::f64::consts::TAU * ratio).sin_cos();
+        let (sin_0, cos_0) = phase_rad.sin_cos();
         Self {
             ratio,
+            phase_rad,
             index: 0,
-            current: (1.0, 0.0),
+            current: (cos_0, sin_0),
             step: (cos, sin),
         }
     }
@@ -143,7 +147,7 @@ impl Iterator for Phasor {
         self.index += 1;
         self.current = if self.index.is_multiple_of(64) {
             let turns = (self.ratio * self.index as f64).fract();
-            let (sin, cos) = (std::f64::consts::TAU * turns).sin_cos();
+            let (sin, cos) = (std::f64::consts::TAU * turns + self.phase_rad).sin_cos();
             (cos, sin)
         } else {
             let (c, s) = self.step;
