@@ -27,8 +27,7 @@ fn beyond_first_order(parameter: Coordinate) -> f64 {
     match parameter {
         Coordinate::Frequency => 0.005,
         Coordinate::Restitution => 0.012,
-        Coordinate::Damping => 0.03,
-        _ => 0.02,
+        _ => 0.03,
     }
 }
 
