@@ -224,7 +224,7 @@ impl<'a> Selection<'a> {
         let known: Vec<f64> = scores.iter().flatten().copied().collect();
         let bulk = Bulk::of(&known);
         self.typical = bulk.typical;
-        let ended = self.at_their_end(parameters).trajectory;
+        let ended = self.near_their_end(parameters, END);
         let records = std::mem::take(&mut self.blocks.trajectory.records);
         for (item, (record, score)) in records.into_iter().zip(scores).enumerate() {
             let reason = match score.filter(|_| !ended.contains(&item)) {
@@ -347,7 +347,7 @@ impl<'a> Selection<'a> {
             .par_iter()
             .map(|(method, i)| *method == Method::Trajectories && self.settles_slowly(*i, at))
             .collect();
-        let ended = self.at_their_end(at).trajectory;
+        let ended = self.near_their_end(at, END);
         let has_ended = |(method, item): &(Method, usize)| {
             *method == Method::Trajectories && ended.contains(item)
         };
@@ -390,16 +390,9 @@ impl<'a> Selection<'a> {
         slowest.powf(evidence.cycles_observed) > (-1f64).exp()
     }
 
-    /// The periodic records whose motion ends at the parameters: at a saddle-node it moves without bound
-    /// for the least change of the setting, so that no fit by slopes can use it.
-    pub fn at_their_end(&self, at: &Parameters) -> Influential {
-        Influential {
-            resonance: Vec::new(),
-            trajectory: self.near_their_end(at, END),
-        }
-    }
-
-    /// The periodic records whose slowest multiplier is within a distance of 1, or beyond it.
+    /// The periodic records whose slowest multiplier is within a distance of 1, or beyond it. At 1, the
+    /// saddle-node, a motion ends: it moves without bound for the least change of the setting, so that
+    /// no fit by slopes can use it.
     fn near_their_end(&self, at: &Parameters, distance: f64) -> Vec<usize> {
         let block = &self.blocks.trajectory;
         let is_near = |item: &usize| {

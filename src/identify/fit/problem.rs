@@ -234,12 +234,8 @@ impl Problem<'_> {
     /// Least cost as the residuals and slopes at a point predict it, where it is less than a standard
     /// error away; `None` if it is not, or if an item has no model there.
     fn least_cost_near(&self, at: &Parameters) -> Option<f64> {
-        if !at.in_range() {
-            return None;
-        }
-        let (factor, missing) = self.known_factor(at);
-        let undamped = vec![0.0; factor.unknowns()];
-        let step = missing.is_empty().then(|| factor.step(0.0, &undamped))??;
+        let factor = LeastSquares::factor(self, at).ok()?;
+        let step = factor.step(0.0, &vec![0.0; factor.unknowns()])?;
         let length = factor.length(&step);
         (length < 1.0).then_some(factor.cost - length * length)
     }
