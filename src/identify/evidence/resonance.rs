@@ -118,10 +118,9 @@ impl ResonanceBlock {
     pub fn find_changes(&mut self, parameters: &Parameters) {
         let mut points = std::mem::take(&mut self.points);
         for point in &mut points {
-            let strengths = Strengths::of(parameters, 0.0);
             let found = self.model(point, parameters);
             let slopes = found.responses.iter();
-            let slopes = slopes.map(|p| p.over_frequency(found.eta, &strengths));
+            let slopes = slopes.map(|p| p.over_frequency(found.eta));
             point.over_frequency = slopes.collect();
         }
         self.points = points;
@@ -139,10 +138,10 @@ impl ResonanceBlock {
 struct Predicted {
     /// Complex response, SI, gain included; the drive is cos θ.
     value: Complex<f64>,
-    /// Dimensionless amplitude of the mass's displacement without effects beyond the model.
-    forced: Complex<f64>,
-    /// What hardening and friction change of it, per unit of their strengths.
-    extra: [Complex<f64>; EXTRA.len()],
+    /// Dimensionless amplitude of the mass's displacement.
+    amplitude: Complex<f64>,
+    /// Forces of hardening, friction and drag at the drive's frequency, and how they move with the amplitude.
+    resistance: Resistance,
     oscillator: Oscillator,
     /// SI units in one of the model's displacement.
     unit: Complex<f64>,
@@ -174,8 +173,8 @@ fn respond(
     let forced = forced_amplitude(&oscillator, Drive { eta, phase: 0.0 });
     Predicted {
         value: forced * unit,
-        forced,
-        extra: [Complex::default(); EXTRA.len()],
+        amplitude: forced,
+        resistance: Resistance::default(),
         oscillator,
         unit,
         order: f64::from(order),
@@ -183,8 +182,108 @@ fn respond(
     }
 }
 
-/// The effects that change an impactless response, in the order of [`Predicted::extra`].
+/// The effects that change an impactless response, in the order of [`Resistance::coefficients`].
 const EXTRA: [Effect; 3] = [Effect::Hardening, Effect::Friction, Effect::Drag];
+
+/// Forces per mass of hardening springs, friction and drag by their describing functions: a force εX³ acts at
+/// the drive's frequency like ¾ε|F|²F, one of sign X' like (4/π)iF/|F|, one of |X'|X' like (8/3π)iη²|F|F.
+/// Krylov and Bogoliubov's method of equivalent linearisation.
+#[derive(Debug, Clone, Copy, Default)]
+struct Resistance {
+    /// ¾ε, (4/π) of the friction, (8/3π)η² of the drag, each for an effect of strength 1.
+    coefficients: [f64; EXTRA.len()],
+    /// Strengths of the effects.
+    strengths: [f64; EXTRA.len()],
+}
+
+impl Resistance {
+    /// `per_unit`: ε, friction and drag for effects of strength 1.
+    fn new(per_unit: [f64; EXTRA.len()], strengths: [f64; EXTRA.len()], eta: f64) -> Self {
+        use std::f64::consts::PI;
+        let [hardening, friction, drag] = per_unit;
+        let coefficients = [
+            0.75 * hardening,
+            4.0 / PI * friction,
+            8.0 / (3.0 * PI) * eta * eta * drag,
+        ];
+        Self {
+            coefficients,
+            strengths,
+        }
+    }
+
+    /// The forces at amplitude F for effects of strength 1.
+    fn forces(&self, amplitude: Complex<f64>) -> [Complex<f64>; EXTRA.len()] {
+        let size = amplitude.norm();
+        let [hardening, friction, drag] = self.coefficients;
+        [
+            amplitude * (hardening * size * size),
+            amplitude * Complex::new(0.0, friction / size),
+            amplitude * Complex::new(0.0, drag * size),
+        ]
+    }
+
+    fn force(&self, amplitude: Complex<f64>) -> Complex<f64> {
+        let forces = self.forces(amplitude).into_iter().zip(self.strengths);
+        forces.map(|(force, strength)| force * strength).sum()
+    }
+
+    /// a and b of the force's differential a dF + b dF*.
+    fn slope(&self, amplitude: Complex<f64>) -> [Complex<f64>; 2] {
+        let size = amplitude.norm();
+        let [hardening, friction, drag] =
+            [0, 1, 2].map(|i| self.coefficients[i] * self.strengths[i]);
+        let along = Complex::new(
+            2.0 * hardening * size * size,
+            0.5 * friction / size + 1.5 * drag * size,
+        );
+        let across = Complex::new(hardening, 0.5 * drag / size - 0.5 * friction / size.powi(3));
+        [along, across * amplitude * amplitude]
+    }
+}
+
+/// (k − η²) + 2iδη of a mass: what its displacement's amplitude multiplies in the equation of motion.
+fn dynamic_stiffness(o: &Oscillator, eta: f64) -> Complex<f64> {
+    Complex::new(
+        o.stiffness_per_mass() - eta * eta,
+        2.0 * o.decay_rate() * eta,
+    )
+}
+
+/// Change dF of the amplitude that balances a force: Z dF + a dF + b dF* = force.
+fn yields(
+    dynamic: Complex<f64>,
+    [along, across]: [Complex<f64>; 2],
+    force: Complex<f64>,
+) -> Complex<f64> {
+    let along = dynamic + along;
+    (along.conj() * force - across * force.conj()) / (along.norm_sqr() - across.norm_sqr())
+}
+
+/// Newton steps after which the amplitude is taken as it is.
+const STEPS: usize = 20;
+
+/// Amplitude at which drive, mass, spring, damper and resistance balance, from the linear one on.
+fn balanced(
+    oscillator: &Oscillator,
+    eta: f64,
+    linear: Complex<f64>,
+    resistance: &Resistance,
+) -> Complex<f64> {
+    let dynamic = dynamic_stiffness(oscillator, eta);
+    let mut amplitude = linear;
+    for _ in 0..STEPS {
+        let missing = dynamic * (linear - amplitude) - resistance.force(amplitude);
+        let step = yields(dynamic, resistance.slope(amplitude), missing);
+        // Never to another branch, nor past rest, where friction has no direction.
+        let step = step * (0.5 * amplitude.norm() / step.norm()).min(1.0);
+        amplitude += step;
+        if step.norm() < 1e-13 * amplitude.norm() {
+            break;
+        }
+    }
+    amplitude
+}
 
 /// Predicted complex response of a channel, SI, gain included; the drive is cos θ.
 pub fn predicted(
@@ -199,23 +298,15 @@ pub fn predicted(
 }
 
 impl Predicted {
-    /// With hardening springs, friction and drag, by their describing functions: a force εX³ acts at
-    /// the drive's frequency like ¾ε|F|²X, one of sign X' like (4/π)X'/|X'|, one of |X'|X' like
-    /// (8/3π)|X'|X'. `per_unit` holds ε and the other forces per unit of the effects' strengths.
+    /// With the effects of the campaign; `per_unit` holds ε and the other forces of effects of strength 1.
     fn with_effects(self, parameters: &Parameters, eta: f64, per_unit: [f64; EXTRA.len()]) -> Self {
-        use std::f64::consts::PI;
-        let [hardening, friction, drag] = per_unit;
-        let size = self.forced.norm();
-        let compliance = self.forced / self.oscillator.drive_per_mass();
-        let stiffening = self.forced * (0.75 * hardening * size * size);
-        let resisting = Complex::new(0.0, friction * 4.0 / PI / size) * self.forced;
-        let dragging = Complex::new(0.0, drag * 8.0 / (3.0 * PI) * eta * eta * size) * self.forced;
-        let extra = [stiffening, resisting, dragging].map(|force| -compliance * force);
-        let changes = EXTRA.iter().zip(extra);
-        let change: Complex<f64> = changes.map(|(e, c)| c * parameters.effect(*e)).sum();
+        let strengths = EXTRA.map(|e| parameters.effect(e));
+        let resistance = Resistance::new(per_unit, strengths, eta);
+        let amplitude = balanced(&self.oscillator, eta, self.amplitude, &resistance);
         Self {
-            value: (self.forced + change) * self.unit,
-            extra,
+            value: amplitude * self.unit,
+            amplitude,
+            resistance,
             ..self
         }
     }
@@ -233,57 +324,50 @@ impl Predicted {
         }
     }
 
+    /// Change of the amplitude by a force.
+    fn yields(&self, eta: f64, force: Complex<f64>) -> Complex<f64> {
+        let dynamic = dynamic_stiffness(&self.oscillator, eta);
+        yields(dynamic, self.resistance.slope(self.amplitude), force)
+    }
+
+    /// Slope over the strength of the effect at a place of [`EXTRA`].
+    fn over_effect(&self, eta: f64, place: usize) -> Complex<f64> {
+        let force = self.resistance.forces(self.amplitude)[place];
+        self.yields(eta, -force) * self.unit
+    }
+
     /// Slope where mass and η change, and the unit of length by a share; the drive's frequency, and with
-    /// it the unit of time, does not.
+    /// it the unit of time, does not. `friction_over_length`: power of the inverse of that unit that
+    /// friction and drag, which are stated over the campaign's unit, go with: 1 where that of the record
+    /// alone changes, 0 where both do.
     fn along(
         &self,
         (of_y, change): (bool, &Change),
         eta: f64,
-        (length, own): (f64, &Strengths),
+        (length, friction_over_length): (f64, f64),
     ) -> Complex<f64> {
         let mass = if of_y { &change.y } else { &change.x };
-        let forced = forced_slope(&self.oscillator, mass, self.forced, [eta, change.eta]);
-        // Relative slopes of X_h = −¾ h|F|²F²/D, X_f = −(4/π) iφ F²/(D|F|) and
-        // X_d = −(8/3π) iδη²|F|F²/D.
-        let relative = forced / self.forced;
-        let both = relative * 2.0 - mass.drive_per_mass / self.oscillator.drive_per_mass();
+        let dynamic = dynamic_stiffness(&self.oscillator, eta);
+        let linear = forced_slope(&self.oscillator, mass, self.amplitude, [eta, change.eta]);
         let stiffness = mass.stiffness_per_mass / self.oscillator.stiffness_per_mass();
-        let hardening = both + 2.0 * relative.re + stiffness + 2.0 * length;
-        let friction = both - relative.re - length * own.friction_over_length;
-        let drag =
-            both + relative.re + 2.0 * change.eta / eta + length * (2.0 - own.friction_over_length);
-        let relative = [hardening, friction, drag];
-        let parts = self.extra.iter().zip(relative).zip(own.strengths);
-        let extra: Complex<f64> = parts
-            .map(|((x, slope), strength)| x * slope * strength)
-            .sum();
-        (forced + extra) * self.unit + self.value * length
+        let relative = [
+            stiffness + 2.0 * length,
+            -length * friction_over_length,
+            2.0 * change.eta / eta + length * (2.0 - friction_over_length),
+        ];
+        let forces = self.resistance.forces(self.amplitude).into_iter();
+        let forces = forces.zip(self.resistance.strengths).zip(relative);
+        let grown: Complex<f64> = forces.map(|((force, s), slope)| force * s * slope).sum();
+        self.yields(eta, dynamic * linear - grown) * self.unit + self.value * length
     }
 
     /// Slope over the logarithm of the drive's frequency.
-    fn over_frequency(&self, eta: f64, own: &Strengths) -> Complex<f64> {
+    fn over_frequency(&self, eta: f64) -> Complex<f64> {
         let change = Change {
             eta,
             ..Change::default()
         };
-        self.along((false, &change), eta, (0.0, own)) + self.value * self.order
-    }
-}
-
-/// Strengths of the effects in the order of [`Predicted::extra`].
-struct Strengths {
-    strengths: [f64; EXTRA.len()],
-    /// Power of the inverse of a record's own unit of length that friction and drag, which are stated
-    /// over that of the campaign, go with: 1 where that of the record alone changes, 0 where both do.
-    friction_over_length: f64,
-}
-
-impl Strengths {
-    fn of(parameters: &Parameters, friction_over_length: f64) -> Self {
-        Self {
-            strengths: EXTRA.map(|e| parameters.effect(e)),
-            friction_over_length,
-        }
+        self.along((false, &change), eta, (0.0, 0.0)) + self.value * self.order
     }
 }
 
@@ -302,7 +386,7 @@ impl Model<'_> {
     fn over(&self, coordinate: Coordinate) -> Vec<Complex<f64>> {
         // The campaign's x_st moves with the record's own where it is what changes.
         let of_campaign = f64::from(u8::from(coordinate == Coordinate::Deflection));
-        let strengths = Strengths::of(self.parameters, 1.0 - of_campaign);
+        let friction_over_length = 1.0 - of_campaign;
         let along = |coordinate: Coordinate, weight: f64| {
             let change = change(&self.machine, self.eta, 0.0, coordinate);
             (change, relative_length(coordinate), weight)
@@ -329,14 +413,14 @@ impl Model<'_> {
                 Coordinate::Gain(_) => p.value,
                 Coordinate::Corner(_) => p.value * p.over_corner,
                 Coordinate::Delay(_) => -p.value * rate * 1e-3,
-                Coordinate::Effect(Effect::Hardening) => p.extra[0] * p.unit,
-                Coordinate::Effect(Effect::Friction) => p.extra[1] * p.unit,
-                Coordinate::Effect(Effect::Drag) => p.extra[2] * p.unit,
+                Coordinate::Effect(Effect::Hardening) => p.over_effect(self.eta, 0),
+                Coordinate::Effect(Effect::Friction) => p.over_effect(self.eta, 1),
+                Coordinate::Effect(Effect::Drag) => p.over_effect(self.eta, 2),
                 _ => parts
                     .iter()
                     .map(|(change, length, weight)| {
                         let of = (r.role.is_of_y(), change);
-                        p.along(of, self.eta, (*length, &strengths)) * weight
+                        p.along(of, self.eta, (*length, friction_over_length)) * weight
                     })
                     .sum(),
             })
