@@ -271,7 +271,7 @@ fn correlated(states: &[State]) -> Vec<(f64, f64)> {
     let x: Vec<f64> = states.iter().map(|s| s.x).collect();
     let lags = (LONGEST_LAG * CORRELATED).min(x.len() / 2);
     let lag = |i: usize| i as f64 / CORRELATED as f64;
-    autocorrelation(&x, lags)
+    autocorrelation(&x, 0..=lags)
         .into_iter()
         .enumerate()
         .map(|(i, c)| (lag(i), c))

@@ -321,28 +321,53 @@ fn one_step(
 
 /// The autocorrelation of samples at lags of 1, 2, … drive periods.
 fn whole_periods(samples: &[f64]) -> Vec<f64> {
-    let all = autocorrelation(samples, LONGEST_LAG * SAMPLES);
-    all.into_iter().step_by(SAMPLES).skip(1).collect()
+    let lags = (1..=LONGEST_LAG).map(|periods| periods * SAMPLES);
+    autocorrelation(samples, lags)
 }
 
-/// Autocorrelation of a uniformly sampled signal at lags 0 … `lags`: the correlation coefficient
-/// of the signal with itself shifted, mean removed, each over the samples that both have; 1 at
-/// lag 0, and at every whole period of a periodic signal.
-pub fn autocorrelation(samples: &[f64], lags: usize) -> Vec<f64> {
-    let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
+/// Autocorrelation of a uniformly sampled signal at the lags that are below its length: the correlation
+/// coefficient of the signal with itself shifted, mean removed, each over the samples that both have; 1 at
+/// lag 0, and at every whole period of a periodic signal. Empty for a constant signal.
+pub fn autocorrelation(samples: &[f64], lags: impl IntoIterator<Item = usize>) -> Vec<f64> {
+    let count = samples.len();
+    let mean = samples.iter().sum::<f64>() / count.max(1) as f64;
     let centred: Vec<f64> = samples.iter().map(|x| x - mean).collect();
     let size = centred.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-    let at = |lag: usize| -> f64 {
-        let (head, tail) = (&centred[..centred.len() - lag], &centred[lag..]);
-        let square = |part: &[f64]| part.iter().map(|x| x * x).sum::<f64>();
-        let product: f64 = head.iter().zip(tail).map(|(a, b)| a * b).sum();
-        let scale = (square(head) * square(tail)).sqrt();
-        if scale > 0.0 { product / scale } else { 0.0 }
-    };
     if !(size > 0.0) {
         return Vec::new();
     }
-    (0..samples.len().min(lags + 1)).map(at).collect()
+    let squares = |values: &mut dyn Iterator<Item = &f64>| -> Vec<f64> {
+        let growing = values.scan(0.0, |sum, x| {
+            *sum += x * x;
+            Some(*sum)
+        });
+        std::iter::once(0.0).chain(growing).collect()
+    };
+    let (first, last) = (
+        squares(&mut centred.iter()),
+        squares(&mut centred.iter().rev()),
+    );
+    let at = |lag: usize| -> f64 {
+        let shared = count - lag;
+        let scale = (first[shared] * last[shared]).sqrt();
+        let product = inner_product(&centred[..shared], &centred[lag..]);
+        if scale > 0.0 { product / scale } else { 0.0 }
+    };
+    lags.into_iter().filter(|lag| *lag < count).map(at).collect()
+}
+
+/// Σ aᵢbᵢ, in eight sums that the processor forms side by side.
+fn inner_product(a: &[f64], b: &[f64]) -> f64 {
+    let (a, a_rest) = a.as_chunks::<8>();
+    let (b, b_rest) = b.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for (a, b) in a.iter().zip(b) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
+        }
+    }
+    let rest = a_rest.iter().zip(b_rest).map(|(a, b)| a * b);
+    sums.into_iter().chain(rest).sum()
 }
 
 /// Amplitude and phase of the impactless motion of each mass.
