@@ -8,8 +8,8 @@ use tokio::sync::{mpsc, watch};
 
 use super::answer::answer;
 use super::frame::Frame;
-use super::wire::{Request, Slot};
-use super::{ExploreError, Session};
+use super::wire::{Ask, Request, Slot};
+use super::{ExploreError, Session, maps};
 
 /// Requests of the queue that wait at most.
 const QUEUE: usize = 16;
@@ -85,15 +85,29 @@ impl Jobs {
         }
     }
 
-    /// Take a request.
+    /// Take a request. The bare boundaries are answered at once, before the jobs that follow take the
+    /// processors.
     pub(super) async fn take(&self, request: Request) {
         let id = request.id;
+        if let Ask::Boundaries { points } = request.ask {
+            let state = request.state.clone();
+            let found = tokio::task::spawn_blocking(move || maps::bare(&state, points, id)).await;
+            match found.unwrap_or_else(|_| Err(failed())) {
+                Ok(frame) => _ = self.outbox.send(frame).await,
+                Err(error) => return self.refuse(id, &error).await,
+            }
+        }
         if let Some(slot) = self.newest.get(&request.ask.slot()) {
             slot.send_replace(Some(request));
         } else if self.queue.try_send(request).is_err() {
             let busy = ExploreError::Absent("too many requests wait; ask again".into());
-            let _ = self.outbox.send(refusal(id, &busy)).await;
+            self.refuse(id, &busy).await;
         }
+    }
+
+    async fn refuse(&self, id: u32, error: &ExploreError) {
+        // a page that is gone needs no refusal
+        let _ = self.outbox.send(refusal(id, error)).await;
     }
 }
 
@@ -132,7 +146,10 @@ async fn work(session: &Arc<Session>, request: Request, job: Job) {
     let session = Arc::clone(session);
     let done = tokio::task::spawn_blocking(move || answer(&session, &request, &job)).await;
     if done.is_err() {
-        let error = ExploreError::Server("this computation failed".into());
-        let _ = outbox.send(refusal(id, &error)).await;
+        let _ = outbox.send(refusal(id, &failed())).await;
     }
+}
+
+fn failed() -> ExploreError {
+    ExploreError::Server("this computation failed".into())
 }

@@ -1,6 +1,11 @@
 //! The map's tiles, coarse first, and the boundaries, bare first.
 
+use std::sync::LazyLock;
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
 use super::answer::Stop;
+use super::frame::Frame;
 use super::jobs::Job;
 use super::state::MAP_CELLS;
 use super::{ExploreError, State};
@@ -25,6 +30,14 @@ const SLOW_STRIP_CELLS: usize = 192;
 const MOST_PERIODS: u32 = 5;
 /// Most points of a boundary that a page may ask for.
 const MOST_POINTS: usize = 2000;
+
+/// The threads that march the map: one fewer than there are, so that the browser, which is most often on
+/// the same machine, is never kept waiting by a map. `None` where the system gives no threads.
+static POOL: LazyLock<Option<ThreadPool>> = LazyLock::new(|| {
+    let threads = rayon::current_num_threads().saturating_sub(1).max(1);
+    let builder = ThreadPoolBuilder::new().num_threads(threads);
+    builder.build().ok()
+});
 
 /// Motions as cells: each motion that occurs once, and its number in each cell.
 pub(super) fn cells<'a>(
@@ -78,7 +91,10 @@ fn tile(
             eta: eta.clone(),
             rho: strip.to_vec(),
         };
-        let map = region_map(machine, &grid, &plan.map)?;
+        let map = match POOL.as_ref() {
+            Some(pool) => pool.install(|| region_map(machine, &grid, &plan.map)),
+            None => region_map(machine, &grid, &plan.map),
+        }?;
         let (motions, cells) = cells(map.cells.iter());
         let frame = job
             .frame("map")
@@ -96,28 +112,37 @@ fn tile(
 /// A boundary by η.
 type Boundary = fn(&Machine, f64, u32) -> Option<BoundaryPoint>;
 
-/// The boundaries of z = 1/n, ρ' and ρp: first bare, then with where they exist.
-pub(super) fn boundaries(state: &State, points: usize, job: &Job) -> Result<(), Stop> {
+/// The η at which a page wants the boundaries.
+fn boundary_etas(state: &State, points: usize) -> Result<Vec<f64>, ExploreError> {
     if !(2..=MOST_POINTS).contains(&points) {
-        return Err(Stop::Refused(ExploreError::OutOfRange {
+        return Err(ExploreError::OutOfRange {
             name: "points",
             value: points as f64,
             range: "2 to 2000",
-        }));
+        });
     }
-    let machine = state.machine();
     let (low, high) = state.view.eta;
-    let etas = even((low, high, points));
-    let first = job
-        .frame("boundaries")
+    Ok(even((low, high, points)))
+}
+
+/// The boundaries of z = 1/n, ρ' and ρp without a check of where they exist.
+pub(super) fn bare(state: &State, points: usize, id: u32) -> Result<Frame, ExploreError> {
+    let machine = state.machine();
+    let etas = boundary_etas(state, points)?;
+    let first = Frame::new("boundaries", id)
         .column("eta", etas.iter().copied())
         .column("grazing", etas.iter().map(|e| rho_grazing(&machine, *e)))
         .column("sticking", etas.iter().map(|e| rho_sticking(&machine, *e)));
-    let bare = (1..=MOST_PERIODS).fold(first, |frame, n| {
+    Ok((1..=MOST_PERIODS).fold(first, |frame, n| {
         let frame = frame.column(&format!("s2:{n}"), bare_s2(&machine, &etas, n));
         frame.column(&format!("s1:{n}"), bare_s1(&machine, &etas, n))
-    });
-    job.send(bare)?;
+    }))
+}
+
+/// The boundaries of z = 1/n with where they exist, one frame each.
+pub(super) fn boundaries(state: &State, points: usize, job: &Job) -> Result<(), Stop> {
+    let machine = state.machine();
+    let etas = boundary_etas(state, points)?;
     let kinds: [(&str, Boundary); 2] = [("s2", rho_s2), ("s1", rho_s1)];
     for n in 1..=MOST_PERIODS {
         for (kind, of) in kinds {

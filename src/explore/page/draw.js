@@ -1,8 +1,13 @@
 // Axes, marks and colours of the report on a canvas.
 
+/** Colours of the theme that were asked for. */
+let known = { theme: null, colours: {} };
+
 /** A colour of the theme. */
 export function colour(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
+  const { theme } = document.documentElement.dataset;
+  if (known.theme !== theme) known = { theme, colours: {} };
+  return known.colours[name] ??= getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
 }
 
 export const isDark = () => document.documentElement.dataset.theme === "dark";

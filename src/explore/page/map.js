@@ -75,14 +75,14 @@ export class MapView {
     tile.canvas.getContext("2d").putImageData(image, 0, rows - firstRow - count);
   }
 
-  /** All boundaries, bare. */
+  /** All boundaries, bare: where they exist is taken from those before until it is known. */
   bare(frame) {
     const eta = frame.column.eta;
     for (const [name, rho] of Object.entries(frame.column)) {
       if (name === "eta" || rho.length === 0) continue;
+      const before = this.curves[name], same = before?.eta.length === eta.length && before.eta[0] === eta[0] && before.eta.at(-1) === eta.at(-1);
       const always = name === "grazing" || name === "sticking";
-      const before = this.curves[name];
-      this.curves[name] = { eta, rho, exists: always ? null : before?.existsOf ?? null, bare: !always };
+      this.curves[name] = { eta, rho, exists: same ? before.exists : null, bare: !always };
     }
     for (const name of Object.keys(this.curves)) {
       if (!(name in frame.column) || frame.column[name].length === 0) this.curves[name].stale = true;

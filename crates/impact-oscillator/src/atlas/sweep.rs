@@ -353,7 +353,10 @@ pub fn autocorrelation(samples: &[f64], lags: impl IntoIterator<Item = usize>) -
         let product = inner_product(&centred[..shared], &centred[lag..]);
         if scale > 0.0 { product / scale } else { 0.0 }
     };
-    lags.into_iter().filter(|lag| *lag < count).map(at).collect()
+    lags.into_iter()
+        .filter(|lag| *lag < count)
+        .map(at)
+        .collect()
 }
 
 /// Σ aᵢbᵢ, in eight sums that the processor forms side by side.
