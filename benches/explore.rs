@@ -1,4 +1,4 @@
-//! Latencies of the explorer in a real browser: from the key to the picture on the screen.
+//! Latencies of the explorer in a real browser: from the key until it is drawn, and on the screen.
 //!
 //! `cargo bench --bench explore` (needs chromium). Each row: median and 95 % point of many keys.
 #![allow(
@@ -37,8 +37,12 @@ fn main() {
     let mut browser = Chromium::open(&explorer.url(), (1280, 800));
     browser.until(QUIET);
     println!(
-        "{:46} {:>9} {:>9} {:>6}",
-        "from the key to the picture", "p50, ms", "p95, ms", "keys"
+        "{:46} {:^19} {:^19}",
+        "from the key, ms", "drawn", "on the screen"
+    );
+    println!(
+        "{:46} {:>9} {:>9} {:>9} {:>9} {:>6}",
+        "", "p50", "p95", "p50", "p95", "keys"
     );
     browser
         .evaluate("document.querySelector('.slider input').focus(); impactid.timings.length = 0");
@@ -93,22 +97,39 @@ fn held(browser: &mut Chromium) {
     );
 }
 
+/// One row: until it is drawn on the page's canvas, and until the next picture of the screen is made of it.
 fn report(browser: &mut Chromium, what: &str, kind: &str, level: u32) {
-    let expression = format!(
-        "impactid.timings.filter((t) => t.kind === '{kind}' && t.level === {level}).map((t) => t.ms)"
+    let drawn = Times::of(browser, kind, level, "drawn");
+    let seen = Times::of(browser, kind, level, "ms");
+    println!(
+        "{what:46} {:9.1} {:9.1} {:9.1} {:9.1} {:6}",
+        drawn.at(50),
+        drawn.at(95),
+        seen.at(50),
+        seen.at(95),
+        seen.0.len()
     );
-    let found = browser.evaluate(&expression);
-    let mut times: Vec<f64> = found
-        .as_array()
-        .expect("a list")
-        .iter()
-        .filter_map(serde_json::Value::as_f64)
-        .collect();
-    times.sort_by(f64::total_cmp);
-    // the share of the keys in hundredths
-    let at = |share: usize| {
-        let place = (share * times.len().saturating_sub(1) + 50) / 100;
-        times.get(place).copied().unwrap_or(f64::NAN)
-    };
-    println!("{what:46} {:9.1} {:9.1} {:6}", at(50), at(95), times.len());
+}
+
+/// Times in ascending order, ms.
+struct Times(Vec<f64>);
+
+impl Times {
+    /// Those of one of the page's entries.
+    fn of(browser: &mut Chromium, kind: &str, level: u32, entry: &str) -> Self {
+        let expression = format!(
+            "impactid.timings.filter((t) => t.kind === '{kind}' && t.level === {level}).map((t) => t.{entry})"
+        );
+        let found = browser.evaluate(&expression);
+        let found = found.as_array().expect("a list").iter();
+        let mut times: Vec<f64> = found.filter_map(serde_json::Value::as_f64).collect();
+        times.sort_by(f64::total_cmp);
+        Self(times)
+    }
+
+    /// The time that so many hundredths of the keys did not exceed.
+    fn at(&self, share: usize) -> f64 {
+        let place = (share * self.0.len().saturating_sub(1) + 50) / 100;
+        self.0.get(place).copied().unwrap_or(f64::NAN)
+    }
 }

@@ -9,6 +9,8 @@ import { number, FONT, colour, markColour } from "./draw.js";
 
 const element = (id) => document.getElementById(id);
 const STATE_VERSION = 1;
+/** Parts of the state that only the map's uppermost layer shows. */
+const CURSOR_PARTS = new Set(["cursor", "line"]);
 
 class App {
   constructor() {
@@ -17,9 +19,9 @@ class App {
     this.recording = null;
     this.recorded = null;
     this.playing = 0;
-    this.timings = [];      // { kind, level, ms } of what was asked for and first drawn
+    this.timings = [];      // { kind, level, drawn, ms, at } of what was asked for and first drawn
     this.dialogs = new Dialogs(this);
-    this.map = new MapView(element("map"), this);
+    this.map = new MapView(this);
     this.motion = new MotionPanel(this);
     this.line = new LinePanel(this);
     this.basins = new BasinsPanel(this);
@@ -70,7 +72,7 @@ class App {
     this.save();
     this.note();
     // a picture that is about to come need not be drawn before
-    if (!what.includes("boundaries") || part.view) this.map.redraw();
+    if (!what.includes("boundaries") || part.view) this.map.redraw(...(CURSOR_PARTS.has(Object.keys(part).join()) ? ["cursor"] : []));
     this.refresh(what);
   }
 
@@ -122,9 +124,10 @@ class App {
     else if (frame.kind === "residuals") { this.campaign.residuals(frame); time("residuals", 0); }
   }
 
-  /** The time from asking to the next picture on the screen. */
+  /** The times from asking until it is drawn, and until the screen's next picture is made of it. */
   timed(kind, level, since) {
-    requestAnimationFrame(() => setTimeout(() => this.timings.push({ kind, level, ms: performance.now() - since, at: performance.now() })));
+    const drawn = performance.now() - since;
+    requestAnimationFrame(() => setTimeout(() => this.timings.push({ kind, level, drawn, ms: performance.now() - since, at: performance.now() })));
   }
 
   /** The motion goes on from where an answer left it; η and ρ may have moved since. */

@@ -8,23 +8,32 @@ const KINDS = {
   sticking: { text: "stay together *ρ*ₚ", colour: "quiet", width: 2 },
 };
 
+/** The map's canvases, from below: only that which changes is drawn again. */
+const LAYERS = { tiles: "map-tiles", lines: "map", cursor: "map-cursor" };
+
 export class MapView {
-  constructor(canvas, app) {
-    this.canvas = canvas;
+  constructor(app) {
+    this.layers = Object.fromEntries(Object.entries(LAYERS).map(([name, id]) => [name, document.getElementById(id)]));
+    this.canvas = this.layers.lines;
     this.app = app;
     this.tiles = [];        // { level, eta, rho, size, image, styles, cells, id }
     this.curves = {};       // "s2:1" → { eta, rho, exists }
     this.styles = new Map(); // label → style, of what is in view
-    this.drawn = false;
+    this.due = new Set();    // layers to be drawn
+    this.drawn = false;      // whether something was, for the next picture of the screen
     this.labels = [];
     this.theme = "";
     this.pointer();
-    new ResizeObserver(() => this.redraw()).observe(canvas);
+    new ResizeObserver(() => this.redraw()).observe(this.canvas);
   }
 
-  redraw() {
+  /** Draw layers, all of them where none is named: at once where nothing was drawn for the next picture of the
+   * screen, else again with that picture, so that what comes in quick succession is drawn twice at most. */
+  redraw(...layers) {
+    for (const layer of layers.length ? layers : Object.keys(LAYERS)) this.due.add(layer);
     if (this.drawn) return;
     this.drawn = true;
+    this.draw();
     requestAnimationFrame(() => { this.drawn = false; this.draw(); });
   }
 
@@ -52,10 +61,10 @@ export class MapView {
     tile.complete = tile.filled >= tile.cells.length;
     if (tile.complete) {
       this.tiles = this.tiles.filter((t) => t === tile || (t.id === tile.id && t.level > tile.level));
-      if (tile.level === 1) this.labels = placeLabels(tile);
+      if (tile.level === 1) { this.labels = placeLabels(tile); this.redraw("lines"); }
       if (tile.level >= 1) this.app.legend(commonest(tile));
     }
-    this.redraw();
+    this.redraw("tiles");
     return tile;
   }
 
@@ -87,26 +96,34 @@ export class MapView {
     for (const name of Object.keys(this.curves)) {
       if (!(name in frame.column) || frame.column[name].length === 0) this.curves[name].stale = true;
     }
-    this.redraw();
+    this.redraw("lines");
   }
 
   /** One boundary with where it exists. */
   boundary(frame) {
     this.curves[frame.name] = { eta: frame.column.eta, rho: frame.column.rho, exists: frame.column.exists, bare: false };
-    this.redraw();
+    this.redraw("lines");
   }
 
   draw() {
-    const { app } = this, { state } = app;
-    if (!state) return;
+    const { app, due } = this;
+    if (!app.state || due.size === 0) return;
     if (this.theme !== document.documentElement.dataset.theme) {
       this.theme = document.documentElement.dataset.theme;
       for (const t of this.tiles) this.paint(t, 0, t.size[1]);
     }
+    for (const layer of due) this[layer + "Layer"](this.frameOf(this.layers[layer]));
+    due.clear();
+  }
+
+  frameOf(canvas) {
+    const { state } = this.app, scale = this.app.scale();
     const titles = ["frequency ratio *η* = *ω*/*Ω*", "clearance ratio *ρ* = *r*/*x*ₛₜ"];
-    const scale = app.scale();
-    const top = scale ? 40 : 8, right = scale ? 50 : 10;
-    const f = this.frame = new Frame(this.canvas, state.view.eta, state.view.rho, titles, { left: 50, right, top });
+    const margin = { left: 50, right: scale ? 50 : 10, top: scale ? 40 : 8 };
+    return new Frame(canvas, state.view.eta, state.view.rho, titles, margin);
+  }
+
+  tilesLayer(f) {
     f.clip((c) => {
       c.imageSmoothingEnabled = false;
       for (const t of this.tiles) {
@@ -114,15 +131,24 @@ export class MapView {
         const [x0, x1] = [f.px(t.eta[0] - dx), f.px(t.eta[1] + dx)], [y0, y1] = [f.py(t.rho[1] + dy), f.py(t.rho[0] - dy)];
         c.drawImage(t.canvas, x0, y0, x1 - x0, y1 - y0);
       }
+    });
+  }
+
+  linesLayer(f) {
+    this.frame = f;
+    const { app } = this, scale = app.scale();
+    f.clip((c) => {
       this.bands(f, c);
       this.boundaries(f);
       this.regionLabels(f, c);
       if (app.campaign) app.campaign.draw(f, c);
-      this.line(f, c);
-      this.cursor(f, c);
     });
     f.axes();
     if (scale) this.rigAxes(f, scale);
+  }
+
+  cursorLayer(f) {
+    f.clip((c) => { this.line(f, c); this.cursor(f, c); });
   }
 
   bands(f, c) {
