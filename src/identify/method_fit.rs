@@ -27,7 +27,7 @@ fn beyond_first_order(parameter: Coordinate) -> f64 {
     match parameter {
         Coordinate::Frequency => 0.0035,
         Coordinate::Restitution => 0.012,
-        Coordinate::Damping => 0.026,
+        Coordinate::Damping => 0.022,
         _ => 0.03,
     }
 }
