@@ -270,11 +270,48 @@ struct Contrast {
     beyond: [f64; 2],
 }
 
-/// All contrasts with their covariance.
+impl Contrast {
+    /// The values in SI units, and how much each changes per unit of its coordinate.
+    fn scales(&self, coordinates: [f64; 2]) -> ([f64; 2], [f64; 2]) {
+        let values = coordinates.map(|c| self.parameter.physical(c));
+        let slopes = match self.parameter.is_logarithm() {
+            true => values,
+            false => [1.0; 2],
+        };
+        (values, slopes)
+    }
+
+    /// The difference in SI units and its variance.
+    fn si(&self, stack: &Stack) -> [f64; 2] {
+        let (values, slopes) = self.scales(self.places.map(|place| stack.value(place)));
+        let mut row = DMatrix::zeros(1, stack.unknowns());
+        row[(0, self.places[0])] = -slopes[0];
+        row[(0, self.places[1])] = slopes[1];
+        let beyond = slopes.iter().zip(self.beyond).map(|(s, b)| s * s * b);
+        let variance = stack.covariance_of(&row)[(0, 0)] + beyond.sum::<f64>();
+        [values[1] - values[0], variance]
+    }
+
+    /// The same if the campaigns shared nothing, with the degrees of freedom of the variance.
+    fn si_alone(&self) -> ([f64; 2], f64) {
+        let (values, slopes) = self.scales(self.known.map(|k| k.value));
+        let variances = [0, 1].map(|i| slopes[i].powi(2) * self.known[i].variance);
+        let sum: f64 = variances.iter().sum();
+        let uncertain = variances.iter().zip(self.known);
+        let uncertain: f64 = uncertain.map(|(v, k)| v * v / k.freedom).sum();
+        ([values[1] - values[0], sum], sum * sum / uncertain)
+    }
+}
+
+/// All contrasts with their covariance: of R itself, of the other parameters the logarithm, in which the gains
+/// that two campaigns share cancel.
 struct Contrasts {
     list: Vec<Contrast>,
     values: DVector<f64>,
     covariance: DMatrix<f64>,
+    /// The same differences in SI units, each with its variance: there a shared gain cancels only as far as the
+    /// two values are equal.
+    si: Vec<[f64; 2]>,
 }
 
 impl Contrasts {
@@ -315,6 +352,7 @@ impl Contrasts {
             }
         }
         Self {
+            si: list.iter().map(|c| c.si(stack)).collect(),
             list,
             values,
             covariance,
@@ -330,26 +368,30 @@ impl Contrasts {
 
     fn difference(&self, i: usize) -> Difference {
         let contrast = &self.list[i];
-        let [reference, other] = contrast.known;
-        let (value, error) = (self.values[i], self.covariance[(i, i)].sqrt());
         let freedom = self.freedom(i);
-        let half = student_975(freedom) * error;
-        let alone = other.value - reference.value;
-        let variance = reference.variance + other.variance;
-        let uncertain = [reference, other].map(|k| k.variance.powi(2) / k.freedom);
-        let alone_freedom = variance.powi(2) / uncertain.iter().sum::<f64>();
-        let alone_half = student_975(alone_freedom) * variance.sqrt();
-        let scale = Scale::of(contrast.parameter, reference.value);
+        let quantile = student_975(freedom);
+        let interval = |[value, variance]: [f64; 2], quantile: f64| {
+            let half = quantile * variance.sqrt();
+            [value - half, value + half]
+        };
+        let (alone, alone_freedom) = contrast.si_alone();
+        let [value, variance] = self.si[i];
+        let (coordinate, error) = (self.values[i], self.covariance[(i, i)].sqrt());
+        let [low, high] = interval([coordinate, error * error], quantile);
+        let relative = |difference: f64| match contrast.parameter.is_logarithm() {
+            true => difference.exp_m1(),
+            false => difference / contrast.known[0].value,
+        };
         Difference {
             campaign: contrast.campaign,
             parameter: contrast.parameter,
-            value: scale.si(value),
-            standard_error: scale.slope * error,
-            interval95: [value - half, value + half].map(|v| scale.si(v)),
-            relative: [value, value - half, value + half].map(|v| scale.si(v) / scale.reference),
+            value,
+            standard_error: variance.sqrt(),
+            interval95: interval([value, variance], quantile),
+            relative: [coordinate, low, high].map(relative),
             degrees_of_freedom: Some(freedom).filter(|f| f.is_finite()),
-            independent_interval95: [alone - alone_half, alone + alone_half].map(|v| scale.si(v)),
-            p_value: student_tail(value / error, freedom),
+            independent_interval95: interval(alone, student_975(alone_freedom)),
+            p_value: student_tail(coordinate / error, freedom),
         }
     }
 
@@ -389,34 +431,5 @@ fn beyond(campaign: &Campaign, parameter: Coordinate) -> f64 {
     match (known, in_fit) {
         (Some(all), Some(covariance)) => (all - covariance).max(0.0),
         _ => 0.0,
-    }
-}
-
-/// How a difference of a coordinate is one of its parameter.
-struct Scale {
-    logarithm: bool,
-    /// The reference's value, SI.
-    reference: f64,
-    /// Change of the parameter per unit of the coordinate, SI.
-    slope: f64,
-}
-
-impl Scale {
-    fn of(parameter: Coordinate, reference: f64) -> Self {
-        let logarithm = parameter.is_logarithm();
-        let reference = parameter.physical(reference);
-        Self {
-            logarithm,
-            reference,
-            slope: if logarithm { reference } else { 1.0 },
-        }
-    }
-
-    /// A difference of the coordinate as one of the parameter, SI.
-    fn si(&self, difference: f64) -> f64 {
-        match self.logarithm {
-            true => self.reference * difference.exp_m1(),
-            false => difference,
-        }
     }
 }

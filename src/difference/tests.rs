@@ -215,6 +215,55 @@ fn valid_a_gain_that_both_share_cancels() {
     assert!(d.p_value < 1e-6);
 }
 
+/// A static deflection of 1 mm times eˡ, measured as l + 2 gain with noise.
+fn deflection(number: usize, logarithm: f64, noise: f64) -> Campaign {
+    let mut campaign = simple(number, logarithm, noise);
+    let at = logarithm + 1e-3_f64.ln();
+    let fit = campaign.fit.as_mut().expect("a fit");
+    let wide = 1e3;
+    let mut information = inverse(&fit.fit.covariance).expect("regular");
+    information[(0, 0)] += f64::powi(wide, -2) - FREE[0].1.powi(-2);
+    fit.fit.covariance = inverse(&information).expect("regular");
+    fit.fit.free[0] = Coordinate::Deflection;
+    let parameters = fit.fit.parameters.with(Coordinate::Deflection, at);
+    fit.fit.parameters = parameters.with(Coordinate::Gain(0), 0.0);
+    fit.priors[0] = Prior {
+        coordinate: Coordinate::Deflection,
+        centre: at,
+        deviation: wide,
+    };
+    let error = fit.fit.covariance[(0, 0)].sqrt();
+    fit.allowed[0] = Allowed {
+        parameter: Coordinate::Deflection,
+        standard_uncertainty: error,
+        degrees_of_freedom: None,
+    };
+    let estimate = campaign.parameters.restitution.take();
+    campaign.parameters.static_deflection_m = estimate.map(|e| Estimate {
+        value: Some(at.exp()),
+        standard_error: Some(at.exp() * error),
+        ..e
+    });
+    campaign
+}
+
+#[test]
+fn valid_a_shared_gain_leaves_its_share_of_a_difference_in_metres() {
+    // A gain that may be off by 60 % leaves the ratio of two deflections as it is, and 60 % of what lies
+    // between them.
+    let campaigns = [deflection(0, 0.0, 1e-4), deflection(1, 0.1, 1e-4)];
+    let d = compare(&campaigns).expect("comparable").differences[0];
+    let between = 1e-3 * (0.1_f64.exp() - 1.0);
+    assert!((d.value - between).abs() < 1e-8, "{d:?}");
+    assert!(
+        (d.standard_error - 0.6 * between).abs() < 1e-3 * between,
+        "{d:?}"
+    );
+    let [ratio, low, high] = d.relative;
+    assert!((ratio - 1e3 * between).abs() < 1e-6, "{d:?}");
+    assert!(high - low < 1e-3, "{d:?}");
+}
+
 #[test]
 fn valid_the_test_of_one_difference_is_that_of_its_interval() {
     // a difference of 1.96 standard errors is one in twenty
