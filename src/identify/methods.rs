@@ -168,7 +168,7 @@ pub fn boundaries(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Opti
         return None;
     }
     let mut free = Coordinate::PHYSICAL.to_vec();
-    if !blocks.boundary.tells_restitution() {
+    if !blocks.boundary.determines_restitution() {
         free.retain(|c| *c != Coordinate::Restitution);
     }
     let mut priors = wide_priors(&start, &free);

@@ -35,7 +35,7 @@ impl BoundaryBlock {
     }
 
     /// Whether any bracket determines R.
-    pub fn tells_restitution(&self) -> bool {
+    pub fn determines_restitution(&self) -> bool {
         self.brackets
             .iter()
             .any(|b| b.kind != BoundaryKind::Grazing)
@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn valid_a_doubling_tells_restitution_and_middles_tell_it_where_they_are_the_boundary() {
+    fn valid_a_doubling_determines_restitution_and_middles_do_where_they_are_the_boundary() {
         let p = Parameters::symmetric(0.7, 12.6, 0.05, 1e-3);
         let etas = [1.15, 1.25, 1.35];
         let of = |kind, off: f64| {
@@ -349,7 +349,7 @@ mod tests {
         assert!((r(0.0) - 0.7).abs() < 1e-6);
         // Jumps earlier than s2 by a fifth of a bracket take R down with them.
         assert!(r(0.4) < 0.695);
-        assert!(of(BoundaryKind::PeriodDoubling, 0.0).tells_restitution());
-        assert!(!of(BoundaryKind::Grazing, 0.0).tells_restitution());
+        assert!(of(BoundaryKind::PeriodDoubling, 0.0).determines_restitution());
+        assert!(!of(BoundaryKind::Grazing, 0.0).determines_restitution());
     }
 }

@@ -36,7 +36,7 @@ const NEGLIGIBLE: f64 = 9.0;
 /// Posterior about parameters that the resonance curve determines, with the standard error of
 /// ln `x_st`; `None` where no bracket determines R.
 pub fn of_brackets(block: &BoundaryBlock, about: &Parameters, error: f64) -> Option<Posterior> {
-    if !block.tells_restitution() {
+    if !block.determines_restitution() {
         return None;
     }
     let centre = about.coordinate(Coordinate::Deflection);

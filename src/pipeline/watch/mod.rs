@@ -148,7 +148,7 @@ impl Watcher {
             self.spacing
                 .observed(self.meter.read().saturating_sub(listed));
         }
-        self.told_once(&mut seen.faults);
+        self.report_once(&mut seen.faults);
         seen
     }
 
@@ -245,7 +245,7 @@ impl Watcher {
     }
 
     /// Keep what was not reported yet.
-    fn told_once(&mut self, faults: &mut Diagnostics) {
+    fn report_once(&mut self, faults: &mut Diagnostics) {
         faults.0.retain(|fault| !self.reported.contains(fault));
         self.reported.extend(faults.0.iter().cloned());
         faults.sort();

@@ -18,7 +18,7 @@ impl Meter {
 
     /// Processor time since some moment before.
     pub(super) fn read(&self) -> Duration {
-        told_by_the_system().unwrap_or_else(|| {
+        of_the_system().unwrap_or_else(|| {
             let threads = u32::try_from(rayon::current_num_threads()).unwrap_or(1);
             self.begin.elapsed() * threads
         })
@@ -27,7 +27,7 @@ impl Meter {
 
 /// User and system time of all threads, as Linux gives them: in hundredths of a second.
 #[cfg(target_os = "linux")]
-fn told_by_the_system() -> Option<Duration> {
+fn of_the_system() -> Option<Duration> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
     // the second field is the program's name in brackets, which may hold anything
     let (_, after) = stat.rsplit_once(')')?;
@@ -38,7 +38,7 @@ fn told_by_the_system() -> Option<Duration> {
 }
 
 #[cfg(not(target_os = "linux"))]
-fn told_by_the_system() -> Option<Duration> {
+fn of_the_system() -> Option<Duration> {
     None
 }
 
