@@ -25,9 +25,9 @@ pub struct MethodFit {
 /// impact, in which effects cancel; β and `x_st` follow from amplitudes.
 fn beyond_first_order(parameter: Coordinate) -> f64 {
     match parameter {
-        Coordinate::Frequency => 0.0035,
-        Coordinate::Restitution => 0.012,
-        Coordinate::Damping => 0.022,
+        Coordinate::Frequency => 0.0028,
+        Coordinate::Restitution => 0.011,
+        Coordinate::Damping => 0.018,
         _ => 0.03,
     }
 }

@@ -3,6 +3,8 @@
 //! The columns are the parameters that are asked for; how the others hang together among
 //! themselves is in the figure's data.
 
+use std::ops::Range;
+
 use super::canvas::{Anchor, Canvas, Colour, TextLook};
 use super::csv::Csv;
 use super::figure::Figure;
@@ -34,30 +36,18 @@ pub(crate) fn draw(correlation: &Correlation, locale: Locale<'_>) -> Option<Figu
         .map(|p| name(*p, locale))
         .collect();
     let columns = columns(correlation);
-    let widths = names
-        .iter()
-        .map(|t| richtext::width(t, Face::Regular, look::TITLE_SIZE));
-    let left = widths.fold(0.0, f64::max) + 8.0;
-    let wide = ((look::HALF_WIDTH - left - 4.0) / columns.len() as f64).min(34.0);
-    let high = if columns.len() < n { 14.5 } else { wide };
-    let mut canvas = Canvas::new(look::HALF_WIDTH, TOP + high * n as f64 + 2.0);
-    for (i, &column) in columns.iter().enumerate() {
-        let text_look = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::INK);
-        let at = (left + (i as f64 + 0.5) * wide, TOP - 4.5);
-        canvas.text(at, &names[column], text_look);
-    }
-    for (j, row) in correlation.matrix.iter().enumerate() {
-        let y = TOP + j as f64 * high;
-        let label = TextLook::new(look::TITLE_SIZE, Anchor::Right).colour(look::INK);
-        canvas.text((left - 5.0, y + 0.5 * high + 2.7), &names[j], label);
-        // each pair once
-        let once = columns.iter().enumerate();
-        for (i, &column) in once.filter(|(_, c)| **c <= j || !columns.contains(&j)) {
-            let x = left + i as f64 * wide;
-            let rect = Rect::new(x, y, wide, high);
-            let value = (column != j).then_some(row[column]);
-            cell(&mut canvas, &rect, value, locale);
-        }
+    let layout = Layout::new(&names, &columns);
+    let mut canvas = Canvas::new(layout.width(), layout.height());
+    for (block, first) in (0..n).step_by(layout.rows).enumerate() {
+        let corner = (block as f64 * layout.block_width(), TOP);
+        let rows = first..(first + layout.rows).min(n);
+        let cells = Cells {
+            correlation,
+            columns: &columns,
+            names: &names,
+            locale,
+        };
+        cells.draw(&mut canvas, &layout, corner, rows);
     }
     Some(Figure::new(
         "correlation",
@@ -65,6 +55,99 @@ pub(crate) fn draw(correlation: &Correlation, locale: Locale<'_>) -> Option<Figu
         canvas,
         csv(correlation),
     ))
+}
+
+/// Most rows under each other; more of them stand in two blocks side by side.
+const MOST_ROWS: usize = 24;
+/// Space between two blocks, points.
+const GUTTER: f64 = 14.0;
+
+/// Sizes of the cells, points.
+struct Layout {
+    /// Rows of a block.
+    rows: usize,
+    blocks: usize,
+    /// Room for the names left of the cells.
+    left: f64,
+    columns: usize,
+    cell: (f64, f64),
+}
+
+impl Layout {
+    fn new(names: &[String], columns: &[usize]) -> Self {
+        let (count, across) = (names.len(), columns.len());
+        let blocks = if across < count && count > MOST_ROWS {
+            2
+        } else {
+            1
+        };
+        let widths = names
+            .iter()
+            .map(|t| richtext::width(t, Face::Regular, look::TITLE_SIZE));
+        let left = widths.fold(0.0, f64::max) + 8.0;
+        let whole = match blocks {
+            1 => look::HALF_WIDTH - 4.0,
+            _ => 0.5 * (look::FULL_WIDTH - GUTTER) - 2.0,
+        };
+        let wide = ((whole - left) / across as f64).min(34.0);
+        let high = if across < count { 14.5 } else { wide };
+        Self {
+            rows: count.div_ceil(blocks),
+            blocks,
+            left,
+            columns: across,
+            cell: (wide, high),
+        }
+    }
+
+    /// From the left edge of a block to that of the next.
+    fn block_width(&self) -> f64 {
+        self.left + self.columns as f64 * self.cell.0 + GUTTER
+    }
+
+    fn width(&self) -> f64 {
+        match self.blocks {
+            1 => look::HALF_WIDTH,
+            blocks => blocks as f64 * self.block_width() - GUTTER + 2.0,
+        }
+    }
+
+    fn height(&self) -> f64 {
+        TOP + self.cell.1 * self.rows as f64 + 2.0
+    }
+}
+
+/// What stands in the cells.
+struct Cells<'a> {
+    correlation: &'a Correlation,
+    columns: &'a [usize],
+    names: &'a [String],
+    locale: Locale<'a>,
+}
+
+impl Cells<'_> {
+    /// Some rows with the columns' names above them.
+    fn draw(&self, canvas: &mut Canvas, layout: &Layout, (x0, y0): (f64, f64), rows: Range<usize>) {
+        let (wide, high) = layout.cell;
+        let left = x0 + layout.left;
+        for (i, &column) in self.columns.iter().enumerate() {
+            let text_look = TextLook::new(look::TITLE_SIZE, Anchor::Middle).colour(look::INK);
+            let at = (left + (i as f64 + 0.5) * wide, y0 - 4.5);
+            canvas.text(at, &self.names[column], text_look);
+        }
+        for (line, j) in rows.enumerate() {
+            let y = y0 + line as f64 * high;
+            let label = TextLook::new(look::TITLE_SIZE, Anchor::Right).colour(look::INK);
+            canvas.text((left - 5.0, y + 0.5 * high + 2.7), &self.names[j], label);
+            // each pair once
+            let once = self.columns.iter().enumerate();
+            for (i, &column) in once.filter(|(_, c)| **c <= j || !self.columns.contains(&j)) {
+                let rect = Rect::new(left + i as f64 * wide, y, wide, high);
+                let value = (column != j).then_some(self.correlation.matrix[j][column]);
+                cell(canvas, &rect, value, self.locale);
+            }
+        }
+    }
 }
 
 /// The columns of the matrix: the parameters that are asked for.
