@@ -90,7 +90,7 @@ impl Layout {
             _ => 0.5 * (look::FULL_WIDTH - GUTTER) - 2.0,
         };
         let wide = ((whole - left) / across as f64).min(34.0);
-        let high = if across < count { 14.5 } else { wide };
+        let high = if across < count { 12.0 } else { wide };
         Self {
             rows: count.div_ceil(blocks),
             blocks,
