@@ -124,10 +124,14 @@ class App {
     else if (frame.kind === "residuals") { this.campaign.residuals(frame); time("residuals", 0); }
   }
 
-  /** The times from asking until it is drawn, and until the screen's next picture is made of it. */
+  /** The times from asking until it is drawn, and until the screen's next picture is made of it. What waits for
+   * that picture is drawn by callbacks that were asked for before this one. */
   timed(kind, level, since) {
-    const drawn = performance.now() - since;
-    requestAnimationFrame(() => setTimeout(() => this.timings.push({ kind, level, drawn, ms: performance.now() - since, at: performance.now() })));
+    const atOnce = (kind === "map" || kind === "boundaries") && this.map.due.size === 0 ? performance.now() - since : null;
+    requestAnimationFrame(() => {
+      const drawn = atOnce ?? performance.now() - since;
+      setTimeout(() => this.timings.push({ kind, level, drawn, ms: performance.now() - since, at: performance.now() }));
+    });
   }
 
   /** The motion goes on from where an answer left it; η and ρ may have moved since. */

@@ -61,10 +61,11 @@ export class MapView {
     tile.complete = tile.filled >= tile.cells.length;
     if (tile.complete) {
       this.tiles = this.tiles.filter((t) => t === tile || (t.id === tile.id && t.level > tile.level));
-      if (tile.level === 1) { this.labels = placeLabels(tile); this.redraw("lines"); }
+      if (tile.level === 1) this.labels = placeLabels(tile);
       if (tile.level >= 1) this.app.legend(commonest(tile));
     }
-    this.redraw("tiles");
+    const labelled = tile.complete && tile.level === 1;
+    this.redraw("tiles", ...(labelled ? ["lines"] : []));
     return tile;
   }
 

@@ -13,7 +13,7 @@ use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
 use crate::motion::Response;
 use crate::record::Role;
-use impact_oscillator::model::flight::{Drive, forced_amplitude};
+use impact_oscillator::model::flight::{Drive, dynamic_stiffness, forced_amplitude};
 use impact_oscillator::model::params::{Machine, Oscillator};
 use impact_oscillator::model::sensitivity::{Change, forced_slope};
 
@@ -140,8 +140,12 @@ struct Predicted {
     value: Complex<f64>,
     /// Dimensionless amplitude of the mass's displacement.
     amplitude: Complex<f64>,
-    /// Forces of hardening, friction and drag at the drive's frequency, and how they move with the amplitude.
+    /// Hardening, friction and drag.
     resistance: Resistance,
+    /// Their forces at the amplitude for effects of strength 1.
+    forces: [Complex<f64>; EXTRA.len()],
+    /// What further forces change of the amplitude.
+    balance: Balance,
     oscillator: Oscillator,
     /// SI units in one of the model's displacement.
     unit: Complex<f64>,
@@ -171,10 +175,13 @@ fn respond(
     let scale = parameters.gain(role) * parameters.static_deflection_m * drive_amplitude;
     let unit = rate.powu(u32::from(order)) * scale * (-rate * parameters.delay_s(role)).exp();
     let forced = forced_amplitude(&oscillator, Drive { eta, phase: 0.0 });
+    let resistance = Resistance::default();
     Predicted {
         value: forced * unit,
         amplitude: forced,
-        resistance: Resistance::default(),
+        resistance,
+        forces: resistance.forces(forced),
+        balance: Balance::new(dynamic_stiffness(&oscillator, eta), &resistance, forced),
         oscillator,
         unit,
         order: f64::from(order),
@@ -242,39 +249,41 @@ impl Resistance {
     }
 }
 
-/// (k − η²) + 2iδη of a mass: what its displacement's amplitude multiplies in the equation of motion.
-fn dynamic_stiffness(o: &Oscillator, eta: f64) -> Complex<f64> {
-    Complex::new(
-        o.stiffness_per_mass() - eta * eta,
-        2.0 * o.decay_rate() * eta,
-    )
+/// What a force changes of the amplitude at which mass, spring, damper and resistance balance.
+#[derive(Debug, Clone, Copy)]
+struct Balance {
+    dynamic: Complex<f64>,
+    /// a and b of the differential a dF + b dF* of all forces.
+    along: Complex<f64>,
+    across: Complex<f64>,
 }
 
-/// Change dF of the amplitude that balances a force: Z dF + a dF + b dF* = force.
-fn yields(
-    dynamic: Complex<f64>,
-    [along, across]: [Complex<f64>; 2],
-    force: Complex<f64>,
-) -> Complex<f64> {
-    let along = dynamic + along;
-    (along.conj() * force - across * force.conj()) / (along.norm_sqr() - across.norm_sqr())
+impl Balance {
+    fn new(dynamic: Complex<f64>, resistance: &Resistance, amplitude: Complex<f64>) -> Self {
+        let [along, across] = resistance.slope(amplitude);
+        Self {
+            dynamic,
+            along: dynamic + along,
+            across,
+        }
+    }
+
+    /// Change dF of the amplitude: a dF + b dF* = force.
+    fn yields(&self, force: Complex<f64>) -> Complex<f64> {
+        let (along, across) = (self.along, self.across);
+        (along.conj() * force - across * force.conj()) / (along.norm_sqr() - across.norm_sqr())
+    }
 }
 
 /// Newton steps after which the amplitude is taken as it is.
 const STEPS: usize = 20;
 
 /// Amplitude at which drive, mass, spring, damper and resistance balance, from the linear one on.
-fn balanced(
-    oscillator: &Oscillator,
-    eta: f64,
-    linear: Complex<f64>,
-    resistance: &Resistance,
-) -> Complex<f64> {
-    let dynamic = dynamic_stiffness(oscillator, eta);
+fn balanced(dynamic: Complex<f64>, linear: Complex<f64>, resistance: &Resistance) -> Complex<f64> {
     let mut amplitude = linear;
     for _ in 0..STEPS {
         let missing = dynamic * (linear - amplitude) - resistance.force(amplitude);
-        let step = yields(dynamic, resistance.slope(amplitude), missing);
+        let step = Balance::new(dynamic, resistance, amplitude).yields(missing);
         // Never to another branch, nor past rest, where friction has no direction.
         let step = step * (0.5 * amplitude.norm() / step.norm()).min(1.0);
         amplitude += step;
@@ -302,11 +311,14 @@ impl Predicted {
     fn with_effects(self, parameters: &Parameters, eta: f64, per_unit: [f64; EXTRA.len()]) -> Self {
         let strengths = EXTRA.map(|e| parameters.effect(e));
         let resistance = Resistance::new(per_unit, strengths, eta);
-        let amplitude = balanced(&self.oscillator, eta, self.amplitude, &resistance);
+        let dynamic = self.balance.dynamic;
+        let amplitude = balanced(dynamic, self.amplitude, &resistance);
         Self {
             value: amplitude * self.unit,
             amplitude,
             resistance,
+            forces: resistance.forces(amplitude),
+            balance: Balance::new(dynamic, &resistance, amplitude),
             ..self
         }
     }
@@ -324,16 +336,9 @@ impl Predicted {
         }
     }
 
-    /// Change of the amplitude by a force.
-    fn yields(&self, eta: f64, force: Complex<f64>) -> Complex<f64> {
-        let dynamic = dynamic_stiffness(&self.oscillator, eta);
-        yields(dynamic, self.resistance.slope(self.amplitude), force)
-    }
-
     /// Slope over the strength of the effect at a place of [`EXTRA`].
-    fn over_effect(&self, eta: f64, place: usize) -> Complex<f64> {
-        let force = self.resistance.forces(self.amplitude)[place];
-        self.yields(eta, -force) * self.unit
+    fn over_effect(&self, place: usize) -> Complex<f64> {
+        self.balance.yields(-self.forces[place]) * self.unit
     }
 
     /// Slope where mass and η change, and the unit of length by a share; the drive's frequency, and with
@@ -347,7 +352,6 @@ impl Predicted {
         (length, friction_over_length): (f64, f64),
     ) -> Complex<f64> {
         let mass = if of_y { &change.y } else { &change.x };
-        let dynamic = dynamic_stiffness(&self.oscillator, eta);
         let linear = forced_slope(&self.oscillator, mass, self.amplitude, [eta, change.eta]);
         let stiffness = mass.stiffness_per_mass / self.oscillator.stiffness_per_mass();
         let relative = [
@@ -355,10 +359,11 @@ impl Predicted {
             -length * friction_over_length,
             2.0 * change.eta / eta + length * (2.0 - friction_over_length),
         ];
-        let forces = self.resistance.forces(self.amplitude).into_iter();
+        let forces = self.forces.into_iter();
         let forces = forces.zip(self.resistance.strengths).zip(relative);
         let grown: Complex<f64> = forces.map(|((force, s), slope)| force * s * slope).sum();
-        self.yields(eta, dynamic * linear - grown) * self.unit + self.value * length
+        let missing = self.balance.dynamic * linear - grown;
+        self.balance.yields(missing) * self.unit + self.value * length
     }
 
     /// Slope over the logarithm of the drive's frequency.
@@ -413,9 +418,9 @@ impl Model<'_> {
                 Coordinate::Gain(_) => p.value,
                 Coordinate::Corner(_) => p.value * p.over_corner,
                 Coordinate::Delay(_) => -p.value * rate * 1e-3,
-                Coordinate::Effect(Effect::Hardening) => p.over_effect(self.eta, 0),
-                Coordinate::Effect(Effect::Friction) => p.over_effect(self.eta, 1),
-                Coordinate::Effect(Effect::Drag) => p.over_effect(self.eta, 2),
+                Coordinate::Effect(Effect::Hardening) => p.over_effect(0),
+                Coordinate::Effect(Effect::Friction) => p.over_effect(1),
+                Coordinate::Effect(Effect::Drag) => p.over_effect(2),
                 _ => parts
                     .iter()
                     .map(|(change, length, weight)| {

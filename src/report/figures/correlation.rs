@@ -37,16 +37,16 @@ pub(crate) fn draw(correlation: &Correlation, locale: Locale<'_>) -> Option<Figu
         .collect();
     let columns = columns(correlation);
     let layout = Layout::new(&names, &columns);
+    let cells = Cells {
+        correlation,
+        columns: &columns,
+        names: &names,
+        locale,
+    };
     let mut canvas = Canvas::new(layout.width(), layout.height());
     for (block, first) in (0..n).step_by(layout.rows).enumerate() {
         let corner = (block as f64 * layout.block_width(), TOP);
         let rows = first..(first + layout.rows).min(n);
-        let cells = Cells {
-            correlation,
-            columns: &columns,
-            names: &names,
-            locale,
-        };
         cells.draw(&mut canvas, &layout, corner, rows);
     }
     Some(Figure::new(

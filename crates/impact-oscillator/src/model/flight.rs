@@ -63,13 +63,17 @@ impl FlightPaths {
     }
 }
 
-/// Complex amplitude of the forced response to a·cos(ητ+φ): a e^{iφ}/(Ω² − η² + 2iδη).
-pub fn forced_amplitude(o: &Oscillator, drive: Drive) -> C64 {
-    let eta = drive.eta;
-    let dynamic = C64::new(
+/// Ω² − η² + 2iδη of a mass: what the amplitude of its displacement at η multiplies in the equation of motion.
+pub fn dynamic_stiffness(o: &Oscillator, eta: f64) -> C64 {
+    C64::new(
         o.stiffness_per_mass() - eta * eta,
         2.0 * o.decay_rate() * eta,
-    );
+    )
+}
+
+/// Complex amplitude of the forced response to a·cos(ητ+φ): a e^{iφ}/(Ω² − η² + 2iδη).
+pub fn forced_amplitude(o: &Oscillator, drive: Drive) -> C64 {
+    let dynamic = dynamic_stiffness(o, drive.eta);
     let force = if drive.phase == 0.0 {
         C64::new(o.drive_per_mass(), 0.0)
     } else {

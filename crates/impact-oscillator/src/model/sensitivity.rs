@@ -5,7 +5,7 @@
 //! differentials are those of the closed forms of [`orbit`](super::orbit), the approach speed's by
 //! the implicit function of its quadratic. They grow without bound at the saddle-node.
 
-use super::flight::{Drive, exponent, forced_amplitude};
+use super::flight::{Drive, dynamic_stiffness, exponent, forced_amplitude};
 use super::orbit::Branch;
 use super::params::{Machine, Oscillator};
 use super::path::C64;
@@ -71,7 +71,7 @@ pub struct OrbitMotion {
 /// Differential of a mass's forced amplitude F for drive phase 0, where η changes by `d_eta`.
 pub fn forced_slope(o: &Oscillator, d: &MassChange, forced: C64, [eta, d_eta]: [f64; 2]) -> C64 {
     let decay = o.decay_rate();
-    let dynamic = C64::new(o.stiffness_per_mass() - eta * eta, 2.0 * decay * eta);
+    let dynamic = dynamic_stiffness(o, eta);
     let d_dynamic = C64::new(
         d.stiffness_per_mass - 2.0 * eta * d_eta,
         2.0 * (d.decay_rate * eta + decay * d_eta),
