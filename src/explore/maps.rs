@@ -67,46 +67,63 @@ pub(super) fn map(state: &State, job: &Job) -> Result<(), Stop> {
         false => &[COARSE, MAP_CELLS],
     };
     let strip_cells = if fast { STRIP_CELLS } else { SLOW_STRIP_CELLS };
-    for (level, size) in levels.iter().enumerate() {
-        tile(state, &machine, (level, *size, strip_cells), job)?;
+    let finest = levels.len() - 1;
+    for (level, &size) in levels.iter().enumerate() {
+        let tile = Tile {
+            level,
+            size,
+            strip_cells,
+            finest: level == finest,
+        };
+        tile.send(state, &machine, job)?;
     }
     Ok(())
 }
 
-/// One level of the map, strip by strip, each a frame.
-fn tile(
-    state: &State,
-    machine: &Machine,
-    (level, size, strip_cells): (usize, (usize, usize), usize),
-    job: &Job,
-) -> Result<(), Stop> {
-    let plan = state.map_plan(size);
-    let (eta, rho) = (even(plan.eta), even(plan.rho));
-    let rows = (strip_cells / size.0).max(1);
-    for (number, strip) in rho.chunks(rows).enumerate() {
-        if job.is_stale() {
-            return Err(Stop::Stale);
+/// One level of the map.
+struct Tile {
+    level: usize,
+    /// Columns and rows.
+    size: (usize, usize),
+    /// Cells of a strip at most.
+    strip_cells: usize,
+    /// Whether no finer level follows.
+    finest: bool,
+}
+
+impl Tile {
+    /// Send it strip by strip, each a frame.
+    fn send(&self, state: &State, machine: &Machine, job: &Job) -> Result<(), Stop> {
+        let plan = state.map_plan(self.size);
+        let (eta, rho) = (even(plan.eta), even(plan.rho));
+        let rows = (self.strip_cells / self.size.0).max(1);
+        let last = (rho.len() - 1) / rows;
+        for (number, strip) in rho.chunks(rows).enumerate() {
+            if job.is_stale() {
+                return Err(Stop::Stale);
+            }
+            let grid = MapGrid {
+                eta: eta.clone(),
+                rho: strip.to_vec(),
+            };
+            let map = match POOL.as_ref() {
+                Some(pool) => pool.install(|| region_map(machine, &grid, &plan.map)),
+                None => region_map(machine, &grid, &plan.map),
+            }?;
+            let (motions, cells) = cells(map.cells.iter());
+            let frame = job
+                .frame("map")
+                .with("level", self.level)
+                .with("size", self.size)
+                .with("first_row", number * rows)
+                .with("last", self.finest && number == last)
+                .with("eta", state.view.eta)
+                .with("rho", state.view.rho)
+                .with("motions", motions);
+            job.send(frame.cells(cells))?;
         }
-        let grid = MapGrid {
-            eta: eta.clone(),
-            rho: strip.to_vec(),
-        };
-        let map = match POOL.as_ref() {
-            Some(pool) => pool.install(|| region_map(machine, &grid, &plan.map)),
-            None => region_map(machine, &grid, &plan.map),
-        }?;
-        let (motions, cells) = cells(map.cells.iter());
-        let frame = job
-            .frame("map")
-            .with("level", level)
-            .with("size", size)
-            .with("first_row", number * rows)
-            .with("eta", state.view.eta)
-            .with("rho", state.view.rho)
-            .with("motions", motions);
-        job.send(frame.cells(cells))?;
+        Ok(())
     }
-    Ok(())
 }
 
 /// A boundary by η.

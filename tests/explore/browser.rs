@@ -7,9 +7,14 @@ use super::server::Explorer;
 
 const SIZE: (u32, u32) = (1280, 800);
 
+const SAMPLE: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/data-samples/double-oscillator/campaign.toml"
+);
+
 /// Whether everything that was asked for is drawn.
 const QUIET: &str = "Object.values(impactid.wire.busy).every((b) => !b) \
-     && impactid.map.tiles.length > 0 && impactid.map.tiles.every((t) => t.complete)";
+     && impactid.map.finished === impactid.wire.newest.map";
 
 #[test]
 #[ignore = "needs chromium"]
@@ -187,14 +192,36 @@ fn browser_a_click_on_the_map_carries_the_motion_there() {
     browser.until(near);
 }
 
+/// The map's boxes that were drawn since it is called first.
+const BOXES: &str = "(() => { if (!window.boxes) { window.boxes = new Set(); (function look() { \
+     const b = document.getElementById('map').getBoundingClientRect(); \
+     boxes.add([b.left, b.top, b.width, b.height].join()); requestAnimationFrame(look); })(); } \
+     return [...boxes]; })()";
+
+#[test]
+#[ignore = "needs chromium"]
+fn browser_the_map_keeps_its_place_while_all_beside_it_changes() {
+    let explorer = Explorer::start(&[SAMPLE], &std::env::temp_dir());
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.evaluate(BOXES);
+    browser.until(QUIET);
+    for action in [
+        "carry(0.123456, 0.654321)",
+        "parameters({ restitution: 0.612345, damping_ratio: 0.0123456 })",
+        "look([0.2, 0.6], [0, 0.3])",
+        "look([0.5, 3], [0, 6])",
+    ] {
+        browser.evaluate(&format!("impactid.{action}"));
+        browser.until(QUIET);
+    }
+    let boxes = browser.evaluate(BOXES);
+    assert_eq!(boxes.as_array().unwrap().len(), 1, "{boxes}");
+}
+
 #[test]
 #[ignore = "needs chromium"]
 fn browser_a_campaign_is_explored() {
-    let sample = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/data-samples/double-oscillator/campaign.toml"
-    );
-    let explorer = Explorer::start(&[sample], &std::env::temp_dir());
+    let explorer = Explorer::start(&[SAMPLE], &std::env::temp_dir());
     let mut browser = Chromium::open(&explorer.url(), SIZE);
     browser.until(QUIET);
     let place = "(() => { const b = document.getElementById('map').getBoundingClientRect(); \

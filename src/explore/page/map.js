@@ -22,6 +22,7 @@ export class MapView {
     this.due = new Set();    // layers to be drawn
     this.drawn = false;      // whether something was, for the next picture of the screen
     this.labels = [];
+    this.finished = 0;       // id of the newest request whose map came to its end
     this.theme = "";
     this.pointer();
     new ResizeObserver(() => this.redraw()).observe(this.canvas);
@@ -64,6 +65,7 @@ export class MapView {
       if (tile.level === 1) this.labels = placeLabels(tile);
       if (tile.level >= 1) this.app.legend(commonest(tile));
     }
+    if (frame.last) this.finished = frame.id;
     const labelled = tile.complete && tile.level === 1;
     this.redraw("tiles", ...(labelled ? ["lines"] : []));
     return tile;
