@@ -149,6 +149,7 @@ Effects that the fit does not know, and that realistic leaves out:
   gap-drift=0.01           drift of all gaps over the campaign, over x_st
   backlash=0.005           gaps of upward sweeps are wider than those of downward ones, over x_st
   compression=0.005        relative loss of the motion channels at x_st/(2 beta), by the square of the signal
+  restarts=0.5             the drive starts again at every setting; greatest jump of its phase, turns
 truth.json states what was drawn.";
 
 /// Arguments of `impactid simulate campaign`.

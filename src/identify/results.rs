@@ -167,6 +167,10 @@ pub fn boundaries(
             .remarks
             .extend(midpoints.as_ref().and_then(by_midpoints));
         result.restitution_by_midpoints = midpoints;
+        let early = posterior
+            .early
+            .map(|distance| Remark::EarlyJumps { distance });
+        result.remarks.extend(early);
     }
     result
 }

@@ -293,10 +293,11 @@ impl IdentificationRun<'_> {
             flights,
         } = alone;
         let boundaries = self.selection.boundaries(start);
+        let waveforms = succeeded(&trajectories).map(|f| &f.fit.parameters);
         self.posterior = succeeded(&resonance).and_then(|found| {
             let error = found.fit.error(Coordinate::Deflection)? * found.factor.sqrt();
-            let about = found.fit.parameters;
-            posterior::of_brackets(&self.selection.blocks.boundary, &about, error.min(0.3))
+            let about = (&found.fit.parameters, error.min(0.3));
+            posterior::of_brackets(&self.selection.blocks.boundary, about, waveforms)
         });
         let weight = |attempt: &Option<FitResult>| succeeded(attempt).map(|f| 1.0 / f.factor);
         // Flights rest on the speeds at impacts; waveforms tell the same better than either.

@@ -23,6 +23,26 @@ pub struct Harmonic {
     pub phase_rad: f64,
 }
 
+/// A drive that starts again at every setting, at another phase.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Restarts {
+    /// Greatest jump of the phase, turns.
+    pub turns: f64,
+    /// Where the sequence of jumps begins, 0 to 1.
+    pub offset: f64,
+}
+
+impl Restarts {
+    /// Jump of the phase at setting number `index`, rad: evenly spread by the golden ratio.
+    pub(super) fn jump_rad(&self, index: usize) -> f64 {
+        let place = (self.offset + index as f64 * GOLDEN).fract();
+        std::f64::consts::TAU * self.turns * (2.0 * place - 1.0)
+    }
+}
+
+/// Fractional part of the golden ratio.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
 /// The effects of one campaign with their drawn sizes, the truth that a fit may find.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Effects {
@@ -67,6 +87,9 @@ pub struct Effects {
     pub compression: f64,
     /// Hysteretic share s of the damping: b ∝ 1 + s (1/η − 1).
     pub hysteretic_damping: f64,
+    /// Jumps of the drive's phase between settings; `None`: it goes on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub restarts: Option<Restarts>,
 }
 
 impl Effects {
@@ -106,7 +129,7 @@ impl Effects {
             self.gap_drift_m,
             self.backlash_m,
         ];
-        sizes.iter().all(|s| *s == 0.0)
+        sizes.iter().all(|s| *s == 0.0) && self.restarts.is_none()
     }
 
     /// Shift the true gaps of a plan, each by what `draw` gives.
@@ -125,5 +148,25 @@ impl Effects {
         for gap in &mut self.gaps {
             gap.true_m += draw();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prop_jumps_of_a_drive_stay_within_their_turns_and_are_spread_evenly() {
+        let restarts = Restarts {
+            turns: 0.5,
+            offset: 0.3,
+        };
+        let jumps: Vec<f64> = (0..1000).map(|i| restarts.jump_rad(i)).collect();
+        let most = std::f64::consts::PI;
+        assert!(jumps.iter().all(|j| j.abs() <= most));
+        // a uniform distribution: a quarter of them beyond ±3/4 of the range, the mean at zero
+        let far = jumps.iter().filter(|j| j.abs() > 0.75 * most).count();
+        assert!((245..=255).contains(&far), "{far}");
+        assert!(jumps.iter().sum::<f64>().abs() / 1000.0 < 0.01);
     }
 }

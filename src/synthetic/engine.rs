@@ -111,6 +111,9 @@ impl Physics<'_> {
             Engine::Integrated(integrator) => {
                 let law = integrator.law();
                 integrator.set(self.equations(law, index, step));
+                if let Some(restarts) = self.effects.restarts {
+                    integrator.shift_phase(restarts.jump_rad(index));
+                }
             }
         }
     }

@@ -19,6 +19,7 @@
 //! | `gap-drift` | share of x_st, first to last record | the gaps drift; unknown to the fit |
 //! | `backlash` | share of x_st | gaps of upward sweeps are wider than those of downward ones; unknown to the fit |
 //! | `compression` | relative at x_st/(2β) | motion channels show less of large signals; unknown to the fit |
+//! | `restarts` | turns | the drive starts again at every setting, its phase off by up to this; unknown to the fit |
 //! | `contact` | ms | impacts last this long: a spring and a damper that only press |
 //! | `delays` | samples | each channel lags the drive by a delay within ± the strength |
 //! | `flicker` | V rms | 1/f noise on every channel beside the white one |
@@ -34,7 +35,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::acquisition::RATE_HZ;
-use super::effects::{Effects, Harmonic};
+use super::effects::{Effects, Harmonic, Restarts};
 use super::plan::Plan;
 use super::truth::Truth;
 
@@ -84,11 +85,13 @@ pub enum Effect {
     Backlash,
     /// Sensors that show less of large signals.
     Compression,
+    /// A drive that starts again at every setting: its phase jumps.
+    Restarts,
 }
 
 impl Effect {
     /// All effects.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::Gaps,
         Self::GapOffset,
         Self::DampingAsymmetry,
@@ -110,6 +113,7 @@ impl Effect {
         Self::GapDrift,
         Self::Backlash,
         Self::Compression,
+        Self::Restarts,
     ];
 
     /// Name on the command line and in truth.json.
@@ -136,6 +140,7 @@ impl Effect {
             Self::GapDrift => "gap-drift",
             Self::Backlash => "backlash",
             Self::Compression => "compression",
+            Self::Restarts => "restarts",
         }
     }
 
@@ -156,14 +161,17 @@ impl Effect {
             Self::DampingDrift => 0.02,
             Self::HystereticDamping => 0.05,
             Self::Contact => 0.64,
-            Self::Delays => 0.5,
+            Self::Delays | Self::Restarts => 0.5,
             Self::Flicker | Self::Hum => 1e-3,
         }
     }
 
     /// Whether the fit has it as an effect or as a stated uncertainty; the others break its assumptions.
     pub fn is_in_the_fit(self) -> bool {
-        !matches!(self, Self::GapDrift | Self::Backlash | Self::Compression)
+        !matches!(
+            self,
+            Self::GapDrift | Self::Backlash | Self::Compression | Self::Restarts
+        )
     }
 
     /// Greatest strength that the simulation takes.
@@ -250,6 +258,12 @@ impl Switch {
             Effect::GapDrift => effects.gap_drift_m = sign * size * truth.static_deflection_m,
             Effect::Backlash => effects.backlash_m = sign * size * truth.static_deflection_m,
             Effect::Compression => effects.compression = sign * size,
+            Effect::Restarts => {
+                effects.restarts = Some(Restarts {
+                    turns: self.strength,
+                    offset: spread.fract(),
+                });
+            }
             Effect::Friction => effects.friction = size,
             Effect::FrequencyDrift => effects.frequency_drift = sign * size,
             Effect::DampingDrift => effects.damping_drift = sign * size,

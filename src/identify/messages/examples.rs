@@ -130,6 +130,7 @@ fn remarks() -> Vec<Remark> {
         },
         Remark::IdealRig,
         Remark::StatesDeviate { ratio: 1.5 },
+        Remark::EarlyJumps { distance: 0.08 },
         Remark::BracketMidpoints {
             restitution: 0.9,
             half_width: 0.02,

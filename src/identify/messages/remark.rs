@@ -112,6 +112,11 @@ pub enum Remark {
         /// Half its 95 % interval.
         half_width: f64,
     },
+    /// Motions end well before their boundaries.
+    EarlyJumps {
+        /// Mean distance from the boundary, relative to its frequency.
+        distance: f64,
+    },
     /// R is the same at all speeds.
     RestitutionConstant {
         /// Slowest approach speed, m/s.
@@ -248,6 +253,11 @@ impl Message for Remark {
             Self::BracketMidpoints { .. } => {
                 "plain least squares on the midpoints of the s2 brackets: $R$ = {value} ± {half}"
             }
+            Self::EarlyJumps { .. } => {
+                "by the waveforms the motions $z$ = 1 end {share} of the frequency before their s2 on \
+                 average, so the brackets determine $R$ poorly: let the drive go on from setting to \
+                 setting, in smaller steps"
+            }
             Self::RestitutionConstant { .. } => {
                 "$R$ is the same from {slow} to {fast} m/s within {change}"
             }
@@ -330,6 +340,11 @@ impl Message for Remark {
                 "einfache kleinste Quadrate auf den Mitten der Schranken von s2: $R$ = {value} ± \
                  {half}"
             }
+            Self::EarlyJumps { .. } => {
+                "nach den Verläufen enden die Bewegungen $z$ = 1 im Mittel {share} der Frequenz vor \
+                 ihrem s2, die Schranken bestimmen $R$ also schlecht: den Antrieb von Einstellung zu \
+                 Einstellung weiterlaufen lassen, in kleineren Schritten"
+            }
             Self::RestitutionConstant { .. } => {
                 "$R$ ist von {slow} bis {fast} m/s gleich, auf {change}"
             }
@@ -408,6 +423,7 @@ impl Message for Remark {
                 ("value", Value::Number(*restitution, 3)),
                 ("half", Value::Number(*half_width, 3)),
             ],
+            Self::EarlyJumps { distance } => vec![("share", Value::Percent(*distance, 1))],
             Self::RestitutionConstant {
                 slow_m_s,
                 fast_m_s,

@@ -70,7 +70,11 @@ pub fn bounds(evidence: &Evidence<'_>, at: &Parameters) -> BTreeMap<Estimator, B
         .and_then(|b| b.error(Coordinate::Deflection));
     let brackets = bounds.get_mut(&Estimator::Method(Boundaries));
     if let (Some(error), Some(found)) = (deflection, brackets) {
-        found.take_intervals(posterior::of_brackets(&blocks.boundary, at, error.min(0.3)));
+        found.take_intervals(posterior::of_brackets(
+            &blocks.boundary,
+            (at, error.min(0.3)),
+            None,
+        ));
     }
     bounds
 }

@@ -4,6 +4,10 @@
 //! flat inside, so neither a least-squares optimum nor its curvature means anything. The
 //! posterior is therefore summed over a grid of R and `x_st` (which the resonance curve determines), with
 //! the scale of early jumps summed out; f0 and β are the resonance curve's.
+//!
+//! Jumps that are all early by much the same look like jumps at the boundaries of a lower R: brackets
+//! alone cannot tell the two apart. Where the waveforms determine an R that the brackets miss, and that
+//! early jumps explain, the brackets therefore say from one side only where the boundaries lie.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +15,7 @@ use rayon::prelude::*;
 
 use crate::identify::evidence::boundary::{BoundaryBlock, bracket_probability, predicted_hz};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::motion::Bracket;
+use crate::motion::{BoundaryKind, Bracket};
 
 /// What brackets say of R and `x_st`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,10 +26,17 @@ pub struct Posterior {
     pub interval95: [f64; 2],
     /// Posterior mean and standard deviation of ln `x_st`.
     pub ln_deflection: (f64, f64),
+    /// Mean distance of the ends of z = 1 from s2, relative to its frequency, where the waveforms show that
+    /// they are early.
+    pub early: Option<f64>,
 }
 
 /// Scales of early jumps that are summed over, relative to the frequency; each as likely before.
 const EARLY_SCALES: [f64; 8] = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2];
+/// A scale so long that no distance of an early jump is more likely than another.
+const ANY_DISTANCE: [f64; 1] = [1.0];
+/// Deviations by which brackets miss the waveforms' R before their jumps count as early.
+const MISSED: f64 = 3.0;
 /// Grid of ln `x_st` in its standard errors.
 const DEFLECTION_NODES: [f64; 9] = [-3.0, -2.25, -1.5, -0.75, 0.0, 0.75, 1.5, 2.25, 3.0];
 /// Points of the final grid of R.
@@ -34,21 +45,51 @@ const FINE: usize = 61;
 const NEGLIGIBLE: f64 = 9.0;
 
 /// Posterior about parameters that the resonance curve determines, with the standard error of
-/// ln `x_st`; `None` where no bracket determines R.
-pub fn of_brackets(block: &BoundaryBlock, about: &Parameters, error: f64) -> Option<Posterior> {
+/// ln `x_st`; `None` where no bracket determines R. `waveforms`: parameters that the waveforms determine.
+pub fn of_brackets(
+    block: &BoundaryBlock,
+    about: (&Parameters, f64),
+    waveforms: Option<&Parameters>,
+) -> Option<Posterior> {
     if !block.determines_restitution() {
         return None;
     }
+    let found = over_grid(block, about, &EARLY_SCALES);
+    let (mean, deviation) = found.restitution;
+    let missed = waveforms.filter(|p| (p.restitution - mean).abs() > MISSED * deviation);
+    let early = missed.and_then(|p| early_jumps(block, about, p));
+    Some(early.unwrap_or(found))
+}
+
+/// Posterior where a jump may come at any distance before its boundary; `None` where that does not
+/// explain what the brackets are off the waveforms.
+fn early_jumps(
+    block: &BoundaryBlock,
+    about: (&Parameters, f64),
+    waveforms: &Parameters,
+) -> Option<Posterior> {
+    let found = over_grid(block, about, &ANY_DISTANCE);
+    let [low, high] = found.interval95;
+    let early = mean_distance(block, waveforms);
+    (low..=high)
+        .contains(&waveforms.restitution)
+        .then_some(Posterior { early, ..found })
+}
+
+/// Posterior with jumps of these scales.
+fn over_grid(
+    block: &BoundaryBlock,
+    (about, error): (&Parameters, f64),
+    scales: &[f64],
+) -> Posterior {
     let centre = about.coordinate(Coordinate::Deflection);
     let at = |r: f64, node: f64| {
         let moved = about.with(Coordinate::Deflection, centre + node * error);
-        likelihood(
-            block,
-            &Parameters {
-                restitution: r,
-                ..moved
-            },
-        )
+        let parameters = Parameters {
+            restitution: r,
+            ..moved
+        };
+        likelihood(block, &parameters, scales)
     };
     let (low, high) = support(&|r| at(r, 0.0));
     let grid: Vec<f64> = (0..FINE)
@@ -63,7 +104,7 @@ pub fn of_brackets(block: &BoundaryBlock, about: &Parameters, error: f64) -> Opt
                 .collect()
         })
         .collect();
-    Some(summed(&grid, &cells, (centre, error)))
+    summed(&grid, &cells, (centre, error))
 }
 
 /// Moments and quantiles of a posterior from its logarithm on the grid.
@@ -96,6 +137,7 @@ fn summed(grid: &[f64], cells: &[Vec<f64>], (centre, error): (f64, f64)) -> Post
             centre + node * error,
             node_spread.hypot(node_step / 12f64.sqrt()) * error,
         ),
+        early: None,
     }
 }
 
@@ -146,7 +188,7 @@ fn support(at: &(dyn Fn(f64) -> f64 + Sync)) -> (f64, f64) {
 
 /// Log-likelihood of all brackets. Each family of boundaries has its own scale of early jumps, which is
 /// summed out: the end of z = 1, that of longer motions, doublings, grazing.
-fn likelihood(block: &BoundaryBlock, parameters: &Parameters) -> f64 {
+fn likelihood(block: &BoundaryBlock, parameters: &Parameters, scales: &[f64]) -> f64 {
     let mut families: BTreeMap<(&str, bool), Vec<(&Bracket, f64)>> = BTreeMap::new();
     for bracket in &block.brackets {
         // A boundary that does not reach the clearance is as one far away.
@@ -156,26 +198,46 @@ fn likelihood(block: &BoundaryBlock, parameters: &Parameters) -> f64 {
     }
     families
         .values()
-        .map(|places| summed_over_scales(places))
+        .map(|places| summed_over(places, scales))
         .sum()
 }
 
 /// Log-likelihood of brackets whose boundaries lie at given frequencies, Hz.
-fn summed_over_scales(places: &[(&Bracket, f64)]) -> f64 {
+fn summed_over(places: &[(&Bracket, f64)], scales: &[f64]) -> f64 {
     let of_scale = |scale: &f64| -> f64 {
         let probabilities = places
             .iter()
             .map(|(b, f)| bracket_probability(b, *scale, *f));
         probabilities.map(f64::ln).sum()
     };
-    let logs: Vec<f64> = EARLY_SCALES.iter().map(of_scale).collect();
+    let logs: Vec<f64> = scales.iter().map(of_scale).collect();
     let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     most + logs.iter().map(|l| (l - most).exp()).sum::<f64>().ln()
+}
+
+/// Mean distance of the ends of z = 1 from their s2, relative to its frequency.
+fn mean_distance(block: &BoundaryBlock, parameters: &Parameters) -> Option<f64> {
+    let ends = |b: &&Bracket| b.kind == BoundaryKind::SaddleNode && b.periods_n == 1;
+    let distance = |b: &Bracket| {
+        let place = predicted_hz(b, parameters, block.rig)?;
+        Some((place - b.middle_hz()).abs() / place)
+    };
+    let distances: Vec<f64> = block
+        .brackets
+        .iter()
+        .filter(ends)
+        .filter_map(distance)
+        .collect();
+    let count = distances.len();
+    (count > 0).then(|| distances.iter().sum::<f64>() / count as f64)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::event::RigKind;
+    use crate::record::Sweep;
+    use impact_oscillator::model::boundary::rho_s2;
 
     #[test]
     fn valid_moments_of_three_weights() {
@@ -216,6 +278,60 @@ mod tests {
         assert!((low - 0.8 + 0.0392).abs() < 5e-4 && (high - 0.8 - 0.0392).abs() < 5e-4);
         assert!((found.ln_deflection.0 + 7.0).abs() < 1e-9);
         assert!((found.ln_deflection.1 - 0.1).abs() < 0.004, "{found:?}");
+    }
+
+    /// Brackets of s2 at five η of a rig with R = 0.7, 2 % wide: the jumps end this share before s2.
+    fn ending(early: f64) -> (BoundaryBlock, Parameters) {
+        let p = Parameters::symmetric(0.7, 12.6, 0.05, 1e-3);
+        let machine = p.machine(RigKind::Double);
+        let brackets = [1.1, 1.2, 1.3, 1.4, 1.5].map(|eta| {
+            let s2 = eta * p.natural_frequency_hz;
+            Bracket {
+                kind: BoundaryKind::SaddleNode,
+                periods_n: 1,
+                clearance_m: rho_s2(&machine, eta, 1).expect("an s2").rho * p.static_deflection_m,
+                drive_amplitude: 1.0,
+                frequency_low_hz: s2 * (1.0 - early - 0.01),
+                frequency_high_hz: s2 * (1.0 - early + 0.01),
+                sweep: Sweep::Up,
+                from: "1".into(),
+                to: "0".into(),
+                records: ["a".into(), "b".into()],
+            }
+        });
+        (BoundaryBlock::new(RigKind::Double, &brackets), p)
+    }
+
+    #[test]
+    fn valid_jumps_all_early_hold_r_once_the_waveforms_show_them() {
+        let (block, p) = ending(0.08);
+        let alone = of_brackets(&block, (&p, 1e-3), None).unwrap();
+        assert!(
+            alone.interval95[1] < 0.7 && alone.early.is_none(),
+            "{alone:?}"
+        );
+        let beside = of_brackets(&block, (&p, 1e-3), Some(&p)).unwrap();
+        let [low, high] = beside.interval95;
+        assert!(low < 0.7 && 0.7 < high, "{beside:?}");
+        assert!((beside.early.unwrap() - 0.08).abs() < 1e-9);
+    }
+
+    #[test]
+    fn valid_jumps_that_are_late_contradict_the_waveforms() {
+        let (block, p) = ending(-0.04);
+        let beside = of_brackets(&block, (&p, 1e-3), Some(&p)).unwrap();
+        assert!(
+            beside.interval95[0] > 0.7 && beside.early.is_none(),
+            "{beside:?}"
+        );
+    }
+
+    #[test]
+    fn valid_jumps_at_the_boundary_say_the_same_beside_the_waveforms() {
+        let (block, p) = ending(0.0);
+        let alone = of_brackets(&block, (&p, 1e-3), None).unwrap();
+        let beside = of_brackets(&block, (&p, 1e-3), Some(&p)).unwrap();
+        assert_eq!(alone, beside);
     }
 
     #[test]

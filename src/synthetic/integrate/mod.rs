@@ -37,7 +37,8 @@ enum Touch {
 /// Sliding direction of a mass under dry friction: 1, −1, or 0 while it sticks.
 type Direction = f64;
 
-/// A motion that can be continued with other coefficients; phase and motion stay continuous.
+/// A motion that can be continued with other coefficients; phase and motion stay continuous unless
+/// the phase is shifted.
 #[derive(Debug, Clone)]
 pub struct Integrator {
     equations: Equations,
@@ -75,6 +76,16 @@ impl Integrator {
     /// Continue with other coefficients.
     pub fn set(&mut self, equations: Equations) {
         self.equations = equations;
+    }
+
+    /// Let the drive's phase jump, rad.
+    pub fn shift_phase(&mut self, jump_rad: f64) {
+        self.phase = (self.phase + jump_rad).rem_euclid(TAU);
+        for mass in 0..2 {
+            if self.slides[mass] == 0.0 && self.state[2 * mass + 1] == 0.0 {
+                self.turn(mass);
+            }
+        }
     }
 
     /// How the masses act on each other.
