@@ -145,8 +145,9 @@ Effects and the strengths they have if none is given (0 switches one off):
   drag=0.005               quadratic drag of each mass over F0, at the speed 2 pi f0 x_st/(2 beta)
   spring-asymmetry=0.003   relative stiffening of the springs from rest to x_st/(2 beta) toward the other mass
   hysteretic-damping=0.05  share of the damping that falls with the frequency, as inside of springs
-Effects that the fit does not know, and that realistic leaves out:
+Effects that realistic leaves out:
   gap-drift=0.01           drift of all gaps over the campaign, over x_st
+And those that the fit does not know:
   backlash=0.005           gaps of upward sweeps are wider than those of downward ones, over x_st
   compression=0.005        relative loss of the motion channels at x_st/(2 beta), by the square of the signal
   restarts=0.5             the drive starts again at every setting; greatest jump of its phase, turns

@@ -165,6 +165,7 @@ VelocityY => "velocity y", "Geschwindigkeit y";
 CornerOf => "corner of {channel}", "Grenzfrequenz {channel}";
 GainOf => "gain of {channel}", "Verstärkung {channel}";
 DelayOf => "delay of {channel}", "Verzögerung {channel}";
+ClearanceDrift => "clearance drift", "Drift des Spiels";
 ClearanceErrorOf => "error of clearance {number}", "Fehler von Spiel {number}";
 ContactDuration => "contact duration", "Kontaktdauer";
 ContactLaw => "contact law", "Kontaktgesetz";

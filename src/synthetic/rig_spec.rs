@@ -16,7 +16,7 @@
 //! | `drag` | drag / F0 at the speed Ω x_st/(2β) | quadratic drag on each mass |
 //! | `spring-asymmetry` | relative stiffening at x_st/(2β) | spring force k x (1 + q x/A), A = x_st/(2β) |
 //! | `hysteretic-damping` | share | a share s of the dashpots is hysteretic: b ∝ 1 + s (1/η − 1) |
-//! | `gap-drift` | share of x_st, first to last record | the gaps drift; unknown to the fit |
+//! | `gap-drift` | share of x_st, first to last record | the gaps drift |
 //! | `backlash` | share of x_st | gaps of upward sweeps are wider than those of downward ones; unknown to the fit |
 //! | `compression` | relative at x_st/(2β) | motion channels show less of large signals; unknown to the fit |
 //! | `restarts` | turns | the drive starts again at every setting, its phase off by up to this; unknown to the fit |
@@ -166,8 +166,9 @@ impl Effect {
         }
     }
 
-    /// Whether the fit has it as an effect or as a stated uncertainty; the others break its assumptions.
-    pub fn is_in_the_fit(self) -> bool {
+    /// Whether the realistic rig has it. Of the others the fit knows the drift of the gaps; the rest break
+    /// its assumptions.
+    fn is_realistic(self) -> bool {
         !matches!(
             self,
             Self::GapDrift | Self::Backlash | Self::Compression | Self::Restarts
@@ -299,10 +300,10 @@ impl RigSpec {
         Self::default()
     }
 
-    /// A rig with all effects that the fit models at typical strengths, their sizes drawn for each
+    /// A rig with the effects that every real one has at typical strengths, their sizes drawn for each
     /// campaign.
     pub fn realistic() -> Self {
-        let known = Effect::ALL.into_iter().filter(|e| e.is_in_the_fit());
+        let known = Effect::ALL.into_iter().filter(|e| e.is_realistic());
         let switches = known.map(|effect| Switch {
             effect,
             strength: effect.typical_strength(),

@@ -505,6 +505,7 @@ mod tests {
         effects[Effect::ContactLaw.place()] = 0.1;
         effects[Effect::ContactReach.place()] = 0.05;
         effects[Effect::HystereticDamping.place()] = 0.1;
+        effects[Effect::ClearanceDrift.place()] = 0.02;
         Parameters {
             drive_asymmetry: 0.02,
             stiffness_asymmetry: -0.03,

@@ -554,7 +554,8 @@ impl Block for ResonanceBlock {
             Coordinate::Restitution
             | Coordinate::MassAsymmetry
             | Coordinate::ScrewZero
-            | Coordinate::Gap(_) => false,
+            | Coordinate::Gap(_)
+            | Coordinate::Effect(Effect::ClearanceDrift) => false,
             Coordinate::Effect(effect) => !matches!(
                 effect.kind(),
                 EffectKind::Harmonics | EffectKind::ContactDuration | EffectKind::SpringAsymmetry

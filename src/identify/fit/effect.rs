@@ -46,6 +46,8 @@ pub enum Effect {
     SpringAsymmetry,
     /// Share of the damping at η = 1 that is hysteretic (structural): it falls with the frequency
     HystereticDamping,
+    /// Change of every clearance from the first record to the last, relative to `x_st`
+    ClearanceDrift,
 }
 
 /// Effects that a campaign may restrict the fit to, by name.
@@ -73,7 +75,7 @@ pub enum EffectKind {
     Hardening,
     /// Coulomb friction
     Friction,
-    /// f0, β and `x_st` over the campaign
+    /// f0, β, `x_st` and the clearances over the campaign
     Drift,
     /// Contacts of finite duration
     ContactDuration,
@@ -112,7 +114,7 @@ impl EffectKind {
 
 impl Effect {
     /// Number of effects.
-    pub const COUNT: usize = 18;
+    pub const COUNT: usize = 19;
 
     /// All of them, in the order of their places.
     pub const ALL: [Self; Self::COUNT] = [
@@ -134,6 +136,7 @@ impl Effect {
         Self::Drag,
         Self::SpringAsymmetry,
         Self::HystereticDamping,
+        Self::ClearanceDrift,
     ];
 
     /// Place among all.
@@ -154,7 +157,8 @@ impl Effect {
             Self::FrequencyDrift
             | Self::FrequencyBend
             | Self::DampingDrift
-            | Self::DeflectionDrift => EffectKind::Drift,
+            | Self::DeflectionDrift
+            | Self::ClearanceDrift => EffectKind::Drift,
             Self::ContactDuration | Self::ContactLaw | Self::ContactReach => {
                 EffectKind::ContactDuration
             }
@@ -181,7 +185,7 @@ impl Effect {
             Self::ContactDuration => 0.6,
             Self::ContactLaw => 0.1,
             Self::ContactReach => 0.3,
-            Self::Drag => 1e-2,
+            Self::Drag | Self::ClearanceDrift => 1e-2,
             Self::SpringAsymmetry => 5e-3,
             Self::HystereticDamping => 0.1,
         }
@@ -218,6 +222,7 @@ impl Effect {
             Self::Drag => "drag",
             Self::SpringAsymmetry => "spring_asymmetry",
             Self::HystereticDamping => "hysteretic_damping",
+            Self::ClearanceDrift => "clearance_drift",
         }
     }
 }

@@ -93,7 +93,11 @@ impl Parameters {
         let bent = self.effect(Effect::ContactReach) * contact_s * at.press_per_s;
         let reach = contact.reach * (1.0 + bent);
         let reach_m = at.approach_m_s * contact_s * reach / at.masses.max(1.0);
-        (own, at.clearance_m + self.screw_zero_m + error + reach_m)
+        let drift_m = self.static_deflection_m * drift(Effect::ClearanceDrift);
+        (
+            own,
+            at.clearance_m + self.screw_zero_m + error + drift_m + reach_m,
+        )
     }
 
     /// How the parameters of [`Parameters::own`] change per unit of a coordinate; `None` where they
@@ -148,7 +152,12 @@ impl Parameters {
                 physical: [drag, 0.0, 1.0, 0.0],
                 ..none
             }),
-            Coordinate::Deflection => only(3, 1.0),
+            Coordinate::Deflection => Some(OwnSlope {
+                physical: [0.0, 0.0, 0.0, 1.0],
+                clearance_m: self.static_deflection_m
+                    * self.effect(Effect::ClearanceDrift)
+                    * at.place,
+            }),
             Coordinate::ScrewZero => clearance(1e-3),
             Coordinate::Gap(i) if at.gap == Some(i) => clearance(1e-3),
             Coordinate::Effect(effect) => match effect {
@@ -159,6 +168,7 @@ impl Parameters {
                 Effect::DampingDrift => only(2, at.place),
                 Effect::HystereticDamping => only(2, (1.0 / eta - 1.0) / viscous),
                 Effect::DeflectionDrift => only(3, at.place),
+                Effect::ClearanceDrift => clearance(self.static_deflection_m * at.place),
                 Effect::ContactDuration => Some(OwnSlope {
                     physical: [1e-3 * law * beyond, 0.0, 0.0, 0.0],
                     clearance_m: 1e-3 * speed * contact.reach * (1.0 + 2.0 * bent),

@@ -70,6 +70,14 @@ pub(super) fn beyond_english(effect: Effect, rises: bool) -> &'static str {
             "the static deflection falls by {strength} ± {error} % over the campaign: check the \
              amplifier and the springs"
         }
+        (Effect::ClearanceDrift, true) => {
+            "the gaps widen by {strength} ± {error} % of the static deflection over the campaign: check \
+             clamps and temperature of the frame"
+        }
+        (Effect::ClearanceDrift, false) => {
+            "the gaps narrow by {strength} ± {error} % of the static deflection over the campaign: check \
+             clamps and temperature of the frame"
+        }
         (Effect::ContactLaw, _) => {
             "a contact's length changes the speeds by {strength} ± {error} % otherwise than a spring \
              and a damper would"
@@ -176,6 +184,14 @@ pub(super) fn beyond_german(effect: Effect, rises: bool) -> &'static str {
         (Effect::DeflectionDrift, false) => {
             "die statische Auslenkung sinkt um {strength} ± {error} % während der Messreihe: \
              Verstärker und Federn prüfen"
+        }
+        (Effect::ClearanceDrift, true) => {
+            "das Spiel wächst während der Messreihe um {strength} ± {error} % der statischen Auslenkung: \
+             Einspannungen und Temperatur des Rahmens prüfen"
+        }
+        (Effect::ClearanceDrift, false) => {
+            "das Spiel schrumpft während der Messreihe um {strength} ± {error} % der statischen \
+             Auslenkung: Einspannungen und Temperatur des Rahmens prüfen"
         }
         (Effect::ContactLaw, _) => {
             "die Dauer eines Kontakts ändert die Geschwindigkeiten um {strength} ± {error} % anders als \

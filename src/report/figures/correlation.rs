@@ -234,6 +234,7 @@ fn effect_phrase(effect: Effect) -> Phrase {
         Effect::Drag => Phrase::Drag,
         Effect::SpringAsymmetry => Phrase::SpringAsymmetry,
         Effect::HystereticDamping => Phrase::HystereticDamping,
+        Effect::ClearanceDrift => Phrase::ClearanceDrift,
     }
 }
 
