@@ -108,14 +108,21 @@ const RELATIVE_ERROR: f64 = 3e-4;
 const IMPACT_SCATTER: f64 = 1e-3;
 /// What the extrapolation of speeds to the impact leaves open in R.
 const IMPACT_BIAS: f64 = 2e-4;
-/// What it leaves open beside that where a contact has a length, per ms.
-const CONTACT_BIAS_PER_MS: f64 = 1e-2;
+/// What it leaves open beside that where a contact has a length: all of it from `SHORT_CONTACT_MS` on, and
+/// more per ms.
+const CONTACT_BIAS: f64 = 2.5e-3;
+const CONTACT_BIAS_PER_MS: f64 = 3e-3;
+/// A contact that the flights' extrapolation begins to notice, ms.
+const SHORT_CONTACT_MS: f64 = 0.1;
 
 /// What the extrapolation of speeds to the impacts leaves open in R, with the length of a contact that
 /// waveforms tell.
 pub fn impact_bias(parameters: &Parameters) -> f64 {
     let contact_ms = parameters.effect(Effect::ContactDuration);
-    IMPACT_BIAS.hypot(CONTACT_BIAS_PER_MS * contact_ms)
+    let noticed = (contact_ms / SHORT_CONTACT_MS).clamp(-1.0, 1.0);
+    IMPACT_BIAS
+        .hypot(CONTACT_BIAS * noticed)
+        .hypot(CONTACT_BIAS_PER_MS * contact_ms)
 }
 /// Asymmetry that a well-made rig may have.
 const ASYMMETRY: f64 = 0.05;
