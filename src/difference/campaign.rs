@@ -93,6 +93,5 @@ fn of_interval(parameter: Coordinate, estimate: &Estimate) -> Option<f64> {
         false => (high - value).max(value - low),
     };
     let error = estimate.standard_error.unwrap_or(0.0);
-    let unit = if parameter.is_logarithm() { value } else { 1.0 };
-    Some((half / NORMAL_975).max(error / unit)).filter(|e| e.is_finite())
+    Some((half / NORMAL_975).max(error / parameter.slope(value))).filter(|e| e.is_finite())
 }

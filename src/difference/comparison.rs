@@ -274,11 +274,7 @@ impl Contrast {
     /// The values in SI units, and how much each changes per unit of its coordinate.
     fn scales(&self, coordinates: [f64; 2]) -> ([f64; 2], [f64; 2]) {
         let values = coordinates.map(|c| self.parameter.physical(c));
-        let slopes = match self.parameter.is_logarithm() {
-            true => values,
-            false => [1.0; 2],
-        };
-        (values, slopes)
+        (values, values.map(|v| self.parameter.slope(v)))
     }
 
     /// The difference in SI units and its variance.

@@ -125,7 +125,7 @@ pub fn widened(coordinate: Coordinate, estimate: &Estimate, by: f64) -> Estimate
         return estimate.clone();
     };
     let logarithm = coordinate.is_logarithm();
-    let unit = if logarithm { value } else { 1.0 };
+    let unit = coordinate.slope(value);
     let half = (0.5 * (high - low) / unit).hypot(NORMAL_975 * by);
     let interval = match logarithm {
         true => [value * (-half).exp(), value * half.exp()],

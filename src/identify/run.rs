@@ -165,7 +165,7 @@ fn widen_ideal(methods: &mut BTreeMap<Method, MethodResult>, joint: &MethodResul
         let Some((own, all)) = value(&flights.parameters).zip(value(&joint.parameters)) else {
             continue;
         };
-        let unit = if coordinate.is_logarithm() { all } else { 1.0 };
+        let unit = coordinate.slope(all);
         if let Some(Some(estimate)) = flights.parameters.slot(coordinate) {
             *estimate = estimate::widened(coordinate, estimate, (own - all).abs() / unit);
             estimate.note = None;
@@ -411,10 +411,7 @@ impl IdentificationRun<'_> {
         let priors = self.problem(blocks, fits.start, &fits.weights)?.priors;
         let allowed = Coordinate::PHYSICAL.into_iter().filter_map(|parameter| {
             let estimate = estimates.get(parameter)?;
-            let unit = match parameter.is_logarithm() {
-                true => estimate.value?,
-                false => 1.0,
-            };
+            let unit = parameter.slope(estimate.value?);
             let freedom = found.spread(parameter)?.freedom;
             Some(Allowed {
                 parameter,

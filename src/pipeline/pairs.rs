@@ -225,11 +225,7 @@ fn score(pairs: &[Pair], parameter: Coordinate) -> PairScore {
         };
         let [before, after] = pair.truths.each_ref().map(|t| true_value(t, parameter));
         let truth = after - before;
-        let unit = if parameter.is_logarithm() {
-            before
-        } else {
-            1.0
-        };
+        let unit = parameter.slope(before);
         let holds = |[low, high]: [f64; 2]| usize::from(low <= truth && truth <= high);
         let width = |[low, high]: [f64; 2]| high - low;
         covered += holds(found.interval95);

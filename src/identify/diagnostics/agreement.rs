@@ -54,7 +54,7 @@ pub fn between_methods(
     let parameters: BTreeSet<Coordinate> = apart.map(|p| p.parameter).collect();
     let of = |parameter: Coordinate| {
         let (value, error) = known(joint.parameters.get(parameter)?)?;
-        let unit = if parameter.is_logarithm() { value } else { 1.0 };
+        let unit = parameter.slope(value);
         let paired = |method: &Method| {
             let mut pairs = agreement.pairs.iter();
             pairs.any(|p| p.parameter == parameter && p.methods.contains(method))

@@ -253,6 +253,11 @@ fn findings(basis: &Basis<'_>, estimates: &[(Coordinate, &Estimate)]) -> Vec<Fin
     let mut findings = basis.suspicions.to_vec();
     findings.extend(basis.beyond.iter().cloned());
     for (method, result) in basis.methods {
+        let noticed = result.remarks.iter().filter(|r| is_to_be_mended(r));
+        findings.extend(noticed.map(|remark| Finding::Noticed {
+            method: *method,
+            remark: remark.clone(),
+        }));
         if result.fits == Some(false) {
             let misfit = |remark: &Remark| Finding::Misfit {
                 method: *method,
@@ -272,6 +277,11 @@ fn findings(basis: &Basis<'_>, estimates: &[(Coordinate, &Estimate)]) -> Vec<Fin
     let disagreement = basis.agreement.disagreement().cloned();
     findings.extend(disagreement.map(|pair| Finding::Disagreement { pair }));
     findings
+}
+
+/// Whether a remark is on what the laboratory can mend although the model fits.
+fn is_to_be_mended(remark: &Remark) -> bool {
+    matches!(remark, Remark::EarlyJumps { .. })
 }
 
 /// Whether a remark only describes the data, so that it is no reason for a misfit.

@@ -167,6 +167,11 @@ impl Coordinate {
         )
     }
 
+    /// How much a physical value changes per unit of the coordinate: by itself where that is a logarithm.
+    pub fn slope(self, value: f64) -> f64 {
+        if self.is_logarithm() { value } else { 1.0 }
+    }
+
     /// The physical value of one of this coordinate.
     pub fn physical(self, value: f64) -> f64 {
         if self.is_logarithm() {

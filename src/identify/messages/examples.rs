@@ -242,6 +242,10 @@ pub fn example_findings() -> Vec<Finding> {
             stated: 2.0,
             z_score: 8.0,
         },
+        Finding::Noticed {
+            method: Method::Boundaries,
+            remark: Remark::EarlyJumps { distance: 0.08 },
+        },
         Finding::Misfit {
             method: Method::Impacts,
             remark: Remark::DecaysDiffer { spread: 0.1 },

@@ -77,6 +77,13 @@ pub enum Finding {
         /// What it noticed.
         remark: Remark,
     },
+    /// A method noticed what the laboratory can mend.
+    Noticed {
+        /// The method.
+        method: Method,
+        /// What it noticed.
+        remark: Remark,
+    },
     /// Why a parameter is weak or not identifiable.
     Parameter {
         /// The parameter.
@@ -172,7 +179,7 @@ impl Message for Finding {
             Self::BeyondModel {
                 effect, strength, ..
             } => beyond_english(*effect, *strength > 0.0),
-            Self::Misfit { .. } => "{method}: {remark}",
+            Self::Misfit { .. } | Self::Noticed { .. } => "{method}: {remark}",
             Self::Parameter { .. } => "{parameter}: {note}",
             Self::Disagreement { .. } => "the methods do not agree on {pair}",
             Self::Specimen { .. } => "{specimen}: {verdict}",
@@ -216,7 +223,7 @@ impl Message for Finding {
             Self::BeyondModel {
                 effect, strength, ..
             } => beyond_german(*effect, *strength > 0.0),
-            Self::Misfit { .. } => "{method}: {remark}",
+            Self::Misfit { .. } | Self::Noticed { .. } => "{method}: {remark}",
             Self::Parameter { .. } => "{parameter}: {note}",
             Self::Disagreement { .. } => "die Verfahren stimmen nicht überein bei {pair}",
             Self::Specimen { .. } => "{specimen}: {verdict}",
@@ -283,7 +290,7 @@ impl Message for Finding {
                 ("measured", Value::Number(*measured, 3)),
                 ("stated", Value::Number(*stated, 3)),
             ],
-            Self::Misfit { method, remark } => vec![
+            Self::Misfit { method, remark } | Self::Noticed { method, remark } => vec![
                 ("method", Value::Message(method)),
                 ("remark", Value::Message(remark)),
             ],

@@ -228,6 +228,7 @@ impl Message for Remark {
         self.into()
     }
 
+    #[expect(clippy::too_many_lines, reason = "one arm for each variant")]
     fn english(&self) -> &'static str {
         match self {
             Self::OneDegreeOfFreedom { .. } => {
@@ -312,6 +313,7 @@ impl Message for Remark {
         }
     }
 
+    #[expect(clippy::too_many_lines, reason = "one arm for each variant")]
     fn german(&self) -> &'static str {
         match self {
             Self::OneDegreeOfFreedom { .. } => {

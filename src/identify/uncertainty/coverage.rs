@@ -181,10 +181,5 @@ pub fn table(trials: &[Trial]) -> String {
 /// True value of a parameter and the unit of its errors.
 fn true_value(truth: &Parameters, coordinate: Coordinate) -> (f64, f64) {
     let value = coordinate.physical(truth.coordinate(coordinate));
-    let unit = if coordinate.is_logarithm() {
-        value
-    } else {
-        1.0
-    };
-    (value, unit)
+    (value, coordinate.slope(value))
 }
