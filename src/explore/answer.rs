@@ -41,7 +41,8 @@ fn ask(session: &Session, request: &Request, job: &Job) -> Result<(), Stop> {
     match &request.ask {
         Ask::Hello {} => hello(session, job),
         Ask::Map {} => maps::map(state, job),
-        Ask::Boundaries { points } => maps::boundaries(state, *points, job),
+        Ask::Boundaries { points, .. } => maps::boundaries(state, *points, job),
+        Ask::Ahead { points } => Ok(job.send(maps::bare(state, *points, job.id)?)?),
         Ask::Motion { carried_from } => motions::motion(state, *carried_from, job),
         Ask::Run { periods } => motions::run(state, *periods, job),
         Ask::Line {} => motions::line(state, job),

@@ -89,7 +89,11 @@ impl Jobs {
     /// processors.
     pub(super) async fn take(&self, request: Request) {
         let id = request.id;
-        if let Ask::Boundaries { points } = request.ask {
+        if let Ask::Boundaries {
+            points,
+            known: false,
+        } = request.ask
+        {
             let state = request.state.clone();
             let found = tokio::task::spawn_blocking(move || maps::bare(&state, points, id)).await;
             match found.unwrap_or_else(|_| Err(failed())) {

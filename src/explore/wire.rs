@@ -38,6 +38,14 @@ pub(super) enum Ask {
     Boundaries {
         /// Number of η.
         points: usize,
+        /// Whether the page has them bare already.
+        #[serde(default)]
+        known: bool,
+    },
+    /// Boundaries, bare alone, of a state that the page may come to.
+    Ahead {
+        /// Number of η.
+        points: usize,
     },
     /// The motion at the cursor.
     Motion {

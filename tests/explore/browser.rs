@@ -192,6 +192,34 @@ fn browser_a_click_on_the_map_carries_the_motion_there() {
     browser.until(near);
 }
 
+#[test]
+#[ignore = "needs chromium"]
+fn browser_boundaries_asked_for_ahead_are_those_of_the_state() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    browser.evaluate("document.querySelector('.slider input').focus()");
+    browser.until("impactid.ahead.size === 2");
+    let before = browser.evaluate("impactid.state.restitution");
+    // as an arrow key does, and what is drawn before any answer can have come
+    let moved = "(() => { const range = document.activeElement; range.value -= 0.001; \
+         range.dispatchEvent(new Event('input')); return Array.from(impactid.map.curves['s2:1'].rho); })()";
+    let ahead = browser.evaluate(moved);
+    browser.until(QUIET);
+    let after = browser.evaluate("impactid.state.restitution");
+    let step = before.as_f64().unwrap() - after.as_f64().unwrap();
+    assert!((step - 1e-3).abs() < 1e-12, "{step}");
+    let answered = browser.evaluate("Array.from(impactid.map.curves['s2:1'].rho)");
+    let [ahead, answered] = [&ahead, &answered].map(|v| v.as_array().unwrap());
+    assert_eq!(ahead.len(), answered.len());
+    for (a, b) in ahead.iter().zip(answered) {
+        // an s2 that has no value comes as null
+        if let Some((a, b)) = a.as_f64().zip(b.as_f64()) {
+            assert!((a - b).abs() < 1e-5, "{a} {b}");
+        }
+    }
+}
+
 /// The map's boxes that were drawn since it is called first.
 const BOXES: &str = "(() => { if (!window.boxes) { window.boxes = new Set(); (function look() { \
      const b = document.getElementById('map').getBoundingClientRect(); \

@@ -9,6 +9,13 @@ import { number, FONT, colour, markColour } from "./draw.js";
 
 const element = (id) => document.getElementById(id);
 const STATE_VERSION = 1;
+/** Points of a boundary. */
+const POINTS = 240;
+/** Boundaries asked for ahead that are kept. */
+const MOST_AHEAD = 8;
+/** What of a state the boundaries depend on. */
+const planeOf = ({ damping_ratio, restitution, single, asymmetry, view }) =>
+  JSON.stringify([damping_ratio, restitution, single, asymmetry, view.eta], (_, v) => (typeof v === "number" ? Number(v.toPrecision(9)) : v));
 /** Parts of the state that only the map's uppermost layer shows. */
 const CURSOR_PARTS = new Set(["cursor", "line"]);
 
@@ -19,6 +26,7 @@ class App {
     this.recording = null;
     this.recorded = null;
     this.playing = 0;
+    this.ahead = new Map(); // bare boundaries of states that a slider's next step leads to
     this.timings = [];      // { kind, level, drawn, ms, at } of what was asked for and first drawn
     this.dialogs = new Dialogs(this);
     this.map = new MapView(this);
@@ -88,11 +96,30 @@ class App {
     const s = () => this.state;
     for (const kind of what) {
       if (kind === "map") this.wire.ask("map", { kind: "map" }, s());
-      else if (kind === "boundaries") this.wire.askAfter("boundaries", () => [{ kind: "boundaries", points: 240 }, s()]);
+      else if (kind === "boundaries") this.boundaries();
       else if (kind === "motion") this.wire.askAfter("motion", () => [{ kind: "motion", carried_from: null }, s()]);
       else if (kind === "carried") this.wire.askAfter("motion", () => [{ kind: "motion", carried_from: this.from() }, s()]);
       else if (kind === "residuals" && this.campaign) this.wire.askAfter("residuals", () => [{ kind: "residuals" }, s()]);
       else if (kind === "panel") this.refreshPanel();
+    }
+  }
+
+  /** Draw the boundaries at once where they were asked for ahead; ask for them with where they exist. */
+  boundaries() {
+    const plane = planeOf(this.state), bare = this.ahead.get(plane);
+    if (bare) { this.map.bare(bare); this.drawnAhead = plane; this.timed("boundaries", 0, this.wire.clock()); }
+    this.wire.askAfter("boundaries", () => [{ kind: "boundaries", points: POINTS, known: this.drawnAhead === planeOf(this.state) }, this.state]);
+  }
+
+  /** Ask for the boundaries of states that may come next; the oldest are forgotten. */
+  lookAhead(states) {
+    for (const state of states) {
+      const plane = planeOf(state);
+      if (this.ahead.has(plane)) continue;
+      this.wire.once({ kind: "ahead", points: POINTS }, state).then((frame) => {
+        this.ahead.set(plane, frame);
+        if (this.ahead.size > MOST_AHEAD) this.ahead.delete(this.ahead.keys().next().value);
+      }, () => {});
     }
   }
 
@@ -523,7 +550,9 @@ class App {
       Object.assign(range, { type: "range", min: low, max: high, step });
       Object.assign(text, { type: "text", inputMode: "decimal" });
       range.setAttribute("aria-label", name); text.setAttribute("aria-label", `${name}, typed`);
-      range.addEventListener("input", () => { this.parameters(put(Number(range.value))); });
+      const next = () => this.lookAhead([-step, step].map((by) => ({ ...this.state, ...put(Number((Number(range.value) + by).toPrecision(12))) })));
+      range.addEventListener("focus", next);
+      range.addEventListener("input", () => { this.parameters(put(Number(range.value))); next(); });
       text.addEventListener("change", () => {
         const v = Number(text.value.replace(",", ".")), good = text.value.trim() !== "" && Number.isFinite(v);
         text.setAttribute("aria-invalid", String(!good));
