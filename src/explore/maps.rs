@@ -31,13 +31,21 @@ const MOST_PERIODS: u32 = 5;
 /// Most points of a boundary that a page may ask for.
 const MOST_POINTS: usize = 2000;
 
-/// The threads that march the map: one fewer than there are, so that the browser, which is most often on
+/// The threads that march the map and look where boundaries exist: one fewer than there are, so that the browser, which is most often on
 /// the same machine, is never kept waiting by a map. `None` where the system gives no threads.
 static POOL: LazyLock<Option<ThreadPool>> = LazyLock::new(|| {
     let threads = rayon::current_num_threads().saturating_sub(1).max(1);
     let builder = ThreadPoolBuilder::new().num_threads(threads);
     builder.build().ok()
 });
+
+/// Work of a map on its threads, in the order in which it comes.
+fn in_pool<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    match POOL.as_ref() {
+        Some(pool) => pool.install(work),
+        None => work(),
+    }
+}
 
 /// Motions as cells: each motion that occurs once, and its number in each cell.
 pub(super) fn cells<'a>(
@@ -106,10 +114,7 @@ impl Tile {
                 eta: eta.clone(),
                 rho: strip.to_vec(),
             };
-            let map = match POOL.as_ref() {
-                Some(pool) => pool.install(|| region_map(machine, &grid, &plan.map)),
-                None => region_map(machine, &grid, &plan.map),
-            }?;
+            let map = in_pool(|| region_map(machine, &grid, &plan.map))?;
             let (motions, cells) = cells(map.cells.iter());
             let frame = job
                 .frame("map")
@@ -156,31 +161,43 @@ pub(super) fn bare(state: &State, points: usize, id: u32) -> Result<Frame, Explo
     }))
 }
 
-/// The boundaries of z = 1/n with where they exist, one frame each.
+/// The boundaries of z = 1/n with where they exist, one frame each. Those of z = 1 are computed between the
+/// map's first tiles, the others in one go, so that no strip of the map comes between them.
 pub(super) fn boundaries(state: &State, points: usize, job: &Job) -> Result<(), Stop> {
     let machine = state.machine();
     let etas = boundary_etas(state, points)?;
-    let kinds: [(&str, Boundary); 2] = [("s2", rho_s2), ("s1", rho_s1)];
-    for n in 1..=MOST_PERIODS {
-        for (kind, of) in kinds {
-            if job.is_stale() {
-                return Err(Stop::Stale);
-            }
-            let found: Vec<Option<BoundaryPoint>> =
-                etas.iter().map(|e| of(&machine, *e, n)).collect();
-            let rho = |p: &Option<BoundaryPoint>| p.map_or(f64::NAN, |p| p.rho);
-            let valid = |p: &Option<BoundaryPoint>| f64::from(p.is_some_and(|p| p.is_valid()));
-            let frame = job
-                .frame("boundary")
-                .with("name", format!("{kind}:{n}"))
-                .with("last", n == MOST_PERIODS && kind == "s1")
-                .column("eta", etas.iter().copied())
-                .column("rho", found.iter().map(rho))
-                .column("exists", found.iter().map(valid));
+    for periods in [1..=1, 2..=MOST_PERIODS] {
+        if job.is_stale() {
+            return Err(Stop::Stale);
+        }
+        let curves: Vec<Frame> = in_pool(|| {
+            let both = |n| [("s2", n, rho_s2 as Boundary), ("s1", n, rho_s1)];
+            let curves = periods.flat_map(both);
+            curves.map(|c| curve(&machine, &etas, c, job)).collect()
+        });
+        for frame in curves {
             job.send(frame)?;
         }
     }
     Ok(())
+}
+
+/// One boundary of z = 1/n with where it exists.
+fn curve(
+    machine: &Machine,
+    etas: &[f64],
+    (kind, n, of): (&str, u32, Boundary),
+    job: &Job,
+) -> Frame {
+    let found: Vec<Option<BoundaryPoint>> = etas.iter().map(|e| of(machine, *e, n)).collect();
+    let rho = |p: &Option<BoundaryPoint>| p.map_or(f64::NAN, |p| p.rho);
+    let valid = |p: &Option<BoundaryPoint>| f64::from(p.is_some_and(|p| p.is_valid()));
+    job.frame("boundary")
+        .with("name", format!("{kind}:{n}"))
+        .with("last", n == MOST_PERIODS && kind == "s1")
+        .column("eta", etas.iter().copied())
+        .column("rho", found.iter().map(rho))
+        .column("exists", found.iter().map(valid))
 }
 
 /// ρ at s2 without a check of existence; none where R depends on the speed.

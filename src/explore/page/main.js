@@ -55,7 +55,7 @@ class App {
     listen(this);
     this.buttons();
     this.restorePanel();
-    this.refresh(["boundaries", "map", restored ? "motion" : "carried", "panel", "residuals"]);
+    this.refresh(["map", "boundaries", restored ? "motion" : "carried", "panel", "residuals"]);
     for (const note of hello.notes) this.message(note, "");
     if (hello.demo) this.play(await this.wire.once({ kind: "read_demo", text: hello.demo }));
     this.ready = true;
@@ -218,14 +218,14 @@ class App {
 
   /** Change the machine: everything follows, the motion is carried along. */
   parameters(part) {
-    this.set(part, ["boundaries", "map", ...(this.run ? [] : ["carried"]), "residuals", "panel"]);
+    this.set(part, ["map", "boundaries", ...(this.run ? [] : ["carried"]), "residuals", "panel"]);
     this.showSliders();
   }
 
   look(eta, rho) {
     if (!(eta[0] > 0)) eta = [1e-3, eta[1] - eta[0] + 1e-3];
     if (!(eta[1] > eta[0] && rho[1] > rho[0])) { this.message("A range must rise.", "Give a greater upper end."); return; }
-    this.set({ view: { eta, rho } }, ["boundaries", "map"]);
+    this.set({ view: { eta, rho } }, ["map", "boundaries"]);
   }
 
   zoom(by, eta, rho) {
@@ -450,7 +450,7 @@ class App {
     else this.at = null;
     this.state = next;
     this.save(); this.note(); this.showSliders(); this.restorePanel(); this.map.redraw();
-    const plane = machine && same("view") && same("map_start") ? [] : ["boundaries", "map"];
+    const plane = machine && same("view") && same("map_start") ? [] : ["map", "boundaries"];
     const line = state.panel === "line" && machine && same("line") && same("panel") && same("watch");
     this.refresh([...plane, carry ? "carried" : "motion", ...(line ? [] : ["panel"]), "residuals"]);
   }
