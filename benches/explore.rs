@@ -15,14 +15,10 @@ mod chromium;
 mod server;
 
 use chromium::Chromium;
-use server::Explorer;
+use server::{Explorer, QUIET};
 
 /// Keys pressed for each row.
 const KEYS: usize = 120;
-
-/// Whether everything that was asked for is drawn.
-const QUIET: &str = "Object.values(impactid.wire.busy).every((b) => !b) \
-     && impactid.map.finished === impactid.wire.newest.map";
 
 fn main() {
     // `cargo bench` passes --bench; under `cargo test` nothing is measured

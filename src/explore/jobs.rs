@@ -85,8 +85,8 @@ impl Jobs {
         }
     }
 
-    /// Take a request. The bare boundaries are answered at once, before the jobs that follow take the
-    /// processors.
+    /// Take a request. Bare boundaries that the page does not have are answered at once, before the jobs
+    /// that follow take the processors.
     pub(super) async fn take(&self, request: Request) {
         let id = request.id;
         if let Ask::Boundaries {

@@ -31,8 +31,9 @@ const MOST_PERIODS: u32 = 5;
 /// Most points of a boundary that a page may ask for.
 const MOST_POINTS: usize = 2000;
 
-/// The threads that march the map and look where boundaries exist: one fewer than there are, so that the browser, which is most often on
-/// the same machine, is never kept waiting by a map. `None` where the system gives no threads.
+/// The threads that march the map and look where boundaries exist: one fewer than there are, so that the
+/// browser, which is most often on the same machine, is never kept waiting by a map. `None` where the
+/// system gives no threads.
 static POOL: LazyLock<Option<ThreadPool>> = LazyLock::new(|| {
     let threads = rayon::current_num_threads().saturating_sub(1).max(1);
     let builder = ThreadPoolBuilder::new().num_threads(threads);

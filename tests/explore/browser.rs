@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::chromium::Chromium;
-use super::server::Explorer;
+use super::server::{Explorer, QUIET};
 
 const SIZE: (u32, u32) = (1280, 800);
 
@@ -11,10 +11,6 @@ const SAMPLE: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/data-samples/double-oscillator/campaign.toml"
 );
-
-/// Whether everything that was asked for is drawn.
-const QUIET: &str = "Object.values(impactid.wire.busy).every((b) => !b) \
-     && impactid.map.finished === impactid.wire.newest.map";
 
 #[test]
 #[ignore = "needs chromium"]

@@ -11,6 +11,10 @@ use tungstenite::client::IntoClientRequest;
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, WebSocket};
 
+/// Of a page: whether everything that was asked for is drawn.
+pub(crate) const QUIET: &str = "Object.values(impactid.wire.busy).every((b) => !b) \
+     && impactid.map.finished === impactid.wire.newest.map";
+
 /// `impactid explore --no-browser`, ended when it goes out of scope.
 pub(crate) struct Explorer {
     child: Child,

@@ -107,7 +107,8 @@ class App {
   /** Draw the boundaries at once where they were asked for ahead; ask for them with where they exist. */
   boundaries() {
     const plane = planeOf(this.state), bare = this.ahead.get(plane);
-    if (bare) { this.map.bare(bare); this.drawnAhead = plane; this.timed("boundaries", 0, this.wire.clock()); }
+    this.drawnAhead = bare ? plane : null;
+    if (bare) { this.map.bare(bare); this.timed("boundaries", 0, this.wire.clock()); }
     this.wire.askAfter("boundaries", () => [{ kind: "boundaries", points: POINTS, known: this.drawnAhead === planeOf(this.state) }, this.state]);
   }
 

@@ -284,14 +284,20 @@ impl Block for BoundaryBlock {
 }
 
 #[cfg(test)]
-mod tests {
+pub(in crate::identify) mod tests {
     use super::*;
     use crate::identify::bracket_midpoints;
     use crate::record::Sweep;
     use impact_oscillator::model::boundary::{rho_grazing, rho_s1, rho_s2};
 
-    /// A bracket about the boundary of a kind at η, as the model itself has it.
-    fn bracket(kind: BoundaryKind, eta: f64, p: &Parameters, off_middle: f64) -> Bracket {
+    /// A bracket 2 % wide about the boundary of a kind at η, as the model itself has it; `off_middle`: how far
+    /// its middle lies below, in half widths.
+    pub(in crate::identify) fn bracket(
+        kind: BoundaryKind,
+        eta: f64,
+        p: &Parameters,
+        off_middle: f64,
+    ) -> Bracket {
         let machine = p.machine(RigKind::Double);
         let rho = match kind {
             BoundaryKind::SaddleNode => rho_s2(&machine, eta, 1).expect("an s2").rho,

@@ -236,8 +236,7 @@ fn mean_distance(block: &BoundaryBlock, parameters: &Parameters) -> Option<f64> 
 mod tests {
     use super::*;
     use crate::event::RigKind;
-    use crate::record::Sweep;
-    use impact_oscillator::model::boundary::rho_s2;
+    use crate::identify::evidence::boundary::tests::bracket;
 
     #[test]
     fn valid_moments_of_three_weights() {
@@ -283,22 +282,9 @@ mod tests {
     /// Brackets of s2 at five η of a rig with R = 0.7, 2 % wide: the jumps end this share before s2.
     fn ending(early: f64) -> (BoundaryBlock, Parameters) {
         let p = Parameters::symmetric(0.7, 12.6, 0.05, 1e-3);
-        let machine = p.machine(RigKind::Double);
-        let brackets = [1.1, 1.2, 1.3, 1.4, 1.5].map(|eta| {
-            let s2 = eta * p.natural_frequency_hz;
-            Bracket {
-                kind: BoundaryKind::SaddleNode,
-                periods_n: 1,
-                clearance_m: rho_s2(&machine, eta, 1).expect("an s2").rho * p.static_deflection_m,
-                drive_amplitude: 1.0,
-                frequency_low_hz: s2 * (1.0 - early - 0.01),
-                frequency_high_hz: s2 * (1.0 - early + 0.01),
-                sweep: Sweep::Up,
-                from: "1".into(),
-                to: "0".into(),
-                records: ["a".into(), "b".into()],
-            }
-        });
+        let half_widths = early / 0.01;
+        let brackets = [1.1, 1.2, 1.3, 1.4, 1.5]
+            .map(|eta| bracket(BoundaryKind::SaddleNode, eta, &p, half_widths));
         (BoundaryBlock::new(RigKind::Double, &brackets), p)
     }
 
