@@ -47,6 +47,11 @@ fn ask(session: &Session, request: &Request, job: &Job) -> Result<(), Stop> {
         Ask::Run { periods } => motions::run(state, *periods, job),
         Ask::Line {} => motions::line(state, job),
         Ask::Basins {} => motions::basins(state, job),
+        Ask::Coexisting {} => motions::coexisting(state, job),
+        Ask::Inset {} => {
+            let cursor = &state.cursor;
+            motions::motion(state, Some((cursor.eta, cursor.rho)), job)
+        }
         Ask::Record {} => evidence::record(&*session.campaign()?, state, job),
         Ask::Residuals {} => evidence::residuals(&*session.campaign()?, state, job),
         Ask::Proposals {} => evidence::proposals(&*session.campaign()?, job),

@@ -12,6 +12,7 @@ use super::state::Cursor;
 use super::{ExploreError, State};
 use crate::motion::Motion;
 use crate::report::style::MotionStyle;
+use impact_oscillator::atlas::BasinGrid;
 use impact_oscillator::atlas::basins::basin_rows;
 use impact_oscillator::atlas::map::{UnitMass, even};
 use impact_oscillator::atlas::portrait::{Portrait, portrait};
@@ -302,8 +303,23 @@ pub(super) fn line(state: &State, job: &Job) -> Result<(), Stop> {
 /// Cell of a start that is beyond the contact.
 const BEYOND: u8 = 255;
 
-/// Basins of attraction at the cursor, coarse first, with the share of each motion.
-pub(super) fn basins(state: &State, job: &Job) -> Result<(), Stop> {
+/// Columns and rows of the first basins, and of the starts of coexisting motions.
+const COARSE_STARTS: usize = 24;
+
+/// The basins' grid with few starts.
+fn coarse_starts(state: &State) -> BasinGrid {
+    let mut grid = state.basin_grid();
+    (grid.x.2, grid.vx.2) = (grid.x.2.min(COARSE_STARTS), grid.vx.2.min(COARSE_STARTS));
+    grid
+}
+
+/// What the starts of a grid settle on, strip by strip: `each` takes the first row and its starts.
+fn settled_starts(
+    state: &State,
+    grid: &BasinGrid,
+    job: &Job,
+    mut each: impl FnMut(usize, &[Option<SettledMotion>]) -> Result<(), Stop>,
+) -> Result<(), Stop> {
     let machine = state.machine();
     let fast = UnitMass::of(&machine).is_some();
     let strip_cells = if fast { STRIP_CELLS } else { SLOW_STRIP_CELLS };
@@ -311,19 +327,28 @@ pub(super) fn basins(state: &State, job: &Job) -> Result<(), Stop> {
         watch: state.watch,
         ..MapSettings::default()
     };
-    let fine = state.basin_grid();
-    let mut coarse = fine;
-    (coarse.x.2, coarse.vx.2) = (fine.x.2.min(24), fine.vx.2.min(24));
-    for (level, grid) in [coarse, fine].into_iter().enumerate() {
-        let rows = (strip_cells / grid.x.2).max(1);
-        let mut first = 0;
-        while first < grid.rows() {
-            if job.is_stale() {
-                return Err(Stop::Stale);
-            }
-            let last = (first + rows).min(grid.rows());
-            let setting = state.cursor.setting();
-            let found = basin_rows(&machine, setting, &grid, &settings, first..last)?;
+    let setting = state.cursor.setting();
+    let rows = (strip_cells / grid.x.2).max(1);
+    let mut first = 0;
+    while first < grid.rows() {
+        if job.is_stale() {
+            return Err(Stop::Stale);
+        }
+        let last = (first + rows).min(grid.rows());
+        each(
+            first,
+            &basin_rows(&machine, setting, grid, &settings, first..last)?,
+        )?;
+        first = last;
+    }
+    Ok(())
+}
+
+/// Basins of attraction at the cursor, coarse first, with the share of each motion.
+pub(super) fn basins(state: &State, job: &Job) -> Result<(), Stop> {
+    let grids = [coarse_starts(state), state.basin_grid()];
+    for (level, grid) in grids.into_iter().enumerate() {
+        settled_starts(state, &grid, job, |first, found| {
             let frame = job
                 .frame("basins")
                 .with("level", level)
@@ -331,11 +356,24 @@ pub(super) fn basins(state: &State, job: &Job) -> Result<(), Stop> {
                 .with("first_row", first)
                 .with("x", (grid.x.0, grid.x.1))
                 .with("vx", (grid.vx.0, grid.vx.1));
-            job.send(with_starts(frame, &found))?;
-            first = last;
-        }
+            Ok(job.send(with_starts(frame, found))?)
+        })?;
     }
     Ok(())
+}
+
+/// The motions that starts at the cursor settle on, and the number of starts of each.
+pub(super) fn coexisting(state: &State, job: &Job) -> Result<(), Stop> {
+    let mut all = Vec::new();
+    settled_starts(state, &coarse_starts(state), job, |_, found| {
+        all.extend(found.iter().flatten().copied());
+        Ok(())
+    })?;
+    let (motions, cell) = cells(all.iter());
+    let count = |k: usize| cell.iter().filter(|c| usize::from(**c) == k).count();
+    let counts: Vec<usize> = (0..motions.len()).map(count).collect();
+    let frame = job.frame("coexisting").with("motions", motions);
+    Ok(job.send(frame.with("counts", counts))?)
 }
 
 fn with_starts(frame: Frame, found: &[Option<SettledMotion>]) -> Frame {

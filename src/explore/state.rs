@@ -51,6 +51,12 @@ pub struct State {
     /// Where the characteristics are taken.
     #[serde(default)]
     pub line: Option<Line>,
+    /// What the lowest picture of the characteristics shows.
+    #[serde(default)]
+    pub characteristic: Characteristic,
+    /// Motions whose trajectories are set into the picture of the characteristics; each settles from its start.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub insets: Vec<Cursor>,
     /// The starts of the basins.
     #[serde(default)]
     pub basins: Option<Starting>,
@@ -120,6 +126,21 @@ pub struct Line {
     pub start: Initial,
 }
 
+/// A characteristic of the motions along a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Characteristic {
+    /// The greatest Lyapunov exponent.
+    #[default]
+    Lyapunov,
+    /// The autocorrelation of X at a lag of one drive period.
+    Autocorrelation,
+    /// X' before impacts.
+    ApproachOfX,
+    /// How far X lags behind the drive where no impacts occur.
+    ImpactlessPhase,
+}
+
 /// The starts of basins of attraction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -162,6 +183,8 @@ pub struct RigScale {
 
 /// Columns and rows of the map that an exported study computes.
 pub(super) const MAP_CELLS: (usize, usize) = (128, 96);
+/// Most trajectories in the picture of the characteristics.
+const MOST_INSETS: usize = 12;
 /// Most drive periods that a request may settle or watch.
 const MOST_PERIODS: f64 = 20_000.0;
 
@@ -188,6 +211,8 @@ impl Default for State {
             poincare_phase: 0.0,
             watch: Watch::default(),
             line: None,
+            characteristic: Characteristic::default(),
+            insets: Vec::new(),
             basins: None,
             panel: Panel::Motion,
             rig: None,
@@ -256,6 +281,7 @@ impl State {
         )?;
         within("watch.tolerance", tolerance, tolerance > 0.0, "positive")?;
         self.check_line()?;
+        self.check_insets()?;
         self.check_basins()?;
         let scales = self
             .rig
@@ -277,6 +303,15 @@ impl State {
             Setting::new(eta, rho).check()?;
         }
         Ok(())
+    }
+
+    fn check_insets(&self) -> Result<(), ExploreError> {
+        let count = self.insets.len();
+        within("insets", count as f64, count <= MOST_INSETS, "at most 12")?;
+        self.insets.iter().try_for_each(|inset| {
+            inset.setting().check()?;
+            Ok(inset.start.check()?)
+        })
     }
 
     fn check_basins(&self) -> Result<(), ExploreError> {

@@ -62,6 +62,10 @@ pub(super) enum Ask {
     Line {},
     /// Basins at the cursor.
     Basins {},
+    /// The motions that starts at the cursor settle on, and their shares.
+    Coexisting {},
+    /// The motion that the cursor's start settles on, to be set into a picture.
+    Inset {},
     /// The record beside its simulation.
     Record {},
     /// Residuals of the methods, and boundaries against brackets.
@@ -112,6 +116,7 @@ pub(super) enum Slot {
     Motion,
     Line,
     Basins,
+    Coexisting,
     Record,
     Residuals,
     /// All others, one after the other.
@@ -120,12 +125,13 @@ pub(super) enum Slot {
 
 impl Slot {
     /// The slots whose newest job counts.
-    pub(super) const NEWEST: [Self; 7] = [
+    pub(super) const NEWEST: [Self; 8] = [
         Self::Map,
         Self::Boundaries,
         Self::Motion,
         Self::Line,
         Self::Basins,
+        Self::Coexisting,
         Self::Record,
         Self::Residuals,
     ];
@@ -140,6 +146,7 @@ impl Ask {
             Self::Motion { .. } | Self::Run { .. } => Slot::Motion,
             Self::Line {} => Slot::Line,
             Self::Basins {} => Slot::Basins,
+            Self::Coexisting {} => Slot::Coexisting,
             Self::Record {} => Slot::Record,
             Self::Residuals {} => Slot::Residuals,
             _ => Slot::Queue,

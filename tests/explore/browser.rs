@@ -244,6 +244,37 @@ fn browser_the_map_keeps_its_place_while_all_beside_it_changes() {
 
 #[test]
 #[ignore = "needs chromium"]
+fn browser_trajectories_are_set_into_the_characteristics() {
+    let explorer = Explorer::theory();
+    let mut browser = Chromium::open(&explorer.url(), SIZE);
+    browser.until(QUIET);
+    let shares = "document.getElementById('numbers').textContent";
+    browser.until(&format!("/of all starts\\s*z = 1 100 %/.test({shares})"));
+    browser.key("h", 0);
+    browser.until("impactid.line.done === true");
+    let there = "[...impactid.line.trajectories.values()].filter((t) => t).length";
+    browser.key("o", 0);
+    browser.until(&format!("{there} === 1"));
+    browser.key("ArrowRight", 8);
+    browser.until(QUIET);
+    browser.key("o", 0);
+    browser.until(&format!("{there} === 2"));
+    browser.key("v", 0);
+    browser.until("impactid.state.characteristic === 'autocorrelation'");
+    let address = browser.evaluate("location.href.split('#')[0] + '#' + impactid.address()");
+    let mut fresh = Chromium::open(address.as_str().unwrap(), SIZE);
+    fresh.until(&format!("{there} === 2 && impactid.line.done === true"));
+    let shown = "document.getElementById('characteristic').value";
+    assert_eq!(fresh.evaluate(shown), json!("autocorrelation"));
+    fresh.key("o", 0);
+    fresh.until(&format!("{there} === 1"));
+    for errors in [browser.errors(), fresh.errors()] {
+        assert_eq!(errors, Vec::<String>::new());
+    }
+}
+
+#[test]
+#[ignore = "needs chromium"]
 fn browser_a_campaign_is_explored() {
     let explorer = Explorer::start(&[SAMPLE], &std::env::temp_dir());
     let mut browser = Chromium::open(&explorer.url(), SIZE);

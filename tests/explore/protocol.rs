@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::process::Command;
 
+use impact_oscillator::atlas::map::even;
 use impact_oscillator::{
     Initial, Machine, MapGrid, MapSettings, Restitution, Setting, Watch, region_map, rho_s2, settle,
 };
@@ -135,6 +136,49 @@ fn valid_the_motion_is_the_one_that_settles_and_is_carried_through_hysteresis() 
         at = json!([eta, 2.0]);
     }
     assert_eq!(seen, ["1", "1", "0", "0", "1"]);
+}
+
+#[test]
+fn valid_coexisting_motions_are_those_that_the_basins_grid_settles_on() {
+    let explorer = Explorer::theory();
+    let mut page = explorer.page();
+    let mut state = page.hello().header["state"].clone();
+    // within the hysteresis region of z = 1 and z = 0
+    state["cursor"] = json!({"eta": 1.5, "rho": 2.0});
+    state["basins"] = json!({"x": [-8.0, 2.0], "vx": [-8.0, 8.0], "cells": [12, 9]});
+    let frame = page.answer(&json!({"kind": "coexisting"}), &state);
+    let machine = Machine::symmetric(0.07, 0.9);
+    let mut want: BTreeMap<String, u64> = BTreeMap::new();
+    for vx in even((-8.0, 8.0, 9)) {
+        for x in even((-8.0, 2.0, 12)) {
+            let start = Initial::both(x, vx);
+            let found = settle(&machine, Setting::new(1.5, 2.0), start, &Watch::default());
+            *want.entry(found.expect("a motion").0.label()).or_default() += 1;
+        }
+    }
+    let motions = frame.header["motions"].as_array().expect("motions");
+    let counts = frame.header["counts"].as_array().expect("counts");
+    let found = motions.iter().zip(counts).map(|(m, n)| {
+        let label = m["label"].as_str().expect("a label").to_owned();
+        (label, n.as_u64().expect("a count"))
+    });
+    assert_eq!(found.collect::<BTreeMap<_, _>>(), want);
+    assert_eq!(want.keys().collect::<Vec<_>>(), ["0", "1"]);
+}
+
+#[test]
+fn an_inset_shows_the_motion_that_its_start_settles_on() {
+    let explorer = Explorer::theory();
+    let mut page = explorer.page();
+    let mut state = page.hello().header["state"].clone();
+    state["cursor"] = json!({"eta": 1.3, "rho": 1.0});
+    let inset = page.answer(&json!({"kind": "inset"}), &state);
+    assert_eq!(inset.header["motion"]["label"], "1");
+    // settled: every period passes the same point
+    let x = inset.column("poincare_x");
+    assert!(x.iter().all(|v| (v - x[0]).abs() < 1e-4), "{x:?}");
+    state["insets"] = json!(vec![json!({"eta": 1.3, "rho": 1.0}); 13]);
+    refused(&page.answer(&json!({"kind": "motion"}), &state), "insets");
 }
 
 #[test]

@@ -12,6 +12,8 @@ export const KEYS = [
   ["h", "characteristics over η at the cursor's ρ", (app) => app.along("eta")],
   ["i", "characteristics over ρ at the cursor's η", (app) => app.along("rho")],
   ["l", "characteristics along a line: drag it, or L again for cursor to cursor", (app) => app.drawLine()],
+  ["v", "the lowest characteristic: Lyapunov exponent, autocorrelation, X′ before impacts, phase without impacts", (app) => app.otherCharacteristic()],
+  ["o", "set the trajectory at the cursor into the characteristics, or take it out", (app) => app.inset()],
   ["s", "basins of attraction at the cursor", (app) => app.panel("basins")],
   ["m", "the motion at the cursor", (app) => app.panel("motion")],
   ["f", "demos of the program", (app) => app.dialogs.demos()],
@@ -20,7 +22,6 @@ export const KEYS = [
   ["arrows", "move η and ρ, the motion carried along; Shift: ten steps; Ctrl: a tenth", null],
   ["+ −", "zoom; wheel: zoom at the pointer; Shift and drag: move the picture", null],
   ["Home", "all of the plane, or all records", (app) => app.home()],
-  ["0-start", "", null],
   ["q", "start again from rest at the cursor", (app) => app.start({ x: 0, vx: 0, y: 0, vy: 0 }, 0)],
   ["w", "map from rest or from a lively start", (app) => app.toggleStart()],
   ["u", "phase of the Poincaré map, by an eighth of the period", (app) => app.strobe()],
@@ -32,7 +33,7 @@ export const KEYS = [
   ["t", "light or dark", (app) => app.theme()],
   ["?", "these keys", (app) => app.dialogs.help()],
   ["Esc", "stop what runs; close", (app) => app.stop()],
-].filter(([key]) => key !== "0-start");
+];
 
 const SPECIAL = {
   "+": (app) => app.zoom(1 / 1.25), "=": (app) => app.zoom(1 / 1.25), "-": (app) => app.zoom(1.25), "−": (app) => app.zoom(1.25),

@@ -1,7 +1,7 @@
 // The page: its state, what asks for what, sliders, demos, exports.
 import { Wire } from "./wire.js";
 import { MapView } from "./map.js";
-import { BasinsPanel, LinePanel, MotionPanel, swatch } from "./plots.js";
+import { BasinsPanel, CHARACTERISTICS, LinePanel, MotionPanel, swatch } from "./plots.js";
 import { CampaignView } from "./campaign.js";
 import { Dialogs } from "./dialogs.js";
 import { listen } from "./keys.js";
@@ -18,6 +18,10 @@ const planeOf = ({ damping_ratio, restitution, single, asymmetry, view }) =>
   JSON.stringify([damping_ratio, restitution, single, asymmetry, view.eta], (_, v) => (typeof v === "number" ? Number(v.toPrecision(9)) : v));
 /** Parts of the state that only the map's uppermost layer shows. */
 const CURSOR_PARTS = new Set(["cursor", "line"]);
+/** Time without a new motion after which the motions that coexist with it are looked for, ms. */
+const PAUSE = 250;
+/** Most trajectories that are set into a picture. */
+const MOST_INSETS = 12;
 
 class App {
   constructor() {
@@ -126,9 +130,15 @@ class App {
 
   refreshPanel() {
     const { panel } = this.state;
-    if (panel === "line" && this.state.line) this.wire.ask("line", { kind: "line" }, this.state);
+    if (panel === "line" && this.state.line) { this.wire.ask("line", { kind: "line" }, this.state); this.line.fetchInsets(); }
     if (panel === "basins") this.wire.ask("basins", { kind: "basins" }, this.state);
     if (panel === "record" && this.campaign && this.state.record) this.wire.askAfter("record", () => [{ kind: "record" }, this.state]);
+  }
+
+  /** Once the cursor rests, what other starts settle on. */
+  coexisting() {
+    clearTimeout(this.resting);
+    if (this.state.panel === "motion") this.resting = setTimeout(() => { if (!this.run) this.wire.ask("coexisting", { kind: "coexisting" }, this.state); }, PAUSE);
   }
 
   /** Where the motion was when the answer before came. */
@@ -144,8 +154,9 @@ class App {
       if (tile.complete) time("map", frame.level);
     } else if (frame.kind === "boundaries") { this.map.bare(frame); time("boundaries", 0); }
     else if (frame.kind === "boundary") { this.map.boundary(frame); if (frame.last) time("boundaries", 1); }
-    else if (frame.kind === "motion") { this.carriedTo(frame); this.motion.show(frame); time("motion", 0); }
+    else if (frame.kind === "motion") { this.carriedTo(frame); this.motion.show(frame); time("motion", 0); this.coexisting(); }
     else if (frame.kind === "run") { this.carriedTo(frame); this.motion.run(frame); this.runOn(); }
+    else if (frame.kind === "coexisting") this.motion.others(frame);
     else if (frame.kind === "line") { this.line.add(frame); }
     else if (frame.kind === "basins") { this.basins.add(frame); if (frame.level === 1 && this.basins.tile.filled === frame.size[1]) time("basins", 1); }
     else if (frame.kind === "record") { this.campaign.show(frame); time("record", 0); }
@@ -276,6 +287,21 @@ class App {
     this.map.drawing = true;
     this.lineFrom = [cursor.eta, cursor.rho];
     this.said("drag the line on the map, or move the cursor with the arrows and press L again");
+  }
+
+  otherCharacteristic(name) {
+    const all = Object.keys(CHARACTERISTICS), now = all.indexOf(this.state.characteristic ?? all[0]);
+    this.set({ characteristic: name ?? all[(now + 1) % all.length] }, []);
+    if (this.state.panel !== "line") { if (this.state.line) this.panel("line"); else this.along("eta"); } else this.line.draw();
+  }
+
+  /** Set the trajectory at the cursor into the characteristics, or take it out again. */
+  inset() {
+    const { cursor } = this.state, insets = this.state.insets ?? [];
+    const rest = insets.filter((c) => c.eta !== cursor.eta || c.rho !== cursor.rho);
+    if (rest.length === insets.length && insets.length === MOST_INSETS) { this.said("no more than 12 trajectories fit into the picture; O at one of them takes it out"); return; }
+    this.set({ insets: rest.length < insets.length ? rest : [...insets, structuredClone(cursor)] }, []);
+    if (this.state.panel !== "line" && this.state.line) this.panel("line"); else this.line.fetchInsets();
   }
 
   ownBasins() {
@@ -582,6 +608,9 @@ class App {
   buttons() {
     const act = { g: () => this.running(), f: () => this.dialogs.demos(), k: () => this.record(), j: () => this.replay(), x: () => this.dialogs.exports(), t: () => this.theme(), "?": () => this.dialogs.help() };
     for (const b of document.querySelectorAll("nav button")) b.addEventListener("click", () => act[b.dataset.key]());
+    element("inset").addEventListener("click", () => this.inset());
+    element("characteristic").append(...Object.entries(CHARACTERISTICS).map(([value, c]) => new Option(c.text, value)));
+    element("characteristic").addEventListener("change", (e) => this.otherCharacteristic(e.target.value));
     const tabs = [...document.querySelectorAll("[role=tab]")];
     for (const tab of tabs) {
       tab.addEventListener("click", () => (tab.dataset.panel === "line" && !this.state.line ? this.along("eta") : tab.dataset.panel === "record" && !this.state.record ? this.nearest() : this.panel(tab.dataset.panel)));

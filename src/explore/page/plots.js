@@ -15,7 +15,23 @@ export class MotionPanel {
   show(frame) {
     this.frame = frame;
     this.live = null;
+    this.coexisting = null;
     this.draw();
+  }
+
+  /** What starts at the cursor settle on. */
+  others(frame) {
+    this.coexisting = frame;
+    this.draw();
+  }
+
+  /** The motions that coexist at the cursor, with the share of starts that settle on each. */
+  shares() {
+    if (!this.coexisting) return "…";
+    const { motions, counts } = this.coexisting, all = counts.reduce((sum, n) => sum + n, 0);
+    const sorted = motions.map((m, i) => [m.label, counts[i]]).sort((a, b) => b[1] - a[1]);
+    const named = sorted.slice(0, 5).map(([label, n]) => `z = ${label} ${Math.round(100 * n / all)} %`);
+    return named.join(", ") + (sorted.length > 5 ? ", …" : "");
   }
 
   /** The next stretch of the running motion joins what is shown. */
@@ -132,6 +148,7 @@ export class MotionPanel {
     const start = f.cursor.start;
     const rows = [
       ["settles on", `z = ${f.motion.label}`],
+      ["of all starts", this.shares()],
       ["approach speed", speeds],
       ["X greatest", number(f.x_max, 6)],
       ["Lyapunov", f.lyapunov === null ? "−∞ (a dead zone)" : number(f.lyapunov, 4)],
@@ -166,10 +183,21 @@ export function facts(rows) {
   });
 }
 
+/** What the lowest picture of the characteristics can show: its name, axis, and how it is drawn. */
+export const CHARACTERISTICS = {
+  lyapunov: { text: "Lyapunov exponent", axis: "Lyapunov exponent", zero: true, of: (d) => d.lyapunov },
+  autocorrelation: { text: "autocorrelation at one drive period", axis: "autocorrelation", range: [-1.05, 1.05], zero: true, of: (d) => d.correlation },
+  approach_of_x: { text: "X′ before impacts", axis: "*X*′ before impacts", dots: (d, key) => d.step.map((s) => d[key][s]), of: (d) => d.xSpeed },
+  impactless_phase: { text: "phase without impacts", axis: "phase lag, °", range: [0, 180], of: (d) => d.phase },
+};
+/** Share of the uppermost picture that trajectories set into it take. */
+const INSETS = 0.42;
+
 /** Characteristics along a line, up and down, as they arrive. */
 export class LinePanel {
   constructor(app) {
     this.app = app;
+    this.trajectories = new Map(); // of insets, by machine and cursor
     this.clear(0);
     for (const id of ["line-x", "line-v", "line-l"]) new ResizeObserver(() => this.draw()).observe(element(id));
   }
@@ -179,11 +207,59 @@ export class LinePanel {
   add(frame) {
     if (frame.id !== this.id) this.clear(frame.id);
     this.all = frame.all;
-    const way = this.ways[frame.way] ??= { eta: [], rho: [], x_max: [], lyapunov: [], impactless: [], correlation: [], step: [], speed: [], labels: [] };
+    const way = this.ways[frame.way] ??= { eta: [], rho: [], x_max: [], lyapunov: [], impactless: [], phase: [], correlation: [], step: [], speed: [], xSpeed: [] };
     const c = frame.column;
     for (const key of ["eta", "rho", "x_max", "lyapunov", "impactless", "correlation"]) way[key].push(...c[key]);
-    way.step.push(...c.impact_step); way.speed.push(...c.impact_speed); way.labels.push(...frame.labels);
+    way.phase.push(...c.impactless_phase.map((p) => p * 180 / Math.PI));
+    way.step.push(...c.impact_step); way.speed.push(...c.impact_speed); way.xSpeed.push(...c.impact_x_speed);
     this.draw();
+  }
+
+  /** What an inset's trajectory depends on. */
+  static insetKey({ damping_ratio, restitution, single, asymmetry, periods, watch }, cursor) {
+    return JSON.stringify([damping_ratio, restitution, single, asymmetry, periods, watch, cursor]);
+  }
+
+  /** Ask for the trajectories of insets that are not there yet; those of other machines are forgotten. */
+  async fetchInsets() {
+    const { state } = this.app, insets = state.insets ?? [];
+    const wanted = new Map(insets.map((cursor) => [LinePanel.insetKey(state, cursor), cursor]));
+    for (const key of this.trajectories.keys()) if (!wanted.has(key)) this.trajectories.delete(key);
+    this.draw();
+    for (const [key, cursor] of wanted) {
+      if (this.trajectories.has(key)) continue;
+      this.trajectories.set(key, null);
+      try {
+        this.trajectories.set(key, await this.app.wire.once({ kind: "inset" }, { ...state, cursor }));
+      } catch (error) { this.trajectories.delete(key); this.app.message(error.message, error.remedy); return; }
+      this.draw();
+    }
+  }
+
+  /** Phase trajectories in a row above the curve, each with a line to its place. */
+  insets(f, key) {
+    const { state } = this.app;
+    const found = (state.insets ?? []).map((cursor) => this.trajectories.get(LinePanel.insetKey(state, cursor))).filter((t) => t);
+    const inside = found.filter((t) => f.x[0] <= t.cursor[key] && t.cursor[key] <= f.x[1]);
+    inside.sort((a, b) => a.cursor[key] - b.cursor[key]);
+    const { context: c, box } = f, space = 6, room = (box.width - space) / Math.max(1, inside.length);
+    const width = Math.min(room - space, 84), height = INSETS * box.height - 2 * space;
+    let free = box.left + space;
+    inside.forEach((t, i) => {
+      const at = f.px(t.cursor[key]), last = box.left + box.width - (inside.length - i) * (width + space);
+      const left = Math.max(free, Math.min(at - width / 2, last)), top = box.top + space;
+      free = left + width + space;
+      c.strokeStyle = colour("quiet"); c.lineWidth = 1;
+      c.beginPath(); c.moveTo(left + width / 2, top + height); c.lineTo(at, f.py(t.x_max)); c.stroke();
+      c.beginPath(); c.arc(at, f.py(t.x_max), 3, 0, 7); c.fillStyle = markColour(t.motion); c.fill();
+      c.fillStyle = colour("paper"); c.fillRect(left, top, width, height); c.strokeRect(left, top, width, height);
+      const path = withJumps(t.column), xs = path.map((p) => p[1]), vs = path.map((p) => p[2]);
+      const small = Object.create(f);
+      Object.assign(small, { x: around([xs]), y: around([vs]), box: { left, top: top + 13, width, height: height - 14 } });
+      small.clip(() => small.curve(xs, vs, { colour: colour("blue"), width: 1 }));
+      c.font = `12px ${FONT}`; c.textAlign = "center"; c.textBaseline = "top"; c.fillStyle = markColour(t.motion);
+      c.fillText(`z = ${t.motion.label}`, left + width / 2, top + 1);
+    });
   }
 
   draw() {
@@ -210,17 +286,25 @@ export class LinePanel {
       f.clip(() => { for (const [way, data] of ways) draw(f, data, paint[way]); });
       const at = this.app.state.cursor[key];
       f.clip(() => f.curve([at, at], f.y, { colour: colour("quiet"), dash: [3, 3], width: 1 }));
+      return f;
     };
     const lists = (k) => ways.map(([, d]) => d[k]);
     const top = around(lists("x_max"));
-    panel("line-x", top, "*X* greatest", (f, d, ink) => {
+    if (this.app.state.insets?.length) top[1] += (top[1] - top[0]) * INSETS / (1 - INSETS);
+    const greatest = panel("line-x", top, "*X* greatest", (f, d, ink) => {
       f.curve(d[key], d.impactless, { colour: colour("quiet"), width: 1, dash: [4, 3] });
       f.dots(d[key], d.x_max, 1.3, ink);
     });
+    this.insets(greatest, key);
     panel("line-v", around([...lists("speed"), [0]]), "approach speed *X*′₋ + *Y*′₋", (f, d, ink) => f.dots(d.step.map((s) => d[key][s]), d.speed, 1, ink));
-    panel("line-l", around([...lists("lyapunov"), [0]]), "Lyapunov exponent", (f, d, ink) => {
-      f.curve(range, [0, 0], { colour: colour("quiet"), width: 1 });
-      f.curve(d[key], d.lyapunov, { colour: ink, width: 1.1 });
+    const name = this.app.state.characteristic ?? "lyapunov", shown = CHARACTERISTICS[name];
+    element("characteristic").value = name;
+    element("line-l").setAttribute("aria-label", `${shown.text} along the line`);
+    const values = ways.map(([, d]) => shown.of(d));
+    panel("line-l", shown.range ?? around([...values, [0]]), shown.axis, (f, d, ink) => {
+      if (shown.zero) f.curve(range, [0, 0], { colour: colour("quiet"), width: 1 });
+      if (shown.dots) f.dots(shown.dots(d, key), shown.of(d), 1, ink);
+      else f.curve(d[key], shown.of(d), { colour: ink, width: 1.1 });
     });
     const done = Math.min(...["up", "down"].map((w) => this.ways[w]?.eta.length ?? 0));
     element("line-note").textContent = `Blue: from a to b; orange: from b to a; dashed: amplitude without impacts. ${done < this.all ? `${done} of ${this.all} steps` : `${this.all} steps each way`}`;
