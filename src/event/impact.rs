@@ -61,6 +61,10 @@ pub struct Impact {
     /// Change of both approach speeds if a channel's corner is not the stated one.
     #[serde(default)]
     pub corner_shifts: [Option<CornerShift>; 2],
+    /// What delays of the channels change of both approach speeds, per mass; `None` where the speeds and the
+    /// time are not those of an instantaneous impact at a kink of measured displacements.
+    #[serde(default)]
+    pub lags: [Option<Lag>; 2],
     /// How long the bodies stayed together after it, s; zero without a dead zone.
     pub dead_zone_s: f64,
     /// Duration of the contact, s; `None` if it cannot be distinguished from an instant. The approach
@@ -86,6 +90,22 @@ pub struct CornerShift {
     pub speed_m_s: f64,
 }
 
+/// How one mass's velocity was read at the time that the displacements' kink gives. Where its channel is later
+/// than assumed, the speeds are those of the flights at another time.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Lag {
+    /// The channel of its velocity.
+    pub velocity: Role,
+    /// The channel of its displacement.
+    pub displacement: Role,
+    /// Share of the relative velocity's jump, by which a delay of the displacement moves the kink.
+    pub share: f64,
+    /// Delay of the velocity against the kink with which the speeds were read, s.
+    pub assumed_s: f64,
+    /// What the mass adds to the approach's acceleration before and after, m/s².
+    pub accelerations_m_s2: [f64; 2],
+}
+
 impl Impact {
     /// An impact of which nothing is known but its time and the standard error of that.
     pub(super) fn timed(time_s: f64, time_error_s: f64) -> Self {
@@ -99,6 +119,7 @@ impl Impact {
             x: None,
             y: None,
             corner_shifts: [None, None],
+            lags: [None, None],
             dead_zone_s: 0.0,
             contact_duration_s: None,
             external_push_m_s: None,

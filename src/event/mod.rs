@@ -21,5 +21,5 @@ mod refine;
 
 pub use detect::{DetectSettings, Detection, FlightKind, detect};
 pub use drive::DriveTone;
-pub use impact::{CornerShift, DetectionSource, Impact, MassSpeeds};
+pub use impact::{CornerShift, DetectionSource, Impact, Lag, MassSpeeds};
 pub use kinematics::{Kinematics, RigKind, Series};

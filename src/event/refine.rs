@@ -40,6 +40,13 @@ pub(super) struct Candidate {
     pub dead_samples: f64,
 }
 
+impl Candidate {
+    /// Standard error of its middle as the time of the impact, samples.
+    pub(super) fn middle_error(&self) -> f64 {
+        self.jump.gap as f64 / 12f64.sqrt()
+    }
+}
+
 /// Windows before and after one candidate: sample ranges that contain no other impact.
 #[derive(Debug, Clone, Copy)]
 struct Windows {
@@ -85,7 +92,7 @@ pub(super) fn instants(
 ) -> Vec<Instant> {
     let middle = |c: &Candidate| Instant {
         time: c.jump.middle(),
-        error: c.jump.gap as f64 / 12f64.sqrt(),
+        error: c.middle_error(),
     };
     let plain: Vec<Instant> = candidates.iter().map(middle).collect();
     match (

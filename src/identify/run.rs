@@ -113,12 +113,14 @@ pub fn identify(evidence: &Evidence<'_>) -> Identification {
         verdict::carry_over(&mut joint, &methods);
     }
     let beyond = succeeded(&fits.joint).map_or_else(Vec::new, beyond::beyond);
-    if !beyond.is_empty() {
+    let of_joint = succeeded(&fits.joint).map(|f| &f.fit.parameters);
+    let ideal = beyond.is_empty() && of_joint.is_none_or(|p| run.is_on_time(p));
+    if !ideal {
         widen_ideal(&mut methods, &joint);
     }
-    let agreement = match beyond.is_empty() {
+    let agreement = match ideal {
         true => agreement(&methods),
-        // Flights take the rig for ideal.
+        // Flights take the rig for ideal, and its channels for simultaneous.
         false => agreement(&without(&methods, Method::Flights)),
     };
     let apart = between_methods(&methods, &agreement, &joint);
@@ -209,6 +211,9 @@ struct Alone {
 /// Gaps that may be found wrong before the campaign as a whole is at fault.
 const MOST_ODD_GAPS: usize = 2;
 
+/// Delay of a channel, in half samples, that multiple shooting does not notice.
+const ON_TIME: f64 = 0.05;
+
 /// Rounds of leaving out influential records.
 const MOST_ROUNDS: usize = 8;
 
@@ -263,6 +268,12 @@ struct IdentificationRun<'a> {
 }
 
 impl IdentificationRun<'_> {
+    /// Whether no channel is late by more than a small share of half a sample.
+    fn is_on_time(&self, parameters: &Parameters) -> bool {
+        let latest = ON_TIME * self.selection.blocks.half_sample_s();
+        parameters.delays_s.iter().all(|d| d.abs() < latest)
+    }
+
     /// Trajectories, boundaries and all together, beside the resonance curve and the impacts.
     fn fits(
         &mut self,
@@ -272,6 +283,11 @@ impl IdentificationRun<'_> {
     ) -> Fits {
         let trajectories = self.selection.trajectories(start);
         let start = succeeded(&trajectories).map_or(start, |f| f.fit.parameters);
+        let delayed = trajectories.is_some() && self.selection.blocks.delay_impacts(&start);
+        let impacts = match delayed {
+            true => methods::impacts(&self.selection.blocks, &self.evidence.nominal, start),
+            false => impacts,
+        };
         let flights = self.selection.flights(start);
         self.together(
             start,

@@ -215,6 +215,7 @@ impl<'a> Search<'a> {
             x: Some(of_body(0)),
             y: (self.bodies.len() > 1).then(|| of_body(1)),
             corner_shifts: [None, None],
+            lags: [None, None],
             dead_zone_s: 0.0,
             contact_duration_s: None,
             external_push_m_s: None,

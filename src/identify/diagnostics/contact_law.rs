@@ -202,6 +202,7 @@ mod tests {
                     after_m_s: law(v) * v + 2e-3 * scatter(i),
                     error_m_s: 2e-3 / 1f64.hypot(0.8),
                     corner_shifts: [None, None],
+                    lags: [None, None],
                 }
             })
             .collect();

@@ -1,6 +1,6 @@
 //! R from the speeds after over before each impact.
 
-use crate::event::CornerShift;
+use crate::event::{CornerShift, Lag};
 use crate::identify::fit::Block;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
 use crate::motion::Observation;
@@ -20,9 +20,25 @@ pub struct SpeedPair {
     pub error_m_s: f64,
     /// What the channels' corners would change of the speeds, toward each other.
     pub corner_shifts: [Option<CornerShift>; 2],
+    /// What delays of the channels would change of them.
+    pub lags: [Option<Lag>; 2],
 }
 
 impl SpeedPair {
+    /// Read the speeds with the delays of the channels that waveforms tell.
+    fn delay(&mut self, parameters: &Parameters) {
+        let lags = self.lags.iter().flatten();
+        let kink_s: f64 = lags
+            .map(|lag| lag.share * parameters.delay_s(lag.displacement))
+            .sum();
+        for lag in self.lags.iter_mut().flatten() {
+            let delay_s = parameters.delay_s(lag.velocity) - kink_s;
+            let later_s = delay_s - std::mem::replace(&mut lag.assumed_s, delay_s);
+            self.before_m_s += later_s * lag.accelerations_m_s2[0];
+            self.after_m_s -= later_s * lag.accelerations_m_s2[1];
+        }
+    }
+
     /// Change of the closing speed, m/s, by corners other than the stated ones.
     fn shift(&self, parameters: &Parameters) -> f64 {
         let shifts = self.corner_shifts.iter().flatten();
@@ -87,6 +103,7 @@ impl ImpactBlock {
                         - impact.external_push_m_s.unwrap_or(0.0),
                     error_m_s: impact.speed_error_m_s?,
                     corner_shifts: impact.corner_shifts,
+                    lags: impact.lags,
                 })
             })
             .filter(|p| p.after_m_s > -4.0 * p.error_m_s)
@@ -157,6 +174,27 @@ impl ImpactBlock {
         let (kept, odd): (Vec<_>, Vec<_>) = scored.partition(|(_, s)| s.abs() <= limit * spread);
         self.pairs = kept.into_iter().map(|(pair, _)| pair).collect();
         (self, odd.into_iter().map(|(pair, _)| pair).collect())
+    }
+
+    /// All pairs, `others` among them, with the delays of the channels that waveforms tell.
+    #[must_use]
+    pub fn delayed(&self, others: &[SpeedPair], parameters: &Parameters) -> Self {
+        let mut pairs = [self.pairs.as_slice(), others].concat();
+        pairs.iter_mut().for_each(|pair| pair.delay(parameters));
+        pairs.sort_by(|a, b| {
+            let by_time = a.time_s.total_cmp(&b.time_s);
+            a.observation.cmp(&b.observation).then(by_time)
+        });
+        Self {
+            pairs,
+            ..self.clone()
+        }
+    }
+
+    /// Whether delays of the channels change any speed.
+    pub fn has_lags(&self) -> bool {
+        let mut lags = self.pairs.iter().flat_map(|p| p.lags);
+        lags.any(|lag| lag.is_some())
     }
 
     /// The speeds as they are with the corners that a fit found.

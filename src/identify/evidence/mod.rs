@@ -104,6 +104,8 @@ pub struct Evidence<'a> {
 
 /// Relative error of instruments and model that noise does not show.
 const RELATIVE_ERROR: f64 = 3e-4;
+/// Robust deviations beyond which an impact's ratio is an outlier.
+const OUTLYING_IMPACT: f64 = 5.0;
 /// Scatter of single impacts' ratios beside the noise.
 const IMPACT_SCATTER: f64 = 1e-3;
 /// What the extrapolation of speeds to the impact leaves open in R.
@@ -171,7 +173,7 @@ impl Blocks {
             ..
         } = *evidence;
         let (impact, impact_outliers) =
-            ImpactBlock::new(observations, impact_scatter).without_outliers(5.0);
+            ImpactBlock::new(observations, impact_scatter).without_outliers(OUTLYING_IMPACT);
         let mut blocks = Self {
             resonance: ResonanceBlock::new(rig, observations, relative_error),
             trajectory: TrajectoryBlock::new(rig, observations, relative_error),
@@ -189,6 +191,22 @@ impl Blocks {
         (blocks.trajectory.reach_m, blocks.resonance.reach_m) = (reach_m, reach_m);
         blocks.trajectory.effects = evidence.nominal.effects;
         blocks
+    }
+
+    /// Half the time between two samples in the median record, s.
+    pub fn half_sample_s(&self) -> f64 {
+        self.half_sample_s
+    }
+
+    /// Read the speeds at impacts with the delays of the channels that waveforms tell; whether any depends on
+    /// them.
+    pub fn delay_impacts(&mut self, waveforms: &Parameters) -> bool {
+        if !self.impact.has_lags() {
+            return false;
+        }
+        let delayed = self.impact.delayed(&self.impact_outliers, waveforms);
+        (self.impact, self.impact_outliers) = delayed.without_outliers(OUTLYING_IMPACT);
+        true
     }
 
     /// The same with other periodic records.

@@ -245,8 +245,8 @@ impl Message for Remark {
                 "waveforms of {some} of {count} periodic records are fitted, evenly chosen"
             }
             Self::IdealRig => {
-                "it takes the rig as ideal, without the effects found beyond the model: it is not \
-                 compared, and its intervals are widened by what it is off the joint estimate"
+                "it takes the rig as ideal, without the delays of channels and the effects found beyond the \
+                 model: it is not compared, and its intervals are widened by what it is off the joint estimate"
             }
             Self::StatesDeviate { .. } => {
                 "from impact to impact, the states deviate {ratio} times their errors"
@@ -331,7 +331,7 @@ impl Message for Remark {
                  gleichmäßig gewählt"
             }
             Self::IdealRig => {
-                "es nimmt die Maschine als ideal an, ohne die Effekte über das Modell hinaus: es wird \
+                "es nimmt die Maschine als ideal an, ohne die Verzögerungen der Kanäle und die Effekte über das Modell hinaus: es wird \
                  nicht verglichen, und seine Intervalle sind um die Abweichung vom gemeinsamen \
                  Schätzwert erweitert"
             }
