@@ -270,9 +270,12 @@ fn undrifted(
         None => refine::instants(kinematics, candidates, arc),
     };
     let first = instants(kinematics);
-    refine::correct_jumps(kinematics, candidates, &first, arc);
+    let (delay, delays) = contact.map_or((0.0, [0.0; 2]), |(c, _)| (c.delay(), c.delays));
+    let jumps: Vec<Instant> = first.iter().map(|i| i.later(delay)).collect();
+    let later = delays.map(|own| own - delay);
+    refine::correct_jumps(kinematics, candidates, (&jumps, later), arc);
     kinematics.update_relative(rig);
-    let times: Vec<f64> = first.iter().map(|i| i.time).collect();
+    let times: Vec<f64> = jumps.iter().map(|i| i.time).collect();
     let rate_hz = kinematics.rate_hz;
     for series in [
         &mut kinematics.relative,

@@ -59,6 +59,11 @@ impl FiniteContact {
         )
     }
 
+    /// Delay of the velocities against the kink, the mean of both bodies, samples.
+    pub(super) fn delay(&self) -> f64 {
+        0.5 * (self.delays[0] + self.delays[1])
+    }
+
     /// Times of impacts from the kink of the displacement and the samples within the contact.
     pub(super) fn placed(
         &self,
@@ -167,7 +172,13 @@ pub(super) fn measure(
         return None;
     }
     let profile = ContactProfile::new(typical_ratio(kinematics, &wide, &instants, arc)?);
-    Search { profile, impacts }.best()
+    let mut found = Search { profile, impacts }.best()?;
+    match bodies {
+        [Some(_), None] => found.delays[1] = found.delays[0],
+        [None, Some(_)] => found.delays[0] = found.delays[1],
+        _ => {}
+    }
+    Some(found)
 }
 
 /// The candidate with one sample more on either side left to the contact.
@@ -314,7 +325,8 @@ impl Search {
 }
 
 /// Replace the samples that a contact touches by the flights on either side of its centre, as if
-/// the impact were an instant: integrals over the velocities are right then.
+/// the impact were an instant: integrals over the velocities are right then. Both bodies jump at the same
+/// time then, at the mean delay.
 pub(super) fn bridge(
     kinematics: &mut Kinematics,
     candidates: &[Candidate],
@@ -323,10 +335,7 @@ pub(super) fn bridge(
     arc: ArcFit,
 ) {
     let rate_hz = kinematics.rate_hz;
-    for (body, delay) in [&mut kinematics.x, &mut kinematics.y]
-        .into_iter()
-        .zip(contact.delays)
-    {
+    for body in [&mut kinematics.x, &mut kinematics.y] {
         let Some(velocity) = body.velocity.as_mut() else {
             continue;
         };
@@ -341,7 +350,7 @@ pub(super) fn bridge(
             let mut area = 0.0;
             for k in jump.left + 1..(jump.left + jump.gap).min(velocity.values.len()) {
                 let at = k as f64;
-                let flight = if at < instant.time + delay {
+                let flight = if at < instant.time + contact.delay() {
                     &before
                 } else {
                     &after

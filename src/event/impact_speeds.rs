@@ -18,10 +18,11 @@ pub(super) fn impacts(
     drive: Option<&DriveTone>,
     (arc, contact): (ArcFit, Option<&FiniteContact>),
 ) -> Vec<Impact> {
-    let of = |body: &Body, i: usize| {
+    let of = |body: &Body, i: usize, delay: f64| {
         let velocity = body.velocity.as_ref()?;
-        speeds(velocity, candidates, i, instants[i], arc)
+        speeds(velocity, candidates, i, instants[i].later(delay), arc)
     };
+    let delays = contact.map_or([0.0; 2], |c| c.delays);
     let rate_hz = kinematics.rate_hz;
     let shifts = Shifts::of(kinematics);
     (0..candidates.len())
@@ -32,7 +33,7 @@ pub(super) fn impacts(
                 .and_then(|c| contact_speeds(kinematics, candidates, i, (instants[i], c), arc));
             let approach = match &lasting {
                 Some(c) => Some((c.speeds, c.error)),
-                None => of(&kinematics.relative, i),
+                None => of(&kinematics.relative, i, 0.0),
             };
             let duration = contact.map(|c| c.duration / rate_hz);
             Impact {
@@ -42,8 +43,8 @@ pub(super) fn impacts(
                 approach_speed_before_m_s: approach.map(|c| c.0.before_m_s),
                 approach_speed_after_m_s: approach.map(|c| c.0.after_m_s),
                 speed_error_m_s: approach.map(|c| c.1),
-                x: of(&kinematics.x, i).map(|s| s.0),
-                y: of(&kinematics.y, i).map(|s| s.0),
+                x: of(&kinematics.x, i, delays[0]).map(|s| s.0),
+                y: of(&kinematics.y, i, delays[1]).map(|s| s.0),
                 corner_shifts: shifts.at(instants[i].time),
                 lags: match duration.filter(|d| *d > 0.0) {
                     Some(_) => [None, None],

@@ -3,6 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::event::impact::MassSpeeds;
 use crate::record::{Record, Role};
 use crate::signal::whole;
 use crate::signal::{drift, robust};
@@ -32,17 +33,23 @@ pub struct Series {
 }
 
 impl Series {
-    /// Correct the undoing of the high-pass for a jump between two samples.
+    /// Correct the undoing of the high-pass for a jump between two samples that are `shown_steps` from the
+    /// first one, of a signal that jumped at `time_steps`.
     ///
     /// The integral `ω_c` ∫ y dt was taken by trapezoids, as if the jump were in the middle of its
-    /// interval; for a jump at a fraction u of the interval the area differs by
-    /// (before − after)(u − ½) steps.
-    pub fn correct_jump(&mut self, time_steps: f64, before: f64, after: f64, rate_hz: f64) {
+    /// interval; for a jump u intervals after its begin the area differs by (before − after)(u − ½) steps.
+    pub fn correct_jump(
+        &mut self,
+        (shown_steps, time_steps): (f64, f64),
+        speeds: MassSpeeds,
+        rate_hz: f64,
+    ) {
         let Some(corner_hz) = self.high_pass_hz else {
             return;
         };
-        let left = time_steps.floor();
-        let area = (before - after) * (time_steps - left - 0.5) / rate_hz;
+        let left = shown_steps.floor();
+        let jump = speeds.before_m_s - speeds.after_m_s;
+        let area = jump * (time_steps - left - 0.5) / rate_hz;
         let step = std::f64::consts::TAU * corner_hz * area;
         for value in self.values.iter_mut().skip(whole::index(left) + 1) {
             *value += step;
@@ -379,7 +386,11 @@ mod tests {
             high_pass_hz: Some(1.0),
             ..Series::clean(vec![0.0; 20])
         };
-        series.correct_jump(10.25, 1.0, -1.0, 100.0);
+        let speeds = MassSpeeds {
+            before_m_s: 1.0,
+            after_m_s: -1.0,
+        };
+        series.correct_jump((10.5, 10.25), speeds, 100.0);
         assert_eq!(series.values[10], 0.0);
         assert!((series.values[11] + std::f64::consts::PI / 100.0).abs() < 1e-15);
         assert_eq!(series.values[11], series.values[19]);

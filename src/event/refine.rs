@@ -29,6 +29,16 @@ pub(super) struct Instant {
     pub error: f64,
 }
 
+impl Instant {
+    /// So many samples later.
+    pub(super) fn later(self, samples: f64) -> Self {
+        Self {
+            time: self.time + samples,
+            ..self
+        }
+    }
+}
+
 /// A jump that may be an impact.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Candidate {
@@ -238,15 +248,18 @@ pub(super) fn speeds(
 }
 
 /// Correct the undone high-pass of each body's velocity for every jump, from the jumps' times
-/// within their sample intervals.
+/// within their sample intervals; each body may have jumped later than its samples show it.
 pub(super) fn correct_jumps(
     kinematics: &mut Kinematics,
     candidates: &[Candidate],
-    instants: &[Instant],
+    (instants, later): (&[Instant], [f64; 2]),
     arc: ArcFit,
 ) {
     let rate_hz = kinematics.rate_hz;
-    for body in [&mut kinematics.x, &mut kinematics.y] {
+    for (body, later) in [&mut kinematics.x, &mut kinematics.y]
+        .into_iter()
+        .zip(later)
+    {
         let Some(velocity) = body.velocity.as_mut().filter(|v| v.high_pass_hz.is_some()) else {
             continue;
         };
@@ -255,7 +268,7 @@ pub(super) fn correct_jumps(
             .collect();
         for (instant, speeds) in instants.iter().zip(known) {
             if let Some(s) = speeds {
-                velocity.correct_jump(instant.time, s.before_m_s, s.after_m_s, rate_hz);
+                velocity.correct_jump((instant.time, instant.time + later), s, rate_hz);
             }
         }
     }
