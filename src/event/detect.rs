@@ -242,7 +242,8 @@ fn refined(
     let Some(contact) = finite_contact::measure(kinematics, candidates, arc) else {
         return undrifted(kinematics, candidates, drive, (rig, arc, None));
     };
-    let instants = refine::instants(kinematics, candidates, arc);
+    let wide = finite_contact::widened(candidates);
+    let instants = refine::instants(kinematics, &wide, arc);
     let spanned = contact.spanned(candidates, &instants);
     let instants = refine::instants(kinematics, &spanned, arc);
     let instants = contact.placed(kinematics, &spanned, &instants, arc);

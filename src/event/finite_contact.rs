@@ -162,7 +162,7 @@ pub(super) fn measure(
     arc: ArcFit,
 ) -> Option<FiniteContact> {
     kinematics.relative.displacement.as_ref()?;
-    let wide: Vec<Candidate> = candidates.iter().map(widened).collect();
+    let wide = widened(candidates);
     let instants = instants(kinematics, &wide, arc);
     let bodies = [&kinematics.x, &kinematics.y].map(measured_velocity);
     let impacts: Vec<Samples> = (0..wide.len())
@@ -181,12 +181,16 @@ pub(super) fn measure(
     Some(found)
 }
 
-/// The candidate with one sample more on either side left to the contact.
-fn widened(candidate: &Candidate) -> Candidate {
-    let mut wide = candidate.clone();
-    wide.jump.left = candidate.jump.left.saturating_sub(1);
-    wide.jump.gap = candidate.jump.left + candidate.jump.gap + 1 - wide.jump.left;
-    wide
+/// The candidates with one sample more on either side left to the contact: so far from a delayed jump of
+/// velocity may the kink of the displacement be.
+pub(super) fn widened(candidates: &[Candidate]) -> Vec<Candidate> {
+    let widened = |candidate: &Candidate| {
+        let mut wide = candidate.clone();
+        wide.jump.left = candidate.jump.left.saturating_sub(1);
+        wide.jump.gap = candidate.jump.left + candidate.jump.gap + 1 - wide.jump.left;
+        wide
+    };
+    candidates.iter().map(widened).collect()
 }
 
 /// Speed after over before the impacts, median.
