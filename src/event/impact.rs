@@ -102,7 +102,8 @@ pub struct Lag {
     pub share: f64,
     /// Delay of the velocity against the kink with which the speeds were read, s.
     pub assumed_s: f64,
-    /// What the mass adds to the approach's acceleration before and after, m/s².
+    /// What the speeds before and after change by where the velocity is later than assumed, m/s per s: the mass's
+    /// share of the approach's acceleration, less what a later jump changes of the drift that was removed.
     pub accelerations_m_s2: [f64; 2],
 }
 

@@ -1,11 +1,11 @@
 //! The impacts at their refined times, with the speeds extrapolated to them.
 
-use crate::event::contact_samples::measured_velocity;
 use crate::event::corner::Shifts;
 use crate::event::drive::DriveTone;
 use crate::event::finite_contact::FiniteContact;
-use crate::event::impact::{Impact, Lag, MassSpeeds};
-use crate::event::kinematics::{Body, Kinematics, RelativeSource};
+use crate::event::impact::{Impact, MassSpeeds};
+use crate::event::kinematics::{Body, Kinematics};
+use crate::event::lag;
 use crate::event::refine::{ArcFit, Candidate, Instant, arcs, speeds};
 use crate::signal::local_fit::LocalFit;
 
@@ -25,6 +25,7 @@ pub(super) fn impacts(
     let delays = contact.map_or([0.0; 2], |c| c.delays);
     let rate_hz = kinematics.rate_hz;
     let shifts = Shifts::of(kinematics);
+    let lags = lag::lags(kinematics, candidates, instants, contact, arc);
     (0..candidates.len())
         .map(|i| {
             let time_s = instants[i].time / rate_hz;
@@ -46,10 +47,7 @@ pub(super) fn impacts(
                 x: of(&kinematics.x, i, delays[0]).map(|s| s.0),
                 y: of(&kinematics.y, i, delays[1]).map(|s| s.0),
                 corner_shifts: shifts.at(instants[i].time),
-                lags: match duration.filter(|d| *d > 0.0) {
-                    Some(_) => [None, None],
-                    None => lags(kinematics, candidates, i, (instants[i], contact), arc),
-                },
+                lags: lags[i],
                 dead_zone_s: candidates[i].dead_samples / rate_hz,
                 contact_duration_s: duration.filter(|d| lasting.is_some() && *d > 0.0),
                 external_push_m_s: lasting.map(|c| c.external_push_m_s).filter(|p| *p != 0.0),
@@ -57,56 +55,6 @@ pub(super) fn impacts(
             }
         })
         .collect()
-}
-
-/// What delays of the channels change of the approach speeds at an instantaneous impact: an acceleration of each
-/// mass before and after. Only where the time is that of a kink of measured displacements.
-fn lags(
-    kinematics: &Kinematics,
-    candidates: &[Candidate],
-    index: usize,
-    (instant, contact): (Instant, Option<&FiniteContact>),
-    arc: ArcFit,
-) -> [Option<Lag>; 2] {
-    let none = [None, None];
-    let factor = match kinematics.relative_from {
-        Some(RelativeSource::Doubled) => 2.0,
-        Some(_) => 1.0,
-        None => return none,
-    };
-    let candidate = &candidates[index];
-    let at_kink = kinematics.relative.displacement.is_some()
-        && candidate.dead_samples == 0.0
-        && instant.error < candidate.middle_error();
-    if !at_kink {
-        return none;
-    }
-    let assumed = contact.map_or([0.0; 2], |c| c.delays);
-    let rate_hz = kinematics.rate_hz;
-    let of = |body: &Body, assumed: f64| {
-        let velocity = measured_velocity(body)?;
-        let displacement = body.displacement.as_ref()?;
-        let fits = arcs(velocity, candidates, index, arc)?;
-        let [before, after] = fits.each_ref().map(|f| f.value(instant.time + assumed));
-        let lag = Lag {
-            velocity: velocity.role,
-            displacement: displacement.role,
-            share: before - after,
-            assumed_s: assumed / rate_hz,
-            accelerations_m_s2: fits.map(|f| factor * rate_hz * f.slope(instant.time + assumed)),
-        };
-        Some(lag)
-    };
-    let mut found = [of(&kinematics.x, assumed[0]), of(&kinematics.y, assumed[1])];
-    let jump: f64 = found.iter().flatten().map(|lag| lag.share).sum();
-    let bodies = kinematics.bodies().count();
-    if jump <= 0.0 || found.iter().flatten().count() != bodies {
-        return none;
-    }
-    for lag in found.iter_mut().flatten() {
-        lag.share /= jump;
-    }
-    found
 }
 
 /// Approach speeds at the start and at the end of a contact of finite duration.

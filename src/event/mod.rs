@@ -17,6 +17,7 @@ mod impact;
 mod impact_speeds;
 mod jumps;
 mod kinematics;
+mod lag;
 mod refine;
 
 pub use detect::{DetectSettings, Detection, FlightKind, detect};
