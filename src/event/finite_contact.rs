@@ -13,8 +13,8 @@
 use crate::event::contact_profile::ContactProfile;
 use crate::event::contact_samples::{Passage, Samples, beside, measured_velocity, samples};
 use crate::event::jumps::Jump;
-use crate::event::kinematics::Kinematics;
-use crate::event::refine::{ArcFit, Candidate, Instant, arcs, instants};
+use crate::event::kinematics::{Body, Kinematics};
+use crate::event::refine::{self, ArcFit, Candidate, Instant, arcs, instants};
 use crate::signal::robust;
 use crate::signal::whole;
 
@@ -45,6 +45,9 @@ pub(super) struct FiniteContact {
     pub duration: f64,
     /// Delay of each body's velocity against the kink of the displacement, samples.
     pub delays: [f64; 2],
+    /// Time from the mean kink of the bodies' displacements to either, samples: their channels may be late by
+    /// different delays.
+    pub kinks_apart: f64,
     /// Its shape.
     pub profile: ContactProfile,
 }
@@ -133,8 +136,8 @@ impl FiniteContact {
     /// Candidates whose jumps span all samples that a contact may touch.
     pub(super) fn spanned(&self, candidates: &[Candidate], instants: &[Instant]) -> Vec<Candidate> {
         let [first, last] = [
-            self.delays[0].min(self.delays[1]).min(0.0),
-            self.delays[0].max(self.delays[1]).max(0.0),
+            self.delays[0].min(self.delays[1]).min(-self.kinks_apart),
+            self.delays[0].max(self.delays[1]).max(self.kinks_apart),
         ];
         let spanned = |(c, instant): (&Candidate, &Instant)| {
             let (start, end) = self.span(instant.time);
@@ -173,12 +176,30 @@ pub(super) fn measure(
     }
     let profile = ContactProfile::new(typical_ratio(kinematics, &wide, &instants, arc)?);
     let mut found = Search { profile, impacts }.best()?;
+    found.kinks_apart = kinks_apart(kinematics, &wide, arc);
     match bodies {
         [Some(_), None] => found.delays[1] = found.delays[0],
         [None, Some(_)] => found.delays[0] = found.delays[1],
         _ => {}
     }
     Some(found)
+}
+
+/// Impacts that tell how far apart the bodies' kinks are.
+const KINKS: usize = 20;
+
+/// Half the time between the kinks of both bodies' displacements, samples; 0 of a single one.
+fn kinks_apart(kinematics: &Kinematics, candidates: &[Candidate], arc: ArcFit) -> f64 {
+    let rate_hz = kinematics.rate_hz;
+    let kink = |body: &Body, i: usize| {
+        let both = (body.displacement.as_ref()?, body.velocity.as_ref()?);
+        Some(refine::kink(both, candidates, i, arc, rate_hz)?.time)
+    };
+    let few = 0..candidates.len().min(KINKS);
+    let apart: Vec<f64> = few
+        .filter_map(|i| Some(kink(&kinematics.x, i)? - kink(&kinematics.y, i)?))
+        .collect();
+    robust::median(&apart).map_or(0.0, |apart| 0.5 * apart.abs())
 }
 
 /// The candidates with one sample more on either side left to the contact: so far from a delayed jump of
@@ -245,6 +266,7 @@ impl Search {
         let found = FiniteContact {
             duration: known(duration),
             delays: [known(mean + 0.5 * apart), known(mean - 0.5 * apart)],
+            kinks_apart: 0.0,
             profile: self.profile,
         };
         let differs = found.duration > 0.0 || found.delays != [0.0; 2];

@@ -127,7 +127,8 @@ pub(super) fn instants(
     }
 }
 
-fn kink(
+/// Where the displacement's flights before and after a candidate cross.
+pub(super) fn kink(
     (displacement, velocity): (&Series, &Series),
     candidates: &[Candidate],
     index: usize,

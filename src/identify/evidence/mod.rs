@@ -114,17 +114,22 @@ const IMPACT_BIAS: f64 = 2e-4;
 /// more per ms.
 const CONTACT_BIAS: f64 = 2.5e-3;
 const CONTACT_BIAS_PER_MS: f64 = 3e-3;
+/// What channels that are late by different delays leave open beside that, per ms between the first and the last.
+const DELAY_BIAS_PER_MS: f64 = 3e-3;
 /// A contact that the flights' extrapolation begins to notice, ms.
 const SHORT_CONTACT_MS: f64 = 0.1;
 
-/// What the extrapolation of speeds to the impacts leaves open in R, with the length of a contact that
-/// waveforms tell.
+/// What the extrapolation of speeds to the impacts leaves open in R, with the length of a contact and the delays
+/// of the channels that waveforms tell.
 pub fn impact_bias(parameters: &Parameters) -> f64 {
     let contact_ms = parameters.effect(Effect::ContactDuration);
     let noticed = (contact_ms / SHORT_CONTACT_MS).clamp(-1.0, 1.0);
+    let [first, last] = [f64::min, f64::max].map(|of| parameters.delays_s.into_iter().reduce(of));
+    let apart_ms = 1e3 * (last.unwrap_or(0.0) - first.unwrap_or(0.0));
     IMPACT_BIAS
         .hypot(CONTACT_BIAS * noticed)
         .hypot(CONTACT_BIAS_PER_MS * contact_ms)
+        .hypot(DELAY_BIAS_PER_MS * apart_ms)
 }
 /// Asymmetry that a well-made rig may have.
 const ASYMMETRY: f64 = 0.05;
