@@ -86,3 +86,18 @@ fn valid_delayed_velocities_keep_their_restitution() {
     let r = restitution(&impacts(&effects));
     assert!((r / 0.7 - 1.0).abs() < 0.01, "R = {r}");
 }
+
+#[test]
+fn valid_channels_that_are_late_by_different_delays_keep_their_restitution() {
+    // velocities before, one displacement after the drive: kinks and jumps up to 0.7 samples apart
+    for delays_ms in [
+        [-0.118, -0.121, 0.236, -0.055],
+        [0.163, 0.189, 0.05, 0.03],
+        [-0.25, 0.25, 0.2, -0.2],
+    ] {
+        let mut effects = Effects::default();
+        effects.delays_s[2..6].copy_from_slice(&delays_ms.map(|ms| 1e-3 * ms));
+        let r = restitution(&impacts(&effects));
+        assert!((r / 0.7 - 1.0).abs() < 0.01, "{delays_ms:?}: R = {r}");
+    }
+}

@@ -237,3 +237,48 @@ impl Block for ImpactBlock {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Role;
+
+    fn lag(velocity: Role, displacement: Role, accelerations_m_s2: [f64; 2]) -> Option<Lag> {
+        Some(Lag {
+            velocity,
+            displacement,
+            share: 0.5,
+            assumed_s: 1e-4,
+            accelerations_m_s2,
+        })
+    }
+
+    #[test]
+    fn valid_speeds_are_read_where_the_delays_of_the_channels_place_them() {
+        let pair = SpeedPair {
+            observation: 0,
+            time_s: 0.1,
+            before_m_s: 0.5,
+            after_m_s: 0.4,
+            error_m_s: 1e-3,
+            corner_shifts: [None, None],
+            lags: [
+                lag(Role::VelocityX, Role::DisplacementX, [10.0, 4.0]),
+                lag(Role::VelocityY, Role::DisplacementY, [20.0, 8.0]),
+            ],
+        };
+        let mut parameters = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
+        parameters.delays_s = [5e-4, 2e-4, 1e-4, 3e-4];
+        // the kink is 0.2 ms late: x is read 0.3 − 0.1 ms later, y 0 − 0.1 ms
+        let block = ImpactBlock::of_pairs(vec![pair], 0.0);
+        let found = block.delayed(&[], &parameters).pairs[0];
+        assert!((found.before_m_s - (0.5 + 2e-4 * 10.0 - 1e-4 * 20.0)).abs() < 1e-12);
+        assert!((found.after_m_s - (0.4 - 2e-4 * 4.0 + 1e-4 * 8.0)).abs() < 1e-12);
+        // read once more with the same delays, nothing changes; without delays, all comes back
+        let block = ImpactBlock::of_pairs(vec![found], 0.0);
+        assert_eq!(block.delayed(&[], &parameters).pairs[0], found);
+        parameters.delays_s = [1e-4, 1e-4, 0.0, 0.0];
+        let back = block.delayed(&[], &parameters).pairs[0];
+        assert!((back.before_m_s - 0.5).abs() < 1e-12 && (back.after_m_s - 0.4).abs() < 1e-12);
+    }
+}
