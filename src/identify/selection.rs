@@ -21,6 +21,8 @@ const END: f64 = 2e-3;
 /// That at which a fit may pull it there.
 const NEAR_END: f64 = 0.1;
 
+/// Most periodic records that a start is fitted from.
+const ENOUGH: usize = 100;
 /// Rounds of leaving outlying records out and fitting again.
 const ROUNDS: usize = 2;
 /// Relative change of the error allowed beside the noise below which another round changes nothing.
@@ -144,6 +146,7 @@ impl<'a> Selection<'a> {
         let nominal = self.evidence.nominal;
         let all = self.blocks.trajectory.records.clone();
         self.keep_those_with_orbits(&start);
+        self.keep_some();
         let first =
             match methods::trajectories(&self.blocks, &nominal.ideal(), start, Precision::Start)? {
                 Ok(first) => first.fit.parameters,
@@ -207,6 +210,14 @@ impl<'a> Selection<'a> {
             (times_worse > 1.0).then_some((item, times_worse))
         });
         scores.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Keep some of the periodic records, spread over the campaign: enough to start from.
+    fn keep_some(&mut self) {
+        let records = &mut self.blocks.trajectory.records;
+        let step = records.len().div_ceil(ENOUGH).max(1);
+        let mut place = 0..;
+        records.retain(|_| place.next().is_some_and(|i| i % step == 0));
     }
 
     /// Keep the periodic records that have an orbit at given parameters.
@@ -332,15 +343,16 @@ impl<'a> Selection<'a> {
         present: &[Method],
         (at, most): (&Parameters, usize),
     ) -> Result<Influential, TooMany> {
-        let (mut owners, mut parts) = (Vec::new(), Vec::new());
-        let mut others = problem.priors_normal(at);
+        let (mut owners, mut records) = (Vec::new(), Vec::new());
+        let mut all = problem.priors_normal(at);
         for ((block, weight), method) in problem.blocks.iter().zip(present) {
             if matches!(method, Method::Resonance | Method::Trajectories) {
-                let items = problem.items_of(*block, *weight, at);
-                owners.extend((0..items.len()).map(|i| (*method, i)));
-                parts.extend(items);
+                let (rows, sum) = problem.rows_of(*block, *weight, at);
+                owners.extend((0..rows.len()).map(|i| (*method, i)));
+                records.extend(rows);
+                all.add(&sum);
             } else {
-                others.add(&problem.block_normal(*block, *weight, at));
+                all.add(&problem.block_normal(*block, *weight, at));
             }
         }
         let mut doubtful: Vec<bool> = owners
@@ -355,7 +367,7 @@ impl<'a> Selection<'a> {
             .filter(|k| has_ended(&owners[*k]))
             .collect();
         let mut found = Vec::new();
-        while let Some(influences) = influence::influences(&parts, &others) {
+        while let Some(influences) = influence::influences(&records, &all) {
             let batch = match ends.is_empty() {
                 true => influence::strongest(&influences, &doubtful),
                 false => std::mem::take(&mut ends),
@@ -367,11 +379,11 @@ impl<'a> Selection<'a> {
                 return Err(TooMany(Influential::of(found)));
             }
             for i in batch.into_iter().rev() {
-                parts.remove(i);
+                all.remove(&records.remove(i));
                 doubtful.remove(i);
                 found.push(owners.remove(i));
             }
-            if influence::without_gradient(&mut parts, &mut others).is_none() {
+            if influence::at_optimum(&mut records, &mut all).is_none() {
                 break;
             }
         }

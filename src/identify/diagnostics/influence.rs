@@ -2,13 +2,14 @@
 //!
 //! A record that fits badly is seen in its residuals; one that few others can contradict moves the
 //! fit and fits well. Of each record, the estimate without it is compared with the one with
-//! it, over the covariance of their difference, (AₖA⁻¹)-wise: with A the information of all and Aᵢ
-//! the record's own, both turned into the axes of A^{-1/2}AᵢA^{-1/2}, of eigenvalues h and gradient
-//! u, Σ u²/(h(1−h)) is χ² of as many degrees of freedom as the record informs directions.
+//! it, over the covariance of their difference, (AₖA⁻¹)-wise: with A = LLᵀ the information of all, J and r
+//! the rows of the record's own factor, and h, v the eigenvalues and eigenvectors of J A⁻¹ Jᵀ,
+//! Σ (v·r)²/(1−h) is χ² of as many degrees of freedom as the record informs directions.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use rayon::prelude::*;
 
+use crate::identify::fit::factor::Rows;
 use crate::identify::fit::normal::{Normal, inverse};
 use crate::signal::robust;
 
@@ -26,48 +27,47 @@ const LEAST_SHARE: f64 = 1e-6;
 /// Share of the information in a direction that the others must have to contradict the record.
 const LEAST_OTHERS: f64 = 1e-6;
 
-/// The influences of items at a fit's optimum; `None` where the information of all is singular.
-pub fn influences(items: &[Normal], others: &Normal) -> Option<Vec<Influence>> {
-    let size = items.first()?.gradient.len();
-    let mut all = others.clone();
-    items.iter().for_each(|part| all.add(part));
+/// The influences of records at a fit's optimum, beside all that informs it, they included; `None`
+/// where the information of all is singular.
+pub fn influences(records: &[Rows], all: &Normal) -> Option<Vec<Influence>> {
     let scale = all.matrix.diagonal().map(|d| d.sqrt().recip());
-    let scaled = |matrix: &DMatrix<f64>| {
-        DMatrix::from_fn(size, size, |i, k| matrix[(i, k)] * scale[i] * scale[k])
-    };
-    let lower = scaled(&all.matrix).cholesky()?.l();
-    let influence = |item: &Normal| {
-        let half = lower.solve_lower_triangular(&scaled(&item.matrix))?;
-        let share = lower.solve_lower_triangular(&half.transpose())?;
-        let gradient = lower.solve_lower_triangular(&item.gradient.component_mul(&scale))?;
-        let axes = SymmetricEigen::try_new(share, f64::EPSILON, 1000)?;
-        let turned = axes.eigenvectors.tr_mul(&gradient);
+    let scaled = DMatrix::from_fn(scale.len(), scale.len(), |i, k| {
+        all.matrix[(i, k)] * scale[i] * scale[k]
+    });
+    let lower = scaled.cholesky()?.l();
+    let influence = |record: &Rows| {
+        let mut turned = record.slopes.transpose();
+        for (mut row, scale) in turned.row_iter_mut().zip(scale.iter()) {
+            row *= *scale;
+        }
+        if !lower.solve_lower_triangular_mut(&mut turned) {
+            return None;
+        }
+        let axes = SymmetricEigen::try_new(turned.tr_mul(&turned), f64::EPSILON, 1000)?;
+        let along = axes.eigenvectors.tr_mul(&record.residuals);
         let mut influence = Influence {
             chi2: 0.0,
             directions: 0,
         };
-        for (h, u) in axes.eigenvalues.iter().zip(turned.iter()) {
+        for (h, u) in axes.eigenvalues.iter().zip(along.iter()) {
             if *h > LEAST_SHARE && *h < 1.0 - LEAST_OTHERS {
-                influence.chi2 += u * u / (h * (1.0 - h));
+                influence.chi2 += u * u / (1.0 - h);
                 influence.directions += 1;
             }
         }
         Some(influence)
     };
-    items.par_iter().map(influence).collect()
+    records.par_iter().map(influence).collect()
 }
 
-/// Move all to the optimum of the sum of squares that they make together, to first order; `None` where
-/// their information is singular.
-pub fn without_gradient(items: &mut [Normal], others: &mut Normal) -> Option<()> {
-    let mut all = others.clone();
-    items.iter().for_each(|part| all.add(part));
+/// Move records, and all that informs the fit, to the optimum of the sum of squares that all make, to
+/// first order; `None` where the information is singular.
+pub fn at_optimum(records: &mut [Rows], all: &mut Normal) -> Option<()> {
     let step = -(inverse(&all.matrix)? * &all.gradient);
-    for part in items.iter_mut().chain([others]) {
-        let change = &part.matrix * &step;
-        part.cost += 2.0 * part.gradient.dot(&step) + step.dot(&change);
-        part.gradient += change;
+    for record in records {
+        record.residuals += &record.slopes * &step;
     }
+    all.gradient += &all.matrix * &step;
     Some(())
 }
 
@@ -118,15 +118,22 @@ mod tests {
 
     use super::*;
 
-    /// Normal equations of one residual (y − a·x)/σ and its place among two coordinates.
-    fn item(a: [f64; 2], residual: f64) -> Normal {
-        let slope = DVector::from_row_slice(&[-a[0], -a[1]]);
-        Normal {
-            matrix: &slope * slope.transpose(),
-            gradient: &slope * residual,
-            cost: residual * residual,
-            count: 1,
+    /// One residual and its slopes.
+    fn record(slopes: &[f64], residual: f64) -> Rows {
+        Rows {
+            slopes: DMatrix::from_row_slice(1, slopes.len(), slopes),
+            residuals: DVector::from_element(1, residual),
         }
+    }
+
+    /// Normal equations of all.
+    fn sum(records: &[Rows]) -> Normal {
+        let mut all = Normal::zeros(records[0].slopes.ncols());
+        for record in records {
+            all.matrix += record.slopes.tr_mul(&record.slopes);
+            all.gradient += record.slopes.tr_mul(&record.residuals);
+        }
+        all
     }
 
     #[test]
@@ -134,16 +141,8 @@ mod tests {
         // Three equal measurements of one number: residuals from their mean.
         let values = [0.3, -1.0, 2.2];
         let mean = values.iter().sum::<f64>() / 3.0;
-        let items: Vec<Normal> = values
-            .iter()
-            .map(|v| {
-                let mut n = Normal::zeros(1);
-                n.matrix[(0, 0)] = 1.0;
-                n.gradient[0] = mean - v;
-                n
-            })
-            .collect();
-        let found = influences(&items, &Normal::zeros(1)).expect("regular");
+        let records = values.map(|v| record(&[1.0], mean - v));
+        let found = influences(&records, &sum(&records)).expect("regular");
         for (influence, value) in found.iter().zip(values) {
             // Against the mean of the other two: variance 1 + 1/2.
             let others = (3.0 * mean - value) / 2.0;
@@ -155,12 +154,12 @@ mod tests {
     fn valid_a_record_that_drags_the_fit_along_is_found() {
         // Many tell the first coordinate, two the second, of which one is wrong by 20 deviations:
         // the fit halves the difference, and the residual of each is 10.
-        let mut items: Vec<Normal> = (0..40)
-            .map(|i| item([1.0, 0.0], if i % 2 == 0 { 1.0 } else { -1.0 }))
+        let mut records: Vec<Rows> = (0..40)
+            .map(|i| record(&[-1.0, 0.0], if i % 2 == 0 { 1.0 } else { -1.0 }))
             .collect();
-        items.push(item([0.0, 1.0], 10.0));
-        items.push(item([0.0, 1.0], -10.0));
-        let found = influences(&items, &Normal::zeros(2)).expect("regular");
+        records.push(record(&[0.0, -1.0], 10.0));
+        records.push(record(&[0.0, -1.0], -10.0));
+        let found = influences(&records, &sum(&records)).expect("regular");
         // Two that contradict each other accuse each other alike.
         assert_eq!(strongest(&found, &[false; 42]), vec![40, 41]);
         assert!((found[40].chi2 - 200.0).abs() < 1e-6);

@@ -18,10 +18,6 @@ pub fn swapped(
     blocks: &Blocks,
     cost: &dyn Fn(&Blocks, &Weights) -> Option<(f64, usize)>,
 ) -> Option<Finding> {
-    // An allowance for what the model leaves open would hide what the interchange explains.
-    let mut here = blocks.clone();
-    here.resonance.allow(LEAST_ALLOWANCE);
-    here.trajectory.allow(LEAST_ALLOWANCE);
     // What was recorded under the other's name came through its own filter, or the filters too
     // are stated the wrong way round. One after the other: each is a copy of all waveforms.
     let best = |blocks: &Blocks, weights: &Weights| {
@@ -33,7 +29,7 @@ pub fn swapped(
     let alone = Weights::from([(Method::Resonance, 1.0)]);
     let both = Weights::from([(Method::Resonance, 1.0), (Method::Trajectories, 1.0)]);
     // Often the resonance curve alone, or a few waveforms beside it, speak against it.
-    let few = thinned(&here);
+    let few = allowed_least(thinned(blocks));
     for (weights, against) in [(&alone, 2.0), (&both, 1.0)] {
         if let (Some((here, _)), Some((there, _))) = (cost(&few, weights), best(&few, weights))
             && there > against * here
@@ -41,7 +37,8 @@ pub fn swapped(
             return None;
         }
     }
-    let ((here, freedom), (there, _)) = (cost(&here, &both)?, best(&here, &both)?);
+    let whole = allowed_least(blocks.clone());
+    let ((here, freedom), (there, _)) = (cost(&whole, &both)?, best(&whole, &both)?);
     let typical = (there / freedom.max(1) as f64).max(1.0);
     let z_score = ((here - there) / typical).max(0.0).sqrt();
     // Where the model leaves more than noise, chance may favour either by some of it.
@@ -53,18 +50,26 @@ pub fn swapped(
 const FEW: usize = 16;
 const FEW_POINTS: usize = 64;
 
+/// The blocks with next to nothing allowed beside the noise: an allowance for what the model leaves open
+/// would hide what the interchange explains.
+fn allowed_least(mut blocks: Blocks) -> Blocks {
+    blocks.resonance.allow(LEAST_ALLOWANCE);
+    blocks.trajectory.allow(LEAST_ALLOWANCE);
+    blocks
+}
+
 /// The blocks with a few of the waveforms and of the impactless records, spread over the campaign.
 fn thinned(blocks: &Blocks) -> Blocks {
-    let mut few = blocks.clone();
-    few.trajectory.records = every(few.trajectory.records, FEW);
-    few.resonance.points = every(few.resonance.points, FEW_POINTS);
+    let records = every(&blocks.trajectory.records, FEW);
+    let mut few = blocks.with_trajectory(blocks.trajectory.with_records(records));
+    few.resonance.points = every(&blocks.resonance.points, FEW_POINTS);
     few
 }
 
 /// About so many of some, evenly spread.
-fn every<T>(all: Vec<T>, count: usize) -> Vec<T> {
+fn every<T: Clone>(all: &[T], count: usize) -> Vec<T> {
     let step = all.len().div_ceil(count).max(1);
-    all.into_iter().step_by(step).collect()
+    all.iter().step_by(step).cloned().collect()
 }
 
 /// Whose filter an interchanged velocity has passed.

@@ -6,7 +6,7 @@
 //! chapter 5), so that factors of parts stack into that of the whole.
 
 use multiversion::multiversion;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use crate::identify::fit::normal::Normal;
 
@@ -21,6 +21,15 @@ pub struct Factor {
     pub cost: f64,
     /// Number of residuals.
     pub count: usize,
+}
+
+/// Few rows that have the normal equations of some residuals.
+#[derive(Debug, Clone)]
+pub struct Rows {
+    /// Slopes over the unknowns, a row for each residual.
+    pub slopes: DMatrix<f64>,
+    /// The residuals.
+    pub residuals: DVector<f64>,
 }
 
 /// Share of the square of a column that rounding may leave.
@@ -121,11 +130,31 @@ impl Factor {
         normal
     }
 
+    /// The rows that have an unknown, over all unknowns, of which these are at the given places.
+    pub fn rows(&self, places: &[usize], unknowns: usize) -> Rows {
+        let present = self.present(self.unknowns);
+        let mut slopes = DMatrix::zeros(present.len(), unknowns);
+        for (k, to) in places.iter().enumerate() {
+            for (row, i) in present.iter().enumerate().take_while(|(_, i)| **i <= k) {
+                slopes[(row, *to)] = self.entry(*i, k);
+            }
+        }
+        let residuals = present.iter().map(|i| self.entry(*i, self.unknowns));
+        Rows {
+            slopes,
+            residuals: DVector::from_iterator(present.len(), residuals),
+        }
+    }
+
+    /// Which of the first rows have entries: fewer residuals than unknowns leave some without.
+    fn present(&self, rows: usize) -> Vec<usize> {
+        (0..rows).filter(|i| self.entry(*i, *i) != 0.0).collect()
+    }
+
     /// Add other residuals, whose unknowns are those at the given places among this factor's.
     pub fn add(&mut self, other: &Self, places: &[usize]) {
-        // Fewer residuals than unknowns leave rows without entries.
         let width = other.unknowns + 1;
-        let present: Vec<usize> = (0..width).filter(|i| other.entry(*i, *i) != 0.0).collect();
+        let present = other.present(width);
         let height = present.len();
         let mut rows = vec![0.0; height * (self.unknowns + 1)];
         let targets = places.iter().copied().chain([self.unknowns]);

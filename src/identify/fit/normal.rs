@@ -2,6 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::identify::fit::factor::Rows;
+
 /// Normal equations of some residuals.
 #[derive(Debug, Clone)]
 pub struct Normal {
@@ -32,6 +34,12 @@ impl Normal {
         self.gradient += &other.gradient;
         self.cost += other.cost;
         self.count += other.count;
+    }
+
+    /// Take the information of some rows away: matrix and gradient.
+    pub fn remove(&mut self, rows: &Rows) {
+        self.matrix -= rows.slopes.tr_mul(&rows.slopes);
+        self.gradient -= rows.slopes.tr_mul(&rows.residuals);
     }
 }
 

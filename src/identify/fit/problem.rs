@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::identify::fit::block::Block;
-use crate::identify::fit::factor::Factor;
+use crate::identify::fit::factor::{Factor, Rows};
 use crate::identify::fit::group::Group;
 use crate::identify::fit::least_squares::{LeastSquares, Limits, Variance, minimise};
 use crate::identify::fit::normal::Normal;
@@ -135,13 +135,46 @@ impl Problem<'_> {
     }
 
     /// Normal equations item by item of a block with its weight; items without a model are left out.
-    pub fn items_of(&self, block: &dyn Block, weight: f64, at: &Parameters) -> Vec<Normal> {
+    fn items_of(&self, block: &dyn Block, weight: f64, at: &Parameters) -> Vec<Normal> {
+        let unknowns = self.free.len();
+        self.items(block, weight, at, |factor, places| {
+            factor.normal(places, unknowns)
+        })
+    }
+
+    /// Rows of the factor item by item of a block with its weight, and the normal equations of all;
+    /// items without a model are left out.
+    pub fn rows_of(&self, block: &dyn Block, weight: f64, at: &Parameters) -> (Vec<Rows>, Normal) {
+        let unknowns = self.free.len();
+        let of_each = self.items(block, weight, at, |factor, places| {
+            (
+                factor.rows(places, unknowns),
+                factor.normal(places, unknowns),
+            )
+        });
+        let mut sum = Normal::zeros(unknowns);
+        let take = |(rows, normal)| {
+            sum.add(&normal);
+            rows
+        };
+        (of_each.into_iter().map(take).collect(), sum)
+    }
+
+    /// What the factor of each item of a block with its weight, and the places of its coordinates among
+    /// the free ones, give; items without a model are left out.
+    fn items<T: Send>(
+        &self,
+        block: &dyn Block,
+        weight: f64,
+        at: &Parameters,
+        give: impl Fn(Factor, &[usize]) -> T + Sync,
+    ) -> Vec<T> {
         (0..block.items())
             .into_par_iter()
             .filter_map(|i| {
                 let (places, coordinates) = self.touched(block, i);
                 let factor = block.factor(i, at, &coordinates, weight)?;
-                Some(factor.normal(&places, self.free.len()))
+                Some(give(factor, &places))
             })
             .collect()
     }
@@ -227,17 +260,23 @@ impl Problem<'_> {
             progress: self.progress.clone(),
             precision: Precision::Start,
         };
-        held.least_cost_near(&start)
+        held.least_cost_from(&start, 0.02 * linear)
             .or_else(|| Some(held.fit(start).ok()?.cost))
     }
 
-    /// Least cost as the residuals and slopes at a point predict it, where it is less than a standard
-    /// error away; `None` if it is not, or if an item has no model there.
-    fn least_cost_near(&self, at: &Parameters) -> Option<f64> {
+    /// Least cost as the residuals and slopes at a point predict it: of a step shorter than a standard
+    /// error the prediction, of a longer one the cost where it leads, if that is within `tolerance` of the
+    /// prediction; `None` if it is not, or if an item has no model there.
+    fn least_cost_from(&self, at: &Parameters, tolerance: f64) -> Option<f64> {
         let factor = LeastSquares::factor(self, at).ok()?;
         let step = factor.step(0.0, &vec![0.0; factor.unknowns()])?;
         let length = factor.length(&step);
-        (length < 1.0).then_some(factor.cost - length * length)
+        let predicted = factor.cost - length * length;
+        if length < 1.0 {
+            return Some(predicted);
+        }
+        let cost = self.cost(&self.moved(at, &step))?;
+        ((cost - predicted).abs() < tolerance).then_some(cost)
     }
 
     /// Factor over the items that have a model, and those (block, item) that have none.
