@@ -21,8 +21,6 @@ const END: f64 = 2e-3;
 /// That at which a fit may pull it there.
 const NEAR_END: f64 = 0.1;
 
-/// Most periodic records that a start is fitted from.
-const ENOUGH: usize = 100;
 /// Rounds of leaving outlying records out and fitting again.
 const ROUNDS: usize = 2;
 /// Relative change of the error allowed beside the noise below which another round changes nothing.
@@ -146,7 +144,6 @@ impl<'a> Selection<'a> {
         let nominal = self.evidence.nominal;
         let all = self.blocks.trajectory.records.clone();
         self.keep_those_with_orbits(&start);
-        self.keep_some();
         let first =
             match methods::trajectories(&self.blocks, &nominal.ideal(), start, Precision::Start)? {
                 Ok(first) => first.fit.parameters,
@@ -210,14 +207,6 @@ impl<'a> Selection<'a> {
             (times_worse > 1.0).then_some((item, times_worse))
         });
         scores.max_by(|a, b| a.1.total_cmp(&b.1))
-    }
-
-    /// Keep some of the periodic records, spread over the campaign: enough to start from.
-    fn keep_some(&mut self) {
-        let records = &mut self.blocks.trajectory.records;
-        let step = records.len().div_ceil(ENOUGH).max(1);
-        let mut place = 0..;
-        records.retain(|_| place.next().is_some_and(|i| i % step == 0));
     }
 
     /// Keep the periodic records that have an orbit at given parameters.
