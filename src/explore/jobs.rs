@@ -7,6 +7,7 @@ use std::sync::Arc;
 use tokio::sync::{mpsc, watch};
 
 use super::answer::answer;
+use super::first_tiles::{FirstTiles, Underway};
 use super::frame::Frame;
 use super::wire::{Ask, Request, Slot};
 use super::{ExploreError, Session, maps};
@@ -19,6 +20,7 @@ pub(super) struct Jobs {
     newest: BTreeMap<Slot, watch::Sender<Option<Request>>>,
     queue: mpsc::Sender<Request>,
     outbox: mpsc::Sender<Frame>,
+    first_tiles: Arc<FirstTiles>,
 }
 
 /// A job that is being done.
@@ -27,6 +29,7 @@ pub(super) struct Job {
     pub id: u32,
     newest: Option<watch::Receiver<Option<Request>>>,
     outbox: mpsc::Sender<Frame>,
+    first_tiles: Arc<FirstTiles>,
 }
 
 /// The page is gone, or asked for something newer: the job stops.
@@ -40,7 +43,18 @@ impl Job {
             id,
             newest: None,
             outbox,
+            first_tiles: Arc::default(),
         }
+    }
+
+    /// This map's first tiles begin.
+    pub(super) fn first_tiles(&self) -> Underway<'_> {
+        self.first_tiles.underway(self.id)
+    }
+
+    /// Wait until the first tiles of the page's newest map are through.
+    pub(super) fn wait_for_first_tiles(&self) {
+        self.first_tiles.wait_while(|| !self.is_stale());
     }
 
     /// Whether the page is gone or has asked for something newer.
@@ -70,11 +84,13 @@ pub(super) fn refusal(id: u32, error: &ExploreError) -> Frame {
 impl Jobs {
     /// Start the slots of a page; frames go to the outbox.
     pub(super) fn start(session: &Arc<Session>, outbox: &mpsc::Sender<Frame>) -> Self {
+        let first_tiles = Arc::<FirstTiles>::default();
         let mut newest = BTreeMap::new();
         for slot in Slot::NEWEST {
             let (sender, receiver) = watch::channel(None);
             newest.insert(slot, sender);
-            tokio::spawn(newest_of(Arc::clone(session), receiver, outbox.clone()));
+            let shared = (outbox.clone(), Arc::clone(&first_tiles));
+            tokio::spawn(newest_of(Arc::clone(session), receiver, shared));
         }
         let (queue, waiting) = mpsc::channel(QUEUE);
         tokio::spawn(one_by_one(Arc::clone(session), waiting, outbox.clone()));
@@ -82,6 +98,7 @@ impl Jobs {
             newest,
             queue,
             outbox: outbox.clone(),
+            first_tiles,
         }
     }
 
@@ -89,6 +106,9 @@ impl Jobs {
     /// that follow take the processors.
     pub(super) async fn take(&self, request: Request) {
         let id = request.id;
+        if let Ask::Map {} = request.ask {
+            self.first_tiles.wanted(id);
+        }
         if let Ask::Boundaries {
             points,
             known: false,
@@ -118,7 +138,7 @@ impl Jobs {
 async fn newest_of(
     session: Arc<Session>,
     mut newest: watch::Receiver<Option<Request>>,
-    outbox: mpsc::Sender<Frame>,
+    (outbox, first_tiles): (mpsc::Sender<Frame>, Arc<FirstTiles>),
 ) {
     while newest.changed().await.is_ok() {
         let Some(request) = newest.borrow_and_update().clone() else {
@@ -128,6 +148,7 @@ async fn newest_of(
             id: request.id,
             newest: Some(newest.clone()),
             outbox: outbox.clone(),
+            first_tiles: Arc::clone(&first_tiles),
         };
         work(&session, request, job).await;
     }

@@ -2,6 +2,7 @@
 
 use std::sync::LazyLock;
 
+use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::answer::Stop;
@@ -31,18 +32,35 @@ const MOST_PERIODS: u32 = 5;
 /// Most points of a boundary that a page may ask for.
 const MOST_POINTS: usize = 2000;
 
-/// The threads that march the map and look where boundaries exist: one fewer than there are, so that the
-/// browser, which is most often on the same machine, is never kept waiting by a map. `None` where the
-/// system gives no threads.
-static POOL: LazyLock<Option<ThreadPool>> = LazyLock::new(|| {
-    let threads = rayon::current_num_threads().saturating_sub(1).max(1);
-    let builder = ThreadPoolBuilder::new().num_threads(threads);
-    builder.build().ok()
-});
+/// The threads that march the map and look where boundaries exist. `None` where the system gives none.
+static POOL: LazyLock<Option<ThreadPool>> = LazyLock::new(|| pool(rayon::current_num_threads()));
 
-/// Work of a map on its threads, in the order in which it comes.
-fn in_pool<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    match POOL.as_ref() {
+/// The thread of the first tiles: one, so that the browser, which is most often on the same machine, draws one
+/// while the next is computed.
+static FIRST_POOL: LazyLock<Option<ThreadPool>> = LazyLock::new(|| pool(1));
+
+fn pool(threads: usize) -> Option<ThreadPool> {
+    let builder = ThreadPoolBuilder::new().num_threads(threads);
+    builder.start_handler(|_| give_way()).build().ok()
+}
+
+/// Nice value of the map's threads.
+#[cfg(target_os = "linux")]
+const GIVES_WAY: i32 = 10;
+
+/// Let other threads go before this one. Linux has a priority of each thread; where it may not be changed, the
+/// map is as quick, and the browser waits for it.
+#[cfg(target_os = "linux")]
+fn give_way() {
+    let _ = rustix::process::setpriority_process(None, GIVES_WAY);
+}
+
+#[cfg(not(target_os = "linux"))]
+fn give_way() {}
+
+/// Work on the threads of a pool, in the order in which it comes.
+fn in_pool<T: Send>(pool: &Option<ThreadPool>, work: impl FnOnce() -> T + Send) -> T {
+    match pool {
         Some(pool) => pool.install(work),
         None => work(),
     }
@@ -69,6 +87,7 @@ pub(super) fn cells<'a>(
 
 /// The region map of what the page shows: 32 × 24, 128 × 96, then strips of 384 × 288.
 pub(super) fn map(state: &State, job: &Job) -> Result<(), Stop> {
+    let before_boundaries = job.first_tiles();
     let machine = state.machine();
     let fast = UnitMass::of(&machine).is_some();
     let levels: &[(usize, usize)] = match fast {
@@ -77,16 +96,18 @@ pub(super) fn map(state: &State, job: &Job) -> Result<(), Stop> {
     };
     let strip_cells = if fast { STRIP_CELLS } else { SLOW_STRIP_CELLS };
     let finest = levels.len() - 1;
-    for (level, &size) in levels.iter().enumerate() {
-        let tile = Tile {
-            level,
-            size,
-            strip_cells,
-            finest: level == finest,
-        };
-        tile.send(state, &machine, job)?;
-    }
-    Ok(())
+    let first = if fast { finest } else { 0 };
+    let tiles = levels.iter().enumerate().map(|(level, &size)| Tile {
+        level,
+        size,
+        strip_cells,
+        finest: level == finest,
+        pool: if level < first { &FIRST_POOL } else { &POOL },
+    });
+    let send = |tile: Tile| tile.send(state, &machine, job);
+    tiles.clone().take(first).try_for_each(send)?;
+    drop(before_boundaries);
+    tiles.skip(first).try_for_each(send)
 }
 
 /// One level of the map.
@@ -98,6 +119,8 @@ struct Tile {
     strip_cells: usize,
     /// Whether no finer level follows.
     finest: bool,
+    /// The threads that march it.
+    pool: &'static Option<ThreadPool>,
 }
 
 impl Tile {
@@ -115,7 +138,7 @@ impl Tile {
                 eta: eta.clone(),
                 rho: strip.to_vec(),
             };
-            let map = in_pool(|| region_map(machine, &grid, &plan.map))?;
+            let map = in_pool(self.pool, || region_map(machine, &grid, &plan.map))?;
             let (motions, cells) = cells(map.cells.iter());
             let frame = job
                 .frame("map")
@@ -162,25 +185,22 @@ pub(super) fn bare(state: &State, points: usize, id: u32) -> Result<Frame, Explo
     }))
 }
 
-/// The boundaries of z = 1/n with where they exist, one frame each. Those of z = 1 are computed between the
-/// map's first tiles, the others in one go, so that no strip of the map comes between them.
+/// The boundaries of z = 1/n with where they exist, one frame each: after the first tiles of a fast map, and all
+/// in one go, so that no strip of it comes between them.
 pub(super) fn boundaries(state: &State, points: usize, job: &Job) -> Result<(), Stop> {
     let machine = state.machine();
     let etas = boundary_etas(state, points)?;
-    for periods in [1..=1, 2..=MOST_PERIODS] {
-        if job.is_stale() {
-            return Err(Stop::Stale);
-        }
-        let curves: Vec<Frame> = in_pool(|| {
-            let both = |n| [("s2", n, rho_s2 as Boundary), ("s1", n, rho_s1)];
-            let curves = periods.flat_map(both);
-            curves.map(|c| curve(&machine, &etas, c, job)).collect()
-        });
-        for frame in curves {
-            job.send(frame)?;
-        }
-    }
-    Ok(())
+    let both = |n| [("s2", n, rho_s2 as Boundary), ("s1", n, rho_s1)];
+    let curves: Vec<_> = (1..=MOST_PERIODS).flat_map(both).collect();
+    let curve = |c: &(&str, u32, Boundary)| match job.is_stale() {
+        true => Err(Stop::Stale),
+        false => Ok(curve(&machine, &etas, *c, job)),
+    };
+    job.wait_for_first_tiles();
+    let frames: Vec<Frame> = in_pool(&POOL, || {
+        curves.par_iter().map(curve).collect::<Result<_, Stop>>()
+    })?;
+    Ok(frames.into_iter().try_for_each(|frame| job.send(frame))?)
 }
 
 /// One boundary of z = 1/n with where it exists.

@@ -12,6 +12,7 @@ mod demo;
 mod error;
 mod evidence;
 mod export;
+mod first_tiles;
 mod frame;
 mod jobs;
 mod maps;
