@@ -2,15 +2,15 @@
 //!
 //! A record that fits badly is seen in its residuals; one that few others can contradict moves the
 //! fit and fits well. Of each record, the estimate without it is compared with the one with
-//! it, over the covariance of their difference, (AₖA⁻¹)-wise: with A = LLᵀ the information of all, J and r
+//! it, over the covariance of their difference, (AₖA⁻¹)-wise: with A = `LLᵀ` the information of all, J and r
 //! the rows of the record's own factor, and h, v the eigenvalues and eigenvectors of J A⁻¹ Jᵀ,
 //! Σ (v·r)²/(1−h) is χ² of as many degrees of freedom as the record informs directions.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use rayon::prelude::*;
 
-use crate::identify::fit::factor::Rows;
 use crate::identify::fit::normal::{Normal, inverse};
+use crate::identify::fit::reduced_rows::Rows;
 use crate::signal::robust;
 
 /// A record's influence on a fit.

@@ -9,6 +9,7 @@ use multiversion::multiversion;
 use nalgebra::{DMatrix, DVector};
 
 use crate::identify::fit::normal::Normal;
+use crate::identify::fit::reduced_rows::Rows;
 
 /// Upper triangular factor R of the rows [J r] of some residuals, with their cost and number.
 #[derive(Debug, Clone)]
@@ -21,15 +22,6 @@ pub struct Factor {
     pub cost: f64,
     /// Number of residuals.
     pub count: usize,
-}
-
-/// Few rows that have the normal equations of some residuals.
-#[derive(Debug, Clone)]
-pub struct Rows {
-    /// Slopes over the unknowns, a row for each residual.
-    pub slopes: DMatrix<f64>,
-    /// The residuals.
-    pub residuals: DVector<f64>,
 }
 
 /// Share of the square of a column that rounding may leave.

@@ -13,6 +13,7 @@ pub mod own;
 pub mod parameters;
 pub mod problem;
 mod progress;
+pub mod reduced_rows;
 mod report;
 
 use nalgebra::DMatrix;

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::identify::fit::factor::Rows;
+use crate::identify::fit::reduced_rows::Rows;
 
 /// Normal equations of some residuals.
 #[derive(Debug, Clone)]

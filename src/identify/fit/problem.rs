@@ -10,11 +10,12 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::identify::fit::block::Block;
-use crate::identify::fit::factor::{Factor, Rows};
+use crate::identify::fit::factor::Factor;
 use crate::identify::fit::group::Group;
 use crate::identify::fit::least_squares::{LeastSquares, Limits, Variance, minimise};
 use crate::identify::fit::normal::Normal;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::reduced_rows::Rows;
 use crate::identify::fit::{Fit, FitError, FitProgress};
 
 /// Gaussian prior on one coordinate.
