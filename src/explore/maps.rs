@@ -32,8 +32,13 @@ const MOST_PERIODS: u32 = 5;
 /// Most points of a boundary that a page may ask for.
 const MOST_POINTS: usize = 2000;
 
-/// The threads that march the map and look where boundaries exist. `None` where the system gives none.
-static POOL: LazyLock<Option<ThreadPool>> = LazyLock::new(|| pool(rayon::current_num_threads()));
+/// The threads that march the map and look where boundaries exist: where they cannot give way to the browser
+/// one fewer than there are. `None` where the system gives none.
+static POOL: LazyLock<Option<ThreadPool>> = LazyLock::new(|| {
+    let spared = if cfg!(target_os = "linux") { 0 } else { 1 };
+    let threads = rayon::current_num_threads().saturating_sub(spared);
+    pool(threads.max(1))
+});
 
 /// The thread of the first tiles: one, so that the browser, which is most often on the same machine, draws one
 /// while the next is computed.

@@ -333,15 +333,14 @@ impl<'a> Selection<'a> {
         (at, most): (&Parameters, usize),
     ) -> Result<Influential, TooMany> {
         let (mut owners, mut records) = (Vec::new(), Vec::new());
-        let mut all = problem.priors_normal(at);
+        let mut others = problem.priors_normal(at);
         for ((block, weight), method) in problem.blocks.iter().zip(present) {
             if matches!(method, Method::Resonance | Method::Trajectories) {
-                let (rows, sum) = problem.rows_of(*block, *weight, at);
+                let rows = problem.rows_of(*block, *weight, at);
                 owners.extend((0..rows.len()).map(|i| (*method, i)));
                 records.extend(rows);
-                all.add(&sum);
             } else {
-                all.add(&problem.block_normal(*block, *weight, at));
+                others.add(&problem.block_normal(*block, *weight, at));
             }
         }
         let mut doubtful: Vec<bool> = owners
@@ -356,7 +355,7 @@ impl<'a> Selection<'a> {
             .filter(|k| has_ended(&owners[*k]))
             .collect();
         let mut found = Vec::new();
-        while let Some(influences) = influence::influences(&records, &all) {
+        while let Some(influences) = influence::influences(&records, &others) {
             let batch = match ends.is_empty() {
                 true => influence::strongest(&influences, &doubtful),
                 false => std::mem::take(&mut ends),
@@ -368,11 +367,11 @@ impl<'a> Selection<'a> {
                 return Err(TooMany(Influential::of(found)));
             }
             for i in batch.into_iter().rev() {
-                all.remove(&records.remove(i));
+                records.remove(i);
                 doubtful.remove(i);
                 found.push(owners.remove(i));
             }
-            if influence::at_optimum(&mut records, &mut all).is_none() {
+            if influence::without_gradient(&mut records, &mut others).is_none() {
                 break;
             }
         }

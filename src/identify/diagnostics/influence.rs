@@ -27,9 +27,9 @@ const LEAST_SHARE: f64 = 1e-6;
 /// Share of the information in a direction that the others must have to contradict the record.
 const LEAST_OTHERS: f64 = 1e-6;
 
-/// The influences of records at a fit's optimum, beside all that informs it, they included; `None`
-/// where the information of all is singular.
-pub fn influences(records: &[Rows], all: &Normal) -> Option<Vec<Influence>> {
+/// The influences of records at a fit's optimum; `None` where the information of all is singular.
+pub fn influences(records: &[Rows], others: &Normal) -> Option<Vec<Influence>> {
+    let all = together(records, others);
     let scale = all.matrix.diagonal().map(|d| d.sqrt().recip());
     let scaled = DMatrix::from_fn(scale.len(), scale.len(), |i, k| {
         all.matrix[(i, k)] * scale[i] * scale[k]
@@ -60,15 +60,24 @@ pub fn influences(records: &[Rows], all: &Normal) -> Option<Vec<Influence>> {
     records.par_iter().map(influence).collect()
 }
 
-/// Move records, and all that informs the fit, to the optimum of the sum of squares that all make, to
-/// first order; `None` where the information is singular.
-pub fn at_optimum(records: &mut [Rows], all: &mut Normal) -> Option<()> {
+/// Move all to the optimum of the sum of squares that they make together, to first order; `None` where
+/// their information is singular.
+pub fn without_gradient(records: &mut [Rows], others: &mut Normal) -> Option<()> {
+    let all = together(records, others);
     let step = -(inverse(&all.matrix)? * &all.gradient);
     for record in records {
         record.residuals += &record.slopes * &step;
     }
-    all.gradient += &all.matrix * &step;
+    others.gradient += &others.matrix * &step;
     Some(())
+}
+
+/// What records inform beside all others. It is summed anew, as taking one record's away could leave
+/// rounding where no other informs.
+fn together(records: &[Rows], others: &Normal) -> Normal {
+    let mut all = others.clone();
+    records.iter().for_each(|record| all.inform(record));
+    all
 }
 
 /// Standard deviations of a normal variable from which an influence is not due to chance.
@@ -126,23 +135,13 @@ mod tests {
         }
     }
 
-    /// Normal equations of all.
-    fn sum(records: &[Rows]) -> Normal {
-        let mut all = Normal::zeros(records[0].slopes.ncols());
-        for record in records {
-            all.matrix += record.slopes.tr_mul(&record.slopes);
-            all.gradient += record.slopes.tr_mul(&record.residuals);
-        }
-        all
-    }
-
     #[test]
     fn valid_an_influence_is_the_squared_studentised_residual_of_one_measurement() {
         // Three equal measurements of one number: residuals from their mean.
         let values = [0.3, -1.0, 2.2];
         let mean = values.iter().sum::<f64>() / 3.0;
         let records = values.map(|v| record(&[1.0], mean - v));
-        let found = influences(&records, &sum(&records)).expect("regular");
+        let found = influences(&records, &Normal::zeros(1)).expect("regular");
         for (influence, value) in found.iter().zip(values) {
             // Against the mean of the other two: variance 1 + 1/2.
             let others = (3.0 * mean - value) / 2.0;
@@ -159,7 +158,7 @@ mod tests {
             .collect();
         records.push(record(&[0.0, -1.0], 10.0));
         records.push(record(&[0.0, -1.0], -10.0));
-        let found = influences(&records, &sum(&records)).expect("regular");
+        let found = influences(&records, &Normal::zeros(2)).expect("regular");
         // Two that contradict each other accuse each other alike.
         assert_eq!(strongest(&found, &[false; 42]), vec![40, 41]);
         assert!((found[40].chi2 - 200.0).abs() < 1e-6);

@@ -36,10 +36,11 @@ impl Normal {
         self.count += other.count;
     }
 
-    /// Take the information of some rows away: matrix and gradient.
-    pub fn remove(&mut self, rows: &Rows) {
-        self.matrix -= rows.slopes.tr_mul(&rows.slopes);
-        self.gradient -= rows.slopes.tr_mul(&rows.residuals);
+    /// Add the information of some rows: matrix and gradient.
+    pub fn inform(&mut self, rows: &Rows) {
+        self.matrix.gemm_tr(1.0, &rows.slopes, &rows.slopes, 1.0);
+        self.gradient
+            .gemv_tr(1.0, &rows.slopes, &rows.residuals, 1.0);
     }
 }
 

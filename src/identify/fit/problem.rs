@@ -70,6 +70,9 @@ impl Precision {
     }
 }
 
+/// Share of a rise of the cost to which it is known where the problem is nearly linear.
+const NEARLY: f64 = 0.02;
+
 /// Least orthogonal share of a column of slopes: differences do not resolve less.
 const LEAST_SHARE: f64 = 1e-8;
 
@@ -143,22 +146,12 @@ impl Problem<'_> {
         })
     }
 
-    /// Rows of the factor item by item of a block with its weight, and the normal equations of all;
-    /// items without a model are left out.
-    pub fn rows_of(&self, block: &dyn Block, weight: f64, at: &Parameters) -> (Vec<Rows>, Normal) {
+    /// Rows of the factor item by item of a block with its weight; items without a model are left out.
+    pub fn rows_of(&self, block: &dyn Block, weight: f64, at: &Parameters) -> Vec<Rows> {
         let unknowns = self.free.len();
-        let of_each = self.items(block, weight, at, |factor, places| {
-            (
-                factor.rows(places, unknowns),
-                factor.normal(places, unknowns),
-            )
-        });
-        let mut sum = Normal::zeros(unknowns);
-        let take = |(rows, normal)| {
-            sum.add(&normal);
-            rows
-        };
-        (of_each.into_iter().map(take).collect(), sum)
+        self.items(block, weight, at, |factor, places| {
+            factor.rows(places, unknowns)
+        })
     }
 
     /// What the factor of each item of a block with its weight, and the places of its coordinates among
@@ -245,7 +238,7 @@ impl Problem<'_> {
         // second order, and the cost is right up to fourth.
         let linear = step * step / fit.covariance[(at, at)];
         if let Some(cost) = self.cost(&start)
-            && (cost - fit.cost - linear).abs() < 0.02 * linear
+            && (cost - fit.cost - linear).abs() < NEARLY * linear
         {
             return Some(cost);
         }
@@ -261,7 +254,7 @@ impl Problem<'_> {
             progress: self.progress.clone(),
             precision: Precision::Start,
         };
-        held.least_cost_from(&start, 0.02 * linear)
+        held.least_cost_from(&start, NEARLY * linear)
             .or_else(|| Some(held.fit(start).ok()?.cost))
     }
 
