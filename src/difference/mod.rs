@@ -8,12 +8,13 @@
 //!
 //! A = `Σ_k` `Λ_k` + P                                                                           (19)
 //!
-//! with one row for each nuisance that is shared. Its inverse holds the correlation between the campaigns'
+//! with one row for each nuisance that is shared; clearances enter by their logarithms ([`chart`]). Its inverse holds the correlation between the campaigns'
 //! parameters, from which the differences follow. What the intervals of each campaign allow for beyond
 //! its covariance (scatter between groups, first order of the effects, disagreement of methods) is taken
 //! as independent: that is wider, never narrower.
 
 mod campaign;
+mod chart;
 mod common;
 mod comparison;
 mod distribution;

@@ -1,11 +1,12 @@
 //! All campaigns as one Gaussian, with one unknown for each nuisance that is shared.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::difference::Campaign;
+use crate::difference::chart::Chart;
 use crate::difference::share::{Nuisance, Sharing};
+use crate::difference::{Campaign, chart};
 use crate::identify::JointFit;
 use crate::identify::fit::coordinate::Coordinate;
 use crate::identify::fit::normal::inverse;
@@ -23,15 +24,14 @@ impl Stack {
     /// Combine campaigns by what they share; `None` where their information is singular.
     pub(super) fn new(campaigns: &[Campaign], sharing: &Sharing) -> Option<Self> {
         let mut sum = Sum::default();
+        let relative = chart::relative(campaigns, sharing);
         let places = campaigns
             .iter()
             .enumerate()
-            .map(|(number, campaign)| sum.campaign(number, campaign, sharing))
+            .map(|(number, campaign)| sum.campaign(number, campaign, sharing, &relative))
             .collect::<Option<Vec<_>>>()?;
-        let shared = sum.priors.clone();
-        for (place, prior) in shared {
-            sum.add(place, place, prior.information());
-            sum.vector[place] += prior.information() * prior.centre;
+        for prior in std::mem::take(&mut sum.priors).into_values() {
+            sum.prior(&prior);
         }
         let count = sum.vector.len();
         let mut information = DMatrix::zeros(count, count);
@@ -67,10 +67,12 @@ impl Stack {
     }
 }
 
-/// The prior of a shared unknown: the widest that a campaign states, times the greatest factor on their
+/// The prior of a shared nuisance: the widest that a campaign states, times the greatest factor on their
 /// covariances, so that it says no more than in any of their own fits.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 struct SharedPrior {
+    /// Places of the unknowns whose sum of multiples it is on.
+    row: Vec<(usize, f64)>,
     centre: f64,
     variance: f64,
     factor: f64,
@@ -90,7 +92,7 @@ struct Sum {
     vector: Vec<f64>,
     /// Places of the shared unknowns, by their numbers among the shared ones.
     shared: BTreeMap<usize, usize>,
-    /// Their priors by their places.
+    /// Their priors by the same numbers.
     priors: BTreeMap<usize, SharedPrior>,
 }
 
@@ -99,9 +101,30 @@ impl Sum {
         *self.information.entry((row, column)).or_default() += value;
     }
 
+    /// Add a prior of a shared nuisance.
+    fn prior(&mut self, prior: &SharedPrior) {
+        let information = prior.information();
+        for (i, slope) in &prior.row {
+            self.vector[*i] += slope * information * prior.centre;
+            for (k, other) in &prior.row {
+                self.add(*i, *k, slope * information * other);
+            }
+        }
+    }
+
     fn next(&mut self) -> usize {
         self.vector.push(0.0);
         self.vector.len() - 1
+    }
+
+    /// The place of a shared unknown by its number, or the next one.
+    fn place_of(&mut self, class: Option<usize>) -> usize {
+        let known = class.and_then(|class| self.shared.get(&class).copied());
+        let place = known.unwrap_or_else(|| self.next());
+        if let Some(class) = class {
+            self.shared.insert(class, place);
+        }
+        place
     }
 
     /// Add a campaign; gives the places of its parameters.
@@ -110,14 +133,12 @@ impl Sum {
         number: usize,
         campaign: &Campaign,
         sharing: &Sharing,
+        relative: &BTreeSet<Nuisance>,
     ) -> Option<BTreeMap<Coordinate, usize>> {
         let mut places = BTreeMap::new();
         if let Some(joint) = &campaign.fit {
-            self.fit(
-                joint,
-                |nuisance| number_of(sharing, nuisance, number),
-                &mut places,
-            )?;
+            let shared = |nuisance| number_of(sharing, nuisance, number);
+            self.fit(joint, shared, relative, &mut places)?;
         }
         for parameter in Coordinate::PHYSICAL {
             let Some(known) = campaign.known(parameter) else {
@@ -140,37 +161,41 @@ impl Sum {
         &mut self,
         joint: &JointFit,
         shared: impl Fn(Nuisance) -> Option<usize>,
+        relative: &BTreeSet<Nuisance>,
         places: &mut BTreeMap<Coordinate, usize>,
     ) -> Option<()> {
         let (fit, factor) = (&joint.fit, joint.variance_factor);
-        let mut information = inverse(&fit.covariance)? / factor;
-        let at = |c: &Coordinate| fit.parameters.coordinate(*c);
-        let values = DVector::from_iterator(fit.free.len(), fit.free.iter().map(at));
-        let mut vector = &information * values;
-        let mut own = Vec::with_capacity(fit.free.len());
-        for (i, coordinate) in fit.free.iter().enumerate() {
-            let class = Nuisance::of(*coordinate, joint).and_then(&shared);
-            let Some(class) = class else {
-                own.push(self.next());
+        let chart = Chart::new(joint, relative);
+        let mut information = chart.information(&inverse(&fit.covariance)?) / factor;
+        let mut vector = &information * chart.values();
+        let classes: Vec<Option<usize>> = fit
+            .free
+            .iter()
+            .map(|coordinate| Nuisance::of(*coordinate, joint).and_then(&shared))
+            .collect();
+        let own: Vec<usize> = classes.iter().map(|class| self.place_of(*class)).collect();
+        for (i, class) in classes.iter().enumerate() {
+            let mut priors = joint.priors.iter();
+            let prior = priors.find(|p| p.coordinate == fit.free[i]);
+            let Some((class, prior)) = class.zip(prior) else {
                 continue;
             };
-            let known = self.shared.get(&class).copied();
-            let place = known.unwrap_or_else(|| self.next());
-            self.shared.insert(class, place);
-            let mut priors = joint.priors.iter().filter(|p| p.coordinate == *coordinate);
-            if let Some(prior) = priors.next() {
-                let variance = prior.deviation.powi(2);
-                information[(i, i)] -= 1.0 / (variance * factor);
-                vector[i] -= prior.centre / (variance * factor);
-                let all = self.priors.entry(place).or_insert(SharedPrior {
-                    centre: prior.centre,
-                    variance,
-                    factor,
-                });
-                all.variance = all.variance.max(variance);
-                all.factor = all.factor.max(factor);
+            let variance = prior.deviation.powi(2);
+            let (row, centre) = chart.prior(i, prior.centre);
+            for (k, slope) in &row {
+                vector[*k] -= slope * centre / (variance * factor);
+                for (l, other) in &row {
+                    information[(*k, *l)] -= slope * other / (variance * factor);
+                }
             }
-            own.push(place);
+            let all = self.priors.entry(class).or_insert_with(|| SharedPrior {
+                row: row.iter().map(|(k, slope)| (own[*k], *slope)).collect(),
+                centre,
+                variance,
+                factor,
+            });
+            all.variance = all.variance.max(variance);
+            all.factor = all.factor.max(factor);
         }
         for (i, row) in own.iter().enumerate() {
             self.vector[*row] += vector[i];

@@ -352,6 +352,74 @@ fn clearances_are_shared_where_they_are_stated_alike() {
     assert!(of_gaps(with_gaps(0, &[1e-3, 2e-3]), with_gaps(1, &[1e-3])).is_empty());
 }
 
+/// Static deflection over two clearances of 1 and 2 mm, each known to 1e-5, as it is `change` above the half of
+/// each; the fit has all lengths off by a factor, which their stated values hardly contradict.
+fn over_clearances(number: usize, change: f64, factor: f64) -> Campaign {
+    let stated_mm = [1.0, 2.0];
+    let (noise, deviation_mm) = (1e-5_f64, 0.1);
+    let fitted_mm = stated_mm.map(|c| c * factor);
+    let slopes = [
+        [1.0, -1.0 / fitted_mm[0], 0.0],
+        [1.0, 0.0, -1.0 / fitted_mm[1]],
+    ];
+    let slopes = DMatrix::from_fn(2, 3, |i, k| slopes[i][k] / noise);
+    let mut information = slopes.transpose() * &slopes;
+    for i in [1, 2] {
+        information[(i, i)] += f64::powi(deviation_mm, -2);
+    }
+    let mut campaign = deflection(number, change, 1.0);
+    let fit = campaign.fit.as_mut().expect("a fit");
+    let covariance = inverse(&information).expect("regular");
+    let value = 1e-3 * (factor * change.exp());
+    let error = covariance[(0, 0)].sqrt();
+    let mut parameters = fit.fit.parameters;
+    parameters = parameters.with(Coordinate::Deflection, value.ln());
+    for (i, (fitted, stated)) in fitted_mm.iter().zip(stated_mm).enumerate() {
+        parameters = parameters.with(Coordinate::Gap(i), fitted - stated);
+    }
+    fit.fit.parameters = parameters;
+    fit.fit.covariance = covariance;
+    fit.fit.free = vec![
+        Coordinate::Deflection,
+        Coordinate::Gap(0),
+        Coordinate::Gap(1),
+    ];
+    fit.priors = [0, 1]
+        .map(|i| Prior {
+            coordinate: Coordinate::Gap(i),
+            centre: 0.0,
+            deviation: deviation_mm,
+        })
+        .to_vec();
+    fit.gaps_m = stated_mm.map(|c| 1e-3 * c).to_vec();
+    fit.allowed[0].standard_uncertainty = error;
+    let estimate = campaign.parameters.static_deflection_m.take();
+    campaign.parameters.static_deflection_m = estimate.map(|e| Estimate {
+        value: Some(value),
+        standard_error: Some(value * error),
+        ..e
+    });
+    campaign
+}
+
+#[test]
+fn valid_shared_clearances_cancel_wherever_each_fit_puts_them() {
+    // The ratio of the deflections is known to 1e-5: √2 for the campaigns, 1/√2 for the two clearances.
+    for factor in [1.0, 1.03, 0.95] {
+        let campaigns = [
+            over_clearances(0, 0.0, 1.0),
+            over_clearances(1, 0.01, factor),
+        ];
+        let d = compare(&campaigns).expect("comparable").differences[0];
+        let [ratio, low, high] = d.relative;
+        assert!((ratio - 0.01_f64.exp_m1()).abs() < 1e-6, "{factor}: {d:?}");
+        assert!(
+            ((high - low) / (2.0 * 1.96e-5) - 1.0).abs() < 0.02,
+            "{factor}: {d:?}"
+        );
+    }
+}
+
 #[test]
 fn what_cannot_be_compared_is_refused_with_the_remedy() {
     let one = || simple(0, 0.7, 0.01);
