@@ -69,11 +69,21 @@ pub fn observe_in_chunks(
     Ok(all)
 }
 
-/// The file that was opened last, so that the next chunk need not open it again.
+/// The file that was opened last, so that the next records need not open it again.
 #[derive(Default)]
-struct SourceCache(Mutex<Option<Arc<dyn Source>>>);
+pub struct SourceCache(Mutex<Option<Arc<dyn Source>>>);
 
 impl SourceCache {
+    /// With the file of a campaign's first record, which usually holds all of them; one that cannot be
+    /// opened is named where a record is read.
+    pub fn of(campaign: &ResolvedCampaign) -> Self {
+        let cache = Self::default();
+        if let Some(first) = campaign.records.first() {
+            let _ = cache.open(&first.file);
+        }
+        cache
+    }
+
     fn open(&self, path: &Path) -> Result<Arc<dyn Source>, ReadError> {
         let held = self.0.lock().ok().and_then(|held| held.clone());
         if let Some(source) = held.filter(|s| s.path() == path) {
@@ -195,8 +205,8 @@ fn read(campaign: &ResolvedCampaign, entry: &RecordEntry, source: &dyn Source) -
 }
 
 /// Read one record by its entry.
-pub fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry) -> Record {
-    match open(&entry.file) {
+pub fn read_one(campaign: &ResolvedCampaign, entry: &RecordEntry, cache: &SourceCache) -> Record {
+    match cache.open(&entry.file) {
         Ok(source) => read(campaign, entry, source.as_ref()),
         Err(error) => unreadable(&entry.id, &entry.setting, &error),
     }

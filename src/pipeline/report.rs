@@ -9,7 +9,7 @@ use crate::compare::{self, Input};
 use crate::event::RigKind;
 use crate::identify::Provenance;
 use crate::pipeline::identify::{IdentificationFile, settings};
-use crate::pipeline::observe::read_one;
+use crate::pipeline::observe::{SourceCache, read_one};
 use crate::pipeline::{Observed, PipelineError};
 use crate::report::Phrase;
 use crate::report::catalog::Catalog;
@@ -113,9 +113,10 @@ pub fn content(
     found: &IdentificationFile,
     command_line: &str,
 ) -> Result<ReportContent, PipelineError> {
+    let cache = SourceCache::of(campaign);
     let read = |index: usize| {
         let entry = campaign.records.get(index)?;
-        Some(read_one(campaign, entry))
+        Some(read_one(campaign, entry, &cache))
     };
     let compared = compare::compare(&Input {
         rig: campaign.machine,
