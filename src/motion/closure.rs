@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::event::Impact;
-use crate::signal::interpolation::{interpolate, noise_gain};
+use crate::signal::interpolation::{later, noise_gain};
 use crate::signal::robust;
 use crate::signal::whole;
 
@@ -40,18 +40,18 @@ pub(super) fn waveform(
         .collect();
     let mean = robust::mean(&free);
     let scale = robust::rms(&free.iter().map(|v| v - mean).collect::<Vec<_>>());
+    let hum = Hum::new(values.len(), hum);
     (1..=most)
         .filter_map(|n| {
             let lag = f64::from(n) * period;
-            let (places, mut differences): (Vec<f64>, Vec<f64>) = (0..values.len())
-                .map_while(|i| {
-                    let partner = i as f64 + lag;
-                    interpolate(values, partner).map(|v| (i, partner, v))
-                })
-                .filter(|(i, partner, _)| !blocked[*i] && !blocked[whole::index(partner.round())])
-                .map(|(i, _, v)| (i as f64, v - values[i]))
-                .unzip();
-            remove_tones(&places, &mut differences, hum);
+            let partners = later(values, lag);
+            let nearest = whole::index(lag.round());
+            let is_open = |i: usize| blocked.get(i).is_some_and(|blocked| !blocked);
+            let open: Vec<usize> = (0..partners.len())
+                .filter(|i| is_open(*i) && is_open(i + nearest))
+                .collect();
+            let differences: Vec<f64> = open.iter().map(|i| partners[*i] - values[*i]).collect();
+            let differences = hum.removed(&open, differences);
             let centre = robust::mean(&differences);
             let square: f64 = differences.iter().map(|d| (d - centre).powi(2)).sum();
             let samples = differences.len();
@@ -66,24 +66,40 @@ pub(super) fn waveform(
         .collect()
 }
 
-/// Subtract the least-squares fit of a constant and of tones, in cycles per unit of the places; what
-/// is left is unchanged where the tones cannot be told apart.
-fn remove_tones(places: &[f64], values: &mut [f64], tones: &[f64]) {
-    if tones.is_empty() || places.len() < 4 * (1 + 2 * tones.len()) {
-        return;
+/// A constant and tones at all samples.
+struct Hum {
+    /// 1, and the cosine and sine of each tone.
+    columns: Vec<Vec<f64>>,
+}
+
+impl Hum {
+    /// Tones in cycles per sample.
+    fn new(samples: usize, tones: &[f64]) -> Self {
+        let angles = |tone: f64| (0..samples).map(move |i| std::f64::consts::TAU * tone * i as f64);
+        let mut columns = vec![vec![1.0; samples]];
+        for tone in tones {
+            columns.push(angles(*tone).map(f64::cos).collect());
+            columns.push(angles(*tone).map(f64::sin).collect());
+        }
+        Self { columns }
     }
-    let angle = |column: usize, place: f64| std::f64::consts::TAU * tones[column] * place;
-    let columns = DMatrix::from_fn(places.len(), 1 + 2 * tones.len(), |i, k| match k {
-        0 => 1.0,
-        k if k % 2 == 1 => angle(k / 2, places[i]).cos(),
-        k => angle(k / 2 - 1, places[i]).sin(),
-    });
-    let measured = DVector::from_column_slice(values);
-    let Some(factor) = columns.tr_mul(&columns).cholesky() else {
-        return;
-    };
-    let fitted = &columns * factor.solve(&columns.tr_mul(&measured));
-    values.iter_mut().zip(&fitted).for_each(|(v, f)| *v -= f);
+
+    /// Values at some samples without their least-squares fit of the constant and the tones; unchanged
+    /// where the tones cannot be told apart.
+    fn removed(&self, samples: &[usize], mut values: Vec<f64>) -> Vec<f64> {
+        let unknowns = self.columns.len();
+        if unknowns == 1 || samples.len() < 4 * unknowns {
+            return values;
+        }
+        let at = |i: usize, k: usize| self.columns[k][samples[i]];
+        let columns = DMatrix::from_fn(samples.len(), unknowns, at);
+        let measured = DVector::from_column_slice(&values);
+        if let Some(factor) = columns.tr_mul(&columns).cholesky() {
+            let fitted = &columns * factor.solve(&columns.tr_mul(&measured));
+            values.iter_mut().zip(&fitted).for_each(|(v, f)| *v -= f);
+        }
+        values
+    }
 }
 
 fn blocked_samples(count: usize, impacts: &[f64], guard: f64) -> Vec<bool> {

@@ -23,15 +23,43 @@ pub fn interpolate(samples: &[f64], position: f64) -> Option<f64> {
         let next = samples[(index + 1).min(last)];
         return Some(samples[index] + u * (next - samples[index]));
     }
-    let [a, b, c, d] = [0, 1, 2, 3].map(|k| samples[index - 1 + k]);
-    let (outer, inner) = (u * (1.0 - u) / 6.0, 0.5 * (1.0 - u) * u);
-    // Lagrange's cubic through −1, 0, 1, 2.
-    Some(
-        -a * outer * (2.0 - u)
-            + b * (1.0 - u * u) * (2.0 - u) * 0.5
-            + c * u * (1.0 + u) * (2.0 - u) * 0.5
-            - d * inner * (1.0 + u) / 3.0,
-    )
+    let around = [0, 1, 2, 3].map(|k| samples[index - 1 + k]);
+    Some(weighted(cubic(u), around))
+}
+
+/// Weights of the samples at −1, 0, 1, 2 in the value at a place between 0 and 1 (Lagrange's cubic).
+fn cubic(u: f64) -> [f64; 4] {
+    let outer = u * (1.0 - u) / 6.0;
+    [
+        -outer * (2.0 - u),
+        (1.0 - u * u) * (2.0 - u) * 0.5,
+        u * (1.0 + u) * (2.0 - u) * 0.5,
+        -outer * (1.0 + u),
+    ]
+}
+
+fn weighted(weights: [f64; 4], around: [f64; 4]) -> f64 {
+    let [a, b, c, d] = around;
+    weights[0] * a + weights[1] * b + weights[2] * c + weights[3] * d
+}
+
+/// Values a lag after each sample, as [`interpolate`] has them, as far as the
+/// samples reach.
+pub fn later(samples: &[f64], lag: f64) -> Vec<f64> {
+    let (whole, weights) = (whole::index(lag), cubic(lag.fract()));
+    let first = whole.checked_sub(1);
+    let inside = first.and_then(|first| samples.get(first..));
+    let inside = inside
+        .unwrap_or_default()
+        .windows(4)
+        .map(|around| match around {
+            [a, b, c, d] => weighted(weights, [*a, *b, *c, *d]),
+            _ => f64::NAN,
+        });
+    let mut values: Vec<f64> = inside.collect();
+    let rest = values.len()..;
+    values.extend(rest.map_while(|i| interpolate(samples, i as f64 + lag)));
+    values
 }
 
 /// Variance of [`interpolate`]'s value per variance of white noise on the samples, at a fraction
@@ -48,6 +76,20 @@ pub fn noise_gain(fraction: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn regress_later_values_are_those_between_the_samples() {
+        let samples: Vec<f64> = (0..40).map(|i| (0.7 * f64::from(i)).sin()).collect();
+        for lag in [0.4, 1.0, 1.3, 7.5, 20.0, 36.2, 37.0, 38.4, 39.0, 39.5, 80.0] {
+            let places = (0..40).map(|i| f64::from(i) + lag);
+            let want: Vec<f64> = places.map_while(|p| interpolate(&samples, p)).collect();
+            let found = later(&samples, lag);
+            assert_eq!(found.len(), want.len(), "{lag}");
+            for (f, w) in found.iter().zip(want) {
+                assert!((f - w).abs() < 1e-13, "{lag}");
+            }
+        }
+    }
 
     #[test]
     fn valid_cubic_interpolation_is_exact_for_cubics() {

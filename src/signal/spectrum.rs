@@ -4,41 +4,42 @@ use rustfft::algorithm::Radix4;
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftDirection};
 
-/// One-sided amplitude spectrum of the samples, mean removed, Hann window, zero-padded to twice
-/// the next power of two: (frequency step in units of the sample rate, amplitudes of sines).
-fn amplitude_spectrum(samples: &[f64]) -> (f64, Vec<f64>) {
+use super::tone::Phasor;
+
+/// One-sided power spectrum of the samples in no unit, mean removed, Hann window, zero-padded to twice
+/// the next power of two: (frequency step in units of the sample rate, squares of the amplitudes).
+fn power_spectrum(samples: &[f64]) -> (f64, Vec<f64>) {
     let count = samples.len();
     let padded = (2 * count.max(2)).next_power_of_two();
     let mut bins = vec![Complex64::new(0.0, 0.0); padded];
     let mean = super::robust::mean(samples);
-    for (i, (slot, sample)) in bins.iter_mut().zip(samples).enumerate() {
-        let window = 0.5 - 0.5 * (std::f64::consts::TAU * (i as f64 + 0.5) / count as f64).cos();
-        slot.re = (sample - mean) * window;
+    let once = 1.0 / count.max(1) as f64;
+    let turn = Phasor::new(once, std::f64::consts::PI * once);
+    for ((slot, sample), (cosine, _)) in bins.iter_mut().zip(samples).zip(turn) {
+        slot.re = (sample - mean) * (0.5 - 0.5 * cosine);
     }
     // the length is a power of two: no planner, whose every algorithm would be compiled here
     Radix4::new(padded, FftDirection::Forward).process(&mut bins);
     bins.truncate(padded / 2 + 1);
-    let scale = 4.0 / count.max(1) as f64;
-    (
-        1.0 / padded as f64,
-        bins.iter().map(|b| b.norm() * scale).collect(),
-    )
+    let squares = bins.iter().map(Complex64::norm_sqr).collect();
+    (1.0 / padded as f64, squares)
 }
 
 /// Frequency of the greatest spectral peak, in units of the sample rate, refined by a parabola
 /// through the logarithms of the three bins at the top; `None` without a peak.
 pub(super) fn peak_frequency(samples: &[f64]) -> Option<f64> {
-    let (step, amplitudes) = amplitude_spectrum(samples);
-    let first = 2.min(amplitudes.len());
-    let (top, &height) = amplitudes
+    let (step, squares) = power_spectrum(samples);
+    let first = 2.min(squares.len());
+    let (top, &height) = squares
         .iter()
         .enumerate()
         .skip(first)
         .max_by(|a, b| a.1.total_cmp(b.1))?;
-    if !(height > 0.0) || top + 1 >= amplitudes.len() {
+    if !(height > 0.0) || top + 1 >= squares.len() {
         return None;
     }
-    let [left, centre, right] = [top - 1, top, top + 1].map(|i| amplitudes[i].max(1e-300).ln());
+    let around = [top - 1, top, top + 1];
+    let [left, centre, right] = around.map(|i| squares[i].max(f64::MIN_POSITIVE).ln());
     let curvature = left - 2.0 * centre + right;
     let shift = if curvature < 0.0 {
         0.5 * (left - right) / curvature
