@@ -1,6 +1,7 @@
 //! The methods, each alone: boundaries, trajectories, impacts, resonance.
 
 use crate::identify::estimate;
+use crate::identify::evidence::resonance::ResonanceBlock;
 use crate::identify::evidence::{Blocks, Nominal};
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, FitError, Precision, Prior, Problem, mean_squares};
@@ -59,10 +60,11 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<FitResult> {
     if !enough(blocks) {
         return None;
     }
-    let ideal = nominal.ideal();
-    let fits = starts(blocks, nominal)
+    let (few, ideal) = (blocks.resonance.few(MOST_FOR_A_START), nominal.ideal());
+    let curve = |start| resonance_curve(&few, blocks, &ideal, (start, Precision::Start));
+    let fits = starts(&few, nominal)
         .into_iter()
-        .filter_map(|start| resonance_curve(blocks, &ideal, start, Precision::Start)?.ok());
+        .filter_map(|start| curve(start)?.ok());
     let best = fits.min_by(|a, b| a.fit.cost.total_cmp(&b.fit.cost));
     match best {
         Some(best) => resonance_from(blocks, nominal, best.fit.parameters),
@@ -72,18 +74,19 @@ pub fn resonance(blocks: &Blocks, nominal: &Nominal) -> Option<FitResult> {
 
 /// The same from a start near the optimum.
 pub fn resonance_from(blocks: &Blocks, nominal: &Nominal, start: Parameters) -> Option<FitResult> {
-    resonance_curve(blocks, nominal, start, Precision::Result)
+    let begin = (start, Precision::Result);
+    resonance_curve(&blocks.resonance, blocks, nominal, begin)
 }
 
 fn resonance_curve(
+    block: &ResonanceBlock,
     blocks: &Blocks,
     nominal: &Nominal,
-    start: Parameters,
-    precision: Precision,
+    (start, precision): (Parameters, Precision),
 ) -> Option<FitResult> {
     let mut free = RESONANCE.to_vec();
     let mut priors = wide_priors(&start, &free);
-    let list: [(&dyn Block, f64); 1] = [(&blocks.resonance, 1.0)];
+    let list: [(&dyn Block, f64); 1] = [(block, 1.0)];
     blocks.add_nuisances(nominal, &list, (&mut free, &mut priors));
     let problem = Problem {
         precision,
@@ -96,15 +99,13 @@ fn enough(blocks: &Blocks) -> bool {
     blocks.resonance.points.len() >= RESONANCE.len()
 }
 
+/// Impactless records from which the fit of all is started.
+const MOST_FOR_A_START: usize = 64;
+
 /// Starting values of the resonance curve: the stated ones, and a coarse grid whose deflection
 /// follows from the greatest response.
-fn starts(blocks: &Blocks, nominal: &Nominal) -> Vec<Parameters> {
-    let frequencies: Vec<f64> = blocks
-        .resonance
-        .points
-        .iter()
-        .map(|p| p.frequency_hz)
-        .collect();
+fn starts(block: &ResonanceBlock, nominal: &Nominal) -> Vec<Parameters> {
+    let frequencies: Vec<f64> = block.points.iter().map(|p| p.frequency_hz).collect();
     let low = frequencies.iter().copied().fold(f64::INFINITY, f64::min);
     let high = frequencies.iter().copied().fold(0.0, f64::max);
     let mut out = Vec::new();
@@ -117,13 +118,13 @@ fn starts(blocks: &Blocks, nominal: &Nominal) -> Vec<Parameters> {
             let beta = nominal.damping_ratio.unwrap_or(beta);
             let unit = nominal.applied(Parameters::symmetric(0.8, f0, beta, 1.0));
             out.push(Parameters {
-                static_deflection_m: deflection_guess(blocks, &unit),
+                static_deflection_m: deflection_guess(block, &unit),
                 ..unit
             });
         }
     }
     let cost = |p: Parameters| {
-        let mean_squares = mean_squares(&blocks.resonance, &p);
+        let mean_squares = mean_squares(block, &p);
         (mean_squares.into_iter().flatten().sum::<f64>(), p)
     };
     let mut costs: Vec<(f64, Parameters)> = out.into_iter().map(cost).collect();
@@ -132,13 +133,13 @@ fn starts(blocks: &Blocks, nominal: &Nominal) -> Vec<Parameters> {
 }
 
 /// Deflection that best scales the unit response to the measured amplitudes.
-fn deflection_guess(blocks: &Blocks, unit: &Parameters) -> f64 {
+fn deflection_guess(block: &ResonanceBlock, unit: &Parameters) -> f64 {
     let (mut product, mut square) = (0.0, 0.0);
-    for point in &blocks.resonance.points {
+    for point in &block.points {
         for r in &point.responses {
             let model = crate::identify::evidence::resonance::predicted(
                 unit,
-                blocks.resonance.rig,
+                block.rig,
                 r.role,
                 point.frequency_hz,
                 point.drive_amplitude,

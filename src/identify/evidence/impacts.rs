@@ -230,6 +230,32 @@ impl Block for ImpactBlock {
         Some(vec![(after - r * before) / self.error(pair, r)])
     }
 
+    fn slopes(
+        &self,
+        item: usize,
+        parameters: &Parameters,
+        coordinates: &[Coordinate],
+    ) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+        let pair = &self.pairs[item];
+        let r = parameters.restitution;
+        let residuals = self.residuals(item, parameters)?;
+        let error = self.error(pair, r);
+        let slope = |coordinate: &Coordinate| match coordinate {
+            Coordinate::Restitution => {
+                let over_error = r * (pair.error_m_s / error).powi(2);
+                -(pair.before_m_s + pair.shift(parameters)) / error - residuals[0] * over_error
+            }
+            Coordinate::Corner(index) => {
+                let shifts = pair.corner_shifts.iter().flatten();
+                let own = shifts.filter(|s| gain_index(s.role) == Some(*index));
+                -(1.0 + r) * own.map(|s| s.speed_m_s).sum::<f64>() / error
+            }
+            _ => 0.0,
+        };
+        let columns = coordinates.iter().map(|c| vec![slope(c)]).collect();
+        Some((residuals, columns))
+    }
+
     fn touches(&self, coordinate: Coordinate) -> bool {
         match coordinate {
             Coordinate::Corner(index) => self.has_corner(index),
@@ -241,6 +267,7 @@ impl Block for ImpactBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identify::fit::block::difference;
     use crate::record::Role;
 
     fn lag(velocity: Role, displacement: Role, accelerations_m_s2: [f64; 2]) -> Option<Lag> {
@@ -251,6 +278,37 @@ mod tests {
             assumed_s: 1e-4,
             accelerations_m_s2,
         })
+    }
+
+    #[test]
+    fn valid_slopes_are_those_of_finite_differences() {
+        let shift = |role, speed_m_s| Some(CornerShift { role, speed_m_s });
+        let pair = SpeedPair {
+            observation: 0,
+            time_s: 0.1,
+            before_m_s: 0.5,
+            after_m_s: 0.37,
+            error_m_s: 5e-3,
+            corner_shifts: [shift(Role::VelocityX, 3e-3), shift(Role::VelocityY, -2e-3)],
+            lags: [None, None],
+        };
+        let block = ImpactBlock::of_pairs(vec![pair], 4e-3);
+        let mut parameters = Parameters::symmetric(0.8, 10.0, 0.05, 1e-3);
+        parameters.corners = [1.1, 0.9, 1.0, 1.0];
+        let coordinates = [
+            Coordinate::Restitution,
+            Coordinate::Corner(0),
+            Coordinate::Corner(1),
+        ];
+        let (here, columns) = block.slopes(0, &parameters, &coordinates).expect("slopes");
+        for (coordinate, exact) in coordinates.iter().zip(columns) {
+            let found = difference(&parameters, *coordinate, &here, |p| block.residuals(0, p));
+            let apart = found.expect("differences")[0] - exact[0];
+            assert!(
+                apart.abs() < 1e-7 * exact[0].abs(),
+                "{coordinate:?}: {apart}"
+            );
+        }
     }
 
     #[test]

@@ -36,6 +36,8 @@ pub struct ResonancePoint {
     pub group: Group,
     /// Responses of the channels.
     pub responses: Vec<Response>,
+    /// Standard error of each response, SI, with what is allowed beside the noise.
+    errors: Vec<f64>,
     /// Slopes of the responses over the logarithm of the drive's frequency; empty until they are found
     /// at good parameters.
     over_frequency: Vec<Complex<f64>>,
@@ -50,6 +52,14 @@ impl ResonancePoint {
             place: self.place,
             ..Circumstances::default()
         }
+    }
+
+    /// Complex changes of the responses over their errors, real and imaginary parts in turn.
+    fn weighted(&self, changes: impl Iterator<Item = Complex<f64>>) -> Vec<f64> {
+        let errors = self.errors.iter().zip(changes);
+        errors
+            .flat_map(|(error, c)| [c.re / error, c.im / error])
+            .collect()
     }
 }
 
@@ -89,6 +99,7 @@ impl ResonanceBlock {
                         .filter(|r| rig == RigKind::Double || !r.role.is_of_y())
                         .copied()
                         .collect(),
+                    errors: Vec::new(),
                     over_frequency: Vec::new(),
                     shared: Whitening::none(),
                 })
@@ -104,11 +115,25 @@ impl ResonanceBlock {
         block
     }
 
+    /// Of so many records at most, evenly chosen over the frequency of the drive.
+    #[must_use]
+    pub fn few(&self, most: usize) -> Self {
+        let mut points: Vec<&ResonancePoint> = self.points.iter().collect();
+        points.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
+        let stride = points.len().div_ceil(most.max(1)).max(1);
+        Self {
+            points: points.into_iter().step_by(stride).cloned().collect(),
+            ..*self
+        }
+    }
+
     /// Allow every response a relative error beside the noise.
     pub fn allow(&mut self, relative_error: f64) {
         self.relative_error = relative_error;
         let mut points = std::mem::take(&mut self.points);
         for point in &mut points {
+            let responses = point.responses.iter();
+            point.errors = responses.map(|r| self.error(r)).collect();
             point.shared = self.whitening(point);
         }
         self.points = points;
@@ -476,21 +501,6 @@ impl ResonanceBlock {
             .hypot(self.relative_error * response.amplitude())
     }
 
-    /// Complex changes of a point's responses over their errors, real and imaginary parts in turn.
-    fn weighted(
-        &self,
-        point: &ResonancePoint,
-        changes: impl Iterator<Item = Complex<f64>>,
-    ) -> Vec<f64> {
-        let responses = point.responses.iter().zip(changes);
-        responses
-            .flat_map(|(r, c)| {
-                let error = self.error(r);
-                [c.re / error, c.im / error]
-            })
-            .collect()
-    }
-
     /// The errors that all responses of a point share, by what was measured: weights that follow the
     /// parameters would reward a model that moves more.
     fn whitening(&self, point: &ResonancePoint) -> Whitening {
@@ -499,9 +509,9 @@ impl ResonanceBlock {
         let turned = turned.map(|r| turn * Complex::new(r.real, r.imaginary));
         let shifted = point.over_frequency.iter();
         let shifted = shifted.map(|slope| slope * point.frequency_error);
-        let mut columns = vec![self.weighted(point, turned)];
+        let mut columns = vec![point.weighted(turned)];
         if !point.over_frequency.is_empty() {
-            columns.push(self.weighted(point, shifted));
+            columns.push(point.weighted(shifted));
         }
         Whitening::new(&columns)
     }
@@ -509,7 +519,7 @@ impl ResonanceBlock {
     fn apart(&self, point: &ResonancePoint, found: &[Predicted]) -> Vec<f64> {
         let pairs = point.responses.iter().zip(found);
         let apart = pairs.map(|(r, p)| Complex::new(r.real, r.imaginary) - p.value);
-        self.weighted(point, apart)
+        point.weighted(apart)
     }
 }
 
@@ -539,7 +549,7 @@ impl Block for ResonanceBlock {
         };
         let column = |coordinate: &Coordinate| {
             let slopes = found.over(*coordinate);
-            white(self.weighted(point, slopes.into_iter().map(|s| -s)))
+            white(point.weighted(slopes.into_iter().map(|s| -s)))
         };
         let columns = coordinates.iter().map(column).collect();
         Some((white(self.apart(point, &found.responses)), columns))
@@ -578,7 +588,7 @@ mod tests {
             Role::DisplacementX,
             Role::AccelerationY,
         ];
-        let block = ResonanceBlock {
+        let mut block = ResonanceBlock {
             rig: RigKind::Double,
             points: vec![ResonancePoint {
                 observation: 0,
@@ -598,12 +608,14 @@ mod tests {
                         high_pass_hz: role.is_of_y().then_some(0.5),
                     })
                     .to_vec(),
+                errors: Vec::new(),
                 over_frequency: Vec::new(),
                 shared: Whitening::none(),
             }],
             relative_error: 1e-3,
             reach_m: 3e-3,
         };
+        block.allow(1e-3);
         let mut effects = [0.0; Effect::COUNT];
         effects[Effect::ForceSlope.place()] = 0.02;
         effects[Effect::DeflectionDrift.place()] = 0.01;

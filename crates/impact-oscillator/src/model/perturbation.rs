@@ -68,15 +68,20 @@ fn periodic(lambda: C64, grid: Grid, p: &[f64]) -> Vec<C64> {
     let whole = (decay - one) / lambda;
     let later = (whole - h) / (lambda * h);
     let earlier = whole - later;
-    let advance = |z: C64, pair: &[f64]| decay * z + earlier * pair[0] + later * pair[1];
-    let gained = p.windows(2).fold(C64::default(), advance);
-    let returned = (lambda * (h * grid.intervals as f64)).exp();
-    let mut z = gained / (one - returned);
+    // From rest, and what a start elsewhere adds, so that the end is the start again.
     let mut out = Vec::with_capacity(p.len());
+    let mut z = C64::default();
     out.push(z);
     for pair in p.windows(2) {
-        z = advance(z, pair);
+        let gained = earlier * pair[0] + later * pair[1];
+        z = decay * z + gained;
         out.push(z);
+    }
+    let returned = (lambda * (h * grid.intervals as f64)).exp();
+    let mut start = z / (one - returned);
+    for z in &mut out {
+        *z += start;
+        start *= decay;
     }
     out
 }
