@@ -84,7 +84,11 @@ impl SourceCache {
         cache
     }
 
-    fn open(&self, path: &Path) -> Result<Arc<dyn Source>, ReadError> {
+    /// The file, opened unless it was the last one.
+    ///
+    /// # Errors
+    /// If the file cannot be read.
+    pub fn open(&self, path: &Path) -> Result<Arc<dyn Source>, ReadError> {
         let held = self.0.lock().ok().and_then(|held| held.clone());
         if let Some(source) = held.filter(|s| s.path() == path) {
             return Ok(source);

@@ -17,7 +17,6 @@ use crate::report::{
     CampaignFacts, Format, LivePage, Logo, NominalValue, Paper, Report, ReportContent,
     ReportOptions, Subject,
 };
-use labfiles::open;
 use labfiles::output::{make_folder, write_bytes};
 
 /// Name of the report's file.
@@ -128,7 +127,7 @@ pub fn content(
     });
     Ok(ReportContent {
         title: campaign.report.title.clone(),
-        campaign: facts(campaign),
+        campaign: facts(campaign, &cache),
         identification: found.identification.clone(),
         provenance: Provenance {
             settings: settings(campaign)?,
@@ -195,7 +194,7 @@ fn options(stated: &StatedOptions) -> Result<ReportOptions, PipelineError> {
 }
 
 /// What the campaign states about itself.
-fn facts(campaign: &ResolvedCampaign) -> CampaignFacts {
+fn facts(campaign: &ResolvedCampaign, cache: &SourceCache) -> CampaignFacts {
     let files: BTreeSet<_> = campaign.records.iter().map(|r| &r.file).collect();
     CampaignFacts {
         name: campaign.name.clone(),
@@ -204,7 +203,7 @@ fn facts(campaign: &ResolvedCampaign) -> CampaignFacts {
             RigKind::Single => Subject::OneMass,
         },
         laboratory: campaign.laboratory.clone(),
-        dates: dates(campaign),
+        dates: dates(campaign, cache),
         files: files.len(),
         rig: campaign.rig.name.clone(),
         shared: campaign.rig.shared.clone(),
@@ -237,20 +236,22 @@ fn nominal(campaign: &ResolvedCampaign) -> Vec<NominalValue> {
 
 /// When it was measured: as stated in campaign.toml, else the days of the first and the last record,
 /// if their files state them.
-fn dates(campaign: &ResolvedCampaign) -> Option<[String; 2]> {
+fn dates(campaign: &ResolvedCampaign, cache: &SourceCache) -> Option<[String; 2]> {
     if let Some(words) = &campaign.measured {
         return Some([words.clone(), words.clone()]);
     }
     let ends = [campaign.records.first(), campaign.records.last()];
     let ends = ends.into_iter().flatten();
-    let mut days: Vec<String> = ends.filter_map(|r| day(&r.file, r.dataset?)).collect();
+    let mut days: Vec<String> = ends
+        .filter_map(|r| day(cache, &r.file, r.dataset?))
+        .collect();
     days.sort();
     Some([days.first()?.clone(), days.last()?.clone()])
 }
 
 /// The day on which a dataset was acquired.
-fn day(file: &Path, dataset: usize) -> Option<String> {
-    let source = open(file).ok()?;
+fn day(cache: &SourceCache, file: &Path, dataset: usize) -> Option<String> {
+    let source = cache.open(file).ok()?;
     let info = source.datasets().get(dataset)?;
     let time = info.channels.iter().find_map(|c| c.start_time.clone())?;
     let day = time.split(['T', ' ']).next()?;

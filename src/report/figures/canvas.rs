@@ -283,7 +283,7 @@ impl Canvas {
             .replacen(&old, &new, 1)
             .replacen(">\n", &format!("><title>{title}</title>\n"), 1)
             .replace(" opacity=\"1\"", "");
-        compact::rectangles(&svg)
+        compact::marks(&svg)
     }
 }
 
