@@ -3,7 +3,7 @@
 
 use std::fmt::{self, Display, Formatter, Write};
 
-/// The same drawing with neighbours of one kind and look as one path: filled rectangles, dots and lines.
+/// The same drawing with neighbours of one kind and look as one path: filled polygons, dots and lines.
 pub(super) fn marks(svg: &str) -> String {
     let mut out = String::with_capacity(svg.len());
     let mut run = Run::default();
@@ -41,12 +41,12 @@ impl<'a> Run<'a> {
         mark.draw(&mut self.path);
     }
 
-    /// Write the marks; a dot or a line alone stays as it is.
+    /// Write the marks; one alone stays as it is.
     fn close(&mut self, out: &mut String) {
         let Some(look) = self.look.take() else {
             return;
         };
-        if self.count == 1 && !matches!(look, Look::Rectangle { .. }) {
+        if self.count == 1 {
             out.push_str(self.first);
         } else {
             out.push_str(&format!("<path {look} d=\"{}\"/>\n", self.path));
@@ -59,7 +59,7 @@ impl<'a> Run<'a> {
 /// What neighbours must have in common.
 #[derive(Clone, Copy, PartialEq)]
 enum Look<'a> {
-    Rectangle {
+    Area {
         fill: &'a str,
     },
     /// A line without length whose ends are round.
@@ -76,7 +76,7 @@ enum Look<'a> {
 impl Display for Look<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Rectangle { fill } => write!(f, "fill=\"{fill}\""),
+            Self::Area { fill } => write!(f, "fill=\"{fill}\""),
             Self::Dot { fill, radius } => write!(
                 f,
                 "fill=\"none\" stroke=\"{fill}\" stroke-width=\"{}\" stroke-linecap=\"round\"",
@@ -100,7 +100,7 @@ struct Mark<'a> {
 
 impl<'a> Mark<'a> {
     fn of(line: &'a str) -> Option<Self> {
-        rectangle(line)
+        polygon(line)
             .or_else(|| dot(line))
             .or_else(|| polyline(line))
     }
@@ -112,19 +112,19 @@ impl<'a> Mark<'a> {
         };
         // a string cannot fail to be written
         let _ = write!(path, "M{x} {y}");
-        match (self.look, rest) {
-            (Look::Rectangle { .. }, [corner, ..]) => {
-                let (width, height) = (corner.0 - x, corner.1 - y);
-                let _ = write!(path, "h{width}v{height}h{}z", -width);
-            }
-            (Look::Dot { .. }, _) => path.push_str("h0"),
-            _ => {
-                let mut before = (*x, *y);
-                for point in rest {
-                    let _ = write!(path, "l{} {}", point.0 - before.0, point.1 - before.1);
-                    before = *point;
-                }
-            }
+        let mut before = (*x, *y);
+        for point in rest {
+            let _ = match (point.0 - before.0, point.1 - before.1) {
+                (across, 0) => write!(path, "h{across}"),
+                (0, down) => write!(path, "v{down}"),
+                (across, down) => write!(path, "l{across} {down}"),
+            };
+            before = *point;
+        }
+        match self.look {
+            Look::Area { .. } => path.push('z'),
+            Look::Dot { .. } => path.push_str("h0"),
+            Look::Line { .. } => {}
         }
     }
 }
@@ -138,17 +138,27 @@ fn points(list: &str) -> Option<Vec<(i32, i32)>> {
     list.split(' ').map(point).collect()
 }
 
-/// A filled rectangle: its upper left and its lower right corner.
-fn rectangle(line: &str) -> Option<Mark<'_>> {
+/// A filled polygon. All turn the same way, so that where two overlap nothing is cut out.
+fn polygon(line: &str) -> Option<Mark<'_>> {
     let rest = line.strip_prefix("<polygon fill=\"")?;
     let (fill, rest) = rest.split_once("\" points=\"")?;
-    let [a, b, c, d] = points(rest.strip_suffix(" \"/>\n")?)?.try_into().ok()?;
-    let upright = a.1 == b.1 && b.0 == c.0 && c.1 == d.1 && d.0 == a.0;
-    // all turn the same way, so that where they overlap nothing is cut out
-    (upright && b.0 > a.0 && c.1 > b.1).then_some(Mark {
-        look: Look::Rectangle { fill },
-        points: vec![a, c],
+    let mut points = points(rest.strip_suffix(" \"/>\n")?)?;
+    if twice_the_area(&points) < 0 {
+        points.reverse();
+    }
+    Some(Mark {
+        look: Look::Area { fill },
+        points,
     })
+}
+
+/// Twice the area within points, negative where they turn the other way.
+fn twice_the_area(points: &[(i32, i32)]) -> i64 {
+    let next = points.iter().cycle().skip(1);
+    let sides = points.iter().zip(next);
+    sides
+        .map(|(a, b)| i64::from(a.0) * i64::from(b.1) - i64::from(b.0) * i64::from(a.1))
+        .sum()
 }
 
 /// A filled disc.
@@ -186,8 +196,7 @@ mod tests {
     fn neighbours_of_one_look_become_one_path() {
         let svg = "<svg>\n\
             <polygon fill=\"#aa0000\" points=\"0,0 4,0 4,2 0,2 \"/>\n\
-            <polygon fill=\"#aa0000\" points=\"4,0 6,0 6,2 4,2 \"/>\n\
-            <polygon fill=\"#00bb00\" points=\"0,0 4,0 4,2 0,2 \"/>\n\
+            <polygon fill=\"#aa0000\" points=\"4,2 6,0 4,0 \"/>\n\
             <polygon fill=\"#00bb00\" points=\"0,0 4,0 3,2 0,2 \"/>\n\
             <circle cx=\"7\" cy=\"8\" r=\"3\" fill=\"#00bb00\" stroke=\"none\" stroke-width=\"1\"/>\n\
             <circle cx=\"9\" cy=\"8\" r=\"3\" fill=\"#00bb00\" stroke=\"none\" stroke-width=\"1\"/>\n\
@@ -196,12 +205,11 @@ mod tests {
             <polyline fill=\"none\" stroke=\"#00bb00\" stroke-width=\"6\" points=\"5,5 4,4 \"/>\n\
             <polyline fill=\"none\" stroke=\"#00bb00\" stroke-width=\"7\" points=\"5,5 4,4 \"/>\n</svg>";
         let short = "<svg>\n\
-            <path fill=\"#aa0000\" d=\"M0 0h4v2h-4zM4 0h2v2h-2z\"/>\n\
-            <path fill=\"#00bb00\" d=\"M0 0h4v2h-4z\"/>\n\
+            <path fill=\"#aa0000\" d=\"M0 0h4v2h-4zM4 0h2l-2 2z\"/>\n\
             <polygon fill=\"#00bb00\" points=\"0,0 4,0 3,2 0,2 \"/>\n\
             <path fill=\"none\" stroke=\"#00bb00\" stroke-width=\"6\" stroke-linecap=\"round\" d=\"M7 8h0M9 8h0\"/>\n\
             <circle cx=\"9\" cy=\"8\" r=\"4\" fill=\"#00bb00\" stroke=\"none\" stroke-width=\"1\"/>\n\
-            <path fill=\"none\" stroke=\"#00bb00\" stroke-width=\"6\" d=\"M1 1l2 1l0 7M5 5l-1 -1\"/>\n\
+            <path fill=\"none\" stroke=\"#00bb00\" stroke-width=\"6\" d=\"M1 1l2 1v7M5 5l-1 -1\"/>\n\
             <polyline fill=\"none\" stroke=\"#00bb00\" stroke-width=\"7\" points=\"5,5 4,4 \"/>\n</svg>";
         assert_eq!(marks(svg), short);
     }

@@ -102,15 +102,17 @@ impl<'a> Regions<'a> {
         for j in -1..rows {
             self.even_runs(&mut runs, j, columns);
         }
-        runs.sort_by_key(|(Colour { 0: r, 1: g, 2: b }, ..)| (*r, *g, *b));
+        runs.sort_by_key(|run| order(run.0));
         for (tint, lower, upper) in runs {
             self.patch(canvas, lower, upper, tint);
         }
+        let mut mixed = Mixed::default();
         for j in -1..rows {
             for i in -1..columns {
-                self.draw_mixed(canvas, i, j);
+                self.add_mixed(&mut mixed, i, j);
             }
         }
+        mixed.draw(canvas);
         self.hatch(canvas);
     }
 
@@ -176,12 +178,11 @@ impl<'a> Regions<'a> {
     }
 
     /// A square whose corners differ: each motion gets its corners, cut straight between.
-    fn draw_mixed(&self, canvas: &mut Canvas, i: isize, j: isize) {
+    fn add_mixed(&self, mixed: &mut Mixed, i: isize, j: isize) {
         let corners = self.corners(i, j);
         if self.same_motion(&corners) {
             return;
         }
-        self.patch(canvas, corners[0].1, corners[2].1, self.tint(corners[0].0));
         let kinds = corners.map(|c| self.map.cells[c.0]);
         let saddle = kinds[0] == kinds[2] && kinds[1] == kinds[3];
         let centre = (saddle || distinct(kinds) > 2).then(|| middle(corners[0].1, corners[2].1));
@@ -199,19 +200,13 @@ impl<'a> Regions<'a> {
             let edge: Vec<Point> = edge.into_iter().flatten().collect();
             polygon.extend(&edge);
             let polygon = path::clip_polygon(&polygon, &self.panel.rect);
-            canvas.fill(&polygon, self.tint(corners[start].0));
+            mixed.parts.push((self.tint(corners[start].0), polygon));
             if kinds[start] > kinds[after]
                 && self.is_large(corners[start].0)
                 && self.is_large(corners[after].0)
             {
-                self.outline(canvas, &edge);
+                mixed.outlines.extend(path::clip(&edge, &self.panel.rect));
             }
-        }
-    }
-
-    fn outline(&self, canvas: &mut Canvas, edge: &[Point]) {
-        for piece in path::clip(edge, &self.panel.rect) {
-            canvas.line(&piece, Stroke::solid(marks::mix(look::FRAME, 0.45), 0.3));
         }
     }
 
@@ -299,4 +294,34 @@ fn middle(a: Point, b: Point) -> Point {
 
 fn distinct(kinds: [u16; 4]) -> usize {
     (0..4).filter(|&i| !kinds[..i].contains(&kinds[i])).count()
+}
+
+/// The squares whose corners differ: parts of one tint are drawn together, outlines over all of them.
+#[derive(Default)]
+struct Mixed {
+    parts: Vec<(Colour, Vec<Point>)>,
+    outlines: Vec<Vec<Point>>,
+}
+
+impl Mixed {
+    fn draw(mut self, canvas: &mut Canvas) {
+        self.parts.sort_by_key(|part| order(part.0));
+        for (tint, polygon) in &self.parts {
+            canvas.fill(polygon, *tint);
+        }
+        for piece in &self.outlines {
+            canvas.line(piece, Stroke::solid(marks::mix(look::FRAME, 0.45), 0.3));
+        }
+    }
+}
+
+/// In which order tints are drawn.
+fn order(
+    Colour {
+        0: red,
+        1: green,
+        2: blue,
+    }: Colour,
+) -> [u8; 3] {
+    [red, green, blue]
 }
