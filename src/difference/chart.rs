@@ -104,9 +104,14 @@ impl Chart {
         self.slopes.transpose() * of_coordinates * &self.slopes
     }
 
-    /// A prior on a coordinate with a centre: the multiples of the unknowns whose sum it is on, and its
-    /// centre there.
-    pub(super) fn prior(&self, coordinate: usize, centre: f64) -> (Vec<(usize, f64)>, f64) {
+    /// A prior on a coordinate with a centre: the multiples of the unknowns whose sum it is on, and the
+    /// centre of that sum of their deviations from a reference.
+    pub(super) fn prior(
+        &self,
+        coordinate: usize,
+        centre: f64,
+        reference: &DVector<f64>,
+    ) -> (Vec<(usize, f64)>, f64) {
         let slopes = self.slopes.row(coordinate);
         let row: Vec<(usize, f64)> = slopes
             .iter()
@@ -114,7 +119,8 @@ impl Chart {
             .enumerate()
             .filter(|(_, slope)| *slope != 0.0)
             .collect();
-        let here: f64 = row.iter().map(|(k, slope)| slope * self.values[*k]).sum();
+        let deviations = &self.values - reference;
+        let here: f64 = row.iter().map(|(k, slope)| slope * deviations[*k]).sum();
         (row, centre + here - self.coordinates[coordinate])
     }
 }

@@ -40,7 +40,7 @@ impl Stack {
         }
         let covariance = inverse(&information)?;
         Some(Self {
-            mean: &covariance * DVector::from_vec(sum.vector),
+            mean: DVector::from_vec(sum.reference) + &covariance * DVector::from_vec(sum.vector),
             covariance,
             places,
         })
@@ -73,6 +73,7 @@ impl Stack {
 struct SharedPrior {
     /// Places of the unknowns whose sum of multiples it is on.
     row: Vec<(usize, f64)>,
+    /// Of their deviations.
     centre: f64,
     variance: f64,
     factor: f64,
@@ -88,7 +89,11 @@ impl SharedPrior {
 #[derive(Debug, Default)]
 struct Sum {
     information: BTreeMap<(usize, usize), f64>,
-    /// Information times values.
+    /// Values near those of all unknowns. What is known of them is summed as deviations from these: the
+    /// values themselves, times information about directions known a million times better than others,
+    /// would cancel to nothing but rounding.
+    reference: Vec<f64>,
+    /// Information times deviations.
     vector: Vec<f64>,
     /// Places of the shared unknowns, by their numbers among the shared ones.
     shared: BTreeMap<usize, usize>,
@@ -112,15 +117,17 @@ impl Sum {
         }
     }
 
-    fn next(&mut self) -> usize {
+    /// A new unknown near a value.
+    fn next(&mut self, value: f64) -> usize {
         self.vector.push(0.0);
+        self.reference.push(value);
         self.vector.len() - 1
     }
 
     /// The place of a shared unknown by its number, or the next one.
-    fn place_of(&mut self, class: Option<usize>) -> usize {
+    fn place_of(&mut self, class: Option<usize>, value: f64) -> usize {
         let known = class.and_then(|class| self.shared.get(&class).copied());
-        let place = known.unwrap_or_else(|| self.next());
+        let place = known.unwrap_or_else(|| self.next(value));
         if let Some(class) = class {
             self.shared.insert(class, place);
         }
@@ -148,9 +155,8 @@ impl Sum {
                 continue;
             }
             // what rests on no fit is separate
-            let place = self.next();
+            let place = self.next(known.value);
             self.add(place, place, known.variance.recip());
-            self.vector[place] += known.value / known.variance;
             places.insert(parameter, place);
         }
         Some(places)
@@ -167,13 +173,19 @@ impl Sum {
         let (fit, factor) = (&joint.fit, joint.variance_factor);
         let chart = Chart::new(joint, relative);
         let mut information = chart.information(&inverse(&fit.covariance)?) / factor;
-        let mut vector = &information * chart.values();
         let classes: Vec<Option<usize>> = fit
             .free
             .iter()
             .map(|coordinate| Nuisance::of(*coordinate, joint).and_then(&shared))
             .collect();
-        let own: Vec<usize> = classes.iter().map(|class| self.place_of(*class)).collect();
+        let values = chart.values();
+        let own: Vec<usize> = classes
+            .iter()
+            .zip(values)
+            .map(|(class, value)| self.place_of(*class, *value))
+            .collect();
+        let reference = DVector::from_iterator(own.len(), own.iter().map(|k| self.reference[*k]));
+        let mut vector = &information * (values - &reference);
         for (i, class) in classes.iter().enumerate() {
             let mut priors = joint.priors.iter();
             let prior = priors.find(|p| p.coordinate == fit.free[i]);
@@ -181,7 +193,7 @@ impl Sum {
                 continue;
             };
             let variance = prior.deviation.powi(2);
-            let (row, centre) = chart.prior(i, prior.centre);
+            let (row, centre) = chart.prior(i, prior.centre, &reference);
             for (k, slope) in &row {
                 vector[*k] -= slope * centre / (variance * factor);
                 for (l, other) in &row {
