@@ -183,15 +183,19 @@ impl Problem<'_> {
             for i in 0..block.items() {
                 items.entry(block.group(i)).or_default().push(i);
             }
-            for (group, items) in items {
-                let part = self.part_of(*block, *weight, parameters, &items);
-                match group {
-                    Some(group) => groups
-                        .entry(group)
-                        .or_insert_with(|| Normal::zeros(n))
-                        .add(&part.normal(n)),
-                    None => rest.add(&part.normal(n)),
-                }
+            let parts: Vec<(Option<Group>, Normal)> = items
+                .into_par_iter()
+                .map(|(group, items)| {
+                    let part = self.part_of(*block, *weight, parameters, &items);
+                    (group, part.normal(n))
+                })
+                .collect();
+            for (group, part) in parts {
+                let sum = match group {
+                    Some(group) => groups.entry(group).or_insert_with(|| Normal::zeros(n)),
+                    None => &mut rest,
+                };
+                sum.add(&part);
             }
         }
         rest.add(&self.priors_normal(parameters));
