@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::identify::fit::normal::inverse;
+use crate::identify::fit::normal::{Normal, inverse};
 use crate::identify::fit::parameters::Coordinate;
 use crate::identify::fit::{Fit, Precision, Problem};
 use crate::identify::uncertainty::scatter::{self, Scatter, Spread};
@@ -18,6 +18,9 @@ pub struct MethodFit {
     pub reduced: f64,
     /// Scatter between groups of records beyond it; not looked for where the fit only starts another.
     pub scatter: Scatter,
+    /// Normal equations at the optimum of each block, then those of all priors; none where the fit only
+    /// starts another.
+    pub parts: Vec<Normal>,
 }
 
 /// Share of an effect that its first order does not hold, of what it changes of a parameter: what
@@ -36,14 +39,18 @@ impl MethodFit {
     /// Of a fit of a problem, judged with degrees of freedom.
     pub fn of(problem: &Problem<'_>, fit: Fit, freedom: usize) -> Self {
         let reduced = fit.cost / freedom.max(1) as f64;
-        let scatter = match problem.precision {
-            Precision::Result => scatter::scatter(problem, &fit),
-            Precision::Start => Scatter::default(),
+        let (scatter, parts) = match problem.precision {
+            Precision::Result => (
+                scatter::scatter(problem, &fit),
+                problem.parts(&fit.parameters),
+            ),
+            Precision::Start => (Scatter::default(), Vec::new()),
         };
         Self {
             factor: reduced.max(1.0),
             reduced,
             scatter,
+            parts,
             fit,
         }
     }

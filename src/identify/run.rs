@@ -454,14 +454,14 @@ impl IdentificationRun<'_> {
             return Uncertainty::default();
         };
         let present = joint::present(blocks, &fits.weights);
-        let parts = problem.parts(&joint.fit.parameters);
+        let parts = &joint.parts;
         let options = &self.evidence.uncertainty;
         Uncertainty {
-            budget: budget::budget(&problem, (&present, &parts), joint, blocks, apart),
+            budget: budget::budget(&problem, (&present, parts), joint, blocks, apart),
             scatter: joint.scatter.clone(),
             ..uncertainty::uncertainty(
                 &problem,
-                (&present, &parts),
+                (&present, parts),
                 &joint.fit,
                 joint.factor,
                 options,

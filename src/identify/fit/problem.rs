@@ -4,6 +4,7 @@
 //! so that the same bytes come out on any number of threads.
 
 use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -42,6 +43,8 @@ pub struct Problem<'a> {
     pub progress: FitProgress,
     /// How close to the least sum of squares its fits end.
     pub precision: Precision,
+    /// What was evaluated last: a fit ends where its groups are asked for.
+    pub(in crate::identify) last: Last,
 }
 
 /// How close to the least sum of squares a fit ends.
@@ -178,25 +181,12 @@ impl Problem<'_> {
     pub fn groups(&self, parameters: &Parameters) -> (BTreeMap<Group, Normal>, Normal) {
         let n = self.free.len();
         let (mut groups, mut rest) = (BTreeMap::new(), Normal::zeros(n));
-        for (block, weight) in &self.blocks {
-            let mut items: BTreeMap<Option<Group>, Vec<usize>> = BTreeMap::new();
-            for i in 0..block.items() {
-                items.entry(block.group(i)).or_default().push(i);
-            }
-            let parts: Vec<(Option<Group>, Normal)> = items
-                .into_par_iter()
-                .map(|(group, items)| {
-                    let part = self.part_of(*block, *weight, parameters, &items);
-                    (group, part.normal(n))
-                })
-                .collect();
-            for (group, part) in parts {
-                let sum = match group {
-                    Some(group) => groups.entry(group).or_insert_with(|| Normal::zeros(n)),
-                    None => &mut rest,
-                };
-                sum.add(&part);
-            }
+        for (group, part) in self.evaluated(parameters).blocks.iter().flatten() {
+            let sum = match group {
+                Some(group) => groups.entry(*group).or_insert_with(|| Normal::zeros(n)),
+                None => &mut rest,
+            };
+            sum.add(&part.normal(n));
         }
         rest.add(&self.priors_normal(parameters));
         (groups, rest)
@@ -204,10 +194,14 @@ impl Problem<'_> {
 
     /// Normal equations of each block, over the items that have a model, then those of all priors.
     pub fn parts(&self, parameters: &Parameters) -> Vec<Normal> {
-        let blocks = self.blocks.iter();
-        let mut parts: Vec<Normal> = blocks
-            .map(|(block, weight)| self.block_normal(*block, *weight, parameters))
-            .collect();
+        let n = self.free.len();
+        let evaluated = self.evaluated(parameters);
+        let sum = |groups: &Vec<(Option<Group>, Part)>| {
+            let mut sum = Normal::zeros(n);
+            groups.iter().for_each(|(_, part)| sum.add(&part.normal(n)));
+            sum
+        };
+        let mut parts: Vec<Normal> = evaluated.blocks.iter().map(sum).collect();
         parts.push(self.priors_normal(parameters));
         parts
     }
@@ -257,6 +251,7 @@ impl Problem<'_> {
                 .collect(),
             progress: self.progress.clone(),
             precision: Precision::Start,
+            last: Last::default(),
         };
         held.least_cost_from(&start, NEARLY * linear)
             .or_else(|| Some(held.fit(start).ok()?.cost))
@@ -281,11 +276,11 @@ impl Problem<'_> {
     fn known_factor(&self, parameters: &Parameters) -> (Factor, Vec<(usize, usize)>) {
         let mut total = Factor::empty(self.free.len());
         let mut missing = Vec::new();
-        for (b, (block, weight)) in self.blocks.iter().enumerate() {
-            let items: Vec<usize> = (0..block.items()).collect();
-            let part = self.part_of(*block, *weight, parameters, &items);
-            total.add(&part.factor, &part.places);
-            missing.extend(part.missing.into_iter().map(|i| (b, i)));
+        for (b, groups) in self.evaluated(parameters).blocks.iter().enumerate() {
+            for (_, part) in groups {
+                total.add(&part.factor, &part.places);
+                missing.extend(part.missing.iter().map(|i| (b, *i)));
+            }
         }
         for prior in &self.priors {
             let place = self.free.iter().position(|c| *c == prior.coordinate);
@@ -294,7 +289,31 @@ impl Problem<'_> {
             let part = Factor::of(&[residual], slopes.as_slice(), 1.0);
             total.add(&part, place.as_slice());
         }
+        missing.sort_unstable();
         (total, missing)
+    }
+
+    /// All items at given parameters, by block and group.
+    fn evaluated(&self, at: &Parameters) -> Arc<Evaluated> {
+        if let Some(last) = self.last.at(at) {
+            return last;
+        }
+        let blocks = self.blocks.iter().map(|(block, weight)| {
+            let mut items: BTreeMap<Option<Group>, Vec<usize>> = BTreeMap::new();
+            for i in 0..block.items() {
+                items.entry(block.group(i)).or_default().push(i);
+            }
+            items
+                .into_par_iter()
+                .map(|(group, items)| (group, self.part_of(*block, *weight, at, &items)))
+                .collect()
+        });
+        let evaluated = Arc::new(Evaluated {
+            at: *at,
+            blocks: blocks.collect(),
+        });
+        self.last.keep(&evaluated);
+        evaluated
     }
 
     /// Factor of some items of a block with its weight, over the coordinates that the block depends on.
@@ -327,13 +346,13 @@ impl Problem<'_> {
                 (share, missing)
             })
             .collect();
-        let mut factor = Factor::empty(places.len());
-        let mut missing = Vec::new();
         let all: Vec<usize> = (0..places.len()).collect();
-        for (share, without) in shares {
-            factor.add(&share, &all);
-            missing.extend(without);
-        }
+        let whole = shares.into_iter().reduce(|mut whole, (share, without)| {
+            whole.0.add(&share, &all);
+            whole.1.extend(without);
+            whole
+        });
+        let (factor, missing) = whole.unwrap_or_else(|| (Factor::empty(places.len()), Vec::new()));
         Part {
             factor,
             places,
@@ -362,6 +381,31 @@ impl Problem<'_> {
             part.gradient[i] = residual / prior.deviation;
         }
         part
+    }
+}
+
+/// All items of a problem's blocks at given parameters.
+struct Evaluated {
+    at: Parameters,
+    /// Of each block its groups.
+    blocks: Vec<Vec<(Option<Group>, Part)>>,
+}
+
+/// The evaluation of a problem that was made last.
+#[derive(Default)]
+pub(in crate::identify) struct Last(Mutex<Option<Arc<Evaluated>>>);
+
+impl Last {
+    /// The evaluation, if it was made at these parameters.
+    fn at(&self, parameters: &Parameters) -> Option<Arc<Evaluated>> {
+        let last = self.0.lock().ok()?;
+        last.as_ref().filter(|e| e.at == *parameters).cloned()
+    }
+
+    fn keep(&self, evaluated: &Arc<Evaluated>) {
+        if let Ok(mut last) = self.0.lock() {
+            *last = Some(Arc::clone(evaluated));
+        }
     }
 }
 
