@@ -4,6 +4,7 @@
 pub mod block;
 pub mod coordinate;
 pub mod effect;
+mod evaluation;
 pub mod factor;
 pub mod gap_errors;
 pub mod group;

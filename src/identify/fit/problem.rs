@@ -4,13 +4,14 @@
 //! so that the same bytes come out on any number of threads.
 
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::identify::fit::block::Block;
+use crate::identify::fit::evaluation::{Evaluation, LastEvaluation, Part, kept};
 use crate::identify::fit::factor::Factor;
 use crate::identify::fit::group::Group;
 use crate::identify::fit::least_squares::{LeastSquares, Limits, Variance, minimise};
@@ -44,7 +45,7 @@ pub struct Problem<'a> {
     /// How close to the least sum of squares its fits end.
     pub precision: Precision,
     /// What was evaluated last: a fit ends where its groups are asked for.
-    pub(in crate::identify) last: Last,
+    pub(in crate::identify) last: LastEvaluation,
 }
 
 /// How close to the least sum of squares a fit ends.
@@ -169,7 +170,7 @@ impl Problem<'_> {
         (0..block.items())
             .into_par_iter()
             .filter_map(|i| {
-                let (places, coordinates) = self.touched(block, i);
+                let (places, coordinates) = kept(&self.free, |c| block.item_touches(i, c));
                 let factor = block.factor(i, at, &coordinates, weight)?;
                 Some(give(factor, &places))
             })
@@ -209,8 +210,7 @@ impl Problem<'_> {
     /// Normal equations of a block with its weight, over the items that have a model.
     pub fn block_normal(&self, block: &dyn Block, weight: f64, at: &Parameters) -> Normal {
         let items: Vec<usize> = (0..block.items()).collect();
-        let part = self.part_of(block, weight, at, &items);
-        part.normal(self.free.len())
+        Part::of((block, weight), &self.free, at, &items).normal(self.free.len())
     }
 
     /// Normal equations of all priors.
@@ -251,7 +251,7 @@ impl Problem<'_> {
                 .collect(),
             progress: self.progress.clone(),
             precision: Precision::Start,
-            last: Last::default(),
+            last: LastEvaluation::default(),
         };
         held.least_cost_from(&start, NEARLY * linear)
             .or_else(|| Some(held.fit(start).ok()?.cost))
@@ -293,81 +293,10 @@ impl Problem<'_> {
         (total, missing)
     }
 
-    /// All items at given parameters, by block and group.
-    fn evaluated(&self, at: &Parameters) -> Arc<Evaluated> {
-        if let Some(last) = self.last.at(at) {
-            return last;
-        }
-        let blocks = self.blocks.iter().map(|(block, weight)| {
-            let mut items: BTreeMap<Option<Group>, Vec<usize>> = BTreeMap::new();
-            for i in 0..block.items() {
-                items.entry(block.group(i)).or_default().push(i);
-            }
-            items
-                .into_par_iter()
-                .map(|(group, items)| (group, self.part_of(*block, *weight, at, &items)))
-                .collect()
-        });
-        let evaluated = Arc::new(Evaluated {
-            at: *at,
-            blocks: blocks.collect(),
-        });
-        self.last.keep(&evaluated);
-        evaluated
-    }
-
-    /// Factor of some items of a block with its weight, over the coordinates that the block depends on.
-    /// Items are folded together in shares of fixed size, so that the number of threads changes nothing.
-    fn part_of(&self, block: &dyn Block, weight: f64, at: &Parameters, items: &[usize]) -> Part {
-        let (places, coordinates): (Vec<usize>, Vec<Coordinate>) = self
-            .free
-            .iter()
-            .copied()
-            .enumerate()
-            .filter(|(_, c)| block.touches(*c))
-            .unzip();
-        let shares: Vec<(Factor, Vec<usize>)> = items
-            .par_chunks(SHARE)
-            .map(|items| {
-                let mut share = Factor::empty(places.len());
-                let mut missing = Vec::new();
-                for i in items {
-                    let (own, touched): (Vec<usize>, Vec<Coordinate>) = coordinates
-                        .iter()
-                        .copied()
-                        .enumerate()
-                        .filter(|(_, c)| block.item_touches(*i, *c))
-                        .unzip();
-                    match block.factor(*i, at, &touched, weight) {
-                        Some(factor) => share.add(&factor, &own),
-                        None => missing.push(*i),
-                    }
-                }
-                (share, missing)
-            })
-            .collect();
-        let all: Vec<usize> = (0..places.len()).collect();
-        let whole = shares.into_iter().reduce(|mut whole, (share, without)| {
-            whole.0.add(&share, &all);
-            whole.1.extend(without);
-            whole
-        });
-        let (factor, missing) = whole.unwrap_or_else(|| (Factor::empty(places.len()), Vec::new()));
-        Part {
-            factor,
-            places,
-            missing,
-        }
-    }
-
-    /// Places among the free coordinates, and the coordinates, that an item of a block depends on.
-    fn touched(&self, block: &dyn Block, item: usize) -> (Vec<usize>, Vec<Coordinate>) {
-        self.free
-            .iter()
-            .copied()
-            .enumerate()
-            .filter(|(_, c)| block.item_touches(item, *c))
-            .unzip()
+    /// All items at given parameters.
+    fn evaluated(&self, at: &Parameters) -> Arc<Evaluation> {
+        let evaluate = || Evaluation::of(&self.blocks, &self.free, at);
+        self.last.at_or(at, evaluate)
     }
 
     /// Normal equations of one prior.
@@ -381,49 +310,6 @@ impl Problem<'_> {
             part.gradient[i] = residual / prior.deviation;
         }
         part
-    }
-}
-
-/// All items of a problem's blocks at given parameters.
-struct Evaluated {
-    at: Parameters,
-    /// Of each block its groups.
-    blocks: Vec<Vec<(Option<Group>, Part)>>,
-}
-
-/// The evaluation of a problem that was made last.
-#[derive(Default)]
-pub(in crate::identify) struct Last(Mutex<Option<Arc<Evaluated>>>);
-
-impl Last {
-    /// The evaluation, if it was made at these parameters.
-    fn at(&self, parameters: &Parameters) -> Option<Arc<Evaluated>> {
-        let last = self.0.lock().ok()?;
-        last.as_ref().filter(|e| e.at == *parameters).cloned()
-    }
-
-    fn keep(&self, evaluated: &Arc<Evaluated>) {
-        if let Ok(mut last) = self.0.lock() {
-            *last = Some(Arc::clone(evaluated));
-        }
-    }
-}
-
-/// Items of a block that are folded together.
-const SHARE: usize = 16;
-
-/// Factor of some items of a block.
-struct Part {
-    factor: Factor,
-    /// Places of its coordinates among the free ones.
-    places: Vec<usize>,
-    /// Items without a model.
-    missing: Vec<usize>,
-}
-
-impl Part {
-    fn normal(&self, unknowns: usize) -> Normal {
-        self.factor.normal(&self.places, unknowns)
     }
 }
 
