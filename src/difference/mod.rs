@@ -6,7 +6,7 @@
 //! `A_k` = `Λ_k` + `P_k`, the likelihood's and the priors'. A nuisance that campaigns share is one unknown with
 //! one prior, so that all of them together have the information
 //!
-//! A = `Σ_k` `Λ_k` + P                                                                           (19)
+//! A = `Σ_k` `Λ_k` + P                                                                           (21)
 //!
 //! with one row for each nuisance that is shared; clearances enter by their logarithms ([`chart`]). Its inverse holds the correlation between the campaigns'
 //! parameters, from which the differences follow. What the intervals of each campaign allow for beyond
