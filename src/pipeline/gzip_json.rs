@@ -1,7 +1,7 @@
 //! Values as gzip-compressed JSON.
 
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::{self, BufWriter, IntoInnerError, Read};
 use std::path::Path;
 
 use flate2::Compression;
@@ -12,15 +12,23 @@ use serde::de::DeserializeOwned;
 
 use labfiles::output::{OutputError, write_whole};
 
+/// Bytes that are compressed together.
+const BUFFER_BYTES: usize = 1 << 16;
+
 /// Write a value atomically.
 ///
 /// # Errors
 /// If it cannot be written.
 pub(super) fn write<T: Serialize>(path: &Path, value: &T) -> Result<(), OutputError> {
     write_whole(path, |writer| {
-        let mut gzip = GzEncoder::new(writer, Compression::fast());
-        serde_json::to_writer(&mut gzip, value)?;
-        gzip.finish()?;
+        let gzip = GzEncoder::new(writer, Compression::fast());
+        // a value is written token by token, of which each would cost the compressor a pass
+        let mut buffered = BufWriter::with_capacity(BUFFER_BYTES, gzip);
+        serde_json::to_writer(&mut buffered, value)?;
+        buffered
+            .into_inner()
+            .map_err(IntoInnerError::into_error)?
+            .finish()?;
         Ok(())
     })
 }
