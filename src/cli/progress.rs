@@ -138,9 +138,9 @@ impl Later {
 /// Time of fitting, report and writing, measured on campaigns of 846 to 100,000 records
 /// (docs/validation.md): of very long campaigns not all waveforms are fitted and not all rows printed.
 pub(super) const LATER: Later = Later {
-    part: 0.45,
-    bounded: (0.4, 10_000),
-    fixed: Duration::from_secs(1),
+    part: 0.3,
+    bounded: (1.6, 4_000),
+    fixed: Duration::from_millis(1_400),
 };
 
 /// The clock of a bar, shared by threads.
@@ -232,16 +232,13 @@ mod tests {
         // Records, seconds of observing, seconds of all that follows: idle, on one thread, and under
         // a load (docs/validation.md).
         for (records, observing, following) in [
-            (846, 0.85, 1.55),
-            (4_000, 11.2, 9.4),
-            (10_000, 18.0, 15.6),
-            (100_000, 145.0, 74.5),
-            (846, 1.2, 2.7),
-            (4_000, 14.6, 14.7),
-            (846, 2.0, 3.4),
-            (4_000, 32.4, 20.6),
-            (4_000, 29.9, 25.4),
-            (100_000, 387.0, 193.0),
+            (846, 0.56, 2.4),
+            (4_000, 4.1, 8.6),
+            (10_000, 9.1, 9.0),
+            (100_000, 98.4, 39.7),
+            (846, 1.32, 4.25),
+            (4_000, 6.42, 14.8),
+            (4_000, 15.9, 29.9),
         ] {
             let (pace, begin) = (Pace::default(), Instant::now());
             pace.clock().later = Some(LATER);
