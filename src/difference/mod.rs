@@ -8,7 +8,8 @@
 //!
 //! A = `Σ_k` `Λ_k` + P                                                                           (21)
 //!
-//! with one row for each nuisance that is shared; clearances enter by their logarithms ([`chart`]). Its inverse holds the correlation between the campaigns'
+//! with one row for each nuisance that is shared; shared clearances enter by their logarithms (module
+//! `chart`). Its inverse holds the correlation between the campaigns'
 //! parameters, from which the differences follow. What the intervals of each campaign allow for beyond
 //! its covariance (scatter between groups, first order of the effects, disagreement of methods) is taken
 //! as independent: that is wider, never narrower.

@@ -316,12 +316,6 @@ impl Mixed {
 }
 
 /// In which order tints are drawn.
-fn order(
-    Colour {
-        0: red,
-        1: green,
-        2: blue,
-    }: Colour,
-) -> [u8; 3] {
-    [red, green, blue]
+fn order(tint: Colour) -> [u8; 3] {
+    [tint.0, tint.1, tint.2]
 }
