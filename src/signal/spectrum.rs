@@ -1,10 +1,28 @@
 //! Spectra of real samples.
 
+use std::cell::RefCell;
+
 use rustfft::algorithm::Radix4;
 use rustfft::num_complex::Complex64;
-use rustfft::{Fft, FftDirection};
+use rustfft::{Fft, FftDirection, Length};
 
 use super::tone::Phasor;
+
+thread_local! {
+    /// The transform that was made last: records of a campaign are equally long.
+    static LAST: RefCell<Option<Radix4<f64>>> = const { RefCell::new(None) };
+}
+
+/// Fourier transform in place of samples whose number is a power of two: no planner, whose every
+/// algorithm would be compiled here.
+fn transform(bins: &mut [Complex64]) {
+    LAST.with_borrow_mut(|last| {
+        let made = last.take().filter(|made| made.len() == bins.len());
+        let made = made.unwrap_or_else(|| Radix4::new(bins.len(), FftDirection::Forward));
+        made.process(bins);
+        *last = Some(made);
+    });
+}
 
 /// One-sided power spectrum of the samples in no unit, mean removed, Hann window, zero-padded to twice
 /// the next power of two: (frequency step in units of the sample rate, squares of the amplitudes).
@@ -18,8 +36,7 @@ fn power_spectrum(samples: &[f64]) -> (f64, Vec<f64>) {
     for ((slot, sample), (cosine, _)) in bins.iter_mut().zip(samples).zip(turn) {
         slot.re = (sample - mean) * (0.5 - 0.5 * cosine);
     }
-    // the length is a power of two: no planner, whose every algorithm would be compiled here
-    Radix4::new(padded, FftDirection::Forward).process(&mut bins);
+    transform(&mut bins);
     bins.truncate(padded / 2 + 1);
     let squares = bins.iter().map(Complex64::norm_sqr).collect();
     (1.0 / padded as f64, squares)

@@ -75,11 +75,30 @@ impl Csv {
 
 /// A number with at most nine significant digits, which is more than any figure shows.
 fn nine_digits(value: f64) -> String {
-    let rounded = format!("{value:.8e}").parse::<f64>().unwrap_or(value);
-    if (1e-5..1e15).contains(&rounded.abs()) || rounded == 0.0 {
-        format!("{rounded}")
-    } else {
-        format!("{rounded:e}")
+    let text = format!("{value:.8e}");
+    let parts = text.split_once('e').and_then(|(mantissa, exponent)| {
+        let (first, others) = mantissa.split_once('.')?;
+        let (sign, first) = first.split_at(first.len() - 1);
+        Some((sign, first, others, exponent.parse::<i32>().ok()?))
+    });
+    let Some((sign, first, others, exponent)) = parts else {
+        return text;
+    };
+    let others = others.trim_end_matches('0');
+    let point = if others.is_empty() { "" } else { "." };
+    let length = i32::try_from(others.len()).unwrap_or(i32::MAX);
+    match usize::try_from(exponent.abs()) {
+        Ok(places) if (-5..0).contains(&exponent) => {
+            format!("{sign}0.{first:0>places$}{others}")
+        }
+        Ok(places) if (0..15).contains(&exponent) && exponent >= length => {
+            format!("{sign}{first}{others:0<places$}")
+        }
+        Ok(places) if (0..15).contains(&exponent) => {
+            let (whole, part) = others.split_at(places);
+            format!("{sign}{first}{whole}.{part}")
+        }
+        _ => format!("{sign}{first}{point}{others}e{exponent}"),
     }
 }
 
@@ -94,9 +113,45 @@ mod tests {
             (-1.0 / 3.0, "-0.333333333"),
             (3e-9, "3e-9"),
             (0.0, "0"),
+            (-0.0, "-0"),
+            (12.0, "12"),
+            (1200.0, "1200"),
+            (-12.5, "-12.5"),
+            (0.012_5, "0.0125"),
+            (1e-5, "0.00001"),
+            (9.999_999_999e-6, "0.00001"),
+            (-2.5e-6, "-2.5e-6"),
+            (123_456_789_012.0, "123456789000"),
+            (1e14, "100000000000000"),
+            (1e15, "1e15"),
+            (1.5e300, "1.5e300"),
         ];
         for (value, text) in cases {
             assert_eq!(nine_digits(value), text);
+        }
+    }
+
+    #[test]
+    fn prop_the_text_is_the_shortest_of_the_rounded_number() {
+        let mut state = 7_u64;
+        for _ in 0..5000 {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            let value = f64::from_bits(state);
+            if !value.is_finite() {
+                continue;
+            }
+            for value in [value, value.clamp(-9.9, 9.9), (value % 1e9).trunc()] {
+                let rounded: f64 = format!("{value:.8e}").parse().unwrap();
+                let exponent = rounded == 0.0 || (1e-5..1e15).contains(&rounded.abs());
+                let shortest = if exponent {
+                    format!("{rounded}")
+                } else {
+                    format!("{rounded:e}")
+                };
+                assert_eq!(nine_digits(value), shortest);
+            }
         }
     }
 
