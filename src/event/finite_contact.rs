@@ -10,7 +10,7 @@
 //! displacements cross there. So the kink of the displacement places the contact, and T gives its
 //! start and end. Each body's velocity channel may lag by a delay of its own.
 
-use crate::event::contact_profile::ContactProfile;
+use crate::event::contact_profile::{ContactProfile, TabulatedProfile};
 use crate::event::contact_samples::{Passage, Samples, beside, measured_velocity, samples};
 use crate::event::jumps::Jump;
 use crate::event::kinematics::{Body, Kinematics};
@@ -175,7 +175,13 @@ pub(super) fn measure(
         return None;
     }
     let profile = ContactProfile::new(typical_ratio(kinematics, &wide, &instants, arc)?);
-    let mut found = Search { profile, impacts }.best()?;
+    let tabulated = TabulatedProfile::new(&profile);
+    let search = Search {
+        profile,
+        tabulated,
+        impacts,
+    };
+    let mut found = search.best()?;
     found.kinks_apart = kinks_apart(kinematics, &wide, arc);
     match bodies {
         [Some(_), None] => found.delays[1] = found.delays[0],
@@ -237,6 +243,7 @@ fn typical_ratio(
 /// Least squares over duration and delays; each impact's time is free within its error.
 struct Search {
     profile: ContactProfile,
+    tabulated: TabulatedProfile,
     impacts: Vec<Samples>,
 }
 
@@ -304,7 +311,7 @@ impl Search {
         let deviation = |(p, body): &(Passage, usize), shift: f64| {
             let since = p.offset - shift - delays[*body];
             let done = if *duration > 0.0 {
-                self.profile.done((since + centre) / duration)
+                self.tabulated.done((since + centre) / duration)
             } else {
                 f64::from(since > 0.0)
             };
