@@ -88,15 +88,15 @@ impl LeastSquares for Set {
         let slopes: Vec<Vec<f64>> = (0..at.len())
             .map(|i| residuals.iter().map(|r| r.slopes[i]).collect())
             .collect();
-        let factor = Factor::of(&values, &slopes, 1.0);
-        let finite = factor.cost.is_finite().then_some(factor);
+        let factor = Factor::of(&values, &slopes);
+        let finite = factor.cost().is_finite().then_some(factor);
         finite.ok_or_else(|| argmin::core::Error::msg("the residuals are not finite"))
     }
 
     fn cost(&self, at: &Vec<f64>) -> Option<f64> {
         let residuals = self.residuals(at);
         let values: Vec<f64> = residuals.iter().map(|r| r.value).collect();
-        let cost = Factor::of(&values, &[], 1.0).cost;
+        let cost = Factor::of(&values, &[]).cost();
         cost.is_finite().then_some(cost)
     }
 
@@ -135,7 +135,7 @@ fn fit(set: &Set, start: usize) -> Digits {
     let n = set.parameters.len();
     let covariance = minimum.factor.covariance(1e-14).unwrap();
     let freedom = (set.data.len() - n) as f64;
-    let deviation = (minimum.factor.cost / freedom).sqrt();
+    let deviation = (minimum.factor.cost() / freedom).sqrt();
     let shape: Vec<f64> = (0..n).map(|i| covariance[(i, i)].sqrt()).collect();
     let errors: Vec<f64> = shape.iter().map(|s| s * deviation).collect();
     let certified_shape: Vec<f64> = set.errors.iter().map(|e| e / set.deviation).collect();

@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use rayon::prelude::*;
 
 use crate::identify::fit::normal::{Normal, inverse};
-use crate::identify::fit::reduced_rows::Rows;
+use crate::identify::fit::placed_rows::PlacedRows;
 use crate::signal::robust;
 
 /// A record's influence on a fit.
@@ -28,14 +28,14 @@ const LEAST_SHARE: f64 = 1e-6;
 const LEAST_OTHERS: f64 = 1e-6;
 
 /// The influences of records at a fit's optimum; `None` where the information of all is singular.
-pub fn influences(records: &[Rows], others: &Normal) -> Option<Vec<Influence>> {
+pub fn influences(records: &[PlacedRows], others: &Normal) -> Option<Vec<Influence>> {
     let all = together(records, others);
     let scale = all.matrix.diagonal().map(|d| d.sqrt().recip());
     let scaled = DMatrix::from_fn(scale.len(), scale.len(), |i, k| {
         all.matrix[(i, k)] * scale[i] * scale[k]
     });
     let lower = scaled.cholesky()?.l();
-    let influence = |record: &Rows| {
+    let influence = |record: &PlacedRows| {
         let mut turned = record.slopes.transpose();
         for (mut row, scale) in turned.row_iter_mut().zip(scale.iter()) {
             row *= *scale;
@@ -62,7 +62,7 @@ pub fn influences(records: &[Rows], others: &Normal) -> Option<Vec<Influence>> {
 
 /// Move all to the optimum of the sum of squares that they make together, to first order; `None` where
 /// their information is singular.
-pub fn without_gradient(records: &mut [Rows], others: &mut Normal) -> Option<()> {
+pub fn without_gradient(records: &mut [PlacedRows], others: &mut Normal) -> Option<()> {
     let all = together(records, others);
     let step = -(inverse(&all.matrix)? * &all.gradient);
     for record in records {
@@ -74,7 +74,7 @@ pub fn without_gradient(records: &mut [Rows], others: &mut Normal) -> Option<()>
 
 /// What records inform beside all others. It is summed anew, as taking one record's away could leave
 /// rounding where no other informs.
-fn together(records: &[Rows], others: &Normal) -> Normal {
+fn together(records: &[PlacedRows], others: &Normal) -> Normal {
     let mut all = others.clone();
     records.iter().for_each(|record| all.inform(record));
     all
@@ -128,8 +128,8 @@ mod tests {
     use super::*;
 
     /// One residual and its slopes.
-    fn record(slopes: &[f64], residual: f64) -> Rows {
-        Rows {
+    fn record(slopes: &[f64], residual: f64) -> PlacedRows {
+        PlacedRows {
             slopes: DMatrix::from_row_slice(1, slopes.len(), slopes),
             residuals: DVector::from_element(1, residual),
         }
@@ -153,7 +153,7 @@ mod tests {
     fn valid_a_record_that_drags_the_fit_along_is_found() {
         // Many tell the first coordinate, two the second, of which one is wrong by 20 deviations:
         // the fit halves the difference, and the residual of each is 10.
-        let mut records: Vec<Rows> = (0..40)
+        let mut records: Vec<PlacedRows> = (0..40)
             .map(|i| record(&[-1.0, 0.0], if i % 2 == 0 { 1.0 } else { -1.0 }))
             .collect();
         records.push(record(&[0.0, -1.0], 10.0));

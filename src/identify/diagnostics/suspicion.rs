@@ -9,7 +9,7 @@ use nalgebra::DVector;
 use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::{Blocks, Nominal};
-use crate::identify::fit::factor::dot;
+use crate::identify::fit::columns::dot;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Fit, mean_squares};
 use crate::identify::messages::Finding;

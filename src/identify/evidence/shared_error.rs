@@ -7,7 +7,7 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
-use crate::identify::fit::factor::dot;
+use crate::identify::fit::columns::{dot, subtract};
 
 /// The inverse root of I + `VVᵀ`, by its few directions: I − Σ kept·d dᵀ with orthonormal d.
 #[derive(Debug, Clone, Default)]
@@ -52,9 +52,7 @@ impl Whitening {
     pub fn apply(&self, residuals: &mut [f64]) {
         for (kept, direction) in &self.directions {
             let along = kept * dot(direction, residuals);
-            for (r, d) in residuals.iter_mut().zip(direction) {
-                *r -= along * d;
-            }
+            subtract(residuals, along, direction);
         }
     }
 }

@@ -9,9 +9,9 @@ use crate::identify::evidence::trajectory_record::{TrajectoryRecord, Weighing};
 use crate::identify::evidence::waveform::Phases;
 use crate::identify::fit::Block;
 use crate::identify::fit::effect::{Effect, Effects};
-use crate::identify::fit::factor::Factor;
 use crate::identify::fit::group::Group;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::rows::Rows;
 use crate::motion::Folded;
 use crate::motion::Observation;
 use crate::record::Role;
@@ -281,15 +281,15 @@ impl Block for TrajectoryBlock {
         Some((residuals, slopes))
     }
 
-    fn factor(
+    fn rows(
         &self,
         item: usize,
         parameters: &Parameters,
         coordinates: &[Coordinate],
         weight: f64,
-    ) -> Option<Factor> {
+    ) -> Option<Rows> {
         let (residuals, columns, sums) = self.weighted_slopes(item, parameters, coordinates)?;
-        Some(Factor::of(&residuals, &columns, weight).combined(&sums))
+        Some(Rows::of(&residuals, &columns, weight).combined(&sums))
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {

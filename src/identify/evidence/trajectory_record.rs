@@ -3,6 +3,7 @@
 use crate::event::RigKind;
 use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::evidence::waveform::Phases;
+use crate::identify::fit::columns::{dot, subtract};
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::group::Group;
 use crate::identify::fit::own::Circumstances;
@@ -167,8 +168,10 @@ impl Weights {
 
     /// Differences less their weighted mean, times the roots of the weights.
     fn centred(&self, differences: &[f64], out: &mut Vec<f64>) {
-        let pairs = || differences.iter().zip(&self.roots);
-        let offset = pairs().map(|(d, w)| d * w * w).sum::<f64>() / self.total;
-        out.extend(pairs().map(|(d, w)| (d - offset) * w));
+        let start = out.len();
+        out.extend(differences.iter().zip(&self.roots).map(|(d, w)| d * w));
+        let weighted = &mut out[start..];
+        let offset = dot(weighted, &self.roots) / self.total;
+        subtract(weighted, offset, &self.roots);
     }
 }

@@ -5,9 +5,9 @@
 
 use rayon::prelude::*;
 
-use crate::identify::fit::factor::Factor;
 use crate::identify::fit::group::Group;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
+use crate::identify::fit::rows::Rows;
 
 /// Weighted residuals of one kind of observation.
 pub trait Block: Sync {
@@ -36,17 +36,17 @@ pub trait Block: Sync {
         Some((here, columns))
     }
 
-    /// Triangular factor of an item's residuals and slopes over some coordinates, each squared
+    /// Rows that stand for an item's residuals and their slopes over some coordinates, each squared
     /// residual weighted; `None` if the model has no such motion there.
-    fn factor(
+    fn rows(
         &self,
         item: usize,
         parameters: &Parameters,
         coordinates: &[Coordinate],
         weight: f64,
-    ) -> Option<Factor> {
+    ) -> Option<Rows> {
         let (residuals, columns) = self.slopes(item, parameters, coordinates)?;
-        Some(Factor::of(&residuals, &columns, weight))
+        Some(Rows::of(&residuals, &columns, weight))
     }
 
     /// Which coordinates the block depends on.

@@ -86,21 +86,22 @@ impl Part {
         let shares: Vec<(Factor, Vec<usize>)> = items
             .par_chunks(SHARE)
             .map(|items| {
-                let mut share = Factor::empty(places.len());
-                let mut missing = Vec::new();
+                let (mut rows, mut missing) = (Vec::new(), Vec::new());
                 for i in items {
                     let (own, touched) = kept(&coordinates, |c| block.item_touches(*i, c));
-                    match block.factor(*i, at, &touched, weight) {
-                        Some(factor) => share.add(&factor, &own),
+                    match block.rows(*i, at, &touched, weight) {
+                        Some(found) => rows.push((found, own)),
                         None => missing.push(*i),
                     }
                 }
+                let mut share = Factor::empty(places.len());
+                share.add(rows.iter().map(|(rows, own)| (rows, own.as_slice())));
                 (share, missing)
             })
             .collect();
         let all: Vec<usize> = (0..places.len()).collect();
         let whole = shares.into_iter().reduce(|mut whole, (share, without)| {
-            whole.0.add(&share, &all);
+            whole.0.add([(share.rows(), all.as_slice())]);
             whole.1.extend(without);
             whole
         });
@@ -114,7 +115,7 @@ impl Part {
 
     /// Its normal equations over all unknowns.
     pub(super) fn normal(&self, unknowns: usize) -> Normal {
-        self.factor.normal(&self.places, unknowns)
+        self.factor.rows().normal(&self.places, unknowns)
     }
 }
 

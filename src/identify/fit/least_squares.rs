@@ -102,7 +102,7 @@ where
         report: FitReport {
             iterations,
             cost_evaluations: result.solver.trials,
-            cost: factor.cost,
+            cost: factor.cost(),
             damping: result.solver.damping,
             termination: termination.unwrap_or_default(),
             trace: trace.take(),
@@ -254,7 +254,7 @@ impl<'a> DampedSteps<'a> {
         self.trials += 1;
         if at_once {
             let found = problem.problem(FACTOR, |p| Ok(p.factor(to).ok()))?;
-            return Ok(found.map(|factor| (factor.cost, Some(factor))));
+            return Ok(found.map(|factor| (factor.cost(), Some(factor))));
         }
         let cost = problem.problem(COST, |p| Ok(p.cost(to)))?;
         Ok(cost.map(|cost| (cost, None)))
@@ -277,9 +277,9 @@ impl<'a> DampedSteps<'a> {
             let to = problem.problem(STEP, |p| Ok(p.moved(from, &step)))?;
             let found = self.evaluate(problem, &to, self.sure)?;
             match found {
-                Some((cost, there)) if cost < factor.cost => {
+                Some((cost, there)) if cost < factor.cost() => {
                     let predicted = self.predicted_reduction(&step, length);
-                    let share = (factor.cost - cost) / predicted;
+                    let share = (factor.cost() - cost) / predicted;
                     let negligible = self.is_last(length, share, negligible);
                     self.decrease_damping(share);
                     (self.sure, self.length) = (true, length);
@@ -316,7 +316,7 @@ impl<P: LeastSquares> Solver<&P, FitState<P::Point>> for DampedSteps<'_> {
             .ok_or_else(argmin_error_closure!(NotInitialized, "a fit needs a start"))?;
         let factor = problem.problem(FACTOR, |p| p.factor(&start))?;
         self.scales = vec![0.0; factor.unknowns()];
-        let state = state.param(start).cost(factor.cost).jacobian(factor);
+        let state = state.param(start).cost(factor.cost()).jacobian(factor);
         Ok((state, None))
     }
 
@@ -343,7 +343,7 @@ impl<P: LeastSquares> Solver<&P, FitState<P::Point>> for DampedSteps<'_> {
                 (from, factor, Some(stalled))
             }
         };
-        let state = state.param(point).cost(factor.cost).jacobian(factor);
+        let state = state.param(point).cost(factor.cost()).jacobian(factor);
         let state = match end {
             Some(reason) => state.terminate_with(reason),
             None => state,
@@ -354,9 +354,9 @@ impl<P: LeastSquares> Solver<&P, FitState<P::Point>> for DampedSteps<'_> {
 
 /// Standard deviation of the residuals.
 fn deviation(factor: &Factor, variance: Variance) -> f64 {
-    let freedom = factor.count.saturating_sub(factor.unknowns()).max(1);
+    let freedom = factor.count().saturating_sub(factor.unknowns()).max(1);
     // counts of residuals are far below 2⁵³
-    let estimated = (factor.cost / freedom as f64).sqrt();
+    let estimated = (factor.cost() / freedom as f64).sqrt();
     match variance {
         Variance::AtLeastUnit => estimated.max(1.0),
         Variance::Estimated => estimated,
@@ -382,7 +382,7 @@ mod tests {
                 return Err(Error::msg("out of reach"));
             }
             let slopes = (self.slopes)(*at).map(|column| column.to_vec());
-            Ok(Factor::of(&(self.residuals)(*at), &slopes, 1.0))
+            Ok(Factor::of(&(self.residuals)(*at), &slopes))
         }
 
         fn cost(&self, at: &[f64; 2]) -> Option<f64> {

@@ -2,6 +2,7 @@
 //! minimises them.
 
 pub mod block;
+pub mod columns;
 pub mod coordinate;
 pub mod effect;
 mod evaluation;
@@ -12,10 +13,12 @@ pub mod least_squares;
 pub mod normal;
 pub mod own;
 pub mod parameters;
+pub mod placed_rows;
 pub mod problem;
 mod progress;
-pub mod reduced_rows;
+mod reflection;
 mod report;
+pub mod rows;
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
@@ -35,7 +38,7 @@ pub struct Fit {
     /// Free coordinates, in the order of the covariance.
     pub free: Vec<Coordinate>,
     /// Covariance of the free coordinates for unit variance of the weighted residuals.
-    #[serde(with = "rows")]
+    #[serde(with = "row_by_row")]
     pub covariance: DMatrix<f64>,
     /// Sum of squared weighted residuals, priors included.
     pub cost: f64,
@@ -69,7 +72,7 @@ impl Fit {
 }
 
 /// A square matrix as a list of rows.
-mod rows {
+mod row_by_row {
     use nalgebra::DMatrix;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::identify::fit::reduced_rows::Rows;
+use crate::identify::fit::placed_rows::PlacedRows;
 
 /// Normal equations of some residuals.
 #[derive(Debug, Clone)]
@@ -37,7 +37,7 @@ impl Normal {
     }
 
     /// Add the information of some rows: matrix and gradient.
-    pub fn inform(&mut self, rows: &Rows) {
+    pub fn inform(&mut self, rows: &PlacedRows) {
         self.matrix.gemm_tr(1.0, &rows.slopes, &rows.slopes, 1.0);
         self.gradient
             .gemv_tr(1.0, &rows.slopes, &rows.residuals, 1.0);

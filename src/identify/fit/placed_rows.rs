@@ -1,10 +1,10 @@
-//! Rows that stand for the residuals of a record: as few as it informs directions.
+//! Rows over all unknowns of a fit.
 
 use nalgebra::{DMatrix, DVector};
 
-/// Few rows that have the normal equations of some residuals.
+/// Few rows that have the normal equations of some residuals, over all unknowns of a fit.
 #[derive(Debug, Clone)]
-pub struct Rows {
+pub struct PlacedRows {
     /// Slopes over the unknowns, a row for each residual.
     pub slopes: DMatrix<f64>,
     /// The residuals.

@@ -17,7 +17,8 @@ use crate::identify::fit::group::Group;
 use crate::identify::fit::least_squares::{LeastSquares, Limits, Variance, minimise};
 use crate::identify::fit::normal::Normal;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
-use crate::identify::fit::reduced_rows::Rows;
+use crate::identify::fit::placed_rows::PlacedRows;
+use crate::identify::fit::rows::Rows;
 use crate::identify::fit::{Fit, FitError, FitProgress};
 
 /// Gaussian prior on one coordinate.
@@ -96,8 +97,8 @@ impl Problem<'_> {
             parameters: minimum.point,
             free: self.free.clone(),
             covariance: factor.covariance(LEAST_SHARE).ok_or(FitError::Singular)?,
-            cost: factor.cost,
-            residuals: factor.count - self.priors.len(),
+            cost: factor.cost(),
+            residuals: factor.count() - self.priors.len(),
             report: minimum.report,
         })
     }
@@ -145,34 +146,34 @@ impl Problem<'_> {
     /// Normal equations item by item of a block with its weight; items without a model are left out.
     fn items_of(&self, block: &dyn Block, weight: f64, at: &Parameters) -> Vec<Normal> {
         let unknowns = self.free.len();
-        self.items(block, weight, at, |factor, places| {
-            factor.normal(places, unknowns)
+        self.items(block, weight, at, |rows, places| {
+            rows.normal(places, unknowns)
         })
     }
 
-    /// Rows of the factor item by item of a block with its weight; items without a model are left out.
-    pub fn rows_of(&self, block: &dyn Block, weight: f64, at: &Parameters) -> Vec<Rows> {
+    /// Few rows item by item of a block with its weight; items without a model are left out.
+    pub fn rows_of(&self, block: &dyn Block, weight: f64, at: &Parameters) -> Vec<PlacedRows> {
         let unknowns = self.free.len();
-        self.items(block, weight, at, |factor, places| {
-            factor.rows(places, unknowns)
+        self.items(block, weight, at, |rows, places| {
+            rows.placed(places, unknowns)
         })
     }
 
-    /// What the factor of each item of a block with its weight, and the places of its coordinates among
+    /// What the rows of each item of a block with its weight, and the places of its coordinates among
     /// the free ones, give; items without a model are left out.
     fn items<T: Send>(
         &self,
         block: &dyn Block,
         weight: f64,
         at: &Parameters,
-        give: impl Fn(Factor, &[usize]) -> T + Sync,
+        give: impl Fn(Rows, &[usize]) -> T + Sync,
     ) -> Vec<T> {
         (0..block.items())
             .into_par_iter()
             .filter_map(|i| {
                 let (places, coordinates) = kept(&self.free, |c| block.item_touches(i, c));
-                let factor = block.factor(i, at, &coordinates, weight)?;
-                Some(give(factor, &places))
+                let rows = block.rows(i, at, &coordinates, weight)?;
+                Some(give(rows, &places))
             })
             .collect()
     }
@@ -264,7 +265,7 @@ impl Problem<'_> {
         let factor = LeastSquares::factor(self, at).ok()?;
         let step = factor.step(0.0, &vec![0.0; factor.unknowns()])?;
         let length = factor.length(&step);
-        let predicted = factor.cost - length * length;
+        let predicted = factor.cost() - length * length;
         if length < 1.0 {
             return Some(predicted);
         }
@@ -278,7 +279,7 @@ impl Problem<'_> {
         let mut missing = Vec::new();
         for (b, groups) in self.evaluated(parameters).blocks.iter().enumerate() {
             for (_, part) in groups {
-                total.add(&part.factor, &part.places);
+                total.add([(part.factor.rows(), part.places.as_slice())]);
                 missing.extend(part.missing.iter().map(|i| (b, *i)));
             }
         }
@@ -286,8 +287,8 @@ impl Problem<'_> {
             let place = self.free.iter().position(|c| *c == prior.coordinate);
             let slopes = place.map(|_| vec![prior.deviation.recip()]);
             let residual = prior_residual(prior, parameters);
-            let part = Factor::of(&[residual], slopes.as_slice(), 1.0);
-            total.add(&part, place.as_slice());
+            let row = Rows::of(&[residual], slopes.as_slice(), 1.0);
+            total.add([(&row, place.as_slice())]);
         }
         missing.sort_unstable();
         (total, missing)
@@ -324,7 +325,7 @@ impl LeastSquares for Problem<'_> {
         if !missing.is_empty() {
             return Err(FitError::NoModel(missing).into());
         }
-        if factor.count == 0 {
+        if factor.count() == 0 {
             return Err(FitError::Empty.into());
         }
         Ok(factor)
