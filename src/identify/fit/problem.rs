@@ -75,9 +75,6 @@ impl Precision {
     }
 }
 
-/// Share of a rise of the cost to which it is known where the problem is nearly linear.
-const NEARLY: f64 = 0.02;
-
 /// Least orthogonal share of a column of slopes: differences do not resolve less.
 const LEAST_SHARE: f64 = 1e-8;
 
@@ -221,56 +218,6 @@ impl Problem<'_> {
             sum.add(&self.prior_normal(prior, parameters));
         }
         sum
-    }
-
-    /// Least cost with one coordinate held at a value, all others fitted again from where the
-    /// covariance of a fit expects them; `None` if no fit is found.
-    pub fn cost_with(&self, fit: &Fit, coordinate: Coordinate, value: f64) -> Option<f64> {
-        let at = fit.free.iter().position(|c| *c == coordinate)?;
-        let step = value - fit.parameters.coordinate(coordinate);
-        let mut start = fit.parameters;
-        for (i, free) in fit.free.iter().enumerate() {
-            let share = fit.covariance[(i, at)] / fit.covariance[(at, at)];
-            start = start.with(*free, fit.parameters.coordinate(*free) + share * step);
-        }
-        // If the problem is nearly linear, the others are already at their fitted values up to
-        // second order, and the cost is right up to fourth.
-        let linear = step * step / fit.covariance[(at, at)];
-        if let Some(cost) = self.cost(&start)
-            && (cost - fit.cost - linear).abs() < NEARLY * linear
-        {
-            return Some(cost);
-        }
-        let held = Problem {
-            blocks: self.blocks.clone(),
-            priors: self.priors.clone(),
-            free: fit
-                .free
-                .iter()
-                .copied()
-                .filter(|c| *c != coordinate)
-                .collect(),
-            progress: self.progress.clone(),
-            precision: Precision::Start,
-            last: LastEvaluation::default(),
-        };
-        held.least_cost_from(&start, NEARLY * linear)
-            .or_else(|| Some(held.fit(start).ok()?.cost))
-    }
-
-    /// Least cost as the residuals and slopes at a point predict it: of a step shorter than a standard
-    /// error the prediction, of a longer one the cost where it leads, if that is within `tolerance` of the
-    /// prediction; `None` if it is not, or if an item has no model there.
-    fn least_cost_from(&self, at: &Parameters, tolerance: f64) -> Option<f64> {
-        let factor = LeastSquares::factor(self, at).ok()?;
-        let step = factor.step(0.0, &vec![0.0; factor.unknowns()])?;
-        let length = factor.length(&step);
-        let predicted = factor.cost() - length * length;
-        if length < 1.0 {
-            return Some(predicted);
-        }
-        let cost = self.cost(&self.moved(at, &step))?;
-        ((cost - predicted).abs() < tolerance).then_some(cost)
     }
 
     /// Factor over the items that have a model, and those (block, item) that have none.

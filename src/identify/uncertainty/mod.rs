@@ -9,10 +9,12 @@ pub mod budget;
 pub mod coverage;
 pub mod options;
 pub mod posterior;
+pub mod profile;
 pub mod quantile;
 pub mod scatter;
 
 pub use options::{IntervalMethod, UncertaintyOptions};
+pub use profile::ProfileCurve;
 
 use std::collections::BTreeMap;
 
@@ -27,21 +29,9 @@ use crate::identify::fit::parameters::Coordinate;
 use crate::identify::fit::{Fit, Problem};
 use crate::identify::method::Method;
 use crate::identify::uncertainty::budget::Budget;
+use crate::identify::uncertainty::profile::profile;
 use crate::identify::uncertainty::scatter::Scatter;
 use crate::signal::whole;
-
-/// Likelihood of one parameter with all others fitted again at each of its values.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ProfileCurve {
-    /// The parameter.
-    pub parameter: Coordinate,
-    /// Its values, SI, ascending.
-    pub values: Vec<f64>,
-    /// Rise of χ² over its least value.
-    pub delta_chi2: Vec<f64>,
-    /// Where the rise is 3.84: the 95 % interval.
-    pub interval95: Option<[f64; 2]>,
-}
 
 /// What a bootstrap over records gives for one parameter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -84,13 +74,6 @@ pub enum InformationSource {
     #[serde(untagged)]
     Method(Method),
 }
-
-/// 95 % point of χ² with one degree of freedom.
-const CHI2_95: f64 = 3.841_458_820_694_124;
-/// Standard errors at which a profile is evaluated.
-const OFFSETS: [f64; 12] = [
-    -3.0, -2.5, -2.0, -1.5, -1.0, -0.5, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0,
-];
 
 /// All that is asked for, about a joint fit; `by_method`: the methods of the problem's blocks and the
 /// blocks' normal equations at its optimum, those of the priors last.
@@ -142,74 +125,6 @@ fn shares(
         }
     }
     all
-}
-
-/// Profile of one coordinate; `None` where the fits beside the optimum fail.
-fn profile(
-    problem: &Problem<'_>,
-    fit: &Fit,
-    factor: f64,
-    coordinate: Coordinate,
-) -> Option<ProfileCurve> {
-    let error = fit.error(coordinate)? * factor.sqrt();
-    let best = fit.parameters.coordinate(coordinate);
-    let rise = |k: f64| {
-        let cost = problem.cost_with(fit, coordinate, best + k * error)?;
-        Some((cost - fit.cost) / factor)
-    };
-    let smooth = smooth_rise(rise);
-    let mut points: Vec<(f64, f64)> = OFFSETS
-        .iter()
-        .filter_map(|k| {
-            let rise = match smooth {
-                Some([cubic, quartic]) => k * k * (1.0 + cubic * k + quartic * k * k),
-                None => rise(*k)?,
-            };
-            Some((best + k * error, rise))
-        })
-        .collect();
-    points.push((best, 0.0));
-    points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let physical = |v: f64| coordinate.physical(v);
-    let below: Vec<(f64, f64)> = points
-        .iter()
-        .rev()
-        .filter(|p| p.0 <= best)
-        .copied()
-        .collect();
-    let above: Vec<(f64, f64)> = points.iter().filter(|p| p.0 >= best).copied().collect();
-    let ends = reaches(&below).zip(reaches(&above));
-    Some(ProfileCurve {
-        parameter: coordinate,
-        values: points.iter().map(|p| physical(p.0)).collect(),
-        delta_chi2: points.iter().map(|p| p.1.max(0.0)).collect(),
-        interval95: ends.map(|(a, b)| [physical(a), physical(b)]),
-    })
-}
-
-/// Greatest difference of a rise from k²(1 + ak + bk²), as a share of k², where it is taken to be that.
-const SMOOTH: f64 = 0.01;
-
-/// The coefficients a and b with which the rise k standard errors from the optimum is k²(1 + ak + bk²):
-/// by the rises at ±3, where those at ±1.5 confirm it; `None` where they do not.
-fn smooth_rise(rise: impl Fn(f64) -> Option<f64>) -> Option<[f64; 2]> {
-    let beyond = |k: f64| Some(rise(k)? / (k * k) - 1.0);
-    let (below, above) = (beyond(-3.0)?, beyond(3.0)?);
-    let [cubic, quartic] = [(above - below) / 6.0, (above + below) / 18.0];
-    let confirmed = [-1.5, 1.5]
-        .into_iter()
-        .all(|k| beyond(k).is_some_and(|found| (found - (cubic + quartic * k) * k).abs() < SMOOTH));
-    confirmed.then_some([cubic, quartic])
-}
-
-/// Where a rise along points away from the optimum reaches [`CHI2_95`]; interpolated in its root,
-/// which is nearly a straight line.
-fn reaches(points: &[(f64, f64)]) -> Option<f64> {
-    points.windows(2).find_map(|w| {
-        let (a, b) = (w[0].1.max(0.0).sqrt(), w[1].1.max(0.0).sqrt());
-        let level = CHI2_95.sqrt();
-        (a <= level && level < b).then(|| w[0].0 + (w[1].0 - w[0].0) * (level - a) / (b - a))
-    })
 }
 
 /// Bootstrap over the items of each block (records, impacts): drawn with replacement, each replica
@@ -279,19 +194,4 @@ fn summary(coordinate: Coordinate, sorted: &[f64]) -> Option<Bootstrapped> {
         standard_error: crate::signal::robust::rms(&apart),
         interval95: [physical(at(0.025)?), physical(at(0.975)?)],
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_rise_that_is_nearly_a_square_is_told_by_four_of_its_points() {
-        let rise = smooth_rise(|k| Some(k * k * (1.0 + 0.02 * k + 0.003 * k * k)));
-        let [cubic, quartic] = rise.expect("smooth");
-        assert!((cubic - 0.02).abs() < 1e-12 && (quartic - 0.003).abs() < 1e-12);
-        // A kink between the points, and a point without a fit.
-        assert_eq!(smooth_rise(|k| Some(k * k + k.abs())), None);
-        assert_eq!(smooth_rise(|k| (k < 2.0).then_some(k * k)), None);
-    }
 }
