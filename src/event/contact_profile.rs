@@ -69,8 +69,8 @@ impl ContactProfile {
 
 /// A profile by cubics between even places, where it is asked for many times: within 1e-10 of it.
 pub(super) struct TabulatedProfile {
-    /// Value, and its slope over the place, at each place.
-    places: Vec<[f64; 2]>,
+    /// Of each cubic its coefficients, of the constant first.
+    cubics: Vec<[f64; 4]>,
 }
 
 /// Cubics that a tabulated profile consists of.
@@ -79,15 +79,24 @@ const CUBICS: u32 = 512;
 impl TabulatedProfile {
     /// Of a profile.
     pub(super) fn new(profile: &ContactProfile) -> Self {
+        let width = f64::from(CUBICS).recip();
         let place = |i: u32| {
-            let share = f64::from(i) / f64::from(CUBICS);
-            [
-                profile.done(share),
-                profile.slope(share) / f64::from(CUBICS),
-            ]
+            let share = width * f64::from(i);
+            [profile.done(share), width * profile.slope(share)]
+        };
+        let places: Vec<[f64; 2]> = (0..=CUBICS).map(place).collect();
+        // Hermite's, by the values and slopes at both ends
+        let cubic = |ends: &[[f64; 2]]| {
+            let [[a, slope_a], [b, slope_b]] = [ends[0], ends[1]];
+            let rise = b - a;
+            let [square, cube] = [
+                3.0 * rise - 2.0 * slope_a - slope_b,
+                slope_a + slope_b - 2.0 * rise,
+            ];
+            [a, slope_a, square, cube]
         };
         Self {
-            places: (0..=CUBICS).map(place).collect(),
+            cubics: places.windows(2).map(cubic).collect(),
         }
     }
 
@@ -101,11 +110,9 @@ impl TabulatedProfile {
         }
         let place = f64::from(CUBICS) * share;
         let i = whole::index(place);
-        let [[a, slope_a], [b, slope_b]] = [self.places[i], self.places[i + 1]];
-        // Hermite's cubic
-        let (t, rise) = (place - i as f64, b - a);
-        let left = 1.0 - t;
-        a + t * rise + t * left * (left * (slope_a - rise) - t * (slope_b - rise))
+        let [a, slope, square, cube] = self.cubics[i];
+        let t = place - i as f64;
+        a + t * (slope + t * (square + t * cube))
     }
 }
 

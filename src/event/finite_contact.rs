@@ -240,6 +240,11 @@ fn typical_ratio(
     robust::median(&ratios)
 }
 
+/// Shifts of an impact's time, in its standard errors, from none outwards.
+const SHIFTS: [f64; 17] = [
+    0.0, -0.3, 0.3, -0.6, 0.6, -0.9, 0.9, -1.2, 1.2, -1.5, 1.5, -1.8, 1.8, -2.1, 2.1, -2.4, 2.4,
+];
+
 /// Least squares over duration and delays; each impact's time is free within its error.
 struct Search {
     profile: ContactProfile,
@@ -308,20 +313,20 @@ impl Search {
         let error = impact.time_error.hypot(loose);
         let centre = self.profile.centre() * duration;
         let delays = [mean + 0.5 * apart, mean - 0.5 * apart];
+        let per_sample = duration.recip();
         let deviation = |(p, body): &(Passage, usize), shift: f64| {
             let since = p.offset - shift - delays[*body];
             let done = if *duration > 0.0 {
-                self.tabulated.done((since + centre) / duration)
+                self.tabulated.done((since + centre) * per_sample)
             } else {
                 f64::from(since > 0.0)
             };
             ((p.share - done) / p.share_error).powi(2).min(OUTLYING)
         };
-        // Shifts from zero outwards; one whose sum exceeds the least is given up.
-        let shifts = (0..=8).flat_map(|k| [-0.3 * f64::from(k), 0.3 * f64::from(k)]);
+        // A shift whose sum exceeds the least is given up.
         let mut least = limit;
-        for shift in shifts.skip(1).map(|steps| steps * error) {
-            let mut sum = (shift / error).powi(2);
+        for steps in SHIFTS {
+            let (shift, mut sum) = (steps * error, steps * steps);
             let mut passages = impact.passages.iter();
             while sum < least
                 && let Some(passage) = passages.next()

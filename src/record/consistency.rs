@@ -3,6 +3,8 @@
 //! acceleration.
 
 use super::{Flag, FlagCode, Record, Role};
+use crate::signal::columns::dot;
+use crate::signal::robust;
 
 /// Correlation from which two channels count as the same motion.
 const SAME: f64 = 0.9;
@@ -81,22 +83,22 @@ fn compare(record: &Record, quantity: Role, rate: Role) -> Option<Match> {
     if d.len() < 8 * width || record.sample_rate_hz <= 0.0 {
         return None;
     }
-    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
-    let rest = mean(v);
-    let moved: Vec<f64> = (0..d.len() - width).map(|i| d[i + width] - d[i]).collect();
-    let drift = mean(&moved);
+    let rest = robust::mean(v);
+    let mut moved: Vec<f64> = d[width..].iter().zip(d).map(|(b, a)| b - a).collect();
+    let drift = robust::mean(&moved);
+    moved.iter_mut().for_each(|m| *m -= drift);
     let mut integral = Vec::with_capacity(moved.len());
     let mut sum: f64 = v[..width].iter().map(|v| v - rest).sum();
     for i in 0..moved.len() {
         integral.push(sum / record.sample_rate_hz);
         sum += v[i + width] - v[i];
     }
-    let (mut mm, mut ii, mut mi) = (0.0, 0.0, 0.0);
-    for (m, i) in moved.iter().map(|m| m - drift).zip(&integral) {
-        mm += m * m;
-        ii += i * i;
-        mi += m * i;
-    }
+    let [mm, ii, mi] = [
+        (&moved, &moved),
+        (&integral, &integral),
+        (&moved, &integral),
+    ]
+    .map(|(a, b)| dot(a, b));
     let size = (mm * ii).sqrt();
     (size > 0.0 && size.is_finite()).then(|| Match {
         correlation: mi / size,

@@ -2,6 +2,7 @@
 //!
 //! Nothing here depends on records: every function takes samples at a uniform step.
 
+pub(crate) mod columns;
 pub mod decay;
 pub mod drift;
 pub mod interpolation;

@@ -1,5 +1,7 @@
 //! Robust location and scale.
 
+use crate::signal::columns::{dot, sum};
+
 /// Median of the values; `None` for an empty slice. NaN must not be among them.
 pub fn median(values: &[f64]) -> Option<f64> {
     let mut sorted = values.to_vec();
@@ -54,7 +56,7 @@ pub fn mean(values: &[f64]) -> f64 {
     if values.is_empty() {
         return 0.0;
     }
-    values.iter().sum::<f64>() / values.len() as f64
+    sum(values) / values.len() as f64
 }
 
 /// Root mean square; zero for an empty slice.
@@ -62,7 +64,7 @@ pub fn rms(values: &[f64]) -> f64 {
     if values.is_empty() {
         return 0.0;
     }
-    (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
+    (dot(values, values) / values.len() as f64).sqrt()
 }
 
 #[cfg(test)]

@@ -9,12 +9,12 @@ use nalgebra::DVector;
 use crate::identify::evidence::trajectory::TrajectoryBlock;
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::{Blocks, Nominal};
-use crate::identify::fit::columns::dot;
 use crate::identify::fit::parameters::{Coordinate, Parameters};
 use crate::identify::fit::{Block, Fit, mean_squares};
 use crate::identify::messages::Finding;
 use crate::identify::method_fit::MethodFit;
 use crate::record::Role;
+use crate::signal::columns::dot;
 
 /// Standard errors from which a deviation is named.
 pub(super) const SURE: f64 = 6.0;

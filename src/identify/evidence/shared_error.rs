@@ -7,7 +7,7 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
-use crate::identify::fit::columns::{dot, subtract};
+use crate::signal::columns::{dot, subtract};
 
 /// The inverse root of I + `VVᵀ`, by its few directions: I − Σ kept·d dᵀ with orthonormal d.
 #[derive(Debug, Clone, Default)]

@@ -3,12 +3,12 @@
 use crate::event::RigKind;
 use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::evidence::waveform::Phases;
-use crate::identify::fit::columns::{dot, subtract};
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::group::Group;
 use crate::identify::fit::own::Circumstances;
 use crate::identify::fit::parameters::gain_index;
 use crate::motion::{Folded, FoldedChannel};
+use crate::signal::columns::{dot, subtract};
 use crate::signal::robust;
 
 /// One folded record.

@@ -5,9 +5,9 @@ use rayon::prelude::*;
 
 use crate::identify::evidence::Blocks;
 use crate::identify::evidence::trajectory_record::{TrajectoryRecord, Weighing};
-use crate::identify::fit::columns::dot;
 use crate::identify::fit::mean_squares;
 use crate::identify::fit::parameters::Parameters;
+use crate::signal::columns::dot;
 use crate::signal::robust;
 
 impl Blocks {

@@ -6,9 +6,9 @@
 
 use nalgebra::DMatrix;
 
-use crate::identify::fit::columns::dot;
 use crate::identify::fit::reflection::NewRows;
 use crate::identify::fit::rows::{BLOCK, Rows};
+use crate::signal::columns::dot;
 
 /// Upper triangular factor R of the rows [J r] of some residuals, with their cost and number.
 #[derive(Debug, Clone)]

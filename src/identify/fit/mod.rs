@@ -2,7 +2,6 @@
 //! minimises them.
 
 pub mod block;
-pub mod columns;
 pub mod coordinate;
 pub mod effect;
 mod evaluation;
