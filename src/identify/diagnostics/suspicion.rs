@@ -136,20 +136,24 @@ pub fn odd_gap(
         .filter(|odd| is_named(odd, uncertainty_m))
 }
 
-/// The error of a gap that a fit carries with its prior of standard uncertainty u: an estimate e of
-/// variance C comes from one without the prior of e u²/(u² − C), which is e/√(u² − C) times the
-/// uncertainties of prior and fit combined.
+/// What the data alone say of the error of a gap that a fit carries with its prior of standard
+/// uncertainty u: an estimate e of variance C comes from one without the prior of e u²/(u² − C), whose
+/// variance is C u²/(u² − C). Scatter between groups, by which the fit does not weigh, grows by as much as
+/// the estimate.
 fn beyond_stated(found: &MethodFit, i: usize, gap: f64, uncertainty_m: f64) -> Option<OddGap> {
     let coordinate = Coordinate::Gap(i);
-    let error_m = 1e-3 * found.spread(coordinate)?.error;
-    let informed = uncertainty_m.powi(2) - error_m.powi(2);
+    let between_m = 1e-3 * found.spread(coordinate)?.between_groups;
+    let variance = 1e-6 * found.fit.error(coordinate)?.powi(2) * found.factor;
+    let stated = uncertainty_m.powi(2);
+    let informed = (stated - variance) / stated;
     // A gap that the data hardly inform is not judged.
-    (informed > 0.1 * uncertainty_m.powi(2)).then(|| {
-        let off_m = 1e-3 * found.fit.parameters.coordinate(coordinate);
+    (informed > 0.1).then(|| {
+        let off_m = 1e-3 * found.fit.parameters.coordinate(coordinate) / informed;
+        let apart = stated + variance / informed + (between_m / informed).powi(2);
         OddGap {
             stated_m: gap,
-            fitting_m: gap + off_m * uncertainty_m.powi(2) / informed,
-            z_score: off_m / informed.sqrt(),
+            fitting_m: gap + off_m,
+            z_score: off_m / apart.sqrt(),
         }
     })
 }
