@@ -287,6 +287,7 @@ impl UsualRecord {
             shared: Vec::new(),
             perturbations: Vec::new(),
             weighing: Weighing::default(),
+            reduced: None,
         }
     }
 }

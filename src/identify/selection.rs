@@ -164,6 +164,7 @@ impl<'a> Selection<'a> {
             let allowed = self.blocks.trajectory.relative_error();
             let lost = self.lost.len();
             self.keep_fitting(&parameters);
+            self.blocks.weigh_trajectories(&parameters);
             self.keep_those_with_orbits(&parameters);
             found = match self.trajectories_without_ends(parameters)? {
                 Ok(found) => found,
@@ -217,8 +218,7 @@ impl<'a> Selection<'a> {
         records.retain(|_| has_orbit.next().unwrap_or(false));
     }
 
-    /// Keep the records that fit like the bulk, name the others, and find again what is allowed
-    /// beside the noise.
+    /// Keep the records that fit like the bulk, and name the others.
     fn keep_fitting(&mut self, parameters: &Parameters) {
         let scores = mean_squares(&self.blocks.trajectory, parameters);
         let known: Vec<f64> = scores.iter().flatten().copied().collect();
@@ -240,7 +240,6 @@ impl<'a> Selection<'a> {
             self.note(record.observation, reason);
             self.lost.push(record);
         }
-        self.blocks.weigh_trajectories(parameters);
     }
 
     /// Fit the brackets; those that no boundary reaches, or that lie far from it, are named.

@@ -1,12 +1,17 @@
 //! Polynomials fitted to a few samples beside an instant and extrapolated to it.
 
-use nalgebra::{DMatrix, DVector};
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use nalgebra::DMatrix;
 
 /// A polynomial in (t − origin)/scale fitted by least squares.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LocalFit {
-    coefficients: DVector<f64>,
-    covariance: DMatrix<f64>,
+    coefficients: Vec<f64>,
+    /// Of the coefficients, for noise of unit deviation.
+    covariance: Arc<DMatrix<f64>>,
     origin: f64,
     scale: f64,
     /// Number of samples.
@@ -38,21 +43,18 @@ impl LocalFit {
         let scale = (0.5 * count as f64).max(1.0);
         let values = &samples[first..last];
         let place = |row: usize| ((first + row) as f64 - origin) / scale;
-        let mut moments = vec![0.0; 2 * degree + 1];
-        let mut right = DVector::zeros(degree + 1);
+        let mut right = vec![0.0; degree + 1];
         for (row, value) in values.iter().enumerate() {
             let mut power = 1.0;
-            for (k, moment) in moments.iter_mut().enumerate() {
-                *moment += power;
-                if k <= degree {
-                    right[k] += power * value;
-                }
+            for sum in &mut right {
+                *sum += power * value;
                 power *= place(row);
             }
         }
-        let normal = DMatrix::from_fn(degree + 1, degree + 1, |i, k| moments[i + k]);
-        let covariance = normal.try_inverse()?;
-        let coefficients = &covariance * right;
+        let covariance = covariance(count, degree)?;
+        let coefficients: Vec<f64> = (0..=degree)
+            .map(|k| product(&covariance, k, &right))
+            .collect();
         let residual = |(row, value): (usize, &f64)| {
             let powers = coefficients.iter().rev();
             value - powers.fold(0.0, |sum, c| sum * place(row) + c)
@@ -96,27 +98,59 @@ impl LocalFit {
     /// Standard error of the value at a time, per unit of noise deviation.
     pub fn error_factor(&self, time: f64) -> f64 {
         let u = (time - self.origin) / self.scale;
-        let row = DVector::from_fn(self.coefficients.len(), |k, _| {
-            u.powi(i32::try_from(k).unwrap_or(i32::MAX))
-        });
-        self.spread(&row)
+        let power = |k: usize| u.powi(i32::try_from(k).unwrap_or(i32::MAX));
+        self.spread((0..self.coefficients.len()).map(power).collect())
     }
 
     /// Standard error of the slope per step at a time, per unit of noise deviation.
     pub fn slope_error_factor(&self, time: f64) -> f64 {
         let u = (time - self.origin) / self.scale;
-        let row = DVector::from_fn(self.coefficients.len(), |k, _| match k {
+        let slope = |k: usize| match k {
             0 => 0.0,
             _ => k as f64 * u.powi(i32::try_from(k).unwrap_or(i32::MAX) - 1),
-        });
-        self.spread(&row) / self.scale
+        };
+        self.spread((0..self.coefficients.len()).map(slope).collect()) / self.scale
     }
 
-    fn spread(&self, row: &DVector<f64>) -> f64 {
-        (row.transpose() * &self.covariance * row)[(0, 0)]
-            .max(0.0)
-            .sqrt()
+    /// Standard error of a sum of multiples of the coefficients.
+    fn spread(&self, row: Vec<f64>) -> f64 {
+        let spread = |(k, x): (usize, &f64)| x * product(&self.covariance, k, &row);
+        let square: f64 = row.iter().enumerate().map(spread).sum();
+        square.max(0.0).sqrt()
     }
+}
+
+/// A row of a symmetric matrix times a vector.
+fn product(matrix: &DMatrix<f64>, row: usize, vector: &[f64]) -> f64 {
+    let column = matrix.column(row);
+    column.iter().zip(vector).map(|(a, b)| a * b).sum()
+}
+
+thread_local! {
+    /// The covariances that a thread has found: they depend on few numbers of samples and degrees.
+    static COVARIANCES: RefCell<HashMap<(usize, usize), Option<Arc<DMatrix<f64>>>>> = RefCell::default();
+}
+
+/// Covariance of the coefficients of a polynomial fitted to so many samples, for noise of unit deviation.
+fn covariance(count: usize, degree: usize) -> Option<Arc<DMatrix<f64>>> {
+    let find = || {
+        let (middle, scale) = (0.5 * (count - 1) as f64, (0.5 * count as f64).max(1.0));
+        let mut moments = vec![0.0; 2 * degree + 1];
+        for row in 0..count {
+            let mut power = 1.0;
+            for moment in &mut moments {
+                *moment += power;
+                power *= (row as f64 - middle) / scale;
+            }
+        }
+        let normal = DMatrix::from_fn(degree + 1, degree + 1, |i, k| moments[i + k]);
+        normal.try_inverse().map(Arc::new)
+    };
+    let known = |known: &RefCell<HashMap<_, _>>| {
+        let mut known = known.borrow_mut();
+        known.entry((count, degree)).or_insert_with(find).clone()
+    };
+    COVARIANCES.with(known)
 }
 
 /// Time between `low` and `high` (in steps) at which two fits cross, nearest to the middle.

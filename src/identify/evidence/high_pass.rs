@@ -6,7 +6,7 @@
 //! after a period T, but for the jump that x makes at the impact, which passes whole:
 //! K = Re(A (1 − e^{λT}) c/(λ + c)) / (1 − e^{−cT}), (17).
 
-use crate::identify::evidence::waveform::{TimingSlope, Vibration};
+use crate::identify::evidence::waveform::TimingSlope;
 use impact_oscillator::model::path::C64;
 use impact_oscillator::model::sensitivity::MassMotion;
 
@@ -71,6 +71,22 @@ impl HighPass {
         (d_pole * self.corner - pole * d_corner) / (pole + self.corner).powi(2)
     }
 
+    /// Differential of K e^{−ct} where K (`tail`, with its change), filter and timing change: a constant and
+    /// a part that grows with t, times e^{−ct}.
+    pub fn tail_slopes(
+        &self,
+        [tail, d_tail]: [f64; 2],
+        filter: &HighPassSlope,
+        timing: &TimingSlope,
+    ) -> [f64; 2] {
+        let Self { corner, eta, .. } = *self;
+        // d(ct) = t(dc − c dη/η) − c dψ/η
+        [
+            d_tail + tail * corner * timing.impact_phase / eta,
+            tail * (corner * timing.eta / eta - filter.corner),
+        ]
+    }
+
     /// A motion behind the filter.
     pub fn pass(&self, motion: &MassMotion) -> Passed {
         let one = C64::new(1.0, 0.0);
@@ -112,50 +128,6 @@ impl HighPass {
                 exponent: d_lambda,
             },
             tail: (d_lost - tail * d_closing) / self.closing,
-        }
-    }
-}
-
-/// e^{−ct} at the points of a vibration.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Tail {
-    filter: HighPass,
-    decay: Vec<f64>,
-}
-
-impl Tail {
-    /// Of a filter; the little that a point's spread makes of it is left out.
-    pub fn new(filter: HighPass, vibration: &Vibration<'_>) -> Self {
-        let decay = vibration.time().iter().map(|t| (-filter.corner * t).exp());
-        Self {
-            filter,
-            decay: decay.collect(),
-        }
-    }
-
-    /// Add K e^{−ct} to values.
-    pub fn add(&self, values: &mut [f64], tail: f64) {
-        for (value, decay) in values.iter_mut().zip(&self.decay) {
-            *value += tail * decay;
-        }
-    }
-
-    /// Add its differential: K, filter and timing change.
-    pub fn add_slopes(
-        &self,
-        slopes: &mut [f64],
-        [tail, d_tail]: [f64; 2],
-        filter: &HighPassSlope,
-        vibration: &Vibration<'_>,
-        timing: &TimingSlope,
-    ) {
-        let HighPass { corner, eta, .. } = self.filter;
-        // d(ct) = t(dc − c dη/η) − c dψ/η
-        let constant = d_tail + tail * corner * timing.impact_phase / eta;
-        let growing = tail * (corner * timing.eta / eta - filter.corner);
-        let points = self.decay.iter().zip(vibration.time());
-        for (slope, (decay, t)) in slopes.iter_mut().zip(points) {
-            *slope += (constant + growing * t) * decay;
         }
     }
 }

@@ -12,6 +12,7 @@ pub mod high_pass;
 pub mod impacts;
 pub mod nearest_orbit;
 pub mod record_motion;
+pub mod reduced_record;
 pub mod resonance;
 pub mod shared_error;
 pub mod trajectory;

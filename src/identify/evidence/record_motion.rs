@@ -1,15 +1,18 @@
-//! A periodic record as the model has it: the values at all its points, and their exact slopes
+//! A periodic record as the model has it: the terms of its values, and their exact slopes
 //! over every parameter, over the drive's phase and over its frequency.
 
 mod effects;
+mod points;
+
+pub use points::MotionPoints;
 
 use crate::event::RigKind;
 use crate::identify::evidence::direction::{change, relative_length, relative_rate};
-use crate::identify::evidence::high_pass::{HighPass, HighPassSlope, Passed, Tail};
+use crate::identify::evidence::high_pass::{HighPass, HighPassSlope, Passed};
 use crate::identify::evidence::nearest_orbit::NearestOrbit;
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::waveform::{
-    Phases, Timing, TimingSlope, Vibration, delayed, delayed_slope, velocity, velocity_slope,
+    Terms, Timing, TimingSlope, Vibration, delayed, delayed_slope, velocity, velocity_slope,
 };
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
@@ -19,7 +22,7 @@ use impact_oscillator::model::params::Machine;
 use impact_oscillator::model::path::C64;
 use impact_oscillator::model::sensitivity::{Change, MassMotion, OrbitMotion, Sensitivity};
 
-/// A record's orbit at its points.
+/// A record's orbit as its channels show it.
 pub struct RecordMotion<'a> {
     record: &'a TrajectoryRecord,
     rig: RigKind,
@@ -32,15 +35,16 @@ pub struct RecordMotion<'a> {
     orbit: OrbitMotion,
     eta: f64,
     gap: f64,
-    /// Of each set of phases, both masses where they are measured.
-    vibrations: Vec<[Option<Vibration<'a>>; 2]>,
+    /// When the impact is.
+    timing: Timing,
+    /// Of both masses.
+    vibrations: [Vibration; 2],
     channels: Vec<ChannelMotion>,
 }
 
 /// What one channel shows of the orbit, dimensionless.
 struct ChannelMotion {
     role: Role,
-    points: usize,
     /// Its set of phases.
     set: usize,
     /// The mass's displacement or velocity.
@@ -53,7 +57,6 @@ struct ChannelMotion {
 struct Filter {
     high_pass: HighPass,
     passed: Passed,
-    tail: Tail,
 }
 
 /// A direction in all that a record's values depend on.
@@ -76,10 +79,10 @@ pub struct Slopes {
 /// A column of slopes.
 #[derive(Debug)]
 pub enum Column {
-    /// At all points.
-    Values(Vec<f64>),
-    /// Over a gain, by its index: the values of the channels that have it.
-    Gain(usize),
+    /// Of every channel its terms, SI.
+    Terms(Vec<Terms>),
+    /// The change by an effect that acts as an extra acceleration, as it was found.
+    Effect(Effect),
 }
 
 impl Slopes {
@@ -126,7 +129,8 @@ impl<'a> RecordMotion<'a> {
             orbit,
             eta: branch.eta,
             gap,
-            vibrations: vibrations(record, &orbit, timing),
+            timing,
+            vibrations: [&orbit.x, &orbit.y].map(|mass| Vibration::new(timing, mass.exponent)),
             channels: Vec::with_capacity(record.folded.channels.len()),
         };
         for channel in &record.folded.channels {
@@ -145,7 +149,6 @@ impl<'a> RecordMotion<'a> {
             Measured::Displacement => *mass,
             Measured::Velocity => velocity(mass, self.eta),
         };
-        let vibration = self.vibrations[set][usize::from(role.is_of_y())].as_ref()?;
         let filter = channel.high_pass_hz.map(|corner_hz| {
             let corner_hz = corner_hz * self.own.corner(role);
             let corner = corner_hz / self.own.natural_frequency_hz;
@@ -153,12 +156,10 @@ impl<'a> RecordMotion<'a> {
             Filter {
                 high_pass,
                 passed: high_pass.pass(&motion),
-                tail: Tail::new(high_pass, vibration),
             }
         });
         Some(ChannelMotion {
             role,
-            points: channel.points.len(),
             set,
             motion,
             filter,
@@ -173,7 +174,7 @@ impl<'a> RecordMotion<'a> {
 
     /// Values at all points, channel after channel, SI, gains and effects included.
     pub fn values(&self) -> Vec<f64> {
-        let mut values = self.unperturbed();
+        let mut values = self.points().values(&self.unperturbed());
         self.perturb(&mut values);
         values
     }
@@ -186,33 +187,62 @@ impl<'a> RecordMotion<'a> {
         }
     }
 
-    /// The values without the effects that act as extra accelerations; all slopes are taken of these.
-    pub fn unperturbed(&self) -> Vec<f64> {
+    /// Strength of an effect beyond the model.
+    pub fn effect(&self, effect: Effect) -> f64 {
+        self.common.effect(effect)
+    }
+
+    /// The terms of every channel, SI, gains included, without the effects that act as extra
+    /// accelerations; all slopes are taken of these.
+    pub fn unperturbed(&self) -> Vec<Terms> {
         self.channel_by_channel(|channel, vibration| {
             let seen = |motion: &MassMotion| delayed(motion, self.eta, channel.delay);
             match &channel.filter {
                 None => vibration.values(&seen(&channel.motion)),
                 Some(filter) => {
                     let later = (filter.high_pass.corner() * channel.delay).exp();
-                    let mut values = vibration.values(&seen(&filter.passed.motion));
-                    filter.tail.add(&mut values, filter.passed.tail * later);
-                    values
+                    Terms {
+                        tail: [filter.passed.tail * later, 0.0],
+                        ..vibration.values(&seen(&filter.passed.motion))
+                    }
                 }
             }
         })
     }
 
+    /// Where terms are taken at all points.
+    pub fn points(&self) -> MotionPoints<'a> {
+        MotionPoints::new(self)
+    }
+
+    /// When the impact is.
+    pub(super) fn timing(&self) -> Timing {
+        self.timing
+    }
+
+    /// λ/η of each channel's mass, and c/η of its high-pass, per rad of the drive's phase.
+    pub(super) fn rates(&self) -> impl Iterator<Item = (C64, Option<f64>)> {
+        self.channels.iter().map(|channel| {
+            let corner = channel.filter.as_ref().map(|f| f.high_pass.corner());
+            let vibration = &self.vibrations[usize::from(channel.role.is_of_y())];
+            (vibration.rate(), corner.map(|c| c / self.eta))
+        })
+    }
+
     /// Slopes over coordinates of the fit, by the values that effects do not perturb: few distinct
     /// columns, and of what multiples of them each coordinate's slopes are the sum.
-    pub fn slopes(&self, values: &[f64], coordinates: &[Coordinate]) -> Slopes {
+    pub fn slopes(&self, values: &[Terms], coordinates: &[Coordinate]) -> Slopes {
         let at = self.record.circumstances(self.rig);
         let mut slopes = Slopes::default();
         let mut own: [Option<usize>; 5] = [None; 5];
         for coordinate in coordinates {
             let sum = match (coordinate, self.common.own_slope(&at, *coordinate)) {
-                (Coordinate::Gain(gain), _) => slopes.alone(Column::Gain(*gain)),
+                // Values are proportional to their gain.
+                (Coordinate::Gain(gain), _) => {
+                    slopes.alone(Column::Terms(self.only(values, *gain)))
+                }
                 (Coordinate::Effect(effect), _) if effect.is_acceleration() => {
-                    slopes.alone(Column::Values(self.perturbed(*effect, values.len())))
+                    slopes.alone(Column::Effect(*effect))
                 }
                 (_, Some(slope)) => {
                     let [r, f, b, x] = slope.physical;
@@ -220,42 +250,45 @@ impl<'a> RecordMotion<'a> {
                     let parts = weights.filter(|(_, weight)| *weight != 0.0);
                     parts
                         .map(|(i, weight)| {
-                            let column = || Column::Values(self.over_own(values, i));
+                            let column = || Column::Terms(self.over_own(values, i));
                             (*own[i].get_or_insert_with(|| slopes.add(column())), weight)
                         })
                         .collect()
                 }
-                (_, None) => {
-                    slopes.alone(Column::Values(self.over_coordinate(values, *coordinate)))
-                }
+                (_, None) => slopes.alone(Column::Terms(self.over_coordinate(values, *coordinate))),
             };
             slopes.sums.push(sum);
         }
         slopes
     }
 
-    /// The change by an effect that acts as an extra acceleration, per unit of its strength.
-    fn perturbed(&self, effect: Effect, points: usize) -> Vec<f64> {
-        let mut found = self.record.perturbations.iter();
-        let found = found.find(|(e, _)| *e == effect);
-        found.map_or_else(|| vec![0.0; points], |(_, change)| change.clone())
+    /// The terms of the channels that have a gain, none of the others.
+    fn only(&self, values: &[Terms], gain: usize) -> Vec<Terms> {
+        let all = self.channels.iter().zip(values);
+        all.map(
+            |(channel, terms)| match gain_index(channel.role) == Some(gain) {
+                true => *terms,
+                false => Terms::default(),
+            },
+        )
+        .collect()
     }
 
     /// Slopes over one of the record's own R, ln f0, ln β, ln `x_st`, clearance in m.
-    fn over_own(&self, values: &[f64], i: usize) -> Vec<f64> {
+    fn over_own(&self, values: &[Terms], i: usize) -> Vec<Terms> {
         match Coordinate::PHYSICAL.get(i) {
             Some(coordinate) => self.over_coordinate(values, *coordinate),
             None => self.over_clearance(values),
         }
     }
 
-    fn over_coordinate(&self, values: &[f64], coordinate: Coordinate) -> Vec<f64> {
+    fn over_coordinate(&self, values: &[Terms], coordinate: Coordinate) -> Vec<Terms> {
         let change = change(&self.machine, self.eta, self.gap, coordinate);
         self.along(values, &self.direction(&change, Some(coordinate)))
     }
 
     /// Slopes over the clearance, per m.
-    pub fn over_clearance(&self, values: &[f64]) -> Vec<f64> {
+    pub fn over_clearance(&self, values: &[Terms]) -> Vec<Terms> {
         let length_m = self.own.static_deflection_m * self.record.drive_amplitude;
         let change = Change {
             gap: self.machine.gap(1.0) / length_m,
@@ -273,7 +306,7 @@ impl<'a> RecordMotion<'a> {
     }
 
     /// Slopes over the phase of the drive against the points, per rad.
-    pub fn over_phase(&self, values: &[f64]) -> Vec<f64> {
+    pub fn over_phase(&self, values: &[Terms]) -> Vec<Terms> {
         let turned = |mass: &MassMotion| MassMotion {
             force: C64::new(0.0, -1.0) * mass.force,
             ..MassMotion::default()
@@ -293,7 +326,7 @@ impl<'a> RecordMotion<'a> {
     }
 
     /// Slopes over the logarithm of the drive's frequency.
-    pub fn over_frequency(&self, values: &[f64]) -> Vec<f64> {
+    pub fn over_frequency(&self, values: &[Terms]) -> Vec<Terms> {
         let change = Change {
             eta: self.eta,
             ..Change::default()
@@ -301,11 +334,9 @@ impl<'a> RecordMotion<'a> {
         let mut slopes = self.along(values, &self.direction(&change, None));
         let own = self.common.own_over_drive(self.record.frequency_hz);
         for (coordinate, weight) in own.into_iter().filter(|(_, weight)| *weight != 0.0) {
-            add(
-                &mut slopes,
-                weight,
-                &self.over_coordinate(values, coordinate),
-            );
+            let own = self.over_coordinate(values, coordinate);
+            let pairs = slopes.iter_mut().zip(&own);
+            pairs.for_each(|(slope, own)| *slope = slope.plus(weight, own));
         }
         slopes
     }
@@ -326,24 +357,22 @@ impl<'a> RecordMotion<'a> {
         press / self.orbit.approach_speed * self.own.natural_rate()
     }
 
-    fn along(&self, values: &[f64], direction: &Direction) -> Vec<f64> {
+    fn along(&self, values: &[Terms], direction: &Direction) -> Vec<Terms> {
         let mut slopes = self.channel_by_channel(|channel, vibration| {
             self.channel_slopes(channel, vibration, direction)
         });
-        let mut start = 0;
-        for channel in &self.channels {
-            let end = start + channel.points;
-            let relative = direction
-                .coordinate
-                .map_or(0.0, |c| match measured(channel.role) {
-                    Measured::Velocity => relative_length(c) + relative_rate(c),
-                    Measured::Displacement => relative_length(c),
-                });
+        let Some(coordinate) = direction.coordinate else {
+            return slopes;
+        };
+        let channels = self.channels.iter().zip(values);
+        for (slope, (channel, own)) in slopes.iter_mut().zip(channels) {
+            let relative = match measured(channel.role) {
+                Measured::Velocity => relative_length(coordinate) + relative_rate(coordinate),
+                Measured::Displacement => relative_length(coordinate),
+            };
             if relative != 0.0 {
-                let own = slopes[start..end].iter_mut().zip(&values[start..end]);
-                own.for_each(|(s, v)| *s += relative * v);
+                *slope = slope.plus(relative, own);
             }
-            start = end;
         }
         slopes
     }
@@ -351,14 +380,14 @@ impl<'a> RecordMotion<'a> {
     fn channel_slopes(
         &self,
         channel: &ChannelMotion,
-        vibration: &Vibration<'_>,
+        vibration: &Vibration,
         direction: &Direction,
-    ) -> Vec<f64> {
+    ) -> Terms {
         let own = gain_index(channel.role);
         if let Some(Coordinate::Corner(i) | Coordinate::Delay(i)) = direction.coordinate
             && own != Some(i)
         {
-            return vec![0.0; channel.points];
+            return Terms::default();
         }
         let timing = TimingSlope {
             eta: direction.eta,
@@ -400,30 +429,22 @@ impl<'a> RecordMotion<'a> {
         let passed = filter
             .high_pass
             .pass_slope(&channel.motion, tail, &change, &moved);
-        let mut slopes = seen(&filter.passed.motion, &passed.motion);
         let later = (corner * delay[0]).exp();
         let stretch = moved.corner * delay[0] + corner * delay[1];
         let tails = [tail * later, (passed.tail + tail * stretch) * later];
-        filter
-            .tail
-            .add_slopes(&mut slopes, tails, &moved, vibration, &timing);
-        slopes
+        Terms {
+            tail: filter.high_pass.tail_slopes(tails, &moved, &timing),
+            ..seen(&filter.passed.motion, &passed.motion)
+        }
     }
 
-    /// Of every channel, its points in SI from dimensionless ones.
-    fn channel_by_channel(
-        &self,
-        of: impl Fn(&ChannelMotion, &Vibration<'_>) -> Vec<f64>,
-    ) -> Vec<f64> {
-        let mut out = Vec::with_capacity(self.channels.iter().map(|c| c.points).sum());
-        for channel in &self.channels {
-            let vibration = &self.vibrations[channel.set][usize::from(channel.role.is_of_y())];
-            if let Some(vibration) = vibration {
-                let unit = self.unit(channel.role);
-                out.extend(of(channel, vibration).into_iter().map(|v| v * unit));
-            }
-        }
-        out
+    /// Of every channel, its terms in SI from dimensionless ones.
+    fn channel_by_channel(&self, of: impl Fn(&ChannelMotion, &Vibration) -> Terms) -> Vec<Terms> {
+        let channels = self.channels.iter().map(|channel| {
+            let vibration = &self.vibrations[usize::from(channel.role.is_of_y())];
+            of(channel, vibration).scaled(self.unit(channel.role))
+        });
+        channels.collect()
     }
 
     /// SI units of a channel, gain included, in one of the model's.
@@ -442,23 +463,6 @@ fn add(to: &mut [f64], share: f64, column: &[f64]) {
     if share != 0.0 {
         to.iter_mut().zip(column).for_each(|(t, c)| *t += share * c);
     }
-}
-
-/// Of each set of phases, the free vibrations of the masses that are measured.
-fn vibrations<'a>(
-    record: &'a TrajectoryRecord,
-    orbit: &OrbitMotion,
-    timing: Timing,
-) -> Vec<[Option<Vibration<'a>>; 2]> {
-    let of = |phases: &'a Phases, of_y: bool, mass: &MassMotion| {
-        let mut channels = record.folded.channels.iter();
-        channels
-            .any(|c| c.role.is_of_y() == of_y)
-            .then(|| Vibration::new(phases, timing, mass.exponent))
-    };
-    let sets = record.phases.iter();
-    sets.map(|phases| [of(phases, false, &orbit.x), of(phases, true, &orbit.y)])
-        .collect()
 }
 
 fn of_role(orbit: &OrbitMotion, role: Role) -> &MassMotion {
@@ -480,7 +484,7 @@ fn measured(role: Role) -> Measured {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::identify::evidence::trajectory::distinct_phases;
     use crate::identify::evidence::trajectory_record::Weighing;
@@ -496,7 +500,7 @@ mod tests {
     ];
 
     /// Everything in effect that is not a perturbation.
-    fn parameters() -> Parameters {
+    pub(in crate::identify::evidence) fn parameters() -> Parameters {
         let mut effects = [0.0; Effect::COUNT];
         effects[Effect::ForceSlope.place()] = 0.02;
         effects[Effect::ForceCurve.place()] = -0.01;
@@ -521,7 +525,11 @@ mod tests {
         }
     }
 
-    fn record(periods_n: u32, frequency_hz: f64) -> TrajectoryRecord {
+    /// A record without values of a motion of n periods.
+    pub(in crate::identify::evidence) fn record(
+        periods_n: u32,
+        frequency_hz: f64,
+    ) -> TrajectoryRecord {
         let points: Vec<FoldedPoint> = (0..64 * periods_n)
             .map(|i| FoldedPoint {
                 phase_rad: 0.1 * (f64::from(i) + 0.37 + 0.2 * f64::from(i % 3)),
@@ -560,6 +568,7 @@ mod tests {
             shared: Vec::new(),
             perturbations: Vec::new(),
             weighing: Weighing::default(),
+            reduced: None,
         }
     }
 
@@ -586,7 +595,8 @@ mod tests {
         let (p, step) = (parameters(), 1e-6);
         for record in [record(1, 15.0), record(2, 31.0)] {
             let motion = RecordMotion::new(RigKind::Double, &record, &p).expect("an orbit");
-            let here = motion.values();
+            let here = motion.unperturbed();
+            let points = motion.points();
             let mut coordinates = Coordinate::PHYSICAL.to_vec();
             coordinates.extend([Coordinate::DriveAsymmetry, Coordinate::StiffnessAsymmetry]);
             coordinates.extend([Coordinate::DampingAsymmetry, Coordinate::MassAsymmetry]);
@@ -599,11 +609,11 @@ mod tests {
             for (coordinate, sum) in coordinates.into_iter().zip(&slopes.sums) {
                 let at =
                     |by: f64| values(&record, &p.with(coordinate, p.coordinate(coordinate) + by));
-                let mut exact = vec![0.0; here.len()];
+                let mut exact = vec![0.0; points.values(&here).len()];
                 for (i, times) in sum {
                     match &slopes.columns[*i] {
-                        Column::Values(column) => add(&mut exact, *times, column),
-                        Column::Gain(_) => panic!("no gain is asked for"),
+                        Column::Terms(column) => add(&mut exact, *times, &points.values(column)),
+                        Column::Effect(_) => panic!("no extra acceleration is asked for"),
                     }
                 }
                 agree(&exact, &at(step), &at(-step), 2.0 * step);
@@ -613,7 +623,7 @@ mod tests {
                 moved.frequency_hz *= 1.0 + by;
                 values(&moved, &p)
             };
-            let exact = motion.over_frequency(&here);
+            let exact = points.values(&motion.over_frequency(&here));
             agree(&exact, &driven(step), &driven(-step), 2.0 * step);
             // A drive that is ahead by a phase shows the points at phases that lie before theirs.
             let turned = |by: f64| {
@@ -624,7 +634,7 @@ mod tests {
                 moved.phases = distinct_phases(&moved.folded);
                 values(&moved, &p)
             };
-            let exact = motion.over_phase(&here);
+            let exact = points.values(&motion.over_phase(&here));
             agree(&exact, &turned(step), &turned(-step), 2.0 * step);
         }
     }

@@ -5,7 +5,7 @@
 //! I + `VVᵀ` (13); residuals times its inverse root are independent again, and least squares on them is
 //! the likelihood.
 
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::signal::columns::{dot, subtract};
 
@@ -48,6 +48,34 @@ impl Whitening {
         }
     }
 
+    /// How much of the sum of squares of residuals shared errors along the columns of V explain:
+    /// rᵀV(I + `VᵀV`)⁻¹Vᵀr.
+    pub fn explained(columns: &[Vec<f64>], residuals: &[f64]) -> f64 {
+        let count = columns.len();
+        if count == 0 {
+            return 0.0;
+        }
+        let along = DVector::from_iterator(count, columns.iter().map(|c| dot(c, residuals)));
+        let unit = |i: usize, k: usize| if i == k { 1.0 } else { 0.0 };
+        let gram = |i: usize, k: usize| unit(i, k) + dot(&columns[i], &columns[k]);
+        let factor = DMatrix::from_fn(count, count, gram).cholesky();
+        factor.map_or(0.0, |factor| along.dot(&factor.solve(&along)))
+    }
+
+    /// The directions that are shared.
+    pub fn directions(&self) -> impl Iterator<Item = &Vec<f64>> {
+        self.directions.iter().map(|(_, direction)| direction)
+    }
+
+    /// The same along other directions, one for each of these.
+    #[must_use]
+    pub fn along(&self, directions: Vec<Vec<f64>>) -> Self {
+        let kept = self.directions.iter().map(|(kept, _)| *kept);
+        Self {
+            directions: kept.zip(directions).collect(),
+        }
+    }
+
     /// Make residuals independent, in place.
     pub fn apply(&self, residuals: &mut [f64]) {
         for (kept, direction) in &self.directions {
@@ -59,8 +87,6 @@ impl Whitening {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::DVector;
-
     use super::*;
 
     #[test]
@@ -78,5 +104,7 @@ mod tests {
         let r = DVector::from_vec(r);
         let want = r.dot(&covariance.lu().solve(&r).unwrap_or_default());
         assert!((dot(&white, &white) - want).abs() < 1e-12);
+        let left = r.norm_squared() - Whitening::explained(&shared, r.as_slice());
+        assert!((left - want).abs() < 1e-12);
     }
 }

@@ -4,9 +4,10 @@ use rayon::prelude::*;
 
 use crate::event::RigKind;
 use crate::identify::evidence::nearest_orbit::NearestOrbit;
-use crate::identify::evidence::record_motion::{Column, RecordMotion};
+use crate::identify::evidence::record_motion::{Column, RecordMotion, Slopes};
+use crate::identify::evidence::reduced_record::ReducedRecord;
 use crate::identify::evidence::trajectory_record::{TrajectoryRecord, Weighing};
-use crate::identify::evidence::waveform::Phases;
+use crate::identify::evidence::waveform::{Phases, Terms};
 use crate::identify::fit::Block;
 use crate::identify::fit::effect::{Effect, Effects};
 use crate::identify::fit::group::Group;
@@ -129,21 +130,44 @@ impl TrajectoryBlock {
     ) -> Option<WeightedSlopes> {
         let record = &self.records[item];
         let motion = RecordMotion::new(self.rig, record, parameters)?;
-        let mut values = motion.unperturbed();
-        let slopes = motion.slopes(&values, coordinates);
-        let weighted = |column: Column| {
-            let mut change = match column {
-                Column::Values(values) => values,
-                // Values are proportional to their gain.
-                Column::Gain(gain) => record.only(&values, gain),
-            };
-            change.iter_mut().for_each(|c| *c = -*c);
-            record.weighing.weighted(&change)
+        let terms = motion.unperturbed();
+        let Slopes { columns, sums } = motion.slopes(&terms, coordinates);
+        let near = record.reduced.as_ref().and_then(|r| r.at(&motion));
+        let (residuals, mut columns): (Vec<f64>, Vec<Vec<f64>>) = match near {
+            Some(reduced) => {
+                let weighted = |column: Column| match column {
+                    Column::Terms(terms) => reduced.weighted(&terms),
+                    Column::Effect(effect) => reduced.effect(effect),
+                };
+                let residuals = reduced.residuals(&terms, |e| motion.effect(e));
+                (residuals, columns.into_iter().map(weighted).collect())
+            }
+            None => {
+                let points = motion.points();
+                let weighted = |column: Column| match column {
+                    Column::Terms(terms) => record.weighing.weighted(&points.values(&terms)),
+                    Column::Effect(effect) => match record.change_by(effect) {
+                        Some(change) => record.weighing.weighted(change),
+                        None => vec![0.0; record.points()],
+                    },
+                };
+                let mut values = points.values(&terms);
+                motion.perturb(&mut values);
+                let residuals = record.weighing.weighted(&record.apart(&values));
+                (residuals, columns.into_iter().map(weighted).collect())
+            }
         };
-        let columns = slopes.columns.into_iter().map(weighted).collect();
-        motion.perturb(&mut values);
-        let residuals = record.weighing.weighted(&record.apart(&values));
-        Some((residuals, columns, slopes.sums))
+        columns.iter_mut().flatten().for_each(|c| *c = -*c);
+        Some((residuals, columns, sums))
+    }
+
+    /// Reduce the records to few rows about parameters.
+    pub fn reduce(&mut self, parameters: &Parameters) {
+        let rig = self.rig;
+        self.records.par_iter_mut().for_each(|record| {
+            let motion = RecordMotion::new(rig, record, parameters);
+            record.reduced = motion.and_then(|motion| ReducedRecord::new(record, &motion));
+        });
     }
 
     /// Slopes of a record's weighted residuals over the logarithm of its clearance.
@@ -151,26 +175,28 @@ impl TrajectoryBlock {
         let record = &self.records[item];
         let motion = RecordMotion::new(self.rig, record, at)?;
         let slopes = motion.over_clearance(&motion.unperturbed());
+        let slopes = motion.points().values(&slopes);
         let change: Vec<f64> = slopes.iter().map(|s| -s * record.clearance_m).collect();
         Some(record.weighing.weighted(&change))
     }
 
     fn changes(&self, record: &TrajectoryRecord, parameters: &Parameters) -> Option<Changes> {
         let motion = RecordMotion::new(self.rig, record, parameters)?;
-        let values = motion.unperturbed();
-        let times = |slopes: Vec<f64>, error: f64| slopes.iter().map(|s| error * s).collect();
+        let (terms, points) = (motion.unperturbed(), motion.points());
+        let times = |slopes: Vec<Terms>, error: f64| {
+            let slopes = points.values(&slopes);
+            slopes.iter().map(|s| error * s).collect()
+        };
         let mut shared: Vec<Vec<f64>> = vec![
-            times(motion.over_phase(&values), record.phase_error_rad),
-            times(motion.over_frequency(&values), record.frequency_error),
+            times(motion.over_phase(&terms), record.phase_error_rad),
+            times(motion.over_frequency(&terms), record.frequency_error),
         ];
         if record.lone_clearance_error_m > 0.0 {
-            let slopes = motion.over_clearance(&values);
+            let slopes = motion.over_clearance(&terms);
             shared.push(times(slopes, record.lone_clearance_error_m));
         }
         let accelerations = self.effects.iter().filter(|e| e.is_acceleration());
-        let perturbations = accelerations
-            .map(|e| (e, motion.perturbation(&values, e, self.reach_m)))
-            .collect();
+        let perturbations = motion.perturbations((&terms, &points), accelerations, self.reach_m);
         Some(Changes {
             shared,
             perturbations,
@@ -211,6 +237,7 @@ fn trajectory_record(index: usize, o: &Observation) -> Option<TrajectoryRecord> 
         shared: Vec::new(),
         perturbations: Vec::new(),
         weighing: Weighing::default(),
+        reduced: None,
         clearance_m: o.setting.clearance_m?,
         drive_amplitude: o.setting.drive_amplitude,
         phases: distinct_phases(&folded),
@@ -289,7 +316,9 @@ impl Block for TrajectoryBlock {
         weight: f64,
     ) -> Option<Rows> {
         let (residuals, columns, sums) = self.weighted_slopes(item, parameters, coordinates)?;
-        Some(Rows::of(&residuals, &columns, weight).combined(&sums))
+        let mut rows = Rows::of(&residuals, &columns, weight).combined(&sums);
+        rows.count = self.records[item].points();
+        Some(rows)
     }
 
     fn touches(&self, coordinate: Coordinate) -> bool {

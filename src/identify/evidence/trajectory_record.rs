@@ -1,6 +1,7 @@
 //! A periodic record as the fits use it.
 
 use crate::event::RigKind;
+use crate::identify::evidence::reduced_record::ReducedRecord;
 use crate::identify::evidence::shared_error::Whitening;
 use crate::identify::evidence::waveform::Phases;
 use crate::identify::fit::effect::Effect;
@@ -51,6 +52,8 @@ pub struct TrajectoryRecord {
     pub perturbations: Vec<(Effect, Vec<f64>)>,
     /// How its residuals are weighted.
     pub weighing: Weighing,
+    /// Its weighted residuals in few rows near good parameters; none until these are known.
+    pub reduced: Option<ReducedRecord>,
 }
 
 impl TrajectoryRecord {
@@ -76,6 +79,7 @@ impl TrajectoryRecord {
     /// Weigh the residuals with a relative error of every point beside the noise.
     pub(super) fn weigh(&mut self, relative_error: f64) {
         self.weighing = Weighing::new(self, relative_error);
+        self.reduced = None;
     }
 
     /// Measured less modelled values.
@@ -84,18 +88,24 @@ impl TrajectoryRecord {
         points.zip(values).map(|(p, v)| p.value - v).collect()
     }
 
-    /// Values of the channels that carry one gain, zero for the others.
-    pub(super) fn only(&self, values: &[f64], gain: usize) -> Vec<f64> {
-        let mut out = Vec::with_capacity(values.len());
-        for channel in &self.folded.channels {
-            let range = out.len()..out.len() + channel.points.len();
-            if gain_index(channel.role) == Some(gain) {
-                out.extend_from_slice(&values[range]);
-            } else {
-                out.resize(range.end, 0.0);
-            }
-        }
-        out
+    /// Change of all points' values by an effect that acts as an extra acceleration, per unit of its
+    /// strength; `None` where it is not known.
+    pub(super) fn change_by(&self, effect: Effect) -> Option<&Vec<f64>> {
+        let mut changes = self.perturbations.iter();
+        changes
+            .find(|(e, _)| *e == effect)
+            .map(|(_, change)| change)
+    }
+
+    /// Measured values.
+    pub(super) fn measured(&self) -> Vec<f64> {
+        let points = self.folded.channels.iter().flat_map(|c| &c.points);
+        points.map(|p| p.value).collect()
+    }
+
+    /// Number of points of all channels.
+    pub(super) fn points(&self) -> usize {
+        self.folded.channels.iter().map(|c| c.points.len()).sum()
     }
 }
 
@@ -113,7 +123,9 @@ impl Weighing {
     pub(super) fn new(record: &TrajectoryRecord, relative_error: f64) -> Self {
         let channels = record.folded.channels.iter();
         let mut weighing = Self {
-            channels: channels.map(|c| Weights::of(c, relative_error)).collect(),
+            channels: channels
+                .map(|c| Weights::of(c, relative_error * size(c)))
+                .collect(),
             shared: Whitening::none(),
         };
         let columns: Vec<Vec<f64>> = record.shared.iter().map(|c| weighing.centred(c)).collect();
@@ -121,13 +133,31 @@ impl Weighing {
         weighing
     }
 
-    fn centred(&self, differences: &[f64]) -> Vec<f64> {
+    /// Differences of all points over their errors, without the channels' offsets.
+    pub(super) fn centred(&self, differences: &[f64]) -> Vec<f64> {
         let mut out = Vec::with_capacity(differences.len());
         for weights in &self.channels {
             let end = out.len() + weights.roots.len();
             weights.centred(&differences[out.len()..end], &mut out);
         }
         out
+    }
+
+    /// The same of the points of one channel.
+    pub(super) fn centred_of(&self, channel: usize, differences: &[f64]) -> Vec<f64> {
+        let mut out = Vec::with_capacity(differences.len());
+        self.channels[channel].centred(differences, &mut out);
+        out
+    }
+
+    /// The directions of what all points share, in weighted differences.
+    pub(super) fn shared_directions(&self) -> impl Iterator<Item = &Vec<f64>> {
+        self.shared.directions()
+    }
+
+    /// What makes residuals independent where those directions are others.
+    pub(super) fn shared_along(&self, directions: Vec<Vec<f64>>) -> Whitening {
+        self.shared.along(directions)
     }
 
     /// Differences of all points, weighted.
@@ -138,6 +168,50 @@ impl Weighing {
     }
 }
 
+/// Measured less modelled values of a record, with all that their mean square depends on beside the
+/// relative error that is allowed.
+pub(super) struct Misfit<'a> {
+    record: &'a TrajectoryRecord,
+    apart: &'a [f64],
+    /// Of each channel the root mean square of its values.
+    sizes: Vec<f64>,
+}
+
+impl<'a> Misfit<'a> {
+    /// Of a record and its differences from the model.
+    pub(super) fn new(record: &'a TrajectoryRecord, apart: &'a [f64]) -> Self {
+        Self {
+            record,
+            apart,
+            sizes: record.folded.channels.iter().map(size).collect(),
+        }
+    }
+
+    /// Mean square of the weighted residuals with a relative error of every point beside the noise.
+    pub(super) fn mean_square(&self, relative_error: f64) -> f64 {
+        let channels = self.record.folded.channels.iter().zip(&self.sizes);
+        let unshared = Weighing {
+            channels: channels
+                .map(|(channel, size)| Weights::of(channel, relative_error * size))
+                .collect(),
+            shared: Whitening::none(),
+        };
+        let shared = self.record.shared.iter();
+        let shared: Vec<Vec<f64>> = shared.map(|c| unshared.centred(c)).collect();
+        let residuals = unshared.centred(self.apart);
+        let along = Whitening::explained(&shared, &residuals);
+        (dot(&residuals, &residuals) - along) / residuals.len().max(1) as f64
+    }
+}
+
+/// Root mean square of a channel's values about their mean.
+fn size(channel: &FoldedChannel) -> f64 {
+    let values: Vec<f64> = channel.points.iter().map(|p| p.value).collect();
+    let offset = robust::mean(&values);
+    let moved: Vec<f64> = values.iter().map(|v| v - offset).collect();
+    robust::rms(&moved)
+}
+
 /// Weights of a channel's points, with the channel's offset, a nuisance, projected out.
 #[derive(Debug, Clone)]
 struct Weights {
@@ -146,11 +220,8 @@ struct Weights {
 }
 
 impl Weights {
-    fn of(channel: &FoldedChannel, relative_error: f64) -> Self {
-        let values: Vec<f64> = channel.points.iter().map(|p| p.value).collect();
-        let offset = values.iter().sum::<f64>() / values.len().max(1) as f64;
-        let moved: Vec<f64> = values.iter().map(|v| v - offset).collect();
-        let scale = relative_error * robust::rms(&moved);
+    /// With an error of every point beside the noise, SI.
+    fn of(channel: &FoldedChannel, scale: f64) -> Self {
         let roots: Vec<f64> = channel
             .points
             .iter()

@@ -33,6 +33,18 @@ impl Phases {
         }
     }
 
+    /// Phase of each point since an impact, in a motion of a span of phase, rad.
+    pub fn since(&self, impact_phase: f64, span: f64) -> impl Iterator<Item = f64> {
+        let phases = self.phase.iter();
+        phases.map(move |phase| (phase - impact_phase).rem_euclid(span))
+    }
+
+    /// Of each point the mean of e^{iθ} over its phases θ, and half the square of its spread, rad².
+    pub fn turns(&self) -> impl Iterator<Item = (C64, f64)> {
+        let turns = self.turn.iter().zip(&self.half_square);
+        turns.map(|(turn, half)| (*turn, *half))
+    }
+
     /// Whether points have these phases.
     pub fn fit(&self, points: &[FoldedPoint]) -> bool {
         self.phase.len() == points.len()
@@ -55,6 +67,13 @@ pub struct Timing {
     pub impact_phase: f64,
 }
 
+impl Timing {
+    /// Phase of the drive in one period of the motion, rad.
+    pub fn span(&self) -> f64 {
+        f64::from(self.periods_n) * std::f64::consts::TAU
+    }
+}
+
 /// How a direction changes the timing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TimingSlope {
@@ -64,64 +83,82 @@ pub struct TimingSlope {
     pub impact_phase: f64,
 }
 
-/// The free vibration of one mass at all points: t and the mean of e^{λt}.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Vibration<'a> {
-    phases: &'a Phases,
-    timing: Timing,
-    exponent: C64,
-    time: Vec<f64>,
-    /// e^{λt} at the points' middle.
-    decay: Vec<C64>,
+/// What a channel shows, as a sum of terms at the points: Re(F e^{iθ}) + Re((a + bt + (c + dt) s²/2) e^{λt})
+/// + (k + lt) e^{−ct}, with s the spread of a point's phase, λ the exponent of its mass and c the corner of
+/// its high-pass.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Terms {
+    /// F
+    pub force: C64,
+    /// a and b
+    pub free: [C64; 2],
+    /// c and d
+    pub bent: [C64; 2],
+    /// k and l
+    pub tail: [f64; 2],
 }
 
-impl<'a> Vibration<'a> {
-    /// Of a mass with an exponent.
-    pub fn new(phases: &'a Phases, timing: Timing, exponent: C64) -> Self {
-        let span = f64::from(timing.periods_n) * std::f64::consts::TAU;
-        let time: Vec<f64> = phases
-            .phase
-            .iter()
-            .map(|phase| (phase - timing.impact_phase).rem_euclid(span) / timing.eta)
-            .collect();
-        let decay = time.iter().map(|t| (exponent * t).exp()).collect();
+impl Terms {
+    /// Times a number.
+    #[must_use]
+    pub fn scaled(self, by: f64) -> Self {
         Self {
-            phases,
-            timing,
-            exponent,
-            time,
-            decay,
+            force: by * self.force,
+            free: self.free.map(|c| by * c),
+            bent: self.bent.map(|c| by * c),
+            tail: self.tail.map(|c| by * c),
         }
+    }
+
+    /// With a multiple of others.
+    #[must_use]
+    pub fn plus(self, share: f64, other: &Self) -> Self {
+        let sum = |own: [C64; 2], other: [C64; 2]| [0, 1].map(|i| own[i] + share * other[i]);
+        Self {
+            force: self.force + share * other.force,
+            free: sum(self.free, other.free),
+            bent: sum(self.bent, other.bent),
+            tail: [0, 1].map(|i| self.tail[i] + share * other.tail[i]),
+        }
+    }
+}
+
+/// The free vibration of one mass: when its impact is, and λ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Vibration {
+    timing: Timing,
+    exponent: C64,
+}
+
+impl Vibration {
+    /// Of a mass with an exponent.
+    pub fn new(timing: Timing, exponent: C64) -> Self {
+        Self { timing, exponent }
+    }
+
+    /// λ/η, per rad of the drive's phase.
+    pub fn rate(&self) -> C64 {
+        self.exponent / self.timing.eta
     }
 
     /// λ²/η²: what half the square of a spread of phase is multiplied by in a mean.
     fn curvature(&self) -> C64 {
-        (self.exponent / self.timing.eta).powu(2)
+        self.rate().powu(2)
     }
 
-    /// Time since the impact at the points' middle.
-    pub fn time(&self) -> &[f64] {
-        &self.time
-    }
-
-    /// A motion with this vibration's exponent at all points, dimensionless.
-    pub fn values(&self, motion: &MassMotion) -> Vec<f64> {
-        let (force, mode) = (motion.force, motion.mode);
-        let bent = mode * self.curvature();
-        let points = self.phases.turn.iter().zip(&self.decay);
-        points
-            .zip(&self.phases.half_square)
-            .map(|((turn, decay), half)| real(force, *turn) + real(mode + bent * *half, *decay))
-            .collect()
+    /// A motion with this vibration's exponent, dimensionless.
+    pub fn values(&self, motion: &MassMotion) -> Terms {
+        let mode = motion.mode;
+        Terms {
+            force: motion.force,
+            free: [mode, C64::default()],
+            bent: [mode * self.curvature(), C64::default()],
+            tail: [0.0; 2],
+        }
     }
 
     /// Slopes of the values in a direction that changes motion and timing.
-    pub fn slopes(
-        &self,
-        motion: &MassMotion,
-        change: &MassMotion,
-        timing: &TimingSlope,
-    ) -> Vec<f64> {
+    pub fn slopes(&self, motion: &MassMotion, change: &MassMotion, timing: &TimingSlope) -> Terms {
         let eta = self.timing.eta;
         let mode = motion.mode;
         let curvature = self.curvature();
@@ -131,18 +168,66 @@ impl<'a> Vibration<'a> {
         // d(λt) = t(dλ − λ dη/η) − λ dψ/η
         let constant = change.mode - mode * self.exponent * (timing.impact_phase / eta);
         let growing = mode * (change.exponent - self.exponent * stretch);
-        let (bent, d_bent) = (
-            constant * curvature + mode * d_curvature,
-            growing * curvature,
-        );
+        Terms {
+            force: change.force,
+            free: [constant, growing],
+            bent: [
+                constant * curvature + mode * d_curvature,
+                growing * curvature,
+            ],
+            tail: [0.0; 2],
+        }
+    }
+}
+
+/// The free vibration of one mass at the points of a set of phases.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VibrationPoints<'a> {
+    phases: &'a Phases,
+    time: Vec<f64>,
+    /// e^{λt} at the points' middle.
+    decay: Vec<C64>,
+}
+
+impl<'a> VibrationPoints<'a> {
+    /// Of a vibration.
+    pub fn new(phases: &'a Phases, vibration: &Vibration) -> Self {
+        let Vibration { timing, exponent } = *vibration;
+        let since = phases.since(timing.impact_phase, timing.span());
+        let time: Vec<f64> = since.map(|phase| phase / timing.eta).collect();
+        let decay = time.iter().map(|t| (exponent * t).exp()).collect();
+        Self {
+            phases,
+            time,
+            decay,
+        }
+    }
+
+    /// Time since the impact at the points' middle.
+    pub fn time(&self) -> &[f64] {
+        &self.time
+    }
+
+    /// A sum of terms at all points; `tail`: e^{−ct} at the points of a channel behind a high-pass.
+    pub fn values(&self, terms: &Terms, tail: Option<&[f64]>) -> Vec<f64> {
+        let Terms {
+            force, free, bent, ..
+        } = *terms;
         let points = self.phases.turn.iter().zip(&self.decay);
-        points
+        let mut values: Vec<f64> = points
             .zip(self.time.iter().zip(&self.phases.half_square))
             .map(|((turn, decay), (t, half))| {
-                let amplitude = constant + bent * *half + (growing + d_bent * *half) * *t;
-                real(change.force, *turn) + real(amplitude, *decay)
+                let amplitude = free[0] + bent[0] * *half + (free[1] + bent[1] * *half) * *t;
+                real(force, *turn) + real(amplitude, *decay)
             })
-            .collect()
+            .collect();
+        let [constant, growing] = terms.tail;
+        if let Some(tail) = tail {
+            let tail = tail.iter().zip(&self.time);
+            let values = values.iter_mut().zip(tail);
+            values.for_each(|(value, (decay, t))| *value += (constant + growing * t) * decay);
+        }
+        values
     }
 }
 

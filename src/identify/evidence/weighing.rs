@@ -4,10 +4,9 @@
 use rayon::prelude::*;
 
 use crate::identify::evidence::Blocks;
-use crate::identify::evidence::trajectory_record::{TrajectoryRecord, Weighing};
+use crate::identify::evidence::trajectory_record::Misfit;
 use crate::identify::fit::mean_squares;
 use crate::identify::fit::parameters::Parameters;
-use crate::signal::columns::dot;
 use crate::signal::robust;
 
 impl Blocks {
@@ -33,21 +32,24 @@ impl Blocks {
     }
 
     /// Find what the points of each periodic record share and what effects beyond the model change
-    /// in them, and allow all the least relative error that explains the rest.
+    /// in them, allow all the least relative error that explains the rest, and reduce them to few rows.
     pub fn weigh_trajectories(&mut self, parameters: &Parameters) {
         let block = &mut self.trajectory;
         block.find_changes(parameters);
         let differences = block.differences(parameters);
+        let pairs = block.records.par_iter().zip(&differences);
+        let misfits: Vec<Misfit<'_>> = pairs
+            .filter_map(|(record, apart)| Some(Misfit::new(record, apart.as_ref()?)))
+            .collect();
         let scores = |allowance: f64| {
-            let pairs = block.records.par_iter().zip(&differences);
-            let of = |(record, apart): (&TrajectoryRecord, &Option<Vec<f64>>)| {
-                let residuals = Weighing::new(record, allowance).weighted(apart.as_ref()?);
-                Some(dot(&residuals, &residuals) / residuals.len().max(1) as f64)
-            };
-            pairs.filter_map(of).collect()
+            misfits
+                .par_iter()
+                .map(|m| m.mean_square(allowance))
+                .collect()
         };
         let allowed = least_allowance(scores);
         block.allow(allowed);
+        block.reduce(parameters);
     }
 }
 

@@ -90,7 +90,7 @@ impl Rows {
     }
 
     /// Number of rows.
-    pub(super) fn height(&self) -> usize {
+    pub(in crate::identify) fn height(&self) -> usize {
         self.height
     }
 
@@ -100,7 +100,7 @@ impl Rows {
     }
 
     /// Slopes over an unknown; those of the last, n, are the residuals.
-    pub(super) fn column(&self, i: usize) -> &[f64] {
+    pub(in crate::identify) fn column(&self, i: usize) -> &[f64] {
         &self.entries[i * self.height..][..self.height]
     }
 

@@ -10,6 +10,8 @@
 //! One complex recurrence with p taken as linear between nodes; the error is of second order in
 //! the nodes' distance.
 
+use nalgebra::ComplexField;
+
 use super::flight::exponent;
 use super::motion::count;
 use super::params::Oscillator;
@@ -61,24 +63,23 @@ impl Grid {
 }
 
 /// The periodic solution of z' = λz + p at the nodes, p linear between them.
-fn periodic(lambda: C64, grid: Grid, p: &[f64]) -> Vec<C64> {
-    let one = C64::new(1.0, 0.0);
+fn periodic<T: ComplexField<RealField = f64> + Copy>(lambda: T, grid: Grid, p: &[f64]) -> Vec<T> {
     let h = grid.step;
-    let decay = (lambda * h).exp();
-    let whole = (decay - one) / lambda;
-    let later = (whole - h) / (lambda * h);
+    let decay = lambda.scale(h).exp();
+    let whole = (decay - T::one()) / lambda;
+    let later = (whole - T::from_real(h)) / lambda.scale(h);
     let earlier = whole - later;
     // From rest, and what a start elsewhere adds, so that the end is the start again.
     let mut out = Vec::with_capacity(p.len());
-    let mut z = C64::default();
+    let mut z = T::zero();
     out.push(z);
     for pair in p.windows(2) {
-        let gained = earlier * pair[0] + later * pair[1];
+        let gained = earlier.scale(pair[0]) + later.scale(pair[1]);
         z = decay * z + gained;
         out.push(z);
     }
-    let returned = (lambda * (h * grid.intervals as f64)).exp();
-    let mut start = z / (one - returned);
+    let returned = lambda.scale(h * grid.intervals as f64).exp();
+    let mut start = z / (T::one() - returned);
     for z in &mut out {
         *z += start;
         start *= decay;
@@ -111,13 +112,8 @@ impl Sampled {
     pub fn high_passed(&self, corner: f64) -> Self {
         // y = x − w with w' = −cw + cx.
         let fed: Vec<f64> = self.values.iter().map(|x| corner * x).collect();
-        let lost = periodic(C64::new(-corner, 0.0), self.grid, &fed);
-        let values: Vec<f64> = self
-            .values
-            .iter()
-            .zip(&lost)
-            .map(|(x, w)| x - w.re)
-            .collect();
+        let lost = periodic(-corner, self.grid, &fed);
+        let values: Vec<f64> = self.values.iter().zip(&lost).map(|(x, w)| x - w).collect();
         let slopes = self.slopes.iter().zip(&values).map(|(d, y)| d - corner * y);
         Self {
             grid: self.grid,

@@ -1,28 +1,71 @@
 //! Change of a record's values by effects that act as a small extra acceleration along the orbit.
 
-use super::{Measured, RecordMotion, add, measured};
+use super::{ChannelMotion, Measured, MotionPoints, RecordMotion, measured};
+use crate::identify::evidence::waveform::Terms;
 use crate::identify::fit::effect::Effect;
 use impact_oscillator::model::params::Oscillator;
+use impact_oscillator::model::path::C64;
 use impact_oscillator::model::perturbation::{Grid, PeriodicResponse};
-use impact_oscillator::model::sensitivity::{Change, MassMotion};
+use impact_oscillator::model::sensitivity::Change;
 
 /// Nodes of a drive period on which extra accelerations are taken.
 const NODES: usize = 128;
 
+/// The orbit at the nodes of a period.
+struct Course {
+    grid: Grid,
+    /// e^{iθ} of the drive's phase θ.
+    turns: Vec<C64>,
+    /// Of each mass its displacements and velocities.
+    masses: [Option<(Oscillator, Vec<[f64; 2]>)>; 2],
+}
+
 impl RecordMotion<'_> {
-    /// Change of the values by an effect that acts as a small extra acceleration, per unit of its
-    /// strength, to first order; `reach_m` is the displacement at which springs change and drag acts by that much.
-    pub fn perturbation(&self, values: &[f64], effect: Effect, reach_m: f64) -> Vec<f64> {
+    /// Changes of the values at all points by effects that act as a small extra acceleration, per unit of their
+    /// strengths, to first order; `reach_m` is the displacement at which springs change and drag acts by that much.
+    pub fn perturbations(
+        &self,
+        at: (&[Terms], &MotionPoints<'_>),
+        effects: impl Iterator<Item = Effect>,
+        reach_m: f64,
+    ) -> Vec<(Effect, Vec<f64>)> {
+        let course = self.course();
+        let change = |e: Effect| (e, self.perturbation(at, &course, (e, reach_m)));
+        effects.map(change).collect()
+    }
+
+    fn course(&self) -> Course {
         let intervals = NODES * self.record.folded.periods_n as usize;
         let grid = Grid::new(self.period(), intervals);
+        let phase = |t: f64| self.orbit.phase + self.eta * t;
         let masses = [
             Some((self.machine.x, self.orbit.x)),
             self.machine.y.map(|y| (y, self.orbit.y)),
         ];
-        let responses = masses.map(|mass| {
-            let (oscillator, motion) = mass?;
-            let p = self.accelerations(&oscillator, &motion, grid, (effect, reach_m));
-            Some(PeriodicResponse::new(&oscillator, grid, &p))
+        Course {
+            grid,
+            turns: grid
+                .times()
+                .map(|t| C64::from_polar(1.0, phase(t)))
+                .collect(),
+            masses: masses.map(|mass| {
+                let (oscillator, motion) = mass?;
+                let states = grid.states(&motion, self.orbit.phase, self.eta);
+                Some((oscillator, states))
+            }),
+        }
+    }
+
+    fn perturbation(
+        &self,
+        (values, points): (&[Terms], &MotionPoints<'_>),
+        course: &Course,
+        effect: (Effect, f64),
+    ) -> Vec<f64> {
+        let responses = course.masses.each_ref().map(|mass| {
+            let (oscillator, states) = mass.as_ref()?;
+            let p = self.accelerations(oscillator, states, &course.turns, effect);
+            Some(PeriodicResponse::new(oscillator, course.grid, &p))
         });
         let at_impact = responses.iter().flatten().map(PeriodicResponse::at_impact);
         let [displacement, velocity] =
@@ -32,64 +75,73 @@ impl RecordMotion<'_> {
             velocity,
             ..Change::default()
         };
-        let mut slopes = self.along(values, &self.direction(&change, None));
-        let extra = self.channel_by_channel(|channel, vibration| {
-            let Some(response) = &responses[usize::from(channel.role.is_of_y())] else {
-                return vec![0.0; channel.points];
-            };
-            let mut seen = match measured(channel.role) {
-                Measured::Displacement => response.displacement(),
-                Measured::Velocity => response.velocity(),
-            };
-            if let Some(filter) = &channel.filter {
-                seen = seen.high_passed(filter.high_pass.corner());
-            }
-            let times = vibration.time().iter();
-            let times = times.map(|t| (t - channel.delay).rem_euclid(self.period()));
-            times.map(|t| seen.at(t)).collect()
+        let mut values = points.values(&self.along(values, &self.direction(&change, None)));
+        let extra = self.channels.iter().zip(points.times());
+        let extra = extra.flat_map(|(channel, times)| {
+            let response = responses[usize::from(channel.role.is_of_y())].as_ref();
+            self.extra(channel, response, times)
         });
-        add(&mut slopes, 1.0, &extra);
-        slopes
+        values.iter_mut().zip(extra).for_each(|(v, e)| *v += e);
+        values
+    }
+
+    /// What the response of a channel's mass adds at its points, SI.
+    fn extra(
+        &self,
+        channel: &ChannelMotion,
+        response: Option<&PeriodicResponse>,
+        times: &[f64],
+    ) -> Vec<f64> {
+        let Some(response) = response else {
+            return vec![0.0; times.len()];
+        };
+        let mut seen = match measured(channel.role) {
+            Measured::Displacement => response.displacement(),
+            Measured::Velocity => response.velocity(),
+        };
+        if let Some(filter) = &channel.filter {
+            seen = seen.high_passed(filter.high_pass.corner());
+        }
+        let unit = self.unit(channel.role);
+        let at = |t: &f64| unit * seen.at((t - channel.delay).rem_euclid(self.period()));
+        times.iter().map(at).collect()
     }
 
     /// The extra acceleration of one mass at the nodes, per unit of an effect's strength.
     fn accelerations(
         &self,
         oscillator: &Oscillator,
-        motion: &MassMotion,
-        grid: Grid,
+        states: &[[f64; 2]],
+        turns: &[C64],
         (effect, reach_m): (Effect, f64),
     ) -> Vec<f64> {
         let length_m = self.own.static_deflection_m * self.record.drive_amplitude;
-        let harmonic = |order: f64, lag: f64| -> Vec<f64> {
-            let force = oscillator.drive_per_mass();
-            let phase = |t: f64| order * (self.orbit.phase + self.eta * t) - lag;
-            grid.times().map(|t| force * phase(t).cos()).collect()
-        };
-        let states = || grid.states(motion, self.orbit.phase, self.eta);
+        let force = oscillator.drive_per_mass();
+        let cosine = |order: u32| turns.iter().map(move |turn| force * turn.powu(order).re);
+        let sine = |order: u32| turns.iter().map(move |turn| force * turn.powu(order).im);
         match effect {
-            Effect::SecondHarmonicCos => harmonic(2.0, 0.0),
-            Effect::SecondHarmonicSin => harmonic(2.0, std::f64::consts::FRAC_PI_2),
-            Effect::ThirdHarmonicCos => harmonic(3.0, 0.0),
-            Effect::ThirdHarmonicSin => harmonic(3.0, std::f64::consts::FRAC_PI_2),
+            Effect::SecondHarmonicCos => cosine(2).collect(),
+            Effect::SecondHarmonicSin => sine(2).collect(),
+            Effect::ThirdHarmonicCos => cosine(3).collect(),
+            Effect::ThirdHarmonicSin => sine(3).collect(),
             Effect::Hardening => {
                 let share = oscillator.stiffness_per_mass() * (length_m / reach_m).powi(2);
-                states().iter().map(|s| -share * s[0].powi(3)).collect()
+                states.iter().map(|s| -share * s[0].powi(3)).collect()
             }
             Effect::Friction => {
                 let force = self.common.static_deflection_m / length_m;
-                friction(&states()).iter().map(|p| force * p).collect()
+                friction(states).iter().map(|p| force * p).collect()
             }
             Effect::Drag => {
                 let share = self.common.static_deflection_m * length_m / reach_m.powi(2);
                 let drag = |s: &[f64; 2]| -share * s[1] * s[1].abs();
-                states().iter().map(drag).collect()
+                states.iter().map(drag).collect()
             }
             Effect::SpringAsymmetry => {
                 let share = oscillator.stiffness_per_mass() * length_m / reach_m;
-                states().iter().map(|s| -share * s[0].powi(2)).collect()
+                states.iter().map(|s| -share * s[0].powi(2)).collect()
             }
-            _ => vec![0.0; grid.intervals + 1],
+            _ => vec![0.0; states.len()],
         }
     }
 }
