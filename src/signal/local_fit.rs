@@ -126,9 +126,12 @@ fn product(matrix: &DMatrix<f64>, row: usize, vector: &[f64]) -> f64 {
     column.iter().zip(vector).map(|(a, b)| a * b).sum()
 }
 
+/// Covariances by number of samples and degree; `None` where the samples do not determine the polynomial.
+type Covariances = HashMap<(usize, usize), Option<Arc<DMatrix<f64>>>>;
+
 thread_local! {
-    /// The covariances that a thread has found: they depend on few numbers of samples and degrees.
-    static COVARIANCES: RefCell<HashMap<(usize, usize), Option<Arc<DMatrix<f64>>>>> = RefCell::default();
+    /// Those that a thread has found.
+    static COVARIANCES: RefCell<Covariances> = RefCell::default();
 }
 
 /// Covariance of the coefficients of a polynomial fitted to so many samples, for noise of unit deviation.
@@ -146,7 +149,7 @@ fn covariance(count: usize, degree: usize) -> Option<Arc<DMatrix<f64>>> {
         let normal = DMatrix::from_fn(degree + 1, degree + 1, |i, k| moments[i + k]);
         normal.try_inverse().map(Arc::new)
     };
-    let known = |known: &RefCell<HashMap<_, _>>| {
+    let known = |known: &RefCell<Covariances>| {
         let mut known = known.borrow_mut();
         known.entry((count, degree)).or_insert_with(find).clone()
     };

@@ -12,7 +12,7 @@ use crate::identify::evidence::high_pass::{HighPass, HighPassSlope, Passed};
 use crate::identify::evidence::nearest_orbit::NearestOrbit;
 use crate::identify::evidence::trajectory_record::TrajectoryRecord;
 use crate::identify::evidence::waveform::{
-    Terms, Timing, TimingSlope, Vibration, delayed, delayed_slope, velocity, velocity_slope,
+    Rates, Terms, Timing, TimingSlope, Vibration, delayed, delayed_slope, velocity, velocity_slope,
 };
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::parameters::{Coordinate, Parameters, gain_index};
@@ -215,18 +215,17 @@ impl<'a> RecordMotion<'a> {
         MotionPoints::new(self)
     }
 
-    /// When the impact is.
-    pub(super) fn timing(&self) -> Timing {
-        self.timing
-    }
-
-    /// λ/η of each channel's mass, and c/η of its high-pass, per rad of the drive's phase.
-    pub(super) fn rates(&self) -> impl Iterator<Item = (C64, Option<f64>)> {
-        self.channels.iter().map(|channel| {
+    /// How fast the channels' terms change.
+    pub fn rates(&self) -> Rates {
+        let channels = self.channels.iter().map(|channel| {
             let corner = channel.filter.as_ref().map(|f| f.high_pass.corner());
             let vibration = &self.vibrations[usize::from(channel.role.is_of_y())];
             (vibration.rate(), corner.map(|c| c / self.eta))
-        })
+        });
+        Rates {
+            timing: self.timing,
+            channels: channels.collect(),
+        }
     }
 
     /// Slopes over coordinates of the fit, by the values that effects do not perturb: few distinct

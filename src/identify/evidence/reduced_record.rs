@@ -6,10 +6,8 @@
 //! first terms suffice. Weighted residuals are projected orthogonally onto these functions, onto what is
 //! measured and onto what effects change beside them, so that sums of squares and products stay as they are.
 
-use crate::identify::evidence::record_motion::RecordMotion;
 use crate::identify::evidence::shared_error::Whitening;
-use crate::identify::evidence::trajectory_record::TrajectoryRecord;
-use crate::identify::evidence::waveform::{Phases, Terms, Timing};
+use crate::identify::evidence::waveform::{ChannelRates, Phases, Rates, Terms, Timing};
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::rows::Rows;
 use crate::signal::columns::subtract;
@@ -23,13 +21,10 @@ const FREE: usize = 4;
 const BENT: usize = 3;
 const TAIL: usize = 3;
 
-/// λ/η of a channel's mass and c/η of its high-pass, per rad of the drive's phase.
-type Rates = (C64, Option<f64>);
-
 /// A record's weighted residuals and their slopes in few rows.
 #[derive(Debug, Clone)]
 pub struct ReducedRecord {
-    timing: Timing,
+    impact_phase: f64,
     channels: Vec<Channel>,
     /// Rows of what is measured and of the effects beside the channels' functions.
     beside: usize,
@@ -42,7 +37,7 @@ pub struct ReducedRecord {
 /// The functions of one channel, projected.
 #[derive(Debug, Clone)]
 struct Channel {
-    rates: Rates,
+    rates: ChannelRates,
     /// How much earlier and later the impact may be without passing a point, rad.
     room: [f64; 2],
     height: usize,
@@ -50,42 +45,49 @@ struct Channel {
     functions: Vec<f64>,
 }
 
+/// What is known of a record at all of its points, over the points' errors and without the channels' offsets.
+pub struct Weighted<'a> {
+    /// Of each channel the phases of its points.
+    pub phases: Vec<&'a Phases>,
+    /// Measured values.
+    pub measured: Vec<f64>,
+    /// Change by each effect that acts as an extra acceleration, per unit of its strength.
+    pub effects: Vec<(Effect, Vec<f64>)>,
+    /// What makes them independent of the errors that all points share.
+    pub whitening: &'a Whitening,
+    /// Weighs values at the points of a channel.
+    pub weigh: &'a dyn Fn(usize, &[f64]) -> Vec<f64>,
+}
+
 impl ReducedRecord {
-    /// Of a record with its weights, about a motion.
-    pub fn new(record: &TrajectoryRecord, motion: &RecordMotion<'_>) -> Option<Self> {
-        let weighing = &record.weighing;
-        let perturbed = record.perturbations.iter();
-        let changes: Vec<Vec<f64>> = perturbed
-            .map(|(_, change)| weighing.centred(change))
-            .chain(weighing.shared_directions().cloned())
-            .collect();
-        let measured = weighing.centred(&record.measured());
+    /// Of a record about a motion.
+    pub fn new(points: &Weighted<'_>, rates: &Rates) -> Option<Self> {
+        let changes = points.effects.iter().map(|(_, change)| change);
+        let changes: Vec<&Vec<f64>> = changes.chain(points.whitening.directions()).collect();
         let mut projection = Projection::new(changes.len());
         let mut start = 0;
-        for (i, rates) in motion.rates().enumerate() {
-            let points = &record.folded.channels[i].points;
-            let range = start..start + points.len();
-            start = range.end;
-            let phases = record.phases.iter().find(|p| p.fit(points))?;
-            let functions: Vec<Vec<f64>> = functions(phases, &motion.timing(), rates)
+        for (i, (phases, channel)) in points.phases.iter().zip(&rates.channels).enumerate() {
+            let functions: Vec<Vec<f64>> = functions(phases, &rates.timing, *channel)
                 .iter()
-                .map(|function| weighing.centred_of(i, function))
+                .map(|function| (points.weigh)(i, function))
                 .collect();
+            let range = start..start + functions.first()?.len();
+            start = range.end;
             let others = changes.iter().map(|change| &change[range.clone()]);
-            let others: Vec<&[f64]> = others.chain([&measured[range.clone()]]).collect();
-            projection.add(&functions, &others, (rates, room(phases, &motion.timing())));
+            let others: Vec<&[f64]> = others.chain([&points.measured[range.clone()]]).collect();
+            projection.add(&functions, &others, (*channel, room(phases, &rates.timing)));
         }
         let (channels, beside, mut vectors) = projection.finished();
         let mut measured = vectors.pop()?;
-        let directions = vectors.split_off(record.perturbations.len());
-        let whitening = weighing.shared_along(directions);
+        let directions = vectors.split_off(points.effects.len());
+        let whitening = points.whitening.along(directions);
         whitening.apply(&mut measured);
         vectors
             .iter_mut()
             .for_each(|change| whitening.apply(change));
-        let effects = record.perturbations.iter().map(|(effect, _)| *effect);
+        let effects = points.effects.iter().map(|(effect, _)| *effect);
         Some(Self {
-            timing: motion.timing(),
+            impact_phase: rates.timing.impact_phase,
             channels,
             beside,
             whitening,
@@ -95,15 +97,14 @@ impl ReducedRecord {
     }
 
     /// At a motion; `None` where it is too far from the reference.
-    pub fn at(&self, motion: &RecordMotion<'_>) -> Option<Reduced<'_>> {
-        let timing = motion.timing();
-        let later = timing.impact_phase - self.timing.impact_phase;
-        let channels = self.channels.iter().zip(motion.rates());
+    pub fn at(&self, rates: &Rates) -> Option<Reduced<'_>> {
+        let later = rates.timing.impact_phase - self.impact_phase;
+        let channels = self.channels.iter().zip(&rates.channels);
         let shifts: Option<Vec<Shift>> = channels
-            .map(|(channel, rates)| {
+            .map(|(channel, to)| {
                 let [earlier, latest] = channel.room;
                 let passes = later <= -earlier || later >= latest;
-                let shift = Shift::new((channel.rates, rates), &timing, later)?;
+                let shift = Shift::new((channel.rates, *to), &rates.timing, later)?;
                 (!passes).then_some(shift)
             })
             .collect();
@@ -177,7 +178,7 @@ struct Shift {
 
 impl Shift {
     /// From the rates at the reference to others; `None` out of reach.
-    fn new((from, to): (Rates, Rates), timing: &Timing, later: f64) -> Option<Self> {
+    fn new((from, to): (ChannelRates, ChannelRates), timing: &Timing, later: f64) -> Option<Self> {
         let change = to.0 - from.0;
         let [gamma, gamma_to] = [from.1, to.1].map(|corner| corner.unwrap_or(0.0));
         let decay = gamma - gamma_to;
@@ -224,7 +225,7 @@ impl Shift {
 }
 
 /// The functions of a channel at its points.
-fn functions(phases: &Phases, timing: &Timing, (kappa, gamma): Rates) -> Vec<Vec<f64>> {
+fn functions(phases: &Phases, timing: &Timing, (kappa, gamma): ChannelRates) -> Vec<Vec<f64>> {
     let since: Vec<f64> = phases.since(timing.impact_phase, timing.span()).collect();
     let turns: Vec<C64> = phases.turns().map(|(turn, _)| turn).collect();
     let free: Vec<C64> = since.iter().map(|theta| (kappa * theta).exp()).collect();
@@ -287,7 +288,7 @@ impl Projection {
         &mut self,
         functions: &[Vec<f64>],
         vectors: &[&[f64]],
-        (rates, room): (Rates, [f64; 2]),
+        (rates, room): (ChannelRates, [f64; 2]),
     ) {
         let Some((last, others)) = vectors.split_last() else {
             return;
@@ -333,8 +334,8 @@ mod tests {
     use rand::{Rng, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
-    use super::*;
     use crate::event::RigKind;
+    use crate::identify::evidence::record_motion::RecordMotion;
     use crate::identify::evidence::record_motion::tests::{parameters, record};
     use crate::identify::evidence::trajectory::TrajectoryBlock;
     use crate::identify::fit::Block;
@@ -390,7 +391,7 @@ mod tests {
                 at.with(c, at.coordinate(c) + 2e-4 * random.random_range(-1.0..1.0))
             });
             let motion = RecordMotion::new(RIG, record, &at).expect("an orbit");
-            assert!(rows.at(&motion).is_some());
+            assert!(rows.at(&motion.rates()).is_some());
             let (found, want) = (normal(&reduced, item, &at), normal(&all, item, &at));
             assert_eq!(found.count, want.count);
             assert!((found.cost - want.cost).abs() < 1e-7 * want.cost);

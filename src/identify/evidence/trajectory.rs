@@ -5,7 +5,6 @@ use rayon::prelude::*;
 use crate::event::RigKind;
 use crate::identify::evidence::nearest_orbit::NearestOrbit;
 use crate::identify::evidence::record_motion::{Column, RecordMotion, Slopes};
-use crate::identify::evidence::reduced_record::ReducedRecord;
 use crate::identify::evidence::trajectory_record::{TrajectoryRecord, Weighing};
 use crate::identify::evidence::waveform::{Phases, Terms};
 use crate::identify::fit::Block;
@@ -132,7 +131,8 @@ impl TrajectoryBlock {
         let motion = RecordMotion::new(self.rig, record, parameters)?;
         let terms = motion.unperturbed();
         let Slopes { columns, sums } = motion.slopes(&terms, coordinates);
-        let near = record.reduced.as_ref().and_then(|r| r.at(&motion));
+        let reduced = record.reduced.as_ref();
+        let near = reduced.and_then(|r| r.at(&motion.rates()));
         let (residuals, mut columns): (Vec<f64>, Vec<Vec<f64>>) = match near {
             Some(reduced) => {
                 let weighted = |column: Column| match column {
@@ -165,8 +165,11 @@ impl TrajectoryBlock {
     pub fn reduce(&mut self, parameters: &Parameters) {
         let rig = self.rig;
         self.records.par_iter_mut().for_each(|record| {
-            let motion = RecordMotion::new(rig, record, parameters);
-            record.reduced = motion.and_then(|motion| ReducedRecord::new(record, &motion));
+            let rates = RecordMotion::new(rig, record, parameters).map(|motion| motion.rates());
+            record.reduced = None;
+            if let Some(rates) = rates {
+                record.reduce(&rates);
+            }
         });
     }
 

@@ -1,9 +1,9 @@
 //! A periodic record as the fits use it.
 
 use crate::event::RigKind;
-use crate::identify::evidence::reduced_record::ReducedRecord;
+use crate::identify::evidence::reduced_record::{ReducedRecord, Weighted};
 use crate::identify::evidence::shared_error::Whitening;
-use crate::identify::evidence::waveform::Phases;
+use crate::identify::evidence::waveform::{Phases, Rates};
 use crate::identify::fit::effect::Effect;
 use crate::identify::fit::group::Group;
 use crate::identify::fit::own::Circumstances;
@@ -97,10 +97,22 @@ impl TrajectoryRecord {
             .map(|(_, change)| change)
     }
 
-    /// Measured values.
-    pub(super) fn measured(&self) -> Vec<f64> {
-        let points = self.folded.channels.iter().flat_map(|c| &c.points);
-        points.map(|p| p.value).collect()
+    /// Reduce it, weighted as it is, to few rows about a motion.
+    pub(super) fn reduce(&mut self, rates: &Rates) {
+        let weighing = &self.weighing;
+        let phases = |c: &FoldedChannel| self.phases.iter().find(|p| p.fit(&c.points));
+        let phases: Option<Vec<&Phases>> = self.folded.channels.iter().map(phases).collect();
+        let measured = self.folded.channels.iter().flat_map(|c| &c.points);
+        let measured: Vec<f64> = measured.map(|p| p.value).collect();
+        let changes = self.perturbations.iter();
+        let weighted = Weighted {
+            phases: phases.unwrap_or_default(),
+            measured: weighing.centred(&measured),
+            effects: changes.map(|(e, c)| (*e, weighing.centred(c))).collect(),
+            whitening: &weighing.shared,
+            weigh: &|channel, values| weighing.centred_of(channel, values),
+        };
+        self.reduced = ReducedRecord::new(&weighted, rates);
     }
 
     /// Number of points of all channels.
@@ -134,7 +146,7 @@ impl Weighing {
     }
 
     /// Differences of all points over their errors, without the channels' offsets.
-    pub(super) fn centred(&self, differences: &[f64]) -> Vec<f64> {
+    fn centred(&self, differences: &[f64]) -> Vec<f64> {
         let mut out = Vec::with_capacity(differences.len());
         for weights in &self.channels {
             let end = out.len() + weights.roots.len();
@@ -144,20 +156,10 @@ impl Weighing {
     }
 
     /// The same of the points of one channel.
-    pub(super) fn centred_of(&self, channel: usize, differences: &[f64]) -> Vec<f64> {
+    fn centred_of(&self, channel: usize, differences: &[f64]) -> Vec<f64> {
         let mut out = Vec::with_capacity(differences.len());
         self.channels[channel].centred(differences, &mut out);
         out
-    }
-
-    /// The directions of what all points share, in weighted differences.
-    pub(super) fn shared_directions(&self) -> impl Iterator<Item = &Vec<f64>> {
-        self.shared.directions()
-    }
-
-    /// What makes residuals independent where those directions are others.
-    pub(super) fn shared_along(&self, directions: Vec<Vec<f64>>) -> Whitening {
-        self.shared.along(directions)
     }
 
     /// Differences of all points, weighted.

@@ -74,6 +74,18 @@ impl Timing {
     }
 }
 
+/// How fast the terms of a motion change with the phase of its drive.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rates {
+    /// When its impact is.
+    pub timing: Timing,
+    /// Of each channel λ/η of its mass and c/η of its high-pass, per rad.
+    pub channels: Vec<ChannelRates>,
+}
+
+/// λ/η and c/η.
+pub type ChannelRates = (C64, Option<f64>);
+
 /// How a direction changes the timing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TimingSlope {
@@ -83,9 +95,10 @@ pub struct TimingSlope {
     pub impact_phase: f64,
 }
 
-/// What a channel shows, as a sum of terms at the points: Re(F e^{iθ}) + Re((a + bt + (c + dt) s²/2) e^{λt})
-/// + (k + lt) e^{−ct}, with s the spread of a point's phase, λ the exponent of its mass and c the corner of
-/// its high-pass.
+/// What a channel shows, as a sum of terms at the points.
+///
+/// It is Re(F e^{iθ}) + Re((a + bt + (c + dt) s²/2) e^{λt}) + (k + lt) e^{−ct} with s the spread of a
+/// point's phase, λ the exponent of its mass and c the corner of its high-pass.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Terms {
     /// F
