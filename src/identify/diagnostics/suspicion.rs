@@ -258,3 +258,53 @@ pub(super) fn recover(
         z_score,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::identify::fit::FitReport;
+    use crate::identify::uncertainty::scatter::{Excess, Scatter};
+
+    /// A fit whose first gap is 6 µm off with a variance of 1 µm², 8/9 of it known by the data; `ratio`: the
+    /// scatter between groups over what noise explains.
+    fn found(ratio: f64) -> MethodFit {
+        let gap = Coordinate::Gap(0);
+        let excess = Excess {
+            coordinate: gap,
+            ratio,
+            freedom: 5.0,
+            share: 1.0,
+        };
+        MethodFit {
+            fit: Fit {
+                parameters: Parameters::symmetric(0.8, 12.0, 0.05, 1e-3).with(gap, 6e-3),
+                free: vec![gap],
+                covariance: DMatrix::from_element(1, 1, 1e-6),
+                cost: 1.0,
+                residuals: 1,
+                report: FitReport::default(),
+            },
+            factor: 1.0,
+            reduced: 1.0,
+            scatter: Scatter {
+                groups: 6,
+                excess: vec![excess],
+            },
+            parts: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn scatter_between_groups_makes_a_gap_less_suspect() {
+        let of = |ratio: f64| beyond_stated(&found(ratio), 0, 1e-3, 3e-6).expect("an informed gap");
+        // Without the prior 6 · 9/8 = 6.75 µm, of variance 9/8 µm² beside the 9 µm² that are stated.
+        let odd = of(1.0);
+        assert!((odd.fitting_m - 1.00675e-3).abs() < 1e-12);
+        assert!((odd.z_score - 6.75 / (9.0f64 + 1.125).sqrt()).abs() < 1e-9);
+        // Scatter of 3 µm² grows to 3 · (9/8)² µm².
+        let odd = of(4.0);
+        assert!((odd.z_score - 6.75 / (10.125f64 + 3.0 * 1.265_625).sqrt()).abs() < 1e-9);
+    }
+}
