@@ -152,6 +152,7 @@ impl<'a> Selection<'a> {
         self.blocks.trajectory.records.clone_from(&all);
         self.keep_those_with_orbits(&first);
         self.blocks.weigh_trajectories(&first);
+        self.blocks.trajectory.reduce(&first);
         let mut found =
             match methods::trajectories(&self.blocks, &nominal, first, Precision::Start)? {
                 Ok(found) => found,
@@ -165,6 +166,7 @@ impl<'a> Selection<'a> {
             let lost = self.lost.len();
             self.keep_fitting(&parameters);
             self.blocks.weigh_trajectories(&parameters);
+            self.blocks.trajectory.reduce(&parameters);
             self.keep_those_with_orbits(&parameters);
             found = match self.trajectories_without_ends(parameters)? {
                 Ok(found) => found,

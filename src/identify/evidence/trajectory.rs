@@ -165,11 +165,8 @@ impl TrajectoryBlock {
     pub fn reduce(&mut self, parameters: &Parameters) {
         let rig = self.rig;
         self.records.par_iter_mut().for_each(|record| {
-            let rates = RecordMotion::new(rig, record, parameters).map(|motion| motion.rates());
-            record.reduced = None;
-            if let Some(rates) = rates {
-                record.reduce(&rates);
-            }
+            let motion = RecordMotion::new(rig, record, parameters);
+            record.reduced = motion.and_then(|motion| record.reduced_about(&motion.rates()));
         });
     }
 

@@ -97,8 +97,8 @@ impl TrajectoryRecord {
             .map(|(_, change)| change)
     }
 
-    /// Reduce it, weighted as it is, to few rows about a motion.
-    pub(super) fn reduce(&mut self, rates: &Rates) {
+    /// What it is reduced to, weighted as it is, about a motion.
+    pub(super) fn reduced_about(&self, rates: &Rates) -> Option<ReducedRecord> {
         let weighing = &self.weighing;
         let phases = |c: &FoldedChannel| self.phases.iter().find(|p| p.fit(&c.points));
         let phases: Option<Vec<&Phases>> = self.folded.channels.iter().map(phases).collect();
@@ -106,13 +106,13 @@ impl TrajectoryRecord {
         let measured: Vec<f64> = measured.map(|p| p.value).collect();
         let changes = self.perturbations.iter();
         let weighted = Weighted {
-            phases: phases.unwrap_or_default(),
+            phases: phases?,
             measured: weighing.centred(&measured),
             effects: changes.map(|(e, c)| (*e, weighing.centred(c))).collect(),
             whitening: &weighing.shared,
             weigh: &|channel, values| weighing.centred_of(channel, values),
         };
-        self.reduced = ReducedRecord::new(&weighted, rates);
+        ReducedRecord::new(&weighted, rates)
     }
 
     /// Number of points of all channels.

@@ -32,7 +32,7 @@ impl Blocks {
     }
 
     /// Find what the points of each periodic record share and what effects beyond the model change
-    /// in them, allow all the least relative error that explains the rest, and reduce them to few rows.
+    /// in them, and allow all the least relative error that explains the rest.
     pub fn weigh_trajectories(&mut self, parameters: &Parameters) {
         let block = &mut self.trajectory;
         block.find_changes(parameters);
@@ -49,7 +49,6 @@ impl Blocks {
         };
         let allowed = least_allowance(scores);
         block.allow(allowed);
-        block.reduce(parameters);
     }
 }
 
